@@ -1,0 +1,37 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "vibe_sim/contact/tool_model.hpp"
+#include "vibe_sim/geometry/organ.hpp"
+#include "vibe_sim/geometry/skin.hpp"
+#include "vibe_sim/scene/scene.hpp"
+#include "vibe_sim/tissue/tissue_model.hpp"
+
+namespace vibe {
+
+/// Everything that does not change while the simulation runs. Shared between threads and copies of State.
+struct Model {
+  Scene scene;
+  Organ organ;  ///< rest shape and anatomy
+  int particle_count = 0;
+
+  // per particle, (particle_count)
+  std::vector<double> mass;          ///< [kg]
+  std::vector<double> inverse_mass;  ///< 0: held in place [1/kg]
+  std::vector<double> area;          ///< of wall at rest [m^2]
+
+  double particle_radius = 0;  ///< contact distance from the mid-surface: half the mean wall thickness [m]
+  double rest_volume = 0;      ///< of the lumen [m^3]
+
+  std::shared_ptr<const TissueModel> tissue;  ///< elastic law and its solver
+
+  std::shared_ptr<const ToolModel> tool;                        ///< null without scope
+  Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world
+  int tip_link = -1;                                            ///< link numbers in tool
+  int helix_link = -1;
+
+  Skin skin;  ///< empty without scene.skin
+};
+
+}  // namespace vibe

@@ -1,0 +1,96 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "vibe_sim/geometry/anatomy.hpp"
+
+namespace vibe {
+
+/// Shape and resolution of the organ.
+struct GeometryScene {
+  enum class Kind { Stomach, Mesh, Sphere };
+  Kind kind = Kind::Stomach;
+  int particles = 3618;  ///< exactly this many vertices of the mid-surface, 100 to 200,000
+
+  // kind: stomach (procedural)
+  double volume = 0.75e-3;  ///< enclosed volume without stress [m^3]
+
+  // kind: sphere (tests and benchmarks)
+  double radius = 0.05;  ///< [m]
+
+  // kind: mesh (import)
+  std::string file;          ///< OBJ, STL, PLY, glTF; relative to the scene file
+  double unit = 0.0;         ///< metres per unit of the file [m]; 0: from the file's own statement, or an error
+  double target_volume = 0;  ///< scale uniformly to this volume [m^3]; 0: keep the size
+  std::array<double, 3> rotation_rpy{0, 0, 0};  ///< fixed-axis roll, pitch, yaw from the file's axes to ours [rad]
+  std::optional<Eigen::Vector3d> oesophagus, fundus, incisura, pylorus;  ///< landmarks in the file's frame and unit
+};
+
+/// The wall.
+struct TissueScene {
+  std::string model = "shape_matching";  ///< a name in the registry of tissue models
+  double density = 1050;                 ///< [kg/m^3]
+  double young_modulus = 60e3;           ///< [Pa]
+  double poisson_ratio = 0.45;           ///< [1]
+  std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
+  double damping_rate = 30;  ///< viscous damping of the velocity [1/s]
+  int substeps = 30;         ///< solver sub-steps per step
+};
+
+/// Gas in the lumen, isothermal. The insufflator raises or lowers the amount at a limited flow until the regulated
+/// pressure is reached; while it is off the amount is closed in.
+struct GasScene {
+  double initial_pressure = 0;       ///< gauge pressure at the start [Pa]
+  double regulated_pressure = 1333;  ///< gauge set point of the insufflator [Pa]
+  double flow_limit = 5e-5;          ///< of the insufflator, at ambient pressure [m^3/s]
+  bool insufflator_on = false;       ///< at the start
+};
+
+struct GravityScene {
+  Eigen::Vector3d acceleration{-9.81, 0, 0};  ///< [m/s^2]; the default is a patient on the back
+};
+
+/// Neighbouring organs: springs from every particle to its place at rest.
+struct BedScene {
+  double stiffness = 5e3;      ///< per area of wall [Pa/m]
+  bool carries_weight = true;  ///< the bed balances the weight, so that the given shape is the shape in place
+};
+
+/// The endoscope with its suturing device.
+struct ScopeScene {
+  std::string urdf = "package://vibe_description/urdf/scope.urdf";
+  bool base_from_anatomy = true;            ///< scope_base at the organ's entry, x axis into the lumen
+  Eigen::Vector3d base_position{0, 0, 0};   ///< else here, in world [m]
+  std::array<double, 3> base_rpy{0, 0, 0};  ///< else so [rad]
+  double friction = 0.1;                    ///< Coulomb coefficient tool on mucosa [1]
+};
+
+/// Tissue helix: holds the particles near its tip.
+struct HelixScene {
+  double reach = 4e-3;        ///< grabs if a particle is this near to the tip [m]
+  double grip_radius = 5e-3;  ///< particles within this distance of the first are held too [m]
+  double hold_force = 8.0;    ///< slips above this force [N]
+};
+
+/// What the user wrote, validated. An absent part costs nothing at run time.
+struct Scene {
+  std::string file;  ///< where it was read, empty if built in code
+  std::string name = "unnamed";
+  std::uint64_t seed = 1;
+  double step_period = 1.0 / 60;  ///< simulated time per step [s]
+  GeometryScene geometry;
+  TissueScene tissue;
+  bool attach_oesophagus = false;  ///< hold the particles of this end
+  bool attach_duodenum = false;    ///< hold the particles of this end
+  std::optional<GasScene> gas;
+  std::optional<GravityScene> gravity;
+  std::optional<BedScene> bed;
+  std::optional<ScopeScene> scope;
+  std::optional<HelixScene> helix;
+  bool skin = false;  ///< finer render surface
+};
+
+}  // namespace vibe

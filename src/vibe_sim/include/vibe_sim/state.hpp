@@ -1,0 +1,54 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "vibe_sim/step_input.hpp"
+
+namespace vibe {
+
+/// A particle held by the helix, with its place in the helix frame.
+struct GripPoint {
+  int particle = -1;
+  Eigen::Vector3d local;  ///< in the helix link's frame [m]
+};
+
+/// Sums since the start [J].
+struct EnergyAccount {
+  double tool_work = 0;     ///< done by the tool on the tissue (contact and grip)
+  double gas_work = 0;      ///< done by the gas on the wall
+  double damping_loss = 0;  ///< taken out by viscous damping
+};
+
+/// Everything that changes. A snapshot is a copy; equal states have equal futures.
+struct State {
+  std::int64_t step = 0;
+  double time = 0;  ///< step * step_period [s]
+  std::uint64_t seed = 1;
+  std::uint64_t random = 0;  ///< state of the generator
+
+  // particles, structure of arrays, (particle count)
+  std::vector<double> x, y, z;                  ///< positions [m]
+  std::vector<double> vx, vy, vz;               ///< velocities [m/s]
+  std::vector<Eigen::Quaterniond> orientation;  ///< of each particle's neighbourhood against rest
+
+  double gas_amount = 0;  ///< absolute pressure times volume [Pa m^3 = J]
+  double pressure = 0;    ///< gauge [Pa]
+  double volume = 0;      ///< of the lumen [m^3]
+  bool pressure_reached = false;
+
+  std::array<double, kJointCount> joints{};  ///< actual positions of the tool's inputs (limits applied) [m], [rad]
+  std::vector<GripPoint> grip;               ///< what the helix holds; empty: nothing
+  bool helix_pressed = false;                ///< button state of the last step, for edges
+  bool in_contact = false;
+
+  Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in scope_tip [N]
+  Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about the origin of scope_tip, in scope_tip [N m]
+  double grip_force = 0;                                  ///< magnitude of the force on the grip [N]
+  int contact_count = 0;                                  ///< particles touched in the last sub-step
+
+  EnergyAccount energy;
+};
+
+}  // namespace vibe

@@ -1,0 +1,24 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace vibe {
+
+/// Joints that the trainee moves, in the order of StepInput::joints.
+enum Joint : int { Insertion, Rotation, TipUpDown, TipLeftRight, HelixAdvance, HelixRotation, NeedleDriver };
+constexpr int kJointCount = 7;
+constexpr int kScopeJointCount = 4;  ///< the first four come from the scope, the rest from the suturing device
+extern const std::array<const char*, kJointCount> kJointNames;  ///< as in the URDF: "insertion", "rotation", ...
+
+/// Buttons, in the order of sensor_msgs/Joy::buttons on scope/buttons.
+enum Button : int { ApcPedal, HelixGrab, Needle, TTag, Cinch, Insufflate };
+constexpr int kButtonCount = 6;
+extern const std::array<const char*, kButtonCount> kButtonNames;  ///< "apc_pedal", "helix_grab", ...
+
+/// Everything from outside that one step uses. What is recorded is exactly this, so a replay has the same bits.
+struct StepInput {
+  std::array<double, kJointCount> joints{};          ///< commanded joint positions [m], [rad]
+  std::array<std::uint8_t, kButtonCount> buttons{};  ///< 1 while pressed
+};
+
+}  // namespace vibe
