@@ -1,0 +1,34 @@
+# What every script of this folder shares; sourced, never run.
+
+# the workspace, wherever the caller stands and however the script was reached (a link to it works too)
+vibe_root=$(dirname -- "$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")")
+
+# Debian's ROS is built for /usr/bin/python3; a python3 of pyenv or conda earlier in PATH breaks CMake and every node script
+export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
+
+# Ends the script: something went wrong while it ran.
+die() {
+  printf '%s: %s\n' "${0##*/}" "$*" >&2
+  exit 1
+}
+
+# Ends the script: it was called in a way it does not understand.
+usageError() {
+  printf '%s: %s (%s --help lists what there is)\n' "${0##*/}" "$*" "$0" >&2
+  exit 2
+}
+
+# requireValue OPTION COUNT: an option that takes a value must be followed by one.
+requireValue() {
+  [ "$2" -ge 2 ] || usageError "$1 needs a value"
+}
+
+# Brings the workspace's environment into this shell; call it before set -u, which ROS's own files do not survive.
+sourceWorkspace() {
+  local devel=$1
+  [ -f "$devel/setup.bash" ] || die "$devel/setup.bash is missing; run scripts/build"
+  set +u
+  # shellcheck disable=SC1091
+  source "$devel/setup.bash" || die "could not read $devel/setup.bash; remove $devel and run scripts/build"
+  set -u
+}
