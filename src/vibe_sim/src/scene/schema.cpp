@@ -1,0 +1,84 @@
+#include "vibe_sim/scene/schema.hpp"
+
+#include <sstream>
+
+#include "vibe_sim/scene/scene_value.hpp"
+#include "vibe_sim/scene/yaml_source.hpp"
+
+namespace vibe {
+namespace {
+
+std::string rangeText(const SchemaRow& row) {
+  if (std::holds_alternative<GeometryScene::Kind& (*)(Scene&)>(row.access)) return "stomach, mesh, sphere";
+  if (std::holds_alternative<bool& (*)(Scene&)>(row.access)) return "true, false";
+  if (std::holds_alternative<std::string& (*)(Scene&)>(row.access)) return "text";
+  return showQuantity(row.low, "") + " to " + showQuantity(row.high, "");
+}
+
+std::string unitText(const SchemaRow& row) {
+  const bool three = std::holds_alternative<Eigen::Vector3d& (*)(Scene&)>(row.access) ||
+                     std::holds_alternative<std::array<double, 3>& (*)(Scene&)>(row.access) ||
+                     std::holds_alternative<std::optional<Eigen::Vector3d>& (*)(Scene&)>(row.access);
+  const std::string unit = row.unit;
+  if (unit.empty() || unit == "1") return unit;
+  return three ? "3 x " + unit : unit;
+}
+
+void describeSection(const SchemaSection& section, std::ostream& out) {
+  const std::string name = section.name;
+  out << "### " << (name.empty() ? "Top level" : "`" + name + "`") << "\n\n" << section.help << "\n\n";
+  out << "| key | unit | default | range | meaning | source of the default |\n|---|---|---|---|---|---|\n";
+  for (const SchemaRow& row : sceneSchema()) {
+    if (sectionOf(row.key) != name) continue;
+    const std::string only = row.only_for ? std::string(" (kind `") + toString(*row.only_for) + "` only)" : "";
+    out << "| `" << lastPart(row.key) << "` | " << unitText(row) << " | "
+        << (row.required ? "required" : defaultText(row)) << " | " << rangeText(row) << " | " << row.help << only
+        << " | " << row.source << " |\n";
+  }
+  out << "\n";
+}
+
+}  // namespace
+
+Scene completeScene() {
+  Scene scene;
+  scene.gas.emplace();
+  scene.gravity.emplace();
+  scene.bed.emplace();
+  scene.scope.emplace();
+  scene.helix.emplace();
+  return scene;
+}
+
+const std::array<const char*, 3>& geometryKindNames() {
+  static const std::array<const char*, 3> names{"stomach", "mesh", "sphere"};
+  return names;
+}
+
+const char* toString(GeometryScene::Kind kind) {
+  return geometryKindNames().at(static_cast<std::size_t>(kind));
+}
+
+std::string sectionOf(const std::string& key) {
+  const std::size_t dot = key.rfind('.');
+  return dot == std::string::npos ? "" : key.substr(0, dot);
+}
+
+std::string lastPart(const std::string& key) {
+  const std::size_t dot = key.rfind('.');
+  return dot == std::string::npos ? key : key.substr(dot + 1);
+}
+
+std::string defaultText(const SchemaRow& row) {
+  if (row.absent != nullptr) return row.absent;
+  Scene scene = completeScene();
+  return valueText(row, scene);
+}
+
+std::string describeSchema() {
+  std::ostringstream out;
+  for (const SchemaSection& section : sceneSections()) describeSection(section, out);
+  return out.str();
+}
+
+}  // namespace vibe

@@ -1,0 +1,178 @@
+#include "vibe_sim/scene/schema.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kTurn = 6.2832;                   // a full turn, rounded up so that "360 deg" is allowed
+constexpr double kLargestSeed = 9007199254740991;  // 2^53 - 1: exact in every YAML and JSON reader
+constexpr auto kStomach = GeometryScene::Kind::Stomach;
+constexpr auto kMesh = GeometryScene::Kind::Mesh;
+constexpr auto kSphere = GeometryScene::Kind::Sphere;
+constexpr const char* kChoice = "design choice";
+constexpr const char* kThickness =
+    "mean of 50 specimens in \"Human tissue thickness measurements from excised sleeve gastrectomy specimens\"";
+
+std::vector<SchemaRow> topRows() {
+  return {
+      {"name", [](Scene& s) -> std::string& { return s.name; }, "", 0, 0, "what to call the scene in reports", kChoice},
+      {"seed", [](Scene& s) -> std::uint64_t& { return s.seed; }, "1", 0, kLargestSeed,
+       "start of the random generator; equal seeds give equal sessions", kChoice},
+      {"step_period", [](Scene& s) -> double& { return s.step_period; }, "s", 1e-4, 0.1, "simulated time per step",
+       "one frame of a 60 Hz display"},
+      {"skin", [](Scene& s) -> bool& { return s.skin; }, "", 0, 0,
+       "also publish a smoother surface to draw, with four times the triangles (Loop 1987)", kChoice},
+  };
+}
+
+std::vector<SchemaRow> geometryRows() {
+  return {
+      {"geometry.kind", [](Scene& s) -> GeometryScene::Kind& { return s.geometry.kind; }, "", 0, 0,
+       "`stomach`: procedural J-shaped stomach; `mesh`: any closed surface from a file; `sphere`: for tests", kChoice},
+      {"geometry.particles", [](Scene& s) -> int& { return s.geometry.particles; }, "1", 100, 200000,
+       "exactly this many particles on the mid-surface of the wall", "particle count of the ViBE prototype"},
+      {"geometry.volume", [](Scene& s) -> double& { return s.geometry.volume; }, "m^3", 1e-5, 1e-2,
+       "enclosed volume without stress",
+       "Toro 2015, Surg Laparosc Endosc Percutan Tech 25:324: capacity 0.71 +- 0.32 L, rounded", kStomach},
+      {"geometry.radius", [](Scene& s) -> double& { return s.geometry.radius; }, "m", 1e-3, 1.0, "radius of the sphere",
+       kChoice, kSphere},
+  };
+}
+
+std::vector<SchemaRow> meshRows() {
+  using Point = std::optional<Eigen::Vector3d>;
+  return {
+      {"geometry.file", [](Scene& s) -> std::string& { return s.geometry.file; }, "", 0, 0,
+       "closed surface as OBJ, STL, PLY or glTF; relative to the scene file", "none", kMesh, "none", true},
+      {"geometry.unit", [](Scene& s) -> double& { return s.geometry.unit; }, "m", 1e-6, 10,
+       "length of one unit of the file, e.g. `1 mm`; may be left out if the format states it", "the file", kMesh,
+       "as the file states"},
+      {"geometry.target_volume", [](Scene& s) -> double& { return s.geometry.target_volume; }, "m^3", 1e-5, 1e-2,
+       "scale the surface evenly to this volume", kChoice, kMesh, "size of the file"},
+      {"geometry.rotation_rpy", [](Scene& s) -> std::array<double, 3>& { return s.geometry.rotation_rpy; }, "rad",
+       -kTurn, kTurn, "roll, pitch, yaw about fixed axes from the file's axes to ours (x anterior, y left, z cranial)",
+       kChoice, kMesh},
+      {"geometry.landmarks.oesophagus", [](Scene& s) -> Point& { return s.geometry.oesophagus; }, "file units", -1e9,
+       1e9, "centre of the junction with the oesophagus, in the file's axes and unit", "the user", kMesh, "none", true},
+      {"geometry.landmarks.fundus", [](Scene& s) -> Point& { return s.geometry.fundus; }, "file units", -1e9, 1e9,
+       "apex of the fundus", "the user", kMesh, "none", true},
+      {"geometry.landmarks.incisura", [](Scene& s) -> Point& { return s.geometry.incisura; }, "file units", -1e9, 1e9,
+       "angular incisure, the notch of the lesser curvature", "the user", kMesh, "none", true},
+      {"geometry.landmarks.pylorus", [](Scene& s) -> Point& { return s.geometry.pylorus; }, "file units", -1e9, 1e9,
+       "centre of the pyloric orifice", "the user", kMesh, "none", true},
+  };
+}
+
+std::vector<SchemaRow> tissueRows() {
+  return {
+      {"tissue.model", [](Scene& s) -> std::string& { return s.tissue.model; }, "", 0, 0,
+       "name of the tissue model; the simulator lists the known ones if it does not know yours", kChoice},
+      {"tissue.density", [](Scene& s) -> double& { return s.tissue.density; }, "kg/m^3", 100, 5000,
+       "mass per volume of the wall", "soft tissue is close to water, 1050 to 1060 kg/m^3"},
+      {"tissue.young_modulus", [](Scene& s) -> double& { return s.tissue.young_modulus; }, "Pa", 100, 1e9,
+       "stiffness of the wall at endoscopic distension",
+       "54 to 82 kPa, derived from the compliance 36.1 mL/mmHg of Toro 2015 for a thin sphere"},
+      {"tissue.poisson_ratio", [](Scene& s) -> double& { return s.tissue.poisson_ratio; }, "1", 0, 0.499,
+       "contraction across per extension along", "nearly incompressible, design choice"},
+      {"tissue.thickness.cardia", [](Scene& s) -> double& { return s.tissue.thickness[0]; }, "m", 1e-4, 2e-2,
+       "wall of the cardia", "as the fundus: thinnest near the junction (Elariny 2005, Surg Technol Int 14:119)"},
+      {"tissue.thickness.fundus", [](Scene& s) -> double& { return s.tissue.thickness[1]; }, "m", 1e-4, 2e-2,
+       "wall of the fundus", kThickness},
+      {"tissue.thickness.body", [](Scene& s) -> double& { return s.tissue.thickness[2]; }, "m", 1e-4, 2e-2,
+       "wall of the body", kThickness},
+      {"tissue.thickness.antrum", [](Scene& s) -> double& { return s.tissue.thickness[3]; }, "m", 1e-4, 2e-2,
+       "wall of the antrum", kThickness},
+      {"tissue.thickness.pylorus", [](Scene& s) -> double& { return s.tissue.thickness[4]; }, "m", 1e-4, 2e-2,
+       "wall of the pylorus", "as the antrum"},
+      {"tissue.damping_rate", [](Scene& s) -> double& { return s.tissue.damping_rate; }, "1/s", 0, 1e4,
+       "viscous damping of the velocity: free motion falls to 1/e in one over this", kChoice},
+      {"tissue.substeps", [](Scene& s) -> int& { return s.tissue.substeps; }, "1", 1, 1000, "solver sub-steps per step",
+       "many small steps with one iteration each: Macklin 2019, doi 10.1145/3309486.3340247"},
+  };
+}
+
+std::vector<SchemaRow> environmentRows() {
+  return {
+      {"attachments.oesophagus", [](Scene& s) -> bool& { return s.attach_oesophagus; }, "", 0, 0,
+       "hold the particles of the end at the oesophagus in place", kChoice},
+      {"attachments.duodenum", [](Scene& s) -> bool& { return s.attach_duodenum; }, "", 0, 0,
+       "hold the particles of the end at the duodenum in place", kChoice},
+      {"gas.initial_pressure", [](Scene& s) -> double& { return s.gas->initial_pressure; }, "Pa", -5e3, 2e4,
+       "gauge pressure at the start", kChoice},
+      {"gas.regulated_pressure", [](Scene& s) -> double& { return s.gas->regulated_pressure; }, "Pa", 0, 2e4,
+       "gauge pressure at which the insufflator stops",
+       "Ushimaru 2020, Sci Rep 10:18169: 10.0 mmHg during gastroscopy in 80 patients"},
+      {"gas.flow_limit", [](Scene& s) -> double& { return s.gas->flow_limit; }, "m^3/s", 0, 1e-2,
+       "largest flow of the insufflator, counted at ambient pressure", "3 L/min, design choice"},
+      {"gas.insufflator_on", [](Scene& s) -> bool& { return s.gas->insufflator_on; }, "", 0, 0,
+       "whether the insufflator runs from the start", kChoice},
+      {"gravity.acceleration", [](Scene& s) -> Eigen::Vector3d& { return s.gravity->acceleration; }, "m/s^2", -100, 100,
+       "direction and size; x is anterior, so the default is a patient on the back", "standard gravity, rounded"},
+      {"bed.stiffness", [](Scene& s) -> double& { return s.bed->stiffness; }, "Pa/m", 0, 1e7,
+       "stiffness of the neighbouring organs per area of wall", kChoice},
+      {"bed.carries_weight", [](Scene& s) -> bool& { return s.bed->carries_weight; }, "", 0, 0,
+       "the bed balances the weight, so that the given shape is the shape in place", kChoice},
+  };
+}
+
+std::vector<SchemaRow> toolRows() {
+  return {
+      {"scope.urdf", [](Scene& s) -> std::string& { return s.scope->urdf; }, "", 0, 0,
+       "endoscope and suturing device: `package://` or a path relative to the scene file", kChoice},
+      {"scope.friction", [](Scene& s) -> double& { return s.scope->friction; }, "1", 0, 2,
+       "Coulomb friction of the tool on the mucosa", kChoice},
+      {"scope.base.position", [](Scene& s) -> Eigen::Vector3d& { return s.scope->base_position; }, "m", -10, 10,
+       "origin of `scope_base` in `world`", "none", std::nullopt, "none", true},
+      {"scope.base.rpy", [](Scene& s) -> std::array<double, 3>& { return s.scope->base_rpy; }, "rad", -kTurn, kTurn,
+       "roll, pitch, yaw of `scope_base` about the fixed axes of `world`; its x axis points into the lumen", kChoice},
+      {"helix.reach", [](Scene& s) -> double& { return s.helix->reach; }, "m", 1e-4, 5e-2,
+       "the helix grabs if a particle is this near to its tip", kChoice},
+      {"helix.grip_radius", [](Scene& s) -> double& { return s.helix->grip_radius; }, "m", 1e-4, 5e-2,
+       "particles within this distance of the grabbed one are held too", kChoice},
+      {"helix.hold_force", [](Scene& s) -> double& { return s.helix->hold_force; }, "N", 0, 1000,
+       "the helix slips above this force",
+       "largest instrument tip force seen in transgastric surgery: Trejos 2011, Surg Endosc 25:186"},
+  };
+}
+
+}  // namespace
+
+const std::vector<SchemaRow>& sceneSchema() {
+  static const std::vector<SchemaRow> rows = [] {
+    std::vector<SchemaRow> all;
+    for (auto* group : {topRows, geometryRows, meshRows, tissueRows, environmentRows, toolRows}) {
+      for (const SchemaRow& row : group()) all.push_back(row);
+    }
+    return all;
+  }();
+  return rows;
+}
+
+const std::vector<SchemaSection>& sceneSections() {
+  static const auto nothing = [](Scene&) {};
+  static const auto always = [](const Scene&) { return true; };
+  static const std::vector<SchemaSection> sections = {
+      {"", "The top level.", nothing, always},
+      {"geometry", "Shape and resolution of the organ.", nothing, always},
+      {"geometry.landmarks", "Points that tell the regions and walls of an imported surface; all four.", nothing,
+       [](const Scene& s) { return s.geometry.oesophagus.has_value(); }},
+      {"tissue", "The wall.", nothing, always},
+      {"tissue.thickness", "Thickness of the wall by region.", nothing, always},
+      {"attachments", "Ends that are held in place. Without them the organ is free.", nothing, always},
+      {"gas", "Gas in the lumen with an insufflator. Without it the lumen is empty space without pressure.",
+       [](Scene& s) { s.gas.emplace(); }, [](const Scene& s) { return s.gas.has_value(); }},
+      {"gravity", "Weight of the wall.", [](Scene& s) { s.gravity.emplace(); },
+       [](const Scene& s) { return s.gravity.has_value(); }},
+      {"bed", "Neighbouring organs: springs from every particle to its place at rest.",
+       [](Scene& s) { s.bed.emplace(); }, [](const Scene& s) { return s.bed.has_value(); }},
+      {"scope", "The endoscope with its suturing device.", [](Scene& s) { s.scope.emplace(); },
+       [](const Scene& s) { return s.scope.has_value(); }},
+      {"scope.base", "Pose of the root link. Without it the scope enters where the oesophagus ends.",
+       [](Scene& s) { s.scope->base_from_anatomy = false; },
+       [](const Scene& s) { return s.scope.has_value() && !s.scope->base_from_anatomy; }},
+      {"helix", "Tissue helix of the suturing device; needs `scope`.", [](Scene& s) { s.helix.emplace(); },
+       [](const Scene& s) { return s.helix.has_value(); }},
+  };
+  return sections;
+}
+
+}  // namespace vibe
