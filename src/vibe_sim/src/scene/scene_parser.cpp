@@ -13,20 +13,6 @@
 namespace vibe {
 namespace {
 
-const SchemaSection* findSection(const std::string& name) {
-  for (const SchemaSection& section : sceneSections()) {
-    if (name == section.name) return &section;
-  }
-  return nullptr;
-}
-
-const SchemaRow* findRow(const std::string& key) {
-  for (const SchemaRow& row : sceneSchema()) {
-    if (key == row.key) return &row;
-  }
-  return nullptr;
-}
-
 /// Keys and sections directly inside a section.
 std::vector<std::string> keysIn(const std::string& section) {
   std::vector<std::string> keys;

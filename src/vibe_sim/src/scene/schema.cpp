@@ -40,6 +40,20 @@ void describeSection(const SchemaSection& section, std::ostream& out) {
 
 }  // namespace
 
+const SchemaRow* findRow(const std::string& key) {
+  for (const SchemaRow& row : sceneSchema()) {
+    if (key == row.key) return &row;
+  }
+  return nullptr;
+}
+
+const SchemaSection* findSection(const std::string& name) {
+  for (const SchemaSection& section : sceneSections()) {
+    if (name == section.name) return &section;
+  }
+  return nullptr;
+}
+
 Scene completeScene() {
   Scene scene;
   scene.gas.emplace();

@@ -48,6 +48,11 @@ const std::vector<SchemaRow>& sceneSchema();
 /// All sections; a section comes before the sections inside it. The top level is the one without a name.
 const std::vector<SchemaSection>& sceneSections();
 
+/// The row of a full key, or null if there is none.
+const SchemaRow* findRow(const std::string& key);
+/// The section of that name, or null if there is none.
+const SchemaSection* findSection(const std::string& name);
+
 /// A scene in which every optional part is present with its defaults: what rows are read from and written to.
 Scene completeScene();
 

@@ -1,9 +1,9 @@
 #pragma once
-#include <array>
 #include <string>
-#include <vector>
 
 #include "vibe_sim/step_input.hpp"
+#include "vibe_sim/trainee/timeline.hpp"
+#include "vibe_sim/trainee/tremor.hpp"
 
 namespace vibe {
 
@@ -18,16 +18,18 @@ class TraineeScript {
   /// What the trainee's hands do at time t [s]; before 0 as at 0, after duration() as at the end.
   StepInput at(double time) const;
 
-  double duration() const { return duration_; }  ///< [s]
+  double duration() const { return timeline_.duration(); }  ///< [s]
   const std::string& name() const { return name_; }
 
   /// What the trainee says he does at time t ("insert", "insufflate" ...), for the progress line.
   const std::string& phaseAt(double time) const;
 
  private:
+  friend class ScriptReader;
+
   std::string name_;
-  double duration_ = 0;
-  // helper owns the rest
+  Timeline timeline_;
+  Tremor tremor_;
 };
 
 }  // namespace vibe
