@@ -5,6 +5,8 @@ vibe_root=$(dirname -- "$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOU
 
 # Debian's ROS is built for /usr/bin/python3; a python3 of pyenv or conda earlier in PATH breaks CMake and every node script
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
+# this workspace stands on /usr alone: another one that the caller has sourced must not shine through
+unset PYTHONPATH PYTHONHOME CMAKE_PREFIX_PATH ROS_PACKAGE_PATH
 
 # Ends the script: something went wrong while it ran.
 die() {

@@ -1,0 +1,36 @@
+# The smallest test harness: sourced by scripts/test.d/*.sh. Every check prints one line, `ok NAME` or `not ok NAME`;
+# scripts/test counts these lines. What a failed check wrote follows its line, indented.
+
+# shellcheck disable=SC2154
+root=$(dirname -- "$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")")
+scratch=$(mktemp -d)
+trap 'rm -rf -- "$scratch"' EXIT
+
+# check NAME COMMAND...: passes when the command succeeds.
+check() {
+  local name=$1
+  shift
+  if ("$@") >"$scratch/.output" 2>&1 </dev/null; then
+    echo "ok $name"
+  else
+    echo "not ok $name"
+    sed 's/^/    /' "$scratch/.output"
+  fi
+}
+
+# refuses CODE PATTERN COMMAND...: succeeds when the command ends with CODE, says one line, and that line matches.
+refuses() {
+  local code=$1 pattern=$2 status=0 said
+  shift 2
+  said=$("$@" 2>&1) || status=$?
+  printf '%s\n' "$said"
+  [ "$status" -eq "$code" ] || { echo "exit status $status, not $code"; return 1; }
+  [ "$(grep -c . <<<"$said")" -eq 1 ] || { echo 'not one line'; return 1; }
+  grep -qE -- "$pattern" <<<"$said" || { echo "does not match: $pattern"; return 1; }
+}
+
+# processesWith VARIABLE: the processes that carry this word in their environment or command line.
+processesWith() {
+  grep -lzaF -- "$1" /proc/[0-9]*/environ /proc/[0-9]*/cmdline 2>/dev/null |
+    sed -E 's#/proc/([0-9]+)/.*#\1#' | sort -un | grep -vxE "$$|$BASHPID" || true
+}
