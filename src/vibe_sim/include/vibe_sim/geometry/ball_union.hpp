@@ -1,0 +1,39 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace vibe {
+
+/// Smooth union of balls along curves: a field whose zero surface is one smooth sheet around all of them,
+///   f(p) = -k log sum_i w_i exp((r_i - |D (p - c_i)|) / k),   D = diag(1 / flattening, 1, 1).
+/// Close to the surface f is roughly the signed distance, negative inside.
+class BallUnion {
+ public:
+  /// @param blend      k: width over which neighbouring parts melt into each other [m]
+  /// @param flattening depth of a section along x over its width [1]
+  BallUnion(double blend, double flattening) : blend_(blend), flattening_(flattening) {}
+
+  /// A ball of a row of balls with this spacing. The weight is chosen such that a long straight row has a surface at
+  /// `radius` whatever the spacing.
+  void add(const Eigen::Vector3d& centre, double radius, double spacing);
+
+  double value(const Eigen::Vector3d& p) const;
+
+  /// Point of the surface near p, along the gradient. p should be within about `blend` of the surface.
+  Eigen::Vector3d project(const Eigen::Vector3d& p) const;
+
+ private:
+  struct Ball {
+    Eigen::Vector3d centre;
+    double radius;
+    double weight;
+  };
+
+  double evaluate(const Eigen::Vector3d& p, Eigen::Vector3d* gradient) const;
+
+  double blend_;
+  double flattening_;
+  std::vector<Ball> balls_;
+};
+
+}  // namespace vibe
