@@ -6,6 +6,7 @@
 #include "vibe_sim/geometry/organ.hpp"
 #include "vibe_sim/geometry/skin.hpp"
 #include "vibe_sim/scene/scene.hpp"
+#include "vibe_sim/solver/solver.hpp"
 #include "vibe_sim/tissue/tissue_model.hpp"
 
 namespace vibe {
@@ -22,9 +23,12 @@ struct Model {
   std::vector<double> area;          ///< of wall at rest [m^2]
 
   double particle_radius = 0;  ///< contact distance from the mid-surface: half the mean wall thickness [m]
-  double rest_volume = 0;      ///< of the lumen [m^3]
+  Eigen::Vector3d unbalanced_gravity =
+      Eigen::Vector3d::Zero();  ///< gravity, 0 where the bed carries the weight [m/s^2]
+  double rest_volume = 0;       ///< of the lumen [m^3]
 
-  std::shared_ptr<const TissueModel> tissue;  ///< elastic law and its solver
+  std::shared_ptr<const TissueModel> tissue;  ///< elastic law of the wall
+  std::shared_ptr<const Solver> solver;       ///< time stepping
 
   std::shared_ptr<const ToolModel> tool;                        ///< null without scope
   Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world

@@ -19,6 +19,11 @@ namespace vibe {
 std::shared_ptr<const Model> buildModel(const Scene& scene, const std::string& tool_urdf,
                                         const Progress& progress = {});
 
+/// The part of buildModel() after the organ is there, for organs made in code: fills everything but model.scene and
+/// model.organ, which the caller has set.
+/// @throws Error
+void finishModel(const std::string& tool_urdf, Model& model, const Progress& progress = {});
+
 /// The state at time 0: rest shape, scope at the lower end of its range, gas at its initial pressure.
 State initialState(const Model& model, std::uint64_t seed);
 

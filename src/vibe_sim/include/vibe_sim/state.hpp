@@ -29,9 +29,10 @@ struct State {
   std::uint64_t random = 0;  ///< state of the generator
 
   // particles, structure of arrays, (particle count)
-  std::vector<double> x, y, z;                  ///< positions [m]
-  std::vector<double> vx, vy, vz;               ///< velocities [m/s]
-  std::vector<Eigen::Quaterniond> orientation;  ///< of each particle's neighbourhood against rest
+  std::vector<double> x, y, z;         ///< positions [m]
+  std::vector<double> vx, vy, vz;      ///< velocities [m/s]
+  std::vector<double> qw, qx, qy, qz;  ///< orientation of each particle's neighbourhood against rest, unit
+  std::vector<double> wx, wy, wz;      ///< angular velocity of the same, in world [rad/s]
 
   double gas_amount = 0;  ///< absolute pressure times volume [Pa m^3 = J]
   double pressure = 0;    ///< gauge [Pa]

@@ -1,0 +1,16 @@
+#pragma once
+#include <vector>
+
+#include "vibe_sim/geometry/surface_mesh.hpp"
+
+namespace vibe {
+
+/// Volume enclosed by the surface at given vertex positions [m^3].
+double lumenVolume(const SurfaceMesh& surface, const std::vector<double>& x, const std::vector<double>& y,
+                   const std::vector<double>& z);
+
+/// Derivative of that volume by every vertex position [m^2], (vertex count).
+void volumeGradient(const SurfaceMesh& surface, const std::vector<double>& x, const std::vector<double>& y,
+                    const std::vector<double>& z, double* gx, double* gy, double* gz);
+
+}  // namespace vibe

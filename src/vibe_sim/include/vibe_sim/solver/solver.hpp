@@ -1,0 +1,43 @@
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+
+namespace vibe {
+
+struct Model;
+struct State;
+class ToolMotion;
+class Workspace;
+
+/// What one step did besides changing the state.
+struct StepReport {
+  Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in world [N]
+  Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about scope_tip, mean over the step, in world [N m]
+  Eigen::Vector3d grip_force = Eigen::Vector3d::Zero();   ///< part of tool_force that acts on the helix [N]
+  int contact_count = 0;                                  ///< most particles touched at once
+  int speed_limited = 0;                                  ///< times a particle's speed had to be limited
+};
+
+/// Scratch memory of a solver; carries nothing from one step to the next.
+class SolverScratch {
+ public:
+  virtual ~SolverScratch() = default;
+};
+
+/// Advances the tissue by one step under everything that acts on it: its own elasticity, gas, weight, bed, the moving
+/// tool and what the helix holds. Constant; all memory is in State and SolverScratch, so one solver serves many states.
+/// An explicit, a position-based and an implicit method fit alike: the step is the solver's to divide.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual std::string name() const = 0;
+  virtual std::unique_ptr<SolverScratch> makeScratch(const Model& model) const = 0;
+
+  /// @param motion  path of the tool during the step; null without a scope
+  /// Changes positions, velocities, orientations, gas and energy account of the state; not its clock, joints or grip.
+  virtual void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
+                       Workspace& workspace, StepReport& report) const = 0;
+};
+
+}  // namespace vibe

@@ -1,0 +1,25 @@
+#pragma once
+#include <vector>
+
+#include "vibe_sim/geometry/organ.hpp"
+#include "vibe_sim/scene/scene.hpp"
+#include "vibe_sim/tissue/cluster_set.hpp"
+
+namespace vibe {
+
+/// One cluster per particle with its one-ring, compliances matched to tissue.young_modulus and poisson_ratio; the
+/// gains are left at 0. See ShapeMatching for the formulas.
+/// @throws Error for a vertex that is not surrounded by a closed ring of triangles
+ClusterSet buildClusters(const Organ& organ, const TissueScene& tissue, const std::vector<double>& masses,
+                         const std::vector<double>& areas);
+
+/// Sets gain = substep^2 / compliance, limited where a member of the cluster would otherwise be moved by more than
+/// kMostTotalGain in one sweep, and the compliance accordingly.
+/// @return the smallest of simulated over asked stiffness, 1 if nothing was limited
+double setGains(ClusterSet& clusters, double substep);
+
+/// Sum of the gains of all clusters of a particle: explicit integration is stable below 4; the rest is margin for
+/// stretched states, contacts and grips.
+constexpr double kMostTotalGain = 3.2;
+
+}  // namespace vibe

@@ -1,0 +1,26 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vibe_sim/geometry/organ.hpp"
+#include "vibe_sim/scene/scene.hpp"
+#include "vibe_sim/solver/solver.hpp"
+#include "vibe_sim/tissue/tissue_model.hpp"
+
+namespace vibe {
+
+/// A tissue model together with the solver that advances it.
+struct TissueAndSolver {
+  std::shared_ptr<const TissueModel> tissue;
+  std::shared_ptr<const Solver> solver;
+};
+
+/// Names that tissue.model accepts, in order of age.
+std::vector<std::string> tissueModelNames();
+
+/// @throws Error for an unknown name, naming the known ones
+TissueAndSolver makeTissue(const Scene& scene, const Organ& organ, const std::vector<double>& masses,
+                           const std::vector<double>& areas);
+
+}  // namespace vibe

@@ -1,0 +1,35 @@
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "vibe_sim/model.hpp"
+
+namespace vibe {
+
+/// Scratch memory and threads for stepping one model. Carries nothing from one step to the next; not shared between
+/// threads of control.
+class Workspace {
+ public:
+  /// @param threads  used inside a step, 1 or more; the result does not depend on it
+  explicit Workspace(const Model& model, int threads = 1);
+  ~Workspace();
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  SolverScratch& solverScratch() { return *solver_scratch_; }
+  std::vector<Eigen::Isometry3d>& linkPoses() { return link_poses_; }
+  int threads() const { return threads_; }
+
+  /// Calls body(first, last) for consecutive pieces of [0, count) of at most `grain`, on the threads of this workspace.
+  /// The pieces do not depend on the number of threads.
+  void parallelFor(int count, int grain, const std::function<void(int first, int last)>& body);
+
+ private:
+  struct Arena;
+  int threads_;
+  std::unique_ptr<Arena> arena_;  // null with one thread
+  std::unique_ptr<SolverScratch> solver_scratch_;
+  std::vector<Eigen::Isometry3d> link_poses_;
+};
+
+}  // namespace vibe

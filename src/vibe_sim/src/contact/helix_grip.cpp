@@ -1,0 +1,100 @@
+#include "vibe_sim/contact/helix_grip.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace vibe {
+
+namespace {
+
+std::string millimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f mm", metres * 1e3);
+  return text;
+}
+
+std::string newtons(double force) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f N", force);
+  return text;
+}
+
+Eigen::Vector3d position(const State& state, int particle) {
+  return {state.x[particle], state.y[particle], state.z[particle]};
+}
+
+Event makeEvent(Event::Kind kind, double time, int particle, double value, std::string text) {
+  Event event;
+  event.kind = kind;
+  event.time = time;
+  event.particle = particle;
+  event.value = value;
+  event.text = std::move(text);
+  return event;
+}
+
+int nearestFreeParticle(const Model& model, const State& state, const Eigen::Vector3d& tip, double& distance) {
+  int nearest = -1;
+  distance = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < model.particle_count; ++i) {
+    if (model.inverse_mass[i] == 0) continue;
+    const double d = (position(state, i) - tip).norm();
+    if (d < distance) {
+      distance = d;
+      nearest = i;
+    }
+  }
+  return nearest;
+}
+
+void takeHold(const Model& model, const Eigen::Isometry3d& helix_pose, State& state, std::vector<Event>& events) {
+  const HelixScene& helix = *model.scene.helix;
+  const Eigen::Vector3d tip = helix_pose.translation();
+  double distance = 0;
+  const int target = nearestFreeParticle(model, state, tip, distance);
+  if (target < 0 || distance > helix.reach) {
+    events.push_back(makeEvent(Event::Kind::GrabMissed, state.time, target, distance,
+                               "The helix found no tissue: the nearest is " + millimetres(distance) +
+                                   " from its tip and it reaches " + millimetres(helix.reach) + "."));
+    return;
+  }
+  const Eigen::Isometry3d to_helix = helix_pose.inverse();
+  const Eigen::Vector3d centre = position(state, target);
+  state.grip.push_back({target, to_helix * centre});
+  for (int i = 0; i < model.particle_count; ++i) {
+    if (i == target || model.inverse_mass[i] == 0) continue;
+    const Eigen::Vector3d p = position(state, i);
+    if ((p - centre).norm() <= helix.grip_radius) state.grip.push_back({i, to_helix * p});
+  }
+  const double held = static_cast<double>(state.grip.size());
+  events.push_back(makeEvent(Event::Kind::Grab, state.time, target, held,
+                             "The helix holds the " + std::string(toString(model.organ.region[target])) + ", " +
+                                 toString(model.organ.wall[target]) + " wall."));
+}
+
+}  // namespace
+
+void updateGrip(const Model& model, const Eigen::Isometry3d& helix_pose, bool pressed, State& state,
+                std::vector<Event>& events) {
+  if (!model.scene.helix) return;
+  const bool went_down = pressed && !state.helix_pressed;
+  const bool went_up = !pressed && state.helix_pressed;
+  state.helix_pressed = pressed;
+  if (went_down && state.grip.empty()) takeHold(model, helix_pose, state, events);
+  if (went_up && !state.grip.empty()) {
+    events.push_back(makeEvent(Event::Kind::Release, state.time, state.grip.front().particle, state.grip_force,
+                               "The helix let go of the tissue at " + newtons(state.grip_force) + "."));
+    state.grip.clear();
+  }
+}
+
+void releaseOverloadedGrip(const Model& model, State& state, std::vector<Event>& events) {
+  if (!model.scene.helix || state.grip.empty() || state.grip_force <= model.scene.helix->hold_force) return;
+  events.push_back(makeEvent(Event::Kind::Slip, state.time, state.grip.front().particle, state.grip_force,
+                             "The helix tore off at " + newtons(state.grip_force) + ", it holds " +
+                                 newtons(model.scene.helix->hold_force) + "."));
+  state.grip.clear();
+}
+
+}  // namespace vibe

@@ -1,0 +1,51 @@
+#include <cstring>
+
+#include "vibe_sim/simulator.hpp"
+
+namespace vibe {
+
+namespace {
+
+class Fnv1a {
+ public:
+  void add(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i) value_ = (value_ ^ bytes[i]) * 0x100000001b3ULL;
+  }
+  void add(const std::vector<double>& values) { add(values.data(), values.size() * sizeof(double)); }
+  template <class T>
+  void addValue(const T& value) {
+    add(&value, sizeof value);
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+}  // namespace
+
+std::uint64_t hash(const State& state) {
+  Fnv1a h;
+  h.addValue(state.step);
+  h.addValue(state.seed);
+  h.addValue(state.random);
+  for (const auto* v : {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.qw, &state.qx, &state.qy,
+                        &state.qz, &state.wx, &state.wy, &state.wz})
+    h.add(*v);
+  h.addValue(state.gas_amount);
+  h.addValue(state.pressure);
+  h.addValue(state.volume);
+  h.addValue(state.pressure_reached);
+  h.add(state.joints.data(), sizeof state.joints);
+  for (const GripPoint& point : state.grip) {
+    h.addValue(point.particle);
+    h.add(point.local.data(), 3 * sizeof(double));
+  }
+  h.addValue(state.helix_pressed);
+  h.addValue(state.in_contact);
+  h.addValue(state.grip_force);
+  return h.value();
+}
+
+}  // namespace vibe

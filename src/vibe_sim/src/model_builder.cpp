@@ -1,0 +1,115 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "vibe_sim/error.hpp"
+#include "vibe_sim/geometry/organ_builder.hpp"
+#include "vibe_sim/simulator.hpp"
+#include "vibe_sim/solver/gas.hpp"
+#include "vibe_sim/tissue/tissue_registry.hpp"
+
+namespace vibe {
+
+namespace {
+
+bool isHeld(const Scene& scene, End end) {
+  return (end == End::Oesophagus && scene.attach_oesophagus) || (end == End::Duodenum && scene.attach_duodenum);
+}
+
+void setMasses(Model& model) {
+  const std::size_t n = model.organ.surface.vertices.size();
+  model.area = vertexAreas(model.organ.surface);
+  model.mass.resize(n);
+  model.inverse_mass.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    model.mass[i] = model.scene.tissue.density * model.organ.thickness[i] * model.area[i];
+    model.inverse_mass[i] = isHeld(model.scene, model.organ.end[i]) ? 0 : 1 / model.mass[i];
+  }
+  const double sum = std::accumulate(model.organ.thickness.begin(), model.organ.thickness.end(), 0.0);
+  model.particle_radius = 0.5 * sum / static_cast<double>(n);
+}
+
+Eigen::Isometry3d poseFromRpy(const Eigen::Vector3d& position, const std::array<double, 3>& rpy) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() =
+      (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
+  pose.translation() = position;
+  return pose;
+}
+
+// x along the entry, z as near to the patient's front as possible: "up" on the image is anterior at rotation 0
+Eigen::Isometry3d poseFromAnatomy(const Organ& organ) {
+  const Eigen::Vector3d x = organ.entry_axis.normalized();
+  Eigen::Vector3d z = organ.landmarks.anterior - x.dot(organ.landmarks.anterior) * x;
+  if (z.norm() < 1e-6) z = x.unitOrthogonal();
+  z.normalize();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear().col(0) = x;
+  pose.linear().col(1) = z.cross(x);
+  pose.linear().col(2) = z;
+  pose.translation() = organ.entry;
+  return pose;
+}
+
+void addTool(const std::string& tool_urdf, Model& model) {
+  const ScopeScene& scope = *model.scene.scope;
+  model.tool = std::make_shared<const ToolModel>(ToolModel::fromUrdf(tool_urdf, scope.urdf));
+  model.tip_link = model.tool->linkIndex("scope_tip");
+  model.helix_link = model.tool->linkIndex("helix");
+  model.tool_base =
+      scope.base_from_anatomy ? poseFromAnatomy(model.organ) : poseFromRpy(scope.base_position, scope.base_rpy);
+}
+
+}  // namespace
+
+std::shared_ptr<const Model> buildModel(const Scene& scene, const std::string& tool_urdf, const Progress& progress) {
+  auto model = std::make_shared<Model>();
+  model->scene = scene;
+  model->organ = buildOrgan(scene, progress);
+  finishModel(tool_urdf, *model, progress);
+  return model;
+}
+
+void finishModel(const std::string& tool_urdf, Model& model, const Progress& progress) {
+  if (progress) progress("building the tissue model", 0.9);
+  model.particle_count = static_cast<int>(model.organ.surface.vertices.size());
+  setMasses(model);
+  model.rest_volume = enclosedVolume(model.organ.surface);
+  const bool carried = model.scene.bed && model.scene.bed->carries_weight;
+  if (model.scene.gravity && !carried) model.unbalanced_gravity = model.scene.gravity->acceleration;
+  const TissueAndSolver made = makeTissue(model.scene, model.organ, model.mass, model.area);
+  model.tissue = made.tissue;
+  model.solver = made.solver;
+  if (model.scene.scope) addTool(tool_urdf, model);
+  if (model.scene.skin) model.skin = makeLoopSkin(model.organ.surface);
+  if (progress) progress("ready", 1.0);
+}
+
+State initialState(const Model& model, std::uint64_t seed) {
+  State state;
+  state.seed = seed;
+  state.random = seed;
+  const std::size_t n = static_cast<std::size_t>(model.particle_count);
+  for (auto* v : {&state.vx, &state.vy, &state.vz, &state.qx, &state.qy, &state.qz, &state.wx, &state.wy, &state.wz})
+    v->assign(n, 0);
+  state.qw.assign(n, 1);
+  for (const Eigen::Vector3d& p : model.organ.surface.vertices) {
+    state.x.push_back(p.x());
+    state.y.push_back(p.y());
+    state.z.push_back(p.z());
+  }
+  state.volume = model.rest_volume;
+  if (model.scene.gas) {
+    state.gas_amount = gasAmount(model.scene.gas->initial_pressure, state.volume);
+    state.pressure = gaugePressure(state.gas_amount, state.volume);
+  }
+  if (model.tool)
+    for (int i = 0; i < kJointCount; ++i)
+      state.joints[i] = std::clamp(0.0, model.tool->limits()[i].lower, model.tool->limits()[i].upper);
+  return state;
+}
+
+}  // namespace vibe

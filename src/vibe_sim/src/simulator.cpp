@@ -1,0 +1,111 @@
+#include "vibe_sim/simulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "vibe_sim/contact/helix_grip.hpp"
+#include "vibe_sim/contact/tool_motion.hpp"
+
+namespace vibe {
+
+namespace {
+
+void addEvent(Event::Kind kind, double time, double value, std::string text, std::vector<Event>& events) {
+  Event event;
+  event.kind = kind;
+  event.time = time;
+  event.value = value;
+  event.text = std::move(text);
+  events.push_back(std::move(event));
+}
+
+// Forces are reported in the tip's frame at the end of the step.
+void storeForces(const Model& model, const StepReport& report, const std::vector<Eigen::Isometry3d>& poses,
+                 State& state) {
+  const Eigen::Matrix3d to_tip = poses[model.tip_link].linear().transpose();
+  state.tool_force = to_tip * report.tool_force;
+  state.tool_torque = to_tip * report.tool_torque;
+  state.grip_force = report.grip_force.norm();
+  state.contact_count = report.contact_count;
+}
+
+void reportContact(int contact_count, State& state, std::vector<Event>& events) {
+  const bool touching = contact_count > 0;
+  if (touching && !state.in_contact)
+    addEvent(Event::Kind::ContactBegin, state.time, contact_count, "The tool touches tissue.", events);
+  if (!touching && state.in_contact)
+    addEvent(Event::Kind::ContactEnd, state.time, 0, "The tool no longer touches tissue.", events);
+  state.in_contact = touching;
+}
+
+void reportPressure(const GasScene& gas, bool insufflator_on, State& state, std::vector<Event>& events) {
+  const double tolerance = std::max(1.0, 0.01 * std::abs(gas.regulated_pressure));
+  const bool reached = insufflator_on && std::abs(state.pressure - gas.regulated_pressure) < tolerance;
+  if (reached && !state.pressure_reached)
+    addEvent(Event::Kind::PressureReached, state.time, state.pressure, "The insufflator has reached its set point.",
+             events);
+  state.pressure_reached = reached;
+}
+
+bool isFinite(const State& state) {
+  double sum = state.gas_amount;
+  for (const auto* v :
+       {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.qw, &state.qx, &state.qy, &state.qz})
+    for (double value : *v) sum += 0 * value;  // NaN or infinity anywhere makes the sum NaN
+  return std::isfinite(sum);
+}
+
+// A state without finite numbers has no future; start the tissue again from rest and say so.
+void recover(const Model& model, State& state, std::vector<Event>& events) {
+  const State fresh = initialState(model, state.seed);
+  state.x = fresh.x, state.y = fresh.y, state.z = fresh.z;
+  state.vx = fresh.vx, state.vy = fresh.vy, state.vz = fresh.vz;
+  state.qw = fresh.qw, state.qx = fresh.qx, state.qy = fresh.qy, state.qz = fresh.qz;
+  state.wx = fresh.wx, state.wy = fresh.wy, state.wz = fresh.wz;
+  state.gas_amount = fresh.gas_amount;
+  state.pressure = fresh.pressure;
+  state.volume = fresh.volume;
+  state.energy = fresh.energy;
+  state.grip.clear();
+  state.tool_force.setZero();
+  state.tool_torque.setZero();
+  state.grip_force = 0;
+  addEvent(Event::Kind::Recovery, state.time, 0,
+           "The tissue reached positions that are not numbers and was put back to rest; check masses and stiffness of "
+           "the scene.",
+           events);
+}
+
+}  // namespace
+
+void step(const Model& model, State& state, const StepInput& input, Workspace& workspace, std::vector<Event>& events) {
+  const double dt = model.scene.step_period;
+  const bool insufflator_on = model.scene.gas && (model.scene.gas->insufflator_on || input.buttons[Insufflate] != 0);
+  std::optional<ToolMotion> motion;
+  std::vector<Eigen::Isometry3d>& poses = workspace.linkPoses();
+  if (model.tool) {
+    const auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
+    motion.emplace(*model.tool, model.tool_base, state.joints, end);
+    motion->linkPoses(0, poses);
+    updateGrip(model, poses[model.helix_link], input.buttons[HelixGrab] != 0, state, events);
+    state.joints = end;
+  }
+  StepReport report;
+  model.solver->advance(model, motion ? &*motion : nullptr, insufflator_on, state, workspace, report);
+  ++state.step;
+  state.time = static_cast<double>(state.step) * dt;
+  if (model.tool) {
+    motion->linkPoses(1, poses);
+    storeForces(model, report, poses, state);
+    reportContact(report.contact_count, state, events);
+    releaseOverloadedGrip(model, state, events);
+  }
+  if (model.scene.gas) reportPressure(*model.scene.gas, insufflator_on, state, events);
+  if (report.speed_limited > 0)
+    addEvent(Event::Kind::Recovery, state.time, report.speed_limited,
+             "Particles were slowed to keep the step stable; move the tool slower or raise tissue.substeps.", events);
+  if (!isFinite(state)) recover(model, state, events);
+}
+
+}  // namespace vibe

@@ -1,0 +1,151 @@
+#include "vibe_sim/snapshot.hpp"
+
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "vibe_sim/error.hpp"
+#include "vibe_sim/simulator.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr char kMagic[8] = {'v', 'i', 'b', 'e', 's', 'n', 'p', '1'};
+
+// One list of the members for both directions, so that they cannot differ.
+template <class Archive, class S>
+void transfer(Archive& archive, S& s) {
+  archive.value(s.step);
+  archive.value(s.time);
+  archive.value(s.seed);
+  archive.value(s.random);
+  for (auto* v : {&s.x, &s.y, &s.z, &s.vx, &s.vy, &s.vz, &s.qw, &s.qx, &s.qy, &s.qz, &s.wx, &s.wy, &s.wz})
+    archive.array(*v);
+  archive.value(s.gas_amount);
+  archive.value(s.pressure);
+  archive.value(s.volume);
+  archive.value(s.pressure_reached);
+  archive.value(s.joints);
+  archive.grip(s.grip);
+  archive.value(s.helix_pressed);
+  archive.value(s.in_contact);
+  archive.vector(s.tool_force);
+  archive.vector(s.tool_torque);
+  archive.value(s.grip_force);
+  archive.value(s.contact_count);
+  archive.value(s.energy);
+}
+
+class Writer {
+ public:
+  explicit Writer(std::ostream& out) : out_(out) {}
+  template <class T>
+  void value(const T& v) {
+    out_.write(reinterpret_cast<const char*>(&v), sizeof v);
+  }
+  void vector(const Eigen::Vector3d& v) { out_.write(reinterpret_cast<const char*>(v.data()), 3 * sizeof(double)); }
+  void array(const std::vector<double>& v) {
+    out_.write(reinterpret_cast<const char*>(v.data()), static_cast<std::streamsize>(v.size() * sizeof(double)));
+  }
+  void grip(const std::vector<GripPoint>& grip) {
+    value(static_cast<std::uint64_t>(grip.size()));
+    for (const GripPoint& point : grip) {
+      value(point.particle);
+      vector(point.local);
+    }
+  }
+
+ private:
+  std::ostream& out_;
+};
+
+class Reader {
+ public:
+  Reader(std::istream& in, std::string file, int particles) : in_(in), file_(std::move(file)), particles_(particles) {}
+  template <class T>
+  void value(T& v) {
+    read(&v, sizeof v);
+  }
+  void vector(Eigen::Vector3d& v) { read(v.data(), 3 * sizeof(double)); }
+  void array(std::vector<double>& v) {
+    v.resize(static_cast<std::size_t>(particles_));
+    read(v.data(), v.size() * sizeof(double));
+  }
+  void grip(std::vector<GripPoint>& grip) {
+    std::uint64_t count = 0;
+    value(count);
+    if (count > static_cast<std::uint64_t>(particles_))
+      throw Error("Snapshot '" + file_ + "' is damaged: it holds more tissue than there is; save it again.");
+    grip.resize(count);
+    for (GripPoint& point : grip) {
+      value(point.particle);
+      vector(point.local);
+      if (point.particle < 0 || point.particle >= particles_)
+        throw Error("Snapshot '" + file_ + "' is damaged: it holds a particle that does not exist; save it again.");
+    }
+  }
+
+ private:
+  void read(void* data, std::size_t size) {
+    in_.read(static_cast<char*>(data), static_cast<std::streamsize>(size));
+    if (!in_) throw Error("Snapshot '" + file_ + "' ends too early; save it again.");
+  }
+  std::istream& in_;
+  std::string file_;
+  int particles_;
+};
+
+// Rest shape, masses and step: what a state must agree with to be continued.
+std::uint64_t fingerprint(const Model& model) {
+  State rest;
+  for (const Eigen::Vector3d& p : model.organ.surface.vertices) {
+    rest.x.push_back(p.x());
+    rest.y.push_back(p.y());
+    rest.z.push_back(p.z());
+  }
+  rest.vx = model.mass;
+  rest.vy = model.inverse_mass;
+  rest.gas_amount = model.scene.step_period;
+  rest.step = model.scene.tissue.substeps;
+  return hash(rest);
+}
+
+}  // namespace
+
+void saveSnapshot(const Model& model, const State& state, const std::string& file) {
+  const std::string part = file + ".part";
+  {
+    std::ofstream out(part, std::ios::binary | std::ios::trunc);
+    Writer writer(out);
+    writer.value(kMagic);
+    writer.value(fingerprint(model));
+    transfer(writer, state);
+    out.flush();
+    if (!out) throw Error("Snapshot '" + file + "' could not be written; check that the folder exists and has room.");
+  }
+  if (std::rename(part.c_str(), file.c_str()) != 0)
+    throw Error("Snapshot '" + file + "' could not be put in place; check the permissions of its folder.");
+}
+
+State loadSnapshot(const Model& model, const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw Error("Snapshot '" + file + "' cannot be opened; check the path.");
+  Reader reader(in, file, model.particle_count);
+  char magic[sizeof kMagic] = {};
+  reader.value(magic);
+  if (std::memcmp(magic, kMagic, sizeof kMagic) != 0)
+    throw Error("'" + file + "' is no snapshot of this version; save it again with this build.");
+  std::uint64_t saved = 0;
+  reader.value(saved);
+  if (saved != fingerprint(model))
+    throw Error("Snapshot '" + file + "' belongs to another scene; load the scene it was saved with first.");
+  State state;
+  transfer(reader, state);
+  if (in.peek() != std::ifstream::traits_type::eof())
+    throw Error("Snapshot '" + file + "' is longer than a state; save it again.");
+  return state;
+}
+
+}  // namespace vibe

@@ -1,0 +1,24 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <memory>
+#include <vector>
+
+#include "vibe_sim/contact/tool_collision.hpp"
+#include "vibe_sim/solver/solver.hpp"
+#include "vibe_sim/tissue/shape_matching.hpp"
+#include "vibe_sim/tissue/shape_matching_kernel.hpp"
+
+namespace vibe {
+
+/// Buffers of XpbdSolver.
+class XpbdScratch : public SolverScratch {
+ public:
+  std::vector<double> old_x, old_y, old_z;  // positions before the sub-step [m]
+  SweepBuffers buffers;
+  ClusterSweep sweep{};
+  ClusterSweepFunction sweep_function = nullptr;
+  std::unique_ptr<ToolCollision> collision;
+  std::vector<Eigen::Isometry3d> poses, old_poses, ahead_poses;  // of the tool's links in world
+};
+
+}  // namespace vibe

@@ -1,0 +1,34 @@
+#include "vibe_sim/solver/xpbd_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vibe_sim/contact/tool_motion.hpp"
+#include "vibe_sim/model.hpp"
+#include "vibe_sim/solver/gas.hpp"
+#include "vibe_sim/state.hpp"
+#include "vibe_sim/workspace.hpp"
+#include "xpbd_scratch.hpp"
+#include "xpbd_substep.hpp"
+
+namespace vibe {
+
+std::unique_ptr<SolverScratch> XpbdSolver::makeScratch(const Model& model) const {
+  auto scratch = std::make_unique<XpbdScratch>();
+  const std::size_t n = static_cast<std::size_t>(model.particle_count);
+  for (auto* v : {&scratch->old_x, &scratch->old_y, &scratch->old_z}) v->resize(n);
+  scratch->buffers = makeSweepBuffers(tissue_->clusters());
+  scratch->sweep_function = chooseClusterSweep();
+  if (model.tool) scratch->collision = std::make_unique<ToolCollision>(*model.tool);
+  return scratch;
+}
+
+void XpbdSolver::advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
+                         Workspace& workspace, StepReport& report) const {
+  XpbdSubstep substep(model, tissue_->clusters(), motion, insufflator_on, state, workspace, report);
+  const int count = model.scene.tissue.substeps;
+  for (int i = 0; i < count; ++i) substep.run(i, count);
+  substep.finish(count);
+}
+
+}  // namespace vibe

@@ -1,0 +1,221 @@
+#include "xpbd_substep.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vibe_sim/contact/tool_motion.hpp"
+#include "vibe_sim/solver/gas.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr int kGrain = 64;                 // cluster groups per piece of parallel work
+constexpr int kCandidateInterval = 10;     // sub-steps between searches for contact candidates
+constexpr double kDepenetrationSpeed = 1;  // a particle found inside the tool is pushed out no faster [m/s]
+constexpr double kMostSpeed = 50;  // far above any wave in tissue; beyond it a speed is limited and reported [m/s]
+
+}  // namespace
+
+XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const ToolMotion* motion, bool insufflator_on,
+                         State& state, Workspace& workspace, StepReport& report)
+    : model_(model),
+      clusters_(clusters),
+      motion_(motion),
+      insufflator_on_(insufflator_on),
+      state_(state),
+      workspace_(workspace),
+      report_(report),
+      scratch_(static_cast<XpbdScratch&>(workspace.solverScratch())),
+      h_(model.scene.step_period / model.scene.tissue.substeps),
+      bed_stiffness_(model.scene.bed ? model.scene.bed->stiffness : 0),
+      weight_(model.unbalanced_gravity) {
+  if (motion_ != nullptr) motion_->linkPoses(0, scratch_.poses);
+  loadOrientations(clusters, state, scratch_.buffers);
+  scratch_.sweep = bindSweep(clusters, state, scratch_.buffers);
+  scratch_.sweep.substep = h_;
+}
+
+void XpbdSubstep::run(int index, int count) {
+  moveTool(index, count);
+  matchShapes();
+  if (model_.scene.gas) updateGas();
+  move();
+  holdGrip();
+  resolveContacts();
+  updateVelocities();
+}
+
+void XpbdSubstep::moveTool(int index, int count) {
+  if (motion_ == nullptr) return;
+  if (index % kCandidateInterval == 0) findCandidates(index, count);
+  scratch_.old_poses.swap(scratch_.poses);
+  motion_->linkPoses(static_cast<double>(index + 1) / count, scratch_.poses);
+}
+
+// Candidates for the next kCandidateInterval sub-steps: everything that tool and tissue can bring together by then.
+void XpbdSubstep::findCandidates(int index, int count) {
+  const int last = std::min(index + kCandidateInterval, count);
+  motion_->linkPoses(static_cast<double>(last) / count, scratch_.ahead_poses);
+  double fastest2 = 0;
+  for (int i = 0; i < model_.particle_count; ++i)
+    fastest2 =
+        std::max(fastest2, state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i]);
+  const double tissue_travel = std::min(2 * std::sqrt(fastest2) * h_ * kCandidateInterval, 0.01);
+  const double reach =
+      model_.particle_radius + motion_->travel(scratch_.poses, scratch_.ahead_poses) + tissue_travel + 1e-3;
+  scratch_.collision->findCandidates(scratch_.poses, state_.x.data(), state_.y.data(), state_.z.data(),
+                                     model_.particle_count, reach);
+}
+
+void XpbdSubstep::matchShapes() {
+  workspace_.parallelFor(clusters_.group_count, kGrain,
+                         [&](int first, int last) { scratch_.sweep_function(scratch_.sweep, first, last); });
+}
+
+// The volume is homogeneous of degree 3 in the positions, so it is a third of position times derivative.
+void XpbdSubstep::updateGas() {
+  double volume = 0;
+  for (int i = 0; i < model_.particle_count; ++i) {
+    const int lane = clusters_.lane_of_particle[i];
+    volume += scratch_.buffers.area_x[lane] * state_.x[i] + scratch_.buffers.area_y[lane] * state_.y[i] +
+              scratch_.buffers.area_z[lane] * state_.z[i];
+  }
+  volume /= 3;
+  if (insufflator_on_) state_.gas_amount = insufflate(*model_.scene.gas, state_.gas_amount, volume, h_);
+  const double pressure = gaugePressure(state_.gas_amount, volume);
+  state_.energy.gas_work += 0.5 * (state_.pressure + pressure) * (volume - state_.volume);
+  state_.volume = volume;
+  state_.pressure = pressure;
+}
+
+void XpbdSubstep::move() {
+  const double decay = std::exp(-model_.scene.tissue.damping_rate * h_);
+  accountDamping(decay);
+  workspace_.parallelFor(model_.particle_count, kGrain * ClusterSet::kLanes, [&](int first, int last) {
+    for (int i = first; i < last; ++i) moveParticle(i, decay);
+  });
+}
+
+void XpbdSubstep::moveParticle(int i, double decay) {
+  scratch_.old_x[i] = state_.x[i];
+  scratch_.old_y[i] = state_.y[i];
+  scratch_.old_z[i] = state_.z[i];
+  const double inverse_mass = model_.inverse_mass[i];
+  if (inverse_mass == 0) return;
+  const SweepBuffers& b = scratch_.buffers;
+  double dx = 0, dy = 0, dz = 0;
+  for (int k = clusters_.slot_offset[i]; k < clusters_.slot_offset[i + 1]; ++k) {
+    const int slot = clusters_.slot[k];
+    dx += b.dx[slot];
+    dy += b.dy[slot];
+    dz += b.dz[slot];
+  }
+  const int lane = clusters_.lane_of_particle[i];
+  const double spring = bed_stiffness_ * model_.area[i] * inverse_mass;
+  const double push = state_.pressure * inverse_mass;
+  const Eigen::Vector3d& rest = model_.organ.surface.vertices[i];
+  const double ax = weight_.x() + spring * (rest.x() - state_.x[i]) + push * b.area_x[lane];
+  const double ay = weight_.y() + spring * (rest.y() - state_.y[i]) + push * b.area_y[lane];
+  const double az = weight_.z() + spring * (rest.z() - state_.z[i]) + push * b.area_z[lane];
+  state_.x[i] += dx + h_ * (state_.vx[i] * decay + h_ * ax);
+  state_.y[i] += dy + h_ * (state_.vy[i] * decay + h_ * ay);
+  state_.z[i] += dz + h_ * (state_.vz[i] * decay + h_ * az);
+}
+
+void XpbdSubstep::holdGrip() {
+  if (state_.grip.empty()) return;
+  const Eigen::Isometry3d& helix = scratch_.poses[model_.helix_link];
+  const Eigen::Isometry3d& old_helix = scratch_.old_poses[model_.helix_link];
+  for (const GripPoint& point : state_.grip) {
+    const int i = point.particle;
+    const Eigen::Vector3d target = helix * point.local;
+    const Eigen::Vector3d shift = target - Eigen::Vector3d(state_.x[i], state_.y[i], state_.z[i]);
+    state_.x[i] = target.x();
+    state_.y[i] = target.y();
+    state_.z[i] = target.z();
+    const Eigen::Vector3d force = model_.mass[i] / (h_ * h_) * shift;  // tool on tissue
+    report_.grip_force -= force;
+    pushTool(-force, target, target - old_helix * point.local);
+  }
+}
+
+void XpbdSubstep::resolveContacts() {
+  if (motion_ == nullptr || scratch_.collision->candidateCount() == 0) return;
+  const auto& contacts = scratch_.collision->findContacts(scratch_.poses, state_.x.data(), state_.y.data(),
+                                                          state_.z.data(), model_.particle_radius);
+  const double friction = model_.scene.scope->friction;
+  int touched = 0;
+  for (const Contact& contact : contacts) {
+    const int i = contact.particle;
+    if (model_.inverse_mass[i] == 0) continue;
+    ++touched;
+    const int link = model_.tool->shapes()[contact.shape].link;
+    const Eigen::Vector3d p(state_.x[i], state_.y[i], state_.z[i]);
+    const Eigen::Vector3d old_p(scratch_.old_x[i], scratch_.old_y[i], scratch_.old_z[i]);
+    const Eigen::Vector3d tool_step = p - scratch_.old_poses[link] * (scratch_.poses[link].inverse() * p);
+    const Eigen::Vector3d slide = p - old_p - tool_step;
+    const double normal_slide = contact.normal.dot(slide);
+    // what the particle came closer in this sub-step is undone at once, what it was inside before at a limited speed
+    const double depth =
+        std::min(model_.particle_radius - contact.distance, std::max(-normal_slide, 0.0) + kDepenetrationSpeed * h_);
+    Eigen::Vector3d shift = depth * contact.normal;
+    const Eigen::Vector3d tangential = slide - normal_slide * contact.normal;
+    const double sliding = tangential.norm();
+    if (sliding > 0) shift -= std::min(1.0, friction * depth / sliding) * tangential;
+    state_.x[i] += shift.x();
+    state_.y[i] += shift.y();
+    state_.z[i] += shift.z();
+    pushTool(-model_.mass[i] / (h_ * h_) * shift, p, tool_step);
+  }
+  report_.contact_count = std::max(report_.contact_count, touched);
+}
+
+// force: tissue on tool [N] at a point in world; tool_step: how far the tool moved there in this sub-step [m]
+void XpbdSubstep::pushTool(const Eigen::Vector3d& force, const Eigen::Vector3d& at, const Eigen::Vector3d& tool_step) {
+  report_.tool_force += force;
+  report_.tool_torque += (at - scratch_.poses[model_.tip_link].translation()).cross(force);
+  state_.energy.tool_work -= force.dot(tool_step);
+}
+
+void XpbdSubstep::updateVelocities() {
+  const double inverse_h = 1 / h_, most_travel = kMostSpeed * h_;
+  for (int i = 0; i < model_.particle_count; ++i) {
+    if (model_.inverse_mass[i] == 0) continue;
+    double ux = state_.x[i] - scratch_.old_x[i], uy = state_.y[i] - scratch_.old_y[i],
+           uz = state_.z[i] - scratch_.old_z[i];
+    const double travel2 = ux * ux + uy * uy + uz * uz;
+    if (!(travel2 <= most_travel * most_travel)) {
+      const double scale = std::isfinite(travel2) ? most_travel / std::sqrt(travel2) : 0;
+      ux = scale == 0 ? 0 : ux * scale;
+      uy = scale == 0 ? 0 : uy * scale;
+      uz = scale == 0 ? 0 : uz * scale;
+      state_.x[i] = scratch_.old_x[i] + ux;
+      state_.y[i] = scratch_.old_y[i] + uy;
+      state_.z[i] = scratch_.old_z[i] + uz;
+      ++report_.speed_limited;
+    }
+    state_.vx[i] = ux * inverse_h;
+    state_.vy[i] = uy * inverse_h;
+    state_.vz[i] = uz * inverse_h;
+  }
+}
+
+void XpbdSubstep::accountDamping(double decay) {
+  double kinetic = 0;
+  for (int i = 0; i < model_.particle_count; ++i) {
+    if (model_.inverse_mass[i] == 0) continue;
+    kinetic +=
+        model_.mass[i] * (state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i]);
+  }
+  state_.energy.damping_loss += 0.5 * kinetic * (1 - decay * decay);
+}
+
+void XpbdSubstep::finish(int count) {
+  storeOrientations(clusters_, scratch_.buffers, state_);
+  report_.tool_force /= count;
+  report_.tool_torque /= count;
+  report_.grip_force /= count;
+}
+
+}  // namespace vibe
