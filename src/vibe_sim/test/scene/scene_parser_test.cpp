@@ -1,0 +1,122 @@
+#include "vibe_sim/scene/scene_parser.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "expect_error.hpp"
+
+namespace vibe {
+namespace {
+
+const std::string kScenes = std::string(VIBE_SIM_SOURCE_DIR) + "/scenes/";
+
+Scene parsed(const std::string& yaml) {
+  return parseScene(yaml, "dir/s.yaml");
+}
+
+std::string contents(const std::string& file) {
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+TEST(ShippedScenes, StomachHasEveryPart) {
+  const Scene scene = loadScene(kScenes + "stomach.yaml");
+  EXPECT_EQ(scene.file, kScenes + "stomach.yaml");
+  EXPECT_EQ(scene.name, "stomach");
+  EXPECT_EQ(scene.step_period, 1.0 / 60);
+  EXPECT_EQ(scene.geometry.kind, GeometryScene::Kind::Stomach);
+  EXPECT_EQ(scene.geometry.particles, 3618);
+  EXPECT_DOUBLE_EQ(scene.geometry.volume, 0.75e-3);
+  EXPECT_DOUBLE_EQ(scene.tissue.density, 1050);
+  EXPECT_DOUBLE_EQ(scene.tissue.thickness[static_cast<int>(Region::Body)], 2.33e-3);
+  EXPECT_TRUE(scene.attach_oesophagus && scene.attach_duodenum && scene.skin);
+  ASSERT_TRUE(scene.gas && scene.gravity && scene.bed && scene.scope && scene.helix);
+  EXPECT_NEAR(scene.gas->regulated_pressure, 1333.224, 1e-3);
+  EXPECT_DOUBLE_EQ(scene.gas->flow_limit, 5e-5);
+  EXPECT_TRUE(scene.scope->base_from_anatomy);
+}
+
+TEST(ShippedScenes, MinimalHasNothingElse) {
+  const Scene scene = loadScene(kScenes + "stomach_minimal.yaml");
+  EXPECT_FALSE(scene.gas || scene.gravity || scene.bed || scene.scope || scene.helix);
+  EXPECT_FALSE(scene.attach_oesophagus || scene.attach_duodenum || scene.skin);
+}
+
+TEST(ShippedScenes, SphereIsSmall) {
+  const Scene scene = loadScene(kScenes + "sphere.yaml");
+  EXPECT_EQ(scene.geometry.kind, GeometryScene::Kind::Sphere);
+  EXPECT_EQ(scene.geometry.particles, 642);
+  EXPECT_TRUE(scene.gas && scene.gas->insufflator_on);
+}
+
+TEST(ShippedScenes, ImportedMeshSaysThatTheFileIsUpToTheUser) {
+  const std::string file = kScenes + "imported_mesh.yaml";
+  EXPECT_ERROR(loadScene(file), "geometry.file: there is no file '" + kScenes + "my_stomach.obj'; give a path");
+  const Scene scene = parseScene(contents(file), file);  // all else is right
+  EXPECT_DOUBLE_EQ(scene.geometry.unit, 1e-3);
+  ASSERT_TRUE(scene.geometry.pylorus);
+  EXPECT_EQ(*scene.geometry.pylorus, Eigen::Vector3d(20, -30, 30));
+}
+
+TEST(SceneParser, SectionsArePresentOnlyIfNamed) {
+  for (const std::string& empty : {std::string("gas:\n"), std::string("gas: {}\n"), std::string("gas: ~\n")}) {
+    const Scene scene = parsed(empty);
+    ASSERT_TRUE(scene.gas) << empty;
+    EXPECT_EQ(scene.gas->regulated_pressure, GasScene{}.regulated_pressure);
+    EXPECT_FALSE(scene.bed);
+  }
+}
+
+TEST(SceneParser, BasePoseReplacesAnatomy) {
+  const Scene scene = parsed("scope: {base: {position: [1 cm, 0, -2], rpy: [0, 90 deg, 0]}}");
+  EXPECT_FALSE(scene.scope->base_from_anatomy);
+  EXPECT_DOUBLE_EQ(scene.scope->base_position.x(), 0.01);
+  EXPECT_DOUBLE_EQ(scene.scope->base_rpy[1], 1.5707963267948966);
+  EXPECT_ERROR(parsed("scope: {base: {rpy: [0, 0, 0]}}"), "dir/s.yaml:1: scope.base: lacks the key 'position'");
+}
+
+TEST(SceneParser, UnknownKeysNameTheNearest) {
+  EXPECT_ERROR(parsed("name: x\ntissue:\n  yung_modulus: 1\n"),
+               "dir/s.yaml:3: tissue.yung_modulus: is not a known key; did you mean 'young_modulus'?");
+  EXPECT_ERROR(parsed("gass: {}"), "did you mean 'gas'?");
+  EXPECT_ERROR(parsed("regulated_pressure: 3"), "is not known here; write it as 'gas.regulated_pressure'");
+  EXPECT_ERROR(parsed("tissue: {colour: red}"), "known are model, density");
+}
+
+TEST(SceneParser, KeysOfOtherKindsDoNotApply) {
+  EXPECT_ERROR(parsed("geometry:\n  radius: 5 cm\n"),
+               "dir/s.yaml:2: geometry.radius: does not apply to geometry.kind "
+               "'stomach'; remove it or write 'kind: sphere'");
+  EXPECT_ERROR(parsed("geometry: {kind: sphere, volume: 1 L}"), "write 'kind: stomach'");
+  EXPECT_ERROR(parsed("geometry: {file: a.obj}"), "write 'kind: mesh'");
+  EXPECT_ERROR(parsed("geometry: {landmarks: {}}"), "geometry.landmarks: does not apply");
+}
+
+TEST(SceneParser, PartsThatNeedEachOther) {
+  EXPECT_ERROR(parsed("name: x\nhelix: {}"), "dir/s.yaml:2: helix: needs the section 'scope'");
+  EXPECT_ERROR(parsed("geometry: {kind: mesh}"), "geometry: lacks the key 'file'");
+  EXPECT_ERROR(parsed("geometry: {kind: mesh, file: a.obj, landmarks: {pylorus: [1, 2, 3]}}"),
+               "lacks the key 'oesophagus'");
+  EXPECT_EQ(errorOf([] { parsed("scope: {}\nhelix: {}"); }), "no error");
+}
+
+TEST(SceneParser, PathsAreRelativeToTheFile) {
+  EXPECT_EQ(parsed("geometry: {kind: mesh, file: ../a.obj}").geometry.file, "a.obj");
+  EXPECT_EQ(parsed("geometry: {kind: mesh, file: /x/a.obj}").geometry.file, "/x/a.obj");
+  EXPECT_EQ(parsed("scope: {urdf: tool.urdf}").scope->urdf, "dir/tool.urdf");
+  EXPECT_EQ(parsed("scope: {}").scope->urdf, ScopeScene{}.urdf);
+  EXPECT_ERROR(loadScene("/nowhere.yaml"), "/nowhere.yaml: cannot be opened");
+}
+
+TEST(SceneParser, SharesValuesThroughAliasesAndMerges) {
+  const Scene scene = parsed("tissue:\n  thickness: {fundus: &thin 1.5 mm, cardia: *thin}\n");
+  EXPECT_DOUBLE_EQ(scene.tissue.thickness[0], 1.5e-3);
+  EXPECT_DOUBLE_EQ(scene.tissue.thickness[1], 1.5e-3);
+}
+
+}  // namespace
+}  // namespace vibe
