@@ -13,6 +13,7 @@ namespace vibe {
 namespace {
 
 constexpr double kCardiaReach = 20e-3;       // [m] around the junction
+constexpr double kCardiaRadius = 26e-3;      // [m] around the oesophagus, against the way up the side of the fundus
 constexpr double kPyloricCanal = 30e-3;      // [m] Loyola University radiology: the pyloric canal is 3 cm long
 constexpr double kFundusPatch = 12e-3;       // [m] around the apex, where the axis begins
 constexpr double kTransition = 10e-3;        // [m] of the thickness over region borders, standard deviation
@@ -52,6 +53,13 @@ std::vector<int> verticesWithin(const SurfaceMesh& mesh, int centre, double radi
   return list;
 }
 
+/// Distance from the line between the end and the junction.
+double distanceToGullet(const Organ& organ, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d line = organ.landmarks.oesophagus - organ.entry, to_p = p - organ.entry;
+  const double t = line.squaredNorm() > 0.0 ? std::clamp(to_p.dot(line) / line.squaredNorm(), 0.0, 1.0) : 0.0;
+  return (to_p - t * line).norm();
+}
+
 /// Length of the piece of oesophagus between the end and the junction.
 double gulletLength(const Organ& organ) {
   return (organ.entry - organ.landmarks.oesophagus).norm();
@@ -89,7 +97,7 @@ void labelStomach(Organ& organ) {
   organ.wall.resize(count);
   for (int v = 0; v < count; ++v) {
     const double along = axis.lengthAt(v);
-    if (from_gullet[v] < cardia) {
+    if (from_gullet[v] < cardia && distanceToGullet(organ, mesh.vertices[v]) < kCardiaRadius) {
       organ.region[v] = Region::Cardia;
     } else if (along >= canal) {
       organ.region[v] = Region::Pylorus;
