@@ -1,0 +1,305 @@
+#!/usr/bin/python3
+"""Writes the URDF of the endoscope with its suturing device to standard output.
+
+The URDF is plain XML that any tool reads; this program keeps its many repeated parts (eight segments, the coil of the
+helix) and the numbers behind them in one place. Usage: make_scope_urdf.py > ../urdf/scope.urdf
+"""
+import argparse
+import math
+import sys
+from xml.sax.saxutils import quoteattr
+
+# --- geometry [m]. Sources: [S] SAGES Manual of Flexible Endoscopy (OverStitch 15.8 mm closed, 23.3 mm open, 18.4 mm
+# beyond the endoscope), [O] Olympus GIF-2T160 (double-channel gastroscope, 12.6 mm); [D] design choice.
+SCOPE_RADIUS = 0.0063  # [O]
+SHAFT_LENGTH = 0.350   # [D] longer than the insertion range, so that its end never leaves the oesophagus
+BEND_LENGTH = 0.088    # [D] with the rigid tip about the 10 cm that gastroscopes bend; radius 31 mm at 164 deg
+SEGMENTS = 8           # [D] the tip is within 1.1 % of the true arc's chord at 164 deg
+TIP_LENGTH = 0.016     # [D] rigid end of the endoscope that carries the cap
+CAP_RADIUS = 0.0079    # [S]
+CAP_LENGTH = 0.012     # [D]
+ARM_REACH = 0.0184     # [S] of the needle arm's bracket beyond the endoscope
+SEGMENT_LENGTH = BEND_LENGTH / SEGMENTS
+STRAIGHT_LENGTH = BEND_LENGTH - SEGMENT_LENGTH / 2 + TIP_LENGTH  # from the first bending joint to the tip
+
+# --- densities [kg/m^3], design choices: steel coil, fibres and polymer together; steel
+SCOPE_DENSITY = 1500.0
+STEEL = 7800.0
+CARRIER_RADIUS = 0.002  # [m] of the solid sphere that stands for a part without a body of its own
+
+DEGREE = math.pi / 180
+
+# --- the inputs: axis, lower, upper, velocity, effort, why
+INPUTS = {
+    "insertion": ("prismatic", "1 0 0", 0.0, 0.30, 0.15, 43.0,
+                  "range: gastro-oesophageal junction to beyond the pylorus of a straightened stomach (design choice); "
+                  "velocity: a brisk hand (design choice); effort: 4.4 kg push, Appleyard 2000"),
+    "rotation": ("revolute", "1 0 0", -math.pi, math.pi, math.pi, 1.0,
+                 "range: half a turn each way, as far as a wrist and the light guide allow (design choice); "
+                 "velocity: half a turn per second (design choice); effort: 1.0 N m, Appleyard 2000"),
+    "tip_up_down": ("revolute", "0 -1 0", -90 * DEGREE, 164 * DEGREE, math.pi, 1.0,
+                    "total bend of the section, up positive; up 164 deg measured on GIF-HQ190 (ASMBS 2024) although 210 "
+                    "are specified, down 90 deg as specified; velocity: half a turn per second (design choice)"),
+    "tip_left_right": ("revolute", "0 0 1", -100 * DEGREE, 100 * DEGREE, math.pi, 1.0,
+                       "total bend of the section, left positive; 100 deg each way as specified; velocity as up/down"),
+    "helix_advance": ("prismatic", "1 0 0", 0.0, 0.030, 0.10, 8.0,
+                      "range: the working distance of the camera (design choice); velocity: a quick push (design choice); "
+                      "effort: largest instrument force, Trejos 2011"),
+    "helix_rotation": ("revolute", "1 0 0", -16 * math.pi, 16 * math.pi, 8 * math.pi, 0.05,
+                       "range: 8 turns each way, twice the 2 to 4 turns that reach the muscle; velocity: 4 turns per second "
+                       "between two fingers (design choice)"),
+    "needle_driver": ("prismatic", "-0.6 0 -0.8", 0.0, 0.018, 0.10, 8.0,
+                      "chord of the curved needle's path, 0 with the arm open, upper end with the needle in the anchor "
+                      "exchange (design choice); velocity: closed in 0.2 s (design choice)"),
+}
+
+COLOURS = {"scope_black": "0.06 0.06 0.07 1", "ring_grey": "0.22 0.22 0.24 1", "steel": "0.72 0.74 0.77 1",
+           "glass": "0.25 0.45 0.75 1", "needle_gold": "0.85 0.65 0.25 1"}
+
+
+def number(value):
+    """Shortest text with 12 digits; never -0, so that the file does not depend on the sign of a zero."""
+    text = f"{value:.12g}"
+    return "0" if text == "-0" else text
+
+
+def vector(values):
+    return " ".join(number(v) for v in values)
+
+
+# direction of a cylinder's axis (z in its own frame) -> roll pitch yaw
+ALONG = {"x": (0, math.pi / 2, 0), "z": (0, 0, 0)}
+
+
+class Cylinder:
+    def __init__(self, radius, length, at, rpy=ALONG["x"], colour="scope_black"):
+        self.radius, self.length, self.at, self.rpy, self.colour = radius, length, at, rpy, colour
+
+    def xml(self):
+        return f'<cylinder radius="{number(self.radius)}" length="{number(self.length)}"/>'
+
+
+class Sphere:
+    def __init__(self, radius, at, colour="scope_black"):
+        self.radius, self.at, self.rpy, self.colour = radius, at, (0, 0, 0), colour
+
+    def xml(self):
+        return f'<sphere radius="{number(self.radius)}"/>'
+
+
+class Box:
+    def __init__(self, size, at, colour="steel"):
+        self.size, self.at, self.rpy, self.colour = size, at, (0, 0, 0), colour
+
+    def xml(self):
+        return f'<box size="{vector(self.size)}"/>'
+
+
+def capsule_x(start, end, radius):
+    """Round bar from start to end along x, as the three primitives that URDF has for it."""
+    bar = Cylinder(radius, end - start, ((start + end) / 2, 0, 0))
+    return [bar, Sphere(radius, (start, 0, 0)), Sphere(radius, (end, 0, 0))]
+
+
+class Body:
+    """Mass [kg], centre [m] and principal moments about it along the link's axes [kg m^2]."""
+
+    def __init__(self, mass, centre, moments):
+        self.mass, self.centre, self.moments = mass, centre, moments
+
+    @staticmethod
+    def bar_x(density, radius, start, end):
+        length = end - start
+        mass = density * math.pi * radius ** 2 * length
+        across = mass * (3 * radius ** 2 + length ** 2) / 12
+        return Body(mass, ((start + end) / 2, 0, 0), (mass * radius ** 2 / 2, across, across))
+
+    @staticmethod
+    def ball(density, radius, centre=(0, 0, 0)):
+        mass = density * 4 / 3 * math.pi * radius ** 3
+        return Body(mass, centre, (0.4 * mass * radius ** 2,) * 3)
+
+
+class Urdf:
+    def __init__(self):
+        self.lines = []
+
+    def add(self, indent, text):
+        self.lines.append("  " * indent + text)
+
+    def shape(self, tag, shape):
+        self.add(2, f"<{tag}>")
+        self.add(3, f'<origin xyz="{vector(shape.at)}" rpy="{vector(shape.rpy)}"/>')
+        self.add(3, f"<geometry>{shape.xml()}</geometry>")
+        if tag == "visual":
+            self.add(3, f'<material name="{shape.colour}"/>')
+        self.add(2, f"</{tag}>")
+
+    def link(self, name, body=None, visuals=(), collisions=(), note=""):
+        if note:
+            self.add(1, f"<!-- {note} -->")
+        if not (body or visuals or collisions):
+            self.add(1, f"<link name={quoteattr(name)}/>")
+            return
+        self.add(1, f"<link name={quoteattr(name)}>")
+        if body:
+            ixx, iyy, izz = (number(m) for m in body.moments)
+            self.add(2, "<inertial>")
+            self.add(3, f'<origin xyz="{vector(body.centre)}" rpy="0 0 0"/>')
+            self.add(3, f'<mass value="{number(body.mass)}"/>')
+            self.add(3, f'<inertia ixx="{ixx}" ixy="0" ixz="0" iyy="{iyy}" iyz="0" izz="{izz}"/>')
+            self.add(2, "</inertial>")
+        for shape in visuals:
+            self.shape("visual", shape)
+        for shape in collisions:
+            self.shape("collision", shape)
+        self.add(1, "</link>")
+
+    def joint(self, name, kind, parent, child, at=(0, 0, 0), rpy=(0, 0, 0), extra=()):
+        self.add(1, f'<joint name="{name}" type="{kind}">')
+        self.add(2, f'<parent link="{parent}"/>')
+        self.add(2, f'<child link="{child}"/>')
+        self.add(2, f'<origin xyz="{vector(at)}" rpy="{vector(rpy)}"/>')
+        for line in extra:
+            self.add(2, line)
+        self.add(1, "</joint>")
+
+    def input_joint(self, name, parent, child, at=(0, 0, 0)):
+        kind, axis, lower, upper, velocity, effort, why = INPUTS[name]
+        self.add(1, f"<!-- input {name}: {why} -->")
+        limit = (f'<limit lower="{number(lower)}" upper="{number(upper)}" velocity="{number(velocity)}" '
+                 f'effort="{number(effort)}"/>')
+        self.joint(name, kind, parent, child, at, extra=(f'<axis xyz="{axis}"/>', limit))
+
+    def bend_joint(self, index, source, parent, child, at):
+        """One of the equal parts of a total bend."""
+        _, axis, lower, upper, velocity, effort, _ = INPUTS[source]
+        limit = (f'<limit lower="{number(lower / SEGMENTS)}" upper="{number(upper / SEGMENTS)}" '
+                 f'velocity="{number(velocity / SEGMENTS)}" effort="{number(effort)}"/>')
+        mimic = f'<mimic joint="{source}" multiplier="{number(1 / SEGMENTS)}" offset="0"/>'
+        self.joint(f"{source}_{index}", "revolute", parent, child, at, extra=(f'<axis xyz="{axis}"/>', limit, mimic))
+
+
+def add_shaft(urdf):
+    carrier = Body.ball(SCOPE_DENSITY, CARRIER_RADIUS)
+    urdf.link("scope_base", note="at the gastro-oesophageal junction, x along the insertion into the lumen")
+    urdf.input_joint("insertion", "scope_base", "scope_slide")
+    urdf.link("scope_slide", carrier, note="where the tip of the straight endoscope is")
+    urdf.input_joint("rotation", "scope_slide", "scope_shaft", (-STRAIGHT_LENGTH, 0, 0))
+    urdf.link("scope_shaft", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, -SHAFT_LENGTH, 0),
+              [Cylinder(SCOPE_RADIUS, SHAFT_LENGTH, (-SHAFT_LENGTH / 2, 0, 0)), Sphere(SCOPE_RADIUS, (0, 0, 0))],
+              capsule_x(-SHAFT_LENGTH, 0, SCOPE_RADIUS), note="insertion tube up to the first bending joint")
+    urdf.input_joint("tip_up_down", "scope_shaft", "up_down_wheel")
+    urdf.link("up_down_wheel", carrier, note="carries nothing: its joint holds the total bend that the segments mimic")
+    urdf.input_joint("tip_left_right", "scope_shaft", "left_right_wheel")
+    urdf.link("left_right_wheel", carrier, note="carries nothing, as up_down_wheel")
+
+
+def add_bending_section(urdf):
+    """Universal joints in the middle of equal lengths: the polygon then leaves and meets the arc along its tangents."""
+    for k in range(1, SEGMENTS + 1):
+        parent = f"segment_{k - 1}" if k > 1 else "scope_shaft"
+        length = SEGMENT_LENGTH if k < SEGMENTS else SEGMENT_LENGTH / 2
+        urdf.bend_joint(k, "tip_up_down", parent, f"ring_{k}", (SEGMENT_LENGTH if k > 1 else 0, 0, 0))
+        urdf.link(f"ring_{k}", Body.ball(SCOPE_DENSITY, CARRIER_RADIUS))
+        urdf.bend_joint(k, "tip_left_right", f"ring_{k}", f"segment_{k}", (0, 0, 0))
+        ring = Cylinder(SCOPE_RADIUS * 1.03, 0.0015, (length / 2, 0, 0), colour="ring_grey")
+        skin = [Cylinder(SCOPE_RADIUS, length, (length / 2, 0, 0)), Sphere(SCOPE_RADIUS, (0, 0, 0)), ring]
+        urdf.link(f"segment_{k}", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, 0, length), skin,
+                  capsule_x(0, length, SCOPE_RADIUS))
+
+
+def add_tip(urdf):
+    urdf.joint("scope_tip_mount", "fixed", f"segment_{SEGMENTS}", "scope_tip", (SEGMENT_LENGTH / 2 + TIP_LENGTH, 0, 0))
+    visuals = [Cylinder(SCOPE_RADIUS, TIP_LENGTH, (-TIP_LENGTH / 2, 0, 0)),
+               Cylinder(0.0018, 0.0004, (0.0002, 0.0, 0.0025), colour="glass"),
+               Cylinder(0.0008, 0.0004, (0.0002, 0.0035, 0.0025), colour="needle_gold"),
+               Cylinder(0.0008, 0.0004, (0.0002, -0.0035, 0.0025), colour="needle_gold")]
+    urdf.link("scope_tip", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, -TIP_LENGTH, 0), visuals,
+              capsule_x(-TIP_LENGTH, -SCOPE_RADIUS, SCOPE_RADIUS), note="distal face, x along the viewing axis")
+    # z forward, x right, y down (REP-103) out of x forward, y left, z up
+    urdf.joint("scope_camera_mount", "fixed", "scope_tip", "scope_camera_optical", (0, 0, 0.0025),
+               (-math.pi / 2, 0, -math.pi / 2))
+    urdf.link("scope_camera_optical", note="z forward, x right, y down")
+
+
+def add_cap(urdf):
+    """Ring around the tip with the bracket of the needle arm above the field of view."""
+    bracket_size = (ARM_REACH + CAP_LENGTH / 2, 0.006, 0.0016)
+    bracket_at = (ARM_REACH - bracket_size[0] / 2, 0, CAP_RADIUS - bracket_size[2] / 2)
+    shell = STEEL * math.pi * (CAP_RADIUS ** 2 - SCOPE_RADIUS ** 2) * CAP_LENGTH * 0.4  # 60 % of the ring is polymer, air
+    mass = shell + STEEL * bracket_size[0] * bracket_size[1] * bracket_size[2]
+    across = mass * (3 * (CAP_RADIUS ** 2 + SCOPE_RADIUS ** 2) + (CAP_LENGTH + ARM_REACH) ** 2) / 12
+    body = Body(mass, (-CAP_LENGTH / 4, 0, 0.002), (mass * (CAP_RADIUS ** 2 + SCOPE_RADIUS ** 2) / 2, across, across))
+    urdf.joint("device_cap_mount", "fixed", "scope_tip", "device_cap")
+    ring = Cylinder(CAP_RADIUS, CAP_LENGTH, (-CAP_LENGTH / 2, 0, 0), colour="steel")
+    face = Cylinder(SCOPE_RADIUS, 0.0002, (0.0001, 0, 0))
+    bracket = Box(bracket_size, bracket_at)
+    urdf.link("device_cap", body, [ring, face, bracket], [ring, bracket],
+              note="suturing device: ring around the tip, bracket of the needle arm on the upper side")
+
+
+def coil(turns, radius, pitch, wire, pieces):
+    """Chain of short cylinders along a right-handed helix that ends at the origin and opens towards -x."""
+    def point(t):
+        return (pitch * turns * (t - 1), radius * math.cos(2 * math.pi * turns * t), radius * math.sin(2 * math.pi * turns * t))
+    return [bar_between(point(i / pieces), point((i + 1) / pieces), wire, "steel") for i in range(pieces)]
+
+
+def bar_between(start, end, radius, colour):
+    delta = [b - a for a, b in zip(start, end)]
+    length = math.sqrt(sum(d * d for d in delta))
+    pitch = math.acos(delta[2] / length)
+    yaw = math.atan2(delta[1], delta[0])
+    middle = tuple((a + b) / 2 for a, b in zip(start, end))
+    return Cylinder(radius, length, middle, (0, pitch, yaw), colour)
+
+
+def add_helix(urdf):
+    """Tissue helix out of the second channel. No collision shape: it is made to pass through the wall."""
+    turns, pitch = 3, 0.0018  # 3 turns: within the 2 to 4 that are used; pitch: design choice
+    carrier = Body.ball(STEEL, 0.001)
+    urdf.input_joint("helix_advance", "scope_tip", "helix_carriage", (-0.002, 0.0028, -0.0022))
+    urdf.link("helix_carriage", carrier)
+    urdf.input_joint("helix_rotation", "helix_carriage", "helix")
+    wire = coil(turns, 0.0010, pitch, 0.00025, 36)
+    stem_end = -turns * pitch
+    visuals = wire + [Cylinder(0.0012, 0.028, (stem_end - 0.014, 0, 0), colour="ring_grey")]
+    urdf.link("helix", Body.bar_x(STEEL, 0.0009, stem_end - 0.028, 0), visuals,
+              note="origin at the point of the wire; no collision shape, it penetrates the wall")
+
+
+def add_needle(urdf):
+    """Needle on its curved arm. No collision shape: it is made to pass through the wall."""
+    urdf.input_joint("needle_driver", "device_cap", "needle", (0.0148, -0.0025, 0.0134))
+    # quarter circle from the point of the needle (origin) outwards to the arm, in the plane of its travel
+    radius, pieces = 0.0045, 9
+    ux, uz = 0.6, 0.8  # backwards along the travel
+    def point(t):
+        a = t * math.pi / 2
+        s, c = radius * math.sin(a), radius * (1 - math.cos(a))
+        return (ux * s + uz * c * 0.4, 0.0, uz * s - ux * c)
+    curve = [bar_between(point(i / pieces), point((i + 1) / pieces), 0.0003 + 0.0003 * i / pieces,
+                         "needle_gold" if i < 3 else "steel") for i in range(pieces)]
+    mass = STEEL * math.pi * 0.0005 ** 2 * radius * math.pi / 2
+    size = radius ** 2 / 12
+    urdf.link("needle", Body(mass, (0.0018, 0, 0.0016), (mass * size, mass * size, mass * size)), curve,
+              note="origin at the point of the needle; no collision shape, it penetrates the wall")
+
+
+def make_urdf():
+    urdf = Urdf()
+    urdf.add(0, '<?xml version="1.0"?>')
+    urdf.add(0, "<!-- Written by scripts/make_scope_urdf.py: change that program, not this file. SI units. -->")
+    urdf.add(0, '<robot name="scope">')
+    for name, rgba in COLOURS.items():
+        urdf.add(1, f'<material name="{name}"><color rgba="{rgba}"/></material>')
+    for part in (add_shaft, add_bending_section, add_tip, add_cap, add_helix, add_needle):
+        part(urdf)
+    urdf.add(0, "</robot>")
+    return "\n".join(urdf.lines) + "\n"
+
+
+if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
+    sys.stdout.write(make_urdf())

@@ -1,0 +1,31 @@
+#pragma once
+#include <urdf_model/model.h>
+#include <urdf_world/types.h>
+
+#include <string>
+
+namespace vibe {
+
+/// A URDF as urdfdom reads it, with what is needed to say where in the text something is wrong.
+class UrdfDocument {
+ public:
+  /// @param text   the URDF
+  /// @param place  what to call it in errors, e.g. the file name
+  /// @throws Error if urdfdom does not accept it; nothing is printed
+  UrdfDocument(const std::string& text, const std::string& place);
+  ~UrdfDocument();
+  UrdfDocument(const UrdfDocument&) = delete;
+  UrdfDocument& operator=(const UrdfDocument&) = delete;
+
+  const urdf::ModelInterface& model() const { return *model_; }
+
+  /// "place:line" of the element <tag name="...">, or "place" if the text has none.
+  std::string where(const std::string& tag, const std::string& name) const;
+
+ private:
+  std::string text_;
+  std::string place_;
+  urdf::ModelInterfaceSharedPtr model_;
+};
+
+}  // namespace vibe
