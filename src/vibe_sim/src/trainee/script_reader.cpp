@@ -14,6 +14,8 @@ constexpr double kLongestScript = 86400;  // a day [s]
 constexpr double kShortestMotion = 0.01;  // faster than any hand [s]
 // A button must stay as it is for the longest step that a scene allows, or the simulator could miss the press.
 constexpr double kShortestPress = 0.1;  // [s]
+// Times are sums of what the user wrote, so that 0.1 s + 0.2 s lies a little after 0.3 s.
+constexpr double kRounding = 1e-9;  // [s]
 
 /// A verb and the keys that may stand beside it.
 struct Verb {
@@ -220,7 +222,7 @@ double ScriptReader::playMove(const Action& action, double begin, bool relative)
     const double limit = largestPosition(joint);
     const double value = source_.quantity(entry, unitOf(joint), -limit, limit);
     const double now = script_.timeline_.jointTarget(joint);
-    if (begin < script_.timeline_.jointFreeAt(joint)) {
+    if (begin < script_.timeline_.jointFreeAt(joint) - kRounding) {
       source_.fail(entry, "begins to move at " + seconds(begin) + ", but an action before still moves it until " +
                               seconds(script_.timeline_.jointFreeAt(joint)) +
                               "; let it end first or delay with 'after'");
@@ -237,7 +239,8 @@ double ScriptReader::playMove(const Action& action, double begin, bool relative)
   const double duration = moveDuration(action, distances, joints.front());
   checkEnd(action.place, begin + duration);
   for (std::size_t k = 0; k < joints.size(); ++k) {
-    script_.timeline_.addMotion(joints[k], begin, begin + duration, targets[k]);
+    const double joint_begin = std::max(begin, script_.timeline_.jointFreeAt(joints[k]));
+    script_.timeline_.addMotion(joints[k], joint_begin, begin + duration, targets[k]);
   }
   return begin + duration;
 }
@@ -278,8 +281,7 @@ void ScriptReader::addEdge(const YamlField& place, int button, double time, bool
     source_.fail(place, "'" + name + "' is already " + (pressed ? "pressed" : "released") + " at " + seconds(time) +
                             "; " + (pressed ? "release it first" : "press it first"));
   }
-  // Times are sums of what the user wrote, so allow for rounding.
-  if (time < timeline.lastEdge(button) + kShortestPress * (1 - 1e-9)) {
+  if (time < timeline.lastEdge(button) + kShortestPress - kRounding) {
     source_.fail(place, "'" + name + "' changes at " + seconds(time) + ", too soon after " +
                             seconds(timeline.lastEdge(button)) + "; leave at least 0.1 s between");
   }
