@@ -28,14 +28,14 @@ struct Knot {
 };
 
 // design: from the fundus down the body, round the bend, up the antrum to the right, through the pylorus
-constexpr Knot kBody[] = {{-15, 37, 66, 36}, {-12, 32, 44, 40}, {-7, 26, 20, 39},   {-1, 20, -8, 36},
-                          {5, 13, -36, 32},  {10, 0, -61, 28},  {13, -19, -79, 25}, {12, -42, -80, 22},
-                          {7, -61, -67, 18}, {0, -75, -52, 12}};
-constexpr Knot kPylorus{-6, -84, -41, 6.5};
-constexpr Knot kDuodenum{-15, -97, -25, 11};
-constexpr Knot kIncisuraSide{0, -30, -40, 0};  // the surface point nearest to this one
-constexpr Knot kJunction{-8, -8, 54, 11};
-constexpr Knot kGullet{-13, -19, 86, 11};
+constexpr Knot kBody[] = {{-16, 41, 63, 37},   {-13, 35, 40, 42},  {-8, 28, 14, 41},   {-2, 21, -14, 37.5},
+                          {4, 11, -41, 33.5},  {9, -6, -62, 29.5}, {12, -28, -72, 26}, {11, -50, -67, 23.5},
+                          {6, -68, -53, 19.5}, {1, -78, -40, 14}};
+constexpr Knot kPylorus{-5, -88, -26, 5};
+constexpr Knot kDuodenum{-11, -98, -11, 12.5};
+constexpr Knot kIncisuraSide{0, -30, -36, 0};  // the surface point nearest to this one
+constexpr Knot kJunction{-9, -9, 52, 11};
+constexpr Knot kGullet{-13, -21, 84, 11};
 
 using Row = std::vector<Eigen::Vector4d>;  // centre and radius [m]
 
@@ -73,10 +73,7 @@ Row bodyKnots(double tube_radius) {
   for (const auto& k : kBody) knots.push_back(toMetres(k));
   knots.push_back(toMetres(kPylorus));
   Eigen::Vector4d duodenum = toMetres(kDuodenum);
-  duodenum[3] = tube_radius;
-  Eigen::Vector4d bulb = 0.5 * (knots.back() + duodenum);
-  bulb[3] = tube_radius;
-  knots.push_back(bulb);
+  duodenum[3] *= tube_radius / kTubeRadius;
   knots.push_back(duodenum);
   return knots;
 }
