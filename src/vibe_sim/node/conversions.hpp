@@ -1,0 +1,69 @@
+#pragma once
+#include <geometry_msgs/PoseStamped.h>
+#include <geometry_msgs/TransformStamped.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <sensor_msgs/JointState.h>
+#include <sensor_msgs/Joy.h>
+#include <vibe_msgs/ProcedureEvent.h>
+#include <vibe_msgs/StageTime.h>
+#include <vibe_msgs/StepInput.h>
+#include <vibe_msgs/TissueTopology.h>
+
+#include <string>
+
+#include "input_latch.hpp"
+#include "vibe_sim/event.hpp"
+#include "vibe_sim/model.hpp"
+#include "vibe_sim/state.hpp"
+#include "vibe_sim/step_input.hpp"
+#include "vibe_sim/step_timer.hpp"
+
+// Messages <-> library, without any ROS graph. Functions that read a message throw vibe::Error with one sentence if the
+// message cannot be used.
+
+namespace vibe {
+
+constexpr const char* kWorldFrame = "world";
+constexpr const char* kTissueFrame = "stomach";
+constexpr const char* kScopeBaseFrame = "scope_base";
+constexpr const char* kScopeTipFrame = "scope_tip";
+
+/// Messages cannot carry times before 0; such a stamp becomes 0.
+ros::Time toRosTime(std::int64_t nanoseconds);
+std::int64_t fromRosTime(const ros::Time& time);
+
+/// What kind of joint message it is: measured by a device, where stamp 0 says "invalid", or commanded by a client.
+enum class JointSource { Measured, Commanded };
+
+/// Joint positions by name, in any order; all joints of the channel and no others. Commands may leave the names out and
+/// give the positions in the order of vibe::Joint.
+InputSample readJoints(const sensor_msgs::JointState& message, InputChannel channel, JointSource source);
+
+/// Buttons by position; more than kButtonCount or fewer is an error, as is a value other than 0 or 1.
+InputSample readButtons(const sensor_msgs::Joy& message);
+
+/// Pose of scope_tip in the frame world or scope_base.
+InputSample readTipTarget(const geometry_msgs::PoseStamped& message);
+
+sensor_msgs::JointState makeScopeJoints(const StepInput& input, std::int64_t stamp);
+sensor_msgs::JointState makeOverstitchJoints(const StepInput& input, std::int64_t stamp);
+sensor_msgs::Joy makeButtons(const StepInput& input, std::int64_t stamp);
+
+vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, std::int64_t stamp);
+/// What a recorded step used, bit for bit.
+StepInput readStepInput(const vibe_msgs::StepInput& message);
+
+/// All joints of the tool's inputs, for robot_state_publisher, which works out those that mimic them.
+sensor_msgs::JointState makeJointState(const State& state, std::int64_t stamp);
+geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::string& frame, std::int64_t stamp);
+geometry_msgs::WrenchStamped makeWrench(const State& state, std::int64_t stamp);
+geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, const std::string& parent,
+                                              const std::string& child, std::int64_t stamp);
+vibe_msgs::ProcedureEvent makeEvent(const Event& event, std::int64_t stamp);
+vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revision, std::int64_t stamp);
+vibe_msgs::StageTime makeStageTime(const std::string& name, const DurationHistogram& durations);
+
+/// What the tool does to the organ at the moment: "insufflation", "grip", "contact" or "free".
+const char* phaseOf(const State& state, const StepInput& input);
+
+}  // namespace vibe

@@ -1,0 +1,101 @@
+#include "input_latch.hpp"
+
+#include <algorithm>
+
+namespace vibe {
+namespace {
+
+bool reachTip(const InputSample& sample, const Model& model, StepInput& input) {
+  if (!model.tool) return false;
+  const bool in_world = sample.target == ScopeTarget::TipInWorld;
+  const Eigen::Isometry3d pose = in_world ? model.tool_base.inverse() * sample.tip_pose : sample.tip_pose;
+  input.joints = model.tool->inverseKinematics(pose, input.joints);
+  return true;
+}
+
+bool applySample(const InputSample& sample, const Model& model, StepInput& input) {
+  if (sample.target != ScopeTarget::Joints) return reachTip(sample, model, input);
+  switch (sample.channel) {
+    case InputChannel::Scope:
+      std::copy_n(sample.joints.begin(), kScopeJointCount, input.joints.begin());
+      break;
+    case InputChannel::Overstitch:
+      std::copy(sample.joints.begin() + kScopeJointCount, sample.joints.end(), input.joints.begin() + kScopeJointCount);
+      break;
+    case InputChannel::Buttons:
+      input.buttons = sample.buttons;
+      break;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool InputLatch::push(const InputSample& sample) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  Queue& queue = queues_[static_cast<int>(sample.channel)];
+  InputSample item = sample;
+  item.stamp = std::max(sample.stamp, applied_until_);
+  const auto later = std::upper_bound(queue.waiting.begin(), queue.waiting.end(), item.stamp,
+                                      [](std::int64_t stamp, const InputSample& other) { return stamp < other.stamp; });
+  const bool replaces = later != queue.waiting.begin() && std::prev(later)->stamp == item.stamp;
+  if (!replaces && queue.waiting.size() >= kCapacity) return false;
+  if (replaces) {
+    *std::prev(later) = item;
+  } else {
+    queue.waiting.insert(later, item);
+  }
+  queue.newest = std::max(queue.newest, sample.stamp);
+  return true;
+}
+
+bool InputLatch::knownUntil(std::int64_t stamp) const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return std::all_of(queues_.begin(), queues_.end(), [stamp](const Queue& queue) { return queue.newest >= stamp; });
+}
+
+std::string InputLatch::missingAt(std::int64_t stamp) const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  std::string names;
+  for (int channel = 0; channel < kInputChannelCount; ++channel) {
+    if (queues_[channel].newest >= stamp) continue;
+    names += (names.empty() ? "" : ", ") + std::string(toString(static_cast<InputChannel>(channel)));
+  }
+  return names;
+}
+
+std::vector<std::string> InputLatch::apply(std::int64_t stamp, const Model& model, StepInput& input) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> unusable;
+  for (Queue& queue : queues_) {
+    while (!queue.waiting.empty() && queue.waiting.front().stamp <= stamp) {
+      if (!applySample(queue.waiting.front(), model, input)) {
+        unusable.push_back("scope/servo_cp has no effect because the scene '" + model.scene.name +
+                           "' has no scope; load a scene with one.");
+      }
+      queue.waiting.pop_front();
+    }
+  }
+  applied_until_ = std::max(applied_until_, stamp);
+  return unusable;
+}
+
+void InputLatch::clear() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  queues_ = {};
+  applied_until_ = 0;
+}
+
+const char* toString(InputChannel channel) {
+  switch (channel) {
+    case InputChannel::Scope:
+      return "scope/measured_js";
+    case InputChannel::Overstitch:
+      return "overstitch/measured_js";
+    case InputChannel::Buttons:
+      return "scope/buttons";
+  }
+  return "";
+}
+
+}  // namespace vibe

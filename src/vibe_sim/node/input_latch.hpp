@@ -1,0 +1,68 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "vibe_sim/model.hpp"
+#include "vibe_sim/step_input.hpp"
+
+namespace vibe {
+
+/// Where an input comes from. Each has its own queue, because each has its own rate.
+enum class InputChannel { Scope, Overstitch, Buttons };
+constexpr int kInputChannelCount = 3;
+
+/// What a sample of the channel Scope says: joint positions, or the pose that scope_tip is to reach.
+enum class ScopeTarget { Joints, TipInWorld, TipInBase };
+
+/// One valid message, free of ROS. Only the values of its channel count.
+struct InputSample {
+  InputChannel channel = InputChannel::Scope;
+  std::int64_t stamp = 0;  ///< time of the sample [ns]; 0: as soon as possible
+  std::array<double, kJointCount> joints{};
+  std::array<std::uint8_t, kButtonCount> buttons{};
+  ScopeTarget target = ScopeTarget::Joints;
+  Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();  ///< in world or in the tool's root link
+};
+
+/// Holds what has arrived until the step for which it is due, and the last valid values after that. All functions may
+/// be called from any thread.
+class InputLatch {
+ public:
+  /// Samples that may wait in one channel; more means that somebody stamps far into the future.
+  static constexpr std::size_t kCapacity = 4096;
+
+  /// A sample with the stamp of one that still waits replaces it.
+  /// @return false if the channel is full and the sample was not taken
+  bool push(const InputSample& sample);
+
+  /// Whether every channel has delivered a sample stamped `stamp` or later: all that matters at that time is known.
+  bool knownUntil(std::int64_t stamp) const;
+  /// Channels for which that is not so, for people.
+  std::string missingAt(std::int64_t stamp) const;
+
+  /// Applies to `input` everything that is due at `stamp`, in the order of stamps; samples from the past count as of
+  /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics.
+  /// @return one sentence per sample that the model cannot use
+  std::vector<std::string> apply(std::int64_t stamp, const Model& model, StepInput& input);
+
+  /// Forgets everything, e.g. because time starts again.
+  void clear();
+
+ private:
+  struct Queue {
+    std::deque<InputSample> waiting;  // ascending stamps
+    std::int64_t newest = 0;          // greatest stamp ever delivered
+  };
+  mutable std::mutex mutex_;
+  std::array<Queue, kInputChannelCount> queues_;
+  std::int64_t applied_until_ = 0;
+};
+
+const char* toString(InputChannel channel);
+
+}  // namespace vibe

@@ -1,0 +1,88 @@
+#include "inputs.hpp"
+
+#include "conversions.hpp"
+#include "vibe_sim/error.hpp"
+#include "vibe_sim/step_timer.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kOwnerPatience = 2;     // a source that is silent for longer has given the topic up [s]
+constexpr double kComplaintPeriod = 1;   // [s]
+constexpr std::uint32_t kQueue = 10000;  // none may be lost in lock-step; the latch bounds what really waits
+
+}  // namespace
+
+Inputs::Inputs(const ros::NodeHandle& handle, InputLatch& latch, Publishers& publishers, std::function<void()> arrived)
+    : handle_(handle), latch_(latch), publishers_(publishers), arrived_(std::move(arrived)) {
+  using sensor_msgs::JointState;
+  handle_.setCallbackQueue(&queue_);
+  listen<JointState>("scope/measured_js", [](const JointState& message) {
+    return readJoints(message, InputChannel::Scope, JointSource::Measured);
+  });
+  listen<JointState>("scope/servo_jp", [](const JointState& message) {
+    return readJoints(message, InputChannel::Scope, JointSource::Commanded);
+  });
+  listen<geometry_msgs::PoseStamped>("scope/servo_cp", readTipTarget);
+  listen<JointState>("overstitch/measured_js", [](const JointState& message) {
+    return readJoints(message, InputChannel::Overstitch, JointSource::Measured);
+  });
+  listen<sensor_msgs::Joy>("scope/buttons", readButtons);
+  spinner_ = std::make_unique<ros::AsyncSpinner>(1, &queue_);
+  spinner_->start();
+}
+
+Inputs::~Inputs() {
+  spinner_->stop();
+}
+
+template <typename Message>
+void Inputs::listen(const std::string& name, std::function<InputSample(const Message&)> read) {
+  using Arrival = ros::MessageEvent<const Message>;
+  const boost::function<void(const Arrival&)> callback = [this, name, read = std::move(read)](const Arrival& event) {
+    receive(name, event.getPublisherName(), [&] { return read(*event.getMessage()); });
+  };
+  ros::SubscribeOptions options;
+  options.template initByFullCallbackType<const Arrival&>(name, kQueue, callback);
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  topics_[name].subscriber = handle_.subscribe(options);
+}
+
+void Inputs::receive(const std::string& name, const std::string& publisher, const std::function<InputSample()>& read) {
+  Topic& topic = topics_.at(name);
+  if (!obeys(name, topic, publisher)) return;
+  try {
+    if (latch_.push(read())) {
+      arrived_();
+    } else {
+      complain(topic, "A message on " + name + " is ignored: " + std::to_string(InputLatch::kCapacity) +
+                          " messages with later stamps wait already; check the clock of " + publisher + ".");
+    }
+  } catch (const Error& error) {
+    complain(topic, "A message on " + name + " from " + publisher + " is ignored: " + error.what());
+  }
+}
+
+bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& publisher) {
+  const double now = steadyTime();
+  const bool owned = !topic.owner.empty() && topic.owner != publisher && topic.subscriber.getNumPublishers() > 1 &&
+                     now - topic.last_message < kOwnerPatience;
+  if (owned) {
+    complain(topic, "Two nodes publish " + name + ": " + topic.owner + " is obeyed and " + publisher +
+                        " ignored; stop one of them.");
+    return false;
+  }
+  topic.owner = publisher;
+  topic.last_message = now;
+  return true;
+}
+
+void Inputs::complain(Topic& topic, const std::string& sentence) {
+  const double now = steadyTime();
+  if (now - topic.last_complaint < kComplaintPeriod) return;
+  topic.last_complaint = now;
+  ROS_WARN_STREAM(sentence);
+  publishers_.warn(sentence);
+}
+
+}  // namespace vibe

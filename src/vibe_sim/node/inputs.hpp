@@ -1,0 +1,51 @@
+#pragma once
+#include <ros/callback_queue.h>
+#include <ros/message_event.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+#include <ros/subscriber.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "input_latch.hpp"
+#include "publishers.hpp"
+
+namespace vibe {
+
+/// Every topic that the simulator listens to. Valid messages go to the latch; of the others one clear sentence goes to
+/// the log and to procedure/events, at most once a second per topic, and nothing else happens.
+class Inputs {
+ public:
+  /// @param arrived  called after something has been put into the latch, from the thread of the inputs
+  Inputs(const ros::NodeHandle& handle, InputLatch& latch, Publishers& publishers, std::function<void()> arrived);
+  ~Inputs();
+
+ private:
+  /// A topic has one source at a time: two that disagree would make the scope jump to and fro.
+  struct Topic {
+    ros::Subscriber subscriber;
+    std::string owner;             // name of the node that is obeyed
+    double last_message = 0;       // of the owner, steady time [s]
+    double last_complaint = -1e9;  // steady time [s]
+  };
+
+  ros::NodeHandle handle_;
+  ros::CallbackQueue queue_;
+  InputLatch& latch_;
+  Publishers& publishers_;
+  std::function<void()> arrived_;
+  std::map<std::string, Topic> topics_;  // touched by the one thread of the spinner only, once it runs
+  std::unique_ptr<ros::AsyncSpinner> spinner_;
+
+  template <typename Message>
+  void listen(const std::string& name, std::function<InputSample(const Message&)> read);
+  void receive(const std::string& name, const std::string& publisher, const std::function<InputSample()>& read);
+  bool obeys(const std::string& name, Topic& topic, const std::string& publisher);
+  void complain(Topic& topic, const std::string& sentence);
+};
+
+}  // namespace vibe

@@ -1,0 +1,31 @@
+#pragma once
+#include <ros/node_handle.h>
+#include <ros/timer.h>
+
+#include <atomic>
+
+#include "publishers.hpp"
+
+namespace vibe {
+
+/// Notices when the ROS master is gone. Connections between nodes outlive it, so that the simulation goes on; only when
+/// nobody is connected either, going on has no purpose.
+class MasterWatch {
+ public:
+  /// @param timeout  how long to go on without master and listeners [s]
+  MasterWatch(ros::NodeHandle handle, const Publishers& publishers, double timeout);
+
+  bool isHopeless() const { return hopeless_; }
+
+ private:
+  void check();
+
+  const Publishers& publishers_;
+  double timeout_;
+  bool was_there_ = true;
+  double alone_since_ = 0;  // steady time [s]; 0: not alone
+  std::atomic<bool> hopeless_{false};
+  ros::WallTimer timer_;
+};
+
+}  // namespace vibe

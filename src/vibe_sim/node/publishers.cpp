@@ -1,0 +1,126 @@
+#include "publishers.hpp"
+
+#include <rosgraph_msgs/Clock.h>
+#include <vibe_msgs/ProcedureState.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "conversions.hpp"
+#include "procedure_message.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kParticleRate = 60;                      // of tissue/particles in simulated time [Hz]
+constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure/state when nothing happens [ns]
+
+// Queues are long because a simulation that runs faster than the wall clock must not lose messages to a recorder that
+// is busy for a moment; of the large clouds as many as fit into some 60 MB.
+constexpr std::uint32_t kSmallQueue = 10000;
+constexpr std::uint32_t kCloudQueue = 600;
+
+int particleInterval(double step_period) {
+  return std::max(1, static_cast<int>(std::lround(1 / (kParticleRate * step_period))));
+}
+
+}  // namespace
+
+Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
+    : scope_pose_(handle.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
+      helix_pose_(handle.advertise<geometry_msgs::PoseStamped>("overstitch/helix/measured_cp", kSmallQueue)),
+      wrench_(handle.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
+      joint_states_(handle.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
+      topology_(handle.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
+      particles_(handle.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue)),
+      procedure_(handle.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
+      events_(handle.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
+      applied_input_(handle.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue)),
+      performance_(handle.advertise<vibe_msgs::SolverStatistics>("performance", kSmallQueue)) {
+  if (with_clock) clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
+}
+
+void Publishers::announceModel(const Session& session) {
+  const Model& model = *session.model;
+  cloud_ = std::make_unique<ParticleCloud>(model, session.revision);
+  topology_.publish(makeTopology(model, session.revision, session.now()));
+  std::vector<geometry_msgs::TransformStamped> transforms = {
+      makeTransform(Eigen::Isometry3d::Identity(), kWorldFrame, kTissueFrame, session.now())};
+  if (model.tool) transforms.push_back(makeTransform(model.tool_base, kWorldFrame, kScopeBaseFrame, session.now()));
+  static_transforms_.sendTransform(transforms);
+}
+
+void Publishers::appliedInput(const Session& session) {
+  applied_input_.publish(makeStepInput(session.input, session.state.step, session.now()));
+}
+
+void Publishers::stepResult(const Session& session, const RunStatus& status) {
+  const std::int64_t stamp = session.now();
+  now_ = stamp;
+  tool(session, stamp);
+  if (session.state.step % particleInterval(session.time.period()) == 0) particles(session, stamp);
+  for (const Event& event : session.events) events_.publish(makeEvent(event, stamp));
+  if (kindOf(session, status) != last_kind_ || stamp - last_procedure_ >= kProcedurePeriod) {
+    procedureState(session, status);
+  }
+  clock(stamp);
+}
+
+void Publishers::wholeState(const Session& session, const RunStatus& status) {
+  const std::int64_t stamp = session.now();
+  now_ = stamp;
+  if (stamp != last_particles_) particles(session, stamp);
+  procedureState(session, status);
+  if (stamp == last_tool_) return;
+  tool(session, stamp);
+  clock(stamp);
+}
+
+void Publishers::repeatClock(const Session& session) {
+  clock(session.now());
+}
+
+void Publishers::procedureState(const Session& session, const RunStatus& status) {
+  last_kind_ = kindOf(session, status);
+  last_procedure_ = session.now();
+  procedure_.publish(makeProcedureState(session, status));
+}
+
+void Publishers::warn(const std::string& text) {
+  Event event;
+  event.kind = Event::Kind::Warning;
+  event.text = text;
+  events_.publish(makeEvent(event, now_));
+}
+
+bool Publishers::hasListener() const {
+  const auto all = {&scope_pose_, &helix_pose_, &wrench_,        &joint_states_, &topology_, &particles_,
+                    &procedure_,  &events_,     &applied_input_, &performance_,  &clock_};
+  return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
+}
+
+void Publishers::tool(const Session& session, std::int64_t stamp) {
+  last_tool_ = stamp;
+  const Model& model = *session.model;
+  if (!model.tool) return;
+  model.tool->forwardKinematics(session.state.joints, link_poses_);
+  scope_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
+  helix_pose_.publish(makePose(model.tool_base * link_poses_[model.helix_link], kWorldFrame, stamp));
+  wrench_.publish(makeWrench(session.state, stamp));
+  joint_states_.publish(makeJointState(session.state, stamp));
+}
+
+void Publishers::particles(const Session& session, std::int64_t stamp) {
+  last_particles_ = stamp;
+  if (particles_.getNumSubscribers() == 0) return;
+  particles_.publish(cloud_->update(*session.model, session.state, stamp));
+}
+
+void Publishers::clock(std::int64_t stamp) {
+  if (!clock_) return;
+  rosgraph_msgs::Clock message;
+  message.clock = toRosTime(stamp);
+  clock_.publish(message);
+}
+
+}  // namespace vibe

@@ -1,0 +1,69 @@
+#pragma once
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <vibe_msgs/SolverStatistics.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "particle_cloud.hpp"
+#include "session.hpp"
+
+namespace vibe {
+
+/// What procedure/state says beside the session.
+struct RunStatus {
+  bool paused = false;
+};
+
+/// Every topic that the simulator sends. Only warn() may be called from any thread; the rest belongs to the stepping
+/// thread.
+class Publishers {
+ public:
+  /// @param with_clock  also publish /clock
+  Publishers(ros::NodeHandle handle, bool with_clock);
+
+  /// A model begins to be simulated: topology, static transforms.
+  void announceModel(const Session& session);
+
+  /// What the step about to be taken uses; call before the step.
+  void appliedInput(const Session& session);
+  /// What one step has changed, the clock last: who sees the clock at t can have everything up to t.
+  void stepResult(const Session& session, const RunStatus& status);
+  /// What of the present state has not been sent yet, decimation aside: after a start, reset or load, and at the end.
+  void wholeState(const Session& session, const RunStatus& status);
+  /// The time again, although it stands still, for nodes that have just started and wait for time.
+  void repeatClock(const Session& session);
+  void procedureState(const Session& session, const RunStatus& status);
+
+  void performance(const vibe_msgs::SolverStatistics& message) { performance_.publish(message); }
+
+  /// A warning event at the present simulated time.
+  void warn(const std::string& text);
+
+  /// Whether any topic has a subscriber.
+  bool hasListener() const;
+  bool hasRecorder() const { return applied_input_.getNumSubscribers() > 0; }
+
+ private:
+  ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, topology_, particles_, procedure_, events_,
+      applied_input_, performance_, clock_;
+  tf2_ros::StaticTransformBroadcaster static_transforms_;
+  std::unique_ptr<ParticleCloud> cloud_;
+  std::vector<Eigen::Isometry3d> link_poses_;
+  std::string last_kind_;            // of procedure/state: what must not change unnoticed
+  std::int64_t last_procedure_ = 0;  // stamps [ns]
+  std::int64_t last_tool_ = -1;
+  std::int64_t last_particles_ = -1;
+  std::atomic<std::int64_t> now_{0};  // of the last state
+
+  void tool(const Session& session, std::int64_t stamp);
+  void particles(const Session& session, std::int64_t stamp);
+  void clock(std::int64_t stamp);
+};
+
+}  // namespace vibe

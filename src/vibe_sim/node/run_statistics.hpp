@@ -1,0 +1,45 @@
+#pragma once
+#include <vibe_msgs/SolverStatistics.h>
+
+#include <cstdint>
+#include <string>
+
+#include "session.hpp"
+#include "vibe_sim/step_timer.hpp"
+
+namespace vibe {
+
+/// How long the work takes and how well it keeps up. Belongs to the stepping thread.
+class RunStatistics {
+ public:
+  StepTimer solver;                    ///< step() of the library
+  StepTimer publish;                   ///< filling and sending messages
+  StepTimer total;                     ///< both, and the latching of inputs
+  std::int64_t steps = 0;              ///< since the start of the process
+  std::uint32_t missed_deadlines = 0;  ///< in the window
+
+  /// The stepping begins now; time before does not count.
+  void begin();
+  void countStep(double period);
+  bool windowIsOver() const;  ///< one second has passed
+
+  vibe_msgs::SolverStatistics windowMessage(const Session& session) const;
+  vibe_msgs::SolverStatistics wholeMessage(const Session& session) const;
+  /// One line for people: simulated time, phase, speed, solver time.
+  std::string progressLine(const Session& session) const;
+  /// Several lines for people at the end; the last is "state hash: <16 hex digits>".
+  std::string summary(const Session& session) const;
+
+  void startWindow();
+
+ private:
+  double begin_ = 0;                        // steady time [s]
+  double window_begin_ = 0;                 // [s]
+  double simulated_ = 0;                    // since begin [s]
+  double window_simulated_ = 0;             // [s]
+  std::uint32_t all_missed_deadlines_ = 0;  // before the window
+
+  vibe_msgs::SolverStatistics message(const Session& session, DurationHistogram DurationRecord::*which) const;
+};
+
+}  // namespace vibe

@@ -1,0 +1,21 @@
+#include "scene_source.hpp"
+
+#include <ros/console.h>
+
+#include "vibe_sim/package_path.hpp"
+#include "vibe_sim/scene/mesh_override.hpp"
+#include "vibe_sim/scene/scene_parser.hpp"
+#include "vibe_sim/simulator.hpp"
+
+namespace vibe {
+
+std::shared_ptr<const Model> loadModel(const std::string& scene_address, const std::string& mesh_address) {
+  Scene scene = loadScene(resolveAddress(scene_address));
+  if (!mesh_address.empty()) applyMeshOverride(scene, resolveAddress(mesh_address));
+  const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
+  return buildModel(scene, urdf, [](const std::string& what, double fraction) {
+    ROS_DEBUG_STREAM(what << ": " << static_cast<int>(100 * fraction) << " %");
+  });
+}
+
+}  // namespace vibe

@@ -1,0 +1,14 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "vibe_sim/model.hpp"
+
+namespace vibe {
+
+/// Loads a scene with everything it names and builds its model; logs progress. Takes up to some tens of seconds.
+/// @param scene_address, mesh_address  files or package:// addresses; an empty mesh keeps the organ of the scene
+/// @throws Error
+std::shared_ptr<const Model> loadModel(const std::string& scene_address, const std::string& mesh_address);
+
+}  // namespace vibe

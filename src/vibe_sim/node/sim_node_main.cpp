@@ -1,0 +1,83 @@
+// sim_node: the simulator as a ROS node. Messages in (inputs), steps (stepping), messages out (publishers).
+
+#include <ros/ros.h>
+#include <signal.h>
+
+#include <cstdio>
+
+#include "inputs.hpp"
+#include "master_watch.hpp"
+#include "parameters.hpp"
+#include "publishers.hpp"
+#include "scene_source.hpp"
+#include "services.hpp"
+#include "stepping.hpp"
+
+namespace {
+
+constexpr int kFailure = 1;
+constexpr int kUsage = 2;
+constexpr double kDelivery = 1.0;  // for listeners to receive what was sent last [s]
+
+volatile sig_atomic_t stop_signal = 0;
+
+void onSignal(int number) {
+  stop_signal = number;
+}
+
+void waitForEnd(const vibe::Stepper& stepper, const vibe::MasterWatch& watch) {
+  while (ros::ok() && !stop_signal && stepper.isRunning() && !watch.isHopeless()) ros::WallDuration(0.02).sleep();
+}
+
+/// The sentence that says why the node ends, unless the stepping has said so itself.
+void explainEnd(const vibe::MasterWatch& watch) {
+  if (stop_signal) {
+    std::puts("Stopped by a signal.");
+  } else if (!ros::ok() && !watch.isHopeless()) {
+    std::puts(
+        "Stopped because the ROS master said so: another node of this name was started, or somebody ran rosnode kill.");
+  }
+  std::fflush(stdout);
+}
+
+int run() {
+  ros::NodeHandle handle;
+  const vibe::Parameters parameters = vibe::readParameters(ros::NodeHandle("~"));
+  const std::shared_ptr<const vibe::Model> model = vibe::loadModel(parameters.scene, parameters.mesh);
+  vibe::InputLatch latch;
+  vibe::Publishers publishers(handle, parameters.time_source == vibe::TimeSource::Sim);
+  vibe::Stepper stepper(parameters, model, latch, publishers);
+  ros::AsyncSpinner spinner(1);
+  vibe::MasterWatch watch(handle, publishers, parameters.master_timeout);
+  {
+    vibe::Inputs inputs(handle, latch, publishers, [&stepper] { stepper.wake(); });
+    vibe::Services services(handle, stepper);
+    stepper.start();
+    spinner.start();
+    waitForEnd(stepper, watch);
+    stepper.stop();
+  }
+  explainEnd(watch);
+  const bool has_end = parameters.duration > 0;
+  if (has_end || !parameters.summary_file.empty()) stepper.finish();
+  if (ros::ok() && publishers.hasListener()) ros::WallDuration(kDelivery).sleep();
+  if (stepper.outcome() == vibe::Outcome::Finished) return 0;
+  const bool failed = stepper.outcome() == vibe::Outcome::Failed || watch.isHopeless();
+  return failed || has_end ? kFailure : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    ros::init(argc, argv, "sim_node", ros::init_options::NoSigintHandler);
+    signal(SIGINT, onSignal);
+    signal(SIGTERM, onSignal);
+    const int result = run();
+    ros::shutdown();
+    return result;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "sim_node: %s\n", error.what());
+    return kUsage;
+  }
+}

@@ -1,0 +1,259 @@
+#include "stepping.hpp"
+
+#include <ros/console.h>
+#include <ros/time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "conversions.hpp"
+#include "vibe_sim/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr std::int64_t kMaxLag = 250'000'000;       // behind the wall clock before time is given up [ns]
+constexpr std::int64_t kClockJump = 1'000'000'000;  // ahead of it: somebody has set the wall clock back [ns]
+constexpr double kClockHeartbeat = 0.08;            // while time stands still [s]
+constexpr double kRecorderPatience = 30;            // [s]
+constexpr double kRecorderSettling = 0.3;           // [s]
+constexpr double kLagReportPeriod = 5;              // [s]
+constexpr std::chrono::milliseconds kIdle(40);
+
+std::int64_t wallNow() {
+  return static_cast<std::int64_t>(ros::WallTime::now().toNSec());
+}
+
+std::int64_t startOrigin(const Parameters& parameters) {
+  return parameters.time_source == TimeSource::Sim ? kEpoch : wallNow();
+}
+
+}  // namespace
+
+Stepper::Stepper(const Parameters& parameters, std::shared_ptr<const Model> model, InputLatch& latch,
+                 Publishers& publishers)
+    : parameters_(parameters),
+      latch_(latch),
+      publishers_(publishers),
+      session_(model, parameters.seed.value_or(model->scene.seed), startOrigin(parameters), parameters.threads),
+      last_step_(stepsIn(parameters.duration, model->scene.step_period)) {
+  status_.paused = parameters.start_paused;
+}
+
+Stepper::~Stepper() {
+  stop();
+}
+
+void Stepper::start() {
+  running_ = true;
+  thread_ = std::thread([this] { run(); });
+}
+
+void Stepper::stop() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Stepper::wake() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    woken_ = true;
+  }
+  changed_.notify_all();
+}
+
+void Stepper::run() {
+  try {
+    loop();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+  rejectCommands();
+  running_ = false;
+}
+
+void Stepper::loop() {
+  publishers_.announceModel(session_);
+  publishers_.wholeState(session_, status_);
+  statistics_.begin();
+  restartPace(wallNow());
+  while (true) {
+    {
+      std::lock_guard<std::mutex> lock(mutex_);
+      if (stopping_) return;
+    }
+    serveCommands();
+    if (last_step_ > 0 && statistics_.steps >= last_step_) {
+      outcome_ = Outcome::Finished;
+      return;
+    }
+    const Hold hold = findHold();
+    if (hold == Hold::None) {
+      takeStep();
+    } else {
+      wait(hold);
+      if (outcome_ == Outcome::Failed) return;
+    }
+    reportEverySecond();
+  }
+}
+
+Stepper::Hold Stepper::findHold() {
+  if (status_.paused && steps_left_ == 0) return Hold::Paused;
+  if (mustWaitForRecorder()) return Hold::Recorder;
+  if (parameters_.lockstep && !latch_.knownUntil(session_.now())) return Hold::Inputs;
+  // single steps are taken as fast as they can be, but stamps must not run ahead of the wall clock
+  const bool hurry = steps_left_ > 0 && parameters_.time_source == TimeSource::Sim;
+  if (parameters_.fast || hurry) return Hold::None;
+  return findDeadline();
+}
+
+Stepper::Hold Stepper::findDeadline() {
+  const std::int64_t now = wallNow();
+  const std::int64_t late = now - nextDeadline();
+  if (late < -kClockJump) restartPace(now);
+  if (late < 0) return Hold::Pace;
+  if (static_cast<double>(late) > 1e9 * session_.time.period()) ++statistics_.missed_deadlines;
+  if (late > kMaxLag) {
+    reportLag(1e-9 * static_cast<double>(late));
+    restartPace(now);
+  }
+  return Hold::None;
+}
+
+bool Stepper::mustWaitForRecorder() {
+  if (!parameters_.await_recorder || statistics_.steps > 0) return false;
+  if (!publishers_.hasRecorder()) {
+    recorder_since_ = 0;
+    return true;
+  }
+  // its connections to the other topics come at about the same time
+  if (recorder_since_ == 0) recorder_since_ = steadyTime();
+  return steadyTime() - recorder_since_ < kRecorderSettling;
+}
+
+void Stepper::wait(Hold hold) {
+  const double now = steadyTime();
+  if (hold != hold_) hold_begin_ = now;
+  hold_ = hold;
+  const bool time_stands_still = hold != Hold::Pace;
+  if (time_stands_still && now - std::max(last_clock_, hold_begin_) >= kClockHeartbeat) {
+    publishers_.repeatClock(session_);
+    last_clock_ = now;
+  }
+  checkPatience(hold);
+  std::unique_lock<std::mutex> lock(mutex_);
+  std::chrono::nanoseconds duration = kIdle;
+  if (hold == Hold::Pace) duration = std::min(duration, std::chrono::nanoseconds(nextDeadline() - wallNow()));
+  // inputs matter to a step only when it is due, so that their arrival ends no other wait
+  const bool inputs_matter = hold == Hold::Inputs;
+  changed_.wait_for(lock, duration, [&] { return stopping_ || !commands_.empty() || (inputs_matter && woken_); });
+  woken_ = false;
+  // time spent waiting for others is not lag of the simulation
+  if (hold == Hold::Inputs || hold == Hold::Recorder) restartPace(wallNow());
+}
+
+void Stepper::checkPatience(Hold hold) {
+  const double waited = steadyTime() - hold_begin_;
+  if (hold == Hold::Recorder && waited > kRecorderPatience) {
+    fail("Nobody listens to applied_input although ~await_recorder is set; start the recorder or do not set it.");
+  }
+  if (hold != Hold::Inputs || waited < parameters_.lockstep_timeout) return;
+  const std::string sentence = "No message stamped " + std::to_string(1e-9 * static_cast<double>(session_.now())) +
+                               " s or later has come on " + latch_.missingAt(session_.now()) + " for " +
+                               std::to_string(static_cast<int>(waited)) + " s, which ~lockstep needs; ";
+  answerSteps({false, sentence + "the simulation stays paused."});
+  if (parameters_.duration > 0) {
+    fail(sentence + "start the node that sends it.");
+    return;
+  }
+  ROS_ERROR_STREAM(sentence << "the simulation is paused: start the node that sends it and call the service pause.");
+  publishers_.warn(sentence + "the simulation is paused.");
+  status_.paused = true;
+  publishers_.procedureState(session_, status_);
+}
+
+void Stepper::takeStep() {
+  hold_ = Hold::None;
+  statistics_.total.start();
+  const bool wall = parameters_.time_source == TimeSource::Wall;
+  for (const std::string& sentence : latch_.apply(wall ? wallNow() : session_.now(), *session_.model, session_.input)) {
+    ROS_WARN_STREAM(sentence);
+    publishers_.warn(sentence);
+  }
+  publishers_.appliedInput(session_);
+  statistics_.solver.start();
+  session_.step();
+  statistics_.solver.stop();
+  statistics_.publish.start();
+  publishers_.stepResult(session_, status_);
+  statistics_.publish.stop();
+  last_clock_ = steadyTime();
+  statistics_.countStep(session_.time.period());
+  statistics_.total.stop();
+  if (steps_left_ > 0 && --steps_left_ == 0) {
+    answerSteps({true, "Took " + std::to_string(steps_asked_) + " steps."});
+  }
+}
+
+void Stepper::reportEverySecond() {
+  if (!statistics_.windowIsOver()) return;
+  publishers_.performance(statistics_.windowMessage(session_));
+  std::printf("%s%s\n", statistics_.progressLine(session_).c_str(), status_.paused ? "  (paused)" : "");
+  std::fflush(stdout);
+  statistics_.startWindow();
+}
+
+void Stepper::fail(const std::string& sentence) {
+  ROS_ERROR_STREAM(sentence);
+  publishers_.warn(sentence);
+  outcome_ = Outcome::Failed;
+}
+
+std::int64_t Stepper::nextDeadline() const {
+  return session_.time.stamp(session_.state.step + 1) + pace_offset_;
+}
+
+void Stepper::restartPace(std::int64_t now) {
+  const std::int64_t shift = now - nextDeadline();
+  if (parameters_.time_source == TimeSource::Sim) {
+    pace_offset_ += shift;
+  } else if (shift > 0 || shift < -kClockJump) {
+    // stamps never go back, unless the wall clock itself did
+    session_.time.shiftOrigin(shift);
+  }
+}
+
+void Stepper::reportLag(double lag) {
+  const double now = steadyTime();
+  if (now - last_lag_report_ < kLagReportPeriod) return;
+  last_lag_report_ = now;
+  char sentence[256];
+  std::snprintf(sentence, sizeof sentence,
+                "The simulation is %.2f s behind the wall clock and gives that time up: a step takes %.1f ms and "
+                "simulates %.1f ms; use fewer particles or sub-steps.",
+                lag, 1e3 * statistics_.total.wall.all.quantile(0.5), 1e3 * session_.time.period());
+  ROS_WARN_STREAM(sentence);
+  publishers_.warn(sentence);
+}
+
+void Stepper::finish() {
+  publishers_.wholeState(session_, status_);
+  publishers_.performance(statistics_.wholeMessage(session_));
+  const std::string summary = statistics_.summary(session_);
+  std::fputs(summary.c_str(), stdout);
+  std::fflush(stdout);
+  if (parameters_.summary_file.empty()) return;
+  std::FILE* file = std::fopen(parameters_.summary_file.c_str(), "w");
+  const bool written = file && std::fputs(summary.c_str(), file) >= 0;
+  if (!(file && std::fclose(file) == 0 && written)) {
+    throw Error("Cannot write the summary to '" + parameters_.summary_file + "'; check ~summary_file.");
+  }
+}
+
+}  // namespace vibe

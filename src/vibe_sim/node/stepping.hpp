@@ -1,0 +1,124 @@
+#pragma once
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "input_latch.hpp"
+#include "parameters.hpp"
+#include "publishers.hpp"
+#include "run_statistics.hpp"
+#include "session.hpp"
+
+namespace vibe {
+
+/// Answer to a service call.
+struct Reply {
+  bool success = false;
+  std::string message;  ///< one sentence
+};
+
+/// How the stepping thread ended.
+enum class Outcome {
+  Stopped,   ///< somebody asked it to
+  Finished,  ///< after the duration asked for
+  Failed     ///< it cannot go on; it has said why
+};
+
+/// The stepping thread: takes a step whenever time, pause and inputs allow, and serves commands between two steps.
+/// The session belongs to this thread alone, so that it needs no lock: other threads hand it work and wait for the
+/// answer.
+class Stepper {
+ public:
+  Stepper(const Parameters& parameters, std::shared_ptr<const Model> model, InputLatch& latch, Publishers& publishers);
+  ~Stepper();
+
+  void start();
+  /// Ends the thread after the present step; commands that still wait are answered with a failure.
+  void stop();
+  bool isRunning() const { return running_; }
+  Outcome outcome() const { return outcome_; }
+
+  /// Something has arrived in the latch.
+  void wake();
+
+  // Commands, from any other thread; each returns when it is done.
+  Reply setPaused(bool paused);
+  Reply takeSteps(std::uint32_t n);
+  Reply reset(std::uint64_t seed, bool keep_time);
+  Reply saveSnapshot(const std::string& file);
+  Reply loadSnapshot(const std::string& file);
+  Reply loadScene(const std::string& address);
+
+  /// The last state to all listeners and the summary to standard output and file. Only when the thread has ended.
+  void finish();
+
+ private:
+  using Answer = std::promise<Reply>;
+  using Command = std::function<void(std::shared_ptr<Answer>)>;
+  enum class Hold { None, Paused, Recorder, Inputs, Pace };
+
+  // the thread
+  void run();
+  void loop();
+  Hold findHold();
+  Hold findDeadline();
+  void wait(Hold hold);
+  void takeStep();
+  void reportEverySecond();
+  void fail(const std::string& sentence);
+
+  // inputs and pace
+  bool mustWaitForRecorder();
+  void checkPatience(Hold hold);
+  std::int64_t nextDeadline() const;
+  void restartPace(std::int64_t now);
+  void reportLag(double lag);
+
+  // commands
+  Reply call(std::function<Reply()> work);
+  Reply post(Command command);
+  void serveCommands();
+  void rejectCommands();
+  Reply changePause(bool paused);
+  void answerSteps(const Reply& reply);
+  void afterReplacement();
+
+  const Parameters parameters_;
+  InputLatch& latch_;
+  Publishers& publishers_;
+
+  // of the thread alone
+  Session session_;
+  RunStatistics statistics_;
+  RunStatus status_;
+  std::int64_t last_step_ = 0;    // statistics_.steps after which to finish; 0: never
+  std::int64_t pace_offset_ = 0;  // wall clock minus stamp at which a step is due [ns]
+  double hold_begin_ = 0;         // steady time at which the present hold began [s]
+  Hold hold_ = Hold::None;
+  double recorder_since_ = 0;      // steady time; 0: nobody listens yet [s]
+  double last_clock_ = 0;          // steady time [s]
+  double last_lag_report_ = -1e9;  // steady time [s]
+  std::uint32_t steps_asked_ = 0;  // of a running takeSteps()
+  std::uint32_t steps_left_ = 0;
+  std::shared_ptr<Answer> steps_answer_;
+
+  // shared
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::pair<Command, std::shared_ptr<Answer>>> commands_;
+  bool woken_ = false;
+  bool stopping_ = false;
+  bool accepting_ = true;
+  std::atomic<bool> running_{false};
+  std::atomic<Outcome> outcome_{Outcome::Stopped};
+  std::thread thread_;
+};
+
+}  // namespace vibe

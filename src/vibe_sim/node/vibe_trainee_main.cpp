@@ -1,0 +1,35 @@
+// vibe_trainee: plays a trainee's script on the simulator's input topics.
+
+#include <ros/ros.h>
+
+#include <cstdio>
+
+#include "parameter_reader.hpp"
+#include "trainee_player.hpp"
+#include "vibe_sim/package_path.hpp"
+
+namespace {
+
+void play() {
+  ros::NodeHandle handle;
+  vibe::ParameterReader reader(ros::NodeHandle("~"));
+  const std::string script = reader.required("script", "a trainee script or its package:// address");
+  bool lockstep = false;
+  reader.read("lockstep", lockstep);
+  reader.finish();
+  vibe::TraineePlayer player(handle, vibe::TraineeScript::load(vibe::resolveAddress(script)), lockstep);
+  ros::spin();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    ros::init(argc, argv, "vibe_trainee");
+    play();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vibe_trainee: %s\n", error.what());
+    return 2;
+  }
+}
