@@ -58,7 +58,8 @@ std::string missingLandmarks(const GeometryScene& geometry) {
 }
 
 void checkComplete(const GeometryScene& geometry, const std::string& mesh_file) {
-  const bool lacks_unit = geometry.unit == 0 && !statesItsUnit(mesh_file);
+  // A target volume sets the scale by itself.
+  const bool lacks_unit = geometry.unit == 0 && geometry.target_volume == 0 && !statesItsUnit(mesh_file);
   const std::string points = missingLandmarks(geometry);
   if (!lacks_unit && points.empty()) return;
   std::string remedy = lacks_unit ? "'unit: 1 mm' (or what one unit of the file is)" : "";

@@ -86,6 +86,12 @@ TEST_F(MeshOverride, GltfNeedsNoUnit) {
   EXPECT_EQ(scene_.geometry.unit, 0);
 }
 
+TEST_F(MeshOverride, TargetVolumeNeedsNoUnit) {
+  const std::string mesh = write("a.obj", "");
+  write("a.obj.landmarks.yaml", std::string("target_volume: 1 L\n") + kLandmarks);
+  EXPECT_TRUE(applyMeshOverride(scene_, mesh));
+}
+
 TEST_F(MeshOverride, SidecarIsCheckedLikeAScene) {
   const std::string mesh = write("a.obj", "");
   const std::string place = folder_ + "/a.obj.landmarks.yaml:";
