@@ -1,0 +1,40 @@
+#include "vibe_sim/procedure/session_csv.hpp"
+
+#include <iostream>
+
+#include "vibe_sim/error.hpp"
+
+namespace vibe {
+
+SessionCsv::SessionCsv(const std::string& file) : out_(&file_) {
+  if (file == "-")
+    out_ = &std::cout;
+  else
+    file_.open(file, std::ios::trunc);
+  out_->precision(9);
+  *out_ << "step,time";
+  for (const char* name : kJointNames) *out_ << ',' << name;
+  *out_ << ",tip_x,tip_y,tip_z,force_x,force_y,force_z,torque_x,torque_y,torque_z,grip_force,contact_count,grip_count,"
+           "pressure,volume,events\n";
+  if (!*out_) throw Error("Cannot write '" + file + "'; check that its folder exists and has room.");
+}
+
+void SessionCsv::write(const Model& model, const State& state, const std::vector<Event>& events) {
+  std::ostream& out = *out_;
+  out << state.step << ',' << state.time;
+  for (double joint : state.joints) out << ',' << joint;
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();
+  if (model.tool) {
+    model.tool->forwardKinematics(state.joints, poses_);
+    tip = model.tool_base * poses_[model.tip_link].translation();
+  }
+  for (const Eigen::Vector3d& v : {tip, state.tool_force, state.tool_torque})
+    out << ',' << v.x() << ',' << v.y() << ',' << v.z();
+  out << ',' << state.grip_force << ',' << state.contact_count << ',' << state.grip.size() << ',' << state.pressure
+      << ',' << state.volume << ',';
+  for (std::size_t i = 0; i < events.size(); ++i) out << (i > 0 ? ";" : "") << toString(events[i].kind);
+  out << '\n';
+  if (!out) throw Error("The CSV could not be written to its end; check the room on the disk.");
+}
+
+}  // namespace vibe
