@@ -29,8 +29,7 @@ refuses() {
   grep -qE -- "$pattern" <<<"$said" || { echo "does not match: $pattern"; return 1; }
 }
 
-# processesWith VARIABLE: the processes that carry this word in their environment or command line.
+# processesWith NAME=VALUE: the processes that were started with this in their environment.
 processesWith() {
-  grep -lzaF -- "$1" /proc/[0-9]*/environ /proc/[0-9]*/cmdline 2>/dev/null |
-    sed -E 's#/proc/([0-9]+)/.*#\1#' | sort -un | grep -vxE "$$|$BASHPID" || true
+  grep -lzxF -- "$1" /proc/[0-9]*/environ 2>/dev/null | sed -E 's#/proc/([0-9]+)/.*#\1#' || true
 }

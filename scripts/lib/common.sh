@@ -34,3 +34,17 @@ sourceWorkspace() {
   source "$devel/setup.bash" || die "could not read $devel/setup.bash; remove $devel and run scripts/build"
   set -u
 }
+
+# runGuarded "$@": from here on nothing the script starts outlives it, not even when it is killed with SIGKILL. The
+# script begins anew as a child of scripts/lib/guard.py; needs python3, so call it once setup is through.
+runGuarded() {
+  [ "${VIBE_GUARDED:-}" != "$PPID" ] || return 0
+  exec /usr/bin/python3 "$vibe_root/scripts/lib/guard.py" "$BASH" "$0" "$@"
+}
+
+# Installs what is missing, without a word and without sudo when nothing is.
+installMissing() {
+  local missing
+  missing=$("$vibe_root/scripts/setup" --missing) || exit 1
+  [ -z "$missing" ] || "$vibe_root/scripts/setup" || exit 1
+}

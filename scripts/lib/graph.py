@@ -1,0 +1,131 @@
+"""A ROS graph of its own: a master on a free port and nodes that end with this process. Standard library only."""
+
+import ctypes
+import os
+import signal
+import socket
+import subprocess
+import time
+import xmlrpc.client
+
+PR_SET_PDEATHSIG = 1
+TAIL_LINES = 15
+
+
+class GraphError(Exception):
+    """One sentence for the user."""
+
+
+def end_with_parent():
+    """Runs in a new process before it becomes its program: it must not outlive us, and Ctrl-C must reach it again."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+class Process:
+    """One program of the graph. `patience` is how long it may take to stop after SIGINT [s]."""
+
+    def __init__(self, name, command, log, env, patience=10.0, essential=True):
+        self.name, self.log, self.patience, self.essential = name, log, patience, essential
+        with open(log, "ab") if log else open(os.devnull, "wb") as output:
+            self.process = subprocess.Popen(
+                command,
+                env=env,
+                stdin=subprocess.DEVNULL,
+                stdout=output if log else None,
+                stderr=subprocess.STDOUT if log else None,
+                start_new_session=True,
+                preexec_fn=end_with_parent,
+            )
+
+    def status(self):
+        """None while it runs, else its exit status."""
+        return self.process.poll()
+
+    def wait(self, seconds):
+        """True when it has ended within this time."""
+        try:
+            self.process.wait(seconds)
+            return True
+        except subprocess.TimeoutExpired:
+            return False
+
+    def stop(self):
+        """SIGINT, then harder. Returns whether SIGINT was enough."""
+        for number, patience in ((signal.SIGINT, self.patience), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0)):
+            if self.status() is not None:
+                return True
+            self.process.send_signal(number)
+            if self.wait(patience):
+                return number == signal.SIGINT
+        return False
+
+    def last_words(self):
+        """The end of what it wrote, indented."""
+        if not self.log or not os.path.exists(self.log):
+            return ""
+        with open(self.log, errors="replace") as text:
+            lines = text.read().splitlines()[-TAIL_LINES:]
+        return "\n".join("    " + line for line in lines)
+
+
+class Graph:
+    """A master and the programs around it, in the order they were started."""
+
+    def __init__(self, log_folder):
+        self.log_folder = log_folder
+        self.processes = []
+        port = free_port()
+        self.env = dict(os.environ, ROS_MASTER_URI="http://localhost:{}".format(port), ROS_HOSTNAME="localhost")
+        self.env.pop("ROS_IP", None)
+        self.env.pop("ROS_NAMESPACE", None)
+        self.env.setdefault("ROS_HOME", os.path.join(log_folder, "ros"))
+        self.env.setdefault("ROS_LOG_DIR", os.path.join(log_folder, "ros"))
+        self.master = xmlrpc.client.ServerProxy(self.env["ROS_MASTER_URI"])
+        self.port = port
+
+    def start_master(self, seconds=30.0):
+        core = self.start("roscore", ["roscore", "-p", str(self.port)])
+        deadline = time.monotonic() + seconds
+        while not self.has_node("/rosout"):
+            if core.status() is not None:
+                raise GraphError("roscore did not start:\n" + core.last_words())
+            if time.monotonic() > deadline:
+                raise GraphError("roscore gave no answer within {:.0f} s; see {}".format(seconds, core.log))
+            time.sleep(0.1)
+
+    def start(self, name, command, visible=False, patience=10.0, essential=True):
+        """Starts a program; its output goes to a log file, or where ours goes when it is visible."""
+        log = None if visible else os.path.join(self.log_folder, name + ".log")
+        process = Process(name, command, log, self.env, patience, essential)
+        self.processes.append(process)
+        return process
+
+    def has_node(self, name):
+        try:
+            return self.master.lookupNode("/vibe_scripts", name)[0] == 1
+        except (OSError, xmlrpc.client.Error):
+            return False
+
+    def set_parameter(self, name, value):
+        code, message, _ = self.master.setParam("/vibe_scripts", name, value)
+        if code != 1:
+            raise GraphError("the master refused the parameter {}: {}".format(name, message))
+
+    def dead(self):
+        """The first essential program that is not running any more, or None."""
+        for process in self.processes:
+            if process.essential and process.status() is not None:
+                return process
+        return None
+
+    def stop_all(self):
+        """Stops everything, the last one first. Returns the names of those that had to be forced."""
+        forced = [process.name for process in reversed(self.processes) if not process.stop()]
+        return forced
