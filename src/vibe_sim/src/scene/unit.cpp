@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "vibe_sim/scene/printable.hpp"
+
 namespace vibe {
 namespace {
 
@@ -207,7 +209,8 @@ Quantity parseQuantity(const std::string& text, const std::string& si_unit) {
   if (unit_text.empty()) return number;
 
   const std::optional<Unit> unit = parseUnit(unit_text);
-  if (!unit) return {0, "has the unknown unit \"" + unit_text + "\", it must be " + describeQuantity(si_unit)};
+  if (!unit)
+    return {0, "has the unknown unit \"" + printable(unit_text, 20) + "\", it must be " + describeQuantity(si_unit)};
   if (unit->dimension != parseUnit(si_unit)->dimension) {
     const Measure* measure = findMeasure(unit->dimension);
     const std::string what = measure != nullptr ? std::string("is ") + measure->name : "has the unit " + unit_text;

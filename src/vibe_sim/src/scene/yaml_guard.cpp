@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "vibe_sim/error.hpp"
+#include "vibe_sim/scene/printable.hpp"
 
 namespace vibe {
 namespace {
@@ -52,7 +53,7 @@ bool readDocument(YAML::Parser& parser, DepthWatch& watch, const std::string& pl
   } catch (const YAML::Exception& error) {
     const std::string line = std::to_string(error.mark.is_null() ? 1 : error.mark.line + 1);
     const std::string column = std::to_string(error.mark.is_null() ? 1 : error.mark.column + 1);
-    throw Error(place + ":" + line + ": is not valid YAML at column " + column + " (" + error.msg +
+    throw Error(place + ":" + line + ": is not valid YAML at column " + column + " (" + printable(error.msg, 100) +
                 "); check indentation, colons, quotes and brackets there");
   }
 }

@@ -10,6 +10,7 @@
 
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/scene/nearest_key.hpp"
+#include "vibe_sim/scene/printable.hpp"
 #include "vibe_sim/scene/unit.hpp"
 #include "vibe_sim/scene/yaml_guard.hpp"
 
@@ -20,18 +21,10 @@ constexpr std::size_t kLongestText = 4096;
 constexpr int kDeepestMerge = 8;
 constexpr std::size_t kMostMerged = 16;
 
-/// A user's text inside an error message: short and on one line.
-std::string printable(const std::string& text) {
-  constexpr std::size_t kShown = 60;
-  std::string result;
-  for (const char c : text.substr(0, kShown)) {
-    result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  }
-  return result + (text.size() > kShown ? "..." : "");
-}
+constexpr std::size_t kShown = 60;  // of a user's text in an error message
 
 std::string quoted(const std::string& text) {
-  return "'" + printable(text) + "'";
+  return "'" + printable(text, kShown) + "'";
 }
 
 const char* kindName(const YAML::Node& node) {
@@ -82,7 +75,7 @@ YamlField YamlSource::root() const {
 }
 
 void YamlSource::fail(const YamlField& field, const std::string& what_and_remedy) const {
-  const std::string path = field.path.empty() ? "" : " " + printable(field.path) + ":";
+  const std::string path = field.path.empty() ? "" : " " + printable(field.path, kShown) + ":";
   throw Error(place_ + ":" + std::to_string(field.line) + ":" + path + " " + what_and_remedy);
 }
 

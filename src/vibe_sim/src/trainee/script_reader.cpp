@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "vibe_sim/scene/nearest_key.hpp"
+#include "vibe_sim/scene/printable.hpp"
 
 namespace vibe {
 namespace {
@@ -75,7 +76,7 @@ int indexOf(const YamlSource& source, const YamlField& field, const std::string&
     if (word == names[k]) return static_cast<int>(k);
   }
   source.fail(field,
-              "'" + word.substr(0, 40) + "' is not a " + what + "; " + suggestKey(word, {names.begin(), names.end()}));
+              "'" + printable(word, 40) + "' is not a " + what + "; " + suggestKey(word, {names.begin(), names.end()}));
 }
 
 std::string seconds(double time) {

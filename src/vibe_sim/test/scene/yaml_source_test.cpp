@@ -129,6 +129,17 @@ TEST_F(YamlValues, RefusesBadOnesWithTheirPlace) {
   EXPECT_ERROR(source_.choice(field("t"), {"two_words", "one"}), "did you mean 'two_words'?");
 }
 
+TEST(YamlSource, ErrorsStayOneLineWhateverTheFileSays) {
+  const YamlSource source = parsed("\"a\\nb\": |\n  3 mm\n  and\n  more\n");
+  const YamlField field = source.map(source.root())[0];
+  for (const std::string& message :
+       {errorOf([&] { source.quantity(field, "m", 0, 1); }), errorOf([&] { source.integer(field, 0, 1); }),
+        errorOf([&] { source.choice(field, {"x"}); })}) {
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    EXPECT_EQ(message.rfind("f.yaml:1: a?b: '3 mm?and?more?'", 0), 0u) << message;
+  }
+}
+
 TEST(ShowQuantity, IsShortAndReadsBack) {
   EXPECT_EQ(showQuantity(0.1, "m"), "0.1 m");
   EXPECT_EQ(showQuantity(3, "1"), "3");
