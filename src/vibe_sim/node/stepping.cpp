@@ -180,6 +180,7 @@ void Stepper::checkPatience(Hold hold) {
 
 void Stepper::takeStep() {
   hold_ = Hold::None;
+  if (statistics_.steps == 0) statistics_.begin();
   statistics_.total.start();
   const bool wall = parameters_.time_source == TimeSource::Wall;
   for (const std::string& sentence : latch_.apply(wall ? wallNow() : session_.now(), *session_.model, session_.input)) {

@@ -1,0 +1,192 @@
+#include "conversions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "vibe_sim/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+sensor_msgs::JointState scopeMessage() {
+  StepInput input;
+  input.joints = {0.05, 0.1, -0.2, 0.3, 0.01, 1.5, 0.002};
+  return makeScopeJoints(input, 123456789012);
+}
+
+/// The sentence with which reading fails; empty if it does not.
+template <typename Read>
+std::string errorOf(Read read) {
+  try {
+    read();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string jointError(const sensor_msgs::JointState& message, JointSource source = JointSource::Measured) {
+  return errorOf([&] { readJoints(message, InputChannel::Scope, source); });
+}
+
+void expectMentions(const std::string& sentence, const std::string& part) {
+  EXPECT_NE(sentence.find(part), std::string::npos) << "'" << sentence << "' lacks '" << part << "'";
+}
+
+TEST(Conversions, jointsSurviveTheRoundTripBitForBit) {
+  StepInput input;
+  input.joints = {0.1 / 3, 1e-300, -0.0, 3.0, 0.01, 1.5, 0.002};
+  const InputSample scope = readJoints(makeScopeJoints(input, 42), InputChannel::Scope, JointSource::Measured);
+  const InputSample overstitch =
+      readJoints(makeOverstitchJoints(input, 42), InputChannel::Overstitch, JointSource::Measured);
+  EXPECT_EQ(scope.stamp, 42);
+  for (int i = 0; i < kJointCount; ++i) {
+    EXPECT_EQ(i < kScopeJointCount ? scope.joints[i] : overstitch.joints[i], input.joints[i]) << kJointNames[i];
+  }
+}
+
+TEST(Conversions, stepInputSurvivesTheRoundTripBitForBit) {
+  StepInput input;
+  input.joints = {0.1 / 3, -0.0, 1e-310, 3, 4, 5, 6};
+  input.buttons = {1, 0, 1, 0, 0, 1};
+  const vibe_msgs::StepInput message = makeStepInput(input, 77, 1'016'666'667);
+  EXPECT_EQ(message.step, 77u);
+  EXPECT_EQ(message.header.stamp.toNSec(), 1'016'666'667u);
+  const StepInput read = readStepInput(message);
+  EXPECT_EQ(read.joints, input.joints);
+  EXPECT_TRUE(std::signbit(read.joints[1]));
+  EXPECT_EQ(read.buttons, input.buttons);
+}
+
+TEST(Conversions, jointsAreFoundByNameInAnyOrder) {
+  sensor_msgs::JointState message = scopeMessage();
+  std::swap(message.name[0], message.name[3]);
+  std::swap(message.position[0], message.position[3]);
+  EXPECT_EQ(readJoints(message, InputChannel::Scope, JointSource::Measured).joints[Insertion], 0.05);
+}
+
+TEST(Conversions, badJointsAreErrorsThatNameWhatIsWrong) {
+  sensor_msgs::JointState message = scopeMessage();
+  EXPECT_EQ(jointError(message), "");
+  message.position[1] = kNan;
+  expectMentions(jointError(message), "'rotation'");
+  message.position[1] = std::numeric_limits<double>::infinity();
+  expectMentions(jointError(message), "finite");
+  message = scopeMessage();
+  message.name[2] = "tip_updown";
+  expectMentions(jointError(message), "'tip_updown'");
+  message = scopeMessage();
+  message.name[2] = message.name[1];
+  expectMentions(jointError(message), "twice");
+  message = scopeMessage();
+  message.position.pop_back();
+  expectMentions(jointError(message), "3 positions");
+  message = scopeMessage();
+  message.name.push_back("helix_advance");
+  message.position.push_back(0);
+  expectMentions(jointError(message), "5 names");
+  message = scopeMessage();
+  message.header.stamp = ros::Time();
+  expectMentions(jointError(message), "stamp is 0");
+}
+
+TEST(Conversions, commandsMayLeaveOutStampAndNames) {
+  sensor_msgs::JointState message = scopeMessage();
+  message.header.stamp = ros::Time();
+  message.name.clear();
+  const InputSample sample = readJoints(message, InputChannel::Scope, JointSource::Commanded);
+  EXPECT_EQ(sample.stamp, 0);
+  EXPECT_EQ(sample.joints[TipLeftRight], 0.3);
+  EXPECT_EQ(jointError(scopeMessage(), JointSource::Commanded), "");
+  message.header.stamp = ros::Time(1);
+  expectMentions(jointError(message, JointSource::Measured), "0 names");
+}
+
+TEST(Conversions, buttonsAreReadByPosition) {
+  StepInput input;
+  input.buttons = {0, 1, 0, 0, 0, 1};
+  sensor_msgs::Joy message = makeButtons(input, 5);
+  EXPECT_EQ(readButtons(message).buttons, input.buttons);
+  message.buttons[HelixGrab] = 2;
+  expectMentions(errorOf([&] { readButtons(message); }), "'helix_grab' is 2");
+  message.buttons.resize(3);
+  expectMentions(errorOf([&] { readButtons(message); }), "3 buttons");
+}
+
+geometry_msgs::PoseStamped poseMessage() {
+  return makePose(Eigen::Translation3d(1, 2, 3) * Eigen::Quaterniond::Identity(), kWorldFrame, 9);
+}
+
+TEST(Conversions, tipTargetsKnowTheirFrame) {
+  geometry_msgs::PoseStamped message = poseMessage();
+  InputSample sample = readTipTarget(message);
+  EXPECT_EQ(sample.target, ScopeTarget::TipInWorld);
+  EXPECT_EQ(sample.tip_pose.translation(), Eigen::Vector3d(1, 2, 3));
+  message.header.frame_id = "scope_base";
+  EXPECT_EQ(readTipTarget(message).target, ScopeTarget::TipInBase);
+  message.header.frame_id = "map";
+  expectMentions(errorOf([&] { readTipTarget(message); }), "'map'");
+  message.header.frame_id = "";
+  EXPECT_NE(errorOf([&] { readTipTarget(message); }), "");
+}
+
+TEST(Conversions, badTipTargetsAreErrors) {
+  geometry_msgs::PoseStamped message = poseMessage();
+  message.pose.position.y = kNan;
+  expectMentions(errorOf([&] { readTipTarget(message); }), "finite");
+  message = poseMessage();
+  message.pose.orientation.z = kNan;
+  expectMentions(errorOf([&] { readTipTarget(message); }), "finite");
+  message = poseMessage();
+  message.pose.orientation.w = 0;
+  expectMentions(errorOf([&] { readTipTarget(message); }), "unit quaternion");
+}
+
+TEST(Conversions, stampsBeforeZeroBecomeZero) {
+  EXPECT_TRUE(toRosTime(-5).isZero());
+  EXPECT_EQ(fromRosTime(toRosTime(1'234'567'890'123)), 1'234'567'890'123);
+}
+
+TEST(Conversions, wrenchIsThatOfTheStateInTheFrameOfTheTip) {
+  State state;
+  state.tool_force = {1, -2, 3};
+  state.tool_torque = {0.1, 0.2, -0.3};
+  const geometry_msgs::WrenchStamped message = makeWrench(state, 8);
+  EXPECT_EQ(message.header.frame_id, "scope_tip");
+  EXPECT_EQ(message.wrench.force.y, -2);
+  EXPECT_EQ(message.wrench.torque.z, -0.3);
+}
+
+TEST(Conversions, eventsKeepTheirContent) {
+  Event event;
+  event.kind = Event::Kind::Slip;
+  event.particle = 12;
+  event.value = 8.5;
+  event.text = "torn off";
+  const vibe_msgs::ProcedureEvent message = makeEvent(event, 3);
+  EXPECT_EQ(message.kind, vibe_msgs::ProcedureEvent::SLIP);
+  EXPECT_EQ(message.particle, 12);
+  EXPECT_EQ(message.value, 8.5);
+  EXPECT_EQ(message.text, "torn off");
+}
+
+TEST(Conversions, phaseFollowsWhatHappens) {
+  State state;
+  StepInput input;
+  EXPECT_STREQ(phaseOf(state, input), "free");
+  state.in_contact = true;
+  EXPECT_STREQ(phaseOf(state, input), "contact");
+  input.buttons[Insufflate] = 1;
+  EXPECT_STREQ(phaseOf(state, input), "insufflation");
+  state.pressure_reached = true;
+  EXPECT_STREQ(phaseOf(state, input), "contact");
+  state.grip.emplace_back();
+  EXPECT_STREQ(phaseOf(state, input), "grip");
+}
+
+}  // namespace
+}  // namespace vibe

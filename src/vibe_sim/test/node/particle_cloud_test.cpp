@@ -1,0 +1,66 @@
+#include "particle_cloud.hpp"
+
+#include <gtest/gtest.h>
+#include <sensor_msgs/point_cloud2_iterator.h>
+
+#include "conversions.hpp"
+#include "worlds.hpp"
+
+namespace vibe {
+namespace {
+
+using test::World;
+
+World balloon() {
+  return World(test::bareScene(), test::plainOrgan(test::icosphere(0.05, 2), 2e-3));
+}
+
+TEST(ParticleCloud, carriesPositionsIdsRegionAndRevision) {
+  const World world = balloon();
+  ParticleCloud cloud(*world.model, 3);
+  const sensor_msgs::PointCloud2 message = cloud.update(*world.model, world.state, 1'500'000'000);
+  EXPECT_EQ(message.header.frame_id, "stomach");
+  EXPECT_EQ(message.header.stamp.toSec(), 1.5);
+  ASSERT_EQ(message.width, 162u);
+  EXPECT_EQ(message.height, 1u);
+  EXPECT_EQ(message.data.size(), message.row_step);
+  sensor_msgs::PointCloud2ConstIterator<float> x(message, "x"), z(message, "z");
+  sensor_msgs::PointCloud2ConstIterator<std::uint32_t> id(message, "id"), revision(message, "revision");
+  sensor_msgs::PointCloud2ConstIterator<std::uint8_t> region(message, "region");
+  for (std::uint32_t i = 0; i < message.width; ++i, ++x, ++z, ++id, ++revision, ++region) {
+    EXPECT_EQ(*x, static_cast<float>(world.state.x[i]));
+    EXPECT_EQ(*z, static_cast<float>(world.state.z[i]));
+    EXPECT_EQ(*id, i);
+    EXPECT_EQ(*revision, 3u);
+    EXPECT_EQ(*region, vibe_msgs::TissueTopology::REGION_BODY);
+  }
+}
+
+TEST(ParticleCloud, strainOfAnEvenExpansionIsItsFactorMinusOne) {
+  World world = balloon();
+  ParticleCloud cloud(*world.model, 1);
+  for (auto* axis : {&world.state.x, &world.state.y, &world.state.z}) {
+    for (double& value : *axis) value *= 1.03;
+  }
+  const sensor_msgs::PointCloud2 message = cloud.update(*world.model, world.state, 1);
+  sensor_msgs::PointCloud2ConstIterator<float> strain(message, "strain");
+  for (; strain != strain.end(); ++strain) EXPECT_NEAR(*strain, 0.03, 1e-4);
+}
+
+TEST(Topology, describesTheMeshAndItsRestShape) {
+  const World world = balloon();
+  const vibe_msgs::TissueTopology message = makeTopology(*world.model, 2, 5);
+  EXPECT_EQ(message.revision, 2u);
+  EXPECT_EQ(message.header.frame_id, "stomach");
+  EXPECT_EQ(message.triangles.size(), 3u * 320u);
+  EXPECT_EQ(message.rest_positions.size(), 3u * 162u);
+  EXPECT_EQ(message.rest_positions[7], world.model->organ.surface.vertices[2].y());
+  EXPECT_EQ(message.region.size(), 162u);
+  EXPECT_EQ(message.wall.size(), 162u);
+  EXPECT_EQ(message.end.size(), 162u);
+  EXPECT_FLOAT_EQ(message.thickness[161], 2e-3f);
+  EXPECT_TRUE(message.skin_triangles.empty());
+}
+
+}  // namespace
+}  // namespace vibe
