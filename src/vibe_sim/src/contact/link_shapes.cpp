@@ -17,13 +17,14 @@ using ShapePointer = std::shared_ptr<const btConvexShape>;
 
 constexpr double kSamePlace = 1e-6;  // two lengths of a URDF that differ by less are meant to be equal [m]
 
-void requirePositive(double value, const char* what) {
-  if (!std::isfinite(value) || value <= 0)
-    throw Error(std::string("has a collision shape whose ") + what + " is not positive; write it in metres");
+void requireLength(double value, const char* what) {
+  if (!(value >= 1e-6 && value <= 10))
+    throw Error(std::string("has a collision shape whose ") + what +
+                " is not between 1e-6 m and 10 m; write it in metres");
 }
 
 ToolShape makeSphere(const urdf::Sphere& sphere) {
-  requirePositive(sphere.radius, "radius");
+  requireLength(sphere.radius, "radius");
   ToolShape result;
   result.shape = ShapePointer(new btSphereShape(static_cast<btScalar>(sphere.radius)));
   result.margin = sphere.radius;
@@ -31,7 +32,7 @@ ToolShape makeSphere(const urdf::Sphere& sphere) {
 }
 
 ToolShape makeBox(const urdf::Box& box) {
-  for (const double side : {box.dim.x, box.dim.y, box.dim.z}) requirePositive(side, "side");
+  for (const double side : {box.dim.x, box.dim.y, box.dim.z}) requireLength(side, "side");
   const btVector3 half(static_cast<btScalar>(box.dim.x / 2), static_cast<btScalar>(box.dim.y / 2),
                        static_cast<btScalar>(box.dim.z / 2));
   auto* shape = new btBoxShape(half);
@@ -42,8 +43,8 @@ ToolShape makeBox(const urdf::Box& box) {
 }
 
 ToolShape makeCylinder(const urdf::Cylinder& cylinder) {
-  requirePositive(cylinder.radius, "radius");
-  requirePositive(cylinder.length, "length");
+  requireLength(cylinder.radius, "radius");
+  requireLength(cylinder.length, "length");
   const btScalar radius = static_cast<btScalar>(cylinder.radius);
   auto* shape = new btCylinderShapeZ(btVector3(radius, radius, static_cast<btScalar>(cylinder.length / 2)));
   ToolShape result;
@@ -53,8 +54,8 @@ ToolShape makeCylinder(const urdf::Cylinder& cylinder) {
 }
 
 ToolShape makeCapsule(const urdf::Cylinder& cylinder) {
-  requirePositive(cylinder.radius, "radius");
-  requirePositive(cylinder.length, "length");
+  requireLength(cylinder.radius, "radius");
+  requireLength(cylinder.length, "length");
   ToolShape result;
   result.shape =
       ShapePointer(new btCapsuleShapeZ(static_cast<btScalar>(cylinder.radius), static_cast<btScalar>(cylinder.length)));

@@ -74,6 +74,8 @@ void ToolBuilder::addJoint(const urdf::Joint& joint, int parent, int child) {
   result.parent_link = parent;
   result.child_link = child;
   result.origin = toIsometry(joint.parent_to_joint_origin_transform);
+  if (!(result.origin.translation().norm() <= 10))
+    fail("joint", joint.name, "has an origin that is more than 10 m away; write it in metres");
   if (joint.type == urdf::Joint::FIXED) {
     if (inputIndex(joint.name) >= 0) fail("joint", joint.name, "is an input and cannot be fixed; make it move");
     joints.push_back(result);

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "vibe_sim/error.hpp"
+#include "xml_scan.hpp"
 
 namespace vibe {
 
@@ -49,6 +50,7 @@ urdf::ModelInterfaceSharedPtr parseQuietly(const std::string& text, std::string&
     reason = asClause(error.what());
   }
   if (reason.empty()) reason = asClause(catcher.firstError());
+  if (reason.empty()) reason = "urdfdom gives no reason";
   return model;
 }
 
@@ -58,8 +60,23 @@ UrdfDocument::UrdfDocument(const std::string& text, const std::string& place) : 
   std::string reason;
   model_ = parseQuietly(text, reason);
   if (model_ && model_->getRoot()) return;
-  if (reason.empty()) reason = "it has no root link";
-  throw Error(place + ": this is not a valid URDF (" + reason + "); check_urdf shows more.");
+  if (const int line = firstBrokenTagLine(text); line > 0)
+    throw Error(place + ":" + std::to_string(line) + ": the XML of this URDF is broken here (" + reason +
+                "); close what is open and quote every value.");
+  throw Error(whereNamedIn(reason) + ": this is not a valid URDF (" + reason + "); correct that element.");
+}
+
+// urdfdom writes the names it speaks of in square brackets
+std::string UrdfDocument::whereNamedIn(const std::string& message) const {
+  std::size_t begin = message.find('[');
+  for (; begin != std::string::npos; begin = message.find('[', begin + 1)) {
+    const std::size_t end = message.find(']', begin);
+    if (end == std::string::npos) break;
+    const std::string name = message.substr(begin + 1, end - begin - 1);
+    for (const char* tag : {"joint", "link", "material"})
+      if (std::string place = where(tag, name); place != place_) return place;
+  }
+  return place_;
 }
 
 UrdfDocument::~UrdfDocument() {

@@ -23,6 +23,8 @@ class UrdfDocument {
   std::string where(const std::string& tag, const std::string& name) const;
 
  private:
+  std::string whereNamedIn(const std::string& message) const;
+
   std::string text_;
   std::string place_;
   urdf::ModelInterfaceSharedPtr model_;
