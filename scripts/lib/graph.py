@@ -126,6 +126,6 @@ class Graph:
         return None
 
     def stop_all(self):
-        """Stops everything, the last one first. Returns the names of those that had to be forced."""
-        forced = [process.name for process in reversed(self.processes) if not process.stop()]
-        return forced
+        """Stops everything, the last one first. Returns the names of the essential ones that had to be forced."""
+        stopped = [(process, process.stop()) for process in reversed(self.processes)]
+        return [process.name for process, in_time in stopped if process.essential and not in_time]

@@ -96,6 +96,8 @@ class Session:
             time.sleep(0.1)
         if self.sim.status() != 0:
             raise GraphError("sim_node ended with status {}; what it said is above".format(self.sim.status()))
+        if not os.path.exists(self.summary):
+            raise GraphError("sim_node ended without writing {}".format(self.summary))
 
     def stop(self):
         """Ends everything in reverse order, the simulator before the recorder so that its last words are kept."""
@@ -109,11 +111,9 @@ class Session:
             raise GraphError("the recording {} is not complete; see {}".format(self.bag, self.recorder.log))
 
     def report(self):
-        if os.path.exists(self.summary):
-            print("\n--- summary ({})".format(self.output))
-            with open(self.summary, encoding="utf-8") as text:
-                print(text.read().rstrip())
-        sys.stdout.flush()
+        """Where the session lies; the simulator has printed the summary itself."""
+        if os.path.exists(self.bag):
+            print("recorded: {} ({:.1f} MB)".format(self.bag, os.path.getsize(self.bag) / 1e6), flush=True)
 
 
 def attempt(action, failures):

@@ -1,0 +1,116 @@
+# scripts/run as a user meets it: it ends well, says why when it does not, and leaves nothing behind.
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+if [ -n "${VIBE_VARIANT:-}" ]; then
+  echo 'skipped sessions (scripts/run uses the ordinary build, not this one)'
+  exit 0
+fi
+unset DISPLAY
+run=$root/scripts/run
+python() { /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 "$@"; }
+
+# nobodyLeft MARK SECONDS
+nobodyLeft() {
+  local deadline=$((SECONDS + $2))
+  while [ -n "$(processesWith "VIBE_TEST_MARK=$1")" ]; do
+    [ "$SECONDS" -lt "$deadline" ] || { processesWith "VIBE_TEST_MARK=$1" | xargs -r ps -o pid,ppid,args -p; return 1; }
+    sleep 0.2
+  done
+}
+
+isRecorded() {
+  [ -s "$1/session.bag" ] && [ -z "$(find "$1" -name '*.active')" ] || { ls "$1"; return 1; }
+}
+
+# The recording holds every step and, of every numbered topic of the simulator, every message.
+nothingIsLost() {
+  python - "$1/session.bag" "$2" <<'PYTHON'
+import collections, sys
+import rosbag
+numbers = collections.defaultdict(list)
+for topic, message, _, header in rosbag.Bag(sys.argv[1]).read_messages(return_connection_header=True):
+    if header["callerid"] == b"/sim_node" and hasattr(message, "header"):
+        numbers[topic].append(message.header.seq)
+steps = len(numbers["/applied_input"])
+assert steps == int(sys.argv[2]), "{} steps recorded, not {}".format(steps, sys.argv[2])
+for topic, found in numbers.items():
+    assert found == list(range(found[0], found[0] + len(found))), "gaps in " + topic
+PYTHON
+}
+
+hashOf() { sed -n 's/^state hash: //p' "$1"; }
+
+endsWell() {
+  local folder="$scratch/first session"
+  (cd / && "$run" --headless --fast --duration 2 --output "$folder") >"$scratch/first.txt" 2>&1 ||
+    { cat "$scratch/first.txt"; return 1; }
+  cat "$scratch/first.txt"
+  [ -n "$(hashOf "$folder/summary.txt")" ] && grep -qxF "state hash: $(hashOf "$folder/summary.txt")" "$scratch/first.txt" &&
+    isRecorded "$folder" && nothingIsLost "$folder" 120
+}
+check 'a session ends well, summed up and recorded without a loss' endsWell
+
+repeats() {
+  "$run" --headless --fast --duration 2 --output "$scratch/second" || return 1
+  [ "$(hashOf "$scratch/second/summary.txt")" = "$(hashOf "$scratch/first session/summary.txt")" ]
+}
+check 'the same session ends in the same state' repeats
+
+check 'a session is not recorded over another' refuses 2 'already holds a session' "$run" --headless --output "$scratch/second"
+check 'run names a scene that is not there' refuses 2 "no file 'nowhere.yaml'" "$run" --scene nowhere.yaml
+check 'run names a duration that is none' refuses 2 "not 'long'" "$run" --duration long
+check 'run refuses a folder it cannot make' refuses 2 "cannot write to '/proc/session'" "$run" --output /proc/session
+check 'run says which option lacks its value' refuses 2 '^run: --mesh needs a value' "$run" --mesh
+
+failsOnBadScene() {
+  sed 's/^\([a-z]*\):/\1_of_no_meaning:/' "$root/src/vibe_sim/scenes/stomach.yaml" >"$scratch/bad.yaml"
+  local status=0
+  "$run" --headless --fast --duration 1 --scene "$scratch/bad.yaml" --output "$scratch/bad" >"$scratch/bad.txt" 2>&1 || status=$?
+  cat "$scratch/bad.txt"
+  [ "$status" -eq 1 ] && grep -q 'bad.yaml:[0-9]*' "$scratch/bad.txt" && grep -q 'run: sim_node ended with status' "$scratch/bad.txt"
+}
+check 'a bad scene is one clear error' failsOnBadScene
+
+# startSession MARK: a session without end, in the background; sets session_pid. Returns once it takes steps.
+startSession() {
+  # bash starts background jobs deaf to SIGINT; the user's terminal does not
+  VIBE_TEST_MARK=$1 /usr/bin/python3 -c 'import os, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+os.execv(sys.argv[1], sys.argv[1:])' "$run" --headless --duration 3600 --output "$scratch/$1" >"$scratch/$1.txt" 2>&1 &
+  session_pid=$!
+  local deadline=$((SECONDS + 120))
+  until grep -q 'x real time' "$scratch/$1.txt"; do
+    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$1.txt"; return 1; }
+    sleep 0.2
+  done
+}
+
+survivesInterrupt() {
+  local mark=interrupted-$$ status=0
+  startSession "$mark" || return 1
+  kill -INT "$session_pid"
+  wait "$session_pid" || status=$?
+  cat "$scratch/$mark.txt"
+  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/$mark.txt" && isRecorded "$scratch/$mark" && nobodyLeft "$mark" 0
+}
+check 'an interrupted session is summed up and leaves nothing' survivesInterrupt
+
+cleansUpAfterKill() {
+  local mark=killed-$$
+  startSession "$mark" || return 1
+  kill -KILL "$session_pid"
+  nobodyLeft "$mark" 60 && isRecorded "$scratch/$mark"
+}
+check 'a killed session leaves no process and a complete recording' cleansUpAfterKill
+
+namesTheDead() {
+  local mark=dead-$$ status=0 pid
+  startSession "$mark" || return 1
+  for pid in $(processesWith "VIBE_TEST_MARK=$mark"); do
+    if grep -qaz 'lib/vibe_sim/vibe_trainee' "/proc/$pid/cmdline"; then kill -KILL "$pid"; fi
+  done
+  wait "$session_pid" || status=$?
+  cat "$scratch/$mark.txt"
+  [ "$status" -eq 1 ] && grep -q '^run: vibe_trainee died' "$scratch/$mark.txt" && nobodyLeft "$mark" 0
+}
+check 'a session names the program that died' namesTheDead
