@@ -19,6 +19,7 @@ TIP_LENGTH = 0.016     # [D] rigid end of the endoscope that carries the cap
 CAP_RADIUS = 0.0079    # [S]
 CAP_LENGTH = 0.012     # [D]
 ARM_REACH = 0.0184     # [S] of the needle arm's bracket beyond the endoscope
+NEEDLE_OPEN = (0.0148, -0.0025, 0.0134)  # [D] the needle's point in scope_tip, within 23.3 mm of the whole device [S]
 SEGMENT_LENGTH = BEND_LENGTH / SEGMENTS
 STRAIGHT_LENGTH = BEND_LENGTH - SEGMENT_LENGTH / 2 + TIP_LENGTH  # from the first bending joint to the tip
 
@@ -271,19 +272,21 @@ def add_helix(urdf):
 
 def add_needle(urdf):
     """Needle on its curved arm. No collision shape: it is made to pass through the wall."""
-    urdf.input_joint("needle_driver", "device_cap", "needle", (0.0148, -0.0025, 0.0134))
-    # quarter circle from the point of the needle (origin) outwards to the arm, in the plane of its travel
-    radius, pieces = 0.0045, 9
-    ux, uz = 0.6, 0.8  # backwards along the travel
+    urdf.input_joint("needle_driver", "device_cap", "needle", NEEDLE_OPEN)
+    # half circle from the point of the needle (origin) outwards and back to the end of the bracket, where the open arm is
+    end = (ARM_REACH - 0.0008 - NEEDLE_OPEN[0], CAP_RADIUS - 0.0008 - NEEDLE_OPEN[2])
+    radius, pieces = math.hypot(*end) / 2, 12
+    outwards = (-end[1] / 2, end[0] / 2)  # across the chord
+
     def point(t):
-        a = t * math.pi / 2
-        s, c = radius * math.sin(a), radius * (1 - math.cos(a))
-        return (ux * s + uz * c * 0.4, 0.0, uz * s - ux * c)
-    curve = [bar_between(point(i / pieces), point((i + 1) / pieces), 0.0003 + 0.0003 * i / pieces,
-                         "needle_gold" if i < 3 else "steel") for i in range(pieces)]
-    mass = STEEL * math.pi * 0.0005 ** 2 * radius * math.pi / 2
-    size = radius ** 2 / 12
-    urdf.link("needle", Body(mass, (0.0018, 0, 0.0016), (mass * size, mass * size, mass * size)), curve,
+        along, across = (1 - math.cos(math.pi * t)) / 2, math.sin(math.pi * t)
+        return (along * end[0] + across * outwards[0], 0.0, along * end[1] + across * outwards[1])
+    curve = [bar_between(point(i / pieces), point((i + 1) / pieces), 0.0003 + 0.0005 * i / pieces,
+                         "needle_gold" if i < 4 else "steel") for i in range(pieces)]
+    mass = STEEL * math.pi * 0.0005 ** 2 * math.pi * radius
+    centre = (end[0] / 2 + outwards[0] * 2 / math.pi, 0, end[1] / 2 + outwards[1] * 2 / math.pi)
+    moment = mass * radius ** 2 / 2  # of a bent wire, about any axis to within a factor of two
+    urdf.link("needle", Body(mass, centre, (moment,) * 3), curve,
               note="origin at the point of the needle; no collision shape, it penetrates the wall")
 
 
