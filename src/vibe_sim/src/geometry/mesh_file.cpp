@@ -1,21 +1,18 @@
 #include "vibe_sim/geometry/mesh_file.hpp"
 
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <map>
 
 #include "vibe_sim/error.hpp"
+#include "vibe_sim/geometry/assimp_reader.hpp"
+#include "vibe_sim/geometry/mesh_header.hpp"
 #include "vibe_sim/geometry/surface_check.hpp"
 
 namespace vibe {
@@ -23,13 +20,6 @@ namespace vibe {
 namespace {
 
 constexpr double kWeldTolerance = 1e-6;  // of the size of the surface
-
-/// What the file says, in one line.
-std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  return text;
-}
 
 void checkFile(const std::string& path) {
   std::error_code ignored;
@@ -45,45 +35,7 @@ void checkFile(const std::string& path) {
   if (std::find(known.begin(), known.end(), type) == known.end()) {
     throw Error("geometry.file: " + path + " is not of a type that can be read; convert it to OBJ, STL, PLY or glTF");
   }
-}
-
-void append(SurfaceMesh& mesh, const aiMesh& part, const aiMatrix4x4& transform) {
-  const int first = static_cast<int>(mesh.vertices.size());
-  for (unsigned v = 0; v < part.mNumVertices; ++v) {
-    const aiVector3D p = transform * part.mVertices[v];
-    mesh.vertices.emplace_back(p.x, p.y, p.z);
-  }
-  for (unsigned f = 0; f < part.mNumFaces; ++f) {
-    const aiFace& face = part.mFaces[f];
-    if (face.mNumIndices != 3) continue;  // points and lines
-    std::array<int, 3> triangle;
-    for (int k = 0; k < 3; ++k) triangle[k] = first + static_cast<int>(face.mIndices[k]);
-    mesh.triangles.push_back(triangle);
-  }
-}
-
-void append(SurfaceMesh& mesh, const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent) {
-  const aiMatrix4x4 transform = parent * node.mTransformation;
-  for (unsigned k = 0; k < node.mNumMeshes; ++k) append(mesh, *scene.mMeshes[node.mMeshes[k]], transform);
-  for (unsigned k = 0; k < node.mNumChildren; ++k) append(mesh, scene, *node.mChildren[k], transform);
-}
-
-SurfaceMesh readRaw(const std::string& path) {
-  Assimp::Importer importer;
-  SurfaceMesh mesh;
-  try {
-    const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
-    if (scene == nullptr || scene->mRootNode == nullptr) {
-      throw Error("geometry.file: " + path + " cannot be read (" + oneLine(importer.GetErrorString()) +
-                  "); export it again");
-    }
-    append(mesh, *scene, *scene->mRootNode, aiMatrix4x4());
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {  // of the reader, or memory that a damaged header asks for
-    throw Error("geometry.file: " + path + " cannot be read (" + oneLine(e.what()) + "); export it again");
-  }
-  return mesh;
+  checkMeshHeader(path, type);
 }
 
 using Cell = std::array<std::int64_t, 3>;
@@ -153,7 +105,7 @@ SurfaceMesh weld(const SurfaceMesh& mesh, double tolerance) {
 
 SurfaceMesh readMeshFile(const std::string& path) {
   checkFile(path);
-  const SurfaceMesh raw = readRaw(path);
+  const SurfaceMesh raw = readWithAssimp(path);
   checkNumbers(raw, path);
   Eigen::AlignedBox3d box;
   for (const auto& v : raw.vertices) box.extend(v);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kNominalVolume = 0.75e-3;  // [m^3] of the shape below, unscaled
 constexpr double kBlend = 4.5e-3;           // [m]
-constexpr double kFlattening = 0.86;        // depth over width of a section
+constexpr double kFlattening = 0.82;        // depth over width of a section
 constexpr double kSpacing = 3e-3;           // [m] between balls
 constexpr double kCell = 4e-3;              // [m] of the grid that finds the surface
 constexpr double kTubeRadius = 11e-3;       // [m] a scope of 6 mm radius passes with room for the wall
@@ -28,14 +28,14 @@ struct Knot {
 };
 
 // design: from the fundus down the body, round the bend, up the antrum to the right, through the pylorus
-constexpr Knot kBody[] = {{-16, 41, 63, 37},   {-13, 35, 40, 42},  {-8, 28, 14, 41},   {-2, 21, -14, 37.5},
-                          {4, 11, -41, 33.5},  {9, -6, -62, 29.5}, {12, -28, -72, 26}, {11, -50, -67, 23.5},
-                          {6, -68, -53, 19.5}, {1, -78, -40, 14}};
-constexpr Knot kPylorus{-5, -88, -26, 5};
-constexpr Knot kDuodenum{-11, -98, -11, 12.5};
-constexpr Knot kIncisuraSide{0, -30, -36, 0};  // the surface point nearest to this one
-constexpr Knot kJunction{-9, -9, 52, 11};
-constexpr Knot kGullet{-13, -21, 84, 11};
+constexpr Knot kBody[] = {{-17, 43, 60, 39},   {-14, 38, 35, 45},  {-8, 30, 8, 45.5},    {-1, 22, -18, 43},
+                          {5, 11, -42, 39},    {10, -6, -58, 34},  {13, -27, -62, 29.5}, {12, -48, -55, 25.5},
+                          {7, -64, -42, 20.5}, {2, -73, -30, 14.5}};
+constexpr Knot kPylorus{-4, -82, -17, 5};
+constexpr Knot kDuodenum{-10, -91, -2, 12.5};
+constexpr Knot kIncisuraSide{2, -33, -30, 0};  // the surface point nearest to this one
+constexpr Knot kJunction{-9, 0, 46, 0};
+constexpr Knot kGullet{-13, -12, 82, 0};
 
 using Row = std::vector<Eigen::Vector4d>;  // centre and radius [m]
 
@@ -140,8 +140,9 @@ StomachShape makeStomachShape(double volume) {
   shape.landmarks.fundus = highest(shape.surface, body.front().head<3>(), 1.3 * body.front()[3]);
   shape.landmarks.incisura = balls->project(toMetres(kIncisuraSide).head<3>());
   shape.landmarks.pylorus = toMetres(kPylorus).head<3>();
-  shape.oesophagus = makeEnd(gullet[0], gullet[1]);
-  shape.duodenum = makeEnd(body.back(), body[body.size() - 2]);
+  // the outermost ball has no neighbour outside and ends low: the rim is two balls further in
+  shape.oesophagus = makeEnd(gullet[2], gullet[3]);
+  shape.duodenum = makeEnd(body[body.size() - 2], body[body.size() - 3]);
 
   const double factor = std::cbrt(volume / enclosedVolume(shape.surface));
   scale(shape, factor);
