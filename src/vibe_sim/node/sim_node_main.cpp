@@ -44,6 +44,9 @@ int run() {
   ros::NodeHandle handle;
   const vibe::Parameters parameters = vibe::readParameters(ros::NodeHandle("~"));
   const std::shared_ptr<const vibe::Model> model = vibe::loadModel(parameters.scene, parameters.mesh);
+  // Not only for people: the first log message makes roscpp register a parameter at the master, and if that were the
+  // message about our own shutdown, the master would take us for the newest node of this name and stop the real one.
+  ROS_INFO_STREAM("Simulating '" << model->scene.name << "' with " << model->particle_count << " particles.");
   vibe::InputLatch latch;
   vibe::Publishers publishers(handle, parameters.time_source == vibe::TimeSource::Sim);
   vibe::Stepper stepper(parameters, model, latch, publishers);

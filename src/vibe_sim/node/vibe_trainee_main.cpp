@@ -17,7 +17,9 @@ void play() {
   bool lockstep = false;
   reader.read("lockstep", lockstep);
   reader.finish();
-  vibe::TraineePlayer player(handle, vibe::TraineeScript::load(vibe::resolveAddress(script)), lockstep);
+  const vibe::TraineeScript played = vibe::TraineeScript::load(vibe::resolveAddress(script));
+  ROS_INFO_STREAM("Playing '" << played.name() << "', " << played.duration() << " s.");
+  vibe::TraineePlayer player(handle, played, lockstep);
   ros::spin();
 }
 

@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""What can go wrong around the simulator: one clear sentence, the right exit status, nothing left behind."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from node_test_support import Program, Recorder, scene, state_hash, wait_until
+from vibe_msgs.msg import StepInput
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+class FailuresTest(unittest.TestCase):
+    def assert_refuses(self, program, words, **parameters):
+        """Ends with status 2 and one sentence that has the words."""
+        refused = Program(program, program + "_refused", **parameters)
+        try:
+            self.assertEqual(refused.ends(20), 2, refused.output())
+            self.assertEqual(len(refused.lines), 1, refused.output())
+            for word in words:
+                self.assertIn(word, refused.lines[0])
+        finally:
+            refused.stop()
+
+    def test_wrong_parameters(self):
+        good = scene("balloon.yaml")
+        cases = (
+            ({}, ["scene"]),
+            ({"scene": "/nowhere.yaml"}, ["/nowhere.yaml"]),
+            ({"scene": "package://no_such_package/x.yaml"}, ["no_such_package"]),
+            ({"scene": good, "trheads": 2}, ["trheads", "threads"]),
+            ({"scene": good, "threads": 0}, ["threads", "1 to 256"]),
+            ({"scene": good, "threads": "many"}, ["threads"]),
+            ({"scene": good, "duration": -1}, ["duration"]),
+            ({"scene": good, "time_source": "moon"}, ["moon", "wall or sim"]),
+            ({"scene": good, "time_source": "sim"}, ["/use_sim_time", "rosparam set"]),
+            ({"scene": good, "fast": "true"}, ["fast", "time_source"]),
+            ({"scene": good, "lockstep": "true"}, ["lockstep", "time_source"]),
+        )
+        for parameters, words in cases:
+            with self.subTest(parameters=parameters):
+                self.assert_refuses("sim_node", words, **parameters)
+        self.assert_refuses("vibe_trainee", ["script"])
+        self.assert_refuses("vibe_trainee", ["/nowhere.yaml"], script="/nowhere.yaml")
+
+    def test_simulated_time_must_be_wanted_by_both_sides(self):
+        rospy.set_param("/use_sim_time", True)
+        try:
+            self.assert_refuses("sim_node", ["/use_sim_time", "wall"], scene=scene("balloon.yaml"))
+        finally:
+            rospy.delete_param("/use_sim_time")
+
+    def test_the_older_of_two_nodes_of_one_name_ends(self):
+        older = Program("sim_node", "twin", scene=scene("balloon.yaml"))
+        newer = None
+        try:
+            self.assertTrue(older.says("x real time"), older.output())
+            newer = Program("sim_node", "twin", scene=scene("balloon.yaml"))
+            self.assertEqual(older.ends(20), 0, older.output())
+            self.assertEqual(older.count("Stopped because the ROS master said so"), 1)
+            self.assertTrue(newer.says("x real time"), newer.output())
+        finally:
+            older.stop()
+            self.assertEqual(newer and newer.stop(), 0)
+
+    def test_a_signal_loses_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "summary.txt")
+            simulator = Program("sim_node", "signalled", scene=scene("balloon.yaml"), duration=1000, summary_file=file)
+            self.assertTrue(simulator.says("x real time"), simulator.output())
+            simulator.process.send_signal(signal.SIGTERM)
+            self.assertEqual(simulator.ends(20), 1)  # less than the duration asked for
+            with open(file) as text:
+                self.assertEqual(state_hash(text.read()), state_hash(simulator.output()))
+
+    def test_a_summary_that_cannot_be_written_is_an_error(self):
+        simulator = Program(
+            "sim_node", "unwritable", scene=scene("balloon.yaml"), duration=0.1, summary_file="/nowhere/summary.txt"
+        )
+        self.assertEqual(simulator.ends(20), 2)
+        self.assertIn("/nowhere/summary.txt", simulator.output())
+
+    def test_without_master_it_goes_on_until_nobody_listens(self):
+        port = free_port()
+        env = {"ROS_MASTER_URI": "http://localhost:{}".format(port)}
+        master = subprocess.Popen(
+            ["rosmaster", "--core", "-p", str(port)],
+            env=dict(os.environ, **env),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        simulator = Program("sim_node", env=env, scene=scene("balloon.yaml"), master_timeout=2.5)
+        try:
+            self.assertTrue(simulator.says("x real time"), simulator.output())
+            master.kill()
+            master.wait()
+            self.assertTrue(simulator.says("does not answer"), simulator.output())
+            before = simulator.count("x real time")
+            self.assertTrue(wait_until(lambda: simulator.count("x real time") > before, 5))
+            self.assertEqual(simulator.ends(20), 1, simulator.output())
+            self.assertEqual(simulator.count("does not answer"), 1)
+            self.assertEqual(simulator.count("giving up"), 1)
+        finally:
+            master.kill()
+            simulator.stop()
+
+    def test_await_recorder_waits_for_a_listener(self):
+        simulator = Program(
+            "sim_node", "patient", scene=scene("balloon.yaml"), duration=0.5, await_recorder="true"
+        )
+        try:
+            self.assertTrue(simulator.says("x real time"), simulator.output())
+            self.assertIn("t =    0.00 s", simulator.output())
+            applied = Recorder("applied_input", StepInput)
+            self.assertEqual(simulator.ends(20), 0, simulator.output())
+            self.assertEqual([m.step for m in applied.messages], list(range(30)))
+        finally:
+            simulator.stop()
+
+
+if __name__ == "__main__":
+    rospy.init_node("failures_test")
+    rostest.rosrun("vibe_sim", "failures_test", FailuresTest, sys.argv)

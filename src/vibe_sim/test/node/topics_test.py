@@ -1,0 +1,282 @@
+#!/usr/bin/env python3
+"""Every topic that the simulator sends: type, rate, frame, stamps that are sample times, and a value that physics or
+kinematics fixes. The simulation is paused and stepped, so that all of it is exact."""
+
+import math
+import sys
+import unittest
+
+import numpy
+import rospy
+import rostest
+import sensor_msgs.point_cloud2
+import tf2_ros
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+from node_test_support import EPOCH, OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS
+from node_test_support import Recorder, buttons, joints, stamp_of, wait_until
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState, Joy, PointCloud2
+from vibe_msgs.msg import ProcedureEvent, ProcedureState, SolverStatistics, StepInput, TissueTopology
+from vibe_msgs.srv import Reset, Step
+
+STREAMS = {
+    "scope/measured_cp": (PoseStamped, "world"),
+    "overstitch/helix/measured_cp": (PoseStamped, "world"),
+    "scope/measured_cf": (WrenchStamped, "scope_tip"),
+    "joint_states": (JointState, "scope_base"),
+    "tissue/particles": (PointCloud2, "stomach"),
+    "applied_input": (StepInput, ""),
+}
+BASE_X = -0.12  # of scope_base in balloon.yaml [m]
+
+
+class TopicsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.recorders = {topic: Recorder(topic, kind) for topic, (kind, _) in STREAMS.items()}
+        cls.clock = Recorder("/clock", Clock)
+        cls.events = Recorder("procedure/events", ProcedureEvent)
+        cls.procedure = Recorder("procedure/state", ProcedureState)
+        cls.topology = Recorder("tissue/topology", TissueTopology)
+        cls.performance = Recorder("performance", SolverStatistics)
+        cls.scope = rospy.Publisher("scope/measured_js", JointState, queue_size=100)
+        cls.overstitch = rospy.Publisher("overstitch/measured_js", JointState, queue_size=100)
+        cls.buttons = rospy.Publisher("scope/buttons", Joy, queue_size=100)
+        cls.tf = tf2_ros.Buffer()
+        cls.tf_listener = tf2_ros.TransformListener(cls.tf)
+        rospy.wait_for_service("step", 20)
+        cls.step_service = rospy.ServiceProxy("step", Step)
+        cls.reset_service = rospy.ServiceProxy("reset", Reset)
+        everything = list(cls.recorders.values()) + [cls.clock, cls.events, cls.procedure, cls.performance]
+        assert wait_until(lambda: all(r.is_connected() for r in everything), 20)
+        publishers = (cls.scope, cls.overstitch, cls.buttons)
+        assert wait_until(lambda: all(p.get_num_connections() > 0 for p in publishers), 20)
+
+    def setUp(self):
+        self.assertTrue(self.reset_service(seed=0, keep_time=False).success)
+        wait_until(lambda: self.procedure.messages and self.procedure.messages[-1].step == 0)
+        for recorder in list(self.recorders.values()) + [self.events, self.procedure, self.clock]:
+            recorder.clear()
+
+    def step(self, n):
+        """Steps and waits until all messages of these steps are here."""
+        applied = self.recorders["applied_input"]
+        before = len(applied.messages)
+        reply = self.step_service(n)
+        self.assertTrue(reply.success, reply.message)
+        self.assertTrue(wait_until(lambda: len(applied.messages) == before + n))
+        last = self.now()
+        for topic in STREAMS:
+            wanted = last if topic != "applied_input" else 0
+            wait_until(lambda: self.recorders[topic].stamps()[-1:] >= [wanted])
+
+    def now(self):
+        self.last_step = self.recorders["applied_input"].messages[-1].step + 1
+        return stamp_of(self.last_step)
+
+    def command(self, scope, overstitch=(0, 0, 0), pressed=()):
+        """Sends inputs for the present time and waits until a step has used them."""
+        stamp = rospy.Time(nsecs=EPOCH)
+        for attempt in range(100):
+            self.scope.publish(joints(SCOPE_JOINTS, scope, stamp))
+            self.overstitch.publish(joints(OVERSTITCH_JOINTS, overstitch, stamp))
+            self.buttons.publish(buttons(pressed, stamp))
+            self.step(1)
+            used = self.recorders["applied_input"].messages[-1]
+            wanted = tuple(scope) + tuple(overstitch)
+            if used.joints == wanted and [i for i in range(6) if used.buttons[i]] == list(pressed):
+                return attempt
+        self.fail("the command was never used")
+
+    def test_every_step_has_its_stamp_and_frame(self):
+        self.step(120)
+        for topic, (_, frame) in STREAMS.items():
+            with self.subTest(topic=topic):
+                recorder = self.recorders[topic]
+                first = 0 if topic == "applied_input" else 1
+                self.assertEqual(recorder.stamps()[-120:], [stamp_of(k) for k in range(first, first + 120)])
+                self.assertEqual({m.header.frame_id for m in recorder.messages}, {frame})
+
+    def test_particles_come_at_sixty_hertz_of_simulated_time(self):
+        self.step(60)
+        stamps = self.recorders["tissue/particles"].stamps()[-60:]
+        rate = (len(stamps) - 1) / (1e-9 * (stamps[-1] - stamps[0]))
+        self.assertAlmostEqual(rate, 60.0, delta=0.01)
+
+    def test_clock_says_each_time_once_while_it_runs(self):
+        self.step(50)
+        wait_until(lambda: self.clock.messages[-1].clock.to_nsec() == stamp_of(50))
+        times = [m.clock.to_nsec() for m in self.clock.messages]
+        self.assertEqual(times, sorted(times))
+        self.assertEqual(times[-1], stamp_of(50))
+        running = [t for t in times if EPOCH < t < stamp_of(50)]
+        self.assertEqual(len(running), len(set(running)))
+        # rospy itself reads the clock with a queue of one, so that some may be missing here
+        self.assertTrue(set(running) <= {stamp_of(k) for k in range(1, 50)})
+
+    def test_clock_is_repeated_at_ten_hertz_while_paused(self):
+        self.step(3)
+        self.clock.clear()
+        begin = rospy.get_rostime()
+        self.assertTrue(wait_until(lambda: len(self.clock.messages) >= 10, 1.5))
+        self.assertEqual({m.clock.to_nsec() for m in self.clock.messages}, {stamp_of(3)})
+        self.assertEqual(rospy.get_rostime(), begin)
+
+    def test_applied_input_is_what_was_sent(self):
+        scope, overstitch = (0.05, 0.1, -0.2, 0.3), (0.004, 0.5, 0.002)
+        self.command(scope, overstitch, pressed=(2, 5))
+        used = self.recorders["applied_input"].messages[-1]
+        self.assertEqual(used.joints, scope + overstitch)
+        self.assertEqual(list(used.buttons), [0, 0, 1, 0, 0, 1])
+
+    def test_future_inputs_wait_for_their_step(self):
+        self.command((0.01, 0, 0, 0))
+        due = self.last_step + 20
+        self.scope.publish(joints(SCOPE_JOINTS, (0.02, 0, 0, 0), rospy.Time(nsecs=stamp_of(due))))
+        rospy.rostime.wallsleep(0.3)
+        self.step(30)
+        for used in self.recorders["applied_input"].messages[-30:]:
+            self.assertEqual(used.joints[0], 0.02 if used.step >= due else 0.01, used.step)
+
+    def test_tip_pose_is_the_kinematics_of_the_joints(self):
+        self.command((0.05, 0.4, 0, 0))
+        self.step(60)
+        pose = self.recorders["scope/measured_cp"].messages[-1].pose
+        # a straight scope: the tip is at its insertion, turned about its axis
+        self.assertAlmostEqual(pose.position.x, BASE_X + 0.05, delta=1e-9)
+        self.assertAlmostEqual(pose.position.y, 0, delta=1e-9)
+        self.assertAlmostEqual(pose.position.z, 0, delta=1e-9)
+        self.assertAlmostEqual(abs(pose.orientation.x), math.sin(0.2), delta=1e-9)
+        self.assertAlmostEqual(abs(pose.orientation.w), math.cos(0.2), delta=1e-9)
+
+    def test_helix_advances_along_the_tip(self):
+        self.command((0.02, 0, 0, 0), (0, 0, 0))
+        self.step(60)
+        before = self.recorders["overstitch/helix/measured_cp"].messages[-1].pose.position
+        self.command((0.02, 0, 0, 0), (0.005, 0, 0))
+        self.step(60)
+        after = self.recorders["overstitch/helix/measured_cp"].messages[-1].pose.position
+        self.assertAlmostEqual(after.x - before.x, 0.005, delta=1e-9)
+        self.assertAlmostEqual(after.y - before.y, 0, delta=1e-9)
+
+    def test_tf_agrees_with_the_published_poses(self):
+        self.command((0.05, 0.4, 0.6, -0.2))
+        self.step(60)
+        for attempt in range(50):  # robot_state_publisher limits its rate in simulated time
+            self.step(6)
+            rospy.rostime.wallsleep(0.05)
+            if self.tf.can_transform("world", "scope_tip", rospy.Time(0)):
+                break
+        for frame, topic in (("scope_tip", "scope/measured_cp"), ("helix", "overstitch/helix/measured_cp")):
+            with self.subTest(frame=frame):
+                transform = self.tf.lookup_transform("world", frame, rospy.Time(0)).transform.translation
+                position = self.recorders[topic].messages[-1].pose.position
+                for axis in "xyz":
+                    self.assertAlmostEqual(getattr(transform, axis), getattr(position, axis), delta=1e-6)
+        self.assertTrue(self.tf.can_transform("world", "stomach", rospy.Time(0)))
+        self.assertTrue(self.tf.can_transform("world", "scope_camera_optical", rospy.Time(0)))
+
+    def test_wrench_is_zero_in_the_air_and_pushes_back_on_contact(self):
+        self.command((0.03, 0, 0, 0))
+        self.step(60)
+        for message in self.recorders["scope/measured_cf"].messages[-50:]:
+            self.assertEqual((message.wrench.force.x, message.wrench.force.y, message.wrench.force.z), (0, 0, 0))
+        self.command((0.075, 0, 0, 0))
+        self.step(120)
+        force = self.recorders["scope/measured_cf"].messages[-1].wrench.force
+        self.assertLess(force.x, -0.1)
+        self.assertLess(abs(force.y) + abs(force.z), 0.5 * abs(force.x))
+        kinds = [event.kind for event in self.events.messages]
+        self.assertIn(ProcedureEvent.CONTACT_BEGIN, kinds)
+
+    def test_particles_are_the_rest_shape_at_the_start(self):
+        wait_until(lambda: self.topology.messages)
+        topology = self.topology.messages[-1]
+        rest = numpy.array(topology.rest_positions).reshape(-1, 3)
+        self.step(1)
+        self.assertTrue(self.reset_service(seed=0, keep_time=False).success)
+        cloud = self.recorders["tissue/particles"].find(lambda m: m.header.stamp.to_nsec() == EPOCH)
+        points = list(sensor_msgs.point_cloud2.read_points(cloud, ["x", "y", "z", "strain", "id", "revision", "region"]))
+        self.assertEqual(len(points), 300)
+        self.assertLess(numpy.abs(numpy.array([p[:3] for p in points]) - rest).max(), 1e-8)
+        self.assertLess(max(abs(p[3]) for p in points), 1e-6)
+        self.assertEqual([p[4] for p in points], list(range(300)))
+        self.assertEqual({p[5] for p in points}, {topology.revision})
+        self.assertEqual([p[6] for p in points], list(topology.region))
+
+    def test_topology_is_a_closed_surface_with_a_skin(self):
+        wait_until(lambda: self.topology.messages)
+        topology = self.topology.messages[-1]
+        self.assertEqual(topology.name, "balloon")
+        self.assertEqual(topology.header.frame_id, "stomach")
+        triangles = numpy.array(topology.triangles).reshape(-1, 3)
+        self.assertEqual(len(triangles), 2 * 300 - 4)  # Euler's formula for a sphere
+        edges = {(a, b) for t in triangles for a, b in ((t[0], t[1]), (t[1], t[2]), (t[2], t[0]))}
+        self.assertTrue(all((b, a) in edges for a, b in edges))
+        self.assertEqual(len(topology.skin_triangles), 4 * len(topology.triangles))
+        offsets = topology.skin_offsets
+        for v in range(len(offsets) - 1):
+            self.assertAlmostEqual(sum(topology.skin_weights[offsets[v] : offsets[v + 1]]), 1, delta=1e-5)
+
+    def test_procedure_state_tells_volume_pressure_and_time(self):
+        self.step(61)
+        state = self.procedure.find(lambda m: m.step >= 60)
+        sphere = 4 / 3 * math.pi * 0.05**3
+        self.assertAlmostEqual(state.volume, sphere, delta=0.05 * sphere)
+        self.assertEqual(state.scene, "balloon")
+        self.assertEqual(state.seed, 7)
+        self.assertEqual(state.step_period, PERIOD)
+        self.assertEqual(state.origin.to_nsec(), EPOCH)
+        self.assertEqual(state.header.stamp.to_nsec(), stamp_of(state.step))
+        self.assertAlmostEqual(state.time, state.step * PERIOD, delta=1e-9)
+        self.assertTrue(state.paused)
+
+    def test_insufflation_raises_volume_and_pressure_to_the_set_point(self):
+        self.command((0, 0, 0, 0), pressed=(5,))
+        self.step(240)
+        event = self.events.find(lambda m: m.kind == ProcedureEvent.PRESSURE_REACHED)
+        self.assertIsNotNone(event)
+        self.assertAlmostEqual(event.value, 1333, delta=0.02 * 1333)
+        states = self.procedure.messages
+        self.assertEqual(states[0].phase, "insufflation")
+        self.assertGreater(states[-1].volume, states[0].volume)
+
+    def test_grab_holds_tissue_and_release_lets_it_go(self):
+        self.command((0.075, 0, 0, 0), (0.004, 0, 0))
+        self.step(90)
+        self.command((0.075, 0, 0, 0), (0.004, 0, 0), pressed=(1,))
+        grab = self.events.find(lambda m: m.kind == ProcedureEvent.GRAB)
+        self.assertIsNotNone(grab)
+        self.assertGreaterEqual(grab.value, 1)
+        held = self.procedure.find(lambda m: m.held_particles > 0)
+        self.assertEqual(held.phase, "grip")
+        self.assertEqual(held.held_particles, grab.value)
+        self.command((0.075, 0, 0, 0), (0.004, 0, 0))
+        release = self.events.find(lambda m: m.kind == ProcedureEvent.RELEASE)
+        self.assertIsNotNone(release)
+        self.assertGreater(release.header.stamp, grab.header.stamp)
+        last = self.procedure.find(lambda m: m.releases == 1)
+        self.assertEqual((last.grabs, last.held_particles), (1, 0))
+
+    def test_performance_is_reported_once_a_second(self):
+        self.performance.clear()
+        self.assertTrue(wait_until(lambda: len(self.performance.messages) >= 2, 4))
+        self.step(30)
+        self.performance.clear()
+        message = self.performance.find(lambda m: True, 3)
+        self.assertEqual([s.name for s in message.stages], ["solver", "solver_wall", "publish", "total"])
+        self.assertEqual(message.particle_count, 300)
+        self.assertEqual(message.active_count, 300)
+        self.assertEqual(message.missed_deadlines, 0)
+        self.assertGreater(message.window, 0.9)
+        self.assertLess(message.window, 3)
+        self.assertEqual(len(message.state_hash), 16)
+        int(message.state_hash, 16)
+        for stage in message.stages:
+            self.assertLessEqual(stage.p50, stage.p99)
+            self.assertLessEqual(stage.p99, stage.max)
+
+
+if __name__ == "__main__":
+    rospy.init_node("topics_test")
+    rostest.rosrun("vibe_sim", "topics_test", TopicsTest, sys.argv)

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""With the wall clock as the source of time: pace, stamps, pause, no /clock; and a trainee that runs freely."""
+
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from node_test_support import Program, Recorder, scene, wait_until
+from sensor_msgs.msg import JointState, PointCloud2
+from std_srvs.srv import SetBool
+from vibe_msgs.msg import ProcedureEvent, SolverStatistics, StepInput
+from vibe_msgs.srv import Reset
+
+
+class WallTimeTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.particles = Recorder("tissue/particles", PointCloud2)
+        cls.applied = Recorder("applied_input", StepInput)
+        cls.events = Recorder("procedure/events", ProcedureEvent)
+        cls.performance = Recorder("performance", SolverStatistics)
+        cls.joints = Recorder("scope/measured_js", JointState)
+        cls.simulator = Program("sim_node", "sim_node", scene=scene("balloon.yaml"))
+        rospy.wait_for_service("pause", 20)
+        cls.pause = rospy.ServiceProxy("pause", SetBool)
+        cls.reset = rospy.ServiceProxy("reset", Reset)
+        assert wait_until(lambda: len(cls.particles.messages) > 0, 20), cls.simulator.output()
+
+    @classmethod
+    def tearDownClass(cls):
+        assert cls.simulator.stop() == 0, cls.simulator.output()
+        assert cls.simulator.count("Stopped by a signal.") == 1
+
+    def setUp(self):
+        self.pause(False)
+        self.particles.clear()
+        self.applied.clear()
+
+    def test_sixty_hertz_with_stamps_of_the_wall_clock(self):
+        begin = time.time()
+        self.assertTrue(wait_until(lambda: len(self.particles.messages) >= 120, 10))
+        stamps = [1e-9 * s for s in self.particles.stamps()]
+        self.assertEqual(stamps, sorted(set(stamps)))
+        rate = (len(stamps) - 1) / (stamps[-1] - stamps[0])
+        self.assertTrue(50 < rate < 61, rate)
+        self.assertLess(abs(stamps[0] - begin), 0.4)
+        self.assertLess(stamps[-1], time.time() + 0.001)  # no sample is from the future
+
+    def test_there_is_no_clock(self):
+        self.assertNotIn("/clock", [topic for topic, _ in rospy.get_published_topics()])
+
+    def test_stamps_follow_the_wall_clock_after_a_pause(self):
+        self.pause(True)
+        time.sleep(1.0)
+        self.particles.clear()
+        self.pause(False)
+        self.assertTrue(wait_until(lambda: self.particles.messages))
+        self.assertLess(abs(1e-9 * self.particles.stamps()[0] - time.time()), 0.4)
+
+    def test_reset_keeps_stamps_monotonic_and_cannot_set_them_back(self):
+        self.assertTrue(wait_until(lambda: len(self.particles.messages) > 5))
+        self.assertTrue(self.reset(seed=0, keep_time=True).success)
+        self.assertTrue(wait_until(lambda: any(m.step == 5 for m in self.applied.messages)))
+        stamps = self.particles.stamps()
+        self.assertEqual(stamps, sorted(set(stamps)))
+        reply = self.reset(seed=0, keep_time=False)
+        self.assertFalse(reply.success)
+        self.assertIn("keep_time", reply.message)
+
+    def test_performance_keeps_real_time(self):
+        self.performance.clear()
+        self.assertTrue(wait_until(lambda: len(self.performance.messages) >= 3, 6))
+        self.assertAlmostEqual(self.performance.messages[-1].real_time_factor, 1, delta=0.15)
+
+    def test_a_free_trainee_moves_the_scope(self):
+        trainee = Program("vibe_trainee", "trainee", script=scene("poke.trainee.yaml"))
+        try:
+            self.assertTrue(wait_until(lambda: any(m.joints[0] > 0.07 for m in self.applied.messages), 15))
+            self.assertIsNotNone(self.events.find(lambda m: m.kind == ProcedureEvent.GRAB, 10))
+            stamps = [1e-9 * s for s in self.joints.stamps()]
+            rate = (len(stamps) - 1) / (stamps[-1] - stamps[0])
+            self.assertAlmostEqual(rate, 100, delta=1)
+            self.assertEqual(stamps, sorted(set(stamps)))
+        finally:
+            self.assertEqual(trainee.stop(), 0)
+
+
+if __name__ == "__main__":
+    rospy.init_node("wall_time_test")
+    rostest.rosrun("vibe_sim", "wall_time_test", WallTimeTest, sys.argv)
