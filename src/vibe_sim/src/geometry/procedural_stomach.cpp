@@ -18,7 +18,7 @@ namespace {
 constexpr double kNominalVolume = 0.75e-3;  // [m^3] of the shape below, unscaled
 constexpr double kBlend = 4.5e-3;           // [m]
 constexpr double kFlattening = 0.82;        // depth over width of a section
-constexpr double kSpacing = 3e-3;           // [m] between balls
+constexpr double kSpacing = 5e-3;           // [m] between balls, at which a row of them has no ripple
 constexpr double kCell = 4e-3;              // [m] of the grid that finds the surface
 constexpr double kTubeRadius = 11e-3;       // [m] a scope of 6 mm radius passes with room for the wall
 
@@ -140,8 +140,8 @@ StomachShape makeStomachShape(double volume) {
   shape.landmarks.fundus = highest(shape.surface, body.front().head<3>(), 1.3 * body.front()[3]);
   shape.landmarks.incisura = balls->project(toMetres(kIncisuraSide).head<3>());
   shape.landmarks.pylorus = toMetres(kPylorus).head<3>();
-  // the outermost ball has no neighbour outside and ends low: the rim is two balls further in
-  shape.oesophagus = makeEnd(gullet[2], gullet[3]);
+  // the outermost ball has no neighbour outside and ends low: the rim is at the next one
+  shape.oesophagus = makeEnd(gullet[1], gullet[2]);
   shape.duodenum = makeEnd(body[body.size() - 2], body[body.size() - 3]);
 
   const double factor = std::cbrt(volume / enclosedVolume(shape.surface));

@@ -29,6 +29,7 @@ class BallUnion {
     double weight;
   };
 
+  Eigen::Vector3d offset(const Eigen::Vector3d& p, const Ball& ball) const;  ///< D (p - c)
   double evaluate(const Eigen::Vector3d& p, Eigen::Vector3d* gradient) const;
 
   double blend_;
