@@ -95,20 +95,30 @@ survivesInterrupt() {
 }
 check 'an interrupted session is summed up and leaves nothing' survivesInterrupt
 
+# signalProgram MARK SIGNAL PATTERN: sends the signal to the program of a session whose command line matches.
+signalProgram() {
+  local pid
+  for pid in $(processesWith "VIBE_TEST_MARK=$1"); do
+    if grep -qaz "$3" "/proc/$pid/cmdline"; then kill "-$2" "$pid" && return; fi
+  done
+  echo "no process $3"
+  return 1
+}
+
 cleansUpAfterKill() {
   local mark=killed-$$
   startSession "$mark" || return 1
+  # a program that hangs does not hear that it should end
+  signalProgram "$mark" STOP 'robot_state_publisher/robot_state_publisher$' || return 1
   kill -KILL "$session_pid"
   nobodyLeft "$mark" 60 && isRecorded "$scratch/$mark"
 }
 check 'a killed session leaves no process and a complete recording' cleansUpAfterKill
 
 namesTheDead() {
-  local mark=dead-$$ status=0 pid
+  local mark=dead-$$ status=0
   startSession "$mark" || return 1
-  for pid in $(processesWith "VIBE_TEST_MARK=$mark"); do
-    if grep -qaz 'lib/vibe_sim/vibe_trainee' "/proc/$pid/cmdline"; then kill -KILL "$pid"; fi
-  done
+  signalProgram "$mark" KILL 'lib/vibe_sim/vibe_trainee$' || return 1
   wait "$session_pid" || status=$?
   cat "$scratch/$mark.txt"
   [ "$status" -eq 1 ] && grep -q '^run: vibe_trainee died' "$scratch/$mark.txt" && nobodyLeft "$mark" 0
