@@ -79,7 +79,7 @@ signal.signal(signal.SIGINT, signal.SIG_DFL)
 os.execv(sys.argv[1], sys.argv[1:])' "$run" --headless --duration 3600 --output "$scratch/$1" >"$scratch/$1.txt" 2>&1 &
   session_pid=$!
   local deadline=$((SECONDS + 120))
-  until grep -q 'x real time' "$scratch/$1.txt"; do
+  until grep -qs 'x real time' "$scratch/$1.txt"; do
     kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$1.txt"; return 1; }
     sleep 0.2
   done
