@@ -90,7 +90,7 @@ class Marcher {
     if (is_new) {
       // kept off the nodes: several crossings there would coincide and make triangles without area
       const double t = std::clamp(values_[a] / (values_[a] - values_[b]), 0.05, 0.95);
-      mesh_.vertices.push_back((1.0 - t) * place(a) + t * place(b));
+      mesh_.vertices.emplace_back((1.0 - t) * place(a) + t * place(b));
     }
     return entry->second;
   }

@@ -71,6 +71,7 @@ class Remesher {
     for (const auto& e : mesh_.edges()) keyed.emplace_back(longest_first ? -mesh_.length(e) : mesh_.length(e), e);
     std::sort(keyed.begin(), keyed.end());
     std::vector<EditableMesh::Edge> edges;
+    edges.reserve(keyed.size());
     for (const auto& k : keyed) edges.push_back(k.second);
     return edges;
   }

@@ -113,6 +113,7 @@ void checkHoles(const SurfaceMesh& mesh, const std::vector<Side>& sides, const s
   });
   if (open.empty()) return;
   std::vector<int> loops;
+  loops.reserve(open.size());
   for (const int v : open) loops.push_back(groups.find(v));
   std::sort(loops.begin(), loops.end());
   loops.erase(std::unique(loops.begin(), loops.end()), loops.end());

@@ -17,7 +17,7 @@ using Matrix = Eigen::SparseMatrix<double>;
 
 Eigen::VectorXd solve(const Matrix& matrix, const Eigen::VectorXd& right) {
   const Eigen::SimplicialLDLT<Matrix> factor(matrix);
-  const Eigen::VectorXd x = factor.solve(right);
+  Eigen::VectorXd x = factor.solve(right);
   if (factor.info() != Eigen::Success || !x.allFinite()) {
     throw Error("the surface has triangles without area or unconnected parts; remesh it before it is labelled");
   }

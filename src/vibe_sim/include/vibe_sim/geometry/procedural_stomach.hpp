@@ -26,9 +26,9 @@ struct StomachShape {
 /// Makes a stomach of about this enclosed volume (within a percent; scale the final mesh to be exact).
 /// The frame is x anterior, y left, z cranial, with the origin inside the body. The tubes keep their size, so that
 /// the scope fits; all else scales with the cube root of the volume.
-/// Proportions: at 0.75 L about 20 cm long and 8 cm wide, within the fed stomachs measured by magnetic resonance
-/// imaging (0.36 to 1.10 L, length 184 to 226 mm, largest diameter 65 to 102 mm); greater curvature at least three
-/// times the lesser (Gray's Anatomy 1918: four to five times); pyloric canal 3 cm.
+/// Proportions: at 0.75 L about 200 mm long with a largest diameter of about 90 mm, within the fed stomachs measured by
+/// magnetic resonance imaging (0.36 to 1.10 L, length 184 to 226 mm, largest diameter 65 to 102 mm); greater curvature
+/// more than three times the lesser (Gray's Anatomy 1918: four to five times).
 /// @param volume 0.15e-3 to 4e-3 [m^3]
 /// @throws Error outside that range.
 StomachShape makeStomachShape(double volume);
