@@ -69,6 +69,7 @@ inline Organ plainOrgan(SurfaceMesh surface, double thickness) {
 inline Scene bareScene() {
   Scene scene;
   scene.tissue.damping_rate = 0;
+  scene.tissue.damping_time = 0;
   scene.tissue.substeps = 20;
   return scene;
 }

@@ -13,7 +13,8 @@ namespace vibe {
 /// Buffers of XpbdSolver.
 class XpbdScratch : public SolverScratch {
  public:
-  std::vector<double> old_x, old_y, old_z;  // positions before the sub-step [m]
+  std::vector<double> old_x, old_y, old_z;        // positions before the sub-step [m]
+  std::vector<double> ahead_x, ahead_y, ahead_z;  // positions a little ahead, where elastic forces are taken [m]
   SweepBuffers buffers;
   ClusterSweep sweep{};
   ClusterSweepFunction sweep_function = nullptr;

@@ -16,7 +16,9 @@ namespace vibe {
 std::unique_ptr<SolverScratch> XpbdSolver::makeScratch(const Model& model) const {
   auto scratch = std::make_unique<XpbdScratch>();
   const std::size_t n = static_cast<std::size_t>(model.particle_count);
-  for (auto* v : {&scratch->old_x, &scratch->old_y, &scratch->old_z}) v->resize(n);
+  for (auto* v :
+       {&scratch->old_x, &scratch->old_y, &scratch->old_z, &scratch->ahead_x, &scratch->ahead_y, &scratch->ahead_z})
+    v->resize(n);
   scratch->buffers = makeSweepBuffers(tissue_->clusters());
   scratch->sweep_function = chooseClusterSweep();
   if (model.tool) scratch->collision = std::make_unique<ToolCollision>(*model.tool);

@@ -10,9 +10,9 @@ namespace vibe {
 
 namespace {
 
-constexpr int kGrain = 64;                 // cluster groups per piece of parallel work
-constexpr int kCandidateInterval = 10;     // sub-steps between searches for contact candidates
-constexpr double kDepenetrationSpeed = 1;  // a particle found inside the tool is pushed out no faster [m/s]
+constexpr int kGrain = 64;                   // cluster groups per piece of parallel work
+constexpr int kCandidateInterval = 10;       // sub-steps between searches for contact candidates
+constexpr double kDepenetrationSpeed = 0.1;  // a particle found inside the tool is pushed out no faster [m/s]
 constexpr double kMostSpeed = 50;  // far above any wave in tissue; beyond it a speed is limited and reported [m/s]
 
 }  // namespace
@@ -29,11 +29,16 @@ XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const T
       scratch_(static_cast<XpbdScratch&>(workspace.solverScratch())),
       h_(model.scene.step_period / model.scene.tissue.substeps),
       bed_stiffness_(model.scene.bed ? model.scene.bed->stiffness : 0),
+      damping_time_(model.scene.tissue.damping_time),
       weight_(model.unbalanced_gravity) {
   if (motion_ != nullptr) motion_->linkPoses(0, scratch_.poses);
   loadOrientations(clusters, state, scratch_.buffers);
   scratch_.sweep = bindSweep(clusters, state, scratch_.buffers);
   scratch_.sweep.substep = h_;
+  scratch_.sweep.x = scratch_.ahead_x.data();
+  scratch_.sweep.y = scratch_.ahead_y.data();
+  scratch_.sweep.z = scratch_.ahead_z.data();
+  for (int i = 0; i < model.particle_count; ++i) lookAhead(i);
 }
 
 void XpbdSubstep::run(int index, int count) {
@@ -43,7 +48,7 @@ void XpbdSubstep::run(int index, int count) {
   move();
   holdGrip();
   resolveContacts();
-  updateVelocities();
+  limitSpeeds();
 }
 
 void XpbdSubstep::moveTool(int index, int count) {
@@ -78,8 +83,8 @@ void XpbdSubstep::updateGas() {
   double volume = 0;
   for (int i = 0; i < model_.particle_count; ++i) {
     const int lane = clusters_.lane_of_particle[i];
-    volume += scratch_.buffers.area_x[lane] * state_.x[i] + scratch_.buffers.area_y[lane] * state_.y[i] +
-              scratch_.buffers.area_z[lane] * state_.z[i];
+    volume += scratch_.buffers.area_x[lane] * scratch_.ahead_x[i] +
+              scratch_.buffers.area_y[lane] * scratch_.ahead_y[i] + scratch_.buffers.area_z[lane] * scratch_.ahead_z[i];
   }
   volume /= 3;
   if (insufflator_on_) state_.gas_amount = insufflate(*model_.scene.gas, state_.gas_amount, volume, h_);
@@ -118,9 +123,12 @@ void XpbdSubstep::moveParticle(int i, double decay) {
   const double ax = weight_.x() + spring * (rest.x() - state_.x[i]) + push * b.area_x[lane];
   const double ay = weight_.y() + spring * (rest.y() - state_.y[i]) + push * b.area_y[lane];
   const double az = weight_.z() + spring * (rest.z() - state_.z[i]) + push * b.area_z[lane];
-  state_.x[i] += dx + h_ * (state_.vx[i] * decay + h_ * ax);
-  state_.y[i] += dy + h_ * (state_.vy[i] * decay + h_ * ay);
-  state_.z[i] += dz + h_ * (state_.vz[i] * decay + h_ * az);
+  state_.vx[i] = state_.vx[i] * decay + (dx / h_ + h_ * ax);
+  state_.vy[i] = state_.vy[i] * decay + (dy / h_ + h_ * ay);
+  state_.vz[i] = state_.vz[i] * decay + (dz / h_ + h_ * az);
+  state_.x[i] += h_ * state_.vx[i];
+  state_.y[i] += h_ * state_.vy[i];
+  state_.z[i] += h_ * state_.vz[i];
 }
 
 void XpbdSubstep::holdGrip() {
@@ -131,9 +139,7 @@ void XpbdSubstep::holdGrip() {
     const int i = point.particle;
     const Eigen::Vector3d target = helix * point.local;
     const Eigen::Vector3d shift = target - Eigen::Vector3d(state_.x[i], state_.y[i], state_.z[i]);
-    state_.x[i] = target.x();
-    state_.y[i] = target.y();
-    state_.z[i] = target.z();
+    shiftParticle(i, shift);
     const Eigen::Vector3d force = model_.mass[i] / (h_ * h_) * shift;  // tool on tissue
     report_.grip_force -= force;
     pushTool(-force, target, target - old_helix * point.local);
@@ -144,31 +150,37 @@ void XpbdSubstep::resolveContacts() {
   if (motion_ == nullptr || scratch_.collision->candidateCount() == 0) return;
   const auto& contacts = scratch_.collision->findContacts(scratch_.poses, state_.x.data(), state_.y.data(),
                                                           state_.z.data(), model_.particle_radius);
-  const double friction = model_.scene.scope->friction;
   int touched = 0;
-  for (const Contact& contact : contacts) {
-    const int i = contact.particle;
-    if (model_.inverse_mass[i] == 0) continue;
+  for (std::size_t first = 0, next; first < contacts.size(); first = next) {
+    // contacts come by particle; where shapes overlap, the deepest leads out of both
+    std::size_t deepest = first;
+    for (next = first + 1; next < contacts.size() && contacts[next].particle == contacts[first].particle; ++next)
+      if (contacts[next].distance < contacts[deepest].distance) deepest = next;
+    if (model_.inverse_mass[contacts[deepest].particle] == 0) continue;
+    pushOut(contacts[deepest]);
     ++touched;
-    const int link = model_.tool->shapes()[contact.shape].link;
-    const Eigen::Vector3d p(state_.x[i], state_.y[i], state_.z[i]);
-    const Eigen::Vector3d old_p(scratch_.old_x[i], scratch_.old_y[i], scratch_.old_z[i]);
-    const Eigen::Vector3d tool_step = p - scratch_.old_poses[link] * (scratch_.poses[link].inverse() * p);
-    const Eigen::Vector3d slide = p - old_p - tool_step;
-    const double normal_slide = contact.normal.dot(slide);
-    // what the particle came closer in this sub-step is undone at once, what it was inside before at a limited speed
-    const double depth =
-        std::min(model_.particle_radius - contact.distance, std::max(-normal_slide, 0.0) + kDepenetrationSpeed * h_);
-    Eigen::Vector3d shift = depth * contact.normal;
-    const Eigen::Vector3d tangential = slide - normal_slide * contact.normal;
-    const double sliding = tangential.norm();
-    if (sliding > 0) shift -= std::min(1.0, friction * depth / sliding) * tangential;
-    state_.x[i] += shift.x();
-    state_.y[i] += shift.y();
-    state_.z[i] += shift.z();
-    pushTool(-model_.mass[i] / (h_ * h_) * shift, p, tool_step);
   }
   report_.contact_count = std::max(report_.contact_count, touched);
+}
+
+// Non-penetration and Coulomb friction by displacement: what the particle came closer in this sub-step is undone at
+// once, what it was inside before at a limited speed.
+void XpbdSubstep::pushOut(const Contact& contact) {
+  const int i = contact.particle;
+  const int link = model_.tool->shapes()[contact.shape].link;
+  const Eigen::Vector3d p(state_.x[i], state_.y[i], state_.z[i]);
+  const Eigen::Vector3d old_p(scratch_.old_x[i], scratch_.old_y[i], scratch_.old_z[i]);
+  const Eigen::Vector3d tool_step = p - scratch_.old_poses[link] * (scratch_.poses[link].inverse() * p);
+  const Eigen::Vector3d slide = p - old_p - tool_step;
+  const double normal_slide = contact.normal.dot(slide);
+  const double depth =
+      std::min(model_.particle_radius - contact.distance, std::max(-normal_slide, 0.0) + kDepenetrationSpeed * h_);
+  Eigen::Vector3d shift = depth * contact.normal;
+  const Eigen::Vector3d tangential = slide - normal_slide * contact.normal;
+  const double sliding = tangential.norm();
+  if (sliding > 0) shift -= std::min(1.0, model_.scene.scope->friction * depth / sliding) * tangential;
+  shiftParticle(i, shift);
+  pushTool(-model_.mass[i] / (h_ * h_) * shift, p, tool_step);
 }
 
 // force: tissue on tool [N] at a point in world; tool_step: how far the tool moved there in this sub-step [m]
@@ -178,27 +190,39 @@ void XpbdSubstep::pushTool(const Eigen::Vector3d& force, const Eigen::Vector3d& 
   state_.energy.tool_work -= force.dot(tool_step);
 }
 
-void XpbdSubstep::updateVelocities() {
-  const double inverse_h = 1 / h_, most_travel = kMostSpeed * h_;
+// A displacement imposed on a particle is an impulse.
+void XpbdSubstep::shiftParticle(int i, const Eigen::Vector3d& shift) {
+  state_.x[i] += shift.x();
+  state_.y[i] += shift.y();
+  state_.z[i] += shift.z();
+  state_.vx[i] += shift.x() / h_;
+  state_.vy[i] += shift.y() / h_;
+  state_.vz[i] += shift.z() / h_;
+}
+
+void XpbdSubstep::limitSpeeds() {
   for (int i = 0; i < model_.particle_count; ++i) {
-    if (model_.inverse_mass[i] == 0) continue;
-    double ux = state_.x[i] - scratch_.old_x[i], uy = state_.y[i] - scratch_.old_y[i],
-           uz = state_.z[i] - scratch_.old_z[i];
-    const double travel2 = ux * ux + uy * uy + uz * uz;
-    if (!(travel2 <= most_travel * most_travel)) {
-      const double scale = std::isfinite(travel2) ? most_travel / std::sqrt(travel2) : 0;
-      ux = scale == 0 ? 0 : ux * scale;
-      uy = scale == 0 ? 0 : uy * scale;
-      uz = scale == 0 ? 0 : uz * scale;
-      state_.x[i] = scratch_.old_x[i] + ux;
-      state_.y[i] = scratch_.old_y[i] + uy;
-      state_.z[i] = scratch_.old_z[i] + uz;
-      ++report_.speed_limited;
-    }
-    state_.vx[i] = ux * inverse_h;
-    state_.vy[i] = uy * inverse_h;
-    state_.vz[i] = uz * inverse_h;
+    const double speed2 = state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i];
+    if (!(speed2 <= kMostSpeed * kMostSpeed)) limitSpeed(i, speed2);
+    lookAhead(i);
   }
+}
+
+// Also undoes a velocity that is no number.
+void XpbdSubstep::limitSpeed(int i, double speed2) {
+  const double scale = std::isfinite(speed2) ? kMostSpeed / std::sqrt(speed2) : 0;
+  for (double* v : {&state_.vx[i], &state_.vy[i], &state_.vz[i]}) *v = scale == 0 ? 0 : *v * scale;
+  state_.x[i] = scratch_.old_x[i] + h_ * state_.vx[i];
+  state_.y[i] = scratch_.old_y[i] + h_ * state_.vy[i];
+  state_.z[i] = scratch_.old_z[i] + h_ * state_.vz[i];
+  ++report_.speed_limited;
+}
+
+// A force K (x + tau v) is the elastic force and a viscous one with the time constant tau.
+void XpbdSubstep::lookAhead(int i) {
+  scratch_.ahead_x[i] = state_.x[i] + damping_time_ * state_.vx[i];
+  scratch_.ahead_y[i] = state_.y[i] + damping_time_ * state_.vy[i];
+  scratch_.ahead_z[i] = state_.z[i] + damping_time_ * state_.vz[i];
 }
 
 void XpbdSubstep::accountDamping(double decay) {

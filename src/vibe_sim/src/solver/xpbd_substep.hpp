@@ -30,7 +30,11 @@ class XpbdSubstep {
   void moveParticle(int i, double decay);
   void holdGrip();
   void resolveContacts();
-  void updateVelocities();
+  void pushOut(const Contact& contact);
+  void shiftParticle(int i, const Eigen::Vector3d& shift);
+  void limitSpeeds();
+  void limitSpeed(int i, double speed2);
+  void lookAhead(int i);
   void pushTool(const Eigen::Vector3d& impulse_force, const Eigen::Vector3d& at, const Eigen::Vector3d& tool_step);
   void accountDamping(double decay);
 
@@ -44,6 +48,7 @@ class XpbdSubstep {
   XpbdScratch& scratch_;
   double h_;                // sub-step [s]
   double bed_stiffness_;    // [Pa/m]
+  double damping_time_;     // [s]
   Eigen::Vector3d weight_;  // acceleration that is not balanced by the bed [m/s^2]
 };
 

@@ -82,11 +82,13 @@ class Builder {
 
   void fillLane(int lane, int centre, bool padding) {
     const std::vector<int>& ring = rings_[centre];
+    // relative to the centre, as the kernel sees it: far from the origin nothing is lost to round-off
+    const Eigen::Vector3d& origin = organ_.surface.vertices[centre];
     double mass = masses_[centre];
-    Eigen::Vector3d centre_of_mass = masses_[centre] * organ_.surface.vertices[centre];
+    Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();
     for (int member : ring) {
       mass += masses_[member];
-      centre_of_mass += masses_[member] * organ_.surface.vertices[member];
+      centre_of_mass += masses_[member] * (organ_.surface.vertices[member] - origin);
     }
     centre_of_mass /= mass;
     double spread = 0;
@@ -97,7 +99,7 @@ class Builder {
       const bool real = row <= static_cast<int>(ring.size());
       const int member = row == 0 ? centre : (real ? ring[row - 1] : ring.back());
       set_.particle[slot] = member;
-      const Eigen::Vector3d r = organ_.surface.vertices[member] - centre_of_mass;
+      const Eigen::Vector3d r = organ_.surface.vertices[member] - origin - centre_of_mass;
       set_.rest_x[slot] = r.x();
       set_.rest_y[slot] = r.y();
       set_.rest_z[slot] = r.z();
@@ -144,7 +146,8 @@ ClusterSet buildClusters(const Organ& organ, const TissueScene& tissue, const st
   return Builder(organ, tissue, masses, areas).build();
 }
 
-double setGains(ClusterSet& set, double substep) {
+double setGains(ClusterSet& set, double substep, double damping_time) {
+  const double most_total = kMostTotalGain / (1 + 2 * damping_time / substep);
   double worst = 1;
   for (int i = 0; i < set.particle_count; ++i) {
     const int lane = set.lane_of_particle[i];
@@ -155,7 +158,7 @@ double setGains(ClusterSet& set, double substep) {
       most_clusters = std::max(most_clusters, set.slot_offset[member + 1] - set.slot_offset[member]);
     }
     const double asked = substep * substep / set.compliance[lane];
-    const double limit = kMostTotalGain / most_clusters;
+    const double limit = most_total / most_clusters;
     set.gain[lane] = std::min(asked, limit);
     set.compliance[lane] = substep * substep / set.gain[lane];
     worst = std::min(worst, set.gain[lane] / asked);

@@ -13,7 +13,7 @@ namespace vibe {
 ShapeMatching::ShapeMatching(const Organ& organ, const TissueScene& tissue, const std::vector<double>& masses,
                              const std::vector<double>& areas, double substep)
     : clusters_(buildClusters(organ, tissue, masses, areas)), masses_(masses), substep_(substep) {
-  stiffness_ratio_ = setGains(clusters_, substep);
+  stiffness_ratio_ = setGains(clusters_, substep, tissue.damping_time);
 }
 
 SweepBuffers makeSweepBuffers(const ClusterSet& clusters) {

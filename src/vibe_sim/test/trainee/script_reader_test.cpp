@@ -123,7 +123,7 @@ TEST(ScriptReader, DamagedScriptsGiveAScriptOrAnErrorWithItsPlace) {
   int good = 0, refused = 0;
   for (const char* name : {"expert", "novice", "demo/smoke"}) {
     std::stringstream text;
-    text << std::ifstream(std::string(VIBE_SIM_SOURCE_DIR) + "/scripts_trainee/" + name + ".yaml").rdbuf();
+    text << std::ifstream(std::string(VIBE_SIM_SOURCE_DIR) + "/trainees/" + name + ".yaml").rdbuf();
     for (int k = 0; k < 1000; ++k) {
       const std::string damaged = mutator.mutate(text.str());
       const std::string message = errorOf([&] { read(damaged); });

@@ -23,7 +23,7 @@ const std::array<JointLimits, kJointCount>& toolLimits() {
 
 class ShippedScript : public ::testing::TestWithParam<const char*> {
  protected:
-  TraineeScript script_ = TraineeScript::load(std::string(VIBE_SIM_SOURCE_DIR) + "/scripts_trainee/" + GetParam());
+  TraineeScript script_ = TraineeScript::load(std::string(VIBE_SIM_SOURCE_DIR) + "/trainees/" + GetParam());
 };
 
 /// Tremor may carry a joint this far beyond an end of its range, where the simulator stops it [m], [rad].

@@ -12,7 +12,7 @@
 namespace vibe {
 namespace {
 
-const std::string kScripts = std::string(VIBE_SIM_SOURCE_DIR) + "/scripts_trainee/";
+const std::string kScripts = std::string(VIBE_SIM_SOURCE_DIR) + "/trainees/";
 
 /// A script with the given actions, one per line.
 TraineeScript script(const std::string& actions, const std::string& head = "") {

@@ -13,13 +13,14 @@ namespace vibe {
 ClusterSet buildClusters(const Organ& organ, const TissueScene& tissue, const std::vector<double>& masses,
                          const std::vector<double>& areas);
 
-/// Sets gain = substep^2 / compliance, limited where a member of the cluster would otherwise be moved by more than
-/// kMostTotalGain in one sweep, and the compliance accordingly.
+/// Sets gain = substep^2 / compliance, limited where a member of the cluster would otherwise be moved too far in one
+/// sweep, and the compliance accordingly: explicit integration of a stiffness with a viscous part of time constant
+/// damping_time is stable while the gains of all clusters of a particle sum to less than
+/// 4 / (1 + 2 damping_time / substep); kMostTotalGain takes the place of the 4.
 /// @return the smallest of simulated over asked stiffness, 1 if nothing was limited
-double setGains(ClusterSet& clusters, double substep);
+double setGains(ClusterSet& clusters, double substep, double damping_time);
 
-/// Sum of the gains of all clusters of a particle: explicit integration is stable below 4; the rest is margin for
-/// stretched states, contacts and grips.
+/// Leaves a margin for stretched states, contacts and grips.
 constexpr double kMostTotalGain = 3.2;
 
 }  // namespace vibe
