@@ -6,7 +6,7 @@
 
 namespace vibe {
 
-MasterWatch::MasterWatch(ros::NodeHandle handle, const Publishers& publishers, double timeout)
+MasterWatch::MasterWatch(const ros::NodeHandle& handle, const Publishers& publishers, double timeout)
     : publishers_(publishers), timeout_(timeout) {
   timer_ = handle.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { check(); });
 }

@@ -13,7 +13,7 @@ namespace vibe {
 class MasterWatch {
  public:
   /// @param timeout  how long to go on without master and listeners [s]
-  MasterWatch(ros::NodeHandle handle, const Publishers& publishers, double timeout);
+  MasterWatch(const ros::NodeHandle& handle, const Publishers& publishers, double timeout);
 
   bool isHopeless() const { return hopeless_; }
 

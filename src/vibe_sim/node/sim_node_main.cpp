@@ -1,8 +1,8 @@
 // sim_node: the simulator as a ROS node. Messages in (inputs), steps (stepping), messages out (publishers).
 
 #include <ros/ros.h>
-#include <signal.h>
 
+#include <csignal>
 #include <cstdio>
 
 #include "inputs.hpp"

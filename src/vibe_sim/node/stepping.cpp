@@ -31,7 +31,7 @@ std::int64_t startOrigin(const Parameters& parameters) {
 
 }  // namespace
 
-Stepper::Stepper(const Parameters& parameters, std::shared_ptr<const Model> model, InputLatch& latch,
+Stepper::Stepper(const Parameters& parameters, const std::shared_ptr<const Model>& model, InputLatch& latch,
                  Publishers& publishers)
     : parameters_(parameters),
       latch_(latch),

@@ -36,7 +36,8 @@ enum class Outcome {
 /// answer.
 class Stepper {
  public:
-  Stepper(const Parameters& parameters, std::shared_ptr<const Model> model, InputLatch& latch, Publishers& publishers);
+  Stepper(const Parameters& parameters, const std::shared_ptr<const Model>& model, InputLatch& latch,
+          Publishers& publishers);
   ~Stepper();
 
   void start();

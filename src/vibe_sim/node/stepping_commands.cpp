@@ -123,7 +123,7 @@ Reply Stepper::saveSnapshot(const std::string& file) {
   // copying is quick, writing may not be: only the copy holds up the stepping
   std::shared_ptr<const Model> model;
   State state;
-  const Reply copied = call([&]() -> Reply {
+  Reply copied = call([&]() -> Reply {
     model = session_.model;
     state = session_.state;
     return {true, ""};

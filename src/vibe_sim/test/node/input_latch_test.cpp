@@ -32,99 +32,99 @@ InputSample overstitchAt(double advance, std::int64_t stamp) {
 
 class InputLatchTest : public testing::Test {
  protected:
-  InputLatch latch_;
-  Model model_;  // without a tool
-  StepInput input_;
+  InputLatch latch;
+  Model model;  // without a tool
+  StepInput input;
 };
 
 TEST_F(InputLatchTest, futureSamplesWaitUntilTheyAreDue) {
-  latch_.push(scopeAt(0.1, 100));
-  latch_.push(scopeAt(0.2, 200));
-  latch_.apply(99, model_, input_);
-  EXPECT_EQ(input_.joints[Insertion], 0.0);
-  latch_.apply(100, model_, input_);
-  EXPECT_EQ(input_.joints[Insertion], 0.1);
-  latch_.apply(1000, model_, input_);
-  EXPECT_EQ(input_.joints[Insertion], 0.2);
+  latch.push(scopeAt(0.1, 100));
+  latch.push(scopeAt(0.2, 200));
+  latch.apply(99, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.0);
+  latch.apply(100, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.1);
+  latch.apply(1000, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.2);
 }
 
 TEST_F(InputLatchTest, lastValueStaysInForce) {
-  latch_.push(buttonsAt(1, 10));
-  latch_.apply(10, model_, input_);
-  latch_.apply(20, model_, input_);
-  EXPECT_EQ(input_.buttons[HelixGrab], 1);
+  latch.push(buttonsAt(1, 10));
+  latch.apply(10, model, input);
+  latch.apply(20, model, input);
+  EXPECT_EQ(input.buttons[HelixGrab], 1);
 }
 
 TEST_F(InputLatchTest, stampZeroAndThePastCountAsNowInTheOrderOfArrival) {
-  latch_.apply(500, model_, input_);
-  latch_.push(scopeAt(0.1, 400));
-  latch_.push(scopeAt(0.2, 0));
-  latch_.push(scopeAt(0.3, 300));
-  latch_.apply(501, model_, input_);
-  EXPECT_EQ(input_.joints[Insertion], 0.3);
+  latch.apply(500, model, input);
+  latch.push(scopeAt(0.1, 400));
+  latch.push(scopeAt(0.2, 0));
+  latch.push(scopeAt(0.3, 300));
+  latch.apply(501, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.3);
 }
 
 TEST_F(InputLatchTest, samplesOutOfOrderAreAppliedInTheOrderOfStamps) {
-  latch_.push(scopeAt(0.3, 300));
-  latch_.push(scopeAt(0.1, 100));
-  latch_.push(scopeAt(0.2, 200));
-  latch_.apply(250, model_, input_);
-  EXPECT_EQ(input_.joints[Insertion], 0.2);
+  latch.push(scopeAt(0.3, 300));
+  latch.push(scopeAt(0.1, 100));
+  latch.push(scopeAt(0.2, 200));
+  latch.apply(250, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.2);
 }
 
 TEST_F(InputLatchTest, aRepeatedStampReplacesWhatWaits) {
-  for (int i = 0; i < 10000; ++i) EXPECT_TRUE(latch_.push(scopeAt(0.001 * i, 100)));
-  latch_.apply(100, model_, input_);
-  EXPECT_DOUBLE_EQ(input_.joints[Insertion], 9.999);
+  for (int i = 0; i < 10000; ++i) EXPECT_TRUE(latch.push(scopeAt(0.001 * i, 100)));
+  latch.apply(100, model, input);
+  EXPECT_DOUBLE_EQ(input.joints[Insertion], 9.999);
 }
 
 TEST_F(InputLatchTest, channelsTouchTheirOwnValuesOnly) {
-  input_.joints = {1, 2, 3, 4, 5, 6, 7};
-  latch_.push(overstitchAt(0.01, 1));
-  latch_.apply(1, model_, input_);
-  EXPECT_EQ(input_.joints, (std::array<double, kJointCount>{1, 2, 3, 4, 0.01, 0, 0}));
-  latch_.push(scopeAt(0.02, 2));
-  latch_.apply(2, model_, input_);
-  EXPECT_EQ(input_.joints, (std::array<double, kJointCount>{0.02, 0, 0, 0, 0.01, 0, 0}));
+  input.joints = {1, 2, 3, 4, 5, 6, 7};
+  latch.push(overstitchAt(0.01, 1));
+  latch.apply(1, model, input);
+  EXPECT_EQ(input.joints, (std::array<double, kJointCount>{1, 2, 3, 4, 0.01, 0, 0}));
+  latch.push(scopeAt(0.02, 2));
+  latch.apply(2, model, input);
+  EXPECT_EQ(input.joints, (std::array<double, kJointCount>{0.02, 0, 0, 0, 0.01, 0, 0}));
 }
 
 TEST_F(InputLatchTest, aFullChannelRefusesAndTheOthersDoNotCare) {
   for (std::size_t i = 0; i < InputLatch::kCapacity; ++i) {
-    ASSERT_TRUE(latch_.push(scopeAt(0, static_cast<std::int64_t>(1000 + i))));
+    ASSERT_TRUE(latch.push(scopeAt(0, static_cast<std::int64_t>(1000 + i))));
   }
-  EXPECT_FALSE(latch_.push(scopeAt(0, 999999)));
-  EXPECT_TRUE(latch_.push(buttonsAt(1, 999999)));
-  latch_.apply(1000, model_, input_);
-  EXPECT_TRUE(latch_.push(scopeAt(0, 999999)));
+  EXPECT_FALSE(latch.push(scopeAt(0, 999999)));
+  EXPECT_TRUE(latch.push(buttonsAt(1, 999999)));
+  latch.apply(1000, model, input);
+  EXPECT_TRUE(latch.push(scopeAt(0, 999999)));
 }
 
 TEST_F(InputLatchTest, lockstepKnowsATimeWhenEveryChannelHasReachedIt) {
-  EXPECT_FALSE(latch_.knownUntil(100));
-  latch_.push(scopeAt(0, 100));
-  latch_.push(overstitchAt(0, 105));
-  EXPECT_EQ(latch_.missingAt(100), "scope/buttons");
-  latch_.push(buttonsAt(0, 99));
-  EXPECT_FALSE(latch_.knownUntil(100));
-  latch_.push(buttonsAt(0, 100));
-  EXPECT_TRUE(latch_.knownUntil(100));
-  EXPECT_FALSE(latch_.knownUntil(101));
-  EXPECT_EQ(latch_.missingAt(101), "scope/measured_js, scope/buttons");
+  EXPECT_FALSE(latch.knownUntil(100));
+  latch.push(scopeAt(0, 100));
+  latch.push(overstitchAt(0, 105));
+  EXPECT_EQ(latch.missingAt(100), "scope/buttons");
+  latch.push(buttonsAt(0, 99));
+  EXPECT_FALSE(latch.knownUntil(100));
+  latch.push(buttonsAt(0, 100));
+  EXPECT_TRUE(latch.knownUntil(100));
+  EXPECT_FALSE(latch.knownUntil(101));
+  EXPECT_EQ(latch.missingAt(101), "scope/measured_js, scope/buttons");
   // applying does not make it forget what it knows
-  latch_.apply(100, model_, input_);
-  EXPECT_TRUE(latch_.knownUntil(100));
-  latch_.clear();
-  EXPECT_FALSE(latch_.knownUntil(100));
+  latch.apply(100, model, input);
+  EXPECT_TRUE(latch.knownUntil(100));
+  latch.clear();
+  EXPECT_FALSE(latch.knownUntil(100));
 }
 
 TEST_F(InputLatchTest, aTipTargetWithoutAScopeIsReportedAndChangesNothing) {
   InputSample sample = scopeAt(0, 1);
   sample.target = ScopeTarget::TipInWorld;
-  latch_.push(sample);
-  input_.joints[Insertion] = 0.05;
-  const std::vector<std::string> sentences = latch_.apply(1, model_, input_);
+  latch.push(sample);
+  input.joints[Insertion] = 0.05;
+  const std::vector<std::string> sentences = latch.apply(1, model, input);
   ASSERT_EQ(sentences.size(), 1u);
   EXPECT_NE(sentences[0].find("no scope"), std::string::npos);
-  EXPECT_EQ(input_.joints[Insertion], 0.05);
+  EXPECT_EQ(input.joints[Insertion], 0.05);
 }
 
 }  // namespace
