@@ -22,7 +22,7 @@ class WallTimeTest(unittest.TestCase):
         cls.events = Recorder("procedure/events", ProcedureEvent)
         cls.performance = Recorder("performance", SolverStatistics)
         cls.joints = Recorder("scope/measured_js", JointState)
-        cls.simulator = Program("sim_node", "sim_node", scene=scene("balloon.yaml"))
+        cls.simulator = Program("sim_node", "sim_node", scene=scene("light.yaml"))
         rospy.wait_for_service("pause", 20)
         cls.pause = rospy.ServiceProxy("pause", SetBool)
         cls.reset = rospy.ServiceProxy("reset", Reset)
