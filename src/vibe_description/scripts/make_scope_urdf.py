@@ -19,7 +19,6 @@ TIP_LENGTH = 0.016     # [D] rigid end of the endoscope that carries the cap
 CAP_RADIUS = 0.0079    # [S]
 CAP_LENGTH = 0.012     # [D]
 ARM_REACH = 0.0184     # [S] of the needle arm's bracket beyond the endoscope
-BRACKET_RADIUS = 0.004 # [D] of the round bar that stands for the bracket in collisions
 NEEDLE_OPEN = (0.0148, -0.0025, 0.0134)  # [D] the needle's point in scope_tip, within 23.3 mm of the whole device [S]
 SEGMENT_LENGTH = BEND_LENGTH / SEGMENTS
 STRAIGHT_LENGTH = BEND_LENGTH - SEGMENT_LENGTH / 2 + TIP_LENGTH  # from the first bending joint to the tip
@@ -97,10 +96,10 @@ class Box:
         return f'<box size="{vector(self.size)}"/>'
 
 
-def capsule_x(start, end, radius, z=0):
+def capsule_x(start, end, radius):
     """Round bar from start to end along x, as the three primitives that URDF has for it."""
-    bar = Cylinder(radius, end - start, ((start + end) / 2, 0, z))
-    return [bar, Sphere(radius, (start, 0, z)), Sphere(radius, (end, 0, z))]
+    bar = Cylinder(radius, end - start, ((start + end) / 2, 0, 0))
+    return [bar, Sphere(radius, (start, 0, 0)), Sphere(radius, (end, 0, 0))]
 
 
 class Body:
@@ -237,10 +236,8 @@ def add_cap(urdf):
     ring = Cylinder(CAP_RADIUS, CAP_LENGTH, (-CAP_LENGTH / 2, 0, 0), colour="steel")
     face = Cylinder(SCOPE_RADIUS, 0.0002, (0.0001, 0, 0))
     bracket = Box(bracket_size, bracket_at)
-    # tissue is met at its particles, 4 mm apart: a collision shape that is thin or sharp would slip between them
-    blunt = (capsule_x(-CAP_LENGTH, -CAP_RADIUS / 2, CAP_RADIUS) +
-             capsule_x(0, ARM_REACH - BRACKET_RADIUS, BRACKET_RADIUS, CAP_RADIUS - BRACKET_RADIUS))
-    urdf.link("device_cap", body, [ring, face, bracket], blunt,
+    # tissue is met at its particles, some 4 mm apart: the thin bracket would slip between them and has no collision shape
+    urdf.link("device_cap", body, [ring, face, bracket], capsule_x(-CAP_LENGTH, -CAP_RADIUS, CAP_RADIUS),
               note="suturing device: ring around the tip, bracket of the needle arm on the upper side")
 
 

@@ -44,6 +44,7 @@ std::uint64_t hash(const State& state) {
   }
   h.addValue(state.helix_pressed);
   h.addValue(state.in_contact);
+  h.addValue(state.untouched_time);
   h.addValue(state.grip_force);
   return h.value();
 }

@@ -30,13 +30,14 @@ void storeForces(const Model& model, const StepReport& report, const std::vector
   state.contact_count = report.contact_count;
 }
 
-void reportContact(int contact_count, State& state, std::vector<Event>& events) {
+void reportContact(int contact_count, double dt, State& state, std::vector<Event>& events) {
   const bool touching = contact_count > 0;
   if (touching && !state.in_contact)
     addEvent(Event::Kind::ContactBegin, state.time, contact_count, "The tool touches tissue.", events);
-  if (!touching && state.in_contact)
-    addEvent(Event::Kind::ContactEnd, state.time, 0, "The tool no longer touches tissue.", events);
-  state.in_contact = touching;
+  state.untouched_time = touching || !state.in_contact ? 0 : state.untouched_time + dt;
+  const bool ended = state.in_contact && state.untouched_time >= kContactGap;
+  if (ended) addEvent(Event::Kind::ContactEnd, state.time, 0, "The tool no longer touches tissue.", events);
+  state.in_contact = touching || (state.in_contact && !ended);
 }
 
 void reportPressure(const GasScene& gas, bool insufflator_on, State& state, std::vector<Event>& events) {
@@ -98,7 +99,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   if (model.tool) {
     motion->linkPoses(1, poses);
     storeForces(model, report, poses, state);
-    reportContact(report.contact_count, state, events);
+    reportContact(report.contact_count, dt, state, events);
     releaseOverloadedGrip(model, state, events);
   }
   if (model.scene.gas) reportPressure(*model.scene.gas, insufflator_on, state, events);

@@ -31,6 +31,7 @@ void transfer(Archive& archive, S& s) {
   archive.grip(s.grip);
   archive.value(s.helix_pressed);
   archive.value(s.in_contact);
+  archive.value(s.untouched_time);
   archive.vector(s.tool_force);
   archive.vector(s.tool_torque);
   archive.value(s.grip_force);

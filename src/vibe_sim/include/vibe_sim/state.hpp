@@ -21,6 +21,9 @@ struct EnergyAccount {
   double damping_loss = 0;  ///< taken out by viscous damping
 };
 
+/// Contacts interrupted for less than this are one contact [s].
+constexpr double kContactGap = 0.25;
+
 /// Everything that changes. A snapshot is a copy; equal states have equal futures.
 struct State {
   std::int64_t step = 0;
@@ -42,7 +45,8 @@ struct State {
   std::array<double, kJointCount> joints{};  ///< actual positions of the tool's inputs (limits applied) [m], [rad]
   std::vector<GripPoint> grip;               ///< what the helix holds; empty: nothing
   bool helix_pressed = false;                ///< button state of the last step, for edges
-  bool in_contact = false;
+  bool in_contact = false;                   ///< the tool touches tissue, or did within the last kContactGap
+  double untouched_time = 0;                 ///< since the tool last touched tissue, while in_contact [s]
 
   Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in scope_tip [N]
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about the origin of scope_tip, in scope_tip [N m]

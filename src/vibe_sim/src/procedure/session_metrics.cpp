@@ -29,7 +29,7 @@ void MetricsRecorder::record(const Model& model, const State& state, bool insuff
                              const std::vector<Event>& events) {
   const double dt = model.scene.step_period;
   metrics_.time = state.time;
-  if (state.in_contact) metrics_.contact_time += dt;
+  if (state.contact_count > 0) metrics_.contact_time += dt;
   if (!state.grip.empty()) metrics_.grip_time += dt;
   if (insufflator_on) metrics_.insufflation_time += dt;
   const Eigen::Vector3d tip = tipPosition(model, state);

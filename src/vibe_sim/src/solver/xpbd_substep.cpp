@@ -156,7 +156,8 @@ void XpbdSubstep::resolveContacts() {
     std::size_t deepest = first;
     for (next = first + 1; next < contacts.size() && contacts[next].particle == contacts[first].particle; ++next)
       if (contacts[next].distance < contacts[deepest].distance) deepest = next;
-    if (model_.inverse_mass[contacts[deepest].particle] == 0) continue;
+    // the ends are open where the organ goes on: the scope passes through their closing surface
+    if (model_.organ.end[contacts[deepest].particle] != End::None) continue;
     pushOut(contacts[deepest]);
     ++touched;
   }

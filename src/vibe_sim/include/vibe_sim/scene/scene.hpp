@@ -33,21 +33,21 @@ struct GeometryScene {
 struct TissueScene {
   std::string model = "shape_matching";  ///< a name in the registry of tissue models
   double density = 1050;                 ///< [kg/m^3]
-  double young_modulus = 100e3;           ///< [Pa]
+  double young_modulus = 100e3;          ///< [Pa]
   double poisson_ratio = 0.45;           ///< [1]
   std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
-  double damping_rate = 30;  ///< viscous damping of the velocity [1/s]
+  double damping_rate = 30;     ///< viscous damping of the velocity [1/s]
   double damping_time = 30e-6;  ///< viscosity of the wall over its stiffness; quiets short waves [s]
-  int substeps = 60;         ///< solver sub-steps per step
+  int substeps = 60;            ///< solver sub-steps per step
 };
 
 /// Gas in the lumen, isothermal. The insufflator raises or lowers the amount at a limited flow until the regulated
 /// pressure is reached; while it is off the amount is closed in.
 struct GasScene {
-  double initial_pressure = 0;       ///< gauge pressure at the start [Pa]
+  double initial_pressure = 0;          ///< gauge pressure at the start [Pa]
   double regulated_pressure = 1333.22;  ///< gauge set point of the insufflator [Pa]
-  double flow_limit = 5e-5;          ///< of the insufflator, at ambient pressure [m^3/s]
-  bool insufflator_on = false;       ///< at the start
+  double flow_limit = 5e-5;             ///< of the insufflator, at ambient pressure [m^3/s]
+  bool insufflator_on = false;          ///< at the start
 };
 
 struct GravityScene {
