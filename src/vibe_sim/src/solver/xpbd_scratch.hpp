@@ -15,6 +15,7 @@ class XpbdScratch : public SolverScratch {
  public:
   std::vector<double> old_x, old_y, old_z;        // positions before the sub-step [m]
   std::vector<double> ahead_x, ahead_y, ahead_z;  // positions a little ahead, where elastic forces are taken [m]
+  std::vector<double> bed_rate;                   // stiffness of each particle's piece of bed over its mass [1/s^2]
   SweepBuffers buffers;
   ClusterSweep sweep{};
   ClusterSweepFunction sweep_function = nullptr;

@@ -19,6 +19,8 @@ std::unique_ptr<SolverScratch> XpbdSolver::makeScratch(const Model& model) const
   for (auto* v :
        {&scratch->old_x, &scratch->old_y, &scratch->old_z, &scratch->ahead_x, &scratch->ahead_y, &scratch->ahead_z})
     v->resize(n);
+  const double bed = model.scene.bed ? model.scene.bed->stiffness : 0;
+  for (std::size_t i = 0; i < n; ++i) scratch->bed_rate.push_back(bed * model.area[i] * model.inverse_mass[i]);
   scratch->buffers = makeSweepBuffers(tissue_->clusters());
   scratch->sweep_function = chooseClusterSweep();
   if (model.tool) scratch->collision = std::make_unique<ToolCollision>(*model.tool);

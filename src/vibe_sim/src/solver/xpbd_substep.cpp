@@ -28,7 +28,7 @@ XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const T
       report_(report),
       scratch_(static_cast<XpbdScratch&>(workspace.solverScratch())),
       h_(model.scene.step_period / model.scene.tissue.substeps),
-      bed_stiffness_(model.scene.bed ? model.scene.bed->stiffness : 0),
+      inverse_h_(1 / h_),
       damping_time_(model.scene.tissue.damping_time),
       weight_(model.unbalanced_gravity) {
   if (motion_ != nullptr) motion_->linkPoses(0, scratch_.poses);
@@ -38,7 +38,6 @@ XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const T
   scratch_.sweep.x = scratch_.ahead_x.data();
   scratch_.sweep.y = scratch_.ahead_y.data();
   scratch_.sweep.z = scratch_.ahead_z.data();
-  for (int i = 0; i < model.particle_count; ++i) lookAhead(i);
 }
 
 void XpbdSubstep::run(int index, int count) {
@@ -74,6 +73,7 @@ void XpbdSubstep::findCandidates(int index, int count) {
 }
 
 void XpbdSubstep::matchShapes() {
+  lookAhead();
   workspace_.parallelFor(clusters_.group_count, kGrain,
                          [&](int first, int last) { scratch_.sweep_function(scratch_.sweep, first, last); });
 }
@@ -117,15 +117,15 @@ void XpbdSubstep::moveParticle(int i, double decay) {
     dz += b.dz[slot];
   }
   const int lane = clusters_.lane_of_particle[i];
-  const double spring = bed_stiffness_ * model_.area[i] * inverse_mass;
+  const double spring = scratch_.bed_rate[i];
   const double push = state_.pressure * inverse_mass;
   const Eigen::Vector3d& rest = model_.organ.surface.vertices[i];
   const double ax = weight_.x() + spring * (rest.x() - state_.x[i]) + push * b.area_x[lane];
   const double ay = weight_.y() + spring * (rest.y() - state_.y[i]) + push * b.area_y[lane];
   const double az = weight_.z() + spring * (rest.z() - state_.z[i]) + push * b.area_z[lane];
-  state_.vx[i] = state_.vx[i] * decay + (dx / h_ + h_ * ax);
-  state_.vy[i] = state_.vy[i] * decay + (dy / h_ + h_ * ay);
-  state_.vz[i] = state_.vz[i] * decay + (dz / h_ + h_ * az);
+  state_.vx[i] = state_.vx[i] * decay + (dx * inverse_h_ + h_ * ax);
+  state_.vy[i] = state_.vy[i] * decay + (dy * inverse_h_ + h_ * ay);
+  state_.vz[i] = state_.vz[i] * decay + (dz * inverse_h_ + h_ * az);
   state_.x[i] += h_ * state_.vx[i];
   state_.y[i] += h_ * state_.vy[i];
   state_.z[i] += h_ * state_.vz[i];
@@ -202,10 +202,10 @@ void XpbdSubstep::shiftParticle(int i, const Eigen::Vector3d& shift) {
 }
 
 void XpbdSubstep::limitSpeeds() {
+  const double *vx = state_.vx.data(), *vy = state_.vy.data(), *vz = state_.vz.data();
   for (int i = 0; i < model_.particle_count; ++i) {
-    const double speed2 = state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i];
+    const double speed2 = vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i];
     if (!(speed2 <= kMostSpeed * kMostSpeed)) limitSpeed(i, speed2);
-    lookAhead(i);
   }
 }
 
@@ -220,10 +220,17 @@ void XpbdSubstep::limitSpeed(int i, double speed2) {
 }
 
 // A force K (x + tau v) is the elastic force and a viscous one with the time constant tau.
-void XpbdSubstep::lookAhead(int i) {
-  scratch_.ahead_x[i] = state_.x[i] + damping_time_ * state_.vx[i];
-  scratch_.ahead_y[i] = state_.y[i] + damping_time_ * state_.vy[i];
-  scratch_.ahead_z[i] = state_.z[i] + damping_time_ * state_.vz[i];
+void XpbdSubstep::lookAhead() {
+  const double tau = damping_time_;
+  const std::size_t n = state_.x.size();
+  const auto ahead = [tau, n](const std::vector<double>& x, const std::vector<double>& v, std::vector<double>& out) {
+    const double *from = x.data(), *speed = v.data();
+    double* to = out.data();
+    for (std::size_t i = 0; i < n; ++i) to[i] = from[i] + tau * speed[i];
+  };
+  ahead(state_.x, state_.vx, scratch_.ahead_x);
+  ahead(state_.y, state_.vy, scratch_.ahead_y);
+  ahead(state_.z, state_.vz, scratch_.ahead_z);
 }
 
 void XpbdSubstep::accountDamping(double decay) {

@@ -34,7 +34,7 @@ class XpbdSubstep {
   void shiftParticle(int i, const Eigen::Vector3d& shift);
   void limitSpeeds();
   void limitSpeed(int i, double speed2);
-  void lookAhead(int i);
+  void lookAhead();
   void pushTool(const Eigen::Vector3d& impulse_force, const Eigen::Vector3d& at, const Eigen::Vector3d& tool_step);
   void accountDamping(double decay);
 
@@ -47,7 +47,7 @@ class XpbdSubstep {
   StepReport& report_;
   XpbdScratch& scratch_;
   double h_;                // sub-step [s]
-  double bed_stiffness_;    // [Pa/m]
+  double inverse_h_;        // [1/s]
   double damping_time_;     // [s]
   Eigen::Vector3d weight_;  // acceleration that is not balanced by the bed [m/s^2]
 };

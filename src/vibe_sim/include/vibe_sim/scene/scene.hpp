@@ -37,8 +37,8 @@ struct TissueScene {
   double poisson_ratio = 0.45;           ///< [1]
   std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
   double damping_rate = 30;     ///< viscous damping of the velocity [1/s]
-  double damping_time = 30e-6;  ///< viscosity of the wall over its stiffness; quiets short waves [s]
-  int substeps = 60;            ///< solver sub-steps per step
+  double damping_time = 15e-6;  ///< viscosity of the wall over its stiffness; quiets short waves [s]
+  int substeps = 54;            ///< solver sub-steps per step
 };
 
 /// Gas in the lumen, isothermal. The insufflator raises or lowers the amount at a limited flow until the regulated
