@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "vibe_sim/error.hpp"
+#include "vibe_sim/scene/scene_parser.hpp"
 
 namespace vibe {
 namespace {
@@ -251,6 +253,15 @@ geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, con
   message.transform.translation = toMessage<geometry_msgs::Vector3>(pose.translation());
   message.transform.rotation = toMessage(Eigen::Quaterniond(pose.linear()));
   return message;
+}
+
+std_msgs::String makeSceneText(const Scene& scene, std::uint64_t seed) {
+  Scene whole = scene;
+  whole.seed = seed;
+  if (!whole.geometry.file.empty()) whole.geometry.file = std::filesystem::absolute(whole.geometry.file).string();
+  std_msgs::String text;
+  text.data = toYaml(whole);
+  return text;
 }
 
 vibe_msgs::ProcedureEvent makeEvent(const Event& event, std::int64_t stamp) {

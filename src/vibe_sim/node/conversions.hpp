@@ -4,6 +4,7 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/Joy.h>
+#include <std_msgs/String.h>
 #include <vibe_msgs/ProcedureEvent.h>
 #include <vibe_msgs/StageTime.h>
 #include <vibe_msgs/StepInput.h>
@@ -59,6 +60,8 @@ geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::st
 geometry_msgs::WrenchStamped makeWrench(const State& state, std::int64_t stamp);
 geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, const std::string& parent,
                                               const std::string& child, std::int64_t stamp);
+/// The scene as a scene file that builds the same model anywhere: absolute paths, the seed in use.
+std_msgs::String makeSceneText(const Scene& scene, std::uint64_t seed);
 vibe_msgs::ProcedureEvent makeEvent(const Event& event, std::int64_t stamp);
 vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revision, std::int64_t stamp);
 vibe_msgs::StageTime makeStageTime(const std::string& name, const DurationHistogram& durations);

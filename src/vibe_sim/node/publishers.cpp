@@ -1,6 +1,7 @@
 #include "publishers.hpp"
 
 #include <rosgraph_msgs/Clock.h>
+#include <std_msgs/String.h>
 #include <vibe_msgs/ProcedureState.h>
 
 #include <algorithm>
@@ -36,13 +37,15 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       procedure_(handle.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
       events_(handle.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
       applied_input_(handle.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue)),
-      performance_(handle.advertise<vibe_msgs::SolverStatistics>("performance", kSmallQueue)) {
+      performance_(handle.advertise<vibe_msgs::SolverStatistics>("performance", kSmallQueue)),
+      scene_(handle.advertise<std_msgs::String>("scene", 1, true)) {
   if (with_clock) clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
 }
 
 void Publishers::announceModel(const Session& session) {
   const Model& model = *session.model;
   cloud_ = std::make_unique<ParticleCloud>(model, session.revision);
+  scene_.publish(makeSceneText(model.scene, session.state.seed));
   topology_.publish(makeTopology(model, session.revision, session.now()));
   std::vector<geometry_msgs::TransformStamped> transforms = {
       makeTransform(Eigen::Isometry3d::Identity(), kWorldFrame, kTissueFrame, session.now())};
@@ -95,7 +98,7 @@ void Publishers::warn(const std::string& text) {
 
 bool Publishers::hasListener() const {
   const auto all = {&scope_pose_, &helix_pose_, &wrench_,        &joint_states_, &topology_, &particles_,
-                    &procedure_,  &events_,     &applied_input_, &performance_,  &clock_};
+                    &procedure_,  &events_,     &applied_input_, &performance_,  &scene_,    &clock_};
   return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 

@@ -27,7 +27,7 @@ class Publishers {
   /// @param with_clock  also publish /clock
   Publishers(ros::NodeHandle handle, bool with_clock);
 
-  /// A model begins to be simulated: topology, static transforms.
+  /// A model begins to be simulated: scene, topology, static transforms.
   void announceModel(const Session& session);
 
   /// What the step about to be taken uses; call before the step.
@@ -51,7 +51,7 @@ class Publishers {
 
  private:
   ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, topology_, particles_, procedure_, events_,
-      applied_input_, performance_, clock_;
+      applied_input_, performance_, scene_, clock_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;

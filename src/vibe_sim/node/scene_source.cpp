@@ -13,9 +13,12 @@ std::shared_ptr<const Model> loadModel(const std::string& scene_address, const s
   Scene scene = loadScene(resolveAddress(scene_address));
   if (!mesh_address.empty()) applyMeshOverride(scene, resolveAddress(mesh_address));
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
-  return buildModel(scene, urdf, [](const std::string& what, double fraction) {
+  const std::shared_ptr<const Model> model = buildModel(scene, urdf, [](const std::string& what, double fraction) {
     ROS_DEBUG_STREAM(what << ": " << static_cast<int>(100 * fraction) << " %");
   });
+  const std::string softness = softnessWarning(*model);
+  if (!softness.empty()) ROS_WARN_STREAM(softness);
+  return model;
 }
 
 }  // namespace vibe

@@ -1,5 +1,6 @@
 // Runs a scene under a trainee script without ROS: CSV out, summary and state hash at the end. For sweeps and tests.
 #include <getopt.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -109,21 +110,15 @@ std::shared_ptr<const Model> load(const Options& o) {
   if (!o.mesh.empty()) applyMeshOverride(scene, o.mesh);
   if (!o.seed.empty()) scene.seed = static_cast<std::uint64_t>(toNumber("seed", o.seed, 0));
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
-  return buildModel(scene, urdf, [&](const std::string& what, double fraction) {
-    if (!o.quiet) std::fprintf(stderr, "\r%3.0f %% %-60s%s", 100 * fraction, what.c_str(), fraction >= 1 ? "\n" : "");
+  const bool show = !o.quiet && isatty(STDERR_FILENO) == 1;
+  return buildModel(scene, urdf, [show](const std::string& what, double fraction) {
+    if (show) std::fprintf(stderr, "\r%3.0f %% %-60s%s", 100 * fraction, what.c_str(), fraction >= 1 ? "\n" : "");
   });
 }
 
 std::unique_ptr<TraineeScript> loadScript(const Options& o) {
   if (o.script.empty()) return nullptr;
   return std::make_unique<TraineeScript>(TraineeScript::load(resolveAddress(o.script)));
-}
-
-void warnIfSoft(const Model& model) {
-  if (model.tissue->stiffnessRatio() < 0.999)
-    std::fprintf(stderr,
-                 "The wall is simulated at %.0f %% of its stiffness somewhere; raise tissue.substeps by %.0f %%.\n",
-                 100 * model.tissue->stiffnessRatio(), 100 * (1 / std::sqrt(model.tissue->stiffnessRatio()) - 1));
 }
 
 void printProgress(double time, double duration, const TraineeScript* script) {
@@ -134,7 +129,8 @@ void printProgress(double time, double duration, const TraineeScript* script) {
 int run(const Options& o) {
   const std::shared_ptr<const Model> model = load(o);
   const std::unique_ptr<TraineeScript> script = loadScript(o);
-  warnIfSoft(*model);
+  const std::string softness = softnessWarning(*model);
+  if (!softness.empty()) std::fprintf(stderr, "%s\n", softness.c_str());
   const double dt = model->scene.step_period;
   const double duration = o.duration > 0 ? o.duration : (script ? script->duration() : 10);
   const long steps = std::lround(duration / dt);
@@ -145,6 +141,7 @@ int run(const Options& o) {
   std::unique_ptr<SessionCsv> csv = o.csv.empty() ? nullptr : std::make_unique<SessionCsv>(o.csv);
   std::vector<Event> events;
   StepTimer timer;
+  const bool show = !o.quiet && isatty(STDERR_FILENO) == 1;
   const double begin = steadyTime();
   for (long k = 0; k < steps; ++k) {
     const StepInput input = script ? script->at(static_cast<double>(state.step) * dt) : StepInput{};
@@ -158,10 +155,11 @@ int run(const Options& o) {
     if (csv) csv->write(*model, state, events);
     if (!o.quiet)
       for (const Event& event : events)
-        std::fprintf(stderr, "\r%7.2f s  %s: %s\n", event.time, toString(event.kind), event.text.c_str());
-    if (!o.quiet && k % 30 == 0) printProgress(state.time, duration, script.get());
+        std::fprintf(stderr, "%s%7.2f s  %s: %s\n", show ? "\r" : "", event.time, toString(event.kind),
+                     event.text.c_str());
+    if (show && k % 30 == 0) printProgress(state.time, duration, script.get());
   }
-  if (!o.quiet) std::fprintf(stderr, "\r%-60s\r", "");
+  if (show) std::fprintf(stderr, "\r%-60s\r", "");
   if (!o.snapshot.empty()) saveSnapshot(*model, state, o.snapshot);
   if (o.quiet)
     std::cout << "state hash: " << toHex(hash(state)) << "\n";

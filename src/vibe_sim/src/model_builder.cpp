@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include "vibe_sim/error.hpp"
@@ -63,6 +64,25 @@ void addTool(const std::string& tool_urdf, Model& model) {
       scope.base_from_anatomy ? poseFromAnatomy(model.organ) : poseFromRpy(scope.base_position, scope.base_rpy);
 }
 
+// The gas is an explicit spring on the volume: with compressed gas in a small or light organ a sub-step can be too
+// long. h^2 dp/dV sum(a^2 / m) adds to the wall's own share of the limit (see kMostTotalGain), which leaves it this
+// much.
+void checkGasStability(const Model& model) {
+  constexpr double kMostGasGain = 0.7;
+  if (!model.scene.gas) return;
+  double compliance = 0;
+  for (int i = 0; i < model.particle_count; ++i) compliance += model.area[i] * model.area[i] * model.inverse_mass[i];
+  const double highest =
+      kAmbientPressure + std::max(model.scene.gas->initial_pressure, model.scene.gas->regulated_pressure);
+  const double rate2 = highest / model.rest_volume * compliance;
+  const double h = model.scene.step_period / model.scene.tissue.substeps;
+  if (rate2 * h * h <= kMostGasGain) return;
+  const int enough = static_cast<int>(std::ceil(model.scene.step_period * std::sqrt(rate2 / kMostGasGain)));
+  throw Error("tissue.substeps " + std::to_string(model.scene.tissue.substeps) +
+              " is too few for the gas in this organ, the step would be unstable; use at least " +
+              std::to_string(enough) + ".");
+}
+
 }  // namespace
 
 std::shared_ptr<const Model> buildModel(const Scene& scene, const std::string& tool_urdf, const Progress& progress) {
@@ -80,12 +100,24 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   model.rest_volume = enclosedVolume(model.organ.surface);
   const bool carried = model.scene.bed && model.scene.bed->carries_weight;
   if (model.scene.gravity && !carried) model.unbalanced_gravity = model.scene.gravity->acceleration;
+  checkGasStability(model);
   const TissueAndSolver made = makeTissue(model.scene, model.organ, model.mass, model.area);
   model.tissue = made.tissue;
   model.solver = made.solver;
   if (model.scene.scope) addTool(tool_urdf, model);
   if (model.scene.skin) model.skin = makeLoopSkin(model.organ.surface);
   if (progress) progress("ready", 1.0);
+}
+
+std::string softnessWarning(const Model& model) {
+  const double ratio = model.tissue->stiffnessRatio();
+  if (ratio > 0.999) return "";
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "Somewhere the wall has %.0f %% of its stiffness; raise tissue.substeps from %d to %.0f, or lower "
+                "tissue.damping_time.",
+                100 * ratio, model.scene.tissue.substeps, std::ceil(model.scene.tissue.substeps / std::sqrt(ratio)));
+  return text;
 }
 
 State initialState(const Model& model, std::uint64_t seed) {

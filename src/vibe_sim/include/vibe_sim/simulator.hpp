@@ -24,6 +24,9 @@ std::shared_ptr<const Model> buildModel(const Scene& scene, const std::string& t
 /// @throws Error
 void finishModel(const std::string& tool_urdf, Model& model, const Progress& progress = {});
 
+/// One sentence if the sub-steps are too long for the asked stiffness, empty if they are not.
+std::string softnessWarning(const Model& model);
+
 /// The state at time 0: rest shape, scope at the lower end of its range, gas at its initial pressure.
 State initialState(const Model& model, std::uint64_t seed);
 
