@@ -3,7 +3,7 @@
 #include <ros/console.h>
 
 #include "vibe_sim/package_path.hpp"
-#include "vibe_sim/scene/mesh_override.hpp"
+#include "vibe_sim/scene/mesh_guess.hpp"
 #include "vibe_sim/scene/scene_parser.hpp"
 #include "vibe_sim/simulator.hpp"
 
@@ -11,7 +11,8 @@ namespace vibe {
 
 std::shared_ptr<const Model> loadModel(const std::string& scene_address, const std::string& mesh_address) {
   Scene scene = loadScene(resolveAddress(scene_address));
-  if (!mesh_address.empty()) applyMeshOverride(scene, resolveAddress(mesh_address));
+  const std::string guesses = mesh_address.empty() ? "" : useMesh(scene, resolveAddress(mesh_address));
+  if (!guesses.empty()) ROS_WARN_STREAM(guesses);
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
   const std::shared_ptr<const Model> model = buildModel(scene, urdf, [](const std::string& what, double fraction) {
     ROS_DEBUG_STREAM(what << ": " << static_cast<int>(100 * fraction) << " %");

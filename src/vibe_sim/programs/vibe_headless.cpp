@@ -14,7 +14,7 @@
 #include "vibe_sim/package_path.hpp"
 #include "vibe_sim/procedure/run_summary.hpp"
 #include "vibe_sim/procedure/session_csv.hpp"
-#include "vibe_sim/scene/mesh_override.hpp"
+#include "vibe_sim/scene/mesh_guess.hpp"
 #include "vibe_sim/scene/scene_parser.hpp"
 #include "vibe_sim/simulator.hpp"
 #include "vibe_sim/snapshot.hpp"
@@ -107,7 +107,8 @@ Options parse(int argc, char** argv) {
 
 std::shared_ptr<const Model> load(const Options& o) {
   Scene scene = loadScene(resolveAddress(o.scene));
-  if (!o.mesh.empty()) applyMeshOverride(scene, o.mesh);
+  const std::string guesses = o.mesh.empty() ? "" : useMesh(scene, o.mesh);
+  if (!guesses.empty()) std::fprintf(stderr, "%s\n", guesses.c_str());
   if (!o.seed.empty()) scene.seed = static_cast<std::uint64_t>(toNumber("seed", o.seed, 0));
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
   const bool show = !o.quiet && isatty(STDERR_FILENO) == 1;

@@ -100,10 +100,10 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   model.rest_volume = enclosedVolume(model.organ.surface);
   const bool carried = model.scene.bed && model.scene.bed->carries_weight;
   if (model.scene.gravity && !carried) model.unbalanced_gravity = model.scene.gravity->acceleration;
-  checkGasStability(model);
   const TissueAndSolver made = makeTissue(model.scene, model.organ, model.mass, model.area);
   model.tissue = made.tissue;
   model.solver = made.solver;
+  checkGasStability(model);
   if (model.scene.scope) addTool(tool_urdf, model);
   if (model.scene.skin) model.skin = makeLoopSkin(model.organ.surface);
   if (progress) progress("ready", 1.0);

@@ -87,7 +87,8 @@ std::vector<SchemaRow> tissueRows() {
        "viscous damping of the velocity: free motion falls to 1/e in one over this", kChoice},
       {"tissue.damping_time", [](Scene& s) -> double& { return s.tissue.damping_time; }, "s", 0, 1e-3,
        "viscosity of the wall over its stiffness; quiets the shortest waves and is not felt by the long ones", kChoice},
-      {"tissue.substeps", [](Scene& s) -> int& { return s.tissue.substeps; }, "1", 1, 1000, "solver sub-steps per step",
+      {"tissue.substeps", [](Scene& s) -> int& { return s.tissue.substeps; }, "1", 0, 1000,
+       "solver sub-steps per step; 0: as few as carry the stiffness",
        "many small steps with one iteration each: Macklin 2019, doi 10.1145/3309486.3340247"},
   };
 }

@@ -146,24 +146,48 @@ ClusterSet buildClusters(const Organ& organ, const TissueScene& tissue, const st
   return Builder(organ, tissue, masses, areas).build();
 }
 
+namespace {
+
+// How many clusters the member with most of them shares, for the cluster of a particle.
+int mostClusters(const ClusterSet& set, int lane) {
+  const int group = lane / kLanes;
+  int most = 1;
+  for (int row = set.row_offset[group]; row < set.row_offset[group + 1]; ++row) {
+    const int member = set.particle[row * kLanes + lane % kLanes];
+    most = std::max(most, set.slot_offset[member + 1] - set.slot_offset[member]);
+  }
+  return most;
+}
+
+double mostTotalGain(double substep, double damping_time) {
+  return kMostTotalGain / (1 + 2 * damping_time / substep);
+}
+
+}  // namespace
+
 double setGains(ClusterSet& set, double substep, double damping_time) {
-  const double most_total = kMostTotalGain / (1 + 2 * damping_time / substep);
   double worst = 1;
   for (int i = 0; i < set.particle_count; ++i) {
     const int lane = set.lane_of_particle[i];
-    const int group = lane / kLanes;
-    int most_clusters = 1;
-    for (int row = set.row_offset[group]; row < set.row_offset[group + 1]; ++row) {
-      const int member = set.particle[row * kLanes + lane % kLanes];
-      most_clusters = std::max(most_clusters, set.slot_offset[member + 1] - set.slot_offset[member]);
-    }
     const double asked = substep * substep / set.compliance[lane];
-    const double limit = most_total / most_clusters;
+    const double limit = mostTotalGain(substep, damping_time) / mostClusters(set, lane);
     set.gain[lane] = std::min(asked, limit);
     set.compliance[lane] = substep * substep / set.gain[lane];
     worst = std::min(worst, set.gain[lane] / asked);
   }
   return worst;
+}
+
+int fewestSubsteps(const ClusterSet& set, double step_period, double damping_time) {
+  double stiffest = 0;  // [1/s^2]
+  for (int i = 0; i < set.particle_count; ++i) {
+    const int lane = set.lane_of_particle[i];
+    stiffest = std::max(stiffest, mostClusters(set, lane) / set.compliance[lane]);
+  }
+  int substeps = 1;
+  for (double h = step_period; h * h * stiffest > mostTotalGain(h, damping_time); h = step_period / substeps)
+    ++substeps;
+  return substeps;
 }
 
 }  // namespace vibe

@@ -11,10 +11,12 @@
 namespace vibe {
 
 ShapeMatching::ShapeMatching(const Organ& organ, const TissueScene& tissue, const std::vector<double>& masses,
-                             const std::vector<double>& areas, double substep)
-    : clusters_(buildClusters(organ, tissue, masses, areas)), masses_(masses), substep_(substep) {
-  stiffness_ratio_ = setGains(clusters_, substep, tissue.damping_time);
-}
+                             const std::vector<double>& areas, double step_period)
+    : clusters_(buildClusters(organ, tissue, masses, areas)),
+      masses_(masses),
+      substeps_(tissue.substeps > 0 ? tissue.substeps : fewestSubsteps(clusters_, step_period, tissue.damping_time)),
+      substep_(step_period / substeps_),
+      stiffness_ratio_(setGains(clusters_, substep_, tissue.damping_time)) {}
 
 SweepBuffers makeSweepBuffers(const ClusterSet& clusters) {
   const std::size_t slots = static_cast<std::size_t>(clusters.rows()) * ClusterSet::kLanes;

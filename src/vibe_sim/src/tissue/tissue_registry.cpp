@@ -8,12 +8,12 @@ namespace vibe {
 
 namespace {
 
-using Factory = TissueAndSolver (*)(const Scene&, const Organ&, const std::vector<double>&, const std::vector<double>&);
+using Factory = TissueAndSolver (*)(Scene&, const Organ&, const std::vector<double>&, const std::vector<double>&);
 
-TissueAndSolver makeShapeMatching(const Scene& scene, const Organ& organ, const std::vector<double>& masses,
+TissueAndSolver makeShapeMatching(Scene& scene, const Organ& organ, const std::vector<double>& masses,
                                   const std::vector<double>& areas) {
-  const double substep = scene.step_period / scene.tissue.substeps;
-  auto tissue = std::make_shared<const ShapeMatching>(organ, scene.tissue, masses, areas, substep);
+  auto tissue = std::make_shared<const ShapeMatching>(organ, scene.tissue, masses, areas, scene.step_period);
+  scene.tissue.substeps = tissue->substeps();
   return {tissue, std::make_shared<const XpbdSolver>(tissue)};
 }
 
@@ -33,7 +33,7 @@ std::vector<std::string> tissueModelNames() {
   return names;
 }
 
-TissueAndSolver makeTissue(const Scene& scene, const Organ& organ, const std::vector<double>& masses,
+TissueAndSolver makeTissue(Scene& scene, const Organ& organ, const std::vector<double>& masses,
                            const std::vector<double>& areas) {
   std::string known;
   for (const Entry& entry : kEntries) {

@@ -206,6 +206,13 @@ TEST(ShapeMatching, TooLongSubstepsAreReportedAsSoftness) {
   EXPECT_GT(ratio, 0.01);
 }
 
+TEST(ShapeMatching, FewestSubstepsCarryTheStiffnessAndOneLessDoesNot) {
+  const int substeps = smallWorld(3, 0).model->scene.tissue.substeps;
+  ASSERT_GT(substeps, 2);
+  EXPECT_EQ(smallWorld(3, substeps).model->tissue->stiffnessRatio(), 1.0);
+  EXPECT_LT(smallWorld(3, substeps - 1).model->tissue->stiffnessRatio(), 1.0);
+}
+
 TEST(ShapeMatching, OrientationIsThePolarRotationOfTheMoments) {
   World world = smallWorld();
   shake(world.state, 1.5e-3, 6);

@@ -38,7 +38,7 @@ struct TissueScene {
   std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
   double damping_rate = 30;     ///< viscous damping of the velocity [1/s]
   double damping_time = 15e-6;  ///< viscosity of the wall over its stiffness; quiets short waves [s]
-  int substeps = 54;            ///< solver sub-steps per step
+  int substeps = 0;             ///< solver sub-steps per step; 0: as few as carry the stiffness, see finishModel()
 };
 
 /// Gas in the lumen, isothermal. The insufflator raises or lowers the amount at a limited flow until the regulated

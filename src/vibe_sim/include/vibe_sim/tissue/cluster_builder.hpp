@@ -20,6 +20,9 @@ ClusterSet buildClusters(const Organ& organ, const TissueScene& tissue, const st
 /// @return the smallest of simulated over asked stiffness, 1 if nothing was limited
 double setGains(ClusterSet& clusters, double substep, double damping_time);
 
+/// The fewest sub-steps of a step for which setGains() limits nothing.
+int fewestSubsteps(const ClusterSet& clusters, double step_period, double damping_time);
+
 /// Leaves a margin for stretched states, contacts and grips.
 constexpr double kMostTotalGain = 3.2;
 

@@ -30,9 +30,9 @@ class ShapeMatching : public TissueModel {
  public:
   /// @param masses  of the particles [kg]
   /// @param areas   of wall per particle at rest [m^2]
-  /// @param substep length of a sub-step [s]
+  /// @param step_period  divided into tissue.substeps, or, if that is 0, as few as carry the stiffness [s]
   ShapeMatching(const Organ& organ, const TissueScene& tissue, const std::vector<double>& masses,
-                const std::vector<double>& areas, double substep);
+                const std::vector<double>& areas, double step_period);
 
   std::string name() const override { return "shape_matching"; }
   double energy(const State& state) const override;
@@ -40,12 +40,14 @@ class ShapeMatching : public TissueModel {
   void strain(const State& state, float* out) const override;
   double stiffnessRatio() const override { return stiffness_ratio_; }
 
+  int substeps() const { return substeps_; }
   const ClusterSet& clusters() const { return clusters_; }
 
  private:
   ClusterSet clusters_;
   std::vector<double> masses_;
-  double substep_;
+  int substeps_;
+  double substep_;  // [s]
   double stiffness_ratio_ = 1;
 };
 

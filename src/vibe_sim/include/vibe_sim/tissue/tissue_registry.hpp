@@ -19,8 +19,9 @@ struct TissueAndSolver {
 /// Names that tissue.model accepts, in order of age.
 std::vector<std::string> tissueModelNames();
 
+/// @param scene  scene.tissue.substeps of 0 is replaced by the fewest that carry the stiffness
 /// @throws Error for an unknown name, naming the known ones
-TissueAndSolver makeTissue(const Scene& scene, const Organ& organ, const std::vector<double>& masses,
+TissueAndSolver makeTissue(Scene& scene, const Organ& organ, const std::vector<double>& masses,
                            const std::vector<double>& areas);
 
 }  // namespace vibe
