@@ -8,6 +8,7 @@
 #include "vibe_sim/geometry/organ_builder.hpp"
 #include "vibe_sim/simulator.hpp"
 #include "vibe_sim/solver/gas.hpp"
+#include "vibe_sim/tissue/cluster_builder.hpp"
 #include "vibe_sim/tissue/tissue_registry.hpp"
 
 namespace vibe {
@@ -64,23 +65,23 @@ void addTool(const std::string& tool_urdf, Model& model) {
       scope.base_from_anatomy ? poseFromAnatomy(model.organ) : poseFromRpy(scope.base_position, scope.base_rpy);
 }
 
-// The gas is an explicit spring on the volume: with compressed gas in a small or light organ a sub-step can be too
-// long. h^2 dp/dV sum(a^2 / m) adds to the wall's own share of the limit (see kMostTotalGain), which leaves it this
-// much.
-void checkGasStability(const Model& model) {
-  constexpr double kMostGasGain = 0.7;
-  if (!model.scene.gas) return;
+// The gas is an explicit spring on the volume: where it is compressed in a small or light organ a sub-step can be too
+// long. h^2 dp/dV sum(a^2 / m) of the breathing mode, in which the wall takes hardly part, has the wall's limit.
+int substepsForGas(const Model& model) {
+  if (!model.scene.gas) return 1;
   double compliance = 0;
   for (int i = 0; i < model.particle_count; ++i) compliance += model.area[i] * model.area[i] * model.inverse_mass[i];
   const double highest =
       kAmbientPressure + std::max(model.scene.gas->initial_pressure, model.scene.gas->regulated_pressure);
   const double rate2 = highest / model.rest_volume * compliance;
-  const double h = model.scene.step_period / model.scene.tissue.substeps;
-  if (rate2 * h * h <= kMostGasGain) return;
-  const int enough = static_cast<int>(std::ceil(model.scene.step_period * std::sqrt(rate2 / kMostGasGain)));
-  throw Error("tissue.substeps " + std::to_string(model.scene.tissue.substeps) +
+  return static_cast<int>(std::ceil(model.scene.step_period * std::sqrt(rate2 / kMostTotalGain)));
+}
+
+void checkSubstepsForGas(int substeps, int needed) {
+  if (substeps >= needed) return;
+  throw Error("tissue.substeps " + std::to_string(substeps) +
               " is too few for the gas in this organ, the step would be unstable; use at least " +
-              std::to_string(enough) + ".");
+              std::to_string(needed) + ", or leave it out.");
 }
 
 }  // namespace
@@ -100,10 +101,11 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   model.rest_volume = enclosedVolume(model.organ.surface);
   const bool carried = model.scene.bed && model.scene.bed->carries_weight;
   if (model.scene.gravity && !carried) model.unbalanced_gravity = model.scene.gravity->acceleration;
-  const TissueAndSolver made = makeTissue(model.scene, model.organ, model.mass, model.area);
+  const int for_gas = substepsForGas(model);
+  const TissueAndSolver made = makeTissue(model.scene, model.organ, model.mass, model.area, for_gas);
   model.tissue = made.tissue;
   model.solver = made.solver;
-  checkGasStability(model);
+  checkSubstepsForGas(model.scene.tissue.substeps, for_gas);
   if (model.scene.scope) addTool(tool_urdf, model);
   if (model.scene.skin) model.skin = makeLoopSkin(model.organ.surface);
   if (progress) progress("ready", 1.0);

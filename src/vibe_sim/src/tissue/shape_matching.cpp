@@ -11,10 +11,11 @@
 namespace vibe {
 
 ShapeMatching::ShapeMatching(const Organ& organ, const TissueScene& tissue, const std::vector<double>& masses,
-                             const std::vector<double>& areas, double step_period)
+                             const std::vector<double>& areas, double step_period, int at_least)
     : clusters_(buildClusters(organ, tissue, masses, areas)),
       masses_(masses),
-      substeps_(tissue.substeps > 0 ? tissue.substeps : fewestSubsteps(clusters_, step_period, tissue.damping_time)),
+      substeps_(tissue.substeps > 0 ? tissue.substeps
+                                    : std::max(at_least, fewestSubsteps(clusters_, step_period, tissue.damping_time))),
       substep_(step_period / substeps_),
       stiffness_ratio_(setGains(clusters_, substep_, tissue.damping_time)) {}
 

@@ -8,11 +8,11 @@ namespace vibe {
 
 namespace {
 
-using Factory = TissueAndSolver (*)(Scene&, const Organ&, const std::vector<double>&, const std::vector<double>&);
+using Factory = TissueAndSolver (*)(Scene&, const Organ&, const std::vector<double>&, const std::vector<double>&, int);
 
 TissueAndSolver makeShapeMatching(Scene& scene, const Organ& organ, const std::vector<double>& masses,
-                                  const std::vector<double>& areas) {
-  auto tissue = std::make_shared<const ShapeMatching>(organ, scene.tissue, masses, areas, scene.step_period);
+                                  const std::vector<double>& areas, int at_least) {
+  auto tissue = std::make_shared<const ShapeMatching>(organ, scene.tissue, masses, areas, scene.step_period, at_least);
   scene.tissue.substeps = tissue->substeps();
   return {tissue, std::make_shared<const XpbdSolver>(tissue)};
 }
@@ -34,10 +34,10 @@ std::vector<std::string> tissueModelNames() {
 }
 
 TissueAndSolver makeTissue(Scene& scene, const Organ& organ, const std::vector<double>& masses,
-                           const std::vector<double>& areas) {
+                           const std::vector<double>& areas, int at_least) {
   std::string known;
   for (const Entry& entry : kEntries) {
-    if (scene.tissue.model == entry.name) return entry.make(scene, organ, masses, areas);
+    if (scene.tissue.model == entry.name) return entry.make(scene, organ, masses, areas, at_least);
     known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }
   throw Error("tissue.model '" + scene.tissue.model + "' is unknown; use one of: " + known + ".");

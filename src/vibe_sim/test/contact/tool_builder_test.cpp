@@ -63,7 +63,8 @@ class BadUrdf : public testing::TestWithParam<int> {
     const std::string up_down = "<joint name=\"tip_up_down\"";
     const std::string segment = "<joint name=\"tip_up_down_3\"";
     const std::string mimic = "<mimic joint=\"tip_up_down\" multiplier=\"0.125\" offset=\"0\"/>";
-    const std::string cap_box = "<geometry><box size=\"0.0244 0.006 0.0016\"/></geometry>\n    </collision>";
+    const std::string cap_bar =
+        "<geometry><cylinder radius=\"0.0079\" length=\"0.0041\"/></geometry>\n    </collision>";
     return {
         {"Empty", "", "scope.urdf: this is not a valid URDF (Error document empty); correct that element.", ""},
         {"NotXml", "insertion: 3", "scope.urdf: this is not a valid URDF (", ""},
@@ -115,15 +116,15 @@ class BadUrdf : public testing::TestWithParam<int> {
          "scope.urdf:LINE: joint 'insertion' has an axis without direction; write one of length 1.",
          "<joint name=\"insertion\""},
         {"MeshCollision",
-         replaced(good, cap_box, "<geometry><mesh filename=\"package://a/b.stl\"/></geometry>\n    </collision>"),
+         replaced(good, cap_bar, "<geometry><mesh filename=\"package://a/b.stl\"/></geometry>\n    </collision>"),
          "scope.urdf:LINE: link 'device_cap' has a mesh as collision shape; replace it by boxes, cylinders and "
          "spheres.",
          "<link name=\"device_cap\""},
-        {"NegativeSide", replaced(good, cap_box, "<geometry><box size=\"0.1 -1 1\"/></geometry>\n    </collision>"),
+        {"NegativeSide", replaced(good, cap_bar, "<geometry><box size=\"0.1 -1 1\"/></geometry>\n    </collision>"),
          "scope.urdf:LINE: link 'device_cap' has a collision shape whose side is not between 1e-6 m and 10 m; write it "
          "in metres.",
          "<link name=\"device_cap\""},
-        {"ZeroRadius", replaced(good, cap_box, "<geometry><sphere radius=\"0\"/></geometry>\n    </collision>"),
+        {"ZeroRadius", replaced(good, cap_bar, "<geometry><sphere radius=\"0\"/></geometry>\n    </collision>"),
          "scope.urdf:LINE: link 'device_cap' has a collision shape whose radius is not between 1e-6 m and 10 m; write "
          "it in metres.",
          "<link name=\"device_cap\""},

@@ -78,21 +78,22 @@ TEST(ToolCollision, FindsDistanceAndNormalAtTheTube) {
   }
 }
 
-TEST(ToolCollision, CapIsFlatInFrontOfTheTip) {
+TEST(ToolCollision, CapIsRoundInFrontOfTheTip) {
   const ToolModel tool = loadScope();
   const Isometry3d base = somewhere();
   const Inputs inputs = {0.1, 0.4, 1.3, -0.5};
   const auto poses = linkPoses(tool, inputs, base);
   const Isometry3d tip = poses[tool.linkIndex("scope_tip")];
   Cloud cloud;
-  cloud.add(tip * Vector3d(0.0008, 0.001, -0.006));
+  const Vector3d outward = Vector3d(1, 0, -1).normalized();
+  cloud.add(tip * (Vector3d(-0.0079, 0, 0) + (0.0079 + 0.0005) * outward));
   ToolCollision collision(tool);
   collision.findCandidates(poses, cloud.x.data(), cloud.y.data(), cloud.z.data(), 1, 0.002);
   const auto& contacts = collision.findContacts(poses, cloud.x.data(), cloud.y.data(), cloud.z.data(), 0.001);
   ASSERT_EQ(contacts.size(), 1u);
   EXPECT_EQ(tool.shapes()[contacts[0].shape].link, tool.linkIndex("device_cap"));
-  EXPECT_NEAR(contacts[0].distance, 0.0008, 1e-9);
-  EXPECT_LT((contacts[0].normal - tip.linear().col(0)).norm(), 1e-6);
+  EXPECT_NEAR(contacts[0].distance, 0.0005, 1e-8);
+  EXPECT_LT((contacts[0].normal - tip.linear() * outward).norm(), 1e-6);
 }
 
 // between two segments a particle in the skin is pushed out sideways, never along the scope

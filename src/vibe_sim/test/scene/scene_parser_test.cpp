@@ -30,7 +30,7 @@ TEST(ShippedScenes, StomachHasEveryPart) {
   EXPECT_EQ(scene.step_period, 1.0 / 60);
   EXPECT_EQ(scene.geometry.kind, GeometryScene::Kind::Stomach);
   EXPECT_EQ(scene.geometry.particles, 3618);
-  EXPECT_DOUBLE_EQ(scene.geometry.volume, 0.75e-3);
+  EXPECT_DOUBLE_EQ(scene.geometry.volume, 0.9e-3);
   EXPECT_DOUBLE_EQ(scene.tissue.density, 1050);
   EXPECT_DOUBLE_EQ(scene.tissue.thickness[static_cast<int>(Region::Body)], 2.33e-3);
   EXPECT_TRUE(scene.attach_oesophagus && scene.attach_duodenum && scene.skin);

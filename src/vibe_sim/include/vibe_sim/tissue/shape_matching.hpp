@@ -30,9 +30,10 @@ class ShapeMatching : public TissueModel {
  public:
   /// @param masses  of the particles [kg]
   /// @param areas   of wall per particle at rest [m^2]
-  /// @param step_period  divided into tissue.substeps, or, if that is 0, as few as carry the stiffness [s]
+  /// @param step_period  divided into tissue.substeps, or, if that is 0, as few as carry the
+  ///                     stiffness, `at_least` or more [s]
   ShapeMatching(const Organ& organ, const TissueScene& tissue, const std::vector<double>& masses,
-                const std::vector<double>& areas, double step_period);
+                const std::vector<double>& areas, double step_period, int at_least = 1);
 
   std::string name() const override { return "shape_matching"; }
   double energy(const State& state) const override;

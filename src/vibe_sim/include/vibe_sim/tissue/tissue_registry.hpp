@@ -19,9 +19,10 @@ struct TissueAndSolver {
 /// Names that tissue.model accepts, in order of age.
 std::vector<std::string> tissueModelNames();
 
-/// @param scene  scene.tissue.substeps of 0 is replaced by the fewest that carry the stiffness
+/// @param scene     scene.tissue.substeps of 0 is replaced by the fewest that carry the stiffness
+/// @param at_least  sub-steps that something else needs; an asked number of sub-steps is not changed
 /// @throws Error for an unknown name, naming the known ones
 TissueAndSolver makeTissue(Scene& scene, const Organ& organ, const std::vector<double>& masses,
-                           const std::vector<double>& areas);
+                           const std::vector<double>& areas, int at_least = 1);
 
 }  // namespace vibe
