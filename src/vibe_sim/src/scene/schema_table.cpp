@@ -70,7 +70,7 @@ std::vector<SchemaRow> tissueRows() {
        "mass per volume of the wall", "soft tissue is close to water, 1050 to 1060 kg/m^3"},
       {"tissue.young_modulus", [](Scene& s) -> double& { return s.tissue.young_modulus; }, "Pa", 100, 1e9,
        "stiffness of the wall at endoscopic distension",
-       "54 to 82 kPa, derived from the compliance 36.1 mL/mmHg of Toro 2015 for a thin sphere"},
+       "fitted on the default stomach to a compliance of 36.1 +- 14.7 mL/mmHg at 10 mmHg (Toro 2015)"},
       {"tissue.poisson_ratio", [](Scene& s) -> double& { return s.tissue.poisson_ratio; }, "1", 0, 0.499,
        "contraction across per extension along", "nearly incompressible, design choice"},
       {"tissue.thickness.cardia", [](Scene& s) -> double& { return s.tissue.thickness[0]; }, "m", 1e-4, 2e-2,
