@@ -6,6 +6,7 @@
 
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/geometry/organ_builder.hpp"
+#include "vibe_sim/geometry/rotation.hpp"
 #include "vibe_sim/simulator.hpp"
 #include "vibe_sim/solver/gas.hpp"
 #include "vibe_sim/tissue/cluster_builder.hpp"
@@ -34,10 +35,7 @@ void setMasses(Model& model) {
 
 Eigen::Isometry3d poseFromRpy(const Eigen::Vector3d& position, const std::array<double, 3>& rpy) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() =
-      (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
-       Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
+  pose.linear() = rotationFromRpy(rpy);
   pose.translation() = position;
   return pose;
 }

@@ -114,4 +114,10 @@ SurfaceMesh readMeshFile(const std::string& path) {
   return mesh;
 }
 
+bool statesMetres(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".glb" || extension == ".gltf";
+}
+
 }  // namespace vibe

@@ -1,9 +1,7 @@
 #include "vibe_sim/geometry/mesh_import.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -11,6 +9,7 @@
 
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/geometry/mesh_file.hpp"
+#include "vibe_sim/geometry/rotation.hpp"
 #include "vibe_sim/geometry/surface_check.hpp"
 
 namespace vibe {
@@ -51,16 +50,6 @@ std::string unitAdvice(double size) {
          " m)";
 }
 
-bool statesMetres(const std::string& file) {
-  const auto ends = [&](const std::string& type) {
-    if (file.size() < type.size()) return false;
-    std::string tail = file.substr(file.size() - type.size());
-    std::transform(tail.begin(), tail.end(), tail.begin(), [](unsigned char c) { return std::tolower(c); });
-    return tail == type;
-  };
-  return ends(".gltf") || ends(".glb");
-}
-
 /// Metres per unit of the file.
 double findScale(const GeometryScene& geometry, const SurfaceMesh& mesh) {
   const double size = largestSide(mesh);
@@ -79,12 +68,6 @@ double findScale(const GeometryScene& geometry, const SurfaceMesh& mesh) {
   throw Error(geometry.file + " is " + number(size) + " units large, which with geometry.unit " + number(unit) +
               (geometry.unit == 0.0 ? " (metres, as glTF prescribes)" : "") + " is no organ of 0.05 to 1 m; " +
               unitAdvice(size));
-}
-
-Eigen::Matrix3d rotation(const std::array<double, 3>& rpy) {
-  return (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
 }
 
 void checkLandmarks(const GeometryScene& geometry) {
@@ -111,7 +94,7 @@ ImportedMesh importMesh(const GeometryScene& geometry) {
   checkSurface(result.surface, geometry.file);
   orientOutwards(result.surface);
 
-  const Eigen::Matrix3d map = findScale(geometry, result.surface) * rotation(geometry.rotation_rpy);
+  const Eigen::Matrix3d map = findScale(geometry, result.surface) * rotationFromRpy(geometry.rotation_rpy);
   for (auto& v : result.surface.vertices) v = map * v;
   result.landmarks.oesophagus = map * *geometry.oesophagus;
   result.landmarks.fundus = map * *geometry.fundus;

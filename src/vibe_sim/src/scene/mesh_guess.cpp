@@ -10,6 +10,7 @@
 #include "vibe_sim/geometry/landmark_estimate.hpp"
 #include "vibe_sim/geometry/mesh_file.hpp"
 #include "vibe_sim/geometry/remesh.hpp"
+#include "vibe_sim/geometry/rotation.hpp"
 #include "vibe_sim/geometry/surface_check.hpp"
 #include "vibe_sim/scene/mesh_override.hpp"
 
@@ -19,11 +20,6 @@ namespace {
 
 constexpr double kTypicalSize = 0.25;  // largest side of a stomach's bounding box [m]
 constexpr int kGuessVertices = 1500;   // fine enough for landmarks to a few millimetres
-
-bool isGltf(const std::string& file) {
-  const std::string extension = std::filesystem::path(file).extension().string();
-  return extension == ".glb" || extension == ".gltf" || extension == ".GLB" || extension == ".GLTF";
-}
 
 double likeliestUnit(const SurfaceMesh& mesh) {
   Eigen::AlignedBox3d box;
@@ -35,12 +31,6 @@ double likeliestUnit(const SurfaceMesh& mesh) {
   for (const double unit : {0.01, 0.001, 0.0254})
     if (unlikeliness(unit) < unlikeliness(best)) best = unit;
   return best;
-}
-
-Eigen::Matrix3d rotationOf(const std::array<double, 3>& rpy) {
-  return (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy[1], Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(rpy[0], Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
 }
 
 std::string describe(const GeometryScene& g, const std::string& mesh_file) {
@@ -64,9 +54,9 @@ void guess(GeometryScene& geometry) {
   orientOutwards(surface);
   if (geometry.unit == 0) geometry.unit = likeliestUnit(surface);
   if (geometry.rotation_rpy == std::array<double, 3>{0, 0, 0})
-    geometry.rotation_rpy =
-        isGltf(geometry.file) ? std::array<double, 3>{M_PI / 2, 0, M_PI / 2} : std::array<double, 3>{0, 0, M_PI / 2};
-  const Eigen::Matrix3d map = geometry.unit * rotationOf(geometry.rotation_rpy);
+    geometry.rotation_rpy = statesMetres(geometry.file) ? std::array<double, 3>{M_PI / 2, 0, M_PI / 2}
+                                                        : std::array<double, 3>{0, 0, M_PI / 2};
+  const Eigen::Matrix3d map = geometry.unit * rotationFromRpy(geometry.rotation_rpy);
   for (auto& v : surface.vertices) v = map * v;
   const Landmarks found = estimateLandmarks(remeshSurface(surface, kGuessVertices, nullptr, {}));
   const Eigen::Matrix3d back = map.inverse();

@@ -1,11 +1,11 @@
 #include "vibe_sim/scene/mesh_override.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <vector>
 
 #include "vibe_sim/error.hpp"
+#include "vibe_sim/geometry/mesh_file.hpp"
 #include "vibe_sim/scene/nearest_key.hpp"
 #include "vibe_sim/scene/scene_value.hpp"
 #include "vibe_sim/scene/schema.hpp"
@@ -38,13 +38,6 @@ bool existsAsFile(const std::string& path) {
   return std::filesystem::is_regular_file(path, ignored);
 }
 
-/// glTF 2.0 (Khronos 2021), section 3.4: the unit of all linear distances is the metre. The others state none.
-bool statesItsUnit(const std::string& mesh_file) {
-  std::string extension = std::filesystem::path(mesh_file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".glb" || extension == ".gltf";
-}
-
 std::string missingLandmarks(const GeometryScene& geometry) {
   std::string list;
   const auto note = [&list](bool given, const char* name) {
@@ -59,7 +52,7 @@ std::string missingLandmarks(const GeometryScene& geometry) {
 
 void checkComplete(const GeometryScene& geometry, const std::string& mesh_file) {
   // A target volume sets the scale by itself.
-  const bool lacks_unit = geometry.unit == 0 && geometry.target_volume == 0 && !statesItsUnit(mesh_file);
+  const bool lacks_unit = geometry.unit == 0 && geometry.target_volume == 0 && !statesMetres(mesh_file);
   const std::string points = missingLandmarks(geometry);
   if (!lacks_unit && points.empty()) return;
   std::string remedy = lacks_unit ? "'unit: 1 mm' (or what one unit of the file is)" : "";

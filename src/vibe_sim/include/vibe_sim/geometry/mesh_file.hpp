@@ -11,6 +11,10 @@ namespace vibe {
 /// @throws Error if the file is missing, of another type, not readable, or without usable triangles.
 SurfaceMesh readMeshFile(const std::string& path);
 
+/// Whether a file of this name is in metres by its format: glTF 2.0 (Khronos 2021), section 3.4. The others state no
+/// unit.
+bool statesMetres(const std::string& path);
+
 /// Makes vertices that are closer together than `tolerance` one, and drops triangles and vertices that vanish.
 SurfaceMesh weld(const SurfaceMesh& mesh, double tolerance);
 
