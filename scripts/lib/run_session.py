@@ -59,9 +59,9 @@ class Session:
         graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
         self.sim = graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"], visible=True, patience=30.0)
         graph.start("vibe_trainee", ["rosrun", "vibe_sim", "vibe_trainee"])
-        # all topics, and as much memory as it takes: a fast run sends faster than a disk may write
-        record = ["rosrun", "rosbag", "record", "--all", "--buffsize=0", "--output-name=" + self.bag]
-        self.recorder = graph.start("rosbag_record", record, patience=RECORDER_PATIENCE)
+        # the simulator begins when somebody listens to applied_input: by then every other topic must be connected
+        record = ["rosrun", "vibe_sim", "vibe_record", "--last", "applied_input", self.bag]
+        self.recorder = graph.start("vibe_record", record, patience=RECORDER_PATIENCE)
         if not self.arguments.headless:
             config = os.path.join(self.arguments.workspace, "src/vibe_description/rviz/vibe.rviz")
             graph.start("rviz", ["rosrun", "rviz", "rviz", "-d", config], essential=False)
@@ -71,6 +71,7 @@ class Session:
         put("/use_sim_time", True)  # before any node starts: each reads it once
         with open(os.path.join(arguments.workspace, "src/vibe_description/urdf/scope.urdf"), encoding="utf-8") as urdf:
             put("/robot_description", urdf.read())
+        put("/robot_state_publisher/publish_frequency", 200.0)  # else every second step of the simulator has no tf
         put("/vibe_trainee/script", arguments.script)
         put("/vibe_trainee/lockstep", True)
         put("/sim_node/scene", arguments.scene)

@@ -71,16 +71,18 @@ failsOnBadScene() {
 }
 check 'a bad scene is one clear error' failsOnBadScene
 
-# startSession MARK: a session without end, in the background; sets session_pid. Returns once it takes steps.
+# startSession MARK [OPTION...]: a session of an hour, in the background; sets session_pid. Returns once it takes steps.
 startSession() {
   # bash starts background jobs deaf to SIGINT; the user's terminal does not
-  VIBE_TEST_MARK=$1 /usr/bin/python3 -c 'import os, signal, sys
+  local mark=$1
+  shift
+  VIBE_TEST_MARK=$mark /usr/bin/python3 -c 'import os, signal, sys
 signal.signal(signal.SIGINT, signal.SIG_DFL)
-os.execv(sys.argv[1], sys.argv[1:])' "$run" --headless --duration 3600 --output "$scratch/$1" >"$scratch/$1.txt" 2>&1 &
+os.execv(sys.argv[1], sys.argv[1:])' "$run" --headless --duration 3600 --output "$scratch/$mark" "$@" >"$scratch/$mark.txt" 2>&1 &
   session_pid=$!
   local deadline=$((SECONDS + 120))
-  until grep -qs 'x real time' "$scratch/$1.txt"; do
-    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$1.txt"; return 1; }
+  until grep -qs 'x real time' "$scratch/$mark.txt"; do
+    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$mark.txt"; return 1; }
     sleep 0.2
   done
 }
@@ -114,6 +116,17 @@ cleansUpAfterKill() {
   nobodyLeft "$mark" 60 && isRecorded "$scratch/$mark"
 }
 check 'a killed session leaves no process and a complete recording' cleansUpAfterKill
+
+keepsRecording() {
+  local mark=slow-$$ status=0
+  startSession "$mark" --fast --duration 15 || return 1
+  signalProgram "$mark" STOP 'lib/vibe_sim/vibe_record$' && sleep 2 &&
+    signalProgram "$mark" CONT 'lib/vibe_sim/vibe_record$' || return 1
+  wait "$session_pid" || status=$?
+  cat "$scratch/$mark.txt"
+  [ "$status" -eq 0 ] && nothingIsLost "$scratch/$mark" 900
+}
+check 'a recorder that stands still for two seconds loses nothing' keepsRecording
 
 namesTheDead() {
   local mark=dead-$$ status=0

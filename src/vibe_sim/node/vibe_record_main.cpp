@@ -1,0 +1,82 @@
+// vibe_record: records every topic of the graph to a bag, without losing a message, until SIGINT.
+
+#include <ros/ros.h>
+
+#include <csignal>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "recorder.hpp"
+#include "vibe_sim/error.hpp"
+
+namespace {
+
+constexpr int kFailure = 1;
+constexpr int kUsage = 2;
+constexpr double kSearchPeriod = 0.2;   // between looks for new topics [s]
+constexpr double kMasterPatience = 10;  // without an answer of the master before the recording ends [s]
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+void onSignal(int number) {
+  stop_signal = number;
+}
+
+struct Options {
+  std::string file;
+  std::string last_topic;
+};
+
+/// @throws Error
+Options readOptions(const std::vector<std::string>& words) {
+  Options options;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i] == "--last" && i + 1 < words.size()) {
+      options.last_topic = words[++i];
+    } else if (words[i].rfind('-', 0) != 0 && options.file.empty()) {
+      options.file = words[i];
+    } else {
+      throw vibe::Error("Argument '" + words[i] + "' is not understood; call it as: vibe_record [--last TOPIC] FILE");
+    }
+  }
+  if (options.file.empty()) throw vibe::Error("No file is given; call it as: vibe_record [--last TOPIC] FILE");
+  return options;
+}
+
+/// @throws Error
+void recordUntilStopped(vibe::Recorder& recorder) {
+  double silence = 0;
+  while (!stop_signal && ros::ok()) {
+    silence = recorder.findTopics() ? 0 : silence + kSearchPeriod;
+    if (silence > kMasterPatience) {
+      std::fprintf(stderr, "vibe_record: the ROS master at %s does not answer; the recording ends.\n",
+                   ros::master::getURI().c_str());
+      return;
+    }
+    recorder.record(kSearchPeriod);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  bool running = false;
+  try {
+    ros::init(argc, argv, "vibe_record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
+    const Options options = readOptions({argv, argv + argc});
+    std::signal(SIGINT, onSignal);
+    std::signal(SIGTERM, onSignal);
+    vibe::Recorder recorder(options.file, options.last_topic);
+    running = true;
+    recordUntilStopped(recorder);
+    recorder.close();
+    std::printf("%llu messages on %zu topics recorded to %s\n",
+                static_cast<unsigned long long>(recorder.messageCount()), recorder.topicCount(), options.file.c_str());
+    ros::shutdown();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vibe_record: %s\n", error.what());
+    return running ? kFailure : kUsage;
+  }
+}
