@@ -14,7 +14,7 @@ std::shared_ptr<const Model> loadModel(const std::string& scene_address, const s
   const std::string guesses = mesh_address.empty() ? "" : useMesh(scene, resolveAddress(mesh_address));
   if (!guesses.empty()) ROS_WARN_STREAM(guesses);
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
-  const std::shared_ptr<const Model> model = buildModel(scene, urdf, [](const std::string& what, double fraction) {
+  std::shared_ptr<const Model> model = buildModel(scene, urdf, [](const std::string& what, double fraction) {
     ROS_DEBUG_STREAM(what << ": " << static_cast<int>(100 * fraction) << " %");
   });
   const std::string softness = softnessWarning(*model);

@@ -6,11 +6,10 @@
 namespace vibe {
 namespace {
 
-constexpr int kLanes = 8;
-constexpr int kNewtonSteps = 1;  // from the predicted orientation; a second changes no result, see the tests
-
 template <class Arch>
 struct Kernel {
+  static constexpr int kLanes = 8;
+  static constexpr int kNewtonSteps = 1;  // enough from the predicted orientation, which is near
   using Pack = xsimd::batch<double, Arch>;
   static constexpr int kWidth = static_cast<int>(Pack::size);
 
