@@ -9,8 +9,4 @@ namespace vibe {
 double lumenVolume(const SurfaceMesh& surface, const std::vector<double>& x, const std::vector<double>& y,
                    const std::vector<double>& z);
 
-/// Derivative of that volume by every vertex position [m^2], (vertex count).
-void volumeGradient(const SurfaceMesh& surface, const std::vector<double>& x, const std::vector<double>& y,
-                    const std::vector<double>& z, double* gx, double* gy, double* gz);
-
 }  // namespace vibe
