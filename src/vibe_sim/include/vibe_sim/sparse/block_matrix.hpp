@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace vibe {
+
+/// Which 3 x 3 blocks of a symmetric matrix can be non-zero: the diagonal, and below it in row i the columns
+/// column[start[i]] ... column[start[i + 1] - 1], ascending, all less than i. One block row per node.
+struct BlockPattern {
+  int size = 0;            ///< nodes
+  std::vector<int> start;  ///< (size + 1)
+  std::vector<int> column;
+
+  /// Index into `column` of the block (row, column), column < row; -1: not in the pattern.
+  int find(int row, int column) const;
+};
+
+/// The pattern in which all nodes of each group couple with one another.
+/// @param groups  consecutive groups of `group_size` node numbers; -1 entries are skipped
+BlockPattern blockPattern(int size, const std::vector<std::pair<const std::vector<int>*, int>>& groups);
+
+/// A symmetric matrix of 3 x 3 blocks over a shared pattern. Only the lower triangle is stored.
+class BlockMatrix {
+ public:
+  explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern);
+
+  void setZero();
+  /// Adds a block at (row, column); for row < column its transpose goes to (column, row). On the diagonal the block must
+  /// be symmetric.
+  void add(int row, int column, const Eigen::Matrix3d& block);
+  /// Makes a node's rows and columns those of the unit matrix: the node cannot move.
+  void fix(int node);
+  /// out = A x, vectors of (3 * size), interleaved.
+  void multiply(const double* x, double* out) const;
+
+  const BlockPattern& pattern() const { return *pattern_; }
+  const std::vector<Eigen::Matrix3d>& diagonal() const { return diagonal_; }
+  const std::vector<Eigen::Matrix3d>& lower() const { return lower_; }
+
+ private:
+  std::shared_ptr<const BlockPattern> pattern_;
+  std::vector<Eigen::Matrix3d> diagonal_, lower_;
+};
+
+}  // namespace vibe
