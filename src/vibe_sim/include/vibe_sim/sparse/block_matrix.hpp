@@ -15,11 +15,12 @@ struct BlockPattern {
   std::vector<int> column;
 
   /// Index into `column` of the block (row, column), column < row; -1: not in the pattern.
-  int find(int row, int column) const;
+  int find(int row, int column_wanted) const;
 };
 
 /// The pattern in which all nodes of each group couple with one another.
 /// @param groups  consecutive groups of `group_size` node numbers; -1 entries are skipped
+/// @throws Error  a list that holds no whole groups, or a node outside the matrix
 BlockPattern blockPattern(int size, const std::vector<std::pair<const std::vector<int>*, int>>& groups);
 
 /// A symmetric matrix of 3 x 3 blocks over a shared pattern. Only the lower triangle is stored.
@@ -30,6 +31,7 @@ class BlockMatrix {
   void setZero();
   /// Adds a block at (row, column); for row < column its transpose goes to (column, row). On the diagonal the block must
   /// be symmetric.
+  /// @throws Error  the block is not in the pattern
   void add(int row, int column, const Eigen::Matrix3d& block);
   /// Makes a node's rows and columns those of the unit matrix: the node cannot move.
   void fix(int node);
@@ -43,6 +45,7 @@ class BlockMatrix {
  private:
   std::shared_ptr<const BlockPattern> pattern_;
   std::vector<Eigen::Matrix3d> diagonal_, lower_;
+  std::vector<int> column_start_, column_block_;  // the blocks of each column below the diagonal, for fix()
 };
 
 }  // namespace vibe
