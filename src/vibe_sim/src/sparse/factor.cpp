@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "aligned_buffer.hpp"
 #include "factor_plan.hpp"
 #include "multifrontal.hpp"
 #include "panel_pack.hpp"
@@ -11,30 +12,11 @@
 namespace vibe {
 namespace {
 
-/// Memory that starts at a cache line, with room behind for what is prefetched and loaded past the end.
-template <class Number>
-class AlignedBuffer {
- public:
-  void resize(std::int64_t count) {
-    memory_.assign(count + 2 * kLine, Number());
-    const auto address = reinterpret_cast<std::uintptr_t>(memory_.data());
-    begin_ = memory_.data() + (kLine - address / sizeof(Number) % kLine) % kLine;
-  }
-  std::int64_t capacity() const { return static_cast<std::int64_t>(memory_.size()) - 2 * kLine; }
-  Number* data() { return begin_; }
-  const Number* data() const { return begin_; }
-
- private:
-  static constexpr std::int64_t kLine = 64 / sizeof(Number);
-  std::vector<Number> memory_;
-  Number* begin_ = nullptr;
-};
-
 // several threads may solve with one factor
 template <class Number>
 Number* workOfThread(std::int64_t count) {
   thread_local AlignedBuffer<Number> buffer;
-  if (buffer.data() == nullptr || buffer.capacity() < count) buffer.resize(count);
+  if (buffer.size() < count) buffer.resize(count);
   return buffer.data();
 }
 

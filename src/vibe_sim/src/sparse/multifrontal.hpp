@@ -2,7 +2,9 @@
 
 #include <vector>
 
+#include "aligned_buffer.hpp"
 #include "factor_plan.hpp"
+#include "front_elimination.hpp"
 
 namespace vibe {
 
@@ -10,7 +12,7 @@ namespace vibe {
 /// numbers from column to column, zero above the diagonal and below the last row.
 struct DoublePanel {
   const double* numbers;
-  int stride;
+  std::int64_t stride;
 };
 
 /// Multifrontal Cholesky factorisation (Duff and Reid, ACM Trans. Math. Softw. 9 (1983)) of one matrix after another
@@ -28,8 +30,8 @@ class Multifrontal {
     waiting_.clear();
     for (int s = 0; s < static_cast<int>(plan_.steps.size()); ++s) {
       assemble(s, matrix, scale);
-      if (!eliminate(s)) return false;
-      take(s, DoublePanel{panel_.data(), stride(s)});
+      if (!elimination_.run(front_.data(), rows(s), plan_.steps[s].columns)) return false;
+      take(s, DoublePanel{front_.data(), FrontElimination::stride(rows(s))});
       pushUpdate(s);
     }
     return true;
@@ -41,16 +43,16 @@ class Multifrontal {
     std::int64_t begin;
   };
 
-  int stride(int s) const { return plan_.steps[s].row_blocks * kTile; }
+  int rows(int s) const;  // of the front
   void assemble(int s, const BlockMatrix& matrix, const std::vector<double>& scale);
   void addEntry(const FactorPlan::Entry& entry, int s, const BlockMatrix& matrix, const std::vector<double>& scale);
   int rowOfFront(int s, int row) const;
-  void addUpdate(const Update& update, int stride);
-  bool eliminate(int s);
+  void addUpdate(const Update& update, std::int64_t front_stride);
   void pushUpdate(int s);
 
   const FactorPlan& plan_;
-  std::vector<double> front_, panel_, stack_;
+  FrontElimination elimination_;
+  AlignedBuffer<double> front_, stack_;
   std::vector<Update> waiting_;
   std::int64_t stack_top_ = 0;
 };

@@ -62,6 +62,8 @@ std::vector<int> nestedDissection(const BlockPattern& pattern, int seed) {
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = seed;
+  options[METIS_OPTION_UFACTOR] =
+      400;  // halves of 1 : 1.4 allow shorter separators: 4 % less numbers in a shell's factor
   options[METIS_OPTION_NUMBERING] = 0;
   idx_t count = static_cast<idx_t>(graph.node.size());
   std::vector<idx_t> vertex_order(count), place(count);

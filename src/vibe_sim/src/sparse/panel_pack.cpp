@@ -36,7 +36,7 @@ void pack(const DoublePanel& panel, const PanelStep& step, Number* to, float* co
   for (int first = 0; first < step.columns; first += kTile) {
     const int width = std::min(kTile, step.columns - first);
     for (int j = 0; j < width; ++j) {
-      const double* column = panel.numbers + static_cast<std::int64_t>(first + j) * panel.stride;
+      const double* column = panel.numbers + (first + j) * panel.stride;
       const double scale = columnScale(column + first, rows - first, Number());
       const double factor = 1 / scale;
       column_scale[first + j] = static_cast<float>(scale);
