@@ -1,27 +1,40 @@
 #pragma once
 
+#include <sys/mman.h>
+
 #include <cstdint>
-#include <vector>
+#include <cstdlib>
+#include <memory>
+#include <new>
 
 namespace vibe {
 
-/// Memory that starts at a cache line, with a line of room behind.
+/// Zeroed memory that starts at a cache line, with a line of room behind. Large ones ask for huge pages: a factor is
+/// streamed through, and the processor's prefetchers stop at the end of every page.
 template <class Number>
 class AlignedBuffer {
  public:
   void resize(std::int64_t count) {
-    memory_.assign(count + 2 * kLine, Number());
-    const auto address = reinterpret_cast<std::uintptr_t>(memory_.data());
-    begin_ = memory_.data() + (kLine - address / sizeof(Number) % kLine) % kLine;
+    const std::size_t alignment = count * sizeof(Number) < kHugePage ? kLine : kHugePage;
+    const std::size_t bytes = (count * sizeof(Number) + kLine + alignment - 1) / alignment * alignment;
+    memory_.reset(static_cast<Number*>(std::aligned_alloc(alignment, bytes)));
+    if (memory_ == nullptr) throw std::bad_alloc();
+    if (alignment == kHugePage)
+      madvise(memory_.get(), bytes, MADV_HUGEPAGE);  // a wish: what it returns does not matter
+    size_ = count;
+    std::uninitialized_fill_n(memory_.get(), bytes / sizeof(Number), Number());
   }
-  std::int64_t size() const { return memory_.empty() ? 0 : static_cast<std::int64_t>(memory_.size()) - 2 * kLine; }
-  Number* data() { return begin_; }
-  const Number* data() const { return begin_; }
+  std::int64_t size() const { return size_; }
+  Number* data() { return memory_.get(); }
+  const Number* data() const { return memory_.get(); }
 
  private:
-  static constexpr std::int64_t kLine = 64 / sizeof(Number);
-  std::vector<Number> memory_;
-  Number* begin_ = nullptr;
+  struct Free {
+    void operator()(Number* memory) const { std::free(memory); }
+  };
+  static constexpr std::size_t kLine = 64, kHugePage = std::size_t(1) << 21;
+  std::unique_ptr<Number, Free> memory_;
+  std::int64_t size_ = 0;
 };
 
 }  // namespace vibe
