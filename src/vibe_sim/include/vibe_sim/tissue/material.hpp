@@ -1,8 +1,12 @@
 #pragma once
 
+#include <string>
+
 namespace vibe {
 
-/// Isotropic elastic law as a function of I = tr(FtF) and J = det F. All agree with E and nu at rest.
+/// Isotropic elastic law as a function of I = tr(FtF) and J = det F. All agree with E and nu at rest. Energies are
+/// given up to a constant; they are 0 at rest. Every law is continued where the formula has no value, so that energy
+/// and force are finite for inverted and collapsed material and push it back: see material_law.hpp.
 enum class Law {
   /// mu/2 (I - 3) - mu ln J + lambda/2 (ln J)^2
   NeoHookean,
@@ -24,5 +28,11 @@ struct Material {
   double poisson_ratio = 0;  ///< [1]
   double stiffening = 0;     ///< b, or 1/Jm; used by Fung, Gent and Yeoh [1]
 };
+
+/// Throws unless the energy of the material is positive for every deformation: E > 0; -1 < nu < 0.5, and nu >= 0 for
+/// the laws with (ln J)^2, whose energy has no lower bound otherwise; stiffening >= 0, > 0 for Fung and Gent.
+/// @param place  where the material was stated, for the message: "stomach.yaml:12", "tissue.wall"
+/// @throws Error that names the place, the number and its range
+void checkMaterial(const Material& material, const std::string& place);
 
 }  // namespace vibe
