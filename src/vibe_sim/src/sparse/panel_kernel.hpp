@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace vibe {
@@ -34,10 +35,11 @@ struct PanelSet {
   const std::int32_t* row_index;
   const void* numbers;
   const float* column_scale;  ///< W = panel * diag(column_scale), one per row of the vector
+  std::ptrdiff_t ahead;       ///< bytes between what is read and what is prefetched
 };
 
 /// What a kernel does to one vector, or to three interleaved ones (x0 y0 z0 x1 ...). `work` holds the rows of the
-/// largest supernode in whole blocks, three times for `path`. All read the vector at most 8 numbers past its end.
+/// largest supernode in whole blocks, three times for `path`.
 struct PanelKernels {
   void (*forward)(const PanelSet& set, float* vector, float* work);
   void (*backward)(const PanelSet& set, float* vector, float* work);

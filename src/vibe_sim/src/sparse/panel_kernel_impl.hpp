@@ -5,6 +5,7 @@
 #include <immintrin.h>
 #endif
 
+#include <cstddef>
 #include <xsimd/xsimd.hpp>
 
 #include "panel_kernel.hpp"
@@ -72,22 +73,23 @@ struct Eight {
 template <class Arch, class Number>
 struct PanelKernel {
   using Lane = Eight<Arch>;
-  static constexpr int kAhead = 2048 / static_cast<int>(sizeof(Number));  // numbers: panels come from the outer caches
 
-  static void prefetch(const Number* p) { _mm_prefetch(reinterpret_cast<const char*>(p), _MM_HINT_T0); }
+  // a block of rows, so many bytes from p: panels come from the outer caches, or from memory
   template <int kColumns>
-  static void prefetchBlock(const Number* p) {
-    constexpr int kLine = 64 / static_cast<int>(sizeof(Number));
-    for (int i = 0; i < kTile * kColumns; i += kLine) prefetch(p + i);
+  static void prefetchBlock(const Number* p, std::ptrdiff_t ahead) {
+    constexpr int kBytes = kTile * kColumns * static_cast<int>(sizeof(Number));
+    const auto address = reinterpret_cast<std::uintptr_t>(p) + static_cast<std::uintptr_t>(ahead);
+    for (int i = 0; i < kBytes; i += 64) _mm_prefetch(reinterpret_cast<const char*>(address + i), _MM_HINT_T0);
   }
 
   // ---- forward: a tile times its columns' numbers, added to work (or written, where it is the first)
   template <int kColumns, bool kFirst>
-  static void forwardTile(const Number* p, int blocks, const float* x, const float* scale, float* work) {
+  static void forwardTile(const Number* p, int blocks, const float* x, const float* scale, float* work,
+                          std::ptrdiff_t ahead) {
     Lane factor[kColumns];
     for (int j = 0; j < kColumns; ++j) factor[j] = Lane::all(x[j] * scale[j]);
     for (int block = 0; block < blocks; ++block, p += kTile * kColumns, work += kTile) {
-      prefetchBlock<kColumns>(p + kAhead);
+      prefetchBlock<kColumns>(p, ahead);
       Lane even = kFirst ? Lane::all(0) : Lane::load(work), odd = Lane::all(0);
       for (int j = 0; j < kColumns; ++j) (j % 2 == 0 ? even : odd).addProduct(Lane::load(p + j * kTile), factor[j]);
       even.add(odd);
@@ -96,24 +98,25 @@ struct PanelKernel {
   }
 
   template <bool kFirst>
-  static void forwardTile(int columns, const Number* p, int blocks, const float* x, const float* scale, float* work) {
+  static void forwardTile(int columns, const Number* p, int blocks, const float* x, const float* scale, float* work,
+                          std::ptrdiff_t ahead) {
     switch (columns) {
       case 1:
-        return forwardTile<1, kFirst>(p, blocks, x, scale, work);
+        return forwardTile<1, kFirst>(p, blocks, x, scale, work, ahead);
       case 2:
-        return forwardTile<2, kFirst>(p, blocks, x, scale, work);
+        return forwardTile<2, kFirst>(p, blocks, x, scale, work, ahead);
       case 3:
-        return forwardTile<3, kFirst>(p, blocks, x, scale, work);
+        return forwardTile<3, kFirst>(p, blocks, x, scale, work, ahead);
       case 4:
-        return forwardTile<4, kFirst>(p, blocks, x, scale, work);
+        return forwardTile<4, kFirst>(p, blocks, x, scale, work, ahead);
       case 5:
-        return forwardTile<5, kFirst>(p, blocks, x, scale, work);
+        return forwardTile<5, kFirst>(p, blocks, x, scale, work, ahead);
       case 6:
-        return forwardTile<6, kFirst>(p, blocks, x, scale, work);
+        return forwardTile<6, kFirst>(p, blocks, x, scale, work, ahead);
       case 7:
-        return forwardTile<7, kFirst>(p, blocks, x, scale, work);
+        return forwardTile<7, kFirst>(p, blocks, x, scale, work, ahead);
       default:
-        return forwardTile<kTile, kFirst>(p, blocks, x, scale, work);
+        return forwardTile<kTile, kFirst>(p, blocks, x, scale, work, ahead);
     }
   }
 
@@ -124,9 +127,9 @@ struct PanelKernel {
     for (int column = 0, blocks = step.row_blocks; column < step.columns; column += kTile, --blocks) {
       const int width = step.columns - column < kTile ? step.columns - column : kTile;
       if (column == 0)
-        forwardTile<true>(width, p, blocks, own, scale, work);
+        forwardTile<true>(width, p, blocks, own, scale, work, set.ahead);
       else
-        forwardTile<false>(width, p, blocks, own + column, scale + column, work + column);
+        forwardTile<false>(width, p, blocks, own + column, scale + column, work + column, set.ahead);
       p += kTile * width * blocks;
     }
     for (int i = 0; i < step.columns; ++i) own[i] = work[i];
@@ -147,12 +150,13 @@ struct PanelKernel {
   // ---- backward: the columns of a tile times the rows; read from the end to the start, so that what the forward
   // pass read last, and a cache still has, comes first
   template <int kColumns>
-  static void backwardTile(const Number* end, int blocks, const float* work, const float* scale, float* x) {
+  static void backwardTile(const Number* end, int blocks, const float* work, const float* scale, float* x,
+                           std::ptrdiff_t ahead) {
     Lane sum[kTile];
     for (Lane& s : sum) s = Lane::all(0);
     for (int block = blocks - 1; block >= 0; --block) {
       end -= kTile * kColumns;
-      prefetchBlock<kColumns>(end - kAhead);
+      prefetchBlock<kColumns>(end, -ahead);
       const Lane row = Lane::load(work + block * kTile);
       for (int j = 0; j < kColumns; ++j) sum[j].addProduct(Lane::load(end + j * kTile), row);
     }
@@ -161,25 +165,25 @@ struct PanelKernel {
     for (int j = 0; j < kColumns; ++j) x[j] = result[j] * scale[j];
   }
 
-  static void backwardTile(int columns, const Number* end, int blocks, const float* work, const float* scale,
-                           float* x) {
+  static void backwardTile(int columns, const Number* end, int blocks, const float* work, const float* scale, float* x,
+                           std::ptrdiff_t ahead) {
     switch (columns) {
       case 1:
-        return backwardTile<1>(end, blocks, work, scale, x);
+        return backwardTile<1>(end, blocks, work, scale, x, ahead);
       case 2:
-        return backwardTile<2>(end, blocks, work, scale, x);
+        return backwardTile<2>(end, blocks, work, scale, x, ahead);
       case 3:
-        return backwardTile<3>(end, blocks, work, scale, x);
+        return backwardTile<3>(end, blocks, work, scale, x, ahead);
       case 4:
-        return backwardTile<4>(end, blocks, work, scale, x);
+        return backwardTile<4>(end, blocks, work, scale, x, ahead);
       case 5:
-        return backwardTile<5>(end, blocks, work, scale, x);
+        return backwardTile<5>(end, blocks, work, scale, x, ahead);
       case 6:
-        return backwardTile<6>(end, blocks, work, scale, x);
+        return backwardTile<6>(end, blocks, work, scale, x, ahead);
       case 7:
-        return backwardTile<7>(end, blocks, work, scale, x);
+        return backwardTile<7>(end, blocks, work, scale, x, ahead);
       default:
-        return backwardTile<kTile>(end, blocks, work, scale, x);
+        return backwardTile<kTile>(end, blocks, work, scale, x, ahead);
     }
   }
 
@@ -205,7 +209,7 @@ struct PanelKernel {
       const int column = tile * kTile, blocks = step.row_blocks - tile;
       const int width = tile == last_tile ? step.columns - column : kTile;
       backwardTile(width, end, blocks, work + column, set.column_scale + step.first_row + column,
-                   vector + step.first_row + column);
+                   vector + step.first_row + column, set.ahead);
       end -= kTile * width * blocks;
     }
   }
