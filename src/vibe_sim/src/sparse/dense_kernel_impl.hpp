@@ -15,8 +15,8 @@ struct DenseKernel {
 
   static void tile(const double* a, const double* b, int depth, double* c, std::int64_t stride) {
     Pack sum[kDenseColumns][kParts];
-    for (int j = 0; j < kDenseColumns; ++j)
-      for (int i = 0; i < kParts; ++i) sum[j][i] = Pack(0.0);
+    for (auto& column : sum)
+      for (Pack& part : column) part = Pack(0.0);
     for (int k = 0; k < depth; ++k, a += kDenseRows, b += kDenseColumns) {
       Pack row[kParts];
       for (int i = 0; i < kParts; ++i) row[i] = Pack::load_aligned(a + i * kWidth);

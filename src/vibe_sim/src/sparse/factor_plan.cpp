@@ -18,7 +18,7 @@ class Planner {
 
   std::shared_ptr<const FactorPlan> make() {
     numberNodes();
-    for (std::size_t s = 0; s < supernodes_.size(); ++s) addStep(supernodes_[s]);
+    for (const Supernode& supernode : supernodes_) addStep(supernode);
     for (std::size_t s = 0; s < supernodes_.size(); ++s) addRuns(static_cast<int>(s));
     addEntries();
     measureStack();

@@ -10,10 +10,9 @@ PanelKernels floatKernelsSse2();
 PanelKernels floatKernelsAvx2();
 
 InstructionPath bestInstructionPath() {
-  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
-                 __builtin_cpu_supports("f16c") != 0
-             ? InstructionPath::Avx2
-             : InstructionPath::Sse2;
+  // no processor has AVX2 without the conversions of F16C
+  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 ? InstructionPath::Avx2
+                                                                                   : InstructionPath::Sse2;
 }
 
 PanelKernels halfKernels(InstructionPath path) {

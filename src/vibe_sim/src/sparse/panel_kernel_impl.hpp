@@ -78,8 +78,8 @@ struct PanelKernel {
   template <int kColumns>
   static void prefetchBlock(const Number* p, std::ptrdiff_t ahead) {
     constexpr int kBytes = kTile * kColumns * static_cast<int>(sizeof(Number));
-    const auto address = reinterpret_cast<std::uintptr_t>(p) + static_cast<std::uintptr_t>(ahead);
-    for (int i = 0; i < kBytes; i += 64) _mm_prefetch(reinterpret_cast<const char*>(address + i), _MM_HINT_T0);
+    const char* first = reinterpret_cast<const char*>(p) + ahead;
+    for (int i = 0; i < kBytes; i += 64) _mm_prefetch(first + i, _MM_HINT_T0);
   }
 
   // ---- forward: a tile times its columns' numbers, added to work (or written, where it is the first)

@@ -40,24 +40,24 @@ TEST(BlockPatternTest, RefusesBrokenGroups) {
 
 class BlockMatrixTest : public ::testing::Test {
  protected:
-  BlockMatrixTest() : matrix_(std::make_shared<BlockPattern>(blockPattern(5, {{&groups_, 3}}))) {
-    block_ << 1, 2, 3, 4, 5, 6, 7, 8, 10;
+  BlockMatrixTest() : matrix(std::make_shared<BlockPattern>(blockPattern(5, {{&groups, 3}}))) {
+    block << 1, 2, 3, 4, 5, 6, 7, 8, 10;
   }
-  const std::vector<int> groups_ = {0, 1, 3, 1, 3, 4};
-  BlockMatrix matrix_;
-  Eigen::Matrix3d block_;
+  const std::vector<int> groups = {0, 1, 3, 1, 3, 4};
+  BlockMatrix matrix;
+  Eigen::Matrix3d block;
 };
 
 TEST_F(BlockMatrixTest, AddsTheTransposeAboveTheDiagonal) {
-  matrix_.add(3, 1, block_);
-  matrix_.add(1, 3, block_);
-  const Eigen::MatrixXd full = dense(matrix_);
-  EXPECT_EQ((full.block<3, 3>(9, 3)), block_ + block_.transpose());
+  matrix.add(3, 1, block);
+  matrix.add(1, 3, block);
+  const Eigen::MatrixXd full = dense(matrix);
+  EXPECT_EQ((full.block<3, 3>(9, 3)), block + block.transpose());
   EXPECT_EQ(full, Eigen::MatrixXd(full.transpose()));
-  EXPECT_THROW(matrix_.add(4, 0, block_), Error);
-  EXPECT_THROW(matrix_.add(0, 2, block_), Error);
-  matrix_.setZero();
-  EXPECT_EQ(dense(matrix_).norm(), 0);
+  EXPECT_THROW(matrix.add(4, 0, block), Error);
+  EXPECT_THROW(matrix.add(0, 2, block), Error);
+  matrix.setZero();
+  EXPECT_EQ(dense(matrix).norm(), 0);
 }
 
 TEST_F(BlockMatrixTest, MultipliesAsTheFullMatrix) {
@@ -65,28 +65,28 @@ TEST_F(BlockMatrixTest, MultipliesAsTheFullMatrix) {
   std::normal_distribution<double> normal;
   for (int i = 0; i < 5; ++i)
     for (int j = 0; j <= i; ++j)
-      if (i == j || matrix_.pattern().find(i, j) >= 0) {
+      if (i == j || matrix.pattern().find(i, j) >= 0) {
         const Eigen::Matrix3d b = Eigen::Matrix3d::NullaryExpr([&] { return normal(generator); });
-        matrix_.add(i, j, i == j ? Eigen::Matrix3d(b + b.transpose()) : b);
+        matrix.add(i, j, i == j ? Eigen::Matrix3d(b + b.transpose()) : b);
       }
   const Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(15, [&] { return normal(generator); });
   Eigen::VectorXd out = Eigen::VectorXd::Constant(15, 7);
-  matrix_.multiply(x.data(), out.data());
-  EXPECT_LT((out - dense(matrix_) * x).norm(), 1e-13);
+  matrix.multiply(x.data(), out.data());
+  EXPECT_LT((out - dense(matrix) * x).norm(), 1e-13);
   EXPECT_GT(out.norm(), 1);
 }
 
 TEST_F(BlockMatrixTest, FixesRowAndColumn) {
   for (int i = 0; i < 5; ++i)
     for (int j = 0; j <= i; ++j)
-      if (i == j || matrix_.pattern().find(i, j) >= 0)
-        matrix_.add(i, j, i == j ? 2 * Eigen::Matrix3d::Identity() : block_);
-  Eigen::MatrixXd expected = dense(matrix_);
+      if (i == j || matrix.pattern().find(i, j) >= 0)
+        matrix.add(i, j, i == j ? 2 * Eigen::Matrix3d::Identity() : block);
+  Eigen::MatrixXd expected = dense(matrix);
   expected.middleRows(3, 3).setZero();
   expected.middleCols(3, 3).setZero();
   expected.block<3, 3>(3, 3).setIdentity();
-  matrix_.fix(1);
-  EXPECT_EQ(dense(matrix_), expected);
+  matrix.fix(1);
+  EXPECT_EQ(dense(matrix), expected);
 }
 
 }  // namespace

@@ -29,42 +29,40 @@ class PanelKernelTest : public ::testing::TestWithParam<std::pair<int, int>> {
  protected:
   void SetUp() override {
     const auto [nodes, below] = GetParam();
-    columns_ = 3 * nodes;
-    rows_ = columns_ + 3 * below;
-    step_ = {3, columns_, (rows_ + kTile - 1) / kTile, below, 0, 0};
-    stride_ = step_.row_blocks * kTile;
-    for (int i = 0; i < below; ++i) index_.push_back(3 + columns_ + 3 * (i + i / 2));  // not consecutive
-    vector_size_ = 3 + columns_ + 9 * below;
+    columns = 3 * nodes;
+    rows = columns + 3 * below;
+    step = {3, columns, (rows + kTile - 1) / kTile, below, 0, 0};
+    stride = step.row_blocks * kTile;
+    for (int i = 0; i < below; ++i) index.push_back(3 + columns + 3 * (i + i / 2));  // not consecutive
+    vector_size = 3 + columns + 9 * below;
     fill();
   }
 
   void fill() {
-    std::mt19937 generator(static_cast<unsigned>(rows_));
+    std::mt19937 generator(static_cast<unsigned>(rows));
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> exponent(-12, 1);
-    numbers_.assign(static_cast<std::size_t>(stride_) * columns_, 0.0);
-    for (int j = 0; j < columns_; ++j)
-      for (int i = j; i < rows_; ++i)
-        numbers_[j * stride_ + i] = normal(generator) * std::pow(10.0, i % 3 == 0 ? exponent(generator) : 0.0);
-    half_.resize(panelSize(columns_, step_.row_blocks));
-    wide_.resize(panelSize(columns_, step_.row_blocks));
-    half_scale_.assign(vector_size_, 1.0F);
-    wide_scale_.assign(vector_size_, 1.0F);
-    packPanel({numbers_.data(), stride_}, step_, half_.data(), half_scale_.data() + 3);
-    for (int j = 0; j < columns_; ++j)  // what the halves ought to be
-      for (int i = j; i < rows_; ++i) {
-        double& number = numbers_[j * stride_ + i];
-        number = roundedToHalf(number, std::ldexp(half_scale_[3 + j], -14));
+    numbers.assign(static_cast<std::size_t>(stride) * columns, 0.0);
+    for (int j = 0; j < columns; ++j)
+      for (int i = j; i < rows; ++i)
+        numbers[j * stride + i] = normal(generator) * std::pow(10.0, i % 3 == 0 ? exponent(generator) : 0.0);
+    half.resize(panelSize(columns, step.row_blocks));
+    wide.resize(panelSize(columns, step.row_blocks));
+    half_scale.assign(vector_size, 1.0F);
+    wide_scale.assign(vector_size, 1.0F);
+    packPanel({numbers.data(), stride}, step, half.data(), half_scale.data() + 3);
+    for (int j = 0; j < columns; ++j)  // what the halves ought to be
+      for (int i = j; i < rows; ++i) {
+        double& number = numbers[j * stride + i];
+        number = roundedToHalf(number, std::ldexp(half_scale[3 + j], -14));
       }
-    packPanel({numbers_.data(), stride_}, step_, wide_.data(), wide_scale_.data() + 3);
-    for (int i = 0; i < 3 * vector_size_; ++i) start_.push_back(static_cast<float>(normal(generator)));
+    packPanel({numbers.data(), stride}, step, wide.data(), wide_scale.data() + 3);
+    for (int i = 0; i < 3 * vector_size; ++i) start.push_back(static_cast<float>(normal(generator)));
   }
 
-  PanelSet set(const void* numbers, const float* scale) const {
-    return {&step_, 1, index_.data(), numbers, scale, 8192};
-  }
-  PanelSet half() const { return set(half_.data(), half_scale_.data()); }
-  PanelSet wide() const { return set(wide_.data(), wide_scale_.data()); }
+  PanelSet set(const void* panel, const float* scale) const { return {&step, 1, index.data(), panel, scale, 8192}; }
+  PanelSet halfSet() const { return set(half.data(), half_scale.data()); }
+  PanelSet wideSet() const { return set(wide.data(), wide_scale.data()); }
 
   static void expectNear(const std::vector<float>& a, const std::vector<float>& b) {
     double error = 0, size = 0;
@@ -77,30 +75,30 @@ class PanelKernelTest : public ::testing::TestWithParam<std::pair<int, int>> {
 
   template <class Operation>
   std::vector<float> applied(std::size_t count, const Operation& operation) {
-    std::vector<float> vector(start_.begin(), start_.begin() + count);
+    std::vector<float> vector(start.begin(), start.begin() + count);
     AlignedBuffer<float> work;
-    work.resize(3 * stride_);
+    work.resize(3 * stride);
     operation(vector.data(), work.data());
     return vector;
   }
 
   void expectAsPlain(InstructionPath path) {
     const PanelKernels kernels = halfKernels(path), plain = doubleKernels();
-    expectNear(applied(vector_size_, [&](float* v, float* w) { kernels.forward(half(), v, w); }),
-               applied(vector_size_, [&](float* v, float* w) { plain.forward(wide(), v, w); }));
-    expectNear(applied(vector_size_, [&](float* v, float* w) { kernels.backward(half(), v, w); }),
-               applied(vector_size_, [&](float* v, float* w) { plain.backward(wide(), v, w); }));
-    expectNear(applied(3 * vector_size_, [&](float* v, float* w) { kernels.stepOfThree(half(), 0, 0, v, w); }),
-               applied(3 * vector_size_, [&](float* v, float* w) { plain.stepOfThree(wide(), 0, 0, v, w); }));
+    expectNear(applied(vector_size, [&](float* v, float* w) { kernels.forward(halfSet(), v, w); }),
+               applied(vector_size, [&](float* v, float* w) { plain.forward(wideSet(), v, w); }));
+    expectNear(applied(vector_size, [&](float* v, float* w) { kernels.backward(halfSet(), v, w); }),
+               applied(vector_size, [&](float* v, float* w) { plain.backward(wideSet(), v, w); }));
+    expectNear(applied(3 * vector_size, [&](float* v, float* w) { kernels.stepOfThree(halfSet(), 0, 0, v, w); }),
+               applied(3 * vector_size, [&](float* v, float* w) { plain.stepOfThree(wideSet(), 0, 0, v, w); }));
   }
 
-  PanelStep step_{};
-  int columns_ = 0, rows_ = 0, stride_ = 0, vector_size_ = 0;
-  std::vector<std::int32_t> index_;
-  std::vector<double> numbers_;
-  AlignedBuffer<std::uint16_t> half_;
-  AlignedBuffer<double> wide_;
-  std::vector<float> half_scale_, wide_scale_, start_;
+  PanelStep step{};
+  int columns = 0, rows = 0, stride = 0, vector_size = 0;
+  std::vector<std::int32_t> index;
+  std::vector<double> numbers;
+  AlignedBuffer<std::uint16_t> half;
+  AlignedBuffer<double> wide;
+  std::vector<float> half_scale, wide_scale, start;
 };
 
 TEST_P(PanelKernelTest, Sse2EqualsPlainLoopsOverRoundedNumbers) {
@@ -114,13 +112,13 @@ TEST_P(PanelKernelTest, Avx2EqualsPlainLoopsOverRoundedNumbers) {
 
 TEST_P(PanelKernelTest, StoresNoSubnormalHalf) {
   int zeros = 0;
-  for (std::int64_t i = 0; i < half_.size(); ++i) {
-    const int exponent = half_.data()[i] >> 10 & 31, mantissa = half_.data()[i] & 1023;
+  for (std::int64_t i = 0; i < half.size(); ++i) {
+    const int exponent = half.data()[i] >> 10 & 31, mantissa = half.data()[i] & 1023;
     EXPECT_TRUE(exponent != 0 || mantissa == 0);
     EXPECT_LT(exponent, 31);
     zeros += exponent == 0 ? 1 : 0;
   }
-  EXPECT_LT(zeros, half_.size());
+  EXPECT_LT(zeros, half.size());
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, PanelKernelTest,

@@ -29,8 +29,8 @@ class BlockMatrix {
   explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern);
 
   void setZero();
-  /// Adds a block at (row, column); for row < column its transpose goes to (column, row). On the diagonal the block must
-  /// be symmetric.
+  /// Adds a block at (row, column); for row < column its transpose goes to (column, row). On the diagonal the block
+  /// must be symmetric.
   /// @throws Error  the block is not in the pattern
   void add(int row, int column, const Eigen::Matrix3d& block);
   /// Makes a node's rows and columns those of the unit matrix: the node cannot move.
