@@ -103,15 +103,12 @@ inline xsimd::batch<float, A> logGap(const xsimd::batch<float, A>& x) {
   const F exponent = xsimd::to_float((bits >> 23) - N(127));
   const F mantissa = xsimd::bitwise_cast<F>((bits & N(0x007fffff)) + root_half);
   const F t = xsimd::select(exponent == F(0.0f), x, mantissa - F(1.0f));
-  F p(-0.07902743774f);
-  p = mulAdd(p, t, F(0.1262231985f));
-  p = mulAdd(p, t, F(-0.1299818376f));
-  p = mulAdd(p, t, F(0.1421449592f));
-  p = mulAdd(p, t, F(-0.1664128146f));
-  p = mulAdd(p, t, F(0.2000104509f));
-  p = mulAdd(p, t, F(-0.2500030642f));
-  p = mulAdd(p, t, F(0.3333333073f));
-  return mulAdd(t * t, F(0.5f) - t * p, (x - t) - exponent * F(0.6931471806f));
+  // p in pairs of terms, so that the products do not wait for one another
+  const F t2 = t * t;
+  const F p01 = mulAdd(F(-0.2500030642f), t, F(0.3333333073f)), p23 = mulAdd(F(-0.1664128146f), t, F(0.2000104509f));
+  const F p45 = mulAdd(F(-0.1299818376f), t, F(0.1421449592f)), p67 = mulAdd(F(-0.07902743774f), t, F(0.1262231985f));
+  const F p = mulAdd(mulAdd(p67, t2, p45), t2 * t2, mulAdd(p23, t2, p01));
+  return mulAdd(t2, F(0.5f) - t * p, (x - t) - exponent * F(0.6931471806f));
 }
 
 /// L = ln J, continued for small J.

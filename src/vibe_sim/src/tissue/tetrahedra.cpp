@@ -151,7 +151,8 @@ void TetElements<Nodes>::addBatch(const std::array<int, kTetLanes>& elements) {
   for (std::size_t lane = 0; lane < kTetLanes; ++lane) {
     const bool empty = elements[lane] < 0;
     const std::size_t e = static_cast<std::size_t>(empty ? filler : elements[lane]);
-    for (std::size_t a = 0; a < Nodes; ++a) batch_node_[node + a].lane[lane] = mesh_.elements[e][a];
+    for (std::size_t a = 0; a < Nodes; ++a)
+      batch_node_[node + a].lane[lane] = 4 * static_cast<std::uint32_t>(mesh_.elements[e][a]);
     // an empty lane does not deform and weighs nothing
     for (int k = 0; k < points * kRows; ++k)
       batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = empty ? 0 : static_cast<float>(rest(e, 0)[k]);

@@ -91,7 +91,7 @@ class TetElements : public ElasticElements {
   std::vector<int> flat_nodes_;          // of the elements, one after another
   int batch_count_ = 0, point_stride_ = 0, batch_stride_ = 0, piece_count_ = 1;
   std::vector<Run> runs_;
-  std::vector<TetIndices> batch_node_;
+  std::vector<TetOffsets> batch_node_;
   std::vector<TetReals> batch_rest_;
 };
 

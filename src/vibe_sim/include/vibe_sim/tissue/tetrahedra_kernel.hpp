@@ -14,14 +14,15 @@ constexpr int kTetLanes = 8;  ///< elements in a batch
 struct alignas(32) TetReals {
   float lane[kTetLanes];
 };
-struct alignas(32) TetIndices {
-  std::int32_t lane[kTetLanes];
+/// Of each element of a batch, where a node's four numbers begin: 4 * node.
+struct alignas(32) TetOffsets {
+  std::uint32_t lane[kTetLanes];
 };
 
 /// What evaluating some batches of elements of one material takes. Plain pointers, so that the translation units of the
 /// kernel share no inline code that one of them could compile for the wrong machine.
 struct TetSweep {
-  const TetIndices* node;  ///< (batches * nodes per element)
+  const TetOffsets* node;  ///< (batches * nodes per element)
   const TetReals* rest;    ///< (batches * batch_stride), see TetElements
   int batch_stride;        ///< rows of `rest` per batch
   int point_stride;        ///< rows of `rest` from one integration point to the next; 0: all have the same
