@@ -78,13 +78,28 @@ inline xsimd::batch<T, A> smaller(const xsimd::batch<T, A>& a, const xsimd::batc
   return xsimd::min(a, b);
 }
 
-/// exp(x) - 1, accurate near 0
+/// exp(x) - 1, accurate near 0; |x| < 80
 inline double expMinusOne(double x) {
   return std::expm1(x);
 }
+
+/// In single precision: x = n ln 2 + r, and the Taylor series of exp(r) - 1 for |r| <= ln(2)/2 (relative error 2e-8).
+/// xsimd's own uses constants that are not compiled per instruction set.
 template <class A>
 inline xsimd::batch<float, A> expMinusOne(const xsimd::batch<float, A>& x) {
-  return xsimd::expm1(x);
+  using F = xsimd::batch<float, A>;
+  using N = xsimd::batch<std::int32_t, A>;
+  const F rounding(12582912.0f);  // 1.5 * 2^23: the sum has no bits for fractions left
+  const F rounded = mulAdd(x, F(1.442695041f), rounding);
+  const F n = rounded - rounding;
+  const F r = mulAdd(n, F(2.12194440e-4f), mulAdd(n, F(-0.693359375f), x));  // ln 2 in two parts, the first exact
+  const F r2 = r * r;
+  const F p23 = mulAdd(F(1.0f / 6), r, F(0.5f)), p45 = mulAdd(F(1.0f / 120), r, F(1.0f / 24));
+  const F p67 = mulAdd(F(1.0f / 5040), r, F(1.0f / 720));
+  const F small = mulAdd(mulAdd(mulAdd(p67, r2, p45), r2, p23), r2, r);
+  const N exponent = xsimd::bitwise_cast<N>(rounded) - N(0x4b400000 - 127);
+  const F scale = xsimd::bitwise_cast<F>(exponent << 23);
+  return mulAdd(scale, small, scale - F(1.0f));
 }
 
 /// x - ln(1 + x), x > -1, with a small relative error near 0 too: the energy of small strains is made of it.
