@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "vibe_sim/tissue/elastic_elements.hpp"
+#include "vibe_sim/tissue/shell.hpp"
+
+namespace vibe {
+
+/// A soft body as an implicit solver sees it. Constant.
+struct ElasticBody {
+  std::shared_ptr<const ElasticElements> elements;
+  const ShellElements* shell = nullptr;  ///< the same elements where they enclose gas; null: no gas
+  std::vector<Eigen::Vector3d> rest;     ///< of the nodes [m]
+  std::vector<double> mass;              ///< lumped, per node [kg]
+  std::vector<char> fixed;               ///< per node: it never moves
+  std::vector<double> foundation;        ///< spring from each node to its rest position [N/m]; empty: none
+  std::vector<Eigen::Vector3d> load;     ///< dead load per node [N]; empty: none
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  double damping_rate = 0;                            ///< force -rate m v [1/s]
+  double damping_time = 0;                            ///< force -time K v: the time constant of the tissue [s]
+
+  int nodeCount() const { return static_cast<int>(rest.size()); }
+};
+
+/// The motion of the nodes, structure of arrays (nodeCount) [m], [m/s], [m/s^2]; views into a State or a BodyMotion.
+struct MotionView {
+  std::array<double*, 3> x, v, a;
+};
+
+/// The same with its own memory.
+struct BodyMotion {
+  explicit BodyMotion(const ElasticBody& body);  ///< at rest
+  MotionView view();
+  std::array<std::vector<double>, 3> x, v, a;
+};
+
+/// A linear condition on positions: sum over k of coefficient[k] . x[node[k]] = target - compliance * force.
+/// What the tool holds, what a suture pulls together, and weighted means of spots are conditions.
+struct Condition {
+  std::vector<int> node;
+  std::vector<Eigen::Vector3d> coefficient;  ///< [1]
+  double target = 0;                         ///< [m]
+  double compliance = 0;                     ///< 0: exact [m/N]
+  double force = 0;  ///< out: with which the condition acts along its coefficients on the body [N]
+};
+
+/// A node that must not come nearer than its gap to a tool, with Coulomb friction against the tool's motion.
+struct ContactCondition {
+  int node = -1;
+  Eigen::Vector3d normal;                                 ///< out of the tool, unit
+  double offset = 0;                                      ///< normal . x >= offset [m]
+  double friction = 0;                                    ///< Coulomb coefficient [1]
+  Eigen::Vector3d anchor;                                 ///< where the node would be if it stuck to the tool [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();        ///< out: tool on node [N]
+};
+
+/// The gas inside a closed shell.
+struct GasLoad {
+  enum class Control { None, Pressure, Amount, Volume };
+  Control control = Control::None;
+  double pressure = 0;           ///< gauge; given for Pressure, otherwise out [Pa]
+  double amount = 0;             ///< absolute pressure times volume, for Amount [J]
+  double ambient = 101325;       ///< [Pa]
+  double target_volume = 0;      ///< for Volume [m^3]
+  double volume = 0;             ///< out [m^3]
+};
+
+/// Everything that acts on the body during one step.
+struct BodyLoads {
+  std::vector<Condition> conditions;
+  std::vector<ContactCondition> contacts;
+  GasLoad gas;
+};
+
+}  // namespace vibe
