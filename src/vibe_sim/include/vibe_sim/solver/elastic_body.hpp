@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "vibe_sim/tissue/elastic_elements.hpp"
-#include "vibe_sim/tissue/shell.hpp"
 
 namespace vibe {
+
+class ShellElements;
 
 /// A soft body as an implicit solver sees it. Constant.
 struct ElasticBody {

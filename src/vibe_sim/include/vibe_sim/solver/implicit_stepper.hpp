@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "vibe_sim/solver/elastic_body.hpp"
 #include "vibe_sim/sparse/factor.hpp"
@@ -11,10 +13,26 @@ struct StepSettings {
   double step = 1.0 / 60;  ///< [s]
   /// Generalised-alpha (Chung, Hulbert 1993): the part of the amplitude of the fastest motions that one step keeps;
   /// 1: trapezoidal rule, conserves energy; 0: removes them in one step. [0, 1]
-  double spectral_radius = 0.8;
+  double spectral_radius = 0.2;
   bool backward_euler = false;  ///< first order and strongly damping, for states far from any equilibrium
   int iterations = 3;           ///< quasi-Newton iterations a step may take
   double tolerance = 1e-7;      ///< a step ends earlier when no node would move farther than this [m]
+  /// Every so many steps the factor made in the background about the positions of that many steps ago takes over, and
+  /// the next is begun; 0: the factor stays. Fixed steps, so that a replay has the same bits.
+  int refactor_every = 10;
+  double refactor_distance = 5e-4;  ///< but only when a node has moved farther than this since [m]
+};
+
+/// What of its past a stepper needs for the next step, beside the motion: part of the state of a simulation. The factor
+/// itself is only a cache: it is made again wherever a scratch does not hold the one that the memory names.
+struct StepperMemory {
+  std::vector<float> about;           ///< positions that the factor is about (3 * nodes); empty: rest
+  std::vector<float> next;            ///< positions that the next factor is about; empty: none is being made
+  std::uint64_t about_id = 0;         ///< hash of `about`
+  std::uint64_t next_id = 0;          ///< hash of `next`
+  std::int64_t steps = 0;             ///< taken
+  double elastic_energy = 0;          ///< at the end of the last step [J]
+  int careful = 0;                    ///< steps still to be taken with backward Euler and many iterations
 };
 
 /// What a step or a solve did.
@@ -23,6 +41,7 @@ struct StepOutcome {
   double last_move = 0;      ///< farthest a node moved in the last iteration [m]
   int refactorisations = 0;  ///< static solves only
   bool converged = false;    ///< last_move is below the tolerance
+  bool careful = false;      ///< the step was taken with backward Euler and many iterations
   bool finite = true;        ///< false: the state is not usable
 };
 
@@ -41,15 +60,14 @@ class ImplicitStepper {
   const ElasticBody& body() const { return body_; }
   const StepSettings& settings() const { return settings_; }
 
-  /// A scratch whose factor is about the positions given; (3 * nodes) interleaved, null: about rest.
-  std::unique_ptr<StepperScratch> makeScratch(const double* positions = nullptr) const;
+  std::shared_ptr<StepperScratch> makeScratch() const;
 
-  /// Makes the factor anew about these positions. Costs tens of step times.
-  /// @returns false where the matrix was not positive definite (the old factor stays)
-  bool refactor(const double* positions, StepperScratch& scratch) const;
+  /// Names the present positions as those that the factor is about, at once. Costs tens of step times.
+  void refactor(const MotionView& motion, StepperMemory& memory) const;
 
-  /// One step. Forces of the loads are their means over the step.
-  StepOutcome step(MotionView motion, BodyLoads& loads, StepperScratch& scratch) const;
+  /// One step. A step that does not find lower energy is taken again with backward Euler and more iterations, and so are
+  /// the next few. Forces of the loads are their means over the step.
+  StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch) const;
 
   /// The equilibrium under the loads from the positions in `motion` (velocities become 0), refactoring as it goes.
   /// @param tolerance  no node would move farther [m]
@@ -61,9 +79,16 @@ class ImplicitStepper {
 
  private:
   struct Plan;
+  void manageFactor(const MotionView& motion, StepperMemory& memory, StepperScratch& scratch) const;
+  bool farFrom(const MotionView& motion, const std::vector<float>& about) const;
+  bool attempt(const MotionView& motion, BodyLoads& loads, bool careful, double& elastic_energy, StepperScratch& scratch,
+               StepOutcome& outcome) const;
+  void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
+  void finishStep(const MotionView& motion, bool careful, StepperScratch& scratch) const;
   ElasticBody body_;
   StepSettings settings_;
   std::unique_ptr<Plan> plan_;
+  double size_ = 0;  // of the body [m]
 };
 
 }  // namespace vibe

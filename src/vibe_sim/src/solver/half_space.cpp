@@ -1,0 +1,221 @@
+#include "half_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+
+namespace {
+
+constexpr int kContactSweeps = 40;
+
+// Both sparse vectors consist of whole runs; those on the common part of the paths are the same runs.
+Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b) {
+  Eigen::Matrix3f sum = Eigen::Matrix3f::Zero();
+  std::size_t i = 0, j = 0, at_a = 0, at_b = 0;
+  while (i < a.begin.size() && j < b.begin.size()) {
+    const auto size_a = static_cast<std::size_t>(a.count[i]), size_b = static_cast<std::size_t>(b.count[j]);
+    if (a.begin[i] == b.begin[j]) {
+      using Rows = Eigen::Map<const Eigen::Matrix<float, 3, Eigen::Dynamic>>;
+      sum += Rows(&a.value[3 * at_a], 3, a.count[i]) * Rows(&b.value[3 * at_b], 3, b.count[j]).transpose();
+      at_a += size_a, at_b += size_b, ++i, ++j;
+    } else if (a.begin[i] < b.begin[j]) {
+      at_a += size_a, ++i;
+    } else {
+      at_b += size_b, ++j;
+    }
+  }
+  return sum;
+}
+
+Eigen::Vector3f product(const HalfColumns& a, const float* y) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  const float* value = a.value.data();
+  for (std::size_t i = 0; i < a.begin.size(); ++i)
+    for (int k = 0; k < a.count[i]; ++k, value += 3) {
+      const float factor = y[a.begin[i] + k];
+      sum += factor * Eigen::Vector3f(value[0], value[1], value[2]);
+    }
+  return sum;
+}
+
+}  // namespace
+
+void HalfSpace::reset(const Factor& factor, int node_count) {
+  slot_of_node_.assign(static_cast<std::size_t>(node_count), -1);
+  node_of_slot_.clear();
+  columns_.resize(kMostSlots);
+  gram_.resize(kMostSlots * (kMostSlots + 1) / 2);
+  gram_known_.assign(gram_.size(), 0);
+  gas_.assign(static_cast<std::size_t>(factor.rows()) + 16, 0.0F);
+  gas_stiffness_ = 0;
+  rows_.clear();
+}
+
+int HalfSpace::slotOf(int node, const Factor& factor) {
+  int& slot = slot_of_node_[node];
+  if (slot < 0) {
+    slot = static_cast<int>(node_of_slot_.size());
+    node_of_slot_.push_back(node);
+    if (node_of_slot_.size() > columns_.size()) {
+      columns_.resize(node_of_slot_.size());
+      gram_.resize(columns_.size() * (columns_.size() + 1) / 2);
+      gram_known_.resize(gram_.size(), 0);
+    }
+    factor.halfColumns(node, columns_[slot]);
+  }
+  return slot;
+}
+
+const Eigen::Matrix3f& HalfSpace::gram(int a, int b) {
+  const std::size_t at = static_cast<std::size_t>(a) * (static_cast<std::size_t>(a) + 1) / 2 + b;
+  if (gram_known_[at] == 0) {
+    gram_[at] = product(columns_[a], columns_[b]);
+    gram_known_[at] = 1;
+  }
+  return gram_[at];
+}
+
+void HalfSpace::setRows(const std::vector<HalfRow>& rows, const Factor& factor) {
+  // the columns that this step does not need go when there are too many
+  std::size_t wanted = 0;
+  for (const HalfRow& row : rows) wanted += row.node.size();
+  if (node_of_slot_.size() + wanted > kMostSlots) {
+    for (int node : node_of_slot_) slot_of_node_[node] = -1;
+    node_of_slot_.clear();
+    std::fill(gram_known_.begin(), gram_known_.end(), char{0});
+  }
+  rows_ = rows;
+  row_slots_.resize(rows.size());
+  equations_.clear(), contacts_.clear();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    row_slots_[i].clear();
+    for (int node : rows[i].node) row_slots_[i].push_back(slotOf(node, factor));
+    if (rows[i].friction < 0) {
+      equations_.push_back(static_cast<int>(i));
+    } else {
+      for (int k = 0; k < 3; ++k) contacts_.push_back(static_cast<int>(i) + k);
+      for (int k = 1; k < 3; ++k) {
+        row_slots_[i + k].clear();
+        for (int node : rows[i + k].node) row_slots_[i + k].push_back(slotOf(node, factor));
+      }
+      i += 2;
+    }
+  }
+  formCompliance();
+}
+
+void HalfSpace::setGas(const float* direction4, double stiffness, const Factor& factor) {
+  gas_stiffness_ = stiffness;
+  if (stiffness == 0) return;
+  factor.load(direction4, gas_.data());
+  factor.forward(gas_.data());
+  double norm2 = 0;
+  for (int i = 0; i < factor.rows(); ++i) norm2 += static_cast<double>(gas_[i]) * gas_[i];
+  gas_norm2_ = norm2 + (std::isinf(stiffness) ? 0 : 1 / stiffness);
+  formCompliance();
+}
+
+double HalfSpace::dot(const HalfRow& row, const float* y) const {
+  const std::vector<int>& slots = row_slots_[static_cast<std::size_t>(&row - rows_.data())];
+  double sum = 0;
+  for (std::size_t k = 0; k < slots.size(); ++k)
+    sum += row.coefficient[k].dot(product(columns_[slots[k]], y).cast<double>());
+  return sum;
+}
+
+void HalfSpace::add(const HalfRow& row, double force, float* y) const {
+  const std::vector<int>& slots = row_slots_[static_cast<std::size_t>(&row - rows_.data())];
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    const HalfColumns& column = columns_[slots[k]];
+    const Eigen::Vector3f c = (force * row.coefficient[k]).cast<float>();
+    const float* value = column.value.data();
+    for (std::size_t i = 0; i < column.begin.size(); ++i)
+      for (int r = 0; r < column.count[i]; ++r, value += 3)
+        y[column.begin[i] + r] += value[0] * c[0] + value[1] * c[1] + value[2] * c[2];
+  }
+}
+
+void HalfSpace::formCompliance() {
+  const int m = rowCount();
+  compliance_.setZero(m, m);
+  force_.setZero(m);
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j <= i; ++j) {
+      double sum = 0;
+      for (std::size_t a = 0; a < row_slots_[i].size(); ++a)
+        for (std::size_t b = 0; b < row_slots_[j].size(); ++b) {
+          const int sa = row_slots_[i][a], sb = row_slots_[j][b];
+          const Eigen::Matrix3d g = (sa >= sb ? gram(sa, sb) : Eigen::Matrix3f(gram(sb, sa).transpose())).cast<double>();
+          sum += rows_[i].coefficient[a].dot(g * rows_[j].coefficient[b]);
+        }
+      compliance_(i, j) = compliance_(j, i) = sum;
+    }
+  gas_row_.setZero(m);
+  if (gas_stiffness_ != 0 && m > 0) {
+    for (int i = 0; i < m; ++i) gas_row_[i] = dot(rows_[i], gas_.data());
+    compliance_ -= gas_row_ * gas_row_.transpose() / gas_norm2_;
+  }
+  for (int i = 0; i < m; ++i) compliance_(i, i) += rows_[i].compliance;
+  if (!equations_.empty()) {
+    Eigen::MatrixXd block = compliance_(equations_, equations_);
+    equation_factor_.compute(block);
+    if (!contacts_.empty()) coupling_ = equation_factor_.solve(Eigen::MatrixXd(compliance_(equations_, contacts_)));
+  }
+  if (!contacts_.empty()) {
+    schur_ = compliance_(contacts_, contacts_);
+    if (!equations_.empty()) schur_ -= compliance_(contacts_, equations_) * coupling_;
+  }
+}
+
+// Projected Gauss-Seidel on the contacts with the equations eliminated; `right` is what each row lacks.
+void HalfSpace::solveContacts(const Eigen::VectorXd& right) {
+  const int n = static_cast<int>(contacts_.size());
+  Eigen::VectorXd lambda = Eigen::VectorXd::Zero(n);
+  for (int sweep = 0; sweep < kContactSweeps; ++sweep)
+    for (int i = 0; i < n; i += 3) {
+      const double normal_lack = right[i] - schur_.row(i).dot(lambda);
+      lambda[i] = std::max(0.0, lambda[i] + normal_lack / schur_(i, i));
+      const double limit = rows_[contacts_[i]].friction * lambda[i];
+      for (int k = 1; k < 3; ++k)
+        lambda[i + k] += (right[i + k] - schur_.row(i + k).dot(lambda)) / schur_(i + k, i + k);
+      const double size = std::hypot(lambda[i + 1], lambda[i + 2]);
+      if (size > limit) {
+        lambda[i + 1] *= limit / size;
+        lambda[i + 2] *= limit / size;
+      }
+    }
+  for (int i = 0; i < n; ++i) force_[contacts_[i]] = lambda[i];
+}
+
+void HalfSpace::eliminate(const Eigen::VectorXd& wanted, double swelling, float* y) {
+  const int m = rowCount();
+  double gas_lack = 0;
+  if (gas_stiffness_ != 0) {
+    double along = 0;
+    for (std::size_t i = 0; i < gas_.size(); ++i) along += static_cast<double>(gas_[i]) * y[i];
+    gas_lack = swelling - along;
+  }
+  Eigen::VectorXd lack = wanted;
+  for (int i = 0; i < m; ++i) lack[i] -= dot(rows_[i], y);
+  if (gas_stiffness_ != 0 && m > 0) lack -= gas_row_ * (gas_lack / gas_norm2_);
+  force_.setZero(m);
+  Eigen::VectorXd equation_lack = lack(equations_);
+  if (!contacts_.empty()) {
+    Eigen::VectorXd right = lack(contacts_);
+    if (!equations_.empty()) right -= coupling_.transpose() * equation_lack;
+    solveContacts(right);
+    if (!equations_.empty()) equation_lack -= compliance_(equations_, contacts_) * force_(contacts_);
+  }
+  if (!equations_.empty()) force_(equations_) = Eigen::VectorXd(equation_factor_.solve(equation_lack));
+  for (int i = 0; i < m; ++i)
+    if (force_[i] != 0) add(rows_[i], force_[i], y);
+  gas_force_ = 0;
+  if (gas_stiffness_ != 0) {
+    gas_force_ = (gas_lack - (m > 0 ? gas_row_.dot(force_) : 0.0)) / gas_norm2_;
+    const auto f = static_cast<float>(gas_force_);
+    for (std::size_t i = 0; i < gas_.size(); ++i) y[i] += f * gas_[i];
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,162 @@
+#include "quasi_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+
+namespace {
+
+constexpr double kSufficientDecrease = 1e-4;  // Armijo
+constexpr int kMostHalvings = 12;
+constexpr double kSafeContraction = 0.5;
+
+double dot(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum[4] = {0, 0, 0, 0};
+  for (std::size_t i = 0; i < a.size(); i += 4)
+    for (int k = 0; k < 4; ++k) sum[k] += static_cast<double>(a[i + k]) * b[i + k];
+  return (sum[0] + sum[1]) + sum[2];
+}
+
+void addScaled(double scale, const std::vector<float>& a, std::vector<float>& to) {
+  const auto s = static_cast<float>(scale);
+  for (std::size_t i = 0; i < a.size(); ++i) to[i] += s * a[i];
+}
+
+double largest(const std::vector<float>& a) {
+  float most = 0;
+  for (std::size_t i = 0; i < a.size(); i += 4)
+    most = std::max(most, a[i] * a[i] + a[i + 1] * a[i + 1] + a[i + 2] * a[i + 2]);
+  return std::sqrt(static_cast<double>(most));
+}
+
+}  // namespace
+
+QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, GasLoad& gas, StepperScratch& scratch)
+    : body_(body), potential_(potential), gas_(gas), scratch_(scratch) {}
+
+void QuasiNewton::start() {
+  restart();
+  last_length_ = -1;
+  value_ = potential_.evaluate(scratch_.z, scratch_.gradient);
+}
+
+// What the rows lack to their targets at z.
+double QuasiNewton::rowsLack() {
+  double most = 0;
+  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
+    const HalfRow& row = scratch_.rows[r];
+    double value = 0;
+    for (std::size_t k = 0; k < row.node.size(); ++k) {
+      const double* z = &scratch_.z[4 * static_cast<std::size_t>(row.node[k])];
+      value += row.coefficient[k].dot(Eigen::Vector3d(z[0], z[1], z[2]));
+    }
+    scratch_.wanted[static_cast<Eigen::Index>(r)] = scratch_.target[static_cast<Eigen::Index>(r)] - value;
+    most = std::max(most, std::abs(scratch_.wanted[static_cast<Eigen::Index>(r)]));
+  }
+  return most;
+}
+
+// Two-loop recursion (Nocedal 1980) with the factor, the rows and the gas as initial inverse.
+void QuasiNewton::findDirection() {
+  StepperScratch& s = scratch_;
+  lack_ = rowsLack();
+  s.work = s.gradient;
+  double alpha[StepperScratch::kHistory];
+  for (int i = s.pairs - 1; i >= 0; --i) {
+    alpha[i] = s.curvature[i] * dot(s.move[i], s.work);
+    addScaled(-alpha[i], s.change[i], s.work);
+  }
+  for (float& value : s.work) value = -value;
+  s.factor->load(s.work.data(), s.half.data());
+  s.factor->forward(s.half.data());
+  const double swelling = gas_.control == GasLoad::Control::Volume ? gas_.target_volume - s.volume : 0;
+  s.half_space.eliminate(s.wanted, swelling, s.half.data());
+  s.factor->backward(s.half.data());
+  s.factor->store(s.half.data(), s.direction.data());
+  for (int i = 0; i < s.pairs; ++i) {
+    const double beta = -s.curvature[i] * dot(s.change[i], s.direction);
+    addScaled(-(alpha[i] - beta), s.move[i], s.direction);
+  }
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    if (body_.fixed[i] != 0)
+      for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
+  direction_length_ = largest(s.direction);
+  slope_ = dot(s.gradient, s.direction);
+}
+
+// The value with the rows' (and a prescribed volume's) forces as multipliers: it falls along the direction although the
+// rows move.
+double QuasiNewton::lagrangian(double part) const {
+  double sum = 0;
+  for (Eigen::Index r = 0; r < scratch_.wanted.size(); ++r)
+    sum += scratch_.half_space.forces()[r] * scratch_.wanted[r] * (1 - part);
+  return sum;
+}
+
+void QuasiNewton::setTrial(double part) {
+  for (std::size_t i = 0; i < scratch_.z.size(); ++i)
+    scratch_.trial[i] = scratch_.z[i] + part * static_cast<double>(scratch_.direction[i]);
+}
+
+void QuasiNewton::keepPair(double part) {
+  StepperScratch& s = scratch_;
+  if (s.pairs == StepperScratch::kHistory) {
+    std::rotate(s.move.begin(), s.move.begin() + 1, s.move.end());
+    std::rotate(s.change.begin(), s.change.begin() + 1, s.change.end());
+    std::rotate(s.curvature.begin(), s.curvature.begin() + 1, s.curvature.end());
+    --s.pairs;
+  }
+  std::vector<float>&move = s.move[s.pairs], &change = s.change[s.pairs];
+  const auto p = static_cast<float>(part);
+  for (std::size_t i = 0; i < move.size(); ++i) {
+    move[i] = p * s.direction[i];
+    change[i] = s.trial_gradient[i] - s.gradient[i];
+  }
+  const double product = dot(move, change);
+  if (!(product > 1e-8 * std::sqrt(dot(move, move) * dot(change, change)))) return;
+  s.curvature[s.pairs++] = 1 / product;
+}
+
+double QuasiNewton::iterate(double most, bool verify) {
+  findDirection();
+  if (!std::isfinite(direction_length_)) return direction_length_;
+  return advance(most, verify);
+}
+
+double QuasiNewton::advance(double most, bool verify) {
+  StepperScratch& s = scratch_;
+  double part = direction_length_ > most ? most / direction_length_ : 1;
+  const bool safe = !verify && part == 1 && last_length_ > 0 && direction_length_ < kSafeContraction * last_length_;
+  last_length_ = direction_length_;
+  if (safe) {
+    setTrial(1);
+    s.z.swap(s.trial);
+    return direction_length_;
+  }
+  const double prescribed = gas_.control == GasLoad::Control::Volume ? s.half_space.gasForce() : 0;
+  const double old_pressure = gas_.pressure;
+  const double from = value_ + lagrangian(0);
+  double to = value_;
+  for (int halving = 0;; ++halving) {
+    setTrial(part);
+    if (prescribed != 0) gas_.pressure = old_pressure + part * prescribed;
+    to = potential_.evaluate(s.trial, s.trial_gradient);
+    if (prescribed != 0) break;  // the volume is held: no energy to compare
+    const double slope = slope_ - lagrangian(0);
+    const double decrease = to + lagrangian(part) - from;
+    if (std::isfinite(to) && decrease <= kSufficientDecrease * part * slope + potential_.noise()) break;
+    if (halving == kMostHalvings) {
+      failed_ = true;
+      return 0;
+    }
+    part *= std::isfinite(to) ? 0.5 : 0.1;
+  }
+  if (lack_ < 1e-9 || scratch_.rows.empty()) keepPair(part);
+  value_ = to;
+  s.gradient.swap(s.trial_gradient);
+  s.z.swap(s.trial);
+  return part * direction_length_;
+}
+
+}  // namespace vibe

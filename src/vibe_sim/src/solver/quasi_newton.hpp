@@ -1,0 +1,47 @@
+#pragma once
+
+#include "potential.hpp"
+
+namespace vibe {
+
+/// Iterations of L-BFGS on top of the scratch's factor towards the minimum of a potential under the scratch's rows.
+class QuasiNewton {
+ public:
+  QuasiNewton(const ElasticBody& body, Potential& potential, GasLoad& gas, StepperScratch& scratch);
+
+  /// Evaluates at the scratch's z.
+  void start();
+  /// Forgets the history; needed after a new factor.
+  void restart() { scratch_.pairs = 0; }
+  /// One step: direction, then as much of it as lowers the energy.
+  /// @param most    no node moves farther [m]
+  /// @param verify  false: the end point is not evaluated if the iteration is safely contracting (then no more
+  ///                iterations may follow)
+  /// @returns how far a node moved at most [m]
+  double iterate(double most, bool verify);
+  /// Length of the full direction of the last iterate [m].
+  double directionLength() const { return direction_length_; }
+  double value() const { return value_; }
+  /// The last iterate found no lower energy along its direction, and did not move.
+  bool failed() const { return failed_; }
+
+ private:
+  void findDirection();
+  double rowsLack();
+  double lagrangian(double value) const;
+  double advance(double most, bool verify);
+  void keepPair(double part);
+  void setTrial(double part);
+
+  const ElasticBody& body_;
+  Potential& potential_;
+  GasLoad& gas_;
+  StepperScratch& scratch_;
+  double value_ = 0;
+  double direction_length_ = 0, last_length_ = -1;
+  double slope_ = 0;
+  bool failed_ = false;
+  double lack_ = 0;  // of the rows, largest [m]
+};
+
+}  // namespace vibe
