@@ -30,7 +30,7 @@ std::uint64_t hash(const State& state) {
   h.addValue(state.step);
   h.addValue(state.seed);
   h.addValue(state.random);
-  for (const auto* v : {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.qw, &state.qx, &state.qy,
+  for (const auto* v : {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az, &state.qw, &state.qx, &state.qy,
                         &state.qz, &state.wx, &state.wy, &state.wz})
     h.add(*v);
   h.addValue(state.gas_amount);
@@ -46,6 +46,9 @@ std::uint64_t hash(const State& state) {
   h.addValue(state.in_contact);
   h.addValue(state.untouched_time);
   h.addValue(state.grip_force);
+  h.add(state.solver.about.data(), state.solver.about.size() * sizeof(float));
+  h.add(state.solver.next.data(), state.solver.next.size() * sizeof(float));
+  h.addValue(state.solver.careful);
   return h.value();
 }
 

@@ -7,6 +7,7 @@
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/geometry/organ_builder.hpp"
 #include "vibe_sim/geometry/rotation.hpp"
+#include "vibe_sim/scene/attachments.hpp"
 #include "vibe_sim/simulator.hpp"
 #include "vibe_sim/solver/gas.hpp"
 #include "vibe_sim/tissue/cluster_builder.hpp"
@@ -15,10 +16,6 @@
 namespace vibe {
 
 namespace {
-
-bool isHeld(const Scene& scene, End end) {
-  return (end == End::Oesophagus && scene.attach_oesophagus) || (end == End::Duodenum && scene.attach_duodenum);
-}
 
 void setMasses(Model& model) {
   const std::size_t n = model.organ.surface.vertices.size();
@@ -103,7 +100,7 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   const TissueAndSolver made = makeTissue(model.scene, model.organ, model.mass, model.area, for_gas);
   model.tissue = made.tissue;
   model.solver = made.solver;
-  checkSubstepsForGas(model.scene.tissue.substeps, for_gas);
+  if (model.solver->usesSubsteps()) checkSubstepsForGas(model.scene.tissue.substeps, for_gas);
   if (model.scene.scope) addTool(tool_urdf, model);
   if (model.scene.skin) model.skin = makeLoopSkin(model.organ.surface);
   if (progress) progress("ready", 1.0);
@@ -125,7 +122,8 @@ State initialState(const Model& model, std::uint64_t seed) {
   state.seed = seed;
   state.random = seed;
   const std::size_t n = static_cast<std::size_t>(model.particle_count);
-  for (auto* v : {&state.vx, &state.vy, &state.vz, &state.qx, &state.qy, &state.qz, &state.wx, &state.wy, &state.wz})
+  for (auto* v : {&state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az, &state.qx, &state.qy, &state.qz,
+                  &state.wx, &state.wy, &state.wz})
     v->assign(n, 0);
   state.qw.assign(n, 1);
   for (const Eigen::Vector3d& p : model.organ.surface.vertices) {

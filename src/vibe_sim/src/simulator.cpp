@@ -52,7 +52,7 @@ void reportPressure(const GasScene& gas, bool insufflator_on, State& state, std:
 bool isFinite(const State& state) {
   double sum = state.gas_amount;
   for (const auto* v :
-       {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.qw, &state.qx, &state.qy, &state.qz})
+       {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az, &state.qw, &state.qx, &state.qy, &state.qz})
     for (double value : *v) sum += 0 * value;  // NaN or infinity anywhere makes the sum NaN
   return std::isfinite(sum);
 }
@@ -62,6 +62,8 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
   const State fresh = initialState(model, state.seed);
   state.x = fresh.x, state.y = fresh.y, state.z = fresh.z;
   state.vx = fresh.vx, state.vy = fresh.vy, state.vz = fresh.vz;
+  state.ax = fresh.ax, state.ay = fresh.ay, state.az = fresh.az;
+  state.solver = fresh.solver;
   state.qw = fresh.qw, state.qx = fresh.qx, state.qy = fresh.qy, state.qz = fresh.qz;
   state.wx = fresh.wx, state.wy = fresh.wy, state.wz = fresh.wz;
   state.gas_amount = fresh.gas_amount;

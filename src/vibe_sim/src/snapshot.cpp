@@ -21,7 +21,7 @@ void transfer(Archive& archive, S& s) {
   archive.value(s.time);
   archive.value(s.seed);
   archive.value(s.random);
-  for (auto* v : {&s.x, &s.y, &s.z, &s.vx, &s.vy, &s.vz, &s.qw, &s.qx, &s.qy, &s.qz, &s.wx, &s.wy, &s.wz})
+  for (auto* v : {&s.x, &s.y, &s.z, &s.vx, &s.vy, &s.vz, &s.ax, &s.ay, &s.az, &s.qw, &s.qx, &s.qy, &s.qz, &s.wx, &s.wy, &s.wz})
     archive.array(*v);
   archive.value(s.gas_amount);
   archive.value(s.pressure);
@@ -37,6 +37,13 @@ void transfer(Archive& archive, S& s) {
   archive.value(s.grip_force);
   archive.value(s.contact_count);
   archive.value(s.energy);
+  archive.optionalArray(s.solver.about);
+  archive.optionalArray(s.solver.next);
+  archive.value(s.solver.about_id);
+  archive.value(s.solver.next_id);
+  archive.value(s.solver.steps);
+  archive.value(s.solver.elastic_energy);
+  archive.value(s.solver.careful);
 }
 
 class Writer {
@@ -49,6 +56,10 @@ class Writer {
   void vector(const Eigen::Vector3d& v) { out_.write(reinterpret_cast<const char*>(v.data()), 3 * sizeof(double)); }
   void array(const std::vector<double>& v) {
     out_.write(reinterpret_cast<const char*>(v.data()), static_cast<std::streamsize>(v.size() * sizeof(double)));
+  }
+  void optionalArray(const std::vector<float>& v) {
+    value(static_cast<std::uint64_t>(v.size()));
+    out_.write(reinterpret_cast<const char*>(v.data()), static_cast<std::streamsize>(v.size() * sizeof(float)));
   }
   void grip(const std::vector<GripPoint>& grip) {
     value(static_cast<std::uint64_t>(grip.size()));
@@ -73,6 +84,14 @@ class Reader {
   void array(std::vector<double>& v) {
     v.resize(static_cast<std::size_t>(particles_));
     read(v.data(), v.size() * sizeof(double));
+  }
+  void optionalArray(std::vector<float>& v) {
+    std::uint64_t count = 0;
+    value(count);
+    if (count != 0 && count != 3 * static_cast<std::uint64_t>(particles_))
+      throw Error("Snapshot '" + file_ + "' is damaged: its solver remembers another organ; save it again.");
+    v.resize(count);
+    read(v.data(), count * sizeof(float));
   }
   void grip(std::vector<GripPoint>& grip) {
     std::uint64_t count = 0;
@@ -110,6 +129,7 @@ std::uint64_t fingerprint(const Model& model) {
   rest.vy = model.inverse_mass;
   rest.gas_amount = model.scene.step_period;
   rest.step = model.scene.tissue.substeps;
+  for (char c : model.scene.tissue.model) rest.random = rest.random * 31 + static_cast<unsigned char>(c);
   return hash(rest);
 }
 

@@ -68,6 +68,7 @@ inline Organ plainOrgan(SurfaceMesh surface, double thickness) {
 /// Scene with nothing but tissue: no damping, no loads, few sub-steps.
 inline Scene bareScene() {
   Scene scene;
+  scene.tissue.model = "shape_matching";
   scene.tissue.damping_rate = 0;
   scene.tissue.damping_time = 0;
   scene.tissue.substeps = 20;

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "vibe_sim/solver/stepper_memory.hpp"
+
 #include "vibe_sim/step_input.hpp"
 
 namespace vibe {
@@ -34,6 +36,7 @@ struct State {
   // particles, structure of arrays, (particle count)
   std::vector<double> x, y, z;         ///< positions [m]
   std::vector<double> vx, vy, vz;      ///< velocities [m/s]
+  std::vector<double> ax, ay, az;      ///< accelerations; 0 for solvers that have no use for them [m/s^2]
   std::vector<double> qw, qx, qy, qz;  ///< orientation of each particle's neighbourhood against rest, unit
   std::vector<double> wx, wy, wz;      ///< angular velocity of the same, in world [rad/s]
 
@@ -54,6 +57,8 @@ struct State {
   int contact_count = 0;                                  ///< particles touched in the last sub-step
 
   EnergyAccount energy;
+
+  StepperMemory solver;  ///< of the implicit solver; empty with another
 };
 
 }  // namespace vibe

@@ -65,7 +65,16 @@ std::vector<SchemaRow> meshRows() {
 std::vector<SchemaRow> tissueRows() {
   return {
       {"tissue.model", [](Scene& s) -> std::string& { return s.tissue.model; }, "", 0, 0,
-       "name of the tissue model; the simulator lists the known ones if it does not know yours", kChoice},
+       "`shell`: a wall that stretches and bends, with an error that is known; `shape_matching`: the method of the "
+       "ViBE prototype",
+       "fastest for its error, see accuracy.md"},
+      {"tissue.law", [](Scene& s) -> std::string& { return s.tissue.law; }, "", 0, 0,
+       "elastic law of the shell: neo_hookean, stable_neo_hookean, macklin_mueller, fung, gent or yeoh; the last three "
+       "stiffen with stretch",
+       "stomach wall stiffens exponentially: Fung fits of porcine stomach, Dargar 2019, doi 10.1115/1.4043259"},
+      {"tissue.stiffening", [](Scene& s) -> double& { return s.tissue.stiffening; }, "1", 0, 100,
+       "exponent of fung and yeoh, 1 over the limit of gent, in units of I1 - 3 - 2 ln J",
+       "design choice: soft at the pressures of gastroscopy, no bursting up to 45 mmHg"},
       {"tissue.density", [](Scene& s) -> double& { return s.tissue.density; }, "kg/m^3", 100, 5000,
        "mass per volume of the wall", "soft tissue is close to water, 1050 to 1060 kg/m^3"},
       {"tissue.young_modulus", [](Scene& s) -> double& { return s.tissue.young_modulus; }, "Pa", 100, 1e9,
@@ -87,8 +96,13 @@ std::vector<SchemaRow> tissueRows() {
        "viscous damping of the velocity: free motion falls to 1/e in one over this", kChoice},
       {"tissue.damping_time", [](Scene& s) -> double& { return s.tissue.damping_time; }, "s", 0, 1e-3,
        "viscosity of the wall over its stiffness; quiets the shortest waves and is not felt by the long ones", kChoice},
+      {"tissue.iterations", [](Scene& s) -> int& { return s.tissue.iterations; }, "1", 1, 100,
+       "most iterations that a step of the shell may take; it ends earlier when nothing moves any more", kChoice},
+      {"tissue.spectral_radius", [](Scene& s) -> double& { return s.tissue.spectral_radius; }, "1", 0, 1,
+       "part of the fastest vibrations that a step of the shell keeps; 1 conserves energy, 0 quiets at once",
+       "generalised-alpha: Chung, Hulbert 1993, doi 10.1115/1.2900803"},
       {"tissue.substeps", [](Scene& s) -> int& { return s.tissue.substeps; }, "1", 0, 1000,
-       "solver sub-steps per step; 0: as few as carry the stiffness",
+       "sub-steps per step of shape_matching; 0: as few as carry the stiffness",
        "many small steps with one iteration each: Macklin 2019, doi 10.1145/3309486.3340247"},
   };
 }

@@ -1,8 +1,11 @@
 #include "vibe_sim/tissue/tissue_registry.hpp"
 
 #include "vibe_sim/error.hpp"
+#include "vibe_sim/scene/attachments.hpp"
+#include "vibe_sim/solver/implicit_solver.hpp"
 #include "vibe_sim/solver/xpbd_solver.hpp"
 #include "vibe_sim/tissue/shape_matching.hpp"
+#include "vibe_sim/tissue/shell_tissue.hpp"
 
 namespace vibe {
 
@@ -17,13 +20,36 @@ TissueAndSolver makeShapeMatching(Scene& scene, const Organ& organ, const std::v
   return {tissue, std::make_shared<const XpbdSolver>(tissue)};
 }
 
+TissueAndSolver makeShell(Scene& scene, const Organ& organ, const std::vector<double>& masses,
+                          const std::vector<double>& areas, int) {
+  const std::size_t n = masses.size();
+  ElasticBody body;
+  for (std::size_t i = 0; i < n; ++i) body.fixed.push_back(isHeld(scene, organ.end[i]) ? 1 : 0);
+  auto tissue = std::make_shared<const ShellTissue>(scene.tissue, organ, body.fixed);
+  body.elements = tissue->elements();
+  body.shell = tissue->elements().get();
+  body.rest.assign(organ.surface.vertices.begin(), organ.surface.vertices.end());
+  body.mass = masses;
+  if (scene.bed)
+    for (double area : areas) body.foundation.push_back(scene.bed->stiffness * area);
+  const bool carried = scene.bed && scene.bed->carries_weight;
+  if (scene.gravity && !carried) body.gravity = scene.gravity->acceleration;
+  body.damping_rate = scene.tissue.damping_rate;
+  body.damping_time = scene.tissue.damping_time;
+  StepSettings settings;
+  settings.step = scene.step_period;
+  settings.iterations = scene.tissue.iterations;
+  settings.spectral_radius = scene.tissue.spectral_radius;
+  return {tissue, std::make_shared<const ImplicitSolver>(tissue->elements(), std::move(body), settings)};
+}
+
 struct Entry {
   const char* name;
   Factory make;
 };
 
 // A new tissue model is one line here, its own two files, and a test.
-constexpr Entry kEntries[] = {{"shape_matching", makeShapeMatching}};
+constexpr Entry kEntries[] = {{"shape_matching", makeShapeMatching}, {"shell", makeShell}};
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vibe_sim/solver/elastic_body.hpp"
+#include "vibe_sim/solver/stepper_memory.hpp"
 #include "vibe_sim/sparse/factor.hpp"
 
 namespace vibe {
@@ -21,18 +22,6 @@ struct StepSettings {
   /// the next is begun; 0: the factor stays. Fixed steps, so that a replay has the same bits.
   int refactor_every = 10;
   double refactor_distance = 5e-4;  ///< but only when a node has moved farther than this since [m]
-};
-
-/// What of its past a stepper needs for the next step, beside the motion: part of the state of a simulation. The factor
-/// itself is only a cache: it is made again wherever a scratch does not hold the one that the memory names.
-struct StepperMemory {
-  std::vector<float> about;           ///< positions that the factor is about (3 * nodes); empty: rest
-  std::vector<float> next;            ///< positions that the next factor is about; empty: none is being made
-  std::uint64_t about_id = 0;         ///< hash of `about`
-  std::uint64_t next_id = 0;          ///< hash of `next`
-  std::int64_t steps = 0;             ///< taken
-  double elastic_energy = 0;          ///< at the end of the last step [J]
-  int careful = 0;                    ///< steps still to be taken with backward Euler and many iterations
 };
 
 /// What a step or a solve did.

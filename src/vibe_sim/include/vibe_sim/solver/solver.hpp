@@ -16,6 +16,8 @@ struct StepReport {
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about scope_tip, mean over the step, in world [N m]
   Eigen::Vector3d grip_force = Eigen::Vector3d::Zero();   ///< part of tool_force that acts on the helix [N]
   int contact_count = 0;                                  ///< most particles touched at once
+  int iterations = 0;                                     ///< of an implicit solver
+  bool careful = false;                                   ///< the step needed backward Euler and more iterations
   int speed_limited = 0;                                  ///< times a particle's speed had to be limited
 };
 
@@ -32,6 +34,8 @@ class Solver {
  public:
   virtual ~Solver() = default;
   virtual std::string name() const = 0;
+  /// Divides the step into tissue.substeps explicit ones.
+  virtual bool usesSubsteps() const { return false; }
   virtual std::unique_ptr<SolverScratch> makeScratch(const Model& model) const = 0;
 
   /// @param motion  path of the tool during the step; null without a scope

@@ -15,6 +15,7 @@ class XpbdSolver : public Solver {
   explicit XpbdSolver(std::shared_ptr<const ShapeMatching> tissue) : tissue_(std::move(tissue)) {}
 
   std::string name() const override { return "xpbd"; }
+  bool usesSubsteps() const override { return true; }
   std::unique_ptr<SolverScratch> makeScratch(const Model& model) const override;
   void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state, Workspace& workspace,
                StepReport& report) const override;

@@ -1,0 +1,163 @@
+#include "implicit_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vibe_sim/solver/gas.hpp"
+#include "vibe_sim/solver/lumen.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr double kContactMargin = 2e-3;      // particles this near may be reached within the step [m]
+constexpr double kDepenetrationSpeed = 0.1;  // a particle found inside the tool is pushed out no faster [m/s]
+
+}  // namespace
+
+ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, const ToolMotion* motion,
+                           bool insufflator_on, State& state, Workspace& workspace, StepReport& report)
+    : model_(model),
+      stepper_(stepper),
+      motion_(motion),
+      insufflator_on_(insufflator_on),
+      state_(state),
+      report_(report),
+      scratch_(static_cast<ImplicitScratch&>(workspace.solverScratch())),
+      h_(model.scene.step_period) {}
+
+void ImplicitStep::run() {
+  scratch_.loads.conditions.clear();
+  scratch_.loads.contacts.clear();
+  scratch_.contact_motion.clear();
+  if (motion_ != nullptr) {
+    placeTool();
+    holdGrip();
+    findContacts();
+  }
+  fillGas();
+  const double old_volume = state_.volume, old_pressure = state_.pressure;
+  MotionView view{{state_.x.data(), state_.y.data(), state_.z.data()},
+                  {state_.vx.data(), state_.vy.data(), state_.vz.data()},
+                  {state_.ax.data(), state_.ay.data(), state_.az.data()}};
+  const StepOutcome outcome = stepper_.step(view, scratch_.loads, state_.solver, *scratch_.stepper);
+  report_.iterations = outcome.iterations;
+  report_.careful = outcome.careful;
+  if (!outcome.finite) {
+    std::fill(state_.x.begin(), state_.x.end(), std::numeric_limits<double>::quiet_NaN());  // the simulator recovers
+    return;
+  }
+  reportForces();
+  account(old_volume, old_pressure);
+}
+
+void ImplicitStep::placeTool() {
+  motion_->linkPoses(0, scratch_.old_poses);
+  motion_->linkPoses(1, scratch_.poses);
+  for (int i = 0; i < model_.particle_count; ++i) {
+    scratch_.ahead_x[i] = state_.x[i] + h_ * state_.vx[i];
+    scratch_.ahead_y[i] = state_.y[i] + h_ * state_.vy[i];
+    scratch_.ahead_z[i] = state_.z[i] + h_ * state_.vz[i];
+  }
+}
+
+// Three conditions per held particle: where the helix takes it.
+void ImplicitStep::holdGrip() {
+  for (const GripPoint& point : state_.grip) {
+    const Eigen::Vector3d target = scratch_.poses[model_.helix_link] * point.local;
+    for (int k = 0; k < 3; ++k) {
+      Condition condition;
+      condition.node.assign(1, point.particle);
+      condition.coefficient.assign(1, Eigen::Vector3d::Unit(k));
+      condition.target = target[k];
+      scratch_.loads.conditions.push_back(condition);
+    }
+  }
+}
+
+void ImplicitStep::findContacts() {
+  const double reach = model_.particle_radius + kContactMargin;
+  scratch_.collision->findCandidates(scratch_.poses, scratch_.ahead_x.data(), scratch_.ahead_y.data(),
+                                     scratch_.ahead_z.data(), model_.particle_count, reach);
+  if (scratch_.collision->candidateCount() == 0) return;
+  const auto& contacts = scratch_.collision->findContacts(
+      scratch_.poses, scratch_.ahead_x.data(), scratch_.ahead_y.data(), scratch_.ahead_z.data(), reach);
+  for (std::size_t first = 0, next; first < contacts.size(); first = next) {
+    // contacts come by particle; where shapes overlap, the deepest leads out of both
+    std::size_t deepest = first;
+    for (next = first + 1; next < contacts.size() && contacts[next].particle == contacts[first].particle; ++next)
+      if (contacts[next].distance < contacts[deepest].distance) deepest = next;
+    const int i = contacts[deepest].particle;
+    // the ends are open where the organ goes on: the scope passes through their closing surface
+    const bool held = std::any_of(state_.grip.begin(), state_.grip.end(), [i](const GripPoint& p) { return p.particle == i; });
+    if (model_.organ.end[i] == End::None && !held && model_.inverse_mass[i] > 0) addContact(contacts[deepest]);
+  }
+}
+
+void ImplicitStep::addContact(const Contact& contact) {
+  const int i = contact.particle;
+  const int link = model_.tool->shapes()[contact.shape].link;
+  const Eigen::Vector3d p = position(i);
+  const Eigen::Vector3d ahead(scratch_.ahead_x[i], scratch_.ahead_y[i], scratch_.ahead_z[i]);
+  const Eigen::Vector3d anchor = scratch_.poses[link] * (scratch_.old_poses[link].inverse() * p);
+  ContactCondition condition;
+  condition.node = i;
+  condition.normal = contact.normal;
+  const double surface = contact.normal.dot(ahead) - contact.distance + model_.particle_radius;
+  // a particle deep inside (the tool was put there) comes out slowly, not at once
+  condition.offset = std::min(surface, contact.normal.dot(anchor) + kDepenetrationSpeed * h_);
+  condition.friction = model_.scene.scope->friction;
+  condition.anchor = anchor;
+  scratch_.loads.contacts.push_back(condition);
+  scratch_.contact_motion.push_back(anchor - p);
+}
+
+void ImplicitStep::fillGas() {
+  GasLoad& gas = scratch_.loads.gas;
+  gas.control = model_.scene.gas ? GasLoad::Control::Amount : GasLoad::Control::None;
+  if (!model_.scene.gas) return;
+  if (insufflator_on_) state_.gas_amount = insufflate(*model_.scene.gas, state_.gas_amount, state_.volume, h_);
+  gas.amount = state_.gas_amount;
+  gas.ambient = kAmbientPressure;
+  gas.volume = state_.volume;
+}
+
+void ImplicitStep::reportForces() {
+  for (std::size_t g = 0; g < state_.grip.size(); ++g) {
+    const GripPoint& point = state_.grip[g];
+    Eigen::Vector3d force;  // tool on tissue
+    for (int k = 0; k < 3; ++k) force[k] = scratch_.loads.conditions[3 * g + static_cast<std::size_t>(k)].force;
+    const Eigen::Vector3d target = scratch_.poses[model_.helix_link] * point.local;
+    report_.grip_force -= force;
+    pushTool(-force, target, target - scratch_.old_poses[model_.helix_link] * point.local);
+  }
+  for (std::size_t c = 0; c < scratch_.loads.contacts.size(); ++c) {
+    const ContactCondition& contact = scratch_.loads.contacts[c];
+    if (contact.force.isZero()) continue;
+    ++report_.contact_count;
+    pushTool(-contact.force, position(contact.node), scratch_.contact_motion[c]);
+  }
+}
+
+// force: tissue on tool [N] at a point in world; tool_step: how far the tool moved there in this step [m]
+void ImplicitStep::pushTool(const Eigen::Vector3d& force, const Eigen::Vector3d& at, const Eigen::Vector3d& tool_step) {
+  report_.tool_force += force;
+  report_.tool_torque += (at - scratch_.poses[model_.tip_link].translation()).cross(force);
+  state_.energy.tool_work -= force.dot(tool_step);
+}
+
+void ImplicitStep::account(double old_volume, double old_pressure) {
+  double kinetic = 0;
+  for (int i = 0; i < model_.particle_count; ++i)
+    if (model_.inverse_mass[i] > 0)
+      kinetic += 0.5 * model_.mass[i] *
+                 (state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i]);
+  state_.energy.damping_loss += 2 * kinetic * model_.scene.tissue.damping_rate * h_;
+  if (!model_.scene.gas) return;
+  state_.volume = lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z);
+  state_.pressure = gaugePressure(state_.gas_amount, state_.volume);
+  state_.energy.gas_work += 0.5 * (old_pressure + state_.pressure) * (state_.volume - old_volume);
+}
+
+}  // namespace vibe

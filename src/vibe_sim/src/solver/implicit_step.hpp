@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "vibe_sim/contact/tool_collision.hpp"
+#include "vibe_sim/contact/tool_motion.hpp"
+#include "vibe_sim/model.hpp"
+#include "vibe_sim/solver/implicit_stepper.hpp"
+#include "vibe_sim/solver/solver.hpp"
+#include "vibe_sim/state.hpp"
+#include "vibe_sim/workspace.hpp"
+
+namespace vibe {
+
+struct ImplicitScratch : SolverScratch {
+  std::shared_ptr<StepperScratch> stepper;
+  std::unique_ptr<ToolCollision> collision;
+  std::vector<Eigen::Isometry3d> poses, old_poses;  // of the links at the end and at the start of the step
+  std::vector<double> ahead_x, ahead_y, ahead_z;    // where the particles go if nothing stops them
+  BodyLoads loads;
+  std::vector<Eigen::Vector3d> contact_motion;      // of the tool at each contact [m]
+};
+
+/// One step of a scene: what acts on the tissue is gathered as loads, the stepper moves it, forces are reported.
+class ImplicitStep {
+ public:
+  ImplicitStep(const Model& model, const ImplicitStepper& stepper, const ToolMotion* motion, bool insufflator_on,
+               State& state, Workspace& workspace, StepReport& report);
+  void run();
+
+ private:
+  void placeTool();
+  void holdGrip();
+  void findContacts();
+  void addContact(const Contact& contact);
+  void fillGas();
+  void account(double old_volume, double old_pressure);
+  void reportForces();
+  void pushTool(const Eigen::Vector3d& force, const Eigen::Vector3d& at, const Eigen::Vector3d& tool_step);
+  Eigen::Vector3d position(int i) const { return {state_.x[i], state_.y[i], state_.z[i]}; }
+
+  const Model& model_;
+  const ImplicitStepper& stepper_;
+  const ToolMotion* motion_;
+  bool insufflator_on_;
+  State& state_;
+  StepReport& report_;
+  ImplicitScratch& scratch_;
+  double h_;
+};
+
+}  // namespace vibe

@@ -1,0 +1,84 @@
+#include "vibe_sim/tissue/shell_tissue.hpp"
+
+#include "vibe_sim/error.hpp"
+#include "vibe_sim/state.hpp"
+
+namespace vibe {
+
+namespace {
+
+struct NamedLaw {
+  const char* name;
+  Law law;
+};
+
+constexpr NamedLaw kLaws[] = {{"neo_hookean", Law::NeoHookean},     {"stable_neo_hookean", Law::StableNeoHookean},
+                              {"macklin_mueller", Law::MacklinMueller}, {"fung", Law::Fung},
+                              {"gent", Law::Gent},                  {"yeoh", Law::Yeoh}};
+
+ShellMesh shellMesh(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed) {
+  ShellMesh mesh;
+  mesh.nodes.assign(organ.surface.vertices.begin(), organ.surface.vertices.end());
+  for (const auto& t : organ.surface.triangles) {
+    mesh.triangles.push_back({t[0], t[1], t[2]});
+    mesh.thickness.push_back((organ.thickness[t[0]] + organ.thickness[t[1]] + organ.thickness[t[2]]) / 3);
+  }
+  Material material;
+  material.law = lawByName(tissue.law);
+  material.young_modulus = tissue.young_modulus;
+  material.poisson_ratio = tissue.poisson_ratio;
+  material.stiffening = tissue.stiffening;
+  mesh.materials.push_back(material);
+  mesh.fixed = fixed;
+  return mesh;
+}
+
+Eigen::Vector3d centreOf(const Organ& organ) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : organ.surface.vertices) sum += p;
+  return sum / static_cast<double>(organ.surface.vertices.size());
+}
+
+}  // namespace
+
+Law lawByName(const std::string& name) {
+  std::string known;
+  for (const NamedLaw& law : kLaws) {
+    if (name == law.name) return law.law;
+    known += (known.empty() ? "" : ", ") + std::string(law.name);
+  }
+  throw Error("tissue.law '" + name + "' is unknown; use one of: " + known + ".");
+}
+
+ShellTissue::ShellTissue(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed)
+    : elements_(std::make_shared<const ShellElements>(shellMesh(tissue, organ, fixed), centreOf(organ))) {}
+
+std::vector<double> ShellTissue::displacement(const State& state) const {
+  std::vector<double> u(3 * state.x.size());
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const Eigen::Vector3d& rest = elements_->mesh().nodes[i];
+    u[3 * i] = state.x[i] - rest.x();
+    u[3 * i + 1] = state.y[i] - rest.y();
+    u[3 * i + 2] = state.z[i] - rest.z();
+  }
+  return u;
+}
+
+double ShellTissue::energy(const State& state) const {
+  std::vector<double> gradient(3 * state.x.size());
+  return elements_->evaluate(displacement(state).data(), gradient.data());
+}
+
+void ShellTissue::addForces(const State& state, double* fx, double* fy, double* fz) const {
+  std::vector<double> gradient(3 * state.x.size());
+  elements_->evaluate(displacement(state).data(), gradient.data());
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    fx[i] -= gradient[3 * i];
+    fy[i] -= gradient[3 * i + 1];
+    fz[i] -= gradient[3 * i + 2];
+  }
+}
+
+void ShellTissue::strain(const State& state, float* out) const { elements_->strain(displacement(state).data(), out); }
+
+}  // namespace vibe
