@@ -1,0 +1,92 @@
+#include "output/result_row.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <cstring>
+
+namespace vibe {
+namespace {
+
+std::string show(const char* format, double value) {
+  if (!std::isfinite(value)) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string showHash(std::uint64_t hash) {
+  if (hash == 0) return "";
+  char text[24];
+  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
+  return text;
+}
+
+/// A comma or quote in a name would shift the columns.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string percent(double fraction) {
+  return std::isfinite(fraction) ? show(std::abs(fraction) < 1e-4 ? "%.1e" : "%.3f", 100 * fraction) : "-";
+}
+
+}  // namespace
+
+void setTimes(std::vector<double> times, ResultRow& row) {
+  if (times.empty()) return;
+  std::sort(times.begin(), times.end());
+  const auto at = [&](double part) { return times[static_cast<std::size_t>(std::ceil(part * static_cast<double>(times.size()))) - 1]; };
+  row.ms_p50 = at(0.5);
+  row.ms_p99 = at(0.99);
+  row.ms_max = times.back();
+}
+
+void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out) {
+  out << "case,method,setting,particles,threads,ms_p50,ms_p99,ms_max,motion_error,static_error,force_error,"
+         "reference_error,energy_drift,state_hash\n";
+  for (const ResultRow& row : rows) {
+    out << field(row.bench_case) << ',' << field(row.method) << ',' << field(row.setting) << ',' << row.particles << ','
+        << row.threads;
+    for (const double value : {row.ms_p50, row.ms_p99, row.ms_max, row.motion_error, row.static_error, row.force_error,
+                               row.reference_error, row.energy_drift})
+      out << ',' << show("%.6g", value);
+    out << ',' << showHash(row.state_hash) << '\n';
+  }
+}
+
+void printTable(const std::vector<ResultRow>& rows, std::ostream& out) {
+  char line[320];
+  std::snprintf(line, sizeof line, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %s\n", "case", "method",
+                "setting", "nodes", "ms p50", "p99", "max", "motion %", "static %", "force %", "ref %", "drift %", "hash");
+  out << line;
+  for (const ResultRow& row : rows) {
+    const auto ms = [](double value) { return std::isfinite(value) ? show("%.3f", value) : std::string("-"); };
+    std::snprintf(line, sizeof line, "%-26.26s %-16.16s %-24.24s %7d %8s %8s %8s | %9s %9s %9s %9s %9s  %s\n",
+                  row.bench_case.c_str(), row.method.c_str(), row.setting.c_str(), row.particles,
+                  ms(row.ms_p50).c_str(), ms(row.ms_p99).c_str(), ms(row.ms_max).c_str(),
+                  percent(row.motion_error).c_str(), percent(row.static_error).c_str(),
+                  percent(row.force_error).c_str(), percent(row.reference_error).c_str(),
+                  percent(row.energy_drift).c_str(), showHash(row.state_hash).c_str());
+    out << line;
+  }
+}
+
+std::uint64_t hashNumbers(const double* values, std::size_t count, std::uint64_t from) {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(values);
+  for (std::size_t i = 0; i < count * sizeof(double); ++i) from = (from ^ bytes[i]) * 0x100000001b3ULL;
+  return from;
+}
+
+double threadMilliseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+}  // namespace vibe

@@ -1,0 +1,109 @@
+// Speed beside error: every method and setting on one scenario, and cases with reference solutions.
+#include <dirent.h>
+#include <getopt.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "fem/case_runner.hpp"
+#include "fem/fem_case.hpp"
+#include "output/result_row.hpp"
+#include "vibe_sim/error.hpp"
+#include "vibe_sim/package_path.hpp"
+
+namespace {
+
+using namespace vibe;
+
+const char kHelp[] =
+    "usage: vibe_bench [options]\n"
+    "Prints time per step beside errors, for every method and setting and for cases with reference solutions.\n"
+    "  --case FILE...   only these cases (YAML), no method table\n"
+    "  --quick          fewer repeats and sizes: about 50 seconds\n"
+    "  --csv FILE       write the rows there (- for standard output)\n"
+    "  --list           names the shipped cases and ends\n"
+    "  --help           this text\n";
+
+struct Options {
+  std::vector<std::string> cases;
+  std::string csv;
+  bool quick = false, list = false;
+};
+
+Options parse(int argc, char** argv) {
+  static const option kOptions[] = {{"case", required_argument, nullptr, 'c'}, {"quick", no_argument, nullptr, 'q'},
+                                    {"csv", required_argument, nullptr, 'o'},  {"list", no_argument, nullptr, 'l'},
+                                    {"help", no_argument, nullptr, 'h'},       {nullptr, 0, nullptr, 0}};
+  Options options;
+  for (int c; (c = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
+    if (c == 'c') options.cases.push_back(optarg);
+    if (c == 'o') options.csv = optarg;
+    if (c == 'q') options.quick = true;
+    if (c == 'l') options.list = true;
+    if (c == 'h') {
+      std::cout << kHelp;
+      std::exit(0);
+    }
+    if (c == '?') throw Error("vibe_bench: unknown option; see --help.");
+  }
+  // more files may follow the first of --case
+  for (int i = optind; i < argc; ++i) {
+    if (options.cases.empty()) throw Error("vibe_bench: '" + std::string(argv[i]) + "' is no option; see --help.");
+    options.cases.push_back(argv[i]);
+  }
+  return options;
+}
+
+std::vector<std::string> shippedCases() {
+  const std::string folder = resolveAddress("package://vibe_sim/benchmark/cases");
+  std::vector<std::string> files;
+  DIR* const listing = opendir(folder.c_str());
+  if (listing == nullptr) throw Error(folder + ": cannot be read; is vibe_sim installed completely?");
+  while (const dirent* entry = readdir(listing)) {
+    const std::string name = entry->d_name;
+    if (name.size() > 5 && name.substr(name.size() - 5) == ".yaml") files.push_back(folder + "/" + name);
+  }
+  closedir(listing);
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void writeRows(const std::string& file, const std::vector<ResultRow>& rows) {
+  if (file == "-") return writeCsv(rows, std::cout);
+  std::ofstream out(file);
+  writeCsv(rows, out);
+  out.close();
+  if (!out) throw Error(file + ": cannot be written; give --csv a path in a writable folder.");
+}
+
+int run(int argc, char** argv) {
+  const Options options = parse(argc, argv);
+  std::vector<std::string> files = options.cases.empty() ? shippedCases() : options.cases;
+  if (options.list) {
+    for (const std::string& file : files) std::cout << file << "\n";
+    return 0;
+  }
+  std::vector<ResultRow> rows;
+  for (const std::string& file : files) {
+    const auto more = runCase(readCase(file), std::cerr);
+    rows.insert(rows.end(), more.begin(), more.end());
+  }
+  printTable(rows, std::cerr);
+  if (!options.csv.empty()) writeRows(options.csv, rows);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
