@@ -294,8 +294,8 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, bool c
     scratch.target[static_cast<Eigen::Index>(r)] = at + scheme.z_gain / scheme.x_gain * end;
     scratch.rows[r].compliance *= scheme.z_gain / scheme.x_gain;
   }
-  Potential potential(body_, loads.gas, scheme.inertia, scratch);
-  QuasiNewton newton(body_, potential, loads.gas, scratch);
+  Potential potential(body_, loads, scheme.inertia, scratch);
+  QuasiNewton newton(body_, potential, loads, scratch);
   newton.start();
   // a guess with far more energy may be tangled and lead to a tangled minimum: then from where the nodes are
   if (!careful && !(potential.elasticEnergy() <= kGuessGrowth * elastic_energy)) {
@@ -349,8 +349,8 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
   RowBuilder(loads, scratch).build();
   for (std::size_t r = 0; r < scratch.rows.size(); ++r)
     scratch.target[static_cast<Eigen::Index>(r)] = rowTarget(loads, scratch.rows, r);
-  Potential potential(body_, loads.gas, 0, scratch);
-  QuasiNewton newton(body_, potential, loads.gas, scratch);
+  Potential potential(body_, loads, 0, scratch);
+  QuasiNewton newton(body_, potential, loads, scratch);
   StepOutcome outcome;
   double before = std::numeric_limits<double>::max();
   while (outcome.iterations < most_iterations && !outcome.converged) {

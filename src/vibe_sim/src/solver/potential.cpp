@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "vibe_sim/solver/energy_term.hpp"
 #include "vibe_sim/tissue/shell.hpp"
 
 namespace vibe {
@@ -34,6 +35,7 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
     elastic_ = value;
     noise_ = 1e-6 * std::abs(value);
   }
+  if (extra_ != nullptr) value += extra_->evaluate(z.data(), gradient.data());
   return value + addBodyTerms(z, gradient);
 }
 

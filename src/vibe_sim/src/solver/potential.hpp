@@ -9,8 +9,8 @@ namespace vibe {
 class Potential {
  public:
   /// @param inertia  mass times this is the spring to z_hat [1/s^2]; 0: a static problem
-  Potential(const ElasticBody& body, const GasLoad& gas, double inertia, StepperScratch& scratch)
-      : body_(body), gas_(gas), inertia_(inertia), scratch_(scratch) {}
+  Potential(const ElasticBody& body, const BodyLoads& loads, double inertia, StepperScratch& scratch)
+      : body_(body), gas_(loads.gas), extra_(loads.extra), inertia_(inertia), scratch_(scratch) {}
 
   /// Value [J] at z; the gradient [N] goes to `gradient` (4 per node). Also sets the scratch's volume, pressure and
   /// volume gradient.
@@ -26,6 +26,7 @@ class Potential {
 
   const ElasticBody& body_;
   const GasLoad& gas_;
+  const EnergyTerm* extra_;
   double inertia_;
   StepperScratch& scratch_;
   double noise_ = 0, elastic_ = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vibe_sim/solver/energy_term.hpp"
+
 namespace vibe {
 
 namespace {
@@ -32,8 +34,8 @@ double largest(const std::vector<float>& a) {
 
 }  // namespace
 
-QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, GasLoad& gas, StepperScratch& scratch)
-    : body_(body), potential_(potential), gas_(gas), scratch_(scratch) {}
+QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch)
+    : body_(body), potential_(potential), gas_(loads.gas), extra_(loads.extra), scratch_(scratch) {}
 
 void QuasiNewton::start() {
   restart();
@@ -81,6 +83,7 @@ void QuasiNewton::findDirection() {
   for (int i = 0; i < body_.nodeCount(); ++i)
     if (body_.fixed[i] != 0)
       for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
+  if (extra_ != nullptr) extra_->limitMove(s.z.data(), s.direction.data());
   direction_length_ = largest(s.direction);
   slope_ = dot(s.gradient, s.direction);
 }

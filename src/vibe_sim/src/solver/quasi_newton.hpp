@@ -7,7 +7,7 @@ namespace vibe {
 /// Iterations of L-BFGS on top of the scratch's factor towards the minimum of a potential under the scratch's rows.
 class QuasiNewton {
  public:
-  QuasiNewton(const ElasticBody& body, Potential& potential, GasLoad& gas, StepperScratch& scratch);
+  QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch);
 
   /// Evaluates at the scratch's z.
   void start();
@@ -36,6 +36,7 @@ class QuasiNewton {
   const ElasticBody& body_;
   Potential& potential_;
   GasLoad& gas_;
+  const EnergyTerm* extra_;
   StepperScratch& scratch_;
   double value_ = 0;
   double direction_length_ = 0, last_length_ = -1;

@@ -9,6 +9,7 @@
 
 namespace vibe {
 
+class EnergyTerm;
 class ShellElements;
 
 /// A soft body as an implicit solver sees it. Constant.
@@ -75,6 +76,7 @@ struct BodyLoads {
   std::vector<Condition> conditions;
   std::vector<ContactCondition> contacts;
   GasLoad gas;
+  const EnergyTerm* extra = nullptr;  ///< null: none
 };
 
 }  // namespace vibe
