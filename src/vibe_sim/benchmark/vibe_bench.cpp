@@ -11,6 +11,7 @@
 
 #include "fem/case_runner.hpp"
 #include "fem/fem_case.hpp"
+#include "method/method_table.hpp"
 #include "output/result_row.hpp"
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/package_path.hpp"
@@ -23,6 +24,7 @@ const char kHelp[] =
     "usage: vibe_bench [options]\n"
     "Prints time per step beside errors, for every method and setting and for cases with reference solutions.\n"
     "  --case FILE...   only these cases (YAML), no method table\n"
+    "  --methods        only the method table\n"
     "  --quick          fewer repeats and sizes: about 50 seconds\n"
     "  --csv FILE       write the rows there (- for standard output)\n"
     "  --list           names the shipped cases and ends\n"
@@ -31,15 +33,16 @@ const char kHelp[] =
 struct Options {
   std::vector<std::string> cases;
   std::string csv;
-  bool quick = false, list = false;
+  bool quick = false, list = false, methods_only = false;
 };
 
 Options parse(int argc, char** argv) {
   static const option kOptions[] = {{"case", required_argument, nullptr, 'c'}, {"quick", no_argument, nullptr, 'q'},
                                     {"csv", required_argument, nullptr, 'o'},  {"list", no_argument, nullptr, 'l'},
-                                    {"help", no_argument, nullptr, 'h'},       {nullptr, 0, nullptr, 0}};
+                                    {"methods", no_argument, nullptr, 'm'},   {"help", no_argument, nullptr, 'h'},       {nullptr, 0, nullptr, 0}};
   Options options;
   for (int c; (c = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
+    if (c == 'm') options.methods_only = true;
     if (c == 'c') options.cases.push_back(optarg);
     if (c == 'o') options.csv = optarg;
     if (c == 'q') options.quick = true;
@@ -82,12 +85,14 @@ void writeRows(const std::string& file, const std::vector<ResultRow>& rows) {
 
 int run(int argc, char** argv) {
   const Options options = parse(argc, argv);
-  std::vector<std::string> files = options.cases.empty() ? shippedCases() : options.cases;
+  std::vector<std::string> files = options.cases;
+  if (files.empty() && !options.methods_only) files = shippedCases();
   if (options.list) {
     for (const std::string& file : files) std::cout << file << "\n";
     return 0;
   }
   std::vector<ResultRow> rows;
+  if (options.cases.empty()) rows = runMethods(options.quick, std::cerr);
   for (const std::string& file : files) {
     const auto more = runCase(readCase(file), std::cerr);
     rows.insert(rows.end(), more.begin(), more.end());
