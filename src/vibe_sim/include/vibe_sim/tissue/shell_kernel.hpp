@@ -1,0 +1,50 @@
+#pragma once
+
+#include "vibe_sim/tissue/tetrahedra_kernel.hpp"
+
+namespace vibe {
+
+/// Rows of numbers that a triangle of a shell has at rest, see ShellElements. A side is that opposite the node of the
+/// same number; its patch apex is the node beyond it.
+enum ShellRow : int {
+  kShellPatch = 0,    ///< positions of the nodes 2, 3 and the three apexes less that of node 1 [m]
+  kShellSide = 15,    ///< per side: entries 11, 12, 22 of T [1/m], then twice the volume [m^3]
+  kShellNormal = 27,  ///< normal of the patch at the centroid, shortened by kShellSoftness [1]
+  kShellLength = 30,  ///< 36 times the area element at the centroid, lengthened by kShellSoftness [m^2]
+  kShellBend = 31,    ///< entries 11, 12, 22 of T at the centroid times the fourth root of the bending stiffness
+  kShellOrigin = 34,  ///< position of node 1 less the origin of the volume [m]
+  kShellRows = 37,    ///< of a triangle with three neighbours; others have the following too
+  kShellGhost = 37,   ///< per side: 1 where a triangle is beyond it, 0 where not; then sqrt(2) n where it is clamped
+  kShellGhostRows = 49,
+};
+
+/// What evaluating some batches of triangles of one material takes; see TetSweep.
+struct ShellSweep {
+  const TetOffsets* node;  ///< (batches * 6)
+  const TetReals* rest;    ///< (batches * kShellRows or kShellGhostRows), from batch `first`
+  bool ghosts;             ///< the rows of ghosts are there
+  int first, last;         ///< batches, for `node`
+  Law law;
+  double poisson_ratio;
+  const LawConstants* constants;
+  const float* displacement4;  ///< [m]
+  float* gradient4;            ///< added to [N]
+  float* volume_gradient4;     ///< added to [m^2]; null: not wanted
+  double volume;               ///< out, added to, if wanted [m^3]
+};
+
+/// Returns the energy [J] and adds its gradient.
+using ShellSweepFunction = double (*)(ShellSweep& sweep);
+
+/// The kernel of one instruction path.
+struct ShellKernel {
+  const char* name;
+  ShellSweepFunction sweep;
+};
+ShellKernel shellKernelSse2();
+ShellKernel shellKernelAvx2();  ///< AVX2, FMA; call its function only on a machine that has both
+
+/// The widest path that this machine can run.
+ShellKernel chooseShellKernel();
+
+}  // namespace vibe

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "shell_point.hpp"
+#include "tetrahedra_kernel_impl.hpp"  // how lanes load nodes and add to them
+
+namespace vibe {
+namespace {
+
+/// Steps of Newton's method for the stretch across the wall, the last of which is extrapolated.
+template <Law law>
+constexpr int kThicknessSteps = law == Law::Gent                       ? 7
+                                : law == Law::Fung || law == Law::Yeoh ? 5
+                                                                       : 2;
+
+template <class Arch>
+struct ShellKernelOf {
+  using Lanes = TetLanes<Arch>;
+  using Pack = typename Lanes::Pack;
+  static constexpr int kWidth = static_cast<int>(Pack::size);
+
+  template <Law law, bool ghosts, bool volume>
+  static double sweepAll(ShellSweep& s) {
+    const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
+    typename Lanes::Sum energy, enclosed;
+    const TetReals* rows = s.rest;
+    for (int batch = s.first; batch < s.last; ++batch, rows += ghosts ? kShellGhostRows : kShellRows)
+      for (int lane = 0; lane < kTetLanes; lane += kWidth) {
+        const TetOffsets* offset = s.node + batch * 6;
+        const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
+        Pack u1[3], u[5][3], f[5][3], f1[3];
+        Lanes::load(s.displacement4, offset[0].lane + lane, u1);
+        for (int a = 0; a < 5; ++a) {
+          Lanes::load(s.displacement4, offset[a + 1].lane + lane, u[a]);
+          for (int r = 0; r < 3; ++r) u[a][r] = u[a][r] - u1[r];
+        }
+        if constexpr (ghosts) placeGhosts(rest, u);
+        energy.add(shellEnergy<law, kThicknessSteps<law>>(terms, rest, u, f));
+        if constexpr (ghosts) returnGhosts(rest, f);
+        for (int r = 0; r < 3; ++r) f1[r] = -(((f[0][r] + f[1][r]) + (f[2][r] + f[3][r])) + f[4][r]);
+        Lanes::add(s.gradient4, offset[0].lane + lane, f1);
+        for (int a = 0; a < 5; ++a) Lanes::add(s.gradient4, offset[a + 1].lane + lane, f[a]);
+        if constexpr (volume) {
+          Pack share[3];
+          enclosed.add(coneVolume(rest, u, u1, share));
+          for (int a = 0; a < 3; ++a) Lanes::add(s.volume_gradient4, offset[a].lane + lane, share);
+        }
+      }
+    if constexpr (volume) s.volume += enclosed.total();
+    return energy.total();
+  }
+
+  static double sweep(ShellSweep& s) {
+    return withLaw(s.law, [&](auto tag) {
+      constexpr Law law = decltype(tag)::value;
+      if (s.ghosts) return s.volume_gradient4 ? sweepAll<law, true, true>(s) : sweepAll<law, true, false>(s);
+      return s.volume_gradient4 ? sweepAll<law, false, true>(s) : sweepAll<law, false, false>(s);
+    });
+  }
+};
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,9 @@
+#include "shell_kernel_impl.hpp"
+
+namespace vibe {
+
+ShellKernel shellKernelSse2() {
+  return {"sse2", ShellKernelOf<xsimd::sse2>::sweep};
+}
+
+}  // namespace vibe

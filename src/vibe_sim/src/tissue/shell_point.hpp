@@ -1,0 +1,360 @@
+#pragma once
+
+#include "tetrahedra_point.hpp"
+#include "vibe_sim/tissue/shell_kernel.hpp"
+
+// The energy of one triangle of a shell and its gradient, for one triangle or a pack of them; see material_law.hpp for
+// why everything is in an unnamed namespace.
+
+namespace vibe {
+namespace {
+
+// Square of the part of the area element at rest that is added to it, so that the normal n = c / sqrt(c.c + softness)
+// has a derivative where the area c vanishes. It makes a flat wall softer in bending by as much.
+constexpr double kShellSoftness = 1e-5;
+// The thinning factor 1 / (squared stretch of the area) of bending is kept up to the first, then bent to a limit of 4.
+constexpr double kThinningStart = 2, kThinningEnd = 6;
+
+// Least derivative of the stress across the wall by its stretch, in shear moduli; it is 1 at rest or more.
+constexpr double kLeastSlope = 0.01;
+
+inline double rootOf(double x) {
+  return std::sqrt(x);
+}
+template <class A>
+inline xsimd::batch<float, A> rootOf(const xsimd::batch<float, A>& x) {
+  return xsimd::sqrt(x);
+}
+
+template <class B>
+[[gnu::always_inline]] inline B dot(const B (&a)[3], const B (&b)[3]) {
+  return mulAdd(a[2], b[2], B(mulAdd(a[1], b[1], B(a[0] * b[0]))));
+}
+template <class B>
+[[gnu::always_inline]] inline void cross(const B (&a)[3], const B (&b)[3], B (&out)[3]) {
+  for (int r = 0; r < 3; ++r) out[r] = minor(a[(r + 1) % 3], b[(r + 2) % 3], a[(r + 2) % 3], b[(r + 1) % 3]);
+}
+
+/// A material of a shell in all lanes.
+template <class B>
+struct WallTerms {
+  LawTerms<B> law;
+  B poisson_ratio, thickness_guess;  // nu, nu / (1 - nu)
+
+  WallTerms(const LawConstants& constants, double nu)
+      : law(constants), poisson_ratio(constant<B>(nu)), thickness_guess(constant<B>(nu / (1 - nu))) {}
+};
+
+/// Energy per volume at rest in plane stress [Pa].
+template <class B>
+struct PlaneStress {
+  B energy;
+  B by_i;  ///< W_I
+  B eta;   ///< y - 1 for the squared stretch D y^2 across the wall
+};
+
+/// One evaluation of Newton's method for eta, see planeStress.
+template <class B>
+struct ThicknessStep {
+  LawAt<B> w;
+  B change, residual, slope;
+};
+
+template <Law law, class B>
+[[gnu::always_inline]] inline ThicknessStep<B> thicknessStep(const LawTerms<B>& c, const B& area, const B& more,
+                                                             const B& minor_strain, const B& eta) {
+  const B two = constant<B>(2), four = constant<B>(4), one = constant<B>(1);
+  const B j = mulAdd(area, eta, more), even = mulAdd(B(area * eta), eta, B(-minor_strain));
+  ThicknessStep<B> out;
+  out.w = lawAt<law>(c, B(mulAdd(two, j, even)), j, even);
+  const LawAt<B>& w = out.w;
+  const B y = one + eta, pull = two * w.by_i;
+  const B curve = mulAdd(B(four * y), B(mulAdd(y, w.by_ii, w.by_ij)), w.by_jj);
+  out.residual = mulAdd(pull, eta, w.balance);
+  out.slope = larger(B(mulAdd(area, curve, pull)), B(constant<B>(kLeastSlope) * c.shear));
+  const B step = -out.residual / out.slope;
+  out.change = smaller(B(four * y), larger(B(constant<B>(-0.8) * y), step));
+  return out;
+}
+
+/// The law with the stretch across the wall that leaves it without stress. With the metric C = 1 + S, D = det C, the
+/// squared stretch across is written D y^2, so J = D y: dW/dy = D (2 W_I y + W_J) has no singularity for D = 0, and the
+/// stress follows from dW/dC = W_I (1 - y^2 cof C) alone. All is formed from small differences to rest:
+/// I - 3 - 2 (J - 1) = D (y - 1)^2 - det S.
+/// The last step of Newton's method is not followed by an evaluation: energy and W_I come from their expansions.
+template <Law law, int Steps, class B>
+[[gnu::always_inline]] inline PlaneStress<B> planeStress(const WallTerms<B>& terms, const B& trace,
+                                                         const B& minor_strain) {
+  const B one = constant<B>(1), two = constant<B>(2);
+  const B more = trace + minor_strain, area = one + more;
+  const B guess = larger(B(area * mulAdd(terms.thickness_guess, more, one)), constant<B>(1e-5));
+  B eta = one / rootOf(guess) - one;
+  for (int step = 1; step < Steps; ++step)
+    eta = eta + thicknessStep<law>(terms.law, area, more, minor_strain, eta).change;
+  const ThicknessStep<B> last = thicknessStep<law>(terms.law, area, more, minor_strain, eta);
+  const B half_slope = constant<B>(0.5) * last.slope, moved = area * last.change;
+  PlaneStress<B> out;
+  out.energy = mulAdd(moved, B(mulAdd(half_slope, last.change, last.residual)), last.w.energy);
+  const B by_eta = mulAdd(B(two * (one + eta)), last.w.by_ii, last.w.by_ij);
+  out.by_i = mulAdd(moved, by_eta, last.w.by_i);
+  out.eta = eta + last.change;
+  return out;
+}
+
+/// Symmetric 2 x 2 matrices: 11, 12, 22.
+/// T^T a T for an upper triangular T
+template <class B>
+[[gnu::always_inline]] inline void pullBack(const B (&t)[3], const B (&a)[3], B (&out)[3]) {
+  const B x = mulAdd(t[1], a[0], B(t[2] * a[1])), y = mulAdd(t[1], a[1], B(t[2] * a[2]));
+  out[0] = t[0] * t[0] * a[0];
+  out[1] = t[0] * x;
+  out[2] = mulAdd(t[1], x, B(t[2] * y));
+}
+/// T g T^T
+template <class B>
+[[gnu::always_inline]] inline void pushForward(const B (&t)[3], const B (&g)[3], B (&out)[3]) {
+  const B x = mulAdd(t[0], g[0], B(t[1] * g[1])), z = mulAdd(t[0], g[1], B(t[1] * g[2]));
+  out[0] = mulAdd(t[0], x, B(t[1] * z));
+  out[1] = t[2] * z;
+  out[2] = t[2] * t[2] * g[2];
+}
+
+/// Twice the energy of the membrane at the middle of a side, and the derivatives by e and d.
+/// @param e, d    the side, and the apex beyond it less the node opposite; at rest
+/// @param ue, ud  their displacements
+template <Law law, int Steps, class B, class Rest>
+[[gnu::always_inline]] inline B sideEnergy(const WallTerms<B>& terms, const Rest& rest, int side, const B (&e)[3],
+                                           const B (&d)[3], const B (&ue)[3], const B (&ud)[3], B (&fe)[3],
+                                           B (&fd)[3]) {
+  const int row = kShellSide + 4 * side;
+  const B half = constant<B>(0.5), two = constant<B>(2), t[3] = {rest(row), rest(row + 1), rest(row + 2)};
+  B sum_e[3], sum_d[3];
+  for (int r = 0; r < 3; ++r) sum_e[r] = mulAdd(two, e[r], ue[r]), sum_d[r] = mulAdd(two, d[r], ud[r]);
+  const B change[3] = {dot(ue, sum_e), half * (dot(ue, sum_d) + dot(sum_e, ud)), dot(ud, sum_d)};
+  B s[3];
+  pullBack(t, change, s);
+  const PlaneStress<B> p = planeStress<law, Steps>(terms, B(s[0] + s[2]), minor(s[0], s[2], s[1], s[1]));
+  // dW/dC = W_I (1 - y^2 cof C), cof C = 1 + cof S
+  const B volume = rest(row + 3), w = p.by_i * volume, square = p.eta * (two + p.eta);
+  const B shear = w + w * square;
+  const B g[3] = {-mulAdd(shear, s[2], B(w * square)), shear * s[1], -mulAdd(shear, s[0], B(w * square))};
+  B a[3];
+  pushForward(t, g, a);
+  for (int r = 0; r < 3; ++r) {
+    const B now_e = e[r] + ue[r], now_d = d[r] + ud[r];
+    fe[r] = mulAdd(a[0], now_e, B(a[1] * now_d));
+    fd[r] = mulAdd(a[1], now_e, B(a[2] * now_d));
+  }
+  return volume * p.energy;
+}
+
+/// The nodes 2 and 3 and the apexes, each less node 1.
+template <class B>
+using Patch = B[5][3];
+
+/// Adds the membrane's gradient to f; returns twice its energy.
+template <Law law, int Steps, class B, class Rest>
+[[gnu::always_inline]] inline B membraneEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
+                                               const Patch<B>& u, Patch<B>& f) {
+  B energy = constant<B>(0), e[3], d[3], ue[3], ud[3], fe[3], fd[3];
+  for (int r = 0; r < 3; ++r) {
+    e[r] = x[1][r] - x[0][r], d[r] = x[2][r];
+    ue[r] = u[1][r] - u[0][r], ud[r] = u[2][r];
+  }
+  energy = energy + sideEnergy<law, Steps>(terms, rest, 0, e, d, ue, ud, fe, fd);
+  for (int r = 0; r < 3; ++r) f[0][r] = f[0][r] - fe[r], f[1][r] = f[1][r] + fe[r], f[2][r] = f[2][r] + fd[r];
+  for (int r = 0; r < 3; ++r) d[r] = x[0][r] - x[3][r], ud[r] = u[0][r] - u[3][r];
+  energy = energy + sideEnergy<law, Steps>(terms, rest, 1, x[1], d, u[1], ud, fe, fd);
+  for (int r = 0; r < 3; ++r) f[1][r] = f[1][r] + fe[r], f[0][r] = f[0][r] + fd[r], f[3][r] = f[3][r] - fd[r];
+  for (int r = 0; r < 3; ++r) d[r] = x[1][r] - x[4][r], ud[r] = u[1][r] - u[4][r];
+  energy = energy + sideEnergy<law, Steps>(terms, rest, 2, x[0], d, u[0], ud, fe, fd);
+  for (int r = 0; r < 3; ++r) f[0][r] = f[0][r] + fe[r], f[1][r] = f[1][r] + fd[r], f[4][r] = f[4][r] - fd[r];
+  return energy;
+}
+
+/// Six times the tangents of the surface at the centroid, by the two coordinates.
+template <class B>
+[[gnu::always_inline]] inline void tangents(const Patch<B>& x, B (&first)[3], B (&second)[3]) {
+  const B four = constant<B>(4);
+  for (int r = 0; r < 3; ++r) {
+    first[r] = mulAdd(four, x[0][r], B(x[2][r] - x[3][r]));
+    second[r] = mulAdd(four, x[1][r], B(x[2][r] - x[4][r]));
+  }
+}
+
+/// Second derivatives of the surface by the coordinates: 11, 12, 22.
+template <class B>
+[[gnu::always_inline]] inline void secondDerivatives(const Patch<B>& x, B (&h)[3][3]) {
+  const B two = constant<B>(2);
+  for (int r = 0; r < 3; ++r) {
+    h[0][r] = minusMul(two, x[1][r], B(x[2][r] + x[3][r]));
+    h[1][r] = x[2][r] - (x[0][r] + x[1][r]);
+    h[2][r] = minusMul(two, x[0][r], B(x[2][r] + x[4][r]));
+  }
+}
+
+/// The bent surface: b - B without cancellation, and what its derivative takes.
+template <class B>
+struct Bent {
+  B g[2][3];       ///< tangents
+  B n[3];          ///< normal
+  B inverse;       ///< 1 / length of c = g0 x g1
+  B thin;          ///< (length at rest / length)^2
+  B rest_h[3][3];  ///< second derivatives at rest
+  B move_h[3][3];  ///< their displacement
+  B change[3];     ///< b - B: 11, 12, 22
+};
+
+template <class B, class Rest>
+[[gnu::always_inline]] inline Bent<B> bentSurface(const Rest& rest, const Patch<B>& x, const Patch<B>& u) {
+  Bent<B> out;
+  B g0[3], g1[3], u0[3], u1[3], part[3], more[3], c[3];
+  tangents(x, g0, g1);
+  tangents(u, u0, u1);
+  for (int r = 0; r < 3; ++r) out.g[0][r] = g0[r] + u0[r], out.g[1][r] = g1[r] + u1[r];
+  cross(g0, u1, part);
+  cross(u0, out.g[1], more);
+  const B normal[3] = {rest(kShellNormal), rest(kShellNormal + 1), rest(kShellNormal + 2)}, length = rest(kShellLength);
+  B both[3];
+  for (int r = 0; r < 3; ++r) {
+    more[r] = part[r] + more[r];
+    c[r] = mulAdd(length, normal[r], more[r]);
+    both[r] = mulAdd(length, normal[r], c[r]);
+  }
+  const B square = mulAdd(B(constant<B>(kShellSoftness) * length), length, dot(c, c)), now = rootOf(square);
+  out.inverse = constant<B>(1) / now;
+  const B ratio = length * out.inverse, longer = dot(more, both) / (now + length);
+  out.thin = ratio * ratio;
+  B turn[3];
+  for (int r = 0; r < 3; ++r) {
+    out.n[r] = c[r] * out.inverse;
+    turn[r] = minusMul(longer, normal[r], more[r]) * out.inverse;
+  }
+  secondDerivatives(x, out.rest_h);
+  secondDerivatives(u, out.move_h);
+  for (int k = 0; k < 3; ++k) out.change[k] = dot(out.n, out.move_h[k]) + dot(turn, out.rest_h[k]);
+  return out;
+}
+
+/// The factor of the curvature by which the wall is thinner, and its derivative by `thin`.
+template <class B>
+[[gnu::always_inline]] inline void thinning(const B& thin, B& factor, B& slope) {
+  const B start = constant<B>(kThinningStart), end = constant<B>(kThinningEnd);
+  const B kept = smaller(thin, end), over = larger(B(kept - start), constant<B>(0));
+  const B bend = over * constant<B>(0.5 / (kThinningEnd - kThinningStart));
+  factor = minusMul(bend, over, kept);
+  slope = minusMul(constant<B>(2), bend, constant<B>(1));
+}
+
+/// Adds the gradient to f; returns the energy.
+template <class B, class Rest>
+[[gnu::always_inline]] inline B bendingEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
+                                              const Patch<B>& u, Patch<B>& f) {
+  const B two = constant<B>(2), four = constant<B>(4), nu = terms.poisson_ratio;
+  const Bent<B> s = bentSurface(rest, x, u);
+  const B t[3] = {rest(kShellBend), rest(kShellBend + 1), rest(kShellBend + 2)};
+  B k[3], factor, slope, m[3];
+  pullBack(t, s.change, k);
+  thinning(s.thin, factor, slope);
+  const B shear = k[1] - nu * k[1], by[3] = {mulAdd(nu, k[2], k[0]), shear, mulAdd(nu, k[0], k[2])};
+  const B form = mulAdd(k[0], by[0], B(mulAdd(k[2], by[2], B(two * k[1] * shear))));  // kappa : D kappa
+  const B square = factor * factor, scaled = two * square;
+  const B moment[3] = {scaled * by[0], scaled * by[1], scaled * by[2]};
+  pushForward(t, moment, m);
+  m[1] = two * m[1];  // of b_12 and b_21
+  B q[3], p[3], pull0[3], pull1[3];
+  for (int r = 0; r < 3; ++r) {
+    const B h0 = s.rest_h[0][r] + s.move_h[0][r], h1 = s.rest_h[1][r] + s.move_h[1][r];
+    q[r] = mulAdd(m[0], h0, B(mulAdd(m[1], h1, B(m[2] * (s.rest_h[2][r] + s.move_h[2][r])))));
+  }
+  const B along = mulAdd(B(four * form * factor), B(slope * s.thin), dot(s.n, q));
+  for (int r = 0; r < 3; ++r) p[r] = s.inverse * minusMul(along, s.n[r], q[r]);
+  cross(s.g[1], p, pull0);
+  cross(p, s.g[0], pull1);
+  const B m0 = m[0], m1 = m[1], m2 = m[2], second = mulAdd(two, m2, m1), third = mulAdd(two, m0, m1),
+          all = m0 + m1 + m2;
+  for (int r = 0; r < 3; ++r) {
+    f[0][r] = minusMul(second, s.n[r], B(mulAdd(four, pull0[r], f[0][r])));
+    f[1][r] = minusMul(third, s.n[r], B(mulAdd(four, pull1[r], f[1][r])));
+    f[2][r] = mulAdd(all, s.n[r], B(f[2][r] + (pull0[r] + pull1[r])));
+    f[3][r] = mulAdd(m0, s.n[r], B(f[3][r] - pull0[r]));
+    f[4][r] = mulAdd(m2, s.n[r], B(f[4][r] - pull1[r]));
+  }
+  return square * form;
+}
+
+/// Energy of a triangle; its gradient by the nodes 2 to 6 is written to f, that by node 1 is minus their sum.
+template <Law law, int Steps, class B, class Rest>
+[[gnu::always_inline]] inline B shellEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& u,
+                                            Patch<B>& f) {
+  Patch<B> x;
+  for (int a = 0; a < 5; ++a)
+    for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), f[a][r] = constant<B>(0);
+  const B membrane = membraneEnergy<law, Steps>(terms, rest, x, u, f);
+  return mulAdd(constant<B>(0.5), membrane, bendingEnergy(terms, rest, x, u, f));
+}
+
+/// The nodes beside a side, and the one opposite it; 0 is node 1.
+constexpr int kBeside[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+
+/// Puts the ghosts of sides without a neighbour where they belong: the mirror image of the node opposite in the middle
+/// of the side; across a clamped side, moved along the normal as that node itself.
+template <class B, class Rest>
+[[gnu::always_inline]] inline void placeGhosts(const Rest& rest, Patch<B>& u) {
+  const B one = constant<B>(1), half = constant<B>(0.5), zero = constant<B>(0);
+  for (int side = 0; side < 3; ++side) {
+    const int row = kShellGhost + 4 * side, p = kBeside[side][0], q = kBeside[side][1];
+    const B real = rest(row), m[3] = {rest(row + 1), rest(row + 2), rest(row + 3)};
+    B sum[3], arm[3];
+    for (int r = 0; r < 3; ++r) {
+      sum[r] = (p == 0 ? zero : u[p - 1][r]) + (q == 0 ? zero : u[q - 1][r]);
+      arm[r] = (side == 0 ? zero : u[side - 1][r]) - half * sum[r];
+    }
+    const B along = dot(m, arm);
+    for (int r = 0; r < 3; ++r) {
+      const B ghost = mulAdd(m[r], along, B(sum[r] - (side == 0 ? zero : u[side - 1][r])));
+      u[side + 2][r] = mulAdd(real, u[side + 2][r], B((one - real) * ghost));
+    }
+  }
+}
+
+/// The transpose of placeGhosts.
+template <class B, class Rest>
+[[gnu::always_inline]] inline void returnGhosts(const Rest& rest, Patch<B>& f) {
+  const B half = constant<B>(0.5);
+  for (int side = 0; side < 3; ++side) {
+    const int row = kShellGhost + 4 * side, p = kBeside[side][0], q = kBeside[side][1];
+    const B real = rest(row), m[3] = {rest(row + 1), rest(row + 2), rest(row + 3)};
+    B ghost[3];
+    for (int r = 0; r < 3; ++r) {
+      const B own = real * f[side + 2][r];
+      ghost[r] = f[side + 2][r] - own;
+      f[side + 2][r] = own;
+    }
+    const B along = dot(m, ghost);
+    for (int r = 0; r < 3; ++r) {
+      const B beside = minusMul(B(half * along), m[r], ghost[r]);
+      if (p != 0) f[p - 1][r] = f[p - 1][r] + beside;
+      if (q != 0) f[q - 1][r] = f[q - 1][r] + beside;
+      if (side != 0) f[side - 1][r] = mulAdd(along, m[r], B(f[side - 1][r] - ghost[r]));
+    }
+  }
+}
+
+/// Sixth of the area vector of a triangle times 2, the third that each node gets; returns the volume of the cone to the
+/// origin.
+template <class B, class Rest>
+[[gnu::always_inline]] inline B coneVolume(const Rest& rest, const Patch<B>& u, const B (&u1)[3], B (&share)[3]) {
+  const B sixth = constant<B>(1.0 / 6);
+  B e[3], d[3], at[3];
+  for (int r = 0; r < 3; ++r) {
+    e[r] = rest(kShellPatch + r) + u[0][r], d[r] = rest(kShellPatch + 3 + r) + u[1][r];
+    at[r] = rest(kShellOrigin + r) + u1[r];
+  }
+  cross(e, d, share);
+  for (int r = 0; r < 3; ++r) share[r] = sixth * share[r];
+  return dot(at, share);
+}
+
+}  // namespace
+}  // namespace vibe
