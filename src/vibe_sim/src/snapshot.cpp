@@ -43,6 +43,7 @@ void transfer(Archive& archive, S& s) {
   archive.value(s.solver.next_id);
   archive.value(s.solver.steps);
   archive.value(s.solver.elastic_energy);
+  archive.value(s.solver.still);
   archive.value(s.solver.careful);
 }
 

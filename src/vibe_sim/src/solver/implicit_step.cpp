@@ -12,6 +12,8 @@ namespace vibe {
 namespace {
 
 constexpr double kContactMargin = 2e-3;      // particles this near may be reached within the step [m]
+constexpr double kRestSpeed = 2e-6;          // slower than this is rest: a micrometre in half a second [m/s]
+constexpr int kRestSteps = 15;               // of it, before the tissue sleeps
 constexpr double kDepenetrationSpeed = 0.1;  // a particle found inside the tool is pushed out no faster [m/s]
 
 }  // namespace
@@ -36,6 +38,7 @@ void ImplicitStep::run() {
     holdGrip();
     findContacts();
   }
+  if (atRest()) return;
   fillGas();
   const double old_volume = state_.volume, old_pressure = state_.pressure;
   MotionView view{{state_.x.data(), state_.y.data(), state_.z.data()},
@@ -50,6 +53,26 @@ void ImplicitStep::run() {
   }
   reportForces();
   account(old_volume, old_pressure);
+  noticeRest();
+}
+
+// The whole organ has come to rest and nothing acts on it that did not before.
+bool ImplicitStep::atRest() const {
+  return state_.solver.still >= kRestSteps && scratch_.loads.conditions.empty() && scratch_.loads.contacts.empty() &&
+         !(insufflator_on_ && model_.scene.gas);
+}
+
+void ImplicitStep::noticeRest() {
+  double fastest2 = 0;
+  for (int i = 0; i < model_.particle_count; ++i)
+    fastest2 =
+        std::max(fastest2, state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i]);
+  const bool still = fastest2 < kRestSpeed * kRestSpeed && scratch_.loads.conditions.empty() &&
+                     scratch_.loads.contacts.empty() && !(insufflator_on_ && model_.scene.gas);
+  state_.solver.still = still ? state_.solver.still + 1 : 0;
+  if (state_.solver.still < kRestSteps) return;
+  for (auto* v : {&state_.vx, &state_.vy, &state_.vz, &state_.ax, &state_.ay, &state_.az})
+    std::fill(v->begin(), v->end(), 0.0);
 }
 
 void ImplicitStep::placeTool() {

@@ -34,6 +34,8 @@ class ImplicitStep {
   void holdGrip();
   void findContacts();
   void addContact(const Contact& contact);
+  bool atRest() const;
+  void noticeRest();
   void fillGas();
   void account(double old_volume, double old_pressure);
   void reportForces();

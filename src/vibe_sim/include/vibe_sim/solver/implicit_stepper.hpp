@@ -17,7 +17,7 @@ struct StepSettings {
   double spectral_radius = 0.2;
   bool backward_euler = false;  ///< first order and strongly damping, for states far from any equilibrium
   int iterations = 3;           ///< quasi-Newton iterations a step may take
-  double tolerance = 1e-7;      ///< a step ends earlier when no node would move farther than this [m]
+  double tolerance = 1e-6;      ///< a step ends earlier when no node would move farther than this [m]
   /// Every so many steps the factor made in the background about the positions of that many steps ago takes over, and
   /// the next is begun; 0: the factor stays. Fixed steps, so that a replay has the same bits.
   int refactor_every = 10;

@@ -14,6 +14,7 @@ struct StepperMemory {
   std::uint64_t next_id = 0;          ///< hash of `next`
   std::int64_t steps = 0;             ///< taken
   double elastic_energy = 0;          ///< at the end of the last step [J]
+  int still = 0;                      ///< steps in a row in which nothing moved
   int careful = 0;                    ///< steps still to be taken with backward Euler and many iterations
 };
 
