@@ -94,7 +94,9 @@ int run(int argc, char** argv) {
   std::vector<ResultRow> rows;
   if (options.cases.empty()) rows = runMethods(options.quick, std::cerr);
   for (const std::string& file : files) {
-    const auto more = runCase(readCase(file), std::cerr);
+    const FemCase bench_case = readCase(file);
+    if (options.quick && options.cases.empty() && bench_case.slow) continue;
+    const auto more = runCase(bench_case, std::cerr);
     rows.insert(rows.end(), more.begin(), more.end());
   }
   printTable(rows, std::cerr);

@@ -93,6 +93,7 @@ FemCase readCase(const std::string& file) {
       reader.source().root(), {"name", "mesh", "element", "material", "density", "sample"},
       {{"name", [&](const YamlField& f) { out.name = reader.source().text(f); }},
        {"source", [&](const YamlField& f) { out.source = reader.source().text(f); }},
+       {"slow", [&](const YamlField& f) { out.slow = reader.source().boolean(f); }},
        {"mesh", [&](const YamlField& f) { readMesh(reader, f, out.mesh); }},
        {"element",
         [&](const YamlField& f) {

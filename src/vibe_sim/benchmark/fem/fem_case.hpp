@@ -112,6 +112,7 @@ struct ModesRun {
 /// A case as a file describes it.
 struct FemCase {
   std::string name, source, file;
+  bool slow = false;  ///< left out of a quick run
   BenchMesh mesh;
   ElementKind element = ElementKind::LinearTet;
   int refine = 0;

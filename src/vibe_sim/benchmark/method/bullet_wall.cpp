@@ -7,6 +7,8 @@
 namespace vibe {
 namespace {
 
+constexpr double kSettling = 10;  // damping until the inflated start [1/s]
+
 btVector3 toBullet(const Eigen::Vector3d& p) {
   return {static_cast<btScalar>(p.x()), static_cast<btScalar>(p.y()), static_cast<btScalar>(p.z())};
 }
@@ -31,11 +33,11 @@ std::unique_ptr<btSoftBody> makeSoftBody(const Wall& wall, btSoftBodyWorldInfo& 
   return body;
 }
 
-void advance(const Wall& wall, double damping, btSoftBody& body) {
+void advance(const Wall& wall, double step, double damping_rate, btSoftBody& body) {
   // Bullet divides kPR by the volume
   body.m_cfg.kPR = static_cast<btScalar>(wall.pressure) * body.getVolume();
-  body.m_cfg.kDP = static_cast<btScalar>(damping);
-  body.predictMotion(static_cast<btScalar>(kFrame));
+  body.m_cfg.kDP = static_cast<btScalar>(1 - std::exp(-damping_rate * step));
+  body.predictMotion(static_cast<btScalar>(step));
   body.solveConstraints();
   body.integrateMotion();
 }
@@ -52,14 +54,14 @@ BodyMotion read(const Wall& wall, const btSoftBody& body) {
 
 }  // namespace
 
-Trajectory followBullet(const Wall& wall, const Pull& pull, int iterations) {
+Trajectory followBullet(const Wall& wall, const Pull& pull, int steps_per_frame, int iterations) {
+  const double step = kFrame / steps_per_frame;
   btSoftBodyWorldInfo world;
   world.m_gravity.setZero();
   world.air_density = 0;
   world.m_sparsesdf.Initialize();
   const auto body = makeSoftBody(wall, world, iterations);
-  for (int i = 0; i < 240; ++i) advance(wall, 0.15, *body);
-  const double damping = 1 - std::exp(-wall.body.damping_rate * kFrame);
+  for (int i = 0; i < 120 * steps_per_frame; ++i) advance(wall, step, kSettling, *body);
   Trajectory trajectory;
   trajectory.frames.push_back(read(wall, *body));
   std::vector<btVector3> from;
@@ -70,11 +72,13 @@ Trajectory followBullet(const Wall& wall, const Pull& pull, int iterations) {
   }
   const int frames = static_cast<int>(std::lround((pull.duration + pull.hold) / kFrame));
   for (int frame = 1; frame <= frames; ++frame) {
-    const btVector3 moved = toBullet(wall.pull_direction * pull.at(frame * kFrame));
     const double before = threadMilliseconds();
-    for (std::size_t i = 0; i < from.size(); ++i)
-      body->m_nodes[wall.tool[i]].m_x = body->m_nodes[wall.tool[i]].m_q = from[i] + moved;
-    advance(wall, damping, *body);
+    for (int s = 1; s <= steps_per_frame; ++s) {
+      const btVector3 moved = toBullet(wall.pull_direction * pull.at(kFrame * (frame - 1) + step * s));
+      for (std::size_t i = 0; i < from.size(); ++i)
+        body->m_nodes[wall.tool[i]].m_x = body->m_nodes[wall.tool[i]].m_q = from[i] + moved;
+      advance(wall, step, wall.body.damping_rate, *body);
+    }
     trajectory.times.push_back(threadMilliseconds() - before);
     trajectory.frames.push_back(read(wall, *body));
     for (const auto& x : trajectory.frames.back().x)

@@ -8,7 +8,6 @@ namespace vibe {
 namespace {
 
 constexpr int kFirstForceFrame = 5;  // before it the force is a shock wave's, which no step of a frame can follow
-constexpr double kLetGo = 0.005;     // [m]
 
 StepSettings settingsOf(const StepChoice& choice) {
   StepSettings settings;
@@ -17,6 +16,7 @@ StepSettings settingsOf(const StepChoice& choice) {
   settings.spectral_radius = choice.spectral_radius;
   settings.backward_euler = choice.backward_euler;
   settings.tolerance = choice.tolerance;
+  settings.refactor_every *= choice.steps_per_frame;  // the same in time for every step
   return settings;
 }
 
@@ -88,15 +88,16 @@ void compare(const Trajectory& trajectory, const Trajectory& reference, const Bo
     if (f >= kFirstForceFrame && f < trajectory.force.size())
       force = std::fmax(force, std::abs(trajectory.force[f] - reference.force[f]));
   }
-  row.motion_error = trajectory.finite ? motion / whole : std::numeric_limits<double>::infinity();
-  row.static_error = driftApart(trajectory.frames.back(), own_start, equilibrium, start) / whole;
-  if (!trajectory.force.empty()) row.force_error = force / largest_force;
+  const double lost = std::numeric_limits<double>::infinity();
+  row.motion_error = trajectory.finite ? motion / whole : lost;
+  row.static_error =
+      trajectory.finite ? driftApart(trajectory.frames.back(), own_start, equilibrium, start) / whole : lost;
+  if (!trajectory.force.empty()) row.force_error = trajectory.finite ? force / largest_force : lost;
   row.state_hash = hashOf(trajectory.frames.back());
 }
 
-double energyDrift(const Wall& wall, const BodyMotion& start, const StepChoice& choice) {
-  double force = 0;
-  BodyMotion motion = pulledEquilibrium(wall, start, kLetGo, 1e-8, force);
+double energyDrift(const Wall& wall, const BodyMotion& start, const BodyMotion& pulled, const StepChoice& choice) {
+  BodyMotion motion = pulled;
   Wall free = wall;
   free.body.damping_rate = 0;
   const ImplicitStepper stepper(free.body, settingsOf(choice));

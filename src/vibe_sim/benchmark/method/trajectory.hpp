@@ -38,8 +38,8 @@ void compare(const Trajectory& trajectory, const Trajectory& reference, const Bo
 /// Distance of two displacements since their own starts [m].
 double driftApart(const BodyMotion& a, const BodyMotion& a_start, const BodyMotion& b, const BodyMotion& b_start);
 
-/// Change of the energy over one second after the disc is let go at 5 mm, without damping, over the energy let go.
-double energyDrift(const Wall& wall, const BodyMotion& start, const StepChoice& choice);
+/// Change of the energy over one second after the disc lets go of `pulled`, without damping, over the energy let go.
+double energyDrift(const Wall& wall, const BodyMotion& start, const BodyMotion& pulled, const StepChoice& choice);
 
 /// FNV-1a of positions and velocities.
 std::uint64_t hashOf(const BodyMotion& motion);

@@ -11,7 +11,8 @@ namespace vibe {
 namespace {
 
 std::string show(const char* format, double value) {
-  if (!std::isfinite(value)) return "";
+  if (std::isnan(value)) return "";
+  if (std::isinf(value)) return "inf";  // a method that left the numbers
   char text[40];
   std::snprintf(text, sizeof text, format, value);
   return text;
@@ -33,7 +34,9 @@ std::string field(const std::string& text) {
 }
 
 std::string percent(double fraction) {
-  return std::isfinite(fraction) ? show(std::abs(fraction) < 1e-4 ? "%.1e" : "%.3f", 100 * fraction) : "-";
+  if (std::isinf(fraction)) return "inf";
+  return std::isfinite(fraction) ? show(std::abs(fraction) < 1e-4 || std::abs(fraction) > 100 ? "%.1e" : "%.3f", 100 * fraction)
+                                 : "-";
 }
 
 }  // namespace
