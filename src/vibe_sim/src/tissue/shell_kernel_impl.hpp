@@ -8,9 +8,19 @@ namespace {
 
 /// Steps of Newton's method for the stretch across the wall, the last of which is extrapolated.
 template <Law law>
-constexpr int kThicknessSteps = law == Law::Gent                       ? 7
-                                : law == Law::Fung || law == Law::Yeoh ? 5
-                                                                       : 2;
+constexpr int thicknessSteps() {
+  switch (law) {
+    case Law::NeoHookean:
+      return 1;
+    case Law::Fung:
+    case Law::Yeoh:
+      return 3;
+    case Law::Gent:
+      return 6;
+    default:
+      return 2;
+  }
+}
 
 template <class Arch>
 struct ShellKernelOf {
@@ -34,7 +44,7 @@ struct ShellKernelOf {
           for (int r = 0; r < 3; ++r) u[a][r] = u[a][r] - u1[r];
         }
         if constexpr (ghosts) placeGhosts(rest, u);
-        energy.add(shellEnergy<law, kThicknessSteps<law>>(terms, rest, u, f));
+        energy.add(shellEnergy<law, thicknessSteps<law>()>(terms, rest, u, f));
         if constexpr (ghosts) returnGhosts(rest, f);
         for (int r = 0; r < 3; ++r) f1[r] = -(((f[0][r] + f[1][r]) + (f[2][r] + f[3][r])) + f[4][r]);
         Lanes::add(s.gradient4, offset[0].lane + lane, f1);

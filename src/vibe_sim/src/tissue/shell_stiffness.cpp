@@ -29,7 +29,8 @@ Eigen::Matrix3d withoutNegative(const Eigen::Matrix3d& symmetric) {
 template <Law law>
 WallTangent wallTangent(const WallTerms<double>& terms, const Eigen::Vector3d& s) {
   const double minor_strain = s[0] * s[1] - s[2] * s[2] / 2, more = s[0] + s[1] + minor_strain, area = 1 + more;
-  const double eta = planeStress<law, kSteps>(terms, s[0] + s[1], minor_strain).eta, y = 1 + eta;
+  const double square = planeStress<law, kSteps>(terms, s[0] + s[1], minor_strain).square;
+  const double y = std::sqrt(1 + square), eta = square / (1 + y);
   const ThicknessStep<double> at = thicknessStep<law>(terms.law, area, more, minor_strain, eta);
   const LawAt<double>& w = at.w;
   const double by_t = 2 * y * w.by_ii + w.by_ij;
@@ -41,8 +42,7 @@ WallTangent wallTangent(const WallTerms<double>& terms, const Eigen::Vector3d& s
   const double d = -y * y * w.by_i;
   const Eigen::Vector3d unit(1, 1, 0), cof(1 + s[1], 1 + s[0], -s[2]);
   WallTangent out;
-  const double shear = -d;
-  out.first = {-shear * s[1] - w.by_i * eta * (2 + eta), -shear * s[0] - w.by_i * eta * (2 + eta), shear * s[2]};
+  out.first = {d * s[1] - w.by_i * square, d * s[0] - w.by_i * square, -d * s[2]};
   out.second = tt * unit * unit.transpose() + td * (unit * cof.transpose() + cof * unit.transpose()) +
                dd * cof * cof.transpose();
   out.second(0, 1) += d, out.second(1, 0) += d, out.second(2, 2) -= d;

@@ -76,7 +76,7 @@ TEST(Shell, FlatSheetFollowsPlaneStress) {
     const ShellElements elements(shaken(sheet(4, 4, law), 0.15 * kSide, true));
     double area = 0;
     for (const double mass : elements.lumpedMass(1 / kThickness)) area += mass;
-    const double stretches[][2] = {{0.7, 1.2}, {0.8, 0.8}, {1.001, 1}, {1.3, 0.9}, {1.5, 1.5}, {2, 1.2}, {2, 2}};
+    const double stretches[][2] = {{0.7, 1.2}, {0.8, 0.8}, {1.001, 1}, {1.3, 0.9}, {1.5, 1.5}, {2, 1.2}, {1.9, 1.7}};
     for (const auto& [first, second] : stretches) {
       const Eigen::Matrix3d f = someRotation() * Eigen::Vector3d(first, second, 1).asDiagonal();
       const double expected = planeStressEnergy(material(law), first, second) * area;
