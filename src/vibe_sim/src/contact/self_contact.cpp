@@ -126,31 +126,38 @@ double SelfContact::meanThickness(int vertex, int triangle) const {
 void SelfContact::addPairs(int vertex, double reach) {
   found_[0].clear();
   found_[1].clear();
+  const Eigen::Vector3d& own = search_->normal(vertex);
+  const double farthest = (1 + kOnset + kAhead) * most_thickness_ + reach;
   search_->visitNear(vertex, [&](int triangle) {
     const Eigen::Vector3d normal = search_->triangleNormal(triangle);
+    const double cosine = own.dot(normal);
     const auto& n = rest_.triangles[triangle];
+    if (cosine > SelfContactSearch::kWatchedCosine || std::abs(normal.dot(start_[vertex] - start_[n[0]])) > farthest)
+      return;
     const TriangleFoot foot = triangleFoot(start_[vertex], start_[n[0]], start_[n[1]], start_[n[2]]);
     const double distance = foot.away.norm();
     const double margin = distance - (1 + kOnset) * meanThickness(vertex, triangle);
     margin_ = std::min(margin_, margin);
-    const Eigen::Vector3d& own = search_->normal(vertex);
-    if (margin >= reach || own.dot(normal) >= kFacingCosine) return;
+    if (margin >= reach || cosine >= kFacingCosine) return;
     found_[(normal - own).dot(foot.away) >= 0 ? 1 : 0].push_back({triangle, distance});
   });
   for (int side = 0; side < 2; ++side)
-    if (!found_[side].empty()) addPair(vertex, 2.0 * side - 1, found_[side], reach);
+    if (!found_[side].empty()) {
+      std::sort(found_[side].begin(), found_[side].end(), [](const auto& a, const auto& b) {
+        return a.distance < b.distance || (a.distance == b.distance && a.triangle < b.triangle);
+      });
+      addPair(vertex, 2.0 * side - 1, found_[side], reach);
+    }
 }
 
 // The nearest triangle may change within the step, among those that are less than the reach farther away. The others
 // only bound how far the nodes may go.
 void SelfContact::addPair(int vertex, double side, const std::vector<NearTriangle>& found, double reach) {
-  const auto nearest = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
-    return a.distance < b.distance || (a.distance == b.distance && a.triangle < b.triangle);
-  });
-  Pair pair{vertex, side, meanThickness(vertex, nearest->triangle), 0, static_cast<int>(near_.size()), 0};
+  const NearTriangle& nearest = found.front();
+  Pair pair{vertex, side, meanThickness(vertex, nearest.triangle), 0, static_cast<int>(near_.size()), 0};
   for (const NearTriangle& candidate : found) {
     const auto& n = rest_.triangles[candidate.triangle];
-    if (candidate.distance > nearest->distance + reach) {
+    if (candidate.distance > nearest.distance + reach) {
       const double range = kRange * candidate.distance;
       range_[vertex] = std::min(range_[vertex], range);
       for (const int v : n) range_[v] = std::min(range_[v], range);
@@ -166,63 +173,84 @@ void SelfContact::addPair(int vertex, double side, const std::vector<NearTriangl
   if (pair.stiffness > 0) pairs_.push_back(pair);
 }
 
+// The triangles of a pair come by their distance at detect(): those that cannot have come near enough are left out.
+double SelfContact::farthestMove(const double* positions4) const {
+  double farthest = 0;
+  for (std::size_t i = 0; i < start_.size(); ++i)
+    farthest = std::max(farthest, (at(positions4, static_cast<int>(i)) - start_[i]).squaredNorm());
+  return std::sqrt(farthest);
+}
+
 double SelfContact::evaluate(const double* positions4, float* gradient4) const {
+  if (pairs_.empty()) return 0;
+  const double closer = 2 * farthestMove(positions4);
   double energy = 0;
   for (const Pair& pair : pairs_) {
     const Eigen::Vector3d p = at(positions4, pair.vertex);
     TriangleFoot foot{};
-    const std::array<int, 3>* nodes = nullptr;
-    double least = (1 + kOnset) * pair.thickness * (1 + kOnset) * pair.thickness;
-    for (int k = pair.first; k < pair.first + pair.count; ++k) {
+    const std::array<int, 3>* nearest = nullptr;
+    double least = (1 + kOnset) * pair.thickness;
+    for (int k = pair.first; k < pair.first + pair.count && near_[k].distance - closer < least; ++k) {
       const auto& n = rest_.triangles[near_[k].triangle];
       const TriangleFoot other = triangleFoot(p, at(positions4, n[0]), at(positions4, n[1]), at(positions4, n[2]));
-      const double distance = other.away.squaredNorm();
+      const double distance = other.away.norm();
       if (!(distance < least)) continue;
       least = distance;
       foot = other;
-      nodes = &n;
+      nearest = &n;
     }
-    if (nodes == nullptr) continue;
-    const auto& n = *nodes;
-    const SignedDistance gap =
-        signedDistance(foot, pair.side, at(positions4, n[0]), at(positions4, n[1]), at(positions4, n[2]));
-    const auto [value, slope] = squeeze(gap.value / pair.thickness);
-    energy += pair.stiffness * value;
-    const Eigen::Vector3d force = pair.stiffness / pair.thickness * slope * gap.apart;
-    for (int c = 0; c < 3; ++c) {
-      gradient4[4 * static_cast<std::size_t>(pair.vertex) + c] += static_cast<float>(force[c]);
-      for (int k = 0; k < 3; ++k)
-        gradient4[4 * static_cast<std::size_t>(n[k]) + c] -= static_cast<float>(foot.weight[k] * force[c]);
-    }
+    if (nearest != nullptr) energy += addSqueeze(pair, *nearest, foot, positions4, gradient4);
   }
   return energy;
 }
 
+double SelfContact::addSqueeze(const Pair& pair, const std::array<int, 3>& n, const TriangleFoot& foot,
+                               const double* positions4, float* gradient4) const {
+  const SignedDistance gap =
+      signedDistance(foot, pair.side, at(positions4, n[0]), at(positions4, n[1]), at(positions4, n[2]));
+  const auto [value, slope] = squeeze(gap.value / pair.thickness);
+  const Eigen::Vector3d force = pair.stiffness / pair.thickness * slope * gap.apart;
+  for (int c = 0; c < 3; ++c) {
+    gradient4[4 * static_cast<std::size_t>(pair.vertex) + c] += static_cast<float>(force[c]);
+    for (int k = 0; k < 3; ++k)
+      gradient4[4 * static_cast<std::size_t>(n[k]) + c] -= static_cast<float>(foot.weight[k] * force[c]);
+  }
+  return pair.stiffness * value;
+}
+
 void SelfContact::limitMove(const double* positions4, float* move4) const {
+  if (!pairs_.empty()) limitPairs(positions4, move4);
+  for (std::size_t i = 0; i < start_.size(); ++i) {
+    const Eigen::Vector3d moved = at(positions4, static_cast<int>(i)) - start_[i];
+    float* m = move4 + 4 * i;
+    const Eigen::Vector3d move(m[0], m[1], m[2]);
+    double room = pairs_.empty() ? std::numeric_limits<double>::infinity() : room_[i];
+    if ((moved + move).squaredNorm() > range_[i] * range_[i])
+      room = std::min(room, std::max(0.0, range_[i] - moved.norm()));
+    if (move.squaredNorm() <= room * room) continue;
+    const auto part = static_cast<float>(room / move.norm());
+    for (int k = 0; k < 3; ++k) m[k] *= part;
+  }
+}
+
+void SelfContact::limitPairs(const double* positions4, const float* move4) const {
   std::fill(room_.begin(), room_.end(), std::numeric_limits<double>::infinity());
+  double longest = 0;
+  for (std::size_t i = 0; i < room_.size(); ++i)
+    longest = std::max(longest, Eigen::Vector3d(move4[4 * i], move4[4 * i + 1], move4[4 * i + 2]).squaredNorm());
+  const double unbound = 2 * farthestMove(positions4) + std::sqrt(longest) / kApproach;
   for (const Pair& pair : pairs_) {
     const Eigen::Vector3d p = at(positions4, pair.vertex);
+    const double floor = kParting * pair.thickness;
     for (int k = pair.first; k < pair.first + pair.count; ++k) {
+      if ((1 - kKeptGap) * near_[k].distance > unbound) break;  // the longest move is short enough for this gap
       const auto& n = rest_.triangles[near_[k].triangle];
       const Eigen::Vector3d a = at(positions4, n[0]), b = at(positions4, n[1]), c = at(positions4, n[2]);
       const SignedDistance gap = signedDistance(triangleFoot(p, a, b, c), pair.side, a, b, c);
       const double room = kApproach * std::max(0.0, gap.value - kKeptGap * near_[k].distance);
-      const double floor = kParting * pair.thickness;
       restrict(pair.vertex, room, floor, gap.apart, move4);
       for (const int v : n) restrict(v, room, floor, -gap.apart, move4);
     }
-  }
-  for (std::size_t i = 0; i < room_.size(); ++i) {
-    const Eigen::Vector3d moved = at(positions4, static_cast<int>(i)) - start_[i];
-    float* m = move4 + 4 * i;
-    const Eigen::Vector3d move(m[0], m[1], m[2]);
-    double room = room_[i];
-    if ((moved + move).squaredNorm() > range_[i] * range_[i])
-      room = std::min(room, std::max(0.0, range_[i] - moved.norm()));
-    const double length = move.norm();
-    if (length <= room) continue;
-    const auto part = static_cast<float>(room / length);
-    for (int k = 0; k < 3; ++k) m[k] *= part;
   }
 }
 

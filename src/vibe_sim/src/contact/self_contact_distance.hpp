@@ -8,7 +8,7 @@ namespace vibe {
 struct TriangleFoot {
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< barycentric
   Eigen::Vector3d away = Eigen::Vector3d::Zero();    ///< from the foot to p [m]
-  bool inside;             ///< of the triangle, not on its edge
+  bool inside;                                       ///< of the triangle, not on its edge
 };
 
 /// Ericson, Real-Time Collision Detection, 5.1.5, with the weights.

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <utility>
 
 namespace vibe {
 
 namespace {
-
-constexpr double kWatchedCosine = 0.8;  // of normals: well before walls face each other, they are watched
 
 /// Least product of two vectors from the boxes.
 float leastDot(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const Eigen::Vector3f& other_low,

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
-#include <utility>
 #include <vector>
 
 #include "vibe_sim/geometry/surface_mesh.hpp"
@@ -13,12 +13,14 @@ namespace vibe {
 /// Cells, and vertices in a cell, come in a fixed order.
 class SelfContactSearch {
  public:
+  static constexpr double kWatchedCosine = 0.8;  ///< of normals: well before walls face each other, they are watched
+
   /// @param one_wall  per vertex, distance along edges within which the surface is one wall with it [m]
   SelfContactSearch(const SurfaceMesh& rest, const std::vector<double>& one_wall);
 
   /// Takes positions and their normals.
   void place(const std::vector<Eigen::Vector3d>& positions);
-  /// Flags the vertices that another wall may be nearer to than this, with a normal that differs by 37 degrees. [m]
+  /// Flags the vertices that another wall may be nearer to than this, with a normal beyond the watched cosine. [m]
   void flagNear(double distance);
   bool anyFlagged() const { return any_flagged_; }
   bool flagged(int vertex) const { return flagged_[vertex] != 0; }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -10,6 +11,7 @@
 namespace vibe {
 
 class SelfContactSearch;
+struct TriangleFoot;
 
 /// Walls of a shell that meet. Where a vertex comes nearer to another part of the middle surface than the mean t of
 /// the two thicknesses, the two half walls between are squeezed from t to the distance d and store the energy of a bar
@@ -72,6 +74,10 @@ class SelfContact : public EnergyTerm {
   void addPairs(int vertex, double reach);
   void addPair(int vertex, double side, const std::vector<NearTriangle>& found, double reach);
   double meanThickness(int vertex, int triangle) const;
+  double farthestMove(const double* positions4) const;
+  double addSqueeze(const Pair& pair, const std::array<int, 3>& triangle, const TriangleFoot& foot,
+                    const double* positions4, float* gradient4) const;
+  void limitPairs(const double* positions4, const float* move4) const;
   void restrict(int node, double room, double floor, const Eigen::Vector3d& apart, const float* move4) const;
 
   SurfaceMesh rest_;
