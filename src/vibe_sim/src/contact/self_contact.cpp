@@ -142,18 +142,16 @@ void SelfContact::addPairs(int vertex, double reach) {
     found_[(normal - own).dot(foot.away) >= 0 ? 1 : 0].push_back({triangle, distance});
   });
   for (int side = 0; side < 2; ++side)
-    if (!found_[side].empty()) {
-      std::sort(found_[side].begin(), found_[side].end(), [](const auto& a, const auto& b) {
-        return a.distance < b.distance || (a.distance == b.distance && a.triangle < b.triangle);
-      });
-      addPair(vertex, 2.0 * side - 1, found_[side], reach);
-    }
+    if (!found_[side].empty()) addPair(vertex, 2.0 * side - 1, found_[side], reach);
 }
 
 // The nearest triangle may change within the step, among those that are less than the reach farther away. The others
 // only bound how far the nodes may go.
 void SelfContact::addPair(int vertex, double side, const std::vector<NearTriangle>& found, double reach) {
-  const NearTriangle& nearest = found.front();
+  const auto nearer = [](const NearTriangle& a, const NearTriangle& b) {
+    return a.distance < b.distance || (a.distance == b.distance && a.triangle < b.triangle);
+  };
+  const NearTriangle nearest = *std::min_element(found.begin(), found.end(), nearer);
   Pair pair{vertex, side, meanThickness(vertex, nearest.triangle), 0, static_cast<int>(near_.size()), 0};
   for (const NearTriangle& candidate : found) {
     const auto& n = rest_.triangles[candidate.triangle];
@@ -169,6 +167,7 @@ void SelfContact::addPair(int vertex, double side, const std::vector<NearTriangl
     near_.push_back(candidate);
     ++pair.count;
   }
+  std::sort(near_.begin() + pair.first, near_.end(), nearer);
   pair.stiffness = 0.5 * area_[vertex] * young_modulus_ * pair.thickness;
   if (pair.stiffness > 0) pairs_.push_back(pair);
 }
