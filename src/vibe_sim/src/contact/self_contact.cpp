@@ -128,17 +128,21 @@ void SelfContact::addPairs(int vertex, double reach) {
   found_[1].clear();
   const Eigen::Vector3d& own = search_->normal(vertex);
   const double farthest = (1 + kOnset + kAhead) * most_thickness_ + reach;
+  const double watched = SelfContactSearch::kWatchedCosine * SelfContactSearch::kWatchedCosine;
   search_->visitNear(vertex, [&](int triangle) {
-    const Eigen::Vector3d normal = search_->triangleNormal(triangle);
-    const double cosine = own.dot(normal);
+    // compared by squares: most triangles are left here
+    const Eigen::Vector3d& area = search_->areaVector(triangle);
+    const double size = area.squaredNorm(), along = own.dot(area);
+    if (along > 0 && along * along > watched * size) return;
     const auto& n = rest_.triangles[triangle];
-    if (cosine > SelfContactSearch::kWatchedCosine || std::abs(normal.dot(start_[vertex] - start_[n[0]])) > farthest)
-      return;
+    const double height = area.dot(start_[vertex] - start_[n[0]]);
+    if (height * height > farthest * farthest * size) return;
     const TriangleFoot foot = triangleFoot(start_[vertex], start_[n[0]], start_[n[1]], start_[n[2]]);
     const double distance = foot.away.norm();
     const double margin = distance - (1 + kOnset) * meanThickness(vertex, triangle);
     margin_ = std::min(margin_, margin);
-    if (margin >= reach || cosine >= kFacingCosine) return;
+    const Eigen::Vector3d normal = area.normalized();
+    if (margin >= reach || own.dot(normal) >= kFacingCosine) return;
     found_[(normal - own).dot(foot.away) >= 0 ? 1 : 0].push_back({triangle, distance});
   });
   for (int side = 0; side < 2; ++side)

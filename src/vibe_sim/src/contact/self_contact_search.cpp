@@ -35,6 +35,7 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const std::vector<
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for (const int v : triangles_[t]) triangle_of_[next[v]++] = static_cast<int>(t);
   normal_.resize(n);
+  near_.resize(n);
   cell_of_.resize(n);
   sorted_.resize(n);
   flagged_.assign(n, 0);
@@ -87,6 +88,7 @@ bool SelfContactSearch::oneWall(int vertex, int other) const {
 void SelfContactSearch::place(const std::vector<Eigen::Vector3d>& positions) {
   position_ = positions;
   std::fill(normal_.begin(), normal_.end(), Eigen::Vector3d::Zero());
+  std::fill(near_.begin(), near_.end(), 0);
   double longest = 0, lowest = std::numeric_limits<double>::max();  // squares
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const auto& n = triangles_[t];
@@ -96,7 +98,10 @@ void SelfContactSearch::place(const std::vector<Eigen::Vector3d>& positions) {
     longest = std::max(longest, edge);
     if (area.squaredNorm() < lowest * edge) lowest = area.squaredNorm() / edge;
     area_vector_[t] = area;
-    for (const int v : n) normal_[v] += area;
+    for (const int v : n) {
+      normal_[v] += area;
+      near_[v] = std::max(near_[v], edge);  // squared until flagNear
+    }
   }
   for (Eigen::Vector3d& normal : normal_) {
     const double length = normal.norm();
@@ -108,8 +113,8 @@ void SelfContactSearch::place(const std::vector<Eigen::Vector3d>& positions) {
 
 void SelfContactSearch::flagNear(double distance) {
   // no point of a triangle is farther from its nearest vertex than this part of its longest edge
-  distance_ = distance + longest_edge_ / std::sqrt(3.0);
-  layGrid(distance_);
+  for (double& near : near_) near = distance + std::sqrt(near / 3);
+  layGrid(distance + longest_edge_ / std::sqrt(3.0));
   fillCells();
   std::fill(flagged_.begin(), flagged_.end(), char{0});
   any_flagged_ = false;
@@ -175,12 +180,12 @@ void SelfContactSearch::fillCells() {
 
 void SelfContactSearch::comparePair(const Cell& one, const Cell& other) {
   if (leastDot(one.low, one.high, other.low, other.high) > static_cast<float>(kWatchedCosine)) return;
-  const double near = distance_ * distance_;
   for (int k = one.first; k < one.last; ++k) {
     const int i = sorted_[k];
     for (int l = one.first == other.first ? k + 1 : other.first; l < other.last; ++l) {
       const int j = sorted_[l];
-      if ((flagged_[i] != 0 && flagged_[j] != 0) || (position_[i] - position_[j]).squaredNorm() > near ||
+      const double near = std::max(near_[i], near_[j]);
+      if ((flagged_[i] != 0 && flagged_[j] != 0) || (position_[i] - position_[j]).squaredNorm() > near * near ||
           normal_[i].dot(normal_[j]) > kWatchedCosine || oneWall(i, j))
         continue;
       flagged_[i] = flagged_[j] = 1;

@@ -20,7 +20,8 @@ class SelfContactSearch {
 
   /// Takes positions and their normals.
   void place(const std::vector<Eigen::Vector3d>& positions);
-  /// Flags the vertices that another wall may be nearer to than this, with a normal beyond the watched cosine. [m]
+  /// Once after place(): flags the vertices that another wall may be nearer to than this, with a normal beyond the
+  /// watched cosine. [m]
   void flagNear(double distance);
   bool anyFlagged() const { return any_flagged_; }
   bool flagged(int vertex) const { return flagged_[vertex] != 0; }
@@ -31,7 +32,8 @@ class SelfContactSearch {
   void visitNear(int vertex, Visit visit);
 
   const Eigen::Vector3d& normal(int vertex) const { return normal_[vertex]; }
-  Eigen::Vector3d triangleNormal(int triangle) const { return area_vector_[triangle].normalized(); }
+  /// Normal of a triangle with the length of twice its area [m^2].
+  const Eigen::Vector3d& areaVector(int triangle) const { return area_vector_[triangle]; }
   double lowestHeight() const { return lowest_height_; }  ///< of any triangle [m]
   bool oneWall(int vertex, int other) const;
 
@@ -53,7 +55,8 @@ class SelfContactSearch {
   std::vector<Eigen::Vector3d> position_, area_vector_, normal_;
   double longest_edge_ = 0, lowest_height_ = 0;
   Eigen::Vector3d corner_;
-  double cell_ = 1, distance_ = 0;  // size of a cell; distance between vertices that is near [m]
+  std::vector<double> near_;  // per vertex, how near one of its triangles makes it matter [m]
+  double cell_ = 1;           // size of a cell [m]
   std::array<int, 3> cells_ = {1, 1, 1};
   std::vector<int> cell_of_;     // per vertex, its cell number
   std::vector<int> cell_start_;  // (cells + 1)
@@ -77,8 +80,8 @@ void SelfContactSearch::visitNear(int vertex, Visit visit) {
         const int cell = (z * cells_[1] + y) * cells_[0] + x;
         for (int k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
           const int other = sorted_[k];
-          if (flagged_[other] == 0 || (position_[other] - position_[vertex]).squaredNorm() > distance_ * distance_)
-            continue;
+          const double near = near_[other];
+          if (flagged_[other] == 0 || (position_[other] - position_[vertex]).squaredNorm() > near * near) continue;
           for (int i = triangle_start_[other]; i < triangle_start_[other + 1]; ++i) {
             const int t = triangle_of_[i];
             if (triangle_stamp_[t] == stamp_) continue;

@@ -422,6 +422,13 @@ TEST(SelfContact, CostsLittleWhereNothingIsNear) {
   std::printf("still %.3f (%.3f) ms, searching %.3f (%.3f) ms, flattened, %zu pairs, %zu triangles: %.3f (%.3f) ms\n",
               still.first, still.second, moving.first, moving.second, flat.contact.pairs().size(),
               flat.contact.nearTriangles().size(), met.first, met.second);
+  World pinched(sphere(0.05, 19));  // pinched about its axis until the poles meet
+  for (std::size_t i = 0; i < pinched.count(); ++i) {
+    const double off = std::hypot(pinched.at[4 * i], pinched.at[4 * i + 1]);
+    pinched.at[4 * i + 2] *= std::clamp((off - 0.012) / 0.028, 0.025, 1.0);
+  }
+  const auto local = measure(pinched, 0);
+  std::printf("pinched, %zu pairs: %.3f (%.3f) ms\n", pinched.contact.pairs().size(), local.first, local.second);
   std::vector<float> move(flat.at.size(), 1e-4F);
   double start = threadTime();
   flat.evaluate();
