@@ -106,8 +106,12 @@ void HalfSpace::setRows(const std::vector<HalfRow>& rows, const Factor& factor) 
 }
 
 void HalfSpace::setGas(const float* direction4, double stiffness, const Factor& factor) {
+  const bool had_gas = gas_stiffness_ != 0;
   gas_stiffness_ = stiffness;
-  if (stiffness == 0) return;
+  if (stiffness == 0) {
+    if (had_gas) formCompliance();  // without it
+    return;
+  }
   factor.load(direction4, gas_.data());
   factor.forward(gas_.data());
   double norm2 = 0;

@@ -308,12 +308,13 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, bool c
   const double longest = careful ? kCarefulMove * size_ : std::numeric_limits<double>::max();
   while (outcome.iterations < most && !outcome.converged && !newton.failed()) {
     outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < most);
-    outcome.converged = newton.directionLength() < settings_.tolerance;
+    outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
     ++outcome.iterations;
   }
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
   elastic_energy = potential.elasticEnergy();
-  return outcome.finite && !newton.failed();
+  // where all that is left to move is rounding, so is the energy that does not fall
+  return outcome.finite && (outcome.converged || !newton.failed());
 }
 
 void ImplicitStepper::startFromHere(const MotionView& motion, StepperScratch& scratch) const {
@@ -369,7 +370,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
     scratch.half_space.setGas(scratch.volume_gradient.data(), potential.gasStiffness(), *scratch.factor);
     outcome.last_move = newton.iterate(0.05 * size_, true);
     ++outcome.iterations;
-    outcome.converged = newton.directionLength() < tolerance;
+    outcome.converged = newton.directionLength() < std::max(tolerance, newton.resolution());
     if (!std::isfinite(outcome.last_move)) break;
     if (newton.failed()) newton.start();
   }

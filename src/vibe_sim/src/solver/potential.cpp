@@ -9,6 +9,10 @@
 
 namespace vibe {
 
+namespace {
+constexpr double kRounding = 6e-8;  // of single precision, relative
+}
+
 double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gradient) {
   const int n = body_.nodeCount();
   float* u = scratch_.displacement.data();
@@ -59,8 +63,8 @@ double Potential::gasStiffness() const {
   return gas_.control == GasLoad::Control::Volume ? std::numeric_limits<double>::infinity() : 0;
 }
 
-double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient) const {
-  double value = 0;
+double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient) {
+  double value = 0, rounded = 0;
   const bool foundation = !body_.foundation.empty(), load = !body_.load.empty();
   for (int i = 0; i < body_.nodeCount(); ++i) {
     if (body_.fixed[i] != 0) {
@@ -80,9 +84,11 @@ double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>&
         force -= body_.load[i][k];
         value -= body_.load[i][k] * moved;
       }
+      rounded += std::abs(static_cast<double>(gradient[4 * i + k]) * scratch_.displacement[4 * i + k]);
       gradient[4 * i + k] += static_cast<float>(force);
     }
   }
+  noise_ += kRounding * rounded;  // of the displacements, which are single precision
   return value;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "vibe_sim/solver/energy_term.hpp"
 
@@ -57,6 +58,10 @@ double QuasiNewton::rowsLack() {
     most = std::max(most, std::abs(scratch_.wanted[static_cast<Eigen::Index>(r)]));
   }
   return most;
+}
+
+double QuasiNewton::resolution() const {
+  return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.displacement);
 }
 
 // Two-loop recursion (Nocedal 1980) with the factor, the rows and the gas as initial inverse.
@@ -131,7 +136,7 @@ double QuasiNewton::advance(double most, bool verify) {
   StepperScratch& s = scratch_;
   double part = direction_length_ > most ? most / direction_length_ : 1;
   const bool safe = !verify && part == 1 && last_length_ > 0 && direction_length_ < kSafeContraction * last_length_;
-  last_length_ = direction_length_;
+  last_length_ = -1;  // only a whole step says how fast the next ones shrink
   if (safe) {
     setTrial(1);
     s.z.swap(s.trial);
@@ -156,6 +161,7 @@ double QuasiNewton::advance(double most, bool verify) {
     part *= std::isfinite(to) ? 0.5 : 0.1;
   }
   if (lack_ < 1e-9 || scratch_.rows.empty()) keepPair(part);
+  if (part == 1) last_length_ = direction_length_;
   value_ = to;
   s.gradient.swap(s.trial_gradient);
   s.z.swap(s.trial);

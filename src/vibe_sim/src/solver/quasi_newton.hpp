@@ -22,6 +22,8 @@ class QuasiNewton {
   /// Length of the full direction of the last iterate [m].
   double directionLength() const { return direction_length_; }
   double value() const { return value_; }
+  /// Rounding error of the displacements, which are single precision [m].
+  double resolution() const;
   /// The last iterate found no lower energy along its direction, and did not move.
   bool failed() const { return failed_; }
 
