@@ -108,6 +108,10 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   if (report.speed_limited > 0)
     addEvent(Event::Kind::Recovery, state.time, report.speed_limited,
              "Particles were slowed to keep the step stable; move the tool slower or raise tissue.substeps.", events);
+  if (report.put_back)
+    addEvent(Event::Kind::Recovery, state.time, 0,
+             "The tissue was stretched beyond reason or turned inside out and is led back to rest; undo what did it.",
+             events);
   if (!isFinite(state)) recover(model, state, events);
 }
 

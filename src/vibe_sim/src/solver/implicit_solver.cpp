@@ -3,11 +3,22 @@
 #include <algorithm>
 
 #include "implicit_step.hpp"
+#include "vibe_sim/tissue/shell.hpp"
 
 namespace vibe {
 
 ImplicitSolver::ImplicitSolver(std::shared_ptr<const ShellElements> shell, ElasticBody body, StepSettings settings)
-    : shell_(std::move(shell)), stepper_(std::move(body), settings) {}
+    : shell_(std::move(shell)), stepper_(std::move(body), settings) {
+  // a tenth of what it takes to make the whole organ twice as large
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  const std::vector<Eigen::Vector3d>& rest = stepper_.body().rest;
+  for (const Eigen::Vector3d& p : rest) centre += p / static_cast<double>(rest.size());
+  std::vector<double> swollen;
+  for (const Eigen::Vector3d& p : rest)
+    for (int k = 0; k < 3; ++k) swollen.push_back(p[k] - centre[k]);
+  std::vector<double> gradient(swollen.size());
+  absurd_energy_ = 0.1 * shell_->evaluate(swollen.data(), gradient.data());
+}
 
 std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) const {
   auto scratch = std::make_unique<ImplicitScratch>();
@@ -20,7 +31,7 @@ std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) c
 
 void ImplicitSolver::advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
                              Workspace& workspace, StepReport& report) const {
-  ImplicitStep(model, stepper_, motion, insufflator_on, state, workspace, report).run();
+  ImplicitStep(model, stepper_, absurd_energy_, motion, insufflator_on, state, workspace, report).run();
 }
 
 }  // namespace vibe

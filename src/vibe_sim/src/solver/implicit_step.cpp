@@ -14,14 +14,18 @@ namespace {
 constexpr double kContactMargin = 2e-3;      // particles this near may be reached within the step [m]
 constexpr double kRestSpeed = 2e-6;          // slower than this is rest: a micrometre in half a second [m/s]
 constexpr int kRestSteps = 15;               // of it, before the tissue sleeps
+constexpr double kHomingTime = 0.5;          // a state beyond hope takes to rest [s]
+constexpr double kHomingRate = 20;           // of what is left of the way [1/s]
+constexpr int kLookEvery = 10;               // steps between looks whether the organ is inside out
 constexpr double kDepenetrationSpeed = 0.1;  // a particle found inside the tool is pushed out no faster [m/s]
 
 }  // namespace
 
-ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, const ToolMotion* motion,
-                           bool insufflator_on, State& state, Workspace& workspace, StepReport& report)
+ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, double absurd_energy,
+                           const ToolMotion* motion, bool insufflator_on, State& state, Workspace& workspace, StepReport& report)
     : model_(model),
       stepper_(stepper),
+      absurd_energy_(absurd_energy),
       motion_(motion),
       insufflator_on_(insufflator_on),
       state_(state),
@@ -44,6 +48,15 @@ void ImplicitStep::run() {
   MotionView view{{state_.x.data(), state_.y.data(), state_.z.data()},
                   {state_.vx.data(), state_.vy.data(), state_.vz.data()},
                   {state_.ax.data(), state_.ay.data(), state_.az.data()}};
+  if (state_.solver.homing == 0 && lost(view)) {
+    report_.put_back = true;
+    state_.solver.homing = std::max(1, static_cast<int>(std::lround(kHomingTime / h_)));
+  }
+  if (state_.solver.homing > 0) {
+    goHome();
+    account(old_volume, old_pressure);
+    return;
+  }
   const StepOutcome outcome = stepper_.step(view, scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
   report_.careful = outcome.careful;
@@ -54,6 +67,31 @@ void ImplicitStep::run() {
   reportForces();
   account(old_volume, old_pressure);
   noticeRest();
+}
+
+// Elasticity has no way back from everywhere: a torn-about or everted wall rests in some other shape.
+bool ImplicitStep::lost(const MotionView& motion) const {
+  const StepperMemory& memory = state_.solver;
+  const double energy = memory.steps == 0 ? stepper_.elasticEnergy(motion, *scratch_.stepper) : memory.elastic_energy;
+  if (energy > absurd_energy_) return true;
+  return memory.steps % kLookEvery == 0 && lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z) < 0;
+}
+
+// Straight, without forces: what is not physical needs no physics.
+void ImplicitStep::goHome() {
+  StepperMemory fresh;
+  fresh.steps = state_.solver.steps + 1;
+  fresh.homing = state_.solver.homing - 1;
+  state_.solver = fresh;
+  const double part = 1 - std::exp(-kHomingRate * h_);
+  for (int i = 0; i < model_.particle_count; ++i) {
+    const Eigen::Vector3d& rest = model_.organ.surface.vertices[i];
+    state_.x[i] += part * (rest.x() - state_.x[i]);
+    state_.y[i] += part * (rest.y() - state_.y[i]);
+    state_.z[i] += part * (rest.z() - state_.z[i]);
+  }
+  for (auto* v : {&state_.vx, &state_.vy, &state_.vz, &state_.ax, &state_.ay, &state_.az})
+    std::fill(v->begin(), v->end(), 0.0);
 }
 
 // The whole organ has come to rest and nothing acts on it that did not before.

@@ -25,8 +25,9 @@ struct ImplicitScratch : SolverScratch {
 /// One step of a scene: what acts on the tissue is gathered as loads, the stepper moves it, forces are reported.
 class ImplicitStep {
  public:
-  ImplicitStep(const Model& model, const ImplicitStepper& stepper, const ToolMotion* motion, bool insufflator_on,
-               State& state, Workspace& workspace, StepReport& report);
+  /// @param absurd_energy  elastic energy above which the state is given up [J]
+  ImplicitStep(const Model& model, const ImplicitStepper& stepper, double absurd_energy, const ToolMotion* motion,
+               bool insufflator_on, State& state, Workspace& workspace, StepReport& report);
   void run();
 
  private:
@@ -35,6 +36,8 @@ class ImplicitStep {
   void findContacts();
   void addContact(const Contact& contact);
   bool atRest() const;
+  bool lost(const MotionView& motion) const;
+  void goHome();
   void noticeRest();
   void fillGas();
   void account(double old_volume, double old_pressure);
@@ -44,6 +47,7 @@ class ImplicitStep {
 
   const Model& model_;
   const ImplicitStepper& stepper_;
+  double absurd_energy_;
   const ToolMotion* motion_;
   bool insufflator_on_;
   State& state_;

@@ -102,8 +102,7 @@ std::vector<double> vibration(const ElasticBody& body, const Mode& mode, const S
     run.step();
     double sum = 0;
     for (int i = 0; i < run.nodes(); ++i)
-      for (int k = 0; k < 3; ++k)
-        sum += body.mass[i] * mode.shape[3 * i + k] * (run.motion.x[k][i] - body.rest[i][k]);
+      for (int k = 0; k < 3; ++k) sum += body.mass[i] * mode.shape[3 * i + k] * (run.motion.x[k][i] - body.rest[i][k]);
     out.push_back(sum / amplitude);
   }
   return out;
@@ -117,9 +116,8 @@ std::vector<double> oscillator(double frequency, double damping, double h, doubl
   std::vector<double> out;
   for (int s = 0; s < steps; ++s) {
     const double d_free = d + h * v + h * h * (0.5 - beta) * a, v_free = v + h * (1 - gamma) * a;
-    const double a_end =
-        -(am * a + damping * ((1 - af) * v_free + af * v) + k * ((1 - af) * d_free + af * d)) /
-        (1 - am + damping * (1 - af) * gamma * h + k * (1 - af) * beta * h * h);
+    const double a_end = -(am * a + damping * ((1 - af) * v_free + af * v) + k * ((1 - af) * d_free + af * d)) /
+                         (1 - am + damping * (1 - af) * gamma * h + k * (1 - af) * beta * h * h);
     d = d_free + h * h * beta * a_end;
     v = v_free + h * gamma * a_end;
     a = a_end;

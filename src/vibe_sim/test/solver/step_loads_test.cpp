@@ -52,7 +52,8 @@ TEST(Conditions, ForceIsTheReactionOfTheTissue) {
   const ElasticBody body = cantilever();
   Body run(body);
   const int tip = run.nodes() - 1;
-  run.loads.conditions = {meanOf({tip, tip - 4, tip - 9}, {0, 0.6, 0.8}, body, 0.01), meanOf({tip}, {1, 0, 0}, body, 0)};
+  run.loads.conditions = {meanOf({tip, tip - 4, tip - 9}, {0, 0.6, 0.8}, body, 0.01),
+                          meanOf({tip}, {1, 0, 0}, body, 0)};
   ASSERT_TRUE(run.settle().converged);
   Eigen::VectorXd lack = run.elastic().gradient;
   const double whole = lack.norm();
@@ -107,7 +108,7 @@ struct Slope {
 
   Body run;
   double friction_;
-  double pulling = 0, outside = 0, sunk = 0;        // the worst of all steps
+  double pulling = 0, outside = 0, sunk = 0;      // the worst of all steps
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of the last step
 };
 

@@ -25,6 +25,7 @@ class ImplicitSolver : public Solver {
  private:
   std::shared_ptr<const ShellElements> shell_;
   ImplicitStepper stepper_;
+  double absurd_energy_ = 0;  // no load of a procedure stores so much [J]
 };
 
 }  // namespace vibe

@@ -18,6 +18,7 @@ struct StepReport {
   int contact_count = 0;                                  ///< most particles touched at once
   int iterations = 0;                                     ///< of an implicit solver
   bool careful = false;                                   ///< the step needed backward Euler and more iterations
+  bool put_back = false;                                  ///< a state beyond hope began its way back to rest
   int speed_limited = 0;                                  ///< times a particle's speed had to be limited
 };
 

@@ -15,6 +15,7 @@ struct StepperMemory {
   std::int64_t steps = 0;             ///< taken
   double elastic_energy = 0;          ///< at the end of the last step [J]
   int still = 0;                      ///< steps in a row in which nothing moved
+  int homing = 0;                     ///< steps still to be taken straight towards rest
   int careful = 0;                    ///< steps still to be taken with backward Euler and many iterations
 };
 
