@@ -8,7 +8,7 @@
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/tissue/shell.hpp"
 
-// What a shell knows of its mesh at rest: who lies beyond which side, and the numbers of ShellRow.
+// What a shell knows of its mesh at rest: who lies beyond which side, and the rows of shell_kernel.hpp.
 
 namespace vibe {
 namespace {

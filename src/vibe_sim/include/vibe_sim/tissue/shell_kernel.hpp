@@ -4,19 +4,17 @@
 
 namespace vibe {
 
-/// Rows of numbers that a triangle of a shell has at rest, see ShellElements. A side is that opposite the node of the
-/// same number; its patch apex is the node beyond it.
-enum ShellRow : int {
-  kShellPatch = 0,    ///< positions of the nodes 2, 3 and the three apexes less that of node 1 [m]
-  kShellSide = 15,    ///< per side: entries 11, 12, 22 of T [1/m], then twice the volume [m^3]
-  kShellNormal = 27,  ///< normal of the patch at the centroid, shortened by kShellSoftness [1]
-  kShellLength = 30,  ///< 36 times the area element at the centroid, lengthened by kShellSoftness [m^2]
-  kShellBend = 31,    ///< entries 11, 12, 22 of T at the centroid times the fourth root of the bending stiffness
-  kShellOrigin = 34,  ///< position of node 1 less the origin of the volume [m]
-  kShellRows = 37,    ///< of a triangle with three neighbours; others have the following too
-  kShellGhost = 37,   ///< per side: 1 where a triangle is beyond it, 0 where not; then sqrt(2) n where it is clamped
-  kShellGhostRows = 49,
-};
+// Rows of numbers that a triangle of a shell has at rest, see ShellElements. A side is that opposite the node of the
+// same number; its apex is the node beyond it.
+constexpr int kShellPatch = 0;       ///< positions of the nodes 2, 3 and the three apexes less that of node 1 [m]
+constexpr int kShellSide = 15;       ///< per side: entries 11, 12, 22 of T [1/m], then twice the volume [m^3]
+constexpr int kShellNormal = 27;     ///< normal of the patch at the centroid, shortened by kShellSoftness [1]
+constexpr int kShellLength = 30;     ///< 36 times the area element at the centroid, lengthened by kShellSoftness [m^2]
+constexpr int kShellBend = 31;       ///< entries of T at the centroid, times the fourth root of the bending stiffness
+constexpr int kShellOrigin = 34;     ///< position of node 1 less the origin of the volume [m]
+constexpr int kShellRows = 37;       ///< of a triangle with three neighbours
+constexpr int kShellGhost = 37;      ///< per side: 1 if a triangle is beyond it, else 0; then sqrt(2) n if clamped
+constexpr int kShellGhostRows = 49;  ///< of the others
 
 /// What evaluating some batches of triangles of one material takes; see TetSweep.
 struct ShellSweep {
