@@ -145,6 +145,35 @@ TEST(Contacts, SlideAboveIt) {
   EXPECT_GE(world.pulling, 0);
 }
 
+TEST(Contacts, PinchFromBothSidesAndLetGo) {
+  ElasticBody body = block({3, 3, 2}, neoHookean(0.3));
+  body.damping_rate = 10;
+  Body run(body, steps(1.0 / 60));
+  const double top = 2 * kSide;
+  for (int i = 0; i < 60; ++i) {
+    const double half_gap = 0.5 * top * (1 - 0.4 * std::min(1.0, i / 30.0));
+    run.loads.contacts.clear();
+    for (int n = 0; n < run.nodes(); ++n) {
+      const double z = body.rest[n].z();
+      if (z < 1e-9) run.loads.contacts.push_back({n, {0, 0, 1}, 0.5 * top - half_gap, 0.3, run.position(n)});
+      if (z > top - 1e-9) run.loads.contacts.push_back({n, {0, 0, -1}, -0.5 * top - half_gap, 0.3, run.position(n)});
+    }
+    ASSERT_TRUE(run.step().finite);
+    double below = 0, above = 0;
+    for (const ContactCondition& contact : run.loads.contacts) {
+      ASSERT_GE(contact.force.dot(contact.normal), 0);
+      ASSERT_GT(contact.normal.dot(run.position(contact.node)) - contact.offset, -2e-5);
+      (contact.normal.z() > 0 ? below : above) += contact.force.z();
+    }
+    if (i < 50) continue;
+    ASSERT_NEAR(below, -above, 0.02 * below);
+    ASSERT_GT(below, 0.2 * kE * 9 * kSide * kSide);
+  }
+  run.loads.contacts.clear();
+  for (int i = 0; i < 120; ++i) run.step();
+  EXPECT_LT(run.elastic().energy, 1e-9) << "nothing is left of it";
+}
+
 /// A ball of gas in a thin wall.
 struct Ball {
   static constexpr double kRadius = 0.05, kWall = 1e-3;
