@@ -9,6 +9,8 @@
 namespace vibe {
 namespace {
 
+constexpr int kFewest = 5;  // nodes of a ring
+
 using Corner = std::array<int, 3>;
 
 // corner paths 000 -> 111 of the six tetrahedra; odd permutations are reversed to be positive
@@ -81,14 +83,14 @@ std::vector<double> equalSteps(double radius, double half_length, int rings) {
 std::vector<int> ringCounts(const std::vector<double>& circumference, int nodes) {
   const double total = std::accumulate(circumference.begin(), circumference.end(), 0.0);
   std::vector<int> count;
-  for (const double c : circumference) count.push_back(std::max(5, static_cast<int>(std::lround(c / total * nodes))));
+  for (const double c : circumference) count.push_back(std::max(kFewest, static_cast<int>(std::lround(c / total * nodes))));
   int missing = nodes - std::accumulate(count.begin(), count.end(), 0);
   // the longest rings feel one node more or less the least
   std::vector<int> order(count.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return circumference[a] > circumference[b]; });
   for (std::size_t k = 0; missing != 0; k = (k + 1) % order.size()) {
-    if (missing < 0 && count[order[k]] <= 5) continue;
+    if (missing < 0 && count[order[k]] <= kFewest) continue;
     count[order[k]] += missing > 0 ? 1 : -1;
     missing += missing > 0 ? -1 : 1;
   }
@@ -172,7 +174,8 @@ BenchMesh makeEllipsoid(double radius, double half_length, int nodes) {
   }
   const double edge = std::sqrt(area / nodes / std::sqrt(0.75));
   const double length = equalSteps(radius, half_length, 1).back();
-  const int rings = std::max(2, static_cast<int>(std::lround(length / (edge * std::sqrt(0.75)))) - 1);
+  const int wanted_rings = static_cast<int>(std::lround(length / (edge * std::sqrt(0.75)))) - 1;
+  const int rings = std::clamp(wanted_rings, 2, (nodes - 2) / kFewest);
   const auto eta = equalSteps(radius, half_length, rings);
   std::vector<double> circumference;
   for (int r = 0; r < rings; ++r) circumference.push_back(2 * pi * radius * std::sin(eta[r]));

@@ -22,6 +22,8 @@ class StaticPath {
   const BodyLoads& loads() const { return loads_; }
 
  private:
+  bool relax();
+
   const CaseModel& model_;
   double tolerance_, level_ = 0;
   std::unique_ptr<ImplicitStepper> stepper_;

@@ -1,0 +1,47 @@
+#include "output/result_row.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <sstream>
+
+namespace vibe {
+namespace {
+
+TEST(ResultRow, writesTheAgreedColumns) {
+  ResultRow row;
+  row.bench_case = "wall, \"thin\"";
+  row.method = "implicit";
+  row.setting = "60 Hz";
+  row.particles = 3618;
+  row.motion_error = 0.012;
+  row.force_error = std::numeric_limits<double>::infinity();
+  row.state_hash = 0xabc;
+  setTimes({3, 1, 2, 4}, row);
+  std::ostringstream out;
+  writeCsv({row}, out);
+  EXPECT_EQ(out.str(),
+            "case,method,setting,particles,threads,ms_p50,ms_p99,ms_max,motion_error,static_error,force_error,"
+            "reference_error,energy_drift,state_hash\n"
+            "\"wall, \"\"thin\"\"\",implicit,60 Hz,3618,1,2,4,4,0.012,,inf,,,0000000000000abc\n");
+}
+
+TEST(ResultRow, takesPercentilesFromTheSortedTimes) {
+  ResultRow row;
+  std::vector<double> times;
+  for (int i = 200; i > 0; --i) times.push_back(i);
+  setTimes(times, row);
+  EXPECT_EQ(row.ms_p50, 100);
+  EXPECT_EQ(row.ms_p99, 198);
+  EXPECT_EQ(row.ms_max, 200);
+}
+
+TEST(ResultRow, hashesEveryBit) {
+  const double a[2] = {0.0, 1.0}, b[2] = {-0.0, 1.0};
+  EXPECT_EQ(hashNumbers(a, 2), hashNumbers(a, 2));
+  EXPECT_NE(hashNumbers(a, 2), hashNumbers(b, 2));
+  EXPECT_EQ(hashNumbers(a, 2), hashNumbers(a + 1, 1, hashNumbers(a, 1)));
+}
+
+}  // namespace
+}  // namespace vibe
