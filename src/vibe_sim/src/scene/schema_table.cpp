@@ -101,6 +101,8 @@ std::vector<SchemaRow> tissueRows() {
       {"tissue.spectral_radius", [](Scene& s) -> double& { return s.tissue.spectral_radius; }, "1", 0, 1,
        "part of the fastest vibrations that a step of the shell keeps; 1 conserves energy, 0 quiets at once",
        "generalised-alpha: Chung, Hulbert 1993, doi 10.1115/1.2900803"},
+      {"tissue.self_contact", [](Scene& s) -> bool& { return s.tissue.self_contact; }, "", 0, 0,
+       "walls of the shell that are pulled together meet and do not pass through each other", kChoice},
       {"tissue.substeps", [](Scene& s) -> int& { return s.tissue.substeps; }, "1", 0, 1000,
        "sub-steps per step of shape_matching; 0: as few as carry the stiffness",
        "many small steps with one iteration each: Macklin 2019, doi 10.1145/3309486.3340247"},

@@ -26,6 +26,9 @@ std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) c
   for (auto* v : {&scratch->ahead_x, &scratch->ahead_y, &scratch->ahead_z})
     v->resize(static_cast<std::size_t>(model.particle_count));
   if (model.tool) scratch->collision = std::make_unique<ToolCollision>(*model.tool);
+  if (model.scene.tissue.self_contact)
+    scratch->walls = std::make_unique<SelfContact>(model.organ.surface, model.organ.thickness,
+                                                   model.scene.tissue.young_modulus);
   return scratch;
 }
 

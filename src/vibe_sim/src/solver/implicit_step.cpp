@@ -12,6 +12,7 @@ namespace vibe {
 namespace {
 
 constexpr double kContactMargin = 2e-3;      // particles this near may be reached within the step [m]
+constexpr double kLeastReach = 5e-4;         // of the search for walls that come near each other [m]
 constexpr double kRestSpeed = 2e-6;          // slower than this is rest: a micrometre in half a second [m/s]
 constexpr int kRestSteps = 15;               // of it, before the tissue sleeps
 constexpr double kHomingTime = 0.5;          // a state beyond hope takes to rest [s]
@@ -43,6 +44,7 @@ void ImplicitStep::run() {
     findContacts();
   }
   if (atRest()) return;
+  findWalls();
   fillGas();
   const double old_volume = state_.volume, old_pressure = state_.pressure;
   MotionView view{{state_.x.data(), state_.y.data(), state_.z.data()},
@@ -154,6 +156,18 @@ void ImplicitStep::findContacts() {
     const bool held = std::any_of(state_.grip.begin(), state_.grip.end(), [i](const GripPoint& p) { return p.particle == i; });
     if (model_.organ.end[i] == End::None && !held && model_.inverse_mass[i] > 0) addContact(contacts[deepest]);
   }
+}
+
+// Walls of the organ that can meet within the step: nodes and their partners both move.
+void ImplicitStep::findWalls() {
+  scratch_.loads.extra = scratch_.walls.get();
+  if (!scratch_.walls) return;
+  double fastest2 = 0;
+  for (int i = 0; i < model_.particle_count; ++i)
+    fastest2 =
+        std::max(fastest2, state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i]);
+  const double reach = std::clamp(2.5 * h_ * std::sqrt(fastest2), kLeastReach, model_.particle_radius);
+  scratch_.walls->detect(state_.x.data(), state_.y.data(), state_.z.data(), reach);
 }
 
 void ImplicitStep::addContact(const Contact& contact) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "vibe_sim/contact/self_contact.hpp"
 #include "vibe_sim/contact/tool_collision.hpp"
 #include "vibe_sim/contact/tool_motion.hpp"
 #include "vibe_sim/model.hpp"
@@ -16,6 +17,7 @@ namespace vibe {
 struct ImplicitScratch : SolverScratch {
   std::shared_ptr<StepperScratch> stepper;
   std::unique_ptr<ToolCollision> collision;
+  std::unique_ptr<SelfContact> walls;               // null: the scene does not ask for it
   std::vector<Eigen::Isometry3d> poses, old_poses;  // of the links at the end and at the start of the step
   std::vector<double> ahead_x, ahead_y, ahead_z;    // where the particles go if nothing stops them
   BodyLoads loads;
@@ -34,6 +36,7 @@ class ImplicitStep {
   void placeTool();
   void holdGrip();
   void findContacts();
+  void findWalls();
   void addContact(const Contact& contact);
   bool atRest() const;
   bool lost(const MotionView& motion) const;

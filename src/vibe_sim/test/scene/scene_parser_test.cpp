@@ -84,7 +84,7 @@ TEST(SceneParser, UnknownKeysNameTheNearest) {
                "dir/s.yaml:3: tissue.yung_modulus: is not a known key; did you mean 'young_modulus'?");
   EXPECT_ERROR(parsed("gass: {}"), "did you mean 'gas'?");
   EXPECT_ERROR(parsed("regulated_pressure: 3"), "is not known here; write it as 'gas.regulated_pressure'");
-  EXPECT_ERROR(parsed("tissue: {colour: red}"), "known are model, density");
+  EXPECT_ERROR(parsed("tissue: {colour: red}"), "known are model, law");
 }
 
 TEST(SceneParser, KeysOfOtherKindsDoNotApply) {

@@ -42,6 +42,7 @@ struct TissueScene {
   double damping_time = 15e-6;  ///< viscosity of the wall over its stiffness; quiets short waves [s]
   int iterations = 10;          ///< most quasi-Newton iterations per step, of model shell
   double spectral_radius = 0.2;  ///< generalised-alpha, of model shell [1]
+  bool self_contact = false;    ///< walls pulled together meet and do not pass through each other, of model shell
   int substeps = 0;             ///< solver sub-steps per step; 0: as few as carry the stiffness, see finishModel()
 };
 
