@@ -7,7 +7,8 @@ namespace vibe {
 
 namespace {
 
-constexpr int kContactSweeps = 40;
+constexpr int kContactSweeps = 1000;    // opposed contacts, as of a pinch, need hundreds, others few
+constexpr double kContactMove = 1e-9;   // sweeps end when none moves its contact farther [m]
 
 // Both sparse vectors consist of whole runs; those on the common part of the paths are the same runs.
 Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b) {
@@ -176,8 +177,11 @@ void HalfSpace::formCompliance() {
 void HalfSpace::solveContacts(const Eigen::VectorXd& right) {
   const int n = static_cast<int>(contacts_.size());
   Eigen::VectorXd lambda = Eigen::VectorXd::Zero(n);
-  for (int sweep = 0; sweep < kContactSweeps; ++sweep)
+  double moved = 2 * kContactMove;
+  for (int sweep = 0; sweep < kContactSweeps && moved > kContactMove; ++sweep) {
+    moved = 0;
     for (int i = 0; i < n; i += 3) {
+      const Eigen::Vector3d before = lambda.segment<3>(i);
       const double normal_lack = right[i] - schur_.row(i).dot(lambda);
       lambda[i] = std::max(0.0, lambda[i] + normal_lack / schur_(i, i));
       const double limit = rows_[contacts_[i]].friction * lambda[i];
@@ -188,7 +192,10 @@ void HalfSpace::solveContacts(const Eigen::VectorXd& right) {
         lambda[i + 1] *= limit / size;
         lambda[i + 2] *= limit / size;
       }
+      for (int k = 0; k < 3; ++k)
+        moved = std::max(moved, std::abs(lambda[i + k] - before[k]) * schur_(i + k, i + k));
     }
+  }
   for (int i = 0; i < n; ++i) force_[contacts_[i]] = lambda[i];
 }
 
