@@ -107,7 +107,7 @@ BodyMotion pulledEquilibrium(const Wall& wall, const BodyMotion& start, double d
   const ImplicitStepper stepper(wall.body, StepSettings{});
   const auto scratch = stepper.makeScratch();
   BodyMotion motion = start;
-  const int stages = std::max(1, static_cast<int>(std::lround(distance / 0.002)));
+  const int stages = std::max(1, static_cast<int>(std::lround(distance / 0.004)));
   for (int k = 1; k <= stages; ++k) {
     BodyLoads loads = wallLoads(wall, start, distance * k / stages);
     settleOrFail(stepper, motion.view(), loads, *scratch, k == stages ? tolerance : 1e-6, "the pulled wall");

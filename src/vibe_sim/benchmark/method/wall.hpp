@@ -39,7 +39,7 @@ double toolForce(const Wall& wall, const BodyLoads& loads);
 /// The inflated wall at rest, from rest in five stages of pressure.
 /// @throws Error if it does not converge to `tolerance` [m]
 BodyMotion inflate(const Wall& wall, double tolerance);
-/// Pulled slowly: equilibria every 2 mm. `force` out [N].
+/// Pulled slowly: equilibria every 4 mm. `force` out [N].
 BodyMotion pulledEquilibrium(const Wall& wall, const BodyMotion& start, double distance, double tolerance, double& force);
 
 /// sqrt(sum |a - b|^2) over all nodes [m].
