@@ -37,9 +37,13 @@ struct Options {
 };
 
 Options parse(int argc, char** argv) {
-  static const option kOptions[] = {{"case", required_argument, nullptr, 'c'}, {"quick", no_argument, nullptr, 'q'},
-                                    {"csv", required_argument, nullptr, 'o'},  {"list", no_argument, nullptr, 'l'},
-                                    {"methods", no_argument, nullptr, 'm'},   {"help", no_argument, nullptr, 'h'},       {nullptr, 0, nullptr, 0}};
+  static const option kOptions[] = {{"case", required_argument, nullptr, 'c'},
+                                    {"quick", no_argument, nullptr, 'q'},
+                                    {"csv", required_argument, nullptr, 'o'},
+                                    {"list", no_argument, nullptr, 'l'},
+                                    {"methods", no_argument, nullptr, 'm'},
+                                    {"help", no_argument, nullptr, 'h'},
+                                    {nullptr, 0, nullptr, 0}};
   Options options;
   for (int c; (c = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
     if (c == 'm') options.methods_only = true;

@@ -9,9 +9,9 @@ namespace vibe {
 
 /// The mesh of a case: tetrahedra or triangles, not both, with named groups of nodes.
 struct BenchMesh {
-  std::vector<Eigen::Vector3d> nodes;          ///< [m]
-  std::vector<std::array<int, 4>> tets;        ///< node 3 sees 0 1 2 counter-clockwise
-  std::vector<std::array<int, 3>> triangles;   ///< counter-clockwise from outside
+  std::vector<Eigen::Vector3d> nodes;            ///< [m]
+  std::vector<std::array<int, 4>> tets;          ///< node 3 sees 0 1 2 counter-clockwise
+  std::vector<std::array<int, 3>> triangles;     ///< counter-clockwise from outside
   std::map<std::string, std::vector<int>> sets;  ///< ascending node numbers
 };
 

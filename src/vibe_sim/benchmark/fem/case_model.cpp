@@ -76,8 +76,7 @@ ElasticBody CaseModel::body(double level) const {
   if (!case_.forces.empty()) body.load.assign(mesh_.nodes.size(), Eigen::Vector3d::Zero());
   for (const SpotForce& force : case_.forces) {
     const NodeMean& mean = spot(force.spot);
-    for (std::size_t i = 0; i < mean.node.size(); ++i)
-      body.load[mean.node[i]] += level * mean.weight[i] * force.force;
+    for (std::size_t i = 0; i < mean.node.size(); ++i) body.load[mean.node[i]] += level * mean.weight[i] * force.force;
   }
   return body;
 }
@@ -160,8 +159,7 @@ void CaseModel::addMotionConditions(double level, BodyLoads& loads) const {
 
 double CaseModel::restVolume() const {
   double volume = 0;
-  for (const auto& t : mesh_.triangles)
-    volume += mesh_.nodes[t[0]].dot(mesh_.nodes[t[1]].cross(mesh_.nodes[t[2]])) / 6;
+  for (const auto& t : mesh_.triangles) volume += mesh_.nodes[t[0]].dot(mesh_.nodes[t[1]].cross(mesh_.nodes[t[2]])) / 6;
   return volume;
 }
 

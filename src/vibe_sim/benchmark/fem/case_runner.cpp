@@ -38,7 +38,8 @@ void printSample(const Sample& sample, std::size_t level, const std::string& at,
   char line[200];
   const double error = referenceError(sample, level, value);
   if (isDifference(sample)) {
-    std::snprintf(line, sizeof line, "  %-28s %-14s difference %.3f %%\n", sample.name.c_str(), at.c_str(), 100 * value);
+    std::snprintf(line, sizeof line, "  %-28s %-14s difference %.3f %%\n", sample.name.c_str(), at.c_str(),
+                  100 * value);
   } else if (std::isnan(error)) {
     std::snprintf(line, sizeof line, "  %-28s %-14s %.6g\n", sample.name.c_str(), at.c_str(), value);
   } else {
@@ -56,7 +57,8 @@ std::vector<ResultRow> runModes(const FemCase& bench_case, std::ostream& log) {
   std::vector<ResultRow> rows;
   for (const Sample& sample : bench_case.samples) {
     if (sample.mode < 1 || sample.mode > bench_case.modes->count)
-      throw Error(bench_case.file + ": sample '" + sample.name + "' asks for a mode beyond modes.count; raise the count.");
+      throw Error(bench_case.file + ": sample '" + sample.name +
+                  "' asks for a mode beyond modes.count; raise the count.");
     const double value = modes.frequency[static_cast<std::size_t>(sample.mode - 1)];
     printSample(sample, 0, "", value, log);
     rows.push_back(caseRow(bench_case, sample.name, model.nodeCount()));

@@ -10,8 +10,8 @@ namespace {
 constexpr double kHuge = 1e12;
 
 void readMaterial(const CaseReader& reader, const YamlField& field, FemCase& out) {
-  static const std::vector<std::string> laws = {
-      "neo_hookean", "stable_neo_hookean", "macklin_mueller", "fung", "gent", "yeoh"};
+  static const std::vector<std::string> laws = {"neo_hookean", "stable_neo_hookean", "macklin_mueller", "fung", "gent",
+                                                "yeoh"};
   Material& m = out.material;
   reader.readMap(field, {"law", "young_modulus", "poisson_ratio"},
                  {{"law",
@@ -49,7 +49,8 @@ void checkElement(const CaseReader& reader, const FemCase& out) {
     reader.source().fail(root, "element 'shell' needs triangles; give mesh.tris or mesh.ellipsoid");
   if (!shell && out.mesh.tets.empty())
     reader.source().fail(root, "this element needs tetrahedra; give mesh.tets or mesh.box");
-  if (shell && !(out.thickness > 0)) reader.source().fail(root, "lacks the key 'thickness', which a shell needs; add it");
+  if (shell && !(out.thickness > 0))
+    reader.source().fail(root, "lacks the key 'thickness', which a shell needs; add it");
   if (!shell && out.gas) reader.source().fail(root, "has gas, which only element 'shell' encloses; remove 'gas'");
   if (int(out.statics.has_value()) + int(out.transient.has_value()) + int(out.modes.has_value()) != 1)
     reader.source().fail(root, "needs exactly one of the keys 'static', 'transient' and 'modes'; keep one");

@@ -23,11 +23,11 @@ struct SpotRule {
 /// What moves a set of nodes: a rotation about an axis, then a translation, both times the level.
 struct SetMotion {
   std::string set;
-  std::array<bool, 3> held{{true, true, true}};            ///< which of x, y, z are prescribed
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< [m]
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();        ///< point on the axis [m]
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();          ///< unit; zero: no rotation
-  double angle = 0;                                        ///< [rad]
+  std::array<bool, 3> held{{true, true, true}};           ///< which of x, y, z are prescribed
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();       ///< point on the axis [m]
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();         ///< unit; zero: no rotation
+  double angle = 0;                                       ///< [rad]
 };
 
 /// Moves the mean of a spot by displacement times the level.
@@ -79,10 +79,10 @@ struct Sample {
   std::vector<Eigen::Vector3d> points;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  int mode = 0;                   ///< of Frequency in `modes`, from 1
-  double rest_volume = 0;         ///< of Volume: what the volume at rest counts as; 0: the mesh's own [m^3]
-  double until = 0;               ///< of Series: compare up to here; 0: to the end [s]
-  std::string table, column;      ///< of Profile and Series: a CSV file
+  int mode = 0;               ///< of Frequency in `modes`, from 1
+  double rest_volume = 0;     ///< of Volume: what the volume at rest counts as; 0: the mesh's own [m^3]
+  double until = 0;           ///< of Series: compare up to here; 0: to the end [s]
+  std::string table, column;  ///< of Profile and Series: a CSV file
   std::vector<std::optional<double>> reference;  ///< per level, or one
 };
 
@@ -93,16 +93,16 @@ struct StaticRun {
 };
 
 struct TransientRun {
-  double step = 1.0 / 60, duration = 1;             ///< [s]
+  double step = 1.0 / 60, duration = 1;  ///< [s]
   double spectral_radius = 1;
   bool backward_euler = false;
   int iterations = 3;
-  double tolerance = 1e-9;                          ///< [m]
-  double start_level = 0;                           ///< begin at the equilibrium of this level ...
-  bool start_at_equilibrium = false;                ///< ... if true
-  int start_mode = 0;                               ///< or in this mode (from 1) ...
-  double start_amplitude = 0;                       ///< ... with this largest displacement [m]
-  std::vector<std::array<double, 2>> path;          ///< time [s], level; linear between
+  double tolerance = 1e-9;                  ///< [m]
+  double start_level = 0;                   ///< begin at the equilibrium of this level ...
+  bool start_at_equilibrium = false;        ///< ... if true
+  int start_mode = 0;                       ///< or in this mode (from 1) ...
+  double start_amplitude = 0;               ///< ... with this largest displacement [m]
+  std::vector<std::array<double, 2>> path;  ///< time [s], level; linear between
 };
 
 struct ModesRun {

@@ -83,7 +83,8 @@ std::vector<double> equalSteps(double radius, double half_length, int rings) {
 std::vector<int> ringCounts(const std::vector<double>& circumference, int nodes) {
   const double total = std::accumulate(circumference.begin(), circumference.end(), 0.0);
   std::vector<int> count;
-  for (const double c : circumference) count.push_back(std::max(kFewest, static_cast<int>(std::lround(c / total * nodes))));
+  for (const double c : circumference)
+    count.push_back(std::max(kFewest, static_cast<int>(std::lround(c / total * nodes))));
   int missing = nodes - std::accumulate(count.begin(), count.end(), 0);
   // the longest rings feel one node more or less the least
   std::vector<int> order(count.size());
@@ -170,7 +171,8 @@ BenchMesh makeEllipsoid(double radius, double half_length, int nodes) {
   double area = 0;
   for (int i = 0; i < 2000; ++i) {
     const double eta = pi * (i + 0.5) / 2000;
-    area += 2 * pi * radius * std::sin(eta) * std::hypot(radius * std::cos(eta), half_length * std::sin(eta)) * pi / 2000;
+    area +=
+        2 * pi * radius * std::sin(eta) * std::hypot(radius * std::cos(eta), half_length * std::sin(eta)) * pi / 2000;
   }
   const double edge = std::sqrt(area / nodes / std::sqrt(0.75));
   const double length = equalSteps(radius, half_length, 1).back();

@@ -3,7 +3,8 @@
 
 namespace vibe {
 
-/// Cuts every triangle into four at the middles of its sides; a new node joins the sets that hold both ends of its side.
+/// Cuts every triangle into four at the middles of its sides; a new node joins the sets that hold both ends of its
+/// side.
 /// @param project  semi-axes of an ellipsoid about the origin on which the new nodes are put; zero: they stay [m]
 BenchMesh refineTriangles(const BenchMesh& mesh, const Eigen::Vector3d& project);
 

@@ -38,7 +38,8 @@ double largestNode(const Eigen::VectorXd& shape) {
 
 Modes slowestModes(const ElasticBody& body, int count) {
   const Eigen::Index rows = 3 * body.nodeCount(), width = count + 8;
-  const auto pattern = std::make_shared<const BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups()));
+  const auto pattern =
+      std::make_shared<const BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups()));
   BlockMatrix stiffness(pattern);
   const std::vector<double> rest(static_cast<std::size_t>(rows), 0.0);
   body.elements->addStiffness(rest.data(), stiffness);

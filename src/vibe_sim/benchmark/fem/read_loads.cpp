@@ -21,7 +21,8 @@ void readMotion(const CaseReader& reader, const YamlField& field, FemCase& out) 
                   {"centre", [&](const YamlField& f) { motion.centre = reader.vector(f, "m"); }},
                   {"axis", [&](const YamlField& f) { motion.axis = reader.direction(f); }},
                   {"angle", [&](const YamlField& f) { motion.angle = reader.number(f, "rad", -100, 100); }}});
-  if ((motion.angle != 0) != (motion.axis.norm() > 0)) source.fail(field, "has one of 'axis' and 'angle'; give both or none");
+  if ((motion.angle != 0) != (motion.axis.norm() > 0))
+    source.fail(field, "has one of 'axis' and 'angle'; give both or none");
   out.motions.push_back(motion);
 }
 

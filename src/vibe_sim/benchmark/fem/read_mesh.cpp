@@ -10,27 +10,31 @@ namespace {
 void readBox(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero(), size = origin, cells = origin;
   int tets = 6;
-  reader.readMap(field, {"size", "cells"},
-                 {{"origin", [&](const YamlField& f) { origin = reader.vector(f, "m"); }},
-                  {"size", [&](const YamlField& f) { size = reader.vector(f, "m"); }},
-                  {"cells",
-                   [&](const YamlField& f) {
-                     cells = reader.vector(f, "1");
-                     if (cells != cells.array().round().matrix() || cells.minCoeff() < 1 || cells.prod() > 1e6)
-                       reader.source().fail(f, "needs three whole numbers above 0 with a product up to a million; "
-                                               "write for example [24, 6, 6]");
-                   }},
-                  {"tets_per_cell", [&](const YamlField& f) { tets = static_cast<int>(reader.source().integer(f, 5, 6)); }}});
-  mesh = makeBox(origin, size, {static_cast<int>(cells[0]), static_cast<int>(cells[1]), static_cast<int>(cells[2])}, tets);
+  reader.readMap(
+      field, {"size", "cells"},
+      {{"origin", [&](const YamlField& f) { origin = reader.vector(f, "m"); }},
+       {"size", [&](const YamlField& f) { size = reader.vector(f, "m"); }},
+       {"cells",
+        [&](const YamlField& f) {
+          cells = reader.vector(f, "1");
+          if (cells != cells.array().round().matrix() || cells.minCoeff() < 1 || cells.prod() > 1e6)
+            reader.source().fail(f,
+                                 "needs three whole numbers above 0 with a product up to a million; "
+                                 "write for example [24, 6, 6]");
+        }},
+       {"tets_per_cell", [&](const YamlField& f) { tets = static_cast<int>(reader.source().integer(f, 5, 6)); }}});
+  mesh =
+      makeBox(origin, size, {static_cast<int>(cells[0]), static_cast<int>(cells[1]), static_cast<int>(cells[2])}, tets);
 }
 
 void readEllipsoid(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
   double radius = 0, half_length = 0;
   int nodes = 0;
-  reader.readMap(field, {"radius", "half_length", "nodes"},
-                 {{"radius", [&](const YamlField& f) { radius = reader.number(f, "m", 1e-9, 1e9); }},
-                  {"half_length", [&](const YamlField& f) { half_length = reader.number(f, "m", 1e-9, 1e9); }},
-                  {"nodes", [&](const YamlField& f) { nodes = static_cast<int>(reader.source().integer(f, 14, 1000000)); }}});
+  reader.readMap(
+      field, {"radius", "half_length", "nodes"},
+      {{"radius", [&](const YamlField& f) { radius = reader.number(f, "m", 1e-9, 1e9); }},
+       {"half_length", [&](const YamlField& f) { half_length = reader.number(f, "m", 1e-9, 1e9); }},
+       {"nodes", [&](const YamlField& f) { nodes = static_cast<int>(reader.source().integer(f, 14, 1000000)); }}});
   mesh = makeEllipsoid(radius, half_length, nodes);
 }
 

@@ -64,29 +64,29 @@ void readSamples(const CaseReader& reader, const YamlField& field, FemCase& out)
     const auto vector = [&](Eigen::Vector3d& target) {
       return [&reader, &target](const YamlField& f) { target = reader.vector(f, "m"); };
     };
-    reader.readMap(
-        item, {"name", "kind"},
-        {{"name", [&](const YamlField& f) { sample.name = source.text(f); }},
-         {"kind",
-          [&](const YamlField& f) {
-            const std::string kind = source.choice(f, kindNames());
-            for (std::size_t i = 0; i < kindNames().size(); ++i)
-              if (kindNames()[i] == kind) sample.kind = static_cast<SampleKind>(i);
-          }},
-         {"set", [&](const YamlField& f) { sample.set = source.text(f); }},
-         {"spot", [&](const YamlField& f) { sample.spot = source.text(f); }},
-         {"points",
-          [&](const YamlField& f) {
-            reader.readList(f, [&](const YamlField& point) { sample.points.push_back(reader.vector(point, "m")); });
-          }},
-         {"direction", [&](const YamlField& f) { sample.direction = reader.direction(f); }},
-         {"centre", vector(sample.centre)},
-         {"mode", [&](const YamlField& f) { sample.mode = static_cast<int>(source.integer(f, 1, 50)); }},
-         {"rest_volume", [&](const YamlField& f) { sample.rest_volume = reader.number(f, "m^3", 0, 1e12); }},
-         {"until", [&](const YamlField& f) { sample.until = reader.number(f, "s", 0, 1e12); }},
-         {"table", [&](const YamlField& f) { sample.table = reader.path(f); }},
-         {"column", [&](const YamlField& f) { sample.column = source.text(f); }},
-         {"reference", [&](const YamlField& f) { readReference(reader, f, sample); }}});
+    reader.readMap(item, {"name", "kind"},
+                   {{"name", [&](const YamlField& f) { sample.name = source.text(f); }},
+                    {"kind",
+                     [&](const YamlField& f) {
+                       const std::string kind = source.choice(f, kindNames());
+                       for (std::size_t i = 0; i < kindNames().size(); ++i)
+                         if (kindNames()[i] == kind) sample.kind = static_cast<SampleKind>(i);
+                     }},
+                    {"set", [&](const YamlField& f) { sample.set = source.text(f); }},
+                    {"spot", [&](const YamlField& f) { sample.spot = source.text(f); }},
+                    {"points",
+                     [&](const YamlField& f) {
+                       reader.readList(
+                           f, [&](const YamlField& point) { sample.points.push_back(reader.vector(point, "m")); });
+                     }},
+                    {"direction", [&](const YamlField& f) { sample.direction = reader.direction(f); }},
+                    {"centre", vector(sample.centre)},
+                    {"mode", [&](const YamlField& f) { sample.mode = static_cast<int>(source.integer(f, 1, 50)); }},
+                    {"rest_volume", [&](const YamlField& f) { sample.rest_volume = reader.number(f, "m^3", 0, 1e12); }},
+                    {"until", [&](const YamlField& f) { sample.until = reader.number(f, "s", 0, 1e12); }},
+                    {"table", [&](const YamlField& f) { sample.table = reader.path(f); }},
+                    {"column", [&](const YamlField& f) { sample.column = source.text(f); }},
+                    {"reference", [&](const YamlField& f) { readReference(reader, f, sample); }}});
     check(reader, item, sample, modes);
     out.samples.push_back(sample);
   });

@@ -33,8 +33,7 @@ std::vector<ResultRow> runStatic(const FemCase& bench_case, std::ostream& log) {
   std::vector<double> times;
   for (const double level : bench_case.statics->levels) {
     const double start = threadMilliseconds();
-    if (!path.advanceTo(level, bench_case.statics->substeps))
-      log << "  NOT CONVERGED at " << levelName(level) << "\n";
+    if (!path.advanceTo(level, bench_case.statics->substeps)) log << "  NOT CONVERGED at " << levelName(level) << "\n";
     times.push_back(threadMilliseconds() - start);
     for (std::size_t s = 0; s < count; ++s)
       values[s].push_back(probe.measure(s, path.motion(), path.body(), path.loads(), level));

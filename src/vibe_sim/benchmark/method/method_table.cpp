@@ -48,7 +48,8 @@ std::string pullName(double distance, bool jerk) {
 }
 
 /// The pull of 20 mm in 0.5 s with every setting.
-void addSettings(const Wall& wall, const BodyMotion& start, bool quick, std::ostream& log, std::vector<ResultRow>& rows) {
+void addSettings(const Wall& wall, const BodyMotion& start, bool quick, std::ostream& log,
+                 std::vector<ResultRow>& rows) {
   const Pull pull;
   double force = 0;
   log << "wall: pulled equilibrium\n";

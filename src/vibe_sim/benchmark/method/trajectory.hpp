@@ -29,10 +29,12 @@ struct StepChoice {
 };
 
 /// @param frames  how many to run; 0: the whole pull and hold
-Trajectory follow(const Wall& wall, const BodyMotion& start, const Pull& pull, const StepChoice& choice, int frames = 0);
+Trajectory follow(const Wall& wall, const BodyMotion& start, const Pull& pull, const StepChoice& choice,
+                  int frames = 0);
 
-/// Errors of a trajectory against another, on displacements since their own starts: motion_error, force_error (after the
-/// fifth frame) and static_error (the last frame against `equilibrium`), over the distance from start to `equilibrium`.
+/// Errors of a trajectory against another, on displacements since their own starts: motion_error, force_error (after
+/// the fifth frame) and static_error (the last frame against `equilibrium`), over the distance from start to
+/// `equilibrium`.
 void compare(const Trajectory& trajectory, const Trajectory& reference, const BodyMotion& equilibrium, ResultRow& row);
 
 /// Distance of two displacements since their own starts [m].

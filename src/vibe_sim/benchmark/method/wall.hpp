@@ -11,12 +11,12 @@ namespace vibe {
 /// 1050 kg/m^3, its ends held (60 nodes of 3,618), inflated to 500 Pa; a disc of 5 mm radius at the equator is pulled
 /// inwards at constant speed and held.
 struct Wall {
-  SurfaceMesh mesh;               ///< middle surface at rest, long axis z
-  ElasticBody body;               ///< damped by 30 1/s
-  std::vector<int> tool;          ///< nodes of the disc
-  Eigen::Vector3d pull_direction; ///< unit, inwards
-  double pressure = 500;          ///< [Pa]
-  double rest_volume = 0;         ///< [m^3]
+  SurfaceMesh mesh;                ///< middle surface at rest, long axis z
+  ElasticBody body;                ///< damped by 30 1/s
+  std::vector<int> tool;           ///< nodes of the disc
+  Eigen::Vector3d pull_direction;  ///< unit, inwards
+  double pressure = 500;           ///< [Pa]
+  double rest_volume = 0;          ///< [m^3]
 };
 Wall makeWall(int nodes);
 
@@ -40,7 +40,8 @@ double toolForce(const Wall& wall, const BodyLoads& loads);
 /// @throws Error if it does not converge to `tolerance` [m]
 BodyMotion inflate(const Wall& wall, double tolerance);
 /// Pulled slowly: equilibria every 4 mm. `force` out [N].
-BodyMotion pulledEquilibrium(const Wall& wall, const BodyMotion& start, double distance, double tolerance, double& force);
+BodyMotion pulledEquilibrium(const Wall& wall, const BodyMotion& start, double distance, double tolerance,
+                             double& force);
 
 /// sqrt(sum |a - b|^2) over all nodes [m].
 double distanceBetween(const BodyMotion& a, const BodyMotion& b);

@@ -35,8 +35,9 @@ std::string field(const std::string& text) {
 
 std::string percent(double fraction) {
   if (std::isinf(fraction)) return "inf";
-  return std::isfinite(fraction) ? show(std::abs(fraction) < 1e-4 || std::abs(fraction) > 100 ? "%.1e" : "%.3f", 100 * fraction)
-                                 : "-";
+  return std::isfinite(fraction)
+             ? show(std::abs(fraction) < 1e-4 || std::abs(fraction) > 100 ? "%.1e" : "%.3f", 100 * fraction)
+             : "-";
 }
 
 }  // namespace
@@ -44,7 +45,9 @@ std::string percent(double fraction) {
 void setTimes(std::vector<double> times, ResultRow& row) {
   if (times.empty()) return;
   std::sort(times.begin(), times.end());
-  const auto at = [&](double part) { return times[static_cast<std::size_t>(std::ceil(part * static_cast<double>(times.size()))) - 1]; };
+  const auto at = [&](double part) {
+    return times[static_cast<std::size_t>(std::ceil(part * static_cast<double>(times.size()))) - 1];
+  };
   row.ms_p50 = at(0.5);
   row.ms_p99 = at(0.99);
   row.ms_max = times.back();
@@ -66,7 +69,8 @@ void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out) {
 void printTable(const std::vector<ResultRow>& rows, std::ostream& out) {
   char line[320];
   std::snprintf(line, sizeof line, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %s\n", "case", "method",
-                "setting", "nodes", "ms p50", "p99", "max", "motion %", "static %", "force %", "ref %", "drift %", "hash");
+                "setting", "nodes", "ms p50", "p99", "max", "motion %", "static %", "force %", "ref %", "drift %",
+                "hash");
   out << line;
   for (const ResultRow& row : rows) {
     const auto ms = [](double value) { return std::isfinite(value) ? show("%.3f", value) : std::string("-"); };

@@ -23,7 +23,9 @@ FemCase read(const std::string& text) {
   return readCase(file.path());
 }
 
-std::string good() { return blockCase(stretchLoads(), kRun); }
+std::string good() {
+  return blockCase(stretchLoads(), kRun);
+}
 
 TEST(FemCase, readsABlock) {
   const FemCase block = read(good());
