@@ -30,8 +30,8 @@ std::uint64_t hash(const State& state) {
   h.addValue(state.step);
   h.addValue(state.seed);
   h.addValue(state.random);
-  for (const auto* v : {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az, &state.qw, &state.qx, &state.qy,
-                        &state.qz, &state.wx, &state.wy, &state.wz})
+  for (const auto* v : {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az,
+                        &state.qw, &state.qx, &state.qy, &state.qz, &state.wx, &state.wy, &state.wz})
     h.add(*v);
   h.addValue(state.gas_amount);
   h.addValue(state.pressure);

@@ -51,8 +51,8 @@ void reportPressure(const GasScene& gas, bool insufflator_on, State& state, std:
 
 bool isFinite(const State& state) {
   double sum = state.gas_amount;
-  for (const auto* v :
-       {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az, &state.qw, &state.qx, &state.qy, &state.qz})
+  for (const auto* v : {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az,
+                        &state.qw, &state.qx, &state.qy, &state.qz})
     for (double value : *v) sum += 0 * value;  // NaN or infinity anywhere makes the sum NaN
   return std::isfinite(sum);
 }

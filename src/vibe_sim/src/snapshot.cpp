@@ -21,7 +21,8 @@ void transfer(Archive& archive, S& s) {
   archive.value(s.time);
   archive.value(s.seed);
   archive.value(s.random);
-  for (auto* v : {&s.x, &s.y, &s.z, &s.vx, &s.vy, &s.vz, &s.ax, &s.ay, &s.az, &s.qw, &s.qx, &s.qy, &s.qz, &s.wx, &s.wy, &s.wz})
+  for (auto* v :
+       {&s.x, &s.y, &s.z, &s.vx, &s.vy, &s.vz, &s.ax, &s.ay, &s.az, &s.qw, &s.qx, &s.qy, &s.qz, &s.wx, &s.wy, &s.wz})
     archive.array(*v);
   archive.value(s.gas_amount);
   archive.value(s.pressure);

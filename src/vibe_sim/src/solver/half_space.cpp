@@ -7,8 +7,8 @@ namespace vibe {
 
 namespace {
 
-constexpr int kContactSweeps = 1000;    // opposed contacts, as of a pinch, need hundreds, others few
-constexpr double kContactMove = 1e-9;   // sweeps end when none moves its contact farther [m]
+constexpr int kContactSweeps = 1000;   // opposed contacts, as of a pinch, need hundreds, others few
+constexpr double kContactMove = 1e-9;  // sweeps end when none moves its contact farther [m]
 
 // Both sparse vectors consist of whole runs; those on the common part of the paths are the same runs.
 Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b) {
@@ -151,7 +151,8 @@ void HalfSpace::formCompliance() {
       for (std::size_t a = 0; a < row_slots_[i].size(); ++a)
         for (std::size_t b = 0; b < row_slots_[j].size(); ++b) {
           const int sa = row_slots_[i][a], sb = row_slots_[j][b];
-          const Eigen::Matrix3d g = (sa >= sb ? gram(sa, sb) : Eigen::Matrix3f(gram(sb, sa).transpose())).cast<double>();
+          const Eigen::Matrix3d g =
+              (sa >= sb ? gram(sa, sb) : Eigen::Matrix3f(gram(sb, sa).transpose())).cast<double>();
           sum += rows_[i].coefficient[a].dot(g * rows_[j].coefficient[b]);
         }
       compliance_(i, j) = compliance_(j, i) = sum;
@@ -192,8 +193,7 @@ void HalfSpace::solveContacts(const Eigen::VectorXd& right) {
         lambda[i + 1] *= limit / size;
         lambda[i + 2] *= limit / size;
       }
-      for (int k = 0; k < 3; ++k)
-        moved = std::max(moved, std::abs(lambda[i + k] - before[k]) * schur_(i + k, i + k));
+      for (int k = 0; k < 3; ++k) moved = std::max(moved, std::abs(lambda[i + k] - before[k]) * schur_(i + k, i + k));
     }
   }
   for (int i = 0; i < n; ++i) force_[contacts_[i]] = lambda[i];

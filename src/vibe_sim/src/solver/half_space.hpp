@@ -50,7 +50,7 @@ class HalfSpace {
   std::vector<int> slot_of_node_;
   std::vector<int> node_of_slot_;
   std::vector<HalfColumns> columns_;
-  std::vector<Eigen::Matrix3f> gram_;      // of slots a >= b, row after row
+  std::vector<Eigen::Matrix3f> gram_;  // of slots a >= b, row after row
   std::vector<char> gram_known_;
   std::vector<HalfRow> rows_;
   std::vector<std::vector<int>> row_slots_;

@@ -27,8 +27,8 @@ std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) c
     v->resize(static_cast<std::size_t>(model.particle_count));
   if (model.tool) scratch->collision = std::make_unique<ToolCollision>(*model.tool);
   if (model.scene.tissue.self_contact)
-    scratch->walls = std::make_unique<SelfContact>(model.organ.surface, model.organ.thickness,
-                                                   model.scene.tissue.young_modulus);
+    scratch->walls =
+        std::make_unique<SelfContact>(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus);
   return scratch;
 }
 

@@ -23,7 +23,8 @@ constexpr double kDepenetrationSpeed = 0.1;  // a particle found inside the tool
 }  // namespace
 
 ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, double absurd_energy,
-                           const ToolMotion* motion, bool insufflator_on, State& state, Workspace& workspace, StepReport& report)
+                           const ToolMotion* motion, bool insufflator_on, State& state, Workspace& workspace,
+                           StepReport& report)
     : model_(model),
       stepper_(stepper),
       absurd_energy_(absurd_energy),
@@ -144,8 +145,8 @@ void ImplicitStep::findContacts() {
   scratch_.collision->findCandidates(scratch_.poses, scratch_.ahead_x.data(), scratch_.ahead_y.data(),
                                      scratch_.ahead_z.data(), model_.particle_count, reach);
   if (scratch_.collision->candidateCount() == 0) return;
-  const auto& contacts = scratch_.collision->findContacts(
-      scratch_.poses, scratch_.ahead_x.data(), scratch_.ahead_y.data(), scratch_.ahead_z.data(), reach);
+  const auto& contacts = scratch_.collision->findContacts(scratch_.poses, scratch_.ahead_x.data(),
+                                                          scratch_.ahead_y.data(), scratch_.ahead_z.data(), reach);
   for (std::size_t first = 0, next; first < contacts.size(); first = next) {
     // contacts come by particle; where shapes overlap, the deepest leads out of both
     std::size_t deepest = first;
@@ -153,7 +154,8 @@ void ImplicitStep::findContacts() {
       if (contacts[next].distance < contacts[deepest].distance) deepest = next;
     const int i = contacts[deepest].particle;
     // the ends are open where the organ goes on: the scope passes through their closing surface
-    const bool held = std::any_of(state_.grip.begin(), state_.grip.end(), [i](const GripPoint& p) { return p.particle == i; });
+    const bool held =
+        std::any_of(state_.grip.begin(), state_.grip.end(), [i](const GripPoint& p) { return p.particle == i; });
     if (model_.organ.end[i] == End::None && !held && model_.inverse_mass[i] > 0) addContact(contacts[deepest]);
   }
 }

@@ -21,7 +21,7 @@ struct ImplicitScratch : SolverScratch {
   std::vector<Eigen::Isometry3d> poses, old_poses;  // of the links at the end and at the start of the step
   std::vector<double> ahead_x, ahead_y, ahead_z;    // where the particles go if nothing stops them
   BodyLoads loads;
-  std::vector<Eigen::Vector3d> contact_motion;      // of the tool at each contact [m]
+  std::vector<Eigen::Vector3d> contact_motion;  // of the tool at each contact [m]
 };
 
 /// One step of a scene: what acts on the tissue is gathered as loads, the stepper moves it, forces are reported.

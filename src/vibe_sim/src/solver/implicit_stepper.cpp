@@ -14,13 +14,13 @@ namespace vibe {
 
 namespace {
 
-constexpr double kStiffnessMargin = 1.0;   // on the stale stiffness: too stiff only slows, too soft overshoots
-constexpr int kRefactorEvery = 6;          // iterations of a static solve
-constexpr double kGuessGrowth = 2;         // of the elastic energy that a guess may bring
+constexpr double kStiffnessMargin = 1.0;  // on the stale stiffness: too stiff only slows, too soft overshoots
+constexpr int kRefactorEvery = 6;         // iterations of a static solve
+constexpr double kGuessGrowth = 2;        // of the elastic energy that a guess may bring
 constexpr int kCarefulSteps = 10;
 constexpr int kCarefulIterations = 12;
-constexpr double kCarefulMove = 0.05;      // of the size of the body, per iteration
-constexpr double kShift = 1e-7;            // of the stiffness, so that a free body can be factored
+constexpr double kCarefulMove = 0.05;  // of the size of the body, per iteration
+constexpr double kShift = 1e-7;        // of the stiffness, so that a free body can be factored
 
 }  // namespace
 
@@ -359,7 +359,8 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
     before = newton.directionLength();
     if (outcome.iterations % kRefactorEvery == 0 || (slow && outcome.iterations % 3 == 0)) {
       for (int i = 0; i < n; ++i)
-        for (int k = 0; k < 3; ++k) positions[3 * static_cast<std::size_t>(i) + k] = static_cast<float>(scratch.z[4 * i + k]);
+        for (int k = 0; k < 3; ++k)
+          positions[3 * static_cast<std::size_t>(i) + k] = static_cast<float>(scratch.z[4 * i + k]);
       if (!factorAbout(body_, positions, 0, 1, scratch.matrix, *scratch.factor))
         factorAbout(body_, {}, 0, 1, scratch.matrix, *scratch.factor);
       scratch.half_space.reset(*scratch.factor, n);
@@ -389,8 +390,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
 
 double ImplicitStepper::elasticEnergy(const MotionView& motion, StepperScratch& scratch) const {
   for (int i = 0; i < body_.nodeCount(); ++i)
-    for (int k = 0; k < 3; ++k)
-      scratch.displacement[4 * i + k] = static_cast<float>(motion.x[k][i] - body_.rest[i][k]);
+    for (int k = 0; k < 3; ++k) scratch.displacement[4 * i + k] = static_cast<float>(motion.x[k][i] - body_.rest[i][k]);
   std::fill(scratch.work.begin(), scratch.work.end(), 0.0F);
   double energy = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p)

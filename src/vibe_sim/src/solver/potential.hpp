@@ -18,7 +18,7 @@ class Potential {
   /// How fast the pressure falls with the volume [Pa/m^3].
   double gasStiffness() const;
   double elasticEnergy() const { return elastic_; }  ///< part of the last value [J]
-  double noise() const { return noise_; }  ///< rounding error of the last value [J]
+  double noise() const { return noise_; }            ///< rounding error of the last value [J]
 
  private:
   double gasEnergy();

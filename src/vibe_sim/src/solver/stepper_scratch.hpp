@@ -24,19 +24,19 @@ class StepperScratch {
   std::uint64_t factor_id = 0, next_id = 0;  // what they are about; 0: nothing
   std::future<bool> making;                  // of next_factor
   HalfSpace half_space;
-  std::vector<double> z, z_hat, z_free;               // unknown, where inertia wants it, where a' = 0 puts it [m]
-  std::vector<double> trial;                          // [m]
-  std::vector<float> displacement;                    // of the point under evaluation [m]
-  std::vector<float> gradient, trial_gradient;        // [N]
-  std::vector<float> volume_gradient;                 // [m^2]
-  std::vector<float> direction, work;                 // [m]
-  std::vector<float> half;                            // in elimination order
-  std::vector<std::vector<float>> move, change;       // L-BFGS pairs
-  std::vector<double> curvature;                      // 1 / (move . change)
+  std::vector<double> z, z_hat, z_free;          // unknown, where inertia wants it, where a' = 0 puts it [m]
+  std::vector<double> trial;                     // [m]
+  std::vector<float> displacement;               // of the point under evaluation [m]
+  std::vector<float> gradient, trial_gradient;   // [N]
+  std::vector<float> volume_gradient;            // [m^2]
+  std::vector<float> direction, work;            // [m]
+  std::vector<float> half;                       // in elimination order
+  std::vector<std::vector<float>> move, change;  // L-BFGS pairs
+  std::vector<double> curvature;                 // 1 / (move . change)
   int pairs = 0;
   std::vector<HalfRow> rows;
   Eigen::VectorXd target, wanted, force;
-  double volume = 0, pressure = 0;                    // of the point under evaluation
+  double volume = 0, pressure = 0;  // of the point under evaluation
 };
 
 }  // namespace vibe

@@ -4,11 +4,11 @@
 
 namespace vibe {
 
-/// One step of generalised-alpha (Chung, Hulbert 1993, doi 10.1115/1.2900803) or backward Euler written for one unknown,
-/// the acceleration a' at the end of the step:
+/// One step of generalised-alpha (Chung, Hulbert 1993, doi 10.1115/1.2900803) or backward Euler written for one
+/// unknown, the acceleration a' at the end of the step:
 ///   x' = x_free + x_gain a',   v' = v_free + v_gain a',   z = z_free + z_gain a'
-/// where z is the point at which the forces are evaluated (between the ends of the step, and ahead by the damping time).
-/// Balance: inertia (z - z_hat) = F(z) per unit mass, with the mass damping in it.
+/// where z is the point at which the forces are evaluated (between the ends of the step, and ahead by the damping
+/// time). Balance: inertia (z - z_hat) = F(z) per unit mass, with the mass damping in it.
 struct TimeScheme {
   explicit TimeScheme(const StepSettings& settings, double damping_rate, double damping_time);
 

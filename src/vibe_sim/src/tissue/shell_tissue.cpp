@@ -12,9 +12,12 @@ struct NamedLaw {
   Law law;
 };
 
-constexpr NamedLaw kLaws[] = {{"neo_hookean", Law::NeoHookean},     {"stable_neo_hookean", Law::StableNeoHookean},
-                              {"macklin_mueller", Law::MacklinMueller}, {"fung", Law::Fung},
-                              {"gent", Law::Gent},                  {"yeoh", Law::Yeoh}};
+constexpr NamedLaw kLaws[] = {{"neo_hookean", Law::NeoHookean},
+                              {"stable_neo_hookean", Law::StableNeoHookean},
+                              {"macklin_mueller", Law::MacklinMueller},
+                              {"fung", Law::Fung},
+                              {"gent", Law::Gent},
+                              {"yeoh", Law::Yeoh}};
 
 ShellMesh shellMesh(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed) {
   ShellMesh mesh;
@@ -79,6 +82,8 @@ void ShellTissue::addForces(const State& state, double* fx, double* fy, double* 
   }
 }
 
-void ShellTissue::strain(const State& state, float* out) const { elements_->strain(displacement(state).data(), out); }
+void ShellTissue::strain(const State& state, float* out) const {
+  elements_->strain(displacement(state).data(), out);
+}
 
 }  // namespace vibe

@@ -31,19 +31,19 @@ struct GeometryScene {
 
 /// The wall.
 struct TissueScene {
-  std::string model = "shell";           ///< a name in the registry of tissue models
-  std::string law = "yeoh";              ///< elastic law of the wall, of model shell
-  double density = 1050;                 ///< [kg/m^3]
-  double young_modulus = 110e3;          ///< [Pa]
-  double poisson_ratio = 0.45;           ///< [1]
-  double stiffening = 2.0;               ///< of the laws fung, gent and yeoh [1]
+  std::string model = "shell";   ///< a name in the registry of tissue models
+  std::string law = "yeoh";      ///< elastic law of the wall, of model shell
+  double density = 1050;         ///< [kg/m^3]
+  double young_modulus = 110e3;  ///< [Pa]
+  double poisson_ratio = 0.45;   ///< [1]
+  double stiffening = 2.0;       ///< of the laws fung, gent and yeoh [1]
   std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
-  double damping_rate = 30;     ///< viscous damping of the velocity [1/s]
-  double damping_time = 15e-6;  ///< viscosity of the wall over its stiffness; quiets short waves [s]
-  int iterations = 10;          ///< most quasi-Newton iterations per step, of model shell
+  double damping_rate = 30;      ///< viscous damping of the velocity [1/s]
+  double damping_time = 15e-6;   ///< viscosity of the wall over its stiffness; quiets short waves [s]
+  int iterations = 10;           ///< most quasi-Newton iterations per step, of model shell
   double spectral_radius = 0.2;  ///< generalised-alpha, of model shell [1]
-  bool self_contact = false;    ///< walls pulled together meet and do not pass through each other, of model shell
-  int substeps = 0;             ///< solver sub-steps per step; 0: as few as carry the stiffness, see finishModel()
+  bool self_contact = false;     ///< walls pulled together meet and do not pass through each other, of model shell
+  int substeps = 0;              ///< solver sub-steps per step; 0: as few as carry the stiffness, see finishModel()
 };
 
 /// Gas in the lumen, isothermal. The insufflator raises or lowers the amount at a limited flow until the regulated

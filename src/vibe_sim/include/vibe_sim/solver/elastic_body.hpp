@@ -15,12 +15,12 @@ class ShellElements;
 /// A soft body as an implicit solver sees it. Constant.
 struct ElasticBody {
   std::shared_ptr<const ElasticElements> elements;
-  const ShellElements* shell = nullptr;  ///< the same elements where they enclose gas; null: no gas
-  std::vector<Eigen::Vector3d> rest;     ///< of the nodes [m]
-  std::vector<double> mass;              ///< lumped, per node [kg]
-  std::vector<char> fixed;               ///< per node: it never moves
-  std::vector<double> foundation;        ///< spring from each node to its rest position [N/m]; empty: none
-  std::vector<Eigen::Vector3d> load;     ///< dead load per node [N]; empty: none
+  const ShellElements* shell = nullptr;               ///< the same elements where they enclose gas; null: no gas
+  std::vector<Eigen::Vector3d> rest;                  ///< of the nodes [m]
+  std::vector<double> mass;                           ///< lumped, per node [kg]
+  std::vector<char> fixed;                            ///< per node: it never moves
+  std::vector<double> foundation;                     ///< spring from each node to its rest position [N/m]; empty: none
+  std::vector<Eigen::Vector3d> load;                  ///< dead load per node [N]; empty: none
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s^2]
   double damping_rate = 0;                            ///< force -rate m v [1/s]
   double damping_time = 0;                            ///< force -time K v: the time constant of the tissue [s]
@@ -53,22 +53,22 @@ struct Condition {
 /// A node that must not come nearer than its gap to a tool, with Coulomb friction against the tool's motion.
 struct ContactCondition {
   int node = -1;
-  Eigen::Vector3d normal;                                 ///< out of the tool, unit
-  double offset = 0;                                      ///< normal . x >= offset [m]
-  double friction = 0;                                    ///< Coulomb coefficient [1]
-  Eigen::Vector3d anchor;                                 ///< where the node would be if it stuck to the tool [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();        ///< out: tool on node [N]
+  Eigen::Vector3d normal;                           ///< out of the tool, unit
+  double offset = 0;                                ///< normal . x >= offset [m]
+  double friction = 0;                              ///< Coulomb coefficient [1]
+  Eigen::Vector3d anchor;                           ///< where the node would be if it stuck to the tool [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< out: tool on node [N]
 };
 
 /// The gas inside a closed shell.
 struct GasLoad {
   enum class Control { None, Pressure, Amount, Volume };
   Control control = Control::None;
-  double pressure = 0;           ///< gauge; given for Pressure, otherwise out [Pa]
-  double amount = 0;             ///< absolute pressure times volume, for Amount [J]
-  double ambient = 101325;       ///< [Pa]
-  double target_volume = 0;      ///< for Volume [m^3]
-  double volume = 0;             ///< out [m^3]
+  double pressure = 0;       ///< gauge; given for Pressure, otherwise out [Pa]
+  double amount = 0;         ///< absolute pressure times volume, for Amount [J]
+  double ambient = 101325;   ///< [Pa]
+  double target_volume = 0;  ///< for Volume [m^3]
+  double volume = 0;         ///< out [m^3]
 };
 
 /// Everything that acts on the body during one step.

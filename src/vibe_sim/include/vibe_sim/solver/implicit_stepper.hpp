@@ -54,8 +54,8 @@ class ImplicitStepper {
   /// Names the present positions as those that the factor is about, at once. Costs tens of step times.
   void refactor(const MotionView& motion, StepperMemory& memory) const;
 
-  /// One step. A step that does not find lower energy is taken again with backward Euler and more iterations, and so are
-  /// the next few. Forces of the loads are their means over the step.
+  /// One step. A step that does not find lower energy is taken again with backward Euler and more iterations, and so
+  /// are the next few. Forces of the loads are their means over the step.
   StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch) const;
 
   /// The equilibrium under the loads from the positions in `motion` (velocities become 0), refactoring as it goes.
@@ -70,8 +70,8 @@ class ImplicitStepper {
   struct Plan;
   void manageFactor(const MotionView& motion, StepperMemory& memory, StepperScratch& scratch) const;
   bool farFrom(const MotionView& motion, const std::vector<float>& about) const;
-  bool attempt(const MotionView& motion, BodyLoads& loads, bool careful, double& elastic_energy, StepperScratch& scratch,
-               StepOutcome& outcome) const;
+  bool attempt(const MotionView& motion, BodyLoads& loads, bool careful, double& elastic_energy,
+               StepperScratch& scratch, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
   void finishStep(const MotionView& motion, bool careful, StepperScratch& scratch) const;
   ElasticBody body_;

@@ -8,15 +8,15 @@ namespace vibe {
 /// What of its past a stepper needs for the next step, beside the motion: part of the state of a simulation. The factor
 /// itself is only a cache: it is made again wherever a scratch does not hold the one that the memory names.
 struct StepperMemory {
-  std::vector<float> about;           ///< positions that the factor is about (3 * nodes); empty: rest
-  std::vector<float> next;            ///< positions that the next factor is about; empty: none is being made
-  std::uint64_t about_id = 0;         ///< hash of `about`
-  std::uint64_t next_id = 0;          ///< hash of `next`
-  std::int64_t steps = 0;             ///< taken
-  double elastic_energy = 0;          ///< at the end of the last step [J]
-  int still = 0;                      ///< steps in a row in which nothing moved
-  int homing = 0;                     ///< steps still to be taken straight towards rest
-  int careful = 0;                    ///< steps still to be taken with backward Euler and many iterations
+  std::vector<float> about;    ///< positions that the factor is about (3 * nodes); empty: rest
+  std::vector<float> next;     ///< positions that the next factor is about; empty: none is being made
+  std::uint64_t about_id = 0;  ///< hash of `about`
+  std::uint64_t next_id = 0;   ///< hash of `next`
+  std::int64_t steps = 0;      ///< taken
+  double elastic_energy = 0;   ///< at the end of the last step [J]
+  int still = 0;               ///< steps in a row in which nothing moved
+  int homing = 0;              ///< steps still to be taken straight towards rest
+  int careful = 0;             ///< steps still to be taken with backward Euler and many iterations
 };
 
 }  // namespace vibe

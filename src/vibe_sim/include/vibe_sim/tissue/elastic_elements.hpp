@@ -9,8 +9,8 @@ namespace vibe {
 /// The stored energy of an elastic body over the displacements of its nodes: what an implicit solver needs to know.
 /// Constant after building. Node vectors are 4 floats per node (x, y, z, unused), so that one 128-bit load fetches a
 /// node; displacements from rest instead of positions keep single precision good to 1e-7 of a strain.
-/// The work is divided into a fixed number of pieces; each adds into its own output, and the outputs are summed in order,
-/// so the result does not depend on the number of threads.
+/// The work is divided into a fixed number of pieces; each adds into its own output, and the outputs are summed in
+/// order, so the result does not depend on the number of threads.
 class ElasticElements {
  public:
   virtual ~ElasticElements() = default;
