@@ -16,7 +16,6 @@ StepSettings settingsOf(const StepChoice& choice) {
   settings.spectral_radius = choice.spectral_radius;
   settings.backward_euler = choice.backward_euler;
   settings.tolerance = choice.tolerance;
-  settings.refactor_every *= choice.steps_per_frame;  // the same in time for every step
   return settings;
 }
 

@@ -51,6 +51,8 @@ void HalfSpace::reset(const Factor& factor, int node_count) {
   gas_.assign(static_cast<std::size_t>(factor.rows()) + 16, 0.0F);
   gas_stiffness_ = 0;
   rows_.clear();
+  row_slots_.clear();
+  findUsedSlots();
 }
 
 int HalfSpace::slotOf(int node, const Factor& factor) {
@@ -103,7 +105,18 @@ void HalfSpace::setRows(const std::vector<HalfRow>& rows, const Factor& factor) 
       i += 2;
     }
   }
+  findUsedSlots();
   formCompliance();
+}
+
+void HalfSpace::findUsedSlots() {
+  used_slots_.clear();
+  for (const std::vector<int>& slots : row_slots_) used_slots_.insert(used_slots_.end(), slots.begin(), slots.end());
+  // by node: the slots' numbers depend on what was touched before, and sums must not
+  std::sort(used_slots_.begin(), used_slots_.end(), [&](int a, int b) { return node_of_slot_[a] < node_of_slot_[b]; });
+  used_slots_.erase(std::unique(used_slots_.begin(), used_slots_.end()), used_slots_.end());
+  seen_.resize(columns_.size());
+  row_value_.setZero(rowCount());
 }
 
 void HalfSpace::setGas(const float* direction4, double stiffness, const Factor& factor) {
@@ -121,19 +134,25 @@ void HalfSpace::setGas(const float* direction4, double stiffness, const Factor& 
   formCompliance();
 }
 
-double HalfSpace::dot(const HalfRow& row, const float* y) const {
-  const std::vector<int>& slots = row_slots_[static_cast<std::size_t>(&row - rows_.data())];
-  double sum = 0;
-  for (std::size_t k = 0; k < slots.size(); ++k)
-    sum += row.coefficient[k].dot(product(columns_[slots[k]], y).cast<double>());
-  return sum;
+// What the rows' nodes see of a half-solved vector; each node once, although three rows may share it.
+void HalfSpace::findRowValues(const float* y) {
+  for (const int slot : used_slots_) seen_[slot] = product(columns_[slot], y);
+  for (int i = 0; i < rowCount(); ++i) {
+    row_value_[i] = 0;
+    for (std::size_t k = 0; k < row_slots_[i].size(); ++k)
+      row_value_[i] += rows_[i].coefficient[k].dot(seen_[row_slots_[i][k]].cast<double>());
+  }
 }
 
-void HalfSpace::add(const HalfRow& row, double force, float* y) const {
-  const std::vector<int>& slots = row_slots_[static_cast<std::size_t>(&row - rows_.data())];
-  for (std::size_t k = 0; k < slots.size(); ++k) {
-    const HalfColumns& column = columns_[slots[k]];
-    const Eigen::Vector3f c = (force * row.coefficient[k]).cast<float>();
+void HalfSpace::addForces(float* y) {
+  for (const int slot : used_slots_) seen_[slot].setZero();
+  for (int i = 0; i < rowCount(); ++i)
+    for (std::size_t k = 0; k < row_slots_[i].size(); ++k)
+      seen_[row_slots_[i][k]] += (force_[i] * rows_[i].coefficient[k]).cast<float>();
+  for (const int slot : used_slots_) {
+    if (seen_[slot].isZero(0)) continue;
+    const HalfColumns& column = columns_[slot];
+    const Eigen::Vector3f c = seen_[slot];
     const float* value = column.value.data();
     for (std::size_t i = 0; i < column.begin.size(); ++i)
       for (int r = 0; r < column.count[i]; ++r, value += 3)
@@ -159,7 +178,8 @@ void HalfSpace::formCompliance() {
     }
   gas_row_.setZero(m);
   if (gas_stiffness_ != 0 && m > 0) {
-    for (int i = 0; i < m; ++i) gas_row_[i] = dot(rows_[i], gas_.data());
+    findRowValues(gas_.data());
+    gas_row_ = row_value_;
     compliance_ -= gas_row_ * gas_row_.transpose() / gas_norm2_;
   }
   for (int i = 0; i < m; ++i) compliance_(i, i) += rows_[i].compliance;
@@ -207,8 +227,8 @@ void HalfSpace::eliminate(const Eigen::VectorXd& wanted, double swelling, float*
     for (std::size_t i = 0; i < gas_.size(); ++i) along += static_cast<double>(gas_[i]) * y[i];
     gas_lack = swelling - along;
   }
-  Eigen::VectorXd lack = wanted;
-  for (int i = 0; i < m; ++i) lack[i] -= dot(rows_[i], y);
+  findRowValues(y);
+  Eigen::VectorXd lack = wanted - row_value_;
   if (gas_stiffness_ != 0 && m > 0) lack -= gas_row_ * (gas_lack / gas_norm2_);
   force_.setZero(m);
   Eigen::VectorXd equation_lack = lack(equations_);
@@ -219,8 +239,7 @@ void HalfSpace::eliminate(const Eigen::VectorXd& wanted, double swelling, float*
     if (!equations_.empty()) equation_lack -= compliance_(equations_, contacts_) * force_(contacts_);
   }
   if (!equations_.empty()) force_(equations_) = Eigen::VectorXd(equation_factor_.solve(equation_lack));
-  for (int i = 0; i < m; ++i)
-    if (force_[i] != 0) add(rows_[i], force_[i], y);
+  addForces(y);
   gas_force_ = 0;
   if (gas_stiffness_ != 0) {
     gas_force_ = (gas_lack - (m > 0 ? gas_row_.dot(force_) : 0.0)) / gas_norm2_;

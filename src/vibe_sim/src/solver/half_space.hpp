@@ -42,8 +42,9 @@ class HalfSpace {
   static constexpr int kMostSlots = 384;
   int slotOf(int node, const Factor& factor);
   const Eigen::Matrix3f& gram(int a, int b);
-  double dot(const HalfRow& row, const float* y) const;
-  void add(const HalfRow& row, double force, float* y) const;
+  void findUsedSlots();
+  void findRowValues(const float* y);
+  void addForces(float* y);
   void formCompliance();
   void solveContacts(const Eigen::VectorXd& right);
 
@@ -54,6 +55,9 @@ class HalfSpace {
   std::vector<char> gram_known_;
   std::vector<HalfRow> rows_;
   std::vector<std::vector<int>> row_slots_;
+  std::vector<int> used_slots_;
+  std::vector<Eigen::Vector3f> seen_;  // per slot: a vector's value at the node, or the rows' force on it
+  Eigen::VectorXd row_value_;
   std::vector<int> equations_, contacts_;  // row numbers; contacts: of normals and tangents alike
   std::vector<float> gas_;                 // L^-1 of the gas direction
   double gas_stiffness_ = 0, gas_norm2_ = 0;

@@ -14,12 +14,15 @@ namespace vibe {
 
 namespace {
 
-constexpr double kStiffnessMargin = 1.0;  // on the stale stiffness: too stiff only slows, too soft overshoots
-constexpr int kRefactorEvery = 6;         // iterations of a static solve
-constexpr double kGuessGrowth = 2;        // of the elastic energy that a guess may bring
+// A step of one iteration swings up where the stiffness exceeds that of the factor (its error (1 - ratio) enters the
+// acceleration), one of two from twice that on.
+constexpr double kMarginOfOne = 2;
+constexpr int kRefactorEvery = 6;   // iterations of a static solve
+constexpr double kGuessGrowth = 2;  // of the elastic energy that a guess may bring
 constexpr int kCarefulSteps = 10;
 constexpr int kCarefulIterations = 12;
 constexpr double kCarefulMove = 0.05;  // of the size of the body, per iteration
+constexpr double kSafeStrain = 0.02;   // which a last, unverified move may bring where it is longest
 constexpr double kShift = 1e-7;        // of the stiffness, so that a free body can be factored
 
 }  // namespace
@@ -38,16 +41,19 @@ MotionView BodyMotion::view() {
           {a[0].data(), a[1].data(), a[2].data()}};
 }
 
-StepperScratch::StepperScratch(int nodes, std::shared_ptr<const FactorPlan> plan, FactorStorage storage,
+StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_positions,
+                               std::shared_ptr<const FactorPlan> plan, FactorStorage storage,
                                std::shared_ptr<const BlockPattern> pattern)
     : factor(std::make_unique<Factor>(plan, storage)),
       next_factor(std::make_unique<Factor>(plan, storage)),
       matrix(pattern),
       next_matrix(pattern) {
-  const std::size_t size = 4 * static_cast<std::size_t>(nodes);
-  for (auto* v : {&z, &z_hat, &z_free, &trial}) v->assign(size, 0);
+  const std::size_t size = 4 * rest_positions.size();
+  for (auto* v : {&rest, &z, &z_hat, &trial}) v->assign(size, 0);
   for (auto* v : {&displacement, &gradient, &trial_gradient, &volume_gradient, &direction, &work}) v->assign(size, 0);
-  half.assign(3 * static_cast<std::size_t>(nodes) + 16, 0);
+  for (std::size_t i = 0; i < rest_positions.size(); ++i)
+    for (int k = 0; k < 3; ++k) rest[4 * i + k] = rest_positions[i][k];
+  half.assign(3 * rest_positions.size() + 16, 0);
   move.assign(kHistory, std::vector<float>(size));
   change.assign(kHistory, std::vector<float>(size));
   curvature.assign(kHistory, 0);
@@ -62,7 +68,26 @@ struct ImplicitStepper::Plan {
   std::shared_ptr<const FactorPlan> factor_plan;
   TimeScheme scheme, careful_scheme;
   FactorStorage storage;
+  double margin;       ///< times the stiffness in the factor
+  int refactor_every;  ///< steps
 };
+
+namespace {
+
+// between two nodes of one element [m]
+double shortestDistance(const ElasticBody& body) {
+  double shortest2 = std::numeric_limits<double>::max();
+  for (const auto& [nodes, size] : body.elements->nodeGroups())
+    for (std::size_t first = 0; first < nodes->size(); first += static_cast<std::size_t>(size))
+      for (int a = 0; a < size; ++a)
+        for (int b = 0; b < a; ++b) {
+          const int p = (*nodes)[first + a], q = (*nodes)[first + b];
+          if (p >= 0 && q >= 0 && p != q) shortest2 = std::min(shortest2, (body.rest[p] - body.rest[q]).squaredNorm());
+        }
+  return std::sqrt(shortest2);
+}
+
+}  // namespace
 
 ImplicitStepper::ImplicitStepper(ElasticBody body, StepSettings settings, FactorStorage storage)
     : body_(std::move(body)), settings_(settings) {
@@ -71,9 +96,17 @@ ImplicitStepper::ImplicitStepper(ElasticBody body, StepSettings settings, Factor
   careful.backward_euler = true;
   const TimeScheme careful_scheme(careful, body_.damping_rate, body_.damping_time);
   for (const Eigen::Vector3d& p : body_.rest) size_ = std::max(size_, (p - body_.rest[0]).norm());
+  free_ = body_.foundation.empty() &&
+          std::none_of(body_.fixed.begin(), body_.fixed.end(), [](char fixed) { return fixed != 0; });
+  safe_length_ = kSafeStrain * shortestDistance(body_);
+  const double margin = settings.iterations == 1 && !settings.backward_euler ? kMarginOfOne : 1;
+  const int every = settings.refactor_interval > 0
+                        ? std::max(1, static_cast<int>(std::lround(settings.refactor_interval / settings.step)))
+                        : 0;
   auto pattern = std::make_shared<const BlockPattern>(blockPattern(body_.nodeCount(), body_.elements->nodeGroups()));
   auto factor_plan = makeFactorPlan(*pattern);
-  plan_ = std::make_unique<Plan>(Plan{std::move(pattern), std::move(factor_plan), scheme, careful_scheme, storage});
+  plan_ = std::make_unique<Plan>(
+      Plan{std::move(pattern), std::move(factor_plan), scheme, careful_scheme, storage, margin, every});
 }
 
 ImplicitStepper::~ImplicitStepper() = default;
@@ -92,10 +125,11 @@ bool factorAbout(const ElasticBody& body, const std::vector<float>& positions, d
             static_cast<double>(positions[3 * i + k]) - body.rest[i][static_cast<Eigen::Index>(k)];
   matrix.setZero();
   body.elements->addStiffness(displacement.data(), matrix);
+  if (margin != 1) matrix.scale(margin);
   double mean = 0;
   for (std::size_t i = 0; i < n; ++i) mean += matrix.diagonal()[i].trace() / (3 * static_cast<double>(n));
   for (std::size_t i = 0; i < n; ++i) {
-    double spring = inertia * body.mass[i] / margin + kShift * mean;
+    double spring = inertia * body.mass[i] + kShift * mean;
     if (!body.foundation.empty()) spring += body.foundation[i];
     matrix.add(static_cast<int>(i), static_cast<int>(i), spring * Eigen::Matrix3d::Identity());
   }
@@ -105,10 +139,10 @@ bool factorAbout(const ElasticBody& body, const std::vector<float>& positions, d
 }
 
 // A matrix that is not positive definite for rounding (a squashed state) gets help; one about rest is the last resort.
-void factorSafely(const ElasticBody& body, const std::vector<float>& positions, double inertia, BlockMatrix& matrix,
-                  Factor& factor) {
-  if (factorAbout(body, positions, inertia, kStiffnessMargin, matrix, factor)) return;
-  if (factorAbout(body, {}, inertia, kStiffnessMargin, matrix, factor)) return;
+void factorSafely(const ElasticBody& body, const std::vector<float>& positions, double inertia, double margin,
+                  BlockMatrix& matrix, Factor& factor) {
+  if (factorAbout(body, positions, inertia, margin, matrix, factor)) return;
+  if (factorAbout(body, {}, inertia, margin, matrix, factor)) return;
   throw Error("The stiffness of the body at rest is not positive definite; check its mesh, masses and materials.");
 }
 
@@ -184,8 +218,42 @@ void storeForces(const Eigen::VectorXd& force, const std::vector<HalfRow>& rows,
 
 }  // namespace
 
+namespace {
+
+// Moves a free body's z rigidly by what its velocities and accelerations make of it: however far, that does not strain.
+void moveRigidly(const ElasticBody& body, const MotionView& motion, const TimeScheme& scheme, StepperScratch& scratch) {
+  const auto at = [&](int i) { return Eigen::Map<Eigen::Vector3d>(&scratch.z[4 * i]); };
+  const auto move = [&](int i) {
+    Eigen::Vector3d sum;
+    for (int k = 0; k < 3; ++k)
+      sum[k] = scheme.free_z(0, motion.v[k][i], motion.a[k][i]) + scheme.z_gain * motion.a[k][i];
+    return sum;
+  };
+  Eigen::Vector3d center = Eigen::Vector3d::Zero(), shift = center, spin = center;
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  double mass = 0;
+  for (int i = 0; i < body.nodeCount(); ++i) {
+    mass += body.mass[i];
+    center += body.mass[i] * at(i);
+    shift += body.mass[i] * move(i);
+  }
+  center /= mass, shift /= mass;
+  for (int i = 0; i < body.nodeCount(); ++i) {
+    const Eigen::Vector3d arm = at(i) - center;
+    spin += body.mass[i] * arm.cross(move(i));
+    inertia += body.mass[i] * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+  }
+  inertia += 1e-9 * inertia.trace() * Eigen::Matrix3d::Identity();  // of nodes in a line
+  const Eigen::Vector3d turn = inertia.ldlt().solve(spin);
+  const double angle = turn.norm();
+  const Eigen::AngleAxisd rotation(angle, angle > 0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX());
+  for (int i = 0; i < body.nodeCount(); ++i) at(i) = center + shift + rotation * Eigen::Vector3d(at(i) - center);
+}
+
+}  // namespace
+
 std::shared_ptr<StepperScratch> ImplicitStepper::makeScratch() const {
-  return std::make_shared<StepperScratch>(body_.nodeCount(), plan_->factor_plan, plan_->storage, plan_->pattern);
+  return std::make_shared<StepperScratch>(body_.rest, plan_->factor_plan, plan_->storage, plan_->pattern);
 }
 
 void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) const {
@@ -197,7 +265,7 @@ void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) 
 // The memory says which factor a step uses; the scratch provides it, from the background if it is there already.
 void ImplicitStepper::manageFactor(const MotionView& motion, StepperMemory& memory, StepperScratch& scratch) const {
   if (memory.about_id == 0) memory.about_id = hashOf(memory.about);
-  const int every = settings_.refactor_every;
+  const int every = plan_->refactor_every;
   if (every > 0 && memory.steps % every == 0) {
     if (!memory.next.empty()) {
       memory.about.swap(memory.next);
@@ -214,7 +282,7 @@ void ImplicitStepper::manageFactor(const MotionView& motion, StepperMemory& memo
     if (scratch.next_id == memory.about_id) {
       scratch.factor.swap(scratch.next_factor);
     } else {
-      factorSafely(body_, memory.about, plan_->scheme.inertia, scratch.matrix, *scratch.factor);
+      factorSafely(body_, memory.about, plan_->scheme.inertia, plan_->margin, scratch.matrix, *scratch.factor);
     }
     scratch.next_id = 0;
     scratch.factor_id = memory.about_id;
@@ -224,7 +292,7 @@ void ImplicitStepper::manageFactor(const MotionView& motion, StepperMemory& memo
     if (scratch.making.valid()) scratch.making.get();
     scratch.next_id = memory.next_id;
     scratch.making = std::async(std::launch::async, [this, &scratch, positions = memory.next] {
-      factorSafely(body_, positions, plan_->scheme.inertia, scratch.next_matrix, *scratch.next_factor);
+      factorSafely(body_, positions, plan_->scheme.inertia, plan_->margin, scratch.next_matrix, *scratch.next_factor);
       return true;
     });
   }
@@ -269,18 +337,17 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
 bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, bool careful, double& elastic_energy,
                               StepperScratch& scratch, StepOutcome& outcome) const {
   const TimeScheme& scheme = careful ? plan_->careful_scheme : plan_->scheme;
+  // One iteration does not get far and starts where inertia leads. More of them start where the nodes are: what the
+  // iterations of the last step left over is in the velocity and the acceleration, and would swing up.
+  const bool extrapolates = !careful && settings_.iterations == 1;
   for (int i = 0; i < body_.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) {
-      const double x = motion.x[k][i], v = motion.v[k][i], a = motion.a[k][i];
-      double& z = scratch.z[4 * i + k];
-      if (body_.fixed[i] != 0) {
-        z = scratch.z_free[4 * i + k] = scratch.z_hat[4 * i + k] = x;
-        continue;
-      }
-      scratch.z_free[4 * i + k] = scheme.freeZ(x, v, a);
-      scratch.z_hat[4 * i + k] = scheme.hatZ(x, v, a);
-      z = careful ? x : scratch.z_free[4 * i + k] + scheme.z_gain * a;
+      const double x = motion.x[k][i];
+      const double hat = body_.fixed[i] != 0 ? x : scheme.hat_z(x, motion.v[k][i], motion.a[k][i]);
+      scratch.z_hat[4 * i + k] = hat;
+      scratch.z[4 * i + k] = extrapolates ? hat : x;
     }
+  if (!extrapolates && !careful && free_) moveRigidly(body_, motion, scheme, scratch);
   RowBuilder(loads, scratch).build();
   for (std::size_t r = 0; r < scratch.rows.size(); ++r) {
     double end = rowTarget(loads, scratch.rows, r), at = 0;  // wanted at the end of the step; that for z
@@ -288,23 +355,24 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, bool c
       for (int c = 0; c < 3; ++c) {
         const int i = scratch.rows[r].node[k];
         const double weight = scratch.rows[r].coefficient[k][c];
-        end -= weight * scheme.freeX(motion.x[c][i], motion.v[c][i], motion.a[c][i]);
-        at += weight * scratch.z_free[4 * i + c];
+        end -= weight * scheme.free_x(motion.x[c][i], motion.v[c][i], motion.a[c][i]);
+        at += weight * scheme.free_z(motion.x[c][i], motion.v[c][i], motion.a[c][i]);
       }
     scratch.target[static_cast<Eigen::Index>(r)] = at + scheme.z_gain / scheme.x_gain * end;
     scratch.rows[r].compliance *= scheme.z_gain / scheme.x_gain;
   }
   Potential potential(body_, loads, scheme.inertia, scratch);
-  QuasiNewton newton(body_, potential, loads, scratch);
+  QuasiNewton newton(body_, potential, loads, scratch, safe_length_);
   newton.start();
   // a guess with far more energy may be tangled and lead to a tangled minimum: then from where the nodes are
-  if (!careful && !(potential.elasticEnergy() <= kGuessGrowth * elastic_energy)) {
+  if (extrapolates && !(potential.elasticEnergy() <= kGuessGrowth * elastic_energy)) {
     startFromHere(motion, scratch);
     newton.start();
   }
   scratch.half_space.setRows(scratch.rows, *scratch.factor);
   scratch.half_space.setGas(scratch.volume_gradient.data(), potential.gasStiffness(), *scratch.factor);
-  const int most = careful ? std::max(kCarefulIterations, settings_.iterations) : settings_.iterations;
+  const int least = careful && !settings_.backward_euler ? kCarefulIterations : 1;
+  const int most = std::max(least, settings_.iterations);
   const double longest = careful ? kCarefulMove * size_ : std::numeric_limits<double>::max();
   while (outcome.iterations < most && !outcome.converged && !newton.failed()) {
     outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < most);
@@ -324,15 +392,16 @@ void ImplicitStepper::startFromHere(const MotionView& motion, StepperScratch& sc
 
 void ImplicitStepper::finishStep(const MotionView& motion, bool careful, StepperScratch& scratch) const {
   const TimeScheme& scheme = careful ? plan_->careful_scheme : plan_->scheme;
-  for (int i = 0; i < body_.nodeCount(); ++i) {
-    if (body_.fixed[i] != 0) continue;
-    for (int k = 0; k < 3; ++k) {
-      double &x = motion.x[k][i], &v = motion.v[k][i], &a = motion.a[k][i];
-      const double end = (scratch.z[4 * i + k] - scratch.z_free[4 * i + k]) / scheme.z_gain;
-      const double x_end = scheme.freeX(x, v, a) + scheme.x_gain * end;
-      v = scheme.freeV(v, a) + scheme.v_gain * end;
-      x = x_end;
-      a = end;
+  const double per_gain = 1 / scheme.z_gain;
+  for (int k = 0; k < 3; ++k) {
+    double *const x = motion.x[k], *const v = motion.v[k], *const a = motion.a[k];
+    const double* const z = scratch.z.data() + k;
+    for (int i = 0; i < body_.nodeCount(); ++i) {
+      if (body_.fixed[i] != 0) continue;
+      const double end = (z[4 * i] - scheme.free_z(x[i], v[i], a[i])) * per_gain;
+      x[i] = scheme.free_x(x[i], v[i], a[i]) + scheme.x_gain * end;
+      v[i] += scheme.free_v_a * a[i] + scheme.v_gain * end;
+      a[i] = end;
     }
   }
 }

@@ -16,8 +16,8 @@ constexpr double kRounding = 6e-8;  // of single precision, relative
 double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gradient) {
   const int n = body_.nodeCount();
   float* u = scratch_.displacement.data();
-  for (int i = 0; i < n; ++i)
-    for (int k = 0; k < 3; ++k) u[4 * i + k] = static_cast<float>(z[4 * i + k] - body_.rest[i][k]);
+  const double* const rest = scratch_.rest.data();
+  for (int i = 0; i < 4 * n; ++i) u[i] = static_cast<float>(z[i] - rest[i]);
   std::fill(gradient.begin(), gradient.end(), 0.0F);
   double value = 0;
   const int pieces = body_.elements->pieceCount();
@@ -63,32 +63,45 @@ double Potential::gasStiffness() const {
   return gas_.control == GasLoad::Control::Volume ? std::numeric_limits<double>::infinity() : 0;
 }
 
+// Four lanes per node, the last of them zero, so that the compiler can use vectors of them.
 double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient) {
-  double value = 0, rounded = 0;
-  const bool foundation = !body_.foundation.empty(), load = !body_.load.empty();
+  const double* const hat = scratch_.z_hat.data();
+  const double pull[4] = {body_.gravity[0], body_.gravity[1], body_.gravity[2], 0};
+  double twice[4] = {0, 0, 0, 0}, work[4] = {0, 0, 0, 0}, rounded[4] = {0, 0, 0, 0};
   for (int i = 0; i < body_.nodeCount(); ++i) {
+    float* const g = &gradient[4 * i];
     if (body_.fixed[i] != 0) {
-      for (int k = 0; k < 3; ++k) gradient[4 * i + k] = 0;
+      for (int k = 0; k < 4; ++k) g[k] = 0;
       continue;
     }
-    const double spring = inertia_ * body_.mass[i];
-    for (int k = 0; k < 3; ++k) {
-      const double away = z[4 * i + k] - scratch_.z_hat[4 * i + k], moved = z[4 * i + k] - body_.rest[i][k];
-      double force = spring * away - body_.mass[i] * body_.gravity[k];
-      value += 0.5 * spring * away * away - body_.mass[i] * body_.gravity[k] * moved;
-      if (foundation) {
-        force += body_.foundation[i] * moved;
-        value += 0.5 * body_.foundation[i] * moved * moved;
-      }
-      if (load) {
-        force -= body_.load[i][k];
-        value -= body_.load[i][k] * moved;
-      }
-      rounded += std::abs(static_cast<double>(gradient[4 * i + k]) * scratch_.displacement[4 * i + k]);
-      gradient[4 * i + k] += static_cast<float>(force);
+    const double mass = body_.mass[i], spring = inertia_ * mass;
+    const float* const u = &scratch_.displacement[4 * i];
+    for (int k = 0; k < 4; ++k) {
+      const double away = z[4 * i + k] - hat[4 * i + k], force = spring * away, weight = mass * pull[k];
+      twice[k] += force * away;
+      work[k] += weight * u[k];
+      rounded[k] += static_cast<double>(std::abs(g[k] * u[k]));
+      g[k] += static_cast<float>(force - weight);
     }
   }
-  noise_ += kRounding * rounded;  // of the displacements, which are single precision
+  noise_ += kRounding * (rounded[0] + rounded[1] + rounded[2]);  // of the displacements, which are single precision
+  return 0.5 * (twice[0] + twice[1] + twice[2]) - (work[0] + work[1] + work[2]) + addRareTerms(z, gradient);
+}
+
+// Springs to the rest position and dead loads, which few bodies have.
+double Potential::addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) {
+  const bool foundation = !body_.foundation.empty(), load = !body_.load.empty();
+  if (!foundation && !load) return 0;
+  double value = 0;
+  for (int i = 0; i < body_.nodeCount(); ++i) {
+    if (body_.fixed[i] != 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      const double moved = z[4 * i + k] - body_.rest[i][k];
+      const double spring = foundation ? body_.foundation[i] : 0, dead = load ? body_.load[i][k] : 0;
+      value += (0.5 * spring * moved - dead) * moved;
+      gradient[4 * i + k] += static_cast<float>(spring * moved - dead);
+    }
+  }
   return value;
 }
 

@@ -23,6 +23,7 @@ class Potential {
  private:
   double gasEnergy();
   double addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
+  double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient);
 
   const ElasticBody& body_;
   const GasLoad& gas_;

@@ -35,8 +35,14 @@ double largest(const std::vector<float>& a) {
 
 }  // namespace
 
-QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch)
-    : body_(body), potential_(potential), gas_(loads.gas), extra_(loads.extra), scratch_(scratch) {}
+QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch,
+                         double safe_length)
+    : body_(body),
+      potential_(potential),
+      gas_(loads.gas),
+      extra_(loads.extra),
+      scratch_(scratch),
+      safe_length_(safe_length) {}
 
 void QuasiNewton::start() {
   restart();
@@ -135,7 +141,8 @@ double QuasiNewton::iterate(double most, bool verify) {
 double QuasiNewton::advance(double most, bool verify) {
   StepperScratch& s = scratch_;
   double part = direction_length_ > most ? most / direction_length_ : 1;
-  const bool safe = !verify && part == 1 && last_length_ > 0 && direction_length_ < kSafeContraction * last_length_;
+  const bool contracts = last_length_ > 0 && direction_length_ < kSafeContraction * last_length_;
+  const bool safe = !verify && part == 1 && (contracts || direction_length_ < safe_length_);
   last_length_ = -1;  // only a whole step says how fast the next ones shrink
   if (safe) {
     setTrial(1);

@@ -7,7 +7,9 @@ namespace vibe {
 /// Iterations of L-BFGS on top of the scratch's factor towards the minimum of a potential under the scratch's rows.
 class QuasiNewton {
  public:
-  QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch);
+  /// @param safe_length  a last move shorter than this is not verified [m]
+  QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch,
+              double safe_length = 0);
 
   /// Evaluates at the scratch's z.
   void start();
@@ -15,8 +17,8 @@ class QuasiNewton {
   void restart() { scratch_.pairs = 0; }
   /// One step: direction, then as much of it as lowers the energy.
   /// @param most    no node moves farther [m]
-  /// @param verify  false: the end point is not evaluated if the iteration is safely contracting (then no more
-  ///                iterations may follow)
+  /// @param verify  false: the end point is not evaluated if the move is safe, because it is short or
+  ///                because the iteration is contracting (then no more iterations may follow)
   /// @returns how far a node moved at most [m]
   double iterate(double most, bool verify);
   /// Length of the full direction of the last iterate [m].
@@ -40,6 +42,7 @@ class QuasiNewton {
   GasLoad& gas_;
   const EnergyTerm* extra_;
   StepperScratch& scratch_;
+  double safe_length_;
   double value_ = 0;
   double direction_length_ = 0, last_length_ = -1;
   double slope_ = 0;

@@ -13,8 +13,8 @@ namespace vibe {
 /// All memory of an ImplicitStepper. Node vectors are 4 numbers per node.
 class StepperScratch {
  public:
-  StepperScratch(int nodes, std::shared_ptr<const FactorPlan> plan, FactorStorage storage,
-                 std::shared_ptr<const BlockPattern> pattern);
+  StepperScratch(const std::vector<Eigen::Vector3d>& rest, std::shared_ptr<const FactorPlan> plan,
+                 FactorStorage storage, std::shared_ptr<const BlockPattern> pattern);
   ~StepperScratch();
 
   static constexpr int kHistory = 6;
@@ -24,7 +24,8 @@ class StepperScratch {
   std::uint64_t factor_id = 0, next_id = 0;  // what they are about; 0: nothing
   std::future<bool> making;                  // of next_factor
   HalfSpace half_space;
-  std::vector<double> z, z_hat, z_free;          // unknown, where inertia wants it, where a' = 0 puts it [m]
+  std::vector<double> rest;                      // positions [m]
+  std::vector<double> z, z_hat;                  // unknown, where inertia wants it [m]
   std::vector<double> trial;                     // [m]
   std::vector<float> displacement;               // of the point under evaluation [m]
   std::vector<float> gradient, trial_gradient;   // [N]

@@ -4,6 +4,7 @@ namespace vibe {
 
 TimeScheme::TimeScheme(const StepSettings& settings, double damping_rate, double damping_time)
     : h(settings.step), rate(damping_rate), time(damping_time) {
+  double second_order = 1;  // backward Euler does not look at the old acceleration
   if (settings.backward_euler) {
     second_order = 0;
   } else {
@@ -17,6 +18,10 @@ TimeScheme::TimeScheme(const StepSettings& settings, double damping_rate, double
   v_gain = h * gamma;
   z_gain = (1 - alpha_f) * (x_gain + time * v_gain);
   inertia = ((1 - alpha_m) + rate * (1 - alpha_f) * v_gain) / z_gain;
+  free_v_a = h * (1 - gamma);
+  free_x = {h, h * h * (0.5 - beta) * second_order};
+  free_z = {(1 - alpha_f) * free_x.v + time, (1 - alpha_f) * (free_x.a + time * free_v_a)};
+  hat_z = {free_z.v - rate / inertia, free_z.a - (alpha_m + rate * (1 - alpha_f) * free_v_a) / inertia};
 }
 
 }  // namespace vibe

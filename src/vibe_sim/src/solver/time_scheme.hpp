@@ -18,21 +18,15 @@ struct TimeScheme {
   double inertia;  ///< [1/s^2]
   double rate, time;
 
-  double freeX(double x, double v, double a) const { return x + h * v + h * h * (0.5 - beta) * a * second_order; }
-  double freeV(double v, double a) const { return v + h * (1 - gamma) * a; }
-  /// z for a' = 0
-  double freeZ(double x, double v, double a) const {
-    const double x_end = freeX(x, v, a), v_end = freeV(v, a);
-    return alpha_f * x + (1 - alpha_f) * x_end + time * (alpha_f * v + (1 - alpha_f) * v_end);
-  }
-  /// where z would be without forces
-  double hatZ(double x, double v, double a) const {
-    const double drag = rate * (alpha_f * v + (1 - alpha_f) * freeV(v, a));
-    return freeZ(x, v, a) - (alpha_m * a + drag) / inertia;
-  }
-
- private:
-  double second_order = 1;  // 0 for backward Euler, which does not look at the old acceleration
+  /// a * acceleration + v * velocity + position
+  struct Blend {
+    double v, a;
+    double operator()(double x, double vel, double acc) const { return x + v * vel + a * acc; }
+  };
+  Blend free_x;     ///< x' for a' = 0
+  Blend free_z;     ///< z for a' = 0
+  Blend hat_z;      ///< where z would be without forces
+  double free_v_a;  ///< v' for a' = 0 is v + free_v_a a
 };
 
 }  // namespace vibe

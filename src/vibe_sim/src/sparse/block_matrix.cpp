@@ -68,6 +68,11 @@ void BlockMatrix::setZero() {
   std::fill(lower_.begin(), lower_.end(), Eigen::Matrix3d::Zero());
 }
 
+void BlockMatrix::scale(double factor) {
+  for (Eigen::Matrix3d& block : diagonal_) block *= factor;
+  for (Eigen::Matrix3d& block : lower_) block *= factor;
+}
+
 void BlockMatrix::add(int row, int column, const Eigen::Matrix3d& block) {
   if (row == column) {
     diagonal_[row] += block;

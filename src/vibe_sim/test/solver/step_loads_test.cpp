@@ -277,7 +277,7 @@ ElasticBody replayBody() {
 
 StepSettings replaySettings() {
   StepSettings settings;
-  settings.refactor_every = 3;
+  settings.refactor_interval = 3 * settings.step;
   settings.refactor_distance = 1e-5;
   return settings;
 }

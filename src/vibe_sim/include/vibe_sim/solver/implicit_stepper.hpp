@@ -18,9 +18,9 @@ struct StepSettings {
   bool backward_euler = false;  ///< first order and strongly damping, for states far from any equilibrium
   int iterations = 3;           ///< quasi-Newton iterations a step may take
   double tolerance = 1e-6;      ///< a step ends earlier when no node would move farther than this [m]
-  /// Every so many steps the factor made in the background about the positions of that many steps ago takes over, and
-  /// the next is begun; 0: the factor stays. Fixed steps, so that a replay has the same bits.
-  int refactor_every = 10;
+  /// Every so often (rounded to whole steps, so that a replay has the same bits) the factor that was made in the
+  /// background about the positions of that long ago takes over, and the next is begun; 0: the factor stays [s]
+  double refactor_interval = 1.0 / 6;
   double refactor_distance = 5e-4;  ///< but only when a node has moved farther than this since [m]
 };
 
@@ -77,7 +77,9 @@ class ImplicitStepper {
   ElasticBody body_;
   StepSettings settings_;
   std::unique_ptr<Plan> plan_;
-  double size_ = 0;  // of the body [m]
+  double size_ = 0;         // of the body [m]
+  bool free_ = false;       // nothing holds it
+  double safe_length_ = 0;  // of a move that is not verified [m]
 };
 
 }  // namespace vibe

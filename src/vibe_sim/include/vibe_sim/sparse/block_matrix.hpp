@@ -29,6 +29,8 @@ class BlockMatrix {
   explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern);
 
   void setZero();
+  /// Multiplies every block.
+  void scale(double factor);
   /// Adds a block at (row, column); for row < column its transpose goes to (column, row). On the diagonal the block
   /// must be symmetric.
   /// @throws Error  the block is not in the pattern
