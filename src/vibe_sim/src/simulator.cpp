@@ -96,6 +96,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   }
   StepReport report;
   model.solver->advance(model, motion ? &*motion : nullptr, insufflator_on, state, workspace, report);
+  workspace.toolResponse() = report.tool_response;
   ++state.step;
   state.time = static_cast<double>(state.step) * dt;
   if (model.tool) {

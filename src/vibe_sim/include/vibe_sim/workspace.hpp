@@ -1,8 +1,10 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "vibe_sim/model.hpp"
+#include "vibe_sim/solver/tool_response.hpp"
 
 namespace vibe {
 
@@ -18,6 +20,9 @@ class Workspace {
 
   SolverScratch& solverScratch() { return *solver_scratch_; }
   std::vector<Eigen::Isometry3d>& linkPoses() { return link_poses_; }
+  /// Output of the last step beside the state: how the tissue answers the tool; nothing while nothing is touched, and
+  /// with solvers that cannot tell (shape matching).
+  std::optional<ToolResponse>& toolResponse() { return tool_response_; }
   int threads() const { return threads_; }
 
   /// Calls body(first, last) for consecutive pieces of [0, count) of at most `grain`, on the threads of this workspace.
@@ -30,6 +35,7 @@ class Workspace {
   std::unique_ptr<Arena> arena_;  // null with one thread
   std::unique_ptr<SolverScratch> solver_scratch_;
   std::vector<Eigen::Isometry3d> link_poses_;
+  std::optional<ToolResponse> tool_response_;
 };
 
 }  // namespace vibe

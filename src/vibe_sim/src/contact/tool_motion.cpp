@@ -7,10 +7,14 @@
 
 namespace vibe {
 
-void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
+std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {
   std::array<double, kJointCount> inputs{};
   for (int i = 0; i < kJointCount; ++i) inputs[i] = start_[i] + fraction * (end_[i] - start_[i]);
-  tool_->forwardKinematics(inputs, poses);
+  return inputs;
+}
+
+void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
+  tool_->forwardKinematics(inputs(fraction), poses);
   for (Eigen::Isometry3d& pose : poses) pose = base_ * pose;
 }
 

@@ -25,7 +25,10 @@ std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) c
   scratch->stepper = stepper_.makeScratch();
   for (auto* v : {&scratch->ahead_x, &scratch->ahead_y, &scratch->ahead_z})
     v->resize(static_cast<std::size_t>(model.particle_count));
-  if (model.tool) scratch->collision = std::make_unique<ToolCollision>(*model.tool);
+  if (model.tool) {
+    scratch->collision = std::make_unique<ToolCollision>(*model.tool);
+    scratch->response = std::make_unique<ResponseEstimator>(stepper_.body(), model.scene.step_period);
+  }
   if (model.scene.tissue.self_contact)
     scratch->walls =
         std::make_unique<SelfContact>(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "stepper_scratch.hpp"
+#include "tool_touch.hpp"
 #include "vibe_sim/solver/gas.hpp"
 #include "vibe_sim/solver/lumen.hpp"
 
@@ -39,6 +41,7 @@ void ImplicitStep::run() {
   scratch_.loads.conditions.clear();
   scratch_.loads.contacts.clear();
   scratch_.contact_motion.clear();
+  scratch_.contact_link.clear();
   if (motion_ != nullptr) {
     placeTool();
     holdGrip();
@@ -68,6 +71,7 @@ void ImplicitStep::run() {
     return;
   }
   reportForces();
+  reportResponse();
   account(old_volume, old_pressure);
   noticeRest();
 }
@@ -188,6 +192,7 @@ void ImplicitStep::addContact(const Contact& contact) {
   condition.anchor = anchor;
   scratch_.loads.contacts.push_back(condition);
   scratch_.contact_motion.push_back(anchor - p);
+  scratch_.contact_link.push_back(link);
 }
 
 void ImplicitStep::fillGas() {
@@ -215,6 +220,17 @@ void ImplicitStep::reportForces() {
     ++report_.contact_count;
     pushTool(-contact.force, position(contact.node), scratch_.contact_motion[c]);
   }
+}
+
+// Begins before anything is touched: what the response needs takes a while to make.
+void ImplicitStep::reportResponse() {
+  if (scratch_.loads.conditions.empty() && scratch_.loads.contacts.empty()) return;
+  findToolTouch(model_, *motion_, stepper_, report_, state_, scratch_);
+  const StepperScratch& stepper = *scratch_.stepper;
+  const double gas_stiffness = model_.scene.gas ? state_.gas_amount / (stepper.volume * stepper.volume) : 0;
+  report_.tool_response =
+      scratch_.response->update(state_.step, scratch_.touch, {state_.x.data(), state_.y.data(), state_.z.data()},
+                                stepper.volume_gradient, gas_stiffness);
 }
 
 // force: tissue on tool [N] at a point in world; tool_step: how far the tool moved there in this step [m]

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "response_estimator.hpp"
 #include "vibe_sim/contact/self_contact.hpp"
 #include "vibe_sim/contact/tool_collision.hpp"
 #include "vibe_sim/contact/tool_motion.hpp"
@@ -22,6 +23,9 @@ struct ImplicitScratch : SolverScratch {
   std::vector<double> ahead_x, ahead_y, ahead_z;    // where the particles go if nothing stops them
   BodyLoads loads;
   std::vector<Eigen::Vector3d> contact_motion;  // of the tool at each contact [m]
+  std::vector<int> contact_link;                // of the tool at each contact
+  std::unique_ptr<ResponseEstimator> response;  // null without a tool
+  ToolTouch touch;
 };
 
 /// One step of a scene: what acts on the tissue is gathered as loads, the stepper moves it, forces are reported.
@@ -45,6 +49,7 @@ class ImplicitStep {
   void fillGas();
   void account(double old_volume, double old_pressure);
   void reportForces();
+  void reportResponse();
   void pushTool(const Eigen::Vector3d& force, const Eigen::Vector3d& at, const Eigen::Vector3d& tool_step);
   Eigen::Vector3d position(int i) const { return {state_.x[i], state_.y[i], state_.z[i]}; }
 

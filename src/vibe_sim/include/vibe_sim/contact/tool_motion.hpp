@@ -18,6 +18,9 @@ class ToolMotion {
   /// Pose of every link in world at a fraction [0, 1] of the step.
   void linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const;
 
+  /// The inputs at a fraction [0, 1] of the step [m], [rad].
+  std::array<double, kJointCount> inputs(double fraction) const;
+
   /// An upper bound of how far any point of a collision shape moves between two sets of link poses [m].
   double travel(const std::vector<Eigen::Isometry3d>& from, const std::vector<Eigen::Isometry3d>& to) const;
 

@@ -1,7 +1,10 @@
 #pragma once
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
+
+#include "vibe_sim/solver/tool_response.hpp"
 
 namespace vibe {
 
@@ -15,11 +18,12 @@ struct StepReport {
   Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in world [N]
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about scope_tip, mean over the step, in world [N m]
   Eigen::Vector3d grip_force = Eigen::Vector3d::Zero();   ///< part of tool_force that acts on the helix [N]
-  int contact_count = 0;                                  ///< most particles touched at once
-  int iterations = 0;                                     ///< of an implicit solver
-  bool careful = false;                                   ///< the step needed backward Euler and more iterations
-  bool put_back = false;                                  ///< a state beyond hope began its way back to rest
-  int speed_limited = 0;                                  ///< times a particle's speed had to be limited
+  std::optional<ToolResponse> tool_response;  ///< nothing where nothing is touched, or the solver cannot tell
+  int contact_count = 0;                      ///< most particles touched at once
+  int iterations = 0;                         ///< of an implicit solver
+  bool careful = false;                       ///< the step needed backward Euler and more iterations
+  bool put_back = false;                      ///< a state beyond hope began its way back to rest
+  int speed_limited = 0;                      ///< times a particle's speed had to be limited
 };
 
 /// Scratch memory of a solver; carries nothing from one step to the next.

@@ -1,0 +1,174 @@
+#include "response_estimator.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+
+namespace {
+
+constexpr double kInterval = 1.0 / 6;      // between renewals of the stiffness [s]
+constexpr double kFar = 5e-4;              // a node that has moved farther asks for a renewal [m]
+constexpr double kShortestStep = 2e-5;     // of the tool in a frame that says something about the slope [m]
+constexpr double kLeastEigenvalue = 1e-3;  // of the greatest: softer directions have no equilibrium
+
+// The displacement that takes the force away, in the directions that have a stiffness.
+Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::Vector3d& force) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stiffness);
+  const double least = kLeastEigenvalue * eigen.eigenvalues().maxCoeff();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i)
+    if (eigen.eigenvalues()[i] > least && least > 0)
+      sum += eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(force) / eigen.eigenvalues()[i]);
+  return sum;
+}
+
+}  // namespace
+
+ResponseEstimator::ResponseEstimator(const ElasticBody& body, double step_period)
+    : body_(body), interval_(std::max(1, static_cast<int>(std::lround(kInterval / step_period)))) {
+  const auto pattern =
+      std::make_shared<const BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups()));
+  const auto plan = makeFactorPlan(*pattern);
+  for (auto* stiffness : {&rest_, &made_, &next_}) *stiffness = std::make_unique<StaticStiffness>(body, pattern, plan);
+  present_ = rest_->make({}) ? rest_.get() : nullptr;
+}
+
+ResponseEstimator::~ResponseEstimator() {
+  if (making_.valid()) making_.wait();
+}
+
+std::optional<ToolResponse> ResponseEstimator::update(std::int64_t step, const ToolTouch& touch,
+                                                      const std::array<const double*, 3>& positions,
+                                                      const std::vector<float>& gas_direction, double gas_stiffness) {
+  const bool consecutive = step == last_step_ + 1;
+  if (step <= last_step_ || step > last_step_ + interval_) begin(step, gas_direction, gas_stiffness);
+  last_step_ = step;
+  setRows(touch);
+  if (step >= next_renewal_) {
+    next_renewal_ = step + interval_;
+    renew(touch, positions, gas_direction, gas_stiffness);
+  }
+  if (touch.rows.empty() || present_ == nullptr) return std::nullopt;
+  return respond(touch, consecutive);
+}
+
+// Whatever an earlier touch has left behind does not count.
+void ResponseEstimator::begin(std::int64_t step, const std::vector<float>& gas_direction, double gas_stiffness) {
+  if (making_.valid()) making_.get();
+  next_renewal_ = step;
+  about_.clear();
+  mass_.setZero();
+  last_nodes_.clear();
+  slope_.forget(), joint_slope_.forget();
+  if (present_ == nullptr) return;
+  present_ = rest_.get();
+  rest_->setRows({});
+  rest_->setGas(gas_direction, gas_stiffness);
+}
+
+// What was begun an interval ago takes over; the next is begun if anything has moved.
+void ResponseEstimator::renew(const ToolTouch& touch, const std::array<const double*, 3>& positions,
+                              const std::vector<float>& gas_direction, double gas_stiffness) {
+  if (making_.valid() && making_.get()) {
+    made_.swap(next_);
+    present_ = made_.get();
+    about_.swap(next_about_);
+    mass_ = next_mass_;
+  }
+  const bool lacks_mass = body_.damping_rate > 0 && mass_.isZero() && !touch.rows.empty();
+  if (!lacks_mass && !farFrom(positions)) return;
+  next_about_.resize(3 * body_.rest.size());
+  for (std::size_t i = 0; i < next_about_.size(); ++i) next_about_[i] = static_cast<float>(positions[i % 3][i / 3]);
+  startMaking(gas_direction, gas_stiffness);
+}
+
+void ResponseEstimator::startMaking(const std::vector<float>& gas_direction, double gas_stiffness) {
+  next_gas_ = gas_direction;
+  next_rows_ = rows_;
+  next_motion_ = motion_;
+  making_ = std::async(std::launch::async, [this, gas_stiffness] {
+    if (!next_->make(next_about_)) return false;
+    next_->setRows(next_rows_);
+    next_->setGas(next_gas_, gas_stiffness);
+    next_mass_.setZero();
+    if (body_.damping_rate > 0 && !next_rows_.empty()) next_mass_ = next_->movingMass(next_motion_);
+    return true;
+  });
+}
+
+bool ResponseEstimator::farFrom(const std::array<const double*, 3>& positions) const {
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const double from = about_.empty() ? body_.rest[i][k] : static_cast<double>(about_[3 * i + k]);
+      if (!(std::abs(positions[k][i] - from) <= kFar)) return true;
+    }
+  return false;
+}
+
+void ResponseEstimator::setRows(const ToolTouch& touch) {
+  rows_.resize(touch.rows.size());
+  motion_.resize(static_cast<Eigen::Index>(rows_.size()), kToolMotions);
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    rows_[r].node.assign(1, touch.rows[r].node);
+    rows_[r].coefficient.assign(1, touch.rows[r].direction);
+    motion_.row(static_cast<Eigen::Index>(r)) = touch.rows[r].motion;
+  }
+}
+
+std::optional<ToolResponse> ResponseEstimator::respond(const ToolTouch& touch, bool consecutive) {
+  present_->setRows(rows_);
+  const Eigen::LDLT<Eigen::MatrixXd> factor(present_->compliance());
+  const Motions found = motion_.transpose() * factor.solve(motion_);
+  Motions stiffness = 0.5 * (found + found.transpose());
+  if (factor.info() != Eigen::Success || !factor.isPositive() || !stiffness.allFinite()) return std::nullopt;
+
+  std::vector<int> nodes;
+  for (const ToolRow& row : touch.rows) nodes.push_back(row.node);
+  const bool comparable = touch.smooth && consecutive && nodes == last_nodes_;
+  last_nodes_.swap(nodes);
+  return response(touch, stiffness, comparable);
+}
+
+// The stiffness of translations and that of the joints are corrected each along its own motion.
+ToolResponse ResponseEstimator::response(const ToolTouch& touch, const Motions& stiffness, bool comparable) {
+  using Joints = Eigen::Matrix<double, kScopeJointCount, 1>;
+  const Motions drag = body_.damping_rate * mass_, damping = body_.damping_time * stiffness + drag;
+  const Eigen::Matrix<double, kToolMotions, 1>&x = touch.place, &v = touch.speed, &f = touch.force;
+  const Eigen::Vector3d tip = x.head<3>();
+  const Joints joints = x.tail<kScopeJointCount>();
+  const Eigen::Matrix3d k_tip = stiffness.topLeftCorner<3, 3>(), b_tip = damping.topLeftCorner<3, 3>();
+  const JointMatrix k_joints = stiffness.bottomRightCorner<kScopeJointCount, kScopeJointCount>();
+  const JointMatrix b_joints = damping.bottomRightCorner<kScopeJointCount, kScopeJointCount>();
+  const bool tip_moved = (tip - slope_.lastPlace()).norm() > kShortestStep;
+  const Eigen::VectorXd row_moves = motion_.rightCols<kScopeJointCount>() * (joints - joint_slope_.lastPlace());
+  const bool joints_moved = row_moves.cwiseAbs().maxCoeff() > kShortestStep;
+  slope_.observe(k_tip, tip, f.head<3>() + b_tip * v.head<3>(), comparable && tip_moved);
+  joint_slope_.observe(k_joints, joints, f.tail<kScopeJointCount>() + b_joints * v.tail<kScopeJointCount>(),
+                       comparable && joints_moved);
+
+  ToolResponse out;
+  out.position = tip;
+  out.velocity = v.head<3>();
+  out.force = f.head<3>();
+  out.stiffness = slope_.corrected(k_tip);
+  out.damping = body_.damping_time * out.stiffness + drag.topLeftCorner<3, 3>();
+  out.equilibrium = tip + solveWhereStiff(out.stiffness, Eigen::Vector3d(out.force + out.damping * out.velocity));
+  const JointMatrix corrected = joint_slope_.corrected(k_joints);
+  for (int j = 0; j < kScopeJointCount; ++j) {
+    JointResponse& joint = out.joints[j];
+    joint.position = x[3 + j];
+    joint.velocity = v[3 + j];
+    joint.effort = f[3 + j];
+    joint.stiffness = std::max(0.0, corrected(j, j));
+    joint.damping = body_.damping_time * joint.stiffness + drag(3 + j, 3 + j);
+    const bool stiff = joint.stiffness > kLeastEigenvalue * stiffness(3 + j, 3 + j) && joint.stiffness > 0;
+    joint.equilibrium = joint.position;
+    if (stiff) joint.equilibrium += (joint.effort + joint.damping * joint.velocity) / joint.stiffness;
+  }
+  return out;
+}
+
+}  // namespace vibe
