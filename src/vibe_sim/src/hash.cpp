@@ -49,6 +49,8 @@ std::uint64_t hash(const State& state) {
   h.add(state.solver.about.data(), state.solver.about.size() * sizeof(float));
   h.add(state.solver.next.data(), state.solver.next.size() * sizeof(float));
   h.addValue(state.solver.still);
+  h.addValue(state.solver.due);
+  h.addValue(state.solver.usual_length);
   h.addValue(state.solver.homing);
   h.addValue(state.solver.careful);
   return h.value();

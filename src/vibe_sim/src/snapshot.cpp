@@ -45,6 +45,8 @@ void transfer(Archive& archive, S& s) {
   archive.value(s.solver.steps);
   archive.value(s.solver.elastic_energy);
   archive.value(s.solver.still);
+  archive.value(s.solver.due);
+  archive.value(s.solver.usual_length);
   archive.value(s.solver.homing);
   archive.value(s.solver.careful);
 }

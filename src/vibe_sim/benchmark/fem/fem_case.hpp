@@ -98,6 +98,7 @@ struct TransientRun {
   bool backward_euler = false;
   int iterations = 3;
   double tolerance = 1e-9;                  ///< [m]
+  double refactor_interval = 1.0 / 6;       ///< age of the stiffness that the steps work with [s]
   double start_level = 0;                   ///< begin at the equilibrium of this level ...
   bool start_at_equilibrium = false;        ///< ... if true
   int start_mode = 0;                       ///< or in this mode (from 1) ...

@@ -55,6 +55,7 @@ void readTransient(const CaseReader& reader, const YamlField& field, FemCase& ou
        {"backward_euler", [&](const YamlField& f) { run.backward_euler = source.boolean(f); }},
        {"iterations", [&](const YamlField& f) { run.iterations = static_cast<int>(source.integer(f, 1, 10000)); }},
        {"tolerance", [&](const YamlField& f) { run.tolerance = reader.number(f, "m", 0, 1); }},
+       {"refactor_interval", [&](const YamlField& f) { run.refactor_interval = reader.number(f, "s", 0, 1e4); }},
        {"start", [&](const YamlField& f) { readStart(reader, f, run); }},
        {"path", [&](const YamlField& f) { readPath(reader, f, run); }}});
   if (run.duration < run.step || run.duration / run.step > 1e6)

@@ -84,6 +84,7 @@ Record follow(const FemCase& bench_case, const CaseModel& model) {
   settings.backward_euler = run.backward_euler;
   settings.iterations = run.iterations;
   settings.tolerance = run.tolerance;
+  settings.refactor_interval = run.refactor_interval;
   // dead loads are constant in a stepper: those of the end of the path, the start has been placed before
   const double end_level = levelAt(run, run.duration);
   const ImplicitStepper stepper(model.body(end_level), settings);
@@ -91,6 +92,7 @@ Record follow(const FemCase& bench_case, const CaseModel& model) {
   StepperMemory memory;
   BodyMotion motion(stepper.body());
   placeStart(bench_case, model, motion.view());
+  stepper.refactor(motion.view(), memory);
   Record record;
   record.values.resize(bench_case.samples.size());
   const bool released = run.path.empty();

@@ -141,8 +141,9 @@ double QuasiNewton::iterate(double most, bool verify) {
 double QuasiNewton::advance(double most, bool verify) {
   StepperScratch& s = scratch_;
   double part = direction_length_ > most ? most / direction_length_ : 1;
-  const bool contracts = last_length_ > 0 && direction_length_ < kSafeContraction * last_length_;
-  const bool safe = !verify && part == 1 && (contracts || direction_length_ < safe_length_);
+  contracts_ = part == 1 && ((last_length_ > 0 && direction_length_ < kSafeContraction * last_length_) ||
+                             direction_length_ < safe_length_);
+  const bool safe = !verify && contracts_;
   last_length_ = -1;  // only a whole step says how fast the next ones shrink
   if (safe) {
     setTrial(1);

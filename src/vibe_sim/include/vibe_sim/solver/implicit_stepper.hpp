@@ -16,12 +16,13 @@ struct StepSettings {
   /// 1: trapezoidal rule, conserves energy; 0: removes them in one step. [0, 1]
   double spectral_radius = 0.2;
   bool backward_euler = false;  ///< first order and strongly damping, for states far from any equilibrium
-  int iterations = 3;           ///< quasi-Newton iterations a step may take
-  double tolerance = 1e-6;      ///< a step ends earlier when no node would move farther than this [m]
-  /// Every so often (rounded to whole steps, so that a replay has the same bits) the factor that was made in the
-  /// background about the positions of that long ago takes over, and the next is begun; 0: the factor stays [s]
+  /// Quasi-Newton iterations of a step; it takes more, at most 12, while they do not halve what is left.
+  int iterations = 3;
+  double tolerance = 1e-6;  ///< a step ends earlier when no node would move farther than this [m]
+  /// A factor about other positions takes over this long after they were, and is made in the background meanwhile; a
+  /// whole number of steps, so that a replay has the same bits. 0: the factor stays [s]
   double refactor_interval = 1.0 / 6;
-  double refactor_distance = 5e-4;  ///< but only when a node has moved farther than this since [m]
+  double refactor_distance = 5e-4;  ///< it is begun when a node has moved farther than this [m]
 };
 
 /// What a step or a solve did.
@@ -36,6 +37,7 @@ struct StepOutcome {
 
 /// The memory of a stepper: factors, histories, vectors. One per thread of control.
 class StepperScratch;
+class QuasiNewton;
 
 /// Backward Euler or generalised-alpha steps, and static equilibria, by quasi-Newton iterations: L-BFGS (Nocedal 1980)
 /// on top of the factor of a stiffness about an earlier state, with a line search on the energy.
@@ -68,18 +70,19 @@ class ImplicitStepper {
 
  private:
   struct Plan;
-  void manageFactor(const MotionView& motion, StepperMemory& memory, StepperScratch& scratch) const;
-  bool farFrom(const MotionView& motion, const std::vector<float>& about) const;
-  bool attempt(const MotionView& motion, BodyLoads& loads, bool careful, double& elastic_energy,
-               StepperScratch& scratch, StepOutcome& outcome) const;
+  bool extrapolates(bool careful) const;
+  void guess(const MotionView& motion, bool careful, StepperScratch& scratch) const;
+  bool attempt(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch,
+               StepOutcome& outcome) const;
+  bool iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
   void finishStep(const MotionView& motion, bool careful, StepperScratch& scratch) const;
+  void refactorHere(StepperScratch& scratch) const;
+  void placeAtRest(const StepperScratch& scratch, const MotionView& motion) const;
+
   ElasticBody body_;
   StepSettings settings_;
   std::unique_ptr<Plan> plan_;
-  double size_ = 0;         // of the body [m]
-  bool free_ = false;       // nothing holds it
-  double safe_length_ = 0;  // of a move that is not verified [m]
 };
 
 }  // namespace vibe

@@ -13,7 +13,9 @@ struct StepperMemory {
   std::uint64_t about_id = 0;  ///< hash of `about`
   std::uint64_t next_id = 0;   ///< hash of `next`
   std::int64_t steps = 0;      ///< taken
+  std::int64_t due = 0;        ///< step at which the next factor takes over
   double elastic_energy = 0;   ///< at the end of the last step [J]
+  double usual_length = 0;     ///< running mean of the first moves of the steps [m]
   int still = 0;               ///< steps in a row in which nothing moved
   int homing = 0;              ///< steps still to be taken straight towards rest
   int careful = 0;             ///< steps still to be taken with backward Euler and many iterations

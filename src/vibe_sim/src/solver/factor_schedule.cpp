@@ -1,0 +1,119 @@
+#include "factor_schedule.hpp"
+
+#include <cstring>
+
+#include "vibe_sim/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kShift = 1e-7;  // of the stiffness, so that a free body can be factored
+
+std::uint64_t hashOf(const std::vector<float>& values) {  // FNV-1a over 32-bit words; 1: nothing
+  std::uint64_t hash = 1469598103934665603ULL;
+  for (float value : values) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    hash = (hash ^ bits) * 1099511628211ULL;
+  }
+  return values.empty() ? 1 : hash;
+}
+
+void copyPositions(const MotionView& motion, int nodes, std::vector<float>& out) {
+  out.resize(3 * static_cast<std::size_t>(nodes));
+  for (int i = 0; i < nodes; ++i)
+    for (int k = 0; k < 3; ++k) out[3 * static_cast<std::size_t>(i) + k] = static_cast<float>(motion.x[k][i]);
+}
+
+// A matrix that is not positive definite gets another chance about rest.
+void factorSafely(const ElasticBody& body, const std::vector<float>& positions, double inertia, double margin,
+                  BlockMatrix& matrix, Factor& factor) {
+  if (factorAbout(body, positions, inertia, margin, matrix, factor)) return;
+  if (factorAbout(body, {}, inertia, margin, matrix, factor)) return;
+  throw Error("The stiffness of the body at rest is not positive definite; check its mesh, masses and materials.");
+}
+
+}  // namespace
+
+bool factorAbout(const ElasticBody& body, const std::vector<float>& positions, double inertia, double margin,
+                 BlockMatrix& matrix, Factor& factor) {
+  const std::size_t n = body.rest.size();
+  std::vector<double> displacement(3 * n, 0.0);
+  if (!positions.empty())
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        displacement[3 * i + k] =
+            static_cast<double>(positions[3 * i + k]) - body.rest[i][static_cast<Eigen::Index>(k)];
+  matrix.setZero();
+  body.elements->addStiffness(displacement.data(), matrix);
+  if (margin != 1) matrix.scale(margin);
+  double mean = 0;
+  for (std::size_t i = 0; i < n; ++i) mean += matrix.diagonal()[i].trace() / (3 * static_cast<double>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    double spring = inertia * body.mass[i] + kShift * mean;
+    if (!body.foundation.empty()) spring += body.foundation[i];
+    matrix.add(static_cast<int>(i), static_cast<int>(i), spring * Eigen::Matrix3d::Identity());
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (body.fixed[i] != 0) matrix.fix(static_cast<int>(i));
+  return factor.compute(matrix);
+}
+
+void FactorSchedule::nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory) {
+  copyPositions(motion, body.nodeCount(), memory.about);
+  memory.about_id = hashOf(memory.about);
+  memory.next.clear();
+}
+
+void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, StepperMemory& memory) const {
+  if (memory.about_id == 0) memory.about_id = hashOf(memory.about);
+  if (!memory.next.empty() && memory.steps >= memory.due) {
+    memory.about.swap(memory.next);
+    memory.about_id = memory.next_id;
+    memory.next.clear();
+  }
+  if (steps == 0 || !memory.next.empty() || !farFrom(body, motion, memory.about)) return;
+  copyPositions(motion, body.nodeCount(), memory.next);
+  memory.next_id = hashOf(memory.next);
+  memory.due = memory.steps + steps;
+}
+
+void FactorSchedule::provide(const ElasticBody& body, const StepperMemory& memory, StepperScratch& scratch) const {
+  if (scratch.factor_id != memory.about_id) {
+    if (scratch.making.valid()) scratch.making.get();
+    if (scratch.next_id == memory.about_id) {
+      scratch.factor.swap(scratch.next_factor);
+    } else {
+      factorSafely(body, memory.about, inertia, margin, scratch.matrix, *scratch.factor);
+    }
+    scratch.next_id = 0;
+    scratch.factor_id = memory.about_id;
+    scratch.half_space.reset(*scratch.factor, body.nodeCount());
+  }
+  if (!memory.next.empty() && scratch.next_id != memory.next_id) makeInBackground(body, memory, scratch);
+}
+
+void FactorSchedule::makeInBackground(const ElasticBody& body, const StepperMemory& memory,
+                                      StepperScratch& scratch) const {
+  if (scratch.making.valid()) scratch.making.get();
+  scratch.next_id = memory.next_id;
+  scratch.making = std::async(std::launch::async, [this, &body, &scratch, positions = memory.next] {
+    factorSafely(body, positions, inertia, margin, scratch.next_matrix, *scratch.next_factor);
+    return true;
+  });
+}
+
+bool FactorSchedule::farFrom(const ElasticBody& body, const MotionView& motion, const std::vector<float>& about) const {
+  for (int i = 0; i < body.nodeCount(); ++i) {
+    double distance2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double from =
+          about.empty() ? body.rest[i][k] : static_cast<double>(about[3 * static_cast<std::size_t>(i) + k]);
+      distance2 += (motion.x[k][i] - from) * (motion.x[k][i] - from);
+    }
+    if (!(distance2 <= distance * distance)) return true;
+  }
+  return false;
+}
+
+}  // namespace vibe

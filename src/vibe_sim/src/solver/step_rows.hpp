@@ -1,0 +1,18 @@
+#pragma once
+
+#include "stepper_scratch.hpp"
+#include "time_scheme.hpp"
+
+namespace vibe {
+
+/// The conditions and contacts of the loads as rows for the positions at which forces are evaluated, in the scratch's
+/// rows: the conditions first, then a normal and two tangents per contact.
+void buildRows(const BodyLoads& loads, StepperScratch& scratch);
+/// What each row wants of the equilibrium itself, in the scratch's target.
+void aimAtEquilibrium(const BodyLoads& loads, StepperScratch& scratch);
+/// The same for a step: rows are met at its end, so that z has to go as much farther or less far.
+void aimAtStep(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme, StepperScratch& scratch);
+/// The rows' forces back to the loads.
+void storeForces(const StepperScratch& scratch, BodyLoads& loads);
+
+}  // namespace vibe
