@@ -244,6 +244,39 @@ geometry_msgs::WrenchStamped makeWrench(const State& state, std::int64_t stamp) 
   return message;
 }
 
+vibe_msgs::HapticParameters makeHapticRelease(std::int64_t stamp) {
+  vibe_msgs::HapticParameters message;
+  message.header.stamp = toRosTime(stamp);
+  message.header.frame_id = kWorldFrame;
+  message.joint_name.assign(kJointNames.begin(), kJointNames.begin() + kScopeJointCount);
+  return message;
+}
+
+vibe_msgs::HapticParameters makeHapticParameters(const ToolResponse& response, double force_limit, std::int64_t stamp) {
+  vibe_msgs::HapticParameters message = makeHapticRelease(stamp);
+  message.touching = 1;
+  message.position = toMessage<geometry_msgs::Point>(response.position);
+  message.velocity = toMessage<geometry_msgs::Vector3>(response.velocity);
+  message.force = toMessage<geometry_msgs::Vector3>(response.force);
+  message.equilibrium = toMessage<geometry_msgs::Point>(response.equilibrium);
+  message.force_limit = force_limit;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      message.stiffness[3 * row + column] = response.stiffness(row, column);
+      message.damping[3 * row + column] = response.damping(row, column);
+    }
+  for (int j = 0; j < kScopeJointCount; ++j) {
+    const JointResponse& joint = response.joints[j];
+    message.joint_position[j] = joint.position;
+    message.joint_velocity[j] = joint.velocity;
+    message.joint_effort[j] = joint.effort;
+    message.joint_stiffness[j] = joint.stiffness;
+    message.joint_damping[j] = joint.damping;
+    message.joint_equilibrium[j] = joint.equilibrium;
+  }
+  return message;
+}
+
 geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, const std::string& parent,
                                               const std::string& child, std::int64_t stamp) {
   geometry_msgs::TransformStamped message;

@@ -5,6 +5,7 @@
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/Joy.h>
 #include <std_msgs/String.h>
+#include <vibe_msgs/HapticParameters.h>
 #include <vibe_msgs/ProcedureEvent.h>
 #include <vibe_msgs/StageTime.h>
 #include <vibe_msgs/StepInput.h>
@@ -15,6 +16,7 @@
 #include "input_latch.hpp"
 #include "vibe_sim/event.hpp"
 #include "vibe_sim/model.hpp"
+#include "vibe_sim/solver/tool_response.hpp"
 #include "vibe_sim/state.hpp"
 #include "vibe_sim/step_input.hpp"
 #include "vibe_sim/step_timer.hpp"
@@ -58,6 +60,10 @@ StepInput readStepInput(const vibe_msgs::StepInput& message);
 sensor_msgs::JointState makeJointState(const State& state, std::int64_t stamp);
 geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::string& frame, std::int64_t stamp);
 geometry_msgs::WrenchStamped makeWrench(const State& state, std::int64_t stamp);
+/// @param force_limit  at which the helix loses what it holds [N]; infinite where it holds nothing
+vibe_msgs::HapticParameters makeHapticParameters(const ToolResponse& response, double force_limit, std::int64_t stamp);
+/// Nothing is touched any longer.
+vibe_msgs::HapticParameters makeHapticRelease(std::int64_t stamp);
 geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, const std::string& parent,
                                               const std::string& child, std::int64_t stamp);
 /// The scene as a scene file that builds the same model anywhere: absolute paths, the seed in use.

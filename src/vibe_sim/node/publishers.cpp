@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "conversions.hpp"
 #include "procedure_message.hpp"
@@ -14,6 +15,7 @@ namespace vibe {
 namespace {
 
 constexpr double kParticleRate = 60;                      // of tissue/particles in simulated time [Hz]
+constexpr double kHapticRate = 100;                       // of haptic/parameters at most, in simulated time [Hz]
 constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure/state when nothing happens [ns]
 
 // Queues are long because a simulation that runs faster than the wall clock must not lose messages to a recorder that
@@ -23,6 +25,10 @@ constexpr std::uint32_t kCloudQueue = 600;
 
 int particleInterval(double step_period) {
   return std::max(1, static_cast<int>(std::lround(1 / (kParticleRate * step_period))));
+}
+
+int hapticInterval(double step_period) {
+  return static_cast<int>(std::ceil(1 / (kHapticRate * step_period) - 1e-6));
 }
 
 }  // namespace
@@ -38,7 +44,8 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       events_(handle.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
       applied_input_(handle.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue)),
       performance_(handle.advertise<vibe_msgs::SolverStatistics>("performance", kSmallQueue)),
-      scene_(handle.advertise<std_msgs::String>("scene", 1, true)) {
+      scene_(handle.advertise<std_msgs::String>("scene", 1, true)),
+      haptic_(handle.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)) {
   if (with_clock) clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
 }
 
@@ -61,6 +68,7 @@ void Publishers::stepResult(const Session& session, const RunStatus& status) {
   const std::int64_t stamp = session.now();
   now_ = stamp;
   tool(session, stamp);
+  haptic(session, stamp);
   if (session.state.step % particleInterval(session.time.period()) == 0) particles(session, stamp);
   for (const Event& event : session.events) events_.publish(makeEvent(event, stamp));
   if (kindOf(session, status) != last_kind_ || stamp - last_procedure_ >= kProcedurePeriod) {
@@ -75,6 +83,7 @@ void Publishers::wholeState(const Session& session, const RunStatus& status) {
   if (stamp != last_particles_) particles(session, stamp);
   procedureState(session, status);
   if (stamp == last_tool_) return;
+  if (haptic_touching_) hapticRelease(stamp);
   tool(session, stamp);
   clock(stamp);
 }
@@ -97,8 +106,8 @@ void Publishers::warn(const std::string& text) {
 }
 
 bool Publishers::hasListener() const {
-  const auto all = {&scope_pose_, &helix_pose_, &wrench_,        &joint_states_, &topology_, &particles_,
-                    &procedure_,  &events_,     &applied_input_, &performance_,  &scene_,    &clock_};
+  const auto all = {&scope_pose_, &helix_pose_,    &wrench_,      &joint_states_, &topology_, &particles_, &procedure_,
+                    &events_,     &applied_input_, &performance_, &scene_,        &haptic_,   &clock_};
   return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 
@@ -111,6 +120,24 @@ void Publishers::tool(const Session& session, std::int64_t stamp) {
   helix_pose_.publish(makePose(model.tool_base * link_poses_[model.helix_link], kWorldFrame, stamp));
   wrench_.publish(makeWrench(session.state, stamp));
   joint_states_.publish(makeJointState(session.state, stamp));
+}
+
+void Publishers::haptic(const Session& session, std::int64_t stamp) {
+  const std::optional<ToolResponse>& response = session.workspace->toolResponse();
+  if (!response) {
+    if (haptic_touching_) hapticRelease(stamp);
+    return;
+  }
+  if (haptic_touching_ && session.state.step % hapticInterval(session.time.period()) != 0) return;
+  haptic_touching_ = true;
+  const bool holds = session.model->scene.helix && !session.state.grip.empty();
+  const double limit = holds ? session.model->scene.helix->hold_force : std::numeric_limits<double>::infinity();
+  haptic_.publish(makeHapticParameters(*response, limit, stamp));
+}
+
+void Publishers::hapticRelease(std::int64_t stamp) {
+  haptic_touching_ = false;
+  haptic_.publish(makeHapticRelease(stamp));
 }
 
 void Publishers::particles(const Session& session, std::int64_t stamp) {

@@ -9,7 +9,7 @@ namespace vibe {
 
 namespace {
 
-constexpr double kInterval = 1.0 / 6;      // between renewals of the stiffness [s]
+constexpr double kInterval = 0.25;      // between renewals of the stiffness [s]
 constexpr double kFar = 5e-4;              // a node that has moved farther asks for a renewal [m]
 constexpr double kShortestStep = 2e-5;     // of the tool in a frame that says something about the slope [m]
 constexpr double kLeastEigenvalue = 1e-3;  // of the greatest: softer directions have no equilibrium

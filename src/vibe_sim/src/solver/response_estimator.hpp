@@ -42,7 +42,7 @@ class ResponseEstimator {
   ~ResponseEstimator();
 
   /// One step in which the tool is near tissue.
-  /// @param step           its number; after 1/6 s without a step near tissue a new touch begins
+  /// @param step           its number; after 0.25 s without a step near tissue a new touch begins
   /// @param positions      of the nodes [m]
   /// @param gas_direction  volume gradient (4 per node) [m^2]
   /// @param gas_stiffness  [Pa/m^3]; 0: none

@@ -161,6 +161,37 @@ TEST(Conversions, wrenchIsThatOfTheStateInTheFrameOfTheTip) {
   EXPECT_EQ(message.wrench.torque.z, -0.3);
 }
 
+TEST(Conversions, hapticParametersKeepTheirContent) {
+  ToolResponse response;
+  response.position = {1, 2, 3};
+  response.velocity = {-1, 0, 1};
+  response.force = {4, 5, 6};
+  response.equilibrium = {7, 8, 9};
+  response.stiffness << 11, 12, 13, 21, 22, 23, 31, 32, 33;
+  response.damping = 2 * response.stiffness;
+  response.joints[TipUpDown] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+  const vibe_msgs::HapticParameters message = makeHapticParameters(response, 8, 1'000'000'005);
+  EXPECT_EQ(message.header.frame_id, "world");
+  EXPECT_EQ(message.header.stamp.toNSec(), 1'000'000'005U);
+  EXPECT_TRUE(message.touching);
+  EXPECT_EQ(message.position.y, 2);
+  EXPECT_EQ(message.velocity.x, -1);
+  EXPECT_EQ(message.force.z, 6);
+  EXPECT_EQ(message.equilibrium.x, 7);
+  EXPECT_EQ(message.stiffness[5], 23);
+  EXPECT_EQ(message.damping[3], 42);
+  EXPECT_EQ(message.force_limit, 8);
+  EXPECT_EQ(message.joint_name[TipUpDown], "tip_up_down");
+  EXPECT_EQ(message.joint_position[TipUpDown], 0.1);
+  EXPECT_EQ(message.joint_velocity[TipUpDown], 0.2);
+  EXPECT_EQ(message.joint_effort[TipUpDown], 0.3);
+  EXPECT_EQ(message.joint_stiffness[TipUpDown], 0.4);
+  EXPECT_EQ(message.joint_damping[TipUpDown], 0.5);
+  EXPECT_EQ(message.joint_equilibrium[TipUpDown], 0.6);
+  EXPECT_FALSE(makeHapticRelease(8).touching);
+  EXPECT_EQ(makeHapticRelease(8).stiffness[0], 0);
+}
+
 TEST(Conversions, eventsKeepTheirContent) {
   Event event;
   event.kind = Event::Kind::Slip;

@@ -32,7 +32,7 @@ struct JointResponse {
 /// approximation only. The damping is that of the wall (damping_time times the stiffness) and of its surroundings
 /// (damping_rate times the mass that moves along with the tool in slow motion: Guyan 1965, doi 10.2514/3.2874).
 ///
-/// Limits: the force itself is exact, its slope good to some 20 %, until 1/6 s after the tool has come near tissue only
+/// Limits: the force itself is exact, its slope good to some 20 %, until 0.25 s after the tool has come near tissue only
 /// to a factor of two, since the stiffness at rest is used until then. The tangential force of sliding contacts is in
 /// `force`, but not in the spring. Stiffness from the turning of forces with the tool is left out. Implicit solver
 /// only.
