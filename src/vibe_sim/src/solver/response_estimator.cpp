@@ -9,7 +9,7 @@ namespace vibe {
 
 namespace {
 
-constexpr double kInterval = 0.25;      // between renewals of the stiffness [s]
+constexpr double kInterval = 0.25;         // between renewals of the stiffness [s]
 constexpr double kFar = 5e-4;              // a node that has moved farther asks for a renewal [m]
 constexpr double kShortestStep = 2e-5;     // of the tool in a frame that says something about the slope [m]
 constexpr double kLeastEigenvalue = 1e-3;  // of the greatest: softer directions have no equilibrium
@@ -51,7 +51,10 @@ std::optional<ToolResponse> ResponseEstimator::update(std::int64_t step, const T
     next_renewal_ = step + interval_;
     renew(touch, positions, gas_direction, gas_stiffness);
   }
-  if (touch.rows.empty() || present_ == nullptr) return std::nullopt;
+  if (touch.rows.empty() || present_ == nullptr) {
+    has_last_ = false;
+    return std::nullopt;
+  }
   return respond(touch, consecutive);
 }
 
@@ -128,15 +131,39 @@ std::optional<ToolResponse> ResponseEstimator::respond(const ToolTouch& touch, b
   std::vector<int> nodes;
   for (const ToolRow& row : touch.rows) nodes.push_back(row.node);
   const bool comparable = touch.smooth && consecutive && nodes == last_nodes_;
+  has_last_ = has_last_ && consecutive;
   last_nodes_.swap(nodes);
   return response(touch, stiffness, comparable);
+}
+
+// Particles that come into touch and leave it again can make the forces of contacts jump to and fro from frame to
+// frame, which a hand would feel as a buzz. While they do, the mean of two frames counts, the earlier force brought to
+// the present place by the stiffness.
+Eigen::Matrix<double, kToolMotions, 1> ResponseEstimator::calmForce(const ToolTouch& touch,
+                                                                    const Eigen::Matrix3d& k_tip,
+                                                                    const Eigen::Matrix3d& b_tip,
+                                                                    const JointMatrix& k_joints,
+                                                                    const JointMatrix& b_joints) {
+  Eigen::Matrix<double, kToolMotions, 1> force = touch.force, jump = Eigen::Matrix<double, kToolMotions, 1>::Zero();
+  if (has_last_ && touch.contacts) {
+    const Eigen::Matrix<double, kToolMotions, 1> moved = touch.place - last_place_, faster = touch.speed - last_speed_;
+    jump = touch.force - last_force_;
+    jump.head<3>() += k_tip * moved.head<3>() + b_tip * faster.head<3>();
+    jump.tail<kScopeJointCount>() +=
+        k_joints * moved.tail<kScopeJointCount>() + b_joints * faster.tail<kScopeJointCount>();
+    if (jump.head<3>().dot(last_jump_.head<3>()) < 0) force -= 0.5 * jump;
+  }
+  last_jump_ = jump;
+  has_last_ = true;
+  last_place_ = touch.place, last_speed_ = touch.speed, last_force_ = touch.force;
+  return force;
 }
 
 // The stiffness of translations and that of the joints are corrected each along its own motion.
 ToolResponse ResponseEstimator::response(const ToolTouch& touch, const Motions& stiffness, bool comparable) {
   using Joints = Eigen::Matrix<double, kScopeJointCount, 1>;
   const Motions drag = body_.damping_rate * mass_, damping = body_.damping_time * stiffness + drag;
-  const Eigen::Matrix<double, kToolMotions, 1>&x = touch.place, &v = touch.speed, &f = touch.force;
+  const Eigen::Matrix<double, kToolMotions, 1>&x = touch.place, &v = touch.speed;
   const Eigen::Vector3d tip = x.head<3>();
   const Joints joints = x.tail<kScopeJointCount>();
   const Eigen::Matrix3d k_tip = stiffness.topLeftCorner<3, 3>(), b_tip = damping.topLeftCorner<3, 3>();
@@ -145,10 +172,12 @@ ToolResponse ResponseEstimator::response(const ToolTouch& touch, const Motions& 
   const bool tip_moved = (tip - slope_.lastPlace()).norm() > kShortestStep;
   const Eigen::VectorXd row_moves = motion_.rightCols<kScopeJointCount>() * (joints - joint_slope_.lastPlace());
   const bool joints_moved = row_moves.cwiseAbs().maxCoeff() > kShortestStep;
-  slope_.observe(k_tip, tip, f.head<3>() + b_tip * v.head<3>(), comparable && tip_moved);
-  joint_slope_.observe(k_joints, joints, f.tail<kScopeJointCount>() + b_joints * v.tail<kScopeJointCount>(),
+  slope_.observe(k_tip, tip, touch.force.head<3>() + b_tip * v.head<3>(), comparable && tip_moved);
+  joint_slope_.observe(k_joints, joints, touch.force.tail<kScopeJointCount>() + b_joints * v.tail<kScopeJointCount>(),
                        comparable && joints_moved);
 
+  const Eigen::Matrix<double, kToolMotions, 1> f =
+      calmForce(touch, slope_.corrected(k_tip), b_tip, joint_slope_.corrected(k_joints), b_joints);
   ToolResponse out;
   out.position = tip;
   out.velocity = v.head<3>();

@@ -29,6 +29,7 @@ struct ToolTouch {
   Eigen::Matrix<double, kToolMotions, 1> place;  ///< scope_tip [m] and joints [m], [rad] where the forces hold
   Eigen::Matrix<double, kToolMotions, 1> speed;  ///< of the same, per second
   Eigen::Matrix<double, kToolMotions, 1> force;  ///< tissue on tool [N], and its efforts on the joints [N], [N m]
+  bool contacts = false;                         ///< some rows are contacts
   bool smooth = true;                            ///< false: an exceptional step; its force says nothing about slopes
 };
 
@@ -60,6 +61,9 @@ class ResponseEstimator {
   void startMaking(const std::vector<float>& gas_direction, double gas_stiffness);
   bool farFrom(const std::array<const double*, 3>& positions) const;
   void setRows(const ToolTouch& touch);
+  Eigen::Matrix<double, kToolMotions, 1> calmForce(const ToolTouch& touch, const Eigen::Matrix3d& k_tip,
+                                                   const Eigen::Matrix3d& b_tip, const JointMatrix& k_joints,
+                                                   const JointMatrix& b_joints);
   std::optional<ToolResponse> respond(const ToolTouch& touch, bool consecutive);
   ToolResponse response(const ToolTouch& touch, const Motions& stiffness, bool comparable);
 
@@ -74,6 +78,8 @@ class ResponseEstimator {
   std::future<bool> making_;
   std::int64_t last_step_ = std::numeric_limits<std::int64_t>::max(), next_renewal_ = 0;
   std::vector<int> last_nodes_;
+  bool has_last_ = false;  // response
+  Eigen::Matrix<double, kToolMotions, 1> last_place_, last_speed_, last_force_, last_jump_;
   SlopeCorrection<3> slope_;
   SlopeCorrection<kScopeJointCount> joint_slope_;
 };

@@ -41,6 +41,7 @@ void addContact(const Model& model, const ContactCondition& contact, int link, c
     addRow(contact.node, tangent, motion, scratch.touch);
     addRow(contact.node, contact.normal.cross(tangent), motion, scratch.touch);
   }
+  scratch.touch.contacts = true;
   scratch.touch.force -= motion.transpose() * contact.force;
 }
 
@@ -69,6 +70,7 @@ void findToolTouch(const Model& model, const ToolMotion& motion, const ImplicitS
   ToolTouch& touch = scratch.touch;
   touch.rows.clear();
   touch.force.setZero();
+  touch.contacts = false;
   touch.smooth = !report.careful;
   findPlace(model, motion, stepper, report.careful, scratch);
   const std::vector<Condition>& held = scratch.loads.conditions;

@@ -76,7 +76,7 @@ TEST(ToolResponse, DampingIsThatOfTheWallAndOfTheMassThatMovesAlong) {
   const double damping = 1e-3 * kSpring + 30 * body.mass[3];
   touch.force.head<3>() = Eigen::Vector3d(-damping * 0.01, 0, 0);
   std::optional<ToolResponse> response;
-  for (int i = 0; i < 12; ++i) response = estimate.next(touch);  // the mass is found in the background
+  for (int i = 0; i < 20; ++i) response = estimate.next(touch);  // the mass is found in the background
   ASSERT_TRUE(response);
   EXPECT_LT((response->damping - damping * Eigen::Matrix3d::Identity()).norm(), 2e-3 * damping);
   EXPECT_LT(response->equilibrium.norm(), 1e-7);  // moving through it, and not away from it

@@ -32,10 +32,10 @@ struct JointResponse {
 /// approximation only. The damping is that of the wall (damping_time times the stiffness) and of its surroundings
 /// (damping_rate times the mass that moves along with the tool in slow motion: Guyan 1965, doi 10.2514/3.2874).
 ///
-/// Limits: the force itself is exact, its slope good to some 20 %, until 0.25 s after the tool has come near tissue only
-/// to a factor of two, since the stiffness at rest is used until then. The tangential force of sliding contacts is in
-/// `force`, but not in the spring. Stiffness from the turning of forces with the tool is left out. Implicit solver
-/// only.
+/// Limits: the force itself is that of the step (where contacts make it jump to and fro, the mean of two), its slope
+/// good to some 20 %, until 0.25 s after the tool has come near tissue only to a factor of two, since the stiffness at
+/// rest is used until then. The tangential force of sliding contacts is in `force`, but not in the spring. Stiffness
+/// from the turning of forces with the tool is left out. Implicit solver only.
 struct ToolResponse {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();   ///< of scope_tip where `force` holds [m]
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< of scope_tip [m/s]
