@@ -26,7 +26,7 @@ struct JointResponse {
 ///
 /// The stiffness is the static one, as a slow hand feels it: that of the tissue (with its bed, its gas and all that is
 /// held or touched) about an earlier state, not the resistance within one frame, in which the inertia of the tissue
-/// doubles it or more. Rows that count: what the helix holds; contacts that stick, in three directions; contacts that
+/// adds half and more. Rows that count: what the helix holds; contacts that stick, in three directions; contacts that
 /// slide, in the direction of their normal. Along the latest motion of the tool the stiffness is corrected to the slope
 /// that the forces of the last frames had, since the tissue's stiffness is known as a positive semidefinite
 /// approximation only. The damping is that of the wall (damping_time times the stiffness) and of its surroundings
