@@ -7,27 +7,26 @@
 #include <utility>
 
 #include "self_contact_distance.hpp"
-#include "self_contact_search.hpp"
+#include "self_contact_memory.hpp"
 #include "vibe_sim/error.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr double kOneWall = 2.5;         // thicknesses along the surface
-constexpr double kFacingCosine = 0.3;    // of the normals of walls that meet: the next wall along a line faces this one
-constexpr double kOnset = 0.05;          // strain over which contact sets in
-constexpr double kStraightBelow = 0.05;  // part of the thickness under which the energy goes on straight
-constexpr double kApproach = 0.4;        // part of the gap that either side may take
-constexpr double kKeptGap = 0.25;        // part of the gap at detect() that a step leaves
-constexpr double kParting = 0.05;        // thicknesses that nodes that part may always move
-constexpr double kRange = 0.38;          // part of the least unseen distance that either side may take in a step
-constexpr double kAhead = 0.15;          // thicknesses searched beyond the reach, so that the next steps need no search
-// part of a triangle's height by which its nodes may move before its normal may have turned by half the angle between
-// the watched cosine of the search and the facing one
-constexpr double kSteady = 0.15;
+constexpr double kOneWallThicknesses = 2.5, kOneWallEdges = 3;  // along the surface
+constexpr double kFacingCosine = 0.3;   // of the normals of walls that meet: the next wall along a line faces this one
+constexpr double kSoftness = 0.1;       // modulus across what meets, of the wall's
+constexpr double kOnset = 0.25;         // strain over which contact sets in
+constexpr double kStraightBelow = 0.2;  // part of the thickness under which the energy goes on straight
+constexpr double kDrag = 2;          // of the force by the distance: more than the way it turns as a vertex slides on
+constexpr double kAhead = 1;         // thicknesses searched beyond where walls press, so that most steps need no
+constexpr double kLeastAhead = 0.1;  // search
+constexpr double kFlatSight = 0.8;   // of the distance along edges of a flat wall, a straight one at the least
+constexpr double kFloor = 0.05;      // thicknesses that walls are kept apart
+constexpr double kLeg = 6e-3;        // a step with longer moves is followed in parts, so that few walls are near [m]
 
-/// Energy per A E t / 2 of a wall squeezed to s of its thickness, and its slope by s.
+/// Energy per A E' t / 2 of a wall squeezed to s of its thickness, and its slope by s.
 std::pair<double, double> squeeze(double s) {
   if (s >= 1 + kOnset) return {0, 0};
   const double kept = std::max(s, kStraightBelow), strain = 1 - kept;
@@ -57,65 +56,85 @@ void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double
                 " Pa; it must be above 0.");
 }
 
+/// Square of the farthest way between two sets of points; not finite if one of them is not [m^2].
+double farthest(const std::array<std::vector<double>, 3>& from, const double* const* to, std::size_t count) {
+  double most[4] = {0, 0, 0, 0}, sum[4] = {0, 0, 0, 0};  // side by side: this is all that walls far apart cost
+  const double *a = from[0].data(), *b = from[1].data(), *c = from[2].data();
+  const auto add = [&](std::size_t i, std::size_t k) {
+    const double x = to[0][i] - a[i], y = to[1][i] - b[i], z = to[2][i] - c[i];
+    const double square = x * x + y * y + z * z;
+    sum[k] += square;
+    most[k] = square > most[k] ? square : most[k];
+  };
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4)
+    for (std::size_t k = 0; k < 4; ++k) add(i + k, k);
+  for (; i < count; ++i) add(i, 0);
+  return std::max(std::max(most[0], most[1]), std::max(most[2], most[3])) + 0 * (sum[0] + sum[1] + sum[2] + sum[3]);
+}
+
 Eigen::Vector3d at(const double* positions4, int node) {
   const double* p = positions4 + 4 * static_cast<std::size_t>(node);
   return {p[0], p[1], p[2]};
 }
 
+double meanEdge(const SurfaceMesh& mesh) {
+  double sum = 0;
+  for (const auto& n : mesh.triangles)
+    for (int k = 0; k < 3; ++k) sum += (mesh.vertices[n[k]] - mesh.vertices[n[(k + 1) % 3]]).norm();
+  return mesh.triangles.empty() ? 0 : sum / (3 * static_cast<double>(mesh.triangles.size()));
+}
+
 }  // namespace
 
 SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double young_modulus)
-    : rest_(std::move(rest)), thickness_(std::move(thickness)), young_modulus_(young_modulus) {
-  check(rest_, thickness_, young_modulus_);
+    : rest_(std::move(rest)), thickness_(std::move(thickness)), stiffness_(kSoftness * young_modulus) {
+  check(rest_, thickness_, young_modulus);
   area_ = vertexAreas(rest_);
   least_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   most_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
-  std::vector<double> one_wall(thickness_);
-  for (double& length : one_wall) length *= kOneWall;
-  search_ = std::make_unique<SelfContactSearch>(rest_, one_wall);
-  start_ = searched_ = rest_.vertices;
-  range_.assign(thickness_.size(), std::numeric_limits<double>::infinity());
-  room_.assign(thickness_.size(), 0);
+  const double edge = meanEdge(rest_), one_wall = std::max(kOneWallThicknesses * most_thickness_, kOneWallEdges * edge);
+  // seen from a vertex, a flat wall that is not one with it any more stays out of sight
+  ahead_ = std::clamp(kFlatSight * one_wall - 0.5 * edge - most_thickness_ * (1 + kOnset),
+                      kLeastAhead * most_thickness_, kAhead * most_thickness_);
+  memory_ = std::make_unique<SelfContactMemory>(rest_, std::vector<double>(thickness_.size(), one_wall),
+                                                kFloor * least_thickness_);
 }
 
 SelfContact::~SelfContact() = default;
 
 void SelfContact::detect(const double* x, const double* y, const double* z, double reach) {
-  double moved = 0;
-  const bool finite = follow(x, y, z, moved);
   pairs_.clear();
-  near_.clear();
-  std::fill(range_.begin(), range_.end(), kRange * (least_thickness_ + reach));
-  if (!finite) {
-    margin_ = -1;
+  if (!start(x, y, z, moved_)) {
+    cover_ = -1;
+    memory_->near.clear();
     return;
   }
-  moved = std::sqrt(moved);
-  if (margin_ >= 0 && moved <= steady_ && margin_ - 2 * moved > reach) return;
-  search(reach);
+  if (cover_ < (1 + kOnset) * most_thickness_ + reach + 2 * moved_) search(reach);
+  addPairs(reach);
 }
 
-bool SelfContact::follow(const double* x, const double* y, const double* z, double& moved_squared) {
-  double sum = 0;
-  for (std::size_t i = 0; i < start_.size(); ++i) {
-    start_[i] = {x[i], y[i], z[i]};
-    const double moved = (start_[i] - searched_[i]).squaredNorm();
-    sum += moved;
-    moved_squared = std::max(moved_squared, moved);
-  }
-  return std::isfinite(sum);
+// Keeps the positions and finds how far they are from those of the last search.
+bool SelfContact::start(const double* x, const double* y, const double* z, double& moved) {
+  const double* now[3] = {x, y, z};
+  SelfContactMemory& m = *memory_;
+  const std::size_t n = thickness_.size();
+  for (int k = 0; k < 3; ++k) std::copy(now[k], now[k] + n, m.start[k].begin());
+  const double largest = farthest(m.searched, now, n);
+  moved = std::sqrt(largest);
+  return std::isfinite(largest);
 }
 
 void SelfContact::search(double reach) {
   ++searches_;
-  searched_ = start_;
-  search_->place(start_);
-  steady_ = kSteady * search_->lowestHeight();
-  margin_ = reach + kAhead * most_thickness_;
-  search_->flagNear((1 + kOnset + kAhead) * most_thickness_ + reach);
-  if (!search_->anyFlagged()) return;
-  for (int i = 0; i < static_cast<int>(start_.size()); ++i)
-    if (search_->flagged(i)) addPairs(i, reach);
+  SelfContactMemory& m = *memory_;
+  for (int k = 0; k < 3; ++k) m.searched[k] = m.start[k];
+  moved_ = 0;
+  for (std::size_t i = 0; i < m.position.size(); ++i) m.position[i] = m.at(static_cast<int>(i));
+  cover_ = (1 + kOnset) * most_thickness_ + std::max(ahead_, reach + kLeastAhead * most_thickness_);
+  m.search.findNear(m.position, cover_, m.found);
+  m.near.clear();
+  for (const SelfContactSearch::Near& near : m.found) m.near.push_back({near, Eigen::Vector3d::Zero()});
 }
 
 double SelfContact::meanThickness(int vertex, int triangle) const {
@@ -123,147 +142,158 @@ double SelfContact::meanThickness(int vertex, int triangle) const {
   return 0.5 * (thickness_[vertex] + (thickness_[n[0]] + thickness_[n[1]] + thickness_[n[2]]) / 3);
 }
 
-void SelfContact::addPairs(int vertex, double reach) {
-  found_[0].clear();
-  found_[1].clear();
-  const Eigen::Vector3d& own = search_->normal(vertex);
-  const double farthest = (1 + kOnset + kAhead) * most_thickness_ + reach;
-  const double watched = SelfContactSearch::kWatchedCosine * SelfContactSearch::kWatchedCosine;
-  search_->visitNear(vertex, [&](int triangle) {
-    // compared by squares: most triangles are left here
-    const Eigen::Vector3d& area = search_->areaVector(triangle);
-    const double size = area.squaredNorm(), along = own.dot(area);
-    if (along > 0 && along * along > watched * size) return;
-    const auto& n = rest_.triangles[triangle];
-    const double height = area.dot(start_[vertex] - start_[n[0]]);
-    if (height * height > farthest * farthest * size) return;
-    const TriangleFoot foot = triangleFoot(start_[vertex], start_[n[0]], start_[n[1]], start_[n[2]]);
-    const double distance = foot.away.norm();
-    const double margin = distance - (1 + kOnset) * meanThickness(vertex, triangle);
-    margin_ = std::min(margin_, margin);
-    const Eigen::Vector3d normal = area.normalized();
-    if (margin >= reach || own.dot(normal) >= kFacingCosine) return;
-    found_[(normal - own).dot(foot.away) >= 0 ? 1 : 0].push_back({triangle, distance});
-  });
-  for (int side = 0; side < 2; ++side)
-    if (!found_[side].empty()) addPair(vertex, 2.0 * side - 1, found_[side], reach);
-}
-
-// The nearest triangle may change within the step, among those that are less than the reach farther away. The others
-// only bound how far the nodes may go.
-void SelfContact::addPair(int vertex, double side, const std::vector<NearTriangle>& found, double reach) {
-  const auto nearer = [](const NearTriangle& a, const NearTriangle& b) {
-    return a.distance < b.distance || (a.distance == b.distance && a.triangle < b.triangle);
+// 1 where the normals of a vertex and of a triangle are more than perpendicular, 0 where they do not face each other.
+double SelfContact::facing(int vertex, int triangle) const {
+  const SelfContactMemory& m = *memory_;
+  auto areaVector = [&](int t) -> Eigen::Vector3d {
+    const auto& n = rest_.triangles[t];
+    const Eigen::Vector3d a = m.at(n[0]);
+    return (m.at(n[1]) - a).cross(m.at(n[2]) - a);
   };
-  const NearTriangle nearest = *std::min_element(found.begin(), found.end(), nearer);
-  Pair pair{vertex, side, meanThickness(vertex, nearest.triangle), 0, static_cast<int>(near_.size()), 0};
-  for (const NearTriangle& candidate : found) {
-    const auto& n = rest_.triangles[candidate.triangle];
-    if (candidate.distance > nearest.distance + reach) {
-      const double range = kRange * candidate.distance;
-      range_[vertex] = std::min(range_[vertex], range);
-      for (const int v : n) range_[v] = std::min(range_[v], range);
-      continue;
-    }
-    const auto& r = rest_.vertices;
-    const double at_rest = triangleFoot(r[vertex], r[n[0]], r[n[1]], r[n[2]]).away.norm();
-    pair.thickness = std::min(pair.thickness, at_rest / (1 + kOnset));
-    near_.push_back(candidate);
-    ++pair.count;
-  }
-  std::sort(near_.begin() + pair.first, near_.end(), nearer);
-  pair.stiffness = 0.5 * area_[vertex] * young_modulus_ * pair.thickness;
-  if (pair.stiffness > 0) pairs_.push_back(pair);
+  Eigen::Vector3d own = Eigen::Vector3d::Zero();
+  m.search.visitRing(vertex, [&](int t) { own += areaVector(t); });
+  const Eigen::Vector3d other = areaVector(triangle);
+  const double size = std::sqrt(own.squaredNorm() * other.squaredNorm());
+  return size > 0 ? std::clamp(1 - own.dot(other) / (kFacingCosine * size), 0.0, 1.0) : 0;
 }
 
-// The triangles of a pair come by their distance at detect(): those that cannot have come near enough are left out.
-double SelfContact::farthestMove(const double* positions4) const {
-  double farthest = 0;
-  for (std::size_t i = 0; i < start_.size(); ++i)
-    farthest = std::max(farthest, (at(positions4, static_cast<int>(i)) - start_[i]).squaredNorm());
-  return std::sqrt(farthest);
+// Of a vertex, the nearest triangle that faces it, and the nearest on the opposite side of that.
+void SelfContact::addPairs(double reach) {
+  std::vector<SelfContactPaths::Approach>& near = memory_->near;
+  for (std::size_t first = 0, next; first < near.size(); first = next) {
+    const int vertex = near[first].near.vertex;
+    const Eigen::Vector3d p = memory_->at(vertex);
+    int best[2] = {-1, -1};
+    double best_facing[2] = {0, 0};
+    for (next = first; next < near.size() && near[next].near.vertex == vertex; ++next) {
+      const auto& n = rest_.triangles[near[next].near.triangle];
+      near[next].away = triangleFoot(p, memory_->at(n[0]), memory_->at(n[1]), memory_->at(n[2])).away;
+    }
+    for (int side = 0; side < 2 && (side == 0 || best[0] >= 0); ++side) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t k = first; k < next; ++k) {
+        const double distance = near[k].away.norm();
+        if (distance >= least || (side == 1 && near[k].away.dot(near[best[0]].away) >= 0)) continue;
+        if (distance >= (1 + kOnset) * meanThickness(vertex, near[k].near.triangle) + reach) continue;
+        const double faces = facing(vertex, near[k].near.triangle);
+        if (faces == 0) continue;
+        least = distance;
+        best[side] = static_cast<int>(k);
+        best_facing[side] = faces;
+      }
+      if (best[side] >= 0) addPair(best[side], best_facing[side]);
+    }
+  }
+}
+
+void SelfContact::addPair(int near, double facing) {
+  const auto [vertex, triangle] = memory_->near[near].near;
+  const auto& n = rest_.triangles[triangle];
+  const TriangleFoot foot = triangleFoot(memory_->at(vertex), memory_->at(n[0]), memory_->at(n[1]), memory_->at(n[2]));
+  const auto& r = rest_.vertices;
+  const double at_rest = triangleFoot(r[vertex], r[n[0]], r[n[1]], r[n[2]]).away.norm();
+  Pair pair;
+  pair.node = {vertex, n[0], n[1], n[2]};
+  pair.weight = foot.weight;
+  pair.normal = foot.away.normalized();
+  pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kOnset));
+  pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
+  if (!(pair.stiffness > 0)) return;
+  // within the step the normal stays, so what presses now has to slide slowly
+  const double s = foot.away.norm() / pair.thickness;
+  pair.away = foot.away;
+  pair.drag =
+      -kDrag * pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s).second / std::max(s, kStraightBelow);
+  pairs_.push_back(pair);
 }
 
 double SelfContact::evaluate(const double* positions4, float* gradient4) const {
-  if (pairs_.empty()) return 0;
-  const double closer = 2 * farthestMove(positions4);
   double energy = 0;
   for (const Pair& pair : pairs_) {
-    const Eigen::Vector3d p = at(positions4, pair.vertex);
-    TriangleFoot foot{};
-    const std::array<int, 3>* nearest = nullptr;
-    double least = (1 + kOnset) * pair.thickness;
-    for (int k = pair.first; k < pair.first + pair.count && near_[k].distance - closer < least; ++k) {
-      const auto& n = rest_.triangles[near_[k].triangle];
-      const TriangleFoot other = triangleFoot(p, at(positions4, n[0]), at(positions4, n[1]), at(positions4, n[2]));
-      const double distance = other.away.norm();
-      if (!(distance < least)) continue;
-      least = distance;
-      foot = other;
-      nearest = &n;
+    Eigen::Vector3d away = at(positions4, pair.node[0]);
+    for (int k = 0; k < 3; ++k) away -= pair.weight[k] * at(positions4, pair.node[k + 1]);
+    const auto [value, slope] = squeeze(pair.normal.dot(away) / pair.thickness);
+    if (value == 0 && pair.drag == 0) continue;
+    const Eigen::Vector3d change = away - pair.away;
+    const Eigen::Vector3d slid = change - pair.normal.dot(change) * pair.normal;
+    energy += pair.stiffness * value + 0.5 * pair.drag * slid.squaredNorm();
+    const Eigen::Vector3d force = pair.stiffness / pair.thickness * slope * pair.normal + pair.drag * slid;
+    for (int c = 0; c < 3; ++c) {
+      gradient4[4 * static_cast<std::size_t>(pair.node[0]) + c] += static_cast<float>(force[c]);
+      for (int k = 0; k < 3; ++k)
+        gradient4[4 * static_cast<std::size_t>(pair.node[k + 1]) + c] -= static_cast<float>(pair.weight[k] * force[c]);
     }
-    if (nearest != nullptr) energy += addSqueeze(pair, *nearest, foot, positions4, gradient4);
   }
   return energy;
 }
 
-double SelfContact::addSqueeze(const Pair& pair, const std::array<int, 3>& n, const TriangleFoot& foot,
-                               const double* positions4, float* gradient4) const {
-  const SignedDistance gap =
-      signedDistance(foot, pair.side, at(positions4, n[0]), at(positions4, n[1]), at(positions4, n[2]));
-  const auto [value, slope] = squeeze(gap.value / pair.thickness);
-  const Eigen::Vector3d force = pair.stiffness / pair.thickness * slope * gap.apart;
-  for (int c = 0; c < 3; ++c) {
-    gradient4[4 * static_cast<std::size_t>(pair.vertex) + c] += static_cast<float>(force[c]);
-    for (int k = 0; k < 3; ++k)
-      gradient4[4 * static_cast<std::size_t>(n[k]) + c] -= static_cast<float>(foot.weight[k] * force[c]);
-  }
-  return pair.stiffness * value;
+bool SelfContact::endsOf(const double* x, const double* y, const double* z, double& longest) {
+  const double* end[3] = {x, y, z};
+  const double largest = farthest(memory_->start, end, thickness_.size());
+  longest = std::sqrt(largest);
+  return std::isfinite(largest);
 }
 
-void SelfContact::limitMove(const double* positions4, float* move4) const {
-  if (!pairs_.empty()) limitPairs(positions4, move4);
-  for (std::size_t i = 0; i < start_.size(); ++i) {
-    const Eigen::Vector3d moved = at(positions4, static_cast<int>(i)) - start_[i];
-    float* m = move4 + 4 * i;
-    const Eigen::Vector3d move(m[0], m[1], m[2]);
-    double room = pairs_.empty() ? std::numeric_limits<double>::infinity() : room_[i];
-    if ((moved + move).squaredNorm() > range_[i] * range_[i])
-      room = std::min(room, std::max(0.0, range_[i] - moved.norm()));
-    if (move.squaredNorm() <= room * room) continue;
-    const auto part = static_cast<float>(room / move.norm());
-    for (int k = 0; k < 3; ++k) m[k] *= part;
-  }
-}
-
-void SelfContact::limitPairs(const double* positions4, const float* move4) const {
-  std::fill(room_.begin(), room_.end(), std::numeric_limits<double>::infinity());
+const std::vector<int>& SelfContact::keepApart(const MotionView& motion, double step) {
+  stopped_.clear();
+  double *x = motion.x[0], *y = motion.x[1], *z = motion.x[2];
+  SelfContactMemory& m = *memory_;
   double longest = 0;
-  for (std::size_t i = 0; i < room_.size(); ++i)
-    longest = std::max(longest, Eigen::Vector3d(move4[4 * i], move4[4 * i + 1], move4[4 * i + 2]).squaredNorm());
-  const double unbound = 2 * farthestMove(positions4) + std::sqrt(longest) / kApproach;
-  for (const Pair& pair : pairs_) {
-    const Eigen::Vector3d p = at(positions4, pair.vertex);
-    const double floor = kParting * pair.thickness;
-    for (int k = pair.first; k < pair.first + pair.count; ++k) {
-      if ((1 - kKeptGap) * near_[k].distance > unbound) break;  // the longest move is short enough for this gap
-      const auto& n = rest_.triangles[near_[k].triangle];
-      const Eigen::Vector3d a = at(positions4, n[0]), b = at(positions4, n[1]), c = at(positions4, n[2]);
-      const SignedDistance gap = signedDistance(triangleFoot(p, a, b, c), pair.side, a, b, c);
-      const double room = kApproach * std::max(0.0, gap.value - kKeptGap * near_[k].distance);
-      restrict(pair.vertex, room, floor, gap.apart, move4);
-      for (const int v : n) restrict(v, room, floor, -gap.apart, move4);
+  if (cover_ < 0 || !endsOf(x, y, z, longest)) return stopped_;
+  const double floor = kFloor * least_thickness_, sight = cover_ - 2 * moved_ - floor;
+  if (m.near.empty() && 2 * longest < sight) return stopped_;
+  const int legs = 2 * longest < sight ? 1 : static_cast<int>(std::min(64.0, std::ceil(longest / (0.5 * kLeg))));
+  for (std::size_t i = 0; i < m.position.size(); ++i) m.position[i] = m.at(static_cast<int>(i));
+  m.stopped.assign(m.position.size(), 0);
+  for (int leg = 0; leg < legs; ++leg) {
+    double farthest_move = 0;
+    for (std::size_t i = 0; i < m.position.size(); ++i) {
+      m.move[i] = (Eigen::Vector3d(x[i], y[i], z[i]) - m.position[i]) / (legs - leg);
+      farthest_move = std::max(farthest_move, m.move[i].squaredNorm());
     }
+    farthest_move = std::sqrt(farthest_move);
+    findApproaches(legs > 1, 2 * farthest_move + floor);
+    follow();
+  }
+  for (std::size_t i = 0; i < m.position.size(); ++i) {
+    if (m.stopped[i] == 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      motion.x[k][i] = m.position[i][k];
+      motion.v[k][i] = (m.position[i][k] - m.start[k][i]) / step;
+      motion.a[k][i] = 0;
+    }
+    stopped_.push_back(static_cast<int>(i));
+  }
+  return stopped_;
+}
+
+void SelfContact::findApproaches(bool anew, double distance) {
+  SelfContactMemory& m = *memory_;
+  m.approaches.clear();
+  if (!anew) {
+    for (const auto& near : m.near) {
+      const double sight = distance + 0.5 * m.search.longestEdge(near.near.vertex) + moved_;
+      if (near.away.squaredNorm() < sight * sight) m.approaches.push_back(near);
+    }
+    return;
+  }
+  cover_ = -1;  // the search knows other positions now
+  m.search.findNear(m.position, distance, m.found);
+  for (const auto& near : m.found) {
+    const auto& n = rest_.triangles[near.triangle];
+    m.approaches.push_back(
+        {near, triangleFoot(m.position[near.vertex], m.position[n[0]], m.position[n[1]], m.position[n[2]]).away});
   }
 }
 
-void SelfContact::restrict(int node, double room, double floor, const Eigen::Vector3d& apart,
-                           const float* move4) const {
-  if (room >= room_[node]) return;
-  const float* m = move4 + 4 * static_cast<std::size_t>(node);
-  const Eigen::Vector3d move(m[0], m[1], m[2]);
-  if (room < floor && move.dot(apart) >= 0.5 * move.norm()) room = floor;
-  room_[node] = std::min(room_[node], room);
+void SelfContact::follow() {
+  SelfContactMemory& m = *memory_;
+  m.whole = m.move;
+  const bool shortened = m.paths.shorten(m.position, m.approaches, m.move);
+  for (std::size_t i = 0; i < m.position.size(); ++i) {
+    if (shortened && m.move[i] != m.whole[i]) m.stopped[i] = 1;
+    m.position[i] += m.move[i];
+  }
 }
 
 }  // namespace vibe

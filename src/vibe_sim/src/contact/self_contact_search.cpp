@@ -1,30 +1,18 @@
 #include "self_contact_search.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <queue>
 #include <utility>
 
+#include "self_contact_distance.hpp"
+
 namespace vibe {
 
-namespace {
-
-/// Least product of two vectors from the boxes.
-float leastDot(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const Eigen::Vector3f& other_low,
-               const Eigen::Vector3f& other_high) {
-  return (low.cwiseProduct(other_low))
-      .cwiseMin(low.cwiseProduct(other_high))
-      .cwiseMin(high.cwiseProduct(other_low))
-      .cwiseMin(high.cwiseProduct(other_high))
-      .sum();
-}
-
-}  // namespace
-
 SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const std::vector<double>& one_wall)
-    : triangles_(rest.triangles), position_(rest.vertices), area_vector_(rest.triangles.size()) {
+    : triangles_(rest.triangles) {
   const std::size_t n = rest.vertices.size();
   triangle_start_.assign(n + 1, 0);
   for (const auto& t : triangles_)
@@ -34,22 +22,20 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const std::vector<
   std::vector<int> next(triangle_start_.begin(), triangle_start_.end() - 1);
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for (const int v : triangles_[t]) triangle_of_[next[v]++] = static_cast<int>(t);
-  normal_.resize(n);
-  near_.resize(n);
+  edge_.resize(n);
   cell_of_.resize(n);
   sorted_.resize(n);
-  flagged_.assign(n, 0);
-  vertex_stamp_.assign(n, 0);
+  wall_stamp_.assign(n, 0);
   triangle_stamp_.assign(triangles_.size(), 0);
   joinWalls(rest, one_wall);
 }
 
-// Dijkstra from every vertex, as far as its wall goes: two edges at least.
+// Dijkstra's paths along edges from every vertex, and everything within two edges.
 void SelfContactSearch::joinWalls(const SurfaceMesh& rest, const std::vector<double>& one_wall) {
   const auto neighbours = vertexNeighbours(rest);
   const int n = static_cast<int>(rest.vertices.size());
   std::vector<double> length(n, std::numeric_limits<double>::infinity());
-  std::vector<int> edges(n, 3), touched;
+  std::vector<int> touched;
   using Entry = std::pair<double, int>;
   wall_start_.assign(1, 0);
   for (int i = 0; i < n; ++i) {
@@ -85,58 +71,47 @@ bool SelfContactSearch::oneWall(int vertex, int other) const {
   return std::binary_search(wall_.begin() + wall_start_[vertex], wall_.begin() + wall_start_[vertex + 1], other);
 }
 
-void SelfContactSearch::place(const std::vector<Eigen::Vector3d>& positions) {
-  position_ = positions;
-  std::fill(normal_.begin(), normal_.end(), Eigen::Vector3d::Zero());
-  std::fill(near_.begin(), near_.end(), 0);
-  double longest = 0, lowest = std::numeric_limits<double>::max();  // squares
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const auto& n = triangles_[t];
-    const Eigen::Vector3d ab = position_[n[1]] - position_[n[0]], ac = position_[n[2]] - position_[n[0]];
-    const Eigen::Vector3d area = ab.cross(ac);
-    const double edge = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    longest = std::max(longest, edge);
-    if (area.squaredNorm() < lowest * edge) lowest = area.squaredNorm() / edge;
-    area_vector_[t] = area;
-    for (const int v : n) {
-      normal_[v] += area;
-      near_[v] = std::max(near_[v], edge);  // squared until flagNear
-    }
-  }
-  for (Eigen::Vector3d& normal : normal_) {
-    const double length = normal.norm();
-    if (length > 0) normal *= 1 / length;
-  }
-  longest_edge_ = std::sqrt(longest);
-  lowest_height_ = std::sqrt(lowest);
+bool SelfContactSearch::sameWall(const std::array<int, 3>& one, const std::array<int, 3>& other) const {
+  for (const int v : one)
+    for (const int w : other)
+      if (oneWall(v, w)) return true;
+  return false;
 }
 
-void SelfContactSearch::flagNear(double distance) {
+void SelfContactSearch::findNear(const std::vector<Eigen::Vector3d>& positions, double distance,
+                                 std::vector<Near>& found) {
+  found.clear();
+  measureEdges(positions);
   // no point of a triangle is farther from its nearest vertex than this part of its longest edge
-  for (double& near : near_) near = distance + std::sqrt(near / 3);
-  layGrid(distance + longest_edge_ / std::sqrt(3.0));
-  fillCells();
-  std::fill(flagged_.begin(), flagged_.end(), char{0});
-  any_flagged_ = false;
-  for (const Cell& cell : filled_) {
-    for (int side = 13; side < 27; ++side) {  // itself, and one of each pair of opposite neighbours
-      const int x = cell.at[0] + side % 3 - 1, y = cell.at[1] + side / 3 % 3 - 1, z = cell.at[2] + side / 9 - 1;
-      if (x < 0 || y < 0 || x >= cells_[0] || y >= cells_[1] || z >= cells_[2]) continue;
-      const int other = occupied_[(z * cells_[1] + y) * cells_[0] + x];
-      if (other >= 0) comparePair(cell, filled_[other]);
-    }
-  }
+  layGrid(positions, distance + longest_edge_ * (0.5 + 1 / std::sqrt(3.0)));
+  fillCells(positions);
+  for (int i = 0; i < static_cast<int>(positions.size()); ++i)
+    findNearOf(i, positions, distance + 0.5 * edge_[i], found);
 }
 
-void SelfContactSearch::layGrid(double distance) {
-  Eigen::Vector3d low = position_[0], high = position_[0];
-  for (const Eigen::Vector3d& p : position_) {
+void SelfContactSearch::measureEdges(const std::vector<Eigen::Vector3d>& positions) {
+  std::fill(edge_.begin(), edge_.end(), 0.0);
+  double longest = 0;
+  for (const auto& n : triangles_) {
+    const double edge =
+        std::max({(positions[n[0]] - positions[n[1]]).squaredNorm(), (positions[n[1]] - positions[n[2]]).squaredNorm(),
+                  (positions[n[2]] - positions[n[0]]).squaredNorm()});
+    for (const int v : n) edge_[v] = std::max(edge_[v], edge);
+    longest = std::max(longest, edge);
+  }
+  for (double& edge : edge_) edge = std::sqrt(edge);
+  longest_edge_ = std::sqrt(longest);
+}
+
+void SelfContactSearch::layGrid(const std::vector<Eigen::Vector3d>& positions, double distance) {
+  Eigen::Vector3d low = positions[0], high = positions[0];
+  for (const Eigen::Vector3d& p : positions) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
   corner_ = low;
   const Eigen::Vector3d size = high - low;
-  const double most = 4.0 * static_cast<double>(position_.size()) + 64;
+  const double most = 4.0 * static_cast<double>(positions.size()) + 64;
   for (cell_ = distance;; cell_ *= 1.25) {
     const Eigen::Vector3d count = (size / cell_).array().floor() + 1;
     if (!(count.prod() <= most)) continue;
@@ -145,52 +120,56 @@ void SelfContactSearch::layGrid(double distance) {
   }
 }
 
-int SelfContactSearch::cellNumber(const Eigen::Vector3d& p, std::array<int, 3>& at) const {
+std::array<int, 3> SelfContactSearch::cellOf(const Eigen::Vector3d& p) const {
+  std::array<int, 3> at;
   for (int k = 0; k < 3; ++k) at[k] = std::min(static_cast<int>((p[k] - corner_[k]) / cell_), cells_[k] - 1);
-  return (at[2] * cells_[1] + at[1]) * cells_[0] + at[0];
+  return at;
 }
 
 // Counting sort: vertices stay in ascending order within a cell.
-void SelfContactSearch::fillCells() {
-  const int count = cells_[0] * cells_[1] * cells_[2];
-  cell_start_.assign(static_cast<std::size_t>(count) + 1, 0);
-  std::array<int, 3> at;
-  for (std::size_t i = 0; i < position_.size(); ++i) ++cell_start_[(cell_of_[i] = cellNumber(position_[i], at)) + 1];
-  for (int c = 0; c < count; ++c) cell_start_[c + 1] += cell_start_[c];
-  occupied_.assign(cell_start_.begin(), cell_start_.end() - 1);
-  for (std::size_t i = 0; i < position_.size(); ++i) sorted_[occupied_[cell_of_[i]]++] = static_cast<int>(i);
-  filled_.clear();
-  for (int c = 0; c < count; ++c) {
-    occupied_[c] = -1;
-    if (cell_start_[c] == cell_start_[c + 1]) continue;
-    occupied_[c] = static_cast<int>(filled_.size());
-    Cell cell{{c % cells_[0], c / cells_[0] % cells_[1], c / cells_[0] / cells_[1]},
-              cell_start_[c],
-              cell_start_[c + 1],
-              Eigen::Vector3f::Constant(2),
-              Eigen::Vector3f::Constant(-2)};
-    for (int k = cell.first; k < cell.last; ++k) {
-      const Eigen::Vector3f normal = normal_[sorted_[k]].cast<float>();
-      cell.low = cell.low.cwiseMin(normal);
-      cell.high = cell.high.cwiseMax(normal);
-    }
-    filled_.push_back(cell);
+void SelfContactSearch::fillCells(const std::vector<Eigen::Vector3d>& positions) {
+  cell_start_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const std::array<int, 3> at = cellOf(positions[i]);
+    cell_of_[i] = (at[2] * cells_[1] + at[1]) * cells_[0] + at[0];
+    ++cell_start_[cell_of_[i] + 1];
+  }
+  for (std::size_t c = 0; c + 1 < cell_start_.size(); ++c) cell_start_[c + 1] += cell_start_[c];
+  next_.assign(cell_start_.begin(), cell_start_.end() - 1);
+  for (std::size_t i = 0; i < positions.size(); ++i) sorted_[next_[cell_of_[i]]++] = static_cast<int>(i);
+}
+
+void SelfContactSearch::findNearOf(int vertex, const std::vector<Eigen::Vector3d>& positions, double distance,
+                                   std::vector<Near>& found) {
+  ++stamp_;
+  for (int k = wall_start_[vertex]; k < wall_start_[vertex + 1]; ++k) wall_stamp_[wall_[k]] = stamp_;
+  candidates_.clear();
+  const std::array<int, 3> at = cellOf(positions[vertex]);
+  for (int z = std::max(at[2] - 1, 0); z <= std::min(at[2] + 1, cells_[2] - 1); ++z)
+    for (int y = std::max(at[1] - 1, 0); y <= std::min(at[1] + 1, cells_[1] - 1); ++y)
+      for (int x = std::max(at[0] - 1, 0); x <= std::min(at[0] + 1, cells_[0] - 1); ++x)
+        visitCell((z * cells_[1] + y) * cells_[0] + x, vertex, positions, distance);
+  std::sort(candidates_.begin(), candidates_.end());
+  for (const int t : candidates_) {
+    const auto& n = triangles_[t];
+    const TriangleFoot foot = triangleFoot(positions[vertex], positions[n[0]], positions[n[1]], positions[n[2]]);
+    if (foot.away.squaredNorm() < distance * distance) found.push_back({vertex, t});
   }
 }
 
-void SelfContactSearch::comparePair(const Cell& one, const Cell& other) {
-  if (leastDot(one.low, one.high, other.low, other.high) > static_cast<float>(kWatchedCosine)) return;
-  for (int k = one.first; k < one.last; ++k) {
-    const int i = sorted_[k];
-    for (int l = one.first == other.first ? k + 1 : other.first; l < other.last; ++l) {
-      const int j = sorted_[l];
-      const double near = std::max(near_[i], near_[j]);
-      if ((flagged_[i] != 0 && flagged_[j] != 0) || (position_[i] - position_[j]).squaredNorm() > near * near ||
-          normal_[i].dot(normal_[j]) > kWatchedCosine || oneWall(i, j))
-        continue;
-      flagged_[i] = flagged_[j] = 1;
-      any_flagged_ = true;
-    }
+void SelfContactSearch::visitCell(int cell, int vertex, const std::vector<Eigen::Vector3d>& positions,
+                                  double distance) {
+  for (int k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
+    const int other = sorted_[k];
+    const double near = distance + edge_[other] / std::sqrt(3.0);
+    if (wall_stamp_[other] == stamp_ || (positions[other] - positions[vertex]).squaredNorm() > near * near) continue;
+    visitRing(other, [&](int t) {
+      if (triangle_stamp_[t] == stamp_) return;
+      triangle_stamp_[t] = stamp_;
+      const auto& n = triangles_[t];
+      if (wall_stamp_[n[0]] != stamp_ && wall_stamp_[n[1]] != stamp_ && wall_stamp_[n[2]] != stamp_)
+        candidates_.push_back(t);
+    });
   }
 }
 

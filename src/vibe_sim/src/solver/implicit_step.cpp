@@ -70,6 +70,7 @@ void ImplicitStep::run() {
     std::fill(state_.x.begin(), state_.x.end(), std::numeric_limits<double>::quiet_NaN());  // the simulator recovers
     return;
   }
+  stopWalls();
   reportForces();
   reportResponse();
   account(old_volume, old_pressure);
@@ -174,6 +175,15 @@ void ImplicitStep::findWalls() {
         std::max(fastest2, state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i]);
   const double reach = std::clamp(2.5 * h_ * std::sqrt(fastest2), kLeastReach, model_.particle_radius);
   scratch_.walls->detect(state_.x.data(), state_.y.data(), state_.z.data(), reach);
+}
+
+// A step may end with walls that have passed through each other: iterations end early, tools jump. They stop instead.
+void ImplicitStep::stopWalls() {
+  if (!scratch_.walls) return;
+  scratch_.walls->keepApart({{state_.x.data(), state_.y.data(), state_.z.data()},
+                             {state_.vx.data(), state_.vy.data(), state_.vz.data()},
+                             {state_.ax.data(), state_.ay.data(), state_.az.data()}},
+                            h_);
 }
 
 void ImplicitStep::addContact(const Contact& contact) {

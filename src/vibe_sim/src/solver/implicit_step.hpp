@@ -41,6 +41,7 @@ class ImplicitStep {
   void holdGrip();
   void findContacts();
   void findWalls();
+  void stopWalls();
   void addContact(const Contact& contact);
   bool atRest() const;
   bool lost(const MotionView& motion) const;

@@ -17,7 +17,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kThickness = 3e-3, kModulus = 5e4;
+constexpr double kThickness = 3e-3, kModulus = 5e4, kStep = 1.0 / 60;
 
 /// A square grid of cells x cells squares about the z axis at height z, its normals up or down.
 void addPlate(int cells, double spacing, double z, bool up, SurfaceMesh& mesh) {
@@ -98,6 +98,28 @@ struct World {
     }
     contact.detect(x.data(), y.data(), z.data(), reach);
   }
+  /// Ends a step that has moved by `move` since detect().
+  std::size_t keepApart(const std::vector<double>& move) {
+    std::array<std::vector<double>, 3> x, v, a;
+    for (std::size_t i = 0; i < count(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        x[k].push_back(at[4 * i + k] + move[4 * i + k]);
+        v[k].push_back(7);
+        a[k].push_back(7);
+      }
+    const MotionView view{{x[0].data(), x[1].data(), x[2].data()},
+                          {v[0].data(), v[1].data(), v[2].data()},
+                          {a[0].data(), a[1].data(), a[2].data()}};
+    const std::vector<int>& stopped = contact.keepApart(view, kStep);
+    for (const int i : stopped)
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(v[k][i], (x[k][i] - at[4 * static_cast<std::size_t>(i) + k]) / kStep, 1e-9);
+        EXPECT_EQ(a[k][i], 0);
+      }
+    for (std::size_t i = 0; i < count(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) at[4 * i + k] = x[k][i];
+    return stopped.size();
+  }
   double evaluate() {
     std::fill(gradient.begin(), gradient.end(), 0.0F);
     return contact.evaluate(at.data(), gradient.data());
@@ -154,7 +176,6 @@ TEST(SelfContact, GradientIsDerivativeOfEnergy) {
 
 TEST(SelfContact, MomentumAndMomentAreConserved) {
   PressedPlates world;
-  world.shake(0.3e-3, 5);  // also where normals have turned since detection
   world.evaluate();
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
   double sum = 0;
@@ -172,7 +193,7 @@ TEST(SelfContact, MomentumAndMomentAreConserved) {
 double strainUnder(double load) {
   World world(plates(46, 40));
   const int first = plateSize(46);
-  double low = 0.3 * kThickness, high = 1.1 * kThickness;
+  double low = 0.2 * kThickness, high = 1.1 * kThickness;
   for (int i = 0; i < 20; ++i) {
     const double gap = 0.5 * (low + high);
     world.bring(first, gap);
@@ -184,10 +205,9 @@ double strainUnder(double load) {
 }
 
 TEST(SelfContact, PlateOnPlateCarriesTheForceOfTheSqueezedWall) {
-  const double area = std::pow(40 * 2.5e-3, 2);
-  EXPECT_NEAR(strainUnder(0.08 * kModulus * area), 0.08, 0.01);  // small: E A strain
-  for (const double stress : {0.2, 0.5, 1.0}) {
-    const double s = 1 - strainUnder(stress * kModulus * area);
+  const double area = std::pow(40 * 2.5e-3, 2), modulus = 0.1 * kModulus;
+  for (const double stress : {0.5, 1.0, 1.5}) {
+    const double s = 1 - strainUnder(stress * modulus * area);
     EXPECT_NEAR(-std::log(s) / s, stress, 0.04 * stress);  // Hencky; the rim takes a little more than its area
   }
 }
@@ -195,12 +215,12 @@ TEST(SelfContact, PlateOnPlateCarriesTheForceOfTheSqueezedWall) {
 TEST(SelfContact, ForceIsZeroBeyondOnsetGrowsWithoutJumpAndStaysFinite) {
   World world(plates(8, 6));
   double last = 0, largest_change = 0;
-  for (double s = 1.2; s > 0.3; s -= 1e-3) {
+  for (double s = 1.4; s > 0.3; s -= 1e-3) {
     world.bring(plateSize(8), s * kThickness);
     world.detect(1e-3);
     const double energy = world.evaluate();
     const double force = world.totalForce(plateSize(8), world.count()).z();
-    if (s > 1.051) {
+    if (s > 1.251) {
       ASSERT_EQ(energy, 0);
     }
     ASSERT_GE(force, last);
@@ -222,14 +242,11 @@ TEST(SelfContact, BothSidesAreTreatedAlike) {
   other.at = world.at;
   other.detect(1e-3);
   const double energy = world.evaluate();
-  ASSERT_EQ(world.contact.pairs().front().side, 1);
-  ASSERT_EQ(other.contact.pairs().front().side, -1);
   EXPECT_NEAR(other.evaluate(), energy, 1e-9 * energy);
   for (std::size_t i = 0; i < world.count(); ++i)
     EXPECT_LT((world.force(i) - other.force(i)).norm(), 1e-5 * (1e-3 + world.force(i).norm()));
 }
 
-// heights of every node over the other plate, which only moves up and down
 double leastGap(const World& world, int cells) {
   const int upper = plateSize(cells);
   double least = std::numeric_limits<double>::infinity();
@@ -237,58 +254,64 @@ double leastGap(const World& world, int cells) {
   return least;
 }
 
-double pressAtRandom(bool limited, int& negative_steps) {
+double pressAtRandom(bool limited, double size) {
   const int cells = 8;
   World world(plates(cells, cells));
   world.bring(plateSize(cells), 0.8 * kThickness, {0, 0});
   std::mt19937 random(3);
-  std::uniform_real_distribution<float> uniform(-1, 1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
   double least = std::numeric_limits<double>::infinity();
-  negative_steps = 0;
-  for (int step = 0; step < 100; ++step) {
+  for (int step = 0; step < 60; ++step) {
     world.detect(2e-3);
-    for (int iteration = 0; iteration < 3; ++iteration) {
-      std::vector<float> move(world.at.size(), 0.0F);
-      const float together = step % 2 == 0 ? 1.0F : -0.8F;
-      for (int i = 0; i < static_cast<int>(world.count()); ++i) {
-        const float towards = i < plateSize(cells) ? together : -together;
-        move[4 * i + 2] = 10 * static_cast<float>(kThickness) * (towards + 0.5F * uniform(random));
-      }
-      if (limited) world.contact.limitMove(world.at.data(), move.data());
-      for (std::size_t k = 0; k < move.size(); ++k) world.at[k] += static_cast<double>(move[k]);
-      const double gap = leastGap(world, cells);
-      least = std::min(least, gap);
-      negative_steps += gap <= 0 ? 1 : 0;
+    std::vector<double> move(world.at.size(), 0.0);
+    const double together = step % 2 == 0 ? 1.0 : -0.8;
+    for (int i = 0; i < static_cast<int>(world.count()); ++i)
+      move[4 * i + 2] = size * ((i < plateSize(cells) ? together : -together) + 0.5 * uniform(random));
+    if (limited) {
+      world.keepApart(move);
+    } else {
+      for (std::size_t k = 0; k < move.size(); ++k) world.at[k] += move[k];
     }
+    least = std::min(least, leastGap(world, cells));
   }
   return least;
 }
 
 TEST(SelfContact, LargeMovesPassThroughNothing) {
-  int through = 0;
-  EXPECT_GT(pressAtRandom(true, through), 0);
-  EXPECT_EQ(through, 0);
-  EXPECT_LT(pressAtRandom(false, through), -10 * kThickness);  // the moves would
-  EXPECT_GT(through, 100);
+  for (const double size : {0.3e-3, 3e-3, 30e-3}) {
+    EXPECT_GT(pressAtRandom(true, size), 0) << size;
+    EXPECT_LT(pressAtRandom(false, size), -0.5 * size) << size;  // the moves would
+  }
 }
 
-TEST(SelfContact, StepLeavesPartOfTheGapAndLetsNodesPart) {
-  World world(plates(8, 6));
-  const int first = plateSize(8);
-  world.bring(first, 0.8 * kThickness);
+// Two strips that cross on edge: no vertex comes near the other one's triangles before the edges meet.
+TEST(SelfContact, EdgesDoNotPassThroughEdges) {
+  SurfaceMesh mesh;
+  mesh.vertices = {{-0.02, 0, 0.01}, {0.02, 0, 0.01}, {0, 0, 0.05},    // an edge along x with its triangle above
+                   {0, -0.02, 0},    {0, 0.02, 0},    {0, 0, -0.04}};  // an edge along y with its triangle below
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  World world(mesh);
   world.detect(1e-3);
-  std::vector<float> move(world.at.size());
-  for (int iteration = 0; iteration < 50; ++iteration) {
-    for (int i = 0; i < static_cast<int>(world.count()); ++i) move[4 * i + 2] = i < first ? 1.0F : -1.0F;
-    world.contact.limitMove(world.at.data(), move.data());
-    for (std::size_t k = 0; k < move.size(); ++k) world.at[k] += static_cast<double>(move[k]);
+  std::vector<double> move(world.at.size(), 0.0);
+  for (std::size_t i = 0; i < 3; ++i) move[4 * i + 2] = -0.03;
+  EXPECT_EQ(world.keepApart(move), 2U);
+  EXPECT_GT(world.get(0).z(), 0);
+  EXPECT_LT(world.get(0).z(), 2e-3);
+}
+
+TEST(SelfContact, WhatMeetsNothingIsLeftToTheBit) {
+  World world(plates(8, 6));
+  world.bring(plateSize(8), 0.8 * kThickness);
+  for (const double size : {0.1e-3, 50e-3}) {  // together, however fast
+    world.detect(1e-3);
+    const std::vector<double> before = world.at;
+    EXPECT_EQ(world.keepApart(std::vector<double>(world.at.size(), size)), 0U);
+    for (std::size_t k = 0; k < before.size(); ++k) ASSERT_EQ(world.at[k], before[k] + (k % 4 == 3 ? 0 : size));
   }
-  const double gap = world.get(world.count() - 20).z() - world.get(first / 2).z();
-  EXPECT_NEAR(gap, 0.25 * 0.8 * kThickness, 1e-3 * kThickness);
-  std::fill(move.begin(), move.end(), 0.0F);
-  for (int i = first; i < static_cast<int>(world.count()); ++i) move[4 * i + 2] = 1.0F;
-  world.contact.limitMove(world.at.data(), move.data());
-  EXPECT_NEAR(move[4 * (world.count() - 20) + 2], 0.05 * kThickness, 1e-6);
+  world.detect(1e-3);
+  std::vector<double> apart(world.at.size(), 0.0);
+  for (std::size_t i = plateSize(8); i < world.count(); ++i) apart[4 * i + 2] = 5e-3;
+  EXPECT_EQ(world.keepApart(apart), 0U);
 }
 
 TEST(SelfContact, SphereMeetsItselfOnlyWhenFlattened) {
@@ -318,9 +341,8 @@ TEST(SelfContact, NeighboursAlongTheSurfaceNeverCount) {
   ASSERT_GT(world.contact.pairs().size(), 500U);
   double least = 1;
   for (const auto& pair : world.contact.pairs())
-    for (int k = pair.first; k < pair.first + pair.count; ++k)
-      for (const int v : world.rest.triangles[world.contact.nearTriangles()[k].triangle])
-        least = std::min(least, (world.rest.vertices[v] - world.rest.vertices[pair.vertex]).norm());
+    for (std::size_t k = 1; k < 4; ++k)
+      least = std::min(least, (world.rest.vertices[pair.node[k]] - world.rest.vertices[pair.node[0]]).norm());
   EXPECT_GT(least, 2 * kThickness);
 }
 
@@ -330,7 +352,7 @@ TEST(SelfContact, WallsNearAtRestTouchThere) {
   World world(mesh);
   world.detect(1e-3);
   ASSERT_FALSE(world.contact.pairs().empty());
-  EXPECT_EQ(world.evaluate(), 0);
+  EXPECT_LT(world.evaluate(), 1e-30);
   for (int i = plateSize(8); i < static_cast<int>(mesh.vertices.size()); ++i) world.at[4 * i + 2] *= 0.8;
   EXPECT_GT(world.evaluate(), 0);
 }
@@ -360,8 +382,8 @@ TEST(SelfContact, SearchesOnlyWhenSomethingCanHaveComeNear) {
     world.bring(plateSize(8), gap, {0, 0});
     world.detect(1e-3);
   }
-  EXPECT_NEAR(gap, 1.05 * kThickness + 1e-3, 0.11e-3);
-  EXPECT_LT(world.contact.searchCount(), 700);
+  EXPECT_NEAR(gap, 1.25 * kThickness + 1e-3, 0.11e-3);
+  EXPECT_LT(world.contact.searchCount(), 320);
 }
 
 TEST(SelfContact, PositionsThatAreNotFiniteMeetNothing) {
@@ -394,19 +416,19 @@ double threadTime() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-// `moved` of the nodes between calls; median and least time of detect and evaluate [ms]
+// `moved` of the nodes between calls; median and least time of a step's calls [ms]
 std::pair<double, double> measure(World& world, double moved) {
-  std::vector<double> x, y, z, times;
-  for (std::size_t i = 0; i < world.count(); ++i) {
-    x.push_back(world.at[4 * i]);
-    y.push_back(world.at[4 * i + 1]);
-    z.push_back(world.at[4 * i + 2]);
-  }
+  std::array<std::vector<double>, 3> x;
+  std::vector<double> v(world.count()), times;
+  for (std::size_t i = 0; i < world.count(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) x[k].push_back(world.at[4 * i + k]);
+  const MotionView view{
+      {x[0].data(), x[1].data(), x[2].data()}, {v.data(), v.data(), v.data()}, {v.data(), v.data(), v.data()}};
   for (int i = 0; i < 201; ++i) {
-    for (double& value : x) value += i % 2 == 0 ? moved : -moved;
     const double start = threadTime();
-    world.contact.detect(x.data(), y.data(), z.data(), 2e-3);
-    world.evaluate();
+    world.contact.detect(x[0].data(), x[1].data(), x[2].data(), 2e-3);
+    for (double& value : x[0]) value += i % 2 == 0 ? moved : -moved;
+    world.contact.keepApart(view, kStep);
     times.push_back(threadTime() - start);
   }
   std::sort(times.begin(), times.end());
@@ -415,29 +437,20 @@ std::pair<double, double> measure(World& world, double moved) {
 
 TEST(SelfContact, CostsLittleWhereNothingIsNear) {
   World world(sphere(0.05, 19));
-  const auto still = measure(world, 0), moving = measure(world, 5e-3);
-  World flat(sphere(0.05, 19));
-  for (std::size_t i = 0; i < flat.count(); ++i) flat.at[4 * i + 2] *= 0.04;
-  const auto met = measure(flat, 0);
-  std::printf("still %.3f (%.3f) ms, searching %.3f (%.3f) ms, flattened, %zu pairs, %zu triangles: %.3f (%.3f) ms\n",
-              still.first, still.second, moving.first, moving.second, flat.contact.pairs().size(),
-              flat.contact.nearTriangles().size(), met.first, met.second);
+  const auto still = measure(world, 1e-7), moving = measure(world, 5e-3);
   World pinched(sphere(0.05, 19));  // pinched about its axis until the poles meet
   for (std::size_t i = 0; i < pinched.count(); ++i) {
     const double off = std::hypot(pinched.at[4 * i], pinched.at[4 * i + 1]);
     pinched.at[4 * i + 2] *= std::clamp((off - 0.012) / 0.028, 0.025, 1.0);
   }
-  const auto local = measure(pinched, 0);
-  std::printf("pinched, %zu pairs: %.3f (%.3f) ms\n", pinched.contact.pairs().size(), local.first, local.second);
-  std::vector<float> move(flat.at.size(), 1e-4F);
-  double start = threadTime();
-  flat.evaluate();
-  const double evaluated = threadTime() - start;
-  start = threadTime();
-  flat.contact.limitMove(flat.at.data(), move.data());
-  std::printf("flattened: evaluate %.3f ms, limitMove %.3f ms\n", evaluated, threadTime() - start);
+  const auto local = measure(pinched, 1e-7);
+  std::printf("still %.4f (%.4f) ms, searching %.3f (%.3f) ms, pinched, %zu pairs: %.3f (%.3f) ms\n", still.first,
+              still.second, moving.first, moving.second, pinched.contact.pairs().size(), local.first, local.second);
+  const double start = threadTime();
+  for (int i = 0; i < 100; ++i) pinched.evaluate();
+  std::printf("pinched: evaluate %.4f ms\n", (threadTime() - start) / 100);
 #if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
-  EXPECT_LT(still.second, 0.15);
+  EXPECT_LT(still.second, 0.02);
 #endif
 }
 

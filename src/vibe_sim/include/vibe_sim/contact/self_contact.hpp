@@ -6,96 +6,94 @@
 #include <vector>
 
 #include "vibe_sim/geometry/surface_mesh.hpp"
+#include "vibe_sim/solver/elastic_body.hpp"
 #include "vibe_sim/solver/energy_term.hpp"
 
 namespace vibe {
 
-class SelfContactSearch;
-struct TriangleFoot;
+class SelfContactMemory;
 
-/// Walls of a shell that meet. Where a vertex comes nearer to another part of the middle surface than the mean t of
-/// the two thicknesses, the two half walls between are squeezed from t to the distance d and store the energy of a bar
-/// in Hencky's logarithmic strain (1928), per vertex of area A
-///   W = A E t / 2 * ln(s)^2 / 2,  s = d / t,
-/// half of A E t because the other wall's vertices store the rest. It resists without bound as d goes to 0; below 5 %
-/// of t it goes on straight, so that force and energy stay finite in any state. Contact sets in over the last 5 % above
-/// and below t, with a continuous stiffness.
+/// Walls of a shell that meet: an energy while a step is solved, and paths that end before a wall at its end.
 ///
-/// Only walls that face each other count: the vertex's normal and the triangle's have a cosine below 0.3. Parts of the
-/// surface within 2.5 thicknesses along edges, or two edges, are one wall. Walls that are nearer than t at rest touch
-/// there. No friction.
+/// Energy. Where a vertex comes nearer to another part of the middle surface than the mean t of the two thicknesses,
+/// the two half walls between are squeezed from t to the distance d and store the energy of a bar in Hencky's
+/// logarithmic strain (1928), per vertex of area A
+///   W = A E' t / 2 * ln(s)^2 / 2,  s = d / t,
+/// half of A E' t because the other wall's vertices store the rest. E' is a tenth of the wall's modulus: what meets is
+/// mucosa, and a stiffness near the wall's own against bending is what the iterations of a step resolve. It stiffens
+/// as d goes to 0; below 20 % of t it goes on straight, so that force and energy stay finite in any state.
+/// Contact sets in from t + 25 % to t - 25 %, with a continuous stiffness. Within a step d is measured along the way
+/// between vertex and triangle at its start: convex, smooth, and a vertex that an iterate puts through the other wall
+/// is pushed back. What presses slides against a drag of twice its force per distance and step, which goes with the
+/// motion: without it the walls, whose normals change as they slide, would never come to rest.
 ///
-/// Limits: vertices are kept from triangles, not edges from edges, so edges longer than about 2 thicknesses can cross
-/// where both walls are sharply folded. The side of a vertex is the one found by detect(): walls that have already
-/// passed through each other there stay so.
+/// Paths. keepApart() ends the straight paths of the nodes over a step before any vertex, edge or triangle passes
+/// through another wall, whatever made them move. So walls that were apart stay apart, and need no memory of sides.
+///
+/// Only walls that face each other press: the vertex's normal and the triangle's have a cosine below 0.3. Parts of the
+/// surface within 2.5 thicknesses or 3 mean edges along edges, or two edges, are one wall, which neither presses on
+/// itself nor is kept apart: folds sharper than that are beneath the resolution of the mesh. Walls that are nearer than
+/// t at rest touch there. No friction at rest.
 class SelfContact : public EnergyTerm {
  public:
-  /// A vertex and the triangles of one wall, before (side 1) or behind (side -1) which it lies.
+  /// A vertex and the triangle of another wall that is nearest to it on one side.
   struct Pair {
-    int vertex;
-    double side;
-    double thickness;  ///< distance at which they touch [m]
-    double stiffness;  ///< A E t / 2 [J]
-    int first, count;  ///< range of nearTriangles()
-  };
-  struct NearTriangle {
-    int triangle;
-    double distance;  ///< at detect() [m]
+    std::array<int, 4> node;  ///< vertex, triangle
+    Eigen::Vector3d weight;   ///< barycentric, of the foot
+    Eigen::Vector3d normal;   ///< unit, from the foot to the vertex
+    double thickness;         ///< distance at which they touch [m]
+    double stiffness;         ///< A E' t / 2 [J]
+    Eigen::Vector3d away;     ///< from the foot to the vertex at detect() [m]
+    double drag;              ///< resists sliding from there within the step [N/m]
   };
 
   /// @param rest           the middle surface at rest, consistently oriented; its vertices are the nodes [m]
   /// @param thickness      per vertex [m]
-  /// @param young_modulus  of the wall across its thickness [Pa]
+  /// @param young_modulus  of the wall [Pa]
   /// @throws Error if a triangle names no vertex, or a thickness or the modulus is not above 0, or sizes differ
   SelfContact(SurfaceMesh rest, std::vector<double> thickness, double young_modulus);
   ~SelfContact() override;
 
   /// Finds what may meet within the step; call once before it. Depends only on the arguments, not on earlier calls.
   /// Allocates only while its memory grows. A position that is not finite leaves nothing to meet.
-  /// @param reach  how much nearer two walls may come in this step, twice the farthest move of a node [m]: limitMove
-  ///               keeps every node within 0.38 * (least thickness + reach) of the positions given here
+  /// @param reach  how much nearer two walls are expected to come in this step [m]
   void detect(const double* x, const double* y, const double* z, double reach);
 
   double evaluate(const double* positions4, float* gradient4) const override;
 
-  /// A node of a pair moves by at most 0.4 of what the gap has above a quarter of its width at detect(); a
-  /// generalised-alpha step ends up to 1.25 times as far as its iterations go (spectral radius up to 0.25) and still
-  /// passes nothing. Nodes that part may move by 5 % of the thickness however narrow the gap. Not for two threads at
-  /// once.
-  void limitMove(const double* positions4, float* move4) const override;
+  /// Takes nodes back towards where detect() saw them, as far as it needs for no wall to have passed through another on
+  /// the straight way from there. Walls that were apart at detect() end at least 5 % of the least thickness apart, or
+  /// 90 % of their distance where they were nearer. A node taken back gets the velocity of the way it went.
+  /// @param step  the time since detect() [s]
+  /// @returns the nodes taken back
+  const std::vector<int>& keepApart(const MotionView& motion, double step);
 
   const std::vector<Pair>& pairs() const { return pairs_; }
-  const std::vector<NearTriangle>& nearTriangles() const { return near_; }
   int searchCount() const { return searches_; }  ///< detect() calls that could not tell without a search
 
  private:
-  bool follow(const double* x, const double* y, const double* z, double& moved_squared);
+  bool start(const double* x, const double* y, const double* z, double& moved);
   void search(double reach);
-  void addPairs(int vertex, double reach);
-  void addPair(int vertex, double side, const std::vector<NearTriangle>& found, double reach);
+  void addPairs(double reach);
+  void addPair(int near, double facing);
   double meanThickness(int vertex, int triangle) const;
-  double farthestMove(const double* positions4) const;
-  double addSqueeze(const Pair& pair, const std::array<int, 3>& triangle, const TriangleFoot& foot,
-                    const double* positions4, float* gradient4) const;
-  void limitPairs(const double* positions4, const float* move4) const;
-  void restrict(int node, double room, double floor, const Eigen::Vector3d& apart, const float* move4) const;
+  double facing(int vertex, int triangle) const;
+  void findApproaches(bool anew, double distance);
+  void follow();
+  bool endsOf(const double* x, const double* y, const double* z, double& longest);
 
   SurfaceMesh rest_;
   std::vector<double> thickness_;
-  double young_modulus_;
+  double stiffness_;  // E' [Pa]
   double least_thickness_ = 0, most_thickness_ = 0;
+  double ahead_ = 0;          // of where walls press, searched [m]
   std::vector<double> area_;  // per vertex at rest [m^2]
-  std::unique_ptr<SelfContactSearch> search_;
-  std::vector<Eigen::Vector3d> start_;     // positions of the last detect()
-  std::vector<Eigen::Vector3d> searched_;  // positions of the last search
-  double margin_ = -1;  // how much nearer than touching anything was at the last search; < 0: unknown
-  double steady_ = 0;   // farthest a node may have moved since for margin_ to hold [m]
+  std::unique_ptr<SelfContactMemory> memory_;
+  double cover_ = -1;  // everything nearer than this was found by the last search [m]; < 0: nothing is known
+  double moved_ = 0;   // farthest a node had moved since then at detect() [m]
   int searches_ = 0;
   std::vector<Pair> pairs_;
-  std::vector<NearTriangle> near_;
-  std::vector<NearTriangle> found_[2];  // of one vertex: behind, before
-  std::vector<double> range_;           // how far each node may move from start_ [m]
-  mutable std::vector<double> room_;    // how far each node may move in one iteration [m]
+  std::vector<int> stopped_;
 };
 
 }  // namespace vibe

@@ -2,15 +2,20 @@
 
 namespace vibe {
 
-/// A further energy of the nodes that a step takes into account, such as walls that must not meet.
+/// A further energy of the nodes that a step takes into account, such as walls that press on each other.
 /// Constant during a step; node vectors are 4 numbers per node.
 class EnergyTerm {
  public:
   virtual ~EnergyTerm() = default;
-  /// Adds the gradient [N] at absolute positions [m] and returns the energy [J]. No allocation.
+  /// Adds the gradient [N] at absolute positions [m] and returns the energy [J], in double precision throughout.
+  /// Finite and once differentiable wherever the positions are finite. No allocation.
   virtual double evaluate(const double* positions4, float* gradient4) const = 0;
-  /// Shortens, node by node, a move [m] from the positions so that nothing passes through anything.
-  virtual void limitMove(const double* positions4, float* move4) const = 0;
+  /// Shortens, node by node, a move [m] from the positions so that nothing passes through anything. A shortened
+  /// direction need not lead downhill any more: what can wait for the end of the step should.
+  virtual void limitMove(const double* positions4, float* move4) const {
+    static_cast<void>(positions4);
+    static_cast<void>(move4);
+  }
 };
 
 }  // namespace vibe
