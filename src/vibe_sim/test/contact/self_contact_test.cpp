@@ -261,7 +261,7 @@ double pressAtRandom(bool limited, double size) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   double least = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < 60; ++step) {
+  for (int step = 0; step < 16; ++step) {
     world.detect(2e-3);
     std::vector<double> move(world.at.size(), 0.0);
     const double together = step % 2 == 0 ? 1.0 : -0.8;
