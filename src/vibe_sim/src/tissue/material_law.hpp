@@ -78,6 +78,15 @@ inline xsimd::batch<T, A> smaller(const xsimd::batch<T, A>& a, const xsimd::batc
   return xsimd::min(a, b);
 }
 
+inline double choose(bool condition, double yes, double no) {
+  return condition ? yes : no;
+}
+template <class A>
+inline xsimd::batch<float, A> choose(const xsimd::batch_bool<float, A>& condition, const xsimd::batch<float, A>& yes,
+                                     const xsimd::batch<float, A>& no) {
+  return xsimd::select(condition, yes, no);
+}
+
 /// exp(x) - 1, accurate near 0; |x| < 80
 inline double expMinusOne(double x) {
   return std::expm1(x);
@@ -172,7 +181,7 @@ struct LawTerms {
 /// A function of K and its derivatives.
 template <class B>
 struct Profile {
-  B value, first, second;
+  B value, first, second, third;
 };
 
 /// The part of the energy that depends on K = I - 3 - 2 L alone.
@@ -180,28 +189,31 @@ template <Law law, class B>
 inline Profile<B> profile(const LawTerms<B>& c, const B& k) {
   const B half_shear = constant<B>(0.5) * c.shear, one = constant<B>(1), zero = constant<B>(0);
   if constexpr (law == Law::NeoHookean) {
-    return {half_shear * k, half_shear, zero};
+    return {half_shear * k, half_shear, zero, zero};
   } else {
     const B inside = smaller(k, c.limit), beyond = k - inside, x = c.stiffening * inside;
-    B value, first, second;
+    B value, first, second, third;
     if constexpr (law == Law::Yeoh) {
       value = inside * mulAdd(x, mulAdd(x, constant<B>(1.0 / 6), constant<B>(0.5)), one);
       first = mulAdd(x, mulAdd(x, constant<B>(0.5), one), one);
       second = c.stiffening * (one + x);
+      third = c.stiffening * c.stiffening;
     } else if constexpr (law == Law::Fung) {
       const B grown = expMinusOne(x);
       value = grown / c.stiffening;
       first = one + grown;
       second = c.stiffening * first;
+      third = c.stiffening * second;
     } else {
       static_assert(law == Law::Gent, "a law without a profile");
       value = inside + logGap(B(-x)) / c.stiffening;
       first = one / (one - x);
       second = c.stiffening * first * first;
+      third = constant<B>(2) * c.stiffening * first * second;
     }
     const B bend = second * beyond;
     return {half_shear * mulAdd(beyond, mulAdd(constant<B>(0.5), bend, first), value), half_shear * (first + bend),
-            half_shear * second};
+            half_shear * second, choose(k < c.limit, B(half_shear * third), zero)};
   }
 }
 
