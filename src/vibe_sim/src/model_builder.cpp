@@ -56,6 +56,7 @@ void addTool(const std::string& tool_urdf, Model& model) {
   model.tool = std::make_shared<const ToolModel>(ToolModel::fromUrdf(tool_urdf, scope.urdf));
   model.tip_link = model.tool->linkIndex("scope_tip");
   model.helix_link = model.tool->linkIndex("helix");
+  model.grip_link = model.tool->joints()[static_cast<std::size_t>(model.helix_link) - 1].parent_link;
   model.tool_base =
       scope.base_from_anatomy ? poseFromAnatomy(model.organ) : poseFromRpy(scope.base_position, scope.base_rpy);
 }

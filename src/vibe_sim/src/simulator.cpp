@@ -91,7 +91,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     const auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
     motion.emplace(*model.tool, model.tool_base, state.joints, end);
     motion->linkPoses(0, poses);
-    updateGrip(model, poses[model.helix_link], input.buttons[HelixGrab] != 0, state, events);
+    updateGrip(model, poses, input.buttons[HelixGrab] != 0, state, events);
     state.joints = end;
   }
   StepReport report;

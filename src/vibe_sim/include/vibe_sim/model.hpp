@@ -34,6 +34,7 @@ struct Model {
   Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world
   int tip_link = -1;                                            ///< link numbers in tool
   int helix_link = -1;
+  int grip_link = -1;  ///< carries the helix, which turns in it
 
   Skin skin;  ///< empty without scene.skin
 };

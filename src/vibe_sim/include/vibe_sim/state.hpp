@@ -13,7 +13,7 @@ namespace vibe {
 /// A particle held by the helix, with its place in the helix frame.
 struct GripPoint {
   int particle = -1;
-  Eigen::Vector3d local;  ///< in the helix link's frame [m]
+  Eigen::Vector3d local;  ///< in the frame of the link that carries the helix [m]
 };
 
 /// Sums since the start [J].

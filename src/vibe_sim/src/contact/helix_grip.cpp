@@ -48,9 +48,10 @@ int nearestFreeParticle(const Model& model, const State& state, const Eigen::Vec
   return nearest;
 }
 
-void takeHold(const Model& model, const Eigen::Isometry3d& helix_pose, State& state, std::vector<Event>& events) {
+void takeHold(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state,
+              std::vector<Event>& events) {
   const HelixScene& helix = *model.scene.helix;
-  const Eigen::Vector3d tip = helix_pose.translation();
+  const Eigen::Vector3d tip = link_poses[model.helix_link].translation();
   double distance = 0;
   const int target = nearestFreeParticle(model, state, tip, distance);
   if (target < 0 || distance > helix.reach) {
@@ -59,13 +60,13 @@ void takeHold(const Model& model, const Eigen::Isometry3d& helix_pose, State& st
                                    " from its tip and it reaches " + millimetres(helix.reach) + "."));
     return;
   }
-  const Eigen::Isometry3d to_helix = helix_pose.inverse();
+  const Eigen::Isometry3d to_grip = link_poses[model.grip_link].inverse();
   const Eigen::Vector3d centre = position(state, target);
-  state.grip.push_back({target, to_helix * centre});
+  state.grip.push_back({target, to_grip * centre});
   for (int i = 0; i < model.particle_count; ++i) {
     if (i == target || model.inverse_mass[i] == 0) continue;
     const Eigen::Vector3d p = position(state, i);
-    if ((p - centre).norm() <= helix.grip_radius) state.grip.push_back({i, to_helix * p});
+    if ((p - centre).norm() <= helix.grip_radius) state.grip.push_back({i, to_grip * p});
   }
   const double held = static_cast<double>(state.grip.size());
   events.push_back(makeEvent(Event::Kind::Grab, state.time, target, held,
@@ -75,13 +76,13 @@ void takeHold(const Model& model, const Eigen::Isometry3d& helix_pose, State& st
 
 }  // namespace
 
-void updateGrip(const Model& model, const Eigen::Isometry3d& helix_pose, bool pressed, State& state,
+void updateGrip(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, bool pressed, State& state,
                 std::vector<Event>& events) {
   if (!model.scene.helix) return;
   const bool went_down = pressed && !state.helix_pressed;
   const bool went_up = !pressed && state.helix_pressed;
   state.helix_pressed = pressed;
-  if (went_down && state.grip.empty()) takeHold(model, helix_pose, state, events);
+  if (went_down && state.grip.empty()) takeHold(model, link_poses, state, events);
   if (went_up && !state.grip.empty()) {
     events.push_back(makeEvent(Event::Kind::Release, state.time, state.grip.front().particle, state.grip_force,
                                "The helix let go of the tissue at " + newtons(state.grip_force) + "."));

@@ -248,4 +248,15 @@ void HalfSpace::eliminate(const Eigen::VectorXd& wanted, double swelling, float*
   }
 }
 
+void HalfSpace::gasResponse(float* y) {
+  std::copy(gas_.begin(), gas_.end(), y);
+  if (equations_.empty()) return;
+  const Eigen::VectorXd kept = force_;
+  force_.setZero();
+  const Eigen::VectorXd lack = -gas_row_(equations_);
+  force_(equations_) = Eigen::VectorXd(equation_factor_.solve(lack));
+  addForces(y);
+  force_ = kept;
+}
+
 }  // namespace vibe

@@ -34,6 +34,9 @@ class HalfSpace {
   /// @param swelling  wanted change of volume where it is prescribed [m^3]
   void eliminate(const Eigen::VectorXd& wanted, double swelling, float* y);
   const Eigen::VectorXd& forces() const { return force_; }
+  double gasStiffness() const { return gas_stiffness_; }
+  /// Half-solved answer to one unit of gas pressure, with the equations held (contacts are not).
+  void gasResponse(float* y);
   double gasForce() const { return gas_force_; }
   /// Compliance between rows, gas taken into account (rows x rows) [m/N].
   const Eigen::MatrixXd& compliance() const { return compliance_; }

@@ -13,9 +13,10 @@ namespace vibe {
 
 namespace {
 
-constexpr double kContactMargin = 2e-3;      // particles this near may be reached within the step [m]
-constexpr double kLeastReach = 5e-4;         // of the search for walls that come near each other [m]
-constexpr double kRestSpeed = 2e-6;          // slower than this is rest: a micrometre in half a second [m/s]
+constexpr double kContactMargin = 2e-3;  // particles this near may be reached within the step [m]
+constexpr double kLeastReach = 5e-4;     // of the search for walls that come near each other [m]
+constexpr double kRestSpeed = 2e-6;      // slower than this is rest: a micrometre in half a second [m/s]
+constexpr int kWakeEvery = 30;
 constexpr int kRestSteps = 15;               // of it, before the tissue sleeps
 constexpr double kHomingTime = 0.5;          // a state beyond hope takes to rest [s]
 constexpr double kHomingRate = 20;           // of what is left of the way [1/s]
@@ -102,10 +103,11 @@ void ImplicitStep::goHome() {
     std::fill(v->begin(), v->end(), 0.0);
 }
 
-// The whole organ has come to rest and nothing acts on it that did not before.
+// The whole organ has come to rest and nothing acts on it that did not before. Now and then it looks whether that still
+// holds: the state may have come from another scene.
 bool ImplicitStep::atRest() const {
-  return state_.solver.still >= kRestSteps && scratch_.loads.conditions.empty() && scratch_.loads.contacts.empty() &&
-         !(insufflator_on_ && model_.scene.gas);
+  return state_.solver.still >= kRestSteps && state_.step % kWakeEvery != 0 && scratch_.loads.conditions.empty() &&
+         scratch_.loads.contacts.empty() && !(insufflator_on_ && model_.scene.gas);
 }
 
 void ImplicitStep::noticeRest() {
@@ -134,7 +136,7 @@ void ImplicitStep::placeTool() {
 // Three conditions per held particle: where the helix takes it.
 void ImplicitStep::holdGrip() {
   for (const GripPoint& point : state_.grip) {
-    const Eigen::Vector3d target = scratch_.poses[model_.helix_link] * point.local;
+    const Eigen::Vector3d target = scratch_.poses[model_.grip_link] * point.local;
     for (int k = 0; k < 3; ++k) {
       Condition condition;
       condition.node.assign(1, point.particle);
@@ -220,9 +222,9 @@ void ImplicitStep::reportForces() {
     const GripPoint& point = state_.grip[g];
     Eigen::Vector3d force;  // tool on tissue
     for (int k = 0; k < 3; ++k) force[k] = scratch_.loads.conditions[3 * g + static_cast<std::size_t>(k)].force;
-    const Eigen::Vector3d target = scratch_.poses[model_.helix_link] * point.local;
+    const Eigen::Vector3d target = scratch_.poses[model_.grip_link] * point.local;
     report_.grip_force -= force;
-    pushTool(-force, target, target - scratch_.old_poses[model_.helix_link] * point.local);
+    pushTool(-force, target, target - scratch_.old_poses[model_.grip_link] * point.local);
   }
   for (std::size_t c = 0; c < scratch_.loads.contacts.size(); ++c) {
     const ContactCondition& contact = scratch_.loads.contacts[c];

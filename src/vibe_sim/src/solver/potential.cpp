@@ -34,6 +34,9 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
     value += gasEnergy();
     const auto p = static_cast<float>(scratch_.pressure);
     for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] -= p * scratch_.volume_gradient[i];
+    for (int i = 0; i < n; ++i)
+      if (body_.fixed[i] != 0)
+        for (int k = 0; k < 3; ++k) scratch_.volume_gradient[4 * i + k] = 0;
   } else {
     for (int p = 0; p < pieces; ++p) value += body_.elements->evaluate(p, u, gradient.data());
     elastic_ = value;

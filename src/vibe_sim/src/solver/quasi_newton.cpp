@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSufficientDecrease = 1e-4;  // Armijo
 constexpr int kMostHalvings = 12;
+constexpr double kSmallLack = 1e-4;  // of the rows, of the direction
 constexpr double kSafeContraction = 0.5;
 
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
@@ -91,12 +92,28 @@ void QuasiNewton::findDirection() {
     const double beta = -s.curvature[i] * dot(s.change[i], s.direction);
     addScaled(-(alpha[i] - beta), s.move[i], s.direction);
   }
+  if (s.pairs > 0 && gas_.control == GasLoad::Control::Amount) agreeWithGas();
   for (int i = 0; i < body_.nodeCount(); ++i)
     if (body_.fixed[i] != 0)
       for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
   if (extra_ != nullptr) extra_->limitMove(s.z.data(), s.direction.data());
   direction_length_ = largest(s.direction);
   slope_ = dot(s.gradient, s.direction);
+}
+
+// What the history adds to a direction changes the volume beyond what the gas was eliminated for, and gas is so stiff
+// that the pressure would rattle: swells the direction by as much as is missing.
+void QuasiNewton::agreeWithGas() {
+  StepperScratch& s = scratch_;
+  if (!knows_swelling_) {
+    s.half_space.gasResponse(s.half.data());
+    s.factor->backward(s.half.data());
+    s.factor->store(s.half.data(), s.swelling.data());
+    knows_swelling_ = true;
+  }
+  const double stiffness = s.half_space.gasStiffness(), compliance = dot(s.volume_gradient, s.swelling);
+  const double off = stiffness * dot(s.volume_gradient, s.direction) + s.half_space.gasForce();
+  addScaled(-off / (1 + stiffness * compliance), s.swelling, s.direction);
 }
 
 // The value with the rows' (and a prescribed volume's) forces as multipliers: it falls along the direction although the
@@ -148,6 +165,10 @@ double QuasiNewton::advance(double most, bool verify) {
   if (safe) {
     setTrial(1);
     s.z.swap(s.trial);
+    if (gas_.control == GasLoad::Control::Amount) {  // as the direction foresees them
+      s.pressure += s.half_space.gasForce();
+      s.volume = gas_.amount / (s.pressure + gas_.ambient);
+    }
     return direction_length_;
   }
   const double prescribed = gas_.control == GasLoad::Control::Volume ? s.half_space.gasForce() : 0;
@@ -168,7 +189,8 @@ double QuasiNewton::advance(double most, bool verify) {
     }
     part *= std::isfinite(to) ? 0.5 : 0.1;
   }
-  if (lack_ < 1e-9 || scratch_.rows.empty()) keepPair(part);
+  // a pair in which the rows move would move them again
+  if (lack_ <= kSmallLack * direction_length_) keepPair(part);
   if (part == 1) last_length_ = direction_length_;
   value_ = to;
   s.gradient.swap(s.trial_gradient);

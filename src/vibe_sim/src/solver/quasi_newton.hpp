@@ -34,6 +34,7 @@ class QuasiNewton {
  private:
   void findDirection();
   double rowsLack();
+  void agreeWithGas();
   double lagrangian(double value) const;
   double advance(double most, bool verify);
   void keepPair(double part);
@@ -48,6 +49,7 @@ class QuasiNewton {
   double value_ = 0;
   double direction_length_ = 0, last_length_ = -1;
   double slope_ = 0;
+  bool knows_swelling_ = false;  // of this step's factor, gas and rows
   bool failed_ = false, contracts_ = false;
   double lack_ = 0;  // of the rows, largest [m]
 };

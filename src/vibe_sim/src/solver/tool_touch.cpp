@@ -24,8 +24,8 @@ void addRow(int node, const Eigen::Vector3d& direction, const PointMotion& motio
 
 // force: tool on tissue [N]
 void addGrip(const Model& model, const GripPoint& point, const Eigen::Vector3d& force, ImplicitScratch& scratch) {
-  const Eigen::Vector3d target = scratch.poses[model.helix_link] * point.local;
-  const PointMotion motion = pointMotion(model, scratch, model.helix_link, target);
+  const Eigen::Vector3d target = scratch.poses[model.grip_link] * point.local;
+  const PointMotion motion = pointMotion(model, scratch, model.grip_link, target);
   for (int k = 0; k < 3; ++k) addRow(point.particle, Eigen::Vector3d::Unit(k), motion, scratch.touch);
   scratch.touch.force -= motion.transpose() * force;
 }

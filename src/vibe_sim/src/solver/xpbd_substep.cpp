@@ -133,8 +133,8 @@ void XpbdSubstep::moveParticle(int i, double decay) {
 
 void XpbdSubstep::holdGrip() {
   if (state_.grip.empty()) return;
-  const Eigen::Isometry3d& helix = scratch_.poses[model_.helix_link];
-  const Eigen::Isometry3d& old_helix = scratch_.old_poses[model_.helix_link];
+  const Eigen::Isometry3d& helix = scratch_.poses[model_.grip_link];
+  const Eigen::Isometry3d& old_helix = scratch_.old_poses[model_.grip_link];
   for (const GripPoint& point : state_.grip) {
     const int i = point.particle;
     const Eigen::Vector3d target = helix * point.local;

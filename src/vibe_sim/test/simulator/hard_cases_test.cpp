@@ -235,7 +235,7 @@ TEST(Hard, GripPulledByFortyMillimetresInOneFrame) {
   const int held = 100;
   std::vector<Eigen::Isometry3d> poses;
   world.model->tool->forwardKinematics(world.state.joints, poses);
-  const Eigen::Isometry3d helix = world.model->tool_base * poses[world.model->helix_link];
+  const Eigen::Isometry3d helix = world.model->tool_base * poses[world.model->grip_link];
   const Eigen::Vector3d p = world.position(held);
   world.state.grip = {{held, helix.inverse() * Eigen::Vector3d(p - 0.04 * p.normalized())}};
   world.state.helix_pressed = true;

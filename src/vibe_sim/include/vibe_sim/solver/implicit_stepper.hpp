@@ -18,7 +18,7 @@ struct StepSettings {
   bool backward_euler = false;  ///< first order and strongly damping, for states far from any equilibrium
   /// Quasi-Newton iterations of a step; it takes more, at most 12, while they do not halve what is left.
   int iterations = 3;
-  double tolerance = 1e-6;  ///< a step ends earlier when no node would move farther than this [m]
+  double tolerance = 1e-7;  ///< a step ends earlier when no node would move farther than this [m]
   /// A factor about other positions takes over this long after they were, and is made in the background meanwhile; a
   /// whole number of steps, so that a replay has the same bits. 0: the factor stays [s]
   double refactor_interval = 1.0 / 6;
