@@ -1,9 +1,7 @@
 // What acts on a body during implicit steps: conditions, contacts, gas; and that a step depends on nothing else.
 #include <gtest/gtest.h>
 
-#include "solver/implicit_worlds.hpp"
-#include "vibe_sim/tissue/shell.hpp"
-#include "worlds.hpp"
+#include "solver/balloon.hpp"
 
 namespace vibe {
 namespace {
@@ -174,37 +172,6 @@ TEST(Contacts, PinchFromBothSidesAndLetGo) {
   EXPECT_LT(run.elastic().energy, 1e-9) << "nothing is left of it";
 }
 
-/// A ball of gas in a thin wall.
-struct Ball {
-  static constexpr double kRadius = 0.05, kWall = 1e-3;
-  std::shared_ptr<const ShellElements> shell;
-  std::unique_ptr<Body> run;
-
-  explicit Ball(StepSettings settings = {}) {
-    const SurfaceMesh surface = icosphere(kRadius, 2);
-    ShellMesh mesh;
-    mesh.nodes.assign(surface.vertices.begin(), surface.vertices.end());
-    for (const auto& t : surface.triangles) mesh.triangles.push_back({t[0], t[1], t[2]});
-    mesh.thickness.assign(mesh.triangles.size(), kWall);
-    mesh.materials = {neoHookean()};
-    shell = std::make_shared<const ShellElements>(mesh);
-    ElasticBody body;
-    body.elements = shell;
-    body.shell = shell.get();
-    body.rest = mesh.nodes;
-    body.mass = shell->lumpedMass(kDensity);
-    body.fixed.assign(body.rest.size(), 0);
-    body.foundation.assign(body.rest.size(), 1e-3);  // so that it knows where to be
-    run = std::make_unique<Body>(body, settings);
-  }
-  double volume() const {
-    Eigen::VectorXd u(3 * run->nodes()), gradient(3 * run->nodes());
-    for (int i = 0; i < run->nodes(); ++i) u.segment<3>(3 * i) = run->position(i) - run->stepper.body().rest[i];
-    return shell->volume(u.data(), gradient.data());
-  }
-  GasLoad& gas() { return run->loads.gas; }
-};
-
 TEST(Gas, PressureAmountAndVolumeAgree) {
   for (double pressure : {5.0, 100.0}) {
     Ball by_pressure, by_volume, by_amount;
@@ -232,7 +199,7 @@ TEST(Gas, PressureAmountAndVolumeAgree) {
 
     // membrane of a sphere: p = 2 sigma t / R, sigma = E strain / (1 - nu), t and R as stretched
     const double strain = std::cbrt(volume / rest) - 1;
-    const double paper = 2 * kE * strain * Ball::kWall / ((1 - kNu) * Ball::kRadius * (1 + strain));
+    const double paper = 2 * kE * strain * BallOptions().wall / ((1 - kNu) * Ball::kRadius * (1 + strain));
     EXPECT_NEAR(paper, pressure, (pressure < 10 ? 0.03 : 0.3) * pressure);
   }
 }
