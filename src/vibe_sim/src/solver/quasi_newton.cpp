@@ -14,6 +14,7 @@ constexpr double kSufficientDecrease = 1e-4;  // Armijo
 constexpr int kMostHalvings = 12;
 constexpr double kSmallLack = 1e-4;  // of the rows, of the direction
 constexpr double kSafeContraction = 0.5;
+constexpr double kSafeRest = 0.1;  // of the first direction
 
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
   double sum[4] = {0, 0, 0, 0};
@@ -158,8 +159,10 @@ double QuasiNewton::iterate(double most, bool verify) {
 double QuasiNewton::advance(double most, bool verify) {
   StepperScratch& s = scratch_;
   double part = direction_length_ > most ? most / direction_length_ : 1;
-  contracts_ = part == 1 && ((last_length_ > 0 && direction_length_ < kSafeContraction * last_length_) ||
-                             direction_length_ < safe_length_);
+  if (first_length_ == 0) first_length_ = direction_length_;
+  const bool shrinks = last_length_ > 0 && direction_length_ < kSafeContraction * last_length_ &&
+                       direction_length_ < kSafeRest * first_length_;
+  contracts_ = part == 1 && (shrinks || direction_length_ < safe_length_);
   const bool safe = !verify && contracts_;
   last_length_ = -1;  // only a whole step says how fast the next ones shrink
   if (safe) {

@@ -26,7 +26,7 @@ class QuasiNewton {
   double value() const { return value_; }
   /// Rounding error of the displacements, which are single precision [m].
   double resolution() const;
-  /// The last iterate moved less than half of the one before, or a safe length.
+  /// The last iterate moved less than half of the one before and a tenth of the first, or a safe length.
   bool contracts() const { return contracts_; }
   /// The last iterate found no lower energy along its direction, and did not move.
   bool failed() const { return failed_; }
@@ -50,6 +50,7 @@ class QuasiNewton {
   double direction_length_ = 0, last_length_ = -1;
   double slope_ = 0;
   bool knows_swelling_ = false;  // of this step's factor, gas and rows
+  double first_length_ = 0;
   bool failed_ = false, contracts_ = false;
   double lack_ = 0;  // of the rows, largest [m]
 };
