@@ -13,7 +13,7 @@ btVector3 toBullet(const Eigen::Vector3d& p) {
   return {static_cast<btScalar>(p.x()), static_cast<btScalar>(p.y()), static_cast<btScalar>(p.z())};
 }
 
-std::unique_ptr<btSoftBody> makeSoftBody(const Wall& wall, btSoftBodyWorldInfo& world, int iterations) {
+std::unique_ptr<btSoftBody> makeSoftBody(const BenchWall& wall, btSoftBodyWorldInfo& world, int iterations) {
   std::vector<btVector3> nodes;
   std::vector<btScalar> mass;
   for (const auto& p : wall.mesh.vertices) nodes.push_back(toBullet(p));
@@ -33,7 +33,7 @@ std::unique_ptr<btSoftBody> makeSoftBody(const Wall& wall, btSoftBodyWorldInfo& 
   return body;
 }
 
-void advance(const Wall& wall, double step, double damping_rate, btSoftBody& body) {
+void advance(const BenchWall& wall, double step, double damping_rate, btSoftBody& body) {
   // Bullet divides kPR by the volume
   body.m_cfg.kPR = static_cast<btScalar>(wall.pressure) * body.getVolume();
   body.m_cfg.kDP = static_cast<btScalar>(1 - std::exp(-damping_rate * step));
@@ -42,7 +42,7 @@ void advance(const Wall& wall, double step, double damping_rate, btSoftBody& bod
   body.integrateMotion();
 }
 
-BodyMotion read(const Wall& wall, const btSoftBody& body) {
+BodyMotion read(const BenchWall& wall, const btSoftBody& body) {
   BodyMotion motion(wall.body);
   for (int n = 0; n < body.m_nodes.size(); ++n)
     for (int k = 0; k < 3; ++k) {
@@ -54,7 +54,7 @@ BodyMotion read(const Wall& wall, const btSoftBody& body) {
 
 }  // namespace
 
-Trajectory followBullet(const Wall& wall, const Pull& pull, int steps_per_frame, int iterations) {
+Trajectory followBullet(const BenchWall& wall, const Pull& pull, int steps_per_frame, int iterations) {
   const double step = kFrame / steps_per_frame;
   btSoftBodyWorldInfo world;
   world.m_gravity.setZero();

@@ -7,6 +7,6 @@ namespace vibe {
 /// masses and pressure as the wall has them. Its stiffness depends on the number of iterations and not on a modulus, so
 /// it has no force to compare, and its errors say how far it is from the tissue, in displacements since its own
 /// inflated start. Times are those of whole frames.
-Trajectory followBullet(const Wall& wall, const Pull& pull, int steps_per_frame, int iterations);
+Trajectory followBullet(const BenchWall& wall, const Pull& pull, int steps_per_frame, int iterations);
 
 }  // namespace vibe

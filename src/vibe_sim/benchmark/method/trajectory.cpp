@@ -20,7 +20,7 @@ StepSettings settingsOf(const StepChoice& choice) {
 }
 
 /// Kinetic and elastic energy less the work of the pressure since rest [J].
-double totalEnergy(const Wall& wall, const BodyMotion& motion) {
+double totalEnergy(const BenchWall& wall, const BodyMotion& motion) {
   const std::size_t n = wall.body.rest.size();
   std::vector<double> displacement(3 * n), gradient(3 * n);
   double energy = 0;
@@ -36,7 +36,8 @@ double totalEnergy(const Wall& wall, const BodyMotion& motion) {
 
 }  // namespace
 
-Trajectory follow(const Wall& wall, const BodyMotion& start, const Pull& pull, const StepChoice& choice, int frames) {
+Trajectory follow(const BenchWall& wall, const BodyMotion& start, const Pull& pull, const StepChoice& choice,
+                  int frames) {
   const ImplicitStepper stepper(wall.body, settingsOf(choice));
   const auto scratch = stepper.makeScratch();
   StepperMemory memory;
@@ -60,8 +61,11 @@ Trajectory follow(const Wall& wall, const BodyMotion& start, const Pull& pull, c
     trajectory.force.push_back(force);
     trajectory.frames.push_back(motion);
   }
-  // the first step also makes the first factor, which a session does while it loads
-  if (!trajectory.times.empty()) trajectory.times.erase(trajectory.times.begin());
+  // a session makes the first factor while it loads
+  if (!trajectory.times.empty()) {
+    trajectory.first_time = trajectory.times.front();
+    trajectory.times.erase(trajectory.times.begin());
+  }
   return trajectory;
 }
 
@@ -95,9 +99,9 @@ void compare(const Trajectory& trajectory, const Trajectory& reference, const Bo
   row.state_hash = hashOf(trajectory.frames.back());
 }
 
-double energyDrift(const Wall& wall, const BodyMotion& start, const BodyMotion& pulled, const StepChoice& choice) {
+double energyDrift(const BenchWall& wall, const BodyMotion& start, const BodyMotion& pulled, const StepChoice& choice) {
   BodyMotion motion = pulled;
-  Wall free = wall;
+  BenchWall free = wall;
   free.body.damping_rate = 0;
   const ImplicitStepper stepper(free.body, settingsOf(choice));
   const auto scratch = stepper.makeScratch();

@@ -13,7 +13,8 @@ constexpr double kFrame = 1.0 / 60;  ///< [s]
 struct Trajectory {
   std::vector<BodyMotion> frames;
   std::vector<double> force;  ///< of the disc, mean over each frame; force[0] belongs to the first frame [N]
-  std::vector<double> times;  ///< thread CPU of each step [ms]
+  std::vector<double> times;  ///< thread CPU of each step but the first [ms]
+  double first_time = 0;      ///< of the first step, which also makes the first factor [ms]
   int careful = 0;            ///< steps that were taken again, more carefully
   bool finite = true;
 };
@@ -29,7 +30,7 @@ struct StepChoice {
 };
 
 /// @param frames  how many to run; 0: the whole pull and hold
-Trajectory follow(const Wall& wall, const BodyMotion& start, const Pull& pull, const StepChoice& choice,
+Trajectory follow(const BenchWall& wall, const BodyMotion& start, const Pull& pull, const StepChoice& choice,
                   int frames = 0);
 
 /// Errors of a trajectory against another, on displacements since their own starts: motion_error, force_error (after
@@ -41,7 +42,7 @@ void compare(const Trajectory& trajectory, const Trajectory& reference, const Bo
 double driftApart(const BodyMotion& a, const BodyMotion& a_start, const BodyMotion& b, const BodyMotion& b_start);
 
 /// Change of the energy over one second after the disc lets go of `pulled`, without damping, over the energy let go.
-double energyDrift(const Wall& wall, const BodyMotion& start, const BodyMotion& pulled, const StepChoice& choice);
+double energyDrift(const BenchWall& wall, const BodyMotion& start, const BodyMotion& pulled, const StepChoice& choice);
 
 /// FNV-1a of positions and velocities.
 std::uint64_t hashOf(const BodyMotion& motion);

@@ -12,9 +12,8 @@
 namespace vibe {
 namespace {
 
-constexpr double kRadius = 0.04325, kHalfLength = 0.12325, kThickness = 0.0035;  // of the middle surface
-constexpr double kDensity = 1050, kDamping = 30, kDiscRadius = 0.005;
-constexpr Material kTissue{Law::NeoHookean, 50e3, 0.45, 0};
+constexpr double kRadius = 0.04325, kHalfLength = 0.12325;  // of the middle surface
+constexpr double kDamping = 30, kDiscRadius = 0.005;
 
 void holdEnds(std::size_t count, std::vector<char>& fixed, const std::vector<Eigen::Vector3d>& nodes) {
   std::vector<int> order(nodes.size());
@@ -34,23 +33,23 @@ void settleOrFail(const ImplicitStepper& stepper, MotionView motion, BodyLoads& 
 
 }  // namespace
 
-Wall makeWall(int nodes) {
+BenchWall makeWall(int nodes) {
   const BenchMesh mesh = makeEllipsoid(kRadius, kHalfLength, nodes);
-  Wall wall;
+  BenchWall wall;
   wall.mesh = {mesh.nodes, mesh.triangles};
   wall.rest_volume = enclosedVolume(wall.mesh);
   ShellMesh shell;
   shell.nodes = mesh.nodes;
   shell.triangles = mesh.triangles;
-  shell.thickness.assign(mesh.triangles.size(), kThickness);
-  shell.materials = {kTissue};
+  shell.thickness.assign(mesh.triangles.size(), kWallThickness);
+  shell.materials = {kWallTissue};
   holdEnds(std::max<std::size_t>(6, mesh.nodes.size() / 60), shell.fixed, mesh.nodes);
   wall.body.fixed = shell.fixed;
   const auto elements = std::make_shared<ShellElements>(std::move(shell));
   wall.body.elements = elements;
   wall.body.shell = elements.get();
   wall.body.rest = mesh.nodes;
-  wall.body.mass = elements->lumpedMass(kDensity);
+  wall.body.mass = elements->lumpedMass(kWallDensity);
   wall.body.damping_rate = kDamping;
   const Eigen::Vector3d place(kRadius, 0, 0);
   int middle = 0;
@@ -62,15 +61,20 @@ Wall makeWall(int nodes) {
   return wall;
 }
 
-BodyLoads pressureLoads(const Wall& wall, double pressure) {
+BodyLoads pressureLoads(const BenchWall& wall, double pressure) {
   BodyLoads loads;
+  if (wall.layers) {
+    wall.layers->setPressure(pressure);
+    loads.extra = wall.layers.get();
+    return loads;
+  }
   loads.gas.control = GasLoad::Control::Pressure;
   loads.gas.pressure = pressure;
   loads.gas.volume = wall.rest_volume;
   return loads;
 }
 
-BodyLoads wallLoads(const Wall& wall, const BodyMotion& start, double distance) {
+BodyLoads wallLoads(const BenchWall& wall, const BodyMotion& start, double distance) {
   BodyLoads loads = pressureLoads(wall, wall.pressure);
   for (const int node : wall.tool) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -84,14 +88,14 @@ BodyLoads wallLoads(const Wall& wall, const BodyMotion& start, double distance) 
   return loads;
 }
 
-double toolForce(const Wall& wall, const BodyLoads& loads) {
+double toolForce(const BenchWall& wall, const BodyLoads& loads) {
   double force = 0;
   for (std::size_t i = 0; i < loads.conditions.size(); ++i)
     force += loads.conditions[i].force * wall.pull_direction[static_cast<Eigen::Index>(i % 3)];
   return force;
 }
 
-BodyMotion inflate(const Wall& wall, double tolerance) {
+BodyMotion inflate(const BenchWall& wall, double tolerance) {
   const ImplicitStepper stepper(wall.body, StepSettings{});
   const auto scratch = stepper.makeScratch();
   BodyMotion motion(wall.body);
@@ -102,7 +106,7 @@ BodyMotion inflate(const Wall& wall, double tolerance) {
   return motion;
 }
 
-BodyMotion pulledEquilibrium(const Wall& wall, const BodyMotion& start, double distance, double tolerance,
+BodyMotion pulledEquilibrium(const BenchWall& wall, const BodyMotion& start, double distance, double tolerance,
                              double& force) {
   const ImplicitStepper stepper(wall.body, StepSettings{});
   const auto scratch = stepper.makeScratch();
