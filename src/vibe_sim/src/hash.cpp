@@ -48,6 +48,8 @@ std::uint64_t hash(const State& state) {
   h.addValue(state.grip_force);
   h.add(state.solver.about.data(), state.solver.about.size() * sizeof(float));
   h.add(state.solver.next.data(), state.solver.next.size() * sizeof(float));
+  h.addValue(state.solver.steps);
+  h.addValue(state.solver.elastic_energy);
   h.addValue(state.solver.still);
   h.addValue(state.solver.due);
   h.addValue(state.solver.usual_length);

@@ -5,12 +5,11 @@
 #include <vector>
 
 #include "vibe_sim/solver/stepper_memory.hpp"
-
 #include "vibe_sim/step_input.hpp"
 
 namespace vibe {
 
-/// A particle held by the helix, with its place in the helix frame.
+/// A particle held by the helix, with its place in the tool.
 struct GripPoint {
   int particle = -1;
   Eigen::Vector3d local;  ///< in the frame of the link that carries the helix [m]

@@ -58,6 +58,81 @@ TEST(ShellScene, ASnapshotAtAnyStepContinuesToTheBit) {
   }
 }
 
+// A factor is named at one step and takes over at a later one: what of it is under way travels with the state.
+TEST(ShellScene, ASnapshotBetweenNamingAndTakeoverContinuesToTheBit) {
+  World world = livelyWorld();
+  for (int i = 0; i < 60 && world.state.solver.next.empty(); ++i) world.step();
+  ASSERT_FALSE(world.state.solver.next.empty());
+  const std::int64_t due = world.state.solver.due;
+  ASSERT_GT(due, world.state.solver.steps + 3);
+  std::vector<State> states;
+  for (std::int64_t i = world.state.solver.steps; i <= due + 2; ++i) states.push_back(world.state), world.step();
+  world.run(0.3);
+  for (const State& state : states) {
+    const std::string file = ::testing::TempDir() + "vibe_shell_scene_due_test.bin";
+    saveSnapshot(*world.model, state, file);
+    State loaded = loadSnapshot(*world.model, file);
+    std::remove(file.c_str());
+    ASSERT_EQ(hash(loaded), hash(state));
+    Workspace other(*world.model);
+    std::vector<Event> events;
+    while (loaded.step < world.state.step) step(*world.model, loaded, {}, other, events);
+    EXPECT_EQ(hash(loaded), hash(world.state)) << "saved at " << state.solver.steps << ", taken over at " << due;
+  }
+}
+
+TEST(ShellScene, WhatTheSolverRemembersCounts) {
+  Scene scene = livelyScene();
+  scene.tissue.iterations = 1;  // what a step leaves out hangs on the usual length of its moves
+  World world(scene, plainOrgan(icosphere(kRadius, 3), kWall));
+  for (int i = 0; i < 60 && world.state.solver.next.empty(); ++i) world.step();
+  const auto future = [&](State state) {
+    Workspace other(*world.model);
+    std::vector<Event> events;
+    for (int i = 0; i < 20; ++i) step(*world.model, state, {}, other, events);
+    return state.x;
+  };
+  const std::vector<double> positions = future(world.state);
+  State later = world.state, shorter = world.state;
+  later.solver.due += 1;
+  shorter.solver.usual_length = 0;
+  EXPECT_TRUE(future(later) != positions);
+  EXPECT_TRUE(future(shorter) != positions);
+  const auto changed = [&](auto change) {
+    State state = world.state;
+    change(state.solver);
+    return hash(state) != hash(world.state);
+  };
+  EXPECT_TRUE(changed([](StepperMemory& memory) { ++memory.due; }));
+  EXPECT_TRUE(changed([](StepperMemory& memory) { memory.usual_length *= 1.001; }));
+  EXPECT_TRUE(changed([](StepperMemory& memory) { ++memory.steps; })) << "looks now and then whether it is lost";
+  EXPECT_TRUE(changed([](StepperMemory& memory) { memory.elastic_energy *= 1.001; }));
+  EXPECT_TRUE(changed([](StepperMemory& memory) { memory.next.clear(); }));
+  EXPECT_FALSE(changed([](StepperMemory&) {}));
+}
+
+TEST(ShellScene, ASleepingStateWakesUnderOtherLoads) {
+  Scene quiet = livelyScene();
+  quiet.gravity.reset();
+  quiet.gas.reset();
+  const Organ organ = plainOrgan(icosphere(kRadius, 3), kWall);
+  World asleep(quiet, organ);
+  asleep.run(1);
+  ASSERT_GT(asleep.state.solver.still, 0);
+  const std::int64_t before = asleep.state.solver.steps;
+  asleep.run(1);
+  EXPECT_LT(asleep.state.solver.steps - before, 6) << "it does not sleep";
+  EXPECT_LT(asleep.greatestShift(), 1e-9);
+
+  Scene heavy = quiet;
+  heavy.gravity = GravityScene{};
+  World awake(heavy, organ), placed(heavy, organ);
+  placed.state = asleep.state;
+  for (World* world : {&awake, &placed}) world->run(4);
+  EXPECT_GT(placed.greatestShift(), 1e-3);
+  EXPECT_NEAR(placed.greatestShift(), awake.greatestShift(), 1e-5);
+}
+
 TEST(ShellScene, BalloonObeysTheMembraneFormula) {
   Scene scene;
   scene.tissue.model = "shell";
