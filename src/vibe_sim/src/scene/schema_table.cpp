@@ -97,7 +97,9 @@ std::vector<SchemaRow> tissueRows() {
       {"tissue.damping_time", [](Scene& s) -> double& { return s.tissue.damping_time; }, "s", 0, 1e-3,
        "viscosity of the wall over its stiffness; quiets the shortest waves and is not felt by the long ones", kChoice},
       {"tissue.iterations", [](Scene& s) -> int& { return s.tissue.iterations; }, "1", 1, 100,
-       "most iterations that a step of the shell may take; it ends earlier when nothing moves any more", kChoice},
+       "iterations of a step of the shell: fewer when nothing moves any more, up to 12 while they do not converge; "
+       "even numbers are steadier, 1 is for steps of a millisecond",
+       kChoice},
       {"tissue.spectral_radius", [](Scene& s) -> double& { return s.tissue.spectral_radius; }, "1", 0, 1,
        "part of the fastest vibrations that a step of the shell keeps; 1 conserves energy, 0 quiets at once",
        "generalised-alpha: Chung, Hulbert 1993, doi 10.1115/1.2900803"},

@@ -40,7 +40,7 @@ struct TissueScene {
   std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
   double damping_rate = 30;      ///< viscous damping of the velocity [1/s]
   double damping_time = 15e-6;   ///< viscosity of the wall over its stiffness; quiets short waves [s]
-  int iterations = 3;           ///< most quasi-Newton iterations per step, of model shell
+  int iterations = 4;            ///< quasi-Newton iterations per step, of model shell
   double spectral_radius = 0.2;  ///< generalised-alpha, of model shell [1]
   bool self_contact = false;     ///< walls pulled together meet and do not pass through each other, of model shell
   int substeps = 0;              ///< solver sub-steps per step; 0: as few as carry the stiffness, see finishModel()
