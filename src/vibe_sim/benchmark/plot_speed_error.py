@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws time per step against errors from the table that vibe_bench writes.
 
-usage: plot_speed_error.py TABLE.csv PICTURE.png [PICTURE.svg ...]
+usage: plot_speed_error.py [--machine=TEXT] TABLE.csv PICTURE.png [PICTURE.svg ...]
 """
 import csv
 import math
@@ -12,10 +12,26 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter  # noqa: E402
+from matplotlib.transforms import Bbox  # noqa: E402
 
 PULL = "pull_20mm"
-WORST = 10.0  # errors beyond are drawn at the edge, as arrows
-COLOURS = ["tab:blue", "tab:orange", "tab:green", "tab:purple", "tab:brown"]
+WORST = 1.0  # errors beyond are drawn at the edge, as triangles with their figure
+FAMILIES = {  # method: name, colour, marker
+    "implicit": ("shell, generalised alpha", "tab:blue", "o"),
+    "euler": ("shell, backward Euler", "tab:cyan", "o"),
+    "linear_tet": ("linear tetrahedra, one layer", "tab:green", "s"),
+    "shape_matching": ("shape matching", "tab:purple", "D"),
+    "bullet_softbody": ("Bullet's soft body", "tab:orange", "o"),
+}
+PROTOTYPE = (16, 18)  # ms per frame that Erden et al. report for 3,618 particles, without an error
+# column: (most CPU time of a frame [ms], most error); the third of the motion is 17 steps of 0.6 ms
+GOALS = {
+    "motion_error": [(1.0, 0.035), (3.0, 0.012), (10.2, 0.001)],
+    "force_error": [(1.0, 0.03), (3.0, 0.025)],
+    "static_error": [(100, 1e-4)],
+}
+LABEL_SPOTS = [(6, -3), (-6, -3), (0, 6), (0, -12), (6, 6), (-6, 6), (6, -12), (-6, -12), (14, 12), (14, -18), (-14, 12),
+               (-14, -18), (0, 16), (0, -22), (20, 22), (20, -28)]
 
 
 def number(text):
@@ -27,97 +43,140 @@ def step_rate(setting):
 
 
 def family(row):
-    if row["method"] != "implicit":
-        return row["method"].replace("_", " ") + " (per frame)"
-    if "Euler" in row["setting"]:
-        return "implicit, backward Euler"
-    return "implicit, generalised alpha"
+    return "euler" if "Euler" in row["setting"] else row["method"]
 
 
 def label(setting):
-    return setting.replace(" iterations", " it.").replace(" iteration", " it.").replace(" Euler", "")
+    short = setting.replace(" iterations", " it.").replace(" iteration", " it.").replace(" Euler", "")
+    return short.replace("60 Hz, ", "", 1) if short.startswith("60 Hz, ") else short
 
 
 def per_frame(row):
-    """Time of a 60 Hz frame: steps of the implicit method are timed one by one, the peer's frames whole."""
-    rate = step_rate(row["setting"])
-    return number(row["ms_p50"]) * (rate / 60 if row["method"] == "implicit" else 1)
+    """Time of a 60 Hz frame: steps of the solver are timed one by one, frames of other methods whole."""
+    timed_by_step = row["method"] in ("implicit", "linear_tet")
+    return number(row["ms_p50"]) * (step_rate(row["setting"]) / 60 if timed_by_step else 1)
+
+
+def points_of(rows, column):
+    points = []
+    for row in rows:
+        time, error = per_frame(row), number(row[column])
+        if not math.isnan(time) and not math.isnan(error):
+            points.append((family(row), time, error, label(row["setting"])))
+    return points
 
 
 def draw_errors(axis, rows, column, title):
-    families = sorted({family(row) for row in rows}, reverse=True)
-    for colour, name in zip(COLOURS, families):
-        points = []
-        for row in rows:
-            error = number(row[column])
-            if family(row) == name and not math.isnan(error) and not math.isnan(per_frame(row)):
-                points.append((per_frame(row), min(max(error, 1e-7), WORST) * 100, row["setting"], error > WORST))
-        if not points:
-            continue
-        for beyond, marker in ((False, "o"), (True, "^")):
-            chosen = [point for point in points if point[3] == beyond]
-            axis.plot([p[0] for p in chosen], [p[1] for p in chosen], marker, color=colour, markersize=6,
-                      label=name if not beyond or len(chosen) == len(points) else None)
-        place_labels(axis, points, colour)
+    points = points_of(rows, column)
+    for key, (name, colour, marker) in FAMILIES.items():
+        for beyond in (False, True):
+            chosen = [point for point in points if point[0] == key and (point[2] > WORST) == beyond]
+            axis.plot([p[1] for p in chosen], [100 * min(p[2], WORST) for p in chosen], "^" if beyond else marker,
+                      color=colour, markersize=6, label=None if beyond else name, zorder=3)
+    axis.axvspan(*PROTOTYPE, color="0.85", label="ViBE prototype, 16 to 18 ms, error unknown")
+    for number_of, (time, error) in enumerate(GOALS[column]):
+        axis.plot([axis_left(points), time, time], [100 * error, 100 * error, 100 * lowest(points)], "--",
+                  color="tab:red", linewidth=0.9, label="aims: left of and below the line" if number_of == 0 else None)
+    axis.text(math.sqrt(PROTOTYPE[0] * PROTOTYPE[1]), 100 * lowest(points) * 1.2, "ViBE prototype", rotation=90,
+              ha="center", va="bottom", fontsize=7, color="0.4")
     axis.set_xscale("log")
     axis.set_yscale("log")
+    axis.set_xlim(axis_left(points), 45)
+    axis.set_ylim(100 * lowest(points), 190)
     axis.set_xlabel("median CPU time of a 60 Hz frame [ms]")
     axis.set_ylabel(title + " [%]")
-    axis.axvline(1000 / 60, color="0.6", linewidth=0.8, linestyle="--")
-    axis.grid(True, which="major", color="0.9")
-    axis.margins(x=0.25, y=0.15)
+    axis.grid(True, which="major", color="0.92")
     axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.yaxis.set_major_formatter(FormatStrFormatter("%g"))
     axis.xaxis.set_major_formatter(FormatStrFormatter("%g"))
     axis.xaxis.set_minor_formatter(NullFormatter())
+    place_labels(axis, points)
 
 
-def place_labels(axis, points, colour):
-    for rank, (time, error, setting, _) in enumerate(sorted(points)):
-        up = rank % 2 == 0
-        axis.annotate(label(setting), (time, error), textcoords="offset points", xytext=(5, 4 if up else -9),
-                      fontsize=6.5, color=colour)
+def axis_left(points):
+    return 0.5 * min(point[1] for point in points)
+
+
+def lowest(points):
+    return 0.3 * min(point[2] for point in points)
+
+
+def place_labels(axis, points):
+    """Each label at the first spot around its point where it covers neither a point nor another label."""
+    renderer = axis.figure.canvas.get_renderer()
+    taken = []
+    for _, time, error, _ in points:
+        x, y = axis.transData.transform((time, 100 * min(error, WORST)))
+        taken.append(Bbox.from_extents(x - 4, y - 4, x + 4, y + 4))
+    for key, time, error, text in sorted(points, key=lambda point: point[1]):
+        if error > WORST:
+            text += f": {100 * error:,.0f} %"
+        best = None
+        for x, y in LABEL_SPOTS:
+            note = axis.annotate(text, (time, 100 * min(error, WORST)), textcoords="offset points", xytext=(x, y),
+                                 ha="left" if x > 0 else "right" if x < 0 else "center", fontsize=6.5,
+                                 color=FAMILIES[key][1], zorder=4)
+            box = note.get_window_extent(renderer)
+            overlap = sum(1 for other in taken if box.overlaps(other))
+            if best is None or overlap < best[0]:
+                if best is not None:
+                    best[1].remove()
+                best = (overlap, note, box)
+            else:
+                note.remove()
+            if best[0] == 0:
+                break
+        taken.append(best[2])
 
 
 def draw_growth(axis, rows):
-    rows = sorted(rows, key=lambda row: int(row["particles"]))
-    sizes = [int(row["particles"]) for row in rows]
-    costs = [1e3 * number(row["ms_p50"]) / size for row, size in zip(rows, sizes)]
-    axis.plot(sizes, costs, "o-", color=COLOURS[0])
-    if costs:
-        axis.axhline(3 * costs[0], color="0.6", linewidth=0.8, linestyle="--")
-        axis.text(sizes[0], 3 * costs[0], " three times the smallest", fontsize=7, va="bottom", color="0.4")
+    steps = sorted((int(row["particles"]), number(row["ms_p50"])) for row in rows if row["case"] == "growth")
+    factors = sorted((int(row["particles"]), number(row["ms_p50"])) for row in rows if row["case"] == "growth_factor")
+    for values, name, colour in ((steps, "step", "tab:blue"), (factors, "stiffness and factor, in the background", "0.5")):
+        axis.plot([v[0] for v in values], [1e3 * v[1] / v[0] for v in values], "o-", color=colour, label=name)
+        for size, time in values:
+            axis.annotate(f"{time:,.3g} ms" if time < 1000 else f"{time / 1000:.1f} s", (size, 1e3 * time / size),
+                          textcoords="offset points", xytext=(0, 6), ha="center", fontsize=7, color=colour)
+    if steps:
+        axis.axhline(3 * min(1e3 * v[1] / v[0] for v in steps), color="tab:red", linewidth=0.9, linestyle="--",
+                     label="aim for the step: below three times the smallest")
     axis.set_xscale("log")
-    axis.set_ylim(bottom=0)
-    axis.set_xticks(sizes)
+    axis.set_yscale("log")
+    axis.set_ylim(0.1, 200)
+    axis.set_xticks([v[0] for v in steps])
+    axis.margins(x=0.15)
     axis.xaxis.set_major_formatter(FormatStrFormatter("%d"))
+    axis.yaxis.set_major_formatter(FormatStrFormatter("%g"))
     axis.xaxis.set_minor_formatter(NullFormatter())
     axis.set_xlabel("particles")
-    axis.set_ylabel("median CPU time per particle and step [us]")
-    axis.grid(True, which="major", color="0.9")
+    axis.set_ylabel("median CPU time per particle [us]")
+    axis.legend(fontsize=7, loc="center left")
+    axis.grid(True, which="major", color="0.92")
 
 
-def main(table, pictures):
+def main(table, pictures, machine):
     with open(table, newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     pulls = [row for row in rows if row["case"] == PULL]
     if not pulls:
         sys.exit(f"{table}: has no row of the case '{PULL}'; write it with vibe_bench --csv, without --case")
-    growth = [row for row in rows if row["case"] == "growth"]
-    figure, axes = plt.subplots(2, 2, figsize=(12, 9.5))
+    figure, axes = plt.subplots(2, 2, figsize=(13, 10.5))
+    particles = pulls[0]["particles"]
+    figure.suptitle(f"20 mm pull in 0.5 s, {particles} particles, one thread: speed against error" +
+                    (f"\n{machine}" if machine else ""), fontsize=11)
+    figure.subplots_adjust(left=0.07, right=0.98, top=0.92, bottom=0.06, wspace=0.18, hspace=0.2)
     draw_errors(axes[0][0], pulls, "motion_error", "error of the motion, worst frame")
     draw_errors(axes[0][1], pulls, "force_error", "error of the force, worst frame")
     draw_errors(axes[1][0], pulls, "static_error", "error 0.5 s after the stop")
-    draw_growth(axes[1][1], growth)
-    axes[0][0].legend(fontsize=8, loc="best")
-    particles = pulls[0]["particles"]
-    figure.suptitle(f"20 mm pull in 0.5 s, {particles} particles, one thread: speed against error\n"
-                    "triangles: beyond 1000 %; dashed: one frame", fontsize=11)
-    figure.tight_layout()
+    draw_growth(axes[1][1], rows)
+    axes[0][0].legend(fontsize=7, loc="lower left")
     for picture in pictures:
         figure.savefig(picture, dpi=130, metadata={"Date": None} if picture.endswith(".svg") else None)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3:
+    arguments = sys.argv[1:]
+    named = arguments.pop(0).split("=", 1)[1] if arguments and arguments[0].startswith("--machine=") else ""
+    if len(arguments) < 2:
         sys.exit(__doc__.strip())
-    main(sys.argv[1], sys.argv[2:])
+    main(arguments[0], arguments[1:], named)
