@@ -20,6 +20,7 @@ constexpr double kMarginOfOne = 2;
 constexpr double kGuessGrowth = 2;  // of the elastic energy that a guess may bring
 constexpr int kCarefulSteps = 10;
 constexpr int kCarefulIterations = 12;
+constexpr int kMeetConditions = 6;     // iterations after which the conditions hold, whatever it takes
 constexpr double kCarefulMove = 0.05;  // of the size of the body, per iteration
 constexpr double kSafeStrain = 0.02;   // which a last, unverified move may bring where it is longest
 constexpr double kUsualGrowth = 1.5;   // of the usual move, beyond which it is verified although it is short
@@ -184,6 +185,7 @@ bool ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOu
   while (outcome.iterations < most && !done && !outcome.converged && !newton.failed()) {
     outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < enough);
     if (outcome.iterations++ == 0) first_length = newton.directionLength();
+    if (outcome.iterations == kMeetConditions) newton.meetConditions();
     done = outcome.iterations >= enough && newton.contracts();
     outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
   }

@@ -68,6 +68,34 @@ double QuasiNewton::rowsLack() {
   return most;
 }
 
+// By the smoothest move, whatever the energy: what a tool holds goes where the tool goes. Far moves lower the energy
+// only in small parts, of which no number arrives.
+void QuasiNewton::meetConditions() {
+  StepperScratch& s = scratch_;
+  rowsLack();
+  double most = 0;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const HalfRow& row = s.rows[r];
+    if (row.friction >= 0) continue;
+    double& wanted = s.wanted[static_cast<Eigen::Index>(r)];
+    if (row.compliance > 0) wanted = 0;
+    most = std::max(most, std::abs(wanted));
+  }
+  if (most <= kSmallLack * direction_length_) return;
+  std::fill(s.half.begin(), s.half.end(), 0.0F);
+  s.half_space.eliminate(s.wanted, 0, s.half.data());
+  s.factor->backward(s.half.data());
+  s.factor->store(s.half.data(), s.direction.data());
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    if (body_.fixed[i] != 0)
+      for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
+  if (extra_ != nullptr) extra_->limitMove(s.z.data(), s.direction.data());
+  setTrial(1);
+  s.z.swap(s.trial);
+  contracts_ = false;
+  start();
+}
+
 double QuasiNewton::resolution() const {
   return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.displacement);
 }

@@ -231,21 +231,22 @@ World scopeWorld() {
 }
 
 TEST(Hard, GripPulledByFortyMillimetresInOneFrame) {
-  World world = scopeWorld();
-  const int held = 100;
-  std::vector<Eigen::Isometry3d> poses;
-  world.model->tool->forwardKinematics(world.state.joints, poses);
-  const Eigen::Isometry3d helix = world.model->tool_base * poses[world.model->grip_link];
-  const Eigen::Vector3d p = world.position(held);
-  world.state.grip = {{held, helix.inverse() * Eigen::Vector3d(p - 0.04 * p.normalized())}};
-  world.state.helix_pressed = true;
-  StepInput hold;
-  hold.buttons[HelixGrab] = 1;
-  world.step(hold);
-  EXPECT_NEAR((world.position(held) - p).norm(), 0.04, 1e-6);
-  world.run(0.2, hold);  // it slips by itself above its hold force
-  expectHealed(world);
-  EXPECT_EQ(world.count(Event::Kind::Recovery), 0);
+  for (const int held : {40, 100, 178, 270, 431, 592}) {
+    World world = scopeWorld();
+    std::vector<Eigen::Isometry3d> poses;
+    world.model->tool->forwardKinematics(world.state.joints, poses);
+    const Eigen::Isometry3d helix = world.model->tool_base * poses[world.model->grip_link];
+    const Eigen::Vector3d p = world.position(held);
+    world.state.grip = {{held, helix.inverse() * Eigen::Vector3d(p - 0.04 * p.normalized())}};
+    world.state.helix_pressed = true;
+    StepInput hold;
+    hold.buttons[HelixGrab] = 1;
+    world.step(hold);
+    EXPECT_NEAR((world.position(held) - p).norm(), 0.04, 1e-6) << held;
+    world.run(0.2, hold);  // it slips by itself above its hold force
+    expectHealed(world);
+    EXPECT_EQ(world.count(Event::Kind::Recovery), 0) << held;
+  }
 }
 
 TEST(Hard, ToolThroughTheWallInOneFrame) {
