@@ -76,7 +76,8 @@ void ShellElements::addBatch(const std::array<int, kTetLanes>& triangles, int ro
     // it has no size and weighs nothing
     const auto clear = [&](int k) { batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = 0; };
     for (int k = 0; k < 15; ++k) clear(kShellPatch + k);
-    for (int k = 0; k < 3; ++k) clear(kShellSide + 4 * k + 3), clear(kShellBend + k);
+    for (int k = 0; k < 3; ++k) clear(kShellSide + 4 * k + 3);
+    clear(kShellBend);
   }
   ++batch_count_;
 }

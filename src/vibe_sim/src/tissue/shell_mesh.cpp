@@ -164,9 +164,7 @@ void ShellElements::measureBending(std::size_t triangle, const PatchMatrix& x, d
   const double t = mesh_.thickness[triangle];
   const double stiffness =
       areaOf(triangle) * t * t * t / 24 * m.young_modulus / (1 - m.poisson_ratio * m.poisson_ratio);
-  const double scale = std::sqrt(std::sqrt(stiffness));
-  const auto frame = orthonormal(first / 6, second / 6);
-  for (std::size_t k = 0; k < 3; ++k) rest[kShellBend + k] = scale * frame[k];
+  rest[kShellBend] = stiffness * 36 * 36 / std::pow(length, 4);
 }
 
 void ShellElements::measureGhosts(std::size_t triangle, double* rest) const {

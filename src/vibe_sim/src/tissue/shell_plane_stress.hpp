@@ -27,12 +27,14 @@ template <class B>
 struct WallTerms {
   LawTerms<B> law;
   B poisson_ratio, thickness_guess, quarter_bulk;  // nu, nu / (1 - nu), lambda / 4
+  B mean_softening;
 
   WallTerms(const LawConstants& constants, double nu)
       : law(constants),
         poisson_ratio(constant<B>(nu)),
         thickness_guess(constant<B>(nu / (1 - nu))),
-        quarter_bulk(constant<B>(constants.bulk / 4)) {}
+        quarter_bulk(constant<B>(constants.bulk / 4)),
+        mean_softening(constant<B>(nu > 0 ? nu * (1 - 2 * nu) / (1 - nu) : 0)) {}
 };
 
 /// Energy per volume at rest in plane stress [Pa].

@@ -119,29 +119,19 @@ void addMembrane(const Material& material, const WallTerms<double>& terms, const
 constexpr double kTangent[2][5] = {{4, 0, 1, -1, 0}, {0, 4, 1, 0, -1}};
 constexpr double kSecond[3][5] = {{0, -2, 1, 1, 0}, {-1, -1, 1, 0, 0}, {-2, 0, 1, 0, 1}};
 
-// Derivatives of the curvature over the thinned wall, as it stands in the energy |r|^2_D.
-Rows18 curvatureRows(const double* rest, const Bent<double>& s) {
+// Derivatives of the covariant curvature, as far as the energy is of second order in it: with the thickness that
+// changes with the area.
+Rows18 curvatureRows(const Bent<double>& s) {
   using Vector = Eigen::Map<const Eigen::Vector3d>;
   const Vector n(s.n), g0(s.g[0]), g1(s.g[1]);
-  double factor, slope, kappa[3];
-  const double t[3] = {rest[kShellBend], rest[kShellBend + 1], rest[kShellBend + 2]};
-  thinning(s.thin, factor, slope);
-  pullBack(t, s.change, kappa);
-  const double pull = -2 * s.thin * s.inverse * slope;
+  const double pull = s.thin < kThinningStart ? -2 * s.inverse : 0;
   Rows18 out = Rows18::Zero();
   for (int row = 0; row < 3; ++row) {
-    double unit[3] = {0, 0, 0}, m[3];  // of kappa by b
-    unit[row] = row == 1 ? 0.5 : 1;
-    pushForward(t, unit, m);
-    m[1] *= 2;
-    Eigen::Vector3d q = Eigen::Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) q += m[k] * (Vector(s.rest_h[k]) + Vector(s.move_h[k]));
-    const Eigen::Vector3d p = factor * s.inverse * (q - n * n.dot(q)) + pull * kappa[row] * n;
+    const Eigen::Vector3d q = Vector(s.rest_h[row]) + Vector(s.move_h[row]);
+    const Eigen::Vector3d p = s.inverse * (q - n * n.dot(q)) + pull * s.change[row] * n;
     const Eigen::Vector3d by_g0 = g1.cross(p), by_g1 = p.cross(g0);
     for (int a = 0; a < 5; ++a) {
-      double arm = 0;
-      for (int k = 0; k < 3; ++k) arm += m[k] * kSecond[k][a];
-      const Eigen::Vector3d v = kTangent[0][a] * by_g0 + kTangent[1][a] * by_g1 + factor * arm * n;
+      const Eigen::Vector3d v = kTangent[0][a] * by_g0 + kTangent[1][a] * by_g1 + kSecond[row][a] * n;
       out.block<1, 3>(row, 3 * (a + 1)) = v.transpose();
       out.block<1, 3>(row, 0) -= v.transpose();
     }
@@ -149,12 +139,18 @@ Rows18 curvatureRows(const double* rest, const Bent<double>& s) {
   return out;
 }
 
-void addBending(double nu, const double* rest, const Patch<double>& x, const Patch<double>& u, Matrix18& k) {
+void addBending(const WallTerms<double>& terms, const double* rest, const Patch<double>& x, const Patch<double>& u,
+                Matrix18& k) {
   const auto rows = [rest](int row) { return rest[row]; };
-  const Rows18 b = curvatureRows(rest, bentSurface(rows, x, u));
-  Eigen::Matrix3d law;
-  law << 2, 0, 2 * nu, 0, 4 * (1 - nu), 0, 2 * nu, 0, 2;
-  const Rows18 moment = law * b;
+  const Bent<double> s = bentSurface(rows, x, u);
+  const BendingFactor<double> factor = bendingFactor(terms, s.thin);
+  const Rows18 b = curvatureRows(s);
+  const Eigen::Map<const Eigen::Vector3d> g0(s.g[0]), g1(s.g[1]);
+  const Eigen::Vector3d trace(g1.dot(g1), -2 * g0.dot(g1), g0.dot(g0));
+  Eigen::Matrix3d law = 2 * factor.mean * trace * trace.transpose();
+  const double gauss = 2 * (1 - terms.poisson_ratio) * s.square;
+  law(0, 2) -= gauss, law(2, 0) -= gauss, law(1, 1) += 2 * gauss;
+  const Rows18 moment = rest[kShellBend] * factor.whole * law * b;
   k.noalias() += b.transpose() * moment;
 }
 
@@ -190,7 +186,7 @@ void ShellElements::addStiffness(const double* displacement, BlockMatrix& stiffn
     Matrix18 k = Matrix18::Zero();
     addMembrane(m, WallTerms<double>(constants_[material], m.poisson_ratio), rest(e),
                 Eigen::Map<const Vectors>(&x[0][0]), Eigen::Map<const Vectors>(&u[0][0]), k);
-    addBending(m.poisson_ratio, rest(e), x, u, k);
+    addBending(WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), x, u, k);
     if (atBoundary(e)) foldGhosts(rest(e), k);
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b <= a; ++b) {

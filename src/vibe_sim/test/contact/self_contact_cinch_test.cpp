@@ -264,7 +264,7 @@ TEST(SelfContactCinch, WhatCannotBeReachedIsNotPassed) {
 
 // Two bites 50 mm apart in one wall: it folds between them.
 Held fold(Cinch& world) {
-  return pullTogether(world, world.patch({0.025, 0, 0.0156}, 7), world.patch({-0.025, 0, 0.0156}, 7), 1, 0.03);
+  return pullTogether(world, world.patch({0.025, 0, 0.0156}, 7), world.patch({-0.025, 0, 0.0156}, 7), 1, 0.025);
 }
 TEST(SelfContactCinch, AFoldMeetsItself) {
   Cinch world(kFlat, 4, true), control(kFlat, 4, false);

@@ -27,8 +27,11 @@ struct ShellMesh {
 /// membrane behaviour of the three node rotation-free BST shell triangle using an assumed strain approach" (EBST).
 /// The surface over a triangle is the quadratic one through its nodes 1 2 3 and the apexes of its neighbours, 4 beyond
 /// the side 2 3, 5 beyond 3 1 and 6 beyond 1 2. It stretches by its metric at the middles of the three sides, in plane
-/// stress of any law, and bends by its curvature at the centroid, by E t^3 / (12 (1 - nu^2)) over the square of the
-/// squared stretch of its area, which thins it.
+/// stress of any law, and bends by its curvature at the centroid: the energy, integrated across the wall, to second
+/// order in the distance from the middle. Its stiffness is the tangent of the neo-Hookean law (whatever the law is) at
+/// the metric of the centroid, E t^3 / (12 (1 - nu^2)) at rest, much more where the wall is pushed together along the
+/// bend. Distances across the wall are those at rest: with those of the thinned wall the reference pull of a plate
+/// comes out 7 % too soft.
 ///
 /// A side without a neighbour bends freely; one whose nodes are both fixed is clamped: its tangent plane is kept.
 /// The wall stretches to a line or a point, and folds over, with finite energy and force.

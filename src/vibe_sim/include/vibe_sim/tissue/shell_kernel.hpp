@@ -10,11 +10,11 @@ constexpr int kShellPatch = 0;       ///< positions of the nodes 2, 3 and the th
 constexpr int kShellSide = 15;       ///< per side: entries 11, 12, 22 of T [1/m], then twice the volume [m^3]
 constexpr int kShellNormal = 27;     ///< normal of the patch at the centroid, shortened by kShellSoftness [1]
 constexpr int kShellLength = 30;     ///< 36 times the area element at the centroid, lengthened by kShellSoftness [m^2]
-constexpr int kShellBend = 31;       ///< entries of T at the centroid, times the fourth root of the bending stiffness
-constexpr int kShellOrigin = 34;     ///< position of node 1 less the origin of the volume [m]
-constexpr int kShellRows = 37;       ///< of a triangle with three neighbours
-constexpr int kShellGhost = 37;      ///< per side: 1 if a triangle is beyond it, else 0; then sqrt(2) n if clamped
-constexpr int kShellGhostRows = 49;  ///< of the others
+constexpr int kShellBend = 31;       ///< area times half the bending stiffness at rest, by (36 area elements)^4 / 36^2
+constexpr int kShellOrigin = 32;     ///< position of node 1 less the origin of the volume [m]
+constexpr int kShellRows = 35;       ///< of a triangle with three neighbours
+constexpr int kShellGhost = 35;      ///< per side: 1 if a triangle is beyond it, else 0; then sqrt(2) n if clamped
+constexpr int kShellGhostRows = 47;  ///< of the others
 
 /// What evaluating some batches of triangles of one material takes; see TetSweep.
 struct ShellSweep {
