@@ -50,8 +50,7 @@ void HalfSpace::reset(const Factor& factor, int node_count) {
   gram_known_.assign(gram_.size(), 0);
   gas_.assign(static_cast<std::size_t>(factor.rows()) + 16, 0.0F);
   gas_stiffness_ = 0;
-  rows_.clear();
-  row_slots_.clear();
+  row_count_ = 0;
   findUsedSlots();
 }
 
@@ -88,8 +87,12 @@ void HalfSpace::setRows(const std::vector<HalfRow>& rows, const Factor& factor) 
     node_of_slot_.clear();
     std::fill(gram_known_.begin(), gram_known_.end(), char{0});
   }
-  rows_ = rows;
-  row_slots_.resize(rows.size());
+  row_count_ = static_cast<int>(rows.size());
+  if (rows_.size() < rows.size()) {  // they never become fewer, and keep their memory
+    rows_.resize(rows.size());
+    row_slots_.resize(rows.size());
+  }
+  std::copy(rows.begin(), rows.end(), rows_.begin());
   equations_.clear(), contacts_.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     row_slots_[i].clear();
@@ -111,7 +114,8 @@ void HalfSpace::setRows(const std::vector<HalfRow>& rows, const Factor& factor) 
 
 void HalfSpace::findUsedSlots() {
   used_slots_.clear();
-  for (const std::vector<int>& slots : row_slots_) used_slots_.insert(used_slots_.end(), slots.begin(), slots.end());
+  for (int i = 0; i < row_count_; ++i)
+    used_slots_.insert(used_slots_.end(), row_slots_[i].begin(), row_slots_[i].end());
   // by node: the slots' numbers depend on what was touched before, and sums must not
   std::sort(used_slots_.begin(), used_slots_.end(), [&](int a, int b) { return node_of_slot_[a] < node_of_slot_[b]; });
   used_slots_.erase(std::unique(used_slots_.begin(), used_slots_.end()), used_slots_.end());
@@ -162,52 +166,69 @@ void HalfSpace::addForces(float* y) {
 
 void HalfSpace::formCompliance() {
   const int m = rowCount();
-  compliance_.setZero(m, m);
+  compliance_.resize(m, m);
   force_.setZero(m);
   for (int i = 0; i < m; ++i)
-    for (int j = 0; j <= i; ++j) {
-      double sum = 0;
-      for (std::size_t a = 0; a < row_slots_[i].size(); ++a)
-        for (std::size_t b = 0; b < row_slots_[j].size(); ++b) {
-          const int sa = row_slots_[i][a], sb = row_slots_[j][b];
-          const Eigen::Matrix3d g =
-              (sa >= sb ? gram(sa, sb) : Eigen::Matrix3f(gram(sb, sa).transpose())).cast<double>();
-          sum += rows_[i].coefficient[a].dot(g * rows_[j].coefficient[b]);
-        }
-      compliance_(i, j) = compliance_(j, i) = sum;
-    }
+    for (int j = 0; j <= i; ++j) compliance_(i, j) = compliance_(j, i) = complianceBetween(i, j);
   gas_row_.setZero(m);
   if (gas_stiffness_ != 0 && m > 0) {
     findRowValues(gas_.data());
     gas_row_ = row_value_;
-    compliance_ -= gas_row_ * gas_row_.transpose() / gas_norm2_;
+    for (int j = 0; j < m; ++j) compliance_.col(j) -= (gas_row_[j] / gas_norm2_) * gas_row_;
   }
   for (int i = 0; i < m; ++i) compliance_(i, i) += rows_[i].compliance;
-  if (!equations_.empty()) {
-    Eigen::MatrixXd block = compliance_(equations_, equations_);
-    equation_factor_.compute(block);
-    if (!contacts_.empty()) coupling_ = equation_factor_.solve(Eigen::MatrixXd(compliance_(equations_, contacts_)));
-  }
-  if (!contacts_.empty()) {
-    schur_ = compliance_(contacts_, contacts_);
-    if (!equations_.empty()) schur_ -= compliance_(contacts_, equations_) * coupling_;
-  }
+  formBlocks();
 }
 
-// Projected Gauss-Seidel on the contacts with the equations eliminated; `right` is what each row lacks.
-void HalfSpace::solveContacts(const Eigen::VectorXd& right) {
-  const int n = static_cast<int>(contacts_.size());
-  Eigen::VectorXd lambda = Eigen::VectorXd::Zero(n);
+double HalfSpace::complianceBetween(int i, int j) {
+  double sum = 0;
+  for (std::size_t a = 0; a < row_slots_[i].size(); ++a)
+    for (std::size_t b = 0; b < row_slots_[j].size(); ++b) {
+      const int sa = row_slots_[i][a], sb = row_slots_[j][b];
+      const Eigen::Matrix3d g = (sa >= sb ? gram(sa, sb) : Eigen::Matrix3f(gram(sb, sa).transpose())).cast<double>();
+      sum += rows_[i].coefficient[a].dot(g * rows_[j].coefficient[b]);
+    }
+  return sum;
+}
+
+// The equations are eliminated from the contacts. Loops, since indexed views of Eigen ask for memory.
+void HalfSpace::formBlocks() {
+  const auto e = static_cast<Eigen::Index>(equations_.size()), c = static_cast<Eigen::Index>(contacts_.size());
+  if (e > 0) {
+    block_.resize(e, e);
+    for (Eigen::Index j = 0; j < e; ++j)
+      for (Eigen::Index i = 0; i < e; ++i) block_(i, j) = compliance_(equations_[i], equations_[j]);
+    equation_factor_.compute(block_);
+  }
+  if (c == 0) return;
+  schur_.resize(c, c);
+  for (Eigen::Index j = 0; j < c; ++j)
+    for (Eigen::Index i = 0; i < c; ++i) schur_(i, j) = compliance_(contacts_[i], contacts_[j]);
+  if (e == 0) return;
+  cross_.resize(e, c);
+  coupling_.resize(e, c);
+  for (Eigen::Index j = 0; j < c; ++j) {
+    for (Eigen::Index i = 0; i < e; ++i) cross_(i, j) = compliance_(equations_[i], contacts_[j]);
+    coupling_.col(j) = equation_factor_.solve(cross_.col(j));
+  }
+  schur_.noalias() -= cross_.transpose().lazyProduct(coupling_);
+}
+
+// Projected Gauss-Seidel on the contacts with the equations eliminated, to their forces from what each row lacks.
+void HalfSpace::solveContacts() {
+  const auto n = static_cast<int>(contacts_.size());
+  Eigen::VectorXd& lambda = contact_force_;
+  lambda.setZero(n);
   double moved = 2 * kContactMove;
   for (int sweep = 0; sweep < kContactSweeps && moved > kContactMove; ++sweep) {
     moved = 0;
     for (int i = 0; i < n; i += 3) {
       const Eigen::Vector3d before = lambda.segment<3>(i);
-      const double normal_lack = right[i] - schur_.row(i).dot(lambda);
+      const double normal_lack = contact_lack_[i] - schur_.row(i).dot(lambda);
       lambda[i] = std::max(0.0, lambda[i] + normal_lack / schur_(i, i));
       const double limit = rows_[contacts_[i]].friction * lambda[i];
       for (int k = 1; k < 3; ++k)
-        lambda[i + k] += (right[i + k] - schur_.row(i + k).dot(lambda)) / schur_(i + k, i + k);
+        lambda[i + k] += (contact_lack_[i + k] - schur_.row(i + k).dot(lambda)) / schur_(i + k, i + k);
       const double size = std::hypot(lambda[i + 1], lambda[i + 2]);
       if (size > limit) {
         lambda[i + 1] *= limit / size;
@@ -219,7 +240,29 @@ void HalfSpace::solveContacts(const Eigen::VectorXd& right) {
   for (int i = 0; i < n; ++i) force_[contacts_[i]] = lambda[i];
 }
 
-void HalfSpace::eliminate(const Eigen::VectorXd& wanted, double swelling, float* y) {
+// The rows' forces from what each of them lacks.
+void HalfSpace::solveRows() {
+  const auto e = static_cast<Eigen::Index>(equations_.size()), c = static_cast<Eigen::Index>(contacts_.size());
+  force_.setZero(rowCount());
+  equation_lack_.resize(e);
+  for (Eigen::Index i = 0; i < e; ++i) equation_lack_[i] = lack_[equations_[i]];
+  if (c > 0) {
+    contact_lack_.resize(c);
+    for (Eigen::Index i = 0; i < c; ++i) contact_lack_[i] = lack_[contacts_[i]];
+    if (e > 0) contact_lack_.noalias() -= coupling_.transpose() * equation_lack_;
+    solveContacts();
+    if (e > 0) equation_lack_.noalias() -= cross_ * contact_force_;
+  }
+  if (e > 0) solveEquations();
+}
+
+void HalfSpace::solveEquations() {
+  equation_force_ = equation_factor_.solve(equation_lack_);
+  for (std::size_t i = 0; i < equations_.size(); ++i)
+    force_[equations_[i]] = equation_force_[static_cast<Eigen::Index>(i)];
+}
+
+void HalfSpace::eliminate(const Eigen::Ref<const Eigen::VectorXd>& wanted, double swelling, float* y) {
   const int m = rowCount();
   double gas_lack = 0;
   if (gas_stiffness_ != 0) {
@@ -228,17 +271,9 @@ void HalfSpace::eliminate(const Eigen::VectorXd& wanted, double swelling, float*
     gas_lack = swelling - along;
   }
   findRowValues(y);
-  Eigen::VectorXd lack = wanted - row_value_;
-  if (gas_stiffness_ != 0 && m > 0) lack -= gas_row_ * (gas_lack / gas_norm2_);
-  force_.setZero(m);
-  Eigen::VectorXd equation_lack = lack(equations_);
-  if (!contacts_.empty()) {
-    Eigen::VectorXd right = lack(contacts_);
-    if (!equations_.empty()) right -= coupling_.transpose() * equation_lack;
-    solveContacts(right);
-    if (!equations_.empty()) equation_lack -= compliance_(equations_, contacts_) * force_(contacts_);
-  }
-  if (!equations_.empty()) force_(equations_) = Eigen::VectorXd(equation_factor_.solve(equation_lack));
+  lack_ = wanted - row_value_;
+  if (gas_stiffness_ != 0 && m > 0) lack_ -= gas_row_ * (gas_lack / gas_norm2_);
+  solveRows();
   addForces(y);
   gas_force_ = 0;
   if (gas_stiffness_ != 0) {
@@ -251,12 +286,14 @@ void HalfSpace::eliminate(const Eigen::VectorXd& wanted, double swelling, float*
 void HalfSpace::gasResponse(float* y) {
   std::copy(gas_.begin(), gas_.end(), y);
   if (equations_.empty()) return;
-  const Eigen::VectorXd kept = force_;
+  kept_force_ = force_;
   force_.setZero();
-  const Eigen::VectorXd lack = -gas_row_(equations_);
-  force_(equations_) = Eigen::VectorXd(equation_factor_.solve(lack));
+  equation_lack_.resize(static_cast<Eigen::Index>(equations_.size()));
+  for (std::size_t i = 0; i < equations_.size(); ++i)
+    equation_lack_[static_cast<Eigen::Index>(i)] = -gas_row_[equations_[i]];
+  solveEquations();
   addForces(y);
-  force_ = kept;
+  force_.swap(kept_force_);
 }
 
 }  // namespace vibe

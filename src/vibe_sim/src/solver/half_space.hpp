@@ -28,11 +28,11 @@ class HalfSpace {
   /// infinite: the volume is prescribed.
   void setGas(const float* direction4, double stiffness, const Factor& factor);
 
-  int rowCount() const { return static_cast<int>(rows_.size()); }
+  int rowCount() const { return row_count_; }
   /// Given y = L^-1 (right-hand side), finds the forces of rows and gas so that the rows' values of the solution are
   /// `wanted` (rows that are equations) or at least that (contacts), and adds them to y.
   /// @param swelling  wanted change of volume where it is prescribed [m^3]
-  void eliminate(const Eigen::VectorXd& wanted, double swelling, float* y);
+  void eliminate(const Eigen::Ref<const Eigen::VectorXd>& wanted, double swelling, float* y);
   const Eigen::VectorXd& forces() const { return force_; }
   double gasStiffness() const { return gas_stiffness_; }
   /// Half-solved answer to one unit of gas pressure, with the equations held (contacts are not).
@@ -49,13 +49,18 @@ class HalfSpace {
   void findRowValues(const float* y);
   void addForces(float* y);
   void formCompliance();
-  void solveContacts(const Eigen::VectorXd& right);
+  double complianceBetween(int i, int j);
+  void formBlocks();
+  void solveContacts();
+  void solveRows();
+  void solveEquations();
 
   std::vector<int> slot_of_node_;
   std::vector<int> node_of_slot_;
   std::vector<HalfColumns> columns_;
   std::vector<Eigen::Matrix3f> gram_;  // of slots a >= b, row after row
   std::vector<char> gram_known_;
+  int row_count_ = 0;  // of rows_ and row_slots_, which keep their memory
   std::vector<HalfRow> rows_;
   std::vector<std::vector<int>> row_slots_;
   std::vector<int> used_slots_;
@@ -66,7 +71,8 @@ class HalfSpace {
   double gas_stiffness_ = 0, gas_norm2_ = 0;
   Eigen::VectorXd gas_row_, force_;
   double gas_force_ = 0;
-  Eigen::MatrixXd compliance_, schur_, coupling_;
+  Eigen::MatrixXd compliance_, block_, cross_, schur_, coupling_;  // of equations, with contacts, of contacts
+  Eigen::VectorXd lack_, equation_lack_, contact_lack_, equation_force_, contact_force_, kept_force_;
   Eigen::LDLT<Eigen::MatrixXd> equation_factor_;
 };
 

@@ -39,7 +39,7 @@ ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, d
       h_(model.scene.step_period) {}
 
 void ImplicitStep::run() {
-  scratch_.loads.conditions.clear();
+  scratch_.loads.conditions.resize(motion_ != nullptr ? 3 * state_.grip.size() : 0);
   scratch_.loads.contacts.clear();
   scratch_.contact_motion.clear();
   scratch_.contact_link.clear();
@@ -135,14 +135,14 @@ void ImplicitStep::placeTool() {
 
 // Three conditions per held particle: where the helix takes it.
 void ImplicitStep::holdGrip() {
-  for (const GripPoint& point : state_.grip) {
+  for (std::size_t g = 0; g < state_.grip.size(); ++g) {
+    const GripPoint& point = state_.grip[g];
     const Eigen::Vector3d target = scratch_.poses[model_.grip_link] * point.local;
     for (int k = 0; k < 3; ++k) {
-      Condition condition;
+      Condition& condition = scratch_.loads.conditions[3 * g + static_cast<std::size_t>(k)];
       condition.node.assign(1, point.particle);
       condition.coefficient.assign(1, Eigen::Vector3d::Unit(k));
       condition.target = target[k];
-      scratch_.loads.conditions.push_back(condition);
     }
   }
 }

@@ -1,6 +1,5 @@
 #include "response_estimator.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -123,16 +122,18 @@ void ResponseEstimator::setRows(const ToolTouch& touch) {
 
 std::optional<ToolResponse> ResponseEstimator::respond(const ToolTouch& touch, bool consecutive) {
   present_->setRows(rows_);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(present_->compliance());
-  const Motions found = motion_.transpose() * factor.solve(motion_);
+  factor_.compute(present_->compliance());
+  solved_.resize(motion_.rows(), kToolMotions);
+  for (Eigen::Index c = 0; c < kToolMotions; ++c) solved_.col(c) = factor_.solve(motion_.col(c));
+  const Motions found = motion_.transpose().lazyProduct(solved_);
   Motions stiffness = 0.5 * (found + found.transpose());
-  if (factor.info() != Eigen::Success || !factor.isPositive() || !stiffness.allFinite()) return std::nullopt;
+  if (factor_.info() != Eigen::Success || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
 
-  std::vector<int> nodes;
-  for (const ToolRow& row : touch.rows) nodes.push_back(row.node);
-  const bool comparable = touch.smooth && consecutive && nodes == last_nodes_;
+  nodes_.clear();
+  for (const ToolRow& row : touch.rows) nodes_.push_back(row.node);
+  const bool comparable = touch.smooth && consecutive && nodes_ == last_nodes_;
   has_last_ = has_last_ && consecutive;
-  last_nodes_.swap(nodes);
+  last_nodes_.swap(nodes_);
   return response(touch, stiffness, comparable);
 }
 
@@ -170,8 +171,11 @@ ToolResponse ResponseEstimator::response(const ToolTouch& touch, const Motions& 
   const JointMatrix k_joints = stiffness.bottomRightCorner<kScopeJointCount, kScopeJointCount>();
   const JointMatrix b_joints = damping.bottomRightCorner<kScopeJointCount, kScopeJointCount>();
   const bool tip_moved = (tip - slope_.lastPlace()).norm() > kShortestStep;
-  const Eigen::VectorXd row_moves = motion_.rightCols<kScopeJointCount>() * (joints - joint_slope_.lastPlace());
-  const bool joints_moved = row_moves.cwiseAbs().maxCoeff() > kShortestStep;
+  const Joints turned = joints - joint_slope_.lastPlace();
+  double row_move = 0;
+  for (Eigen::Index r = 0; r < motion_.rows(); ++r)
+    row_move = std::max(row_move, std::abs(motion_.row(r).tail<kScopeJointCount>().dot(turned)));
+  const bool joints_moved = row_move > kShortestStep;
   slope_.observe(k_tip, tip, touch.force.head<3>() + b_tip * v.head<3>(), comparable && tip_moved);
   joint_slope_.observe(k_joints, joints, touch.force.tail<kScopeJointCount>() + b_joints * v.tail<kScopeJointCount>(),
                        comparable && joints_moved);

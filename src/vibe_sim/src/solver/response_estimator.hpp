@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <cstdint>
 #include <future>
 #include <limits>
@@ -74,10 +75,12 @@ class ResponseEstimator {
   std::vector<float> about_, next_about_, next_gas_;  // empty `about_`: rest
   std::vector<HalfRow> rows_, next_rows_;
   Eigen::MatrixXd motion_, next_motion_;        // (rows x kToolMotions)
+  Eigen::MatrixXd solved_;                      // force of each row per motion (rows x kToolMotions)
+  Eigen::LDLT<Eigen::MatrixXd> factor_;         // of the rows' compliance
   Motions mass_ = Motions::Zero(), next_mass_;  // moving along [kg], [kg m], [kg m^2]
   std::future<bool> making_;
   std::int64_t last_step_ = std::numeric_limits<std::int64_t>::max(), next_renewal_ = 0;
-  std::vector<int> last_nodes_;
+  std::vector<int> nodes_, last_nodes_;
   bool has_last_ = false;  // response
   Eigen::Matrix<double, kToolMotions, 1> last_place_, last_speed_, last_force_, last_jump_;
   SlopeCorrection<3> slope_;
