@@ -49,7 +49,6 @@ void ImplicitStep::run() {
     findContacts();
   }
   if (atRest()) return;
-  findWalls();
   fillGas();
   const double old_volume = state_.volume, old_pressure = state_.pressure;
   MotionView view{{state_.x.data(), state_.y.data(), state_.z.data()},
@@ -64,6 +63,7 @@ void ImplicitStep::run() {
     account(old_volume, old_pressure);
     return;
   }
+  findWalls();  // not before: in a heap of particles that is led home all walls are near each other
   const StepOutcome outcome = stepper_.step(view, scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
   report_.careful = outcome.careful;
