@@ -203,7 +203,7 @@ void ImplicitStep::addContact(const Contact& contact) {
   condition.friction = model_.scene.scope->friction;
   condition.anchor = anchor;
   scratch_.loads.contacts.push_back(condition);
-  scratch_.contact_motion.push_back(anchor - p);
+  scratch_.contact_motion.emplace_back(anchor - p);
   scratch_.contact_link.push_back(link);
 }
 
