@@ -81,7 +81,7 @@ def draw_errors(axis, rows, column, title):
               ha="center", va="bottom", fontsize=7, color="0.4")
     axis.set_xscale("log")
     axis.set_yscale("log")
-    axis.set_xlim(axis_left(points), 45)
+    axis.set_xlim(axis_left(points), max(45, 2 * max(point[1] for point in points)))
     axis.set_ylim(100 * lowest(points), 190)
     axis.set_xlabel("median CPU time of a 60 Hz frame [ms]")
     axis.set_ylabel(title + " [%]")
@@ -169,7 +169,7 @@ def main(table, pictures, machine):
     draw_errors(axes[0][1], pulls, "force_error", "error of the force, worst frame")
     draw_errors(axes[1][0], pulls, "static_error", "error 0.5 s after the stop")
     draw_growth(axes[1][1], rows)
-    axes[0][0].legend(fontsize=7, loc="lower left")
+    axes[1][0].legend(fontsize=7, loc="center left")
     for picture in pictures:
         figure.savefig(picture, dpi=130, metadata={"Date": None} if picture.endswith(".svg") else None)
 
