@@ -10,6 +10,7 @@ namespace {
 /// Rows reach into every part, so absent parts need a stand-in while the others are written.
 Scene filledUp(const Scene& scene) {
   Scene full = scene;
+  if (!full.tissue.fibres) full.tissue.fibres.emplace();
   if (!full.gas) full.gas.emplace();
   if (!full.gravity) full.gravity.emplace();
   if (!full.bed) full.bed.emplace();

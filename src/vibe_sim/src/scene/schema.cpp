@@ -56,6 +56,7 @@ const SchemaSection* findSection(const std::string& name) {
 
 Scene completeScene() {
   Scene scene;
+  scene.tissue.fibres.emplace();
   scene.gas.emplace();
   scene.gravity.emplace();
   scene.bed.emplace();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "shell_point.hpp"
+#include "shell_fibres.hpp"
 
 namespace vibe {
 namespace {
@@ -25,6 +25,7 @@ ShellElements::ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin, Shel
   }
   findNeighbours();
   measure();
+  measureFibres();
   makeBatches();
 }
 
@@ -62,6 +63,8 @@ void ShellElements::addBatch(const std::array<int, kTetLanes>& triangles, int ro
   const std::size_t node = batch_node_.size(), row = batch_rest_.size();
   batch_node_.resize(node + 6);
   batch_rest_.resize(row + static_cast<std::size_t>(rows));
+  const std::size_t fibre = batch_fibre_.size();
+  if (!fibre_rest_.empty()) batch_fibre_.resize(fibre + kFibreRows);
   for (std::size_t lane = 0; lane < kTetLanes; ++lane) {
     const bool empty = triangles[lane] < 0;
     const std::size_t e = static_cast<std::size_t>(empty ? filler : triangles[lane]);
@@ -72,6 +75,9 @@ void ShellElements::addBatch(const std::array<int, kTetLanes>& triangles, int ro
     }
     for (int k = 0; k < rows; ++k)
       batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = static_cast<float>(rest(e)[k]);
+    for (int k = 0; k < kFibreRows && !fibre_rest_.empty(); ++k)
+      batch_fibre_[fibre + static_cast<std::size_t>(k)].lane[lane] =
+          empty ? 0.0F : static_cast<float>(fibre_rest_[kFibreRows * e + static_cast<std::size_t>(k)]);
     if (!empty) continue;
     // it has no size and weighs nothing
     const auto clear = [&](int k) { batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = 0; };
@@ -98,6 +104,10 @@ double ShellElements::evaluatePiece(int piece, ShellSweep sweep, double* volume)
     sweep.poisson_ratio = mesh_.materials[material].poisson_ratio;
     sweep.constants = &constants_[material];
     energy += kernel_.sweep(sweep);
+    if (batch_fibre_.empty()) continue;
+    sweep.fibre = batch_fibre_.data() + static_cast<std::size_t>(kFibreRows * sweep.first);
+    sweep.fibre_stiffening = mesh_.fibres.stiffening;
+    energy += kernel_.fibres(sweep);
   }
   if (volume != nullptr) *volume += sweep.volume;
   return energy;
@@ -139,6 +149,10 @@ double ShellElements::evaluate(const double* displacement, double* gradient) con
       return shellEnergy<decltype(tag)::value, kReferenceSteps>(
           WallTerms<double>(constants_[material], m.poisson_ratio), rows, u, f);
     });
+    if (!fibre_rest_.empty())
+      energy += fibreEnergy(
+          mesh_.fibres.stiffening, rows, [values = &fibre_rest_[kFibreRows * e]](int row) { return values[row]; }, u,
+          f);
     returnGhosts(rows, f);
     for (int a = 0; a < 5; ++a) {
       const int node = patchNode(e, a + 1);

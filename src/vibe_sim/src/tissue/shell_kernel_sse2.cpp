@@ -3,7 +3,7 @@
 namespace vibe {
 
 ShellKernel shellKernelSse2() {
-  return {"sse2", ShellKernelOf<xsimd::sse2>::sweep};
+  return {"sse2", ShellKernelOf<xsimd::sse2>::sweep, ShellKernelOf<xsimd::sse2>::sweepFibres};
 }
 
 }  // namespace vibe

@@ -15,6 +15,9 @@ namespace {
 
 using PatchMatrix = Eigen::Matrix<double, 3, 6>;
 
+// Part of a direction within the plane, below which it has none.
+constexpr double kFibreLeast = 1e-3;
+
 std::string triangleName(std::size_t triangle) {
   return "triangle " + std::to_string(triangle) + " (counted from 0)";
 }
@@ -47,6 +50,7 @@ void ShellElements::checkMesh() const {
   expectCount(mesh_.thickness.size(), mesh_.triangles.size(), "thicknesses of triangles");
   if (!mesh_.material.empty()) expectCount(mesh_.material.size(), mesh_.triangles.size(), "materials of triangles");
   if (!mesh_.fixed.empty()) expectCount(mesh_.fixed.size(), mesh_.nodes.size(), "marks of fixed nodes");
+  checkFibres();
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
     for (const int node : mesh_.triangles[e])
       if (node < 0 || node >= nodes)
@@ -61,6 +65,23 @@ void ShellElements::checkMesh() const {
     if (!(areaOf(e) > 0) || !std::isfinite(areaOf(e)))
       throw Error(triangleName(e) + " has no area at rest: repair the mesh.");
   }
+}
+
+void ShellElements::checkFibres() const {
+  const ShellFibres& fibres = mesh_.fibres;
+  if (fibres.modulus.empty()) return;
+  if (fibres.modulus.size() != mesh_.triangles.size() || fibres.direction.size() != mesh_.triangles.size())
+    throw Error("The fibres of the shell have " + std::to_string(fibres.modulus.size()) + " moduli and " +
+                std::to_string(fibres.direction.size()) + " pairs of directions for " +
+                std::to_string(mesh_.triangles.size()) + " triangles: give one each.");
+  if (!(fibres.stiffening > 0) || !std::isfinite(fibres.stiffening))
+    throw Error("The fibres of the shell have a stiffening of " + std::to_string(fibres.stiffening) +
+                ", but need a finite number above 0: correct it.");
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e)
+    if (!(fibres.modulus[e] >= 0) || !std::isfinite(fibres.modulus[e]) || !fibres.direction[e][0].allFinite() ||
+        !fibres.direction[e][1].allFinite())
+      throw Error(triangleName(e) + " has fibres of " + std::to_string(fibres.modulus[e]) +
+                  " Pa, but needs 0 or more, and finite directions: correct them.");
 }
 
 void ShellElements::findNeighbours() {
@@ -165,6 +186,32 @@ void ShellElements::measureBending(std::size_t triangle, const PatchMatrix& x, d
   const double stiffness =
       areaOf(triangle) * t * t * t / 24 * m.young_modulus / (1 - m.poisson_ratio * m.poisson_ratio);
   rest[kShellBend] = stiffness * 36 * 36 / std::pow(length, 4);
+}
+
+void ShellElements::measureFibres() {
+  if (mesh_.fibres.modulus.empty()) return;
+  fibre_rest_.assign(mesh_.triangles.size() * kFibreRows, 0.0);
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
+    double* rows = fibre_rest_.data() + kFibreRows * e;
+    rows[kFibreModulus] = mesh_.fibres.modulus[e];
+    const PatchMatrix x = restPatch(e);
+    const Eigen::Vector3d sides[3] = {x.col(2) - x.col(1), x.col(2) - x.col(0), x.col(1) - x.col(0)};
+    const Eigen::Vector3d apexes[3] = {x.col(3) - x.col(0), x.col(1) - x.col(4), x.col(2) - x.col(5)};
+    const Eigen::Vector3d normal = sides[2].cross(sides[1]).normalized();
+    for (int side = 0; side < 3; ++side)
+      for (int family = 0; family < 2; ++family) {
+        const Eigen::Vector3d& along = mesh_.fibres.direction[e][static_cast<std::size_t>(family)];
+        const double* t = rest(e) + kShellSide + 4 * side;
+        const Eigen::Vector3d first = t[0] * sides[side], second = t[1] * sides[side] + t[2] * apexes[side];
+        const Eigen::Vector3d inside = along - along.dot(normal) * normal;
+        Eigen::Map<Eigen::Vector2d> row(rows + kFibreSide + 4 * side + 2 * family);
+        row = Eigen::Vector2d(first.dot(inside), second.dot(inside));
+        if (inside.norm() > kFibreLeast * along.norm())
+          row.normalize();
+        else
+          row.setZero();
+      }
+  }
 }
 
 void ShellElements::measureGhosts(std::size_t triangle, double* rest) const {

@@ -42,6 +42,17 @@ template <class B>
   out[2] = t[2] * t[2] * g[2];
 }
 
+/// The strain S = C - 1 at the middle of a side.
+template <class B>
+[[gnu::always_inline]] inline void sideStrain(const B (&t)[3], const B (&e)[3], const B (&d)[3], const B (&ue)[3],
+                                              const B (&ud)[3], B (&s)[3]) {
+  const B half = constant<B>(0.5), two = constant<B>(2);
+  B sum_e[3], sum_d[3];
+  for (int r = 0; r < 3; ++r) sum_e[r] = mulAdd(two, e[r], ue[r]), sum_d[r] = mulAdd(two, d[r], ud[r]);
+  const B change[3] = {dot(ue, sum_e), half * (dot(ue, sum_d) + dot(sum_e, ud)), dot(ud, sum_d)};
+  pullBack(t, change, s);
+}
+
 /// Twice the energy of the membrane at the middle of a side, and the derivatives by e and d.
 /// @param e, d    the side, and the apex beyond it less the node opposite; at rest
 /// @param ue, ud  their displacements
@@ -50,12 +61,9 @@ template <Law law, int Steps, class B, class Rest>
                                            const B (&d)[3], const B (&ue)[3], const B (&ud)[3], B (&fe)[3],
                                            B (&fd)[3]) {
   const int row = kShellSide + 4 * side;
-  const B half = constant<B>(0.5), two = constant<B>(2), t[3] = {rest(row), rest(row + 1), rest(row + 2)};
-  B sum_e[3], sum_d[3];
-  for (int r = 0; r < 3; ++r) sum_e[r] = mulAdd(two, e[r], ue[r]), sum_d[r] = mulAdd(two, d[r], ud[r]);
-  const B change[3] = {dot(ue, sum_e), half * (dot(ue, sum_d) + dot(sum_e, ud)), dot(ud, sum_d)};
+  const B t[3] = {rest(row), rest(row + 1), rest(row + 2)};
   B s[3];
-  pullBack(t, change, s);
+  sideStrain(t, e, d, ue, ud, s);
   const PlaneStress<B> p = planeStress<law, Steps>(terms, B(s[0] + s[2]), minor(s[0], s[2], s[1], s[1]));
   // dW/dC = W_I (1 - y^2 cof C), cof C = 1 + cof S
   const B volume = rest(row + 3), w = p.by_i * volume, square = w * p.square, shear = w + square;
@@ -74,24 +82,34 @@ template <Law law, int Steps, class B, class Rest>
 template <class B>
 using Patch = B[5][3];
 
-/// Adds the membrane's gradient to f; returns twice its energy.
-template <Law law, int Steps, class B, class Rest>
-[[gnu::always_inline]] inline B membraneEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
-                                               const Patch<B>& u, Patch<B>& f) {
+/// The sum of what a function as sideEnergy returns for the three sides; adds its gradients to f.
+template <class Side, class B>
+[[gnu::always_inline]] inline B overSides(const Side& side_energy, const Patch<B>& x, const Patch<B>& u, Patch<B>& f) {
   B energy = constant<B>(0), e[3], d[3], ue[3], ud[3], fe[3], fd[3];
   for (int r = 0; r < 3; ++r) {
     e[r] = x[1][r] - x[0][r], d[r] = x[2][r];
     ue[r] = u[1][r] - u[0][r], ud[r] = u[2][r];
   }
-  energy = energy + sideEnergy<law, Steps>(terms, rest, 0, e, d, ue, ud, fe, fd);
+  energy = energy + side_energy(0, e, d, ue, ud, fe, fd);
   for (int r = 0; r < 3; ++r) f[0][r] = f[0][r] - fe[r], f[1][r] = f[1][r] + fe[r], f[2][r] = f[2][r] + fd[r];
   for (int r = 0; r < 3; ++r) d[r] = x[0][r] - x[3][r], ud[r] = u[0][r] - u[3][r];
-  energy = energy + sideEnergy<law, Steps>(terms, rest, 1, x[1], d, u[1], ud, fe, fd);
+  energy = energy + side_energy(1, x[1], d, u[1], ud, fe, fd);
   for (int r = 0; r < 3; ++r) f[1][r] = f[1][r] + fe[r], f[0][r] = f[0][r] + fd[r], f[3][r] = f[3][r] - fd[r];
   for (int r = 0; r < 3; ++r) d[r] = x[1][r] - x[4][r], ud[r] = u[1][r] - u[4][r];
-  energy = energy + sideEnergy<law, Steps>(terms, rest, 2, x[0], d, u[0], ud, fe, fd);
+  energy = energy + side_energy(2, x[0], d, u[0], ud, fe, fd);
   for (int r = 0; r < 3; ++r) f[0][r] = f[0][r] + fe[r], f[1][r] = f[1][r] + fd[r], f[4][r] = f[4][r] - fd[r];
   return energy;
+}
+
+/// Adds the membrane's gradient to f; returns twice its energy.
+template <Law law, int Steps, class B, class Rest>
+[[gnu::always_inline]] inline B membraneEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
+                                               const Patch<B>& u, Patch<B>& f) {
+  const auto side = [&](int k, const B(&e)[3], const B(&d)[3], const B(&ue)[3], const B(&ud)[3], B(&fe)[3], B(&fd)[3])
+      __attribute__((always_inline)) {
+    return sideEnergy<law, Steps>(terms, rest, k, e, d, ue, ud, fe, fd);
+  };
+  return overSides(side, x, u, f);
 }
 
 /// Six times the tangents of the surface at the centroid, by the two coordinates.

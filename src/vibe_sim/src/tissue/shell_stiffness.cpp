@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shell_point.hpp"
+#include "shell_fibres.hpp"
 #include "vibe_sim/tissue/shell.hpp"
 
 namespace vibe {
@@ -49,14 +49,33 @@ WallTangent wallTangent(const WallTerms<double>& terms, const Eigen::Vector3d& s
   return out;
 }
 
+struct FibresOf {
+  const double* row;  // null: none
+  double stiffening;
+};
+
+// Their derivatives are positive, so nothing is left out.
+void addFibres(const FibresOf& fibres, int side, const double (&s)[3], Eigen::Matrix3d& second, double (&first)[3]) {
+  for (int family = 0; family < 2; ++family) {
+    const double* direction = fibres.row + kFibreSide + 4 * side + 2 * family;
+    const double c = direction[0], n = direction[1], strain = c * c * s[0] + 2 * c * n * s[1] + n * n * s[2];
+    if (strain <= 0) continue;
+    const FibreAt<double> w =
+        fibreAt(fibres.row[kFibreModulus], fibres.stiffening, fibreReach(fibres.stiffening), strain);
+    const Eigen::Vector3d m(c * c, n * n, std::sqrt(2.0) * c * n);
+    second += w.second * m * m.transpose();
+    first[0] += w.first * c * c, first[1] += w.first * c * n, first[2] += w.first * n * n;
+  }
+}
+
 // Derivatives by e and d of a side: 3 x 3 blocks ee, ed, dd.
 struct SideBlocks {
   Eigen::Matrix3d ee, ed, dd;
 };
 
 SideBlocks sideBlocks(const Material& material, const WallTerms<double>& terms, const double* row,
-                      const Eigen::Vector3d& e, const Eigen::Vector3d& d, const Eigen::Vector3d& ue,
-                      const Eigen::Vector3d& ud) {
+                      const FibresOf& fibres, int side, const Eigen::Vector3d& e, const Eigen::Vector3d& d,
+                      const Eigen::Vector3d& ue, const Eigen::Vector3d& ud) {
   const double t[3] = {row[0], row[1], row[2]}, volume = row[3] / 2, root = std::sqrt(2.0);
   const double change[3] = {ue.dot(2 * e + ue), (ue.dot(2 * d + ud) + (2 * e + ue).dot(ud)) / 2, ud.dot(2 * d + ud)};
   double s[3];
@@ -68,13 +87,15 @@ SideBlocks sideBlocks(const Material& material, const WallTerms<double>& terms, 
   Eigen::Matrix<double, 3, 6> b;  // of C by e and d
   b.leftCols<3>() << 2 * t[0] * f1.transpose(), 2 * t[1] * f2.transpose(), root * (t[0] * f2 + t[1] * f1).transpose();
   b.rightCols<3>() << Eigen::RowVector3d::Zero(), 2 * t[2] * f2.transpose(), root * t[2] * f1.transpose();
-  const Eigen::Matrix<double, 6, 6> k = volume * b.transpose() * withoutNegative(w.second) * b;
+  Eigen::Matrix3d second = withoutNegative(w.second);
   // the stress, without its negative principal values
   const double mean = (w.first[0] + w.first[1]) / 2, half = (w.first[0] - w.first[1]) / 2, shear = w.first[2] / root;
   const double radius = std::hypot(half, shear), high = std::max(mean + radius, 0.0),
                low = std::max(mean - radius, 0.0);
   const double middle = (high + low) / 2, scale = radius > 0 ? (high - low) / 2 / radius : 0;
-  const double g[3] = {middle + scale * half, scale * shear, middle - scale * half};
+  double g[3] = {middle + scale * half, scale * shear, middle - scale * half};
+  if (fibres.row != nullptr) addFibres(fibres, side, s, second, g);
+  const Eigen::Matrix<double, 6, 6> k = volume * b.transpose() * second * b;
   double a[3];
   pushForward(t, g, a);
   const Eigen::Matrix3d unit = 2 * volume * Eigen::Matrix3d::Identity();
@@ -95,12 +116,12 @@ Eigen::Vector3d difference(const Vectors& x, int to, int from) {
   return from == 0 ? end : Eigen::Vector3d(end - x.col(from - 1));
 }
 
-void addMembrane(const Material& material, const WallTerms<double>& terms, const double* rest, const Vectors& x,
-                 const Vectors& u, Matrix18& k) {
+void addMembrane(const Material& material, const WallTerms<double>& terms, const double* rest, const FibresOf& fibres,
+                 const Vectors& x, const Vectors& u, Matrix18& k) {
   for (int side = 0; side < 3; ++side) {
     const SideNodes& n = kSideNodes[side];
     const SideBlocks b =
-        sideBlocks(material, terms, rest + kShellSide + 4 * side, difference(x, n.e_to, n.e_from),
+        sideBlocks(material, terms, rest + kShellSide + 4 * side, fibres, side, difference(x, n.e_to, n.e_from),
                    difference(x, n.d_to, n.d_from), difference(u, n.e_to, n.e_from), difference(u, n.d_to, n.d_from));
     const int nodes[4] = {n.e_to, n.e_from, n.d_to, n.d_from};
     for (int i = 0; i < 4; ++i)
@@ -184,7 +205,8 @@ void ShellElements::addStiffness(const double* displacement, BlockMatrix& stiffn
     gather(e, displacement, u);
     std::copy(rest(e) + kShellPatch, rest(e) + kShellPatch + 15, &x[0][0]);
     Matrix18 k = Matrix18::Zero();
-    addMembrane(m, WallTerms<double>(constants_[material], m.poisson_ratio), rest(e),
+    const FibresOf fibres{fibre_rest_.empty() ? nullptr : &fibre_rest_[kFibreRows * e], mesh_.fibres.stiffening};
+    addMembrane(m, WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), fibres,
                 Eigen::Map<const Vectors>(&x[0][0]), Eigen::Map<const Vectors>(&u[0][0]), k);
     addBending(WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), x, u, k);
     if (atBoundary(e)) foldGhosts(rest(e), k);

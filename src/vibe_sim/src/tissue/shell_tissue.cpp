@@ -1,7 +1,10 @@
 #include "vibe_sim/tissue/shell_tissue.hpp"
 
+#include <map>
+
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/state.hpp"
+#include "wall_fibres.hpp"
 
 namespace vibe {
 
@@ -19,6 +22,30 @@ constexpr NamedLaw kLaws[] = {{"neo_hookean", Law::NeoHookean},
                               {"gent", Law::Gent},
                               {"yeoh", Law::Yeoh}};
 
+// Per triangle: the mean of what tissue.stiffness says of its nodes.
+std::vector<double> stiffnessFactors(const TissueScene& tissue, const Organ& organ) {
+  std::vector<double> out;
+  for (const auto& t : organ.surface.triangles) {
+    double sum = 0;
+    for (const int node : t) sum += tissue.stiffness[static_cast<std::size_t>(organ.region[node])];
+    out.push_back(sum / 3);
+  }
+  return out;
+}
+
+// One material for each factor that occurs.
+void addMaterials(const Material& wall, const std::vector<double>& factors, ShellMesh& mesh) {
+  std::map<double, int> known;
+  for (const double factor : factors) {
+    const auto [at, is_new] = known.insert({factor, static_cast<int>(mesh.materials.size())});
+    if (is_new) {
+      mesh.materials.push_back(wall);
+      mesh.materials.back().young_modulus *= factor;
+    }
+    mesh.material.push_back(at->second);
+  }
+}
+
 ShellMesh shellMesh(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed) {
   ShellMesh mesh;
   mesh.nodes.assign(organ.surface.vertices.begin(), organ.surface.vertices.end());
@@ -31,7 +58,9 @@ ShellMesh shellMesh(const TissueScene& tissue, const Organ& organ, const std::ve
   material.young_modulus = tissue.young_modulus;
   material.poisson_ratio = tissue.poisson_ratio;
   material.stiffening = tissue.stiffening;
-  mesh.materials.push_back(material);
+  const std::vector<double> factors = stiffnessFactors(tissue, organ);
+  addMaterials(material, factors, mesh);
+  if (tissue.fibres) mesh.fibres = wallFibres(*tissue.fibres, organ, factors);
   mesh.fixed = fixed;
   return mesh;
 }

@@ -29,6 +29,13 @@ struct GeometryScene {
   std::optional<Eigen::Vector3d> oesophagus, fundus, incisura, pylorus;  ///< landmarks in the file's frame and unit
 };
 
+/// Fibres in the wall, in two families at an angle to each side of the organ's long axis.
+struct FibreScene {
+  double modulus = 10e3;  ///< of each family [Pa]
+  double stiffening = 1;  ///< [1]
+  double angle = 0;       ///< 0: both along the organ, pi/2: both around it [rad]
+};
+
 /// The wall.
 struct TissueScene {
   std::string model = "shell";   ///< a name in the registry of tissue models
@@ -38,7 +45,9 @@ struct TissueScene {
   double poisson_ratio = 0.45;   ///< [1]
   double stiffening = 2.0;       ///< of the laws fung, gent and yeoh [1]
   std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
-  double damping_rate = 30;      ///< viscous damping of the velocity [1/s]
+  std::array<double, kRegionCount> stiffness{1, 1, 1, 1, 1};  ///< factor per Region, of model shell [1]
+  std::optional<FibreScene> fibres;                           ///< of model shell
+  double damping_rate = 30;                                   ///< viscous damping of the velocity [1/s]
   double damping_time = 15e-6;   ///< viscosity of the wall over its stiffness; quiets short waves [s]
   int iterations = 4;            ///< quasi-Newton iterations per step, of model shell
   double spectral_radius = 0.2;  ///< generalised-alpha, of model shell [1]

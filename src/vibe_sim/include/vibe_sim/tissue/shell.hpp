@@ -12,13 +12,24 @@
 
 namespace vibe {
 
+/// Up to two families of fibres in the plane of a wall, which resist being stretched and nothing else. Each adds, per
+/// volume, modulus / (2 stiffening) (exp(stiffening (I - 1)^2) - 1) with the squared stretch I of the fibre, if that is
+/// above 1: Holzapfel, Gasser, Ogden 2000, "A new constitutive framework for arterial wall mechanics", without
+/// dispersion. Bending leaves them out.
+struct ShellFibres {
+  double stiffening = 1;                                  ///< above 0 [1]
+  std::vector<double> modulus;                            ///< per triangle [Pa]; empty: no fibres
+  std::vector<std::array<Eigen::Vector3d, 2>> direction;  ///< per triangle, taken within its plane; 0: no such family
+};
+
 /// A thin wall at rest, by its middle surface.
 struct ShellMesh {
   std::vector<Eigen::Vector3d> nodes;         ///< [m]
   std::vector<std::array<int, 3>> triangles;  ///< node numbers, counter-clockwise seen from outside
   std::vector<double> thickness;              ///< per triangle [m]
   std::vector<Material> materials;
-  std::vector<int> material;               ///< per triangle, index into `materials`; empty: all of the first
+  std::vector<int> material;  ///< per triangle, index into `materials`; empty: all of the first
+  ShellFibres fibres;
   std::vector<char> fixed;                 ///< per node, not 0: it is held; empty: none is
   std::vector<std::array<int, 2>> hinged;  ///< sides that bend freely although they have two triangles, or are fixed
 };
@@ -39,7 +50,8 @@ struct ShellMesh {
 class ShellElements : public ElasticElements {
  public:
   /// @param origin  about which volumes are measured, near the middle of the organ for the sake of precision [m]
-  /// @throws Error with the number of a triangle that has no area or thickness, whose node or material is out of range,
+  /// @throws Error with the number of a triangle that has no area or thickness, or fibres out of range, whose node or
+  /// material is out of range,
   ///         that shares a side with two others or is turned the other way than its neighbour, or lies folded upon it;
   ///         for a hinged side that is none; as checkMaterial for the materials
   explicit ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero(),
@@ -62,7 +74,7 @@ class ShellElements : public ElasticElements {
   /// Groups of 6: the nodes of a triangle and the apexes of its neighbours, -1 where there is none.
   std::vector<std::pair<const std::vector<int>*, int>> nodeGroups() const override;
   /// Membrane: the tangent of plane stress without its negative eigenvalues, and the stress without its negative
-  /// principal values. Bending: Gauss-Newton, without the derivative of the moment arm.
+  /// principal values; fibres exactly. Bending: Gauss-Newton, without the derivative of the moment arm.
   void addStiffness(const double* displacement, BlockMatrix& stiffness) const override;
   /// A third of the triangle each.
   std::vector<double> lumpedMass(double density) const override;
@@ -84,6 +96,8 @@ class ShellElements : public ElasticElements {
   void measure();
   void measureSides(std::size_t triangle, const Eigen::Matrix<double, 3, 6>& patch, double* rest) const;
   void measureBending(std::size_t triangle, const Eigen::Matrix<double, 3, 6>& patch, double* rest) const;
+  void checkFibres() const;
+  void measureFibres();
   void measureGhosts(std::size_t triangle, double* rest) const;
   Eigen::Matrix<double, 3, 6> restPatch(std::size_t triangle) const;
   void makeBatches();
@@ -111,6 +125,8 @@ class ShellElements : public ElasticElements {
   std::vector<Run> runs_;
   std::vector<TetOffsets> batch_node_;
   std::vector<TetReals> batch_rest_;
+  std::vector<double> fibre_rest_;  // (triangles * kFibreRows), empty without fibres
+  std::vector<TetReals> batch_fibre_;
 };
 
 }  // namespace vibe

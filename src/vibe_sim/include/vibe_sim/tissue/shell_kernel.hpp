@@ -16,6 +16,11 @@ constexpr int kShellRows = 35;       ///< of a triangle with three neighbours
 constexpr int kShellGhost = 35;      ///< per side: 1 if a triangle is beyond it, else 0; then sqrt(2) n if clamped
 constexpr int kShellGhostRows = 47;  ///< of the others
 
+// Rows of a triangle with fibres, beside those above.
+constexpr int kFibreSide = 0;      ///< per side and family: the direction in the basis of the side's T, 0 0 for none
+constexpr int kFibreModulus = 12;  ///< [Pa]
+constexpr int kFibreRows = 13;
+
 /// What evaluating some batches of triangles of one material takes; see TetSweep.
 struct ShellSweep {
   const TetOffsets* node;  ///< (batches * 6)
@@ -25,6 +30,8 @@ struct ShellSweep {
   Law law;
   double poisson_ratio;
   const LawConstants* constants;
+  const TetReals* fibre;       ///< (batches * kFibreRows), from batch `first`; for fibres only
+  double fibre_stiffening;     ///< for fibres only
   const float* displacement4;  ///< [m]
   float* gradient4;            ///< added to [N]
   float* volume_gradient4;     ///< added to [m^2]; null: not wanted
@@ -38,6 +45,7 @@ using ShellSweepFunction = double (*)(ShellSweep& sweep);
 struct ShellKernel {
   const char* name;
   ShellSweepFunction sweep;
+  ShellSweepFunction fibres;  ///< what fibres add to the above, without the volume
 };
 ShellKernel shellKernelSse2();
 ShellKernel shellKernelAvx2();  ///< AVX2, FMA; call its function only on a machine that has both
