@@ -185,7 +185,7 @@ bool ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOu
   while (outcome.iterations < most && !done && !outcome.converged && !newton.failed()) {
     outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < enough);
     if (outcome.iterations++ == 0) first_length = newton.directionLength();
-    if (outcome.iterations == kMeetConditions) newton.meetConditions();
+    if (outcome.iterations == kMeetConditions && newton.meetConditions()) continue;  // and on from there
     done = outcome.iterations >= enough && newton.contracts();
     outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
   }

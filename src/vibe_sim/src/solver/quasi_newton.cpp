@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSufficientDecrease = 1e-4;  // Armijo
 constexpr int kMostHalvings = 12;
+constexpr double kUnmet = 100;       // of the resolution: what rows lack beyond it is no rounding
 constexpr double kSmallLack = 1e-4;  // of the rows, of the direction
 constexpr double kSafeContraction = 0.5;
 constexpr double kSafeRest = 0.1;  // of the first direction
@@ -70,7 +71,8 @@ double QuasiNewton::rowsLack() {
 
 // By the smoothest move, whatever the energy: what a tool holds goes where the tool goes. Far moves lower the energy
 // only in small parts, of which no number arrives.
-void QuasiNewton::meetConditions() {
+bool QuasiNewton::meetConditions() {
+  if (extra_ != nullptr) return false;  // walls that meet may forbid it
   StepperScratch& s = scratch_;
   rowsLack();
   double most = 0;
@@ -81,7 +83,7 @@ void QuasiNewton::meetConditions() {
     if (row.compliance > 0) wanted = 0;
     most = std::max(most, std::abs(wanted));
   }
-  if (most <= kSmallLack * direction_length_) return;
+  if (most <= std::max(kSmallLack * direction_length_, kUnmet * resolution())) return false;
   std::fill(s.half.begin(), s.half.end(), 0.0F);
   s.half_space.eliminate(s.wanted, 0, s.half.data());
   s.factor->backward(s.half.data());
@@ -89,11 +91,11 @@ void QuasiNewton::meetConditions() {
   for (int i = 0; i < body_.nodeCount(); ++i)
     if (body_.fixed[i] != 0)
       for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
-  if (extra_ != nullptr) extra_->limitMove(s.z.data(), s.direction.data());
   setTrial(1);
   s.z.swap(s.trial);
   contracts_ = false;
   start();
+  return true;
 }
 
 double QuasiNewton::resolution() const {

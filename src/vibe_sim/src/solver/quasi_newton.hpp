@@ -22,7 +22,7 @@ class QuasiNewton {
   /// @returns how far a node moved at most [m]
   double iterate(double most, bool verify);
   /// Moves to where the conditions hold, if they do not yet.
-  void meetConditions();
+  bool meetConditions();
   /// Length of the full direction of the last iterate [m].
   double directionLength() const { return direction_length_; }
   double value() const { return value_; }
