@@ -72,7 +72,7 @@ double QuasiNewton::rowsLack() {
 // By the smoothest move, whatever the energy: what a tool holds goes where the tool goes. Far moves lower the energy
 // only in small parts, of which no number arrives.
 bool QuasiNewton::meetConditions() {
-  if (extra_ != nullptr) return false;  // walls that meet may forbid it
+  if (extra_ != nullptr && extra_->acts()) return false;  // walls that meet may forbid it
   StepperScratch& s = scratch_;
   rowsLack();
   double most = 0;

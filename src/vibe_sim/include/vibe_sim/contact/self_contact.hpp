@@ -69,6 +69,7 @@ class SelfContact : public EnergyTerm {
   const std::vector<int>& keepApart(const MotionView& motion, double step);
 
   const std::vector<Pair>& pairs() const { return pairs_; }
+  bool acts() const override { return !pairs_.empty(); }
   int searchCount() const { return searches_; }  ///< detect() calls that could not tell without a search
 
  private:

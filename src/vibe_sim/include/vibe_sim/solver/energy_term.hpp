@@ -10,6 +10,8 @@ class EnergyTerm {
   /// Adds the gradient [N] at absolute positions [m] and returns the energy [J], in double precision throughout.
   /// Finite and once differentiable wherever the positions are finite. No allocation.
   virtual double evaluate(const double* positions4, float* gradient4) const = 0;
+  /// Something is near enough to feel it.
+  virtual bool acts() const { return true; }
   /// Shortens, node by node, a move [m] from the positions so that nothing passes through anything. A shortened
   /// direction need not lead downhill any more: what can wait for the end of the step should.
   virtual void limitMove(const double* positions4, float* move4) const {
