@@ -283,17 +283,4 @@ void HalfSpace::eliminate(const Eigen::Ref<const Eigen::VectorXd>& wanted, doubl
   }
 }
 
-void HalfSpace::gasResponse(float* y) {
-  std::copy(gas_.begin(), gas_.end(), y);
-  if (equations_.empty()) return;
-  kept_force_ = force_;
-  force_.setZero();
-  equation_lack_.resize(static_cast<Eigen::Index>(equations_.size()));
-  for (std::size_t i = 0; i < equations_.size(); ++i)
-    equation_lack_[static_cast<Eigen::Index>(i)] = -gas_row_[equations_[i]];
-  solveEquations();
-  addForces(y);
-  force_.swap(kept_force_);
-}
-
 }  // namespace vibe

@@ -34,9 +34,6 @@ class HalfSpace {
   /// @param swelling  wanted change of volume where it is prescribed [m^3]
   void eliminate(const Eigen::Ref<const Eigen::VectorXd>& wanted, double swelling, float* y);
   const Eigen::VectorXd& forces() const { return force_; }
-  double gasStiffness() const { return gas_stiffness_; }
-  /// Half-solved answer to one unit of gas pressure, with the equations held (contacts are not).
-  void gasResponse(float* y);
   double gasForce() const { return gas_force_; }
   /// Compliance between rows, gas taken into account (rows x rows) [m/N].
   const Eigen::MatrixXd& compliance() const { return compliance_; }
@@ -72,7 +69,7 @@ class HalfSpace {
   Eigen::VectorXd gas_row_, force_;
   double gas_force_ = 0;
   Eigen::MatrixXd compliance_, block_, cross_, schur_, coupling_;  // of equations, with contacts, of contacts
-  Eigen::VectorXd lack_, equation_lack_, contact_lack_, equation_force_, contact_force_, kept_force_;
+  Eigen::VectorXd lack_, equation_lack_, contact_lack_, equation_force_, contact_force_;
   Eigen::LDLT<Eigen::MatrixXd> equation_factor_;
 };
 

@@ -123,28 +123,11 @@ void QuasiNewton::findDirection() {
     const double beta = -s.curvature[i] * dot(s.change[i], s.direction);
     addScaled(-(alpha[i] - beta), s.move[i], s.direction);
   }
-  if (s.pairs > 0 && gas_.control == GasLoad::Control::Amount) agreeWithGas();
   for (int i = 0; i < body_.nodeCount(); ++i)
     if (body_.fixed[i] != 0)
       for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
-  if (extra_ != nullptr) extra_->limitMove(s.z.data(), s.direction.data());
   direction_length_ = largest(s.direction);
   slope_ = dot(s.gradient, s.direction);
-}
-
-// What the history adds to a direction changes the volume beyond what the gas was eliminated for, and gas is so stiff
-// that the pressure would rattle: swells the direction by as much as is missing.
-void QuasiNewton::agreeWithGas() {
-  StepperScratch& s = scratch_;
-  if (!knows_swelling_) {
-    s.half_space.gasResponse(s.half.data());
-    s.factor->backward(s.half.data());
-    s.factor->store(s.half.data(), s.swelling.data());
-    knows_swelling_ = true;
-  }
-  const double stiffness = s.half_space.gasStiffness(), compliance = dot(s.volume_gradient, s.swelling);
-  const double off = stiffness * dot(s.volume_gradient, s.direction) + s.half_space.gasForce();
-  addScaled(-off / (1 + stiffness * compliance), s.swelling, s.direction);
 }
 
 // The value with the rows' (and a prescribed volume's) forces as multipliers: it falls along the direction although the

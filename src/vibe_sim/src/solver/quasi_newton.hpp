@@ -21,7 +21,8 @@ class QuasiNewton {
   ///                because the iteration is contracting (then no more iterations may follow)
   /// @returns how far a node moved at most [m]
   double iterate(double most, bool verify);
-  /// Moves to where the conditions hold, if they do not yet.
+  /// Moves to where the conditions hold, if they do not yet and no walls are near. The history is lost.
+  /// @returns whether it moved; then more iterations must follow
   bool meetConditions();
   /// Length of the full direction of the last iterate [m].
   double directionLength() const { return direction_length_; }
@@ -36,7 +37,6 @@ class QuasiNewton {
  private:
   void findDirection();
   double rowsLack();
-  void agreeWithGas();
   double lagrangian(double value) const;
   double advance(double most, bool verify);
   void keepPair(double part);
@@ -51,7 +51,6 @@ class QuasiNewton {
   double value_ = 0;
   double direction_length_ = 0, last_length_ = -1;
   double slope_ = 0;
-  bool knows_swelling_ = false;  // of this step's factor, gas and rows
   double first_length_ = 0;
   bool failed_ = false, contracts_ = false;
   double lack_ = 0;  // of the rows, largest [m]

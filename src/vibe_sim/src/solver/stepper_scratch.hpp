@@ -31,7 +31,6 @@ class StepperScratch {
   std::vector<float> gradient, trial_gradient;   // [N]
   std::vector<float> volume_gradient;            // [m^2]
   std::vector<float> direction, work;            // [m]
-  std::vector<float> swelling;                   // answer to one pascal [m/Pa]
   std::vector<float> half;                       // in elimination order
   std::vector<std::vector<float>> move, change;  // L-BFGS pairs
   std::vector<double> curvature;                 // 1 / (move . change)

@@ -12,12 +12,6 @@ class EnergyTerm {
   virtual double evaluate(const double* positions4, float* gradient4) const = 0;
   /// Something is near enough to feel it.
   virtual bool acts() const { return true; }
-  /// Shortens, node by node, a move [m] from the positions so that nothing passes through anything. A shortened
-  /// direction need not lead downhill any more: what can wait for the end of the step should.
-  virtual void limitMove(const double* positions4, float* move4) const {
-    static_cast<void>(positions4);
-    static_cast<void>(move4);
-  }
 };
 
 }  // namespace vibe
