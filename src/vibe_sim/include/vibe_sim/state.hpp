@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vibe_sim/procedure/procedure_state.hpp"
 #include "vibe_sim/solver/stepper_memory.hpp"
 #include "vibe_sim/step_input.hpp"
 
@@ -54,6 +55,8 @@ struct State {
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about the origin of scope_tip, in scope_tip [N m]
   double grip_force = 0;                                  ///< magnitude of the force on the grip [N]
   int contact_count = 0;                                  ///< particles touched in the last sub-step
+
+  ProcedureState procedure;
 
   EnergyAccount energy;
 

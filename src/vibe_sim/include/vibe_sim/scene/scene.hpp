@@ -87,7 +87,36 @@ struct ScopeScene {
 struct HelixScene {
   double reach = 4e-3;        ///< grabs if a particle is this near to the tip [m]
   double grip_radius = 5e-3;  ///< particles within this distance of the first are held too [m]
-  double hold_force = 8.0;    ///< slips above this force [N]
+  double hold_force = 8.0;    ///< slips above this force when turned in as far as it goes [N]
+  double hold_turns = 3.0;    ///< turns after which it holds with all of hold_force [1]
+  double prick_force = 0.5;   ///< holds without a turn [N]; between the two the force grows with the turns
+};
+
+/// Needle, thread, T-tag and cinch of the suturing device.
+struct SutureScene {
+  double bite_radius = 4e-3;                 ///< the thread pulls on the particles this near to a bite [m]
+  double thread_stiffness = 240;             ///< force per strain [N]
+  double thread_friction = 0.1;              ///< Coulomb coefficient thread on tissue [1]
+  double thread_strength = 14.1;             ///< breaks above this tension [N]
+  double thread_length = 1.2;                ///< of one thread, from the T-tag to where the device lets it go [m]
+  double pull_out_force = 8.0;               ///< tears out of a full-thickness bite above this force [N]
+  int least_bites = 2;                       ///< of a set that can be cinched
+  int most_bites = 32;                       ///< of a set
+  double cinch_speed = 15e-3;                ///< at which the cinch draws thread [m/s]
+  double cinch_tension = 3.0;                ///< at which the cinch stops drawing [N]
+  double loose_tension = 0.5;                ///< a cinch released below this is loose [N]
+  std::string pulling = "thread";            ///< how a set pulls: `thread`, or `groups` (ViBE prototype)
+  std::string technique_rule = "corrected";  ///< or `printed`: equation 2 of the ViBE prototype to the letter
+};
+
+/// Bleeding after a bite: all figures are design choices, no rates are published.
+struct BleedingScene {
+  double mild_probability = 0.25;   ///< of a bite [1]
+  double brisk_probability = 0.03;  ///< of a bite [1]
+  double mild_rate = 1.0e-8;        ///< [m^3/s]
+  double brisk_rate = 2.5e-7;       ///< [m^3/s]
+  double mild_duration = 60;        ///< after which mild bleeding stops by itself [s]
+  double brisk_time = 90;           ///< within which the suture is to be completed [s]
 };
 
 /// What the user wrote, validated. An absent part costs nothing at run time.
@@ -105,6 +134,8 @@ struct Scene {
   std::optional<BedScene> bed;
   std::optional<ScopeScene> scope;
   std::optional<HelixScene> helix;
+  std::optional<SutureScene> suture;
+  std::optional<BleedingScene> bleeding;
   bool skin = false;  ///< finer render surface
 };
 
