@@ -40,9 +40,8 @@ class SceneReader {
     readSection(source_.root());
     checkApplies();
     checkRequired();
-    if (scene_.helix && !scene_.scope) {
-      source_.fail(seen_.at("helix"), "needs the section 'scope', whose tool carries the helix; add 'scope: {}'");
-    }
+    checkNeeds();
+    checkProcedure();
     scene_.file = source_.place();
     resolve(scene_.geometry.file);
     if (scene_.scope && !isPackagePath(scene_.scope->urdf)) resolve(scene_.scope->urdf);
@@ -109,6 +108,50 @@ class SceneReader {
       if (!row.required || !applies || section == seen_.end() || seen_.count(row.key) > 0) continue;
       source_.fail(section->second, "lacks the key '" + lastPart(row.key) + "' (" + row.help + "); add it");
     }
+  }
+
+  void checkNeeds() const {
+    for (const SchemaSection& section : sceneSections()) {
+      const auto field = seen_.find(section.name);
+      if (section.needs == nullptr || field == seen_.end() || seen_.count(section.needs) > 0) continue;
+      const std::string needed = section.needs;
+      source_.fail(field->second,
+                   "needs the section '" + needed + "', " + section.needs_why + "; add '" + needed + ": {}'");
+    }
+  }
+
+  /// Values that are right alone but not together.
+  void checkProcedure() const {
+    if (const auto& suture = scene_.suture) {
+      checkOrder("suture.least_bites", suture->least_bites, "suture.most_bites", suture->most_bites);
+      checkOrder("suture.loose_tension", suture->loose_tension, "suture.cinch_tension", suture->cinch_tension);
+      checkOrder("suture.cinch_tension", suture->cinch_tension, "suture.thread_strength", suture->thread_strength);
+      if (suture->loose_tension == suture->cinch_tension) {
+        source_.fail(written("suture.loose_tension", "suture.cinch_tension"),
+                     "leaves every cinch loose; write a loose_tension below the cinch_tension");
+      }
+    }
+    const auto& bleeding = scene_.bleeding;
+    if (bleeding && bleeding->mild_probability + bleeding->brisk_probability > 1) {
+      source_.fail(written("bleeding.mild_probability", "bleeding.brisk_probability"),
+                   "is too much: mild_probability and brisk_probability together must be at most 1; lower one of them");
+    }
+  }
+
+  /// Of two keys at odds with each other the one that the user wrote; the other may be a default.
+  const YamlField& written(const std::string& key, const std::string& other) const {
+    const auto field = seen_.find(key);
+    return field != seen_.end() ? field->second : seen_.at(other);
+  }
+
+  void checkOrder(const std::string& low, double low_value, const std::string& high, double high_value) const {
+    if (low_value <= high_value) return;
+    const std::string unit = findRow(low)->unit;
+    const bool low_is_written = seen_.count(low) > 0;
+    const std::string here = showQuantity(low_is_written ? low_value : high_value, unit);
+    const std::string there = showQuantity(low_is_written ? high_value : low_value, unit);
+    source_.fail(written(low, high), "is " + here + ", but " + (low_is_written ? high : low) + " is " + there +
+                                         "; write at " + (low_is_written ? "most" : "least") + " that");
   }
 
   void resolve(std::string& path) const {

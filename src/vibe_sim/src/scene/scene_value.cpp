@@ -20,7 +20,9 @@ struct Reader {
   const SchemaRow& row;
   Scene& scene;
 
-  void operator()(std::string& (*at)(Scene&)) const { at(scene) = source.text(field); }
+  void operator()(std::string& (*at)(Scene&)) const {
+    at(scene) = row.words.empty() ? source.text(field) : source.choice(field, row.words);
+  }
   void operator()(bool& (*at)(Scene&)) const { at(scene) = source.boolean(field); }
   void operator()(int& (*at)(Scene&)) const { at(scene) = static_cast<int>(integer()); }
   void operator()(std::uint64_t& (*at)(Scene&)) const { at(scene) = static_cast<std::uint64_t>(integer()); }

@@ -7,18 +7,6 @@
 namespace vibe {
 namespace {
 
-/// Rows reach into every part, so absent parts need a stand-in while the others are written.
-Scene filledUp(const Scene& scene) {
-  Scene full = scene;
-  if (!full.tissue.fibres) full.tissue.fibres.emplace();
-  if (!full.gas) full.gas.emplace();
-  if (!full.gravity) full.gravity.emplace();
-  if (!full.bed) full.bed.emplace();
-  if (!full.scope) full.scope.emplace();
-  if (!full.helix) full.helix.emplace();
-  return full;
-}
-
 int depthOf(const std::string& section) {
   int depth = section.empty() ? 0 : 1;
   for (const char c : section) depth += c == '.' ? 1 : 0;
@@ -33,7 +21,7 @@ bool isWritten(const SchemaRow& row, Scene& full) {
 }  // namespace
 
 std::string toYaml(const Scene& scene) {
-  Scene full = filledUp(scene);
+  Scene full = completeScene(scene);  // rows reach into every part
   std::ostringstream out;
   for (const SchemaSection& section : sceneSections()) {
     if (!section.isPresent(scene)) continue;

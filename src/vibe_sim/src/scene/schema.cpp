@@ -8,9 +8,16 @@
 namespace vibe {
 namespace {
 
+std::string wordList(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
 std::string rangeText(const SchemaRow& row) {
   if (std::holds_alternative<GeometryScene::Kind& (*)(Scene&)>(row.access)) return "stomach, mesh, sphere";
   if (std::holds_alternative<bool& (*)(Scene&)>(row.access)) return "true, false";
+  if (!row.words.empty()) return wordList(row.words);
   if (std::holds_alternative<std::string& (*)(Scene&)>(row.access)) return "text";
   return showQuantity(row.low, "") + " to " + showQuantity(row.high, "");
 }
@@ -54,15 +61,17 @@ const SchemaSection* findSection(const std::string& name) {
   return nullptr;
 }
 
-Scene completeScene() {
-  Scene scene;
-  scene.tissue.fibres.emplace();
-  scene.gas.emplace();
-  scene.gravity.emplace();
-  scene.bed.emplace();
-  scene.scope.emplace();
-  scene.helix.emplace();
-  return scene;
+Scene completeScene(const Scene& scene) {
+  Scene full = scene;
+  if (!full.tissue.fibres) full.tissue.fibres.emplace();
+  if (!full.gas) full.gas.emplace();
+  if (!full.gravity) full.gravity.emplace();
+  if (!full.bed) full.bed.emplace();
+  if (!full.scope) full.scope.emplace();
+  if (!full.helix) full.helix.emplace();
+  if (!full.suture) full.suture.emplace();
+  if (!full.bleeding) full.bleeding.emplace();
+  return full;
 }
 
 const std::array<const char*, 3>& geometryKindNames() {

@@ -1,3 +1,4 @@
+#include "schema_rows.hpp"
 #include "vibe_sim/scene/schema.hpp"
 
 namespace vibe {
@@ -164,13 +165,6 @@ std::vector<SchemaRow> toolRows() {
        "origin of `scope_base` in `world`", "none", std::nullopt, "none", true},
       {"scope.base.rpy", [](Scene& s) -> std::array<double, 3>& { return s.scope->base_rpy; }, "rad", -kTurn, kTurn,
        "roll, pitch, yaw of `scope_base` about the fixed axes of `world`; its x axis points into the lumen", kChoice},
-      {"helix.reach", [](Scene& s) -> double& { return s.helix->reach; }, "m", 1e-4, 5e-2,
-       "the helix grabs if a particle is this near to its tip", kChoice},
-      {"helix.grip_radius", [](Scene& s) -> double& { return s.helix->grip_radius; }, "m", 1e-4, 5e-2,
-       "particles within this distance of the grabbed one are held too", kChoice},
-      {"helix.hold_force", [](Scene& s) -> double& { return s.helix->hold_force; }, "N", 0, 1000,
-       "the helix slips above this force",
-       "largest instrument tip force seen in transgastric surgery: Trejos 2011, Surg Endosc 25:186"},
   };
 }
 
@@ -179,43 +173,12 @@ std::vector<SchemaRow> toolRows() {
 const std::vector<SchemaRow>& sceneSchema() {
   static const std::vector<SchemaRow> rows = [] {
     std::vector<SchemaRow> all;
-    for (auto* group : {topRows, geometryRows, meshRows, tissueRows, environmentRows, toolRows}) {
+    for (auto* group : {topRows, geometryRows, meshRows, tissueRows, environmentRows, toolRows, procedureRows}) {
       for (const SchemaRow& row : group()) all.push_back(row);
     }
     return all;
   }();
   return rows;
-}
-
-const std::vector<SchemaSection>& sceneSections() {
-  static const auto nothing = [](Scene&) {};
-  static const auto always = [](const Scene&) { return true; };
-  static const std::vector<SchemaSection> sections = {
-      {"", "The top level.", nothing, always},
-      {"geometry", "Shape and resolution of the organ.", nothing, always},
-      {"geometry.landmarks", "Points that tell the regions and walls of an imported surface; all four.", nothing,
-       [](const Scene& s) { return s.geometry.oesophagus.has_value(); }},
-      {"tissue", "The wall.", nothing, always},
-      {"tissue.thickness", "Thickness of the wall by region.", nothing, always},
-      {"tissue.stiffness", "Stiffness of the wall of the shell by region.", nothing, always},
-      {"tissue.fibres", "Fibres in the wall of the shell (Holzapfel, Gasser, Ogden 2000). Without it none are there.",
-       [](Scene& s) { s.tissue.fibres.emplace(); }, [](const Scene& s) { return s.tissue.fibres.has_value(); }},
-      {"attachments", "Ends that are held in place. Without them the organ is free.", nothing, always},
-      {"gas", "Gas in the lumen with an insufflator. Without it the lumen is empty space without pressure.",
-       [](Scene& s) { s.gas.emplace(); }, [](const Scene& s) { return s.gas.has_value(); }},
-      {"gravity", "Weight of the wall.", [](Scene& s) { s.gravity.emplace(); },
-       [](const Scene& s) { return s.gravity.has_value(); }},
-      {"bed", "Neighbouring organs: springs from every particle to its place at rest.",
-       [](Scene& s) { s.bed.emplace(); }, [](const Scene& s) { return s.bed.has_value(); }},
-      {"scope", "The endoscope with its suturing device.", [](Scene& s) { s.scope.emplace(); },
-       [](const Scene& s) { return s.scope.has_value(); }},
-      {"scope.base", "Pose of the root link. Without it the scope enters where the oesophagus ends.",
-       [](Scene& s) { s.scope->base_from_anatomy = false; },
-       [](const Scene& s) { return s.scope.has_value() && !s.scope->base_from_anatomy; }},
-      {"helix", "Tissue helix of the suturing device; needs `scope`.", [](Scene& s) { s.helix.emplace(); },
-       [](const Scene& s) { return s.helix.has_value(); }},
-  };
-  return sections;
 }
 
 }  // namespace vibe

@@ -34,7 +34,7 @@ TEST(ShippedScenes, StomachHasEveryPart) {
   EXPECT_DOUBLE_EQ(scene.tissue.density, 1050);
   EXPECT_DOUBLE_EQ(scene.tissue.thickness[static_cast<int>(Region::Body)], 2.33e-3);
   EXPECT_TRUE(scene.attach_oesophagus && scene.attach_duodenum && scene.skin);
-  ASSERT_TRUE(scene.gas && scene.gravity && scene.bed && scene.scope && scene.helix);
+  ASSERT_TRUE(scene.gas && scene.gravity && scene.bed && scene.scope && scene.helix && scene.suture && scene.bleeding);
   EXPECT_NEAR(scene.gas->regulated_pressure, 1333.224, 1e-3);
   EXPECT_DOUBLE_EQ(scene.gas->flow_limit, 5e-5);
   EXPECT_TRUE(scene.scope->base_from_anatomy);
@@ -42,7 +42,7 @@ TEST(ShippedScenes, StomachHasEveryPart) {
 
 TEST(ShippedScenes, MinimalHasNothingElse) {
   const Scene scene = loadScene(kScenes + "stomach_minimal.yaml");
-  EXPECT_FALSE(scene.gas || scene.gravity || scene.bed || scene.scope || scene.helix);
+  EXPECT_FALSE(scene.gas || scene.gravity || scene.bed || scene.scope || scene.helix || scene.suture || scene.bleeding);
   EXPECT_FALSE(scene.attach_oesophagus || scene.attach_duodenum || scene.skin);
 }
 
@@ -98,10 +98,40 @@ TEST(SceneParser, KeysOfOtherKindsDoNotApply) {
 
 TEST(SceneParser, PartsThatNeedEachOther) {
   EXPECT_ERROR(parsed("name: x\nhelix: {}"), "dir/s.yaml:2: helix: needs the section 'scope'");
+  EXPECT_ERROR(parsed("scope: {}\nsuture: {}"), "dir/s.yaml:2: suture: needs the section 'helix'");
+  EXPECT_ERROR(parsed("scope: {}\nhelix: {}\nbleeding: {}"), "dir/s.yaml:3: bleeding: needs the section 'suture'");
+  EXPECT_EQ(errorOf([] { parsed("bleeding: {}\nsuture: {}\nhelix: {}\nscope: {}"); }), "no error");
   EXPECT_ERROR(parsed("geometry: {kind: mesh}"), "geometry: lacks the key 'file'");
   EXPECT_ERROR(parsed("geometry: {kind: mesh, file: a.obj, landmarks: {pylorus: [1, 2, 3]}}"),
                "lacks the key 'oesophagus'");
   EXPECT_EQ(errorOf([] { parsed("scope: {}\nhelix: {}"); }), "no error");
+}
+
+Scene withSuture(const std::string& suture, const std::string& bleeding = "") {
+  return parsed("scope: {}\nhelix: {}\nsuture: {" + suture + "}\nbleeding: {" + bleeding + "}");
+}
+
+TEST(SceneParser, SutureWordsNameTheNearest) {
+  EXPECT_EQ(withSuture("pulling: groups, technique_rule: printed").suture->pulling, "groups");
+  EXPECT_ERROR(withSuture("pulling: tread"),
+               "dir/s.yaml:3: suture.pulling: 'tread' is not known here; did you mean "
+               "'thread'?");
+  EXPECT_ERROR(withSuture("technique_rule: paper"), "known are corrected, printed");
+}
+
+TEST(SceneParser, SutureValuesThatAreAtOddsNameTheOneThatIsWritten) {
+  EXPECT_ERROR(withSuture("least_bites: 9, most_bites: 8"),
+               "dir/s.yaml:3: suture.least_bites: is 9, but suture.most_bites is 8; write at most that");
+  EXPECT_ERROR(withSuture("cinch_tension: 20 N"),
+               "suture.cinch_tension: is 20 N, but suture.thread_strength is 14.1 N");
+  EXPECT_ERROR(withSuture("thread_strength: 2 N"),
+               "suture.thread_strength: is 2 N, but suture.cinch_tension is 3 N; write at least that");
+  EXPECT_ERROR(withSuture("loose_tension: 4 N"), "suture.loose_tension: is 4 N, but suture.cinch_tension is 3 N");
+  EXPECT_ERROR(withSuture("loose_tension: 3 N"), "suture.loose_tension: leaves every cinch loose");
+  EXPECT_ERROR(withSuture("", "brisk_probability: 0.9"), "dir/s.yaml:4: bleeding.brisk_probability: is too much");
+  EXPECT_EQ(
+      errorOf([] { withSuture("least_bites: 8, most_bites: 8, cinch_tension: 14.1", "brisk_probability: 0.75"); }),
+      "no error");
 }
 
 TEST(SceneParser, PathsAreRelativeToTheFile) {

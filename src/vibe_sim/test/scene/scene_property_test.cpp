@@ -34,20 +34,35 @@ struct Randomise {
   void operator()(GeometryScene::Kind& (*)(Scene&)) const {}
   void operator()(std::string& (*at)(Scene&)) const {
     static const std::string letters = "abc XYZ'\"#:{}[],&*!|>%@`~-_.?\\0123\u00e4";
+    if (!row.words.empty()) {
+      at(scene) = row.words[random() % row.words.size()];
+      return;
+    }
     std::string text = "/";  // an absolute path stays as it is
     for (int k = static_cast<int>(random() % 12); k >= 0; --k) text += letters[random() % letters.size()];
     at(scene) = text + "x";
   }
 };
 
+/// Rows are drawn one by one; some must fit together.
+void repair(Scene& scene) {
+  if (scene.suture) {
+    SutureScene& s = *scene.suture;
+    if (s.least_bites > s.most_bites) std::swap(s.least_bites, s.most_bites);
+    if (s.cinch_tension > s.thread_strength) std::swap(s.cinch_tension, s.thread_strength);
+    if (s.loose_tension >= s.cinch_tension) s.loose_tension = s.cinch_tension / 2;
+  }
+  if (scene.bleeding) scene.bleeding->mild_probability *= 1 - scene.bleeding->brisk_probability;
+}
+
 Scene randomScene(std::mt19937_64& random) {
   Scene scene;
   for (const SchemaSection& section : sceneSections()) {
     const std::string parent = sectionOf(section.name);
-    const bool reachable = parent.empty() || findSection(parent)->isPresent(scene);
+    const bool reachable = (parent.empty() || findSection(parent)->isPresent(scene)) &&
+                           (section.needs == nullptr || findSection(section.needs)->isPresent(scene));
     if (reachable && random() % 2 == 0) section.enter(scene);
   }
-  if (scene.helix && !scene.scope) scene.scope.emplace();
   scene.geometry.kind = static_cast<GeometryScene::Kind>(random() % 3);
   for (const SchemaRow& row : sceneSchema()) {
     const bool applies = !row.only_for || *row.only_for == scene.geometry.kind;
@@ -57,6 +72,7 @@ Scene randomScene(std::mt19937_64& random) {
     const bool landmark = sectionOf(row.key) == "geometry.landmarks";
     if (applies && landmark) std::visit(Randomise{row, scene, random}, row.access);
   }
+  repair(scene);
   return scene;
 }
 

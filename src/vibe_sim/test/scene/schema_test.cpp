@@ -80,6 +80,14 @@ TEST_P(EveryRow, TakesTheEndsOfItsRange) {
   }
 }
 
+TEST_P(EveryRow, TakesItsWords) {
+  const SchemaRow& row = GetParam();
+  for (const std::string& word : row.words) {
+    Scene scene = parseScene(textWith(row, word).yaml, "s.yaml");
+    EXPECT_EQ(valueText(row, scene), "'" + word + "'");
+  }
+}
+
 TEST_P(EveryRow, RefusesWhatIsOutOfRange) {
   const SchemaRow& row = GetParam();
   if (!isNumber(row)) return;
@@ -104,6 +112,7 @@ TEST_P(EveryRow, RefusesTheWrongType) {
   if (holds<int>(row)) expectRefused(row, "150.5", "is not a whole number");
   if (holds<bool>(row)) expectRefused(row, "3", "neither true nor false");
   if (holds<GeometryScene::Kind>(row)) expectRefused(row, "stomac", "did you mean 'stomach'?");
+  for (const std::string& word : row.words) expectRefused(row, word + "x", "did you mean '" + word + "'?");
   expectRefused(row, "~", "is empty");
 }
 

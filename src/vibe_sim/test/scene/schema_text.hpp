@@ -8,6 +8,28 @@
 
 namespace vibe {
 
+/// The section, those around it and those that it needs.
+inline void enterWithNeeds(const std::string& name, Scene& scene) {
+  const SchemaSection& section = *findSection(name);
+  if (!name.empty() && name != sectionOf(name)) enterWithNeeds(sectionOf(name), scene);
+  if (section.needs != nullptr) enterWithNeeds(section.needs, scene);
+  if (name.empty() || !section.isPresent(scene)) section.enter(scene);
+}
+
+/// Moves what a key is compared with out of its way, so that all of its range is allowed.
+inline void makeRoom(const std::string& key, Scene& scene) {
+  if (scene.suture && key == "suture.least_bites") scene.suture->most_bites = 1000;
+  if (scene.suture && key == "suture.most_bites") scene.suture->least_bites = 2;
+  if (scene.suture && key == "suture.loose_tension") scene.suture->cinch_tension = 1000;
+  if (scene.suture && key == "suture.loose_tension") scene.suture->thread_strength = 1000;
+  if (scene.suture && key == "suture.cinch_tension") scene.suture->loose_tension = 0;
+  if (scene.suture && key == "suture.cinch_tension") scene.suture->thread_strength = 1000;
+  if (scene.suture && key == "suture.thread_strength") scene.suture->loose_tension = 0;
+  if (scene.suture && key == "suture.thread_strength") scene.suture->cinch_tension = 0.02;
+  if (scene.bleeding && key == "bleeding.mild_probability") scene.bleeding->brisk_probability = 0;
+  if (scene.bleeding && key == "bleeding.brisk_probability") scene.bleeding->mild_probability = 0;
+}
+
 /// A valid scene in which a row applies: its section is present and geometry.kind fits.
 inline Scene sceneFor(const SchemaRow& row) {
   Scene scene;
@@ -17,9 +39,8 @@ inline Scene sceneFor(const SchemaRow& row) {
     scene.geometry.oesophagus = scene.geometry.fundus = scene.geometry.incisura = scene.geometry.pylorus =
         Eigen::Vector3d(1, 2, 3);
   }
-  const std::string section = sectionOf(row.key);
-  if (section == "helix" || section == "scope.base") scene.scope.emplace();
-  findSection(section)->enter(scene);
+  enterWithNeeds(sectionOf(row.key), scene);
+  makeRoom(row.key, scene);
   return scene;
 }
 

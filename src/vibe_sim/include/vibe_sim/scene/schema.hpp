@@ -32,6 +32,8 @@ struct SchemaRow {
   /// Shown instead of the struct's value if that stands for "absent"; the key is then left out when written.
   const char* absent = nullptr;
   bool required = false;  ///< in its section (and for its geometry.kind)
+  /// The words that a text may be, in the order of the documentation; empty: any text.
+  std::vector<std::string> words = {};
 };
 
 /// A part of a scene file that holds keys.
@@ -40,6 +42,9 @@ struct SchemaSection {
   const char* help;                 ///< one sentence
   void (*enter)(Scene&);            ///< makes the part present, with its defaults
   bool (*isPresent)(const Scene&);  ///< whether the scene has it
+  /// The section without which this one is an error, with why; null: none.
+  const char* needs = nullptr;
+  const char* needs_why = nullptr;
 };
 
 /// All keys in the order of the documentation.
@@ -53,8 +58,9 @@ const SchemaRow* findRow(const std::string& key);
 /// The section of that name, or null if there is none.
 const SchemaSection* findSection(const std::string& name);
 
-/// A scene in which every optional part is present with its defaults: what rows are read from and written to.
-Scene completeScene();
+/// The scene with every optional part present, with its defaults where it was absent: what rows are read from and
+/// written to.
+Scene completeScene(const Scene& scene = {});
 
 /// The words of geometry.kind, in the order of the enum.
 const std::array<const char*, 3>& geometryKindNames();
