@@ -1,0 +1,42 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace vibe {
+
+/// SPARC, the smoothness of one movement from the spectrum of its speed: minus the length of the curve of the
+/// magnitude spectrum, both axes scaled to one,
+///   -integral_0^wc sqrt((1 / wc)^2 + (dV / dw)^2) dw,   V(w) = |speed spectrum| / its greatest value,
+/// where wc is the last frequency up to 10 Hz at which V is at least 0.05, and the record is padded with zeros to 16
+/// times the next power of two: Balasubramanian, Melendez-Calderon, Roby-Brami & Burdet 2015, J NeuroEng Rehabil
+/// 12:112. Negative; nearer to 0 is smoother. A minimum-jerk reach has -1.41, whatever its length and duration.
+/// Made for single movements from rest to rest; on others it is defined, but says less.
+///
+/// Keeps the tables of the Fourier transform, so that of() asks for no memory for records up to `longest`. Not to be
+/// used by two threads at once.
+class SpectralArcLength {
+ public:
+  /// @param longest  samples of the longest record without new memory; about 0.7 KiB are kept for each
+  explicit SpectralArcLength(int longest = 2048);
+  ~SpectralArcLength();
+  SpectralArcLength(const SpectralArcLength&) = delete;
+  SpectralArcLength& operator=(const SpectralArcLength&) = delete;
+
+  /// @param speed   evenly sampled, at least two samples [m/s] or [rad/s]
+  /// @param period  of the samples [s]; above 50 ms the spectrum ends before 10 Hz, at half the sampling rate
+  /// @return no value for a standstill, a record shorter than two samples, or one that is not finite
+  std::optional<double> of(const std::vector<double>& speed, double period);
+
+ private:
+  struct Tables;
+  int transform(const std::vector<double>& speed);
+
+  std::unique_ptr<Tables> tables_;
+  std::vector<double> magnitude_;
+};
+
+/// The same for a single record, without keeping anything.
+std::optional<double> spectralArcLength(const std::vector<double>& speed, double period);
+
+}  // namespace vibe
