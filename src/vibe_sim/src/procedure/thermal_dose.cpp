@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kReferencePower = 40;                   // [W] of the publications on burns, and the greater of marks
 constexpr double kReferenceArgon = 1 * kLitrePerMinute;  // [m^3/s]
-constexpr float kCold = 1e-3f;  // [J] less is none: decaying for ever it would end in slow denormal numbers
+constexpr float kCold = 1e-15f;  // [J] less is none: decaying for ever it would end in slow denormal numbers
 
 /// Rate of cooling [1/s].
 double coolingRate(const ApcParameters& p, GasFlow flow, double cover) {
