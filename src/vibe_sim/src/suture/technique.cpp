@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "technique_templates.hpp"
 #include "technique_wall.hpp"
@@ -10,10 +11,12 @@ namespace vibe {
 namespace {
 
 // What a hand may do to a drawing before it stops being one. Lengths are in mean distances of successive bites.
-constexpr double kScatter = 0.15;    // standard deviation of a bite per direction
-constexpr double kDistortion = 0.2;  // ... of (a - b) / (a + b), a and b the principal stretches of the drawing
-constexpr double kWrap = 0.9;        // ... of the angle around a cylindrical wall [rad]
-constexpr double kMostMisfit = 4.5;  // misfit per free coordinate at which a set is no technique any more
+constexpr double kScatter = 0.15;     // standard deviation of a bite per direction
+constexpr double kDistortion = 0.16;  // ... of (a - b) / (a + b), a and b the principal stretches of the drawing
+constexpr double kWrap = 0.9;         // ... of the angle around a cylindrical wall [rad]
+constexpr double kMostMisfit = 2;     // misfit per free coordinate at which a set is no technique any more ...
+constexpr double kSpareMisfit = 10;   // ... and on top of it
+constexpr double kHopeless = 30;      // a wall this much worse than the best is not looked at
 
 using Complex = std::complex<double>;
 
@@ -41,74 +44,83 @@ std::vector<Eigen::Vector3d> normalised(const std::vector<Eigen::Vector3d>& bite
 /// In complex coordinates every affine map of the drawing z is a z + b conj(z) + c, and |b| / |a| is the distortion
 /// (a - b) / (a + b) of its principal stretches; so the least is the solution of two complex linear equations, with a
 /// penalty on b (or on a, of the reflected drawing).
-double misfit(const TechniqueTemplate& drawing, const FlatBites& flat, double square) {
-  const double size = std::sqrt(square);  // the drawing is brought to the size of the bites, so that |a| is near 1
-  Complex along = 0, against = 0, own = 0;
-  for (std::size_t k = 0; k < flat.bites.size(); ++k) {
-    along += std::conj(drawing.bites[k]) * flat.bites[k];
-    against += drawing.bites[k] * flat.bites[k];
-    own += std::conj(drawing.bites[k] * drawing.bites[k]);
+/// @param square  sum of squares of the bites; the drawing is brought to their size, so that |a| is near 1
+double misfit(const TechniqueTemplate& drawing, const std::vector<Complex>& bites, double square) {
+  double rr = 0, ii = 0, ri = 0, ir = 0;  // products of real and imaginary parts, from which both sums are made
+  for (std::size_t k = 0; k < bites.size(); ++k) {
+    rr += drawing.bites[k].real() * bites[k].real();
+    ii += drawing.bites[k].imag() * bites[k].imag();
+    ri += drawing.bites[k].real() * bites[k].imag();
+    ir += drawing.bites[k].imag() * bites[k].real();
   }
-  along *= size, against *= size, own *= square;
+  Complex along(rr + ii, ri - ir), against(rr - ii, ri + ir);  // of conj(drawing) and of drawing with the bites
+  const double size = std::sqrt(square);
+  along *= size, against *= size;
+  const Complex own = square * drawing.own;
   const double stiff = square + std::pow(kScatter / kDistortion, 2);
   const double determinant = square * stiff - std::norm(own);
-  const auto gain = [&](Complex p, Complex q, Complex mixed) {  // p with the free factor, q with the penalised one
-    const Complex a = (stiff * p - mixed * q) / determinant, b = (square * q - std::conj(mixed) * p) / determinant;
-    return (std::conj(a) * p + std::conj(b) * q).real();
+  const auto explained = [&](Complex free, Complex penalised, Complex mixed) {
+    const Complex a = stiff * free - mixed * penalised, b = square * penalised - std::conj(mixed) * free;
+    return (std::conj(a) * free + std::conj(b) * penalised).real() / determinant;
   };
-  const double explained = std::max(gain(along, against, own), gain(against, along, std::conj(own)));
-  return std::max(0.0, square - explained) / (kScatter * kScatter);
+  const double most = std::max(explained(along, against, own), explained(against, along, std::conj(own)));
+  return std::max(0.0, square - most) / (kScatter * kScatter);
 }
 
-struct Misfits {
-  std::array<double, kTechniqueCount> of{};                    // per technique, over all its drawings and walls
-  std::array<const TechniqueTemplate*, kTechniqueCount> best;  // the drawing that fits best
+/// Collects -2 log of the weighted mean of exp(-misfit / 2), which is the misfit of a technique with many drawings:
+/// their number then gives it no advantage over a technique with few.
+struct MeanMisfit {
+  double least = std::numeric_limits<double>::infinity();
+  double sum = 0;  // of weight * exp((least - misfit) / 2), which does not vanish however large the misfits are
+  const TechniqueTemplate* best = nullptr;
+
+  void add(double misfit, double weight, const TechniqueTemplate& drawing) {
+    if (misfit < least) {
+      sum *= std::exp((misfit - least) / 2);
+      least = misfit;
+      best = &drawing;
+    }
+    sum += weight * std::exp((least - misfit) / 2);
+  }
+  double value() const { return best == nullptr ? least : least - 2 * std::log(sum); }
 };
 
-/// A technique's misfit is -2 log of the mean over its drawings of exp(-misfit / 2): many drawings of one technique
-/// then give it no advantage over a technique with few.
-Misfits compare(const std::vector<TechniqueTemplate>& drawings, const std::vector<FlatBites>& walls) {
-  std::array<double, kTechniqueCount> sum{}, least;
-  Misfits result;
-  result.best.fill(nullptr);
-  least.fill(1e300);
-  for (int pass = 0; pass < 2; ++pass)  // the least first: exp() of what lies far above it would be zero
-    for (const FlatBites& wall : walls) {
-      double square = 0;
-      for (const Complex& p : wall.bites) square += std::norm(p);
-      if (!(square > 1e-12)) continue;
-      const double fixed = wall.off_wall / (kScatter * kScatter) + std::pow(wall.wrap / kWrap, 2);
-      for (const TechniqueTemplate& drawing : drawings) {
-        const int t = static_cast<int>(drawing.technique);
-        const double value = fixed + misfit(drawing, wall, square);
-        if (pass == 1)
-          sum[t] += drawing.weight / static_cast<double>(walls.size()) * std::exp((least[t] - value) / 2);
-        else if (value < least[t])
-          least[t] = value, result.best[t] = &drawing;
-      }
-    }
-  for (int t = 0; t < kTechniqueCount; ++t) result.of[t] = sum[t] > 0 ? least[t] - 2 * std::log(sum[t]) : 1e300;
+using Comparison = std::array<MeanMisfit, kTechniqueCount>;
+
+Comparison compare(const std::vector<TechniqueTemplate>& drawings, std::vector<FlatBites> walls) {
+  const auto fixed = [](const FlatBites& wall) {
+    return wall.off_wall / (kScatter * kScatter) + std::pow(wall.wrap / kWrap, 2);
+  };
+  std::stable_sort(walls.begin(), walls.end(),
+                   [&](const FlatBites& a, const FlatBites& b) { return fixed(a) < fixed(b); });
+  Comparison result;
+  for (const FlatBites& wall : walls) {
+    if (fixed(wall) > fixed(walls.front()) + kHopeless) break;
+    double square = 0;
+    for (const Complex& p : wall.bites) square += std::norm(p);
+    if (!(square > 1e-12)) continue;
+    for (const TechniqueTemplate& drawing : drawings)
+      result[static_cast<int>(drawing.technique)].add(fixed(wall) + misfit(drawing, wall.bites, square),
+                                                      drawing.weight / static_cast<double>(walls.size()), drawing);
+  }
   return result;
 }
 
-TechniqueResult nearestDrawing(const std::vector<Eigen::Vector3d>& bites) {
-  const std::vector<Eigen::Vector3d> scaled = normalised(bites);
-  if (scaled.empty()) return {};
+TechniqueResult nearestDrawing(const std::vector<Eigen::Vector3d>& scaled) {
   const int count = static_cast<int>(scaled.size());
   const std::vector<TechniqueTemplate> drawings = techniqueTemplates(count);
-  const Misfits misfits = compare(drawings, layFlat(scaled));
+  const Comparison misfits = compare(drawings, layFlat(scaled));
   std::array<int, kTechniqueCount - 1> order{1, 2, 3, 4, 5, 6};
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return misfits.of[a] < misfits.of[b]; });
-  const double least = misfits.of[order[0]], next = misfits.of[order[1]];
-  const double limit = kMostMisfit * (3 * count - 6);  // free coordinates: all but position, orientation and size ...
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return misfits[a].value() < misfits[b].value(); });
+  const double least = misfits[order[0]].value();
+  const double limit = kSpareMisfit + kMostMisfit * (3 * count - 6);  // what position and orientation leave
   TechniqueResult result;
-  if (!(least <= limit)) {
-    result.margin = (least - limit) / (least + limit);
-    return result;
+  if (least < limit) {
+    result.technique = static_cast<Technique>(order[0]);
+    for (int k = 0; k < 2; ++k) result.transitions[k] = std::max(-1, misfits[order[0]].best->corners[k] - 1);
   }
-  result.technique = static_cast<Technique>(order[0]);
-  result.margin = (std::min(next, limit + (limit - least)) - least) / (next + least);
-  for (int k = 0; k < 2; ++k) result.transitions[k] = std::max(-1, misfits.best[order[0]]->corners[k] - 1);
+  const double rival = least < limit ? std::min(limit, misfits[order[1]].value()) : limit;
+  result.margin = std::isfinite(least) ? std::abs(rival - least) / (rival + least) : 0;
   return result;
 }
 
@@ -146,7 +158,9 @@ const char* toString(Technique technique) {
 
 TechniqueResult recogniseTechnique(const std::vector<Eigen::Vector3d>& bites, TechniqueRule rule) {
   if (!usable(bites)) return {};
-  return rule == TechniqueRule::Printed ? printedRule(bites) : nearestDrawing(bites);
+  const std::vector<Eigen::Vector3d> scaled = normalised(bites);
+  if (scaled.empty()) return {};
+  return rule == TechniqueRule::Printed ? printedRule(scaled) : nearestDrawing(scaled);
 }
 
 }  // namespace vibe

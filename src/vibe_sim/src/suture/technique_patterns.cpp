@@ -54,12 +54,13 @@ std::vector<int> share(Random& random, int vectors, int legs) {
   return shared;
 }
 
-/// Two legs of equal length and a bar of one to a third of all vectors.
+/// Two legs of equal length and a bar of one to a third of all vectors. A vector that two legs cannot share goes to
+/// one of the three by chance.
 Flat drawTwoCorners(Random& random, int vectors, double turn, double back, double bar_length) {
   int bar = 1 + random.below(std::max(1, vectors / 3));
-  if ((vectors - bar) % 2 != 0) bar += bar > 1 && random.below(2) == 0 ? -1 : 1;  // legs get the same number of bites
-  if (vectors - bar < 2) bar = vectors - 2;
-  const int first = (vectors - bar) / 2, last = vectors - bar - first;
+  int first = (vectors - bar) / 2, last = first;
+  int* const lucky[] = {&first, &bar, &last};
+  if (first + bar + last < vectors) ++*lucky[random.below(3)];
   const double leg = (first + last) / 2.0;
   Flat bites{Eigen::Vector2d::Zero()};
   walk(bites, 0, leg, first);

@@ -9,6 +9,8 @@ namespace {
 using Complex = std::complex<double>;
 using Points = std::vector<Complex>;
 
+constexpr int kMostUneven = 6;        // most bite vectors of one side of a polygon for one of another
+constexpr double kAlongShare = 0.25;  // of drawings with bites spaced evenly, wherever the corners are
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
 /// A leg of a drawing: where it points [rad], how long it is, how many bite vectors it is made of.
@@ -48,13 +50,22 @@ class Album {
  public:
   explicit Album(int bite_count) : count_(bite_count) {}
 
+  /// What a drawing weighs if the `count` of its kind are to have this share of what the technique has so far.
+  double share(Technique technique, double part, int count) const {
+    double sum = 0;
+    for (const TechniqueTemplate& t : templates_) sum += t.technique == technique ? t.weight / 2 : 0;
+    return part * sum / count;
+  }
+
   void add(Technique technique, Points points, std::array<int, 2> corners = {-1, -1}, double weight = 1) {
     Complex centre = 0;
     for (const Complex& p : points) centre += p / static_cast<double>(count_);
     double square = 0;
     for (Complex& p : points) square += std::norm(p -= centre);
     for (Complex& p : points) p /= std::sqrt(square);
-    TechniqueTemplate made{technique, std::move(points), corners, weight};
+    Complex own = 0;
+    for (const Complex& p : points) own += std::conj(p * p);
+    TechniqueTemplate made{technique, std::move(points), corners, own, weight};
     templates_.push_back(made);
     std::reverse(made.bites.begin(), made.bites.end());
     if (corners[0] >= 0) made.corners = {count_ - 1 - corners[1], count_ - 1 - corners[0]};
@@ -75,9 +86,9 @@ class Album {
   std::vector<TechniqueTemplate> templates_;
 };
 
-/// Two legs of like length: neither has more than twice, or one more than, the bite vectors of the other.
-bool alike(int a, int b) {
-  return std::max(a, b) <= std::max(2 * std::min(a, b), std::min(a, b) + 1);
+/// How often hands share bites among sides so: evenly more often than not.
+double evenness(int least, int most) {
+  return static_cast<double>(least) / most;
 }
 
 /// U and Z: two legs joined by a bar that turns by `turn` [rad] from the first and by `back` into the second.
@@ -85,86 +96,93 @@ void addTwoCorners(Album& album, Technique technique, double turn, double back, 
   const int vectors = album.count() - 1;
   for (int first = 1; first <= vectors - 2; ++first)
     for (int bar = 1; bar <= vectors - 1 - first; ++bar) {
-      const int last = vectors - first - bar;
-      if (!alike(first, last) || bar > 2 * std::max(first, last)) continue;
+      const int last = vectors - first - bar, most = std::max(first, last);
       const std::array<int, 2> corners{first, first + bar};
+      const double even = evenness(std::min(first, last), most) * evenness(std::min(bar, most), bar) * weight;
       // bites spaced equally everywhere, or legs of equal length whatever the number of their bites
-      album.add(technique,
-                bitesAtCorners({{0, 1.0 * first, first}, {turn, 1.0 * bar, bar}, {turn + back, 1.0 * last, last}}),
-                corners, weight);
-      if (first != last)
+      if (most <= 2 * std::min(first, last) && bar <= 2 * most)
         album.add(technique,
-                  bitesAtCorners({{0, 1, first}, {turn, 2.0 * bar / (first + last), bar}, {turn + back, 1, last}}),
-                  corners, weight);
+                  bitesAtCorners({{0, 1.0 * first, first}, {turn, 1.0 * bar, bar}, {turn + back, 1.0 * last, last}}),
+                  corners, even);
+      for (const double length : {0.5, 1.0})
+        album.add(technique, bitesAtCorners({{0, 1, first}, {turn, length, bar}, {turn + back, 1, last}}), corners,
+                  even / 2);
     }
 }
 
 /// A U or Z whose corners no bite needs to hit, for those who space bites evenly along a line they see.
-void addTwoCornersAlong(Album& album, Technique technique, double turn, double back, double bar, double weight) {
+void addAlong(Album& album, Technique technique, double turn, double back, const std::vector<double>& bars) {
   const int last = album.count() - 1;
-  const auto corner = [&](double at) { return static_cast<int>(std::lround(last * at / (2 + bar))); };
-  const std::array<int, 2> corners{std::max(1, corner(1)), std::min(last - 1, corner(1 + bar))};
-  if (corners[0] >= corners[1]) return;
-  album.add(technique, bitesAlong({{0, 1, 1}, {turn, bar, 1}, {turn + back, 1, 1}}, album.count(), 1), corners, weight);
+  const double weight = album.share(technique, kAlongShare, static_cast<int>(bars.size()));
+  for (const double bar : bars) {
+    const auto corner = [&](double at) { return static_cast<int>(std::lround(last * at / (2 + bar))); };
+    const std::array<int, 2> corners{std::max(1, corner(1) - (corner(1) == corner(1 + bar))), corner(1 + bar)};
+    album.add(technique, bitesAlong({{0, 1, 1}, {turn, bar, 1}, {turn + back, 1, 1}}, album.count(), 1), corners,
+              weight);
+  }
 }
 
 void addU(Album& album) {
   for (const double lean : {-20, 0, 20})
     addTwoCorners(album, Technique::U, (90 + lean) * kDegree, (90 - lean) * kDegree, lean == 0 ? 1 : 0.5);
-  if (album.count() >= 6)
-    for (const double bar : {0.5, 0.8}) addTwoCornersAlong(album, Technique::U, 90 * kDegree, 90 * kDegree, bar, 0.5);
+  if (album.count() >= 5) addAlong(album, Technique::U, 90 * kDegree, 90 * kDegree, {0.25, 0.5, 0.8});
 }
 
 void addZ(Album& album) {
-  for (const double turn : {95, 120, 135, 150}) addTwoCorners(album, Technique::Z, turn * kDegree, -turn * kDegree, 1);
-  if (album.count() >= 6)
-    for (const double bar : {1.0, 1.4})
-      addTwoCornersAlong(album, Technique::Z, 130 * kDegree, -130 * kDegree, bar, 0.5);
+  for (const double turn : {95, 120, 135, 150})
+    addTwoCorners(album, Technique::Z, turn * kDegree, -turn * kDegree, turn < 100 ? 0.5 : 1);
+  if (album.count() >= 5) addAlong(album, Technique::Z, 130 * kDegree, -130 * kDegree, {1, 1.4});
 }
 
-void addTriangular(Album& album) {
+void addCorner(Album& album) {
   const int vectors = album.count() - 1;
   for (int first = 1; first <= vectors - 1; ++first) {
     const int last = vectors - first;
-    if (!alike(first, last)) continue;
+    const auto [least, most] = std::minmax({first, last});
     for (const double turn : {100, 120, 140}) {
-      album.add(Technique::Triangular, bitesAtCorners({{0, 1.0 * first, first}, {turn * kDegree, 1.0 * last, last}}));
-      if (first != last) album.add(Technique::Triangular, bitesAtCorners({{0, 1, first}, {turn * kDegree, 1, last}}));
+      if (most <= 2 * least)
+        album.add(Technique::Triangular, bitesAtCorners({{0, 1.0 * first, first}, {turn * kDegree, 1.0 * last, last}}));
+      album.add(Technique::Triangular, bitesAtCorners({{0, 1, first}, {turn * kDegree, 1, last}}), {-1, -1},
+                evenness(least, most));
     }
   }
-  for (int first = 1; first <= vectors - 2; ++first)
-    for (int second = 1; second <= vectors - 1 - first; ++second) {
-      const int last = vectors - first - second;
-      if (!alike(first, second) || !alike(second, last) || !alike(first, last)) continue;
-      album.add(Technique::Triangular,
-                bitesAtCorners({{0, 1, first}, {120 * kDegree, 1, second}, {240 * kDegree, 1, last}}), {-1, -1}, 2);
-      if (last >= 2 || vectors >= 5)
-        album.add(Technique::Triangular,
-                  bitesAtCorners({{0, 1, first}, {120 * kDegree, 1, second}, {240 * kDegree, 0.67, last}}));
-    }
-  for (const double used : {1.0, 1.0 - 1.0 / album.count()})
-    if (album.count() >= 6)
-      album.add(Technique::Triangular,
-                bitesAlong({{0, 1, 1}, {120 * kDegree, 1, 1}, {240 * kDegree, 1, 1}}, album.count(), used));
+  if (vectors < 5) return;  // with four or five bites no more than a bend is left of a corner that no bite hits
+  const double along = album.share(Technique::Triangular, kAlongShare, 2);
+  for (const double turn : {110, 130})
+    album.add(Technique::Triangular, bitesAlong({{0, 1, 1}, {turn * kDegree, 1, 1}}, album.count(), 1), {-1, -1},
+              along);
 }
 
-void addSquare(Album& album) {
+/// A polygon whose last side may end short of the first bite.
+void addPolygon(Album& album, Technique technique, int sides, double shortest, double weight) {
+  const double turn = 360 * kDegree / sides;
   const int vectors = album.count() - 1;
-  const double turn = 90 * kDegree;
-  for (int a = 1; a <= vectors - 3; ++a)
-    for (int b = 1; b <= vectors - 2 - a; ++b)
-      for (int c = 1; c <= vectors - 1 - a - b; ++c) {
-        const int d = vectors - a - b - c;
-        const auto [least, most] = std::minmax({a, b, c, d});
-        if (!alike(least, most)) continue;
-        album.add(Technique::Square, bitesAtCorners({{0, 1, a}, {turn, 1, b}, {2 * turn, 1, c}, {3 * turn, 1, d}}));
-        album.add(Technique::Square, bitesAtCorners({{0, 1, a}, {turn, 1, b}, {2 * turn, 1, c}, {3 * turn, 0.6, d}}),
-                  {-1, -1}, 0.5);
-      }
+  std::vector<int> shared(sides, 1);
+  const auto add = [&] {
+    const auto [least, most] = std::minmax_element(shared.begin(), shared.end());
+    if (*most > kMostUneven * *least) return;
+    for (const double last : {1.0, shortest}) {
+      std::vector<Leg> legs;
+      for (int k = 0; k < sides; ++k) legs.push_back({k * turn, k == sides - 1 ? last : 1, shared[k]});
+      album.add(technique, bitesAtCorners(legs), {-1, -1}, weight * evenness(*least, *most) * (last < 1 ? 0.5 : 1));
+    }
+  };
+  // every way to share the bite vectors among the sides
+  const auto fill = [&](auto&& self, int side, int left) -> void {
+    if (side == sides - 1) {
+      shared[side] = left;
+      return add();
+    }
+    for (shared[side] = 1; left - shared[side] >= sides - 1 - side; ++shared[side])
+      self(self, side + 1, left - shared[side]);
+  };
+  if (vectors >= sides) fill(fill, 0, vectors);
+  if (vectors <= sides) return;
+  std::vector<Leg> legs;
+  for (int k = 0; k < sides; ++k) legs.push_back({k * turn, 1, 1});
+  const double along = album.share(technique, kAlongShare, 2);
   for (const double used : {1.0, 1.0 - 1.0 / album.count()})
-    if (album.count() >= 6)
-      album.add(Technique::Square,
-                bitesAlong({{0, 1, 1}, {turn, 1, 1}, {2 * turn, 1, 1}, {3 * turn, 1, 1}}, album.count(), used));
+    album.add(technique, bitesAlong(legs, album.count(), used), {-1, -1}, along);
 }
 
 Points arc(int count, double sweep) {
@@ -194,8 +212,9 @@ std::vector<TechniqueTemplate> techniqueTemplates(int bite_count) {
   Album album(bite_count);
   addU(album);
   addZ(album);
-  addTriangular(album);
-  addSquare(album);
+  addCorner(album);
+  addPolygon(album, Technique::Triangular, 3, 0.67, 2);
+  addPolygon(album, Technique::Square, 4, 0.6, 1);
   addC(album);
   addRunning(album);
   return album.take();

@@ -20,14 +20,14 @@ enum class TechniqueRule {
 
 /// Fewest and most bites that can be a technique; sets outside are Other.
 constexpr int kTechniqueLeastBites = 4;
-constexpr int kTechniqueMostBites = 24;
+constexpr int kTechniqueMostBites = 16;
 
 struct TechniqueResult {
   Technique technique = Technique::Other;
 
   /// How far the answer is from changing [1], 0 (it could be another) to 1.
-  /// Corrected: (m2 - m1) / (m2 + m1) with m1 the misfit of the technique answered and m2 the least misfit of the
-  /// others; of a set that is Other because nothing fits: how far beyond the limit the misfit is, (m1 - m) / (m1 + m).
+  /// Corrected: |r - m| / (r + m) with m the least misfit of a technique and r that of its closest rival, where
+  /// Other is a rival too, with the misfit from which on a set is Other.
   /// Printed: the least distance of a dot product from the threshold it was compared with, at most 1.
   double margin = 0;
 
