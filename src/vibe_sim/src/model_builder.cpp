@@ -6,6 +6,7 @@
 
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/geometry/organ_builder.hpp"
+#include "vibe_sim/geometry/regions.hpp"
 #include "vibe_sim/geometry/rotation.hpp"
 #include "vibe_sim/scene/attachments.hpp"
 #include "vibe_sim/simulator.hpp"
@@ -57,8 +58,31 @@ void addTool(const std::string& tool_urdf, Model& model) {
   model.tip_link = model.tool->linkIndex("scope_tip");
   model.helix_link = model.tool->linkIndex("helix");
   model.grip_link = model.tool->joints()[static_cast<std::size_t>(model.helix_link) - 1].parent_link;
+  model.needle_link = model.tool->linkIndex("needle");
   model.tool_base =
       scope.base_from_anatomy ? poseFromAnatomy(model.organ) : poseFromRpy(scope.base_position, scope.base_rpy);
+}
+
+bool hasStomachEnds(const Organ& organ) {
+  bool oesophagus = false, duodenum = false;
+  for (End end : organ.end) oesophagus |= end == End::Oesophagus, duodenum |= end == End::Duodenum;
+  return oesophagus && duodenum && organ.landmarks.fundus != organ.landmarks.pylorus;
+}
+
+std::vector<double> placesAlong(const Organ& organ) {
+  std::vector<double> along;
+  along.reserve(organ.surface.vertices.size());
+  if (hasStomachEnds(organ)) {
+    const StomachAxis axis = findAxis(organ);
+    for (int v = 0; v < static_cast<int>(organ.surface.vertices.size()); ++v)
+      along.push_back(axis.lengthAt(v) / axis.length());
+    return along;
+  }
+  for (const Eigen::Vector3d& v : organ.surface.vertices) along.push_back(v.dot(organ.entry_axis));
+  const auto [least, most] = std::minmax_element(along.begin(), along.end());
+  const double begin = *least, length = *most - *least;
+  for (double& place : along) place = (place - begin) / length;
+  return along;
 }
 
 // The gas is an explicit spring on the volume: where it is compressed in a small or light organ a sub-step can be too
@@ -103,6 +127,7 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   model.solver = made.solver;
   if (model.solver->usesSubsteps()) checkSubstepsForGas(model.scene.tissue.substeps, for_gas);
   if (model.scene.scope) addTool(tool_urdf, model);
+  if (model.scene.suture) model.along = placesAlong(model.organ);
   if (model.scene.skin) model.skin = makeLoopSkin(model.organ.surface);
   if (progress) progress("ready", 1.0);
 }

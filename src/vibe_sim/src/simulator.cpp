@@ -6,6 +6,8 @@
 
 #include "vibe_sim/contact/helix_grip.hpp"
 #include "vibe_sim/contact/tool_motion.hpp"
+#include "vibe_sim/procedure/procedure.hpp"
+#include "vibe_sim/procedure/thread_events.hpp"
 
 namespace vibe {
 
@@ -71,6 +73,7 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
   state.volume = fresh.volume;
   state.energy = fresh.energy;
   state.grip.clear();
+  slackenThreads(state);
   state.tool_force.setZero();
   state.tool_torque.setZero();
   state.grip_force = 0;
@@ -92,7 +95,10 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     motion.emplace(*model.tool, model.tool_base, state.joints, end);
     motion->linkPoses(0, poses);
     updateGrip(model, poses, input.buttons[HelixGrab] != 0, state, events);
+    commandProcedure(model, poses, input, state, events);
     state.joints = end;
+  } else {
+    commandProcedure(model, {}, input, state, events);  // says which part of the scene is missing
   }
   StepReport report;
   model.solver->advance(model, motion ? &*motion : nullptr, insufflator_on, state, workspace, report);
@@ -104,6 +110,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     storeForces(model, report, poses, state);
     reportContact(report.contact_count, dt, state, events);
     releaseOverloadedGrip(model, state, events);
+    followProcedure(model, state, events);
   }
   if (model.scene.gas) reportPressure(*model.scene.gas, insufflator_on, state, events);
   if (report.speed_limited > 0)

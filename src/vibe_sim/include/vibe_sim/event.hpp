@@ -36,7 +36,9 @@ struct Event {
     CinchLoose = 26,       ///< cinched, but slack; value: tension [N]
     TearOut = 27,          ///< a bite tore out of the wall; particle: nearest, value: force on it [N]
     ThreadBroke = 28,      ///< value: tension [N]
-    PhaseChanged = 29      ///< value: Phase, text names it
+    PhaseChanged = 29,     ///< value: Phase, text names it
+    Pierced = 30,          ///< the arm closed and the needle went into the wall; value: depth below the mucosa [m]
+    ArmClosed = 31         ///< the arm closed without a needle, over the exchange that holds it
   };
   Kind kind = Kind::Warning;
   double time = 0;    ///< simulated time of the step's end [s]

@@ -34,9 +34,14 @@ struct Model {
   Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world
   int tip_link = -1;                                            ///< link numbers in tool
   int helix_link = -1;
-  int grip_link = -1;  ///< carries the helix, which turns in it
+  int grip_link = -1;    ///< carries the helix, which turns in it
+  int needle_link = -1;  ///< its origin is the needle's point
 
   Skin skin;  ///< empty without scene.skin
+
+  /// Place of every particle along the organ's axis at rest, 0: apex of the fundus, 1: pylorus; of an organ without
+  /// these ends along its entry axis. (particle_count), empty without scene.suture.
+  std::vector<double> along;
 };
 
 }  // namespace vibe

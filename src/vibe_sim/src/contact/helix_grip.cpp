@@ -1,8 +1,11 @@
 #include "vibe_sim/contact/helix_grip.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+
+#include "vibe_sim/procedure/phase.hpp"
 
 namespace vibe {
 
@@ -17,6 +20,12 @@ std::string millimetres(double metres) {
 std::string newtons(double force) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f N", force);
+  return text;
+}
+
+std::string inTurns(double turns) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f turns", turns);
   return text;
 }
 
@@ -72,6 +81,21 @@ void takeHold(const Model& model, const std::vector<Eigen::Isometry3d>& link_pos
   events.push_back(makeEvent(Event::Kind::Grab, state.time, target, held,
                              "The helix holds the " + std::string(toString(model.organ.region[target])) + ", " +
                                  toString(model.organ.wall[target]) + " wall."));
+  state.procedure.grip_rotation = state.joints[HelixRotation];
+  state.procedure.grip_turns = 0;
+  if (model.scene.suture) noteSuturing(state, events);
+}
+
+void countTurns(const Model& model, State& state, std::vector<Event>& events) {
+  constexpr double kTurn = 6.28318530717958647692;  // [rad]
+  const HelixScene& helix = *model.scene.helix;
+  const double turns = (state.joints[HelixRotation] - state.procedure.grip_rotation) / kTurn;
+  const double before = state.procedure.grip_turns;
+  if (!(turns > before)) return;
+  state.procedure.grip_turns = turns;
+  if (before < helix.hold_turns && turns >= helix.hold_turns)
+    events.push_back(makeEvent(Event::Kind::HelixTurned, state.time, state.grip.front().particle, turns,
+                               "The helix is " + inTurns(turns) + " in and holds " + newtons(helix.hold_force) + "."));
 }
 
 }  // namespace
@@ -90,11 +114,19 @@ void updateGrip(const Model& model, const std::vector<Eigen::Isometry3d>& link_p
   }
 }
 
+double holdingForce(const HelixScene& helix, double turns) {
+  if (turns >= helix.hold_turns) return helix.hold_force;
+  return helix.prick_force + (helix.hold_force - helix.prick_force) * std::max(turns, 0.0) / helix.hold_turns;
+}
+
 void releaseOverloadedGrip(const Model& model, State& state, std::vector<Event>& events) {
-  if (!model.scene.helix || state.grip.empty() || state.grip_force <= model.scene.helix->hold_force) return;
+  if (!model.scene.helix || state.grip.empty()) return;
+  countTurns(model, state, events);
+  const double hold = holdingForce(*model.scene.helix, state.procedure.grip_turns);
+  if (state.grip_force <= hold) return;
   events.push_back(makeEvent(Event::Kind::Slip, state.time, state.grip.front().particle, state.grip_force,
-                             "The helix tore off at " + newtons(state.grip_force) + ", it holds " +
-                                 newtons(model.scene.helix->hold_force) + "."));
+                             "The helix tore off at " + newtons(state.grip_force) + ", after " +
+                                 inTurns(state.procedure.grip_turns) + " it holds " + newtons(hold) + "."));
   state.grip.clear();
 }
 

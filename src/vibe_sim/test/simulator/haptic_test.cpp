@@ -33,6 +33,7 @@ World ballWorld(double step_period, const std::string& model = "shell", int leve
   scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
   scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
   scene.helix = HelixScene{};
+  scene.helix->hold_turns = 0;  // holds with all of its force from the first touch
   scene.helix->reach = 8e-3;
   scene.helix->grip_radius = 10e-3;
   Organ organ = plainOrgan(icosphere(kRadius, level), 2.3e-3);

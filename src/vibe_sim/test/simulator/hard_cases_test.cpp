@@ -223,6 +223,7 @@ World scopeWorld() {
   scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
   scene.scope->base_rpy = {0, M_PI / 2, 0};
   scene.helix = HelixScene{};
+  scene.helix->hold_turns = 0;  // holds with all of its force from the first touch
   Organ organ = ball();
   for (std::size_t i = 0; i < organ.end.size(); ++i)
     if (organ.surface.vertices[i].z() > 0.85 * kRadius) organ.end[i] = End::Oesophagus;

@@ -32,6 +32,7 @@ Scene scopeScene() {
   scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
   scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
   scene.helix = HelixScene{};
+  scene.helix->hold_turns = 0;  // holds with all of its force from the first touch
   return scene;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +14,7 @@ const char* toString(Phase phase);
 
 /// A bite that bleeds.
 struct Bleeding {
-  int suture = -1, bite = -1;  ///< where
+  int suture = -1, bite = -1;  ///< where; bite -1: it tore out
   int particle = -1;
   bool brisk = false;
   double begin = 0;      ///< [s]
@@ -41,7 +42,9 @@ struct ProcedureState {
   bool arm_closed = false;    ///< the needle arm has come to its closed end and not yet back to its open one
   bool needle_on_arm = true;  ///< else in the anchor exchange (or, after the T-tag was dropped, gone with it)
   bool needle_loaded = true;  ///< there is a needle with a thread: false between T-tag and cinch
-  bool pierced = false;       ///< the needle is in tissue: `pending` becomes a bite when the exchange takes the needle
+  /// The arm went through tissue as it closed and has not opened since. While the needle is on it, `pending` becomes a
+  /// bite when the exchange takes the needle; once it is taken, the arm must open before the needle can come back.
+  bool pierced = false;
   Bite pending;
 
   std::vector<Suture> sutures;  ///< in the order of their first bites; the last may be open

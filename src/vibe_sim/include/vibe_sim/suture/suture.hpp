@@ -17,7 +17,7 @@ struct Bite {
   double thickness = 0;        ///< of the wall there, at rest [m]
   Region region = Region::Body;
   Wall wall = Wall::Anterior;
-  double along = 0;  ///< place along the organ's axis at rest, 0: oesophagus, 1: pylorus
+  double along = 0;  ///< place along the organ's axis at rest, 0: apex of the fundus, 1: pylorus
 
   bool fullThickness() const { return depth >= thickness; }
 };

@@ -1,0 +1,100 @@
+#include "procedure/cinch.hpp"
+
+#include <string>
+
+#include "procedure/announce.hpp"
+#include "vibe_sim/procedure/bleeding.hpp"
+#include "vibe_sim/procedure/phase.hpp"
+#include "vibe_sim/procedure/thread_events.hpp"
+#include "vibe_sim/suture/technique.hpp"
+
+namespace vibe {
+
+namespace {
+
+// Empty: nothing stands against it.
+std::string reasonAgainstTTag(const SutureScene& scene, const Suture* active, const ProcedureState& procedure) {
+  if (!procedure.needle_loaded)
+    return "The T-tag of this set is dropped already: hold the cinch until the set is tight, then let it go.";
+  if (!active) return "There is no bite that a T-tag could hold: take bites first.";
+  if (procedure.pierced && procedure.needle_on_arm)
+    return "The needle is in the wall: hand it to the anchor exchange, or open the arm, before dropping the T-tag.";
+  const int bites = static_cast<int>(active->bites.size());
+  if (bites < scene.least_bites)
+    return "The set has too few bites, " + std::to_string(bites) + " of " + std::to_string(scene.least_bites) +
+           ": take more before dropping the T-tag.";
+  return "";
+}
+
+void recognise(const SutureScene& scene, Suture& suture, const State& state, std::vector<Event>& events) {
+  suture.taken.clear();
+  for (const Bite& bite : suture.bites) suture.taken.push_back(bitePosition(bite, state.x, state.y, state.z));
+  const TechniqueRule rule = scene.technique_rule == "printed" ? TechniqueRule::Printed : TechniqueRule::Corrected;
+  const TechniqueResult found = recogniseTechnique(suture.taken, rule);
+  suture.technique = static_cast<std::uint8_t>(found.technique);
+  suture.technique_margin = found.margin;
+  suture.transitions = found.transitions;
+  announce(Event::Kind::TechniqueFound, state.time, -1, static_cast<double>(found.technique),
+           "The bites of set " + std::to_string(state.procedure.sutures.size()) + " form the pattern '" +
+               toString(found.technique) + "'.",
+           events);
+}
+
+// Called after the T-tag of the step, so that a suture that can be cinched is found in the same step.
+void beginCinch(const Suture* active, State& state, std::vector<Event>& events) {
+  if (!active)
+    return refuse(Cinch, state.time, "There is no thread to cinch: take bites and drop the T-tag first.", events);
+  if (active->stage == Suture::Stage::Open)
+    return refuse(Cinch, state.time, "The thread has no hold at its end yet: drop the T-tag before the cinch.", events);
+  state.procedure.sutures.back().stage = Suture::Stage::Cinching;
+  announce(Event::Kind::CinchPulling, state.time, -1, 0,
+           "The cinch draws the thread of set " + std::to_string(state.procedure.sutures.size()) + ".", events);
+}
+
+void endCinch(const SutureScene& scene, State& state, std::vector<Event>& events) {
+  const int number = static_cast<int>(state.procedure.sutures.size()) - 1;
+  Suture& suture = state.procedure.sutures[number];
+  suture.stage = Suture::Stage::Cinched;
+  suture.cinch_tension = suture.tension.empty() ? 0 : suture.tension.front();
+  suture.end = state.time;
+  const bool loose = suture.cinch_tension < scene.loose_tension;
+  announce(loose ? Event::Kind::CinchLoose : Event::Kind::Cinched, state.time, -1, suture.cinch_tension,
+           "Set " + std::to_string(number + 1) + (loose ? " is cinched loosely at " : " is cinched at ") +
+               inNewtons(suture.cinch_tension) + ", " + inMillimetres(suture.pulled) + " of thread were drawn.",
+           events);
+  if (!loose) stopBleedings(number, state, events);
+  loadThread(state.procedure);
+  enterPhase(Phase::Suture, state, events);
+}
+
+}  // namespace
+
+void dropTTag(const Model& model, State& state, std::vector<Event>& events) {
+  ProcedureState& procedure = state.procedure;
+  Suture* active = activeSuture(procedure);
+  const std::string reason = reasonAgainstTTag(*model.scene.suture, active, procedure);
+  if (!reason.empty()) return refuse(TTag, state.time, reason, events);
+  active->stage = Suture::Stage::Tagged;
+  procedure.needle_loaded = false;
+  procedure.needle_on_arm = false;
+  const int bites = static_cast<int>(active->bites.size());
+  announce(
+      Event::Kind::TTagDropped, state.time, -1, bites,
+      "The T-tag holds set " + std::to_string(procedure.sutures.size()) + " of " + std::to_string(bites) + " bites.",
+      events);
+  recognise(*model.scene.suture, *active, state, events);
+  enterPhase(Phase::Pull, state, events);
+}
+
+void commandCinch(const Model& model, bool pressed, bool was_pressed, State& state, std::vector<Event>& events) {
+  const SutureScene& scene = *model.scene.suture;
+  Suture* active = activeSuture(state.procedure);
+  const bool cinching = active && active->stage == Suture::Stage::Cinching;
+  if (cinching && !pressed) return endCinch(scene, state, events);
+  if (pressed && !was_pressed && !cinching) beginCinch(active, state, events);
+  if (!pressed || !active || active->stage != Suture::Stage::Cinching) return;
+  const double tension = active->tension.empty() ? 0 : active->tension.front();
+  if (tension < scene.cinch_tension) drawThread(scene.cinch_speed * model.scene.step_period, *active);
+}
+
+}  // namespace vibe
