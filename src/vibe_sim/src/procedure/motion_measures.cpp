@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "vibe_sim/error.hpp"
 
@@ -37,11 +38,13 @@ std::optional<double> logDimensionlessJerk(const std::vector<double>& speed, dou
 
 MotionRecorder::MotionRecorder(const MotionSettings& settings, std::shared_ptr<SpectralArcLength> spectrum)
     : settings_(settings), spectrum_(std::move(spectrum)), peaks_(settings.rest_reach / settings.rest_time) {
-  if (!(settings.sample_period > 0 && settings.rest_reach > 0 && settings.rest_time > 0))
-    throw Error("A MotionRecorder needs a sample period, a reach and a time of rest above 0; correct its settings.");
+  if (!(settings.sample_period > 0 && settings.rest_reach > 0 && settings.rest_time > 0 && settings.tremor_period > 0))
+    throw Error("A MotionRecorder needs times and a reach above 0; correct its settings.");
   if (!spectrum_) spectrum_ = std::make_shared<SpectralArcLength>(kLongestMovement);
   speed_.reserve(kLongestMovement);
   points_.reserve(kLongestMovement + 1);
+  steady_.reserve(kLongestMovement + 1);
+  recent_.reserve(std::max(1L, std::lround(settings.tremor_period / settings.sample_period)));
   piece_.reserve(kLongestMovement);
 }
 
@@ -56,6 +59,9 @@ void MotionRecorder::begin(const Eigen::Vector3d& position, double dt) {
   since_sample_ = 0;
   speed_.clear();
   points_.assign(1, position);
+  steady_.assign(1, position);
+  recent_.assign(std::max(1L, std::lround(settings_.tremor_period / period_)), position);
+  oldest_ = 0;
 }
 
 void MotionRecorder::add(const Eigen::Vector3d& position, double dt) {
@@ -78,9 +84,10 @@ void MotionRecorder::add(const Eigen::Vector3d& position, double dt) {
 void MotionRecorder::sample(const Eigen::Vector3d& point) {
   const double speed = (point - points_.back()).norm() / period_;
   sums_.peak_speed = std::max(sums_.peak_speed, speed);
-  peaks_.add(speed);
   speed_.push_back(speed);
   points_.push_back(point);
+  steady_.push_back(steadied(point));
+  peaks_.add((steady_.back() - steady_[steady_.size() - 2]).norm() / period_);
   if (moving_) {
     if (static_cast<int>(speed_.size()) >= window_ && atRest()) return endMovement();
     if (speed_.size() == kLongestMovement) measure(kLongestMovement);
@@ -91,11 +98,20 @@ void MotionRecorder::sample(const Eigen::Vector3d& point) {
   }
 }
 
+/// The mean of the last points.
+Eigen::Vector3d MotionRecorder::steadied(const Eigen::Vector3d& point) {
+  recent_[oldest_] = point;
+  oldest_ = (oldest_ + 1) % recent_.size();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& p : recent_) sum += p;
+  return sum / static_cast<double>(recent_.size());
+}
+
 /// Whether the point has stayed near where it was rest_time ago.
 bool MotionRecorder::atRest() const {
-  const std::size_t first = points_.size() - 1 - std::min(points_.size() - 1, static_cast<std::size_t>(window_));
-  return std::all_of(points_.begin() + static_cast<std::ptrdiff_t>(first), points_.end(),
-                     [&](const auto& p) { return (p - points_[first]).norm() <= settings_.rest_reach; });
+  const std::size_t first = steady_.size() - 1 - std::min(steady_.size() - 1, static_cast<std::size_t>(window_));
+  return std::all_of(steady_.begin() + static_cast<std::ptrdiff_t>(first), steady_.end(),
+                     [&](const auto& p) { return (p - steady_[first]).norm() <= settings_.rest_reach; });
 }
 
 /// Speed below which a movement begins and ends.
@@ -147,6 +163,7 @@ void MotionRecorder::measure(int samples) {
 void MotionRecorder::drop(int samples) {
   speed_.erase(speed_.begin(), speed_.begin() + samples);
   points_.erase(points_.begin(), points_.begin() + samples);
+  steady_.erase(steady_.begin(), steady_.begin() + samples);
 }
 
 void MotionRecorder::finish() {

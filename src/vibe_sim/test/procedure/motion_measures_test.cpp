@@ -155,9 +155,11 @@ TEST(MotionRecorder, tremorLowersBothSmoothnesses) {
 }
 
 TEST(MotionRecorder, aTremblingHandAtRestIsAtRest) {
-  const auto m = record([](double t) { return Eigen::Vector3d(0.3e-3 * std::sin(2 * M_PI * 10 * t), 0, 0); }, 5);
+  const auto m = record([](double t) { return Eigen::Vector3d(2e-3 * std::sin(2 * M_PI * 9 * t), 0, 0); }, 5);
   EXPECT_EQ(m.measures().movements, 0);
-  EXPECT_GT(m.measures().peak_speed, 0.01) << "although it is fast";
+  EXPECT_GT(m.measures().peak_speed, 0.09) << "although it is fast";
+  const auto slow = record([](double t) { return Eigen::Vector3d(2e-3 * std::sin(2 * M_PI * 2 * t), 0, 0); }, 5);
+  EXPECT_EQ(slow.measures().movements, 1) << "to and fro on purpose is no tremor";
 }
 
 TEST(MotionRecorder, twoSubmovementsAreLessSmoothThanOneAndTwoMovementsAreNot) {

@@ -17,7 +17,7 @@ struct MotionMeasures {
   double path_length = 0;            ///< of the polygon through all positions given [m]
   double peak_speed = 0;             ///< over one sample period [m/s]
   int movements = 0;                 ///< begun
-  int submovements = 0;              ///< peaks of the speed
+  int submovements = 0;              ///< peaks of the speed without tremor, see PeakCounter
   std::optional<double> mean_speed;  ///< path_length / time [m/s]
   std::optional<double> economy;     ///< straight lines of the movements over their paths, 0 to 1; higher is better [1]
   std::optional<double> log_dimensionless_jerk;  ///< see logDimensionlessJerk(), mean over movements by duration [1]
@@ -38,6 +38,7 @@ struct MotionSettings {
   double sample_period = 1.0 / 60;  ///< speeds are means over at least this time [s]
   double rest_reach = 1e-3;  ///< a point that stays this near for rest_time is at rest [m]; design choice, above tremor
   double rest_time = 0.25;   ///< [s]; design choice
+  double tremor_period = 0.1;  ///< rest is looked for in the mean position over this time [s]; tremor is at 8 to 12 Hz
 };
 
 /// Measures the motion of a point as it happens. Call add() once per step, measures() whenever wanted, finish() when a
@@ -49,10 +50,11 @@ struct MotionSettings {
 /// interpolated between them, which counts as jerk (a reach in steps of 2 to 14 ms has an LDLJ lower by 2), while the
 /// rest hardly notices.
 ///
-/// A movement lasts from rest to rest. It begins where the speed was last below a twentieth of rest_reach / rest_time
-/// and ends where it first is again, both within rest_time of where the point left or entered rest. Smoothness and
-/// economy count when a movement has ended. A movement of more than kLongestMovement samples (34 s at 60 Hz) is
-/// measured in pieces of that length and counts once.
+/// A movement lasts from rest to rest. The point is at rest while its place without tremor (the mean over
+/// tremor_period) stays within rest_reach of where it was rest_time ago. It begins where the speed was last below a
+/// twentieth of rest_reach / rest_time and ends where it first is again, both within rest_time of where the point left
+/// or entered rest. Smoothness and economy count when a movement has ended. A movement of more than kLongestMovement
+/// samples (34 s at 60 Hz) is measured in pieces of that length and counts once.
 ///
 /// Memory is bounded and asked for when made. A step costs less than a microsecond, the end of a movement up to a
 /// millisecond (the spectrum). Copies share the tables of the spectrum: use them in one thread.
@@ -75,6 +77,7 @@ class MotionRecorder {
  private:
   void begin(const Eigen::Vector3d& position, double dt);
   void sample(const Eigen::Vector3d& point);
+  Eigen::Vector3d steadied(const Eigen::Vector3d& point);
   bool atRest() const;
   double slowSpeed() const;
   int firstSlow(int from, int to) const;
@@ -96,6 +99,9 @@ class MotionRecorder {
   bool moving_ = false;
   std::vector<double> speed_;            // of the movement, or of the last rest_time before one
   std::vector<Eigen::Vector3d> points_;  // where these samples begin, and where the last ends
+  std::vector<Eigen::Vector3d> steady_;  // points_ without tremor
+  std::vector<Eigen::Vector3d> recent_;  // the last points, in a ring
+  std::size_t oldest_ = 0;               // of them
   std::vector<double> piece_;            // what measure() measures
 
   double jerk_sum_ = 0, jerk_time_ = 0;

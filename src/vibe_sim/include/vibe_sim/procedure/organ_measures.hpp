@@ -33,8 +33,8 @@ struct OrganMeasures {
 ///
 /// Limitations: the surface is that of the particles, half a wall outside of the mucosa. The sides of the wall pulled
 /// together by a suture must not pass through one another, or area counts twice. Where the axis bends sharply, as at
-/// the incisura, planes square to it are wider than the lumen is across (mean_area * body_length exceeds the volume of
-/// the body of the default stomach by about a tenth); a plane that cuts two parts of the organ in one is left out.
+/// the incisura, planes square to it are wider than the lumen is across (areas times lengths along the whole default
+/// stomach add up to a tenth more than its volume); a plane that cuts two parts of the organ in one is left out.
 class OrganRuler {
  public:
   /// Takes some 40 ms for 3,618 particles (the axis); after it measure() takes 0.3 ms and no memory.
