@@ -21,6 +21,7 @@ FAMILIES = {  # method: name, colour, marker
     "euler": ("shell, backward Euler", "tab:cyan", "o"),
     "linear_tet": ("linear tetrahedra, one layer", "tab:green", "s"),
     "shape_matching": ("shape matching", "tab:purple", "D"),
+    "gradient_domain": ("gradient-domain deformation", "tab:brown", "P"),
     "bullet_softbody": ("Bullet's soft body", "tab:orange", "o"),
 }
 PROTOTYPE = (16, 18)  # ms per frame that Erden et al. report for 3,618 particles, without an error

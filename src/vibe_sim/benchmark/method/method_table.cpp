@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "method/bullet_wall.hpp"
+#include "method/gradient_wall.hpp"
 #include "method/shape_matching_wall.hpp"
 #include "method/tet_wall.hpp"
 #include "method/trajectory.hpp"
@@ -118,6 +119,10 @@ void addPeers(const BenchWall& wall, const Truth& truth, bool quick, std::ostrea
   log << "wall: linear tetrahedra\n";
   addPull(followTets(wall, truth.pull, kThree), truth, "linear_tet", kThree.name, rows);
   rows.back().particles = 2 * kParticles;
+  for (const PatchChoice& choice : kPatchChoices) {
+    log << "wall: gradient domain, " << choice.name << "\n";
+    addPull(followGradient(wall, truth.start, truth.pull, choice), truth, "gradient_domain", choice.name, rows);
+  }
   log << "wall: shape matching\n";
   int substeps = 0;
   const Trajectory matched = followShapeMatching(wall, truth.pull, substeps);
@@ -189,6 +194,10 @@ std::vector<ResultRow> runMethods(bool quick, std::ostream& log) {
   const Truth truth = findTruth(wall, start, quick, log);
   addSettings(wall, truth, quick, log, rows);
   addPeers(wall, truth, quick, log, rows);
+  if (!quick) {
+    const auto pokes = runPokes(kParticles, log);
+    rows.insert(rows.end(), pokes.begin(), pokes.end());
+  }
   addLongPulls(wall, start, quick, log, rows);
   addGrowth(quick, log, rows);
   return rows;

@@ -7,8 +7,8 @@
 namespace vibe {
 
 /// Every setting on the wall of 3,618 particles against one time-converged motion, and linear tetrahedra, the
-/// simulator's shape matching and Bullet's soft body on the same mesh; pulls to 30, 40 and 50 mm; the cost of growing
-/// numbers of particles.
+/// gradient-domain deformation, the simulator's shape matching and Bullet's soft body on the same mesh; pokes in a bed;
+/// pulls to 30, 40 and 50 mm; the cost of growing numbers of particles.
 /// @param quick  fewer sizes and pulls
 std::vector<ResultRow> runMethods(bool quick, std::ostream& log);
 

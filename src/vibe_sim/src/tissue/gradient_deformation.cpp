@@ -19,18 +19,27 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kMostTurns = 100;
-constexpr int kExtractions = 8;  // of a rotation; far more than an angle between two solves needs
+constexpr int kExtractions = 6;     // Newton steps to a rotation; three are usual
+constexpr double kFarTurn = 0.5;    // [rad] of one of them
+constexpr double kSameTurn = 1e-7;  // [rad]
 
-/// The rotation nearest to a matrix, from another one near it (Mueller et al. 2016, "A robust method to extract the
-/// rotational part of deformations"): also for the flat neighbourhoods of a surface, whose matrix has rank two.
+/// The rotation r nearest to a matrix a, that with the greatest r : a, from another one near it. Newton's method on
+/// small turns w from the left: gradient sum_k r_k x a_k over the columns, minus Hessian tr(s) - s, s = sym(a r^T).
+/// Unlike a polar decomposition it has no trouble with the flat neighbourhoods of a surface, whose a has rank two.
 Matrix3d rotationOf(const Matrix3d& a, Matrix3d r) {
   for (int i = 0; i < kExtractions; ++i) {
-    const Vector3d axis = r.col(0).cross(a.col(0)) + r.col(1).cross(a.col(1)) + r.col(2).cross(a.col(2));
-    const double fit = std::abs(r.col(0).dot(a.col(0)) + r.col(1).dot(a.col(1)) + r.col(2).dot(a.col(2)));
-    const Vector3d turn = axis / (fit + 1e-30);
+    const Vector3d gradient = r.col(0).cross(a.col(0)) + r.col(1).cross(a.col(1)) + r.col(2).cross(a.col(2));
+    const Matrix3d product = a * r.transpose();
+    const double trace = product.trace();
+    const Matrix3d hessian = trace * Matrix3d::Identity() - 0.5 * (product + product.transpose());
+    const double size = std::abs(trace) + 1e-300;
+    // far from the rotation the Hessian is of no use; its trace bounds it
+    const bool useful = hessian.determinant() > 1e-6 * size * size * size && trace > 0;
+    Vector3d turn = useful ? Vector3d(hessian.inverse() * gradient) : Vector3d(gradient / (2 * size));
     const double angle = turn.norm();
-    if (!(angle > 1e-6)) break;
-    r = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() * r;
+    if (!(angle > kSameTurn)) break;
+    if (angle > kFarTurn) turn *= kFarTurn / angle;
+    r = Eigen::Quaterniond(1, turn.x() / 2, turn.y() / 2, turn.z() / 2).normalized().toRotationMatrix() * r;
   }
   return r;
 }
@@ -90,8 +99,10 @@ GradientDeformation::GradientDeformation(const SurfaceView& shape, std::vector<i
   sides_.resize(patch_.size());
   outer_.assign(patch_.size(), 0);
   for (const auto& t : shape.triangles) addTriangle(t);
-  for (std::size_t i = 0; i < patch_.size(); ++i)
+  for (std::size_t i = 0; i < patch_.size(); ++i) {
+    for (Side& side : sides_[i]) side.arm = side.weight * (start_[i] - start_[side.to]);
     if (outer_[i] != 0) rim_.push_back(patch_[i]);
+  }
   rotation_.resize(patch_.size());
   setHandles(handles);
 }
@@ -119,7 +130,7 @@ void GradientDeformation::addTriangle(const std::array<int, 3>& t) {
       auto& list = sides_[from];
       const auto same = std::find_if(list.begin(), list.end(), [to = to](const Side& side) { return side.to == to; });
       if (same == list.end())
-        list.push_back({to, weight});
+        list.push_back({to, weight, Vector3d::Zero()});
       else
         same->weight += weight;
     }
@@ -187,8 +198,7 @@ void GradientDeformation::placeHeld(const std::vector<Vector3d>& targets, std::v
 void GradientDeformation::improveRotations(const std::vector<Vector3d>& positions) {
   for (std::size_t i = 0; i < patch_.size(); ++i) {
     Matrix3d sum = Matrix3d::Zero();
-    for (const Side& side : sides_[i])
-      sum += side.weight * (positions[i] - positions[side.to]) * (start_[i] - start_[side.to]).transpose();
+    for (const Side& side : sides_[i]) sum.noalias() += (positions[i] - positions[side.to]) * side.arm.transpose();
     rotation_[i] = rotationOf(sum, rotation_[i]);
   }
 }
@@ -199,7 +209,7 @@ void GradientDeformation::solve(std::vector<Vector3d>& positions) {
     if (unknown_[i] < 0) continue;
     Vector3d sum = Vector3d::Zero();
     for (const Side& side : sides_[i]) {
-      sum += 0.5 * side.weight * ((rotation_[i] + rotation_[side.to]) * (start_[i] - start_[side.to]));
+      sum += 0.5 * ((rotation_[i] + rotation_[side.to]) * side.arm);
       if (unknown_[side.to] < 0) sum += side.weight * positions[side.to];
     }
     right_.row(unknown_[i]) = sum;

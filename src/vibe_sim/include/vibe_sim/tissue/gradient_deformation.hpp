@@ -49,8 +49,9 @@ class GradientDeformation {
 
  private:
   struct Side {
-    int to;         // place in the patch
-    double weight;  // half the sum of the cotangents
+    int to;               // place in the patch
+    double weight;        // half the sum of the cotangents
+    Eigen::Vector3d arm;  // weight times the side at the start, from there to here [m]
   };
 
   int placeOf(int node) const;
