@@ -20,6 +20,7 @@ struct GripPoint {
 struct EnergyAccount {
   double tool_work = 0;     ///< done by the tool on the tissue (contact and grip)
   double gas_work = 0;      ///< done by the gas on the wall
+  double thread_work = 0;   ///< done by threads on the tissue
   double damping_loss = 0;  ///< taken out by viscous damping
 };
 

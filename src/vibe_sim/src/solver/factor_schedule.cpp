@@ -1,5 +1,6 @@
 #include "factor_schedule.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "vibe_sim/error.hpp"
@@ -78,27 +79,41 @@ void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, 
   memory.due = memory.steps + steps;
 }
 
-void FactorSchedule::provide(const ElasticBody& body, const StepperMemory& memory, StepperScratch& scratch) const {
+void FactorSchedule::provide(const ElasticBody& body, const std::vector<Spot>& spots, const StepperMemory& memory,
+                             StepperScratch& scratch) const {
   if (scratch.factor_id != memory.about_id) {
     if (scratch.making.valid()) scratch.making.get();
     if (scratch.next_id == memory.about_id) {
       scratch.factor.swap(scratch.next_factor);
+      std::swap(scratch.spots, scratch.next_spots);
     } else {
       factorSafely(body, memory.about, inertia, margin, scratch.matrix, *scratch.factor);
+      scratch.spots = SpotColumns();
     }
     scratch.next_id = 0;
     scratch.factor_id = memory.about_id;
     scratch.half_space.reset(*scratch.factor, body.nodeCount());
   }
-  if (!memory.next.empty() && scratch.next_id != memory.next_id) makeInBackground(body, memory, scratch);
+  if (!memory.next.empty() && scratch.next_id != memory.next_id) makeInBackground(body, spots, memory, scratch);
+  provideSpots(body, spots, scratch);
 }
 
-void FactorSchedule::makeInBackground(const ElasticBody& body, const StepperMemory& memory,
-                                      StepperScratch& scratch) const {
+// What was not made beside the factor: spots that came since, or after some went.
+void FactorSchedule::provideSpots(const ElasticBody& body, const std::vector<Spot>& spots, StepperScratch& scratch) {
+  const std::vector<Spot>& known = scratch.spots.spots;
+  const bool begins = known.size() <= spots.size() && std::equal(known.begin(), known.end(), spots.begin());
+  if (!begins) scratch.half_space.reset(*scratch.factor, body.nodeCount());
+  extendSpotColumns(*scratch.factor, spots, scratch.spots);
+}
+
+void FactorSchedule::makeInBackground(const ElasticBody& body, const std::vector<Spot>& spots,
+                                      const StepperMemory& memory, StepperScratch& scratch) const {
   if (scratch.making.valid()) scratch.making.get();
   scratch.next_id = memory.next_id;
-  scratch.making = std::async(std::launch::async, [this, &body, &scratch, positions = memory.next] {
+  scratch.making = std::async(std::launch::async, [this, &body, &scratch, positions = memory.next, spots] {
     factorSafely(body, positions, inertia, margin, scratch.next_matrix, *scratch.next_factor);
+    scratch.next_spots = SpotColumns();
+    extendSpotColumns(*scratch.next_factor, spots, scratch.next_spots);
     return true;
   });
 }

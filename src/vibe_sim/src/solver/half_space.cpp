@@ -10,41 +10,12 @@ namespace {
 constexpr int kContactSweeps = 1000;   // opposed contacts, as of a pinch, need hundreds, others few
 constexpr double kContactMove = 1e-9;  // sweeps end when none moves its contact farther [m]
 
-// Both sparse vectors consist of whole runs; those on the common part of the paths are the same runs.
-Eigen::Matrix3f product(const HalfColumns& a, const HalfColumns& b) {
-  Eigen::Matrix3f sum = Eigen::Matrix3f::Zero();
-  std::size_t i = 0, j = 0, at_a = 0, at_b = 0;
-  while (i < a.begin.size() && j < b.begin.size()) {
-    const auto size_a = static_cast<std::size_t>(a.count[i]), size_b = static_cast<std::size_t>(b.count[j]);
-    if (a.begin[i] == b.begin[j]) {
-      using Rows = Eigen::Map<const Eigen::Matrix<float, 3, Eigen::Dynamic>>;
-      sum += Rows(&a.value[3 * at_a], 3, a.count[i]) * Rows(&b.value[3 * at_b], 3, b.count[j]).transpose();
-      at_a += size_a, at_b += size_b, ++i, ++j;
-    } else if (a.begin[i] < b.begin[j]) {
-      at_a += size_a, ++i;
-    } else {
-      at_b += size_b, ++j;
-    }
-  }
-  return sum;
-}
-
-Eigen::Vector3f product(const HalfColumns& a, const float* y) {
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  const float* value = a.value.data();
-  for (std::size_t i = 0; i < a.begin.size(); ++i)
-    for (int k = 0; k < a.count[i]; ++k, value += 3) {
-      const float factor = y[a.begin[i] + k];
-      sum += factor * Eigen::Vector3f(value[0], value[1], value[2]);
-    }
-  return sum;
-}
-
 }  // namespace
 
 void HalfSpace::reset(const Factor& factor, int node_count) {
-  slot_of_node_.assign(static_cast<std::size_t>(node_count), -1);
-  node_of_slot_.clear();
+  node_count_ = node_count;
+  slot_of_key_.assign(static_cast<std::size_t>(node_count), -1);
+  key_of_slot_.clear();
   columns_.resize(kMostSlots);
   gram_.resize(kMostSlots * (kMostSlots + 1) / 2);
   gram_known_.assign(gram_.size(), 0);
@@ -54,17 +25,21 @@ void HalfSpace::reset(const Factor& factor, int node_count) {
   findUsedSlots();
 }
 
-int HalfSpace::slotOf(int node, const Factor& factor) {
-  int& slot = slot_of_node_[node];
+int HalfSpace::slotOf(int key, const Factor& factor, const SpotColumns* spots) {
+  int& slot = slot_of_key_[key];
   if (slot < 0) {
-    slot = static_cast<int>(node_of_slot_.size());
-    node_of_slot_.push_back(node);
-    if (node_of_slot_.size() > columns_.size()) {
-      columns_.resize(node_of_slot_.size());
+    slot = static_cast<int>(key_of_slot_.size());
+    key_of_slot_.push_back(key);
+    if (key_of_slot_.size() > columns_.size()) {
+      columns_.resize(key_of_slot_.size());
       gram_.resize(columns_.size() * (columns_.size() + 1) / 2);
       gram_known_.resize(gram_.size(), 0);
     }
-    factor.halfColumns(node, columns_[slot]);
+    if (key < node_count_) {
+      factor.halfColumns(key, columns_[slot]);
+    } else {
+      columns_[slot] = spots->columns[static_cast<std::size_t>(key - node_count_)];
+    }
   }
   return slot;
 }
@@ -72,52 +47,93 @@ int HalfSpace::slotOf(int node, const Factor& factor) {
 const Eigen::Matrix3f& HalfSpace::gram(int a, int b) {
   const std::size_t at = static_cast<std::size_t>(a) * (static_cast<std::size_t>(a) + 1) / 2 + b;
   if (gram_known_[at] == 0) {
-    gram_[at] = product(columns_[a], columns_[b]);
+    const int spot_a = key_of_slot_[a] - node_count_, spot_b = key_of_slot_[b] - node_count_;
+    if (spot_a >= 0 && spot_b >= 0) {
+      gram_[at] = spot_a >= spot_b ? spots_->gram[SpotColumns::at(spot_a, spot_b)]
+                                   : Eigen::Matrix3f(spots_->gram[SpotColumns::at(spot_b, spot_a)].transpose());
+    } else {
+      gram_[at] = product(columns_[a], columns_[b]);
+    }
     gram_known_[at] = 1;
   }
   return gram_[at];
 }
 
-void HalfSpace::setRows(const std::vector<HalfRow>& rows, const Factor& factor) {
-  // the columns that this step does not need go when there are too many
-  std::size_t wanted = 0;
-  for (const HalfRow& row : rows) wanted += row.node.size();
-  if (node_of_slot_.size() + wanted > kMostSlots) {
-    for (int node : node_of_slot_) slot_of_node_[node] = -1;
-    node_of_slot_.clear();
+// The columns that this step does not need go when there are too many.
+void HalfSpace::makeRoom(const std::vector<HalfRow>& rows, std::size_t spot_count) {
+  std::size_t wanted = spot_count;
+  for (const HalfRow& row : rows)
+    if (row.spot[0] < 0) wanted += row.node.size();
+  if (key_of_slot_.size() + wanted > kMostSlots) {
+    for (int key : key_of_slot_) slot_of_key_[key] = -1;
+    key_of_slot_.clear();
     std::fill(gram_known_.begin(), gram_known_.end(), char{0});
   }
-  row_count_ = static_cast<int>(rows.size());
-  if (rows_.size() < rows.size()) {  // they never become fewer, and keep their memory
-    rows_.resize(rows.size());
-    row_slots_.resize(rows.size());
+  slot_of_key_.resize(static_cast<std::size_t>(node_count_) + spot_count, -1);
+}
+
+void HalfSpace::setRow(const HalfRow& from, const Factor& factor, const SpotColumns* spots, SlotRow& row) {
+  row.compliance = from.compliance;
+  row.friction = from.friction;
+  row.slot.clear();
+  if (from.spot[0] >= 0) {
+    for (const int spot : from.spot) row.slot.push_back(slotOf(node_count_ + spot, factor, spots));
+    row.coefficient.assign({from.along, -from.along});
+    return;
   }
-  std::copy(rows.begin(), rows.end(), rows_.begin());
+  for (const int node : from.node) row.slot.push_back(slotOf(node, factor, spots));
+  row.coefficient = from.coefficient;
+}
+
+void HalfSpace::setRows(const std::vector<HalfRow>& rows, const Factor& factor, const SpotColumns* spots) {
+  makeRoom(rows, spots == nullptr ? 0 : spots->spots.size());
+  spots_ = spots;
+  row_count_ = static_cast<int>(rows.size());
+  if (rows_.size() < rows.size()) rows_.resize(rows.size());  // they never become fewer, and keep their memory
+  for (std::size_t i = 0; i < rows.size(); ++i) setRow(rows[i], factor, spots, rows_[i]);
+  sortRows(rows);
+  findUsedSlots();
+  formCompliance();
+}
+
+void HalfSpace::sortRows(const std::vector<HalfRow>& rows) {
   equations_.clear(), contacts_.clear();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    row_slots_[i].clear();
-    for (int node : rows[i].node) row_slots_[i].push_back(slotOf(node, factor));
+  thread_count_ = 0;
+  const auto count = static_cast<int>(rows.size());
+  for (int i = 0; i < count; ++i) {
+    if (rows[i].thread >= 0) continue;
     if (rows[i].friction < 0) {
-      equations_.push_back(static_cast<int>(i));
+      equations_.push_back(i);
     } else {
-      for (int k = 0; k < 3; ++k) contacts_.push_back(static_cast<int>(i) + k);
-      for (int k = 1; k < 3; ++k) {
-        row_slots_[i + k].clear();
-        for (int node : rows[i + k].node) row_slots_[i + k].push_back(slotOf(node, factor));
-      }
+      for (int k = 0; k < 3; ++k) contacts_.push_back(i + k);
       i += 2;
     }
   }
-  findUsedSlots();
-  formCompliance();
+  touching_ = static_cast<int>(contacts_.size());
+  for (int i = 0; i < count; ++i)
+    if (rows[i].thread >= 0 && (i == 0 || rows[i - 1].thread != rows[i].thread)) addThread(rows, i);
+}
+
+void HalfSpace::addThread(const std::vector<HalfRow>& rows, std::size_t first) {
+  if (threads_.size() == static_cast<std::size_t>(thread_count_)) threads_.emplace_back();
+  Thread& thread = threads_[thread_count_++];
+  thread.first = static_cast<int>(contacts_.size());
+  thread.count = 0;
+  std::size_t i = first;
+  for (; i < rows.size() && rows[i].thread == rows[first].thread; ++i, ++thread.count)
+    contacts_.push_back(static_cast<int>(i));
+  thread.capstan.resize(thread.count - 1);
+  for (int k = 0; k + 1 < thread.count; ++k) thread.capstan[k] = rows[first + k].capstan;
+  thread.slide.tension.setZero(thread.count);
+  thread.slide.slide.setZero(thread.count - 1);
 }
 
 void HalfSpace::findUsedSlots() {
   used_slots_.clear();
   for (int i = 0; i < row_count_; ++i)
-    used_slots_.insert(used_slots_.end(), row_slots_[i].begin(), row_slots_[i].end());
+    used_slots_.insert(used_slots_.end(), rows_[i].slot.begin(), rows_[i].slot.end());
   // by node: the slots' numbers depend on what was touched before, and sums must not
-  std::sort(used_slots_.begin(), used_slots_.end(), [&](int a, int b) { return node_of_slot_[a] < node_of_slot_[b]; });
+  std::sort(used_slots_.begin(), used_slots_.end(), [&](int a, int b) { return key_of_slot_[a] < key_of_slot_[b]; });
   used_slots_.erase(std::unique(used_slots_.begin(), used_slots_.end()), used_slots_.end());
   seen_.resize(columns_.size());
   row_value_.setZero(rowCount());
@@ -143,16 +159,16 @@ void HalfSpace::findRowValues(const float* y) {
   for (const int slot : used_slots_) seen_[slot] = product(columns_[slot], y);
   for (int i = 0; i < rowCount(); ++i) {
     row_value_[i] = 0;
-    for (std::size_t k = 0; k < row_slots_[i].size(); ++k)
-      row_value_[i] += rows_[i].coefficient[k].dot(seen_[row_slots_[i][k]].cast<double>());
+    for (std::size_t k = 0; k < rows_[i].slot.size(); ++k)
+      row_value_[i] += rows_[i].coefficient[k].dot(seen_[rows_[i].slot[k]].cast<double>());
   }
 }
 
 void HalfSpace::addForces(float* y) {
   for (const int slot : used_slots_) seen_[slot].setZero();
   for (int i = 0; i < rowCount(); ++i)
-    for (std::size_t k = 0; k < row_slots_[i].size(); ++k)
-      seen_[row_slots_[i][k]] += (force_[i] * rows_[i].coefficient[k]).cast<float>();
+    for (std::size_t k = 0; k < rows_[i].slot.size(); ++k)
+      seen_[rows_[i].slot[k]] += (force_[i] * rows_[i].coefficient[k]).cast<float>();
   for (const int slot : used_slots_) {
     if (seen_[slot].isZero(0)) continue;
     const HalfColumns& column = columns_[slot];
@@ -182,9 +198,9 @@ void HalfSpace::formCompliance() {
 
 double HalfSpace::complianceBetween(int i, int j) {
   double sum = 0;
-  for (std::size_t a = 0; a < row_slots_[i].size(); ++a)
-    for (std::size_t b = 0; b < row_slots_[j].size(); ++b) {
-      const int sa = row_slots_[i][a], sb = row_slots_[j][b];
+  for (std::size_t a = 0; a < rows_[i].slot.size(); ++a)
+    for (std::size_t b = 0; b < rows_[j].slot.size(); ++b) {
+      const int sa = rows_[i].slot[a], sb = rows_[j].slot[b];
       const Eigen::Matrix3d g = (sa >= sb ? gram(sa, sb) : Eigen::Matrix3f(gram(sb, sa).transpose())).cast<double>();
       sum += rows_[i].coefficient[a].dot(g * rows_[j].coefficient[b]);
     }
@@ -214,30 +230,65 @@ void HalfSpace::formBlocks() {
   schur_.noalias() -= cross_.transpose().lazyProduct(coupling_);
 }
 
-// Projected Gauss-Seidel on the contacts with the equations eliminated, to their forces from what each row lacks.
+// Projected Gauss-Seidel on the contacts and the threads with the equations eliminated, to their forces from what each
+// row lacks.
 void HalfSpace::solveContacts() {
   const auto n = static_cast<int>(contacts_.size());
-  Eigen::VectorXd& lambda = contact_force_;
-  lambda.setZero(n);
+  contact_force_.setZero(n);
   double moved = 2 * kContactMove;
   for (int sweep = 0; sweep < kContactSweeps && moved > kContactMove; ++sweep) {
-    moved = 0;
-    for (int i = 0; i < n; i += 3) {
-      const Eigen::Vector3d before = lambda.segment<3>(i);
-      const double normal_lack = contact_lack_[i] - schur_.row(i).dot(lambda);
-      lambda[i] = std::max(0.0, lambda[i] + normal_lack / schur_(i, i));
-      const double limit = rows_[contacts_[i]].friction * lambda[i];
-      for (int k = 1; k < 3; ++k)
-        lambda[i + k] += (contact_lack_[i + k] - schur_.row(i + k).dot(lambda)) / schur_(i + k, i + k);
-      const double size = std::hypot(lambda[i + 1], lambda[i + 2]);
-      if (size > limit) {
-        lambda[i + 1] *= limit / size;
-        lambda[i + 2] *= limit / size;
-      }
-      for (int k = 0; k < 3; ++k) moved = std::max(moved, std::abs(lambda[i + k] - before[k]) * schur_(i + k, i + k));
+    moved = sweepContacts(contact_force_);
+    for (int t = 0; t < thread_count_; ++t) moved = std::max(moved, sweepThread(threads_[t], contact_force_));
+    if (touching_ == 0 && thread_count_ == 1) break;  // it is alone
+  }
+  for (int i = 0; i < n; ++i) force_[contacts_[i]] = contact_force_[i];
+  for (int t = 0; t < thread_count_; ++t) {
+    const Thread& thread = threads_[t];
+    for (int k = 0; k + 1 < thread.count; ++k) {
+      const int row = contacts_[thread.first + k];
+      const double slid = thread.slide.slide[k];
+      slid_[row] = slid;
+      reached_[row] += slid;  // the segment has lost it: its spots have to come nearer
+      reached_[row + 1] -= slid;
     }
   }
-  for (int i = 0; i < n; ++i) force_[contacts_[i]] = lambda[i];
+}
+
+double HalfSpace::sweepContacts(Eigen::VectorXd& lambda) {
+  double moved = 0;
+  for (int i = 0; i < touching_; i += 3) {
+    const Eigen::Vector3d before = lambda.segment<3>(i);
+    const double normal_lack = contact_lack_[i] - schur_.row(i).dot(lambda);
+    lambda[i] = std::max(0.0, lambda[i] + normal_lack / schur_(i, i));
+    const double limit = rows_[contacts_[i]].friction * lambda[i];
+    for (int k = 1; k < 3; ++k)
+      lambda[i + k] += (contact_lack_[i + k] - schur_.row(i + k).dot(lambda)) / schur_(i + k, i + k);
+    const double size = std::hypot(lambda[i + 1], lambda[i + 2]);
+    if (size > limit) {
+      lambda[i + 1] *= limit / size;
+      lambda[i + 2] *= limit / size;
+    }
+    for (int k = 0; k < 3; ++k) moved = std::max(moved, std::abs(lambda[i + k] - before[k]) * schur_(i + k, i + k));
+  }
+  return moved;
+}
+
+double HalfSpace::sweepThread(Thread& thread, Eigen::VectorXd& lambda) {
+  thread_lack_.resize(thread.count);
+  for (int k = 0; k < thread.count; ++k) {
+    const int i = thread.first + k;
+    thread_lack_[k] = contact_lack_[i] - schur_.row(i).dot(lambda) +
+                      schur_.row(i).segment(thread.first, thread.count).dot(lambda.segment(thread.first, thread.count));
+  }
+  slideThread(thread_lack_, schur_.block(thread.first, thread.first, thread.count, thread.count), thread.capstan,
+              thread.slide);
+  double moved = 0;
+  for (int k = 0; k < thread.count; ++k) {
+    const int i = thread.first + k;
+    moved = std::max(moved, std::abs(thread.slide.tension[k] - lambda[i]) * schur_(i, i));
+    lambda[i] = thread.slide.tension[k];
+  }
+  return moved;
 }
 
 // The rows' forces from what each of them lacks.
@@ -271,6 +322,8 @@ void HalfSpace::eliminate(const Eigen::Ref<const Eigen::VectorXd>& wanted, doubl
     gas_lack = swelling - along;
   }
   findRowValues(y);
+  reached_ = wanted;
+  slid_.setZero(m);
   lack_ = wanted - row_value_;
   if (gas_stiffness_ != 0 && m > 0) lack_ -= gas_row_ * (gas_lack / gas_norm2_);
   solveRows();

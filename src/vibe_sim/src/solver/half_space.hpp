@@ -2,9 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
+#include "spot_columns.hpp"
 #include "vibe_sim/sparse/factor.hpp"
+#include "vibe_sim/suture/capstan.hpp"
 
 namespace vibe {
 
@@ -14,6 +17,11 @@ struct HalfRow {
   std::vector<Eigen::Vector3d> coefficient;
   double compliance = 0;
   double friction = -1;  ///< below 0: an equation; 0 and above: the normal row of a contact, two tangents follow
+  int thread = -1;       ///< segments of one thread, which only pull, follow each other; -1: no thread
+  double capstan = 1;    ///< largest ratio of the tensions of this segment and the next
+  /// Spots between which the row runs: the same as the nodes, in fewer columns; -1: none.
+  std::array<int, 2> spot{{-1, -1}};
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< coefficient of the first spot; of the second: -along
 };
 
 /// Block elimination (Woodbury) of a few conditions and of the gas, with the vectors half solved: for A = L Lt a row j
@@ -23,24 +31,47 @@ class HalfSpace {
  public:
   /// Forgets everything about the old factor.
   void reset(const Factor& factor, int node_count);
-  void setRows(const std::vector<HalfRow>& rows, const Factor& factor);
+  /// @param spots  that the threads' rows run between, about the same factor; null without threads. A list that does
+  /// not
+  ///               begin with the one before needs a reset().
+  void setRows(const std::vector<HalfRow>& rows, const Factor& factor, const SpotColumns* spots = nullptr);
   /// The gas: force `direction` (4 per node) per pressure, pressure falling by stiffness per volume. stiffness 0: none;
   /// infinite: the volume is prescribed.
   void setGas(const float* direction4, double stiffness, const Factor& factor);
 
   int rowCount() const { return row_count_; }
   /// Given y = L^-1 (right-hand side), finds the forces of rows and gas so that the rows' values of the solution are
-  /// `wanted` (rows that are equations) or at least that (contacts), and adds them to y.
+  /// `wanted` (rows that are equations) or at least that (contacts and threads), and adds them to y. Threads slide
+  /// where friction does not hold them.
   /// @param swelling  wanted change of volume where it is prescribed [m^3]
   void eliminate(const Eigen::Ref<const Eigen::VectorXd>& wanted, double swelling, float* y);
   const Eigen::VectorXd& forces() const { return force_; }
   double gasForce() const { return gas_force_; }
+  /// What the rows were to reach at the end of eliminate(): `wanted`, and what threads slid besides [m].
+  const Eigen::VectorXd& reached() const { return reached_; }
+  /// Thread that slid out of a row into the next row of its thread [m].
+  double slid(int row) const { return slid_[row]; }
   /// Compliance between rows, gas taken into account (rows x rows) [m/N].
   const Eigen::MatrixXd& compliance() const { return compliance_; }
 
  private:
   static constexpr int kMostSlots = 384;
-  int slotOf(int node, const Factor& factor);
+  /// A row as the elimination sees it: in slots, which are nodes or spots whose columns are known.
+  struct SlotRow {
+    std::vector<int> slot;
+    std::vector<Eigen::Vector3d> coefficient;
+    double compliance = 0, friction = -1;
+  };
+  struct Thread {
+    int first = 0, count = 0;  // of contacts_
+    Eigen::VectorXd capstan;
+    ThreadSlide slide;
+  };
+  void makeRoom(const std::vector<HalfRow>& rows, std::size_t spot_count);
+  int slotOf(int key, const Factor& factor, const SpotColumns* spots);
+  void setRow(const HalfRow& from, const Factor& factor, const SpotColumns* spots, SlotRow& row);
+  void sortRows(const std::vector<HalfRow>& rows);
+  void addThread(const std::vector<HalfRow>& rows, std::size_t first);
   const Eigen::Matrix3f& gram(int a, int b);
   void findUsedSlots();
   void findRowValues(const float* y);
@@ -49,27 +80,33 @@ class HalfSpace {
   double complianceBetween(int i, int j);
   void formBlocks();
   void solveContacts();
+  double sweepContacts(Eigen::VectorXd& force);
+  double sweepThread(Thread& thread, Eigen::VectorXd& force);
   void solveRows();
   void solveEquations();
 
-  std::vector<int> slot_of_node_;
-  std::vector<int> node_of_slot_;
+  int node_count_ = 0;
+  std::vector<int> slot_of_key_;  // of nodes, then of spots
+  std::vector<int> key_of_slot_;
   std::vector<HalfColumns> columns_;
   std::vector<Eigen::Matrix3f> gram_;  // of slots a >= b, row after row
   std::vector<char> gram_known_;
-  int row_count_ = 0;  // of rows_ and row_slots_, which keep their memory
-  std::vector<HalfRow> rows_;
-  std::vector<std::vector<int>> row_slots_;
+  const SpotColumns* spots_ = nullptr;
+  int row_count_ = 0;  // of rows_, which keep their memory
+  std::vector<SlotRow> rows_;
   std::vector<int> used_slots_;
   std::vector<Eigen::Vector3f> seen_;  // per slot: a vector's value at the node, or the rows' force on it
   Eigen::VectorXd row_value_;
-  std::vector<int> equations_, contacts_;  // row numbers; contacts: of normals and tangents alike
-  std::vector<float> gas_;                 // L^-1 of the gas direction
+  std::vector<int> equations_, contacts_;  // row numbers; contacts: normals and tangents, then segments of threads
+  int touching_ = 0;                       // of contacts_, before the threads
+  std::vector<Thread> threads_;
+  int thread_count_ = 0;
+  std::vector<float> gas_;  // L^-1 of the gas direction
   double gas_stiffness_ = 0, gas_norm2_ = 0;
-  Eigen::VectorXd gas_row_, force_;
+  Eigen::VectorXd gas_row_, force_, reached_, slid_;
   double gas_force_ = 0;
   Eigen::MatrixXd compliance_, block_, cross_, schur_, coupling_;  // of equations, with contacts, of contacts
-  Eigen::VectorXd lack_, equation_lack_, contact_lack_, equation_force_, contact_force_;
+  Eigen::VectorXd lack_, equation_lack_, contact_lack_, equation_force_, contact_force_, thread_lack_;
   Eigen::LDLT<Eigen::MatrixXd> equation_factor_;
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "stepper_scratch.hpp"
+#include "thread_loads.hpp"
 #include "tool_touch.hpp"
 #include "vibe_sim/solver/gas.hpp"
 #include "vibe_sim/solver/lumen.hpp"
@@ -22,6 +23,11 @@ constexpr double kHomingTime = 0.5;          // a state beyond hope takes to res
 constexpr double kHomingRate = 20;           // of what is left of the way [1/s]
 constexpr int kLookEvery = 10;               // steps between looks whether the organ is inside out
 constexpr double kDepenetrationSpeed = 0.1;  // a particle found inside the tool is pushed out no faster [m/s]
+
+bool drawsThread(const State& state) {
+  const std::vector<Suture>& sutures = state.procedure.sutures;
+  return !sutures.empty() && sutures.back().stage == Suture::Stage::Cinching;
+}
 
 }  // namespace
 
@@ -48,9 +54,11 @@ void ImplicitStep::run() {
     holdGrip();
     findContacts();
   }
+  fillThreads(model_, state_, scratch_.loads);
   if (atRest()) return;
   fillGas();
   const double old_volume = state_.volume, old_pressure = state_.pressure;
+  segmentLengths(scratch_.loads, state_, scratch_.old_segments);
   MotionView view{{state_.x.data(), state_.y.data(), state_.z.data()},
                   {state_.vx.data(), state_.vy.data(), state_.vz.data()},
                   {state_.ax.data(), state_.ay.data(), state_.az.data()}};
@@ -73,6 +81,7 @@ void ImplicitStep::run() {
   }
   stopWalls();
   reportForces();
+  reportThreads();
   reportResponse();
   account(old_volume, old_pressure);
   noticeRest();
@@ -107,7 +116,7 @@ void ImplicitStep::goHome() {
 // holds: the state may have come from another scene.
 bool ImplicitStep::atRest() const {
   return state_.solver.still >= kRestSteps && state_.step % kWakeEvery != 0 && scratch_.loads.conditions.empty() &&
-         scratch_.loads.contacts.empty() && !(insufflator_on_ && model_.scene.gas);
+         scratch_.loads.contacts.empty() && !(insufflator_on_ && model_.scene.gas) && !drawsThread(state_);
 }
 
 void ImplicitStep::noticeRest() {
@@ -232,6 +241,12 @@ void ImplicitStep::reportForces() {
     ++report_.contact_count;
     pushTool(-contact.force, position(contact.node), scratch_.contact_motion[c]);
   }
+}
+
+void ImplicitStep::reportThreads() {
+  segmentLengths(scratch_.loads, state_, scratch_.segments);
+  state_.energy.thread_work += threadWork(scratch_.loads, state_, scratch_.old_segments, scratch_.segments);
+  storeThreads(scratch_.loads, state_);
 }
 
 // Begins before anything is touched: what the response needs takes a while to make.

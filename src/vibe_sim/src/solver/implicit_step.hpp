@@ -24,6 +24,7 @@ struct ImplicitScratch : SolverScratch {
   BodyLoads loads;
   std::vector<Eigen::Vector3d> contact_motion;  // of the tool at each contact [m]
   std::vector<int> contact_link;                // of the tool at each contact
+  std::vector<double> segments, old_segments;   // lengths of the threads' segments, and at the start of the step [m]
   std::unique_ptr<ResponseEstimator> response;  // null without a tool
   ToolTouch touch;
 };
@@ -39,6 +40,7 @@ class ImplicitStep {
  private:
   void placeTool();
   void holdGrip();
+  void reportThreads();
   void findContacts();
   void findWalls();
   void stopWalls();

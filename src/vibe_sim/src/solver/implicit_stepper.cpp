@@ -115,7 +115,7 @@ void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) 
 StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory,
                                   StepperScratch& scratch) const {
   plan_->schedule.advance(body_, motion, memory);
-  plan_->schedule.provide(body_, memory, scratch);
+  plan_->schedule.provide(body_, loads.spots, memory, scratch);
   ++memory.steps;
   StepOutcome outcome;
   outcome.careful = settings_.backward_euler || memory.careful > 0;
@@ -127,7 +127,8 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
     attempt(motion, loads, memory, scratch, outcome);
   }
   if (!outcome.finite) return outcome;
-  storeForces(scratch, loads);
+  const TimeScheme& scheme = outcome.careful ? plan_->careful_scheme : plan_->scheme;
+  storeForces(scratch, scheme.z_gain / scheme.x_gain, loads);
   finishStep(motion, outcome.careful, scratch);
   return outcome;
 }
@@ -156,7 +157,7 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
                               StepperScratch& scratch, StepOutcome& outcome) const {
   const TimeScheme& scheme = outcome.careful ? plan_->careful_scheme : plan_->scheme;
   guess(motion, outcome.careful, scratch);
-  buildRows(loads, scratch);
+  buildRows(loads, motion, scratch);
   aimAtStep(loads, motion, scheme, scratch);
   Potential potential(body_, loads, scheme.inertia, scratch);
   QuasiNewton newton(body_, potential, loads, scratch,
@@ -167,7 +168,7 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
     startFromHere(motion, scratch);
     newton.start();
   }
-  scratch.half_space.setRows(scratch.rows, *scratch.factor);
+  scratch.half_space.setRows(scratch.rows, *scratch.factor, &scratch.spots);
   scratch.half_space.setGas(scratch.volume_gradient.data(), potential.gasStiffness(), *scratch.factor);
   const bool arrived = iterate(newton, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
@@ -220,7 +221,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
   if (scratch.making.valid()) scratch.making.get();
   scratch.factor_id = scratch.next_id = 0;
   startFromHere(motion, scratch);
-  buildRows(loads, scratch);
+  buildRows(loads, motion, scratch);
   aimAtEquilibrium(loads, scratch);
   Potential potential(body_, loads, 0, scratch);
   QuasiNewton newton(body_, potential, loads, scratch);
@@ -230,7 +231,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
     const bool slow = newton.directionLength() > kSlow * before;
     before = newton.directionLength();
     if (outcome.iterations % kRefactorEvery == 0 || (slow && outcome.iterations % kRefactorSlow == 0)) {
-      refactorHere(scratch);
+      refactorHere(loads.spots, scratch);
       newton.start();
       ++outcome.refactorisations;
     }
@@ -242,19 +243,21 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
   }
   outcome.finite = std::isfinite(outcome.last_move);
   if (!outcome.finite) return outcome;
-  storeForces(scratch, loads);
+  storeForces(scratch, 1, loads);
   placeAtRest(scratch, motion);
   return outcome;
 }
 
-void ImplicitStepper::refactorHere(StepperScratch& scratch) const {
+void ImplicitStepper::refactorHere(const std::vector<Spot>& spots, StepperScratch& scratch) const {
   std::vector<float> positions(3 * body_.rest.size());
   for (std::size_t i = 0; i < body_.rest.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(scratch.z[4 * i + k]);
   if (!factorAbout(body_, positions, 0, 1, scratch.matrix, *scratch.factor))
     factorAbout(body_, {}, 0, 1, scratch.matrix, *scratch.factor);
+  scratch.spots = SpotColumns();
+  extendSpotColumns(*scratch.factor, spots, scratch.spots);
   scratch.half_space.reset(*scratch.factor, body_.nodeCount());
-  scratch.half_space.setRows(scratch.rows, *scratch.factor);
+  scratch.half_space.setRows(scratch.rows, *scratch.factor, &scratch.spots);
 }
 
 void ImplicitStepper::placeAtRest(const StepperScratch& scratch, const MotionView& motion) const {

@@ -54,8 +54,7 @@ void QuasiNewton::start() {
 }
 
 // What the rows lack to their targets at z.
-double QuasiNewton::rowsLack() {
-  double most = 0;
+void QuasiNewton::rowsLack() {
   for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
     const HalfRow& row = scratch_.rows[r];
     double value = 0;
@@ -64,8 +63,16 @@ double QuasiNewton::rowsLack() {
       value += row.coefficient[k].dot(Eigen::Vector3d(z[0], z[1], z[2]));
     }
     scratch_.wanted[static_cast<Eigen::Index>(r)] = scratch_.target[static_cast<Eigen::Index>(r)] - value;
-    most = std::max(most, std::abs(scratch_.wanted[static_cast<Eigen::Index>(r)]));
   }
+}
+
+// How far the rows that act move; segments of thread that are slack may move as they like.
+double QuasiNewton::lackOfRows() const {
+  const HalfSpace& half_space = scratch_.half_space;
+  double most = 0;
+  for (Eigen::Index r = 0; r < scratch_.wanted.size(); ++r)
+    if (scratch_.rows[static_cast<std::size_t>(r)].thread < 0 || half_space.forces()[r] > 0)
+      most = std::max(most, std::abs(half_space.reached()[r]));
   return most;
 }
 
@@ -105,7 +112,7 @@ double QuasiNewton::resolution() const {
 // Two-loop recursion (Nocedal 1980) with the factor, the rows and the gas as initial inverse.
 void QuasiNewton::findDirection() {
   StepperScratch& s = scratch_;
-  lack_ = rowsLack();
+  rowsLack();
   s.work = s.gradient;
   double alpha[StepperScratch::kHistory];
   for (int i = s.pairs - 1; i >= 0; --i) {
@@ -117,6 +124,7 @@ void QuasiNewton::findDirection() {
   s.factor->forward(s.half.data());
   const double swelling = gas_.control == GasLoad::Control::Volume ? gas_.target_volume - s.volume : 0;
   s.half_space.eliminate(s.wanted, swelling, s.half.data());
+  lack_ = lackOfRows();
   s.factor->backward(s.half.data());
   s.factor->store(s.half.data(), s.direction.data());
   for (int i = 0; i < s.pairs; ++i) {
@@ -135,7 +143,7 @@ void QuasiNewton::findDirection() {
 double QuasiNewton::lagrangian(double part) const {
   double sum = 0;
   for (Eigen::Index r = 0; r < scratch_.wanted.size(); ++r)
-    sum += scratch_.half_space.forces()[r] * scratch_.wanted[r] * (1 - part);
+    sum += scratch_.half_space.forces()[r] * scratch_.half_space.reached()[r] * (1 - part);
   return sum;
 }
 

@@ -36,7 +36,8 @@ class QuasiNewton {
 
  private:
   void findDirection();
-  double rowsLack();
+  void rowsLack();
+  double lackOfRows() const;
   double lagrangian(double value) const;
   double advance(double most, bool verify);
   void keepPair(double part);

@@ -1,9 +1,16 @@
 #include "step_rows.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+
+#include "vibe_sim/suture/capstan.hpp"
 
 namespace vibe {
 namespace {
+
+constexpr double kShortestSegment = 1e-6;  // that has a direction [m]
+constexpr double kLeastLength = 1e-3;      // of thread between two spots: they have a size [m]
+constexpr double kLeastTension = 1e-6;     // of a segment's resistance to being turned [N]
 
 void addContact(const ContactCondition& contact, HalfRow* rows) {
   const Eigen::Vector3d normal = contact.normal, tangent = normal.unitOrthogonal();
@@ -13,11 +20,93 @@ void addContact(const ContactCondition& contact, HalfRow* rows) {
     rows[k].coefficient.assign(1, directions[k]);
     rows[k].compliance = 0;
     rows[k].friction = contact.friction;
+    rows[k].thread = rows[k].spot[0] = -1;
   }
+}
+
+Eigen::Vector3d positionOf(const Spot& spot, const MotionView& motion) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < spot.node.size(); ++i)
+    for (int k = 0; k < 3; ++k) sum[k] += spot.weight[i] * motion.x[k][spot.node[i]];
+  return sum;
+}
+
+void addSpot(const Spot& spot, const Eigen::Vector3d& along, HalfRow& row) {
+  for (std::size_t i = 0; i < spot.node.size(); ++i) {
+    row.node.push_back(spot.node[i]);
+    row.coefficient.emplace_back(spot.weight[i] * along);
+  }
+}
+
+// Between two spots that follow each other, along `along` at the first and against it at the second.
+void runBetween(const BodyLoads& loads, int first, const Eigen::Vector3d& along, HalfRow& row) {
+  row.spot = {first, first + 1};
+  row.along = along;
+  row.node.clear(), row.coefficient.clear();
+  addSpot(loads.spots[first], along, row);
+  addSpot(loads.spots[first + 1], -along, row);
+}
+
+// A tense segment resists being turned: two springs across it. Its direction is that at the start of the step, and what
+// turning does to the pull is stiff beside soft tissue.
+void addTurning(const BodyLoads& loads, int first, const Eigen::Vector3d& along, double compliance, HalfRow* rows) {
+  const Eigen::Vector3d across = along.unitOrthogonal();
+  const Eigen::Vector3d directions[2] = {across, along.cross(across)};
+  for (int k = 0; k < 2; ++k) {
+    rows[k].thread = -1;
+    rows[k].friction = -1;
+    rows[k].compliance = compliance;
+    runBetween(loads, first, directions[k], rows[k]);
+  }
+}
+
+// Two spots in one place have no direction between them: then any will do, it pulls nothing that is not there.
+Eigen::Vector3d directionOf(const Eigen::Vector3d& between) {
+  const double length = between.norm();
+  return length > kShortestSegment ? Eigen::Vector3d(between / length) : Eigen::Vector3d(Eigen::Vector3d::UnitX());
+}
+
+// Three rows per segment: its pull, which are together since one thread slides as a whole, then all that turn.
+void addThread(const BodyLoads& loads, int number, const MotionView& motion, HalfRow* rows) {
+  const ThreadLoad& thread = loads.threads[number];
+  Eigen::Vector3d from = positionOf(loads.spots[thread.first_spot], motion), before = from;
+  for (std::size_t k = 0; k < thread.length.size(); ++k) {
+    const int first = thread.first_spot + static_cast<int>(k);
+    const Eigen::Vector3d to = positionOf(loads.spots[first + 1], motion);
+    HalfRow& row = rows[k];
+    row.thread = number;
+    row.friction = 0;
+    row.compliance = std::max(thread.length[k], kLeastLength) / thread.stiffness;
+    runBetween(loads, first, directionOf(to - from), row);
+    const double tension = std::max(thread.tension[k], kLeastTension);
+    addTurning(loads, first, row.along, std::max((to - from).norm(), kLeastLength) / tension,
+               rows + thread.length.size() + 2 * k);
+    if (k > 0) rows[k - 1].capstan = capstanFactor(thread.friction, turningAngle(before, from, to));
+    before = from;
+    from = to;
+  }
+}
+
+std::size_t threadRows(const BodyLoads& loads) {
+  std::size_t sum = 0;
+  for (const ThreadLoad& thread : loads.threads) sum += 3 * thread.length.size();
+  return sum;
+}
+
+double threadTarget(const BodyLoads& loads, std::size_t row) {
+  for (const ThreadLoad& thread : loads.threads) {
+    const std::size_t segments = thread.length.size();
+    if (row < segments) return -std::max(thread.length[row], kLeastLength);
+    if (row < 3 * segments) return 0;
+    row -= 3 * segments;
+  }
+  return 0;
 }
 
 double rowTarget(const BodyLoads& loads, const std::vector<HalfRow>& rows, std::size_t r) {
   if (r < loads.conditions.size()) return loads.conditions[r].target;
+  const std::size_t threads = loads.conditions.size() + 3 * loads.contacts.size();
+  if (r >= threads) return threadTarget(loads, r - threads);
   const std::size_t k = (r - loads.conditions.size()) % 3;
   const ContactCondition& contact = loads.contacts[(r - loads.conditions.size()) / 3];
   return k == 0 ? contact.offset : rows[r].coefficient[0].dot(contact.anchor);
@@ -25,17 +114,23 @@ double rowTarget(const BodyLoads& loads, const std::vector<HalfRow>& rows, std::
 
 }  // namespace
 
-void buildRows(const BodyLoads& loads, StepperScratch& scratch) {
+void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch& scratch) {
   std::vector<HalfRow>& rows = scratch.rows;
-  rows.resize(loads.conditions.size() + 3 * loads.contacts.size());
+  rows.resize(loads.conditions.size() + 3 * loads.contacts.size() + threadRows(loads));
   std::size_t r = 0;
   for (const Condition& condition : loads.conditions) {
     rows[r].node = condition.node;
     rows[r].coefficient = condition.coefficient;
     rows[r].compliance = condition.compliance;
+    rows[r].thread = rows[r].spot[0] = -1;
     rows[r++].friction = -1;
   }
   for (const ContactCondition& contact : loads.contacts) addContact(contact, &rows[r]), r += 3;
+  for (std::size_t t = 0; t < loads.threads.size(); ++t) {
+    if (loads.threads[t].length.empty()) continue;
+    addThread(loads, static_cast<int>(t), motion, &rows[r]);
+    r += 3 * loads.threads[t].length.size();
+  }
   scratch.target.resize(static_cast<Eigen::Index>(rows.size()));
   scratch.wanted.resize(static_cast<Eigen::Index>(rows.size()));
 }
@@ -62,7 +157,7 @@ void aimAtStep(const BodyLoads& loads, const MotionView& motion, const TimeSchem
   }
 }
 
-void storeForces(const StepperScratch& scratch, BodyLoads& loads) {
+void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
   const Eigen::VectorXd& force = scratch.half_space.forces();
   Eigen::Index r = 0;
   for (Condition& condition : loads.conditions) condition.force = force[r++];
@@ -70,6 +165,17 @@ void storeForces(const StepperScratch& scratch, BodyLoads& loads) {
     contact.force.setZero();
     for (int k = 0; k < 3; ++k, ++r)
       contact.force += force[r] * scratch.rows[static_cast<std::size_t>(r)].coefficient[0];
+  }
+  for (ThreadLoad& thread : loads.threads) {
+    thread.tension.resize(thread.length.size());
+    for (std::size_t k = 0; k < thread.length.size(); ++k, ++r) {
+      thread.tension[k] = force[r];
+      if (k + 1 == thread.length.size()) continue;
+      const double slid = scratch.half_space.slid(static_cast<int>(r)) / gain;
+      thread.length[k] -= slid;
+      thread.length[k + 1] += slid;
+    }
+    r += 2 * static_cast<Eigen::Index>(thread.length.size());
   }
   loads.gas.volume = scratch.volume;
   loads.gas.pressure = scratch.pressure;

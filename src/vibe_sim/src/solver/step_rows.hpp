@@ -5,14 +5,16 @@
 
 namespace vibe {
 
-/// The conditions and contacts of the loads as rows for the positions at which forces are evaluated, in the scratch's
-/// rows: the conditions first, then a normal and two tangents per contact.
-void buildRows(const BodyLoads& loads, StepperScratch& scratch);
+/// The conditions, contacts and threads of the loads as rows for the positions at which forces are evaluated, in the
+/// scratch's rows: the conditions first, then a normal and two tangents per contact, then the threads' segments, whose
+/// lengths are linear about the given positions.
+void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch& scratch);
 /// What each row wants of the equilibrium itself, in the scratch's target.
 void aimAtEquilibrium(const BodyLoads& loads, StepperScratch& scratch);
 /// The same for a step: rows are met at its end, so that z has to go as much farther or less far.
 void aimAtStep(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme, StepperScratch& scratch);
-/// The rows' forces back to the loads.
-void storeForces(const StepperScratch& scratch, BodyLoads& loads);
+/// The rows' forces back to the loads, and how far the threads slid.
+/// @param gain  of the rows' values over positions, see aimAtStep(); 1 in an equilibrium
+void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads);
 
 }  // namespace vibe

@@ -23,6 +23,7 @@ class StepperScratch {
   BlockMatrix matrix, next_matrix;
   std::uint64_t factor_id = 0, next_id = 0;  // what they are about; 0: nothing
   std::future<bool> making;                  // of next_factor
+  SpotColumns spots, next_spots;             // of `factor`, of `next_factor`
   HalfSpace half_space;
   std::vector<double> rest;                      // positions [m]
   std::vector<double> z, z_hat;                  // unknown, where inertia wants it [m]

@@ -50,6 +50,23 @@ struct Condition {
   double force = 0;  ///< out: with which the condition acts along its coefficients on the body [N]
 };
 
+/// A few nodes of which something outside feels the weighted mean.
+struct Spot {
+  std::vector<int> node;
+  std::vector<double> weight;  ///< [1]
+  bool operator==(const Spot& other) const { return node == other.node && weight == other.weight; }
+};
+
+/// A thread without mass or bending that runs through spots and pulls where it is tense. It slides through the spots
+/// between its ends with Coulomb friction (capstan).
+struct ThreadLoad {
+  int first_spot = 0;           ///< of BodyLoads::spots; the others follow in the order along the thread
+  std::vector<double> length;   ///< of thread per segment, unstretched; out: after it has slid [m]
+  double stiffness = 0;         ///< force per strain [N]
+  double friction = 0;          ///< Coulomb coefficient [1]
+  std::vector<double> tension;  ///< per segment, that of the step before; out: of this one; 0: slack [N]
+};
+
 /// A node that must not come nearer than its gap to a tool, with Coulomb friction against the tool's motion.
 struct ContactCondition {
   int node = -1;
@@ -75,6 +92,8 @@ struct GasLoad {
 struct BodyLoads {
   std::vector<Condition> conditions;
   std::vector<ContactCondition> contacts;
+  std::vector<Spot> spots;  ///< of the threads; those that stay from step to step keep their numbers
+  std::vector<ThreadLoad> threads;
   GasLoad gas;
   const EnergyTerm* extra = nullptr;  ///< null: none
 };

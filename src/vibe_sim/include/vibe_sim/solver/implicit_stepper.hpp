@@ -77,7 +77,7 @@ class ImplicitStepper {
   bool iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
   void finishStep(const MotionView& motion, bool careful, StepperScratch& scratch) const;
-  void refactorHere(StepperScratch& scratch) const;
+  void refactorHere(const std::vector<Spot>& spots, StepperScratch& scratch) const;
   void placeAtRest(const StepperScratch& scratch, const MotionView& motion) const;
 
   ElasticBody body_;
