@@ -16,6 +16,7 @@ constexpr double kDistortion = 0.16;  // ... of (a - b) / (a + b), a and b the p
 constexpr double kWrap = 0.9;         // ... of the angle around a cylindrical wall [rad]
 constexpr double kMostMisfit = 2;     // misfit per free coordinate at which a set is no technique any more ...
 constexpr double kSpareMisfit = 10;   // ... and on top of it
+constexpr double kUsual = 1.386;      // taken off the misfit of a U, the commonest technique: it counts twice (2 log 2)
 constexpr double kHopeless = 30;      // a wall this much worse than the best is not looked at
 
 using Complex = std::complex<double>;
@@ -82,7 +83,10 @@ struct MeanMisfit {
     }
     sum += weight * std::exp((least - misfit) / 2);
   }
-  double value() const { return best == nullptr ? least : least - 2 * std::log(sum); }
+  double value() const {
+    if (best == nullptr) return least;
+    return least - 2 * std::log(sum) - (best->technique == Technique::U ? kUsual : 0);
+  }
 };
 
 using Comparison = std::array<MeanMisfit, kTechniqueCount>;
@@ -120,7 +124,7 @@ TechniqueResult nearestDrawing(const std::vector<Eigen::Vector3d>& scaled) {
     for (int k = 0; k < 2; ++k) result.transitions[k] = std::max(-1, misfits[order[0]].best->corners[k] - 1);
   }
   const double rival = least < limit ? std::min(limit, misfits[order[1]].value()) : limit;
-  result.margin = std::isfinite(least) ? std::abs(rival - least) / (rival + least) : 0;
+  result.margin = std::isfinite(least) ? std::tanh(std::abs(rival - least) / 4) : 0;
   return result;
 }
 

@@ -26,8 +26,8 @@ struct TechniqueResult {
   Technique technique = Technique::Other;
 
   /// How far the answer is from changing [1], 0 (it could be another) to 1.
-  /// Corrected: |r - m| / (r + m) with m the least misfit of a technique and r that of its closest rival, where
-  /// Other is a rival too, with the misfit from which on a set is Other.
+  /// Corrected: tanh(d / 4), d the misfit of the closest rival less that of the answer: the difference of their
+  /// probabilities were there no third. Other is a rival too, with the misfit from which on a set is Other.
   /// Printed: the least distance of a dot product from the threshold it was compared with, at most 1.
   double margin = 0;
 
