@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "procedure/marking_worlds.hpp"
+#include "vibe_sim/geometry/organ_builder.hpp"
+#include "vibe_sim/geometry/regions.hpp"
+#include "vibe_sim/geometry/triangle_tree.hpp"
 
 namespace vibe {
 namespace {
@@ -58,6 +61,72 @@ TEST(MarkZones, TellTheThreeLinesOfASuccessfulMarking) {
   for (const Wall wall : {Wall::Anterior, Wall::GreaterCurvature, Wall::Posterior})
     EXPECT_NEAR(finder.walls()[static_cast<int>(wall)].length, 0.045, 0.008);
   EXPECT_EQ(finder.walls()[static_cast<int>(Wall::LesserCurvature)].count, 0);
+}
+
+Organ stomach(int particles) {
+  Scene scene;
+  scene.geometry.particles = particles;
+  return buildOrgan(scene);
+}
+
+/// Points on the wall and directions towards them.
+struct Line {
+  std::vector<Vector3d> points, out;
+  double length = 0;
+
+  /// Along the axis of a stomach, in its body, at an angle around it.
+  Line(const Organ& organ, const StomachAxis& axis, double angle) {
+    const TriangleTree tree(organ.surface);
+    for (const auto& station : axis.stations()) {
+      if (station.length < 0.105 || station.length > 0.185) continue;
+      out.push_back(std::cos(angle) * station.anterior + std::sin(angle) * station.greater);
+      points.push_back(station.centre + tree.firstHit(station.centre, out.back()) * out.back());
+      if (points.size() > 1) length += (points.back() - points[points.size() - 2]).norm();
+    }
+  }
+
+  /// At a length of the line, with the tip 14 mm off the wall; the probe is 10 mm long.
+  void fire(MarkingWorld& world, double rest) const {
+    std::size_t i = 0;
+    for (double side; i + 2 < points.size() && rest > (side = (points[i + 1] - points[i]).norm()); ++i) rest -= side;
+    const double part = rest / (points[i + 1] - points[i]).norm();
+    const Vector3d way = ((1 - part) * out[i] + part * out[i + 1]).normalized();
+    const Vector3d tip = (1 - part) * points[i] + part * points[i + 1] - 0.014 * way;
+    EXPECT_GE(world.beam.fire(tip, way, world.wall(), MarkingWorld::kHalfWall, world.parameters).triangle, 0);
+  }
+};
+
+/// Anterior wall, greater curvature and posterior wall, as in figure 4a of Erden et al.
+std::vector<Line> threeLines(const Organ& organ) {
+  const StomachAxis axis = findAxis(organ);
+  return {Line(organ, axis, 0), Line(organ, axis, M_PI / 2), Line(organ, axis, M_PI)};
+}
+
+TEST(MarkZones, AreTheSameInStomachsOfThreeAndFifteenThousandParticles) {
+  double area[2][kWallCount] = {}, length[2][kWallCount] = {};
+  const std::vector<Line> lines = threeLines(stomach(3618));
+  for (const int fine : {0, 1}) {
+    Organ organ = stomach(fine == 0 ? 3618 : 15000);
+    MarkingWorld world(organ.surface);
+    world.organ = std::move(organ);
+    for (const Line& line : lines)
+      world.expose(line.length / 0.005, 1.0 / 60, [&](double time) { line.fire(world, 0.005 * time); });
+    MarkFinder finder(world.organ);
+    const auto& zones = finder.find(ThermalDose(world.parameters), world.dose, world.wall());
+    ASSERT_EQ(zones.size(), 3u);
+    for (const MarkZone& zone : zones) {
+      EXPECT_TRUE(zone.in_zone);
+      EXPECT_EQ(zone.grade, BurnGrade::Mark);
+      area[fine][static_cast<int>(zone.wall)] += zone.area;
+      length[fine][static_cast<int>(zone.wall)] = finder.walls()[static_cast<int>(zone.wall)].length;
+    }
+  }
+  for (const Wall wall : {Wall::Anterior, Wall::GreaterCurvature, Wall::Posterior}) {
+    const int w = static_cast<int>(wall);
+    EXPECT_NEAR(area[0][w] / area[1][w], 1, 0.15) << toString(wall);
+    EXPECT_NEAR(length[0][w] / length[1][w], 1, 0.1) << toString(wall);
+    EXPECT_GT(length[0][w], 0.04);
+  }
 }
 
 TEST(MarkZones, SeeWhatIsOutside) {

@@ -10,8 +10,8 @@ namespace vibe::test {
 
 /// A sphere whose particles stand for 16.5 mm^2 each, as those of the default stomach with 3,618 particles (level 4:
 /// 2,562 of them), or for 4.1 mm^2, as those of one with 15,000 (level 5).
-inline SurfaceMesh markingBall(int level) {
-  return icosphere(0.058, level);
+inline SurfaceMesh markingBall(int level, double radius = 0.058) {
+  return icosphere(radius, level);
 }
 
 struct MarkingWorld {
@@ -40,16 +40,21 @@ struct MarkingWorld {
     return beam.fire(from_middle * out, out, wall(), kHalfWall, parameters);
   }
 
-  /// Holds or moves the beam: fires at place(time) in steps of dt.
-  template <class Place>
-  void mark(double seconds, double dt, const Place& place) {
+  /// Steps of dt; fire(time) is called in the middle of each and fires the beam.
+  template <class Fire>
+  void expose(double seconds, double dt, const Fire& fire) {
     const ThermalDose law(parameters);
     const long steps = std::lround(seconds / dt);
     for (long i = 0; i < steps; ++i) {
-      fireAt(place((static_cast<double>(i) + 0.5) * dt));
+      fire((static_cast<double>(i) + 0.5) * dt);
       for (const BeamShare& share : beam.shares()) delivered += share.power * dt;
       law.advance(organ, beam.shares(), {parameters.argon_flow, 0}, dt, heat, dose, burns);
     }
+  }
+  /// Holds or moves the beam on a sphere: fires at place(time).
+  template <class Place>
+  void mark(double seconds, double dt, const Place& place) {
+    expose(seconds, dt, [&](double time) { fireAt(place(time)); });
   }
   void hold(const Eigen::Vector3d& point, double seconds, double dt = 1.0 / 60) {
     mark(seconds, dt, [&](double) { return point; });

@@ -65,6 +65,12 @@ TEST(ThermalDose, PublishedBurnsBurn) {
     EXPECT_EQ(outcome.mildest, BurnGrade::Burn) << power << " W " << seconds << " s";
     EXPECT_EQ(outcome.severest, BurnGrade::Burn) << power << " W " << seconds << " s";
   }
+  // as stretched as in the insufflated stomach, 20 mm^2 per particle
+  for (const Vector3d& aim : test::aims(test::markingBall(4, 0.064))) {
+    MarkingWorld world(test::markingBall(4, 0.064));
+    world.hold(aim, 15);
+    EXPECT_EQ(world.worst(), BurnGrade::Burn);
+  }
   EXPECT_EQ(hold(40, 5).severest, BurnGrade::Mark) << "200 J";
   EXPECT_EQ(hold(80, 25).mildest, BurnGrade::Deep) << "2,000 J";
 }
