@@ -197,8 +197,14 @@ double OrganRuler::curvature(const Values& x, const Values& y, const Values& z) 
 }
 
 OrganMeasures OrganRuler::measure(const Values& x, const Values& y, const Values& z) {
+  const std::size_t count = surface_.vertices.size();
+  if (x.size() != count || y.size() != count || z.size() != count)
+    throw Error(
+        "An OrganRuler was given positions of another number of vertices than its organ has; give all of them.");
   OrganMeasures measures;
   measures.volume = lumenVolume(surface_, x, y, z);
+  if (!std::isfinite(measures.volume))
+    throw Error("An OrganRuler was given a position that is not finite; measure the organ before it is lost.");
   if (!has_axis_) return measures;
   placeRings(x, y, z);
   double length = 0;

@@ -14,7 +14,7 @@ void PeakCounter::add(double speed) {
     ++count_;
   } else {
     extreme_ = std::min(extreme_, speed);
-    if (speed < threshold_ || extreme_ > (1 - kFall) * speed) return;
+    if (extreme_ > (1 - kFall) * speed) return;
   }
   rising_ = !rising_;
   extreme_ = speed;

@@ -85,7 +85,7 @@ TEST(SpectralArcLength, ignoresWhatIsFasterThanTenHertz) {
   std::vector<double> speed = sampleReach(0.1, 2, 0.001);
   const double smooth = *spectralArcLength(speed, 0.001);
   for (std::size_t i = 0; i < speed.size(); ++i)
-    speed[i] += 0.08 * (1 + std::sin(2 * M_PI * 0.05 * static_cast<double>(i)));
+    speed[i] += 0.08 * (1 + std::sin(2 * M_PI * 0.015 * static_cast<double>(i)));
   for (double& v : speed) v -= 0.08;
   EXPECT_NEAR(*spectralArcLength(speed, 0.001), smooth, 0.02);
 }

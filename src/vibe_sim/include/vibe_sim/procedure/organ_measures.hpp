@@ -42,6 +42,7 @@ class OrganRuler {
   explicit OrganRuler(const Organ& organ);
 
   /// @param x, y, z  present positions of the vertices, shape (vertices) [m]
+  /// @throws Error if they are not as many as the organ has, or not finite
   OrganMeasures measure(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z);
 
   /// Of the organ as it was given.
