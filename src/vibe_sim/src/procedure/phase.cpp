@@ -57,7 +57,9 @@ void noteSuturing(State& state, std::vector<Event>& events) {
 void followPhase(const Model& model, State& state, std::vector<Event>& events) {
   const double insertion = state.joints[Insertion] - model.tool->limits()[Insertion].lower;
   const bool done = state.procedure.phase == Phase::Done;
-  if (!done && insertion < kWithdrawn && everySetIsFinished(state.procedure)) enterPhase(Phase::Done, state, events);
+  const bool at_work = state.procedure.arm_closed || !state.grip.empty();
+  if (!done && !at_work && insertion < kWithdrawn && everySetIsFinished(state.procedure))
+    enterPhase(Phase::Done, state, events);
   if (done && insertion > kInserted) enterPhase(Phase::Inspect, state, events);
 }
 

@@ -12,7 +12,8 @@ namespace vibe {
 //   Mark     from when the argon beam is used, unless a thread is being pulled
 //   Suture   from the first grab of the helix or the first pierced wall; again when a set is finished
 //   Pull     from the T-tag to the release of the cinch
-//   Done     all sets are permanent, at least one is cinched, and the scope is drawn back to the entry
+//   Done     all sets are permanent, at least one is cinched, the arm is open and holds nothing, and the scope is drawn
+//            back to less than 1 cm
 
 /// Enters a phase; an Event::Kind::PhaseChanged says so unless it is the present one.
 void enterPhase(Phase phase, State& state, std::vector<Event>& events);
