@@ -96,7 +96,7 @@ HangingThreadModel hangingThread(const ThreadMaterial& material, double length, 
   model.axial_stiffness = material.axialStiffness();
   model.tip_mass = 0;
   model.drag = 0.9;
-  model.largest_substep = 1.0 / 960;
+  model.largest_substep = 1.0 / 480;
   model.gravity = gravity;
   return model;
 }

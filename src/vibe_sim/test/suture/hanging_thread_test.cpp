@@ -63,6 +63,8 @@ void expectRest(const std::string& name, const Vector3d& last) {
     const std::string chain = "chain" + std::to_string(links);
     EXPECT_NEAR(lowest / value(chain + "_lowest_node_y_m"), 1, 1e-6) << name << links;
     EXPECT_NEAR(level / value(chain + "_H_N"), 1, 1e-6) << name << links;
+    // Negative control: it is not the chain of the other number of links.
+    EXPECT_GT(std::abs(level / value(links == 30 ? "chain60_H_N" : "chain30_H_N") - 1), 1e-5);
     EXPECT_NEAR(lowest / value("lowest_y_m"), 1, 0.01);
     EXPECT_NEAR(level / value("horizontal_tension_N"), 1, 0.01);
     EXPECT_NEAR(pullOnFirst(model, state).norm() / value("tension_A_N"), 1, 0.01);

@@ -48,9 +48,10 @@ struct HangingThreadScratch {
   Eigen::VectorXd tension_change;
 };
 
-/// A thread of this material. Links are rigid but for the stretch of the material; drag: a slow fluid drags a thin
-/// thread by 4 pi viscosity / ln(7.4 / Re) per length and speed (Lamb, Hydrodynamics, article 343): 0.9 1/s for 2-0
-/// polypropylene in carbon dioxide at about 0.1 m/s.
+/// A thread of this material. Links are rigid but for the stretch of the material. Drag: a slow fluid drags a thin
+/// thread by 4 pi viscosity / ln(7.4 / Re) per length and speed (Lamb, Hydrodynamics, article 343), 0.9 1/s for 2-0
+/// polypropylene in carbon dioxide at 1 cm/s; more where it moves faster, which is left out. Sub-steps of 1/480 s: of a
+/// thread of 0.3 m they take from the first swing a tenth of what drag does.
 HangingThreadModel hangingThread(const ThreadMaterial& material, double length, int links,
                                  const Eigen::Vector3d& gravity);
 
