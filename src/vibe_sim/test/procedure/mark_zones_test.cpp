@@ -165,7 +165,7 @@ TEST(MarkZones, FindNothingWhereNothingIs) {
   EXPECT_GT(world.greatestDose(), 0);
   EXPECT_TRUE(finder.find(law, world.dose, world.wall()).empty()) << "warm, not marked";
   world.hold({0, 0.058, 0}, 2);
-  EXPECT_EQ(finder.find(law, world.dose, world.wall()).size(), 1u);
+  for (int again = 0; again < 2; ++again) EXPECT_EQ(finder.find(law, world.dose, world.wall()).size(), 1u);
   std::fill(world.dose.begin(), world.dose.end(), 0);
   EXPECT_TRUE(finder.find(law, world.dose, world.wall()).empty()) << "nothing is kept from the last call";
   for (const WallMarks& wall : finder.walls()) EXPECT_EQ(wall.count, 0);
