@@ -55,9 +55,14 @@ Matrix3d fittedRotation(const Matrix3d& a) {
 }  // namespace
 
 std::vector<int> patchAround(const SurfaceView& shape, const std::vector<int>& seeds, double radius) {
-  std::vector<std::vector<int>> neighbours(shape.x.size());
+  // neighbours along sides, each twice: those of node n from first[n] to first[n + 1]
+  std::vector<int> first(shape.x.size() + 2, 0), neighbours(6 * shape.triangles.size());
   for (const auto& t : shape.triangles)
-    for (int k = 0; k < 3; ++k) neighbours[t[k]].push_back(t[(k + 1) % 3]), neighbours[t[k]].push_back(t[(k + 2) % 3]);
+    for (const int node : t) first[node + 2] += 2;
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  for (const auto& t : shape.triangles)
+    for (int k = 0; k < 3; ++k)
+      for (const int other : {1, 2}) neighbours[first[t[k] + 1]++] = t[(k + other) % 3];
   std::vector<double> way(shape.x.size(), std::numeric_limits<double>::infinity());
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
@@ -70,7 +75,8 @@ std::vector<int> patchAround(const SurfaceView& shape, const std::vector<int>& s
     const auto [length, node] = open.top();
     open.pop();
     if (length > way[node]) continue;
-    for (const int next : neighbours[node]) {
+    for (int k = first[node]; k < first[node + 1]; ++k) {
+      const int next = neighbours[k];
       const double longer = length + (shape.position(next) - shape.position(node)).norm();
       if (!(longer <= radius && longer < way[next])) continue;
       way[next] = longer;
@@ -85,16 +91,14 @@ std::vector<int> patchAround(const SurfaceView& shape, const std::vector<int>& s
 
 GradientDeformation::GradientDeformation(const SurfaceView& shape, std::vector<int> patch,
                                          const std::vector<int>& handles, int turns)
-    : turns_(turns), patch_(std::move(patch)), order_(patch_.size()) {
+    : turns_(turns), patch_(std::move(patch)), place_(shape.x.size(), -1) {
   if (turns < 0 || turns > kMostTurns)
     throw Error("gradient deformation: " + std::to_string(turns) + " turns are not from 0 to 100; give 2.");
-  std::iota(order_.begin(), order_.end(), 0);
-  std::sort(order_.begin(), order_.end(), [&](int a, int b) { return patch_[a] < patch_[b]; });
-  for (const int place : order_) sorted_.push_back(patch_[place]);
-  for (const int node : patch_) {
-    if (node < 0 || node >= static_cast<int>(shape.x.size()))
-      throw Error("gradient deformation: node " + std::to_string(node) + " of the patch is not in the surface.");
-    start_.push_back(shape.position(node));
+  for (std::size_t i = 0; i < patch_.size(); ++i) {
+    if (patch_[i] < 0 || patch_[i] >= static_cast<int>(shape.x.size()))
+      throw Error("gradient deformation: node " + std::to_string(patch_[i]) + " of the patch is not in the surface.");
+    place_[patch_[i]] = static_cast<int>(i);
+    start_.push_back(shape.position(patch_[i]));
   }
   sides_.resize(patch_.size());
   outer_.assign(patch_.size(), 0);
@@ -107,14 +111,8 @@ GradientDeformation::GradientDeformation(const SurfaceView& shape, std::vector<i
   setHandles(handles);
 }
 
-/// Place of a node in the patch, -1: outside.
-int GradientDeformation::placeOf(int node) const {
-  const auto found = std::lower_bound(sorted_.begin(), sorted_.end(), node);
-  return found != sorted_.end() && *found == node ? order_[static_cast<std::size_t>(found - sorted_.begin())] : -1;
-}
-
 void GradientDeformation::addTriangle(const std::array<int, 3>& t) {
-  const int place[3] = {placeOf(t[0]), placeOf(t[1]), placeOf(t[2])};
+  const int place[3] = {place_[t[0]], place_[t[1]], place_[t[2]]};
   if (place[0] < 0 || place[1] < 0 || place[2] < 0) {
     for (const int p : place)
       if (p >= 0) outer_[p] = 1;
@@ -143,7 +141,7 @@ void GradientDeformation::setHandles(const std::vector<int>& handles) {
   for (std::size_t i = 0; i < patch_.size(); ++i)
     if (outer_[i] != 0) unknown_[i] = -1;
   for (const int node : handles) {
-    const int place = placeOf(node);
+    const int place = node >= 0 && node < static_cast<int>(place_.size()) ? place_[node] : -1;
     if (place < 0)
       throw Error("gradient deformation: handle " + std::to_string(node) + " is not in the patch; enlarge the patch.");
     handles_.push_back(place);

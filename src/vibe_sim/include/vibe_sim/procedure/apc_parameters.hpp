@@ -13,7 +13,7 @@ struct ApcParameters {
   double efficiency = 1;                    ///< part of the power that reaches the tissue [1]
   double argon_flow = 1 * kLitrePerMinute;  ///< [m^3/s]; 1.0 to 1.4 L/min: Fetz 2021
   double probe_length = 0.010;              ///< beyond the tip of the scope [m]; design choice
-  /// From the probe's end to tissue [m]. Makers name about 3 mm in endoscopes and 5 mm in open surgery.
+  /// From the probe's end to tissue [m]. emed (maker) names 3 mm in endoscopes and 5 mm in open surgery.
   double reach = 0.005;
   /// Of the footprint at contact [m]. Design choice: a lesion of 3 mm is smaller than the distance of particles; the
   /// footprint must be as wide as that distance so that what is published per spot holds on every mesh.

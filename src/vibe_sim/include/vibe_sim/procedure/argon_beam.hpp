@@ -30,8 +30,8 @@ struct BeamHit {
 /// The beam is a ray from the scope's tip; the first triangle that it meets is heated, what lies behind is not. The
 /// footprint lies around the point met, on the part of the surface that is connected to it and faces the probe:
 ///   q(d) ~ exp(-(d/r)^4 / 2),  r = spot_radius + gap * tan(spread),
-/// flat in the middle, as the arc leaves what it has dried out for its surroundings (Farin and Grund 1994, Zenker
-/// 2008). Particles share the power by q times the area around them, so the power is conserved to rounding and the
+/// flat in the middle: dried tissue conducts worse, so the arc leaves it for what is beside it. The form is a design
+/// choice. Particles share the power by q times the area around them, so the power is conserved to rounding and the
 /// power per area converges under refinement. Because q is flat, a particle at a distance of 0.7 r from the middle of
 /// a spot still gets 0.89 of the greatest power per area.
 ///

@@ -54,7 +54,6 @@ class GradientDeformation {
     Eigen::Vector3d arm;  // weight times the side at the start, from there to here [m]
   };
 
-  int placeOf(int node) const;
   void addTriangle(const std::array<int, 3>& t);
   void factor();
   void placeHeld(const std::vector<Eigen::Vector3d>& targets, std::vector<Eigen::Vector3d>& positions);
@@ -62,7 +61,8 @@ class GradientDeformation {
   void solve(std::vector<Eigen::Vector3d>& positions);
 
   int turns_;
-  std::vector<int> patch_, sorted_, order_, rim_;
+  std::vector<int> patch_, rim_;
+  std::vector<int> place_;                 // (nodes of the surface) in the patch, -1: outside
   std::vector<Eigen::Vector3d> start_;     // (patch) [m]
   std::vector<std::vector<Side>> sides_;   // (patch)
   std::vector<char> outer_;                // (patch) 1: of the rim
