@@ -63,6 +63,7 @@ HangingThread threadAtRest(const HangingThreadModel& model, const ThreadEnds& en
 /// Moves the thread on by dt. Held ends go to where they are held on straight lines at constant speed. Backward Euler
 /// in sub-steps, Newton's method on positions and tensions together: stable for any step; motion of angular frequency w
 /// fades by the share w^2 h / 2 per second at sub-steps of h, besides drag. Costs links x sub-steps x iterations.
+/// Where an end jumps so far that no equilibrium is found, that sub-step keeps the lengths and not the forces.
 /// Ends further apart than the thread stretch it, straight, with the tension of its stiffness; breaking is the
 /// caller's. Depends on the arguments only; allocates only if scratch was last used for another number of links.
 /// @param dt      [s], above 0
