@@ -1,5 +1,6 @@
 #include <cstring>
 
+#include "procedure_fields.hpp"
 #include "vibe_sim/simulator.hpp"
 
 namespace vibe {
@@ -17,7 +18,25 @@ class Fnv1a {
   void addValue(const T& value) {
     add(&value, sizeof value);
   }
-  std::uint64_t value() const { return value_; }
+
+  // as an archive of procedure_fields.hpp
+  template <class T>
+  void value(const T& value) {
+    addValue(value);
+  }
+  void vector(const Eigen::Vector3d& v) { add(v.data(), 3 * sizeof(double)); }
+  template <class T>
+  void numbers(const std::vector<T>& v) {
+    addValue(v.size());
+    add(v.data(), v.size() * sizeof(T));
+  }
+  template <class T, class Visit>
+  void list(const std::vector<T>& items, Visit visit) {
+    addValue(items.size());
+    for (const T& item : items) visit(item);
+  }
+
+  std::uint64_t result() const { return value_; }
 
  private:
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
@@ -46,6 +65,7 @@ std::uint64_t hash(const State& state) {
   h.addValue(state.in_contact);
   h.addValue(state.untouched_time);
   h.addValue(state.grip_force);
+  visitProcedure(h, state.procedure);
   h.add(state.solver.about.data(), state.solver.about.size() * sizeof(float));
   h.add(state.solver.next.data(), state.solver.next.size() * sizeof(float));
   h.addValue(state.solver.steps);
@@ -55,7 +75,7 @@ std::uint64_t hash(const State& state) {
   h.addValue(state.solver.usual_length);
   h.addValue(state.solver.homing);
   h.addValue(state.solver.careful);
-  return h.value();
+  return h.result();
 }
 
 }  // namespace vibe

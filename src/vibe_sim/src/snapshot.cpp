@@ -1,10 +1,13 @@
 #include "vibe_sim/snapshot.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <sstream>
 
+#include "procedure_check.hpp"
+#include "procedure_fields.hpp"
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/simulator.hpp"
 
@@ -12,7 +15,8 @@ namespace vibe {
 
 namespace {
 
-constexpr char kMagic[8] = {'v', 'i', 'b', 'e', 's', 'n', 'p', '1'};
+constexpr std::uint64_t kReadAtOnce = 1 << 16;  // numbers
+constexpr char kMagic[8] = {'v', 'i', 'b', 'e', 's', 'n', 'p', '2'};
 
 // One list of the members for both directions, so that they cannot differ.
 template <class Archive, class S>
@@ -37,6 +41,7 @@ void transfer(Archive& archive, S& s) {
   archive.vector(s.tool_torque);
   archive.value(s.grip_force);
   archive.value(s.contact_count);
+  visitProcedure(archive, s.procedure);
   archive.value(s.energy);
   archive.optionalArray(s.solver.about);
   archive.optionalArray(s.solver.next);
@@ -66,6 +71,16 @@ class Writer {
     value(static_cast<std::uint64_t>(v.size()));
     out_.write(reinterpret_cast<const char*>(v.data()), static_cast<std::streamsize>(v.size() * sizeof(float)));
   }
+  template <class T>
+  void numbers(const std::vector<T>& v) {
+    value(static_cast<std::uint64_t>(v.size()));
+    out_.write(reinterpret_cast<const char*>(v.data()), static_cast<std::streamsize>(v.size() * sizeof(T)));
+  }
+  template <class T, class Visit>
+  void list(const std::vector<T>& items, Visit visit) {
+    value(static_cast<std::uint64_t>(items.size()));
+    for (const T& item : items) visit(item);
+  }
   void grip(const std::vector<GripPoint>& grip) {
     value(static_cast<std::uint64_t>(grip.size()));
     for (const GripPoint& point : grip) {
@@ -85,7 +100,33 @@ class Reader {
   void value(T& v) {
     read(&v, sizeof v);
   }
+  void value(bool& v) {
+    std::uint8_t byte = 0;
+    value(byte);
+    if (byte > 1)
+      throw Error("Snapshot '" + file_ + "' is damaged: a flag in it is neither set nor not; save it again.");
+    v = byte == 1;
+  }
   void vector(Eigen::Vector3d& v) { read(v.data(), 3 * sizeof(double)); }
+  // A damaged count must end at the end of the file, not with all memory: both grow only with what has been read.
+  template <class T>
+  void numbers(std::vector<T>& v) {
+    std::uint64_t count = 0;
+    value(count);
+    v.clear();
+    while (v.size() < count) {
+      const std::size_t begin = v.size();
+      v.resize(begin + std::min<std::uint64_t>(count - begin, kReadAtOnce));
+      read(v.data() + begin, (v.size() - begin) * sizeof(T));
+    }
+  }
+  template <class T, class Visit>
+  void list(std::vector<T>& items, Visit visit) {
+    std::uint64_t count = 0;
+    value(count);
+    items.clear();
+    for (std::uint64_t i = 0; i < count; ++i) visit(items.emplace_back());
+  }
   void array(std::vector<double>& v) {
     v.resize(static_cast<std::size_t>(particles_));
     read(v.data(), v.size() * sizeof(double));
@@ -122,7 +163,7 @@ class Reader {
   int particles_;
 };
 
-// Rest shape, masses and step: what a state must agree with to be continued.
+// Rest shape, masses, step and which parts there are: what a state must agree with to be continued.
 std::uint64_t fingerprint(const Model& model) {
   State rest;
   for (const Eigen::Vector3d& p : model.organ.surface.vertices) {
@@ -135,6 +176,8 @@ std::uint64_t fingerprint(const Model& model) {
   rest.gas_amount = model.scene.step_period;
   rest.step = model.scene.tissue.substeps;
   for (char c : model.scene.tissue.model) rest.random = rest.random * 31 + static_cast<unsigned char>(c);
+  for (bool part : {model.scene.scope.has_value(), model.scene.helix.has_value(), model.scene.suture.has_value()})
+    rest.random = rest.random * 2 + (part ? 1 : 0);
   return hash(rest);
 }
 
@@ -169,6 +212,8 @@ State loadSnapshot(const Model& model, const std::string& file) {
     throw Error("Snapshot '" + file + "' belongs to another scene; load the scene it was saved with first.");
   State state;
   transfer(reader, state);
+  const std::string damage = findDamage(state.procedure, model.particle_count);
+  if (!damage.empty()) throw Error("Snapshot '" + file + "' is damaged: " + damage + "; save it again.");
   if (in.peek() != std::ifstream::traits_type::eof())
     throw Error("Snapshot '" + file + "' is longer than a state; save it again.");
   return state;

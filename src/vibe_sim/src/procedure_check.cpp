@@ -1,0 +1,65 @@
+#include "procedure_check.hpp"
+
+#include <cmath>
+
+#include "vibe_sim/suture/technique.hpp"
+
+namespace vibe {
+namespace {
+
+bool allFinite(const std::vector<double>& values) {
+  for (double value : values)
+    if (!std::isfinite(value)) return false;
+  return true;
+}
+
+std::string biteDamage(const Bite& bite, int particle_count) {
+  if (bite.weight.size() != bite.particle.size()) return "a bite has not one weight per particle";
+  for (int particle : bite.particle)
+    if (particle < 0 || particle >= particle_count) return "a bite holds a particle that does not exist";
+  if (!allFinite(bite.weight)) return "a bite's weight is not a number";
+  if (static_cast<int>(bite.region) >= kRegionCount) return "a bite lies in a region that does not exist";
+  if (bite.wall > Wall::LesserCurvature) return "a bite lies on a wall that does not exist";
+  return "";
+}
+
+std::string sutureDamage(const Suture& suture, int particle_count) {
+  if (suture.stage > Suture::Stage::Broken) return "a suture's stage does not exist";
+  if (suture.technique >= kTechniqueCount) return "a suture's technique does not exist";
+  if (suture.length.size() != suture.tension.size() || suture.length.size() > suture.bites.size())
+    return "a suture's thread does not fit its bites";
+  if (suture.pulls() && suture.length.size() + 1 != suture.bites.size())
+    return "a suture that pulls has not one piece of thread from bite to bite";
+  if (!allFinite(suture.length) || !allFinite(suture.tension)) return "a suture's thread is not a number long or taut";
+  for (const Bite& bite : suture.bites) {
+    const std::string damage = biteDamage(bite, particle_count);
+    if (!damage.empty()) return damage;
+    if (bite.particle.empty()) return "a bite of a suture holds nothing";
+  }
+  return "";
+}
+
+std::string bleedingDamage(const Bleeding& bleeding, const ProcedureState& procedure, int particle_count) {
+  if (bleeding.particle < -1 || bleeding.particle >= particle_count) return "a particle bleeds that does not exist";
+  if (bleeding.suture < -1 || bleeding.suture >= static_cast<int>(procedure.sutures.size()))
+    return "a bite of a suture bleeds that does not exist";
+  return "";
+}
+
+}  // namespace
+
+std::string findDamage(const ProcedureState& procedure, int particle_count) {
+  if (procedure.phase > Phase::Done) return "its phase does not exist";
+  const std::size_t doses = procedure.dose.size();
+  const bool fits = doses == 0 || doses == static_cast<std::size_t>(particle_count);
+  if (!fits || procedure.heat.size() != doses || procedure.grade.size() != doses)
+    return "its marks are those of another organ";
+  std::string damage = biteDamage(procedure.pending, particle_count);
+  for (const Suture& suture : procedure.sutures)
+    if (damage.empty()) damage = sutureDamage(suture, particle_count);
+  for (const Bleeding& bleeding : procedure.bleedings)
+    if (damage.empty()) damage = bleedingDamage(bleeding, procedure, particle_count);
+  return damage;
+}
+
+}  // namespace vibe

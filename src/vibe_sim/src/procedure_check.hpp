@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+
+#include "vibe_sim/procedure/procedure_state.hpp"
+
+namespace vibe {
+
+/// What makes a stored procedure one that no session can have reached, e.g. "a bite holds a particle that does not
+/// exist"; empty if nothing.
+std::string findDamage(const ProcedureState& procedure, int particle_count);
+
+}  // namespace vibe
