@@ -1,10 +1,25 @@
 #include "vibe_sim/procedure/session_csv.hpp"
 
+#include <algorithm>
 #include <iostream>
 
 #include "vibe_sim/error.hpp"
 
 namespace vibe {
+namespace {
+
+void writeProcedure(const ProcedureState& procedure, std::ostream& out) {
+  std::size_t bites = 0;
+  double tension = 0;
+  for (const Suture& suture : procedure.sutures) {
+    bites += suture.bites.size();
+    for (double t : suture.tension) tension = std::max(tension, t);
+  }
+  out << ',' << toString(procedure.phase) << ',' << bites << ',' << procedure.sutures.size() << ',' << tension << ','
+      << procedure.blood_lost << ',';
+}
+
+}  // namespace
 
 SessionCsv::SessionCsv(const std::string& file) : out_(&file_) {
   if (file == "-")
@@ -15,7 +30,7 @@ SessionCsv::SessionCsv(const std::string& file) : out_(&file_) {
   *out_ << "step,time";
   for (const char* name : kJointNames) *out_ << ',' << name;
   *out_ << ",tip_x,tip_y,tip_z,force_x,force_y,force_z,torque_x,torque_y,torque_z,grip_force,contact_count,grip_count,"
-           "pressure,volume,events\n";
+           "pressure,volume,phase,bites,sutures,thread_tension,blood_lost,events\n";
   if (!*out_) throw Error("Cannot write '" + file + "'; check that its folder exists and has room.");
 }
 
@@ -31,7 +46,8 @@ void SessionCsv::write(const Model& model, const State& state, const std::vector
   for (const Eigen::Vector3d& v : {tip, state.tool_force, state.tool_torque})
     out << ',' << v.x() << ',' << v.y() << ',' << v.z();
   out << ',' << state.grip_force << ',' << state.contact_count << ',' << state.grip.size() << ',' << state.pressure
-      << ',' << state.volume << ',';
+      << ',' << state.volume;
+  writeProcedure(state.procedure, out);
   for (std::size_t i = 0; i < events.size(); ++i) out << (i > 0 ? ";" : "") << toString(events[i].kind);
   out << '\n';
   if (!out) throw Error("The CSV could not be written to its end; check the room on the disk.");
