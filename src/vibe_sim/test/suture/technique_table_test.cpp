@@ -23,8 +23,7 @@ TEST(TechniqueTable, CorrectedRuleKeepsItsPromiseWithNoise) {
   EXPECT_GE(table.right(true), 0.95);
   EXPECT_GE(table.right(false), 0.95);
   for (int n = 5; n <= kTableMostBites; ++n) EXPECT_GE(table.right(true, n), 0.93) << n << " bites";
-  EXPECT_GE(table.right(true, 4),
-            0.88);  // six numbers that noise cannot change less than three sides differ from an arc
+  EXPECT_GE(table.right(true, 4), 0.88);  // noise moves three chords of an arc as far as three sides of a square
 }
 
 TEST(TechniqueTable, PrintedRuleRecognisesNoU) {
