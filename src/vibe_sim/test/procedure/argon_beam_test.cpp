@@ -9,7 +9,6 @@
 
 #include "geometry/test_surfaces.hpp"
 #include "procedure/marking_worlds.hpp"
-#include "scene/expect_error.hpp"
 
 namespace vibe {
 namespace {
@@ -201,28 +200,14 @@ TEST(ArgonBeam, CarriesTheSpotOnACoarseMesh) {
   }
 }
 
-#if VIBE_COUNTS_ALLOCATIONS
 TEST(ArgonBeam, DoesNotAllocateAfterItsFirstUse) {
+  if (!VIBE_COUNTS_ALLOCATIONS) GTEST_SKIP() << "a sanitizer brings its own memory";
   MarkingWorld world(test::markingBall(4));
   const auto points = test::aims(world.organ.surface);
   world.fireAt(points[0]);
   const long before = test::allocations;
   for (const Vector3d& aim : points) world.fireAt(aim);
   EXPECT_EQ(test::allocations, before);
-}
-#endif
-
-TEST(ApcParameters, SayWhatIsOutOfRange) {
-  ApcParameters parameters;
-  EXPECT_NO_THROW(parameters.check());
-  parameters.spot_radius = 0;
-  EXPECT_ERROR(parameters.check(), "marking.spot_radius");
-  parameters = ApcParameters{};
-  parameters.power = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_ERROR(parameters.check(), "marking.power");
-  parameters = ApcParameters{};
-  parameters.burn_energy = parameters.mark_energy / 2;
-  EXPECT_ERROR(parameters.check(), "marking.burn_energy");
 }
 
 }  // namespace
