@@ -1,5 +1,6 @@
 #include "particle_cloud.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "conversions.hpp"
@@ -14,9 +15,12 @@ struct Point {
   std::uint32_t id;
   std::uint32_t revision;
   std::uint8_t region;
-  std::uint8_t padding[3];
+  std::uint8_t grade;  // this and the dose only with marks
+  std::uint8_t padding[2];
+  float thermal_dose;
 };
-static_assert(sizeof(Point) == 28);
+static_assert(sizeof(Point) == 32);
+constexpr std::size_t kPlainBytes = offsetof(Point, thermal_dose);
 constexpr std::size_t kMovingBytes = 4 * sizeof(float);  // x, y, z, strain come first
 
 sensor_msgs::PointField field(const std::string& name, std::size_t offset, std::uint8_t type) {
@@ -30,8 +34,8 @@ sensor_msgs::PointField field(const std::string& name, std::size_t offset, std::
 
 }  // namespace
 
-ParticleCloud::ParticleCloud(const Model& model, std::uint32_t revision)
-    : strain_(static_cast<std::size_t>(model.particle_count)) {
+ParticleCloud::ParticleCloud(const Model& model, const State& start, std::uint32_t revision)
+    : strain_(static_cast<std::size_t>(model.particle_count)), with_marks_(!start.procedure.dose.empty()) {
   using Field = sensor_msgs::PointField;
   message_.header.frame_id = kTissueFrame;
   message_.fields = {field("x", offsetof(Point, x), Field::FLOAT32),
@@ -41,9 +45,13 @@ ParticleCloud::ParticleCloud(const Model& model, std::uint32_t revision)
                      field("id", offsetof(Point, id), Field::UINT32),
                      field("revision", offsetof(Point, revision), Field::UINT32),
                      field("region", offsetof(Point, region), Field::UINT8)};
+  if (with_marks_) {
+    message_.fields.push_back(field("grade", offsetof(Point, grade), Field::UINT8));
+    message_.fields.push_back(field("thermal_dose", offsetof(Point, thermal_dose), Field::FLOAT32));
+  }
   message_.height = 1;
   message_.width = static_cast<std::uint32_t>(model.particle_count);
-  message_.point_step = sizeof(Point);
+  message_.point_step = static_cast<std::uint32_t>(with_marks_ ? sizeof(Point) : kPlainBytes);
   message_.row_step = message_.width * message_.point_step;
   message_.is_dense = true;
   message_.data.resize(message_.row_step);
@@ -52,7 +60,7 @@ ParticleCloud::ParticleCloud(const Model& model, std::uint32_t revision)
     point.id = i;
     point.revision = revision;
     point.region = static_cast<std::uint8_t>(model.organ.region[i]);
-    std::memcpy(&message_.data[i * sizeof(Point)], &point, sizeof point);
+    std::memcpy(&message_.data[i * message_.point_step], &point, message_.point_step);
   }
 }
 
@@ -63,9 +71,19 @@ const sensor_msgs::PointCloud2& ParticleCloud::update(const Model& model, const 
     const float moving[4] = {static_cast<float>(state.x[i]), static_cast<float>(state.y[i]),
                              static_cast<float>(state.z[i]), strain_[i]};
     static_assert(sizeof moving == kMovingBytes);
-    std::memcpy(&message_.data[i * sizeof(Point)], moving, sizeof moving);
+    std::memcpy(&message_.data[i * message_.point_step], moving, sizeof moving);
   }
+  if (with_marks_) updateMarks(state.procedure);
   return message_;
+}
+
+void ParticleCloud::updateMarks(const ProcedureState& procedure) {
+  const std::size_t count = std::min(procedure.dose.size(), procedure.grade.size());
+  for (std::size_t i = 0; i < std::min<std::size_t>(count, message_.width); ++i) {
+    std::uint8_t* point = &message_.data[i * message_.point_step];
+    point[offsetof(Point, grade)] = procedure.grade[i];
+    std::memcpy(point + offsetof(Point, thermal_dose), &procedure.dose[i], sizeof(float));
+  }
 }
 
 }  // namespace vibe

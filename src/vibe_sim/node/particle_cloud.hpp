@@ -18,13 +18,17 @@ namespace vibe {
 /// What does not move is filled once per model; update() writes the rest.
 class ParticleCloud {
  public:
-  ParticleCloud(const Model& model, std::uint32_t revision);
+  /// @param start  its marks, or their absence, decide whether there are fields for them
+  ParticleCloud(const Model& model, const State& start, std::uint32_t revision);
 
   const sensor_msgs::PointCloud2& update(const Model& model, const State& state, std::int64_t stamp);
 
  private:
   sensor_msgs::PointCloud2 message_;
   std::vector<float> strain_;
+  bool with_marks_;
+
+  void updateMarks(const ProcedureState& procedure);
 };
 
 }  // namespace vibe

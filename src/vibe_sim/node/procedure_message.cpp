@@ -1,8 +1,64 @@
 #include "procedure_message.hpp"
 
+#include <algorithm>
+
 #include "conversions.hpp"
+#include "vibe_sim/procedure/thermal_dose.hpp"
+#include "vibe_sim/suture/technique.hpp"
 
 namespace vibe {
+namespace {
+
+/// Particles whose grade is this or worse.
+std::uint32_t countGrades(const std::vector<std::uint8_t>& grades, BurnGrade least) {
+  const auto reached = [least](std::uint8_t grade) { return grade >= static_cast<std::uint8_t>(least); };
+  return static_cast<std::uint32_t>(std::count_if(grades.begin(), grades.end(), reached));
+}
+
+void countSuture(const Suture& suture, const Scene& scene, vibe_msgs::ProcedureState& message) {
+  const auto tear_outs = static_cast<std::uint32_t>(suture.tear_outs);
+  message.bites += static_cast<std::uint32_t>(suture.bites.size()) + tear_outs;
+  message.tear_outs += tear_outs;
+  for (const Bite& bite : suture.bites) message.partial_bites += bite.fullThickness() ? 0 : 1;
+  const bool cinched = suture.stage == Suture::Stage::Cinched;
+  const bool loose = cinched && scene.suture && suture.cinch_tension < scene.suture->loose_tension;
+  message.sutures_open += suture.permanent() ? 0 : 1;
+  message.sutures_cinched += cinched && !loose ? 1 : 0;
+  message.sutures_loose += loose ? 1 : 0;
+  message.sutures_broken += suture.stage == Suture::Stage::Broken ? 1 : 0;
+  if (suture.stage >= Suture::Stage::Tagged) {
+    message.techniques.emplace_back(toString(static_cast<Technique>(suture.technique)));
+  }
+}
+
+void addProcedure(const ProcedureState& procedure, const Scene& scene, vibe_msgs::ProcedureState& message) {
+  message.procedure_phase = toString(procedure.phase);
+  message.marks = countGrades(procedure.grade, BurnGrade::Mark);
+  message.burns = countGrades(procedure.grade, BurnGrade::Burn);
+  message.deep_burns = countGrades(procedure.grade, BurnGrade::Deep);
+  message.beam_energy = procedure.beam_energy;
+  message.sutures = static_cast<std::uint32_t>(procedure.sutures.size());
+  for (const Suture& suture : procedure.sutures) countSuture(suture, scene, message);
+  message.blood_lost = procedure.blood_lost;
+  for (const Bleeding& bleeding : procedure.bleedings) message.bleeding += bleeding.rate > 0 ? 1 : 0;
+  message.needle_loaded = procedure.needle_loaded;
+  message.needle_on_arm = procedure.needle_on_arm;
+  message.thread_used = procedure.thread_used;
+}
+
+void addCounts(const EventCounts& counts, vibe_msgs::ProcedureState& message) {
+  message.missed_bites = counts.of(Event::Kind::BiteMissed);
+  message.withdrawn_bites = counts.of(Event::Kind::BiteWithdrawn);
+  message.refused = counts.of(Event::Kind::Refused);
+  message.overdue_bleedings = counts.of(Event::Kind::BleedingOverdue);
+}
+
+/// Contact comes and goes too often to be told at once.
+std::uint64_t countTold(const EventCounts& counts) {
+  return counts.total() - counts.of(Event::Kind::ContactBegin) - counts.of(Event::Kind::ContactEnd);
+}
+
+}  // namespace
 
 vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunStatus& status) {
   const SessionMetrics& metrics = session.recorder.metrics();
@@ -34,6 +90,8 @@ vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunSt
   message.releases = static_cast<std::uint32_t>(metrics.releases);
   message.slips = static_cast<std::uint32_t>(metrics.slips);
   message.warnings = static_cast<std::uint32_t>(metrics.warnings);
+  addProcedure(session.state.procedure, session.model->scene, message);
+  addCounts(session.counts, message);
   return message;
 }
 
@@ -44,6 +102,7 @@ std::string kindOf(const Session& session, const RunStatus& status) {
                     static_cast<int>(session.state.grip.size()), status.paused ? 1 : 0}) {
     kind += '|' + std::to_string(count);
   }
+  kind += '|' + std::to_string(countTold(session.counts));
   return kind;
 }
 

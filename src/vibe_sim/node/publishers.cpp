@@ -10,13 +10,15 @@
 
 #include "conversions.hpp"
 #include "procedure_message.hpp"
+#include "suture_message.hpp"
+#include "vibe_sim/contact/helix_grip.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kParticleRate = 60;                      // of tissue/particles in simulated time [Hz]
+constexpr double kParticleRate = 60;                      // of tissue/particles and sutures in simulated time [Hz]
 constexpr double kHapticRate = 100;                       // of haptic/parameters at most, in simulated time [Hz]
-constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure/state when nothing happens [ns]
+constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of both states when nothing happens [ns]
 
 // Queues are long because a simulation that runs faster than the wall clock must not lose messages to a recorder that
 // is busy for a moment; of the large clouds as many as fit into some 60 MB.
@@ -42,6 +44,7 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       particles_(handle.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue)),
       procedure_(handle.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
       events_(handle.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
+      sutures_(handle.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, true)),
       applied_input_(handle.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue)),
       performance_(handle.advertise<vibe_msgs::SolverStatistics>("performance", kSmallQueue)),
       scene_(handle.advertise<std_msgs::String>("scene", 1, true)),
@@ -51,7 +54,7 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
 
 void Publishers::announceModel(const Session& session) {
   const Model& model = *session.model;
-  cloud_ = std::make_unique<ParticleCloud>(model, session.revision);
+  cloud_ = std::make_unique<ParticleCloud>(model, session.state, session.revision);
   scene_.publish(makeSceneText(model.scene, session.state.seed));
   topology_.publish(makeTopology(model, session.revision, session.now()));
   std::vector<geometry_msgs::TransformStamped> transforms = {
@@ -70,6 +73,7 @@ void Publishers::stepResult(const Session& session, const RunStatus& status) {
   tool(session, stamp);
   haptic(session, stamp);
   if (session.state.step % particleInterval(session.time.period()) == 0) particles(session, stamp);
+  if (suturesAreDue(session)) sutures(session);
   for (const Event& event : session.events) events_.publish(makeEvent(event, stamp));
   if (kindOf(session, status) != last_kind_ || stamp - last_procedure_ >= kProcedurePeriod) {
     procedureState(session, status);
@@ -81,6 +85,7 @@ void Publishers::wholeState(const Session& session, const RunStatus& status) {
   const std::int64_t stamp = session.now();
   now_ = stamp;
   if (stamp != last_particles_) particles(session, stamp);
+  sutures(session);
   procedureState(session, status);
   if (stamp == last_tool_) return;
   if (haptic_touching_) hapticRelease(stamp);
@@ -98,6 +103,20 @@ void Publishers::procedureState(const Session& session, const RunStatus& status)
   procedure_.publish(makeProcedureState(session, status));
 }
 
+bool Publishers::suturesAreDue(const Session& session) const {
+  const ProcedureState& procedure = session.state.procedure;
+  if (kindOf(procedure) != last_suture_kind_) return true;
+  if (procedure.sutures.empty()) return false;
+  const bool in_turn = session.state.step % particleInterval(session.time.period()) == 0;
+  return (in_turn && sutures_.getNumSubscribers() > 0) || session.now() - last_sutures_ >= kProcedurePeriod;
+}
+
+void Publishers::sutures(const Session& session) {
+  last_suture_kind_ = kindOf(session.state.procedure);
+  last_sutures_ = session.now();
+  sutures_.publish(makeSutures(*session.model, session.state, session.now()));
+}
+
 void Publishers::warn(const std::string& text) {
   Event event;
   event.kind = Event::Kind::Warning;
@@ -106,8 +125,8 @@ void Publishers::warn(const std::string& text) {
 }
 
 bool Publishers::hasListener() const {
-  const auto all = {&scope_pose_, &helix_pose_,    &wrench_,      &joint_states_, &topology_, &particles_, &procedure_,
-                    &events_,     &applied_input_, &performance_, &scene_,        &haptic_,   &clock_};
+  const auto all = {&scope_pose_, &helix_pose_, &wrench_,        &joint_states_, &topology_, &particles_, &procedure_,
+                    &events_,     &sutures_,    &applied_input_, &performance_,  &scene_,    &haptic_,    &clock_};
   return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 
@@ -131,7 +150,8 @@ void Publishers::haptic(const Session& session, std::int64_t stamp) {
   if (haptic_touching_ && session.state.step % hapticInterval(session.time.period()) != 0) return;
   haptic_touching_ = true;
   const bool holds = session.model->scene.helix && !session.state.grip.empty();
-  const double limit = holds ? session.model->scene.helix->hold_force : std::numeric_limits<double>::infinity();
+  const double limit = holds ? holdingForce(*session.model->scene.helix, session.state.procedure.grip_turns)
+                             : std::numeric_limits<double>::infinity();
   haptic_.publish(makeHapticParameters(*response, limit, stamp));
 }
 

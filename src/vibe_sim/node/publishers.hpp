@@ -50,13 +50,15 @@ class Publishers {
   bool hasRecorder() const { return applied_input_.getNumSubscribers() > 0; }
 
  private:
-  ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, topology_, particles_, procedure_, events_,
+  ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, topology_, particles_, procedure_, events_, sutures_,
       applied_input_, performance_, scene_, haptic_, clock_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;
   std::string last_kind_;            // of procedure/state: what must not change unnoticed
   std::int64_t last_procedure_ = 0;  // stamps [ns]
+  std::uint64_t last_suture_kind_ = 0;
+  std::int64_t last_sutures_ = 0;
   std::int64_t last_tool_ = -1;
   std::int64_t last_particles_ = -1;
   bool haptic_touching_ = false;      // as last sent
@@ -64,6 +66,8 @@ class Publishers {
 
   void tool(const Session& session, std::int64_t stamp);
   void particles(const Session& session, std::int64_t stamp);
+  bool suturesAreDue(const Session& session) const;
+  void sutures(const Session& session);
   void haptic(const Session& session, std::int64_t stamp);
   void hapticRelease(std::int64_t stamp);
   void clock(std::int64_t stamp);

@@ -10,6 +10,7 @@ StepInput holdingInput(const State& state) {
   StepInput input;
   input.joints = state.joints;
   input.buttons[HelixGrab] = state.helix_pressed ? 1 : 0;
+  input.buttons[Cinch] = state.procedure.pressed[Cinch];  // released it would make the set permanent
   return input;
 }
 
@@ -32,6 +33,7 @@ void Session::step() {
   events.clear();
   vibe::step(*model, state, input, *workspace, events);
   recorder.record(*model, state, insufflatorIsOn(*model, input), events);
+  counts.record(events);
 }
 
 void Session::replaceState(State new_state) {
@@ -40,6 +42,7 @@ void Session::replaceState(State new_state) {
   input = holdingInput(state);
   recorder = MetricsRecorder(*model, state);
   events.clear();
+  counts = EventCounts();
 }
 
 void Session::replaceModel(std::shared_ptr<const Model> new_model) {

@@ -6,6 +6,7 @@
 #include "sim_time.hpp"
 #include "vibe_sim/event.hpp"
 #include "vibe_sim/model.hpp"
+#include "vibe_sim/procedure/event_counts.hpp"
 #include "vibe_sim/procedure/session_metrics.hpp"
 #include "vibe_sim/state.hpp"
 #include "vibe_sim/step_input.hpp"
@@ -35,6 +36,7 @@ class Session {
   TimeLine time;
   StepInput input;             ///< what the next step uses
   std::vector<Event> events;   ///< of the last step
+  EventCounts counts;          ///< since the state took over
   std::uint32_t revision = 1;  ///< of the topology
   int threads;
 };

@@ -17,13 +17,15 @@ World balloon() {
 
 TEST(ParticleCloud, carriesPositionsIdsRegionAndRevision) {
   const World world = balloon();
-  ParticleCloud cloud(*world.model, 3);
+  ParticleCloud cloud(*world.model, world.state, 3);
   const sensor_msgs::PointCloud2 message = cloud.update(*world.model, world.state, 1'500'000'000);
   EXPECT_EQ(message.header.frame_id, "stomach");
   EXPECT_EQ(message.header.stamp.toSec(), 1.5);
   ASSERT_EQ(message.width, 162u);
   EXPECT_EQ(message.height, 1u);
   EXPECT_EQ(message.data.size(), message.row_step);
+  EXPECT_EQ(message.point_step, 28u);
+  EXPECT_EQ(message.fields.size(), 7u);
   sensor_msgs::PointCloud2ConstIterator<float> x(message, "x"), z(message, "z");
   sensor_msgs::PointCloud2ConstIterator<std::uint32_t> id(message, "id"), revision(message, "revision");
   sensor_msgs::PointCloud2ConstIterator<std::uint8_t> region(message, "region");
@@ -36,9 +38,32 @@ TEST(ParticleCloud, carriesPositionsIdsRegionAndRevision) {
   }
 }
 
+TEST(ParticleCloud, carriesMarksWhereThereAreAny) {
+  World world = balloon();
+  world.state.procedure.dose.assign(162, 0);
+  world.state.procedure.grade.assign(162, 0);
+  ParticleCloud cloud(*world.model, world.state, 1);
+  cloud.update(*world.model, world.state, 1);
+  world.state.procedure.dose[100] = 31.5f;
+  world.state.procedure.grade[100] = 1;
+  const sensor_msgs::PointCloud2 message = cloud.update(*world.model, world.state, 2);
+  EXPECT_EQ(message.point_step, 32u);
+  EXPECT_EQ(message.data.size(), 32u * 162u);
+  sensor_msgs::PointCloud2ConstIterator<float> x(message, "x"), dose(message, "thermal_dose");
+  sensor_msgs::PointCloud2ConstIterator<std::uint8_t> grade(message, "grade"), region(message, "region");
+  sensor_msgs::PointCloud2ConstIterator<std::uint32_t> id(message, "id");
+  for (std::uint32_t i = 0; i < message.width; ++i, ++x, ++dose, ++grade, ++region, ++id) {
+    EXPECT_EQ(*x, static_cast<float>(world.state.x[i]));
+    EXPECT_EQ(*dose, i == 100 ? 31.5f : 0.f);
+    EXPECT_EQ(*grade, i == 100 ? 1 : 0);
+    EXPECT_EQ(*region, vibe_msgs::TissueTopology::REGION_BODY);
+    EXPECT_EQ(*id, i);
+  }
+}
+
 TEST(ParticleCloud, strainOfAnEvenExpansionIsItsFactorMinusOne) {
   World world = balloon();
-  ParticleCloud cloud(*world.model, 1);
+  ParticleCloud cloud(*world.model, world.state, 1);
   for (auto* axis : {&world.state.x, &world.state.y, &world.state.z}) {
     for (double& value : *axis) value *= 1.03;
   }

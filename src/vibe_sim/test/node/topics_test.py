@@ -16,7 +16,7 @@ from node_test_support import EPOCH, OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS
 from node_test_support import Recorder, buttons, joints, stamp_of, wait_until
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Joy, PointCloud2
-from vibe_msgs.msg import ProcedureEvent, ProcedureState, SolverStatistics, StepInput, TissueTopology
+from vibe_msgs.msg import ProcedureEvent, ProcedureState, SolverStatistics, StepInput, SutureArray, TissueTopology
 from vibe_msgs.srv import Reset, Step
 
 STREAMS = {
@@ -256,6 +256,31 @@ class TopicsTest(unittest.TestCase):
         self.assertGreater(release.header.stamp, grab.header.stamp)
         last = self.procedure.find(lambda m: m.releases == 1)
         self.assertEqual((last.grabs, last.held_particles), (1, 0))
+
+    def test_sutures_are_latched_and_empty_at_the_start(self):
+        self.step(1)
+        self.assertTrue(self.reset_service(seed=0, keep_time=False).success)
+        late = Recorder("sutures", SutureArray)
+        message = late.find(lambda m: m.header.stamp.to_nsec() == EPOCH)
+        self.assertIsNotNone(message)
+        self.assertEqual(message.header.frame_id, "world")
+        self.assertEqual((len(message.sutures), len(message.bleedings), message.blood_lost), (0, 0, 0))
+        self.step(120)  # nothing to tell, nothing sent
+        self.assertEqual(len(late.messages), 1)
+        late.subscriber.unregister()
+
+    def test_a_cinch_without_a_thread_is_refused_with_a_reason(self):
+        self.command((0, 0, 0, 0), pressed=())
+        self.assertEqual(self.procedure.find(lambda m: True).refused, 0)
+        self.command((0, 0, 0, 0), pressed=(4,))
+        refused = self.events.find(lambda m: m.kind == ProcedureEvent.REFUSED)
+        self.assertIsNotNone(refused)
+        self.assertEqual(refused.value, 4)
+        self.assertGreater(len(refused.text), 10)
+        state = self.procedure.find(lambda m: m.refused == 1)
+        self.assertIsNotNone(state)
+        self.assertEqual((state.procedure_phase, state.sutures, state.bites), ("inspect", 0, 0))
+        self.assertTrue(state.needle_loaded and state.needle_on_arm)
 
     def test_performance_is_reported_once_a_second(self):
         self.performance.clear()
