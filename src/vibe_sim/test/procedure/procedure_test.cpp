@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "allocation_count.hpp"
 #include "procedure_bench.hpp"
 
 namespace vibe {
@@ -328,6 +329,35 @@ TEST(Procedure, TheSameCommandsDoTheSame) {
   };
   EXPECT_TRUE(run(1) == run(1));
   EXPECT_FALSE(run(1) == run(2)) << "other bleedings";
+}
+
+TEST(Procedure, StepsWithoutCommandsAskForNoMemory) {
+#if VIBE_COUNTS_ALLOCATIONS
+  Scene scene = benchScene();
+  scene.bleeding = BleedingScene{};
+  scene.bleeding->brisk_probability = 1;
+  Bench bench(scene);
+  bench.state().joints[Insertion] = 0.1;
+  finishOneSet(bench);
+  bench.procedure().sutures.front().tension.front() = 2;
+  const auto poses = bench.poses();
+  const auto allocationsIn = [&](int steps) {
+    const long before = test::allocations;
+    for (int k = 0; k < steps; ++k) {
+      commandProcedure(bench.model(), poses, bench.input, bench.state(), bench.events);
+      followProcedure(bench.model(), bench.state(), bench.events);
+    }
+    return test::allocations - before;
+  };
+  EXPECT_EQ(allocationsIn(100), 0) << "a set and its bleedings";
+  bench.bite(3);
+  bench.bite(40);
+  EXPECT_EQ(allocationsIn(100), 0) << "an open set";
+  bench.press(TTag);
+  bench.hold(Cinch);
+  EXPECT_EQ(allocationsIn(100), 0) << "a set being cinched";
+  ASSERT_EQ(bench.procedure().sutures.back().stage, Suture::Stage::Cinching);
+#endif
 }
 
 TEST(Procedure, TheWholeSimulatorBearsCommandsThatAreNoNumbers) {
