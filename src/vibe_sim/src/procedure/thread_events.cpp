@@ -68,13 +68,21 @@ void removeBite(int bite, Suture& suture) {
   ++suture.tear_outs;
 }
 
+// If both of its segments pulled the same way: spares most bites the look at where they are.
+double greatestForceOnBite(const Suture& suture, int bite) {
+  const double before = bite > 0 ? suture.tension[bite - 1] : 0;
+  return before + (bite + 1 < static_cast<int>(suture.bites.size()) ? suture.tension[bite] : 0);
+}
+
 // The bite that is most beyond its hold; -1: none. Sets force to that on it.
 int overloadedBite(const SutureScene& scene, const Suture& suture, const State& state, double& force) {
   int worst = -1;
   double most = 1;
   for (int b = 0; b < static_cast<int>(suture.bites.size()); ++b) {
+    const double hold = holdOfBite(scene, suture.bites[b]);
+    if (greatestForceOnBite(suture, b) <= hold) continue;
     const double on_bite = forceOnBite(suture, b, state).norm();
-    const double load = on_bite / holdOfBite(scene, suture.bites[b]);
+    const double load = on_bite / hold;
     if (load <= most) continue;
     most = load;
     worst = b;

@@ -38,13 +38,21 @@ Eigen::Vector3d randomPoint(std::mt19937& generator, double size) {
   return {x, y, z};
 }
 
-// A spike: the face nearest to a point beyond its tip may look away from the point.
+// A spike: the face nearest to a point beyond its tip may look away from the point. One of its faces is cut into
+// slivers, which must not count for more than the others where they meet.
 SurfaceMesh spike() {
+  constexpr int kSlivers = 12;
   SurfaceMesh mesh;
-  mesh.vertices = {{0.01, 0, 0}, {-0.01, 0.002, 0}, {-0.01, -0.001, 0.0017}, {-0.01, -0.001, -0.0017}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
-  if (enclosedVolume(mesh) < 0)
-    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  mesh.vertices = {{0.01, 0, 0}, {-0.01, -0.001, -0.0017}, {-0.01, 0.002, 0}};
+  const Eigen::Vector3d last(-0.01, -0.001, 0.0017);
+  for (int k = 1; k <= kSlivers; ++k)
+    mesh.vertices.push_back(mesh.vertices[2] + static_cast<double>(k) / kSlivers * (last - mesh.vertices[2]));
+  for (int k = 0; k < kSlivers; ++k) {
+    mesh.triangles.push_back({0, 2 + k, 3 + k});
+    mesh.triangles.push_back({1, 3 + k, 2 + k});
+  }
+  mesh.triangles.push_back({0, 2 + kSlivers, 1});
+  mesh.triangles.push_back({0, 1, 2});
   return mesh;
 }
 
@@ -60,14 +68,17 @@ TEST(NeedlePath, TellsInsideFromOutsideAtEdgesAndCorners) {
   std::mt19937 generator(7);
   for (const SurfaceMesh& mesh : {spike(), icosphere(0.01, 0)}) {
     const Positions surface(mesh);
+    ASSERT_GT(enclosedVolume(mesh), 0);
     int inside = 0, outside = 0;
     for (int k = 0; k < 4000; ++k) {
-      const Eigen::Vector3d p = randomPoint(generator, 0.011).cwiseProduct(Eigen::Vector3d(1, 0.5, 0.5));
+      const Eigen::Vector3d p = k % 2 == 0
+                                    ? randomPoint(generator, 0.011).cwiseProduct(Eigen::Vector3d(1, 0.5, 0.5)).eval()
+                                    : mesh.vertices[0] + randomPoint(generator, 0.002);
       const bool in = isInside(mesh, p);
       in ? ++inside : ++outside;
       EXPECT_EQ(signedDistance(surface, p) < 0, in) << p.transpose();
     }
-    EXPECT_GT(std::min(inside, outside), 50);
+    EXPECT_GT(std::min(inside, outside), 25);
   }
 }
 
