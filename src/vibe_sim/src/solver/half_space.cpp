@@ -128,6 +128,10 @@ void HalfSpace::addThread(const std::vector<HalfRow>& rows, std::size_t first) {
   thread.slide.slide.setZero(thread.count - 1);
 }
 
+void HalfSpace::holdThreads() {
+  for (int t = 0; t < thread_count_; ++t) threads_[t].capstan.setConstant(kHoldingFactor);
+}
+
 void HalfSpace::findUsedSlots() {
   used_slots_.clear();
   for (int i = 0; i < row_count_; ++i)
@@ -248,8 +252,8 @@ void HalfSpace::solveContacts() {
       const int row = contacts_[thread.first + k];
       const double slid = thread.slide.slide[k];
       slid_[row] = slid;
-      reached_[row] += slid;  // the segment has lost it: its spots have to come nearer
-      reached_[row + 1] -= slid;
+      moves_[row] += slid;  // the segment has lost it: its spots have to come nearer
+      moves_[row + 1] -= slid;
     }
   }
 }
@@ -322,11 +326,12 @@ void HalfSpace::eliminate(const Eigen::Ref<const Eigen::VectorXd>& wanted, doubl
     gas_lack = swelling - along;
   }
   findRowValues(y);
-  reached_ = wanted;
+  moves_ = wanted;
   slid_.setZero(m);
   lack_ = wanted - row_value_;
   if (gas_stiffness_ != 0 && m > 0) lack_ -= gas_row_ * (gas_lack / gas_norm2_);
   solveRows();
+  for (int i = 0; i < m; ++i) moves_[i] -= rows_[i].compliance * force_[i];
   addForces(y);
   gas_force_ = 0;
   if (gas_stiffness_ != 0) {

@@ -17,8 +17,10 @@ struct HalfRow {
   std::vector<Eigen::Vector3d> coefficient;
   double compliance = 0;
   double friction = -1;  ///< below 0: an equation; 0 and above: the normal row of a contact, two tangents follow
-  int thread = -1;       ///< segments of one thread, which only pull, follow each other; -1: no thread
-  double capstan = 1;    ///< largest ratio of the tensions of this segment and the next
+  /// A row with compliance of which the potential knows energy and force: the elimination adds what its stiffness does.
+  bool spring = false;
+  int thread = -1;     ///< segments of one thread, which only pull, follow each other; -1: no thread
+  double capstan = 1;  ///< largest ratio of the tensions of this segment and the next
   /// Spots between which the row runs: the same as the nodes, in fewer columns; -1: none.
   std::array<int, 2> spot{{-1, -1}};
   Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< coefficient of the first spot; of the second: -along
@@ -47,10 +49,13 @@ class HalfSpace {
   void eliminate(const Eigen::Ref<const Eigen::VectorXd>& wanted, double swelling, float* y);
   const Eigen::VectorXd& forces() const { return force_; }
   double gasForce() const { return gas_force_; }
-  /// What the rows were to reach at the end of eliminate(): `wanted`, and what threads slid besides [m].
-  const Eigen::VectorXd& reached() const { return reached_; }
+  /// How far the values of the rows that act move in the solution: `wanted`, less what compliance leaves, with what
+  /// threads slid besides [m].
+  const Eigen::VectorXd& moves() const { return moves_; }
   /// Thread that slid out of a row into the next row of its thread [m].
   double slid(int row) const { return slid_[row]; }
+  /// From now on until setRows() threads do not slide.
+  void holdThreads();
   /// Compliance between rows, gas taken into account (rows x rows) [m/N].
   const Eigen::MatrixXd& compliance() const { return compliance_; }
 
@@ -103,7 +108,7 @@ class HalfSpace {
   int thread_count_ = 0;
   std::vector<float> gas_;  // L^-1 of the gas direction
   double gas_stiffness_ = 0, gas_norm2_ = 0;
-  Eigen::VectorXd gas_row_, force_, reached_, slid_;
+  Eigen::VectorXd gas_row_, force_, moves_, slid_;
   double gas_force_ = 0;
   Eigen::MatrixXd compliance_, block_, cross_, schur_, coupling_;  // of equations, with contacts, of contacts
   Eigen::VectorXd lack_, equation_lack_, contact_lack_, equation_force_, contact_force_, thread_lack_;

@@ -43,7 +43,24 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
     noise_ = 1e-6 * std::abs(value);
   }
   if (extra_ != nullptr) value += extra_->evaluate(z.data(), gradient.data());
-  return value + addBodyTerms(z, gradient);
+  return value + addSprings(z, gradient) + addBodyTerms(z, gradient);
+}
+
+double Potential::addSprings(const std::vector<double>& z, std::vector<float>& gradient) const {
+  double energy = 0;
+  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
+    const HalfRow& row = scratch_.rows[r];
+    if (!row.spring) continue;
+    double longer = -scratch_.target[static_cast<Eigen::Index>(r)];
+    for (std::size_t i = 0; i < row.node.size(); ++i)
+      for (int k = 0; k < 3; ++k) longer += row.coefficient[i][k] * z[4 * static_cast<std::size_t>(row.node[i]) + k];
+    const double force = longer / row.compliance;
+    energy += 0.5 * force * longer;
+    for (std::size_t i = 0; i < row.node.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        gradient[4 * static_cast<std::size_t>(row.node[i]) + k] += static_cast<float>(force * row.coefficient[i][k]);
+  }
+  return energy;
 }
 
 double Potential::gasEnergy() {

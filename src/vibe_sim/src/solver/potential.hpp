@@ -24,6 +24,7 @@ class Potential {
   double gasEnergy();
   double addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
   double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient);
+  double addSprings(const std::vector<double>& z, std::vector<float>& gradient) const;
 
   const ElasticBody& body_;
   const GasLoad& gas_;

@@ -12,8 +12,10 @@ namespace {
 
 constexpr double kSufficientDecrease = 1e-4;  // Armijo
 constexpr int kMostHalvings = 12;
-constexpr double kUnmet = 100;       // of the resolution: what rows lack beyond it is no rounding
-constexpr double kSmallLack = 1e-4;  // of the rows, of the direction
+constexpr double kUnmet = 100;         // of the resolution: what rows lack beyond it is no rounding
+constexpr double kSmallLack = 1e-4;    // of the rows, of the direction
+constexpr double kThreadShare = 3e-4;  // of a lack: rows of threads may move in a pair by a third of its length
+constexpr double kSlidePart = 0.5;
 constexpr double kSafeContraction = 0.5;
 constexpr double kSafeRest = 0.1;  // of the first direction
 
@@ -62,17 +64,21 @@ void QuasiNewton::rowsLack() {
       const double* z = &scratch_.z[4 * static_cast<std::size_t>(row.node[k])];
       value += row.coefficient[k].dot(Eigen::Vector3d(z[0], z[1], z[2]));
     }
-    scratch_.wanted[static_cast<Eigen::Index>(r)] = scratch_.target[static_cast<Eigen::Index>(r)] - value;
+    scratch_.wanted[static_cast<Eigen::Index>(r)] =
+        row.spring ? 0 : scratch_.target[static_cast<Eigen::Index>(r)] - value;
   }
 }
 
-// How far the rows that act move; segments of thread that are slack may move as they like.
+// How far the rows that act move; what is not touched and thread that is slack may move as they like.
 double QuasiNewton::lackOfRows() const {
   const HalfSpace& half_space = scratch_.half_space;
   double most = 0;
-  for (Eigen::Index r = 0; r < scratch_.wanted.size(); ++r)
-    if (scratch_.rows[static_cast<std::size_t>(r)].thread < 0 || half_space.forces()[r] > 0)
-      most = std::max(most, std::abs(half_space.reached()[r]));
+  for (Eigen::Index r = 0; r < scratch_.wanted.size(); ++r) {
+    const HalfRow& row = scratch_.rows[static_cast<std::size_t>(r)];
+    if (row.spring) continue;
+    if (row.thread < 0 || half_space.forces()[r] > 0)
+      most = std::max(most, (row.spot[0] < 0 ? 1 : kThreadShare) * std::abs(half_space.moves()[r]));
+  }
   return most;
 }
 
@@ -109,22 +115,56 @@ double QuasiNewton::resolution() const {
   return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.displacement);
 }
 
+// Those that the last elimination found.
+void QuasiNewton::addRowForces(double sign, std::vector<float>& vector) const {
+  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
+    const HalfRow& row = scratch_.rows[r];
+    const double force = sign * scratch_.half_space.forces()[static_cast<Eigen::Index>(r)];
+    if (row.spring || force == 0) continue;
+    for (std::size_t i = 0; i < row.node.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        vector[4 * static_cast<std::size_t>(row.node[i]) + k] += static_cast<float>(force * row.coefficient[i][k]);
+  }
+}
+
+// Once per step, so that all iterations look for the same equilibrium. What walls that touch resist is not in the
+// factor: thread slides half as far as it foresees.
+void QuasiNewton::slideThreads() {
+  if (threads_have_slid_) return;
+  threads_have_slid_ = true;
+  StepperScratch& s = scratch_;
+  s.slid.setZero(static_cast<Eigen::Index>(s.rows.size()));
+  for (std::size_t r = 0; r + 1 < s.rows.size(); ++r) {
+    if (s.rows[r].thread < 0 || s.rows[r + 1].thread != s.rows[r].thread) continue;
+    const auto row = static_cast<Eigen::Index>(r);
+    s.slid[row] = kSlidePart * s.half_space.slid(static_cast<int>(r));
+    s.target[row] += s.slid[row];
+    s.target[row + 1] -= s.slid[row];
+  }
+  s.half_space.holdThreads();
+}
+
 // Two-loop recursion (Nocedal 1980) with the factor, the rows and the gas as initial inverse.
 void QuasiNewton::findDirection() {
   StepperScratch& s = scratch_;
   rowsLack();
   s.work = s.gradient;
+  // rows may bear far more than what is left to gain: of a pair that moves them by a rounding, that would be all one
+  // sees
+  if (s.pairs > 0) addRowForces(-1, s.work);
   double alpha[StepperScratch::kHistory];
   for (int i = s.pairs - 1; i >= 0; --i) {
     alpha[i] = s.curvature[i] * dot(s.move[i], s.work);
     addScaled(-alpha[i], s.change[i], s.work);
   }
+  if (s.pairs > 0) addRowForces(1, s.work);
   for (float& value : s.work) value = -value;
   s.factor->load(s.work.data(), s.half.data());
   s.factor->forward(s.half.data());
   const double swelling = gas_.control == GasLoad::Control::Volume ? gas_.target_volume - s.volume : 0;
   s.half_space.eliminate(s.wanted, swelling, s.half.data());
   lack_ = lackOfRows();
+  slideThreads();
   s.factor->backward(s.half.data());
   s.factor->store(s.half.data(), s.direction.data());
   for (int i = 0; i < s.pairs; ++i) {
@@ -143,7 +183,8 @@ void QuasiNewton::findDirection() {
 double QuasiNewton::lagrangian(double part) const {
   double sum = 0;
   for (Eigen::Index r = 0; r < scratch_.wanted.size(); ++r)
-    sum += scratch_.half_space.forces()[r] * scratch_.half_space.reached()[r] * (1 - part);
+    if (!scratch_.rows[static_cast<std::size_t>(r)].spring)
+      sum += scratch_.half_space.forces()[r] * scratch_.half_space.moves()[r] * (1 - part);
   return sum;
 }
 

@@ -37,7 +37,9 @@ class QuasiNewton {
  private:
   void findDirection();
   void rowsLack();
+  void slideThreads();
   double lackOfRows() const;
+  void addRowForces(double sign, std::vector<float>& vector) const;
   double lagrangian(double value) const;
   double advance(double most, bool verify);
   void keepPair(double part);
@@ -53,6 +55,7 @@ class QuasiNewton {
   double direction_length_ = 0, last_length_ = -1;
   double slope_ = 0;
   double first_length_ = 0;
+  bool threads_have_slid_ = false;
   bool failed_ = false, contracts_ = false;
   double lack_ = 0;  // of the rows, largest [m]
 };

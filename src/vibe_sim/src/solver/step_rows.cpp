@@ -9,7 +9,6 @@ namespace vibe {
 namespace {
 
 constexpr double kShortestSegment = 1e-6;  // that has a direction [m]
-constexpr double kLeastLength = 1e-3;      // of thread between two spots: they have a size [m]
 constexpr double kLeastTension = 1e-6;     // of a segment's resistance to being turned [N]
 
 void addContact(const ContactCondition& contact, HalfRow* rows) {
@@ -21,6 +20,7 @@ void addContact(const ContactCondition& contact, HalfRow* rows) {
     rows[k].compliance = 0;
     rows[k].friction = contact.friction;
     rows[k].thread = rows[k].spot[0] = -1;
+    rows[k].spring = false;
   }
 }
 
@@ -54,6 +54,7 @@ void addTurning(const BodyLoads& loads, int first, const Eigen::Vector3d& along,
   const Eigen::Vector3d directions[2] = {across, along.cross(across)};
   for (int k = 0; k < 2; ++k) {
     rows[k].thread = -1;
+    rows[k].spring = true;
     rows[k].friction = -1;
     rows[k].compliance = compliance;
     runBetween(loads, first, directions[k], rows[k]);
@@ -75,11 +76,12 @@ void addThread(const BodyLoads& loads, int number, const MotionView& motion, Hal
     const Eigen::Vector3d to = positionOf(loads.spots[first + 1], motion);
     HalfRow& row = rows[k];
     row.thread = number;
+    row.spring = false;
     row.friction = 0;
-    row.compliance = std::max(thread.length[k], kLeastLength) / thread.stiffness;
+    row.compliance = std::max(thread.length[k], kLeastThread) / thread.stiffness;
     runBetween(loads, first, directionOf(to - from), row);
     const double tension = std::max(thread.tension[k], kLeastTension);
-    addTurning(loads, first, row.along, std::max((to - from).norm(), kLeastLength) / tension,
+    addTurning(loads, first, row.along, std::max((to - from).norm(), kLeastThread) / tension,
                rows + thread.length.size() + 2 * k);
     if (k > 0) rows[k - 1].capstan = capstanFactor(thread.friction, turningAngle(before, from, to));
     before = from;
@@ -93,10 +95,24 @@ std::size_t threadRows(const BodyLoads& loads) {
   return sum;
 }
 
+// Where spots have met, as much thread as they are large stays between them: what slid out of it beyond that comes from
+// the nearest segments that have more.
+void fillShortSegments(std::vector<double>& length) {
+  const auto count = static_cast<int>(length.size());
+  for (int k = 0; k < count; ++k)
+    for (int away = 1; away < count && length[k] < kLeastThread; ++away)
+      for (const int from : {k - away, k + away}) {
+        if (from < 0 || from >= count) continue;
+        const double moved = std::clamp(length[from] - kLeastThread, 0.0, std::max(0.0, kLeastThread - length[k]));
+        length[from] -= moved;
+        length[k] += moved;
+      }
+}
+
 double threadTarget(const BodyLoads& loads, std::size_t row) {
   for (const ThreadLoad& thread : loads.threads) {
     const std::size_t segments = thread.length.size();
-    if (row < segments) return -std::max(thread.length[row], kLeastLength);
+    if (row < segments) return -std::max(thread.length[row], kLeastThread);
     if (row < 3 * segments) return 0;
     row -= 3 * segments;
   }
@@ -123,6 +139,7 @@ void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch&
     rows[r].coefficient = condition.coefficient;
     rows[r].compliance = condition.compliance;
     rows[r].thread = rows[r].spot[0] = -1;
+    rows[r].spring = false;
     rows[r++].friction = -1;
   }
   for (const ContactCondition& contact : loads.contacts) addContact(contact, &rows[r]), r += 3;
@@ -166,16 +183,17 @@ void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
     for (int k = 0; k < 3; ++k, ++r)
       contact.force += force[r] * scratch.rows[static_cast<std::size_t>(r)].coefficient[0];
   }
-  for (ThreadLoad& thread : loads.threads) {
+  for (ThreadLoad& thread : loads.threads) {  // its pulls, then what it has slid
     thread.tension.resize(thread.length.size());
     for (std::size_t k = 0; k < thread.length.size(); ++k, ++r) {
       thread.tension[k] = force[r];
       if (k + 1 == thread.length.size()) continue;
-      const double slid = scratch.half_space.slid(static_cast<int>(r)) / gain;
+      const double slid = scratch.slid[r] / gain;
       thread.length[k] -= slid;
       thread.length[k + 1] += slid;
     }
     r += 2 * static_cast<Eigen::Index>(thread.length.size());
+    fillShortSegments(thread.length);
   }
   loads.gas.volume = scratch.volume;
   loads.gas.pressure = scratch.pressure;

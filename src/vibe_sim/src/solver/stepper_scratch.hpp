@@ -38,6 +38,7 @@ class StepperScratch {
   int pairs = 0;
   std::vector<HalfRow> rows;
   Eigen::VectorXd target, wanted, force;
+  Eigen::VectorXd slid;             // thread that slid out of a row in this step, to the scale of the rows [m]
   double volume = 0, pressure = 0;  // of the point under evaluation
 };
 

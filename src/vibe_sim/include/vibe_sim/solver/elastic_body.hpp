@@ -57,6 +57,9 @@ struct Spot {
   bool operator==(const Spot& other) const { return node == other.node && weight == other.weight; }
 };
 
+/// Length of thread that stays between two spots, which have a size: no shorter is asked for [m].
+constexpr double kLeastThread = 2e-3;
+
 /// A thread without mass or bending that runs through spots and pulls where it is tense. It slides through the spots
 /// between its ends with Coulomb friction (capstan).
 struct ThreadLoad {
