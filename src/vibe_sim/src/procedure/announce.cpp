@@ -1,4 +1,4 @@
-#include "procedure/announce.hpp"
+#include "announce.hpp"
 
 #include <cstdio>
 #include <utility>

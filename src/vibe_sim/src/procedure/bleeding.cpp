@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "procedure/announce.hpp"
+#include "announce.hpp"
 
 namespace vibe {
 

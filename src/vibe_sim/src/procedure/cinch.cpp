@@ -1,8 +1,8 @@
-#include "procedure/cinch.hpp"
+#include "cinch.hpp"
 
 #include <string>
 
-#include "procedure/announce.hpp"
+#include "announce.hpp"
 #include "vibe_sim/procedure/bleeding.hpp"
 #include "vibe_sim/procedure/phase.hpp"
 #include "vibe_sim/procedure/thread_events.hpp"

@@ -1,9 +1,9 @@
-#include "procedure/needle_arm.hpp"
+#include "needle_arm.hpp"
 
 #include <algorithm>
 #include <string>
 
-#include "procedure/announce.hpp"
+#include "announce.hpp"
 #include "vibe_sim/procedure/bleeding.hpp"
 #include "vibe_sim/procedure/needle.hpp"
 #include "vibe_sim/procedure/phase.hpp"

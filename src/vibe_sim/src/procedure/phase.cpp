@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "procedure/announce.hpp"
+#include "announce.hpp"
 
 namespace vibe {
 

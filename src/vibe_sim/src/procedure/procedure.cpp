@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "procedure/announce.hpp"
-#include "procedure/cinch.hpp"
-#include "procedure/needle_arm.hpp"
+#include "announce.hpp"
+#include "cinch.hpp"
+#include "needle_arm.hpp"
 #include "vibe_sim/procedure/bleeding.hpp"
 #include "vibe_sim/procedure/phase.hpp"
 #include "vibe_sim/procedure/thread_events.hpp"

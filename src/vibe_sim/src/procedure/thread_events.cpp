@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "procedure/announce.hpp"
+#include "announce.hpp"
 #include "vibe_sim/procedure/bleeding.hpp"
 #include "vibe_sim/procedure/needle.hpp"
 #include "vibe_sim/procedure/phase.hpp"
