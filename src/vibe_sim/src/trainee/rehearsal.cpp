@@ -1,0 +1,80 @@
+#include "vibe_sim/trainee/rehearsal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "vibe_sim/simulator.hpp"
+#include "vibe_sim/trainee/trainee_script.hpp"
+
+namespace vibe {
+
+namespace {
+
+// mean speeds of an experienced hand, design choice [m/s], [rad/s]
+constexpr std::array<double, kJointCount> kHandSpeed{0.04, 1.2, 1.2, 1.2, 0.025, 16, 0.05};
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+}  // namespace
+
+Rehearsal::Rehearsal(std::shared_ptr<const Model> model, std::string header)
+    : model_(std::move(model)),
+      state_(initialState(*model_, model_->scene.seed)),
+      workspace_(*model_),
+      script_(std::move(header) + "actions:\n") {}
+
+void Rehearsal::act(const std::string& action) {
+  script_ += "  - " + action + "\n";
+  events_.clear();
+  play();
+  if (on_event)
+    for (const Event& event : events_) on_event(event);
+}
+
+void Rehearsal::play() {
+  const TraineeScript script = TraineeScript::parse(script_, "the rehearsed script");
+  const double dt = model_->scene.step_period;
+  while (static_cast<double>(state_.step) * dt < script.duration()) {
+    const StepInput input = script.at(static_cast<double>(state_.step) * dt);
+    step(*model_, state_, input, workspace_, events_);
+  }
+}
+
+void Rehearsal::wait(double seconds) {
+  act("{wait: " + number(seconds) + "}");
+}
+
+void Rehearsal::moveTo(const std::array<double, kJointCount>& joints, double least) {
+  double time = least;
+  std::string text;
+  for (int j = 0; j < kJointCount; ++j) {
+    if (!std::isfinite(joints[j]) || std::abs(joints[j] - joints_[j]) < 1e-6) continue;
+    time = std::max(time, std::abs(joints[j] - joints_[j]) / (pace * kHandSpeed[j]));
+    text += (text.empty() ? "" : ", ") + std::string(kJointNames[j]) + ": " + number(joints[j]);
+    joints_[j] = joints[j];
+  }
+  if (!text.empty()) act("{move: {" + text + "}, in: " + number(std::ceil(time * 20) / 20) + "}");
+}
+
+void Rehearsal::move(Joint joint, double position, double least) {
+  std::array<double, kJointCount> joints;
+  joints.fill(std::numeric_limits<double>::quiet_NaN());
+  joints[joint] = position;
+  moveTo(joints, least);
+}
+
+void Rehearsal::hold(Button button, double seconds) {
+  act("{hold: " + std::string(kButtonNames[button]) + ", for: " + number(seconds) + "}");
+}
+
+bool Rehearsal::happened(Event::Kind kind) const {
+  return std::any_of(events_.begin(), events_.end(), [kind](const Event& event) { return event.kind == kind; });
+}
+
+}  // namespace vibe
