@@ -40,7 +40,7 @@ void Session::replaceState(State new_state) {
   time.continueWith(state.step, new_state.step, model->scene.step_period);
   state = std::move(new_state);
   input = holdingInput(state);
-  recorder = MetricsRecorder(*model, state);
+  recorder.restart(*model, state);
   events.clear();
   counts = EventCounts();
 }
@@ -48,6 +48,7 @@ void Session::replaceState(State new_state) {
 void Session::replaceModel(std::shared_ptr<const Model> new_model) {
   State new_state = initialState(*new_model, new_model->scene.seed);
   workspace = std::make_unique<Workspace>(*new_model, threads);
+  recorder = MetricsRecorder(*new_model, new_state);
   model = std::move(new_model);
   ++revision;
   replaceState(std::move(new_state));

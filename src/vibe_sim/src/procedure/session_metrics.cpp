@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "vibe_sim/accounting.hpp"
 #include "vibe_sim/contact/tool_motion.hpp"
+#include "vibe_sim/procedure/skill_text.hpp"
 
 namespace vibe {
 
@@ -15,8 +17,19 @@ constexpr double kNoForce = 1e-6;      // a reaction below it is none [N]
 }  // namespace
 
 MetricsRecorder::MetricsRecorder(const Model& model, const State& start)
-    : start_balance_(energyBalance(model, start)), strain_(start.x.size()) {
-  last_tip_ = tipPosition(model, start);
+    : MetricsRecorder(model, start, SkillInstruments(model)) {}
+
+MetricsRecorder::MetricsRecorder(const Model& model, const State& start, SkillInstruments instruments)
+    : instruments_(std::move(instruments)),
+      last_tip_(tipPosition(model, start)),
+      start_balance_(energyBalance(model, start)),
+      strain_(start.x.size()),
+      skill_(instruments_, model, start, last_tip_) {
+  metrics_.skill = skill_.metrics();
+}
+
+void MetricsRecorder::restart(const Model& model, const State& start) {
+  *this = MetricsRecorder(model, start, instruments_);
 }
 
 Eigen::Vector3d MetricsRecorder::tipPosition(const Model& model, const State& state) {
@@ -47,6 +60,8 @@ void MetricsRecorder::record(const Model& model, const State& state, bool insuff
   metrics_.greatest_volume = std::max(metrics_.greatest_volume, state.volume);
   metrics_.greatest_pressure = std::max(metrics_.greatest_pressure, state.pressure);
   countEvents(events);
+  skill_.record(model, state, tip, events);
+  metrics_.skill = skill_.metrics();
   if (samples_until_-- <= 0) sample(model, state);
 }
 
@@ -99,7 +114,7 @@ std::string summarise(const SessionMetrics& m) {
                 m.releases, m.slips, m.peak_force, m.mean_force, m.volume * 1e6, m.greatest_volume * 1e6,
                 m.pressure / 133.322, m.greatest_pressure / 133.322, 100 * m.greatest_strain, m.energy_balance,
                 m.warnings);
-  return text;
+  return text + ("\n" + summarise(m.skill));
 }
 
 }  // namespace vibe

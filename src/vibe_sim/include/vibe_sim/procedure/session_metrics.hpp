@@ -4,6 +4,7 @@
 
 #include "vibe_sim/event.hpp"
 #include "vibe_sim/model.hpp"
+#include "vibe_sim/procedure/skill_metrics.hpp"
 #include "vibe_sim/state.hpp"
 
 namespace vibe {
@@ -28,12 +29,17 @@ struct SessionMetrics {
   int releases = 0;
   int slips = 0;
   int warnings = 0;  ///< warnings and recoveries
+  SkillMetrics skill;
 };
 
-/// Accumulates SessionMetrics; the only state is what it sums.
+/// Accumulates SessionMetrics; the only state is what it sums. Reads the state and changes nothing of it.
 class MetricsRecorder {
  public:
-  explicit MetricsRecorder(const Model& model, const State& start);
+  /// @param model  its organ must outlive this
+  MetricsRecorder(const Model& model, const State& start);
+
+  /// Begins afresh with another state of the same model, without the costly part of making one.
+  void restart(const Model& model, const State& start);
 
   /// Call after every step() with its events.
   void record(const Model& model, const State& state, bool insufflator_on, const std::vector<Event>& events);
@@ -41,10 +47,13 @@ class MetricsRecorder {
   const SessionMetrics& metrics() const { return metrics_; }
 
  private:
+  MetricsRecorder(const Model& model, const State& start, SkillInstruments instruments);
   void countEvents(const std::vector<Event>& events);
   void sample(const Model& model, const State& state);
   Eigen::Vector3d tipPosition(const Model& model, const State& state);
 
+  SkillInstruments instruments_;
+  std::vector<Eigen::Isometry3d> poses_;
   SessionMetrics metrics_;
   Eigen::Vector3d last_tip_ = Eigen::Vector3d::Zero();
   double force_sum_ = 0;
@@ -52,10 +61,10 @@ class MetricsRecorder {
   double start_balance_ = 0;
   int samples_until_ = 0;
   std::vector<float> strain_;
-  std::vector<Eigen::Isometry3d> poses_;
+  SkillRecorder skill_;
 };
 
-/// The metrics as lines of text for people, without a trailing newline.
+/// The metrics, skill after all else, as lines of text for people, without a trailing newline.
 std::string summarise(const SessionMetrics& metrics);
 
 }  // namespace vibe
