@@ -127,6 +127,7 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   model.solver = made.solver;
   if (model.solver->usesSubsteps()) checkSubstepsForGas(model.scene.tissue.substeps, for_gas);
   if (model.scene.scope) addTool(tool_urdf, model);
+  if (model.scene.marking) model.dose_law.emplace(model.scene.marking->apc);
   if (model.scene.suture) model.along = placesAlong(model.organ);
   if (model.scene.skin) model.skin = makeLoopSkin(model.organ.surface);
   if (progress) progress("ready", 1.0);
@@ -158,6 +159,11 @@ State initialState(const Model& model, std::uint64_t seed) {
     state.z.push_back(p.z());
   }
   state.volume = model.rest_volume;
+  if (model.scene.marking) {
+    state.procedure.heat.assign(n, 0);
+    state.procedure.dose.assign(n, 0);
+    state.procedure.grade.assign(n, 0);
+  }
   if (model.scene.gas) {
     state.gas_amount = gasAmount(model.scene.gas->initial_pressure, state.volume);
     state.pressure = gaugePressure(state.gas_amount, state.volume);

@@ -54,6 +54,12 @@ std::string findDamage(const ProcedureState& procedure, int particle_count) {
   const bool fits = doses == 0 || doses == static_cast<std::size_t>(particle_count);
   if (!fits || procedure.heat.size() != doses || procedure.grade.size() != doses)
     return "its marks are those of another organ";
+  const std::size_t bases = procedure.base_x.size();
+  const bool fitting = bases == 0 || bases == static_cast<std::size_t>(particle_count);
+  if (!fitting || procedure.base_y.size() != bases || procedure.base_z.size() != bases)
+    return "its wall before marking is that of another organ";
+  if (!allFinite(procedure.base_x) || !allFinite(procedure.base_y) || !allFinite(procedure.base_z))
+    return "its wall before marking is not a number";
   std::string damage = biteDamage(procedure.pending, particle_count);
   for (const Suture& suture : procedure.sutures)
     if (damage.empty()) damage = sutureDamage(suture, particle_count);

@@ -55,14 +55,15 @@ void visitBleeding(Archive& archive, B& bleeding) {
 
 template <class Archive, class P>
 void visitProcedure(Archive& archive, P& procedure) {
-  auto& [phase, pressed, heat, dose, grade, beam_energy, grip_rotation, grip_turns, arm_closed, needle_on_arm,
-         needle_loaded, pierced, pending, sutures, thread_used, bleedings, blood_lost] = procedure;
+  auto& [phase, pressed, heat, dose, grade, beam_energy, base_x, base_y, base_z, grip_rotation, grip_turns, arm_closed,
+         needle_on_arm, needle_loaded, pierced, pending, sutures, thread_used, bleedings, blood_lost] = procedure;
   archive.value(phase);
   archive.value(pressed);
   archive.numbers(heat);
   archive.numbers(dose);
   archive.numbers(grade);
   archive.value(beam_energy);
+  for (auto* base : {&base_x, &base_y, &base_z}) archive.numbers(*base);
   archive.value(grip_rotation);
   archive.value(grip_turns);
   archive.value(arm_closed);

@@ -6,8 +6,11 @@
 
 #include "vibe_sim/contact/helix_grip.hpp"
 #include "vibe_sim/contact/tool_motion.hpp"
+#include "vibe_sim/procedure/marking.hpp"
+#include "vibe_sim/procedure/marking_touch.hpp"
 #include "vibe_sim/procedure/procedure.hpp"
 #include "vibe_sim/procedure/thread_events.hpp"
+#include "vibe_sim/solver/gas.hpp"
 
 namespace vibe {
 
@@ -74,6 +77,7 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
   state.energy = fresh.energy;
   state.grip.clear();
   slackenThreads(state);
+  coolDown(state);
   state.tool_force.setZero();
   state.tool_torque.setZero();
   state.grip_force = 0;
@@ -83,11 +87,26 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
            events);
 }
 
+void moveTissue(const Model& model, const ToolMotion* motion, bool pedal, bool insufflator_on, State& state,
+                Workspace& workspace, StepReport& report) {
+  const MarkingScratch* marking = workspace.marking();
+  if (motion && pedal && marking && marking->touch && MarkingTouch::mayReplaceSolver(state)) {
+    motion->linkPoses(1, workspace.linkPoses());
+    marking->touch->follow(workspace.linkPoses(), state, report);
+    return;
+  }
+  MarkingTouch::handBack(state);
+  model.solver->advance(model, motion, insufflator_on, state, workspace, report);
+}
+
 }  // namespace
 
 void step(const Model& model, State& state, const StepInput& input, Workspace& workspace, std::vector<Event>& events) {
   const double dt = model.scene.step_period;
   const bool insufflator_on = model.scene.gas && (model.scene.gas->insufflator_on || input.buttons[Insufflate] != 0);
+  const bool pedal = input.buttons[ApcPedal] != 0;
+  BeamStep beam{pedal, pedal && state.procedure.pressed[ApcPedal] == 0, 0};
+  const double gas_before = state.gas_amount;
   std::optional<ToolMotion> motion;
   std::vector<Eigen::Isometry3d>& poses = workspace.linkPoses();
   if (model.tool) {
@@ -101,7 +120,8 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     commandProcedure(model, {}, input, state, events);  // says which part of the scene is missing
   }
   StepReport report;
-  model.solver->advance(model, motion ? &*motion : nullptr, insufflator_on, state, workspace, report);
+  moveTissue(model, motion ? &*motion : nullptr, pedal, insufflator_on, state, workspace, report);
+  beam.insufflation = std::max(0.0, (state.gas_amount - gas_before) / (kAmbientPressure * dt));
   workspace.toolResponse() = report.tool_response;
   ++state.step;
   state.time = static_cast<double>(state.step) * dt;
@@ -110,6 +130,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     storeForces(model, report, poses, state);
     reportContact(report.contact_count, dt, state, events);
     releaseOverloadedGrip(model, state, events);
+    if (workspace.marking()) followMarking(model, poses, beam, state, *workspace.marking(), events);
     followProcedure(model, state, events);
   }
   if (model.scene.gas) reportPressure(*model.scene.gas, insufflator_on, state, events);

@@ -16,7 +16,7 @@ namespace vibe {
 namespace {
 
 constexpr std::uint64_t kReadAtOnce = 1 << 16;  // numbers
-constexpr char kMagic[8] = {'v', 'i', 'b', 'e', 's', 'n', 'p', '2'};
+constexpr char kMagic[8] = {'v', 'i', 'b', 'e', 's', 'n', 'p', '3'};
 
 // One list of the members for both directions, so that they cannot differ.
 template <class Archive, class S>
@@ -176,7 +176,8 @@ std::uint64_t fingerprint(const Model& model) {
   rest.gas_amount = model.scene.step_period;
   rest.step = model.scene.tissue.substeps;
   for (char c : model.scene.tissue.model) rest.random = rest.random * 31 + static_cast<unsigned char>(c);
-  for (bool part : {model.scene.scope.has_value(), model.scene.helix.has_value(), model.scene.suture.has_value()})
+  for (bool part : {model.scene.scope.has_value(), model.scene.helix.has_value(), model.scene.suture.has_value(),
+                    model.scene.marking.has_value()})
     rest.random = rest.random * 2 + (part ? 1 : 0);
   return hash(rest);
 }
@@ -214,6 +215,8 @@ State loadSnapshot(const Model& model, const std::string& file) {
   transfer(reader, state);
   const std::string damage = findDamage(state.procedure, model.particle_count);
   if (!damage.empty()) throw Error("Snapshot '" + file + "' is damaged: " + damage + "; save it again.");
+  if (model.scene.marking && state.procedure.dose.empty())
+    throw Error("Snapshot '" + file + "' is damaged: its marks are missing; save it again.");
   if (in.peek() != std::ifstream::traits_type::eof())
     throw Error("Snapshot '" + file + "' is longer than a state; save it again.");
   return state;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "vibe_sim/procedure/marking.hpp"
+
 namespace vibe {
 
 struct Workspace::Arena {
@@ -15,7 +17,8 @@ struct Workspace::Arena {
 Workspace::Workspace(const Model& model, int threads)
     : threads_(std::max(threads, 1)),
       arena_(threads_ > 1 ? std::make_unique<Arena>(threads_) : nullptr),
-      solver_scratch_(model.solver->makeScratch(model)) {}
+      solver_scratch_(model.solver->makeScratch(model)),
+      marking_(model.scene.marking && model.tool ? std::make_unique<MarkingScratch>(model) : nullptr) {}
 
 Workspace::~Workspace() = default;
 

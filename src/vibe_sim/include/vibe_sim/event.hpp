@@ -13,13 +13,14 @@ struct Event {
     Slip = 3,          ///< torn off above the hold force; value: force [N]
     ContactBegin = 4,  ///< the tool touches tissue; value: particles touched
     ContactEnd = 5,
-    PressureReached = 6,   ///< the insufflator has reached its set point; value: gauge pressure [Pa]
-    Warning = 7,           ///< text says what and what to do
-    Recovery = 8,          ///< the solver met a state it could not continue from and recovered; text says how
-    Refused = 9,           ///< a command could not act; text gives the one reason and what to do; value: Button or -1
-    Mark = 10,             ///< a particle became a mark; value: dose there
-    Burn = 11,             ///< a particle became a burn scar; value: dose there
-    DeepBurn = 12,         ///< the muscularis is at risk; value: dose there
+    PressureReached = 6,  ///< the insufflator has reached its set point; value: gauge pressure [Pa]
+    Warning = 7,          ///< text says what and what to do
+    Recovery = 8,         ///< the solver met a state it could not continue from and recovered; text says how
+    Refused = 9,          ///< a command could not act; text gives the one reason and what to do; value: Button or -1
+    Mark = 10,      ///< a mark begins, apart from all others; particle: where, value: dose there [J]. Said once: a mark
+                    ///< that grows, as a line does that is drawn, says no more. So do burns:
+    Burn = 11,      ///< a burn scar begins; value: dose there [J]
+    DeepBurn = 12,  ///< the muscularis begins to be at risk; value: dose there [J]
     HelixTurned = 13,      ///< the helix is in as far as it holds best; value: turns
     Bite = 14,             ///< the exchange took the needle: a bite; particle: nearest, value: depth [m]
     BiteMissed = 15,       ///< the arm closed and met no tissue; value: gap between needle and mucosa [m]

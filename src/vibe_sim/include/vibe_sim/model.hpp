@@ -1,10 +1,12 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "vibe_sim/contact/tool_model.hpp"
 #include "vibe_sim/geometry/organ.hpp"
 #include "vibe_sim/geometry/skin.hpp"
+#include "vibe_sim/procedure/thermal_dose.hpp"
 #include "vibe_sim/scene/scene.hpp"
 #include "vibe_sim/solver/solver.hpp"
 #include "vibe_sim/tissue/tissue_model.hpp"
@@ -36,6 +38,8 @@ struct Model {
   int helix_link = -1;
   int grip_link = -1;    ///< carries the helix, which turns in it
   int needle_link = -1;  ///< its origin is the needle's point
+
+  std::optional<ThermalDose> dose_law;  ///< of the argon beam; empty without scene.marking
 
   Skin skin;  ///< empty without scene.skin
 

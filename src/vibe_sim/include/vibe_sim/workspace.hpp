@@ -8,6 +8,8 @@
 
 namespace vibe {
 
+class MarkingScratch;
+
 /// Scratch memory and threads for stepping one model. Carries nothing from one step to the next; not shared between
 /// threads of control.
 class Workspace {
@@ -23,6 +25,7 @@ class Workspace {
   /// Output of the last step beside the state: how the tissue answers the tool; nothing while nothing is touched, and
   /// with solvers that cannot tell (shape matching).
   std::optional<ToolResponse>& toolResponse() { return tool_response_; }
+  MarkingScratch* marking() { return marking_.get(); }  ///< null in a scene without marking or scope
   int threads() const { return threads_; }
 
   /// Calls body(first, last) for consecutive pieces of [0, count) of at most `grain`, on the threads of this workspace.
@@ -34,6 +37,7 @@ class Workspace {
   int threads_;
   std::unique_ptr<Arena> arena_;  // null with one thread
   std::unique_ptr<SolverScratch> solver_scratch_;
+  std::unique_ptr<MarkingScratch> marking_;
   std::vector<Eigen::Isometry3d> link_poses_;
   std::optional<ToolResponse> tool_response_;
 };

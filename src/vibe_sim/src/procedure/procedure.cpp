@@ -20,7 +20,7 @@ const char* missingPart(const Model& model, int button) {
   if (!model.tool) return "scope";
   switch (button) {
     case ApcPedal:
-      return "marking";
+      return scene.marking ? nullptr : "marking";
     case HelixGrab:
       return scene.helix ? nullptr : "helix";
     case Needle:

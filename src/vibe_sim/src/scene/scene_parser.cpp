@@ -131,6 +131,10 @@ class SceneReader {
                      "leaves every cinch loose; write a loose_tension below the cinch_tension");
       }
     }
+    if (const auto& marking = scene_.marking) {
+      checkOrder("marking.mark_energy", marking->apc.mark_energy, "marking.burn_energy", marking->apc.burn_energy);
+      checkOrder("marking.burn_energy", marking->apc.burn_energy, "marking.deep_energy", marking->apc.deep_energy);
+    }
     const auto& bleeding = scene_.bleeding;
     if (bleeding && bleeding->mild_probability + bleeding->brisk_probability > 1) {
       source_.fail(written("bleeding.mild_probability", "bleeding.brisk_probability"),

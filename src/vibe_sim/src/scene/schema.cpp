@@ -71,6 +71,7 @@ Scene completeScene(const Scene& scene) {
   if (!full.helix) full.helix.emplace();
   if (!full.suture) full.suture.emplace();
   if (!full.bleeding) full.bleeding.emplace();
+  if (!full.marking) full.marking.emplace();
   return full;
 }
 

@@ -5,7 +5,7 @@
 
 namespace vibe {
 
-/// Rows of the sections helix, suture and bleeding: what the procedure adds to the organ and the scope.
+/// Rows of the sections helix, suture, bleeding and marking: what the procedure adds to the organ and the scope.
 std::vector<SchemaRow> procedureRows();
 
 }  // namespace vibe

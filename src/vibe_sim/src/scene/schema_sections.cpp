@@ -36,6 +36,11 @@ const std::vector<SchemaSection>& sceneSections() {
       {"bleeding", "Bleeding after a bite, drawn from the seed; needs `suture`. Without it no bite bleeds.",
        [](Scene& s) { s.bleeding.emplace(); }, [](const Scene& s) { return s.bleeding.has_value(); }, "suture",
        "whose bites bleed"},
+      {"marking",
+       "Argon plasma coagulation from a probe in the scope: marks and burns ([marking.md](marking.md)); needs `scope`. "
+       "Without it the pedal does nothing.",
+       [](Scene& s) { s.marking.emplace(); }, [](const Scene& s) { return s.marking.has_value(); }, "scope",
+       "whose tip carries the probe"},
   };
   return sections;
 }

@@ -19,6 +19,8 @@ constexpr Dimension kTime{0, 0, 1, 0};
 constexpr Dimension kRate{0, 0, -1, 0};
 constexpr Dimension kForce{1, 1, -2, 0};
 constexpr Dimension kPressure{-1, 1, -2, 0};
+constexpr Dimension kEnergy{2, 1, -2, 0};
+constexpr Dimension kPower{2, 1, -3, 0};
 constexpr Dimension kAngle{0, 0, 0, 1};
 
 struct Symbol {
@@ -62,6 +64,10 @@ constexpr Symbol kSymbols[] = {
     {"bar", 1e5, kPressure},
     {"mbar", 1e2, kPressure},
     {"mmHg", 133.322387415, kPressure},
+    {"J", 1, kEnergy},
+    {"kJ", 1e3, kEnergy},
+    {"W", 1, kPower},
+    {"kW", 1e3, kPower},
     {"rad", 1, kAngle},
     {"mrad", 1e-3, kAngle},
     {"deg", kPi / 180, kAngle},
@@ -91,6 +97,8 @@ constexpr Measure kMeasures[] = {
     {"m^3/s", "a flow", "5e-5 (m^3/s), 3 L/min or 50 mL/s"},
     {"m/s", "a speed", "0.02 (m/s), 2 cm/s or 20 mm/s"},
     {"m/s^2", "an acceleration", "-9.81 (m/s^2) or 9.81 N/kg"},
+    {"J", "an energy", "25 (J) or 0.6 kJ"},
+    {"W", "a power", "40 (W) or 40 W"},
     {"rad", "an angle", "1.57 (rad), 90 deg or 3 turns"},
     {"rad/s", "an angular speed", "0.5 (rad/s) or 30 deg/s"},
 };

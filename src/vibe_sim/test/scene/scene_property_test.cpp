@@ -52,6 +52,12 @@ void repair(Scene& scene) {
     if (s.cinch_tension > s.thread_strength) std::swap(s.cinch_tension, s.thread_strength);
     if (s.loose_tension >= s.cinch_tension) s.loose_tension = s.cinch_tension / 2;
   }
+  if (scene.marking) {
+    ApcParameters& apc = scene.marking->apc;
+    if (apc.burn_energy > apc.deep_energy) std::swap(apc.burn_energy, apc.deep_energy);
+    if (apc.mark_energy > apc.burn_energy) std::swap(apc.mark_energy, apc.burn_energy);
+    if (apc.burn_energy > apc.deep_energy) std::swap(apc.burn_energy, apc.deep_energy);
+  }
   if (scene.bleeding) scene.bleeding->mild_probability *= 1 - scene.bleeding->brisk_probability;
 }
 

@@ -26,6 +26,12 @@ inline void makeRoom(const std::string& key, Scene& scene) {
   if (scene.suture && key == "suture.cinch_tension") scene.suture->thread_strength = 1000;
   if (scene.suture && key == "suture.thread_strength") scene.suture->loose_tension = 0;
   if (scene.suture && key == "suture.thread_strength") scene.suture->cinch_tension = 0.02;
+  if (scene.marking && key == "marking.mark_energy")
+    scene.marking->apc.burn_energy = scene.marking->apc.deep_energy = 1e5;
+  if (scene.marking && key == "marking.burn_energy") scene.marking->apc.mark_energy = 1e-3;
+  if (scene.marking && key == "marking.burn_energy") scene.marking->apc.deep_energy = 1e5;
+  if (scene.marking && key == "marking.deep_energy")
+    scene.marking->apc.mark_energy = scene.marking->apc.burn_energy = 1e-3;
   if (scene.bleeding && key == "bleeding.mild_probability") scene.bleeding->brisk_probability = 0;
   if (scene.bleeding && key == "bleeding.brisk_probability") scene.bleeding->mild_probability = 0;
 }

@@ -41,6 +41,7 @@ ProcedureState busyProcedure(int particles) {
   p.dose.assign(static_cast<std::size_t>(particles), 30.f);
   p.grade.assign(static_cast<std::size_t>(particles), 1);
   p.beam_energy = 800;
+  for (auto* base : {&p.base_x, &p.base_y, &p.base_z}) base->assign(static_cast<std::size_t>(particles), 0.25);
   p.grip_rotation = 4;
   p.grip_turns = 2.5;
   p.arm_closed = true;
@@ -82,6 +83,9 @@ std::vector<std::pair<const char*, Change>> changes() {
       {"dose", [](P& p) { p.dose[0] = 31; }},
       {"grade", [](P& p) { p.grade[7] = 2; }},
       {"beam_energy", [](P& p) { p.beam_energy += 1e-9; }},
+      {"base_x", [](P& p) { p.base_x[5] = 0; }},
+      {"base_y", [](P& p) { p.base_y[41] = 0; }},
+      {"base_z", [](P& p) { p.base_z[0] = 0; }},
       {"grip_rotation", [](P& p) { p.grip_rotation = -4; }},
       {"grip_turns", [](P& p) { p.grip_turns = 2; }},
       {"arm_closed", [](P& p) { p.arm_closed = false; }},

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vibe_sim/geometry/anatomy.hpp"
+#include "vibe_sim/procedure/apc_parameters.hpp"
 
 namespace vibe {
 
@@ -95,8 +96,8 @@ struct HelixScene {
 /// Needle, thread, T-tag and cinch of the suturing device.
 struct SutureScene {
   double bite_radius = 4e-3;                 ///< the thread pulls on the particles this near to a bite [m]
-  double thread_stiffness = 240;             ///< force per strain [N]
-  double thread_friction = 0.1;              ///< Coulomb coefficient thread on tissue [1]
+  double thread_stiffness = 323;             ///< force per strain, see polypropylene20() [N]
+  double thread_friction = 0.15;             ///< Coulomb coefficient thread on tissue [1]
   double thread_strength = 14.1;             ///< breaks above this tension [N]
   double thread_length = 1.2;                ///< of one thread, from the T-tag to where the device lets it go [m]
   double pull_out_force = 8.0;               ///< tears out of a full-thickness bite above this force [N]
@@ -106,6 +107,8 @@ struct SutureScene {
   double cinch_tension = 3.0;                ///< at which the cinch stops drawing [N]
   double loose_tension = 0.5;                ///< a cinch released below this is loose [N]
   std::string pulling = "thread";            ///< how a set pulls: `thread`, or `groups` (ViBE prototype)
+  double strain_limit = 0.5;                 ///< of the wall at which `groups` stops drawing [1]
+  int group_particles = 5;                   ///< most per group of techniques other than U and Z
   std::string technique_rule = "corrected";  ///< or `printed`: equation 2 of the ViBE prototype to the letter
 };
 
@@ -117,6 +120,14 @@ struct BleedingScene {
   double brisk_rate = 2.5e-7;       ///< [m^3/s]
   double mild_duration = 60;        ///< after which mild bleeding stops by itself [s]
   double brisk_time = 90;           ///< within which the suture is to be completed [s]
+};
+
+/// Argon plasma coagulation from a probe in the scope.
+struct MarkingScene {
+  ApcParameters apc;
+  /// What the wall does while the pedal is down: `solver`, as ever; `gradient`, it gives way in the gradient domain
+  /// (ViBE prototype).
+  std::string deformation = "solver";
 };
 
 /// What the user wrote, validated. An absent part costs nothing at run time.
@@ -136,6 +147,7 @@ struct Scene {
   std::optional<HelixScene> helix;
   std::optional<SutureScene> suture;
   std::optional<BleedingScene> bleeding;
+  std::optional<MarkingScene> marking;
   bool skin = false;  ///< finer render surface
 };
 
