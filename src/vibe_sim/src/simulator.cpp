@@ -89,14 +89,11 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
 
 void moveTissue(const Model& model, const ToolMotion* motion, bool pedal, bool insufflator_on, State& state,
                 Workspace& workspace, StepReport& report) {
-  const MarkingScratch* marking = workspace.marking();
-  if (motion && pedal && marking && marking->touch && MarkingTouch::mayReplaceSolver(state)) {
-    motion->linkPoses(1, workspace.linkPoses());
-    marking->touch->follow(workspace.linkPoses(), state, report);
-    return;
-  }
-  MarkingTouch::handBack(state);
-  model.solver->advance(model, motion, insufflator_on, state, workspace, report);
+  const auto solve = [&] { model.solver->advance(model, motion, insufflator_on, state, workspace, report); };
+  MarkingTouch* touch = motion && workspace.marking() ? workspace.marking()->touch.get() : nullptr;
+  if (!touch) return solve();
+  if (pedal && MarkingTouch::mayReplaceSolver(state)) return touch->follow(*motion, state, report);
+  touch->handBack(*motion, solve, state);
 }
 
 }  // namespace

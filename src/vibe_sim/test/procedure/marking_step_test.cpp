@@ -297,6 +297,36 @@ TEST(MarkingStep, NoMemoryIsAskedForOnceItRuns) {
   EXPECT_EQ(test::allocations, before) << "while nothing new happens not with the pedal down either";
 }
 
+/// How far the fastest particle goes in a step.
+double largestMove(Stage& stage) {
+  const State before = stage.state;
+  stage.step(stage.input);
+  double largest = 0;
+  for (int i = 0; i < stage.model->particle_count; ++i)
+    largest = std::max(largest, (stage.position(i) - Eigen::Vector3d(before.x[i], before.y[i], before.z[i])).norm());
+  return largest;
+}
+
+TEST(MarkingGradient, FollowsTheToolAndHandsBackWithoutAJump) {
+  Stage stage(gradientScene(), -5e-3);
+  stage.press(0.5);
+  EXPECT_FALSE(stage.state.procedure.base_x.empty());
+  stage.placeTip(-14e-3);  // 4 mm into the wall
+  for (int k = 0; k < 60; ++k) EXPECT_LT(largestMove(stage), 3.5e-3) << "as fast as the tool, 2.5 mm a step";
+  EXPECT_GT(stage.greatestShift(), 2e-3);
+  EXPECT_LT(stage.greatestShift(), 6e-3);
+  EXPECT_GT(stage.state.contact_count, 0);
+  EXPECT_EQ(stage.state.tool_force.norm(), 0) << "shape without mechanics";
+  EXPECT_EQ(*std::max_element(stage.state.vz.begin(), stage.state.vz.end()), 0);
+  const double pushed = stage.greatestShift();
+  stage.input.buttons[ApcPedal] = 0;
+  for (int k = 0; k < 60; ++k) EXPECT_LT(largestMove(stage), 1e-3) << k;
+  EXPECT_TRUE(stage.state.procedure.base_x.empty());
+  EXPECT_GT(stage.state.tool_force.norm(), 0.01) << "the shell takes over and is felt";
+  EXPECT_NEAR(stage.greatestShift(), pushed, 1e-3) << "the tool is still there";
+  EXPECT_EQ(stage.count(Kind::Recovery), 0);
+}
+
 TEST(MarkingGradient, SpringsBackWhereTheToolLeavesAndTheSolverAgreesWhereNothingIsTouched) {
   Stage gradient(gradientScene(), -13e-3), solver(markingScene(), -13e-3);
   for (Stage* stage : {&gradient, &solver}) {

@@ -1,4 +1,5 @@
 #include "vibe_sim/scene/scene_parser.hpp"
+#include "vibe_sim/suture/thread_material.hpp"
 
 #include <gtest/gtest.h>
 
@@ -100,11 +101,36 @@ TEST(SceneParser, PartsThatNeedEachOther) {
   EXPECT_ERROR(parsed("name: x\nhelix: {}"), "dir/s.yaml:2: helix: needs the section 'scope'");
   EXPECT_ERROR(parsed("scope: {}\nsuture: {}"), "dir/s.yaml:2: suture: needs the section 'helix'");
   EXPECT_ERROR(parsed("scope: {}\nhelix: {}\nbleeding: {}"), "dir/s.yaml:3: bleeding: needs the section 'suture'");
+  EXPECT_ERROR(parsed("name: x\nmarking: {}"), "dir/s.yaml:2: marking: needs the section 'scope'");
   EXPECT_EQ(errorOf([] { parsed("bleeding: {}\nsuture: {}\nhelix: {}\nscope: {}"); }), "no error");
   EXPECT_ERROR(parsed("geometry: {kind: mesh}"), "geometry: lacks the key 'file'");
   EXPECT_ERROR(parsed("geometry: {kind: mesh, file: a.obj, landmarks: {pylorus: [1, 2, 3]}}"),
                "lacks the key 'oesophagus'");
   EXPECT_EQ(errorOf([] { parsed("scope: {}\nhelix: {}"); }), "no error");
+}
+
+TEST(SceneParser, MarkingHasUnitsAndItsEnergiesAnOrder) {
+  const Scene scene = parsed("scope: {}\nmarking: {power: 20 W, argon_flow: 1.2 L/min, burn_energy: 0.6 kJ}");
+  ASSERT_TRUE(scene.marking);
+  EXPECT_DOUBLE_EQ(scene.marking->apc.power, 20);
+  EXPECT_DOUBLE_EQ(scene.marking->apc.argon_flow, 2e-5);
+  EXPECT_DOUBLE_EQ(scene.marking->apc.burn_energy, 600);
+  EXPECT_EQ(scene.marking->deformation, "solver");
+  EXPECT_ERROR(parsed("scope: {}\nmarking: {mark_energy: 500}"),
+               "marking.mark_energy: is 500 J, but marking.burn_energy");
+  EXPECT_ERROR(parsed("scope: {}\nmarking: {burn_energy: 900}"),
+               "marking.burn_energy: is 900 J, but marking.deep_energy");
+  EXPECT_ERROR(parsed("scope: {}\nmarking: {deep_energy: 400}"),
+               "marking.deep_energy: is 400 J, but marking.burn_energy");
+  EXPECT_ERROR(parsed("scope: {}\nmarking: {deformation: shell}"), "solver");
+}
+
+/// The scene has rounded figures of the material whose source is told there.
+TEST(SceneParser, TheThreadIsThatOfItsSource) {
+  const ThreadMaterial material = polypropylene20();
+  EXPECT_NEAR(SutureScene{}.thread_stiffness, material.axialStiffness(), 0.5);
+  EXPECT_EQ(SutureScene{}.thread_friction, material.tissue_friction);
+  EXPECT_NEAR(SutureScene{}.thread_strength, material.breaking_force, 0.05);
 }
 
 Scene withSuture(const std::string& suture, const std::string& bleeding = "") {

@@ -1,8 +1,10 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <functional>
 #include <vector>
 
 #include "vibe_sim/contact/tool_collision.hpp"
+#include "vibe_sim/contact/tool_motion.hpp"
 #include "vibe_sim/model.hpp"
 #include "vibe_sim/solver/solver.hpp"
 #include "vibe_sim/state.hpp"
@@ -13,7 +15,8 @@ namespace vibe {
 /// In place of the solver while the pedal is down (marking.deformation: gradient): the wall as it was when the pedal
 /// went down gives way to the tool and to what the helix holds, see GradientTouch and its limits. Nothing has a speed,
 /// threads do not pull, no force is felt, the insufflator pauses and the energy account stands still. When the pedal
-/// comes up the solver goes on from the shape that is there.
+/// comes up the solver goes on from the shape that is there, which is none of its own: its first steps are shortened
+/// until they are small by themselves.
 ///
 /// Not used while a cinch draws thread or a lost wall is led home: both need the solver.
 class MarkingTouch {
@@ -24,19 +27,23 @@ class MarkingTouch {
   static bool mayReplaceSolver(const State& state);
 
   /// One step.
-  /// @param link_poses  of the tool's links in world at the end of the step
-  void follow(const std::vector<Eigen::Isometry3d>& link_poses, State& state, StepReport& report);
+  void follow(const ToolMotion& motion, State& state, StepReport& report);
 
-  /// Before a step of the solver: it takes the wall over where the gradient domain left it.
-  static void handBack(State& state);
+  /// One step of the solver, which takes the wall over where the gradient domain has left it. No particle goes farther
+  /// than 0.8 mm and the way of the tool.
+  void handBack(const ToolMotion& motion, const std::function<void()>& solver_step, State& state);
 
  private:
-  void find(const std::vector<Eigen::Isometry3d>& link_poses, const State& state, const std::vector<double>& x,
-            const std::vector<double>& y, const std::vector<double>& z, std::vector<Touch>& touches);
+  void limitStep(double farthest, State& state) const;
+  void storeBase(State& state) const;
+  void updateGas(State& state) const;
+  void find(const State& state, const std::vector<double>& x, const std::vector<double>& y,
+            const std::vector<double>& z, std::vector<Touch>& touches);
 
   const Model& model_;
   ToolCollision collision_;
   GradientTouch touch_;
+  std::vector<Eigen::Isometry3d> old_poses_, poses_;  // of the tool's links in world, about a step
 };
 
 }  // namespace vibe

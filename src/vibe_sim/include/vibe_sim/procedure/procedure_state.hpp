@@ -33,7 +33,8 @@ struct ProcedureState {
   std::vector<float> dose;          ///< see thermal_dose.hpp
   std::vector<std::uint8_t> grade;  ///< BurnGrade reached
   double beam_energy = 0;           ///< given to the tissue so far [J]
-  /// The wall before the pedal went down, while it gives way in the gradient domain, else empty; (particle count) [m].
+  /// The wall before the pedal went down, while it gives way in the gradient domain; as the solver takes it over, the
+  /// wall before the last step; else empty. (particle count) [m]
   std::vector<double> base_x, base_y, base_z;
 
   // helix
