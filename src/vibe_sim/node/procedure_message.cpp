@@ -1,6 +1,8 @@
 #include "procedure_message.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 #include "conversions.hpp"
 #include "vibe_sim/procedure/thermal_dose.hpp"
@@ -28,6 +30,7 @@ void countSuture(const Suture& suture, const Scene& scene, vibe_msgs::ProcedureS
   message.sutures_broken += suture.stage == Suture::Stage::Broken ? 1 : 0;
   if (suture.stage >= Suture::Stage::Tagged) {
     message.techniques.emplace_back(toString(static_cast<Technique>(suture.technique)));
+    message.technique_margins.push_back(suture.technique_margin);
   }
 }
 
@@ -56,6 +59,80 @@ void addCounts(const EventCounts& counts, vibe_msgs::ProcedureState& message) {
 /// Contact comes and goes too often to be told at once.
 std::uint64_t countTold(const EventCounts& counts) {
   return counts.total() - counts.of(Event::Kind::ContactBegin) - counts.of(Event::Kind::ContactEnd);
+}
+
+double valueOrNan(std::optional<double> value) {
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+double peakForce(const ForceMeasures& force) {
+  return valueOrNan(force.loaded_time > 0 ? std::optional<double>(force.peak) : std::nullopt);
+}
+
+void addPhases(const PhasesSkill& phases, vibe_msgs::ProcedureState& message) {
+  for (std::size_t k = 0; k < phases.phase.size(); ++k) {
+    const PhaseSkill& skill = phases.phase[k];
+    message.phase_time[k] = skill.time;
+    message.phase_path_length[k] = skill.motion.path_length;
+    message.phase_log_dimensionless_jerk[k] = valueOrNan(skill.motion.log_dimensionless_jerk);
+    message.phase_spectral_arc_length[k] = valueOrNan(skill.motion.spectral_arc_length);
+    message.phase_submovements[k] = static_cast<std::uint32_t>(skill.motion.submovements);
+    message.phase_economy[k] = valueOrNan(skill.motion.economy);
+    message.phase_peak_force[k] = peakForce(skill.force);
+    message.phase_mean_force[k] = valueOrNan(skill.force.mean);
+    message.phase_time_above[k] = skill.force.time_above;
+  }
+  message.log_dimensionless_jerk = valueOrNan(phases.whole.motion.log_dimensionless_jerk);
+  message.spectral_arc_length = valueOrNan(phases.whole.motion.spectral_arc_length);
+  message.submovements = static_cast<std::uint32_t>(phases.whole.motion.submovements);
+  message.economy = valueOrNan(phases.whole.motion.economy);
+  message.time_above = phases.whole.force.time_above;
+}
+
+void addMarks(const MarkSkill& marks, vibe_msgs::ProcedureState& message) {
+  const auto on = [&marks](Wall wall) {
+    return static_cast<std::uint32_t>(marks.wall[static_cast<std::size_t>(wall)]);
+  };
+  message.mark_zones = static_cast<std::uint32_t>(marks.zones);
+  message.mark_zones_inside = static_cast<std::uint32_t>(marks.inside);
+  message.mark_zones_anterior = on(Wall::Anterior);
+  message.mark_zones_greater_curvature = on(Wall::GreaterCurvature);
+  message.mark_zones_posterior = on(Wall::Posterior);
+  message.burn_zones = static_cast<std::uint32_t>(marks.burns);
+  message.deep_burn_zones = static_cast<std::uint32_t>(marks.deep_burns);
+}
+
+void addBites(const BiteSkill& bites, vibe_msgs::ProcedureState& message) {
+  message.bite_spacing_mean = valueOrNan(bites.spacing_mean);
+  message.bite_spacing_sd = valueOrNan(bites.spacing_sd);
+  message.bite_depth_mean = valueOrNan(bites.depth_mean);
+  message.bite_depth_sd = valueOrNan(bites.depth_sd);
+  message.full_thickness_share = valueOrNan(bites.full_thickness_share);
+  message.bites_in_antrum = static_cast<std::uint32_t>(bites.in_antrum);
+  message.bites_in_fundus = static_cast<std::uint32_t>(bites.in_fundus);
+  message.bites_proximal = valueOrNan(bites.bites_proximal);
+  message.sets_proximal = valueOrNan(bites.sets_proximal);
+}
+
+void addOrgan(const OrganSkill& organ, vibe_msgs::ProcedureState& message) {
+  message.organ_reference = toString(organ.reference);
+  message.reference_pressure = organ.reference_pressure;
+  message.organ_pressure = organ.pressure;
+  message.lumen_area = valueOrNan(organ.now ? organ.now->mean_area : std::nullopt);
+  message.organ_length = valueOrNan(organ.now ? organ.now->length : std::nullopt);
+  message.area_reduction = valueOrNan(organ.area_reduction);
+  message.volume_reduction = valueOrNan(organ.volume_reduction);
+  message.length_reduction = valueOrNan(organ.length_reduction);
+}
+
+void addSkill(const SkillMetrics& skill, vibe_msgs::ProcedureState& message) {
+  addPhases(skill.phases, message);
+  addMarks(skill.marks, message);
+  addBites(skill.bites, message);
+  addOrgan(skill.organ, message);
+  message.mild_bleedings = static_cast<std::uint32_t>(skill.bleeding.mild);
+  message.brisk_bleedings = static_cast<std::uint32_t>(skill.bleeding.brisk);
+  message.broken_threads = static_cast<std::uint32_t>(skill.mistakes.broken_threads);
 }
 
 }  // namespace
@@ -92,6 +169,7 @@ vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunSt
   message.warnings = static_cast<std::uint32_t>(metrics.warnings);
   addProcedure(session.state.procedure, session.model->scene, message);
   addCounts(session.counts, message);
+  addSkill(metrics.skill, message);
   return message;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "worlds.hpp"
 
 namespace vibe {
@@ -23,6 +25,13 @@ class ProcedureMessage : public ::testing::Test {
     std::vector<Event> events;
     for (Event::Kind kind : kinds) events.emplace_back().kind = kind;
     session.counts.record(events);
+  }
+
+  /// A step that leads to the present state, with these events.
+  void record(std::initializer_list<Event::Kind> kinds = {}) {
+    std::vector<Event> events;
+    for (Event::Kind kind : kinds) events.emplace_back().kind = kind;
+    session.recorder.record(*session.model, session.state, false, events);
   }
 
   vibe_msgs::ProcedureState message() const { return makeProcedureState(session, {}); }
@@ -99,6 +108,91 @@ TEST_F(ProcedureMessage, countsEventsAndForgetsThemWithTheState) {
   EXPECT_EQ(message().overdue_bleedings, 1u);
   session.replaceState(session.state);
   EXPECT_EQ(message().refused + message().missed_bites, 0u);
+}
+
+TEST_F(ProcedureMessage, whatIsNotDefinedYetIsNan) {
+  const vibe_msgs::ProcedureState m = message();
+  for (double value :
+       {m.economy, m.log_dimensionless_jerk, m.spectral_arc_length, m.bite_spacing_mean, m.bite_spacing_sd,
+        m.bite_depth_mean, m.bite_depth_sd, m.full_thickness_share, m.bites_proximal, m.sets_proximal, m.lumen_area,
+        m.organ_length, m.area_reduction, m.length_reduction, m.phase_economy[0], m.phase_peak_force[4],
+        m.phase_mean_force[2], m.phase_log_dimensionless_jerk[1], m.phase_spectral_arc_length[3]})
+    EXPECT_TRUE(std::isnan(value));
+  EXPECT_EQ(m.phase_time[0] + m.time_above + m.volume_reduction, 0);
+  EXPECT_EQ(m.mark_zones + m.mild_bleedings + m.broken_threads + m.submovements, 0u);
+  EXPECT_EQ(m.organ_reference, "rest");
+}
+
+TEST_F(ProcedureMessage, timesAndForcesStandAtTheirPhase) {
+  const double dt = session.model->scene.step_period;
+  session.state.tool_force = Eigen::Vector3d(0, 6, 0);
+  record();
+  procedure.phase = Phase::Pull;
+  session.state.tool_force = Eigen::Vector3d(0, 0, 2);
+  record();
+  record();
+  const vibe_msgs::ProcedureState m = message();
+  EXPECT_NEAR(m.phase_time[0], dt, 1e-12);
+  EXPECT_NEAR(m.phase_time[3], 2 * dt, 1e-12);
+  EXPECT_EQ(m.phase_time[2], 0);
+  EXPECT_EQ(m.phase_peak_force[0], 6);
+  EXPECT_EQ(m.phase_mean_force[3], 2);
+  EXPECT_NEAR(m.phase_time_above[0], dt, 1e-12);
+  EXPECT_EQ(m.phase_time_above[3], 0);
+  EXPECT_NEAR(m.time_above, dt, 1e-12);
+}
+
+TEST_F(ProcedureMessage, tellsHowBitesLie) {
+  Suture& suture = addSuture(Suture::Stage::Tagged, 3, 1);
+  suture.technique = 1;
+  suture.technique_margin = 0.5;
+  for (int k = 0; k < 4; ++k) {
+    suture.bites[k].particle = {k};
+    suture.bites[k].weight = {1};
+    suture.bites[k].along = k == 3 ? 0.8 : 0.7 - 0.1 * k;
+  }
+  suture.bites[0].region = Region::Antrum;
+  suture.bites[1].region = suture.bites[2].region = Region::Fundus;
+  record({Event::Kind::Bite});
+  const vibe_msgs::ProcedureState m = message();
+  EXPECT_DOUBLE_EQ(m.full_thickness_share, 0.75);
+  EXPECT_DOUBLE_EQ(m.bite_depth_mean, 2.5e-3);
+  EXPECT_DOUBLE_EQ(m.bite_depth_sd, 1e-3);
+  EXPECT_GT(m.bite_spacing_mean, 0);
+  EXPECT_GE(m.bite_spacing_sd, 0);
+  EXPECT_DOUBLE_EQ(m.bites_proximal, 2.0 / 3);
+  EXPECT_TRUE(std::isnan(m.sets_proximal));
+  EXPECT_EQ(m.bites_in_antrum, 1u);
+  EXPECT_EQ(m.bites_in_fundus, 2u);
+  EXPECT_EQ(m.technique_margins, std::vector<double>{0.5});
+}
+
+TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
+  procedure.grade.assign(session.state.x.size(), 0);
+  procedure.grade[0] = 3;
+  procedure.bleedings.resize(3);
+  procedure.bleedings[1].brisk = true;
+  for (auto* coordinate : {&session.state.x, &session.state.y, &session.state.z})
+    for (double& value : *coordinate) value *= 0.5;
+  session.state.pressure = 1000;
+  record({Event::Kind::PressureReached, Event::Kind::DeepBurn, Event::Kind::ThreadBroke, Event::Kind::ThreadBroke});
+  vibe_msgs::ProcedureState m = message();
+  EXPECT_EQ(m.mark_zones, 1u);
+  EXPECT_EQ(m.mark_zones_inside, 1u);
+  EXPECT_EQ(m.mark_zones_anterior, 1u);
+  EXPECT_EQ(m.mark_zones_greater_curvature + m.mark_zones_posterior, 0u);
+  EXPECT_EQ(m.burn_zones, 1u);
+  EXPECT_EQ(m.deep_burn_zones, 1u);
+  EXPECT_EQ(m.mild_bleedings, 2u);
+  EXPECT_EQ(m.brisk_bleedings, 1u);
+  EXPECT_EQ(m.broken_threads, 2u);
+  EXPECT_EQ(m.organ_reference, "set point");
+  EXPECT_EQ(m.reference_pressure, 1000);
+  EXPECT_EQ(m.organ_pressure, 1000);
+  EXPECT_NEAR(m.volume_reduction, 0, 1e-12);
+  for (double& value : session.state.x) value *= 0.5;
+  for (int k = 0; k < std::lround(1 / session.model->scene.step_period); ++k) record();
+  EXPECT_NEAR(message().volume_reduction, 0.5, 1e-9);
 }
 
 TEST_F(ProcedureMessage, everyEventButContactIsToldAtOnce) {
