@@ -1,0 +1,54 @@
+#pragma once
+#include <cstdint>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "suture/set_layout.hpp"
+#include "suture/suture_session.hpp"
+
+namespace vibe {
+
+/// Times of some steps [ms].
+struct StepTimes {
+  double mean = 0, p50 = 0, p99 = 0, max = 0;
+};
+StepTimes timesOf(std::vector<double> costs);
+
+/// A straight line through (0, y[0]), (1, y[1]), ... by least squares.
+struct Slope {
+  double per_step = 0, error = 0;  ///< standard error; 0 for fewer than 3 points
+};
+Slope slopeOf(const std::vector<double>& y);
+
+/// One set of a scenario. The runs differ in time only: what else the machine does makes a step dearer, never cheaper,
+/// so of each step the cheapest run counts. `median` is of the runs, step by step.
+struct ScenarioRow {
+  SewnSet set;
+  StepTimes pulling, after;   ///< CPU of the thread that steps
+  double pulling_median = 0;  ///< mean over the steps of the runs' medians [ms]
+  double pulling_wall = 0;    ///< mean of the wall time [ms]
+};
+
+struct ScenarioResult {
+  std::string name;
+  SetLayout layout;
+  double reference = 0;  ///< solver ms per frame that the ViBE prototype reports
+  std::vector<ScenarioRow> rows;
+  double real_time_factor = 0;  ///< simulated over wall time of the sets, whole steps of one thread after the other
+  bool crossed = false;         ///< walls went through one another by the end
+  std::uint64_t state_hash = 0;
+};
+
+/// Sews all sets of a layout on a model, `repeats` times.
+/// @throws Error if the runs do not end with the same bits
+ScenarioResult runScenario(const std::shared_ptr<const Model>& model, const SetLayout& layout, const std::string& name,
+                           int repeats, std::ostream& log);
+
+void printScenario(const ScenarioResult& result, std::ostream& out);
+void writeScenarios(const std::vector<ScenarioResult>& results, std::ostream& out);  ///< CSV, a line per set
+
+/// Name of the processor as the system gives it.
+std::string processorName();
+
+}  // namespace vibe
