@@ -1,14 +1,18 @@
 #include "vibe_sim/procedure/skill_metrics.hpp"
 
-#include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "vibe_sim/error.hpp"
 
 namespace vibe {
 namespace {
 
-bool changesMarks(const Event& event) {
-  return event.kind == Event::Kind::Mark || event.kind == Event::Kind::Burn || event.kind == Event::Kind::DeepBurn;
+constexpr double kMarkPeriod = 0.1;  // of counting marks that grow [s]
+
+// Grades only rise, so it changes whenever one of them does.
+long sumOf(const std::vector<std::uint8_t>& grades) {
+  return std::accumulate(grades.begin(), grades.end(), 0L);
 }
 
 }  // namespace
@@ -51,7 +55,7 @@ void SkillRecorder::record(const Model& model, const State& state, const Eigen::
   metrics_.phases = phases_.measures();
   organ_.record(model, state, events);
   metrics_.organ = organ_.measures();
-  if (std::any_of(events.begin(), events.end(), changesMarks)) countMarks(state);
+  followMarks(model, state);
   if (events.empty()) {
     followSets(state.procedure.sutures, metrics_.sets);
   } else {
@@ -62,7 +66,15 @@ void SkillRecorder::record(const Model& model, const State& state, const Eigen::
   metrics_.bleeding.lost = state.procedure.blood_lost;
 }
 
+// Not by events: a mark that grows into another, or out of the working zone, is none.
+void SkillRecorder::followMarks(const Model& model, const State& state) {
+  const bool due = ++steps_ >= std::lround(kMarkPeriod / model.scene.step_period);
+  if (due && sumOf(state.procedure.grade) != counted_grades_) countMarks(state);
+}
+
 void SkillRecorder::countMarks(const State& state) {
+  steps_ = 0;
+  counted_grades_ = sumOf(state.procedure.grade);
   metrics_.marks = marks_->count(state.procedure.grade, state.x, state.y, state.z);
 }
 

@@ -97,8 +97,8 @@ std::optional<double> volumeOf(const std::optional<OrganMeasures>& measures) {
 
 std::string organLines(const OrganSkill& o) {
   if (!o.fault.empty()) return "organ                     -     " + o.fault + "\n";
-  return format("organ              %8.1f mmHg now, against the %s at %.1f mmHg\n", o.pressure / kPascalPerMmHg,
-                toString(o.reference), o.reference_pressure / kPascalPerMmHg) +
+  return format("organ              %8.1f mmHg now   %.1f mmHg before (%s)\n", o.pressure / kPascalPerMmHg,
+                o.reference_pressure / kPascalPerMmHg, toString(o.reference)) +
          organLine("area of the body", "cm2", kCm2, of(o.before, &OrganMeasures::mean_area),
                    of(o.now, &OrganMeasures::mean_area), o.area_reduction) +
          organLine("volume", "mL", kMl, volumeOf(o.before), volumeOf(o.now), o.volume_reduction) +

@@ -176,7 +176,8 @@ TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
     for (double& value : *coordinate) value *= 0.5;
   session.state.pressure = 1000;
   record({Event::Kind::PressureReached, Event::Kind::DeepBurn, Event::Kind::ThreadBroke, Event::Kind::ThreadBroke});
-  vibe_msgs::ProcedureState m = message();
+  for (int k = 0; k < std::ceil(0.1 / session.model->scene.step_period); ++k) record();  // marks are counted then
+  const vibe_msgs::ProcedureState m = message();
   EXPECT_EQ(m.mark_zones, 1u);
   EXPECT_EQ(m.mark_zones_inside, 1u);
   EXPECT_EQ(m.mark_zones_anterior, 1u);

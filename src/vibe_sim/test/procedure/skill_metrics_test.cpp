@@ -96,6 +96,27 @@ TEST_F(SkillMetricsTest, measuresBleeding) {
   EXPECT_EQ(skill().bleeding.lost, 4e-6);
 }
 
+TEST_F(SkillMetricsTest, followsMarksThatGrowWithoutEvents) {
+  const auto wait = [&] {
+    for (int k = 0; k < std::ceil(0.1 / bench.model().scene.step_period); ++k) happen({});
+  };
+  std::vector<std::uint8_t>& grade = bench.procedure().grade;
+  grade.assign(bench.state().x.size(), 0);
+  const auto& triangle = bench.model().organ.surface.triangles[0];
+  const auto& apart = bench.model().organ.surface.triangles.back();
+  grade[triangle[0]] = 1;
+  grade[apart[0]] = 1;
+  wait();
+  EXPECT_EQ(skill().marks.zones, 2);
+  grade[triangle[1]] = 2;  // the same zone, worse
+  wait();
+  EXPECT_EQ(skill().marks.zones, 2);
+  EXPECT_EQ(skill().marks.burns, 1);
+  grade.assign(grade.size(), 2);
+  wait();
+  EXPECT_EQ(skill().marks.zones, 1);
+}
+
 TEST_F(SkillMetricsTest, aRestartKeepsWhatTheStateHoldsAndForgetsTheRest) {
   record([&] { bench.bite(0); });
   record([&] { bench.bite(1); });

@@ -93,7 +93,7 @@ TEST(SkillText, ofAWholeSession) {
       "  2  -               -      1     0      -           -          -       0.0        -   0.00       -  open",
       "bleeding               2.30 mL lost   mild 3   brisk 2   now 1   overdue 1",
       "mistakes                  8 refused   slips 6   torn out 1   threads broken 7",
-      "organ                  12.0 mmHg now, against the set point at 15.0 mmHg",
+      "organ                  12.0 mmHg now   15.0 mmHg before (set point)",
       "  area of the body     40.0 cm2 before 60.0   reduced by 33.3 %",
       "  volume              900.0 mL  before 1200.0   reduced by 25.0 %",
       "  length                  - mm  before -   reduced by -",

@@ -57,7 +57,7 @@ struct SkillInstruments {
 };
 
 /// Keeps SkillMetrics up to date. Costs a few microseconds per step and 0.4 ms once per simulated second (the organ).
-/// Asks for no memory but when marks or bites are added.
+/// Asks for no memory but when marks or bites are added. Marks are counted ten times a second while they grow (40 us).
 class SkillRecorder {
  public:
   SkillRecorder(const SkillInstruments& instruments, const Model& model, const State& start,
@@ -70,6 +70,7 @@ class SkillRecorder {
   const SkillMetrics& metrics() const { return metrics_; }
 
  private:
+  void followMarks(const Model& model, const State& state);
   void countMarks(const State& state);
   void readSutures(const Model& model, const ProcedureState& procedure);
   void countMistakes();
@@ -78,6 +79,8 @@ class SkillRecorder {
   PhaseRecorder phases_;
   OrganFollower organ_;
   EventCounts counts_;
+  long counted_grades_ = 0;  // sum of all when marks were counted last
+  int steps_ = 0;            // since then
   SkillMetrics metrics_;
 };
 
