@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 #include "allocation_count.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <limits>
-#include <numeric>
 
 #include "procedure_bench.hpp"
 #include "vibe_sim/procedure/marking.hpp"
@@ -84,8 +84,9 @@ TEST(MarkingStep, TwoSecondsMakeOneMark) {
   const Eigen::Vector3d aim(0, 0, -kRadius);
   for (int i = 0; i < stage.model->particle_count; ++i) {
     const double distance = (stage.position(i) - aim).norm();
-    if (stage.state.procedure.grade[i] != 0) EXPECT_LT(distance, 8e-3);
-    if (distance < 2e-3) EXPECT_EQ(stage.state.procedure.grade[i], 1);
+    const int grade = stage.state.procedure.grade[i];
+    EXPECT_TRUE(grade == 0 || distance < 8e-3) << distance;
+    EXPECT_TRUE(grade == 1 || distance > 2e-3) << distance;
   }
   for (const Event& event : stage.events) {
     if (event.kind != Kind::Mark) continue;
@@ -339,6 +340,20 @@ TEST(MarkingGradient, SpringsBackWhereTheToolLeavesAndTheSolverAgreesWhereNothin
   EXPECT_EQ(base.x, base.procedure.base_x) << "to the bit";
   EXPECT_LT(gradient.greatestShift(), 1e-9);
   EXPECT_TRUE(solver.state.procedure.base_x.empty());
+}
+
+TEST(MarkingGradient, APedalThatComesDownAgainAtOnceFindsThePresentWall) {
+  Stage stage(gradientScene(), -5e-3);
+  stage.placeTip(-14e-3);
+  stage.press(1);
+  const double old_base = stage.state.procedure.base_z[0];
+  stage.input.buttons[ApcPedal] = 0;
+  stage.step(stage.input);
+  ASSERT_FALSE(stage.state.procedure.base_x.empty()) << "the solver still takes it over";
+  EXPECT_EQ(stage.state.procedure.base_x, stage.state.x);
+  EXPECT_NE(stage.state.procedure.base_z[0], old_base);
+  stage.input.buttons[ApcPedal] = 1;
+  EXPECT_LT(largestMove(stage), 1e-3);
 }
 
 TEST(MarkingGradient, ACinchThatDrawsNeedsTheSolver) {
