@@ -23,6 +23,20 @@ std::string biteDamage(const Bite& bite, int particle_count) {
   return "";
 }
 
+std::string groupDamage(const TissueGroup& group, int particle_count) {
+  if (group.offset.size() != group.particle.size()) return "a group of a suture has not one place per particle";
+  if (group.weight.size() != group.middle.size() || (group.middle.empty() && !group.empty()))
+    return "a group of a suture has no middle";
+  for (const std::vector<int>* list : {&group.particle, &group.middle})
+    for (int particle : *list)
+      if (particle < 0 || particle >= particle_count) return "a group of a suture holds a particle that does not exist";
+  for (const Eigen::Vector3d& offset : group.offset)
+    if (!offset.allFinite()) return "a place in a group of a suture is not a number";
+  if (!allFinite(group.weight) || !(group.drawn >= 0 && group.drawn <= 1))
+    return "a group of a suture is drawn to no place";
+  return "";
+}
+
 std::string sutureDamage(const Suture& suture, int particle_count) {
   if (suture.stage > Suture::Stage::Broken) return "a suture's stage does not exist";
   if (suture.technique >= kTechniqueCount) return "a suture's technique does not exist";
@@ -36,7 +50,7 @@ std::string sutureDamage(const Suture& suture, int particle_count) {
     if (!damage.empty()) return damage;
     if (bite.particle.empty()) return "a bite of a suture holds nothing";
   }
-  return "";
+  return groupDamage(suture.group, particle_count);
 }
 
 std::string bleedingDamage(const Bleeding& bleeding, const ProcedureState& procedure, int particle_count) {

@@ -21,10 +21,20 @@ void visitBite(Archive& archive, B& bite) {
   archive.value(along);
 }
 
+template <class Archive, class G>
+void visitGroup(Archive& archive, G& group) {
+  auto& [particle, offset, middle, weight, drawn] = group;
+  archive.numbers(particle);
+  archive.list(offset, [&archive](auto& place) { archive.vector(place); });
+  archive.numbers(middle);
+  archive.numbers(weight);
+  archive.value(drawn);
+}
+
 template <class Archive, class S>
 void visitSuture(Archive& archive, S& suture) {
   auto& [stage, bites, length, tension, taken, technique, technique_margin, transitions, pulled, cinch_tension, begin,
-         end, tear_outs] = suture;
+         end, tear_outs, group] = suture;
   archive.value(stage);
   archive.list(bites, [&archive](auto& bite) { visitBite(archive, bite); });
   archive.numbers(length);
@@ -38,6 +48,7 @@ void visitSuture(Archive& archive, S& suture) {
   archive.value(begin);
   archive.value(end);
   archive.value(tear_outs);
+  visitGroup(archive, group);
 }
 
 template <class Archive, class B>

@@ -41,14 +41,25 @@ void recognise(const SutureScene& scene, Suture& suture, const State& state, std
 }
 
 // Called after the T-tag of the step, so that a suture that can be cinched is found in the same step.
-void beginCinch(const Suture* active, State& state, std::vector<Event>& events) {
+void beginCinch(const Model& model, Suture* active, State& state, std::vector<Event>& events) {
   if (!active)
     return refuse(Cinch, state.time, "There is no thread to cinch: take bites and drop the T-tag first.", events);
   if (active->stage == Suture::Stage::Open)
     return refuse(Cinch, state.time, "The thread has no hold at its end yet: drop the T-tag before the cinch.", events);
-  state.procedure.sutures.back().stage = Suture::Stage::Cinching;
+  active->stage = Suture::Stage::Cinching;
+  if (model.scene.suture->pulling == "groups") findGroup(model, state, *active);
   announce(Event::Kind::CinchPulling, state.time, -1, 0,
            "The cinch draws the thread of set " + std::to_string(state.procedure.sutures.size()) + ".", events);
+}
+
+// Thread, or where the prototype's way is chosen the set's particles as far as the wall bears it.
+void draw(const Model& model, const State& state, Suture& suture) {
+  const SutureScene& scene = *model.scene.suture;
+  const double amount = scene.cinch_speed * model.scene.step_period;
+  if (scene.pulling == "thread")
+    drawThread(amount, suture);
+  else if (groupStrain(model, state, suture.group) < scene.strain_limit)
+    drawGroup(amount, suture);
 }
 
 void endCinch(const SutureScene& scene, State& state, std::vector<Event>& events) {
@@ -60,7 +71,9 @@ void endCinch(const SutureScene& scene, State& state, std::vector<Event>& events
   const bool loose = suture.cinch_tension < scene.loose_tension;
   announce(loose ? Event::Kind::CinchLoose : Event::Kind::Cinched, state.time, -1, suture.cinch_tension,
            "Set " + std::to_string(number + 1) + (loose ? " is cinched loosely at " : " is cinched at ") +
-               inNewtons(suture.cinch_tension) + ", " + inMillimetres(suture.pulled) + " of thread were drawn.",
+               inNewtons(suture.cinch_tension) + ", " +
+               (suture.group.empty() ? inMillimetres(suture.pulled) + " of thread were drawn."
+                                     : "the wall was drawn by " + inMillimetres(suture.pulled) + "."),
            events);
   if (!loose) stopBleedings(number, state, events);
   loadThread(state.procedure);
@@ -91,10 +104,10 @@ void commandCinch(const Model& model, bool pressed, bool was_pressed, State& sta
   Suture* active = activeSuture(state.procedure);
   const bool cinching = active && active->stage == Suture::Stage::Cinching;
   if (cinching && !pressed) return endCinch(scene, state, events);
-  if (pressed && !was_pressed && !cinching) beginCinch(active, state, events);
+  if (pressed && !was_pressed && !cinching) beginCinch(model, active, state, events);
   if (!pressed || !active || active->stage != Suture::Stage::Cinching) return;
   const double tension = active->tension.empty() ? 0 : active->tension.front();
-  if (tension < scene.cinch_tension) drawThread(scene.cinch_speed * model.scene.step_period, *active);
+  if (tension < scene.cinch_tension) draw(model, state, *active);
 }
 
 }  // namespace vibe

@@ -165,6 +165,7 @@ void followThreads(const Model& model, State& state, std::vector<Event>& events)
 void slackenThreads(State& state) {
   for (Suture& suture : state.procedure.sutures) {
     lengthenToTissue(state, suture);
+    slackenGroup(state, suture.group);
     std::fill(suture.tension.begin(), suture.tension.end(), 0.0);
   }
 }

@@ -71,6 +71,7 @@ void ImplicitStep::run() {
     account(old_volume, old_pressure);
     return;
   }
+  scratch_.groups.prepare(model_, state_);
   findWalls();  // not before: in a heap of particles that is led home all walls are near each other
   const StepOutcome outcome = stepper_.step(view, scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
@@ -110,6 +111,7 @@ void ImplicitStep::goHome() {
   }
   for (auto* v : {&state_.vx, &state_.vy, &state_.vz, &state_.ax, &state_.ay, &state_.az})
     std::fill(v->begin(), v->end(), 0.0);
+  for (Suture& suture : state_.procedure.sutures) slackenGroup(state_, suture.group);
 }
 
 // The whole organ has come to rest and nothing acts on it that did not before. Now and then it looks whether that still
@@ -178,7 +180,8 @@ void ImplicitStep::findContacts() {
 
 // Walls of the organ that can meet within the step: nodes and their partners both move.
 void ImplicitStep::findWalls() {
-  scratch_.loads.extra = scratch_.walls.get();
+  scratch_.terms.set(scratch_.walls.get(), scratch_.groups.count() > 0 ? &scratch_.groups : nullptr);
+  scratch_.loads.extra = scratch_.terms.simplest();
   if (!scratch_.walls) return;
   double fastest2 = 0;
   for (int i = 0; i < model_.particle_count; ++i)
@@ -247,6 +250,7 @@ void ImplicitStep::reportThreads() {
   segmentLengths(scratch_.loads, state_, scratch_.segments);
   state_.energy.thread_work += threadWork(scratch_.loads, state_, scratch_.old_segments, scratch_.segments);
   storeThreads(scratch_.loads, state_);
+  scratch_.groups.report(state_);
 }
 
 // Begins before anything is touched: what the response needs takes a while to make.

@@ -3,7 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "group_pull.hpp"
 #include "response_estimator.hpp"
+#include "sum_term.hpp"
 #include "vibe_sim/contact/self_contact.hpp"
 #include "vibe_sim/contact/tool_collision.hpp"
 #include "vibe_sim/contact/tool_motion.hpp"
@@ -19,6 +21,8 @@ struct ImplicitScratch : SolverScratch {
   std::shared_ptr<StepperScratch> stepper;
   std::unique_ptr<ToolCollision> collision;
   std::unique_ptr<SelfContact> walls;               // null: the scene does not ask for it
+  GroupPull groups;
+  SumTerm terms;                                    // walls and groups
   std::vector<Eigen::Isometry3d> poses, old_poses;  // of the links at the end and at the start of the step
   std::vector<double> ahead_x, ahead_y, ahead_z;    // where the particles go if nothing stops them
   BodyLoads loads;

@@ -7,6 +7,7 @@
 #include "vibe_sim/solver/solver.hpp"
 #include "vibe_sim/tissue/shape_matching.hpp"
 #include "vibe_sim/tissue/shape_matching_kernel.hpp"
+#include "xpbd_pull.hpp"
 
 namespace vibe {
 
@@ -20,6 +21,7 @@ class XpbdScratch : public SolverScratch {
   ClusterSweep sweep{};
   ClusterSweepFunction sweep_function = nullptr;
   std::unique_ptr<ToolCollision> collision;
+  XpbdPull pull;
   std::vector<Eigen::Isometry3d> poses, old_poses, ahead_poses;  // of the tool's links in world
 };
 

@@ -38,6 +38,7 @@ XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const T
   scratch_.sweep.x = scratch_.ahead_x.data();
   scratch_.sweep.y = scratch_.ahead_y.data();
   scratch_.sweep.z = scratch_.ahead_z.data();
+  scratch_.pull.prepare(model, state);
 }
 
 void XpbdSubstep::run(int index, int count) {
@@ -45,6 +46,7 @@ void XpbdSubstep::run(int index, int count) {
   matchShapes();
   if (model_.scene.gas) updateGas();
   move();
+  scratch_.pull.apply(model_, h_, state_);
   holdGrip();
   resolveContacts();
   limitSpeeds();
@@ -245,6 +247,7 @@ void XpbdSubstep::accountDamping(double decay) {
 
 void XpbdSubstep::finish(int count) {
   storeOrientations(clusters_, scratch_.buffers, state_);
+  scratch_.pull.report(count, state_);
   report_.tool_force /= count;
   report_.tool_torque /= count;
   report_.grip_force /= count;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vibe_sim/geometry/anatomy.hpp"
+#include "vibe_sim/suture/tissue_group.hpp"
 
 namespace vibe {
 
@@ -41,8 +42,9 @@ struct Suture {
   double cinch_tension = 0;   ///< in the first segment when the cinch was released [N]
   double begin = 0, end = 0;  ///< time of the first bite and of the cinch; end 0: not yet [s]
   int tear_outs = 0;          ///< bites that tore out
+  TissueGroup group;          ///< what a set draws where suture.pulling is `groups`; else empty
 
-  /// The thread pulls on the tissue.
+  /// The thread pulls on the tissue, or the group does.
   bool pulls() const { return (stage == Stage::Cinching || stage == Stage::Cinched) && bites.size() > 1; }
   bool permanent() const { return stage == Stage::Cinched || stage == Stage::Broken; }
 };
