@@ -4,7 +4,7 @@
 
 namespace vibe {
 
-PhaseRecorder::PhaseRecorder(std::shared_ptr<SpectralArcLength> spectrum) {
+PhaseRecorder::PhaseRecorder(const std::shared_ptr<SpectralArcLength>& spectrum) {
   channel_.reserve(kPhaseCount + 1);
   for (int k = 0; k <= kPhaseCount; ++k) channel_.push_back({MotionRecorder({}, spectrum), ForceRecorder()});
 }

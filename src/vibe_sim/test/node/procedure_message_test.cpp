@@ -196,6 +196,21 @@ TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
   EXPECT_NEAR(message().volume_reduction, 0.5, 1e-9);
 }
 
+TEST_F(ProcedureMessage, aNewStateBringsItsBitesAndNotWhatWasRecorded) {
+  record({Event::Kind::ThreadBroke});
+  State loaded = session.state;
+  loaded.procedure.sutures.emplace_back().bites.resize(3);
+  for (Bite& bite : loaded.procedure.sutures[0].bites) bite.depth = 4e-3;
+  session.replaceState(loaded);
+  EXPECT_EQ(message().broken_threads, 0u);
+  EXPECT_EQ(message().phase_time[0], 0);
+  EXPECT_DOUBLE_EQ(message().bite_depth_mean, 4e-3);
+  session.replaceModel(makeSession().model);
+  EXPECT_TRUE(std::isnan(message().bite_depth_mean));
+  for (int k = 0; k < 100; ++k) record({Event::Kind::Mark});  // with the organ of the new model
+  EXPECT_GT(message().phase_time[0], 0);
+}
+
 TEST_F(ProcedureMessage, everyEventButContactIsToldAtOnce) {
   std::string before = kind();
   happen({Event::Kind::ContactBegin, Event::Kind::ContactEnd});

@@ -29,7 +29,7 @@ struct PhasesSkill {
 class PhaseRecorder {
  public:
   /// @param spectrum  tables shared by all recorders; used in one thread
-  explicit PhaseRecorder(std::shared_ptr<SpectralArcLength> spectrum);
+  explicit PhaseRecorder(const std::shared_ptr<SpectralArcLength>& spectrum);
 
   /// Where the tip is at the start, before the first step.
   /// @param dt  length of the steps to come [s]
