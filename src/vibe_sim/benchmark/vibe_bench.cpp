@@ -13,6 +13,7 @@
 #include "fem/fem_case.hpp"
 #include "method/method_table.hpp"
 #include "output/result_row.hpp"
+#include "pulling/pulling_table.hpp"
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/package_path.hpp"
 
@@ -25,6 +26,8 @@ const char kHelp[] =
     "Prints time per step beside errors, for every method and setting and for cases with reference solutions.\n"
     "  --case FILE...   only these cases (YAML), no method table\n"
     "  --methods        only the method table\n"
+    "  --pulling        only the ways of pulling two bites together\n"
+    "  --profile FILE   with --pulling: write the mid-line of each way there (CSV)\n"
     "  --quick          fewer repeats and sizes: about 50 seconds\n"
     "  --csv FILE       write the rows there (- for standard output)\n"
     "  --list           names the shipped cases and ends\n"
@@ -32,8 +35,8 @@ const char kHelp[] =
 
 struct Options {
   std::vector<std::string> cases;
-  std::string csv;
-  bool quick = false, list = false, methods_only = false;
+  std::string csv, profile;
+  bool quick = false, list = false, methods_only = false, pulling_only = false;
 };
 
 Options parse(int argc, char** argv) {
@@ -42,10 +45,14 @@ Options parse(int argc, char** argv) {
                                     {"csv", required_argument, nullptr, 'o'},
                                     {"list", no_argument, nullptr, 'l'},
                                     {"methods", no_argument, nullptr, 'm'},
+                                    {"pulling", no_argument, nullptr, 'p'},
+                                    {"profile", required_argument, nullptr, 'f'},
                                     {"help", no_argument, nullptr, 'h'},
                                     {nullptr, 0, nullptr, 0}};
   Options options;
   for (int c; (c = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
+    if (c == 'p') options.pulling_only = true;
+    if (c == 'f') options.profile = optarg;
     if (c == 'm') options.methods_only = true;
     if (c == 'c') options.cases.push_back(optarg);
     if (c == 'o') options.csv = optarg;
@@ -89,6 +96,12 @@ void writeRows(const std::string& file, const std::vector<ResultRow>& rows) {
 
 int run(int argc, char** argv) {
   const Options options = parse(argc, argv);
+  if (options.pulling_only) {
+    const std::vector<ResultRow> ways = runPulling(options.profile, std::cerr);
+    printTable(ways, std::cerr);
+    if (!options.csv.empty()) writeRows(options.csv, ways);
+    return 0;
+  }
   std::vector<std::string> files = options.cases;
   if (files.empty() && !options.methods_only) files = shippedCases();
   if (options.list) {
