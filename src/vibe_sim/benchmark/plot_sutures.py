@@ -44,10 +44,10 @@ def finish(axis, title):
     axis.set_title(title, fontsize=10)
     axis.set_xlabel("suture set")
     axis.xaxis.get_major_locator().set_params(integer=True)
-    axis.set_ylim(0, 1.35 * axis.get_ylim()[1])
+    axis.set_ylim(0, 1.5 * axis.get_ylim()[1])
     axis.grid(True, axis="y", color="0.92")
     axis.set_axisbelow(True)
-    axis.legend(fontsize=7, loc="upper left", ncol=2)
+    axis.legend(fontsize=7, loc="upper left")
 
 
 def main(table, pictures, machine):

@@ -12,6 +12,7 @@ namespace vibe {
 namespace {
 
 constexpr double kMillimetreOfMercury = 133.322;  // [Pa]
+constexpr double kLongestWait = 10;               // [s]
 constexpr double kLoaded = 15 * kMillimetreOfMercury;
 
 double meanStress(const Model& model, const State& state) {
@@ -97,7 +98,7 @@ PatternRow runPattern(Scene scene, const SetLayout& layout, double pressure, dou
   session.settle();
   row.before = measure(session, ruler);
   for (const auto& set : planSets(WallPlan(model->organ, session.wall()), layout)) noteSet(session.sew(set, 0.5), row);
-  session.settle();
+  row.at_rest = session.calmDown(kLongestWait);
   row.after = measure(session, ruler);
   noteTensions(session.state(), row);
   row.crossed = wallsCross(session.model(), session.state());
@@ -108,19 +109,18 @@ PatternRow runPattern(Scene scene, const SetLayout& layout, double pressure, dou
 std::vector<PatternRow> studyPatterns(const Scene& scene, bool quick, std::ostream& log) {
   std::vector<PatternRow> rows;
   const auto run = [&](const SetLayout& layout, double pressure, double tension) {
-    log << layout.pattern << ", " << layout.sets << " sets, " << tension << " N, " << 1e3 * layout.half_width << " mm, "
-        << pressure / kMillimetreOfMercury << " mmHg" << std::endl;
     rows.push_back(runPattern(scene, layout, pressure, tension));
+    printPatterns({rows.back()}, log);
+    log << std::flush;
   };
   const double tension = scene.suture->cinch_tension, half_width = SetLayout().half_width;
   for (const char* pattern : {"c", "u", "z"}) run(layoutOf(pattern, half_width), kLoaded, tension);
   if (quick) return rows;
+  for (const double width : {half_width, 2 * half_width})
+    run(layoutOf("u", width), scene.gas->regulated_pressure, tension);
   for (const double other : {2.0, 4.0})
     for (const char* pattern : {"c", "u", "z"}) run(layoutOf(pattern, half_width), kLoaded, other);
-  for (const double other : {0.027, 0.036})
-    for (const char* pattern : {"c", "u", "z"}) run(layoutOf(pattern, other), kLoaded, tension);
-  for (const double width : {half_width, 0.027, 0.036})
-    run(layoutOf("u", width), scene.gas->regulated_pressure, tension);
+  for (const char* pattern : {"c", "u", "z"}) run(layoutOf(pattern, 1.5 * half_width), kLoaded, tension);
   return rows;
 }
 

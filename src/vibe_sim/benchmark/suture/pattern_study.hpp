@@ -30,6 +30,7 @@ struct PatternRow {
   double drawn = 0;                            ///< thread, all sets [m]
   int torn_out = 0, broken = 0, loose = 0, recoveries = 0;
   bool crossed = false;
+  bool at_rest = true;  ///< false: something still moved 10 s after the last set, `after` is of that moment
   std::uint64_t state_hash = 0;
 };
 
@@ -37,8 +38,8 @@ struct PatternRow {
 /// @throws Error as SutureSession and planSets
 PatternRow runPattern(Scene scene, const SetLayout& layout, double pressure, double cinch_tension);
 
-/// Patterns u, z and c at 15 mmHg with the same sets and bites; more tensions and widths unless quick. Then whole
-/// procedures at the scene's own pressure.
+/// Patterns c, u and z at 15 mmHg with the same sets and bites. Unless quick: whole procedures with u at the scene's
+/// own pressure, narrow and wide, then the patterns with other tensions and wider. Each row is printed as it comes.
 std::vector<PatternRow> studyPatterns(const Scene& scene, bool quick, std::ostream& log);
 
 void printPatterns(const std::vector<PatternRow>& rows, std::ostream& out);

@@ -22,14 +22,14 @@ void printPatterns(const std::vector<PatternRow>& rows, std::ostream& out) {
     std::snprintf(
         line, sizeof line,
         "%-7s %dx%d %5.1f %4.1f %6.0f    | %5.0f %5.0f %5.2f %% | %8.2f %% %9.2f %% | %6.2f %% %6.1f %% | %4.1f to "
-        "%4.1f %% %5.1f %% | %4.1f to %4.1f | %4.2f N %4.0f mm | %d torn, %d broken, %d loose, %d recovered%s\n",
+        "%4.1f %% %5.1f %% | %4.1f to %4.1f | %4.2f N %4.0f mm | %d torn, %d broken, %d loose, %d recovered%s%s\n",
         row.layout.pattern.c_str(), row.layout.sets, row.layout.bites, row.pressure / 133.322, row.cinch_tension,
         1e3 * row.layout.half_width, 1e6 * a.volume, 1e6 * b.volume, percentLess(a.volume, b.volume),
         percentLess(a.length, b.length), percentLess(a.greater_curvature, b.greater_curvature),
         percentLess(a.mean_area, b.mean_area), percentLess(a.least_area, b.least_area), 100 * row.before.mean_strain,
         100 * row.after.mean_strain, 100 * row.after.high_strain, 1e-3 * row.before.mean_stress,
         1e-3 * row.after.mean_stress, row.mean_tension, 1e3 * row.drawn, row.torn_out, row.broken, row.loose,
-        row.recoveries, row.crossed ? ", walls CROSS" : "");
+        row.recoveries, row.crossed ? ", walls CROSS" : "", row.at_rest ? "" : ", NOT at rest");
     out << line;
   }
 }
@@ -38,7 +38,7 @@ void writePatterns(const std::vector<PatternRow>& rows, std::ostream& out) {
   out << "pattern,sets,bites,pressure,cinch_tension,half_width,volume_before,volume,length_before,length,"
          "curvature_before,curvature,area_before,area,least_area_before,least_area,strain_before,strain,"
          "high_strain_before,high_strain,stress_before,stress,energy_before,energy,mean_tension,least_tension,drawn,"
-         "torn_out,broken,loose,recoveries,crossed,state_hash\n";
+         "torn_out,broken,loose,recoveries,crossed,at_rest,state_hash\n";
   char text[40];
   for (const PatternRow& row : rows) {
     const PatternMeasures &a = row.before, &b = row.after;
@@ -72,7 +72,7 @@ void writePatterns(const std::vector<PatternRow>& rows, std::ostream& out) {
     }
     std::snprintf(text, sizeof text, "%016" PRIx64, row.state_hash);
     out << ',' << row.torn_out << ',' << row.broken << ',' << row.loose << ',' << row.recoveries << ',' << row.crossed
-        << ',' << text << '\n';
+        << ',' << row.at_rest << ',' << text << '\n';
   }
 }
 

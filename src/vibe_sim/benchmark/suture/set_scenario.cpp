@@ -33,12 +33,17 @@ struct ScenarioRun {
   bool crossed = false;
 };
 
-ScenarioRun runOnce(const std::shared_ptr<const Model>& model, const SetLayout& layout) {
+ScenarioRun runOnce(const std::shared_ptr<const Model>& model, const SetLayout& layout, std::ostream& log) {
   SutureSession session(model);
   session.settle();
   const auto spots = planSets(WallPlan(model->organ, session.wall()), layout);
   ScenarioRun run;
-  for (const auto& set : spots) run.sets.push_back(session.sew(set));
+  for (const auto& set : spots) {
+    run.sets.push_back(session.sew(set));
+    const StepTimes times = timesOf(run.sets.back().pulling.cpu);
+    log << "  set " << run.sets.size() << ": " << run.sets.back().pulling.cpu.size() << " steps, " << times.mean
+        << " ms, at most " << times.max << ", " << run.sets.back().tension << " N" << std::endl;
+  }
   run.state_hash = hash(session.state());
   run.crossed = wallsCross(session.model(), session.state());
   return run;
@@ -112,7 +117,7 @@ ScenarioResult runScenario(const std::shared_ptr<const Model>& model, const SetL
   std::vector<ScenarioRun> runs;
   for (int r = 0; r < repeats; ++r) {
     log << name << ": run " << r + 1 << " of " << repeats << std::endl;
-    runs.push_back(runOnce(model, layout));
+    runs.push_back(runOnce(model, layout, log));
     if (runs.back().state_hash != runs.front().state_hash)
       throw Error("Two runs of the scenario '" + name + "' ended with different bits; determinism is broken.");
   }

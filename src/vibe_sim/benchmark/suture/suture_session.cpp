@@ -38,12 +38,17 @@ SutureSession::SutureSession(std::shared_ptr<const Model> model, std::uint64_t s
 }
 
 void SutureSession::settle() {
-  const double end = state_.time + kLongestSettle, target = model_->scene.gas->regulated_pressure;
+  if (!calmDown(kLongestSettle))
+    throw Error("The stomach does not come to rest at its pressure; lower gas.regulated_pressure or raise damping.");
+}
+
+bool SutureSession::calmDown(double longest) {
+  const double end = state_.time + longest, target = model_->scene.gas->regulated_pressure;
   do {
-    if (state_.time > end)
-      throw Error("The stomach does not come to rest at its pressure; lower gas.regulated_pressure or raise damping.");
+    if (state_.time > end) return false;
     step(*model_, state_, input_, workspace_, events_);
   } while (std::abs(state_.pressure - target) > 1e-3 * target || greatestSpeed(state_) > kStill);
+  return true;
 }
 
 void SutureSession::takeBites(const std::vector<WallSpot>& spots) {
@@ -81,7 +86,7 @@ void SutureSession::pull(SewnSet& set) {
     press(Cinch, true, set.pulling, set);
     const Suture& suture = state_.procedure.sutures.back();
     if (suture.permanent()) break;  // it broke
-    const bool tight = suture.tension.front() >= scene.cinch_tension, all_in = suture.pulled - before < kNothing;
+    const bool tight = cinchTension(suture) >= scene.cinch_tension, all_in = suture.pulled - before < kNothing;
     held = tight || all_in ? held + 1 : 0;
   }
   press(Cinch, false, set.pulling, set);

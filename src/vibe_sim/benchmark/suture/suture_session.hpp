@@ -40,6 +40,9 @@ class SutureSession {
   /// Steps with the insufflator on until nothing moves.
   /// @throws Error if it still does after a minute of simulated time
   void settle();
+  /// The same for at most this long [s].
+  /// @return false if something still moves
+  bool calmDown(double longest);
 
   /// @param after  how long to go on when the cinch is let go [s]
   SewnSet sew(const std::vector<WallSpot>& spots, double after = 1);
