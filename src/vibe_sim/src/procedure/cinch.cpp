@@ -66,7 +66,7 @@ void endCinch(const SutureScene& scene, State& state, std::vector<Event>& events
   const int number = static_cast<int>(state.procedure.sutures.size()) - 1;
   Suture& suture = state.procedure.sutures[number];
   suture.stage = Suture::Stage::Cinched;
-  suture.cinch_tension = suture.tension.empty() ? 0 : suture.tension.front();
+  suture.cinch_tension = cinchTension(suture);
   suture.end = state.time;
   const bool loose = suture.cinch_tension < scene.loose_tension;
   announce(loose ? Event::Kind::CinchLoose : Event::Kind::Cinched, state.time, -1, suture.cinch_tension,
@@ -106,8 +106,7 @@ void commandCinch(const Model& model, bool pressed, bool was_pressed, State& sta
   if (cinching && !pressed) return endCinch(scene, state, events);
   if (pressed && !was_pressed && !cinching) beginCinch(model, active, state, events);
   if (!pressed || !active || active->stage != Suture::Stage::Cinching) return;
-  const double tension = active->tension.empty() ? 0 : active->tension.front();
-  if (tension < scene.cinch_tension) draw(model, state, *active);
+  if (cinchTension(*active) < scene.cinch_tension) draw(model, state, *active);
 }
 
 }  // namespace vibe

@@ -13,6 +13,8 @@ namespace vibe {
 
 namespace {
 
+constexpr double kMet = 1.01 * kLeastSegment;  // a segment no longer than this lies between bites that have met [m]
+
 Eigen::Vector3d placeOf(const Bite& bite, const State& state) {
   return bitePosition(bite, state.x, state.y, state.z);
 }
@@ -129,6 +131,15 @@ double drawThread(double amount, Suture& suture) {
   }
   suture.pulled += amount - left;
   return amount - left;
+}
+
+double cinchTension(const Suture& suture) {
+  double most = 0;
+  for (std::size_t k = 0; k < suture.tension.size(); ++k) {
+    most = std::max(most, suture.tension[k]);
+    if (suture.length[k] > kMet) break;
+  }
+  return most;
 }
 
 Eigen::Vector3d forceOnBite(const Suture& suture, int bite, const State& state) {

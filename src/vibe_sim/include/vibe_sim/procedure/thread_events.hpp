@@ -3,12 +3,14 @@
 
 #include "vibe_sim/event.hpp"
 #include "vibe_sim/model.hpp"
+#include "vibe_sim/solver/elastic_body.hpp"
 #include "vibe_sim/state.hpp"
 
 namespace vibe {
 
-/// Shortest length of a segment: the folds of the wall that it holds together lie one on the other [m].
-constexpr double kLeastSegment = 0.5e-3;
+/// Shortest length of a segment, and what the solver leaves between bites that have met: more drawn out of it would
+/// pull nothing [m].
+constexpr double kLeastSegment = kLeastThread;
 
 /// The set that the present thread runs through: the last one, unless it is permanent. Null: none.
 Suture* activeSuture(ProcedureState& procedure);
@@ -20,6 +22,11 @@ void loadThread(ProcedureState& procedure);
 /// @param amount  [m]
 /// @return what was drawn, less than `amount` where every segment is as short as it can be [m]
 double drawThread(double amount, Suture& suture);
+
+/// With which the device holds the thread: the tension of the segment that it draws from, which is beyond those whose
+/// bites have met (kLeastSegment), and at least theirs. Where bites lie on each other the tissue pulls their segment
+/// apart no more, so its own tension says nothing about what is drawn [N].
+double cinchTension(const Suture& suture);
 
 /// Force of the thread on a bite: the sum of the tensions of the segments beside it, each along its segment [N].
 Eigen::Vector3d forceOnBite(const Suture& suture, int bite, const State& state);
