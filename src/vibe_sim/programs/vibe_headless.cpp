@@ -37,6 +37,7 @@ const char kHelp[] =
     "  --threads N       threads inside a step (default 1); does not change the result\n"
     "  --seed N          instead of the scene's\n"
     "  --quiet           print the state hash only\n"
+    "  --script-length   print how long the script is [s], and end\n"
     "  --help            this text\n";
 
 struct Options {
@@ -46,6 +47,7 @@ struct Options {
   int threads = 1;
   std::string seed;
   bool quiet = false;
+  bool script_length = false;
 };
 
 double toNumber(const std::string& option, const std::string& text, double lowest) {
@@ -58,10 +60,10 @@ double toNumber(const std::string& option, const std::string& text, double lowes
 
 Options parse(int argc, char** argv) {
   static const option kOptions[] = {
-      {"scene", 1, nullptr, 's'},    {"script", 1, nullptr, 't'}, {"mesh", 1, nullptr, 'm'},
-      {"duration", 1, nullptr, 'd'}, {"csv", 1, nullptr, 'c'},    {"snapshot", 1, nullptr, 'p'},
-      {"threads", 1, nullptr, 'n'},  {"seed", 1, nullptr, 'e'},   {"quiet", 0, nullptr, 'q'},
-      {"help", 0, nullptr, 'h'},     {nullptr, 0, nullptr, 0}};
+      {"scene", 1, nullptr, 's'},         {"script", 1, nullptr, 't'}, {"mesh", 1, nullptr, 'm'},
+      {"duration", 1, nullptr, 'd'},      {"csv", 1, nullptr, 'c'},    {"snapshot", 1, nullptr, 'p'},
+      {"threads", 1, nullptr, 'n'},       {"seed", 1, nullptr, 'e'},   {"quiet", 0, nullptr, 'q'},
+      {"script-length", 0, nullptr, 'l'}, {"help", 0, nullptr, 'h'},   {nullptr, 0, nullptr, 0}};
   Options o;
   opterr = 0;
   for (int c; (c = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
@@ -93,6 +95,9 @@ Options parse(int argc, char** argv) {
         break;
       case 'q':
         o.quiet = true;
+        break;
+      case 'l':
+        o.script_length = true;
         break;
       case 'h':
         std::cout << kHelp;
@@ -127,7 +132,14 @@ void printProgress(double time, double duration, const TraineeScript* script) {
   std::fprintf(stderr, "\r%7.2f of %.2f s  %-30s", time, duration, doing.c_str());
 }
 
+int printScriptLength(const Options& o) {
+  if (o.script.empty()) throw Error("--script-length needs a --script.");
+  std::printf("%.3f\n", loadScript(o)->duration());
+  return 0;
+}
+
 int run(const Options& o) {
+  if (o.script_length) return printScriptLength(o);
   const std::shared_ptr<const Model> model = load(o);
   const std::unique_ptr<TraineeScript> script = loadScript(o);
   const std::string softness = softnessWarning(*model);

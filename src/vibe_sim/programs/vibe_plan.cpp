@@ -21,7 +21,8 @@ using namespace vibe;
 
 const char kHelp[] =
     "usage: vibe_plan --output FILE [options]\n"
-    "Performs a sleeve gastroplasty on a scene, looking where the wall is before every motion, and writes what the hands\n"
+    "Performs a sleeve gastroplasty on a scene, looking where the wall is before every motion, and writes what the "
+    "hands\n"
     "did as a trainee script.\n"
     "  --scene FILE    scene (default: package://vibe_sim/scenes/stomach.yaml)\n"
     "  --style WORD    expert (default) or novice\n"
@@ -46,10 +47,9 @@ int toCount(const std::string& option, const std::string& text) {
 }
 
 Options parse(int argc, char** argv) {
-  static const option kOptions[] = {{"scene", 1, nullptr, 's'},  {"style", 1, nullptr, 't'},
-                                    {"sets", 1, nullptr, 'n'},   {"bites", 1, nullptr, 'b'},
-                                    {"output", 1, nullptr, 'o'}, {"events", 0, nullptr, 'e'},
-                                    {"help", 0, nullptr, 'h'},   {nullptr, 0, nullptr, 0}};
+  static const option kOptions[] = {
+      {"scene", 1, nullptr, 's'},  {"style", 1, nullptr, 't'},  {"sets", 1, nullptr, 'n'}, {"bites", 1, nullptr, 'b'},
+      {"output", 1, nullptr, 'o'}, {"events", 0, nullptr, 'e'}, {"help", 0, nullptr, 'h'}, {nullptr, 0, nullptr, 0}};
   Options o;
   opterr = 0;
   for (int c; (c = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
@@ -81,10 +81,11 @@ EsgStyle styleOf(const Options& o) {
     style.bites = 5;
     style.distal_first = false;
     style.pace = 0.6;
-    style.aim_error = 6e-3;
-    style.turns = 1.2;
-    style.drawn = 6e-3;
+    style.aim_error = 4e-3;
+    style.turns = 1.5;
+    style.drawn = 3e-3;
     style.attempts = 2;
+    style.looks = false;
     style.marks = 2;
     style.cinch_part = 0.3;
     style.mistakes = true;

@@ -8,7 +8,8 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRounds = 8;               // the tip turns with the joints, and its point with it
+constexpr int kRounds = 10;               // the tip turns with the joints, and its point with it
+constexpr int kDirectedRounds = 5;        // of them; then the direction stays, so that the point is reached
 constexpr double kMissWeight = 1 / 2e-3;  // a miss of 2 mm is as bad as half a radian of turn
 constexpr double kTurnWeight = 2;
 constexpr double kMoveWeight = 0.15;  // per radian of joints: rather near where the hand is
@@ -28,8 +29,9 @@ Aim aimFrom(const Model& model, const Eigen::Vector3d& point, const Eigen::Vecto
     tool.forwardKinematics(aim.joints, poses);
     Eigen::Isometry3d target = poses[model.tip_link];
     const Eigen::Vector3d ahead = to_base.linear() * direction;
-    target.linear() =
-        Eigen::Quaterniond::FromTwoVectors(target.linear().col(0), ahead).toRotationMatrix() * target.linear();
+    if (round < kDirectedRounds)
+      target.linear() =
+          Eigen::Quaterniond::FromTwoVectors(target.linear().col(0), ahead).toRotationMatrix() * target.linear();
     target.translation() = to_base * point - poses[model.tip_link].linear() * offset;
     aim.joints = tool.inverseKinematics(target, aim.joints);
   }

@@ -5,19 +5,21 @@
 #include <vector>
 
 #include "vibe_sim/error.hpp"
+#include "vibe_sim/procedure/thread_events.hpp"
 #include "vibe_sim/trainee/aim.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr double kHelixOut = 26e-3;     // helix_advance while it is screwed in [m]
-constexpr double kHelixHome = 2e-3;     // [m]
-constexpr double kStandOff = 10e-3;     // of the helix before it is put to the wall [m]
-constexpr double kInto = 1.5e-3;        // the wall, so that it is in reach for certain [m]
-constexpr double kBeamGap = 3e-3;       // from the probe to the wall [m]
-constexpr double kFill = 9;             // time to insufflate [s]
-constexpr double kLongestCinch = 12;    // [s]
+constexpr double kHelixOut = 26e-3;   // helix_advance while it is screwed in [m]
+constexpr double kHelixHome = 2e-3;   // [m]
+constexpr double kStandOff = 10e-3;   // of the helix before it is put to the wall [m]
+constexpr double kNear = 3e-3;        // the helix reaches a little farther [m]
+constexpr double kInto = 1.5e-3;      // the wall, so that it is in reach for certain [m]
+constexpr double kBeamGap = 3e-3;     // from the probe to the wall [m]
+constexpr double kFill = 9;           // time to insufflate [s]
+constexpr double kLongestCinch = 12;  // [s]
 constexpr double kTurn = 6.283185307179586;
 
 struct Target {
@@ -45,7 +47,7 @@ class EsgPerformance {
     hand_.move(Insertion, 0.06, 1);
     hand_.act("{press: insufflate}");
     hand_.wait(kFill);
-    if (style_.marks > 0) mark();
+    if (style_.marks > 0 && hand_.model().scene.marking) mark();
     for (int set = 0; set < style_.sets; ++set) {
       for (int bite = 0; bite < style_.bites; ++bite) takeBite(set, bite);
       finishSet(set);
@@ -79,9 +81,20 @@ class EsgPerformance {
   WallPlace aimed(const Target& target) {
     const int particle = particleAt(hand_.model(), target.along, target.angle);
     if (particle < 0) throw Error("The organ has no wall where the sleeve is to be; check its landmarks.");
-    WallPlace place = placeOf(hand_.model(), hand_.state(), particle);
-    for (int k = 0; k < 3; ++k) place.point[k] += style_.aim_error * nextNormal();
-    return place;
+    return placeOf(hand_.model(), hand_.state(), particle);
+  }
+
+  // From the helix' point to the nearest particle [m].
+  double helixGap() const {
+    const Model& model = hand_.model();
+    const State& state = hand_.state();
+    std::vector<Eigen::Isometry3d> poses;
+    model.tool->forwardKinematics(state.joints, poses);
+    const Eigen::Vector3d tip = model.tool_base * poses[model.helix_link].translation();
+    double least = 1;
+    for (int i = 0; i < model.particle_count; ++i)
+      least = std::min(least, (Eigen::Vector3d(state.x[i], state.y[i], state.z[i]) - tip).norm());
+    return least;
   }
 
   void mark() {
@@ -89,13 +102,14 @@ class EsgPerformance {
     const char* const names[] = {"mark the anterior wall", "mark the greater curvature", "mark the posterior wall"};
     for (int line = 0; line < 3; ++line) {
       say(names[line]);
-      for (int k = 0; k < style_.marks; ++k) markAt({between((k + 0.5) / style_.marks), angles[line]}, line == 0 && k == 0);
+      for (int k = 0; k < style_.marks; ++k)
+        markAt({between((k + 0.5) / style_.marks), angles[line]}, line == 0 && k == 0);
       goBack();
     }
   }
 
   void markAt(const Target& target, bool first) {
-    const double probe = 0.01;
+    const double probe = hand_.model().scene.marking ? hand_.model().scene.marking->apc.probe_length : 0;
     for (const double off : {0.02, 0.0}) {
       const WallPlace place = aimed(target);
       const Aim aim = aimAt(hand_.model(), place.point - (probe + kBeamGap + off) * place.outward, place.outward,
@@ -132,16 +146,10 @@ class EsgPerformance {
   bool tryBite(const Target& target) {
     bool bitten = false;
     if (grab(target)) {
-      hand_.move(HelixAdvance, style_.drawn, 0.8);
-      if (!hand_.state().grip.empty()) {
-        hand_.move(NeedleDriver, 0.018, 0.3);
-        const bool pierced = hand_.state().procedure.pierced;
-        if (pierced) {
-          hand_.hold(Needle, 0.12);
-          bitten = hand_.happened(Event::Kind::Bite);
-        }
-        hand_.move(NeedleDriver, 0.0, 0.3);
-      }
+      const std::vector<double> draws =
+          style_.looks ? std::vector<double>{style_.drawn, 0.2 * style_.drawn} : std::vector<double>{style_.drawn};
+      for (const double drawn : draws)
+        if (!bitten) bitten = closeArmAt(drawn, drawn == draws.back());
       hand_.move(HelixAdvance, kHelixOut - 4e-3, 0.6);
     }
     letGo();
@@ -149,15 +157,31 @@ class EsgPerformance {
     return bitten;
   }
 
+  // The exchange gets the needle where it went through all of the wall; the last time wherever it went.
+  bool closeArmAt(double drawn, bool last) {
+    hand_.move(HelixAdvance, drawn, 0.8);
+    if (hand_.state().grip.empty()) return false;
+    hand_.move(NeedleDriver, 0.018, 0.3);
+    const ProcedureState& procedure = hand_.state().procedure;
+    bool bitten = false;
+    if (procedure.pierced && (last || procedure.pending.fullThickness())) {
+      hand_.hold(Needle, 0.12);
+      bitten = hand_.happened(Event::Kind::Bite);
+    }
+    hand_.move(NeedleDriver, 0.0, 0.3);
+    return bitten;
+  }
+
   bool grab(const Target& target) {
     const Eigen::Vector3d helix(kHelixOut - 2e-3, 2.8e-3, -2.2e-3);
-    for (const double off : {kStandOff, -kInto}) {
+    const Eigen::Vector3d error = style_.aim_error * Eigen::Vector3d(nextNormal(), nextNormal(), nextNormal());
+    for (const double into : {-kStandOff, kInto, 2 * kInto, 4 * kInto}) {  // the wall gives way: after it, if need be
+      if (into > kInto && helixGap() < kNear) break;
       const WallPlace place = aimed(target);
-      const Aim aim =
-          aimAt(hand_.model(), place.point + -off * place.outward, place.outward, helix, hand_.joints());
-      std::array<double, kJointCount> joints = aim.joints;
+      std::array<double, kJointCount> joints =
+          aimAt(hand_.model(), place.point + error + into * place.outward, place.outward, helix, hand_.joints()).joints;
       joints[HelixAdvance] = kHelixOut;
-      hand_.moveTo(joints, 0.4);
+      hand_.moveTo(joints, into < 0 ? 0.5 : 0.3);
     }
     hand_.act("{press: helix_grab}");
     hand_.move(HelixRotation, style_.turns * kTurn, 0.8);
@@ -208,8 +232,7 @@ class EsgPerformance {
   bool isTight() const {
     const ProcedureState& procedure = hand_.state().procedure;
     if (procedure.sutures.empty() || procedure.sutures.back().permanent()) return true;
-    const std::vector<double>& tension = procedure.sutures.back().tension;
-    return !tension.empty() && tension.front() >= style_.cinch_part * hand_.model().scene.suture->cinch_tension;
+    return cinchTension(procedure.sutures.back()) >= style_.cinch_part * hand_.model().scene.suture->cinch_tension;
   }
 
   const EsgStyle& style_;

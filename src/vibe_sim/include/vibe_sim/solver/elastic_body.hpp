@@ -57,8 +57,9 @@ struct Spot {
   bool operator==(const Spot& other) const { return node == other.node && weight == other.weight; }
 };
 
-/// Length of thread that stays between two spots, which have a size: no shorter is asked for [m].
-constexpr double kLeastThread = 2e-3;
+/// Length of thread that stays between two spots, however hard it is drawn: a fold of the wall lies between them, twice
+/// as thick as the wall (about 2.3 mm) [m].
+constexpr double kLeastThread = 5e-3;
 
 /// A thread without mass or bending that runs through spots and pulls where it is tense. It slides through the spots
 /// between its ends with Coulomb friction (capstan).

@@ -8,15 +8,16 @@ namespace vibe {
 
 /// How a trainee performs an endoscopic sleeve gastroplasty. The defaults are an experienced one.
 struct EsgStyle {
-  int sets = 6;            ///< 4 to 8 sutures are usual
-  int bites = 7;           ///< per set; 6 to 9 are usual
+  int sets = 6;   ///< 4 to 8 sutures are usual
+  int bites = 7;  ///< per set; 6 to 9 are usual
   bool distal_first = true;
-  double spread = 0.75;    ///< angle from the greater curvature to the outer bites [rad]
+  double spread = 1.0;     ///< angle from the greater curvature to the outer bites [rad]
   double pace = 1;         ///< of the hand [1]
   double aim_error = 0;    ///< standard deviation of where bites and marks are put [m]
   double turns = 3;        ///< of the helix
-  double drawn = 0.5e-3;   ///< how far out of the device the helix stays when the arm closes [m]
+  double drawn = 5e-3;     ///< how far out of the device the helix stays when the arm closes [m]
   int attempts = 3;        ///< at a bite
+  bool looks = true;       ///< draws the wall in farther where the needle has not gone through all of it
   int marks = 4;           ///< per line; 0: none
   double mark_time = 2;    ///< that the pedal is held [s]
   double cinch_part = 1;   ///< of the time that the cinch needs for its tension [1]
