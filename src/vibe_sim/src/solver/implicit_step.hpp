@@ -20,7 +20,7 @@ namespace vibe {
 struct ImplicitScratch : SolverScratch {
   std::shared_ptr<StepperScratch> stepper;
   std::unique_ptr<ToolCollision> collision;
-  std::unique_ptr<SelfContact> walls;               // null: the scene does not ask for it
+  std::unique_ptr<SelfContact> walls;  // null: the scene does not ask for it
   GroupPull groups;
   SumTerm terms;                                    // walls and groups
   std::vector<Eigen::Isometry3d> poses, old_poses;  // of the links at the end and at the start of the step

@@ -16,8 +16,8 @@ struct WallPlace {
 /// Where a particle is now, with the wall's direction around it.
 WallPlace placeOf(const Model& model, const State& state, int particle);
 
-/// The particle at a place that anatomy names: `along` the organ's axis (0: apex of the fundus, 1: pylorus), at an angle
-/// around it from the greater curvature [rad]: positive anterior, negative posterior. At rest.
+/// The particle at a place that anatomy names: `along` the organ's axis (0: apex of the fundus, 1: pylorus), at an
+/// angle around it from the greater curvature [rad]: positive anterior, negative posterior. At rest.
 int particleAt(const Model& model, double along, double angle);
 
 /// Joints that bring a point of the scope's tip to a place, looking along a direction as well as its four joints can.
