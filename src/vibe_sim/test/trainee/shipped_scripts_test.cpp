@@ -60,7 +60,9 @@ TEST_P(ShippedScript, EndsWithdrawnWithNothingPressed) {
   EXPECT_EQ(script_.phaseAt(script_.duration()), "withdraw");
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ShippedScript, ::testing::Values("expert.yaml", "novice.yaml", "demo/smoke.yaml"));
+INSTANTIATE_TEST_SUITE_P(All, ShippedScript,
+                         ::testing::Values("expert.yaml", "novice.yaml", "demo/grabs.yaml", "demo/clumsy_grabs.yaml",
+                                           "demo/smoke.yaml"));
 
 }  // namespace
 }  // namespace vibe

@@ -103,8 +103,8 @@ TEST(TraineeScript, ButtonsHaveSharpEdges) {
 }
 
 TEST(TraineeScript, IsAPureFunctionOfTime) {
-  const TraineeScript one = TraineeScript::load(kScripts + "novice.yaml");
-  const TraineeScript two = TraineeScript::load(kScripts + "novice.yaml");
+  const TraineeScript one = TraineeScript::load(kScripts + "demo/clumsy_grabs.yaml");
+  const TraineeScript two = TraineeScript::load(kScripts + "demo/clumsy_grabs.yaml");
   std::vector<double> times;
   for (double t = 0; t < one.duration(); t += 0.37) times.push_back(t);
   std::vector<StepInput> forward;
@@ -144,9 +144,9 @@ TEST(TraineeScript, MotionIsContinuousInTheShippedScripts) {
   }
 }
 
-TEST(ShippedScripts, ExpertFitsAMinuteAndGrabsTwice) {
-  const TraineeScript s = TraineeScript::load(kScripts + "expert.yaml");
-  EXPECT_EQ(s.name(), "expert");
+TEST(ShippedScripts, TheGrabsFitAMinuteAndAreTwo) {
+  const TraineeScript s = TraineeScript::load(kScripts + "demo/grabs.yaml");
+  EXPECT_EQ(s.name(), "grabs");
   EXPECT_NEAR(s.duration(), 60, 1e-9);
   int grabs = 0;
   for (double t = 0; t < s.duration(); t += 0.01) {
@@ -158,7 +158,7 @@ TEST(ShippedScripts, ExpertFitsAMinuteAndGrabsTwice) {
 }
 
 /// Motion jerk is what tells the two apart: the beginner's hands shake four times as much.
-TEST(ShippedScripts, NoviceShakesMore) {
+TEST(ShippedScripts, ClumsyHandsShakeMore) {
   const auto shake = [](const TraineeScript& s) {
     double sum = 0;
     for (int k = 0; k < 4000; ++k) {
@@ -168,8 +168,8 @@ TEST(ShippedScripts, NoviceShakesMore) {
     }
     return std::sqrt(sum);
   };
-  EXPECT_GT(shake(TraineeScript::load(kScripts + "novice.yaml")),
-            3 * shake(TraineeScript::load(kScripts + "expert.yaml")));
+  EXPECT_GT(shake(TraineeScript::load(kScripts + "demo/clumsy_grabs.yaml")),
+            3 * shake(TraineeScript::load(kScripts + "demo/grabs.yaml")));
 }
 
 TEST(TraineeScript, LongScriptsAreFine) {
