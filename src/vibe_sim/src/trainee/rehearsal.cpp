@@ -13,7 +13,7 @@ namespace vibe {
 namespace {
 
 // mean speeds of an experienced hand, design choice [m/s], [rad/s]
-constexpr std::array<double, kJointCount> kHandSpeed{0.04, 1.2, 1.2, 1.2, 0.025, 16, 0.05};
+constexpr std::array<double, kJointCount> kHandSpeed{0.04, 1.2, 1.2, 1.2, 0.025, 12.5, 0.05};
 
 std::string number(double value) {
   char text[32];
@@ -40,7 +40,8 @@ void Rehearsal::act(const std::string& action) {
 void Rehearsal::play() {
   const TraineeScript script = TraineeScript::parse(script_, "the rehearsed script");
   const double dt = model_->scene.step_period;
-  while (static_cast<double>(state_.step) * dt < script.duration()) {
+  const std::int64_t end = std::lround(script.duration() / dt);  // as the programs that play scripts have it
+  while (state_.step < end) {
     const StepInput input = script.at(static_cast<double>(state_.step) * dt);
     step(*model_, state_, input, workspace_, events_);
   }
