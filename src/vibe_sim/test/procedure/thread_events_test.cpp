@@ -170,12 +170,12 @@ TEST(ThreadEvents, FreeThreadFollowsTheTissueAndAPulledOneDoesNot) {
 
 TEST(ThreadEvents, TheCinchDrawsFromItsSegmentThenFromTheNextAndStopsAtTheFloor) {
   Thread thread(kCorner);
-  thread.suture().length = {0.0035, 0.004, 0.003};
+  thread.suture().length = {kLeastSegment + 0.0015, kLeastSegment + 0.002, kLeastSegment + 0.001};
   EXPECT_NEAR(drawThread(0.001, thread.suture()), 0.001, 1e-15);
-  EXPECT_NEAR(thread.suture().length[0], 0.0025, 1e-15);
+  EXPECT_NEAR(thread.suture().length[0], kLeastSegment + 0.0005, 1e-15);
   EXPECT_NEAR(drawThread(0.001, thread.suture()), 0.001, 1e-15);
   EXPECT_NEAR(thread.suture().length[0], kLeastSegment, 1e-15);
-  EXPECT_NEAR(thread.suture().length[1], 0.0035, 1e-15);
+  EXPECT_NEAR(thread.suture().length[1], kLeastSegment + 0.0015, 1e-15);
   EXPECT_NEAR(drawThread(1, thread.suture()), 0.0025, 1e-15);
   for (double length : thread.suture().length) EXPECT_NEAR(length, kLeastSegment, 1e-15);
   EXPECT_NEAR(thread.suture().pulled, 0.0045, 1e-15);
@@ -187,9 +187,9 @@ TEST(ThreadEvents, TheCinchFeelsTheSegmentItDrawsFrom) {
   thread.suture().length = {0.010, 0.020, 0.030};
   thread.suture().tension = {2, 5, 7};
   EXPECT_EQ(cinchTension(thread.suture()), 2);
-  thread.suture().length[1] = 0.002;  // not the first: does not matter
+  thread.suture().length[1] = kLeastSegment;  // not the first: does not matter
   EXPECT_EQ(cinchTension(thread.suture()), 2);
-  thread.suture().length[0] = 0.002;  // its bites have met, and so have the next two
+  thread.suture().length[0] = kLeastSegment;  // its bites have met, and so have the next two
   EXPECT_EQ(cinchTension(thread.suture()), 7);
   thread.suture().length[1] = 0.020;
   EXPECT_EQ(cinchTension(thread.suture()), 5);
