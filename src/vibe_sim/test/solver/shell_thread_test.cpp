@@ -28,8 +28,10 @@ PulledSheet bow(double friction) {
 }
 
 double pull(PulledSheet& sheet) {
+  const double whole = sheet.set().length[0] + sheet.set().length[1];
   sheet.draw(8e-3);
   sheet.run(2);
+  EXPECT_NEAR(sheet.set().length[0] + sheet.set().length[1], whole - 8e-3, 1e-9) << "what slides stays thread";
   return sheet.set().tension[0] / sheet.set().tension[1];
 }
 
