@@ -1,0 +1,19 @@
+#version 120
+// A solid thing of the vertex' colour under the lamp at the camera.
+uniform float gloss;  // strength of highlights
+uniform float glow;   // 1: its own light only, as of a sign
+uniform float reach;  // of the lamp: half as bright there [m]; 0: as bright everywhere
+
+varying vec3 view_position;
+varying vec3 view_normal;
+varying vec4 colour;
+varying vec3 rest;
+
+void main() {
+  vec3 to_eye = normalize(-view_position), normal = normalize(view_normal);
+  float facing = abs(dot(normal, to_eye));
+  float distance = length(view_position);
+  float lamp = reach > 0.0 ? 2.0 / (1.0 + distance * distance / (reach * reach)) : 1.0;
+  vec3 shaded = colour.rgb * mix(0.22 + 0.78 * lamp * facing, 1.0, glow);
+  gl_FragColor = vec4(shaded + gloss * lamp * pow(facing, 40.0), colour.a);
+}

@@ -1,0 +1,17 @@
+#version 120
+// Place and normal in the camera's frame, the vertex' colour, and its place on the resting organ.
+uniform mat4 worldViewProj;
+uniform mat4 worldView;
+
+varying vec3 view_position;
+varying vec3 view_normal;
+varying vec4 colour;
+varying vec3 rest;
+
+void main() {
+  gl_Position = worldViewProj * gl_Vertex;
+  view_position = (worldView * gl_Vertex).xyz;
+  view_normal = (worldView * vec4(gl_Normal, 0.0)).xyz;
+  colour = gl_Color;
+  rest = gl_MultiTexCoord0.xyz;
+}

@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vibe {
+
+/// What does not change of an organ while it moves, as tissue/topology tells it. "Vertex" is of the drawn surface,
+/// "particle" of the simulated one; without a skin they are the same.
+struct TissueMesh {
+  std::uint32_t revision = 0;  ///< frames of another revision do not belong to it
+  std::string name;            ///< of the scene
+  std::string frame_id;        ///< of the positions at rest
+  std::size_t particle_count = 0, vertex_count = 0;
+
+  std::vector<std::uint32_t> triangles;           ///< three vertices each, counter-clockwise seen from outside
+  std::vector<std::uint32_t> particle_triangles;  ///< three particles each; the same without a skin
+  std::vector<float> rest;                        ///< x y z per vertex [m]
+
+  // Vertex v is the sum over k in [skin_offsets[v], skin_offsets[v + 1]) of skin_weights[k] times particle
+  // skin_particles[k]. All empty without a skin.
+  std::vector<std::uint32_t> skin_offsets, skin_particles;
+  std::vector<float> skin_weights;
+  bool skinned() const { return !skin_offsets.empty(); }
+
+  // Per particle; empty if the topology does not tell.
+  std::vector<std::uint8_t> region, wall;  ///< REGION_* and WALL_* of vibe_msgs/TissueTopology
+  std::vector<float> thickness;            ///< of the wall at rest [m]
+};
+
+/// The particles at one moment, as tissue/particles tells them.
+struct TissueFrame {
+  std::uint32_t revision = 0;
+  std::vector<float> positions;  ///< x y z per particle [m]
+  std::vector<float> strain;     ///< mean in-plane stretch minus 1 [1]; empty if not told
+  std::vector<std::uint8_t>
+      grade;                ///< 0 none, 1 mark, 2 burn scar, 3 muscularis at risk; empty in scenes without marks
+  std::vector<float> dose;  ///< largest heat so far, as energy of a whole spot [J]; empty like grade
+};
+
+}  // namespace vibe

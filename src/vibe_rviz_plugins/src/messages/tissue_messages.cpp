@@ -1,0 +1,160 @@
+#include "messages/tissue_messages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "messages/cloud_field.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr std::size_t kMostParticles = 10'000'000;  // beyond that it is a mistake, not an organ
+constexpr std::uint8_t kMostGrade = 3;
+
+std::string number(std::size_t value) {
+  return std::to_string(value);
+}
+
+std::string checkTriangles(const std::vector<std::uint32_t>& triangles, std::size_t count, const char* array) {
+  if (triangles.size() % 3 != 0)
+    return std::string(array) + " of the topology has " + number(triangles.size()) +
+           " entries, which is no multiple of 3.";
+  for (const std::uint32_t corner : triangles)
+    if (corner >= count)
+      return std::string(array) + " of the topology names number " + number(corner) + ", but there are only " +
+             number(count) + ".";
+  return {};
+}
+
+std::string checkSkin(const vibe_msgs::TissueTopology& message, std::size_t particles) {
+  const auto& offsets = message.skin_offsets;
+  if (message.skin_weights.size() != message.skin_particles.size())
+    return "skin_weights and skin_particles of the topology have different lengths.";
+  if (offsets.front() != 0 || offsets.back() != message.skin_particles.size() ||
+      !std::is_sorted(offsets.begin(), offsets.end()))
+    return "skin_offsets of the topology do not run from 0 to the length of skin_particles.";
+  for (const std::uint32_t particle : message.skin_particles)
+    if (particle >= particles) return "skin_particles of the topology names a particle that does not exist.";
+  for (const float weight : message.skin_weights)
+    if (!std::isfinite(weight)) return "skin_weights of the topology holds a value that is not finite.";
+  return {};
+}
+
+std::string checkPositions(const std::vector<double>& positions) {
+  if (positions.size() % 3 != 0) return "rest_positions of the topology is no list of x, y, z.";
+  if (positions.empty()) return "The topology has no particles.";
+  if (positions.size() / 3 > kMostParticles) return "The topology has more than ten million particles.";
+  for (const double value : positions)
+    if (!(std::abs(value) < 1e6)) return "rest_positions of the topology holds a value that is no place in metres.";
+  return {};
+}
+
+std::string checkAnatomy(const vibe_msgs::TissueTopology& message, std::size_t count) {
+  for (const std::size_t length : {message.region.size(), message.wall.size(), message.thickness.size()})
+    if (length != 0 && length != count)
+      return "region, wall or thickness of the topology do not have one entry per particle.";
+  return {};
+}
+
+std::string checkTopology(const vibe_msgs::TissueTopology& message) {
+  std::string wrong = checkPositions(message.rest_positions);
+  const std::size_t count = message.rest_positions.size() / 3;
+  if (wrong.empty()) wrong = checkTriangles(message.triangles, count, "triangles");
+  if (wrong.empty()) wrong = checkAnatomy(message, count);
+  if (!wrong.empty() || message.skin_offsets.empty()) return wrong;
+  wrong = checkSkin(message, count);
+  return wrong.empty() ? checkTriangles(message.skin_triangles, message.skin_offsets.size() - 1, "skin_triangles")
+                       : wrong;
+}
+
+void takeRest(const std::vector<double>& positions, TissueMesh& mesh) {
+  mesh.rest.assign(3 * mesh.vertex_count, 0.0F);
+  if (!mesh.skinned()) {
+    std::transform(positions.begin(), positions.end(), mesh.rest.begin(),
+                   [](double p) { return static_cast<float>(p); });
+    return;
+  }
+  for (std::size_t v = 0; v < mesh.vertex_count; ++v)
+    for (std::uint32_t k = mesh.skin_offsets[v]; k < mesh.skin_offsets[v + 1]; ++k)
+      for (std::size_t c = 0; c < 3; ++c)
+        mesh.rest[3 * v + c] += mesh.skin_weights[k] * static_cast<float>(positions[3 * mesh.skin_particles[k] + c]);
+}
+
+bool finite(const float* values, std::size_t count, std::size_t& where) {
+  for (where = 0; where < count; ++where)
+    if (!std::isfinite(values[where])) return false;
+  return true;
+}
+
+std::string checkRevision(const CloudField& field, std::size_t count, std::uint32_t revision) {
+  for (std::size_t i = 0; i < count; ++i)
+    if (field.at<std::uint32_t>(i) != revision)
+      return "The particles belong to topology revision " + number(field.at<std::uint32_t>(i)) +
+             " and the topology is " + number(revision) + "; waiting for the one that fits.";
+  return {};
+}
+
+template <class T>
+void take(const CloudField& field, std::size_t count, std::vector<T>& values) {
+  values.resize(field.present() ? count : 0);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = field.at<T>(i);
+}
+
+}  // namespace
+
+std::string readTopology(const vibe_msgs::TissueTopology& message, TissueMesh& mesh) {
+  const std::string wrong = checkTopology(message);
+  if (!wrong.empty()) return wrong;
+  mesh = {};
+  mesh.revision = message.revision;
+  mesh.name = message.name;
+  mesh.frame_id = message.header.frame_id;
+  mesh.particle_count = message.rest_positions.size() / 3;
+  mesh.particle_triangles = message.triangles;
+  mesh.skin_offsets = message.skin_offsets;
+  mesh.skin_particles = message.skin_particles;
+  mesh.skin_weights = message.skin_weights;
+  mesh.triangles = mesh.skinned() ? message.skin_triangles : message.triangles;
+  mesh.vertex_count = mesh.skinned() ? mesh.skin_offsets.size() - 1 : mesh.particle_count;
+  mesh.region = message.region;
+  mesh.wall = message.wall;
+  mesh.thickness = message.thickness;
+  takeRest(message.rest_positions, mesh);
+  return {};
+}
+
+std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueMesh& mesh, TissueFrame& frame) {
+  const std::size_t count = std::size_t{message.width} * message.height;
+  CloudField x, y, z, revision, strain, grade, dose;
+  std::string wrong = checkLayout(message);
+  if (wrong.empty()) wrong = findField(message, "x", sensor_msgs::PointField::FLOAT32, true, x);
+  if (wrong.empty()) wrong = findField(message, "y", sensor_msgs::PointField::FLOAT32, true, y);
+  if (wrong.empty()) wrong = findField(message, "z", sensor_msgs::PointField::FLOAT32, true, z);
+  if (wrong.empty()) wrong = findField(message, "revision", sensor_msgs::PointField::UINT32, true, revision);
+  if (wrong.empty()) wrong = findField(message, "strain", sensor_msgs::PointField::FLOAT32, false, strain);
+  if (wrong.empty()) wrong = findField(message, "grade", sensor_msgs::PointField::UINT8, false, grade);
+  if (wrong.empty()) wrong = findField(message, "thermal_dose", sensor_msgs::PointField::FLOAT32, false, dose);
+  if (wrong.empty()) wrong = checkRevision(revision, count, mesh.revision);
+  if (!wrong.empty()) return wrong;
+  if (count != mesh.particle_count)
+    return "The cloud has " + number(count) + " particles and the topology " + number(mesh.particle_count) + ".";
+  frame.revision = mesh.revision;
+  frame.positions.resize(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    frame.positions[3 * i] = x.at<float>(i);
+    frame.positions[3 * i + 1] = y.at<float>(i);
+    frame.positions[3 * i + 2] = z.at<float>(i);
+  }
+  std::size_t where = 0;
+  if (!finite(frame.positions.data(), 3 * count, where))
+    return "The place of particle " + number(where / 3) + " is not finite; the last good frame stays.";
+  take(strain, count, frame.strain);
+  take(grade, count, frame.grade);
+  take(dose, count, frame.dose);
+  for (std::uint8_t& value : frame.grade) value = std::min(value, kMostGrade);
+  return {};
+}
+
+}  // namespace vibe

@@ -1,0 +1,64 @@
+#pragma once
+#include <OgreAxisAlignedBox.h>
+#include <OgreHardwareVertexBuffer.h>
+#include <OgreMaterial.h>
+#include <OgreMesh.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/moving_vertex.hpp"
+
+namespace Ogre {
+class Entity;
+class SceneNode;
+}  // namespace Ogre
+
+namespace vibe {
+
+/// Triangles with vertices that move, in hardware buffers: what does not change is not sent again. Vertices and
+/// colours lie in buffers of their own, so that tissue that moves without changing colour sends only its vertices.
+/// To be used from the thread that renders.
+class DynamicMesh {
+ public:
+  /// @param parent     node to hang it on; outlives this
+  /// @param materials  the triangles are drawn once with each of them, all from the same vertices; see materials.hpp
+  DynamicMesh(Ogre::SceneNode& parent, std::vector<Ogre::MaterialPtr> materials);
+  ~DynamicMesh();
+  DynamicMesh(const DynamicMesh&) = delete;
+  DynamicMesh& operator=(const DynamicMesh&) = delete;
+
+  /// New triangles; vertices (at the origin) and colours (white) are to be set again. No triangles: draws nothing.
+  /// @param triangles  three vertex numbers each, counter-clockwise seen from outside
+  /// @param fixed      x y z per vertex that shaders read as texture coordinate, for example the place at rest, so that
+  ///                   a texture moves with the surface; empty: zero
+  void setTopology(const std::vector<std::uint32_t>& triangles, std::size_t vertex_count,
+                   const std::vector<float>& fixed = {});
+  /// Vertices from `first` on.
+  void setVertices(const MovingVertex* vertices, std::size_t first, std::size_t count);
+  /// Colours of the vertices from `first` on.
+  void setColours(const PackedColour* colours, std::size_t first, std::size_t count);
+  /// Box around all vertices; what lies outside may not be drawn.
+  void setBounds(const Ogre::AxisAlignedBox& bounds);
+
+  void setMaterials(std::vector<Ogre::MaterialPtr> materials);
+  void setVisible(bool visible);
+
+  std::size_t vertexCount() const { return vertex_count_; }
+  std::size_t triangleCount() const { return triangle_count_; }
+
+ private:
+  void clear();
+  void makeVertexData(const std::vector<float>& fixed);
+  void makeIndexData(const std::vector<std::uint32_t>& triangles);
+
+  Ogre::SceneNode& parent_;
+  std::vector<Ogre::MaterialPtr> materials_;
+  Ogre::MeshPtr mesh_;
+  Ogre::Entity* entity_ = nullptr;
+  Ogre::HardwareVertexBufferSharedPtr vertices_, colours_;
+  std::size_t vertex_count_ = 0, triangle_count_ = 0;
+  bool visible_ = true;
+};
+
+}  // namespace vibe

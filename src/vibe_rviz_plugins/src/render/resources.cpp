@@ -1,0 +1,47 @@
+#include "render/resources.hpp"
+
+#include <OgreMaterialManager.h>
+#include <OgreResourceGroupManager.h>
+#include <OgreTechnique.h>
+#include <ros/package.h>
+
+#include <atomic>
+#include <stdexcept>
+
+namespace vibe {
+
+const char* const kResourceGroup = "vibe_rviz_plugins";
+const char* const kEndoscopeScheme = "vibe_endoscope";
+
+void loadResources() {
+  auto& groups = Ogre::ResourceGroupManager::getSingleton();
+  if (groups.resourceGroupExists(kResourceGroup)) return;
+  const std::string package = ros::package::getPath("vibe_rviz_plugins");
+  if (package.empty())
+    throw std::runtime_error(
+        "The package vibe_rviz_plugins is not in ROS_PACKAGE_PATH; source devel/setup.bash before rviz.");
+  groups.createResourceGroup(kResourceGroup);
+  groups.addResourceLocation(package + "/media", "FileSystem", kResourceGroup);
+  groups.initialiseResourceGroup(kResourceGroup);
+}
+
+std::string uniqueName(const std::string& what) {
+  static std::atomic<unsigned> count{0};
+  return "vibe" + what + std::to_string(count++);
+}
+
+Ogre::MaterialPtr copyMaterial(const std::string& name) {
+  loadResources();
+  Ogre::MaterialPtr original = Ogre::MaterialManager::getSingleton().getByName(name, kResourceGroup);
+  if (!original) throw std::runtime_error("There is no material '" + name + "' in media/ of vibe_rviz_plugins.");
+  Ogre::MaterialPtr copy = original->clone(uniqueName(name), true, kResourceGroup);
+  copy->load();
+  return copy;
+}
+
+void dropMaterial(Ogre::MaterialPtr& material) {
+  if (material) Ogre::MaterialManager::getSingleton().remove(material);
+  material.reset();
+}
+
+}  // namespace vibe
