@@ -5,6 +5,7 @@
 #include <OgreMeshManager.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
+#include <OgreSubEntity.h>
 #include <OgreSubMesh.h>
 
 #include "render/resources.hpp"

@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "geometry/moving_vertex.hpp"
+
+namespace vibe {
+
+/// From a value to a colour. The maps are those of matplotlib (van der Walt & Smith 2015; Nunez, Anderton & Renslow
+/// 2018 for cividis; CC0): lightness grows evenly, so equal steps of the value look equally large and a print in grey
+/// keeps the order.
+class ColourMap {
+ public:
+  static constexpr int kSteps = 256;
+
+  /// Viridis between 0 and 1.
+  ColourMap();
+  /// @param name  one of colourMapNames(); another: viridis
+  ColourMap(const std::string& name, double least, double greatest);
+
+  /// Values outside are drawn like the ends, NaN like the lower end. Equal ends: everything at or below is the lower
+  /// end.
+  PackedColour at(double value) const { return steps_[static_cast<std::size_t>(index(value))]; }
+
+  double least() const { return least_; }
+  double greatest() const { return least_ + (scale_ > 0 ? (kSteps - 1) / scale_ : 0); }
+  const std::array<PackedColour, kSteps>& steps() const { return steps_; }
+
+ private:
+  int index(double value) const {
+    const double place = (value - least_) * scale_ + 0.5;
+    return place >= kSteps ? kSteps - 1 : place >= 1 ? static_cast<int>(place) : 0;
+  }
+
+  std::array<PackedColour, kSteps> steps_;
+  double least_ = 0, scale_ = kSteps - 1;  // scale_ [steps per unit]
+};
+
+/// "viridis", "magma", "cividis".
+const std::vector<std::string>& colourMapNames();
+
+}  // namespace vibe
