@@ -1,0 +1,293 @@
+#include "displays/tissue_display.hpp"
+
+#include <OgreSceneNode.h>
+#include <rviz/display_context.h>
+#include <rviz/frame_manager.h>
+#include <rviz/properties/bool_property.h>
+#include <rviz/properties/color_property.h>
+#include <rviz/properties/enum_property.h>
+#include <rviz/properties/float_property.h>
+#include <rviz/properties/ros_topic_property.h>
+
+#include <pluginlib/class_list_macros.hpp>
+
+#include "messages/tissue_messages.hpp"
+#include "render/tissue_visual.hpp"
+
+namespace vibe {
+namespace {
+
+using rviz::StatusProperty;
+
+// Ranges that a colouring begins with, in its unit.
+struct Range {
+  float least, greatest;
+};
+Range usualRange(Colouring colouring) {
+  switch (colouring) {
+    case Colouring::Heat:
+      return {0, 80};
+    case Colouring::Thickness:
+      return {0.002F, 0.006F};
+    default:
+      return {0, 0.5F};
+  }
+}
+
+bool hasRange(Colouring colouring) {
+  return colouring == Colouring::Strain || colouring == Colouring::Heat || colouring == Colouring::Thickness;
+}
+
+rviz::FloatProperty* bounded(rviz::FloatProperty* property, float least, float greatest) {
+  property->setMin(least);
+  property->setMax(greatest);
+  return property;
+}
+
+}  // namespace
+
+TissueDisplay::TissueDisplay() {
+  addTopics();
+  addColours();
+  addSurface();
+  addParts();
+}
+
+TissueDisplay::~TissueDisplay() {
+  unsubscribe();
+}
+
+void TissueDisplay::addTopics() {
+  topology_topic_ = new rviz::RosTopicProperty(
+      "Topology Topic", "tissue/topology",
+      QString::fromStdString(ros::message_traits::datatype<vibe_msgs::TissueTopology>()),
+      "Topic of vibe_msgs/TissueTopology: the mesh and its anatomy.", this, SLOT(subscribe()), this);
+  particles_topic_ = new rviz::RosTopicProperty(
+      "Particles Topic", "tissue/particles",
+      QString::fromStdString(ros::message_traits::datatype<sensor_msgs::PointCloud2>()),
+      "Topic of sensor_msgs/PointCloud2: where the particles of that mesh are now.", this, SLOT(subscribe()), this);
+}
+
+void TissueDisplay::addColours() {
+  colouring_ =
+      new rviz::EnumProperty("Colour by", "Tissue",
+                             "What the surface's colour says: tissue as it is, its region or wall, strain, the "
+                             "heat it was given, or the thickness of the wall.",
+                             this, SLOT(changeColouring()), this);
+  colouring_->addOption("Tissue", static_cast<int>(Colouring::Tissue));
+  colouring_->addOption("Region", static_cast<int>(Colouring::Region));
+  colouring_->addOption("Wall", static_cast<int>(Colouring::Wall));
+  colouring_->addOption("Strain", static_cast<int>(Colouring::Strain));
+  colouring_->addOption("Heat", static_cast<int>(Colouring::Heat));
+  colouring_->addOption("Thickness", static_cast<int>(Colouring::Thickness));
+  map_ = new rviz::EnumProperty("Colour map", "viridis",
+                                "From a number to a colour, in steps that look equally large; cividis looks alike to "
+                                "people with any colour vision.",
+                                colouring_, SLOT(changeLook()), this);
+  int number = 0;
+  for (const std::string& name : colourMapNames()) map_->addOption(QString::fromStdString(name), number++);
+  const Range range = usualRange(Colouring::Strain);
+  least_ =
+      new rviz::FloatProperty("From", range.least, "Value at the map's dark end: strain [1], heat [J], thickness [m].",
+                              colouring_, SLOT(changeLook()), this);
+  greatest_ = new rviz::FloatProperty("To", range.greatest,
+                                      "Value at the map's bright end: strain [1], heat [J], thickness [m].", colouring_,
+                                      SLOT(changeLook()), this);
+}
+
+void TissueDisplay::addSurface() {
+  surface_ = new rviz::BoolProperty("Surface", true, "Draw the organ's surface.", this, SLOT(changeLook()), this);
+  inside_ = new rviz::ColorProperty("Inside", QColor(219, 120, 107), "Colour of the mucosa, which lines the inside.",
+                                    surface_, SLOT(changeLook()), this);
+  outside_ =
+      new rviz::ColorProperty("Outside", QColor(214, 158, 143), "Colour of the serosa, which covers the outside.",
+                              surface_, SLOT(changeLook()), this);
+  outside_alpha_ = bounded(
+      new rviz::FloatProperty("Outside opacity", 0.25F,
+                              "Of the wall looked at straight on from outside: 0 shows the inside only, 1 hides it.",
+                              surface_, SLOT(changeLook()), this),
+      0, 1);
+  wetness_ = bounded(new rviz::FloatProperty("Wetness", 0.4F, "Strength of highlights: 0 is dull, 1 very wet.",
+                                             surface_, SLOT(changeLook()), this),
+                     0, 1);
+  relief_ =
+      bounded(new rviz::FloatProperty("Relief", 0.0006F,
+                                      "Height of the mucosa's fine relief [m]; drawn by its shading, not in the shape.",
+                                      surface_, SLOT(changeLook()), this),
+              0, 0.01F);
+  scars_ = new rviz::BoolProperty(
+      "Marks and burns", true,
+      "Show what the argon beam did on the inside: pale marks, brown burn scars, black where the "
+      "muscularis is at risk.",
+      surface_, SLOT(changeLook()), this);
+}
+
+void TissueDisplay::addParts() {
+  particles_ = new rviz::BoolProperty("Particles", false, "Draw the simulated particles as balls.", this,
+                                      SLOT(changeLook()), this);
+  particle_size_ =
+      bounded(new rviz::FloatProperty("Diameter", 0.003F, "Of the balls [m].", particles_, SLOT(changeLook()), this),
+              0.0001F, 0.1F);
+  bones_ = new rviz::BoolProperty(
+      "Bones", false, "Draw the edges of the simulated mesh, whose particles are the bones of the drawn skin.", this,
+      SLOT(changeLook()), this);
+}
+
+void TissueDisplay::onInitialize() {
+  try {
+    visual_ = std::make_unique<TissueVisual>(*scene_manager_, *scene_node_);
+  } catch (const std::exception& error) {
+    setStatusStd(StatusProperty::Error, "Materials", error.what());
+  }
+  changeColouring();
+}
+
+void TissueDisplay::setTopic(const QString& topic, const QString&) {
+  topology_topic_->setString(topic);
+  QString particles = topic;
+  if (particles.endsWith("topology")) particles_topic_->setString(particles.replace(topic.size() - 8, 8, "particles"));
+}
+
+void TissueDisplay::onEnable() {
+  subscribe();
+}
+
+void TissueDisplay::onDisable() {
+  unsubscribe();
+  reset();
+}
+
+void TissueDisplay::reset() {
+  Display::reset();
+  latest_.reset();
+  has_mesh_ = false;
+  frames_ = 0;
+  if (visual_) visual_->clear();
+  if (isEnabled()) subscribe();  // the topology is latched: it comes again
+}
+
+void TissueDisplay::unsubscribe() {
+  topology_subscriber_.shutdown();
+  particles_subscriber_.shutdown();
+}
+
+void TissueDisplay::subscribe() {
+  unsubscribe();
+  if (!isEnabled() || !visual_) return;
+  try {
+    topology_subscriber_ = update_nh_.subscribe(topology_topic_->getTopicStd(), 2, &TissueDisplay::takeTopology, this);
+    particles_subscriber_ =
+        update_nh_.subscribe(particles_topic_->getTopicStd(), 1, &TissueDisplay::takeParticles, this);
+    sayWaiting();
+  } catch (const ros::Exception& error) {
+    setStatusStd(StatusProperty::Error, "Topic", std::string("This is no name of a topic: ") + error.what());
+  }
+}
+
+void TissueDisplay::sayWaiting() {
+  if (!has_mesh_)
+    setStatusStd(StatusProperty::Warn, "Topology",
+                 "No message on " + topology_topic_->getTopicStd() + " yet; is a simulator running?");
+  if (frames_ == 0)
+    setStatusStd(StatusProperty::Warn, "Particles", "No message on " + particles_topic_->getTopicStd() + " yet.");
+}
+
+void TissueDisplay::takeTopology(const vibe_msgs::TissueTopology::ConstPtr& message) {
+  TissueMesh mesh;
+  const std::string wrong = readTopology(*message, mesh);
+  if (!wrong.empty()) {
+    setStatusStd(StatusProperty::Error, "Topology", wrong);
+    return;
+  }
+  mesh_ = std::move(mesh);
+  has_mesh_ = true;
+  visual_->setMesh(mesh_);
+  setStatusStd(StatusProperty::Ok, "Topology",
+               mesh_.name + ", revision " + std::to_string(mesh_.revision) + ": " +
+                   std::to_string(mesh_.particle_count) + " particles, " + std::to_string(mesh_.triangles.size() / 3) +
+                   " triangles drawn.");
+}
+
+void TissueDisplay::complain(const std::string& about, const std::string& text) {
+  complained_ = true;
+  setStatusStd(StatusProperty::Error, about, text);
+}
+
+void TissueDisplay::takeParticles(const sensor_msgs::PointCloud2::ConstPtr& message) {
+  latest_ = message;
+}
+
+void TissueDisplay::update(float, float) {
+  if (latest_ && has_mesh_ && visual_) drawLatest();
+}
+
+void TissueDisplay::drawLatest() {
+  const sensor_msgs::PointCloud2::ConstPtr message = std::move(latest_);
+  latest_.reset();
+  const std::string wrong = readParticles(*message, mesh_, frame_);
+  if (!wrong.empty()) {
+    complain("Particles", wrong);
+    return;
+  }
+  if (!place(message->header)) return;
+  visual_->setFrame(frame_);
+  if (frames_++ == 0 || complained_) {  // not for every frame: a status costs more than drawing
+    setStatus(StatusProperty::Ok, "Particles", "Drawn as they come.");
+    setStatus(StatusProperty::Ok, "Transform", "Known.");
+    complained_ = false;
+  }
+  context_->queueRender();
+}
+
+bool TissueDisplay::place(const std_msgs::Header& header) {
+  Ogre::Vector3 position;
+  Ogre::Quaternion orientation;
+  auto& frames = *context_->getFrameManager();
+  if (!frames.getTransform(header, position, orientation) &&
+      !frames.getTransform(header.frame_id, ros::Time(), position, orientation)) {
+    std::string reason;
+    frames.transformHasProblems(header.frame_id, ros::Time(), reason);
+    complain("Transform",
+             "No transform from '" + header.frame_id + "' to '" + fixed_frame_.toStdString() + "': " + reason);
+    return false;
+  }
+  scene_node_->setPosition(position);
+  scene_node_->setOrientation(orientation);
+  return true;
+}
+
+void TissueDisplay::fixedFrameChanged() {
+  reset();
+}
+
+void TissueDisplay::changeColouring() {
+  const auto colouring = static_cast<Colouring>(colouring_->getOptionInt());
+  const bool ranged = hasRange(colouring);
+  map_->setHidden(!ranged), least_->setHidden(!ranged), greatest_->setHidden(!ranged);
+  changeLook();
+}
+
+void TissueDisplay::changeLook() {
+  if (!visual_) return;
+  TissueLook look;
+  look.surface = surface_->getBool();
+  look.colouring = static_cast<Colouring>(colouring_->getOptionInt());
+  look.map = map_->getStdString();
+  look.least = static_cast<double>(least_->getFloat());
+  look.greatest = static_cast<double>(greatest_->getFloat());
+  look.inside = inside_->getOgreColor();
+  look.outside = outside_->getOgreColor();
+  look.outside_alpha = static_cast<double>(outside_alpha_->getFloat());
+  look.wetness = static_cast<double>(wetness_->getFloat());
+  look.relief = static_cast<double>(relief_->getFloat());
+  look.scars = scars_->getBool();
+  look.particles = particles_->getBool();
+  look.particle_size = static_cast<double>(particle_size_->getFloat());
+  look.mesh = bones_->getBool();
+  visual_->setLook(look);
+  context_->queueRender();
+}
+
+}  // namespace vibe
+
+PLUGINLIB_EXPORT_CLASS(vibe::TissueDisplay, rviz::Display)

@@ -1,0 +1,74 @@
+#pragma once
+#include <ros/subscriber.h>
+#include <rviz/display.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <vibe_msgs/TissueTopology.h>
+
+#include <memory>
+
+#include "geometry/tissue_mesh.hpp"
+
+namespace rviz {
+class BoolProperty;
+class ColorProperty;
+class EnumProperty;
+class FloatProperty;
+class RosTopicProperty;
+}  // namespace rviz
+
+namespace vibe {
+
+class TissueVisual;
+
+/// Draws the organ of tissue/topology where tissue/particles says it is. Draws one frame per picture, the latest: a
+/// flood of messages costs no drawing.
+class TissueDisplay : public rviz::Display {
+  Q_OBJECT
+ public:
+  TissueDisplay();
+  ~TissueDisplay() override;
+
+  void setTopic(const QString& topic, const QString& datatype) override;
+  void update(float wall_dt, float ros_dt) override;
+  void reset() override;
+
+ protected:
+  void onInitialize() override;
+  void onEnable() override;
+  void onDisable() override;
+  void fixedFrameChanged() override;
+
+ private Q_SLOTS:
+  void subscribe();
+  void changeColouring();
+  void changeLook();
+
+ private:
+  void addTopics();
+  void addColours();
+  void addSurface();
+  void addParts();
+  void unsubscribe();
+  void takeTopology(const vibe_msgs::TissueTopology::ConstPtr& message);
+  void takeParticles(const sensor_msgs::PointCloud2::ConstPtr& message);
+  void drawLatest();
+  bool place(const std_msgs::Header& header);
+  void sayWaiting();
+  void complain(const std::string& about, const std::string& text);
+
+  rviz::RosTopicProperty *topology_topic_, *particles_topic_;
+  rviz::EnumProperty *colouring_, *map_;
+  rviz::FloatProperty *least_, *greatest_, *outside_alpha_, *wetness_, *relief_, *particle_size_;
+  rviz::BoolProperty *surface_, *scars_, *particles_, *bones_;
+  rviz::ColorProperty *inside_, *outside_;
+
+  ros::Subscriber topology_subscriber_, particles_subscriber_;
+  sensor_msgs::PointCloud2::ConstPtr latest_;  // not drawn yet
+  TissueMesh mesh_;
+  TissueFrame frame_;
+  bool has_mesh_ = false, complained_ = false;
+  std::size_t frames_ = 0;
+  std::unique_ptr<TissueVisual> visual_;
+};
+
+}  // namespace vibe

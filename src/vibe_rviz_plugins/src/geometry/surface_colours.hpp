@@ -1,0 +1,53 @@
+#pragma once
+#include <vector>
+
+#include "geometry/colour_map.hpp"
+#include "geometry/incidence.hpp"
+#include "geometry/tissue_mesh.hpp"
+#include "geometry/vertex_span.hpp"
+
+namespace vibe {
+
+/// What the colour of tissue says.
+enum class Colouring { Tissue, Region, Wall, Strain, Heat, Thickness };
+
+/// Regions and walls, in the order of their numbers in vibe_msgs/TissueTopology: colours that people with any kind of
+/// colour vision tell apart (Okabe & Ito 2008).
+const std::vector<PackedColour>& regionColours();
+const std::vector<PackedColour>& wallColours();
+
+/// Colours of the vertices of an organ. Red, green and blue say what the Colouring asks for, white for tissue as it is;
+/// alpha says how far heat has gone, as media/tissue.frag draws it: 255 untouched, 170 a mark, 85 a burn scar, 0 burnt
+/// deep. Only vertices of particles whose colour has changed are worked on.
+class SurfaceColours {
+ public:
+  explicit SurfaceColours(const TissueMesh& mesh);
+
+  /// Takes effect with the next update.
+  /// @param map  for the colourings with a number: strain [1], heat [J], thickness [m]
+  void choose(Colouring colouring, const ColourMap& map);
+  Colouring colouring() const { return colouring_; }
+
+  /// @return  the vertices that are no longer what they were
+  VertexSpan update(const TissueFrame& frame);
+  const std::vector<PackedColour>& colours() const { return colours_; }
+
+ private:
+  PackedColour particleColour(std::size_t particle, const TissueFrame& frame) const;
+  PackedColour valueColour(const std::vector<float>& values, std::size_t particle) const;
+  PackedColour blended(std::size_t vertex) const;
+
+  Colouring colouring_ = Colouring::Tissue;
+  ColourMap map_;
+  std::vector<std::uint8_t> region_, wall_;
+  std::vector<float> thickness_;
+  std::vector<std::uint32_t> skin_offsets_, skin_particles_;
+  std::vector<float> skin_weights_;
+  Incidence vertices_of_particle_;  // empty without a skin
+
+  std::vector<PackedColour> of_particle_, colours_;  // as drawn last
+  std::vector<std::uint32_t> touched_;
+  std::vector<std::uint8_t> mark_;
+};
+
+}  // namespace vibe

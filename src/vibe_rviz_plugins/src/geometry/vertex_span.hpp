@@ -1,0 +1,20 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+
+namespace vibe {
+
+/// Vertices from `first` up to, without, `last`: what of a buffer is to be sent again.
+struct VertexSpan {
+  std::size_t first = 0, last = 0;
+
+  bool empty() const { return first >= last; }
+  std::size_t count() const { return empty() ? 0 : last - first; }
+  void add(std::size_t vertex) {
+    if (empty()) first = vertex, last = vertex + 1;
+    first = std::min(first, vertex);
+    last = std::max(last, vertex + 1);
+  }
+};
+
+}  // namespace vibe

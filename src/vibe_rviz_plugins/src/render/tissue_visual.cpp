@@ -1,0 +1,146 @@
+#include "render/tissue_visual.hpp"
+
+#include <OgreGpuProgramParams.h>
+#include <OgrePass.h>
+#include <OgreSceneManager.h>
+#include <OgreSceneNode.h>
+#include <OgreTechnique.h>
+#include <rviz/ogre_helpers/point_cloud.h>
+
+#include "render/resources.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kEdgeAlpha = 0.9;  // a wall seen from the side is hardly transparent
+constexpr double kGrain = 0.25;
+
+Ogre::AxisAlignedBox boxAround(const Eigen::AlignedBox3f& bounds) {
+  if (bounds.isEmpty()) return Ogre::AxisAlignedBox::BOX_NULL;
+  const Eigen::Vector3f &least = bounds.min(), &greatest = bounds.max();
+  return {least.x(), least.y(), least.z(), greatest.x(), greatest.y(), greatest.z()};
+}
+
+void setBlending(Ogre::Pass& pass, bool transparent) {
+  pass.setSceneBlending(transparent ? Ogre::SBT_TRANSPARENT_ALPHA : Ogre::SBT_REPLACE);
+  pass.setDepthWriteEnabled(!transparent);
+}
+
+}  // namespace
+
+TissueVisual::TissueVisual(Ogre::SceneManager&, Ogre::SceneNode& parent)
+    : node_(parent),
+      inside_(copyMaterial("vibe/tissue_inside")),
+      outside_(copyMaterial("vibe/tissue_outside")),
+      wire_(copyMaterial("vibe/wire")),
+      drawn_(parent, {inside_, outside_}),
+      bones_(parent, {wire_}),
+      points_(std::make_unique<rviz::PointCloud>()) {
+  points_->setRenderMode(rviz::PointCloud::RM_SPHERES);
+  node_.attachObject(points_.get());
+  applyLook();
+}
+
+TissueVisual::~TissueVisual() {
+  node_.detachObject(points_.get());
+  clear();
+  dropMaterial(inside_), dropMaterial(outside_), dropMaterial(wire_);
+}
+
+void TissueVisual::clear() {
+  has_frame_ = false;
+  mesh_ = {};
+  surface_.reset(), colours_.reset();
+  drawn_.setTopology({}, 0), bones_.setTopology({}, 0);
+  points_->clear();
+}
+
+void TissueVisual::setMesh(const TissueMesh& mesh) {
+  clear();
+  mesh_ = mesh;
+  surface_ = std::make_unique<LivingSurface>(mesh_);
+  colours_ = std::make_unique<SurfaceColours>(mesh_);
+  drawn_.setTopology(mesh_.triangles, mesh_.vertex_count, mesh_.rest);
+  applyLook();
+}
+
+void TissueVisual::setFrame(const TissueFrame& frame) {
+  if (!surface_) return;
+  frame_ = frame;
+  has_frame_ = true;
+  drawn_.setVisible(look_.surface);
+  if (look_.surface) sendSurface(frame_);
+  if (look_.particles) sendParticles(frame_);
+  if (look_.mesh) sendBones(frame_);
+}
+
+void TissueVisual::sendSurface(const TissueFrame& frame) {
+  const VertexSpan moved = surface_->update(frame.positions);
+  if (!moved.empty()) {
+    drawn_.setVertices(surface_->vertices().data() + moved.first, moved.first, moved.count());
+    drawn_.setBounds(boxAround(surface_->bounds()));
+  }
+  const VertexSpan coloured = colours_->update(frame);
+  drawn_.setColours(colours_->colours().data() + coloured.first, coloured.first, coloured.count());
+}
+
+void TissueVisual::sendParticles(const TissueFrame& frame) {
+  std::vector<rviz::PointCloud::Point> points(frame.positions.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].position = {frame.positions[3 * i], frame.positions[3 * i + 1], frame.positions[3 * i + 2]};
+    points[i].setColor(0.95F, 0.85F, 0.55F);
+  }
+  points_->clear();
+  const auto size = static_cast<float>(look_.particle_size);
+  points_->setDimensions(size, size, size);
+  points_->addPoints(points.data(), static_cast<std::uint32_t>(points.size()));
+}
+
+void TissueVisual::sendBones(const TissueFrame& frame) {
+  if (bones_.triangleCount() == 0) bones_.setTopology(mesh_.particle_triangles, mesh_.particle_count);
+  bone_vertices_.resize(mesh_.particle_count);
+  for (std::size_t i = 0; i < mesh_.particle_count; ++i)
+    bone_vertices_[i] = {{frame.positions[3 * i], frame.positions[3 * i + 1], frame.positions[3 * i + 2]}, {0, 0, 1}};
+  bones_.setVertices(bone_vertices_.data(), 0, bone_vertices_.size());
+  bones_.setBounds(Ogre::AxisAlignedBox::BOX_INFINITE);
+}
+
+void TissueVisual::setLook(const TissueLook& look) {
+  look_ = look;
+  applyLook();
+  drawn_.setVisible(look_.surface);
+  bones_.setVisible(look_.mesh);
+  points_->setVisible(look_.particles);
+  if (!has_frame_) return;
+  const TissueFrame frame = frame_;
+  setFrame(frame);
+}
+
+void TissueVisual::applyLook() {
+  if (colours_) colours_->choose(look_.colouring, ColourMap(look_.map, look_.least, look_.greatest));
+  applySide(inside_, look_.inside, false);
+  applySide(outside_, look_.outside, true);
+}
+
+// What a colour means must not be changed by the tissue's own colour, its pattern or by bright highlights.
+void TissueVisual::applySide(Ogre::MaterialPtr& material, const Ogre::ColourValue& natural, bool outside) {
+  const bool plain = look_.colouring == Colouring::Tissue;
+  const auto opacity = static_cast<float>(outside ? look_.outside_alpha : 1.0);
+  for (Ogre::Technique* technique : material->getTechniques()) {
+    Ogre::Pass& pass = *technique->getPass(0);
+    const bool endoscope = technique->getSchemeName() == kEndoscopeScheme;
+    const bool transparent = outside && !endoscope && opacity < 1;
+    setBlending(pass, transparent);
+    auto parameters = pass.getFragmentProgramParameters();
+    const Ogre::ColourValue tint = plain ? natural : Ogre::ColourValue::White;
+    parameters->setNamedConstant("tint", Ogre::Vector4(tint.r, tint.g, tint.b, transparent ? opacity : 1));
+    parameters->setNamedConstant("edge_alpha",
+                                 transparent ? static_cast<float>(std::max(kEdgeAlpha, look_.outside_alpha)) : 1.0F);
+    parameters->setNamedConstant("wet", static_cast<float>(look_.wetness * (endoscope ? 1.8 : 1) * (plain ? 1 : 0.4)));
+    parameters->setNamedConstant("relief", static_cast<float>(look_.relief));
+    parameters->setNamedConstant("grain", static_cast<float>(plain ? kGrain : 0));
+    parameters->setNamedConstant("scars", look_.scars && !outside ? 1.0F : 0.0F);
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,81 @@
+#pragma once
+#include <OgreColourValue.h>
+
+#include <memory>
+#include <string>
+
+#include "geometry/living_surface.hpp"
+#include "geometry/surface_colours.hpp"
+#include "geometry/tissue_mesh.hpp"
+#include "render/dynamic_mesh.hpp"
+
+namespace Ogre {
+class SceneManager;
+class SceneNode;
+}  // namespace Ogre
+namespace rviz {
+class PointCloud;
+}
+
+namespace vibe {
+
+/// How tissue is drawn.
+struct TissueLook {
+  bool surface = true;
+  Colouring colouring = Colouring::Tissue;
+  std::string map = "viridis";                     ///< see ColourMap
+  double least = 0, greatest = 1;                  ///< values at the ends of the map, in the unit of the colouring
+  Ogre::ColourValue inside{0.86F, 0.47F, 0.42F};   ///< of tissue as it is, mucosa
+  Ogre::ColourValue outside{0.84F, 0.62F, 0.56F};  ///< serosa
+  double outside_alpha = 0.25;  ///< opacity of the wall looked at straight on from outside; 1 all over: opaque
+  double wetness = 0.4;         ///< strength of highlights, 0 to 1
+  double relief = 0.6e-3;       ///< height of the fine relief, drawn by shading only [m]
+  bool scars = true;            ///< show marks and burn scars
+  bool particles = false;
+  double particle_size = 3e-3;  ///< diameter of their balls [m]
+  bool mesh = false;            ///< lines of the simulated mesh, whose particles are the bones of the drawn skin
+};
+
+/// An organ in a scene of Ogre: set its mesh once, then a frame whenever it has moved. Each frame costs work and
+/// transfer for what has changed only. To be used from the thread that renders.
+class TissueVisual {
+ public:
+  /// @param parent  in whose frame positions are; outlives this
+  /// @throws std::runtime_error  the package's materials are not found
+  TissueVisual(Ogre::SceneManager& manager, Ogre::SceneNode& parent);
+  ~TissueVisual();
+  TissueVisual(const TissueVisual&) = delete;
+  TissueVisual& operator=(const TissueVisual&) = delete;
+
+  /// Another organ; nothing is drawn until a frame comes.
+  void setMesh(const TissueMesh& mesh);
+  /// @param frame  of the mesh: readParticles() has checked it
+  void setFrame(const TissueFrame& frame);
+  void setLook(const TissueLook& look);
+  /// Draws nothing until the next mesh.
+  void clear();
+
+  bool hasFrame() const { return has_frame_; }
+  std::size_t vertexCount() const { return surface_ ? surface_->vertices().size() : 0; }
+
+ private:
+  void applyLook();
+  void applySide(Ogre::MaterialPtr& material, const Ogre::ColourValue& natural, bool outside);
+  void sendSurface(const TissueFrame& frame);
+  void sendParticles(const TissueFrame& frame);
+  void sendBones(const TissueFrame& frame);
+
+  Ogre::SceneNode& node_;
+  TissueLook look_;
+  Ogre::MaterialPtr inside_, outside_, wire_;
+  TissueMesh mesh_;
+  TissueFrame frame_;
+  bool has_frame_ = false;
+  std::unique_ptr<LivingSurface> surface_;
+  std::unique_ptr<SurfaceColours> colours_;
+  DynamicMesh drawn_, bones_;
+  std::vector<MovingVertex> bone_vertices_;
+  std::unique_ptr<rviz::PointCloud> points_;
+};
+
+}  // namespace vibe
