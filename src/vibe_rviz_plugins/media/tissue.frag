@@ -48,8 +48,10 @@ vec3 heated(vec3 base, float heat) {
 
 void main() {
   float heat = scars * 3.0 * (1.0 - colour.a);
-  float fine = noise(rest * 900.0);
-  float coarse = noise(rest * vec3(230.0, 230.0, 110.0));
+  // patterns finer than a pixel would glitter: they fade into their mean
+  float pixel = length(fwidth(rest));
+  float fine = mix(noise(rest * 800.0), 0.5, smoothstep(0.15, 0.5, 800.0 * pixel));
+  float coarse = mix(noise(rest * vec3(230.0, 230.0, 140.0)), 0.5, smoothstep(0.3, 0.8, 230.0 * pixel));
   vec3 to_eye = normalize(-view_position);
   vec3 normal = raised(side * normalize(view_normal), relief * (0.75 * coarse + 0.25 * fine));
   float facing = max(dot(normal, to_eye), 0.0);
