@@ -12,6 +12,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "messages/tissue_messages.hpp"
+#include "render/legend.hpp"
 #include "render/tissue_visual.hpp"
 
 namespace vibe {
@@ -36,6 +37,27 @@ Range usualRange(Colouring colouring) {
 
 bool hasRange(Colouring colouring) {
   return colouring == Colouring::Strain || colouring == Colouring::Heat || colouring == Colouring::Thickness;
+}
+
+QImage legendOf(Colouring colouring, const ColourMap& map) {
+  const auto list = [](const char* title, const std::vector<PackedColour>& colours,
+                       const std::vector<std::string>& names) {
+    std::vector<LegendEntry> entries;
+    for (std::size_t k = 0; k < names.size(); ++k) entries.push_back({colours[k], names[k]});
+    return drawnLegend(title, entries);
+  };
+  switch (colouring) {
+    case Colouring::Region:
+      return list("Region", regionColours(), {"cardia", "fundus", "body", "antrum", "pylorus"});
+    case Colouring::Wall:
+      return list("Wall", wallColours(), {"anterior", "greater curvature", "posterior", "lesser curvature"});
+    case Colouring::Heat:
+      return drawnLegend("Heat [J]", map);
+    case Colouring::Thickness:
+      return drawnLegend("Thickness [m]", map);
+    default:
+      return drawnLegend("Strain", map);
+  }
 }
 
 rviz::FloatProperty* bounded(rviz::FloatProperty* property, float least, float greatest) {
@@ -93,6 +115,9 @@ void TissueDisplay::addColours() {
   greatest_ = new rviz::FloatProperty("To", range.greatest,
                                       "Value at the map's bright end: strain [1], heat [J], thickness [m].", colouring_,
                                       SLOT(changeLook()), this);
+  legend_shown_ =
+      new rviz::BoolProperty("Legend", true, "Show what the colours mean in the lower left corner of the views.",
+                             colouring_, SLOT(changeLegend()), this);
 }
 
 void TissueDisplay::addSurface() {
@@ -155,6 +180,7 @@ void TissueDisplay::onEnable() {
 void TissueDisplay::onDisable() {
   unsubscribe();
   reset();
+  changeLegend();
 }
 
 void TissueDisplay::reset() {
@@ -263,7 +289,10 @@ void TissueDisplay::fixedFrameChanged() {
 void TissueDisplay::changeColouring() {
   const auto colouring = static_cast<Colouring>(colouring_->getOptionInt());
   const bool ranged = hasRange(colouring);
+  const Range range = usualRange(colouring);
   map_->setHidden(!ranged), least_->setHidden(!ranged), greatest_->setHidden(!ranged);
+  if (ranged)
+    least_->setFloat(range.least), greatest_->setFloat(range.greatest);  // a loaded configuration sets its own after
   changeLook();
 }
 
@@ -285,7 +314,21 @@ void TissueDisplay::changeLook() {
   look.particle_size = static_cast<double>(particle_size_->getFloat());
   look.mesh = bones_->getBool();
   visual_->setLook(look);
+  changeLegend();
   context_->queueRender();
+}
+
+void TissueDisplay::changeLegend() {
+  if (!visual_) return;
+  const auto colouring = static_cast<Colouring>(colouring_->getOptionInt());
+  if (!isEnabled() || !legend_shown_->getBool() || colouring == Colouring::Tissue) {
+    if (legend_) legend_->hide();
+    return;
+  }
+  if (!legend_) legend_ = std::make_unique<Legend>(Legend::Corner::BottomLeft);
+  const ColourMap map(map_->getStdString(), static_cast<double>(least_->getFloat()),
+                      static_cast<double>(greatest_->getFloat()));
+  legend_->show(legendOf(colouring, map));
 }
 
 }  // namespace vibe

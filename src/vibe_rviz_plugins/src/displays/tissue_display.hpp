@@ -18,6 +18,7 @@ class RosTopicProperty;
 
 namespace vibe {
 
+class Legend;
 class TissueVisual;
 
 /// Draws the organ of tissue/topology where tissue/particles says it is. Draws one frame per picture, the latest: a
@@ -42,6 +43,7 @@ class TissueDisplay : public rviz::Display {
   void subscribe();
   void changeColouring();
   void changeLook();
+  void changeLegend();
 
  private:
   void addTopics();
@@ -59,7 +61,7 @@ class TissueDisplay : public rviz::Display {
   rviz::RosTopicProperty *topology_topic_, *particles_topic_;
   rviz::EnumProperty *colouring_, *map_;
   rviz::FloatProperty *least_, *greatest_, *outside_alpha_, *wetness_, *relief_, *particle_size_;
-  rviz::BoolProperty *surface_, *scars_, *particles_, *bones_;
+  rviz::BoolProperty *legend_shown_, *surface_, *scars_, *particles_, *bones_;
   rviz::ColorProperty *inside_, *outside_;
 
   ros::Subscriber topology_subscriber_, particles_subscriber_;
@@ -69,6 +71,7 @@ class TissueDisplay : public rviz::Display {
   bool has_mesh_ = false, complained_ = false;
   std::size_t frames_ = 0;
   std::unique_ptr<TissueVisual> visual_;
+  std::unique_ptr<Legend> legend_;
 };
 
 }  // namespace vibe

@@ -1,0 +1,52 @@
+#pragma once
+#include <OgreMaterial.h>
+#include <OgreTexture.h>
+
+#include <QImage>
+#include <string>
+#include <vector>
+
+#include "geometry/colour_map.hpp"
+
+namespace Ogre {
+class Overlay;
+class OverlayContainer;
+}  // namespace Ogre
+
+namespace vibe {
+
+/// A colour and what it stands for.
+struct LegendEntry {
+  PackedColour colour;
+  std::string text;
+};
+
+/// The legend of a colour map: a bar with five numbers.
+QImage drawnLegend(const std::string& title, const ColourMap& map);
+/// The legend of a list of colours.
+QImage drawnLegend(const std::string& title, const std::vector<LegendEntry>& entries);
+
+/// A picture that stays in a corner of rviz' views. To be used from the thread that renders.
+class Legend {
+ public:
+  enum class Corner { BottomLeft, BottomRight };
+  explicit Legend(Corner corner);
+  ~Legend();
+  Legend(const Legend&) = delete;
+  Legend& operator=(const Legend&) = delete;
+
+  void show(const QImage& image);
+  void hide();
+
+ private:
+  void make();
+  void fit(const QImage& image);
+
+  Corner corner_;
+  Ogre::Overlay* overlay_ = nullptr;
+  Ogre::OverlayContainer* panel_ = nullptr;
+  Ogre::MaterialPtr material_;
+  Ogre::TexturePtr texture_;
+};
+
+}  // namespace vibe
