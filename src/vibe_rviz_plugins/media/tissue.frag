@@ -7,6 +7,7 @@ uniform float edge_alpha;  // opacity where it is seen from the side
 uniform float wet;         // strength of highlights, 0: dull
 uniform float relief;      // height of the fine relief [m]
 uniform float grain;       // how much the fine pattern changes the colour
+uniform float fill;        // light from everywhere; colours that mean something need much of it
 uniform float scars;       // 1: show heat, 0: do not
 uniform float reach;       // of the lamp: half as bright there [m]; 0: as bright everywhere
 
@@ -61,7 +62,7 @@ void main() {
   float distance = length(view_position);
   float lamp = reach > 0.0 ? 2.0 / (1.0 + distance * distance / (reach * reach)) : 1.0;
   float above = reach > 0.0 ? 0.0 : 0.14 * normal.y;
-  vec3 shaded = base * (0.16 + lamp * 0.80 * facing + above);
+  vec3 shaded = base * (fill + lamp * (0.96 - fill) * facing + above);
 
   vec3 aside = normalize(to_eye + normalize(vec3(0.35, 0.75, 0.55)));
   float gloss = pow(facing, 90.0) + (reach > 0.0 ? 0.0 : 0.6 * pow(max(dot(normal, aside), 0.0), 60.0));

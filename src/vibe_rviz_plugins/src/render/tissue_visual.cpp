@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kEdgeAlpha = 0.9;  // a wall seen from the side is hardly transparent
 constexpr double kGrain = 0.25;
+constexpr float kFill = 0.16F, kFillOfData = 0.5F;  // light from everywhere
 
 Ogre::AxisAlignedBox boxAround(const Eigen::AlignedBox3f& bounds) {
   if (bounds.isEmpty()) return Ogre::AxisAlignedBox::BOX_NULL;
@@ -139,6 +140,7 @@ void TissueVisual::applySide(Ogre::MaterialPtr& material, const Ogre::ColourValu
     parameters->setNamedConstant("wet", static_cast<float>(look_.wetness * (endoscope ? 1.8 : 1) * (plain ? 1 : 0.4)));
     parameters->setNamedConstant("relief", static_cast<float>(look_.relief));
     parameters->setNamedConstant("grain", static_cast<float>(plain ? kGrain : 0));
+    parameters->setNamedConstant("fill", plain ? kFill : kFillOfData);
     parameters->setNamedConstant("scars", look_.scars && !outside ? 1.0F : 0.0F);
   }
 }
