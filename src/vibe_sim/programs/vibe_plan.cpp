@@ -25,7 +25,7 @@ const char kHelp[] =
     "hands\n"
     "did as a trainee script.\n"
     "  --scene FILE    scene (default: package://vibe_sim/scenes/stomach.yaml)\n"
-    "  --style WORD    expert (default) or novice\n"
+    "  --style WORD    expert (default), novice, or states: marks, a burn and one set\n"
     "  --sets N        sutures instead of the style's\n"
     "  --bites N       bites per suture instead of the style's\n"
     "  --output FILE   the script\n"
@@ -69,36 +69,59 @@ Options parse(int argc, char** argv) {
   }
   if (optind < argc) throw Error("'" + std::string(argv[optind]) + "' is no option; see --help.");
   if (o.output.empty()) throw Error("There is no --output; name the file for the script.");
-  if (o.style != "expert" && o.style != "novice")
-    throw Error("--style '" + o.style + "' is unknown; use expert or novice.");
+  if (o.style != "expert" && o.style != "novice" && o.style != "states")
+    throw Error("--style '" + o.style + "' is unknown; use expert, novice or states.");
   return o;
 }
 
-EsgStyle styleOf(const Options& o) {
+EsgStyle novice() {
   EsgStyle style;
-  if (o.style == "novice") {
-    style.sets = 3;
-    style.bites = 5;
-    style.distal_first = false;
-    style.pace = 0.6;
-    style.aim_error = 4e-3;
-    style.turns = 1.5;
-    style.drawn = 3e-3;
-    style.attempts = 2;
-    style.looks = false;
-    style.marks = 2;
-    style.cinch_part = 0.3;
-    style.mistakes = true;
-  }
+  style.sets = 3;
+  style.bites = 5;
+  style.distal_first = false;
+  style.pace = 0.6;
+  style.aim_error = 4e-3;
+  style.turns = 1.5;
+  style.drawn = 3e-3;
+  style.attempts = 2;
+  style.looks = false;
+  style.marks = 2;
+  style.burn_time = 14;
+  style.cinch_part = 0.3;
+  style.mistakes = true;
+  return style;
+}
+
+// Everything that can be seen in a sleeve, once: marks, a burn, one set from its first bite to the cinch.
+EsgStyle demonstration() {
+  EsgStyle style;
+  style.bites = 5;
+  style.only_set = 3;
+  style.spread = 0.7;
+  style.pace = 1.4;
+  style.marks = 2;
+  style.mark_time = 0.8;
+  style.burn_time = 12.5;
+  return style;
+}
+
+EsgStyle styleOf(const Options& o) {
+  EsgStyle style = o.style == "novice" ? novice() : o.style == "states" ? demonstration() : EsgStyle();
   if (o.sets > 0) style.sets = o.sets;
   if (o.bites > 0) style.bites = o.bites;
   return style;
 }
 
+std::string titleOf(const std::string& style) {
+  if (style == "novice") return "A beginner's sleeve";
+  if (style == "states") return "Marks, a burn and one set, tagged and cinched";
+  return "An experienced endoscopist's sleeve";
+}
+
 std::string headerOf(const Options& o) {
   const bool novice = o.style == "novice";
-  return std::string(novice ? "# A beginner's sleeve" : "# An experienced endoscopist's sleeve") +
-         ", written by `vibe_plan --style " + o.style + "`. Format: docs/trainee_scripts.md.\n" + "name: " + o.style +
+  return "# " + titleOf(o.style) + ", written by `vibe_plan --style " + o.style +
+         "`. Format: docs/trainee_scripts.md.\n" + "name: " + (o.style == "states" ? "five_states" : o.style) +
          "\nseed: " + (novice ? "2" : "1") +
          "\n\ntremor:                       # size: design choice; band: physiological tremor of the hand "
          "(Elble & Randall 1976)\n"

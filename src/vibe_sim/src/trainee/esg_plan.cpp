@@ -49,6 +49,7 @@ class EsgPerformance {
     hand_.wait(kFill);
     if (style_.marks > 0 && hand_.model().scene.marking) mark();
     for (int set = 0; set < style_.sets; ++set) {
+      if (style_.only_set > 0 && set != style_.only_set - 1) continue;
       for (int bite = 0; bite < style_.bites; ++bite) takeBite(set, bite);
       finishSet(set);
     }
@@ -116,7 +117,7 @@ class EsgPerformance {
                             Eigen::Vector3d::Zero(), hand_.joints());
       hand_.moveTo(aim.joints, off > 0 ? 0.5 : 0.3);
     }
-    hand_.hold(ApcPedal, style_.mistakes && first ? 14 : style_.mark_time);
+    hand_.hold(ApcPedal, first && style_.burn_time > 0 ? style_.burn_time : style_.mark_time);
   }
 
   // Distal first: 0 is the distal end.

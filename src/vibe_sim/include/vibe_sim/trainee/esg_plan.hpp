@@ -20,6 +20,8 @@ struct EsgStyle {
   bool looks = true;       ///< draws the wall in farther where the needle has not gone through all of it
   int marks = 4;           ///< per line; 0: none
   double mark_time = 2;    ///< that the pedal is held [s]
+  double burn_time = 0;    ///< that it is held at the first mark instead; 0: no longer than at the others [s]
+  int only_set = 0;        ///< of the sets just this one is sewn, from 1; 0: all of them
   double cinch_part = 1;   ///< of the time that the cinch needs for its tension [1]
   bool mistakes = false;   ///< holds the beam too long on one spot, asks for the cinch before the T-tag, and the like
   std::uint64_t seed = 1;  ///< of the aim's error
