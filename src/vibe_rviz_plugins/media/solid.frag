@@ -15,5 +15,8 @@ void main() {
   float distance = length(view_position);
   float lamp = reach > 0.0 ? 2.0 / (1.0 + distance * distance / (reach * reach)) : 1.0;
   vec3 shaded = colour.rgb * mix(0.22 + 0.78 * lamp * facing, 1.0, glow);
-  gl_FragColor = vec4(shaded + gloss * lamp * pow(facing, 40.0), colour.a);
+  vec3 light = shaded + gloss * lamp * pow(facing, 40.0);
+  float brightest = max(max(light.r, light.g), max(light.b, 0.001));
+  if (reach > 0.0) light *= (1.0 - exp(-1.5 * brightest)) / brightest;  // as tissue.frag does
+  gl_FragColor = vec4(light, colour.a);
 }

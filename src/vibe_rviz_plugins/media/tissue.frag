@@ -67,6 +67,9 @@ void main() {
   vec3 aside = normalize(to_eye + normalize(vec3(0.35, 0.75, 0.55)));
   float gloss = pow(facing, 90.0) + (reach > 0.0 ? 0.0 : 0.6 * pow(max(dot(normal, aside), 0.0), 60.0));
   vec3 light = shaded + wet * lamp * gloss * vec3(1.0, 0.97, 0.93) * (1.0 - 0.8 * clamp(heat - 1.0, 0.0, 1.0));
+  // a camera in the dark adjusts its exposure: bright places keep their colour instead of becoming white
+  float brightest = max(max(light.r, light.g), max(light.b, 0.001));
+  if (reach > 0.0) light *= (1.0 - exp(-1.5 * brightest)) / brightest;
   float opacity = mix(edge_alpha, tint.a, facing);
   gl_FragColor = vec4(light, clamp(opacity + wet * gloss * 0.6, 0.0, 1.0));
 }
