@@ -10,9 +10,11 @@
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/ros_topic_property.h>
 #include <rviz/properties/vector_property.h>
+
 #include <pluginlib/class_list_macros.hpp>
 
 #include "messages/suture_messages.hpp"
+#include "render/legend.hpp"
 
 namespace vibe {
 namespace {
@@ -70,6 +72,9 @@ void SutureDisplay::addThreadProperties() {
                                                "until 3 N, a full bite tears out at about 8 N.",
                                                colour_property_, SLOT(changeStyle()), this);
   greatest_property_->setMin(0.01F);
+  legend_property_ =
+      new rviz::BoolProperty("Legend", true, "Shows what the colours mean in the lower right corner of the views.",
+                             colour_property_, SLOT(changeLegend()), this);
   slack_property_ = new rviz::ColorProperty("Slack", QColor(237, 242, 255),
                                             "Colour of thread without tension, in bands with a darker one.",
                                             colour_property_, SLOT(changeStyle()), this);
@@ -135,11 +140,13 @@ void SutureDisplay::onInitialize() {
 
 void SutureDisplay::onEnable() {
   subscribe();
+  changeLegend();
 }
 
 void SutureDisplay::onDisable() {
   subscriber_.shutdown();
   reset();
+  changeLegend();
 }
 
 void SutureDisplay::setTopic(const QString& topic, const QString&) {
@@ -147,12 +154,12 @@ void SutureDisplay::setTopic(const QString& topic, const QString&) {
 }
 
 void SutureDisplay::changeTopic() {
-  subscriber_.shutdown();
   reset();
-  if (isEnabled()) subscribe();
 }
 
 void SutureDisplay::subscribe() {
+  subscriber_.shutdown();
+  if (!visual_) return;
   const std::string topic = topic_property_->getTopicStd();
   if (topic.empty()) {
     setStatus(StatusProperty::Error, kStatusTopic, "No topic is set; choose one of type vibe_msgs/SutureArray.");
@@ -174,7 +181,9 @@ void SutureDisplay::reset() {
   scene_ = {};
   if (visual_) visual_->clear();
   threads_changed_ = blood_changed_ = false;
-  waiting_ = true;
+  placed_.reset();
+  said_.clear();
+  if (isEnabled()) subscribe();  // the topic is latched: it comes again
 }
 
 void SutureDisplay::receive(const vibe_msgs::SutureArray::ConstPtr& message) {
@@ -204,10 +213,22 @@ void SutureDisplay::changeStyle() {
     property->setHidden(style_.colouring != ThreadColour::Tension);
   one_property_->setHidden(style_.colouring != ThreadColour::One);
   threads_changed_ = blood_changed_ = true;
+  changeLegend();
+}
+
+void SutureDisplay::changeLegend() {
+  const bool wanted = visual_ && isEnabled() && legend_property_->getBool() && showsTension();
+  legend_property_->setHidden(!showsTension());
+  if (!wanted) {
+    if (legend_) legend_->hide();
+    return;
+  }
+  if (!legend_) legend_ = std::make_unique<Legend>(Legend::Corner::BottomRight);
+  legend_->show(drawnLegend("Thread tension [N]", style_.tension_map));
 }
 
 void SutureDisplay::fixedFrameChanged() {
-  if (context_ != nullptr) context_->queueRender();
+  placed_.reset();
 }
 
 void SutureDisplay::update(float, float) {
@@ -228,12 +249,17 @@ void SutureDisplay::report() {
   latest_.reset();
   SutureScene scene;
   const std::string wrong = readSutures(*message, scene);
-  if (!wrong.empty()) return setStatusStd(StatusProperty::Error, kStatusMessage, wrong);
+  if (!wrong.empty()) {
+    if (wrong != said_) setStatusStd(StatusProperty::Error, kStatusMessage, wrong);
+    said_ = wrong;
+    return;
+  }
   std::size_t bites = 0;
   for (const SutureSet& set : scene.sets) bites += set.bites.size();
-  setStatusStd(StatusProperty::Ok, kStatusMessage,
-               std::to_string(scene.sets.size()) + " sutures, " + std::to_string(bites) + " bites, " +
-                   std::to_string(scene.wounds.size()) + " bleedings.");
+  const std::string said = std::to_string(scene.sets.size()) + " sutures, " + std::to_string(bites) + " bites, " +
+                           std::to_string(scene.wounds.size()) + " bleedings.";
+  if (said != said_) setStatusStd(StatusProperty::Ok, kStatusMessage, said);  // a status costs more than drawing
+  said_ = said;
   const bool threads_same = shown_ && shown_->sutures == message->sutures;
   const bool blood_same = threads_same && shown_->bleedings == message->bleedings && !pulses(scene);
   threads_changed_ |= !threads_same;
@@ -249,14 +275,20 @@ void SutureDisplay::place() {
   Ogre::Quaternion orientation;
   const std::string& frame = shown_->header.frame_id;
   const bool known = context_->getFrameManager()->getTransform(frame, ros::Time(), position, orientation);
-  scene_node_->setVisible(known);
+  const bool news = !placed_ || *placed_ != known;
+  placed_ = known;
   if (!known) {
-    setStatusStd(StatusProperty::Error, kStatusTransform,
-                 "There is no transform from '" + frame + "' to '" + fixed_frame_.toStdString() +
-                     "'; choose another fixed frame or publish it.");
+    scene_node_->setVisible(false);
+    if (news)
+      setStatusStd(StatusProperty::Error, kStatusTransform,
+                   "There is no transform from '" + frame + "' to '" + fixed_frame_.toStdString() +
+                       "'; choose another fixed frame or publish it.");
     return;
   }
-  setStatus(StatusProperty::Ok, kStatusTransform, "Known.");
+  if (news) {
+    setStatus(StatusProperty::Ok, kStatusTransform, "Known.");
+    scene_node_->setVisible(true);
+  }
   scene_node_->setPosition(position);
   scene_node_->setOrientation(orientation);
 }

@@ -3,6 +3,8 @@
 #include <vibe_msgs/SutureArray.h>
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "geometry/blood_shapes.hpp"
 #include "geometry/suture_scene.hpp"
@@ -20,6 +22,8 @@ class VectorProperty;
 
 namespace vibe {
 
+class Legend;
+
 /// Threads with bites, tension, T-tags, cinches, the recognised technique, and bleeding, from vibe_msgs/SutureArray.
 class SutureDisplay : public rviz::Display {
   Q_OBJECT
@@ -32,10 +36,6 @@ class SutureDisplay : public rviz::Display {
   void reset() override;
   void setTopic(const QString& topic, const QString& datatype) override;
 
-  /// What a legend needs: the map from tension [N] to colour, and whether threads are coloured by it.
-  const ColourMap& tensionMap() const { return style_.tension_map; }
-  bool showsTension() const { return style_.colouring == ThreadColour::Tension; }
-
  protected:
   void onEnable() override;
   void onDisable() override;
@@ -44,6 +44,7 @@ class SutureDisplay : public rviz::Display {
  private Q_SLOTS:
   void changeTopic();
   void changeStyle();
+  void changeLegend();
 
  private:
   void addThreadProperties();
@@ -56,8 +57,10 @@ class SutureDisplay : public rviz::Display {
   void drawLabels();
   void drawBlood();
   void report();
+  bool showsTension() const { return style_.colouring == ThreadColour::Tension; }
 
   std::unique_ptr<SutureVisual> visual_;
+  std::unique_ptr<Legend> legend_;
   ros::Subscriber subscriber_;
   vibe_msgs::SutureArray::ConstPtr shown_, latest_;  // latest_: not read yet
   SutureScene scene_;
@@ -65,13 +68,15 @@ class SutureDisplay : public rviz::Display {
   BloodStyle blood_style_;
   ColouredShape shape_;  // kept for its memory
   bool threads_changed_ = false, blood_changed_ = false, waiting_ = true;
+  std::string said_;            // last status of the message
+  std::optional<bool> placed_;  // whether the transform was known; none: not asked yet
 
   rviz::RosTopicProperty* topic_property_;
   rviz::EnumProperty *colour_property_, *map_property_;
   rviz::FloatProperty *greatest_property_, *diameter_property_, *emphasis_property_, *label_height_property_;
   rviz::ColorProperty *slack_property_, *one_property_;
-  rviz::BoolProperty *bites_property_, *ends_property_, *label_property_, *corners_property_, *links_property_,
-      *bleeding_property_;
+  rviz::BoolProperty *legend_property_, *bites_property_, *ends_property_, *label_property_, *corners_property_,
+      *links_property_, *bleeding_property_;
   rviz::VectorProperty* down_property_;
 };
 

@@ -51,12 +51,11 @@ Vector3d planeNormal(const SutureSet& set) {
 }
 
 Vector3d biteAxis(const SutureSet& set, std::size_t bite) {
+  if (bite < set.bites.size() && set.bites[bite].inward.norm() > 0.5) return set.bites[bite].inward.normalized();
   Vector3d sum = Vector3d::Zero();
   if (bite > 0 && bite <= set.pieces.size()) sum += ending(set.pieces[bite - 1]);
   if (bite < set.pieces.size()) sum += beginning(set.pieces[bite]);
   if (sum.norm() < 1e-3 && bite < set.pieces.size()) sum = beginning(set.pieces[bite]);
-  if (sum.norm() < 1e-3 && bite < set.bites.size() && set.bites[bite].inward.norm() > 0.5)
-    return set.bites[bite].inward.normalized();
   return unitOr(sum, wholeWay(set));
 }
 

@@ -11,7 +11,8 @@ namespace vibe {
 /// Of the plane nearest to the bites; where they lie on a line, at right angles to it.
 Eigen::Vector3d planeNormal(const SutureSet& set);
 
-/// Of the thread at a bite: the mean of the ways there and on.
+/// Of a ring around a bite: out of the wall if its side is known, so that the ring lies flat on it; else that of the
+/// thread, the mean of the ways there and on.
 Eigen::Vector3d biteAxis(const SutureSet& set, std::size_t bite);
 
 /// Along the T-tag: it lies across the thread that holds it, flat on the wall.

@@ -10,10 +10,9 @@
 namespace vibe {
 namespace {
 
-/// Signs are read by their colours, wherever the lamp is.
-Ogre::MaterialPtr glowing(Ogre::MaterialPtr material) {
+Ogre::MaterialPtr with(Ogre::MaterialPtr material, const char* parameter, float value) {
   for (Ogre::Technique* technique : material->getTechniques())
-    technique->getPass(0)->getFragmentProgramParameters()->setNamedConstant("glow", Ogre::Real(1));
+    technique->getPass(0)->getFragmentProgramParameters()->setNamedConstant(parameter, value);
   return material;
 }
 
@@ -22,8 +21,8 @@ Ogre::MaterialPtr glowing(Ogre::MaterialPtr material) {
 SutureVisual::SutureVisual(Ogre::SceneNode& parent)
     : parent_(parent),
       solid_material_(copyMaterial("vibe/solid")),
-      sign_material_(glowing(copyMaterial("vibe/solid"))),
-      blood_material_(copyMaterial("vibe/blood")),
+      sign_material_(with(copyMaterial("vibe/solid"), "glow", 1)),
+      blood_material_(with(copyMaterial("vibe/blood"), "gloss", 0.35F)),
       solids_(std::make_unique<ShapeView>(parent, solid_material_)),
       signs_(std::make_unique<ShapeView>(parent, sign_material_)),
       blood_(std::make_unique<ShapeView>(parent, blood_material_)) {}
