@@ -1,0 +1,37 @@
+#version 120
+// Bends a plane picture as the endoscope's lens does, and blackens what is outside of its circle.
+uniform sampler2D picture;        // the plane one
+uniform vec2 picture_size;        // of the bent one [px]
+uniform float radius;             // of the circle [px]
+uniform float half_angle;         // between the axis and the circle [rad]
+uniform float equidistant;        // 1: radius = f theta, 0: radius = f tan theta
+uniform float source_half_width;  // tangent of the angle to the middle of an edge of the plane picture
+uniform float source_size;        // of an edge of the plane picture [px]
+
+varying vec2 place;  // in the bent picture, 0 to 1
+
+const int kMostSamples = 12;
+
+void main() {
+  vec2 aside = (place - 0.5) * picture_size;
+  float r = length(aside);
+  float inside = clamp(radius - r + 0.5, 0.0, 1.0);
+  if (inside == 0.0) {
+    gl_FragColor = vec4(0.0, 0.0, 0.0, 1.0);
+    return;
+  }
+  vec2 direction = r > 0.0 ? aside / r : vec2(0.0);
+  float share = min(r, radius) / radius;
+  float tangent = equidistant > 0.5 ? tan(share * half_angle) : share * tan(half_angle);
+  // how far apart in the plane picture neighbours on a ray are: near the rim several pixels, which are averaged
+  float slope = equidistant > 0.5 ? half_angle * (1.0 + tangent * tangent) : tan(half_angle);
+  float step = slope / radius;
+  int samples = int(clamp(ceil(step / source_half_width * 0.5 * source_size - 0.25), 1.0, float(kMostSamples)));
+  vec3 light = vec3(0.0);
+  for (int k = 0; k < kMostSamples; ++k) {
+    if (k >= samples) break;
+    float along = tangent + step * ((float(k) + 0.5) / float(samples) - 0.5);
+    light += texture2D(picture, 0.5 + 0.5 * direction * along / source_half_width).rgb;
+  }
+  gl_FragColor = vec4(inside * light / float(samples), 1.0);
+}

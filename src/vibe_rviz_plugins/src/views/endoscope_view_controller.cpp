@@ -1,0 +1,126 @@
+#include "views/endoscope_view_controller.hpp"
+
+#include <OgreCamera.h>
+#include <OgreException.h>
+#include <OgreSceneNode.h>
+#include <rviz/display_context.h>
+#include <rviz/frame_manager.h>
+#include <rviz/properties/enum_property.h>
+#include <rviz/properties/float_property.h>
+#include <rviz/properties/string_property.h>
+#include <rviz/properties/tf_frame_property.h>
+#include <rviz/render_panel.h>
+#include <rviz/view_manager.h>
+#include <rviz/viewport_mouse_event.h>
+
+#include <QCursor>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+const char* const kFrame = "scope_camera_optical";
+constexpr float kFieldOfView = 140;   // of gastroscopes [degrees]
+constexpr float kNearClip = 0.0006f;  // the lens' own glass is 0.4 mm thick [m]
+constexpr float kFarClip = 2;         // nothing is farther in a body [m]
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+// from the optical frame (z forward, x right, y down) to that of a camera in Ogre (z backward, x right, y up)
+const Ogre::Quaternion kOpticalToOgre(0, 1, 0, 0);
+
+}  // namespace
+
+EndoscopeViewController::EndoscopeViewController() {
+  frame_ = new rviz::TfFrameProperty("Camera Frame", kFrame,
+                                     "Frame of the endoscope's camera: z forward, x right, y down.", this);
+  field_of_view_ = new rviz::FloatProperty(
+      "Field of view", kFieldOfView, "Angle across the round picture in degrees; 140 for most gastroscopes.", this);
+  field_of_view_->setMin(static_cast<float>(kLeastFieldOfView / kDegree));
+  field_of_view_->setMax(static_cast<float>(kMostFieldOfView / kDegree));
+  lens_ = new rviz::EnumProperty("Lens", "Equidistant",
+                                 "Equidistant: equal angles are equally wide, as with real endoscopes. Rectilinear: "
+                                 "straight lines stay straight, and the middle is small.",
+                                 this);
+  lens_->addOption("Equidistant", static_cast<int>(LensKind::Equidistant));
+  lens_->addOption("Rectilinear", static_cast<int>(LensKind::Rectilinear));
+  sharpness_ = new rviz::FloatProperty("Sharpness", 1,
+                                       "1 draws every detail that the middle of the picture can show; less is faster, "
+                                       "which helps without a graphics card.",
+                                       this);
+  sharpness_->setMin(0.2f);
+  sharpness_->setMax(2);
+  status_ = new rviz::StringProperty("Status", "", "Whether the view can follow the endoscope.", this);
+  status_->setReadOnly(true);
+  status_->setShouldBeSaved(false);
+}
+
+EndoscopeViewController::~EndoscopeViewController() = default;
+
+void EndoscopeViewController::onInitialize() {
+  frame_->setFrameManager(context_->getFrameManager());
+  near_clip_property_->setMin(kNearClip);
+  near_clip_property_->setFloat(kNearClip);
+  camera_->setFarClipDistance(kFarClip);
+  camera_->setProjectionType(Ogre::PT_PERSPECTIVE);
+}
+
+void EndoscopeViewController::onActivate() {
+  picture_ = std::make_unique<EndoscopeLens>(*context_->getViewManager()->getRenderPanel()->getViewport());
+  broken_ = false;
+  followScope();
+  bendPicture();
+}
+
+void EndoscopeViewController::update(float /*dt*/, float /*ros_dt*/) {
+  followScope();
+  bendPicture();
+}
+
+void EndoscopeViewController::followScope() {
+  Ogre::Vector3 place;
+  Ogre::Quaternion turn;
+  const std::string frame = frame_->getFrameStd();
+  if (!context_->getFrameManager()->getTransform(frame, ros::Time(), place, turn)) {
+    tell(QString("There is no transform from '%1' to '%2'; start the simulator and robot_state_publisher, or choose "
+                 "another Camera Frame.")
+             .arg(QString::fromStdString(frame), context_->getFixedFrame()));
+    return;
+  }
+  camera_->setPosition(place);
+  camera_->setOrientation(turn * kOpticalToOgre);
+  if (!broken_) tell("");
+}
+
+void EndoscopeViewController::bendPicture() {
+  if (!picture_ || broken_) return;
+  try {
+    picture_->set(static_cast<LensKind>(lens_->getOptionInt()), field_of_view_->getFloat() * kDegree,
+                  sharpness_->getFloat());
+    context_->queueRender();
+  } catch (const std::exception& error) {  // std::runtime_error and Ogre::Exception
+    broken_ = true;
+    tell(error.what());
+  }
+}
+
+void EndoscopeViewController::tell(const QString& text) {
+  if (status_->getString() != text) status_->setString(text);
+  // rviz' status line is wiped by other messages, so a fault is said again
+  if (!text.isEmpty()) setStatus(text);
+}
+
+void EndoscopeViewController::handleMouseEvent(rviz::ViewportMouseEvent& /*event*/) {
+  if (status_->getString().isEmpty()) setStatus("The view follows the endoscope; choose another type of view to move.");
+}
+
+void EndoscopeViewController::reset() {
+  frame_->setValue(kFrame);
+  field_of_view_->setFloat(kFieldOfView);
+  lens_->setString("Equidistant");
+  sharpness_->setFloat(1);
+}
+
+}  // namespace vibe
+
+#include <pluginlib/class_list_macros.hpp>
+PLUGINLIB_EXPORT_CLASS(vibe::EndoscopeViewController, rviz::ViewController)

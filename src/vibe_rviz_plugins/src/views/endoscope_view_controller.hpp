@@ -1,0 +1,45 @@
+#pragma once
+#include <rviz/view_controller.h>
+
+#include <memory>
+
+#include "render/endoscope_lens.hpp"
+
+namespace rviz {
+class EnumProperty;
+class StringProperty;
+class TfFrameProperty;
+}  // namespace rviz
+
+namespace vibe {
+
+/// What the trainee sees: rviz' view from the camera in the endoscope's tip, which it follows.
+class EndoscopeViewController : public rviz::ViewController {
+  Q_OBJECT
+ public:
+  EndoscopeViewController();
+  ~EndoscopeViewController() override;
+
+  void update(float dt, float ros_dt) override;
+  void handleMouseEvent(rviz::ViewportMouseEvent& event) override;
+  void reset() override;
+
+ protected:
+  void onInitialize() override;
+  void onActivate() override;
+
+ private:
+  void followScope();
+  void bendPicture();
+  void tell(const QString& text);
+
+  rviz::TfFrameProperty* frame_;
+  rviz::FloatProperty* field_of_view_;
+  rviz::EnumProperty* lens_;
+  rviz::FloatProperty* sharpness_;
+  rviz::StringProperty* status_;
+  std::unique_ptr<EndoscopeLens> picture_;  ///< only while this is the view in use
+  bool broken_ = false;                     ///< the graphics card cannot do it: said once, not tried again
+};
+
+}  // namespace vibe

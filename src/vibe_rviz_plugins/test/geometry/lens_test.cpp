@@ -1,0 +1,122 @@
+#include "geometry/lens.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+RoundCamera camera(LensKind lens, double degrees = 140, int width = 640, int height = 480) {
+  return {lens, degrees * kDegree, width, height};
+}
+
+class BothLenses : public ::testing::TestWithParam<LensKind> {};
+INSTANTIATE_TEST_SUITE_P(Lens, BothLenses, ::testing::Values(LensKind::Equidistant, LensKind::Rectilinear));
+
+TEST_P(BothLenses, PixelToRayAndBackIsTheSamePixel) {
+  const RoundCamera round = camera(GetParam());
+  for (double x = -3; x < 643; x += 29.3)
+    for (double y = -2; y < 482; y += 23.7) {
+      const Eigen::Vector3d ray = rayOf(round, {x, y});
+      ASSERT_NEAR(ray.norm(), 1, 1e-12);
+      ASSERT_LT((pixelOf(round, 0.07 * ray) - Eigen::Vector2d(x, y)).norm(), 1e-8) << x << " " << y;
+    }
+}
+
+TEST_P(BothLenses, CircleTouchesTheNearerEdgesAndIsHalfTheFieldOfViewFromTheAxis) {
+  for (const double degrees : {10., 90., 140., 170.}) {
+    const RoundCamera round = camera(GetParam(), degrees, 641, 480);
+    // outer edges of the first and last row of pixels
+    for (const double y : {-0.5, 479.5})
+      EXPECT_NEAR(std::acos(rayOf(round, {320, y}).z()), 0.5 * degrees * kDegree, 1e-9);
+    EXPECT_NEAR(angleAt(round, 240), 0.5 * degrees * kDegree, 1e-12);
+    EXPECT_NEAR(radiusAt(round, 0.5 * degrees * kDegree), 240, 1e-9);
+  }
+}
+
+TEST_P(BothLenses, MiddleShowsTheAxisAndItsNeighboursAreOneFocalLengthApartPerRadian) {
+  const RoundCamera round = camera(GetParam());
+  EXPECT_LT((pixelOf(round, {0, 0, 0.1}) - round.middle()).norm(), 1e-12);
+  EXPECT_LT((rayOf(round, round.middle()) - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
+  const double tiny = 1e-6;
+  EXPECT_NEAR(radiusAt(round, tiny) / tiny, focalLength(round), 1e-6 * focalLength(round));
+}
+
+TEST_P(BothLenses, RightOfTheAxisIsRightInThePictureAndBelowIsBelow) {
+  const RoundCamera round = camera(GetParam());
+  const Eigen::Vector2d pixel = pixelOf(round, {0.01, 0.02, 0.05});
+  EXPECT_GT(pixel.x(), round.middle().x());
+  EXPECT_GT(pixel.y(), round.middle().y());
+  EXPECT_NEAR((pixel - round.middle()).y() / (pixel - round.middle()).x(), 2, 1e-12);
+}
+
+TEST_P(BothLenses, NumbersOfCameraInfoProjectAsThePictureDoes) {
+  const RoundCamera round = camera(GetParam(), 120, 500, 700);
+  const CameraNumbers numbers = numbersOf(round, 0);
+  for (const double value : numbers.d) EXPECT_EQ(value, 0);
+  const Eigen::Vector3d point(0.013, -0.021, 0.034);
+  // as OpenCV does: a pinhole for plumb_bob, Kannala and Brandt for equidistant
+  const double aside = point.head<2>().norm(), tangent = aside / point.z();
+  const double distorted = GetParam() == LensKind::Rectilinear ? tangent : std::atan(tangent);
+  const Eigen::Vector2d normalised = point.head<2>() / aside * distorted;
+  const Eigen::Vector2d pixel(numbers.k[0] * normalised.x() + numbers.k[2],
+                              numbers.k[4] * normalised.y() + numbers.k[5]);
+  EXPECT_LT((pixel - pixelOf(round, point)).norm(), 1e-9);
+  EXPECT_EQ(numbers.distortion_model, GetParam() == LensKind::Rectilinear ? "plumb_bob" : "equidistant");
+  EXPECT_EQ(numbers.d.size(), GetParam() == LensKind::Rectilinear ? 5u : 4u);
+}
+
+TEST(Lens, EquidistantEnlargesTheMiddleAndRectilinearTheRim) {
+  EXPECT_NEAR(focalLength(camera(LensKind::Equidistant)), 240 / (70 * kDegree), 1e-9);
+  EXPECT_NEAR(focalLength(camera(LensKind::Rectilinear)), 240 / std::tan(70 * kDegree), 1e-9);
+  // half of the field of view is half of the circle with the one, less with the other
+  EXPECT_NEAR(radiusAt(camera(LensKind::Equidistant), 35 * kDegree), 120, 1e-9);
+  EXPECT_LT(radiusAt(camera(LensKind::Rectilinear), 35 * kDegree), 70);
+}
+
+TEST(Lens, RightCameraOfAPairSeesPointsDisplacedByFocalLengthTimesBaselineOverDepth) {
+  const RoundCamera round = camera(LensKind::Rectilinear, 100);
+  const double baseline = 0.004;
+  const CameraNumbers right = numbersOf(round, baseline);
+  const Eigen::Vector3d point(0.01, 0.005, 0.06);
+  // P of the right camera is applied to points in the frame of the left one
+  const double x = (right.p[0] * point.x() + right.p[2] * point.z() + right.p[3]) / point.z();
+  EXPECT_NEAR(x, pixelOf(round, point - Eigen::Vector3d(baseline, 0, 0)).x(), 1e-9);
+  EXPECT_NEAR(pixelOf(round, point).x() - x, focalLength(round) * baseline / point.z(), 1e-9);
+  EXPECT_EQ(numbersOf(round, 0).p[3], 0);
+}
+
+TEST(Lens, BehindARectilinearCameraIsNowhereAndBehindAnEquidistantOneIsFarOut) {
+  EXPECT_TRUE(std::isnan(pixelOf(camera(LensKind::Rectilinear), {0.01, 0, -0.01}).x()));
+  const Eigen::Vector2d pixel = pixelOf(camera(LensKind::Equidistant), {0.01, 0, -0.01});
+  EXPECT_NEAR((pixel - camera(LensKind::Equidistant).middle()).norm(), 240 * 135 / 70., 1e-9);
+  EXPECT_TRUE(std::isnan(pixelOf(camera(LensKind::Equidistant), {0, 0, 0}).x()));
+}
+
+TEST_P(BothLenses, SourceIsAsSharpInTheMiddleAndHoldsTheCircle) {
+  const RoundCamera round = camera(GetParam());
+  for (const double sharpness : {0.5, 1., 2.}) {
+    const SquareSource source = sourceFor(round, sharpness, 16384);
+    EXPECT_GT(source.half_width, std::tan(70 * kDegree));
+    EXPECT_LT(source.half_width, 1.02 * std::tan(70 * kDegree));
+    const double pixels_per_tangent = 0.5 * source.size / source.half_width;
+    EXPECT_GE(pixels_per_tangent, (1 - 1e-9) * sharpness * focalLength(round));
+    EXPECT_LT(pixels_per_tangent, 1.01 * sharpness * focalLength(round));
+  }
+  EXPECT_EQ(sourceFor(round, 100, 2048).size, 2048);
+}
+
+TEST(Lens, SaysWhatIsWrong) {
+  EXPECT_EQ(problemOf(camera(LensKind::Equidistant)), "");
+  EXPECT_NE(problemOf(camera(LensKind::Equidistant, 171)), "");
+  EXPECT_NE(problemOf(camera(LensKind::Rectilinear, 9)), "");
+  EXPECT_NE(problemOf(camera(LensKind::Rectilinear, std::nan(""))), "");
+  EXPECT_NE(problemOf(camera(LensKind::Rectilinear, 140, 15, 480)), "");
+  EXPECT_NE(problemOf(camera(LensKind::Rectilinear, 140, 640, 4097)), "");
+}
+
+}  // namespace
+}  // namespace vibe
