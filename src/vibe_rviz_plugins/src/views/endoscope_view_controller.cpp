@@ -104,9 +104,10 @@ void EndoscopeViewController::bendPicture() {
 }
 
 void EndoscopeViewController::tell(const QString& text) {
-  if (status_->getString() != text) status_->setString(text);
-  // rviz' status line is wiped by other messages, so a fault is said again
-  if (!text.isEmpty()) setStatus(text);
+  const bool changed = status_->getString() != text;
+  if (changed) status_->setString(text);
+  // other messages wipe rviz' status line, so a fault is said again
+  if (changed || !text.isEmpty()) setStatus(text);
 }
 
 void EndoscopeViewController::handleMouseEvent(rviz::ViewportMouseEvent& /*event*/) {
