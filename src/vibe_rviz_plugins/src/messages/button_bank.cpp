@@ -1,0 +1,78 @@
+#include "messages/button_bank.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kShortestPress = 0.1;  // design choice: several steps at 60 Hz [s]
+constexpr double kStepsPressed = 2;     // one may be under way when the message comes
+
+bool isCommand(int button) {
+  return button >= 0 && button < kCommandCount;
+}
+
+bool wasSeen(const Moment& pressed, const Moment& now) {
+  if (now.paused) return now.step != pressed.step;
+  const bool set_back = now.stamp < pressed.stamp;
+  return now.wall - pressed.wall >= kShortestPress &&
+         (set_back || now.stamp - pressed.stamp >= kStepsPressed * now.step_period);
+}
+
+}  // namespace
+
+const std::array<Command, kCommandCount>& commands() {
+  static const std::array<Command, kCommandCount> all = {{
+      {"APC pedal", "Heats the wall while it is held, with the probe 0 to 5 mm from it: marks, then burns.", false},
+      {"Helix grab", "Press to take hold of the tissue at the helix, press again to let it go.", true},
+      {"Needle",
+       "Gives the needle to the exchange after the arm has closed (a bite), or takes it back for the next one.", false},
+      {"T-tag", "Drops the needle as the thread's anchor after the last bite of a set; no more bites in it.", false},
+      {"Cinch", "Hold to draw the thread in; letting go crimps the cinch and cuts the thread: the set is permanent.",
+       false},
+      {"Insufflate", "Press to let gas flow in up to the set point, press again to stop.", true},
+  }};
+  return all;
+}
+
+void ButtonBank::press(int button, const Moment& now) {
+  if (!isCommand(button)) return;
+  const auto i = static_cast<std::size_t>(button);
+  if (commands()[i].toggles) {
+    down_[i] = 1 - down_[i];
+    return;
+  }
+  down_[i] = 1;
+  let_go_[i] = false;
+  pressed_[i] = now;
+}
+
+void ButtonBank::release(int button) {
+  if (!isCommand(button)) return;
+  const auto i = static_cast<std::size_t>(button);
+  if (!commands()[i].toggles) let_go_[i] = true;
+}
+
+bool ButtonBank::settle(const Moment& now) {
+  bool changed = false;
+  for (std::size_t i = 0; i < down_.size(); ++i) {
+    if (commands()[i].toggles || down_[i] == 0) continue;
+    // what was pressed in a pause begins to count when the pause is over
+    if (now.paused && now.step == pressed_[i].step) pressed_[i] = now;
+    if (!let_go_[i] || !wasSeen(pressed_[i], now)) continue;
+    down_[i] = 0;
+    changed = true;
+  }
+  return changed;
+}
+
+void ButtonBank::adopt(const std::vector<std::int32_t>& buttons) {
+  if (buttons.size() != down_.size()) return;
+  for (std::size_t i = 0; i < down_.size(); ++i)
+    if (commands()[i].toggles) down_[i] = buttons[i] != 0 ? 1 : 0;
+}
+
+void ButtonBank::liftHeld() {
+  for (std::size_t i = 0; i < down_.size(); ++i)
+    if (!commands()[i].toggles) down_[i] = 0;
+}
+
+}  // namespace vibe

@@ -1,0 +1,50 @@
+#include "messages/number_text.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+constexpr double kLongestPlain = 1e9;  // beyond that digits say nothing any more
+
+std::string twoDigits(long value) {
+  return (value < 10 ? "0" : "") + std::to_string(value);
+}
+
+}  // namespace
+
+const char* const kNoValue = "\u2013";
+
+std::string numberText(double value, int decimals) {
+  if (!std::isfinite(value)) return kNoValue;
+  const bool plain = std::abs(value) < kLongestPlain;
+  std::array<char, 64> text{};
+  // to_chars, because printf writes a comma where Qt has set such a locale
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value,
+                                    plain ? std::chars_format::fixed : std::chars_format::scientific,
+                                    plain ? std::max(0, std::min(decimals, 9)) : 1);
+  const std::string number(text.data(), result.ptr);
+  return number.find_first_of("123456789") == std::string::npos && number[0] == '-' ? number.substr(1) : number;
+}
+
+std::string quantityText(double value, int decimals, const std::string& unit) {
+  const std::string number = numberText(value, decimals);
+  return std::isfinite(value) && !unit.empty() ? number + " " + unit : number;
+}
+
+std::string durationText(double seconds) {
+  if (!std::isfinite(seconds) || seconds < 0 || seconds >= kLongestPlain) return kNoValue;
+  if (seconds < 59.95) return quantityText(seconds, 1, "s");
+  const long whole = std::lround(seconds);
+  const std::string last = twoDigits(whole % 60);
+  if (whole < 3600) return std::to_string(whole / 60) + ":" + last;
+  return std::to_string(whole / 3600) + ":" + twoDigits(whole / 60 % 60) + ":" + last;
+}
+
+std::string countText(unsigned long count, const std::string& singular) {
+  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+}  // namespace vibe

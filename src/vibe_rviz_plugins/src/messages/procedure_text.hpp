@@ -1,0 +1,49 @@
+#pragma once
+#include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SolverStatistics.h>
+#include <vibe_msgs/SutureArray.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace vibe {
+
+/// The procedure's phases as a row of steps.
+enum class StepKind { Before, Present, After };
+struct PhaseStep {
+  std::string name;  ///< "inspect", "mark", "suture", "pull", "done"
+  StepKind kind = StepKind::After;
+};
+constexpr int kPhaseCount = 5;
+
+/// With an unknown phase no step is the present one and none lies behind.
+std::array<PhaseStep, kPhaseCount> phaseSteps(const std::string& procedure_phase);
+
+/// What the tool does now: "Holds tissue. Needle on the arm."
+std::string toolText(const vibe_msgs::ProcedureState& state);
+
+/// "7 in set 2, 14 in all"; without an open set only the second.
+std::string bitesText(const vibe_msgs::ProcedureState& state, const vibe_msgs::SutureArray* sutures);
+
+/// What bleeds now, and how much was lost.
+struct BleedingSummary {
+  unsigned mild = 0, brisk = 0, overdue = 0;  ///< overdue ones are brisk as well
+  double lost = 0;                            ///< [m^3]
+};
+BleedingSummary summariseBleeding(const vibe_msgs::SutureArray& sutures);
+std::string bleedingText(const BleedingSummary& bleeding);
+
+/// "11 zones, 10 where sutures go: anterior 4, greater curvature 4, posterior 3".
+std::string marksText(const vibe_msgs::ProcedureState& state);
+/// "none", or "2 burn scars, 1 with the muscularis at risk".
+std::string burnsText(const vibe_msgs::ProcedureState& state);
+
+/// How well the simulator keeps up, as name and value.
+struct NamedText {
+  std::string name, value, help;
+  bool warns = false;
+};
+std::vector<NamedText> performanceRows(const vibe_msgs::SolverStatistics& statistics);
+
+}  // namespace vibe

@@ -1,0 +1,60 @@
+#pragma once
+#include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SutureArray.h>
+
+#include <string>
+#include <vector>
+
+namespace vibe {
+
+/// What the measures of a session are taken from.
+struct SessionMessages {
+  const vibe_msgs::ProcedureState& state;
+  const vibe_msgs::SutureArray* sutures;  ///< null: not come yet
+};
+
+/// A measure as it is shown, with the published figures it can be held against, if there are any. Definitions of the
+/// measures: docs/metrics.md.
+struct Measure {
+  std::string label;
+  std::string unit;  ///< of everything below; empty: a count
+  int decimals = 0;
+  double (*value)(const SessionMessages& session) = nullptr;  ///< NaN: not defined by what was done so far
+  std::string meaning;                                        ///< one sentence
+  std::string source;                                         ///< of the range; empty: none is published
+  double low = 0, high = 0;  ///< range of the reference, either may be infinite; without a source of no meaning
+  double bar_end = 1;        ///< the bar shows 0 to this
+  bool grows = false;        ///< it rises as the session goes on: too little is no fault before the end
+};
+
+/// Measures in the order in which they are shown.
+const std::vector<Measure>& measures();
+
+/// How a value stands to its reference.
+enum class Rating { NoReference, NoValue, NotYet, Within, Outside };
+
+/// @param done  the procedure is done: what still grows has no excuse any more
+Rating rate(const Measure& measure, double value, bool done);
+
+/// "within the published range", for those who do not see colours.
+std::string ratingText(Rating rating);
+
+/// "6 to 9", "at most 5 N", "at least 34.6 %"; empty without a reference.
+std::string rangeText(const Measure& measure);
+
+/// Meaning, range and source, one below the other: the tool tip.
+std::string explain(const Measure& measure);
+
+/// Where to draw, as shares of the bar's length from 0 to 1.
+struct BarShape {
+  bool has_range = false, has_value = false;
+  double range_begin = 0, range_end = 0;
+  double value = 0;     ///< clamped to the bar
+  bool beyond = false;  ///< the value lies outside the bar
+};
+BarShape barShape(const Measure& measure, double value);
+
+/// Force of tissue on the tool [N] that is published as seldom: the limit of "too hard".
+extern const Measure kPullingForce;
+
+}  // namespace vibe

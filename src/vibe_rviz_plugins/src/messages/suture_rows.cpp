@@ -1,0 +1,76 @@
+#include "messages/suture_rows.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include "messages/number_text.hpp"
+
+namespace vibe {
+namespace {
+
+std::string stageName(const vibe_msgs::Suture& suture) {
+  switch (suture.stage) {
+    case vibe_msgs::Suture::OPEN:
+      return "open";
+    case vibe_msgs::Suture::TAGGED:
+      return "tagged";
+    case vibe_msgs::Suture::CINCHING:
+      return "cinching";
+    case vibe_msgs::Suture::CINCHED:
+      return suture.loose ? "loose" : "cinched";
+    case vibe_msgs::Suture::BROKEN:
+      return "broken";
+    default:
+      return "stage " + std::to_string(suture.stage);
+  }
+}
+
+std::string techniqueText(const vibe_msgs::Suture& suture) {
+  if (suture.technique_name.empty()) return kNoValue;
+  std::string name = suture.technique_name;
+  // letters are names of patterns: U, Z, C; words stay as they are
+  if (name.size() == 1) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name + " " + quantityText(100 * suture.technique_margin, 0, "%");
+}
+
+std::string helpOf(const SutureRow& row, const vibe_msgs::Suture& suture) {
+  std::string text = "Set " + row.set + ", " + row.stage + ": " + countText(suture.bites.size(), "bite") + ", " +
+                     std::to_string(suture.tear_outs) + " torn out. Greatest tension now " +
+                     quantityText(greatestTension(suture), 2, "N") + ".";
+  if (!suture.technique_name.empty())
+    text += "\nTechnique " + row.technique + " away from being another one (100 %: as sure as can be).";
+  if (suture.end > 0)
+    text += "\nCinched with " + quantityText(suture.cinch_tension, 2, "N") + " after drawing " +
+            quantityText(1e3 * suture.pulled, 0, "mm") + " of thread.";
+  return text;
+}
+
+}  // namespace
+
+double greatestTension(const vibe_msgs::Suture& suture) {
+  if (suture.tension.empty() ||
+      !std::all_of(suture.tension.begin(), suture.tension.end(), [](double tension) { return std::isfinite(tension); }))
+    return std::numeric_limits<double>::quiet_NaN();
+  return *std::max_element(suture.tension.begin(), suture.tension.end());
+}
+
+std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures) {
+  std::vector<SutureRow> rows;
+  for (const vibe_msgs::Suture& suture : sutures.sutures) {
+    SutureRow row;
+    row.set = std::to_string(rows.size() + 1);
+    row.bites = std::to_string(suture.bites.size());
+    row.technique = techniqueText(suture);
+    row.stage = stageName(suture);
+    row.tension = numberText(greatestTension(suture), 1);
+    row.torn = std::to_string(suture.tear_outs);
+    row.warns = suture.tear_outs > 0 || suture.loose || suture.stage == vibe_msgs::Suture::BROKEN;
+    row.help = helpOf(row, suture);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace vibe

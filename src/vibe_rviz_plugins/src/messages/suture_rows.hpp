@@ -1,0 +1,26 @@
+#pragma once
+#include <vibe_msgs/SutureArray.h>
+
+#include <string>
+#include <vector>
+
+namespace vibe {
+
+/// One set of bites as a row of a table.
+struct SutureRow {
+  std::string set;        ///< "1" for the first
+  std::string bites;      ///< that hold
+  std::string technique;  ///< "U 83 %" with the margin; a dash before the T-tag
+  std::string stage;      ///< "open", "tagged", "cinching", "cinched", "loose", "broken"
+  std::string tension;    ///< greatest of all pieces now [N]
+  std::string torn;       ///< bites that tore out
+  bool warns = false;     ///< loose, broken or torn out
+  std::string help;       ///< all of it in words
+};
+
+std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures);
+
+/// Greatest tension of a thread's pieces [N]; NaN without a piece, and where the message has no number.
+double greatestTension(const vibe_msgs::Suture& suture);
+
+}  // namespace vibe

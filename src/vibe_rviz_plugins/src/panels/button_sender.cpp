@@ -1,0 +1,89 @@
+#include "panels/button_sender.hpp"
+
+#include <ros/this_node.h>
+
+#include "panels/procedure_feed.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr std::uint32_t kQueue = 100;
+constexpr double kClosing = 0.5;  // [s]
+// other parts of the same program may press buttons too; this tells their messages from ours
+const char* const kFrame = "procedure_panel";
+
+}  // namespace
+
+void ButtonSender::listen(const std::string& name_space) {
+  in_control_ = false;
+  publisher_ = {};
+  bank_ = {};
+  watch_.forget();
+  handle_ = ros::NodeHandle(name_space);
+  topic_ = handle_.resolveName("scope/buttons");
+  subscriber_ =
+      handle_.subscribe<sensor_msgs::Joy>("scope/buttons", kQueue,
+                                          boost::function<void(const ros::MessageEvent<const sensor_msgs::Joy>&)>(
+                                              [this](const auto& event) { hear(event); }));
+}
+
+void ButtonSender::hear(const ros::MessageEvent<const sensor_msgs::Joy>& event) {
+  const bool own_program = event.getPublisherName() == ros::this_node::getName();
+  const sensor_msgs::Joy& message = *event.getMessage();
+  if (own_program && message.header.frame_id == kFrame) return;
+  watch_.heard(event.getPublisherName(), steadySeconds());
+  // What a tool of this program presses is obeyed like our own: saying otherwise would make the helix let go again.
+  if (!in_control_ || own_program) bank_.adopt(message.buttons);
+}
+
+void ButtonSender::setControl(bool on, double now) {
+  if (on == in_control_ || (on && !watch_.rival(now).empty())) return;
+  in_control_ = on;
+  if (on) {
+    publisher_ = handle_.advertise<sensor_msgs::Joy>("scope/buttons", kQueue);
+  } else {
+    bank_.liftHeld();
+    closing_since_ = now;
+  }
+  publish();
+}
+
+void ButtonSender::press(int button, const Moment& now) {
+  if (!in_control_) return;
+  bank_.press(button, now);
+  publish();
+}
+
+void ButtonSender::release(int button, const Moment& now) {
+  if (!in_control_) return;
+  bank_.release(button);
+  if (bank_.settle(now)) publish();
+}
+
+void ButtonSender::tick(const Moment& now) {
+  if (in_control_) {
+    bank_.settle(now);
+    publish();
+  } else if (publisher_ && now.wall - closing_since_ > kClosing) {
+    publisher_ = {};
+  }
+}
+
+void ButtonSender::publish() {
+  if (!publisher_) return;
+  sensor_msgs::Joy message;
+  message.header.stamp = ros::Time::now();
+  message.header.frame_id = kFrame;
+  message.buttons.assign(bank_.down().begin(), bank_.down().end());
+  publisher_.publish(message);
+}
+
+std::string ButtonSender::sentence(double now) const {
+  const std::uint32_t ours = publisher_ ? 1 : 0;
+  const std::uint32_t publishers = subscriber_ ? subscriber_.getNumPublishers() : 0;
+  const std::uint32_t listeners = publisher_ ? publisher_.getNumSubscribers() : 0;
+  return watch_.sentence(topic_, in_control_, publishers > ours ? publishers - ours : 0,
+                         listeners > 1 ? listeners - 1 : 0, now);
+}
+
+}  // namespace vibe

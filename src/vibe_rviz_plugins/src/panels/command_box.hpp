@@ -1,0 +1,38 @@
+#pragma once
+#include <QWidget>
+#include <array>
+#include <functional>
+
+#include "messages/button_bank.hpp"
+
+class QLabel;
+class QPushButton;
+
+namespace vibe {
+
+/// The six buttons of the device and the switch that takes control of them.
+class CommandBox : public QWidget {
+ public:
+  /// What happens when something is pressed; all are set by the owner.
+  struct Actions {
+    std::function<void(bool on)> control;
+    std::function<void(int button)> press, release;
+  };
+
+  explicit CommandBox(Actions actions, QWidget* parent = nullptr);
+
+  /// @param down      what is pressed by whoever has control
+  /// @param sentence  who that is
+  void display(bool in_control, const std::array<std::int32_t, kCommandCount>& down, const std::string& sentence);
+
+ private:
+  Actions actions_;
+  QPushButton* control_;
+  QLabel* sentence_;
+  std::array<QPushButton*, kCommandCount> buttons_{};
+  std::array<std::int32_t, kCommandCount> shown_{};
+
+  void makeButton(int button);
+};
+
+}  // namespace vibe

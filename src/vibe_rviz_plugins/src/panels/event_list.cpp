@@ -1,0 +1,47 @@
+#include "panels/event_list.hpp"
+
+#include <cmath>
+
+#include "messages/event_lines.hpp"
+#include "messages/number_text.hpp"
+#include "panels/panel_colours.hpp"
+#include "panels/text_rows.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr int kLinesShown = 9;
+
+std::string timeText(const vibe_msgs::ProcedureEvent& event, double origin) {
+  const double time = event.header.stamp.toSec() - origin;
+  return time >= 0 ? durationText(time) + "  " : std::string();
+}
+
+}  // namespace
+
+EventList::EventList(QWidget* parent) : QListWidget(parent) {
+  setWordWrap(true);
+  setResizeMode(QListView::Adjust);
+  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
+  setSelectionMode(QAbstractItemView::NoSelection);
+  setFocusPolicy(Qt::NoFocus);
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  setIconSize({12, 12});
+}
+
+void EventList::add(const vibe_msgs::ProcedureEvent& event, double origin) {
+  if (!isListed(event)) return;
+  const Severity severity = severityOf(event.kind);
+  auto* entry = new QListWidgetItem(symbolOf(severity, palette()), toQt(timeText(event, origin) + eventText(event)));
+  entry->setForeground(colourOf(severity, palette()));
+  entry->setToolTip(toQt(severityName(severity)));
+  insertItem(0, entry);
+  while (count() > kMost) delete takeItem(count() - 1);
+}
+
+QSize EventList::sizeHint() const {
+  return {200, kLinesShown * fontMetrics().height() + 2 * frameWidth()};
+}
+
+}  // namespace vibe

@@ -1,0 +1,21 @@
+#pragma once
+#include <vibe_msgs/ProcedureEvent.h>
+
+#include <QListWidget>
+
+namespace vibe {
+
+/// What happened last, newest first, each with the symbol of its severity. Keeps a bounded number.
+class EventList : public QListWidget {
+ public:
+  static constexpr int kMost = 200;
+
+  explicit EventList(QWidget* parent = nullptr);
+
+  /// @param origin  stamp that counts as 0 s in what is shown [s]
+  void add(const vibe_msgs::ProcedureEvent& event, double origin);
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override { return sizeHint(); }
+};
+
+}  // namespace vibe

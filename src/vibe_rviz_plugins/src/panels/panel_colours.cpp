@@ -1,0 +1,119 @@
+#include "panels/panel_colours.hpp"
+
+#include <QPainter>
+#include <QPainterPath>
+#include <QPixmap>
+
+namespace vibe {
+namespace {
+
+constexpr int kSize = 32;  // drawn finer than shown, for dense screens [px]
+
+bool isDark(const QPalette& palette) {
+  return palette.color(QPalette::Window).lightness() < 128;
+}
+
+template <class Draw>
+QIcon drawn(const QColor& colour, Draw draw) {
+  QPixmap picture(kSize, kSize);
+  picture.fill(Qt::transparent);
+  QPainter painter(&picture);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(QPen(colour, 4, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+  draw(painter);
+  painter.end();
+  // the same when the row is selected: Qt would tint it into one blot
+  QIcon icon(picture);
+  icon.addPixmap(picture, QIcon::Selected);
+  icon.addPixmap(picture, QIcon::Disabled);
+  return icon;
+}
+
+void drawTriangle(QPainter& painter) {
+  painter.drawPolygon(QPolygonF{{16, 3}, {30, 28}, {2, 28}});
+  painter.drawLine(16, 12, 16, 19);
+  painter.drawPoint(16, 24);
+}
+
+void drawDrop(QPainter& painter) {
+  QPainterPath path(QPointF(16, 2));
+  path.cubicTo(18, 10, 27, 14, 27, 20);
+  path.cubicTo(27, 33, 5, 33, 5, 20);
+  path.cubicTo(5, 14, 14, 10, 16, 2);
+  painter.setBrush(painter.pen().color());
+  painter.drawPath(path);
+}
+
+void drawCross(QPainter& painter) {
+  painter.drawRect(3, 3, 26, 26);
+  painter.drawLine(10, 10, 22, 22);
+  painter.drawLine(22, 10, 10, 22);
+}
+
+void drawTick(QPainter& painter) {
+  painter.drawPolyline(QPolygonF{{4, 17}, {12, 26}, {28, 6}});
+}
+
+}  // namespace
+
+QColor goodColour(const QPalette& palette) {
+  return isDark(palette) ? QColor(129, 199, 132) : QColor(27, 110, 45);
+}
+
+QColor warningColour(const QPalette& palette) {
+  return isDark(palette) ? QColor(255, 190, 90) : QColor(150, 80, 0);
+}
+
+QColor dangerColour(const QPalette& palette) {
+  return isDark(palette) ? QColor(255, 138, 128) : QColor(183, 28, 28);
+}
+
+QColor quietColour(const QPalette& palette) {
+  return isDark(palette) ? QColor(160, 160, 160) : QColor(110, 110, 110);
+}
+
+QColor colourOf(Severity severity, const QPalette& palette) {
+  switch (severity) {
+    case Severity::Success:
+      return goodColour(palette);
+    case Severity::Warning:
+      return warningColour(palette);
+    case Severity::Bleeding:
+    case Severity::Harm:
+      return dangerColour(palette);
+    case Severity::Note:
+      break;
+  }
+  return palette.color(QPalette::Text);
+}
+
+QColor colourOf(Rating rating, const QPalette& palette) {
+  if (rating == Rating::Within) return goodColour(palette);
+  return rating == Rating::Outside ? warningColour(palette) : quietColour(palette);
+}
+
+QIcon symbolOf(Severity severity, const QPalette& palette) {
+  const QColor colour = colourOf(severity, palette);
+  switch (severity) {
+    case Severity::Success:
+      return drawn(colour, drawTick);
+    case Severity::Warning:
+      return drawn(colour, drawTriangle);
+    case Severity::Bleeding:
+      return drawn(colour, drawDrop);
+    case Severity::Harm:
+      return drawn(colour, drawCross);
+    case Severity::Note:
+      break;
+  }
+  return drawn(quietColour(palette), [](QPainter& painter) { painter.drawEllipse(10, 10, 12, 12); });
+}
+
+QIcon lamp(bool on, const QPalette& palette) {
+  return drawn(on ? goodColour(palette) : quietColour(palette), [on](QPainter& painter) {
+    if (on) painter.setBrush(painter.pen().color());
+    painter.drawEllipse(6, 6, 20, 20);
+  });
+}
+
+}  // namespace vibe

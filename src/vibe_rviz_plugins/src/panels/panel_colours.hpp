@@ -1,0 +1,28 @@
+#pragma once
+#include <QColor>
+#include <QIcon>
+#include <QPalette>
+
+#include "messages/event_lines.hpp"
+#include "messages/reference_values.hpp"
+
+namespace vibe {
+
+/// Colours and symbols of the panel, readable on light and on dark styles. No meaning lies in a colour alone: every
+/// symbol has a shape of its own.
+
+QColor goodColour(const QPalette& palette);
+QColor warningColour(const QPalette& palette);
+QColor dangerColour(const QPalette& palette);
+QColor quietColour(const QPalette& palette);
+
+QColor colourOf(Severity severity, const QPalette& palette);
+QColor colourOf(Rating rating, const QPalette& palette);
+
+/// Circle: note; tick: success; triangle: warning; drop: bleeding; cross in a square: harm.
+QIcon symbolOf(Severity severity, const QPalette& palette);
+
+/// A lamp, filled while it is on.
+QIcon lamp(bool on, const QPalette& palette);
+
+}  // namespace vibe

@@ -1,0 +1,23 @@
+#pragma once
+#include <geometry_msgs/WrenchStamped.h>
+#include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SolverStatistics.h>
+#include <vibe_msgs/SutureArray.h>
+
+namespace vibe {
+
+/// The last message of every topic that the panel shows; null: none has come.
+struct PanelMessages {
+  vibe_msgs::ProcedureStateConstPtr state;
+  vibe_msgs::SutureArrayConstPtr sutures;
+  vibe_msgs::SolverStatisticsConstPtr performance;
+  geometry_msgs::WrenchStampedConstPtr force;
+};
+
+/// How fresh they are.
+struct Freshness {
+  double age = 0;    ///< of the last message of a moving thing, on the wall clock; NaN: none has come [s]
+  double delay = 0;  ///< from the sample to its arrival; NaN: not known, stamps are simulated time [s]
+};
+
+}  // namespace vibe

@@ -1,0 +1,80 @@
+#include "panels/phase_strip.hpp"
+
+#include <QFontMetrics>
+#include <QPainter>
+#include <algorithm>
+
+#include "panels/panel_colours.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kGap = 3;      // between two steps [px]
+constexpr double kRound = 4;    // radius of corners [px]
+constexpr int kMargin = 10;     // of a step's height besides its text [px]
+constexpr int kSideMargin = 4;  // left and right of a step's text [px]
+
+QFont bold(QFont font) {
+  font.setBold(true);
+  return font;
+}
+
+}  // namespace
+
+PhaseStrip::PhaseStrip(QWidget* parent) : QWidget(parent), steps_(phaseSteps("")) {
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  setToolTip("Phase of the procedure; it follows from what is done.");
+}
+
+void PhaseStrip::display(const std::array<PhaseStep, kPhaseCount>& steps) {
+  steps_ = steps;
+  QString present = "Phase unknown";
+  for (const PhaseStep& step : steps_)
+    if (step.kind == StepKind::Present) present = "Phase: " + QString::fromStdString(step.name);
+  setAccessibleName(present);
+  update();
+}
+
+double PhaseStrip::widthOf(const PhaseStep& step) const {
+  return QFontMetrics(bold(font())).horizontalAdvance(QString::fromStdString(step.name)) + 2 * kSideMargin;
+}
+
+double PhaseStrip::leastWidth() const {
+  double width = kGap * (kPhaseCount - 1);
+  for (const PhaseStep& step : steps_) width += widthOf(step);
+  return width;
+}
+
+QSize PhaseStrip::sizeHint() const {
+  return {static_cast<int>(leastWidth()) + 1, QFontMetrics(bold(font())).height() + kMargin};
+}
+
+void PhaseStrip::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const double extra = std::max(0.0, (width() - leastWidth()) / kPhaseCount);
+  double left = 0;
+  for (const PhaseStep& step : steps_) {
+    const double width = widthOf(step) + extra;
+    paintStep(painter, QRectF(left + 1, 1, width - 2, height() - 2), step);
+    left += width + kGap;
+  }
+}
+
+void PhaseStrip::paintStep(QPainter& painter, const QRectF& place, const PhaseStep& step) const {
+  const bool present = step.kind == StepKind::Present;
+  const QColor quiet = quietColour(palette());
+  painter.setPen(QPen(present ? palette().color(QPalette::Text) : quiet, present ? 2 : 1));
+  painter.setBrush(present ? palette().brush(QPalette::Highlight) : QBrush(Qt::NoBrush));
+  painter.drawRoundedRect(place, kRound, kRound);
+  if (step.kind == StepKind::Before) {
+    // a line below what is behind
+    painter.setPen(QPen(goodColour(palette()), 3));
+    painter.drawLine(place.bottomLeft() + QPointF(kRound, -2), place.bottomRight() + QPointF(-kRound, -2));
+  }
+  painter.setFont(present ? bold(font()) : font());
+  painter.setPen(palette().color(present ? QPalette::HighlightedText : QPalette::WindowText));
+  painter.drawText(place, Qt::AlignCenter, QString::fromStdString(step.name));
+}
+
+}  // namespace vibe

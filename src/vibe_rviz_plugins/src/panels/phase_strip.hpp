@@ -1,0 +1,29 @@
+#pragma once
+#include <QWidget>
+
+#include "messages/procedure_text.hpp"
+
+namespace vibe {
+
+/// The procedure's phases from left to right. The present one is filled, framed and bold, those behind are
+/// underlined.
+class PhaseStrip : public QWidget {
+ public:
+  explicit PhaseStrip(QWidget* parent = nullptr);
+
+  void display(const std::array<PhaseStep, kPhaseCount>& steps);
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override { return sizeHint(); }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  std::array<PhaseStep, kPhaseCount> steps_;
+
+  double widthOf(const PhaseStep& step) const;  // [px]
+  double leastWidth() const;                    // of all [px]
+  void paintStep(QPainter& painter, const QRectF& place, const PhaseStep& step) const;
+};
+
+}  // namespace vibe

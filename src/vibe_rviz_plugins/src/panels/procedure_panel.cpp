@@ -1,0 +1,34 @@
+#include "panels/procedure_panel.hpp"
+
+#include <QVBoxLayout>
+#include <pluginlib/class_list_macros.hpp>
+
+#include "panels/procedure_cockpit.hpp"
+
+namespace vibe {
+
+ProcedurePanel::ProcedurePanel(QWidget* parent) : rviz::Panel(parent), cockpit_(new ProcedureCockpit) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->addWidget(cockpit_);
+  cockpit_->onNamespaceChanged([this] { Q_EMIT configChanged(); });
+}
+
+void ProcedurePanel::onInitialize() {
+  cockpit_->start();
+}
+
+void ProcedurePanel::load(const rviz::Config& config) {
+  rviz::Panel::load(config);
+  QString name;
+  if (config.mapGetString("Namespace", &name)) cockpit_->setNamespace(name);
+}
+
+void ProcedurePanel::save(rviz::Config config) const {
+  rviz::Panel::save(config);
+  config.mapSetValue("Namespace", cockpit_->nameSpace());
+}
+
+}  // namespace vibe
+
+PLUGINLIB_EXPORT_CLASS(vibe::ProcedurePanel, rviz::Panel)

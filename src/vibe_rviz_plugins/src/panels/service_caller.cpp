@@ -1,0 +1,105 @@
+#include "panels/service_caller.hpp"
+
+#include <ros/service.h>
+#include <std_srvs/SetBool.h>
+#include <vibe_msgs/Reset.h>
+#include <vibe_msgs/Step.h>
+
+#include <chrono>
+
+namespace vibe {
+
+ServiceCaller::ServiceCaller(Report report) : report_(std::move(report)), thread_([this] { run(); }) {}
+
+ServiceCaller::~ServiceCaller() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    ends_ = true;
+  }
+  changed_.notify_all();
+  // The call may not have begun yet when its connection is dropped, and would then connect anew: drop until it is over.
+  for (giveUp(); isBusy(); giveUp()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  thread_.join();
+}
+
+bool ServiceCaller::isBusy() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return busy_;
+}
+
+bool ServiceCaller::pause(const std::string& service, bool paused) {
+  std_srvs::SetBool request;
+  request.request.data = paused;
+  return start(service, request);
+}
+
+bool ServiceCaller::step(const std::string& service, unsigned n) {
+  vibe_msgs::Step request;
+  request.request.n = n;
+  return start(service, request);
+}
+
+bool ServiceCaller::reset(const std::string& service) {
+  vibe_msgs::Reset request;
+  request.request.seed = 0;
+  request.request.keep_time = true;
+  return start(service, request);
+}
+
+void ServiceCaller::giveUp() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  if (!busy_) return;
+  given_up_ = true;
+  client_.shutdown();
+}
+
+template <class Service>
+bool ServiceCaller::start(const std::string& name, const Service& service) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  if (busy_ || ends_) return false;
+  busy_ = true;
+  given_up_ = false;
+  work_ = [this, name, service] { return call(name, service); };
+  changed_.notify_all();
+  return true;
+}
+
+template <class Service>
+ServiceCaller::Answer ServiceCaller::call(const std::string& name, Service service) {
+  if (!ros::service::exists(name, false))
+    return {false, "There is no service " + name + "; start the simulator or set the namespace."};
+  // persistent, because only such a client's connection can be dropped while it waits
+  ros::ServiceClient client = ros::NodeHandle().serviceClient<Service>(name, true);
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    client_ = client;
+    if (given_up_) return {false, "The call of " + name + " was given up."};
+  }
+  const bool answered = client.call(service);
+  std::lock_guard<std::mutex> lock(mutex_);
+  if (given_up_) return {false, "The call of " + name + " was given up; the simulator may still carry it out."};
+  if (!answered) return {false, "The service " + name + " did not answer; look whether the simulator still runs."};
+  return {static_cast<bool>(service.response.success), service.response.message};
+}
+
+void ServiceCaller::run() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!ends_) {
+    if (!work_) {
+      changed_.wait(lock);
+      continue;
+    }
+    const auto work = std::move(work_);
+    work_ = nullptr;
+    lock.unlock();
+    const Answer answer = work();
+    lock.lock();
+    client_ = ros::ServiceClient();
+    busy_ = false;
+    lock.unlock();
+    report_(answer);
+    lock.lock();
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,105 @@
+#include "panels/stepping_box.hpp"
+
+#include <QGridLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QTimer>
+
+#include "messages/number_text.hpp"
+#include "panels/panel_colours.hpp"
+#include "panels/text_rows.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr int kMostSteps = 10000;
+constexpr int kResetPatience = 3000;  // to press reset a second time [ms]
+constexpr double kPatience = 1;       // a call that takes longer is told of and can be given up [s]
+
+}  // namespace
+
+SteppingBox::SteppingBox(Actions actions, QWidget* parent)
+    : QWidget(parent),
+      actions_(std::move(actions)),
+      pause_(new QPushButton("Pause")),
+      step_(new QPushButton("Step")),
+      reset_(new QPushButton("Reset")),
+      stop_waiting_(new QPushButton("Stop waiting")),
+      count_(new QSpinBox),
+      answer_(wrappingLabel()) {
+  auto* grid = new QGridLayout(this);
+  grid->setContentsMargins(0, 0, 0, 0);
+  int column = 0;
+  for (QWidget* widget : {static_cast<QWidget*>(pause_), static_cast<QWidget*>(step_), static_cast<QWidget*>(count_),
+                          static_cast<QWidget*>(reset_)}) {
+    widget->setMinimumWidth(1);
+    grid->addWidget(widget, 0, column++);
+  }
+  grid->addWidget(answer_, 1, 0, 1, column);
+  grid->addWidget(stop_waiting_, 2, 0, 1, column);
+  pause_->setToolTip("Stops the simulation or lets it go on.");
+  step_->setToolTip("Takes this many steps while the simulation is paused.");
+  reset_->setToolTip("Back to the initial state with the scene's seed; press twice. Stamps go on.");
+  stop_waiting_->setToolTip("Gives up the call; the simulator may still carry it out.");
+  count_->setToolTip("Steps to take at once.");
+  count_->setRange(1, kMostSteps);
+  answer_->setObjectName("answer");
+  stop_waiting_->hide();
+  connectAll();
+}
+
+void SteppingBox::connectAll() {
+  QObject::connect(pause_, &QPushButton::clicked, this, [this] { actions_.pause(!paused_); });
+  QObject::connect(step_, &QPushButton::clicked, this,
+                   [this] { actions_.step(static_cast<unsigned>(count_->value())); });
+  QObject::connect(reset_, &QPushButton::clicked, this, [this] { pressReset(); });
+  QObject::connect(stop_waiting_, &QPushButton::clicked, this, [this] { actions_.stop_waiting(); });
+}
+
+// a reset cannot be taken back, and a question in a window of its own would stand in the way of rviz
+void SteppingBox::pressReset() {
+  if (asked_) {
+    asked_ = false;
+    reset_->setText("Reset");
+    actions_.reset();
+    return;
+  }
+  asked_ = true;
+  reset_->setText("Sure?");
+  QTimer::singleShot(kResetPatience, this, [this] {
+    asked_ = false;
+    reset_->setText("Reset");
+  });
+}
+
+void SteppingBox::displayState(bool known, bool paused) {
+  paused_ = known && paused;
+  pause_->setText(paused_ ? "Resume" : "Pause");
+}
+
+void SteppingBox::displayWaiting(const std::string& service, double seconds) {
+  waiting_ = true;
+  enableAll();
+  stop_waiting_->setVisible(seconds > kPatience);
+  answer_->setPalette(palette());
+  answer_->setText(toQt("Waiting for " + service +
+                        (seconds > kPatience ? ": no answer for " + quantityText(seconds, 0, "s") + "." : ".")));
+}
+
+void SteppingBox::displayAnswer(bool success, const std::string& sentence) {
+  waiting_ = false;
+  enableAll();
+  stop_waiting_->hide();
+  QPalette colours = palette();
+  if (!success) colours.setColor(QPalette::WindowText, dangerColour(colours));
+  answer_->setPalette(colours);
+  answer_->setText(toQt(success ? sentence : "Failed: " + sentence));
+}
+
+void SteppingBox::enableAll() {
+  for (QWidget* widget : {static_cast<QWidget*>(pause_), static_cast<QWidget*>(step_), static_cast<QWidget*>(reset_)})
+    widget->setEnabled(!waiting_);
+}
+
+}  // namespace vibe

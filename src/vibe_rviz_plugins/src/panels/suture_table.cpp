@@ -1,0 +1,88 @@
+#include "panels/suture_table.hpp"
+
+#include <QHeaderView>
+#include <array>
+
+#include "panels/panel_colours.hpp"
+#include "panels/text_rows.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr int kMostShown = 8;  // rows without scrolling
+
+struct Column {
+  const char* title;
+  const char* help;
+};
+constexpr std::array<Column, 6> kColumns = {{
+    {"Set", "Number of the set, in the order of the first bites."},
+    {"Bites", "Bites that hold."},
+    {"Technique", "What the set looks like, and how far that is from another technique; recognised at the T-tag."},
+    {"Stage",
+     "Open: takes bites. Tagged: the T-tag is dropped. Cinched: permanent. Loose: cinched with too little tension."},
+    {"N", "Greatest tension of the thread now [N]."},
+    {"Torn", "Bites that tore out."},
+}};
+
+}  // namespace
+
+SutureTable::SutureTable(QWidget* parent) : QTableWidget(0, static_cast<int>(kColumns.size()), parent) {
+  for (std::size_t column = 0; column < kColumns.size(); ++column) {
+    auto* title = new QTableWidgetItem(kColumns[column].title);
+    title->setToolTip(kColumns[column].help);
+    setHorizontalHeaderItem(static_cast<int>(column), title);
+  }
+  setSelectionMode(QAbstractItemView::NoSelection);
+  setFocusPolicy(Qt::NoFocus);
+  setEditTriggers(QAbstractItemView::NoEditTriggers);
+  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  setWordWrap(false);
+  verticalHeader()->hide();
+  verticalHeader()->setSectionResizeMode(QHeaderView::Fixed);
+  verticalHeader()->setMinimumSectionSize(1);
+  verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 6);
+  horizontalHeader()->setMinimumSectionSize(1);
+  horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  horizontalHeader()->setStretchLastSection(true);
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+}
+
+void SutureTable::display(const std::vector<SutureRow>& rows) {
+  const int count = static_cast<int>(rows.size());
+  const bool changed = count != rowCount();
+  if (changed) setRowCount(count);
+  for (int row = 0; row < count; ++row) displayRow(row, rows[static_cast<std::size_t>(row)]);
+  if (!changed) return;
+  updateGeometry();
+  scrollToBottom();
+}
+
+void SutureTable::displayRow(int row, const SutureRow& content) {
+  const std::array<std::string, 6> texts = {content.set,   content.bites,   content.technique,
+                                            content.stage, content.tension, content.torn};
+  for (int column = 0; column < columnCount(); ++column) {
+    QTableWidgetItem* cell = item(row, column);
+    if (!cell) {
+      cell = new QTableWidgetItem;
+      setItem(row, column, cell);
+    }
+    const QString text = toQt(texts[static_cast<std::size_t>(column)]);
+    if (cell->text() != text) cell->setText(text);
+    const QString help = toQt(content.help);
+    if (cell->toolTip() != help) cell->setToolTip(help);
+    QFont face = font();
+    face.setBold(content.warns);
+    if (cell->font() != face) cell->setFont(face);
+    const QBrush brush(content.warns ? dangerColour(palette()) : palette().color(QPalette::Text));
+    if (cell->foreground() != brush) cell->setForeground(brush);
+  }
+}
+
+QSize SutureTable::sizeHint() const {
+  const int shown = std::max(1, std::min(rowCount(), kMostShown));
+  return {200, horizontalHeader()->sizeHint().height() + shown * verticalHeader()->defaultSectionSize() +
+                   2 * frameWidth() + 2};
+}
+
+}  // namespace vibe

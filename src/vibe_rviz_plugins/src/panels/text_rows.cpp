@@ -1,0 +1,55 @@
+#include "panels/text_rows.hpp"
+
+#include <QGridLayout>
+#include <QLabel>
+
+#include "panels/panel_colours.hpp"
+
+namespace vibe {
+
+QLabel* wrappingLabel(QWidget* parent) {
+  auto* label = new QLabel(parent);
+  label->setTextFormat(Qt::PlainText);
+  label->setWordWrap(true);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  label->setMinimumWidth(1);
+  return label;
+}
+
+void TextRows::add(const QString& name, const QString& help) {
+  auto* title = new QLabel(name);
+  title->setToolTip(help);
+  QLabel* value = wrappingLabel();
+  value->setToolTip(help);
+  value->setObjectName(name);
+  const int row = layout_->rowCount();
+  layout_->addWidget(title, row, 0, Qt::AlignLeft | Qt::AlignTop);
+  layout_->addWidget(value, row, 1);
+  layout_->setColumnStretch(1, 1);
+  values_[name] = value;
+}
+
+void TextRows::set(const QString& name, const QString& value, const QString& help) {
+  if (values_.count(name) == 0) add(name, help);
+  QLabel* label = values_.at(name);
+  label->setText(value);
+  if (!help.isEmpty()) label->setToolTip(help);
+}
+
+void TextRows::mark(const QString& name, bool warns) {
+  QLabel* label = values_.at(name);
+  QFont font = label->font();
+  if (font.bold() == warns) return;
+  font.setBold(warns);
+  label->setFont(font);
+  QPalette palette = label->parentWidget() ? label->parentWidget()->palette() : QPalette();
+  if (warns) palette.setColor(QPalette::WindowText, dangerColour(palette));
+  label->setPalette(palette);
+}
+
+QLabel* TextRows::value(const QString& name) const {
+  const auto found = values_.find(name);
+  return found == values_.end() ? nullptr : found->second;
+}
+
+}  // namespace vibe
