@@ -30,7 +30,7 @@ QIcon drawn(const QColor& colour, Draw draw) {
 }
 
 void drawTriangle(QPainter& painter) {
-  painter.drawPolygon(QPolygonF{{16, 3}, {30, 28}, {2, 28}});
+  painter.drawPolygon(QVector<QPointF>{{16, 3}, {30, 28}, {2, 28}});
   painter.drawLine(16, 12, 16, 19);
   painter.drawPoint(16, 24);
 }
@@ -51,7 +51,7 @@ void drawCross(QPainter& painter) {
 }
 
 void drawTick(QPainter& painter) {
-  painter.drawPolyline(QPolygonF{{4, 17}, {12, 26}, {28, 6}});
+  painter.drawPolyline(QVector<QPointF>{{4, 17}, {12, 26}, {28, 6}});
 }
 
 }  // namespace

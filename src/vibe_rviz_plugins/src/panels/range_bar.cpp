@@ -50,9 +50,9 @@ void RangeBar::paintMark(QPainter& painter, double x, double y) const {
                                                                            : palette().brush(QPalette::Window));
   if (shape_.beyond) {
     const double tip = shape_.value > 0.5 ? kMark : -kMark;
-    painter.drawPolygon(QPolygonF{{x - tip, y - kMark}, {x + tip, y}, {x - tip, y + kMark}});
+    painter.drawPolygon(QVector<QPointF>{{x - tip, y - kMark}, {x + tip, y}, {x - tip, y + kMark}});
   } else if (rating_ == Rating::Outside) {
-    painter.drawPolygon(QPolygonF{{x, y - kMark}, {x + kMark, y + kMark}, {x - kMark, y + kMark}});
+    painter.drawPolygon(QVector<QPointF>{{x, y - kMark}, {x + kMark, y + kMark}, {x - kMark, y + kMark}});
   } else {
     painter.drawEllipse(QPointF(x, y), kMark - 1, kMark - 1);
   }

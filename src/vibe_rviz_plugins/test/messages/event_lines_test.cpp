@@ -1,0 +1,48 @@
+#include "messages/event_lines.hpp"
+
+#include <gtest/gtest.h>
+
+namespace vibe {
+namespace {
+
+using Event = vibe_msgs::ProcedureEvent;
+
+Event makeEvent(std::uint8_t kind, const std::string& text) {
+  Event event;
+  event.kind = kind;
+  event.text = text;
+  return event;
+}
+
+TEST(EventLines, severities) {
+  for (const std::uint8_t kind : {Event::WARNING, Event::REFUSED, Event::SLIP, Event::CINCH_LOOSE, Event::BITE_MISSED})
+    EXPECT_EQ(severityOf(kind), Severity::Warning) << int{kind};
+  for (const std::uint8_t kind : {Event::BLEEDING_MILD, Event::BLEEDING_BRISK, Event::BLEEDING_OVERDUE})
+    EXPECT_EQ(severityOf(kind), Severity::Bleeding) << int{kind};
+  for (const std::uint8_t kind : {Event::TEAR_OUT, Event::THREAD_BROKE, Event::DEEP_BURN})
+    EXPECT_EQ(severityOf(kind), Severity::Harm) << int{kind};
+  for (const std::uint8_t kind : {Event::BITE, Event::CINCHED, Event::BLEEDING_STOPPED})
+    EXPECT_EQ(severityOf(kind), Severity::Success) << int{kind};
+  for (const std::uint8_t kind : {Event::GRAB, Event::PHASE_CHANGED, Event::MARK})
+    EXPECT_EQ(severityOf(kind), Severity::Note) << int{kind};
+}
+
+TEST(EventLines, aKindFromTheFutureIsANote) {
+  EXPECT_EQ(severityOf(200), Severity::Note);
+  EXPECT_EQ(eventText(makeEvent(200, "Something new.")), "Event. Something new.");
+}
+
+TEST(EventLines, textOrTitle) {
+  EXPECT_EQ(eventText(makeEvent(Event::REFUSED, "No needle.")), "Refused. No needle.");
+  EXPECT_EQ(eventText(makeEvent(Event::TEAR_OUT, "")), "Tear-out.");
+  EXPECT_EQ(eventText(makeEvent(Event::ARM_CLOSED, "")), "Arm closed.");
+}
+
+TEST(EventLines, contactsAreNotListed) {
+  EXPECT_FALSE(isListed(makeEvent(Event::CONTACT_BEGIN, "")));
+  EXPECT_FALSE(isListed(makeEvent(Event::CONTACT_END, "")));
+  EXPECT_TRUE(isListed(makeEvent(Event::SLIP, "")));
+}
+
+}  // namespace
+}  // namespace vibe

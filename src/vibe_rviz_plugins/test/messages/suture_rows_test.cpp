@@ -1,0 +1,74 @@
+#include "messages/suture_rows.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace vibe {
+namespace {
+
+vibe_msgs::SutureArray oneSet(std::uint8_t stage) {
+  vibe_msgs::SutureArray sutures;
+  sutures.sutures.resize(1);
+  vibe_msgs::Suture& suture = sutures.sutures[0];
+  suture.stage = stage;
+  suture.bites.resize(7);
+  suture.tension = {0, 2.46, 1};
+  return sutures;
+}
+
+TEST(SutureRows, anOpenSet) {
+  const auto rows = sutureRows(oneSet(vibe_msgs::Suture::OPEN));
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].set, "1");
+  EXPECT_EQ(rows[0].bites, "7");
+  EXPECT_EQ(rows[0].stage, "open");
+  EXPECT_EQ(rows[0].technique, "\u2013");
+  EXPECT_EQ(rows[0].tension, "2.5");
+  EXPECT_EQ(rows[0].torn, "0");
+  EXPECT_FALSE(rows[0].warns);
+}
+
+TEST(SutureRows, aCinchedSetHasATechnique) {
+  auto sutures = oneSet(vibe_msgs::Suture::CINCHED);
+  sutures.sutures[0].technique_name = "u";
+  sutures.sutures[0].technique_margin = 0.834;
+  sutures.sutures[0].end = 60;
+  sutures.sutures[0].pulled = 0.12;
+  auto rows = sutureRows(sutures);
+  EXPECT_EQ(rows[0].technique, "U 83 %");
+  EXPECT_EQ(rows[0].stage, "cinched");
+  EXPECT_FALSE(rows[0].warns);
+  EXPECT_NE(rows[0].help.find("120 mm"), std::string::npos);
+  sutures.sutures[0].technique_name = "running";
+  EXPECT_EQ(sutureRows(sutures)[0].technique, "running 83 %");
+}
+
+TEST(SutureRows, whatWentWrongWarns) {
+  auto sutures = oneSet(vibe_msgs::Suture::CINCHED);
+  sutures.sutures[0].loose = true;
+  EXPECT_EQ(sutureRows(sutures)[0].stage, "loose");
+  EXPECT_TRUE(sutureRows(sutures)[0].warns);
+  EXPECT_TRUE(sutureRows(oneSet(vibe_msgs::Suture::BROKEN))[0].warns);
+  auto torn = oneSet(vibe_msgs::Suture::OPEN);
+  torn.sutures[0].tear_outs = 2;
+  EXPECT_TRUE(sutureRows(torn)[0].warns);
+  EXPECT_EQ(sutureRows(torn)[0].torn, "2");
+}
+
+TEST(SutureRows, tensionThatIsNoNumberIsADash) {
+  auto sutures = oneSet(vibe_msgs::Suture::TAGGED);
+  sutures.sutures[0].tension[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(sutureRows(sutures)[0].tension, "\u2013");
+  sutures.sutures[0].tension.clear();
+  EXPECT_TRUE(std::isnan(greatestTension(sutures.sutures[0])));
+}
+
+TEST(SutureRows, aStageThatIsNotKnownIsANumber) {
+  EXPECT_EQ(sutureRows(oneSet(77))[0].stage, "stage 77");
+  EXPECT_TRUE(sutureRows({}).empty());
+}
+
+}  // namespace
+}  // namespace vibe
