@@ -27,7 +27,7 @@ inline std::string textOf(const QWidget& widget, const QString& name) {
 inline QImage pictureOf(QWidget& widget) {
   QImage image(widget.size(), QImage::Format_ARGB32);
   image.fill(Qt::transparent);
-  widget.render(&image);
+  widget.render(&image, {}, {}, QWidget::DrawChildren);  // without a background, so that alpha tells the shape
   return image;
 }
 

@@ -77,8 +77,8 @@ bool isListed(const vibe_msgs::ProcedureEvent& event) {
 }
 
 std::string eventText(const vibe_msgs::ProcedureEvent& event) {
-  const std::string title = event.kind < kKinds.size() ? kKinds[event.kind].title : "Event";
-  return event.text.empty() ? title + "." : title + ". " + event.text;
+  if (event.text.empty()) return std::string(event.kind < kKinds.size() ? kKinds[event.kind].title : "Event") + ".";
+  return event.kind == Event::REFUSED ? "Refused: " + event.text : event.text;
 }
 
 }  // namespace vibe

@@ -18,7 +18,7 @@ std::string severityName(Severity severity);
 /// does now is told elsewhere.
 bool isListed(const vibe_msgs::ProcedureEvent& event);
 
-/// "Refused. The T-tag ..."; of an event without a text only the title.
+/// Its sentence, after "Refused: " for a command that could not act; of an event without a sentence the title.
 std::string eventText(const vibe_msgs::ProcedureEvent& event);
 
 }  // namespace vibe

@@ -97,7 +97,7 @@ std::vector<Measure> procedureMeasures() {
        0, 60, false},
       {"Full thickness", "%", 0, fullThickness, "Share of the bites that went through the whole wall.", "", 0, 0, 100,
        false},
-      {"Off the body", "bites", 0, offTheBody, "Bites in antrum, pylorus, fundus or cardia.",
+      {"Off the body", "", 0, offTheBody, "Bites in antrum, pylorus, fundus or cardia.",
        "Antrum and fundus are spared: Updates Surg 2022, 10.1007/s13304-022-01385-4.", 0, 0, 5, false},
       {"Sets proximal", "%", 0, setsProximal, "Of the steps from set to set, the share that goes towards the fundus.",
        "Sutures go from distal to proximal: 10.1177/26345161241289134.", 100, 100, 100, false},
@@ -126,8 +126,8 @@ std::vector<Measure> handMeasures() {
       {"Time above 5 N", "%", 1, shareAbove, "Share of the time with a force of the tissue on the tool above 5 N.",
        kForces, 0, 1.6, 5, false},
       {"Blood lost", "mL", 1, bloodLost, "By all bites together.", "", 0, 0, 50, false},
-      {"Smoothness (LDLJ)", "", 1, jerk, "Log dimensionless jerk of the scope's tip; nearer to 0 is smoother.", "", 0,
-       0, 1, false},
+      {"Smoothness", "", 1, jerk, "Log dimensionless jerk of the scope's tip; nearer to 0 is smoother.", "", 0, 0, 1,
+       false},
       {"Time", "min", 1, minutes, "Simulated time so far.",
        "60 min: Kumbhari 2020. Others: 37 min median of 331 cases (Turjman, BJSTR 2023), 47 min (Itani). These are of "
        "the "

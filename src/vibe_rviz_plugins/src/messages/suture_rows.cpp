@@ -32,7 +32,7 @@ std::string techniqueText(const vibe_msgs::Suture& suture) {
   std::string name = suture.technique_name;
   // letters are names of patterns: U, Z, C; words stay as they are
   if (name.size() == 1) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-  return name + " " + quantityText(100 * suture.technique_margin, 0, "%");
+  return name + " " + numberText(100 * suture.technique_margin, 0) + "%";
 }
 
 std::string helpOf(const SutureRow& row, const vibe_msgs::Suture& suture) {
@@ -62,10 +62,10 @@ std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures) {
     SutureRow row;
     row.set = std::to_string(rows.size() + 1);
     row.bites = std::to_string(suture.bites.size());
+    if (suture.tear_outs > 0) row.bites += " (-" + std::to_string(suture.tear_outs) + ")";
     row.technique = techniqueText(suture);
     row.stage = stageName(suture);
     row.tension = numberText(greatestTension(suture), 1);
-    row.torn = std::to_string(suture.tear_outs);
     row.warns = suture.tear_outs > 0 || suture.loose || suture.stage == vibe_msgs::Suture::BROKEN;
     row.help = helpOf(row, suture);
     rows.push_back(std::move(row));

@@ -9,11 +9,10 @@ namespace vibe {
 /// One set of bites as a row of a table.
 struct SutureRow {
   std::string set;        ///< "1" for the first
-  std::string bites;      ///< that hold
-  std::string technique;  ///< "U 83 %" with the margin; a dash before the T-tag
+  std::string bites;      ///< "7" that hold; "6 (-1)" with one that tore out
+  std::string technique;  ///< "U 83%" with the margin; a dash before the T-tag
   std::string stage;      ///< "open", "tagged", "cinching", "cinched", "loose", "broken"
   std::string tension;    ///< greatest of all pieces now [N]
-  std::string torn;       ///< bites that tore out
   bool warns = false;     ///< loose, broken or torn out
   std::string help;       ///< all of it in words
 };

@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kColumns = 3;
+constexpr int kColumns = 2;
 
 }  // namespace
 
@@ -43,7 +43,6 @@ void CommandBox::makeButton(int button) {
   widget->setObjectName(toQt(command.label));
   widget->setToolTip(toQt(command.help));
   widget->setEnabled(false);
-  widget->setMinimumWidth(1);
   QObject::connect(widget, &QPushButton::pressed, this, [this, button] { actions_.press(button); });
   QObject::connect(widget, &QPushButton::released, this, [this, button] { actions_.release(button); });
   buttons_[static_cast<std::size_t>(button)] = widget;

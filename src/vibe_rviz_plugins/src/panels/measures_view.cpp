@@ -12,9 +12,11 @@
 namespace vibe {
 
 MeasuresView::MeasuresView(QWidget* parent) : QWidget(parent) {
+  makeSmaller(*this);
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setVerticalSpacing(2);
+  grid->setHorizontalSpacing(6);
   grid->setColumnStretch(2, 1);
   for (const Measure& measure : measures()) {
     const int line = grid->rowCount();

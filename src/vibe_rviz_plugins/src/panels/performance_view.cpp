@@ -12,12 +12,14 @@ namespace {
 
 const char* const kAgeHelp = "Wall time since the last message of the tool or, without one, of the state.";
 const char* const kDelayHelp =
-    "From the sample to its arrival in this panel. Published limits for surgeons: worse with 105 ms more (Kumcu 2016). "
+    "From the sample to its arrival here, greatest of the last second. Surgeons did worse with 105 ms of added delay "
+    "(Kumcu et al. 2016). "
     "Not known with simulated time, whose stamps are no wall time.";
 
 }  // namespace
 
 PerformanceView::PerformanceView(QWidget* parent) : QWidget(parent) {
+  makeSmaller(*this);
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setVerticalSpacing(2);

@@ -1,5 +1,6 @@
 #include "panels/phase_strip.hpp"
 
+#include <QFontInfo>
 #include <QFontMetrics>
 #include <QPainter>
 #include <algorithm>
@@ -9,14 +10,19 @@
 namespace vibe {
 namespace {
 
-constexpr double kGap = 3;      // between two steps [px]
-constexpr double kRound = 4;    // radius of corners [px]
-constexpr int kMargin = 10;     // of a step's height besides its text [px]
-constexpr int kSideMargin = 4;  // left and right of a step's text [px]
+constexpr double kGap = 3;          // between two steps [px]
+constexpr double kRound = 4;        // radius of corners [px]
+constexpr double kSmallest = 0.75;  // of the font, where the dock is narrow
+constexpr int kMargin = 10;         // of a step's height besides its text [px]
+constexpr int kSideMargin = 4;      // left and right of a step's text [px]
 
 QFont bold(QFont font) {
   font.setBold(true);
   return font;
+}
+
+double widthOf(const PhaseStep& step, const QFont& face) {
+  return QFontMetrics(bold(face)).horizontalAdvance(QString::fromStdString(step.name)) + 2 * kSideMargin;
 }
 
 }  // namespace
@@ -35,27 +41,36 @@ void PhaseStrip::display(const std::array<PhaseStep, kPhaseCount>& steps) {
   update();
 }
 
-double PhaseStrip::widthOf(const PhaseStep& step) const {
-  return QFontMetrics(bold(font())).horizontalAdvance(QString::fromStdString(step.name)) + 2 * kSideMargin;
-}
-
-double PhaseStrip::leastWidth() const {
+double PhaseStrip::leastWidth(const QFont& face) const {
   double width = kGap * (kPhaseCount - 1);
-  for (const PhaseStep& step : steps_) width += widthOf(step);
+  for (const PhaseStep& step : steps_) width += widthOf(step, face);
   return width;
 }
 
 QSize PhaseStrip::sizeHint() const {
-  return {static_cast<int>(leastWidth()) + 1, QFontMetrics(bold(font())).height() + kMargin};
+  return {static_cast<int>(leastWidth(font())) + 1, QFontMetrics(bold(font())).height() + kMargin};
+}
+
+QSize PhaseStrip::minimumSizeHint() const {
+  return {static_cast<int>(kSmallest * leastWidth(font())) + 1, sizeHint().height()};
+}
+
+QFont PhaseStrip::fittingFont() const {
+  QFont face = font();
+  const double share = std::max(kSmallest, std::min(1.0, width() / leastWidth(face)));
+  face.setPointSizeF(share * QFontInfo(face).pointSizeF());
+  return face;
 }
 
 void PhaseStrip::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
-  const double extra = std::max(0.0, (width() - leastWidth()) / kPhaseCount);
+  const QFont face = fittingFont();
+  const double extra = (width() - leastWidth(face)) / kPhaseCount;
   double left = 0;
   for (const PhaseStep& step : steps_) {
-    const double width = widthOf(step) + extra;
+    const double width = widthOf(step, face) + extra;
+    painter.setFont(step.kind == StepKind::Present ? bold(face) : face);
     paintStep(painter, QRectF(left + 1, 1, width - 2, height() - 2), step);
     left += width + kGap;
   }
@@ -72,7 +87,6 @@ void PhaseStrip::paintStep(QPainter& painter, const QRectF& place, const PhaseSt
     painter.setPen(QPen(goodColour(palette()), 3));
     painter.drawLine(place.bottomLeft() + QPointF(kRound, -2), place.bottomRight() + QPointF(-kRound, -2));
   }
-  painter.setFont(present ? bold(font()) : font());
   painter.setPen(palette().color(present ? QPalette::HighlightedText : QPalette::WindowText));
   painter.drawText(place, Qt::AlignCenter, QString::fromStdString(step.name));
 }

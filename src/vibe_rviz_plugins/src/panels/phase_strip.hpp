@@ -13,7 +13,7 @@ class PhaseStrip : public QWidget {
 
   void display(const std::array<PhaseStep, kPhaseCount>& steps);
   QSize sizeHint() const override;
-  QSize minimumSizeHint() const override { return sizeHint(); }
+  QSize minimumSizeHint() const override;
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -21,8 +21,8 @@ class PhaseStrip : public QWidget {
  private:
   std::array<PhaseStep, kPhaseCount> steps_;
 
-  double widthOf(const PhaseStep& step) const;  // [px]
-  double leastWidth() const;                    // of all [px]
+  double leastWidth(const QFont& face) const;  // without clipping [px]
+  QFont fittingFont() const;                   // smaller where there is no room for the whole
   void paintStep(QPainter& painter, const QRectF& place, const PhaseStep& step) const;
 };
 

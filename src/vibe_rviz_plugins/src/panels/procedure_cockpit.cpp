@@ -19,10 +19,12 @@
 namespace vibe {
 namespace {
 
-constexpr int kPeriod = 100;  // of refresh() and of the buttons' messages [ms]
+constexpr int kLeastWidth = 260;  // nothing is clipped [px]
+constexpr int kPeriod = 100;      // of refresh() and of the buttons' messages [ms]
 
 void addPart(QVBoxLayout* column, const QString& title, QWidget* part) {
-  auto* label = new QLabel(title);
+  QLabel* label = wrappingLabel();
+  label->setText(title);
   QFont font = label->font();
   font.setBold(true);
   label->setFont(font);
@@ -64,6 +66,7 @@ ProcedureCockpit::ProcedureCockpit(QWidget* parent)
   column->addWidget(status_);
   column->addWidget(scroll);
   status_->hide();
+  setMinimumWidth(kLeastWidth);
 }
 
 ProcedureCockpit::~ProcedureCockpit() = default;
@@ -126,7 +129,7 @@ void ProcedureCockpit::start() {
   QObject::connect(timer, &QTimer::timeout, this, [this] {
     sender_.tick(moment());
     if (gives_up_) caller_.giveUp();
-    refresh();
+    if (isVisible()) refresh();
   });
   timer->start(kPeriod);
 }

@@ -14,7 +14,7 @@ class RangeBar : public QWidget {
 
   void display(const BarShape& shape, Rating rating);
   QSize sizeHint() const override { return {90, 16}; }
-  QSize minimumSizeHint() const override { return {50, 16}; }
+  QSize minimumSizeHint() const override { return {40, 16}; }
 
  protected:
   void paintEvent(QPaintEvent* event) override;

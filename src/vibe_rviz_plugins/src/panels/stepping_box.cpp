@@ -30,20 +30,19 @@ SteppingBox::SteppingBox(Actions actions, QWidget* parent)
       answer_(wrappingLabel()) {
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
-  int column = 0;
-  for (QWidget* widget : {static_cast<QWidget*>(pause_), static_cast<QWidget*>(step_), static_cast<QWidget*>(count_),
-                          static_cast<QWidget*>(reset_)}) {
-    widget->setMinimumWidth(1);
-    grid->addWidget(widget, 0, column++);
-  }
-  grid->addWidget(answer_, 1, 0, 1, column);
-  grid->addWidget(stop_waiting_, 2, 0, 1, column);
+  grid->addWidget(pause_, 0, 0);
+  grid->addWidget(reset_, 0, 1);
+  grid->addWidget(step_, 1, 0);
+  grid->addWidget(count_, 1, 1);
+  grid->addWidget(answer_, 2, 0, 1, 2);
+  grid->addWidget(stop_waiting_, 3, 0, 1, 2);
   pause_->setToolTip("Stops the simulation or lets it go on.");
   step_->setToolTip("Takes this many steps while the simulation is paused.");
   reset_->setToolTip("Back to the initial state with the scene's seed; press twice. Stamps go on.");
   stop_waiting_->setToolTip("Gives up the call; the simulator may still carry it out.");
   count_->setToolTip("Steps to take at once.");
   count_->setRange(1, kMostSteps);
+  count_->setPrefix("steps: ");
   answer_->setObjectName("answer");
   stop_waiting_->hide();
   connectAll();

@@ -11,18 +11,19 @@ namespace {
 
 constexpr int kMostShown = 8;  // rows without scrolling
 
+constexpr int kTechnique = 2;  // column
+
 struct Column {
   const char* title;
   const char* help;
 };
-constexpr std::array<Column, 6> kColumns = {{
-    {"Set", "Number of the set, in the order of the first bites."},
-    {"Bites", "Bites that hold."},
+constexpr std::array<Column, 5> kColumns = {{
+    {"#", "Number of the set, in the order of the first bites."},
+    {"Bites", "Bites that hold; in brackets those that tore out."},
     {"Technique", "What the set looks like, and how far that is from another technique; recognised at the T-tag."},
     {"Stage",
      "Open: takes bites. Tagged: the T-tag is dropped. Cinched: permanent. Loose: cinched with too little tension."},
     {"N", "Greatest tension of the thread now [N]."},
-    {"Torn", "Bites that tore out."},
 }};
 
 }  // namespace
@@ -33,6 +34,8 @@ SutureTable::SutureTable(QWidget* parent) : QTableWidget(0, static_cast<int>(kCo
     title->setToolTip(kColumns[column].help);
     setHorizontalHeaderItem(static_cast<int>(column), title);
   }
+  makeSmaller(*this);
+  horizontalHeader()->setFont(font());
   setSelectionMode(QAbstractItemView::NoSelection);
   setFocusPolicy(Qt::NoFocus);
   setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -44,7 +47,8 @@ SutureTable::SutureTable(QWidget* parent) : QTableWidget(0, static_cast<int>(kCo
   verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 6);
   horizontalHeader()->setMinimumSectionSize(1);
   horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-  horizontalHeader()->setStretchLastSection(true);
+  // the longest name of a technique may not fit; its tool tip has it
+  horizontalHeader()->setSectionResizeMode(kTechnique, QHeaderView::Stretch);
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
@@ -59,8 +63,8 @@ void SutureTable::display(const std::vector<SutureRow>& rows) {
 }
 
 void SutureTable::displayRow(int row, const SutureRow& content) {
-  const std::array<std::string, 6> texts = {content.set,   content.bites,   content.technique,
-                                            content.stage, content.tension, content.torn};
+  const std::array<std::string, 5> texts = {content.set, content.bites, content.technique, content.stage,
+                                            content.tension};
   for (int column = 0; column < columnCount(); ++column) {
     QTableWidgetItem* cell = item(row, column);
     if (!cell) {
@@ -81,8 +85,8 @@ void SutureTable::displayRow(int row, const SutureRow& content) {
 
 QSize SutureTable::sizeHint() const {
   const int shown = std::max(1, std::min(rowCount(), kMostShown));
-  return {200, horizontalHeader()->sizeHint().height() + shown * verticalHeader()->defaultSectionSize() +
-                   2 * frameWidth() + 2};
+  return {200,
+          horizontalHeader()->sizeHint().height() + shown * verticalHeader()->defaultSectionSize() + 2 * frameWidth()};
 }
 
 }  // namespace vibe

@@ -1,11 +1,17 @@
 #include "panels/text_rows.hpp"
 
+#include <QFontInfo>
 #include <QGridLayout>
 #include <QLabel>
 
 #include "panels/panel_colours.hpp"
 
 namespace vibe {
+namespace {
+
+constexpr double kSmaller = 0.9;
+
+}  // namespace
 
 QLabel* wrappingLabel(QWidget* parent) {
   auto* label = new QLabel(parent);
@@ -14,6 +20,12 @@ QLabel* wrappingLabel(QWidget* parent) {
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   label->setMinimumWidth(1);
   return label;
+}
+
+void makeSmaller(QWidget& widget) {
+  QFont font = widget.font();
+  font.setPointSizeF(kSmaller * QFontInfo(font).pointSizeF());
+  widget.setFont(font);
 }
 
 void TextRows::add(const QString& name, const QString& help) {

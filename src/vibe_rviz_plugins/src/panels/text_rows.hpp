@@ -29,6 +29,9 @@ class TextRows {
 /// A label that wraps, can be selected with the mouse and never asks for more width than it gets.
 QLabel* wrappingLabel(QWidget* parent = nullptr);
 
+/// A little smaller, for what is looked at more rarely and has to fit into a narrow dock. Before its children are made.
+void makeSmaller(QWidget& widget);
+
 /// The text of a message. Whatever it holds, it is shown as it is and not taken for HTML.
 inline QString toQt(const std::string& text) {
   return QString::fromStdString(text);

@@ -29,12 +29,14 @@ TEST(EventLines, severities) {
 
 TEST(EventLines, aKindFromTheFutureIsANote) {
   EXPECT_EQ(severityOf(200), Severity::Note);
-  EXPECT_EQ(eventText(makeEvent(200, "Something new.")), "Event. Something new.");
+  EXPECT_EQ(eventText(makeEvent(200, "Something new.")), "Something new.");
 }
 
 TEST(EventLines, textOrTitle) {
-  EXPECT_EQ(eventText(makeEvent(Event::REFUSED, "No needle.")), "Refused. No needle.");
+  EXPECT_EQ(eventText(makeEvent(Event::REFUSED, "No needle.")), "Refused: No needle.");
+  EXPECT_EQ(eventText(makeEvent(Event::TEAR_OUT, "Bite 2 tore out.")), "Bite 2 tore out.");
   EXPECT_EQ(eventText(makeEvent(Event::TEAR_OUT, "")), "Tear-out.");
+  EXPECT_EQ(eventText(makeEvent(200, "")), "Event.");
   EXPECT_EQ(eventText(makeEvent(Event::ARM_CLOSED, "")), "Arm closed.");
 }
 

@@ -26,7 +26,6 @@ TEST(SutureRows, anOpenSet) {
   EXPECT_EQ(rows[0].stage, "open");
   EXPECT_EQ(rows[0].technique, "\u2013");
   EXPECT_EQ(rows[0].tension, "2.5");
-  EXPECT_EQ(rows[0].torn, "0");
   EXPECT_FALSE(rows[0].warns);
 }
 
@@ -37,12 +36,12 @@ TEST(SutureRows, aCinchedSetHasATechnique) {
   sutures.sutures[0].end = 60;
   sutures.sutures[0].pulled = 0.12;
   auto rows = sutureRows(sutures);
-  EXPECT_EQ(rows[0].technique, "U 83 %");
+  EXPECT_EQ(rows[0].technique, "U 83%");
   EXPECT_EQ(rows[0].stage, "cinched");
   EXPECT_FALSE(rows[0].warns);
   EXPECT_NE(rows[0].help.find("120 mm"), std::string::npos);
   sutures.sutures[0].technique_name = "running";
-  EXPECT_EQ(sutureRows(sutures)[0].technique, "running 83 %");
+  EXPECT_EQ(sutureRows(sutures)[0].technique, "running 83%");
 }
 
 TEST(SutureRows, whatWentWrongWarns) {
@@ -54,7 +53,7 @@ TEST(SutureRows, whatWentWrongWarns) {
   auto torn = oneSet(vibe_msgs::Suture::OPEN);
   torn.sutures[0].tear_outs = 2;
   EXPECT_TRUE(sutureRows(torn)[0].warns);
-  EXPECT_EQ(sutureRows(torn)[0].torn, "2");
+  EXPECT_EQ(sutureRows(torn)[0].bites, "7 (-2)");
 }
 
 TEST(SutureRows, tensionThatIsNoNumberIsADash) {
