@@ -1,5 +1,6 @@
 // The whole panel with topics and services, without rviz and without a display.
 #include <gtest/gtest.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Joy.h>
 #include <std_srvs/SetBool.h>
