@@ -225,6 +225,8 @@ vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, st
   message.step = static_cast<std::uint64_t>(step);
   std::copy(input.joints.begin(), input.joints.end(), message.joints.begin());
   std::copy(input.buttons.begin(), input.buttons.end(), message.buttons.begin());
+  message.pull_particle = input.pull_particle;
+  message.pull_target = toMessage<geometry_msgs::Point>(input.pull_target);
   return message;
 }
 
@@ -232,6 +234,8 @@ StepInput readStepInput(const vibe_msgs::StepInput& message) {
   StepInput input;
   std::copy(message.joints.begin(), message.joints.end(), input.joints.begin());
   std::copy(message.buttons.begin(), message.buttons.end(), input.buttons.begin());
+  input.pull_particle = message.pull_particle;
+  input.pull_target = {message.pull_target.x, message.pull_target.y, message.pull_target.z};
   return input;
 }
 

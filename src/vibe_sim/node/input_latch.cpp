@@ -2,18 +2,32 @@
 
 #include <algorithm>
 
+#include "vibe_sim/tissue_hand.hpp"
+
 namespace vibe {
 namespace {
 
-bool reachTip(const InputSample& sample, const Model& model, StepInput& input) {
-  if (!model.tool) return false;
+std::string reachTip(const InputSample& sample, const Model& model, StepInput& input) {
+  if (!model.tool)
+    return "scope/servo_cp has no effect because the scene '" + model.scene.name +
+           "' has no scope; load a scene with one.";
   const bool in_world = sample.target == ScopeTarget::TipInWorld;
   const Eigen::Isometry3d pose = in_world ? model.tool_base.inverse() * sample.tip_pose : sample.tip_pose;
   input.joints = model.tool->inverseKinematics(pose, input.joints);
-  return true;
+  return "";
 }
 
-bool applySample(const InputSample& sample, const Model& model, StepInput& input) {
+// A pull that the model cannot follow lets go: what was held before is not what is wanted now.
+std::string applyPull(const InputSample& sample, const Model& model, StepInput& input) {
+  const bool asks = sample.pull_particle >= 0 && sample.pull_particle != input.pull_particle;
+  const std::string reason = asks ? whyNotPulled(model, sample.pull_particle) : "";
+  input.pull_particle = reason.empty() ? sample.pull_particle : -1;
+  input.pull_target = input.pull_particle < 0 ? Eigen::Vector3d::Zero() : sample.pull_target;
+  return reason.empty() ? "" : "tissue/pull has no effect because " + reason;
+}
+
+/// @return one sentence if the model cannot use the sample, otherwise empty
+std::string applySample(const InputSample& sample, const Model& model, StepInput& input) {
   if (sample.target != ScopeTarget::Joints) return reachTip(sample, model, input);
   switch (sample.channel) {
     case InputChannel::Scope:
@@ -25,8 +39,10 @@ bool applySample(const InputSample& sample, const Model& model, StepInput& input
     case InputChannel::Buttons:
       input.buttons = sample.buttons;
       break;
+    case InputChannel::Pull:
+      return applyPull(sample, model, input);
   }
-  return true;
+  return "";
 }
 
 }  // namespace
@@ -51,13 +67,14 @@ bool InputLatch::push(const InputSample& sample) {
 
 bool InputLatch::knownUntil(std::int64_t stamp) const {
   std::lock_guard<std::mutex> lock(mutex_);
-  return std::all_of(queues_.begin(), queues_.end(), [stamp](const Queue& queue) { return queue.newest >= stamp; });
+  return std::all_of(queues_.begin(), queues_.begin() + kLockstepChannelCount,
+                     [stamp](const Queue& queue) { return queue.newest >= stamp; });
 }
 
 std::string InputLatch::missingAt(std::int64_t stamp) const {
   std::lock_guard<std::mutex> lock(mutex_);
   std::string names;
-  for (int channel = 0; channel < kInputChannelCount; ++channel) {
+  for (int channel = 0; channel < kLockstepChannelCount; ++channel) {
     if (queues_[channel].newest >= stamp) continue;
     names += (names.empty() ? "" : ", ") + std::string(toString(static_cast<InputChannel>(channel)));
   }
@@ -69,12 +86,19 @@ std::vector<std::string> InputLatch::apply(std::int64_t stamp, const Model& mode
   std::vector<std::string> unusable;
   for (Queue& queue : queues_) {
     while (!queue.waiting.empty() && queue.waiting.front().stamp <= stamp) {
-      if (!applySample(queue.waiting.front(), model, input)) {
-        unusable.push_back("scope/servo_cp has no effect because the scene '" + model.scene.name +
-                           "' has no scope; load a scene with one.");
-      }
+      const InputSample& sample = queue.waiting.front();
+      std::string sentence = applySample(sample, model, input);
+      if (!sentence.empty()) unusable.push_back(std::move(sentence));
+      if (sample.channel == InputChannel::Pull) last_pull_ = sample.stamp;
       queue.waiting.pop_front();
     }
+  }
+  if (input.pull_particle >= 0 && stamp - last_pull_ > kHandPatience) {
+    input.pull_particle = -1;
+    input.pull_target.setZero();
+    unusable.push_back(
+        "The hand on tissue/pull has been silent for 0.5 s and lets go; send its target again while it "
+        "holds.");
   }
   applied_until_ = std::max(applied_until_, stamp);
   return unusable;
@@ -83,7 +107,7 @@ std::vector<std::string> InputLatch::apply(std::int64_t stamp, const Model& mode
 void InputLatch::clear() {
   std::lock_guard<std::mutex> lock(mutex_);
   queues_ = {};
-  applied_until_ = 0;
+  applied_until_ = last_pull_ = 0;
 }
 
 const char* toString(InputChannel channel) {
@@ -94,6 +118,8 @@ const char* toString(InputChannel channel) {
       return "overstitch/measured_js";
     case InputChannel::Buttons:
       return "scope/buttons";
+    case InputChannel::Pull:
+      return "tissue/pull";
   }
   return "";
 }

@@ -13,8 +13,12 @@
 namespace vibe {
 
 /// Where an input comes from. Each has its own queue, because each has its own rate.
-enum class InputChannel { Scope, Overstitch, Buttons };
-constexpr int kInputChannelCount = 3;
+enum class InputChannel { Scope, Overstitch, Buttons, Pull };
+constexpr int kInputChannelCount = 4;
+constexpr int kLockstepChannelCount = 3;  ///< the first ones; nobody has to pull the tissue
+
+/// A hand of which nothing is heard for longer lets go: its program may be gone [ns of simulated time].
+constexpr std::int64_t kHandPatience = 500'000'000;
 
 /// What a sample of the channel Scope says: joint positions, or the pose that scope_tip is to reach.
 enum class ScopeTarget { Joints, TipInWorld, TipInBase };
@@ -27,6 +31,8 @@ struct InputSample {
   std::array<std::uint8_t, kButtonCount> buttons{};
   ScopeTarget target = ScopeTarget::Joints;
   Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();  ///< in world or in the tool's root link
+  int pull_particle = -1;
+  Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< in world [m]
 };
 
 /// Holds what has arrived until the step for which it is due, and the last valid values after that. All functions may
@@ -40,13 +46,15 @@ class InputLatch {
   /// @return false if the channel is full and the sample was not taken
   bool push(const InputSample& sample);
 
-  /// Whether every channel has delivered a sample stamped `stamp` or later: all that matters at that time is known.
+  /// Whether every channel of lock-step has delivered a sample stamped `stamp` or later: all that matters at that time
+  /// is known.
   bool knownUntil(std::int64_t stamp) const;
   /// Channels for which that is not so, for people.
   std::string missingAt(std::int64_t stamp) const;
 
   /// Applies to `input` everything that is due at `stamp`, in the order of stamps; samples from the past count as of
-  /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics.
+  /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics; a hand that has
+  /// been silent for kHandPatience lets go.
   /// @return one sentence per sample that the model cannot use
   std::vector<std::string> apply(std::int64_t stamp, const Model& model, StepInput& input);
 
@@ -61,6 +69,7 @@ class InputLatch {
   mutable std::mutex mutex_;
   std::array<Queue, kInputChannelCount> queues_;
   std::int64_t applied_until_ = 0;
+  std::int64_t last_pull_ = 0;  // stamp of the sample of Pull that was applied last
 };
 
 const char* toString(InputChannel channel);

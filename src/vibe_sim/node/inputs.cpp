@@ -1,6 +1,7 @@
 #include "inputs.hpp"
 
 #include "conversions.hpp"
+#include "pull_message.hpp"
 #include "vibe_sim/error.hpp"
 #include "vibe_sim/step_timer.hpp"
 
@@ -28,6 +29,7 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputLatch& latch, Publishers& pub
     return readJoints(message, InputChannel::Overstitch, JointSource::Measured);
   });
   listen<sensor_msgs::Joy>("scope/buttons", readButtons);
+  listen<vibe_msgs::TissuePull>("tissue/pull", readPull);
   spinner_ = std::make_unique<ros::AsyncSpinner>(1, &queue_);
   spinner_->start();
 }

@@ -10,6 +10,7 @@
 
 #include "conversions.hpp"
 #include "procedure_message.hpp"
+#include "pull_message.hpp"
 #include "suture_message.hpp"
 #include "vibe_sim/contact/helix_grip.hpp"
 
@@ -48,7 +49,8 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       applied_input_(handle.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue)),
       performance_(handle.advertise<vibe_msgs::SolverStatistics>("performance", kSmallQueue)),
       scene_(handle.advertise<std_msgs::String>("scene", 1, true)),
-      haptic_(handle.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)) {
+      haptic_(handle.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
+      pull_(handle.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)) {
   if (with_clock) clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
 }
 
@@ -72,6 +74,7 @@ void Publishers::stepResult(const Session& session, const RunStatus& status) {
   now_ = stamp;
   tool(session, stamp);
   haptic(session, stamp);
+  pull(session, stamp);
   if (session.state.step % particleInterval(session.time.period()) == 0) particles(session, stamp);
   if (suturesAreDue(session)) sutures(session);
   for (const Event& event : session.events) events_.publish(makeEvent(event, stamp));
@@ -89,6 +92,7 @@ void Publishers::wholeState(const Session& session, const RunStatus& status) {
   procedureState(session, status);
   if (stamp == last_tool_) return;
   if (haptic_touching_) hapticRelease(stamp);
+  pull(session, stamp);
   tool(session, stamp);
   clock(stamp);
 }
@@ -125,8 +129,9 @@ void Publishers::warn(const std::string& text) {
 }
 
 bool Publishers::hasListener() const {
-  const auto all = {&scope_pose_, &helix_pose_, &wrench_,        &joint_states_, &topology_, &particles_, &procedure_,
-                    &events_,     &sutures_,    &applied_input_, &performance_,  &scene_,    &haptic_,    &clock_};
+  const auto all = {&scope_pose_,  &helix_pose_, &wrench_, &joint_states_, &topology_,
+                    &particles_,   &procedure_,  &events_, &sutures_,      &applied_input_,
+                    &performance_, &scene_,      &haptic_, &pull_,         &clock_};
   return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 
@@ -158,6 +163,14 @@ void Publishers::haptic(const Session& session, std::int64_t stamp) {
 void Publishers::hapticRelease(std::int64_t stamp) {
   haptic_touching_ = false;
   haptic_.publish(makeHapticRelease(stamp));
+}
+
+// The state after a reset or load has its own hand, and a listener must not go on drawing the former one.
+void Publishers::pull(const Session& session, std::int64_t stamp) {
+  const bool holds = session.state.hand.holds();
+  if (!holds && !pull_held_) return;
+  pull_held_ = holds;
+  pull_.publish(makePullState(session.state, stamp));
 }
 
 void Publishers::particles(const Session& session, std::int64_t stamp) {

@@ -51,7 +51,7 @@ class Publishers {
 
  private:
   ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, topology_, particles_, procedure_, events_, sutures_,
-      applied_input_, performance_, scene_, haptic_, clock_;
+      applied_input_, performance_, scene_, haptic_, pull_, clock_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;
@@ -62,6 +62,7 @@ class Publishers {
   std::int64_t last_tool_ = -1;
   std::int64_t last_particles_ = -1;
   bool haptic_touching_ = false;      // as last sent
+  bool pull_held_ = false;            // as last sent
   std::atomic<std::int64_t> now_{0};  // of the last state
 
   void tool(const Session& session, std::int64_t stamp);
@@ -70,6 +71,7 @@ class Publishers {
   void sutures(const Session& session);
   void haptic(const Session& session, std::int64_t stamp);
   void hapticRelease(std::int64_t stamp);
+  void pull(const Session& session, std::int64_t stamp);
   void clock(std::int64_t stamp);
 };
 

@@ -40,8 +40,31 @@ bool endsWith(const std::string& topic, const std::string& name) {
                            topic.compare(topic.size() - name.size() - 1, std::string::npos, "/" + name) == 0);
 }
 
+// Recordings from before there was a hand that pulls lack the two last fields; the others are where they were.
+constexpr const char* kInputWithoutPull = "1f585b34d516cf0e67cc5d0690fb16bb";
+
+boost::shared_ptr<vibe_msgs::StepInput> readInput(const rosbag::MessageInstance& message, const std::string& file) {
+  if (message.getDataType() != ros::message_traits::datatype<vibe_msgs::StepInput>()) return nullptr;
+  if (auto input = message.instantiate<vibe_msgs::StepInput>()) return input;
+  if (message.getMD5Sum() != kInputWithoutPull)
+    throw Error("Recording '" + file + "' has another kind of vibe_msgs/StepInput (md5 sum " + message.getMD5Sum() +
+                "); repeat it with the version that recorded it.");
+  auto input = boost::make_shared<vibe_msgs::StepInput>();
+  input->pull_particle = -1;
+  const std::uint32_t lacking = ros::serialization::serializationLength(input->pull_particle) +
+                                ros::serialization::serializationLength(input->pull_target);
+  std::vector<std::uint8_t> bytes(message.size() + lacking, 0);
+  ros::serialization::OStream out(bytes.data(), message.size());
+  message.write(out);
+  ros::serialization::OStream end(bytes.data() + message.size(), lacking);
+  ros::serialization::serialize(end, input->pull_particle);
+  ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::deserialize(in, *input);
+  return input;
+}
+
 void readMessage(const rosbag::MessageInstance& message, const std::string& file, Recording& recording) {
-  if (const auto input = message.instantiate<vibe_msgs::StepInput>()) {
+  if (const auto input = readInput(message, file)) {
     if (input->step != recording.inputs.size())
       throw Error(
           "Recording '" + file + "' has step " + std::to_string(input->step) + " where step " +

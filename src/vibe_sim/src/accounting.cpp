@@ -28,8 +28,8 @@ Energies energies(const Model& model, const State& state) {
 }
 
 double energyBalance(const Model& model, const State& state) {
-  return energies(model, state).total() - state.energy.tool_work - state.energy.gas_work - state.energy.thread_work +
-         state.energy.damping_loss;
+  return energies(model, state).total() - state.energy.tool_work - state.energy.gas_work - state.energy.thread_work -
+         state.energy.hand_work + state.energy.damping_loss;
 }
 
 Eigen::Vector3d linearMomentum(const Model& model, const State& state) {

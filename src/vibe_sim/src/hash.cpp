@@ -66,6 +66,7 @@ std::uint64_t hash(const State& state) {
   h.addValue(state.untouched_time);
   h.addValue(state.grip_force);
   visitProcedure(h, state.procedure);
+  if (state.hand.holds()) visitHand(h, state.hand);  // without a hand the hash is what it was before there were hands
   h.add(state.solver.about.data(), state.solver.about.size() * sizeof(float));
   h.add(state.solver.next.data(), state.solver.next.size() * sizeof(float));
   h.addValue(state.solver.steps);

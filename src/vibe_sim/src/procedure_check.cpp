@@ -82,4 +82,15 @@ std::string findDamage(const ProcedureState& procedure, int particle_count) {
   return damage;
 }
 
+std::string findDamage(const TissueHand& hand, int particle_count) {
+  if (hand.weight.size() != hand.node.size()) return "the hand that pulls has not one weight per particle";
+  if (hand.particle < -1 || hand.particle >= particle_count || hand.holds() != (hand.particle >= 0))
+    return "the hand pulls at a particle that does not exist";
+  for (int node : hand.node)
+    if (node < 0 || node >= particle_count) return "the hand holds a particle that does not exist";
+  if (!allFinite(hand.weight) || !hand.target.allFinite() || !hand.force.allFinite())
+    return "the hand's pull is not a number";
+  return "";
+}
+
 }  // namespace vibe

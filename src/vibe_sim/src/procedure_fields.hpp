@@ -1,9 +1,10 @@
 #pragma once
 #include "vibe_sim/procedure/procedure_state.hpp"
+#include "vibe_sim/tissue_hand.hpp"
 
 namespace vibe {
 
-// One list of the members of ProcedureState for all that store or hash it. The members are taken apart by name, so that
+// One list of the members of ProcedureState and TissueHand for all that store or hash it. The members are taken apart by name, so that
 // one that is added to a struct and not to its list here does not compile. An archive has value() for a plain value,
 // vector() for an Eigen::Vector3d, numbers() for a std::vector of plain values and list() for a std::vector of
 // anything, with a function for its items.
@@ -62,6 +63,16 @@ void visitBleeding(Archive& archive, B& bleeding) {
   archive.value(rate);
   archive.value(amount);
   archive.value(overdue);
+}
+
+template <class Archive, class H>
+void visitHand(Archive& archive, H& hand) {
+  auto& [particle, node, weight, target, force] = hand;
+  archive.value(particle);
+  archive.numbers(node);
+  archive.numbers(weight);
+  archive.vector(target);
+  archive.vector(force);
 }
 
 template <class Archive, class P>

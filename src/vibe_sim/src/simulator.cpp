@@ -76,6 +76,7 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
   state.volume = fresh.volume;
   state.energy = fresh.energy;
   state.grip.clear();
+  state.hand = TissueHand();
   slackenThreads(state);
   coolDown(state);
   state.tool_force.setZero();
@@ -116,6 +117,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   } else {
     commandProcedure(model, {}, input, state, events);  // says which part of the scene is missing
   }
+  moveHand(model, input, state);
   StepReport report;
   moveTissue(model, motion ? &*motion : nullptr, pedal, insufflator_on, state, workspace, report);
   beam.insufflation = std::max(0.0, (state.gas_amount - gas_before) / (kAmbientPressure * dt));

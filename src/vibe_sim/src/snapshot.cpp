@@ -16,7 +16,7 @@ namespace vibe {
 namespace {
 
 constexpr std::uint64_t kReadAtOnce = 1 << 16;  // numbers
-constexpr char kMagic[8] = {'v', 'i', 'b', 'e', 's', 'n', 'p', '3'};
+constexpr char kMagic[8] = {'v', 'i', 'b', 'e', 's', 'n', 'p', '4'};
 
 // One list of the members for both directions, so that they cannot differ.
 template <class Archive, class S>
@@ -42,6 +42,7 @@ void transfer(Archive& archive, S& s) {
   archive.value(s.grip_force);
   archive.value(s.contact_count);
   visitProcedure(archive, s.procedure);
+  visitHand(archive, s.hand);
   archive.value(s.energy);
   archive.optionalArray(s.solver.about);
   archive.optionalArray(s.solver.next);
@@ -213,7 +214,8 @@ State loadSnapshot(const Model& model, const std::string& file) {
     throw Error("Snapshot '" + file + "' belongs to another scene; load the scene it was saved with first.");
   State state;
   transfer(reader, state);
-  const std::string damage = findDamage(state.procedure, model.particle_count);
+  std::string damage = findDamage(state.procedure, model.particle_count);
+  if (damage.empty()) damage = findDamage(state.hand, model.particle_count);
   if (!damage.empty()) throw Error("Snapshot '" + file + "' is damaged: " + damage + "; save it again.");
   if (model.scene.marking && state.procedure.dose.empty())
     throw Error("Snapshot '" + file + "' is damaged: its marks are missing; save it again.");

@@ -17,7 +17,7 @@ struct Energies {
 };
 Energies energies(const Model& model, const State& state);
 
-/// Kinetic energy and potentials minus what tool and gas have put in, plus what damping_rate has taken out: constant
+/// Kinetic energy and potentials minus what tool, gas, threads and hand have put in, plus what damping_rate has taken out: constant
 /// but for the error of the time stepping, falling by what the wall's own viscosity (damping_time) takes out [J].
 double energyBalance(const Model& model, const State& state);
 

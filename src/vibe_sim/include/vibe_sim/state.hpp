@@ -7,6 +7,7 @@
 #include "vibe_sim/procedure/procedure_state.hpp"
 #include "vibe_sim/solver/stepper_memory.hpp"
 #include "vibe_sim/step_input.hpp"
+#include "vibe_sim/tissue_hand.hpp"
 
 namespace vibe {
 
@@ -21,6 +22,7 @@ struct EnergyAccount {
   double tool_work = 0;     ///< done by the tool on the tissue (contact and grip)
   double gas_work = 0;      ///< done by the gas on the wall
   double thread_work = 0;   ///< done by threads on the tissue
+  double hand_work = 0;     ///< done by the hand that pulls the tissue
   double damping_loss = 0;  ///< taken out by viscous damping
 };
 
@@ -56,6 +58,8 @@ struct State {
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about the origin of scope_tip, in scope_tip [N m]
   double grip_force = 0;                                  ///< magnitude of the force on the grip [N]
   int contact_count = 0;                                  ///< particles touched in the last sub-step
+
+  TissueHand hand;  ///< that pulls the tissue from outside
 
   ProcedureState procedure;
 

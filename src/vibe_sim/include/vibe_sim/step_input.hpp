@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 
@@ -17,8 +18,10 @@ extern const std::array<const char*, kButtonCount> kButtonNames;  ///< "apc_peda
 
 /// Everything from outside that one step uses. What is recorded is exactly this, so a replay has the same bits.
 struct StepInput {
-  std::array<double, kJointCount> joints{};          ///< commanded joint positions [m], [rad]
-  std::array<std::uint8_t, kButtonCount> buttons{};  ///< 1 while pressed
+  std::array<double, kJointCount> joints{};               ///< commanded joint positions [m], [rad]
+  std::array<std::uint8_t, kButtonCount> buttons{};       ///< 1 while pressed
+  int pull_particle = -1;                                 ///< at which a hand pulls the tissue; -1: none
+  Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< where that hand wants the tissue to be, world [m]
 };
 
 }  // namespace vibe

@@ -18,7 +18,7 @@ MarkingTouch::MarkingTouch(const Model& model) : model_(model), collision_(*mode
 bool MarkingTouch::mayReplaceSolver(const State& state) {
   const std::vector<Suture>& sutures = state.procedure.sutures;
   const bool draws = !sutures.empty() && sutures.back().stage == Suture::Stage::Cinching;
-  return !draws && state.solver.homing == 0;
+  return !draws && !state.hand.holds() && state.solver.homing == 0;
 }
 
 void MarkingTouch::follow(const ToolMotion& motion, State& state, StepReport& report) {

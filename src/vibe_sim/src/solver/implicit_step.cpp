@@ -45,7 +45,8 @@ ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, d
       h_(model.scene.step_period) {}
 
 void ImplicitStep::run() {
-  scratch_.loads.conditions.resize(motion_ != nullptr ? 3 * state_.grip.size() : 0);
+  const std::size_t grips = motion_ != nullptr ? state_.grip.size() : 0;
+  scratch_.loads.conditions.resize(3 * (grips + (state_.hand.holds() ? 1 : 0)));
   scratch_.loads.contacts.clear();
   scratch_.contact_motion.clear();
   scratch_.contact_link.clear();
@@ -54,10 +55,12 @@ void ImplicitStep::run() {
     holdGrip();
     findContacts();
   }
+  if (state_.hand.holds()) holdPatch();
   fillThreads(model_, state_, scratch_.loads);
   if (atRest()) return;
   fillGas();
   const double old_volume = state_.volume, old_pressure = state_.pressure;
+  const Eigen::Vector3d old_place = heldPlace(state_);
   segmentLengths(scratch_.loads, state_, scratch_.old_segments);
   MotionView view{{state_.x.data(), state_.y.data(), state_.z.data()},
                   {state_.vx.data(), state_.vy.data(), state_.vz.data()},
@@ -82,6 +85,7 @@ void ImplicitStep::run() {
   }
   stopWalls();
   reportForces();
+  if (state_.hand.holds()) reportHand(old_place);
   reportThreads();
   reportResponse();
   account(old_volume, old_pressure);
@@ -112,6 +116,8 @@ void ImplicitStep::goHome() {
   for (auto* v : {&state_.vx, &state_.vy, &state_.vz, &state_.ax, &state_.ay, &state_.az})
     std::fill(v->begin(), v->end(), 0.0);
   for (Suture& suture : state_.procedure.sutures) slackenGroup(state_, suture.group);
+  state_.hand.target = heldPlace(state_);
+  state_.hand.force.setZero();
 }
 
 // The whole organ has come to rest and nothing acts on it that did not before. Now and then it looks whether that still
@@ -154,7 +160,22 @@ void ImplicitStep::holdGrip() {
       condition.node.assign(1, point.particle);
       condition.coefficient.assign(1, Eigen::Vector3d::Unit(k));
       condition.target = target[k];
+      condition.compliance = 0;
     }
+  }
+}
+
+// The last three conditions: a spring from the mean of the patch to the hand.
+void ImplicitStep::holdPatch() {
+  const TissueHand& hand = state_.hand;
+  const std::size_t first = scratch_.loads.conditions.size() - 3;
+  for (int k = 0; k < 3; ++k) {
+    Condition& condition = scratch_.loads.conditions[first + static_cast<std::size_t>(k)];
+    condition.node = hand.node;
+    condition.coefficient.clear();
+    for (double weight : hand.weight) condition.coefficient.emplace_back(weight * Eigen::Vector3d::Unit(k));
+    condition.target = hand.target[k];
+    condition.compliance = 1 / kPullStiffness;
   }
 }
 
@@ -246,6 +267,13 @@ void ImplicitStep::reportForces() {
   }
 }
 
+void ImplicitStep::reportHand(const Eigen::Vector3d& old_place) {
+  const std::size_t first = scratch_.loads.conditions.size() - 3;
+  for (int k = 0; k < 3; ++k)
+    state_.hand.force[k] = scratch_.loads.conditions[first + static_cast<std::size_t>(k)].force;
+  state_.energy.hand_work += state_.hand.force.dot(heldPlace(state_) - old_place);
+}
+
 void ImplicitStep::reportThreads() {
   segmentLengths(scratch_.loads, state_, scratch_.segments);
   state_.energy.thread_work += threadWork(scratch_.loads, state_, scratch_.old_segments, scratch_.segments);
@@ -255,7 +283,7 @@ void ImplicitStep::reportThreads() {
 
 // Begins before anything is touched: what the response needs takes a while to make.
 void ImplicitStep::reportResponse() {
-  if (scratch_.loads.conditions.empty() && scratch_.loads.contacts.empty()) return;
+  if (motion_ == nullptr || (state_.grip.empty() && scratch_.loads.contacts.empty())) return;
   findToolTouch(model_, *motion_, stepper_, report_, state_, scratch_);
   const StepperScratch& stepper = *scratch_.stepper;
   const double gas_stiffness = model_.scene.gas ? state_.gas_amount / (stepper.volume * stepper.volume) : 0;

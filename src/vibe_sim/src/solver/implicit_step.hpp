@@ -44,6 +44,7 @@ class ImplicitStep {
  private:
   void placeTool();
   void holdGrip();
+  void holdPatch();
   void reportThreads();
   void findContacts();
   void findWalls();
@@ -56,6 +57,7 @@ class ImplicitStep {
   void fillGas();
   void account(double old_volume, double old_pressure);
   void reportForces();
+  void reportHand(const Eigen::Vector3d& old_place);
   void reportResponse();
   void pushTool(const Eigen::Vector3d& force, const Eigen::Vector3d& at, const Eigen::Vector3d& tool_step);
   Eigen::Vector3d position(int i) const { return {state_.x[i], state_.y[i], state_.z[i]}; }

@@ -53,6 +53,8 @@ double mobility(const Model& model, const Suture& suture, const XpbdThread& thre
 
 void XpbdPull::prepare(const Model& model, State& state) {
   thread_count_ = 0;
+  hand_last_ = heldPlace(state);
+  hand_sum_.setZero();
   groups_.prepare(model, state);
   if (!model.scene.suture || model.scene.suture->pulling != "thread") return;
   const std::vector<Suture>& sutures = state.procedure.sutures;
@@ -70,6 +72,22 @@ void XpbdPull::prepare(const Model& model, State& state) {
 void XpbdPull::apply(const Model& model, double substep, State& state) {
   for (int g = 0; g < groups_.count(); ++g) applyGroup(model, g, substep, state);
   for (std::size_t t = 0; t < thread_count_; ++t) applyThread(model, threads_[t], substep, state);
+  if (state.hand.holds()) applyHand(model, substep, state);
+}
+
+void XpbdPull::applyHand(const Model& model, double substep, State& state) {
+  const TissueHand& hand = state.hand;
+  const double h2 = substep * substep;
+  double mobility = 0;
+  for (std::size_t k = 0; k < hand.node.size(); ++k)
+    mobility += h2 * hand.weight[k] * hand.weight[k] * model.inverse_mass[hand.node[k]];
+  const Eigen::Vector3d force = kPullStiffness / (1 + kPullStiffness * mobility) * (hand.target - heldPlace(state));
+  for (std::size_t k = 0; k < hand.node.size(); ++k)
+    shift(hand.node[k], h2 * hand.weight[k] * model.inverse_mass[hand.node[k]] * force, substep, state);
+  const Eigen::Vector3d place = heldPlace(state);
+  state.energy.hand_work += force.dot(place - hand_last_);
+  hand_sum_ += force;
+  hand_last_ = place;
 }
 
 // All springs of a group and the way that their reaction moves its middle at once: one after the other they would push
@@ -125,6 +143,7 @@ void XpbdPull::applyThread(const Model& model, XpbdThread& thread, double subste
 
 void XpbdPull::report(int count, State& state) const {
   groups_.report(state);
+  if (state.hand.holds()) state.hand.force = hand_sum_ / count;
   for (std::size_t t = 0; t < thread_count_; ++t) {
     const XpbdThread& thread = threads_[t];
     Suture& suture = state.procedure.sutures[static_cast<std::size_t>(thread.suture)];

@@ -17,23 +17,26 @@ struct XpbdThread {
   std::vector<Eigen::Vector3d> direction;  ///< in which each bite lengthens the way, sum of unit vectors
 };
 
-/// What sutures do to the particles of XpbdSolver, by either way of pulling. Positions move as by XPBD constraints
-/// whose compliance is that of the springs (Macklin, Mueller, Chentanez 2016): at rest the force is exactly that of the
-/// spring, whatever the sub-step, and no spring is too stiff for a sub-step.
+/// What sutures and the hand do to the particles of XpbdSolver, by either way of pulling. Positions move as by XPBD
+/// constraints whose compliance is that of the springs (Macklin, Mueller, Chentanez 2016): at rest the force is exactly
+/// that of the spring, whatever the sub-step, and no spring is too stiff for a sub-step.
 class XpbdPull {
  public:
   void prepare(const Model& model, State& state);
   void apply(const Model& model, double substep, State& state);
-  /// Tensions and lengths to the sutures. @param count  of sub-steps since prepare()
+  /// Tensions and lengths to the sutures, the force to the hand. @param count  of sub-steps since prepare()
   void report(int count, State& state) const;
 
  private:
   void applyGroup(const Model& model, int number, double substep, State& state);
   void applyThread(const Model& model, XpbdThread& thread, double substep, State& state);
+  void applyHand(const Model& model, double substep, State& state);
 
   GroupPull groups_;
   std::vector<XpbdThread> threads_;  // the first thread_count_ of them, so that their memory stays
   std::size_t thread_count_ = 0;
+  Eigen::Vector3d hand_last_ = Eigen::Vector3d::Zero();  // place of the held patch, a sub-step ago [m]
+  Eigen::Vector3d hand_sum_ = Eigen::Vector3d::Zero();   // of the hand's force over the sub-steps [N]
 };
 
 }  // namespace vibe

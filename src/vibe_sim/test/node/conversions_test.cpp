@@ -53,6 +53,8 @@ TEST(Conversions, stepInputSurvivesTheRoundTripBitForBit) {
   StepInput input;
   input.joints = {0.1 / 3, -0.0, 1e-310, 3, 4, 5, 6};
   input.buttons = {1, 0, 1, 0, 0, 1};
+  input.pull_particle = 4711;
+  input.pull_target = {1e-310, -0.0, 0.1 / 3};
   const vibe_msgs::StepInput message = makeStepInput(input, 77, 1'016'666'667);
   EXPECT_EQ(message.step, 77u);
   EXPECT_EQ(message.header.stamp.toNSec(), 1'016'666'667u);
@@ -60,6 +62,9 @@ TEST(Conversions, stepInputSurvivesTheRoundTripBitForBit) {
   EXPECT_EQ(read.joints, input.joints);
   EXPECT_TRUE(std::signbit(read.joints[1]));
   EXPECT_EQ(read.buttons, input.buttons);
+  EXPECT_EQ(read.pull_particle, 4711);
+  EXPECT_EQ(read.pull_target, input.pull_target);
+  EXPECT_TRUE(std::signbit(read.pull_target.y()));
 }
 
 TEST(Conversions, jointsAreFoundByNameInAnyOrder) {

@@ -30,6 +30,15 @@ InputSample overstitchAt(double advance, std::int64_t stamp) {
   return sample;
 }
 
+InputSample pullAt(int particle, double x, std::int64_t stamp) {
+  InputSample sample;
+  sample.channel = InputChannel::Pull;
+  sample.stamp = stamp;
+  sample.pull_particle = particle;
+  sample.pull_target.x() = x;
+  return sample;
+}
+
 class InputLatchTest : public testing::Test {
  protected:
   InputLatch latch;
@@ -114,6 +123,66 @@ TEST_F(InputLatchTest, lockstepKnowsATimeWhenEveryChannelHasReachedIt) {
   EXPECT_TRUE(latch.knownUntil(100));
   latch.clear();
   EXPECT_FALSE(latch.knownUntil(100));
+}
+
+class PullLatchTest : public testing::Test {
+ protected:
+  test::World world{test::bareScene(), test::plainOrgan(test::icosphere(0.05, 2), 2e-3)};
+  InputLatch latch;
+  StepInput input;
+  std::vector<std::string> apply(std::int64_t stamp) { return latch.apply(stamp, *world.model, input); }
+};
+
+TEST_F(PullLatchTest, aPullIsLatchedLikeEveryInput) {
+  latch.push(pullAt(3, 0.01, 100));
+  latch.push(pullAt(3, 0.02, 200));
+  latch.push(pullAt(-1, 0.03, 300));
+  EXPECT_TRUE(apply(99).empty());
+  EXPECT_EQ(input.pull_particle, -1);
+  apply(150);
+  EXPECT_EQ(input.pull_particle, 3);
+  EXPECT_EQ(input.pull_target.x(), 0.01);
+  apply(299);
+  EXPECT_EQ(input.pull_target.x(), 0.02);
+  apply(300);
+  EXPECT_EQ(input.pull_particle, -1);
+  EXPECT_TRUE(input.pull_target.isZero());
+}
+
+TEST_F(PullLatchTest, aSilentHandLetsGoAndSaysSoOnce) {
+  latch.push(pullAt(3, 0.01, 1000));
+  apply(1000);
+  EXPECT_TRUE(apply(1000 + kHandPatience).empty());
+  EXPECT_EQ(input.pull_particle, 3);
+  const std::vector<std::string> sentences = apply(1001 + kHandPatience);
+  ASSERT_EQ(sentences.size(), 1u);
+  EXPECT_NE(sentences[0].find("tissue/pull"), std::string::npos);
+  EXPECT_EQ(input.pull_particle, -1);
+  EXPECT_TRUE(apply(2000 + kHandPatience).empty());
+  latch.push(pullAt(3, 0.01, 0));  // without a stamp it counts from when it came
+  apply(3000 + kHandPatience);
+  EXPECT_EQ(input.pull_particle, 3);
+  EXPECT_TRUE(apply(2000 + 2 * kHandPatience).empty());
+  EXPECT_EQ(input.pull_particle, 3);
+}
+
+TEST_F(PullLatchTest, aParticleThatDoesNotExistIsASentenceAndLetsGo) {
+  latch.push(pullAt(3, 0.01, 1));
+  apply(1);
+  latch.push(pullAt(world.model->particle_count, 0.01, 2));
+  const std::vector<std::string> sentences = apply(2);
+  ASSERT_EQ(sentences.size(), 1u);
+  EXPECT_NE(sentences[0].find(std::to_string(world.model->particle_count)), std::string::npos);
+  EXPECT_EQ(input.pull_particle, -1);
+}
+
+TEST_F(PullLatchTest, lockstepDoesNotWaitForAHand) {
+  latch.push(scopeAt(0, 100));
+  latch.push(overstitchAt(0, 100));
+  EXPECT_FALSE(latch.knownUntil(100));
+  latch.push(buttonsAt(0, 100));
+  EXPECT_TRUE(latch.knownUntil(100));
+  EXPECT_EQ(latch.missingAt(101).find("tissue/pull"), std::string::npos);
 }
 
 TEST_F(InputLatchTest, aTipTargetWithoutAScopeIsReportedAndChangesNothing) {

@@ -10,7 +10,7 @@ import rostest
 from geometry_msgs.msg import PoseStamped
 from node_test_support import EPOCH, OVERSTITCH_JOINTS, SCOPE_JOINTS, Program, Recorder, joints, scene, wait_until
 from sensor_msgs.msg import JointState, Joy
-from vibe_msgs.msg import ProcedureEvent, SolverStatistics, StepInput
+from vibe_msgs.msg import ProcedureEvent, SolverStatistics, StepInput, TissuePull
 from vibe_msgs.srv import Reset, Step
 
 NAN = float("nan")
@@ -21,6 +21,13 @@ def pose(frame="world", x=-0.07, w=1.0):
     message.header.frame_id = frame
     message.pose.position.x = x
     message.pose.orientation.w = w
+    return message
+
+
+def pull(particle=3, frame="world", x=0.0):
+    message = TissuePull(particle=particle)
+    message.header.frame_id = frame
+    message.target.x = x
     return message
 
 
@@ -37,6 +44,7 @@ class InputsTest(unittest.TestCase):
             "scope/servo_cp": PoseStamped,
             "overstitch/measured_js": JointState,
             "scope/buttons": Joy,
+            "tissue/pull": TissuePull,
         }
         cls.publishers = {topic: rospy.Publisher(topic, kind, queue_size=100) for topic, kind in topics.items()}
         rospy.wait_for_service("step", 20)
@@ -78,6 +86,7 @@ class InputsTest(unittest.TestCase):
             self.assertIn(word, warning.text)
         after = self.last_input_after(5)
         self.assertEqual((after.joints, after.buttons), (before.joints, before.buttons))
+        self.assertEqual((after.pull_particle, after.pull_target), (before.pull_particle, before.pull_target))
 
     def test_bad_messages_are_refused_with_a_reason(self):
         now = rospy.Time(nsecs=EPOCH)
@@ -95,10 +104,23 @@ class InputsTest(unittest.TestCase):
             ("scope/measured_js", joints(OVERSTITCH_JOINTS + ["x"], good, now), ("helix_advance",)),
             ("scope/servo_cp", pose(w=0.0), ("quaternion",)),
             ("scope/measured_js", joints(SCOPE_JOINTS, good, rospy.Time(0)), ("stamp is 0",)),
+            ("tissue/pull", pull(frame="scope_tip"), ("'scope_tip'", "world")),
+            ("tissue/pull", pull(x=NAN), ("finite",)),
+            ("tissue/pull", pull(particle=-5), ("-5",)),
         )
         for topic, message, words in cases:
             with self.subTest(topic=topic, words=words):
                 self.assert_refused(topic, message, words)
+
+    def test_a_pull_at_no_particle_is_refused_when_its_step_begins(self):
+        self.events.clear()
+        self.publishers["tissue/pull"].publish(pull(particle=1000000))
+        rospy.rostime.wallsleep(0.3)
+        self.assertEqual(self.last_input_after(1).pull_particle, -1)
+        warning = self.events.find(lambda m: m.kind == ProcedureEvent.WARNING, 5)
+        self.assertIsNotNone(warning)
+        self.assertIn("tissue/pull", warning.text)
+        self.assertIn("1000000", warning.text)
 
     def test_a_flood_of_bad_messages_gives_one_warning_a_second(self):
         self.wait_for_silence("scope/measured_js")

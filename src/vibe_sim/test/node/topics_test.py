@@ -11,12 +11,13 @@ import rospy
 import rostest
 import sensor_msgs.point_cloud2
 import tf2_ros
-from geometry_msgs.msg import PoseStamped, WrenchStamped
+from geometry_msgs.msg import Point, PoseStamped, WrenchStamped
 from node_test_support import EPOCH, OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS
 from node_test_support import Recorder, buttons, joints, stamp_of, wait_until
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Joy, PointCloud2
-from vibe_msgs.msg import ProcedureEvent, ProcedureState, SolverStatistics, StepInput, SutureArray, TissueTopology
+from vibe_msgs.msg import ProcedureEvent, ProcedureState, SolverStatistics, StepInput, SutureArray
+from vibe_msgs.msg import TissuePull, TissuePullState, TissueTopology
 from vibe_msgs.srv import Reset, Step
 
 STREAMS = {
@@ -42,14 +43,16 @@ class TopicsTest(unittest.TestCase):
         cls.scope = rospy.Publisher("scope/measured_js", JointState, queue_size=100)
         cls.overstitch = rospy.Publisher("overstitch/measured_js", JointState, queue_size=100)
         cls.buttons = rospy.Publisher("scope/buttons", Joy, queue_size=100)
+        cls.pull = rospy.Publisher("tissue/pull", TissuePull, queue_size=100)
+        cls.pull_state = Recorder("tissue/pull_state", TissuePullState)
         cls.tf = tf2_ros.Buffer()
         cls.tf_listener = tf2_ros.TransformListener(cls.tf)
         rospy.wait_for_service("step", 20)
         cls.step_service = rospy.ServiceProxy("step", Step)
         cls.reset_service = rospy.ServiceProxy("reset", Reset)
-        everything = list(cls.recorders.values()) + [cls.clock, cls.events, cls.procedure, cls.performance]
+        everything = list(cls.recorders.values()) + [cls.clock, cls.events, cls.procedure, cls.performance, cls.pull_state]
         assert wait_until(lambda: all(r.is_connected() for r in everything), 20)
-        publishers = (cls.scope, cls.overstitch, cls.buttons)
+        publishers = (cls.scope, cls.overstitch, cls.buttons, cls.pull)
         assert wait_until(lambda: all(p.get_num_connections() > 0 for p in publishers), 20)
 
     def setUp(self):
@@ -271,6 +274,38 @@ class TopicsTest(unittest.TestCase):
         self.step(120)  # nothing to tell, nothing sent
         self.assertEqual(len(late.messages), 1)
         late.subscriber.unregister()
+
+    def test_a_hand_pulls_the_tissue_feels_it_and_lets_go_when_it_falls_silent(self):
+        topology = self.topology.find(lambda m: True)
+        places = numpy.reshape(topology.rest_positions, (-1, 3))
+        message = TissuePull(particle=int(numpy.argmax(places[:, 0])))  # far from where the scope enters
+        place = Point(*places[message.particle])
+        message.header.frame_id = "stomach"
+        message.target = Point(place.x + 0.01, place.y, place.z)
+        self.pull_state.clear()
+        self.pull.publish(message)
+        rospy.rostime.wallsleep(0.3)
+        self.step(29)
+        first = self.recorders["applied_input"].messages[-29].step
+        wait_until(lambda: len(self.pull_state.messages) == 29)
+        self.assertEqual(self.pull_state.stamps(), [stamp_of(first + 1 + k) for k in range(29)])
+        used = self.recorders["applied_input"].messages[-1]
+        self.assertEqual((used.pull_particle, used.pull_target), (message.particle, message.target))
+        held = self.pull_state.messages[-1]
+        self.assertEqual((held.header.frame_id, held.particle), ("world", message.particle))
+        self.assertGreater(held.force.x, 0.1)
+        self.assertGreater(held.position.x, place.x)
+        for axis in "xyz":
+            self.assertAlmostEqual(getattr(held.target, axis), getattr(message.target, axis), delta=1e-9)
+            stretch = getattr(held.target, axis) - getattr(held.position, axis)
+            self.assertAlmostEqual(getattr(held.force, axis), 300 * stretch, delta=1e-6)
+        self.events.clear()
+        self.step(30)
+        self.assertIsNotNone(self.events.find(lambda m: "tissue/pull has been silent" in m.text))
+        self.assertEqual(self.recorders["applied_input"].messages[-1].pull_particle, -1)
+        wait_until(lambda: self.pull_state.messages[-1].particle == -1)
+        self.assertEqual([m.particle for m in self.pull_state.messages].count(-1), 1)
+        self.assertEqual(self.pull_state.messages[-1].force.x, 0)
 
     def test_a_cinch_without_a_thread_is_refused_with_a_reason(self):
         self.command((0, 0, 0, 0), pressed=())

@@ -76,6 +76,24 @@ TEST(Haptic, NothingTouchedIsNothingSaid) {
   EXPECT_FALSE(world.workspace->toolResponse());
 }
 
+// A hand pulls at what the helix holds: all of it goes into the tool, and the tool still answers.
+TEST(Haptic, AHandPullsAtTheToolThroughTheTissue) {
+  World world = ballWorld(kFrame);
+  takeHold(world);
+  world.run(1, at(0.1, 0.028, true));
+  const Eigen::Vector3d alone = forceOn(world);
+  StepInput input = at(0.1, 0.028, true);
+  input.pull_particle = world.state.grip.front().particle;
+  input.pull_target = world.position(input.pull_particle) + Eigen::Vector3d(5e-3, 0, 0);
+  world.run(1, input);
+  const Eigen::Vector3d hand = world.state.hand.force;
+  EXPECT_GT(hand.x(), 0.5);
+  EXPECT_LT((forceOn(world) - alone - hand).norm(), 0.1 * hand.norm());
+  EXPECT_TRUE(world.workspace->toolResponse());
+  world.run(1, at(0.1, 0.028, true));
+  EXPECT_LT((forceOn(world) - alone).norm(), 0.02 * hand.norm());
+}
+
 TEST(Haptic, ShapeMatchingCannotTell) {
   World world = ballWorld(kFrame, "shape_matching");
   world.run(2, at(0.13));

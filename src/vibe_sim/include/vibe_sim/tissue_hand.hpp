@@ -1,0 +1,39 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace vibe {
+
+struct Model;
+struct State;
+struct StepInput;
+
+constexpr double kPullStiffness = 300;  ///< of the spring between patch and target [N/m]
+constexpr double kPullForce = 5;        ///< the target stays so near that the spring pulls no harder [N]
+constexpr double kPullSpeed = 0.25;     ///< of the target at most, so that a jump of the mouse tears nothing [m/s]
+constexpr double kPullRadius = 6e-3;    ///< of the patch around the particle, at rest [m]
+
+/// A hand that pulls the tissue at one place: a spring from the weighted mean of a patch of the wall to a target that
+/// follows StepInput::pull_target.
+struct TissueHand {
+  int particle = -1;                                 ///< about which the patch lies; -1: nothing is held
+  std::vector<int> node;                             ///< particles of the patch, ascending; none that never moves
+  std::vector<double> weight;                        ///< of each in the place of the patch, sum 1
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< where the spring ends, world [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< hand on tissue in the last step, world [N]
+
+  bool holds() const { return !node.empty(); }
+};
+
+/// Why the tissue cannot be pulled at this particle, as the end of a sentence; empty if it can.
+std::string whyNotPulled(const Model& model, int particle);
+
+/// Takes hold, lets go, or moves the target by a step of model.scene.step_period, as the input says. A new hold begins
+/// without force. A particle that cannot be pulled, or a target that is not finite, lets go.
+void moveHand(const Model& model, const StepInput& input, State& state);
+
+/// Place of the held patch in world [m]; zero where nothing is held.
+Eigen::Vector3d heldPlace(const State& state);
+
+}  // namespace vibe
