@@ -89,7 +89,7 @@ std::vector<std::string> InputLatch::apply(std::int64_t stamp, const Model& mode
       const InputSample& sample = queue.waiting.front();
       std::string sentence = applySample(sample, model, input);
       if (!sentence.empty()) unusable.push_back(std::move(sentence));
-      if (sample.channel == InputChannel::Pull) last_pull_ = sample.stamp;
+      if (sample.channel == InputChannel::Pull) last_pull_ = stamp;
       queue.waiting.pop_front();
     }
   }

@@ -69,7 +69,7 @@ class InputLatch {
   mutable std::mutex mutex_;
   std::array<Queue, kInputChannelCount> queues_;
   std::int64_t applied_until_ = 0;
-  std::int64_t last_pull_ = 0;  // stamp of the sample of Pull that was applied last
+  std::int64_t last_pull_ = 0;  // time at which a sample of Pull was applied last
 };
 
 const char* toString(InputChannel channel);

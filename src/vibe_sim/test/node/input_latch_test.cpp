@@ -166,6 +166,12 @@ TEST_F(PullLatchTest, aSilentHandLetsGoAndSaysSoOnce) {
   EXPECT_EQ(input.pull_particle, 3);
 }
 
+TEST_F(PullLatchTest, aPullFromBeforeTheFirstStepCountsAsOfThatStep) {
+  latch.push(pullAt(3, 0.01, 0));
+  EXPECT_TRUE(apply(3 * kHandPatience).empty());
+  EXPECT_EQ(input.pull_particle, 3);
+}
+
 TEST_F(PullLatchTest, aParticleThatDoesNotExistIsASentenceAndLetsGo) {
   latch.push(pullAt(3, 0.01, 1));
   apply(1);

@@ -298,7 +298,7 @@ class TopicsTest(unittest.TestCase):
         for axis in "xyz":
             self.assertAlmostEqual(getattr(held.target, axis), getattr(message.target, axis), delta=1e-9)
             stretch = getattr(held.target, axis) - getattr(held.position, axis)
-            self.assertAlmostEqual(getattr(held.force, axis), 300 * stretch, delta=1e-6)
+            self.assertAlmostEqual(getattr(held.force, axis), 300 * stretch, delta=2e-3)  # the mean over a step
         self.events.clear()
         self.step(30)
         self.assertIsNotNone(self.events.find(lambda m: "tissue/pull has been silent" in m.text))
