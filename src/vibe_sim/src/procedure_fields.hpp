@@ -4,10 +4,10 @@
 
 namespace vibe {
 
-// One list of the members of ProcedureState and TissueHand for all that store or hash it. The members are taken apart by name, so that
-// one that is added to a struct and not to its list here does not compile. An archive has value() for a plain value,
-// vector() for an Eigen::Vector3d, numbers() for a std::vector of plain values and list() for a std::vector of
-// anything, with a function for its items.
+// One list of the members of ProcedureState and TissueHand for all that store or hash it. The members are taken apart
+// by name, so that one that is added to a struct and not to its list here does not compile. An archive has value() for
+// a plain value, vector() for an Eigen::Vector3d, numbers() for a std::vector of plain values and list() for a
+// std::vector of anything, with a function for its items.
 
 template <class Archive, class B>
 void visitBite(Archive& archive, B& bite) {

@@ -17,8 +17,9 @@ struct Energies {
 };
 Energies energies(const Model& model, const State& state);
 
-/// Kinetic energy and potentials minus what tool, gas, threads and hand have put in, plus what damping_rate has taken out: constant
-/// but for the error of the time stepping, falling by what the wall's own viscosity (damping_time) takes out [J].
+/// Kinetic energy and potentials minus what tool, gas, threads and hand have put in, plus what damping_rate has taken
+/// out: constant but for the error of the time stepping, falling by what the wall's own viscosity (damping_time) takes
+/// out [J].
 double energyBalance(const Model& model, const State& state);
 
 /// Sum of mass times velocity over the free particles [kg m/s].
