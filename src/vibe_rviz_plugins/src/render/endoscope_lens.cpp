@@ -101,6 +101,7 @@ void EndoscopeLens::make(const SquareSource& source) {
   auto& texture = *technique.createTextureDefinition(kSource);
   texture.width = texture.height = static_cast<std::uint32_t>(source.size);
   texture.formatList.push_back(Ogre::PF_BYTE_RGBA);
+  texture.fsaa = false;  // bending the picture blends neighbours anyway
   drawScene(technique, viewport_.getVisibilityMask());
   drawBent(technique, material_);
   if (manager.addCompositor(&viewport_, name_) == nullptr) {

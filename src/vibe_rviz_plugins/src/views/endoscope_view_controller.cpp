@@ -16,17 +16,14 @@
 #include <QCursor>
 #include <cmath>
 
+#include "render/optical_frame.hpp"
+
 namespace vibe {
 namespace {
 
 const char* const kFrame = "scope_camera_optical";
-constexpr float kFieldOfView = 140;   // of gastroscopes [degrees]
-constexpr float kNearClip = 0.0006f;  // the lens' own glass is 0.4 mm thick [m]
-constexpr float kFarClip = 2;         // nothing is farther in a body [m]
+constexpr float kFieldOfView = 140;  // of gastroscopes [degrees]
 constexpr double kDegree = 3.14159265358979323846 / 180;
-
-// from the optical frame (z forward, x right, y down) to that of a camera in Ogre (z backward, x right, y up)
-const Ogre::Quaternion kOpticalToOgre(0, 1, 0, 0);
 
 }  // namespace
 
@@ -58,9 +55,9 @@ EndoscopeViewController::~EndoscopeViewController() = default;
 
 void EndoscopeViewController::onInitialize() {
   frame_->setFrameManager(context_->getFrameManager());
-  near_clip_property_->setMin(kNearClip);
-  near_clip_property_->setFloat(kNearClip);
-  camera_->setFarClipDistance(kFarClip);
+  near_clip_property_->setMin(kScopeNearClip);
+  near_clip_property_->setFloat(kScopeNearClip);
+  camera_->setFarClipDistance(kScopeFarClip);
   camera_->setProjectionType(Ogre::PT_PERSPECTIVE);
 }
 
@@ -87,7 +84,7 @@ void EndoscopeViewController::followScope() {
     return;
   }
   camera_->setPosition(place);
-  camera_->setOrientation(turn * kOpticalToOgre);
+  camera_->setOrientation(turn * opticalToOgre());
   if (!broken_) tell("");
 }
 

@@ -1,0 +1,93 @@
+#include "camera_options.hpp"
+
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+namespace vibe {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+/// Reads parameters and remembers which there are, so that any other is an error.
+class Reader {
+ public:
+  explicit Reader(const ros::NodeHandle& node) : node_(node) {}
+
+  void number(const std::string& name, double least, double most, double& value) {
+    if (!has(name)) return;
+    // a whole number is a number too; a text or a list is none
+    if (!node_.getParam(name, value) || !(value >= least && value <= most)) {
+      std::ostringstream range;
+      range << "a number from " << least << " to " << most;
+      refuse(name, range.str());
+    }
+  }
+  void whole(const std::string& name, int least, int most, int& value) {
+    if (has(name) && (!node_.getParam(name, value) || value < least || value > most))
+      refuse(name, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+  }
+  void yesOrNo(const std::string& name, bool& value) {
+    if (has(name) && !node_.getParam(name, value)) refuse(name, "true or false");
+  }
+  void text(const std::string& name, std::string& value) {
+    if (has(name) && (!node_.getParam(name, value) || value.empty())) refuse(name, "the name of a frame");
+  }
+  void lens(const std::string& name, LensKind& value) {
+    if (!has(name)) return;
+    std::string word;
+    node_.getParam(name, word);
+    if (word != "equidistant" && word != "rectilinear") refuse(name, "equidistant or rectilinear");
+    value = word == "equidistant" ? LensKind::Equidistant : LensKind::Rectilinear;
+  }
+
+  void refuseOthers() const {
+    XmlRpc::XmlRpcValue all;
+    if (!node_.getParam(node_.getNamespace(), all) || all.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
+    std::string list;
+    for (const std::string& name : known_) list += (list.empty() ? "" : ", ") + name;
+    for (const auto& entry : all)
+      if (known_.count(entry.first) == 0)
+        throw std::runtime_error("There is no parameter '" + node_.resolveName(entry.first) + "'; known are " + list +
+                                 ".");
+  }
+
+ private:
+  bool has(const std::string& name) {
+    known_.insert(name);
+    return node_.hasParam(name);
+  }
+  [[noreturn]] void refuse(const std::string& name, const std::string& what) const {
+    throw std::runtime_error("The parameter '" + node_.resolveName(name) + "' must be " + what + ".");
+  }
+
+  const ros::NodeHandle& node_;
+  std::set<std::string> known_;
+};
+
+}  // namespace
+
+CameraOptions readCameraOptions(const ros::NodeHandle& node) {
+  CameraOptions options;
+  Reader read(node);
+  double degrees = 140;
+  read.whole("width", 16, 4096, options.round.width);
+  read.whole("height", 16, 4096, options.round.height);
+  read.lens("lens", options.round.lens);
+  read.number("field_of_view", 10, 170, degrees);
+  read.number("sharpness", 0.2, 2, options.sharpness);
+  read.number("rate", 0, 1000, options.rate);
+  read.yesOrNo("stereo", options.stereo);
+  read.number("baseline", 0.0001, 0.1, options.baseline);
+  read.text("camera_frame", options.camera_frame);
+  options.frame_id = options.camera_frame;
+  read.text("frame_id", options.frame_id);
+  options.right_frame_id = options.frame_id;
+  read.text("right_frame_id", options.right_frame_id);
+  read.refuseOthers();
+  options.round.field_of_view = degrees * kDegree;
+  return options;
+}
+
+}  // namespace vibe

@@ -1,0 +1,71 @@
+#pragma once
+#include <message_filters/subscriber.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/message_filter.h>
+#include <tf2_ros/transform_listener.h>
+#include <vibe_msgs/SutureArray.h>
+#include <vibe_msgs/TissueTopology.h>
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "camera_options.hpp"
+#include "endoscope_scene.hpp"
+#include "messages/image_due.hpp"
+#include "render/offscreen_camera.hpp"
+
+namespace vibe {
+
+/// Publishes what the endoscope sees as images, one or two of each state of the tissue. An image bears the stamp of the
+/// tissue it shows, with everything else as it was at that time. While nobody listens to the images it listens to
+/// nothing. One thread: that which calls ros::spin().
+class EndoscopeCamera {
+ public:
+  /// @throws std::runtime_error  the graphics system cannot do it
+  EndoscopeCamera(ros::NodeHandle node, const CameraOptions& options, Ogre::SceneManager& scene,
+                  const std::string& description);
+
+ private:
+  /// One of the lenses: a single one, or left and right.
+  struct Eye {
+    double aside;  ///< to the right of the camera's frame [m]
+    sensor_msgs::CameraInfo numbers;
+    ros::Publisher image, info;
+    std::size_t listeners() const { return image.getNumSubscribers() + info.getNumSubscribers(); }
+  };
+  void addEye(const std::string& name, double aside, const std::string& frame);
+  bool isWatched() const;
+  void listenAsNeeded();
+  void listen();
+  void stopListening();
+
+  void receiveTopology(const vibe_msgs::TissueTopology::ConstPtr& message);
+  void receiveSutures(const vibe_msgs::SutureArray::ConstPtr& message);
+  void receiveParticles(const sensor_msgs::PointCloud2::ConstPtr& message);
+  void drawSutures(const ros::Time& stamp, const EndoscopeScene::PoseOf& poseOf);
+  void publish(Eye& eye, const Eigen::Isometry3d& camera, const ros::Time& stamp);
+  std::optional<Eigen::Isometry3d> find(const std::string& frame, const std::string& target, const ros::Time& stamp);
+
+  ros::NodeHandle node_;
+  CameraOptions options_;
+  EndoscopeScene scene_;
+  OffscreenCamera camera_;
+  std::vector<Eye> eyes_;
+  ImageDue due_;
+
+  // while somebody listens
+  tf2_ros::Buffer transforms_;
+  std::unique_ptr<tf2_ros::TransformListener> transform_listener_;
+  ros::Subscriber topology_, sutures_;
+  message_filters::Subscriber<sensor_msgs::PointCloud2> particles_;
+  std::unique_ptr<tf2_ros::MessageFilter<sensor_msgs::PointCloud2>> filter_;
+  std::deque<vibe_msgs::SutureArray::ConstPtr> recent_sutures_;
+  vibe_msgs::SutureArray::ConstPtr drawn_sutures_;
+};
+
+}  // namespace vibe

@@ -1,0 +1,74 @@
+#include "endoscope_scene.hpp"
+
+#include <OgreSceneManager.h>
+#include <OgreSceneNode.h>
+
+#include "geometry/blood_shapes.hpp"
+#include "geometry/suture_shapes.hpp"
+#include "messages/suture_messages.hpp"
+#include "messages/tissue_messages.hpp"
+
+namespace vibe {
+namespace {
+
+/// As it looks: no colour that means something, nothing that is not there.
+SutureStyle realStyle() {
+  SutureStyle style;
+  style.colouring = ThreadColour::One;
+  style.bites = style.corners = style.links = false;
+  return style;
+}
+
+void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
+  const Eigen::Vector3f place = pose.translation().cast<float>();
+  const Eigen::Quaternionf turn(pose.linear().cast<float>());
+  node.setPosition(place.x(), place.y(), place.z());
+  node.setOrientation(turn.w(), turn.x(), turn.y(), turn.z());
+}
+
+}  // namespace
+
+EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description)
+    : suture_node_(*scene.getRootSceneNode()->createChildSceneNode()),
+      tissue_(scene, *scene.getRootSceneNode()),
+      sutures_(suture_node_),
+      instrument_(scene, description) {}
+
+EndoscopeScene::~EndoscopeScene() = default;
+
+std::string EndoscopeScene::setTopology(const vibe_msgs::TissueTopology& message) {
+  const std::string problem = readTopology(message, mesh_);
+  has_mesh_ = problem.empty();
+  if (has_mesh_)
+    tissue_.setMesh(mesh_);
+  else
+    tissue_.clear();
+  return problem;
+}
+
+std::string EndoscopeScene::setParticles(const sensor_msgs::PointCloud2& message) {
+  if (!has_mesh_) return "There is no usable tissue/topology yet, so tissue/particles cannot be drawn.";
+  const std::string problem = readParticles(message, mesh_, frame_);
+  if (problem.empty()) tissue_.setFrame(frame_);
+  return problem;
+}
+
+std::string EndoscopeScene::setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf) {
+  SutureScene seen;
+  const std::string problem = readSutures(message, seen);
+  if (!problem.empty()) return problem;
+  const std::optional<Eigen::Isometry3d> pose = poseOf(message.header.frame_id);
+  if (!pose) return "There is no transform to the frame '" + message.header.frame_id + "' of the sutures.";
+  setPose(*pose, suture_node_);
+  shape_.clear();
+  appendSutures(seen, realStyle(), shape_);
+  sutures_.showSolids(shape_);
+  shape_.clear();
+  BloodStyle style;
+  style.time = message.header.stamp.toSec();
+  appendBlood(seen, style, shape_);
+  sutures_.showBlood(shape_);
+  return "";
+}
+
+}  // namespace vibe

@@ -1,0 +1,47 @@
+#pragma once
+#include <sensor_msgs/PointCloud2.h>
+#include <vibe_msgs/SutureArray.h>
+#include <vibe_msgs/TissueTopology.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "geometry/tissue_mesh.hpp"
+#include "instrument.hpp"
+#include "render/suture_visual.hpp"
+#include "render/tissue_visual.hpp"
+
+namespace vibe {
+
+/// All that an endoscope sees, in a scene of Ogre: tissue, sutures, blood, instrument. Its frame is that of the
+/// particles. What is wrong with a message is answered in a sentence, and the scene stays as it is; an empty answer:
+/// nothing.
+class EndoscopeScene {
+ public:
+  /// Where a frame is in that of the scene at the moment that is drawn.
+  using PoseOf = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame)>;
+
+  /// @param description  URDF of the instrument
+  /// @throws std::runtime_error  the package's media folder cannot be found
+  EndoscopeScene(Ogre::SceneManager& scene, const std::string& description);
+  ~EndoscopeScene();
+
+  std::string setTopology(const vibe_msgs::TissueTopology& message);
+  std::string setParticles(const sensor_msgs::PointCloud2& message);
+  std::string setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf);
+  void placeInstrument(const PoseOf& poseOf) { instrument_.place(poseOf); }
+
+ private:
+  Ogre::SceneNode& suture_node_;
+  TissueVisual tissue_;
+  SutureVisual sutures_;
+  Instrument instrument_;
+  TissueMesh mesh_;
+  TissueFrame frame_;
+  bool has_mesh_ = false;
+  ColouredShape shape_;  ///< kept, so that a frame allocates little
+};
+
+}  // namespace vibe

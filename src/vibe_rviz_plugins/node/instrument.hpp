@@ -1,0 +1,49 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/shape_view.hpp"
+
+namespace Ogre {
+class Entity;
+class SceneManager;
+class SceneNode;
+}  // namespace Ogre
+namespace urdf {
+class Link;
+class Visual;
+}  // namespace urdf
+
+namespace vibe {
+
+/// The visible parts of a robot description: the endoscope with its suturing device.
+class Instrument {
+ public:
+  /// @param description  URDF; with none, or one that cannot be read, nothing is drawn and a warning says so
+  Instrument(Ogre::SceneManager& scene, const std::string& description);
+  ~Instrument();
+  Instrument(const Instrument&) = delete;
+  Instrument& operator=(const Instrument&) = delete;
+
+  /// Puts every link where `poseOf(frame)` says it is in the scene; links of which it knows nothing are not drawn.
+  void place(const std::function<std::optional<Eigen::Isometry3d>(const std::string&)>& poseOf);
+
+ private:
+  struct Part {
+    std::string frame;
+    Ogre::SceneNode* node;
+    std::unique_ptr<ShapeView> shape;
+  };
+  void addLink(const urdf::Link& link);
+  void addMesh(const urdf::Visual& visual, Ogre::SceneNode& node);
+
+  Ogre::SceneManager& scene_;
+  Ogre::MaterialPtr material_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace vibe

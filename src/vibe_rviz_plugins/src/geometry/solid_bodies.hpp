@@ -1,0 +1,17 @@
+#pragma once
+#include <Eigen/Geometry>
+
+#include "geometry/coloured_shape.hpp"
+
+namespace vibe {
+
+// Bodies as robot descriptions have them, appended to a shape: in the middle of the pose, a cylinder along its z. All
+// lengths in metres, above 0.
+
+void appendSphere(const Eigen::Isometry3d& pose, double radius, PackedColour colour, ColouredShape& shape);
+void appendCylinder(const Eigen::Isometry3d& pose, double radius, double length, PackedColour colour,
+                    ColouredShape& shape);
+/// @param size  of the edges along x, y and z
+void appendBox(const Eigen::Isometry3d& pose, const Eigen::Vector3d& size, PackedColour colour, ColouredShape& shape);
+
+}  // namespace vibe

@@ -1,0 +1,56 @@
+#include "render/offscreen_camera.hpp"
+
+#include <OgreCamera.h>
+#include <OgreHardwarePixelBuffer.h>
+#include <OgreRenderTexture.h>
+#include <OgreSceneManager.h>
+#include <OgreSceneNode.h>
+#include <OgreTextureManager.h>
+#include <OgreViewport.h>
+
+#include "render/endoscope_lens.hpp"
+#include "render/optical_frame.hpp"
+#include "render/resources.hpp"
+
+namespace vibe {
+
+OffscreenCamera::OffscreenCamera(Ogre::SceneManager& scene, const RoundCamera& round, double sharpness)
+    : scene_(scene), round_(round), sharpness_(sharpness), camera_(scene.createCamera(uniqueName("Camera"))) {
+  camera_->setNearClipDistance(kScopeNearClip);
+  camera_->setFarClipDistance(kScopeFarClip);
+  scene_.getRootSceneNode()->createChildSceneNode()->attachObject(camera_);
+  picture_ = Ogre::TextureManager::getSingleton().createManual(
+      uniqueName("Picture"), kResourceGroup, Ogre::TEX_TYPE_2D, static_cast<Ogre::uint>(round.width),
+      static_cast<Ogre::uint>(round.height), 0, Ogre::PF_BYTE_RGBA, Ogre::TU_RENDERTARGET);
+  Ogre::RenderTarget& target = *picture_->getBuffer()->getRenderTarget();
+  target.setAutoUpdated(false);
+  Ogre::Viewport& viewport = *target.addViewport(camera_);
+  viewport.setBackgroundColour(Ogre::ColourValue::Black);
+  viewport.setOverlaysEnabled(false);
+  lens_ = std::make_unique<EndoscopeLens>(viewport);
+  lens_->set(round_.lens, round_.field_of_view, sharpness_);
+}
+
+OffscreenCamera::~OffscreenCamera() {
+  lens_.reset();
+  Ogre::TextureManager::getSingleton().remove(picture_);
+  Ogre::SceneNode* node = camera_->getParentSceneNode();
+  scene_.destroyCamera(camera_);
+  scene_.destroySceneNode(node);
+}
+
+void OffscreenCamera::take(const Eigen::Isometry3d& pose, std::vector<std::uint8_t>& pixels) {
+  auto real = [](double value) { return static_cast<Ogre::Real>(value); };
+  const Eigen::Vector3d& place = pose.translation();
+  const Eigen::Quaterniond turn(pose.linear());
+  camera_->getParentSceneNode()->setPosition(real(place.x()), real(place.y()), real(place.z()));
+  camera_->getParentSceneNode()->setOrientation(
+      Ogre::Quaternion(real(turn.w()), real(turn.x()), real(turn.y()), real(turn.z())) * opticalToOgre());
+  lens_->set(round_.lens, round_.field_of_view, sharpness_);
+  picture_->getBuffer()->getRenderTarget()->update();
+  const auto width = static_cast<Ogre::uint32>(round_.width), height = static_cast<Ogre::uint32>(round_.height);
+  pixels.resize(std::size_t{3} * width * height);
+  picture_->getBuffer()->blitToMemory(Ogre::PixelBox(width, height, 1, Ogre::PF_BYTE_RGB, pixels.data()));
+}
+
+}  // namespace vibe
