@@ -51,10 +51,10 @@ class Ball:
         self.grade = numpy.zeros(len(self.points), int)
 
     def burn(self, direction):
-        """Burns a round spot about the particle nearest to the direction and tells where that is."""
-        place = self.points[numpy.argmax(self.points @ numpy.asarray(direction, float))]
-        self.grade[numpy.linalg.norm(self.points - place, axis=1) < SPOT] = 3
-        return place
+        """Burns a round spot in a direction and tells where its middle is."""
+        burnt = numpy.linalg.norm(self.points - RADIUS * unit(direction), axis=1) < SPOT
+        self.grade[burnt] = 3
+        return self.points[burnt].mean(axis=0)
 
     def topology(self, stamp):
         count = len(self.points)

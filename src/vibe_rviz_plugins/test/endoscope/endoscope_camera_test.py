@@ -22,7 +22,7 @@ from vibe_msgs.msg import TissueTopology
 
 CAMERA = "scope_camera_optical"
 PATIENCE = 40.0  # software rendering on a busy machine [s]
-NEAR = 2.0  # error allowed where the spot is [px]
+NEAR = 1.0  # error allowed where the spot is [px]
 
 # a camera off the middle that looks along x of the ball: z forward, x right, y down
 TURN = numpy.column_stack([(0, -1, 0), (0, 0, -1), (1, 0, 0)])
@@ -205,7 +205,7 @@ class EndoscopeCameraTest(unittest.TestCase):
             # control: the other lens would show it elsewhere
             wrong = CameraInfo(distortion_model="equidistant", D=[0] * 4, K=info.K)
             found = dark_spot(image)[0]
-            self.assertGreater(numpy.linalg.norm(found - project(wrong, in_camera(self.spot, PLACE))), 2 * NEAR)
+            self.assertGreater(numpy.linalg.norm(found - project(wrong, in_camera(self.spot, PLACE))), 4 * NEAR)
 
     def test_pair_sees_the_spot_displaced_by_focal_length_times_baseline_over_depth(self):
         with Program(("left", "right"), rate=0, stereo=True, baseline=0.005, lens="rectilinear",
@@ -242,13 +242,15 @@ class EndoscopeCameraTest(unittest.TestCase):
         for size in (1, 2):
             with Program(rate=0, width=320 * size, height=240 * size) as camera:
                 shots.append(camera.last(self.show())[0])
+        spots = [dark_spot(shot)[0] + 0.5 for shot in shots]  # from the corner
+        self.assertLess(numpy.linalg.norm(spots[1] / 2 - spots[0]), 0.5)
         small, large = pixels_of(shots[0]), pixels_of(shots[1])
         halved = large.reshape(240, 2, 320, 2, 3).mean(axis=(1, 3))
         inside = distance_from_middle(shots[0]) < 117
         difference = numpy.abs(halved - small)[inside].mean()
         control = numpy.abs(halved[:, ::-1] - small)[inside].mean()
         print("difference {:.2f} of 255, mirrored {:.2f}".format(difference, control))
-        self.assertLess(difference, 3)
+        self.assertLess(difference, 6)  # the fine relief is shaded from neighbouring pixels
         self.assertGreater(control, 2 * difference)
 
     def test_listens_to_nothing_while_nobody_looks(self):
