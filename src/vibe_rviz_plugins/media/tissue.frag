@@ -41,8 +41,9 @@ vec3 raised(vec3 normal, float height) {
 }
 
 vec3 heated(vec3 base, float heat) {
-  vec3 mark = vec3(0.93, 0.88, 0.76), burn = vec3(0.42, 0.24, 0.12), deep = vec3(0.07, 0.05, 0.04);
-  base = mix(base, mark, smoothstep(0.15, 0.75, heat));
+  vec3 rim = vec3(0.50, 0.16, 0.13), mark = vec3(0.96, 0.92, 0.80), burn = vec3(0.42, 0.24, 0.12), deep = vec3(0.07, 0.05, 0.04);
+  base = mix(base, rim, 0.75 * smoothstep(0.05, 0.3, heat));  // reddened around
+  base = mix(base, mark, smoothstep(0.4, 0.75, heat));
   base = mix(base, burn, smoothstep(1.2, 1.85, heat));
   return mix(base, deep, smoothstep(2.2, 2.9, heat));
 }

@@ -128,7 +128,7 @@ void TissueDisplay::addSurface() {
       new rviz::ColorProperty("Outside", QColor(214, 158, 143), "Colour of the serosa, which covers the outside.",
                               surface_, SLOT(changeLook()), this);
   outside_alpha_ = bounded(
-      new rviz::FloatProperty("Outside opacity", 0.25F,
+      new rviz::FloatProperty("Outside opacity", 0.15F,
                               "Of the wall looked at straight on from outside: 0 shows the inside only, 1 hides it.",
                               surface_, SLOT(changeLook()), this),
       0, 1);

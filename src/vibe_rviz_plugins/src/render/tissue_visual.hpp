@@ -27,7 +27,7 @@ struct TissueLook {
   double least = 0, greatest = 1;                  ///< values at the ends of the map, in the unit of the colouring
   Ogre::ColourValue inside{0.86F, 0.47F, 0.42F};   ///< of tissue as it is, mucosa
   Ogre::ColourValue outside{0.84F, 0.62F, 0.56F};  ///< serosa
-  double outside_alpha = 0.25;  ///< opacity of the wall looked at straight on from outside; 1 all over: opaque
+  double outside_alpha = 0.15;  ///< opacity of the wall looked at straight on from outside; 1 all over: opaque
   double wetness = 0.4;         ///< strength of highlights, 0 to 1
   double relief = 0.6e-3;       ///< height of the fine relief, drawn by shading only [m]
   bool scars = true;            ///< show marks and burn scars
