@@ -97,7 +97,7 @@ std::vector<std::string> InputLatch::apply(std::int64_t stamp, const Model& mode
     input.pull_particle = -1;
     input.pull_target.setZero();
     unusable.push_back(
-        "The hand on tissue/pull has been silent for 0.5 s and lets go; send its target again while it "
+        "The hand on tissue/pull has been silent for 2 s and lets go; send its target again while it "
         "holds.");
   }
   applied_until_ = std::max(applied_until_, stamp);

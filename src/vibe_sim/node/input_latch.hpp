@@ -17,8 +17,8 @@ enum class InputChannel { Scope, Overstitch, Buttons, Pull };
 constexpr int kInputChannelCount = 4;
 constexpr int kLockstepChannelCount = 3;  ///< the first ones; nobody has to pull the tissue
 
-/// A hand of which nothing is heard for longer lets go: its program may be gone [ns of simulated time].
-constexpr std::int64_t kHandPatience = 500'000'000;
+/// A hand of which nothing is heard for longer lets go: its program may be gone [ns of the simulator's time].
+constexpr std::int64_t kHandPatience = 2'000'000'000;
 
 /// What a sample of the channel Scope says: joint positions, or the pose that scope_tip is to reach.
 enum class ScopeTarget { Joints, TipInWorld, TipInBase };

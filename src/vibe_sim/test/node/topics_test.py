@@ -300,7 +300,7 @@ class TopicsTest(unittest.TestCase):
             stretch = getattr(held.target, axis) - getattr(held.position, axis)
             self.assertAlmostEqual(getattr(held.force, axis), 300 * stretch, delta=2e-3)  # the mean over a step
         self.events.clear()
-        self.step(30)
+        self.step(120)
         self.assertIsNotNone(self.events.find(lambda m: "tissue/pull has been silent" in m.text))
         self.assertEqual(self.recorders["applied_input"].messages[-1].pull_particle, -1)
         wait_until(lambda: self.pull_state.messages[-1].particle == -1)
