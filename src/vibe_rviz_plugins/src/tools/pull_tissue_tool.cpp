@@ -1,0 +1,266 @@
+#include "tools/pull_tissue_tool.hpp"
+
+#include <OgreCamera.h>
+#include <OgreViewport.h>
+#include <rviz/display_context.h>
+#include <rviz/frame_manager.h>
+#include <rviz/properties/float_property.h>
+#include <rviz/properties/string_property.h>
+#include <rviz/render_panel.h>
+#include <rviz/view_controller.h>
+#include <rviz/viewport_mouse_event.h>
+#include <vibe_msgs/TissuePull.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <pluginlib/class_list_macros.hpp>
+
+#include "messages/tissue_messages.hpp"
+#include "render/pull_visual.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr double kNotch = 2e-3 / 120;  // of the wheel, towards or away [m per eighth of a degree]
+constexpr double kPatience = 3;      // without an answer before it is said [s]
+
+Eigen::Vector3d toEigen(const Ogre::Vector3& v) {
+  return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
+PullTissueTool::PullTissueTool() {
+  shortcut_key_ = 'p';
+  namespace_ = new rviz::StringProperty("Namespace", "", "Of the simulator's topics; empty: that of rviz.",
+                                        getPropertyContainer(), SLOT(connectAgain()), this);
+  scale_ = new rviz::FloatProperty("Arrow per newton", 20, "Length of the arrow for a force of 1 N [mm].",
+                                   getPropertyContainer());
+  scale_->setMin(0.1F);
+  scale_->setMax(1000);
+}
+
+PullTissueTool::~PullTissueTool() {
+  letGo();
+}
+
+void PullTissueTool::onInitialize() {
+  handle_.setCallbackQueue(context_->getUpdateQueue());
+  visual_ = std::make_unique<PullVisual>(*scene_manager_);
+}
+
+void PullTissueTool::activate() {
+  active_ = true;
+  connect();
+  sayHowTo();
+}
+
+void PullTissueTool::deactivate() {
+  letGo();
+  active_ = false;
+  disconnect();
+}
+
+void PullTissueTool::connectAgain() {
+  if (!active_) return;
+  letGo();
+  disconnect();
+  connect();
+}
+
+void PullTissueTool::connect() {
+  const std::string name = namespace_->getStdString();
+  const std::string prefix = name.empty() || name.back() == '/' ? name : name + "/";
+  topology_trouble_ =
+      "No message on " + handle_.resolveName(prefix + "tissue/topology") + " yet; start a simulator, then pull.";
+  try {
+    publisher_ = handle_.advertise<vibe_msgs::TissuePull>(prefix + "tissue/pull", 10);
+    topology_subscriber_ = handle_.subscribe(prefix + "tissue/topology", 2, &PullTissueTool::takeTopology, this);
+    particles_subscriber_ = handle_.subscribe(prefix + "tissue/particles", 1, &PullTissueTool::takeParticles, this);
+    state_subscriber_ = handle_.subscribe(prefix + "tissue/pull_state", 10, &PullTissueTool::takeState, this);
+  } catch (const ros::Exception& error) {
+    topology_trouble_ = "The tool's namespace '" + name + "' is no name for topics; change it in Tool Properties.";
+    say(topology_trouble_);
+  }
+}
+
+void PullTissueTool::disconnect() {
+  topology_subscriber_.shutdown();
+  particles_subscriber_.shutdown();
+  state_subscriber_.shutdown();
+  publisher_.shutdown();
+  latest_.reset();
+  mesh_ = TissueMesh();
+}
+
+void PullTissueTool::takeTopology(const vibe_msgs::TissueTopology::ConstPtr& message) {
+  letGo();  // the particles have other numbers now
+  topology_trouble_ = readTopology(*message, mesh_);
+  if (!topology_trouble_.empty()) say(topology_trouble_);
+}
+
+void PullTissueTool::takeState(const vibe_msgs::TissuePullState::ConstPtr& message) {
+  if (!hold_) return;
+  PullState state;
+  const std::string wrong = readPullState(*message, state);
+  if (!wrong.empty()) return say(wrong);
+  if (state.particle != hold_->particle) return;
+  if (!hold_->felt) hold_->place = state.place;  // the middle of the patch, so that a click alone does not pull
+  hold_->felt = true;
+  hold_->since = ros::WallTime::now();
+  draw(state.place, state.force);
+}
+
+void PullTissueTool::update(float, float) {
+  if (!hold_) return;
+  send(hold_->particle, hold_->target());
+  if ((ros::WallTime::now() - hold_->since).toSec() < kPatience) return;
+  say("The simulator does not answer on " + state_subscriber_.getTopic() + "; is it paused, or its tissue held there?");
+}
+
+// Empty if there is tissue to take hold of, else why not.
+std::string PullTissueTool::findTissue() {
+  if (!topology_trouble_.empty()) return topology_trouble_;
+  if (!latest_) return "No message on " + particles_subscriber_.getTopic() + " yet; is the simulator running?";
+  if (publisher_.getNumSubscribers() == 0)
+    return "Nobody listens to " + publisher_.getTopic() + "; this simulator cannot be pulled at, or has gone.";
+  return readParticles(*latest_, mesh_, tissue_);
+}
+
+bool PullTissueTool::framePose(Eigen::Isometry3d& pose) {
+  Ogre::Vector3 position;
+  Ogre::Quaternion orientation;
+  if (!context_->getFrameManager()->getTransform(mesh_.frame_id, ros::Time(), position, orientation)) {
+    say("No transform from '" + mesh_.frame_id + "' to '" + context_->getFixedFrame().toStdString() +
+        "'; choose another fixed frame.");
+    return false;
+  }
+  visual_->setPose(position, orientation);
+  pose = Eigen::Translation3d(toEigen(position)) *
+         Eigen::Quaterniond(orientation.w, orientation.x, orientation.y, orientation.z);
+  return true;
+}
+
+Ray PullTissueTool::rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const {
+  const auto width = static_cast<float>(event.viewport->getActualWidth());
+  const auto height = static_cast<float>(event.viewport->getActualHeight());
+  const Ogre::Ray ray = event.viewport->getCamera()->getCameraToViewportRay(static_cast<float>(event.x) / width,
+                                                                            static_cast<float>(event.y) / height);
+  const Eigen::Isometry3d inverse = frame.inverse();
+  return {inverse * toEigen(ray.getOrigin()), (inverse.linear() * toEigen(ray.getDirection())).normalized()};
+}
+
+Eigen::Vector3d PullTissueTool::viewDirection(const rviz::ViewportMouseEvent& event,
+                                              const Eigen::Isometry3d& frame) const {
+  return frame.linear().transpose() * toEigen(event.viewport->getCamera()->getDerivedDirection());
+}
+
+// Size of a pixel as deep as the hand's target [m].
+double PullTissueTool::pixelSize(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const {
+  const Ogre::Camera& camera = *event.viewport->getCamera();
+  const double depth = (frame * hold_->target() - toEigen(camera.getDerivedPosition())).norm();
+  return 2 * depth * std::tan(0.5 * static_cast<double>(camera.getFOVy().valueRadians())) /
+         std::max(1, event.viewport->getActualHeight());
+}
+
+int PullTissueTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
+  if (event.leftDown()) {
+    take(event);
+    return Render;
+  }
+  if (event.leftUp()) {
+    letGo();
+    return Render;
+  }
+  const bool pulls = hold_ && (event.left() || event.wheel_delta != 0);
+  if (pulls) {
+    drag(event);
+    return Render;
+  }
+  if (hold_ && event.type == QEvent::MouseMove && !event.left()) letGo();  // released where rviz did not see it
+  if (event.panel->getViewController() != nullptr) event.panel->getViewController()->handleMouseEvent(event);
+  return Render;
+}
+
+void PullTissueTool::take(const rviz::ViewportMouseEvent& event) {
+  letGo();
+  Eigen::Isometry3d frame;
+  const std::string trouble = findTissue();
+  if (!trouble.empty()) return say(trouble);
+  if (!framePose(frame)) return;
+  const auto hit = firstHit(rayOf(event, frame), tissue_.positions, mesh_.particle_triangles);
+  if (!hit) return say("There is no tissue under the mouse; press the left button on the tissue.");
+  Hold hold;
+  hold.particle = static_cast<int>(hit->particle);
+  const float* place = &tissue_.positions[3 * static_cast<std::size_t>(hit->particle)];
+  hold.place = Eigen::Vector3d(place[0], place[1], place[2]);
+  hold.cursor = hit->place;
+  hold.since = ros::WallTime::now();
+  hold_ = hold;
+  send(hold.particle, hold.target());
+  visual_->showHand(hold.place, hold.target());
+  sayHowTo();
+}
+
+void PullTissueTool::drag(rviz::ViewportMouseEvent& event) {
+  Eigen::Isometry3d frame;
+  if (!framePose(frame)) return;
+  const Eigen::Vector3d along = viewDirection(event, frame);
+  const auto under = meetPlane(rayOf(event, frame), hold_->cursor, along);
+  if (!under) return;
+  const bool deeper = event.wheel_delta != 0 || event.shift();
+  if (!deeper) {
+    hold_->drag += *under - hold_->cursor;
+    hold_->cursor = *under;
+    return;
+  }
+  const double way = event.wheel_delta != 0 ? kNotch * event.wheel_delta
+                                            : pixelSize(event, frame) * static_cast<double>(event.last_y - event.y);
+  hold_->drag += way * along;
+  hold_->cursor = meetPlane(rayOf(event, frame), hold_->cursor + way * along, along).value_or(hold_->cursor);
+}
+
+void PullTissueTool::letGo() {
+  if (!hold_) return;
+  send(-1, Eigen::Vector3d::Zero());
+  hold_.reset();
+  if (visual_) visual_->hide();
+  if (active_) sayHowTo();
+}
+
+void PullTissueTool::send(int particle, const Eigen::Vector3d& target) {
+  if (!publisher_ || !ros::ok()) return;
+  vibe_msgs::TissuePull message;
+  message.header.stamp = ros::Time::now();
+  message.header.frame_id = mesh_.frame_id;
+  message.particle = particle;
+  message.target.x = target.x(), message.target.y = target.y(), message.target.z = target.z();
+  publisher_.publish(message);
+}
+
+void PullTissueTool::draw(const Eigen::Vector3d& place, const Eigen::Vector3d& force) {
+  Eigen::Isometry3d frame;
+  if (!framePose(frame)) return;
+  visual_->showHand(place, hold_->target());
+  visual_->showForce(place, force, 1e-3 * static_cast<double>(scale_->getFloat()));
+  char text[160];
+  std::snprintf(text, sizeof text, "%.2f N at particle %d. Wheel or Shift: towards you or away. Let go: release.",
+                force.norm(), hold_->particle);
+  say(text);
+  context_->queueRender();
+}
+
+void PullTissueTool::say(const std::string& text) {
+  setStatus(QString::fromStdString(text));
+}
+
+void PullTissueTool::sayHowTo() {
+  say("Left button: take hold of the tissue and pull it. Wheel or Shift: towards you or away. Middle, right: the "
+      "view.");
+}
+
+}  // namespace vibe
+
+PLUGINLIB_EXPORT_CLASS(vibe::PullTissueTool, rviz::Tool)

@@ -1,0 +1,91 @@
+#pragma once
+#ifndef Q_MOC_RUN
+#include <ros/ros.h>
+#include <rviz/tool.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <vibe_msgs/TissuePullState.h>
+#include <vibe_msgs/TissueTopology.h>
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "geometry/ray_hit.hpp"
+#include "geometry/tissue_mesh.hpp"
+#include "messages/pull_messages.hpp"
+#endif
+
+namespace rviz {
+class FloatProperty;
+class StringProperty;
+}  // namespace rviz
+
+namespace vibe {
+
+class PullVisual;
+
+/// Takes hold of the tissue under the mouse and pulls it, by ordinary commands on tissue/pull. Listens to the tissue
+/// only while it is the tool in use.
+class PullTissueTool : public rviz::Tool {
+  Q_OBJECT
+
+ public:
+  PullTissueTool();
+  ~PullTissueTool() override;
+
+  void onInitialize() override;
+  void activate() override;
+  void deactivate() override;
+  void update(float wall_dt, float ros_dt) override;
+  int processMouseEvent(rviz::ViewportMouseEvent& event) override;
+
+ private Q_SLOTS:
+  void connectAgain();
+
+ private:
+  /// What the mouse holds. All in the frame of the topology.
+  struct Hold {
+    int particle = -1;
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();   ///< where the tissue was when it was taken [m]
+    Eigen::Vector3d drag = Eigen::Vector3d::Zero();    ///< how far the mouse has gone since [m]
+    Eigen::Vector3d cursor = Eigen::Vector3d::Zero();  ///< what is under the mouse, as deep as the target [m]
+    bool felt = false;                                 ///< the simulator has answered
+    ros::WallTime since;                               ///< of the last answer, or of the beginning
+    Eigen::Vector3d target() const { return place + drag; }
+  };
+
+  void connect();
+  void disconnect();
+  void takeTopology(const vibe_msgs::TissueTopology::ConstPtr& message);
+  void takeParticles(const sensor_msgs::PointCloud2::ConstPtr& message) { latest_ = message; }
+  void takeState(const vibe_msgs::TissuePullState::ConstPtr& message);
+  std::string findTissue();
+  bool framePose(Eigen::Isometry3d& pose);
+  Ray rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const;
+  Eigen::Vector3d viewDirection(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const;
+  double pixelSize(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const;
+  void take(const rviz::ViewportMouseEvent& event);
+  void drag(rviz::ViewportMouseEvent& event);
+  void letGo();
+  void send(int particle, const Eigen::Vector3d& target);
+  void say(const std::string& text);
+  void sayHowTo();
+  void draw(const Eigen::Vector3d& place, const Eigen::Vector3d& force);
+
+  rviz::StringProperty* namespace_;
+  rviz::FloatProperty* scale_;
+
+  ros::NodeHandle handle_;
+  ros::Publisher publisher_;
+  ros::Subscriber topology_subscriber_, particles_subscriber_, state_subscriber_;
+  sensor_msgs::PointCloud2::ConstPtr latest_;
+  TissueMesh mesh_;
+  TissueFrame tissue_;
+  std::string topology_trouble_;  // why there is no mesh; empty: there is one
+  std::optional<Hold> hold_;
+  std::unique_ptr<PullVisual> visual_;
+  bool active_ = false;
+};
+
+}  // namespace vibe
