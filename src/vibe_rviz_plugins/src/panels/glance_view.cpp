@@ -99,7 +99,8 @@ void GlanceView::displayBleeding(const PanelMessages& messages) {
     return;
   }
   const BleedingSummary bleeding = summariseBleeding(*messages.sutures);
-  rows_->set("Bleeding", toQt(bleedingText(bleeding) + " (" + quantityText(1e6 * bleeding.lost, 1, "mL") + " lost)"));
+  const std::string lost = " (" + quantityText(1e6 * bleeding.lost, 1, "mL") + " lost)";
+  rows_->set("Bleeding", toQt(bleedingText(bleeding) + (bleeding.lost > 0 ? lost : std::string())));
   rows_->mark("Bleeding", bleeding.brisk + bleeding.mild > 0);
 }
 

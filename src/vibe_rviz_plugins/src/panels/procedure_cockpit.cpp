@@ -19,8 +19,9 @@
 namespace vibe {
 namespace {
 
-constexpr int kLeastWidth = 260;  // nothing is clipped [px]
-constexpr int kPeriod = 100;      // of refresh() and of the buttons' messages [ms]
+constexpr int kLeastWidth = 260;                    // nothing is clipped [px]
+constexpr int kGoodWidth = 340, kGoodHeight = 640;  // [px]
+constexpr int kPeriod = 100;                        // of refresh() and of the buttons' messages [ms]
 
 void addPart(QVBoxLayout* column, const QString& title, QWidget* part) {
   QLabel* label = wrappingLabel();
@@ -70,6 +71,10 @@ ProcedureCockpit::ProcedureCockpit(QWidget* parent)
 }
 
 ProcedureCockpit::~ProcedureCockpit() = default;
+
+QSize ProcedureCockpit::sizeHint() const {
+  return {kGoodWidth, kGoodHeight};
+}
 
 QWidget* ProcedureCockpit::makeContent() {
   auto* content = new QWidget;

@@ -38,6 +38,8 @@ class ProcedureCockpit : public QWidget {
   /// Shows what there is now; otherwise ten times a second.
   void refresh();
 
+  QSize sizeHint() const override;
+
  private:
   QString name_space_;
   std::function<void()> namespace_changed_;
