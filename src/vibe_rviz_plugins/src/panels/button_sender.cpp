@@ -1,6 +1,7 @@
 #include "panels/button_sender.hpp"
 
 #include <ros/this_node.h>
+#include <vibe_msgs/StepInput.h>
 
 #include "panels/procedure_feed.hpp"
 
@@ -8,6 +9,7 @@ namespace vibe {
 namespace {
 
 constexpr std::uint32_t kQueue = 100;
+constexpr double kTaking = 1;     // a simulator that stands still says nothing [s]
 constexpr double kClosing = 0.5;  // [s]
 // other parts of the same program may press buttons too; this tells their messages from ours
 const char* const kFrame = "procedure_panel";
@@ -16,6 +18,7 @@ const char* const kFrame = "procedure_panel";
 
 void ButtonSender::listen(const std::string& name_space) {
   in_control_ = false;
+  last_input_ = {};
   publisher_ = {};
   bank_ = {};
   watch_.forget();
@@ -37,14 +40,28 @@ void ButtonSender::hear(const ros::MessageEvent<const sensor_msgs::Joy>& event) 
 }
 
 void ButtonSender::setControl(bool on, double now) {
-  if (on == in_control_ || (on && !watch_.rival(now).empty())) return;
-  in_control_ = on;
-  if (on) {
-    publisher_ = handle_.advertise<sensor_msgs::Joy>("scope/buttons", kQueue);
-  } else {
-    bank_.liftHeld();
-    closing_since_ = now;
-  }
+  if (!on) return endControl(now);
+  if (in_control_ || isTakingControl() || !watch_.rival(now).empty()) return;
+  taking_since_ = now;
+  last_input_ = handle_.subscribe<vibe_msgs::StepInput>("applied_input", 1, [this](const auto& input) {
+    bank_.adopt({input->buttons.begin(), input->buttons.end()});
+    beginControl();
+  });
+}
+
+void ButtonSender::beginControl() {
+  last_input_ = {};
+  in_control_ = true;
+  publisher_ = handle_.advertise<sensor_msgs::Joy>("scope/buttons", kQueue);
+  publish();
+}
+
+void ButtonSender::endControl(double now) {
+  last_input_ = {};
+  if (!in_control_) return;
+  in_control_ = false;
+  bank_.liftHeld();
+  closing_since_ = now;
   publish();
 }
 
@@ -61,6 +78,7 @@ void ButtonSender::release(int button, const Moment& now) {
 }
 
 void ButtonSender::tick(const Moment& now) {
+  if (isTakingControl() && now.wall - taking_since_ > kTaking) beginControl();
   if (in_control_) {
     bank_.settle(now);
     publish();

@@ -16,9 +16,11 @@ class ButtonSender {
   /// Begins anew in this namespace, which has been checked, without control.
   void listen(const std::string& name_space);
 
-  /// Taking control has no effect while somebody else has it; sentence() says who.
+  /// Taking control has no effect while somebody else has it; sentence() says who. Else it first looks what the
+  /// simulator's last step used, so that nothing is let go that is held: that takes a step, or a second without one.
   void setControl(bool on, double now);
   bool inControl() const { return in_control_; }
+  bool isTakingControl() const { return static_cast<bool>(last_input_); }
 
   // Without control these do nothing.
   void press(int button, const Moment& now);
@@ -35,13 +37,17 @@ class ButtonSender {
   ros::NodeHandle handle_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;
+  ros::Subscriber last_input_;  // while control is being taken; others may count who listens to that topic
   ButtonBank bank_;
   ControlWatch watch_;
   std::string topic_;
   bool in_control_ = false;
+  double taking_since_ = 0;   // [s]
   double closing_since_ = 0;  // the last message needs a moment before the publisher may go [s]
 
   void hear(const ros::MessageEvent<const sensor_msgs::Joy>& event);
+  void beginControl();
+  void endControl(double now);
   void publish();
 };
 

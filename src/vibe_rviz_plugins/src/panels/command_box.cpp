@@ -21,6 +21,7 @@ CommandBox::CommandBox(Actions actions, QWidget* parent)
       sentence_(wrappingLabel()) {
   control_->setObjectName("control");
   control_->setCheckable(true);
+  control_->setIcon(lamp(false, palette()));
   control_->setToolTip(
       "Publishes the buttons below while it is on. The simulator obeys one publisher at a time: stop the scripted "
       "trainee or the device first.");
@@ -28,11 +29,14 @@ CommandBox::CommandBox(Actions actions, QWidget* parent)
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->addWidget(control_, 0, 0, 1, kColumns);
-  grid->addWidget(sentence_, 1, 0, 1, kColumns);
   for (int button = 0; button < kCommandCount; ++button) {
     makeButton(button);
-    grid->addWidget(buttons_[static_cast<std::size_t>(button)], 2 + button / kColumns, button % kColumns);
+    grid->addWidget(buttons_[static_cast<std::size_t>(button)], 1 + button / kColumns, button % kColumns);
   }
+  // below the buttons and never less than two lines: a sentence that changes must not move a button that is aimed at
+  sentence_->setMinimumHeight(2 * sentence_->fontMetrics().lineSpacing());
+  sentence_->setAlignment(Qt::AlignTop);
+  grid->addWidget(sentence_, 1 + (kCommandCount + kColumns - 1) / kColumns, 0, 1, kColumns);
   // clicked, not toggled: only what the user does counts, not what display() sets
   QObject::connect(control_, &QPushButton::clicked, this, [this](bool on) { actions_.control(on); });
 }
@@ -51,6 +55,9 @@ void CommandBox::makeButton(int button) {
 void CommandBox::display(bool in_control, const std::array<std::int32_t, kCommandCount>& down,
                          const std::string& sentence) {
   control_->setChecked(in_control);
+  control_->setText(in_control ? "Give control back" : "Take control");
+  if (in_control != shown_control_) control_->setIcon(lamp(in_control, palette()));
+  shown_control_ = in_control;
   sentence_->setText(toQt(sentence));
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
     buttons_[i]->setEnabled(in_control);

@@ -31,6 +31,7 @@ class CommandBox : public QWidget {
   QLabel* sentence_;
   std::array<QPushButton*, kCommandCount> buttons_{};
   std::array<std::int32_t, kCommandCount> shown_{};
+  bool shown_control_ = false;
 
   void makeButton(int button);
 };

@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kLinesShown = 9;
+constexpr int kLinesShown = 8;
 
 std::string timeText(const vibe_msgs::ProcedureEvent& event, double origin) {
   const double time = event.header.stamp.toSec() - origin;

@@ -185,7 +185,7 @@ void ProcedureCockpit::refresh() {
   const double now = steadySeconds();
   displayStatus(now);
   const PanelMessages& messages = feed_.messages();
-  commands_->display(sender_.inControl(), sender_.down(), sender_.sentence(now));
+  commands_->display(sender_.inControl() || sender_.isTakingControl(), sender_.down(), sender_.sentence(now));
   stepping_->displayState(static_cast<bool>(messages.state), messages.state && messages.state->paused);
   if (!waited_for_.empty()) stepping_->displayWaiting(waited_for_, now - waits_since_);
   glance_->display(messages);

@@ -7,6 +7,7 @@
 #include <vibe_msgs/ProcedureState.h>
 #include <vibe_msgs/Reset.h>
 #include <vibe_msgs/Step.h>
+#include <vibe_msgs/StepInput.h>
 
 #include <QElapsedTimer>
 #include <QLineEdit>
@@ -200,9 +201,30 @@ TEST_F(Cockpit, buttonsBecomeMessages) {
   const std::size_t before = heard.size();
   waitFor(1, [] { return false; });
   EXPECT_NEAR(static_cast<double>(heard.size() - before), 10, 5);
-  click(*cockpit, "Take control");
+  click(*cockpit, "Give control back");
   EXPECT_TRUE(pressed({0, 1, 0, 0, 0, 0})) << "giving control back must not let the tissue go";
   EXPECT_TRUE(waitFor(3, [&] { return subscriber.getNumPublishers() == 0; }));
+}
+
+TEST_F(Cockpit, whatIsHeldStaysHeld) {
+  ros::NodeHandle handle("/held");
+  std::vector<std::vector<int>> heard;
+  const ros::Subscriber subscriber = handle.subscribe<sensor_msgs::Joy>(
+      "scope/buttons", 1000, [&](const sensor_msgs::JoyConstPtr& message) { heard.push_back(message->buttons); });
+  ros::Publisher applied = handle.advertise<vibe_msgs::StepInput>("applied_input", 10);
+  open("/held");
+  waitFor(0.3, [] { return false; });
+  EXPECT_EQ(applied.getNumSubscribers(), 0u) << "a simulator that waits for its recorder would take the panel for it";
+  click(*cockpit, "Take control");
+  vibe_msgs::StepInput input;
+  input.buttons = {1, 1, 0, 0, 0, 1};
+  EXPECT_TRUE(waitFor(5, [&] {
+    applied.publish(input);
+    return !heard.empty();
+  }));
+  ASSERT_FALSE(heard.empty());
+  EXPECT_EQ(heard.front(), (std::vector<int>{0, 1, 0, 0, 0, 1})) << "the pedal is under nobody's foot now";
+  EXPECT_TRUE(waitFor(2, [&] { return applied.getNumSubscribers() == 0; }));
 }
 
 TEST_F(Cockpit, anotherOneInControlIsRespected) {
