@@ -21,8 +21,8 @@ constexpr float kShaft = 1.8e-3F;     // diameter [m]
 constexpr float kHead = 4.5e-3F;      // diameter [m]
 constexpr float kHeadLength = 7e-3F;  // at most, and half of the arrow [m]
 constexpr float kLine = 6e-4F;        // width [m]
-constexpr float kLetter = 7e-3F;      // height [m]
-constexpr double kTextGap = 4e-3;     // from the arrow's tip [m]
+constexpr float kLetter = 1e-2F;      // height [m]
+constexpr double kTextGap = 9e-3;     // from the arrow's tip [m]
 constexpr double kLeastArrow = 5e-4;  // shorter ones are not drawn [m]
 
 Ogre::Vector3 toOgre(const Eigen::Vector3d& v) {

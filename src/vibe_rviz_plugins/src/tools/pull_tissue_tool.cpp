@@ -24,7 +24,7 @@ namespace vibe {
 namespace {
 
 constexpr double kNotch = 2e-3 / 120;  // of the wheel, towards or away [m per eighth of a degree]
-constexpr double kPatience = 3;      // without an answer before it is said [s]
+constexpr double kPatience = 3;        // without an answer before it is said [s]
 
 Eigen::Vector3d toEigen(const Ogre::Vector3& v) {
   return {v.x, v.y, v.z};
@@ -174,13 +174,15 @@ int PullTissueTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
     letGo();
     return Render;
   }
-  const bool pulls = hold_ && (event.left() || event.wheel_delta != 0);
-  if (pulls) {
+  if (hold_ && event.type == QEvent::MouseMove && !event.left()) letGo();  // released where rviz did not see it
+  if (hold_ && (event.left() || event.wheel_delta != 0)) {
     drag(event);
     return Render;
   }
-  if (hold_ && event.type == QEvent::MouseMove && !event.left()) letGo();  // released where rviz did not see it
-  if (event.panel->getViewController() != nullptr) event.panel->getViewController()->handleMouseEvent(event);
+  const bool of_view = event.middle() || event.right() || event.acting_button != Qt::NoButton || event.wheel_delta != 0;
+  if (!of_view || event.left() || event.panel->getViewController() == nullptr) return 0;
+  event.panel->getViewController()->handleMouseEvent(event);
+  sayHowTo();  // in place of what the view has just said of its own left button
   return Render;
 }
 
