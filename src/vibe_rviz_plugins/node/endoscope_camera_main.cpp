@@ -11,7 +11,7 @@
 #include "camera_options.hpp"
 #include "endoscope_camera.hpp"
 #include "render/resources.hpp"
-#include "virtual_display.hpp"
+#include "render/virtual_display.hpp"
 
 namespace {
 

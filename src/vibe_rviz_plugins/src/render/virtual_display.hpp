@@ -1,6 +1,4 @@
 #pragma once
-#include <sys/types.h>
-
 namespace vibe {
 
 /// Sees to it that this process has an X display to draw on. Where DISPLAY names none that answers, it starts an Xvfb

@@ -1,4 +1,4 @@
-#include "virtual_display.hpp"
+#include "render/virtual_display.hpp"
 
 #include <X11/Xlib.h>
 #include <fcntl.h>
