@@ -5,6 +5,7 @@
 #include <OgreSceneNode.h>
 #include <rviz/display_context.h>
 #include <rviz/frame_manager.h>
+#include <rviz/properties/bool_property.h>
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/string_property.h>
@@ -28,6 +29,9 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 }  // namespace
 
 EndoscopeViewController::EndoscopeViewController() {
+  // Not only because it does nothing: rviz hides it, announces that a little later, and by then crashes if the view has
+  // already given way to another, as on a busy machine.
+  stereo_.reset(takeChild(stereo_enable_));
   frame_ = new rviz::TfFrameProperty("Camera Frame", kFrame,
                                      "Frame of the endoscope's camera: z forward, x right, y down.", this);
   field_of_view_ = new rviz::FloatProperty(

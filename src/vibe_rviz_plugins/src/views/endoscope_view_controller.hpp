@@ -38,6 +38,7 @@ class EndoscopeViewController : public rviz::ViewController {
   rviz::EnumProperty* lens_;
   rviz::FloatProperty* sharpness_;
   rviz::StringProperty* status_;
+  std::unique_ptr<rviz::Property> stereo_;  ///< rviz' own, which has no meaning here
   std::unique_ptr<EndoscopeLens> picture_;  ///< only while this is the view in use
   bool broken_ = false;                     ///< the graphics card cannot do it: said once, not tried again
 };
