@@ -78,8 +78,9 @@ void appendRing(const Vector3d& centre, const Vector3d& axis, double radius, dou
 
 void appendBobbin(const Vector3d& centre, const Vector3d& axis, double length, double rim, PackedColour colour,
                   int sides, ColouredShape& shape) {
-  constexpr double kOutline[][2] = {{0.50, 0.0},   {0.50, 0.80}, {0.46, 1.0},  {0.34, 1.0},   {0.28, 0.62}, {0.0, 0.55},
-                                    {-0.28, 0.62}, {-0.34, 1.0}, {-0.46, 1.0}, {-0.50, 0.80}, {-0.50, 0.0}};
+  constexpr double kOutline[][2] = {{0.50, 0.0},  {0.50, 0.84}, {0.47, 0.97},  {0.43, 1.0},   {0.36, 1.0},
+                                    {0.33, 0.97}, {0.33, 0.66}, {0.0, 0.62},   {-0.33, 0.66}, {-0.33, 0.97},
+                                    {-0.36, 1.0}, {-0.43, 1.0}, {-0.47, 0.97}, {-0.50, 0.84}, {-0.50, 0.0}};
   std::vector<ProfilePoint> profile;
   for (const auto& point : kOutline) profile.emplace_back(length * point[0], rim * point[1]);
   appendRevolved(profile, centre, axis, colour, sides, shape);

@@ -81,11 +81,17 @@ void appendPiece(const ThreadPiece& piece, std::size_t number, const SutureStyle
     appendTube(bands[k], style.threadRadius(), k % 2 == 0 ? colour : darker(colour, 0.55), kThreadSides, shape);
 }
 
-/// A full bite is a ring around the thread, a partial one a ball: seen from any side they are not confused.
-void appendBite(const SutureSet& set, std::size_t number, double emphasis, ColouredShape& shape) {
+bool isHeld(const SutureSet& set, std::size_t bite) {
+  return (set.has_cinch && bite == 0) || (set.has_t_tag && bite + 1 == set.bites.size());
+}
+
+/// A full bite is a ring around the thread, a partial one a ball: seen from any side they are not confused. Where a
+/// cinch or T-tag stands on the bite a wider ring of its colour shows around it.
+void appendBite(const SutureSet& set, std::size_t number, bool held, double size, ColouredShape& shape) {
   const SutureBite& bite = set.bites[number];
-  if (!bite.full_thickness) return appendBall(bite.place, kPartialRadius * emphasis, kPartialBite, kThreadSides, shape);
-  appendRing(bite.place, biteAxis(set, number), kBiteRadius * emphasis, kBiteThickness * emphasis, kFullBite,
+  const PackedColour colour = bite.full_thickness ? kFullBite : kPartialBite;
+  if (!bite.full_thickness && !held) return appendBall(bite.place, kPartialRadius * size, colour, kThreadSides, shape);
+  appendRing(bite.place, biteAxis(set, number), (held ? 1.6 : 1.0) * kBiteRadius * size, kBiteThickness * size, colour,
              kSymbolSides, shape);
 }
 
@@ -104,7 +110,8 @@ void appendEnds(const SutureSet& set, double emphasis, ColouredShape& shape) {
 void appendSet(const SutureSet& set, std::size_t number, const SutureStyle& style, ColouredShape& shape) {
   const double size = std::sqrt(std::max(style.emphasis, 0.01));  // symbols are large already
   for (const ThreadPiece& piece : set.pieces) appendPiece(piece, number, style, shape);
-  for (std::size_t k = 0; style.bites && k < set.bites.size(); ++k) appendBite(set, k, size, shape);
+  for (std::size_t k = 0; style.bites && k < set.bites.size(); ++k)
+    appendBite(set, k, style.ends && isHeld(set, k), size, shape);
   if (style.ends) appendEnds(set, size, shape);
   for (std::size_t k = 0; style.corners && k < set.corners.size(); ++k)
     appendRing(set.bites[set.corners[k]].place, biteAxis(set, set.corners[k]), kCornerRadius * size,

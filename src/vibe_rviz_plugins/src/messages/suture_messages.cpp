@@ -124,16 +124,22 @@ std::string check(const vibe_msgs::SutureArray& message) {
   return wrong;
 }
 
-Vector3d inwardOf(std::uint8_t wall) {
-  switch (wall) {
+/// Of the curvatures by region, cardia to pylorus: means over a stomach at rest (y to the left, z to the head).
+constexpr double kGreaterInward[5][2] = {{-0.86, -0.51}, {-0.86, -0.51}, {-0.81, 0.58}, {0.59, 0.81}, {0.96, 0.28}};
+constexpr double kLesserInward[5][2] = {{0.90, -0.43}, {0.63, -0.78}, {0.95, -0.31}, {-0.11, -0.99}, {-0.59, -0.81}};
+
+Vector3d inwardOf(const vibe_msgs::Bite& bite) {
+  const std::size_t region = std::min<std::size_t>(bite.region, Topology::REGION_PYLORUS);
+  const auto along = [](const double(&yz)[2]) { return Vector3d(0, yz[0], yz[1]).normalized(); };
+  switch (bite.wall) {
     case Topology::WALL_ANTERIOR:
       return -Vector3d::UnitX();
     case Topology::WALL_GREATER_CURVATURE:
-      return -Vector3d::UnitY();
+      return along(kGreaterInward[region]);
     case Topology::WALL_POSTERIOR:
       return Vector3d::UnitX();
     case Topology::WALL_LESSER_CURVATURE:
-      return Vector3d::UnitY();
+      return along(kLesserInward[region]);
     default:
       return Vector3d::Zero();
   }
@@ -172,7 +178,7 @@ SutureSet takeSuture(const Suture& suture) {
   SutureSet set;
   set.stage = static_cast<SutureStage>(suture.stage);
   for (const vibe_msgs::Bite& bite : suture.bites)
-    set.bites.push_back({vectorOf(bite.position), bite.full_thickness != 0, inwardOf(bite.wall)});
+    set.bites.push_back({vectorOf(bite.position), bite.full_thickness != 0, inwardOf(bite)});
   takePieces(suture, set);
   takePattern(suture, set);
   set.has_t_tag = suture.has_t_tag;
@@ -188,7 +194,7 @@ Wound takeBleeding(const vibe_msgs::Bleeding& bleeding, const vibe_msgs::SutureA
   Wound wound;
   wound.place = vectorOf(bleeding.position);
   const auto& bites = message.sutures[static_cast<std::size_t>(bleeding.suture)].bites;
-  wound.inward = bleeding.bite < 0 ? Vector3d::Zero() : inwardOf(bites[static_cast<std::size_t>(bleeding.bite)].wall);
+  wound.inward = bleeding.bite < 0 ? Vector3d::Zero() : inwardOf(bites[static_cast<std::size_t>(bleeding.bite)]);
   wound.brisk = bleeding.brisk;
   wound.rate = bleeding.rate;
   wound.amount = bleeding.amount;

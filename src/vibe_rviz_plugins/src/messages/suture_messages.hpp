@@ -14,8 +14,9 @@ namespace vibe {
 /// order and one per bite, lengths and tensions one per piece, stage and technique known, transitions at bites,
 /// bleedings at sutures and bites that are there.
 ///
-/// The lumen's side of a wall comes from Bite.wall and the axes of the world frame (x anterior, y to the patient's
-/// left): the anterior wall looks to the back, the greater curvature to the right, and so on.
+/// The lumen's side of a wall comes from the bite's wall and region and the axes of the world frame (x anterior, y to
+/// the patient's left, z to the head): the anterior wall looks to the back, the greater curvature of the body to the
+/// right and up, and so on. It is right to some 30 degrees for a stomach in its usual place.
 std::string readSutures(const vibe_msgs::SutureArray& message, SutureScene& scene);
 
 }  // namespace vibe
