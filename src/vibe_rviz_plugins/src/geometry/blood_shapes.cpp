@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "geometry/tube.hpp"
@@ -17,7 +18,7 @@ constexpr double kHeartRate = 72 / 60.0;  // [1/s]
 constexpr double kMeanSpeed = 0.5;  // of blood leaving a small artery into gas [m/s]; rises some 13 mm; design choice
 constexpr double kPulse = 0.3;      // part of the speed that pulses
 constexpr double kFilm = 2.5e-3, kPool = 3.5e-3;            // thickest blood lies on a wall, in a hollow [m]
-constexpr double kWidestFilm = 12e-3, kWidestPool = 18e-3;  // beyond that a curved wall hides the rest [m]
+constexpr double kWidestFilm = 11e-3, kWidestPool = 15e-3;  // beyond that a curved wall hides the rest [m]
 constexpr double kLeastDrop = 8e-3, kMostDrop = 50e-3;      // a jet falls this far below its wound [m]
 constexpr double kFromCeiling = 35e-3;                      // and at least this far from a wall that is overhead [m]
 constexpr double kSteep = 0.5;                              // cosine to gravity from which a wall is ceiling or floor
@@ -50,25 +51,33 @@ double wobble(int number, int which) {
   return 2 * (value - std::floor(value)) - 1;
 }
 
-/// The outline: its distance from the middle in a direction, in units of the mean radius.
-double outline(const Puddle& puddle, double angle, const Vector3d& first, const Vector3d& second) {
-  const Vector3d out = std::cos(angle) * first + std::sin(angle) * second;
-  const double towards = puddle.creep.dot(out);  // -1 to 1
-  double reach = 1 + 0.9 * std::max(0.0, towards) * std::abs(towards) - 0.25 * puddle.creep.norm();
-  for (int k = 0; k < 3; ++k)
-    reach += 0.07 * wobble(puddle.number, k) * std::cos((k + 2) * angle + kPi * wobble(puddle.number, k + 3));
-  return reach;
-}
-
 constexpr int kPuddleSides = 32, kPuddleRings = 6;
 
-/// Half the mean square of the outline times 2 pi is its area in units of the mean radius squared.
-double outlineArea(const Puddle& puddle, const Vector3d& first, const Vector3d& second) {
-  double sum = 0;
-  for (int k = 0; k < kPuddleSides; ++k) {
-    const double here = outline(puddle, 2 * kPi * k / kPuddleSides, first, second);
-    sum += here * outline(puddle, 2 * kPi * (k + 1) / kPuddleSides, first, second);
+/// The outline of a puddle: where it ends around its middle, in units of the mean radius.
+struct Outline {
+  std::array<Vector3d, kPuddleSides> direction;  // unit, on the plane
+  std::array<double, kPuddleSides> reach;
+};
+
+Outline outlineOf(const Puddle& puddle) {
+  const Vector3d first = anyNormal(puddle.up), second = puddle.up.cross(first);
+  std::array<double, 3> size, turn;
+  for (int k = 0; k < 3; ++k) size[k] = 0.07 * wobble(puddle.number, k), turn[k] = kPi * wobble(puddle.number, k + 3);
+  Outline outline;
+  for (std::size_t s = 0; s < kPuddleSides; ++s) {
+    const double angle = 2 * kPi * static_cast<double>(s) / kPuddleSides;
+    outline.direction[s] = std::cos(angle) * first + std::sin(angle) * second;
+    const double towards = std::max(0.0, puddle.creep.dot(outline.direction[s]));  // 0 to 1
+    outline.reach[s] = 1 + 0.9 * towards * towards - 0.25 * puddle.creep.norm();
+    for (int k = 0; k < 3; ++k) outline.reach[s] += size[k] * std::cos((k + 2) * angle + turn[k]);
   }
+  return outline;
+}
+
+/// In units of the mean radius squared.
+double areaOf(const Outline& outline) {
+  double sum = 0;
+  for (std::size_t k = 0; k < kPuddleSides; ++k) sum += outline.reach[k] * outline.reach[(k + 1) % kPuddleSides];
   return 0.5 * sum * std::sin(2 * kPi / kPuddleSides);
 }
 
@@ -112,7 +121,7 @@ void appendFilm(const Wound& wound, const BloodStyle& style, ColouredShape& shap
 }
 
 void appendPool(const Wound& wound, const Vector3d& landing, const BloodStyle& style, ColouredShape& shape) {
-  const Shade shade = mixed(kBright, kDark, 0.5);
+  const Shade shade = mixed(kBright, kDark, 0.75);
   Puddle pool;
   pool.centre = landing;
   pool.up = -style.down;
@@ -136,10 +145,14 @@ void appendJet(const Wound& wound, const std::vector<Vector3d>& line, const Bloo
     const double swell = 1 + 0.35 * std::sin(2 * kPi * (0.19 * static_cast<double>(k) - style.time * 5));
     jet.push_back({line[k], radius * swell * (1 - 0.3 * static_cast<double>(k) / kWhole), packedOf(kBright)});
   }
-  appendTube(jet, 10, shape);
+  appendTube(jet, 8, shape);
+  // drops differ in size and stray from the way
   for (std::size_t k = kWhole; k < line.size(); ++k) {
-    const double size = 1.35 + 0.45 * wobble(wound.number, static_cast<int>(k));
-    appendBall(line[k], radius * size, packedOf(kBright), 10, shape);
+    const auto number = static_cast<int>(3 * k);
+    const Vector3d stray(wobble(wound.number, number), wobble(wound.number, number + 1),
+                         wobble(wound.number, number + 2));
+    const double size = 0.95 + 0.5 * wobble(wound.number + 7, number);
+    appendBall(line[k] + 1.3 * radius * stray, radius * size, packedOf(kBright), 8, shape);
   }
 }
 
@@ -196,22 +209,18 @@ Vector3d jetLanding(const Wound& wound, double drop, const BloodStyle& style) {
 double puddleRadius(const Puddle& puddle) {
   const double height = puddleHeight(puddle);
   if (!(height > 0)) return 0;
-  const Vector3d first = anyNormal(puddle.up), second = puddle.up.cross(first);
-  return std::min(puddle.widest, std::sqrt(1.5 * puddle.volume / (height * outlineArea(puddle, first, second))));
+  return std::min(puddle.widest, std::sqrt(1.5 * puddle.volume / (height * areaOf(outlineOf(puddle)))));
 }
 
 void appendPuddle(const Puddle& puddle, ColouredShape& shape) {
   const double height = puddleHeight(puddle), radius = puddleRadius(puddle);
   if (!(radius > 0)) return;
-  const Vector3d first = anyNormal(puddle.up), second = puddle.up.cross(first);
+  const Outline outline = outlineOf(puddle);
   const auto base = static_cast<std::uint32_t>(shape.vertices.size());
   for (int ring = 0; ring <= kPuddleRings; ++ring)
-    for (int k = 0; k < kPuddleSides; ++k) {
-      const double angle = 2 * kPi * k / kPuddleSides;
-      addPuddleVertex(puddle, std::cos(angle) * first + std::sin(angle) * second,
-                      radius * outline(puddle, angle, first, second), static_cast<double>(ring) / kPuddleRings, height,
-                      shape);
-    }
+    for (std::size_t k = 0; k < kPuddleSides; ++k)
+      addPuddleVertex(puddle, outline.direction[k], radius * outline.reach[k], static_cast<double>(ring) / kPuddleRings,
+                      height, shape);
   for (std::uint32_t ring = 0; ring < kPuddleRings; ++ring)
     for (std::uint32_t k = 0; k < kPuddleSides; ++k) {
       const std::uint32_t upper = base + ring * kPuddleSides, lower = upper + kPuddleSides;

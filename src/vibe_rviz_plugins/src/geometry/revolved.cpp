@@ -29,12 +29,18 @@ Vector2d profileNormal(const std::vector<ProfilePoint>& profile, std::size_t k, 
   return sum.norm() > 0 ? Vector2d(sum.normalized()) : Vector2d::UnitX();
 }
 
-void addCircle(const ProfilePoint& point, const Vector2d& normal, const Vector3d& origin, const Vector3d& axis,
-               PackedColour colour, int sides, ColouredShape& shape) {
+/// Unit vectors around an axis, evenly.
+std::vector<Vector3d> around(const Vector3d& axis, int sides) {
   const Vector3d first = anyNormal(axis), second = axis.cross(first);
-  for (int k = 0; k < sides; ++k) {
-    const double angle = 2 * kPi * k / sides;
-    const Vector3d out = std::cos(angle) * first + std::sin(angle) * second;
+  std::vector<Vector3d> directions;
+  for (int k = 0; k < sides; ++k)
+    directions.emplace_back(std::cos(2 * kPi * k / sides) * first + std::sin(2 * kPi * k / sides) * second);
+  return directions;
+}
+
+void addCircle(const ProfilePoint& point, const Vector2d& normal, const Vector3d& origin, const Vector3d& axis,
+               const std::vector<Vector3d>& directions, PackedColour colour, ColouredShape& shape) {
+  for (const Vector3d& out : directions) {
     const Eigen::Vector3f p = (origin + point.x() * axis + point.y() * out).cast<float>();
     const Eigen::Vector3f n = (normal.x() * axis + normal.y() * out).cast<float>();
     shape.vertices.push_back({{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}});
@@ -56,10 +62,11 @@ void appendRevolved(const std::vector<ProfilePoint>& profile, const Vector3d& or
                     PackedColour colour, int sides, ColouredShape& shape) {
   if (profile.size() < 2) return;
   sides = std::max(3, sides);
+  const std::vector<Vector3d> directions = around(axis, sides);
   const bool closed = (profile.front() - profile.back()).norm() < 1e-12;
   for (std::size_t k = 0; k < profile.size(); ++k) {
     const auto first = static_cast<std::uint32_t>(shape.vertices.size());
-    addCircle(profile[k], profileNormal(profile, k, closed), origin, axis, colour, sides, shape);
+    addCircle(profile[k], profileNormal(profile, k, closed), origin, axis, directions, colour, shape);
     if (k > 0) addBand(first - static_cast<std::uint32_t>(sides), first, sides, shape.triangles);
   }
 }

@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kThreadSides = 10;
-constexpr int kSymbolSides = 20;
+constexpr int kThreadSides = 8;
+constexpr int kSymbolSides = 16;
 
 // Sizes of what a suturing device leaves behind; design choices near those of devices on the market.
 constexpr double kTagLength = 6.5e-3, kTagRadius = 0.45e-3;

@@ -36,7 +36,9 @@ Vector3d turnAxis(const Frame& frame, const Vector3d& to) {
 
 class TubeBuilder {
  public:
-  TubeBuilder(int sides, ColouredShape& shape) : sides_(sides), shape_(shape) {}
+  TubeBuilder(int sides, ColouredShape& shape) : sides_(sides), shape_(shape) {
+    for (int k = 0; k < sides; ++k) circle_.emplace_back(std::cos(2 * kPi * k / sides), std::sin(2 * kPi * k / sides));
+  }
 
   /// Directions of a ring, each taken along `slide` into the plane at right angles to `facing`, which mitres it.
   void mitredRing(const TubePoint& at, const Frame& frame, const Vector3d& facing) {
@@ -50,9 +52,10 @@ class TubeBuilder {
 
   /// A circle of a ball around the place: latitude 0 is its equator.
   void circle(const TubePoint& at, const Frame& frame, double latitude) {
+    const double outwards = std::cos(latitude), along = std::sin(latitude);
     ring(
         [&](const Vector3d& out) {
-          const Vector3d normal = std::cos(latitude) * out + std::sin(latitude) * frame.along;
+          const Vector3d normal = outwards * out + along * frame.along;
           add(at.place + at.radius * normal, normal, at.colour);
         },
         frame);
@@ -93,10 +96,7 @@ class TubeBuilder {
   void ring(AddVertex addVertex, const Frame& frame) {
     const std::uint32_t first = next(), before = first - static_cast<std::uint32_t>(sides_);
     const Vector3d second = frame.along.cross(frame.first);
-    for (int k = 0; k < sides_; ++k) {
-      const double angle = 2 * kPi * k / sides_;
-      addVertex(Vector3d(std::cos(angle) * frame.first + std::sin(angle) * second));
-    }
+    for (const Eigen::Vector2d& on : circle_) addVertex(Vector3d(on.x() * frame.first + on.y() * second));
     for (int k = 0; k < sides_; ++k) {
       if (rings_ == 0) {
         triangle(pole_, first + side(k + 1), first + side(k));
@@ -109,6 +109,7 @@ class TubeBuilder {
   }
 
   int sides_, rings_ = 0;
+  std::vector<Eigen::Vector2d> circle_;
   ColouredShape& shape_;
   std::uint32_t pole_ = 0;
 };

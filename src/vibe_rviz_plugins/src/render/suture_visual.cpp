@@ -16,13 +16,20 @@ Ogre::MaterialPtr with(Ogre::MaterialPtr material, const char* parameter, float 
   return material;
 }
 
+/// Drawn before all that is sorted by distance: the organ's glassy wall must not lie now over the blood, now under it.
+Ogre::MaterialPtr beforeGlass(Ogre::MaterialPtr material) {
+  for (Ogre::Technique* technique : material->getTechniques())
+    technique->getPass(0)->setTransparentSortingEnabled(false);
+  return material;
+}
+
 }  // namespace
 
 SutureVisual::SutureVisual(Ogre::SceneNode& parent)
     : parent_(parent),
       solid_material_(copyMaterial("vibe/solid")),
       sign_material_(with(copyMaterial("vibe/solid"), "glow", 1)),
-      blood_material_(with(copyMaterial("vibe/blood"), "gloss", 0.35F)),
+      blood_material_(beforeGlass(with(copyMaterial("vibe/blood"), "gloss", 0.35F))),
       solids_(std::make_unique<ShapeView>(parent, solid_material_)),
       signs_(std::make_unique<ShapeView>(parent, sign_material_)),
       blood_(std::make_unique<ShapeView>(parent, blood_material_)) {}
@@ -55,7 +62,8 @@ void SutureVisual::showLabels(const std::vector<SutureLabel>& labels, double hei
   for (std::size_t k = 0; k < labels.size(); ++k) {
     texts_[k].node->setPosition(labels[k].place);
     if (texts_[k].text->getCaption() != labels[k].text) texts_[k].text->setCaption(labels[k].text);
-    texts_[k].text->setCharacterHeight(static_cast<float>(height));  // does nothing when it is the same
+    texts_[k].text->setCharacterHeight(static_cast<float>(height));  // these do nothing when they are the same
+    texts_[k].text->setSpaceWidth(static_cast<float>(0.3 * height));
   }
 }
 
