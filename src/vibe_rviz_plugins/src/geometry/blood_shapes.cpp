@@ -51,7 +51,8 @@ double wobble(int number, int which) {
   return 2 * (value - std::floor(value)) - 1;
 }
 
-constexpr int kPuddleSides = 32, kPuddleRings = 6;
+constexpr int kPuddleSides = 32, kPuddleRings = 6;  // rings of each half
+constexpr double kUnderside = 0.6;                  // of the height
 
 /// The outline of a puddle: where it ends around its middle, in units of the mean radius.
 struct Outline {
@@ -87,12 +88,14 @@ double puddleHeight(const Puddle& puddle) {
 
 void addPuddleVertex(const Puddle& puddle, const Vector3d& out, double reach, double part, double height,
                      ColouredShape& shape) {
-  // half an ellipsoid: part is the angle from the pole over the outline
+  // half an ellipsoid: part is the angle from the pole, 1 the outline; below it a flatter half that reaches into the
+  // wall, so that a rim that stands off shows no hollow
   const double flat = std::sin(part * kPi / 2), up = std::cos(part * kPi / 2);
+  if (part > 1) height *= kUnderside;
   const Eigen::Vector3f p = (puddle.centre + reach * flat * out + height * up * puddle.up).cast<float>();
   const Eigen::Vector3f n = (flat / reach * out + up / height * puddle.up).normalized().cast<float>();
   shape.vertices.push_back({{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}});
-  shape.colours.push_back(part < 0.999 ? puddle.middle : puddle.rim);
+  shape.colours.push_back(std::abs(part - 1) > 0.01 ? puddle.middle : puddle.rim);
 }
 
 /// How far a wound's blood falls: to the lowest place of the wall that is known.
@@ -161,7 +164,7 @@ void appendWound(const Wound& wound, const SutureScene& scene, const BloodStyle&
   const double drop = dropBelow(wound, scene, style.down);
   appendPool(wound, jetLanding(wound, drop, style), style, shape);
   Wound source = wound;
-  source.amount = std::min(wound.amount, 1.2e-7);  // what clings to the wall around it
+  source.amount = std::min(wound.amount, 5e-8);  // what clings to the wall around it
   appendFilm(source, style, shape);
   if (wound.rate > 0) appendJet(wound, jetLine(wound, drop, style), style, shape);
 }
@@ -217,11 +220,11 @@ void appendPuddle(const Puddle& puddle, ColouredShape& shape) {
   if (!(radius > 0)) return;
   const Outline outline = outlineOf(puddle);
   const auto base = static_cast<std::uint32_t>(shape.vertices.size());
-  for (int ring = 0; ring <= kPuddleRings; ++ring)
+  for (int ring = 0; ring <= 2 * kPuddleRings; ++ring)
     for (std::size_t k = 0; k < kPuddleSides; ++k)
       addPuddleVertex(puddle, outline.direction[k], radius * outline.reach[k], static_cast<double>(ring) / kPuddleRings,
                       height, shape);
-  for (std::uint32_t ring = 0; ring < kPuddleRings; ++ring)
+  for (std::uint32_t ring = 0; ring < 2 * kPuddleRings; ++ring)
     for (std::uint32_t k = 0; k < kPuddleSides; ++k) {
       const std::uint32_t upper = base + ring * kPuddleSides, lower = upper + kPuddleSides;
       const std::uint32_t beside = (k + 1) % kPuddleSides;

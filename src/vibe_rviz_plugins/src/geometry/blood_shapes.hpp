@@ -20,7 +20,7 @@ struct BloodStyle {
 /// The bites tell how far down the wall reaches, which ends the jets.
 void appendBlood(const SutureScene& scene, const BloodStyle& style, ColouredShape& shape);
 
-/// A film or pool of this volume [m^3] lying on a plane.
+/// A film or pool of this volume [m^3] lying on a plane; what is drawn below the plane only closes the shape.
 struct Puddle {
   Eigen::Vector3d centre;  ///< [m]
   Eigen::Vector3d up;      ///< unit, away from the plane

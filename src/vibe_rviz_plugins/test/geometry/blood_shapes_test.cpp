@@ -69,14 +69,15 @@ double farthestApart(const ColouredShape& a, const ColouredShape& b) {
   return most;
 }
 
-/// The half ellipsoid is closed below by the plane: its volume over the plane is that of the blood.
+/// Of the part over the plane: what a triangle's shadow on the plane covers times its height.
 double volumeOver(const ColouredShape& shape, const Puddle& puddle) {
   double sum = 0;
   for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
     const Vector3d a = placeOf(shape, shape.triangles[t]) - puddle.centre;
     const Vector3d b = placeOf(shape, shape.triangles[t + 1]) - puddle.centre;
     const Vector3d c = placeOf(shape, shape.triangles[t + 2]) - puddle.centre;
-    sum += 0.5 * (b - a).cross(c - a).dot(puddle.up) * (a + b + c).dot(puddle.up) / 3;
+    const double height = (a + b + c).dot(puddle.up) / 3;
+    if (height > 0) sum += 0.5 * (b - a).cross(c - a).dot(puddle.up) * height;
   }
   return sum;
 }
@@ -132,7 +133,7 @@ TEST(Blood, MildGrowsWithWhatWasLost) {
 TEST(Blood, MildStaysAtItsWoundAndBriskFlies) {
   const double mild = extentAlong(shapeOf(woundOf(false)), Vector3d::UnitX());
   const double brisk = extentAlong(shapeOf(woundOf(true)), Vector3d::UnitX());
-  EXPECT_LT(mild, 4e-3);
+  EXPECT_LT(mild, 5e-3);
   EXPECT_GT(brisk, 20e-3);
 }
 
