@@ -28,6 +28,9 @@ class EndoscopeLens {
   /// @throws std::runtime_error  the graphics card cannot do it
   void set(LensKind lens, double field_of_view, double sharpness);
 
+  /// The camera whose picture the viewport shows, in pixels of the viewport, as of the last set().
+  const RoundCamera& camera() const { return camera_; }
+
  private:
   void remove();
   void light();

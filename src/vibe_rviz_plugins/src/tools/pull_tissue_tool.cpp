@@ -1,6 +1,7 @@
 #include "tools/pull_tissue_tool.hpp"
 
 #include <OgreCamera.h>
+#include <OgreRay.h>
 #include <OgreViewport.h>
 #include <rviz/display_context.h>
 #include <rviz/frame_manager.h>
@@ -11,13 +12,12 @@
 #include <rviz/viewport_mouse_event.h>
 #include <vibe_msgs/TissuePull.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <pluginlib/class_list_macros.hpp>
 
 #include "messages/tissue_messages.hpp"
 #include "render/pull_visual.hpp"
+#include "views/endoscope_view_controller.hpp"
 
 namespace vibe {
 
@@ -28,6 +28,18 @@ constexpr double kPatience = 3;        // without an answer before it is said [s
 
 Eigen::Vector3d toEigen(const Ogre::Vector3& v) {
   return {v.x, v.y, v.z};
+}
+
+// In rviz' own views, and in that of the endoscope, whose lens bends the picture.
+Ogre::Ray viewRay(const rviz::ViewportMouseEvent& event, int x, int y) {
+  const Ogre::Camera& camera = *event.viewport->getCamera();
+  const auto* scope = dynamic_cast<const EndoscopeViewController*>(event.panel->getViewController());
+  if (scope != nullptr && scope->roundCamera() != nullptr) {
+    const Eigen::Vector3f ray = rayOf(*scope->roundCamera(), Eigen::Vector2d(x, y)).cast<float>();
+    return {camera.getDerivedPosition(), camera.getDerivedOrientation() * Ogre::Vector3(ray.x(), -ray.y(), -ray.z())};
+  }
+  return camera.getCameraToViewportRay(static_cast<float>(x) / static_cast<float>(event.viewport->getActualWidth()),
+                                       static_cast<float>(y) / static_cast<float>(event.viewport->getActualHeight()));
 }
 
 }  // namespace
@@ -143,11 +155,8 @@ bool PullTissueTool::framePose(Eigen::Isometry3d& pose) {
   return true;
 }
 
-Ray PullTissueTool::rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const {
-  const auto width = static_cast<float>(event.viewport->getActualWidth());
-  const auto height = static_cast<float>(event.viewport->getActualHeight());
-  const Ogre::Ray ray = event.viewport->getCamera()->getCameraToViewportRay(static_cast<float>(event.x) / width,
-                                                                            static_cast<float>(event.y) / height);
+Ray PullTissueTool::rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below) const {
+  const Ogre::Ray ray = viewRay(event, event.x, event.y + below);
   const Eigen::Isometry3d inverse = frame.inverse();
   return {inverse * toEigen(ray.getOrigin()), (inverse.linear() * toEigen(ray.getDirection())).normalized()};
 }
@@ -155,14 +164,6 @@ Ray PullTissueTool::rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Is
 Eigen::Vector3d PullTissueTool::viewDirection(const rviz::ViewportMouseEvent& event,
                                               const Eigen::Isometry3d& frame) const {
   return frame.linear().transpose() * toEigen(event.viewport->getCamera()->getDerivedDirection());
-}
-
-// Size of a pixel as deep as the hand's target [m].
-double PullTissueTool::pixelSize(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const {
-  const Ogre::Camera& camera = *event.viewport->getCamera();
-  const double depth = (frame * hold_->target() - toEigen(camera.getDerivedPosition())).norm();
-  return 2 * depth * std::tan(0.5 * static_cast<double>(camera.getFOVy().valueRadians())) /
-         std::max(1, event.viewport->getActualHeight());
 }
 
 int PullTissueTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
@@ -218,8 +219,8 @@ void PullTissueTool::drag(rviz::ViewportMouseEvent& event) {
     hold_->cursor = *under;
     return;
   }
-  const double way = event.wheel_delta != 0 ? kNotch * event.wheel_delta
-                                            : pixelSize(event, frame) * static_cast<double>(event.last_y - event.y);
+  const Eigen::Vector3d pixel = meetPlane(rayOf(event, frame, 1), hold_->cursor, along).value_or(*under) - *under;
+  const double way = event.wheel_delta != 0 ? kNotch * event.wheel_delta : pixel.norm() * (event.last_y - event.y);
   hold_->drag += way * along;
   hold_->cursor = meetPlane(rayOf(event, frame), hold_->cursor + way * along, along).value_or(hold_->cursor);
 }

@@ -62,9 +62,9 @@ class PullTissueTool : public rviz::Tool {
   void takeState(const vibe_msgs::TissuePullState::ConstPtr& message);
   std::string findTissue();
   bool framePose(Eigen::Isometry3d& pose);
-  Ray rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const;
+  /// Through the mouse, or as many pixels below it.
+  Ray rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below = 0) const;
   Eigen::Vector3d viewDirection(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const;
-  double pixelSize(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const;
   void take(const rviz::ViewportMouseEvent& event);
   void drag(rviz::ViewportMouseEvent& event);
   void letGo();

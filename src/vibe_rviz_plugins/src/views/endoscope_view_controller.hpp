@@ -24,6 +24,9 @@ class EndoscopeViewController : public rviz::ViewController {
   void handleMouseEvent(rviz::ViewportMouseEvent& event) override;
   void reset() override;
 
+  /// How pixels of the view become rays; null while the picture is not bent by a lens.
+  const RoundCamera* roundCamera() const { return picture_ ? &picture_->camera() : nullptr; }
+
  protected:
   void onInitialize() override;
   void onActivate() override;
