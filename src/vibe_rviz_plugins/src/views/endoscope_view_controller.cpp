@@ -122,6 +122,10 @@ void EndoscopeViewController::reset() {
   sharpness_->setFloat(1);
 }
 
+rviz::Property* EndoscopeViewController::subProp(const QString& name) {
+  return name == "Target Frame" ? &no_target_ : rviz::ViewController::subProp(name);
+}
+
 }  // namespace vibe
 
 #include <pluginlib/class_list_macros.hpp>

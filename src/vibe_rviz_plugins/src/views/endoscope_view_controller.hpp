@@ -23,6 +23,8 @@ class EndoscopeViewController : public rviz::ViewController {
   void update(float dt, float ros_dt) override;
   void handleMouseEvent(rviz::ViewportMouseEvent& event) override;
   void reset() override;
+  /// Other views ask the one before them for a target frame; that of the endoscope is not for them.
+  rviz::Property* subProp(const QString& name) override;
 
   /// How pixels of the view become rays; null while the picture is not bent by a lens.
   const RoundCamera* roundCamera() const { return picture_ ? &picture_->camera() : nullptr; }
@@ -42,6 +44,7 @@ class EndoscopeViewController : public rviz::ViewController {
   rviz::FloatProperty* sharpness_;
   rviz::StringProperty* status_;
   std::unique_ptr<rviz::Property> stereo_;  ///< rviz' own, which has no meaning here
+  rviz::Property no_target_;                ///< what they are told
   std::unique_ptr<EndoscopeLens> picture_;  ///< only while this is the view in use
   bool broken_ = false;                     ///< the graphics card cannot do it: said once, not tried again
 };
