@@ -5,53 +5,51 @@ and is taken from picture to picture by its service `step`, so that a picture sh
 """
 
 import argparse
+import collections
 import os
 import re
 import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 from graph import GraphError
 from run_session import Interrupted, Session, attempt, interrupt
+from rviz_window import RvizWindow, wait_for
 
-SCREEN = "1280x720"
-SCENE = "[1200x600+40+70]"  # the part of it where rviz draws: the frame rate below changes all the time
-PATIENCE = 180.0  # for a program to be ready or for rviz to draw, software rendering on a busy machine [s]
-EQUAL_SHOTS = 3  # so many in a row without a difference: rviz has drawn the last message
-SHOT_INTERVAL = 1.0  # [s]
-FEWEST_COLOURS = 5000  # the scene is black before the first frame, has few without the organ, some 30,000 with it
+Picture = collections.namedtuple("Picture", "name seconds view")
+
+
+def picture_of(text):
+    """From NAME=SECONDS[@VIEW]."""
+    name, _, rest = text.partition("=")
+    seconds, _, view = rest.partition("@")
+    return Picture(name, float(seconds), view)
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(allow_abbrev=False)
-    for name in ("--workspace", "--scene", "--script", "--output"):
+    for name in ("--workspace", "--scene", "--script", "--config", "--output"):
         parser.add_argument(name, required=True)
-    parser.add_argument("pictures", nargs="+")
+    parser.add_argument("--view", default="")
+    parser.add_argument("--program", default="rosrun rviz rviz")
+    parser.add_argument("pictures", nargs="+", type=picture_of)
     arguments = parser.parse_args()
     arguments.mesh, arguments.fast, arguments.duration, arguments.headless = "", True, 0.0, False
-    pictures = [(text.split("=")[0], float(text.split("=")[1])) for text in arguments.pictures]
-    arguments.pictures = sorted(pictures, key=lambda picture: picture[1])
+    pictures = [picture._replace(view=picture.view or arguments.view) for picture in arguments.pictures]
+    arguments.pictures = sorted(pictures, key=lambda picture: picture.seconds)
     arguments.pictures_folder = arguments.output
     return arguments
 
 
-def wait_for(condition, what):
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        if time.monotonic() > deadline:
-            raise GraphError("{} within {:.0f} s".format(what, PATIENCE))
-        time.sleep(0.2)
-
-
 class PictureSession(Session):
-    """A session that stands still whenever nobody steps it, with rviz on a display of its own."""
+    """A session that stands still whenever nobody steps it, with one rviz for each view that is asked for."""
 
     def __init__(self, arguments):
         super().__init__(arguments)
         self.steps_done = 0
-        self.rviz = None
+        views = sorted({picture.view for picture in arguments.pictures})
+        self.windows = {view: RvizWindow(self.graph, self.output, arguments.config, view) for view in views}
 
     def set_parameters(self):
         super().set_parameters()
@@ -60,42 +58,22 @@ class PictureSession(Session):
 
     def start(self):
         graph = self.graph
-        self.start_display()
         graph.start_master()
         self.set_parameters()
         graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
-        config = os.path.join(self.arguments.workspace, "src/vibe_description/rviz/vibe.rviz")
-        # the splash screen would be in the way of the first picture
-        self.rviz = graph.start("rviz", ["rosrun", "rviz", "rviz", "--splash-screen", "", "-d", config])
+        for window in self.windows.values():
+            window.start(self.arguments.program.split())
         graph.start("vibe_trainee", ["rosrun", "vibe_sim", "vibe_trainee"])
         self.sim = graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"], patience=30.0)
-        wait_for(self.is_watched, "rviz did not listen to the tissue (see {})".format(self.rviz.log))
-
-    def start_display(self):
-        """The X server chooses a free display and writes its number into a pipe."""
-        folder = os.path.join(self.output, "runtime")
-        os.mkdir(folder, 0o700)
-        self.graph.env.update(LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1", XDG_RUNTIME_DIR=folder)
-        number = os.path.join(self.output, "display")
-        command = 'exec Xvfb -displayfd 7 -screen 0 "$1"x24 -nolisten tcp 7>"$2"'
-        open(number, "wb").close()
-        self.graph.start("xvfb", ["sh", "-c", command, "sh", SCREEN, number])
-        wait_for(lambda: self.check_alive() and os.path.getsize(number) > 1, "Xvfb named no display")
-        with open(number, encoding="ascii") as text:
-            self.graph.env["DISPLAY"] = ":" + text.read().strip()
-
-    def check_alive(self):
-        dead = self.graph.dead()
-        if dead is not None:
-            raise GraphError("{} died; the last it said:\n{}".format(dead.name, dead.last_words()))
-        return True
+        logs = " and ".join(window.process.log for window in self.windows.values())
+        wait_for(self.is_watched, "rviz did not listen to the tissue (see {})".format(logs))
 
     def is_watched(self):
-        self.check_alive()
-        publishers, subscribers, services = self.graph.master.getSystemState("/vibe_scripts")[2]
-        watchers = [node for topic, nodes in subscribers if topic == "/tissue/particles" for node in nodes]
+        next(iter(self.windows.values())).check_alive()
+        _, subscribers, services = self.graph.master.getSystemState("/vibe_scripts")[2]
+        watchers = {node for topic, nodes in subscribers if topic == "/tissue/particles" for node in nodes}
         offered = [name for name, _ in services]
-        return "/step" in offered and any(node.startswith("/rviz") for node in watchers)
+        return "/step" in offered and sum(node.startswith("/rviz") for node in watchers) >= len(self.windows)
 
     def ask(self, command):
         """What a program of the graph's environment says."""
@@ -117,32 +95,11 @@ class PictureSession(Session):
                 raise GraphError("the simulator took no steps: " + " ".join(said.split()))
             self.steps_done += steps
 
-    def colours_and_signature(self, file):
-        self.check_alive()
-        self.ask(["import", "-window", "root", file])
-        colours, signature = self.ask(["identify", "-format", "%k %#", file + SCENE]).split()
-        return int(colours), signature
-
-    def shoot(self, name):
-        """Saves the picture once rviz draws the organ and nothing moves any more."""
-        file = os.path.join(self.output, "shot.png")
-        seen = []
-        deadline = time.monotonic() + PATIENCE
-        while not (len(seen) >= EQUAL_SHOTS and len(set(seen[-EQUAL_SHOTS:])) == 1):
-            if time.monotonic() > deadline:
-                raise GraphError("rviz drew no steady scene within {:.0f} s; see {}".format(PATIENCE, self.rviz.log))
-            time.sleep(SHOT_INTERVAL)
-            colours, signature = self.colours_and_signature(file)
-            seen = seen + [signature] if colours >= FEWEST_COLOURS else []
-        target = os.path.join(self.arguments.pictures_folder, name + ".png")
-        self.ask(["convert", file, "-strip", "-define", "png:compression-level=9", target])
-        print("{} ({:.0f} kB)".format(target, os.path.getsize(target) / 1e3), flush=True)
-
     def take(self):
         period = self.step_period()
-        for name, seconds in self.arguments.pictures:
-            self.step_to(seconds, period)
-            self.shoot(name)
+        for picture in self.arguments.pictures:
+            self.step_to(picture.seconds, period)
+            self.windows[picture.view].shoot(os.path.join(self.arguments.pictures_folder, picture.name + ".png"))
 
 
 def main():

@@ -99,9 +99,10 @@ EsgStyle demonstration() {
   style.only_set = 3;
   style.spread = 0.7;
   style.pace = 1.4;
-  style.marks = 2;
-  style.mark_time = 0.8;
-  style.burn_time = 12.5;
+  style.marks = 3;
+  style.mark_spread = 1.0;
+  style.mark_time = 1;
+  style.burn_time = 13.5;
   return style;
 }
 

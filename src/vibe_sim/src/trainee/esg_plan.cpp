@@ -99,7 +99,8 @@ class EsgPerformance {
   }
 
   void mark() {
-    const double angles[] = {style_.spread, 0, -style_.spread};
+    const double spread = style_.mark_spread > 0 ? style_.mark_spread : style_.spread;
+    const double angles[] = {spread, 0, -spread};
     const char* const names[] = {"mark the anterior wall", "mark the greater curvature", "mark the posterior wall"};
     for (int line = 0; line < 3; ++line) {
       say(names[line]);

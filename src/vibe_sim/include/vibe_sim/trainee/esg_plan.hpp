@@ -19,6 +19,7 @@ struct EsgStyle {
   int attempts = 3;        ///< at a bite
   bool looks = true;       ///< draws the wall in farther where the needle has not gone through all of it
   int marks = 4;           ///< per line; 0: none
+  double mark_spread = 0;  ///< angle from the greater curvature to the outer lines; 0: that of the bites [rad]
   double mark_time = 2;    ///< that the pedal is held [s]
   double burn_time = 0;    ///< that it is held at the first mark instead; 0: no longer than at the others [s]
   int only_set = 0;        ///< of the sets just this one is sewn, from 1; 0: all of them

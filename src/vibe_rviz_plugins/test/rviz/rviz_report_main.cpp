@@ -1,0 +1,117 @@
+// rviz as it is, which also writes down, twice a second, what it thinks of its displays: for tests that cannot look.
+//
+// usage: rviz_report FILE [options of rviz]
+// FILE holds one JSON object: frames (drawn so far), memory (resident [B]) and
+// statuses, a list of {of, what, level, text} with the level "Ok", "Warn" or "Error".
+#include <rviz/display_group.h>
+#include <rviz/failed_display.h>
+#include <rviz/failed_panel.h>
+#include <rviz/failed_tool.h>
+#include <rviz/failed_view_controller.h>
+#include <rviz/properties/status_list.h>
+#include <rviz/tool_manager.h>
+#include <rviz/view_manager.h>
+#include <rviz/visualization_frame.h>
+#include <rviz/visualization_manager.h>
+#include <rviz/visualizer_app.h>
+#include <unistd.h>
+
+#include <QApplication>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QSaveFile>
+#include <QTimer>
+#include <cstdio>
+#include <fstream>
+
+namespace {
+
+constexpr int kInterval = 500;  // between two reports [ms]
+
+QJsonObject entry(const QString& of, const QString& what, rviz::StatusLevel level, const QString& text) {
+  return {{"of", of}, {"what", what}, {"level", rviz::StatusProperty::statusWord(level)}, {"text", text}};
+}
+
+void addStatusesOf(rviz::Property& parent, const QString& of, QJsonArray& statuses) {
+  for (int i = 0; i < parent.numChildren(); ++i) {
+    rviz::Property* child = parent.childAt(i);
+    if (auto* status = dynamic_cast<rviz::StatusProperty*>(child)) {
+      if (dynamic_cast<rviz::StatusList*>(status) == nullptr)
+        statuses.append(entry(of, status->getName(), status->getLevel(), status->getValue().toString()));
+      addStatusesOf(*status, of, statuses);
+    }
+  }
+}
+
+void addDisplays(rviz::DisplayGroup& group, QJsonArray& statuses) {
+  for (int i = 0; i < group.numDisplays(); ++i) {
+    rviz::Display* display = group.getDisplayAt(i);
+    if (dynamic_cast<rviz::FailedDisplay*>(display) != nullptr)
+      statuses.append(entry(display->getName(), "Class", rviz::StatusProperty::Error, "The plugin was not loaded."));
+    if (display->isEnabled()) addStatusesOf(*display, display->getName(), statuses);
+    if (auto* inner = dynamic_cast<rviz::DisplayGroup*>(display)) addDisplays(*inner, statuses);
+  }
+}
+
+// Plugins that could not be loaded; rviz puts others in their place, which say so only when somebody looks.
+void addFailedPlugins(rviz::VisualizationFrame& frame, QJsonArray& statuses) {
+  const auto failed = [&statuses](const QString& what) {
+    statuses.append(entry(what, "Class", rviz::StatusProperty::Error, "The plugin was not loaded."));
+  };
+  rviz::VisualizationManager& manager = *frame.getManager();
+  rviz::ToolManager& tools = *manager.getToolManager();
+  for (int i = 0; i < tools.numTools(); ++i)
+    if (dynamic_cast<rviz::FailedTool*>(tools.getTool(i)) != nullptr) failed(tools.getTool(i)->getName());
+  if (dynamic_cast<rviz::FailedViewController*>(manager.getViewManager()->getCurrent()) != nullptr) failed("view");
+  for (rviz::FailedPanel* panel : frame.findChildren<rviz::FailedPanel*>()) failed(panel->getName());
+}
+
+double residentMemory() {
+  std::ifstream file("/proc/self/statm");
+  double size = 0, resident = 0;
+  file >> size >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+rviz::VisualizationFrame* findFrame() {
+  for (QWidget* widget : QApplication::topLevelWidgets())
+    if (auto* frame = dynamic_cast<rviz::VisualizationFrame*>(widget)) return frame;
+  return nullptr;
+}
+
+void report(const QString& file_name) {
+  rviz::VisualizationFrame* frame = findFrame();
+  if (frame == nullptr || frame->getManager() == nullptr) return;
+  QJsonArray statuses;
+  addDisplays(*frame->getManager()->getRootDisplayGroup(), statuses);
+  addFailedPlugins(*frame, statuses);
+  const QJsonObject told{{"frames", static_cast<double>(frame->getManager()->getFrameCount())},
+                         {"memory", residentMemory()},
+                         {"statuses", statuses}};
+  QSaveFile file(file_name);  // readers see the old report or the new one
+  if (file.open(QIODevice::WriteOnly)) {
+    file.write(QJsonDocument(told).toJson());
+    file.commit();
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: rviz_report FILE [options of rviz]\n");
+    return 2;
+  }
+  const QString file_name = QString::fromLocal8Bit(argv[1]);
+  for (int i = 1; i < argc; ++i) argv[i] = argv[i + 1];  // the last one is the null after the arguments
+  --argc;
+  QApplication application(argc, argv);
+  rviz::VisualizerApp rviz_application;
+  rviz_application.setApp(&application);
+  if (!rviz_application.init(argc, argv)) return 1;
+  QTimer timer;
+  QObject::connect(&timer, &QTimer::timeout, [&file_name] { report(file_name); });
+  timer.start(kInterval);
+  return application.exec();
+}
