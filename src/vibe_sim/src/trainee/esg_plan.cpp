@@ -105,12 +105,12 @@ class EsgPerformance {
     for (int line = 0; line < 3; ++line) {
       say(names[line]);
       for (int k = 0; k < style_.marks; ++k)
-        markAt({between((k + 0.5) / style_.marks), angles[line]}, line == 0 && k == 0);
+        markAt({between((k + 0.5) / style_.marks), angles[line]}, line * style_.marks + k == style_.burnt_mark);
       goBack();
     }
   }
 
-  void markAt(const Target& target, bool first) {
+  void markAt(const Target& target, bool burnt) {
     const double probe = hand_.model().scene.marking ? hand_.model().scene.marking->apc.probe_length : 0;
     for (const double off : {0.02, 0.0}) {
       const WallPlace place = aimed(target);
@@ -118,7 +118,7 @@ class EsgPerformance {
                             Eigen::Vector3d::Zero(), hand_.joints());
       hand_.moveTo(aim.joints, off > 0 ? 0.5 : 0.3);
     }
-    hand_.hold(ApcPedal, first && style_.burn_time > 0 ? style_.burn_time : style_.mark_time);
+    hand_.hold(ApcPedal, burnt && style_.burn_time > 0 ? style_.burn_time : style_.mark_time);
   }
 
   // Distal first: 0 is the distal end.

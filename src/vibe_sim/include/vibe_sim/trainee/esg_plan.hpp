@@ -21,7 +21,8 @@ struct EsgStyle {
   int marks = 4;           ///< per line; 0: none
   double mark_spread = 0;  ///< angle from the greater curvature to the outer lines; 0: that of the bites [rad]
   double mark_time = 2;    ///< that the pedal is held [s]
-  double burn_time = 0;    ///< that it is held at the first mark instead; 0: no longer than at the others [s]
+  double burn_time = 0;    ///< that it is held at one of the marks instead; 0: no longer than at the others [s]
+  int burnt_mark = 0;      ///< which one, in the order in which they are made, from 0
   int only_set = 0;        ///< of the sets just this one is sewn, from 1; 0: all of them
   double cinch_part = 1;   ///< of the time that the cinch needs for its tension [1]
   bool mistakes = false;   ///< holds the beam too long on one spot, asks for the cinch before the T-tag, and the like

@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+"""rviz with the shipped configuration, and messages that are wrong, too many or too large: it says so in a status,
+draws the next good message, and its window lives on."""
+
+import time
+import unittest
+
+import rospkg
+import rospy
+import rostest
+from geometry_msgs.msg import TransformStamped
+from sensor_msgs.msg import PointCloud2
+from tf2_msgs.msg import TFMessage
+from vibe_msgs.msg import SutureArray, TissueTopology
+
+import tissue_messages as good
+from rviz_under_test import RvizUnderTest
+
+FRAMES = 5  # that must follow whatever came
+STORM_RATE, STORM = 600.0, 3000  # ten times the simulator's [1/s], and how many messages
+MOST_GROWTH = 100e6  # of memory in a storm [B]
+ROWS, AROUND = 300, 200  # 60,002 particles
+
+
+def set_all(name, value):
+    def change(points):
+        points[name] = value
+
+    return change
+
+
+def set_one(name, value):
+    def change(points):
+        points[name][len(points) // 2] = value
+
+    return change
+
+
+class Robustness(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        config = rospkg.RosPack().get_path("vibe_description") + "/rviz/vibe.rviz"
+        cls.topology = rospy.Publisher("/tissue/topology", TissueTopology, queue_size=1, latch=True)
+        cls.particles = rospy.Publisher("/tissue/particles", PointCloud2, queue_size=10)
+        cls.sutures = rospy.Publisher("/sutures", SutureArray, queue_size=10, latch=True)
+        cls.transforms = rospy.Publisher("/tf_static", TFMessage, queue_size=1, latch=True)
+        stomach = TransformStamped(child_frame_id="stomach")
+        stomach.header.frame_id, stomach.transform.rotation.w = "world", 1.0
+        cls.transforms.publish(TFMessage([stomach]))
+        cls.rviz = RvizUnderTest(config)
+        cls.rviz.wait_for(lambda: cls.particles.get_num_connections() > 0, "rviz does not listen to the particles")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.rviz.stop()
+
+    def setUp(self):
+        self.show(good.topology(), good.particles(), good.sutures())
+
+    def show(self, topology, particles, sutures):
+        """Good messages, until they are drawn."""
+        self.topology.publish(topology)
+        self.sutures.publish(sutures)
+        count = len(topology.rest_positions) // 3
+        self.rviz.wait_for_status("Stomach", "Topology", "Ok", "{} particles".format(count))
+        deadline = time.monotonic() + 60
+        while self.rviz.status("Stomach", "Particles")[0] != "Ok":  # not latched
+            self.assertLess(time.monotonic(), deadline, self.rviz.status("Stomach", "Particles"))
+            self.particles.publish(particles)
+            time.sleep(0.2)
+        self.rviz.wait_for_status("Sutures", "Message", "Ok", "")
+        self.rviz.wait_for_frames(FRAMES)
+
+    def refuses(self, publisher, message, status, part):
+        """One wrong message is told, the window lives on, and the next good one is drawn."""
+        publisher.publish(message)
+        display = "Sutures" if publisher is self.sutures else "Stomach"
+        self.rviz.wait_for_status(display, status, "Error", part)
+        self.rviz.wait_for_frames(FRAMES)
+
+    def test_particles_that_are_wrong(self):
+        cases = [
+            (good.particles(revision=7), "revision 7"),
+            (good.particles(change=set_one("x", float("nan"))), "finite"),
+            (good.particles(change=set_all("z", float("inf"))), "finite"),
+            (good.particles(rows=41), "particles"),
+            (good.particles(rows=0 + 2, around=3), "particles"),
+        ]
+        for message, part in cases:
+            with self.subTest(part):
+                self.refuses(self.particles, message, "Particles", part)
+                self.setUp()
+
+    def test_clouds_that_are_cut(self):
+        for spoil in (
+            lambda m: setattr(m, "data", m.data[:-1]),
+            lambda m: setattr(m, "data", b""),
+            lambda m: setattr(m, "point_step", 4),
+            lambda m: setattr(m, "width", 2**31),
+            lambda m: setattr(m.fields[0], "offset", 2**32 - 2),
+            lambda m: m.fields.pop(0),
+            lambda m: setattr(m.fields[1], "datatype", 8),
+        ):
+            message = good.particles()
+            spoil(message)
+            self.refuses(self.particles, message, "Particles", "")
+            self.setUp()
+
+    def test_topologies_that_are_garbage(self):
+        for spoil in (
+            lambda m: setattr(m, "triangles", [0, 1, 2**32 - 1]),
+            lambda m: setattr(m, "triangles", [0, 1]),
+            lambda m: setattr(m, "rest_positions", []),
+            lambda m: setattr(m, "rest_positions", [float("nan")] * 9),
+            lambda m: setattr(m, "region", b"\x00"),
+            lambda m: setattr(m, "skin_offsets", [0, 5, 2]),
+            lambda m: (setattr(m, "skin_offsets", [0, 1]), setattr(m, "skin_particles", [2**31])),
+        ):
+            message = good.topology()
+            spoil(message)
+            self.refuses(self.topology, message, "Topology", "")
+            self.setUp()
+
+    def test_sutures_that_are_garbage(self):
+        for spoil in (
+            lambda m: setattr(m.sutures[0], "stage", 250),
+            lambda m: setattr(m.sutures[0], "thread_offsets", [0, 7, 2]),
+            lambda m: setattr(m.sutures[0].bites[0].position, "x", float("nan")),
+            lambda m: setattr(m.sutures[0], "tension", [float("inf"), 1.0]),
+            lambda m: setattr(m.sutures[0], "transitions", [99, -1]),
+        ):
+            message = good.sutures()
+            spoil(message)
+            self.refuses(self.sutures, message, "Message", "")
+            self.setUp()
+
+    def test_values_that_are_large_but_finite(self):
+        """Nothing wrong to say, nothing to see; the window lives on."""
+        for name in ("x", "strain"):
+            self.particles.publish(good.particles(change=set_all(name, 3e38)))
+            self.rviz.wait_for_frames(FRAMES)
+        self.setUp()
+
+    def test_organs_without_anything_to_draw(self):
+        message = good.topology()
+        message.triangles = []
+        self.show(message, good.particles(), good.sutures())
+        message.triangles, message.skin_offsets = [0, 1, 2], [0]
+        self.topology.publish(message)
+        self.particles.publish(good.particles())
+        self.rviz.wait_for_frames(FRAMES)
+
+    def test_unknown_frame(self):
+        message = good.particles()
+        message.header.frame_id = "nowhere"
+        self.refuses(self.particles, message, "Transform", "nowhere")
+        message = good.sutures()
+        message.header.frame_id = "nowhere"
+        self.refuses(self.sutures, message, "Transform", "nowhere")
+        self.sutures.publish(good.sutures())
+        self.rviz.wait_for_status("Sutures", "Transform", "Ok", "")
+
+    def test_storm(self):
+        """Ten times the simulator's rate: frames go on meanwhile, memory does not grow, and the last message counts."""
+        particles, sutures = good.particles(), good.sutures()
+        before = self.rviz.report()
+        rate, begin = rospy.Rate(STORM_RATE), time.monotonic()
+        for _ in range(STORM):
+            particles.header.stamp = sutures.header.stamp = rospy.Time.now()
+            self.particles.publish(particles)
+            self.sutures.publish(sutures)
+            rate.sleep()
+        during = self.rviz.report()
+        reached = STORM / (time.monotonic() - begin)
+        print("storm: {:.0f} messages/s of each, {} frames".format(reached, during["frames"] - before["frames"]))
+        self.assertGreater(during["frames"], before["frames"])
+        self.refuses(self.particles, good.particles(revision=8), "Particles", "revision 8")
+        self.assertLess(self.rviz.report()["memory"] - before["memory"], MOST_GROWTH)
+
+    def test_60000_particles(self):
+        topology = good.topology(ROWS, AROUND)
+        self.show(topology, good.particles(ROWS, AROUND), good.sutures())
+        for k in range(10):
+            self.particles.publish(good.particles(ROWS, AROUND, change=set_all("strain", 0.01 * k)))
+            self.rviz.wait_for_frames(1)
+        self.assertEqual(self.rviz.status("Stomach", "Particles")[0], "Ok")
+
+
+if __name__ == "__main__":
+    rospy.init_node("rviz_robustness")
+    rostest.rosrun("vibe_rviz_plugins", "rviz_robustness", Robustness)
