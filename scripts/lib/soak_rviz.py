@@ -1,0 +1,119 @@
+"""A recorded session played through rviz again and again: does its memory grow?
+
+scripts/test.d/soak.sh has recorded the session and sourced the environment. The first part of the time is left to warm
+up (fonts, shaders, the largest set of sutures); growth is the slope of a straight line through what is resident after
+that, times half an hour.
+"""
+
+import argparse
+import json
+import os
+import signal
+import sys
+import tempfile
+import time
+
+from graph import Graph, GraphError
+from run_session import Interrupted, attempt, interrupt
+from rviz_window import RvizWindow, wait_for
+
+INTERVAL = 2.0  # between two samples [s]
+WARM_UP = 0.3  # of the time
+HALF_HOUR = 1800.0  # [s]
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(allow_abbrev=False, description=__doc__.split("\n\n", maxsplit=1)[0])
+    for name in ("--program", "--bag", "--config", "--urdf"):
+        parser.add_argument(name, required=True)
+    parser.add_argument("--minutes", type=float, default=30.0, help="of the session")
+    parser.add_argument("--rate", type=float, default=10.0, help="how much faster than real time it is played")
+    parser.add_argument("--most-growth", type=float, default=20.0, help="in half an hour of the session [MB]")
+    return parser.parse_args()
+
+
+def slope(samples):
+    """Of a straight line through (time, value), by least squares."""
+    mean_time = sum(time for time, _ in samples) / len(samples)
+    mean_value = sum(value for _, value in samples) / len(samples)
+    above = sum((time - mean_time) * (value - mean_value) for time, value in samples)
+    return above / sum((time - mean_time) ** 2 for time, _ in samples)
+
+
+class Soak:
+    def __init__(self, arguments, folder):
+        self.arguments = arguments
+        self.report_file = os.path.join(folder, "report.json")
+        logs = os.path.join(folder, "log")
+        os.mkdir(logs)
+        self.graph = Graph(logs)
+        self.window = RvizWindow(self.graph, folder, arguments.config)
+
+    def start(self):
+        self.graph.start_master()
+        self.graph.set_parameter("/use_sim_time", True)
+        with open(self.arguments.urdf, encoding="utf-8") as urdf:
+            self.graph.set_parameter("/robot_description", urdf.read())
+        self.graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
+        self.window.start([self.arguments.program, self.report_file])
+        wait_for(lambda: self.window.check_alive() and self.report()["frames"] > 0, "rviz drew nothing")
+        rate = "{:g}".format(self.arguments.rate)
+        self.graph.start("rosbag", ["rosrun", "rosbag", "play", "--loop", "--quiet", "--rate", rate, self.arguments.bag])
+
+    def report(self):
+        try:
+            with open(self.report_file, encoding="utf-8") as text:
+                return json.load(text)
+        except FileNotFoundError:
+            return {"frames": 0, "memory": 0, "statuses": []}
+
+    def watch(self):
+        begin = time.monotonic()
+        end = 60 * self.arguments.minutes / self.arguments.rate
+        samples = []
+        while time.monotonic() - begin < end:
+            time.sleep(INTERVAL)
+            self.window.check_alive()
+            samples.append((self.arguments.rate * (time.monotonic() - begin), self.report()["memory"] / 1e6))
+        self.judge(samples, end)
+
+    def judge(self, samples, end):
+        warm = [sample for sample in samples if sample[0] > WARM_UP * end * self.arguments.rate]
+        growth = HALF_HOUR * slope(warm)
+        told = self.report()
+        frames = "{:.0f} frames, {:.1f} minutes of the session in {:.1f}".format(
+            told["frames"], self.arguments.minutes, end / 60
+        )
+        print("{}; resident {:.1f} MB when warm, {:.1f} MB at the end, growth {:.2f} MB in half an hour".format(
+            frames, warm[0][1], warm[-1][1], growth))
+        errors = [status for status in told["statuses"] if status["level"] == "Error"]
+        if errors:
+            raise GraphError("a display has an error: {}".format(errors[0]))
+        if growth > self.arguments.most_growth:
+            raise GraphError("memory grew by {:.1f} MB, {:.1f} are allowed".format(growth, self.arguments.most_growth))
+
+    def stop(self):
+        self.graph.stop_all()
+
+
+def main():
+    arguments = parse_arguments()
+    failures = []
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, interrupt)
+    with tempfile.TemporaryDirectory(prefix="vibe-soak-") as folder:
+        soak = Soak(arguments, folder)
+        try:
+            attempt(soak.start, failures)
+            if not failures:
+                attempt(soak.watch, failures)
+        except Interrupted as reason:
+            failures.append("stopped by {}".format(reason))
+        attempt(soak.stop, failures)
+    for failure in failures:
+        print("soak: " + failure, file=sys.stderr)
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()
