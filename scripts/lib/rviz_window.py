@@ -48,8 +48,6 @@ class RvizWindow:
 
     def start(self, program):
         """`program` is rviz, or another one that takes its options."""
-        os.mkdir(self.folder, 0o700)
-        self.graph.env.update(LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1", XDG_RUNTIME_DIR=self.folder)
         self.start_display()
         config = self.config
         if self.view:
@@ -62,6 +60,8 @@ class RvizWindow:
 
     def start_display(self):
         """The X server chooses a free display and writes its number into a pipe."""
+        os.mkdir(self.folder, 0o700)
+        self.graph.env.update(LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1", XDG_RUNTIME_DIR=self.folder)
         number = os.path.join(self.folder, "display")
         command = 'exec Xvfb -displayfd 7 -screen 0 "$1"x24 -nolisten tcp 7>"$2"'
         open(number, "wb").close()
