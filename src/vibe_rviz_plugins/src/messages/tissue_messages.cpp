@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::size_t kMostParticles = 10'000'000;  // beyond that it is a mistake, not an organ
 constexpr std::uint8_t kMostGrade = 3;
+constexpr double kFarthest = 1e6;       // of a place [m]; graphics engines stop the program at boxes without end
+constexpr float kMostWeight = 1000.0F;  // of a particle in a vertex [1]
 
 std::string number(std::size_t value) {
   return std::to_string(value);
@@ -38,7 +40,7 @@ std::string checkSkin(const vibe_msgs::TissueTopology& message, std::size_t part
   for (const std::uint32_t particle : message.skin_particles)
     if (particle >= particles) return "skin_particles of the topology names a particle that does not exist.";
   for (const float weight : message.skin_weights)
-    if (!std::isfinite(weight)) return "skin_weights of the topology holds a value that is not finite.";
+    if (!(std::abs(weight) <= kMostWeight)) return "skin_weights of the topology holds a value that is no share.";
   return {};
 }
 
@@ -47,7 +49,8 @@ std::string checkPositions(const std::vector<double>& positions) {
   if (positions.empty()) return "The topology has no particles.";
   if (positions.size() / 3 > kMostParticles) return "The topology has more than ten million particles.";
   for (const double value : positions)
-    if (!(std::abs(value) < 1e6)) return "rest_positions of the topology holds a value that is no place in metres.";
+    if (!(std::abs(value) < kFarthest))
+      return "rest_positions of the topology holds a value that is no place in metres.";
   return {};
 }
 
@@ -82,9 +85,9 @@ void takeRest(const std::vector<double>& positions, TissueMesh& mesh) {
         mesh.rest[3 * v + c] += mesh.skin_weights[k] * static_cast<float>(positions[3 * mesh.skin_particles[k] + c]);
 }
 
-bool finite(const float* values, std::size_t count, std::size_t& where) {
+bool arePlaces(const float* values, std::size_t count, std::size_t& where) {
   for (where = 0; where < count; ++where)
-    if (!std::isfinite(values[where])) return false;
+    if (!(std::abs(static_cast<double>(values[where])) < kFarthest)) return false;
   return true;
 }
 
@@ -148,8 +151,8 @@ std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueM
     frame.positions[3 * i + 2] = z.at<float>(i);
   }
   std::size_t where = 0;
-  if (!finite(frame.positions.data(), 3 * count, where))
-    return "The place of particle " + number(where / 3) + " is not finite; the last good frame stays.";
+  if (!arePlaces(frame.positions.data(), 3 * count, where))
+    return "The place of particle " + number(where / 3) + " is no place in metres; the last good frame stays.";
   take(strain, count, frame.strain);
   take(grade, count, frame.grade);
   take(dose, count, frame.dose);

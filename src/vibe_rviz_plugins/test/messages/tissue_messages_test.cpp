@@ -106,6 +106,7 @@ TEST(ReadTopology, SaysWhatIsWrongAndKeepsTheOldOne) {
       [](auto& m) { m.skin_particles[2] = 4; },
       [](auto& m) { m.skin_weights.pop_back(); },
       [](auto& m) { m.skin_weights[1] = INFINITY; },
+      [](auto& m) { m.skin_weights[1] = -3e38F; },
       [](auto& m) { m.skin_triangles[1] = 3; },
   };
   for (std::size_t k = 0; k < spoils.size(); ++k) {
@@ -140,10 +141,15 @@ TEST(ReadParticles, SaysWhatIsWrong) {
   const std::vector<std::pair<std::string, Spoil>> spoils{
       {"revision", [](auto& m) { m = cloudOf(4, 8); }},
       {"particles", [](auto& m) { m = cloudOf(5, 7); }},
-      {"finite",
+      {"particle 2 is no place",
        [](auto& m) {
          const float bad = NAN;
          std::memcpy(&m.data[2 * sizeof(Point) + 4], &bad, 4);
+       }},
+      {"particle 3 is no place",
+       [](auto& m) {
+         const float bad = 3e38F;  // finite, but the organ around it is not
+         std::memcpy(&m.data[3 * sizeof(Point) + 8], &bad, 4);
        }},
       {"cut short", [](auto& m) { m.data.resize(m.data.size() - 1); }},
       {"'y'", [](auto& m) { m.fields[1].name = "why"; }},
