@@ -102,7 +102,7 @@ EsgStyle demonstration() {
   style.marks = 3;
   style.mark_spread = 1.0;
   style.mark_time = 1;
-  style.burn_time = 18;
+  style.burn_time = 13.5;
   style.burnt_mark = 7;  // on the posterior wall, which is seen through the anterior one
   return style;
 }
