@@ -1,7 +1,7 @@
 """Do two pictures look alike? Two measures, both after a small blur, for edges differ by fractions of a pixel between
 graphics drivers: the structural similarity of lightness (Wang et al. 2004, IEEE TIP 13:600; a Gaussian window of 1.5
-pixels), and the mean colour difference in CIELAB (CIE 76). Both are means over the worst three percent of tiles, so that a small
-part that differs is not hidden by the background.
+pixels), and the mean colour difference in CIELAB (CIE 76). Both are means over the worst three percent of the tiles of
+the picture, so that a small part that differs is not hidden by the background.
 
 Usage: compare_pictures.py REFERENCE PICTURE [--region WIDTHxHEIGHT+X+Y] [--similarity LEAST] [--colour MOST]
 Prints both figures; status 0: alike, 1: not, 2: cannot be compared.
@@ -19,7 +19,7 @@ BLUR = 1.0  # standard deviation [pixels]
 WINDOW = 1.5  # standard deviation of the window of the similarity [pixels]
 TILE = 32  # [pixels]
 WORST = 0.03  # share of the tiles that counts
-LEAST_SIMILARITY, MOST_COLOUR = 0.9, 3.0  # measured: docs/rviz_pictures.md
+LEAST_SIMILARITY, MOST_COLOUR = 0.9, 3.0  # why: docs/rviz_benchmark.md#pictures
 
 # sRGB with the white of D65 to CIE XYZ (IEC 61966-2-1), divided by that white
 TO_XYZ = numpy.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
