@@ -18,6 +18,7 @@
 
 #include "offscreen.hpp"
 #include "panels/procedure_cockpit.hpp"
+#include "panels/procedure_panel.hpp"
 
 namespace vibe {
 namespace {
@@ -259,6 +260,19 @@ TEST_F(Cockpit, aNamespaceThatCannotBeUsedIsRefused) {
   EXPECT_EQ(cockpit->nameSpace(), "/good");
   waitFor(0.3, [] { return false; });
   EXPECT_TRUE(contains(textOf(*cockpit, "status"), "'not good' cannot be used"));
+}
+
+TEST_F(Cockpit, theNamespaceIsKeptInTheConfiguration) {
+  offscreenApplication();
+  ProcedurePanel panel;
+  rviz::Config config;
+  config.mapSetValue("Namespace", "/room1");
+  panel.load(config);
+  const rviz::Config saved;
+  panel.save(saved);
+  QString name;
+  EXPECT_TRUE(saved.mapGetString("Namespace", &name));
+  EXPECT_EQ(name.toStdString(), "/room1");
 }
 
 }  // namespace
