@@ -89,6 +89,8 @@ class Soak:
         errors = [status for status in told["statuses"] if status["level"] == "Error"]
         if errors:
             raise GraphError("a display has an error: {}".format(errors[0]))
+        if ("Stomach", "Particles", "Ok") not in [(s["of"], s["what"], s["level"]) for s in told["statuses"]]:
+            raise GraphError("rviz drew no organ: what it told last is {}".format(told["statuses"]))
         if growth > self.arguments.most_growth:
             raise GraphError("memory grew by {:.1f} MB, {:.1f} are allowed".format(growth, self.arguments.most_growth))
 

@@ -1,6 +1,18 @@
 # Half an hour of a session, played through rviz: its memory does not grow. Minutes long: it is played ten times as fast.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
+# A megabyte a minute is growth, noise of ten megabytes around one value is none.
+growthIsSeen() {
+  PYTHONPATH=$root/scripts/lib PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 - <<'PYTHON'
+from soak_rviz import HALF_HOUR, slope
+leak = [(time, 300 + time / 60) for time in range(0, 1800, 20)]
+noise = [(time, 300 + 10 * (k % 2)) for k, time in enumerate(range(0, 1800, 20))]
+assert abs(HALF_HOUR * slope(leak) - 30) < 1e-6
+assert abs(HALF_HOUR * slope(noise)) < 1
+PYTHON
+}
+check 'soak: growth is told from noise' growthIsSeen
+
 program=$root/devel/lib/vibe_rviz_plugins/rviz_report
 if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$program" ]; then
   echo 'skipped half an hour of rviz (scripts/test --slow makes it)'
