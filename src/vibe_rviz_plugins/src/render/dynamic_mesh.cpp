@@ -102,11 +102,11 @@ void DynamicMesh::makeIndexData(const std::vector<std::uint32_t>& triangles) {
 }
 
 void DynamicMesh::setVertices(const MovingVertex* vertices, std::size_t first, std::size_t count) {
-  if (count > 0) write(*vertices_, vertices, first, count);
+  if (vertices_ && count > 0) write(*vertices_, vertices, first, count);
 }
 
 void DynamicMesh::setColours(const PackedColour* colours, std::size_t first, std::size_t count) {
-  if (count > 0) write(*colours_, colours, first, count);
+  if (colours_ && count > 0) write(*colours_, colours, first, count);
 }
 
 void DynamicMesh::setBounds(const Ogre::AxisAlignedBox& bounds) {
