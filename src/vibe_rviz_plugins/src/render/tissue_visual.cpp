@@ -137,7 +137,11 @@ void TissueVisual::applySide(Ogre::MaterialPtr& material, const Ogre::ColourValu
     parameters->setNamedConstant("tint", Ogre::Vector4(tint.r, tint.g, tint.b, transparent ? opacity : 1));
     parameters->setNamedConstant("edge_alpha",
                                  transparent ? static_cast<float>(std::max(kEdgeAlpha, look_.outside_alpha)) : 1.0F);
-    parameters->setNamedConstant("wet", static_cast<float>(look_.wetness * (endoscope ? 1.3 : transparent ? 0.6 : 1) * (plain ? 1 : 0.4)));
+    parameters->setNamedConstant("wet", static_cast<float>(look_.wetness *
+                                                           (endoscope     ? 1.3
+                                                            : transparent ? 0.6
+                                                                          : 1) *
+                                                           (plain ? 1 : 0.4)));
     parameters->setNamedConstant("relief", static_cast<float>(look_.relief));
     parameters->setNamedConstant("grain", static_cast<float>(plain ? kGrain : 0));
     parameters->setNamedConstant("fill", plain ? kFill : kFillOfData);
