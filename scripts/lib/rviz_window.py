@@ -38,11 +38,11 @@ def with_view(config, name):
 class RvizWindow:
     """One rviz: `view` is one of the saved views, or empty for the configuration as it is."""
 
-    def __init__(self, graph, folder, config, view=""):
+    def __init__(self, graph, folder, config, view="", fewest_colours=FEWEST_COLOURS):
         self.graph, self.view = graph, view
         self.name = "rviz" + ("_" + "".join(c if c.isalnum() else "_" for c in view) if view else "")
         self.folder = os.path.join(folder, self.name)
-        self.config = config
+        self.config, self.fewest_colours = config, fewest_colours
         self.display = ""
         self.process = None
 
@@ -88,7 +88,7 @@ class RvizWindow:
     def grab(self, file):
         self.check_alive()
         self.ask(["import", "-window", "root", file])
-        return int(self.ask(["identify", "-format", "%k", file])) >= FEWEST_COLOURS
+        return int(self.ask(["identify", "-format", "%k", file])) >= self.fewest_colours
 
     def is_steady(self, file, last):
         said = self.ask(["compare", "-metric", "AE", "-fuzz", "2%", file, last, "null:"], accepted=(0, 1))

@@ -15,7 +15,7 @@ import tempfile
 
 from graph import GraphError
 from run_session import Interrupted, Session, attempt, interrupt
-from rviz_window import RvizWindow, wait_for
+from rviz_window import FEWEST_COLOURS, RvizWindow, wait_for
 
 Picture = collections.namedtuple("Picture", "name seconds view")
 
@@ -33,6 +33,7 @@ def parse_arguments():
         parser.add_argument(name, required=True)
     parser.add_argument("--view", default="")
     parser.add_argument("--program", default="rosrun rviz rviz")
+    parser.add_argument("--colours", type=int, default=FEWEST_COLOURS)
     parser.add_argument("pictures", nargs="+", type=picture_of)
     arguments = parser.parse_args()
     arguments.mesh, arguments.fast, arguments.duration, arguments.headless = "", True, 0.0, False
@@ -49,7 +50,9 @@ class PictureSession(Session):
         super().__init__(arguments)
         self.steps_done = 0
         views = sorted({picture.view for picture in arguments.pictures})
-        self.windows = {view: RvizWindow(self.graph, self.output, arguments.config, view) for view in views}
+        self.windows = {}
+        for view in views:
+            self.windows[view] = RvizWindow(self.graph, self.output, arguments.config, view, arguments.colours)
 
     def set_parameters(self):
         super().set_parameters()

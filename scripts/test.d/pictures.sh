@@ -74,7 +74,7 @@ check 'rviz draws the five states' takesPictures
 for state in "${states[@]}"; do check "rviz: $state looks as in the documentation" looksLikeTheReference "$state"; done
 check 'rviz: no display has an error or a warning' noDisplayHasAnError
 
-# balls in place of the surface, and a display that has nothing to show: both must be seen
+# no surface, and a display that has nothing to show: both must be seen
 withoutTheSurface() {
   /usr/bin/python3 - "$root/src/vibe_description/rviz/vibe.rviz" "$scratch/without.rviz" <<'PYTHON'
 import sys, yaml
@@ -82,13 +82,12 @@ config = yaml.safe_load(open(sys.argv[1]))
 for display in config["Visualization Manager"]["Displays"]:
     if display["Name"] == "Stomach":
         display["Surface"]["Value"] = False
-        display["Particles"]["Value"] = True
     if display["Name"] == "Sutures":
         display["Topic"] = "/nobody/says/anything"
 yaml.safe_dump(config, open(sys.argv[2], "w"))
 PYTHON
   "$root/scripts/picture" --program "$program $scratch/report.json" --config "$scratch/without.rviz" \
-    --output "$scratch" without=10 && fails compare "$references/rest.png" "$scratch/without.png"
+    --colours 500 --output "$scratch" without=10 && fails compare "$references/rest.png" "$scratch/without.png"
 }
 check 'rviz: a surface that is not drawn is seen to be missing' withoutTheSurface
 check 'rviz: a display without messages is seen' fails noDisplayHasAnError
