@@ -8,7 +8,7 @@ uniform float wet;         // strength of highlights, 0: dull
 uniform float relief;      // height of the fine relief [m]
 uniform float grain;       // how much the fine pattern changes the colour
 uniform float fill;        // light from everywhere; colours that mean something need much of it
-uniform float scars;       // 1: show heat, 0: do not
+uniform float scars;       // 1: show heat, 0: do not; from outside it is shown only through a transparent wall
 uniform float reach;       // of the lamp: half as bright there [m]; 0: as bright everywhere
 
 varying vec3 view_position;
@@ -72,5 +72,6 @@ void main() {
   float brightest = max(max(light.r, light.g), max(light.b, 0.001));
   if (reach > 0.0) light *= (1.0 - exp(-1.5 * brightest)) / brightest;
   float opacity = mix(edge_alpha, tint.a, facing);
+  opacity = max(opacity, 0.75 * smoothstep(0.05, 0.4, heat));  // marks show through a wall of glass
   gl_FragColor = vec4(light, clamp(opacity + wet * gloss * 0.6, 0.0, 1.0));
 }

@@ -145,7 +145,7 @@ void TissueVisual::applySide(Ogre::MaterialPtr& material, const Ogre::ColourValu
     parameters->setNamedConstant("relief", static_cast<float>(look_.relief));
     parameters->setNamedConstant("grain", static_cast<float>(plain ? kGrain : 0));
     parameters->setNamedConstant("fill", plain ? kFill : kFillOfData);
-    parameters->setNamedConstant("scars", look_.scars && !outside ? 1.0F : 0.0F);
+    parameters->setNamedConstant("scars", look_.scars && (!outside || transparent) ? 1.0F : 0.0F);
   }
 }
 
