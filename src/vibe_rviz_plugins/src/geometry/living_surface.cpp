@@ -7,106 +7,112 @@ namespace {
 
 constexpr std::size_t kFewerThan = 4;  // a part of the particles above one in so many is not worth telling apart
 
-Eigen::Vector4f particle(const std::vector<float>& positions, std::size_t number) {
-  return {positions[3 * number], positions[3 * number + 1], positions[3 * number + 2], 0.0F};
+// Adds an item to a list once; the marks are taken away by who empties the list.
+void addOnce(std::uint32_t item, std::vector<std::uint8_t>& marks, std::vector<std::uint32_t>& list) {
+  if (marks[item] != 0) return;
+  marks[item] = 1;
+  list.push_back(item);
 }
 
 }  // namespace
 
 LivingSurface::LivingSurface(const TissueMesh& mesh)
-    : triangles_(mesh.triangles),
+    : triangles_(mesh.particle_triangles),
       skin_offsets_(mesh.skin_offsets),
       skin_particles_(mesh.skin_particles),
       skin_weights_(mesh.skin_weights),
-      triangles_of_vertex_(turnedAround(mesh.triangles, 3, mesh.vertex_count)) {
+      triangles_of_particle_(turnedAround(mesh.particle_triangles, 3, mesh.particle_count)) {
   if (mesh.skinned()) vertices_of_particle_ = turnedAround(skin_offsets_, skin_particles_, mesh.particle_count);
-  places_.assign(mesh.vertex_count, Eigen::Vector4f::Zero());
-  normals_.assign(triangles_.size() / 3, Eigen::Vector4f::Zero());
+  places_.assign(mesh.particle_count, Eigen::Vector4f::Zero());
+  normals_.assign(mesh.particle_count, Eigen::Vector4f::Zero());
+  areas_.assign(triangles_.size() / 3, Eigen::Vector4f::Zero());
   vertices_.assign(mesh.vertex_count, MovingVertex{{0, 0, 0}, {0, 0, 1}});
+  particle_mark_.assign(mesh.particle_count, 0);
+  triangle_mark_.assign(areas_.size(), 0);
   vertex_mark_.assign(mesh.vertex_count, 0);
-  triangle_mark_.assign(normals_.size(), 0);
 }
 
 VertexSpan LivingSurface::update(const std::vector<float>& positions) {
-  if (positions_.size() != positions.size()) {
-    moveAll(positions);
+  const bool first = positions_.empty();
+  if (first) positions_.assign(positions.size(), 0);
+  findMoved(positions);
+  if (first || moved_.size() * kFewerThan >= places_.size()) {
+    moveAll();
     return {0, vertices_.size()};
   }
-  findMoved(positions);
-  if (moved_.empty()) return {};
-  if (moved_.size() * kFewerThan < positions.size() / 3) return movePart(positions);
-  moveAll(positions);
-  return {0, vertices_.size()};
+  return moved_.empty() ? VertexSpan{} : movePart();
 }
 
 void LivingSurface::findMoved(const std::vector<float>& positions) {
   moved_.clear();
-  const std::size_t count = positions.size() / 3;
-  for (std::size_t i = 0; i < count; ++i)
-    if (std::memcmp(&positions[3 * i], &positions_[3 * i], 3 * sizeof(float)) != 0)
-      moved_.push_back(static_cast<std::uint32_t>(i));
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const float* place = &positions[3 * i];
+    if (std::memcmp(place, &positions_[3 * i], 3 * sizeof(float)) == 0) continue;
+    moved_.push_back(static_cast<std::uint32_t>(i));
+    places_[i] = {place[0], place[1], place[2], 0};
+    std::memcpy(&positions_[3 * i], place, 3 * sizeof(float));
+  }
 }
 
-Eigen::Vector4f LivingSurface::placeOf(std::size_t vertex, const std::vector<float>& positions) const {
-  if (skin_offsets_.empty()) return particle(positions, vertex);
-  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-  for (std::uint32_t k = skin_offsets_[vertex]; k < skin_offsets_[vertex + 1]; ++k)
-    sum += skin_weights_[k] * particle(positions, skin_particles_[k]);
-  return sum;
-}
-
-Eigen::Vector4f LivingSurface::normalOf(std::size_t triangle) const {
+void LivingSurface::findNormal(std::size_t triangle) {
   const std::uint32_t* corner = &triangles_[3 * triangle];
   const Eigen::Vector4f& a = places_[corner[0]];
   const Eigen::Vector4f ab = places_[corner[1]] - a, ac = places_[corner[2]] - a;
-  return ab.cross3(ac);
+  areas_[triangle] = ab.cross3(ac);
+}
+
+void LivingSurface::findParticleNormal(std::size_t particle) {
+  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+  const std::uint32_t* last = triangles_of_particle_.end(particle);
+  for (const std::uint32_t* t = triangles_of_particle_.begin(particle); t != last; ++t) sum += areas_[*t];
+  const float length = sum.norm();
+  normals_[particle] = length > 0 ? Eigen::Vector4f(sum / length) : sum;
 }
 
 void LivingSurface::writeVertex(std::size_t vertex) {
-  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-  const std::uint32_t* last = triangles_of_vertex_.end(vertex);
-  for (const std::uint32_t* t = triangles_of_vertex_.begin(vertex); t != last; ++t) sum += normals_[*t];
-  const float length = sum.norm();
-  if (length > 0) sum /= length;
+  Eigen::Vector4f place, normal;
+  if (skin_offsets_.empty()) {
+    place = places_[vertex], normal = normals_[vertex];
+  } else {
+    place.setZero(), normal.setZero();
+    for (std::uint32_t k = skin_offsets_[vertex]; k < skin_offsets_[vertex + 1]; ++k) {
+      place += skin_weights_[k] * places_[skin_particles_[k]];
+      normal += skin_weights_[k] * normals_[skin_particles_[k]];
+    }
+    const float length = normal.norm();
+    if (length > 0) normal /= length;
+  }
   MovingVertex& out = vertices_[vertex];
-  for (int c = 0; c < 3; ++c) out.position[c] = places_[vertex][c], out.normal[c] = sum[c];
+  std::memcpy(out.position, place.data(), sizeof out.position);
+  std::memcpy(out.normal, normal.data(), sizeof out.normal);
 }
 
-void LivingSurface::moveAll(const std::vector<float>& positions) {
-  for (std::size_t v = 0; v < places_.size(); ++v) places_[v] = placeOf(v, positions);
-  for (std::size_t t = 0; t < normals_.size(); ++t) normals_[t] = normalOf(t);
+void LivingSurface::moveAll() {
+  for (std::size_t t = 0; t < areas_.size(); ++t) findNormal(t);
+  for (std::size_t i = 0; i < normals_.size(); ++i) findParticleNormal(i);
   for (std::size_t v = 0; v < vertices_.size(); ++v) writeVertex(v);
-  positions_ = positions;
   findBounds();
 }
 
-void LivingSurface::markNeighbours(std::vector<std::uint32_t>& vertices) {
-  touched_triangles_.clear();
-  for (const std::uint32_t v : vertices)
-    for (const std::uint32_t* t = triangles_of_vertex_.begin(v); t != triangles_of_vertex_.end(v); ++t)
-      if (triangle_mark_[*t] == 0) triangle_mark_[*t] = 1, touched_triangles_.push_back(*t);
-  for (const std::uint32_t t : touched_triangles_)
-    for (int c = 0; c < 3; ++c) {
-      const std::uint32_t v = triangles_[3 * t + c];
-      if (vertex_mark_[v] == 0) vertex_mark_[v] = 1, vertices.push_back(v);
-    }
-}
-
-VertexSpan LivingSurface::movePart(const std::vector<float>& positions) {
-  touched_vertices_.clear();
-  const auto touch = [this](std::uint32_t v) {
-    if (vertex_mark_[v] == 0) vertex_mark_[v] = 1, touched_vertices_.push_back(v);
-  };
+VertexSpan LivingSurface::movePart() {
+  touched_.clear(), touched_triangles_.clear(), touched_vertices_.clear();
   for (const std::uint32_t i : moved_) {
-    std::memcpy(&positions_[3 * i], &positions[3 * i], 3 * sizeof(float));
-    if (skin_offsets_.empty())
-      touch(i);
-    else
-      std::for_each(vertices_of_particle_.begin(i), vertices_of_particle_.end(i), touch);
+    addOnce(i, particle_mark_, touched_);
+    for (const std::uint32_t* t = triangles_of_particle_.begin(i); t != triangles_of_particle_.end(i); ++t)
+      addOnce(*t, triangle_mark_, touched_triangles_);
   }
-  for (const std::uint32_t v : touched_vertices_) places_[v] = placeOf(v, positions);
-  markNeighbours(touched_vertices_);
-  for (const std::uint32_t t : touched_triangles_) normals_[t] = normalOf(t), triangle_mark_[t] = 0;
+  for (const std::uint32_t t : touched_triangles_) {
+    findNormal(t), triangle_mark_[t] = 0;
+    for (std::size_t c = 0; c < 3; ++c) addOnce(triangles_[3 * t + c], particle_mark_, touched_);
+  }
+  for (const std::uint32_t i : touched_) {
+    findParticleNormal(i), particle_mark_[i] = 0;
+    if (skin_offsets_.empty())
+      addOnce(i, vertex_mark_, touched_vertices_);
+    else
+      for (const std::uint32_t* v = vertices_of_particle_.begin(i); v != vertices_of_particle_.end(i); ++v)
+        addOnce(*v, vertex_mark_, touched_vertices_);
+  }
   VertexSpan span;
   for (const std::uint32_t v : touched_vertices_) writeVertex(v), span.add(v), vertex_mark_[v] = 0;
   findBounds();
@@ -114,10 +120,8 @@ VertexSpan LivingSurface::movePart(const std::vector<float>& positions) {
 }
 
 void LivingSurface::findBounds() {
-  if (places_.empty()) return;
-  Eigen::Vector4f least = places_.front(), greatest = places_.front();
-  for (const Eigen::Vector4f& place : places_) least = least.cwiseMin(place), greatest = greatest.cwiseMax(place);
-  bounds_ = Eigen::AlignedBox3f(least.head<3>(), greatest.head<3>());
+  bounds_.setEmpty();
+  for (const MovingVertex& vertex : vertices_) bounds_.extend(Eigen::Map<const Eigen::Vector3f>(vertex.position));
 }
 
 }  // namespace vibe

@@ -20,36 +20,38 @@ class LivingSurface {
   /// @return  the vertices that are no longer what they were
   VertexSpan update(const std::vector<float>& positions);
 
-  /// Normals are means of the neighbouring triangles' weighted by their areas, pointing outward.
+  /// Normals point outward. That of a particle is the mean of its triangles' weighted by their areas; a skin mixes the
+  /// normals of its particles as it mixes their places.
   const std::vector<MovingVertex>& vertices() const { return vertices_; }
   /// Around all vertices; empty before the first update.
   const Eigen::AlignedBox3f& bounds() const { return bounds_; }
 
  private:
   void findMoved(const std::vector<float>& positions);
-  void moveAll(const std::vector<float>& positions);
-  VertexSpan movePart(const std::vector<float>& positions);
-  void markNeighbours(std::vector<std::uint32_t>& vertices);
-  Eigen::Vector4f placeOf(std::size_t vertex, const std::vector<float>& positions) const;
-  Eigen::Vector4f normalOf(std::size_t triangle) const;
+  void moveAll();
+  VertexSpan movePart();
+  void findNormal(std::size_t triangle);
+  void findParticleNormal(std::size_t particle);
   void writeVertex(std::size_t vertex);
   void findBounds();
 
   // what does not change
-  std::vector<std::uint32_t> triangles_, skin_offsets_, skin_particles_;
+  std::vector<std::uint32_t> triangles_;  // of particles
+  std::vector<std::uint32_t> skin_offsets_, skin_particles_;
   std::vector<float> skin_weights_;
-  Incidence triangles_of_vertex_, vertices_of_particle_;  // the latter is empty without a skin
+  Incidence triangles_of_particle_, vertices_of_particle_;  // the latter is empty without a skin
 
   // as drawn last
   std::vector<float> positions_;
-  std::vector<Eigen::Vector4f> places_, normals_;  // of vertices, of triangles (twice the area); the fourth is 0
+  std::vector<Eigen::Vector4f> places_, normals_;  // of particles; the fourth is 0
+  std::vector<Eigen::Vector4f> areas_;             // normals of triangles, twice as long as their areas
   std::vector<MovingVertex> vertices_;
   Eigen::AlignedBox3f bounds_;
 
   // scratch, so that a frame allocates nothing
-  std::vector<std::uint32_t> moved_;  // particles
-  std::vector<std::uint32_t> touched_vertices_, touched_triangles_;
-  std::vector<std::uint8_t> vertex_mark_, triangle_mark_;
+  std::vector<std::uint32_t> moved_, touched_;  // particles
+  std::vector<std::uint32_t> touched_triangles_, touched_vertices_;
+  std::vector<std::uint8_t> particle_mark_, triangle_mark_, vertex_mark_;
 };
 
 }  // namespace vibe

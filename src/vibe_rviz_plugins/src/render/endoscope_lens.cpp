@@ -48,8 +48,23 @@ void drawBent(Ogre::CompositionTechnique& technique, const Ogre::MaterialPtr& ma
 
 }  // namespace
 
+EndoscopeLens::EndoscopeLens(Ogre::Viewport& viewport) : viewport_(&viewport) {
+  viewport_->addListener(this);
+}
+
+EndoscopeLens::~EndoscopeLens() {
+  remove();
+  if (viewport_ != nullptr) viewport_->removeListener(this);
+}
+
+// Ogre drops the viewport's compositors itself.
+void EndoscopeLens::viewportDestroyed(Ogre::Viewport*) {
+  viewport_ = nullptr;
+}
+
 void EndoscopeLens::set(LensKind lens, double field_of_view, double sharpness) {
-  const RoundCamera wanted{lens, field_of_view, viewport_.getActualWidth(), viewport_.getActualHeight()};
+  if (viewport_ == nullptr) return;
+  const RoundCamera wanted{lens, field_of_view, viewport_->getActualWidth(), viewport_->getActualHeight()};
   if (!problemOf(wanted).empty()) return remove();  // a window that is too small to show anything
   const bool same = !name_.empty() && sharpness == sharpness_ && wanted.lens == camera_.lens &&
                     wanted.field_of_view == camera_.field_of_view && wanted.width == camera_.width &&
@@ -62,7 +77,7 @@ void EndoscopeLens::set(LensKind lens, double field_of_view, double sharpness) {
     make(source_);
   }
   // each time: who owns the viewport adapts the camera to the window whenever that changes
-  Ogre::Camera* eye = viewport_.getCamera();
+  Ogre::Camera* eye = viewport_->getCamera();
   eye->setAspectRatio(1);
   eye->setFOVy(Ogre::Radian(static_cast<Ogre::Real>(2 * std::atan(source_.half_width))));
   lamp_->setPosition(eye->getDerivedPosition());
@@ -71,7 +86,7 @@ void EndoscopeLens::set(LensKind lens, double field_of_view, double sharpness) {
 void EndoscopeLens::remove() {
   if (name_.empty()) return;
   auto& manager = Ogre::CompositorManager::getSingleton();
-  manager.removeCompositor(&viewport_, name_);
+  if (viewport_ != nullptr) manager.removeCompositor(viewport_, name_);
   manager.remove(name_, kResourceGroup);
   dropMaterial(material_);
   name_.clear();
@@ -82,7 +97,7 @@ void EndoscopeLens::remove() {
 }
 
 void EndoscopeLens::light() {
-  Ogre::SceneManager* scene = viewport_.getCamera()->getSceneManager();
+  Ogre::SceneManager* scene = viewport_->getCamera()->getSceneManager();
   Ogre::Light* lamp = scene->createLight(uniqueName("Lamp"));
   lamp->setType(Ogre::Light::LT_POINT);
   lamp->setDiffuseColour(0.6f, 0.6f, 0.6f);
@@ -102,14 +117,14 @@ void EndoscopeLens::make(const SquareSource& source) {
   texture.width = texture.height = static_cast<std::uint32_t>(source.size);
   texture.formatList.push_back(Ogre::PF_BYTE_RGBA);
   texture.fsaa = false;  // bending the picture blends neighbours anyway
-  drawScene(technique, viewport_.getVisibilityMask());
+  drawScene(technique, viewport_->getVisibilityMask());
   drawBent(technique, material_);
-  if (manager.addCompositor(&viewport_, name_) == nullptr) {
+  if (manager.addCompositor(viewport_, name_) == nullptr) {
     manager.remove(name_, kResourceGroup);
     name_.clear();
     throw std::runtime_error("The graphics card cannot draw the endoscope's view; choose another view.");
   }
-  manager.setCompositorEnabled(&viewport_, name_, true);
+  manager.setCompositorEnabled(viewport_, name_, true);
   light();
 }
 

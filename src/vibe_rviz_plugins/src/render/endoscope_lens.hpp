@@ -1,5 +1,6 @@
 #pragma once
 #include <OgreMaterial.h>
+#include <OgreViewport.h>
 
 #include <string>
 
@@ -7,18 +8,18 @@
 
 namespace Ogre {
 class SceneNode;
-class Viewport;
 }  // namespace Ogre
 
 namespace vibe {
 
 /// Makes a viewport show what an endoscope shows: bent by its lens, black outside of a circle, lit by its lamp: scheme
 /// kEndoscopeScheme for materials of this package, a light in the scene for those of others. The viewport's camera has
-/// to be where the lens is; its angles are set here. Ends when deleted, which must be before viewport and camera are.
-class EndoscopeLens {
+/// to be where the lens is; its angles are set here. Ends when deleted or when the viewport is: rviz takes its window
+/// down before its views. The scene has to outlive it.
+class EndoscopeLens : private Ogre::Viewport::Listener {
  public:
-  explicit EndoscopeLens(Ogre::Viewport& viewport) : viewport_(viewport) {}
-  ~EndoscopeLens() { remove(); }
+  explicit EndoscopeLens(Ogre::Viewport& viewport);
+  ~EndoscopeLens() override;
   EndoscopeLens(const EndoscopeLens&) = delete;
   EndoscopeLens& operator=(const EndoscopeLens&) = delete;
 
@@ -32,12 +33,13 @@ class EndoscopeLens {
   const RoundCamera& camera() const { return camera_; }
 
  private:
+  void viewportDestroyed(Ogre::Viewport* viewport) override;
   void remove();
   void light();
   void make(const SquareSource& source);
   void setMaterial(const SquareSource& source);
 
-  Ogre::Viewport& viewport_;
+  Ogre::Viewport* viewport_;  ///< null once it is gone
   RoundCamera camera_;
   double sharpness_ = 0;
   SquareSource source_;

@@ -132,6 +132,23 @@ TEST_F(EndoscopeLensTest, LeavesTheViewAsItWas) {
   EXPECT_FALSE(before == during);
 }
 
+// As rviz ends: its window goes before its views. The address sanitizer sees a lens that does not notice.
+TEST_F(EndoscopeLensTest, AViewportThatGoesFirstTakesNothingWithItThatIsNeeded) {
+  Ogre::RenderTarget& target = *picture_->getBuffer()->getRenderTarget();
+  auto useOnce = [&target] {
+    Ogre::Viewport* other = target.addViewport(camera_, 1, 0, 0, 0.5F, 0.5F);
+    EndoscopeLens lens(*other);
+    lens.set(LensKind::Equidistant, 140 * kDegree, 1);
+    draw();
+    target.removeViewport(1);
+    lens.set(LensKind::Rectilinear, 100 * kDegree, 1);  // nothing to set it on any more
+  };
+  useOnce();
+  const std::size_t before = resources();
+  useOnce();
+  EXPECT_EQ(resources(), before);
+}
+
 TEST_F(EndoscopeLensTest, NothingStaysHoweverOftenItIsChanged) {
   auto useOnce = [] {
     EndoscopeLens lens(*viewport_);
