@@ -12,6 +12,8 @@ namespace vibe {
 
 namespace {
 
+constexpr double kPeakOverMean = 1.875;  // of the speed of a minimum-jerk movement (Flash & Hogan 1985)
+
 // mean speeds of an experienced hand, design choice [m/s], [rad/s]
 constexpr std::array<double, kJointCount> kHandSpeed{0.04, 1.2, 1.2, 1.2, 0.025, 12.5, 0.05};
 
@@ -56,7 +58,8 @@ void Rehearsal::moveTo(const std::array<double, kJointCount>& joints, double lea
   std::string text;
   for (int j = 0; j < kJointCount; ++j) {
     if (!std::isfinite(joints[j]) || std::abs(joints[j] - joints_[j]) < 1e-6) continue;
-    time = std::max(time, std::abs(joints[j] - joints_[j]) / (pace * kHandSpeed[j]));
+    const double way = std::abs(joints[j] - joints_[j]);
+    time = std::max({time, way / (pace * kHandSpeed[j]), kPeakOverMean * way / model_->tool->limits()[j].velocity});
     text += (text.empty() ? "" : ", ") + std::string(kJointNames[j]) + ": " + number(joints[j]);
     joints_[j] = joints[j];
   }
