@@ -72,9 +72,9 @@ void SutureDisplay::addThreadProperties() {
                                                "until 3 N, a full bite tears out at about 8 N.",
                                                colour_property_, SLOT(changeStyle()), this);
   greatest_property_->setMin(0.01F);
-  legend_property_ =
-      new rviz::BoolProperty("Legend", true, "Shows what the colours mean in the lower right corner of the views.",
-                             colour_property_, SLOT(changeLegend()), this);
+  legend_property_ = new rviz::BoolProperty(
+      "Legend", true, "Shows what the colours mean in the lower right corner of the views, once there is a thread.",
+      colour_property_, SLOT(changeLegend()), this);
   slack_property_ = new rviz::ColorProperty("Slack", QColor(237, 242, 255),
                                             "Colour of thread without tension, in bands with a darker one.",
                                             colour_property_, SLOT(changeStyle()), this);
@@ -180,6 +180,7 @@ void SutureDisplay::reset() {
   latest_.reset(), shown_.reset();
   scene_ = {};
   if (visual_) visual_->clear();
+  changeLegend();
   threads_changed_ = blood_changed_ = false;
   placed_.reset();
   said_.clear();
@@ -217,7 +218,7 @@ void SutureDisplay::changeStyle() {
 }
 
 void SutureDisplay::changeLegend() {
-  const bool wanted = visual_ && isEnabled() && legend_property_->getBool() && showsTension();
+  const bool wanted = visual_ && isEnabled() && legend_property_->getBool() && showsTension() && !scene_.sets.empty();
   legend_property_->setHidden(!showsTension());
   if (!wanted) {
     if (legend_) legend_->hide();
@@ -266,7 +267,9 @@ void SutureDisplay::report() {
   blood_changed_ |= !blood_same;
   blood_style_.time = message->header.stamp.toSec();
   shown_ = message;
+  const bool first = scene_.sets.empty() != scene.sets.empty();
   scene_ = std::move(scene);
+  if (first) changeLegend();
 }
 
 /// The frame of the message may move against the fixed frame also while no message comes.
