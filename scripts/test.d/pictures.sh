@@ -70,9 +70,18 @@ assert not missing, "nothing is told of {}".format(missing)
 sys.exit(1 if bad else 0)
 PYTHON
 }
+everyPropertyHasHelp() {
+  /usr/bin/python3 - "$scratch/report.json" "$1" <<'PYTHON'
+import json, sys
+told = json.load(open(sys.argv[1]))["help"]
+print("{properties} properties, without help: {without_help}".format(**told))
+sys.exit(1 if told["without_help"] or told["properties"] < int(sys.argv[2]) else 0)
+PYTHON
+}
 check 'rviz draws the five states' takesPictures
 for state in "${states[@]}"; do check "rviz: $state looks as in the documentation" looksLikeTheReference "$state"; done
 check 'rviz: no display has an error or a warning' noDisplayHasAnError
+check 'rviz: every property has a help sentence' everyPropertyHasHelp 30
 
 # no surface, and a display that has nothing to show: both must be seen
 withoutTheSurface() {

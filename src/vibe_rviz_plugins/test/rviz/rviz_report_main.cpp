@@ -2,14 +2,17 @@
 //
 // usage: rviz_report FILE [options of rviz]
 // FILE holds one JSON object: frames (drawn so far), memory (resident [B]) and
-// statuses, a list of {of, what, level, text} with the level "Ok", "Warn" or "Error".
+// statuses, a list of {of, what, level, text} with the level "Ok", "Warn" or "Error", and in help the number of
+// properties of this package's displays, tools and view, and the names of those without a help sentence.
 #include <rviz/display_group.h>
 #include <rviz/failed_display.h>
 #include <rviz/failed_panel.h>
 #include <rviz/failed_tool.h>
 #include <rviz/failed_view_controller.h>
 #include <rviz/properties/status_list.h>
+#include <rviz/tool.h>
 #include <rviz/tool_manager.h>
+#include <rviz/view_controller.h>
 #include <rviz/view_manager.h>
 #include <rviz/visualization_frame.h>
 #include <rviz/visualization_manager.h>
@@ -67,6 +70,34 @@ void addFailedPlugins(rviz::VisualizationFrame& frame, QJsonArray& statuses) {
   for (rviz::FailedPanel* panel : frame.findChildren<rviz::FailedPanel*>()) failed(panel->getName());
 }
 
+// Counts the properties of this package's own things, and names those that have no help sentence.
+void askForHelp(const rviz::Property& parent, const QString& path, int& count, QJsonArray& silent) {
+  for (int i = 0; i < parent.numChildren(); ++i) {
+    const rviz::Property* child = parent.childAtUnchecked(i);
+    if (dynamic_cast<const rviz::StatusProperty*>(child) != nullptr) continue;
+    const QString name = path + "/" + child->getName();
+    ++count;
+    if (child->getDescription().trimmed().isEmpty()) silent.append(name);
+    askForHelp(*child, name, count, silent);
+  }
+}
+
+QJsonObject helpOf(rviz::VisualizationManager& manager) {
+  int count = 0;
+  QJsonArray silent;
+  rviz::DisplayGroup& displays = *manager.getRootDisplayGroup();
+  for (int i = 0; i < displays.numDisplays(); ++i)
+    if (displays.getDisplayAt(i)->getClassId().startsWith("vibe_rviz_plugins/"))
+      askForHelp(*displays.getDisplayAt(i), displays.getDisplayAt(i)->getName(), count, silent);
+  rviz::ToolManager& tools = *manager.getToolManager();
+  for (int i = 0; i < tools.numTools(); ++i)
+    if (tools.getTool(i)->getClassId().startsWith("vibe_rviz_plugins/"))
+      askForHelp(*tools.getTool(i)->getPropertyContainer(), tools.getTool(i)->getName(), count, silent);
+  rviz::ViewController* view = manager.getViewManager()->getCurrent();
+  if (view->getClassId().startsWith("vibe_rviz_plugins/")) askForHelp(*view, view->getName(), count, silent);
+  return {{"properties", count}, {"without_help", silent}};
+}
+
 double residentMemory() {
   std::ifstream file("/proc/self/statm");
   double size = 0, resident = 0;
@@ -88,6 +119,7 @@ void report(const QString& file_name) {
   addFailedPlugins(*frame, statuses);
   const QJsonObject told{{"frames", static_cast<double>(frame->getManager()->getFrameCount())},
                          {"memory", residentMemory()},
+                         {"help", helpOf(*frame->getManager())},
                          {"statuses", statuses}};
   QSaveFile file(file_name);  // readers see the old report or the new one
   if (file.open(QIODevice::WriteOnly)) {
