@@ -199,8 +199,28 @@ TEST_F(Widgets, eventsComeNewestFirstAndAreBounded) {
   list.add(event, 1);
   EXPECT_EQ(list.count(), 2) << "contacts are not listed";
   event.kind = vibe_msgs::ProcedureEvent::MARK;
-  for (int i = 0; i < 1000; ++i) list.add(event, 1);
+  for (int i = 0; i < 1000; ++i) {
+    event.text = std::to_string(i);
+    list.add(event, 1);
+  }
   EXPECT_EQ(list.count(), EventList::kMost);
+}
+
+TEST_F(Widgets, aNoteThatComesAgainStandsThereOnceAWarningEachTime) {
+  EventList list;
+  vibe_msgs::ProcedureEvent note, warning;
+  note.kind = vibe_msgs::ProcedureEvent::PRESSURE_REACHED;
+  note.text = "reached";
+  warning.kind = vibe_msgs::ProcedureEvent::WARNING;
+  warning.text = "beware";
+  for (int second = 1; second <= 3; ++second) {
+    note.header.stamp.fromSec(second);
+    list.add(note, 0);
+  }
+  ASSERT_EQ(list.count(), 1);
+  EXPECT_EQ(list.item(0)->text(), "3.0 s  reached");
+  list.add(warning, 0), list.add(warning, 0), list.add(note, 0);
+  EXPECT_EQ(list.count(), 4);
 }
 
 TEST_F(Widgets, buttonsTellWhatWasPressed) {
