@@ -55,7 +55,7 @@ bool Recorder::findTopics() {
       subscribe(topic.name);
     }
   }
-  if (last_exists && allConnected()) subscribe(last_topic_);
+  if (last_exists && areConnected(topics)) subscribe(last_topic_);
   return true;
 }
 
@@ -70,9 +70,12 @@ void Recorder::subscribe(const std::string& topic) {
   subscribers_[topic] = handle_.subscribe(options);
 }
 
-bool Recorder::allConnected() const {
-  return std::all_of(subscribers_.begin(), subscribers_.end(),
-                     [](const auto& entry) { return entry.second.getNumPublishers() > 0; });
+// Of what is published now: a topic whose only publisher has gone again is nothing to wait for.
+bool Recorder::areConnected(const ros::master::V_TopicInfo& published) const {
+  return std::all_of(published.begin(), published.end(), [this](const ros::master::TopicInfo& topic) {
+    const auto entry = subscribers_.find(topic.name);
+    return entry == subscribers_.end() || entry->second.getNumPublishers() > 0;
+  });
 }
 
 void Recorder::write(const std::string& topic, const Event& event) {

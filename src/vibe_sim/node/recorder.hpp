@@ -1,5 +1,6 @@
 #pragma once
 #include <ros/callback_queue.h>
+#include <ros/master.h>
 #include <ros/node_handle.h>
 #include <rosbag/bag.h>
 #include <topic_tools/shape_shifter.h>
@@ -42,7 +43,7 @@ class Recorder {
 
   void subscribe(const std::string& topic);
   void write(const std::string& topic, const Event& event);
-  bool allConnected() const;
+  bool areConnected(const ros::master::V_TopicInfo& published) const;
   void drain();
 
   ros::NodeHandle handle_;
