@@ -30,7 +30,7 @@ void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
 
 EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description)
     : suture_node_(*scene.getRootSceneNode()->createChildSceneNode()),
-      tissue_(scene, *scene.getRootSceneNode()),
+      tissue_(*scene.getRootSceneNode()),
       sutures_(suture_node_),
       instrument_(scene, description) {}
 

@@ -160,7 +160,7 @@ void TissueDisplay::addParts() {
 
 void TissueDisplay::onInitialize() {
   try {
-    visual_ = std::make_unique<TissueVisual>(*scene_manager_, *scene_node_);
+    visual_ = std::make_unique<TissueVisual>(*scene_node_);
   } catch (const std::exception& error) {
     setStatusStd(StatusProperty::Error, "Materials", error.what());
   }

@@ -29,7 +29,7 @@ void setBlending(Ogre::Pass& pass, bool transparent) {
 
 }  // namespace
 
-TissueVisual::TissueVisual(Ogre::SceneManager&, Ogre::SceneNode& parent)
+TissueVisual::TissueVisual(Ogre::SceneNode& parent)
     : node_(parent),
       inside_(copyMaterial("vibe/tissue_inside")),
       outside_(copyMaterial("vibe/tissue_outside")),

@@ -10,7 +10,6 @@
 #include "render/dynamic_mesh.hpp"
 
 namespace Ogre {
-class SceneManager;
 class SceneNode;
 }  // namespace Ogre
 namespace rviz {
@@ -42,7 +41,7 @@ class TissueVisual {
  public:
   /// @param parent  in whose frame positions are; outlives this
   /// @throws std::runtime_error  the package's materials are not found
-  TissueVisual(Ogre::SceneManager& manager, Ogre::SceneNode& parent);
+  explicit TissueVisual(Ogre::SceneNode& parent);
   ~TissueVisual();
   TissueVisual(const TissueVisual&) = delete;
   TissueVisual& operator=(const TissueVisual&) = delete;

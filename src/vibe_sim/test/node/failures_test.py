@@ -9,6 +9,7 @@ import sys
 import tempfile
 import unittest
 
+import rosgraph
 import rospy
 import rostest
 from node_test_support import Program, Recorder, scene, state_hash, wait_until
@@ -32,6 +33,29 @@ class FailuresTest(unittest.TestCase):
                 self.assertIn(word, refused.lines[0])
         finally:
             refused.stop()
+
+    def test_a_recorder_does_not_wait_for_a_publisher_that_came_and_went(self):
+        ghost = rosgraph.Master("/ghost")
+        address = "http://localhost:{}".format(free_port())
+        ghost.registerPublisher("/seen_once", "std_msgs/Empty", address)
+        last = rospy.Publisher("applied_input", StepInput, queue_size=1)
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "ghost.bag")
+            recorder = subprocess.Popen(["rosrun", "vibe_sim", "vibe_record", "--last", "applied_input", bag])
+            try:
+                self.assertTrue(wait_until(lambda: self.is_heard("/seen_once"), 20))
+                rospy.rostime.wallsleep(1)
+                self.assertEqual(last.get_num_connections(), 0, "it should wait for what is published and not connected")
+                ghost.unregisterPublisher("/seen_once", address)
+                self.assertTrue(wait_until(lambda: last.get_num_connections() == 1, 20))
+            finally:
+                recorder.send_signal(signal.SIGINT)
+                self.assertEqual(recorder.wait(30), 0)
+                last.unregister()
+
+    def is_heard(self, topic):
+        """Has the topic a subscriber?"""
+        return any(name == topic and nodes for name, nodes in rosgraph.Master("/looker").getSystemState()[1])
 
     def test_wrong_parameters(self):
         good = scene("balloon.yaml")
