@@ -20,11 +20,11 @@ gravity: {}
 FEATURES = {
     "gas": ("gas: {initial_pressure: 10 mmHg, insufflator_on: true}",
             r"insufflate|gaugePressure|gasAmount|lumenVolume|[gG]as(Energy|Stiffness)?\(|sweepAll<.*, true>\(vibe"),
-    "bed": ("bed: {carries_weight: false}", r"addRareTerms"),
+    "bed": ("foundation: {carries_weight: false}", r"addRareTerms"),
     "scope": ("scope: {}", r"ToolCollision|ToolModel|ToolMotion|ToolTouch|ToolJacobian|ResponseEstimator"),
     "helix": ("scope: {}\nhelix: {}", r"[Hh]elix|Grip"),
     "self_contact": ("tissue: {self_contact: true}", r"SelfContact"),
-    "skin": ("skin: true", r"[Ss]kin|Loop"),
+    "skin": ("render_surface: true", r"[Ss]kin|Loop"),
 }
 
 

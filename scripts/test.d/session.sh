@@ -63,7 +63,7 @@ check 'run refuses a folder it cannot make' refuses 2 "cannot write to '/proc/se
 check 'run says which option lacks its value' refuses 2 '^run: --mesh needs a value' "$run" --mesh
 
 failsOnBadScene() {
-  sed 's/^\([a-z]*\):/\1_of_no_meaning:/' "$root/src/vibe_sim/scenes/stomach.yaml" >"$scratch/bad.yaml"
+  sed 's/^\([a-z]*\):/\1_of_no_meaning:/' "$root/src/vibe_core/scenes/stomach.yaml" >"$scratch/bad.yaml"
   local status=0
   "$run" --headless --fast --duration 1 --scene "$scratch/bad.yaml" --output "$scratch/bad" >"$scratch/bad.txt" 2>&1 || status=$?
   cat "$scratch/bad.txt"

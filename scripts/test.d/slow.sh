@@ -21,8 +21,8 @@ sameHash() {
 }
 
 headless() {
-  (set +u && source "$root/devel/setup.bash" && rosrun vibe_sim vibe_headless --quiet --duration 60 \
-    --script package://vibe_sim/trainees/expert.yaml) >"$scratch/headless.txt"
+  (set +u && source "$root/devel/setup.bash" && rosrun vibe_core vibe_headless --quiet --duration 60 \
+    --script package://vibe_core/trainees/expert.yaml) >"$scratch/headless.txt"
   sameHash "$scratch/headless.txt"
 }
 

@@ -1,7 +1,7 @@
 # vibe_technique as a lab meets it: names sets, refuses bad files in one sentence, prints the tables of the docs.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-program=$root/devel${VIBE_VARIANT:-}/lib/vibe_sim/vibe_technique
+program=$root/devel${VIBE_VARIANT:-}/lib/vibe_core/vibe_technique
 if [ ! -x "$program" ]; then
   echo 'skipped vibe_technique (not built; scripts/build builds it)'
   exit 0

@@ -41,21 +41,21 @@ void addTriangles(std::vector<std::uint32_t>& triangles) {
 }
 
 // Each triangle in four; a new vertex follows both ends of its edge.
-void addSkin(TissueMesh& mesh) {
-  mesh.skin_offsets.push_back(0);
-  const auto follow = [&mesh](std::initializer_list<std::uint32_t> particles) {
+void addRenderSurface(TissueMesh& mesh) {
+  mesh.render_offsets.push_back(0);
+  const auto update = [&mesh](std::initializer_list<std::uint32_t> particles) {
     for (const std::uint32_t particle : particles) {
-      mesh.skin_particles.push_back(particle);
-      mesh.skin_weights.push_back(1.0F / static_cast<float>(particles.size()));
+      mesh.render_particles.push_back(particle);
+      mesh.render_weights.push_back(1.0F / static_cast<float>(particles.size()));
     }
-    mesh.skin_offsets.push_back(static_cast<std::uint32_t>(mesh.skin_particles.size()));
+    mesh.render_offsets.push_back(static_cast<std::uint32_t>(mesh.render_particles.size()));
   };
-  for (std::uint32_t particle = 0; particle < mesh.particle_count; ++particle) follow({particle});
+  for (std::uint32_t particle = 0; particle < mesh.particle_count; ++particle) update({particle});
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
   const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [entry, is_new] = middles.try_emplace(std::minmax(a, b), mesh.skin_offsets.size() - 1);
+    const auto [entry, is_new] = middles.try_emplace(std::minmax(a, b), mesh.render_offsets.size() - 1);
     if (is_new) {
-      follow({a, b});
+      update({a, b});
       for (int c = 0; c < 3; ++c) mesh.rest.push_back((mesh.rest[3 * a + c] + mesh.rest[3 * b + c]) / 2);
     }
     return entry->second;
@@ -66,7 +66,7 @@ void addSkin(TissueMesh& mesh) {
     const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
     mesh.triangles.insert(mesh.triangles.end(), {a, ab, ca, b, bc, ab, c, ca, bc, ab, bc, ca});
   }
-  mesh.vertex_count = mesh.skin_offsets.size() - 1;
+  mesh.vertex_count = mesh.render_offsets.size() - 1;
 }
 
 // How far particle i has gone outward at this frame, as a share of its place [1].
@@ -100,7 +100,7 @@ void describe(sensor_msgs::PointCloud2& cloud) {
 
 }  // namespace
 
-TissueMesh benchOrgan(bool skinned) {
+TissueMesh benchOrgan(bool subdivided) {
   TissueMesh mesh;
   mesh.revision = 1;
   mesh.name = "egg";
@@ -108,7 +108,7 @@ TissueMesh benchOrgan(bool skinned) {
   addTriangles(mesh.triangles);
   mesh.particle_triangles = mesh.triangles;
   mesh.particle_count = mesh.vertex_count = mesh.rest.size() / 3;
-  if (skinned) addSkin(mesh);
+  if (subdivided) addRenderSurface(mesh);
   return mesh;
 }
 

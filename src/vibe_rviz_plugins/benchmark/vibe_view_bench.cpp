@@ -19,7 +19,7 @@
 
 #include "bench_organ.hpp"
 #include "cpu_clock.hpp"
-#include "geometry/living_surface.hpp"
+#include "geometry/deformable_surface.hpp"
 #include "geometry/surface_colours.hpp"
 #include "messages/tissue_messages.hpp"
 #include "render/dynamic_mesh.hpp"
@@ -39,7 +39,7 @@ using Samples = std::array<std::vector<double>, kPartCount>;  // [ms]
 
 struct Case {
   const char* name;
-  bool skinned;
+  bool subdivided;
   Motion motion;
 };
 
@@ -113,8 +113,8 @@ class Stages {
   void send(const VertexSpan& moved, const VertexSpan& coloured) {
     if (!moved.empty()) {
       drawn_->setVertices(surface_.vertices().data() + moved.first, moved.first, moved.count());
-      const Eigen::Vector3f least = surface_.bounds().min(), greatest = surface_.bounds().max();
-      drawn_->setBounds({least.x(), least.y(), least.z(), greatest.x(), greatest.y(), greatest.z()});
+      const Eigen::Vector3f min = surface_.bounds().min(), max = surface_.bounds().max();
+      drawn_->setBounds({min.x(), min.y(), min.z(), max.x(), max.y(), max.z()});
     }
     drawn_->setColours(colours_.colours().data() + coloured.first, coloured.first, coloured.count());
   }
@@ -122,7 +122,7 @@ class Stages {
   Viewer& viewer_;
   TissueMesh mesh_;
   TissueFrame frame_;
-  LivingSurface surface_;
+  DeformableSurface surface_;
   SurfaceColours colours_;
   Ogre::SceneNode& node_;
   Ogre::MaterialPtr inside_, outside_;
@@ -130,7 +130,7 @@ class Stages {
 };
 
 Samples measure(Viewer& viewer, const Case& c) {
-  const TissueMesh mesh = benchOrgan(c.skinned);
+  const TissueMesh mesh = benchOrgan(c.subdivided);
   Stages stages(viewer, mesh);
   Samples samples;
   for (int frame = 0; frame < kWarmUp + kFrames; ++frame) {
@@ -174,14 +174,14 @@ int run() {
   const Case cases[] = {{"everything moves", false, Motion::Everything},
                         {"5 % of it move", false, Motion::Patch},
                         {"nothing moves", false, Motion::Nothing},
-                        {"everything moves, with a skin", true, Motion::Everything},
-                        {"5 % of it move, with a skin", true, Motion::Patch},
-                        {"nothing moves, with a skin", true, Motion::Nothing}};
+                        {"everything moves, with a render_surface", true, Motion::Everything},
+                        {"5 % of it move, with a render_surface", true, Motion::Patch},
+                        {"nothing moves, with a render_surface", true, Motion::Nothing}};
   double worst = 0;
   for (const Case& c : cases) {
     const Samples samples = measure(viewer, c);
-    printRow(c, benchOrgan(c.skinned), samples);
-    if (!c.skinned) worst = std::max(worst, added(samples));
+    printRow(c, benchOrgan(c.subdivided), samples);
+    if (!c.subdivided) worst = std::max(worst, added(samples));
   }
   std::printf("\ngeometry, colours and upload of the plain surface: %.3f ms at most, goal %.1f ms: %s\n", worst, kGoal,
               worst <= kGoal ? "met" : "missed");

@@ -15,34 +15,34 @@ class Reader {
  public:
   explicit Reader(const ros::NodeHandle& node) : node_(node) {}
 
-  void number(const std::string& name, double least, double most, double& value) {
+  void number(const std::string& name, double min, double max, double& value) {
     if (!has(name)) return;
     // a whole number is a number too; a text or a list is none
-    if (!node_.getParam(name, value) || !(value >= least && value <= most)) {
+    if (!node_.getParam(name, value) || !(value >= min && value <= max)) {
       std::ostringstream range;
-      range << "a number from " << least << " to " << most;
-      refuse(name, range.str());
+      range << "a number from " << min << " to " << max;
+      reject(name, range.str());
     }
   }
-  void whole(const std::string& name, int least, int most, int& value) {
-    if (has(name) && (!node_.getParam(name, value) || value < least || value > most))
-      refuse(name, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+  void whole(const std::string& name, int min, int max, int& value) {
+    if (has(name) && (!node_.getParam(name, value) || value < min || value > max))
+      reject(name, "a whole number from " + std::to_string(min) + " to " + std::to_string(max));
   }
   void yesOrNo(const std::string& name, bool& value) {
-    if (has(name) && !node_.getParam(name, value)) refuse(name, "true or false");
+    if (has(name) && !node_.getParam(name, value)) reject(name, "true or false");
   }
   void text(const std::string& name, std::string& value) {
-    if (has(name) && (!node_.getParam(name, value) || value.empty())) refuse(name, "the name of a frame");
+    if (has(name) && (!node_.getParam(name, value) || value.empty())) reject(name, "the name of a frame");
   }
   void lens(const std::string& name, LensKind& value) {
     if (!has(name)) return;
     std::string word;
     node_.getParam(name, word);
-    if (word != "equidistant" && word != "rectilinear") refuse(name, "equidistant or rectilinear");
+    if (word != "equidistant" && word != "rectilinear") reject(name, "equidistant or rectilinear");
     value = word == "equidistant" ? LensKind::Equidistant : LensKind::Rectilinear;
   }
 
-  void refuseOthers() const {
+  void rejectOthers() const {
     XmlRpc::XmlRpcValue all;
     if (!node_.getParam(node_.getNamespace(), all) || all.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
     std::string list;
@@ -58,7 +58,7 @@ class Reader {
     known_.insert(name);
     return node_.hasParam(name);
   }
-  [[noreturn]] void refuse(const std::string& name, const std::string& what) const {
+  [[noreturn]] void reject(const std::string& name, const std::string& what) const {
     throw std::runtime_error("The parameter '" + node_.resolveName(name) + "' must be " + what + ".");
   }
 
@@ -85,7 +85,7 @@ CameraOptions readCameraOptions(const ros::NodeHandle& node) {
   read.text("frame_id", options.frame_id);
   options.right_frame_id = options.frame_id;
   read.text("right_frame_id", options.right_frame_id);
-  read.refuseOthers();
+  read.rejectOthers();
   options.round.field_of_view = degrees * kDegree;
   return options;
 }

@@ -59,9 +59,9 @@ inline double distanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d&
 }
 
 inline double distanceToLine(const Eigen::Vector3d& p, const std::vector<Eigen::Vector3d>& line) {
-  double least = (p - line.front()).norm();
-  for (std::size_t k = 1; k < line.size(); ++k) least = std::min(least, distanceToSegment(p, line[k - 1], line[k]));
-  return least;
+  double min = (p - line.front()).norm();
+  for (std::size_t k = 1; k < line.size(); ++k) min = std::min(min, distanceToSegment(p, line[k - 1], line[k]));
+  return min;
 }
 
 }  // namespace vibe

@@ -7,7 +7,8 @@
 
 namespace vibe::test {
 
-/// A ball of radius 1 m: rows of latitude with `around` particles each, and two poles. Outward triangles, no skin.
+/// A ball of radius 1 m: rows of latitude with `around` particles each, and two poles. Outward triangles, no render
+/// surface.
 inline TissueMesh ballMesh(std::uint32_t rows, std::uint32_t around) {
   constexpr double kPi = 3.14159265358979;
   TissueMesh mesh;
@@ -34,20 +35,20 @@ inline TissueMesh ballMesh(std::uint32_t rows, std::uint32_t around) {
   return mesh;
 }
 
-/// The same drawn with a skin of as many vertices: half the particle itself, half the mean of the corners of the first
-/// triangle it belongs to.
-inline TissueMesh skinnedBall(std::uint32_t rows, std::uint32_t around) {
+/// The same drawn with a render surface of as many vertices: half the particle itself, half the mean of the corners of
+/// the first triangle it belongs to.
+inline TissueMesh subdividedBall(std::uint32_t rows, std::uint32_t around) {
   TissueMesh mesh = ballMesh(rows, around);
-  mesh.skin_offsets.push_back(0);
+  mesh.render_offsets.push_back(0);
   for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
     std::size_t t = 0;
     while (mesh.triangles[t] != v) ++t;
     t -= t % 3;
     for (std::size_t c = 0; c < 3; ++c) {
-      mesh.skin_particles.push_back(mesh.triangles[t + c]);
-      mesh.skin_weights.push_back(mesh.triangles[t + c] == v ? 2.0F / 3 : 1.0F / 6);
+      mesh.render_particles.push_back(mesh.triangles[t + c]);
+      mesh.render_weights.push_back(mesh.triangles[t + c] == v ? 2.0F / 3 : 1.0F / 6);
     }
-    mesh.skin_offsets.push_back(static_cast<std::uint32_t>(mesh.skin_particles.size()));
+    mesh.render_offsets.push_back(static_cast<std::uint32_t>(mesh.render_particles.size()));
   }
   return mesh;
 }

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "vibe_sim/error.hpp"
-#include "vibe_sim/scene/scene_parser.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
 
 namespace vibe {
 namespace {
@@ -269,7 +269,8 @@ vibe_msgs::HapticParameters makeHapticRelease(std::int64_t stamp) {
   return message;
 }
 
-vibe_msgs::HapticParameters makeHapticParameters(const ToolResponse& response, double force_limit, std::int64_t stamp) {
+vibe_msgs::HapticParameters makeHapticParameters(const ToolImpedance& response, double force_limit,
+                                                 std::int64_t stamp) {
   vibe_msgs::HapticParameters message = makeHapticRelease(stamp);
   message.touching = 1;
   message.position = toMessage<geometry_msgs::Point>(response.position);
@@ -338,10 +339,10 @@ vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revisio
   message.wall = toBytes(model.organ.wall);
   message.end = toBytes(model.organ.end);
   for (double thickness : model.organ.thickness) message.thickness.push_back(static_cast<float>(thickness));
-  message.skin_triangles = flatten(model.skin.triangles);
-  message.skin_offsets.assign(model.skin.offsets.begin(), model.skin.offsets.end());
-  message.skin_particles.assign(model.skin.particles.begin(), model.skin.particles.end());
-  message.skin_weights = model.skin.weights;
+  message.render_triangles = flatten(model.render_surface.triangles);
+  message.render_offsets.assign(model.render_surface.offsets.begin(), model.render_surface.offsets.end());
+  message.render_particles.assign(model.render_surface.particles.begin(), model.render_surface.particles.end());
+  message.render_weights = model.render_surface.weights;
   return message;
 }
 

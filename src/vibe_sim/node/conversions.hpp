@@ -13,13 +13,13 @@
 
 #include <string>
 
-#include "input_latch.hpp"
-#include "vibe_sim/event.hpp"
-#include "vibe_sim/model.hpp"
-#include "vibe_sim/solver/tool_response.hpp"
-#include "vibe_sim/state.hpp"
-#include "vibe_sim/step_input.hpp"
-#include "vibe_sim/step_timer.hpp"
+#include "input_queue.hpp"
+#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/events/event.hpp"
+#include "vibe_core/haptics/tool_impedance.hpp"
+#include "vibe_core/input/step_input.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
 
 // Messages <-> library, without any ROS graph. Functions that read a message throw vibe::Error with one sentence if the
 // message cannot be used.
@@ -61,7 +61,7 @@ sensor_msgs::JointState makeJointState(const State& state, std::int64_t stamp);
 geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::string& frame, std::int64_t stamp);
 geometry_msgs::WrenchStamped makeWrench(const State& state, std::int64_t stamp);
 /// @param force_limit  at which the helix loses what it holds [N]; infinite where it holds nothing
-vibe_msgs::HapticParameters makeHapticParameters(const ToolResponse& response, double force_limit, std::int64_t stamp);
+vibe_msgs::HapticParameters makeHapticParameters(const ToolImpedance& response, double force_limit, std::int64_t stamp);
 /// Nothing is touched any longer.
 vibe_msgs::HapticParameters makeHapticRelease(std::int64_t stamp);
 geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, const std::string& parent,

@@ -2,22 +2,22 @@
 
 #include "conversions.hpp"
 #include "pull_message.hpp"
-#include "vibe_sim/error.hpp"
-#include "vibe_sim/step_timer.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/step_timer.hpp"
 
 namespace vibe {
 namespace {
 
 constexpr double kOwnerPatience = 2;     // a source that is silent for longer has given the topic up [s]
 constexpr double kComplaintPeriod = 1;   // [s]
-constexpr std::uint32_t kQueue = 10000;  // none may be lost in lock-step; the latch bounds what really waits
+constexpr std::uint32_t kQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
 
 }  // namespace
 
-Inputs::Inputs(const ros::NodeHandle& handle, InputLatch& latch, Publishers& publishers, std::function<void()> arrived)
-    : handle_(handle), latch_(latch), publishers_(publishers), arrived_(std::move(arrived)) {
+Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& publishers, std::function<void()> arrived)
+    : handle_(handle), queue_(queue), publishers_(publishers), arrived_(std::move(arrived)) {
   using sensor_msgs::JointState;
-  handle_.setCallbackQueue(&queue_);
+  handle_.setCallbackQueue(&callbacks_);
   listen<JointState>("scope/measured_js", [](const JointState& message) {
     return readJoints(message, InputChannel::Scope, JointSource::Measured);
   });
@@ -30,7 +30,7 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputLatch& latch, Publishers& pub
   });
   listen<sensor_msgs::Joy>("scope/buttons", readButtons);
   listen<vibe_msgs::TissuePull>("tissue/pull", readPull);
-  spinner_ = std::make_unique<ros::AsyncSpinner>(1, &queue_);
+  spinner_ = std::make_unique<ros::AsyncSpinner>(1, &callbacks_);
   spinner_->start();
 }
 
@@ -54,10 +54,10 @@ void Inputs::receive(const std::string& name, const std::string& publisher, cons
   Topic& topic = topics_.at(name);
   if (!obeys(name, topic, publisher)) return;
   try {
-    if (latch_.push(read())) {
+    if (queue_.push(read())) {
       arrived_();
     } else {
-      complain(topic, "A message on " + name + " is ignored: " + std::to_string(InputLatch::kCapacity) +
+      complain(topic, "A message on " + name + " is ignored: " + std::to_string(InputQueue::kCapacity) +
                           " messages with later stamps wait already; check the clock of " + publisher + ".");
     }
   } catch (const Error& error) {

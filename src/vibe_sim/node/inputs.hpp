@@ -11,17 +11,17 @@
 #include <mutex>
 #include <string>
 
-#include "input_latch.hpp"
+#include "input_queue.hpp"
 #include "publishers.hpp"
 
 namespace vibe {
 
-/// Every topic that the simulator listens to. Valid messages go to the latch; of the others one clear sentence goes to
+/// Every topic that the simulator listens to. Valid messages go to the queue; of the others one clear sentence goes to
 /// the log and to procedure/events, at most once a second per topic, and nothing else happens.
 class Inputs {
  public:
-  /// @param arrived  called after something has been put into the latch, from the thread of the inputs
-  Inputs(const ros::NodeHandle& handle, InputLatch& latch, Publishers& publishers, std::function<void()> arrived);
+  /// @param arrived  called after something has been put into the queue, from the thread of the inputs
+  Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& publishers, std::function<void()> arrived);
   ~Inputs();
 
  private:
@@ -34,8 +34,8 @@ class Inputs {
   };
 
   ros::NodeHandle handle_;
-  ros::CallbackQueue queue_;
-  InputLatch& latch_;
+  ros::CallbackQueue callbacks_;
+  InputQueue& queue_;
   Publishers& publishers_;
   std::function<void()> arrived_;
   std::map<std::string, Topic> topics_;  // touched by the one thread of the spinner only, once it runs

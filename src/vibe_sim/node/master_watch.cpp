@@ -2,7 +2,7 @@
 
 #include <ros/master.h>
 
-#include "vibe_sim/step_timer.hpp"
+#include "vibe_core/common/step_timer.hpp"
 
 namespace vibe {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "vibe_sim/error.hpp"
-#include "vibe_sim/scene/nearest_key.hpp"
-#include "vibe_sim/scene/yaml_source.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe {
 

@@ -3,7 +3,7 @@
 #include <ros/param.h>
 
 #include "parameter_reader.hpp"
-#include "vibe_sim/error.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 namespace {

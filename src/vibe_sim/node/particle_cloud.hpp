@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "vibe_sim/model.hpp"
-#include "vibe_sim/state.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
 
 namespace vibe {
 

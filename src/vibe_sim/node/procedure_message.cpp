@@ -5,15 +5,15 @@
 #include <optional>
 
 #include "conversions.hpp"
-#include "vibe_sim/procedure/thermal_dose.hpp"
-#include "vibe_sim/suture/technique.hpp"
+#include "vibe_core/suture/technique.hpp"
+#include "vibe_core/thermal/thermal_dose.hpp"
 
 namespace vibe {
 namespace {
 
 /// Particles whose grade is this or worse.
-std::uint32_t countGrades(const std::vector<std::uint8_t>& grades, BurnGrade least) {
-  const auto reached = [least](std::uint8_t grade) { return grade >= static_cast<std::uint8_t>(least); };
+std::uint32_t countGrades(const std::vector<std::uint8_t>& grades, BurnGrade min) {
+  const auto reached = [min](std::uint8_t grade) { return grade >= static_cast<std::uint8_t>(min); };
   return static_cast<std::uint32_t>(std::count_if(grades.begin(), grades.end(), reached));
 }
 
@@ -158,9 +158,9 @@ vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunSt
   message.path_length = metrics.path_length;
   message.peak_force = metrics.peak_force;
   message.mean_force = metrics.mean_force;
-  message.greatest_volume = metrics.greatest_volume;
-  message.greatest_pressure = metrics.greatest_pressure;
-  message.greatest_strain = metrics.greatest_strain;
+  message.max_volume = metrics.max_volume;
+  message.max_pressure = metrics.max_pressure;
+  message.max_strain = metrics.max_strain;
   message.energy_balance = metrics.energy_balance;
   message.grabs = static_cast<std::uint32_t>(metrics.grabs);
   message.missed_grabs = static_cast<std::uint32_t>(metrics.missed_grabs);

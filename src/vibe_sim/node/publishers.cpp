@@ -12,7 +12,7 @@
 #include "procedure_message.hpp"
 #include "pull_message.hpp"
 #include "suture_message.hpp"
-#include "vibe_sim/contact/helix_grip.hpp"
+#include "vibe_core/procedure/helix_grip.hpp"
 
 namespace vibe {
 namespace {
@@ -47,7 +47,7 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       events_(handle.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
       sutures_(handle.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, true)),
       applied_input_(handle.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue)),
-      performance_(handle.advertise<vibe_msgs::SolverStatistics>("performance", kSmallQueue)),
+      solver_statistics_(handle.advertise<vibe_msgs::SolverStatistics>("solver_statistics", kSmallQueue)),
       scene_(handle.advertise<std_msgs::String>("scene", 1, true)),
       haptic_(handle.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
       pull_(handle.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)) {
@@ -129,9 +129,9 @@ void Publishers::warn(const std::string& text) {
 }
 
 bool Publishers::hasListener() const {
-  const auto all = {&scope_pose_,  &helix_pose_, &wrench_, &joint_states_, &topology_,
-                    &particles_,   &procedure_,  &events_, &sutures_,      &applied_input_,
-                    &performance_, &scene_,      &haptic_, &pull_,         &clock_};
+  const auto all = {&scope_pose_,        &helix_pose_, &wrench_, &joint_states_, &topology_,
+                    &particles_,         &procedure_,  &events_, &sutures_,      &applied_input_,
+                    &solver_statistics_, &scene_,      &haptic_, &pull_,         &clock_};
   return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 
@@ -147,7 +147,7 @@ void Publishers::tool(const Session& session, std::int64_t stamp) {
 }
 
 void Publishers::haptic(const Session& session, std::int64_t stamp) {
-  const std::optional<ToolResponse>& response = session.workspace->toolResponse();
+  const std::optional<ToolImpedance>& response = session.workspace->toolImpedance();
   if (!response) {
     if (haptic_touching_) hapticRelease(stamp);
     return;
@@ -167,7 +167,7 @@ void Publishers::hapticRelease(std::int64_t stamp) {
 
 // The state after a reset or load has its own hand, and a listener must not go on drawing the former one.
 void Publishers::pull(const Session& session, std::int64_t stamp) {
-  const bool holds = session.state.hand.holds();
+  const bool holds = session.state.pull.holds();
   if (!holds && !pull_held_) return;
   pull_held_ = holds;
   pull_.publish(makePullState(session.state, stamp));

@@ -40,7 +40,7 @@ class Publishers {
   void repeatClock(const Session& session);
   void procedureState(const Session& session, const RunStatus& status);
 
-  void performance(const vibe_msgs::SolverStatistics& message) { performance_.publish(message); }
+  void solver_statistics(const vibe_msgs::SolverStatistics& message) { solver_statistics_.publish(message); }
 
   /// A warning event at the present simulated time.
   void warn(const std::string& text);
@@ -51,7 +51,7 @@ class Publishers {
 
  private:
   ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, topology_, particles_, procedure_, events_, sutures_,
-      applied_input_, performance_, scene_, haptic_, pull_, clock_;
+      applied_input_, solver_statistics_, scene_, haptic_, pull_, clock_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;

@@ -1,7 +1,8 @@
 #include "pull_message.hpp"
+#include "vibe_core/constraints/pull_patch.hpp"
 
 #include "conversions.hpp"
-#include "vibe_sim/error.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
@@ -36,10 +37,10 @@ vibe_msgs::TissuePullState makePullState(const State& state, std::int64_t stamp)
   vibe_msgs::TissuePullState message;
   message.header.stamp = toRosTime(stamp);
   message.header.frame_id = kWorldFrame;
-  message.particle = state.hand.particle;
-  copyTo(heldPlace(state), message.position);
-  copyTo(state.hand.target, message.target);
-  copyTo(state.hand.force, message.force);
+  message.particle = state.pull.particle;
+  copyTo(heldPosition(state), message.position);
+  copyTo(state.pull.target, message.target);
+  copyTo(state.pull.force, message.force);
   return message;
 }
 

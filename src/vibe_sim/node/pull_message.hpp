@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "input_latch.hpp"
-#include "vibe_sim/state.hpp"
+#include "input_queue.hpp"
+#include "vibe_core/state/state.hpp"
 
 namespace vibe {
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "vibe_sim/error.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdio>
 
 #include "conversions.hpp"
-#include "vibe_sim/procedure/run_summary.hpp"
-#include "vibe_sim/simulator.hpp"
+#include "vibe_core/metrics/run_summary.hpp"
+#include "vibe_core/simulation/simulator.hpp"
 
 namespace vibe {
 namespace {

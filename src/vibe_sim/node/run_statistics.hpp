@@ -5,7 +5,7 @@
 #include <string>
 
 #include "session.hpp"
-#include "vibe_sim/step_timer.hpp"
+#include "vibe_core/common/step_timer.hpp"
 
 namespace vibe {
 

@@ -2,10 +2,10 @@
 
 #include <ros/console.h>
 
-#include "vibe_sim/package_path.hpp"
-#include "vibe_sim/scene/mesh_guess.hpp"
-#include "vibe_sim/scene/scene_parser.hpp"
-#include "vibe_sim/simulator.hpp"
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/scene/mesh_guess.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/simulation/simulator.hpp"
 
 namespace vibe {
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "vibe_sim/model.hpp"
+#include "vibe_core/model/model.hpp"
 
 namespace vibe {
 

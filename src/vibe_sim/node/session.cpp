@@ -1,6 +1,6 @@
 #include "session.hpp"
 
-#include "vibe_sim/simulator.hpp"
+#include "vibe_core/simulation/simulator.hpp"
 
 namespace vibe {
 namespace {

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "sim_time.hpp"
-#include "vibe_sim/event.hpp"
-#include "vibe_sim/model.hpp"
-#include "vibe_sim/procedure/event_counts.hpp"
-#include "vibe_sim/procedure/session_metrics.hpp"
-#include "vibe_sim/state.hpp"
-#include "vibe_sim/step_input.hpp"
-#include "vibe_sim/workspace.hpp"
+#include "vibe_core/events/event.hpp"
+#include "vibe_core/input/step_input.hpp"
+#include "vibe_core/metrics/event_counts.hpp"
+#include "vibe_core/metrics/session_metrics.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/simulation/workspace.hpp"
+#include "vibe_core/state/state.hpp"
 
 namespace vibe {
 

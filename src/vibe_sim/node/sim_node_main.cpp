@@ -47,13 +47,13 @@ int run() {
   // Not only for people: the first log message makes roscpp register a parameter at the master, and if that were the
   // message about our own shutdown, the master would take us for the newest node of this name and stop the real one.
   ROS_INFO_STREAM("Simulating '" << model->scene.name << "' with " << model->particle_count << " particles.");
-  vibe::InputLatch latch;
+  vibe::InputQueue queue;
   vibe::Publishers publishers(handle, parameters.time_source == vibe::TimeSource::Sim);
-  vibe::Stepper stepper(parameters, model, latch, publishers);
+  vibe::Stepper stepper(parameters, model, queue, publishers);
   ros::AsyncSpinner spinner(1);
   vibe::MasterWatch watch(handle, publishers, parameters.master_timeout);
   {
-    vibe::Inputs inputs(handle, latch, publishers, [&stepper] { stepper.wake(); });
+    vibe::Inputs inputs(handle, queue, publishers, [&stepper] { stepper.wake(); });
     vibe::Services services(handle, stepper);
     stepper.start();
     spinner.start();

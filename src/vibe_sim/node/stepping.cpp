@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "conversions.hpp"
-#include "vibe_sim/error.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 namespace {
@@ -31,10 +31,10 @@ std::int64_t startOrigin(const Parameters& parameters) {
 
 }  // namespace
 
-Stepper::Stepper(const Parameters& parameters, const std::shared_ptr<const Model>& model, InputLatch& latch,
+Stepper::Stepper(const Parameters& parameters, const std::shared_ptr<const Model>& model, InputQueue& queue,
                  Publishers& publishers)
     : parameters_(parameters),
-      latch_(latch),
+      queue_(queue),
       publishers_(publishers),
       session_(model, parameters.seed.value_or(model->scene.seed), startOrigin(parameters), parameters.threads),
       last_step_(stepsIn(parameters.duration, model->scene.step_period)) {
@@ -106,7 +106,7 @@ void Stepper::loop() {
 Stepper::Hold Stepper::findHold() {
   if (status_.paused && steps_left_ == 0) return Hold::Paused;
   if (mustWaitForRecorder()) return Hold::Recorder;
-  if (parameters_.lockstep && !latch_.knownUntil(session_.now())) return Hold::Inputs;
+  if (parameters_.lockstep && !queue_.knownUntil(session_.now())) return Hold::Inputs;
   // single steps are taken as fast as they can be, but stamps must not run ahead of the wall clock
   const bool hurry = steps_left_ > 0 && parameters_.time_source == TimeSource::Sim;
   if (parameters_.fast || hurry) return Hold::None;
@@ -165,7 +165,7 @@ void Stepper::checkPatience(Hold hold) {
   }
   if (hold != Hold::Inputs || waited < parameters_.lockstep_timeout) return;
   const std::string sentence = "No message stamped " + std::to_string(1e-9 * static_cast<double>(session_.now())) +
-                               " s or later has come on " + latch_.missingAt(session_.now()) + " for " +
+                               " s or later has come on " + queue_.missingAt(session_.now()) + " for " +
                                std::to_string(static_cast<int>(waited)) + " s, which ~lockstep needs; ";
   answerSteps({false, sentence + "the simulation stays paused."});
   if (parameters_.duration > 0) {
@@ -183,7 +183,7 @@ void Stepper::takeStep() {
   if (statistics_.steps == 0) statistics_.begin();
   statistics_.total.start();
   const bool wall = parameters_.time_source == TimeSource::Wall;
-  for (const std::string& sentence : latch_.apply(wall ? wallNow() : session_.now(), *session_.model, session_.input)) {
+  for (const std::string& sentence : queue_.apply(wall ? wallNow() : session_.now(), *session_.model, session_.input)) {
     ROS_WARN_STREAM(sentence);
     publishers_.warn(sentence);
   }
@@ -204,7 +204,7 @@ void Stepper::takeStep() {
 
 void Stepper::reportEverySecond() {
   if (!statistics_.windowIsOver()) return;
-  publishers_.performance(statistics_.windowMessage(session_));
+  publishers_.solver_statistics(statistics_.windowMessage(session_));
   std::printf("%s%s\n", statistics_.progressLine(session_).c_str(), status_.paused ? "  (paused)" : "");
   std::fflush(stdout);
   statistics_.startWindow();
@@ -245,7 +245,7 @@ void Stepper::reportLag(double lag) {
 
 void Stepper::finish() {
   publishers_.wholeState(session_, status_);
-  publishers_.performance(statistics_.wholeMessage(session_));
+  publishers_.solver_statistics(statistics_.wholeMessage(session_));
   const std::string summary = statistics_.summary(session_);
   std::fputs(summary.c_str(), stdout);
   std::fflush(stdout);

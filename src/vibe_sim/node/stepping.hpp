@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "input_latch.hpp"
+#include "input_queue.hpp"
 #include "parameters.hpp"
 #include "publishers.hpp"
 #include "run_statistics.hpp"
@@ -36,7 +36,7 @@ enum class Outcome {
 /// answer.
 class Stepper {
  public:
-  Stepper(const Parameters& parameters, const std::shared_ptr<const Model>& model, InputLatch& latch,
+  Stepper(const Parameters& parameters, const std::shared_ptr<const Model>& model, InputQueue& queue,
           Publishers& publishers);
   ~Stepper();
 
@@ -46,7 +46,7 @@ class Stepper {
   bool isRunning() const { return running_; }
   Outcome outcome() const { return outcome_; }
 
-  /// Something has arrived in the latch.
+  /// Something has arrived in the queue.
   void wake();
 
   // Commands, from any other thread; each returns when it is done.
@@ -92,7 +92,7 @@ class Stepper {
   void afterReplacement();
 
   const Parameters parameters_;
-  InputLatch& latch_;
+  InputQueue& queue_;
   Publishers& publishers_;
 
   // of the thread alone

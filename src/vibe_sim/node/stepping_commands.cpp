@@ -2,9 +2,9 @@
 
 #include "scene_source.hpp"
 #include "stepping.hpp"
-#include "vibe_sim/error.hpp"
-#include "vibe_sim/simulator.hpp"
-#include "vibe_sim/snapshot.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/simulation/simulator.hpp"
+#include "vibe_core/simulation/snapshot.hpp"
 
 // The commands of Stepper: what other threads ask for, and how the stepping thread does it between two steps.
 
@@ -107,7 +107,7 @@ Reply Stepper::reset(std::uint64_t seed, bool keep_time) {
     session_.replaceState(initialState(model, seed != 0 ? seed : model.scene.seed));
     if (!keep_time) {
       session_.time = TimeLine(kEpoch, model.scene.step_period);
-      latch_.clear();
+      queue_.clear();
     }
     afterReplacement();
     return {true, "Reset to the initial state with seed " + std::to_string(session_.state.seed) + "."};

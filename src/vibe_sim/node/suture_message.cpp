@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "conversions.hpp"
-#include "vibe_sim/suture/catenary.hpp"
-#include "vibe_sim/suture/technique.hpp"
-#include "vibe_sim/suture/thread_material.hpp"
+#include "vibe_core/suture/catenary.hpp"
+#include "vibe_core/suture/technique.hpp"
+#include "vibe_core/suture/thread_material.hpp"
 
 namespace vibe {
 namespace {
@@ -42,8 +42,8 @@ Eigen::Vector3d toVector(const geometry_msgs::Point& p) {
 }
 
 int heaviest(const Bite& bite) {
-  const auto most = std::max_element(bite.weight.begin(), bite.weight.end());
-  return most == bite.weight.end() ? -1 : bite.particle[static_cast<std::size_t>(most - bite.weight.begin())];
+  const auto max = std::max_element(bite.weight.begin(), bite.weight.end());
+  return max == bite.weight.end() ? -1 : bite.particle[static_cast<std::size_t>(max - bite.weight.begin())];
 }
 
 vibe_msgs::Bite makeBite(const Bite& bite, const State& state) {

@@ -5,7 +5,7 @@
 
 #include "conversions.hpp"
 #include "sim_time.hpp"
-#include "vibe_sim/step_timer.hpp"
+#include "vibe_core/common/step_timer.hpp"
 
 namespace vibe {
 namespace {

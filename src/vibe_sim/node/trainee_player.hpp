@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "vibe_sim/trainee/trainee_script.hpp"
+#include "vibe_core/trainee/trainee_script.hpp"
 
 namespace vibe {
 

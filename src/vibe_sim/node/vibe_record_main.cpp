@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "recorder.hpp"
-#include "vibe_sim/error.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace {
 

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "conversions.hpp"
-#include "vibe_sim/error.hpp"
-#include "vibe_sim/package_path.hpp"
-#include "vibe_sim/procedure/run_summary.hpp"
-#include "vibe_sim/scene/scene_parser.hpp"
-#include "vibe_sim/simulator.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/metrics/run_summary.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/simulation/simulator.hpp"
 
 namespace {
 

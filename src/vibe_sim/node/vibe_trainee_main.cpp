@@ -6,7 +6,7 @@
 
 #include "parameter_reader.hpp"
 #include "trainee_player.hpp"
-#include "vibe_sim/package_path.hpp"
+#include "vibe_core/common/package_path.hpp"
 
 namespace {
 

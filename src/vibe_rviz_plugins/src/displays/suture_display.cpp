@@ -67,11 +67,11 @@ void SutureDisplay::addThreadProperties() {
   map_property_ = new rviz::EnumProperty("Colour map", "viridis", "From no tension (dark) to the greatest (light).",
                                          colour_property_, SLOT(changeStyle()), this);
   for (const std::string& name : colourMapNames()) map_property_->addOptionStd(name);
-  greatest_property_ = new rviz::FloatProperty("Greatest tension", 4,
-                                               "Tension in newtons at the upper end of the colour map; a cinch draws "
-                                               "until 3 N, a full bite tears out at about 8 N.",
-                                               colour_property_, SLOT(changeStyle()), this);
-  greatest_property_->setMin(0.01F);
+  max_property_ = new rviz::FloatProperty("Greatest tension", 4,
+                                          "Tension in newtons at the upper end of the colour map; a cinch draws "
+                                          "until 3 N, a full bite tears out at about 8 N.",
+                                          colour_property_, SLOT(changeStyle()), this);
+  max_property_->setMin(0.01F);
   legend_property_ = new rviz::BoolProperty(
       "Legend", true, "Shows what the colours mean in the lower right corner of the views, once there is a thread.",
       colour_property_, SLOT(changeLegend()), this);
@@ -195,7 +195,7 @@ void SutureDisplay::receive(const vibe_msgs::SutureArray::ConstPtr& message) {
 
 void SutureDisplay::changeStyle() {
   style_.colouring = static_cast<ThreadColour>(colour_property_->getOptionInt());
-  style_.tension_map = ColourMap(map_property_->getStdString(), 0, greatest_property_->getFloat());
+  style_.tension_map = ColourMap(map_property_->getStdString(), 0, max_property_->getFloat());
   style_.slack_colour = packedOf(slack_property_->getColor());
   style_.one_colour = packedOf(one_property_->getColor());
   style_.thread_diameter = diameter_property_->getFloat();
@@ -209,7 +209,7 @@ void SutureDisplay::changeStyle() {
   if (direction.norm() > 1e-6) blood_style_.down = direction.normalized();
   blood_style_.emphasis = style_.emphasis;
   for (rviz::Property* property :
-       {static_cast<rviz::Property*>(map_property_), static_cast<rviz::Property*>(greatest_property_),
+       {static_cast<rviz::Property*>(map_property_), static_cast<rviz::Property*>(max_property_),
         static_cast<rviz::Property*>(slack_property_)})
     property->setHidden(style_.colouring != ThreadColour::Tension);
   one_property_->setHidden(style_.colouring != ThreadColour::One);

@@ -73,7 +73,7 @@ class SutureDisplay : public rviz::Display {
 
   rviz::RosTopicProperty* topic_property_;
   rviz::EnumProperty *colour_property_, *map_property_;
-  rviz::FloatProperty *greatest_property_, *diameter_property_, *emphasis_property_, *label_height_property_;
+  rviz::FloatProperty *max_property_, *diameter_property_, *emphasis_property_, *label_height_property_;
   rviz::ColorProperty *slack_property_, *one_property_;
   rviz::BoolProperty *legend_property_, *bites_property_, *ends_property_, *label_property_, *corners_property_,
       *links_property_, *bleeding_property_;

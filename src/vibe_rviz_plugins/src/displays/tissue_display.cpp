@@ -22,7 +22,7 @@ using rviz::StatusProperty;
 
 // Ranges that a colouring begins with, in its unit.
 struct Range {
-  float least, greatest;
+  float min, max;
 };
 Range usualRange(Colouring colouring) {
   switch (colouring) {
@@ -60,9 +60,9 @@ QImage legendOf(Colouring colouring, const ColourMap& map) {
   }
 }
 
-rviz::FloatProperty* bounded(rviz::FloatProperty* property, float least, float greatest) {
-  property->setMin(least);
-  property->setMax(greatest);
+rviz::FloatProperty* bounded(rviz::FloatProperty* property, float min, float max) {
+  property->setMin(min);
+  property->setMax(max);
   return property;
 }
 
@@ -109,12 +109,10 @@ void TissueDisplay::addColours() {
   int number = 0;
   for (const std::string& name : colourMapNames()) map_->addOption(QString::fromStdString(name), number++);
   const Range range = usualRange(Colouring::Strain);
-  least_ =
-      new rviz::FloatProperty("From", range.least, "Value at the map's dark end: strain [1], heat [J], thickness [m].",
-                              colouring_, SLOT(changeLook()), this);
-  greatest_ = new rviz::FloatProperty("To", range.greatest,
-                                      "Value at the map's bright end: strain [1], heat [J], thickness [m].", colouring_,
-                                      SLOT(changeLook()), this);
+  min_ = new rviz::FloatProperty("From", range.min, "Value at the map's dark end: strain [1], heat [J], thickness [m].",
+                                 colouring_, SLOT(changeLook()), this);
+  max_ = new rviz::FloatProperty("To", range.max, "Value at the map's bright end: strain [1], heat [J], thickness [m].",
+                                 colouring_, SLOT(changeLook()), this);
   legend_shown_ =
       new rviz::BoolProperty("Legend", true, "Show what the colours mean in the lower left corner of the views.",
                              colouring_, SLOT(changeLegend()), this);
@@ -154,7 +152,8 @@ void TissueDisplay::addParts() {
       bounded(new rviz::FloatProperty("Diameter", 0.003F, "Of the balls [m].", particles_, SLOT(changeLook()), this),
               0.0001F, 0.1F);
   bones_ = new rviz::BoolProperty(
-      "Bones", false, "Draw the edges of the simulated mesh, whose particles are the bones of the drawn skin.", this,
+      "Bones", false,
+      "Draw the edges of the simulated mesh, whose particles are the bones of the drawn render_surface.", this,
       SLOT(changeLook()), this);
 }
 
@@ -290,9 +289,8 @@ void TissueDisplay::changeColouring() {
   const auto colouring = static_cast<Colouring>(colouring_->getOptionInt());
   const bool ranged = hasRange(colouring);
   const Range range = usualRange(colouring);
-  map_->setHidden(!ranged), least_->setHidden(!ranged), greatest_->setHidden(!ranged);
-  if (ranged)
-    least_->setFloat(range.least), greatest_->setFloat(range.greatest);  // a loaded configuration sets its own after
+  map_->setHidden(!ranged), min_->setHidden(!ranged), max_->setHidden(!ranged);
+  if (ranged) min_->setFloat(range.min), max_->setFloat(range.max);  // a loaded configuration sets its own after
   changeLook();
 }
 
@@ -302,8 +300,8 @@ void TissueDisplay::changeLook() {
   look.surface = surface_->getBool();
   look.colouring = static_cast<Colouring>(colouring_->getOptionInt());
   look.map = map_->getStdString();
-  look.least = static_cast<double>(least_->getFloat());
-  look.greatest = static_cast<double>(greatest_->getFloat());
+  look.min = static_cast<double>(min_->getFloat());
+  look.max = static_cast<double>(max_->getFloat());
   look.inside = inside_->getOgreColor();
   look.outside = outside_->getOgreColor();
   look.outside_alpha = static_cast<double>(outside_alpha_->getFloat());
@@ -326,8 +324,8 @@ void TissueDisplay::changeLegend() {
     return;
   }
   if (!legend_) legend_ = std::make_unique<Legend>(Legend::Corner::BottomLeft);
-  const ColourMap map(map_->getStdString(), static_cast<double>(least_->getFloat()),
-                      static_cast<double>(greatest_->getFloat()));
+  const ColourMap map(map_->getStdString(), static_cast<double>(min_->getFloat()),
+                      static_cast<double>(max_->getFloat()));
   legend_->show(legendOf(colouring, map));
 }
 

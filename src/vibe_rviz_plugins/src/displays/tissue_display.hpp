@@ -60,7 +60,7 @@ class TissueDisplay : public rviz::Display {
 
   rviz::RosTopicProperty *topology_topic_, *particles_topic_;
   rviz::EnumProperty *colouring_, *map_;
-  rviz::FloatProperty *least_, *greatest_, *outside_alpha_, *wetness_, *relief_, *particle_size_;
+  rviz::FloatProperty *min_, *max_, *outside_alpha_, *wetness_, *relief_, *particle_size_;
   rviz::BoolProperty *legend_shown_, *surface_, *scars_, *particles_, *bones_;
   rviz::ColorProperty *inside_, *outside_;
 

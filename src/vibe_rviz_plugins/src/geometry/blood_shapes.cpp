@@ -19,7 +19,7 @@ constexpr double kMeanSpeed = 0.5;  // of blood leaving a small artery into gas 
 constexpr double kPulse = 0.3;      // part of the speed that pulses
 constexpr double kFilm = 2.5e-3, kPool = 3.5e-3;            // thickest blood lies on a wall, in a hollow [m]
 constexpr double kWidestFilm = 11e-3, kWidestPool = 15e-3;  // beyond that a curved wall hides the rest [m]
-constexpr double kLeastDrop = 8e-3, kMostDrop = 50e-3;      // a jet falls this far below its wound [m]
+constexpr double kMinDrop = 8e-3, kMaxDrop = 50e-3;         // a jet falls this far below its wound [m]
 constexpr double kFromCeiling = 35e-3;                      // and at least this far from a wall that is overhead [m]
 constexpr double kSteep = 0.5;                              // cosine to gravity from which a wall is ceiling or floor
 constexpr double kThinnestJet = 0.55e-3;                    // [m]
@@ -105,7 +105,7 @@ double dropBelow(const Wound& wound, const SutureScene& scene, const Vector3d& d
     for (const SutureBite& bite : set.bites) lowest = std::max(lowest, down.dot(bite.place - wound.place));
   const double towards_floor = wound.inward.dot(down);
   if (towards_floor > kSteep) lowest = std::max(lowest, kFromCeiling);
-  return std::clamp(lowest, towards_floor < -kSteep ? 0.0 : kLeastDrop, kMostDrop);
+  return std::clamp(lowest, towards_floor < -kSteep ? 0.0 : kMinDrop, kMaxDrop);
 }
 
 void appendFilm(const Wound& wound, const BloodStyle& style, ColouredShape& shape) {

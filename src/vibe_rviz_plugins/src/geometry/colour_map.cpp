@@ -66,10 +66,8 @@ std::array<PackedColour, ColourMap::kSteps> stepsOf(const Anchors& anchors) {
 
 ColourMap::ColourMap() : ColourMap("viridis", 0, 1) {}
 
-ColourMap::ColourMap(const std::string& name, double least, double greatest)
-    : steps_(stepsOf(anchorsOf(name))),
-      least_(least),
-      scale_(greatest > least ? (kSteps - 1) / (greatest - least) : 0) {}
+ColourMap::ColourMap(const std::string& name, double min, double max)
+    : steps_(stepsOf(anchorsOf(name))), min_(min), scale_(max > min ? (kSteps - 1) / (max - min) : 0) {}
 
 const std::vector<std::string>& colourMapNames() {
   static const std::vector<std::string> names{"viridis", "magma", "cividis"};

@@ -17,24 +17,24 @@ class ColourMap {
   /// Viridis between 0 and 1.
   ColourMap();
   /// @param name  one of colourMapNames(); another: viridis
-  ColourMap(const std::string& name, double least, double greatest);
+  ColourMap(const std::string& name, double min, double max);
 
   /// Values outside are drawn like the ends, NaN like the lower end. Equal ends: everything at or below is the lower
   /// end.
   PackedColour at(double value) const { return steps_[static_cast<std::size_t>(index(value))]; }
 
-  double least() const { return least_; }
-  double greatest() const { return least_ + (scale_ > 0 ? (kSteps - 1) / scale_ : 0); }
+  double min() const { return min_; }
+  double max() const { return min_ + (scale_ > 0 ? (kSteps - 1) / scale_ : 0); }
   const std::array<PackedColour, kSteps>& steps() const { return steps_; }
 
  private:
   int index(double value) const {
-    const double place = (value - least_) * scale_ + 0.5;
+    const double place = (value - min_) * scale_ + 0.5;
     return place >= kSteps ? kSteps - 1 : place >= 1 ? static_cast<int>(place) : 0;
   }
 
   std::array<PackedColour, kSteps> steps_;
-  double least_ = 0, scale_ = kSteps - 1;  // scale_ [steps per unit]
+  double min_ = 0, scale_ = kSteps - 1;  // scale_ [steps per unit]
 };
 
 /// "viridis", "magma", "cividis".

@@ -53,11 +53,11 @@ Eigen::Vector3d rayOf(const RoundCamera& camera, const Eigen::Vector2d& pixel) {
   return {aside.x() * scale, aside.y() * scale, std::cos(angle)};
 }
 
-SquareSource sourceFor(const RoundCamera& camera, double sharpness, int most) {
+SquareSource sourceFor(const RoundCamera& camera, double sharpness, int max) {
   const double edge = std::tan(0.5 * camera.field_of_view);
   const double wanted = 2 * edge * focalLength(camera) * sharpness;
   SquareSource source;
-  source.size = static_cast<int>(std::clamp(std::ceil(wanted) + 2 * kBorder, 1.0 + 2 * kBorder, double(most)));
+  source.size = static_cast<int>(std::clamp(std::ceil(wanted) + 2 * kBorder, 1.0 + 2 * kBorder, double(max)));
   source.half_width = edge * source.size / (source.size - 2 * kBorder);
   return source;
 }

@@ -52,7 +52,7 @@ struct SquareSource {
 /// How large that has to be.
 /// @param sharpness  pixels of the source for one of the picture, in the middle; 1: nothing is lost
 /// @param most       edge that must not be exceeded, sharpness gives way [px]
-SquareSource sourceFor(const RoundCamera& camera, double sharpness, int most);
+SquareSource sourceFor(const RoundCamera& camera, double sharpness, int max);
 
 /// The numbers of a sensor_msgs/CameraInfo.
 struct CameraNumbers {

@@ -9,9 +9,9 @@ namespace vibe {
 
 namespace {
 
-constexpr double kRim = 1e-9;            // of a triangle, so that a ray does not slip between two [1]
-constexpr double kLeastDistance = 1e-6;  // what lies at the eye itself is not seen [m]
-constexpr double kLeastSlope = 1e-9;     // between a ray and a plane that meet [1]
+constexpr double kRim = 1e-9;          // of a triangle, so that a ray does not slip between two [1]
+constexpr double kMinDistance = 1e-6;  // what lies at the eye itself is not seen [m]
+constexpr double kMinSlope = 1e-9;     // between a ray and a plane that meet [1]
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
@@ -53,7 +53,7 @@ std::optional<RayHit> firstHit(const Ray& ray, const std::vector<float>& positio
   for (std::size_t t = 0; 3 * t + 2 < triangles.size(); ++t) {
     if (!readCorners(positions, &triangles[3 * t], corners)) continue;
     const double distance = distanceTo(ray, corners);
-    if (!(distance > kLeastDistance && distance < hit.distance)) continue;
+    if (!(distance > kMinDistance && distance < hit.distance)) continue;
     hit.triangle = t;
     hit.distance = distance;
     hit.place = ray.origin + distance * ray.direction;
@@ -65,7 +65,7 @@ std::optional<RayHit> firstHit(const Ray& ray, const std::vector<float>& positio
 
 std::optional<Eigen::Vector3d> meetPlane(const Ray& ray, const Eigen::Vector3d& place, const Eigen::Vector3d& normal) {
   const double slope = normal.dot(ray.direction);
-  if (std::abs(slope) < kLeastSlope * normal.norm()) return std::nullopt;
+  if (std::abs(slope) < kMinSlope * normal.norm()) return std::nullopt;
   const double distance = normal.dot(place - ray.origin) / slope;
   if (!(distance > 0)) return std::nullopt;
   return Eigen::Vector3d(ray.origin + distance * ray.direction);

@@ -39,10 +39,10 @@ SurfaceColours::SurfaceColours(const TissueMesh& mesh)
     : region_(mesh.region),
       wall_(mesh.wall),
       thickness_(mesh.thickness),
-      skin_offsets_(mesh.skin_offsets),
-      skin_particles_(mesh.skin_particles),
-      skin_weights_(mesh.skin_weights) {
-  if (mesh.skinned()) vertices_of_particle_ = turnedAround(skin_offsets_, skin_particles_, mesh.particle_count);
+      render_offsets_(mesh.render_offsets),
+      render_particles_(mesh.render_particles),
+      render_weights_(mesh.render_weights) {
+  if (mesh.subdivided()) vertices_of_particle_ = turnedAround(render_offsets_, render_particles_, mesh.particle_count);
   of_particle_.assign(mesh.particle_count, kNeverDrawn);
   colours_.assign(mesh.vertex_count, 0xffffffffU);
   mark_.assign(mesh.vertex_count, 0);
@@ -78,11 +78,11 @@ PackedColour SurfaceColours::particleColour(std::size_t particle, const TissueFr
 }
 
 PackedColour SurfaceColours::blended(std::size_t vertex) const {
-  if (skin_offsets_.empty()) return of_particle_[vertex];
+  if (render_offsets_.empty()) return of_particle_[vertex];
   float channel[4] = {0, 0, 0, 0};
-  for (std::uint32_t k = skin_offsets_[vertex]; k < skin_offsets_[vertex + 1]; ++k) {
-    const PackedColour colour = of_particle_[skin_particles_[k]];
-    for (int c = 0; c < 4; ++c) channel[c] += skin_weights_[k] * static_cast<float>((colour >> (8 * c)) & 255U);
+  for (std::uint32_t k = render_offsets_[vertex]; k < render_offsets_[vertex + 1]; ++k) {
+    const PackedColour colour = of_particle_[render_particles_[k]];
+    for (int c = 0; c < 4; ++c) channel[c] += render_weights_[k] * static_cast<float>((colour >> (8 * c)) & 255U);
   }
   PackedColour result = 0;
   for (int c = 0; c < 4; ++c)
@@ -99,7 +99,7 @@ VertexSpan SurfaceColours::update(const TissueFrame& frame) {
     const PackedColour colour = particleColour(i, frame);
     if (colour == of_particle_[i]) continue;
     of_particle_[i] = colour;
-    if (skin_offsets_.empty())
+    if (render_offsets_.empty())
       touch(static_cast<std::uint32_t>(i));
     else
       std::for_each(vertices_of_particle_.begin(i), vertices_of_particle_.end(i), touch);

@@ -41,9 +41,9 @@ class SurfaceColours {
   ColourMap map_;
   std::vector<std::uint8_t> region_, wall_;
   std::vector<float> thickness_;
-  std::vector<std::uint32_t> skin_offsets_, skin_particles_;
-  std::vector<float> skin_weights_;
-  Incidence vertices_of_particle_;  // empty without a skin
+  std::vector<std::uint32_t> render_offsets_, render_particles_;
+  std::vector<float> render_weights_;
+  Incidence vertices_of_particle_;  // empty without a render surface
 
   std::vector<PackedColour> of_particle_, colours_;  // as drawn last
   std::vector<std::uint32_t> touched_;

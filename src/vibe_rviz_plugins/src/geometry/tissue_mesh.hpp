@@ -6,7 +6,7 @@
 namespace vibe {
 
 /// What does not change of an organ while it moves, as tissue/topology tells it. "Vertex" is of the drawn surface,
-/// "particle" of the simulated one; without a skin they are the same.
+/// "particle" of the simulated one; without a render surface they are the same.
 struct TissueMesh {
   std::uint32_t revision = 0;  ///< frames of another revision do not belong to it
   std::string name;            ///< of the scene
@@ -14,14 +14,14 @@ struct TissueMesh {
   std::size_t particle_count = 0, vertex_count = 0;
 
   std::vector<std::uint32_t> triangles;           ///< three vertices each, counter-clockwise seen from outside
-  std::vector<std::uint32_t> particle_triangles;  ///< three particles each; the same without a skin
+  std::vector<std::uint32_t> particle_triangles;  ///< three particles each; the same without a render surface
   std::vector<float> rest;                        ///< x y z per vertex [m]
 
-  // Vertex v is the sum over k in [skin_offsets[v], skin_offsets[v + 1]) of skin_weights[k] times particle
-  // skin_particles[k]. All empty without a skin.
-  std::vector<std::uint32_t> skin_offsets, skin_particles;
-  std::vector<float> skin_weights;
-  bool skinned() const { return !skin_offsets.empty(); }
+  // Vertex v is the sum over k in [render_offsets[v], render_offsets[v + 1]) of render_weights[k] times particle
+  // render_particles[k]. All empty without a render surface.
+  std::vector<std::uint32_t> render_offsets, render_particles;
+  std::vector<float> render_weights;
+  bool subdivided() const { return !render_offsets.empty(); }
 
   // Per particle; empty if the topology does not tell.
   std::vector<std::uint8_t> region, wall;  ///< REGION_* and WALL_* of vibe_msgs/TissueTopology

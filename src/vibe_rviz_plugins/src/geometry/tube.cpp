@@ -162,9 +162,9 @@ Frame addJoint(const TubePoint& at, const Frame& before, const Vector3d& to, Tub
 }  // namespace
 
 Vector3d anyNormal(const Vector3d& direction) {
-  Vector3d::Index least;
-  direction.cwiseAbs().minCoeff(&least);
-  return direction.cross(Vector3d::Unit(least)).normalized();
+  Vector3d::Index min;
+  direction.cwiseAbs().minCoeff(&min);
+  return direction.cross(Vector3d::Unit(min)).normalized();
 }
 
 void appendTube(const std::vector<TubePoint>& points, int sides, ColouredShape& shape) {

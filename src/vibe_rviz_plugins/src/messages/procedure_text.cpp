@@ -96,7 +96,7 @@ std::string burnsText(const vibe_msgs::ProcedureState& state) {
          " with the muscularis at risk";
 }
 
-std::vector<NamedText> performanceRows(const vibe_msgs::SolverStatistics& statistics) {
+std::vector<NamedText> solverStatisticsRows(const vibe_msgs::SolverStatistics& statistics) {
   std::vector<NamedText> rows;
   addStage(statistics, "solver", "Solver", "CPU time of a step.", rows);
   addStage(statistics, "total", "Whole step", "Wall time of a step with all messages.", rows);

@@ -44,6 +44,6 @@ struct NamedText {
   std::string name, value, help;
   bool warns = false;
 };
-std::vector<NamedText> performanceRows(const vibe_msgs::SolverStatistics& statistics);
+std::vector<NamedText> solverStatisticsRows(const vibe_msgs::SolverStatistics& statistics);
 
 }  // namespace vibe

@@ -8,9 +8,9 @@ constexpr double kFarthest = 1e6;   // a place farther away is a mistake [m]
 constexpr double kStrongest = 1e6;  // [N]
 
 template <class Message>
-bool read(const Message& message, double most, Eigen::Vector3d& result) {
+bool read(const Message& message, double max, Eigen::Vector3d& result) {
   result = {message.x, message.y, message.z};
-  return result.cwiseAbs().maxCoeff() < most && result.allFinite();
+  return result.cwiseAbs().maxCoeff() < max && result.allFinite();
 }
 
 }  // namespace

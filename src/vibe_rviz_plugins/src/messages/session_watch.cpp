@@ -41,18 +41,18 @@ std::string ControlWatch::sentence(const std::string& topic, bool in_control, un
   return "Nobody has control of " + topic + "; switch on 'Take control' to press buttons.";
 }
 
-void GreatestOfWindow::add(double value, double now) {
+void MaxOfWindow::add(double value, double now) {
   if (now - begin_ < kWindow) {
-    greatest_ = std::max(greatest_, value);
+    max_ = std::max(max_, value);
     return;
   }
   has_last_ = now - begin_ < 2 * kWindow;
-  last_ = greatest_;
-  greatest_ = value;
+  last_ = max_;
+  max_ = value;
   begin_ = now;
 }
 
-double GreatestOfWindow::value(double now) const {
+double MaxOfWindow::value(double now) const {
   return has_last_ && now - begin_ < 2 * kWindow ? last_ : std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -54,14 +54,14 @@ class ControlWatch {
 };
 
 /// The greatest number of the last whole second.
-class GreatestOfWindow {
+class MaxOfWindow {
  public:
   void add(double value, double now);
   /// NaN if nothing has come for a while, or not for long enough.
   double value(double now) const;
 
  private:
-  double begin_ = -1e9, greatest_ = 0, last_ = 0;
+  double begin_ = -1e9, max_ = 0, last_ = 0;
   bool has_last_ = false;
 };
 

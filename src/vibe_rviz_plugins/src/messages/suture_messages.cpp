@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 using vibe_msgs::Suture;
 using Topology = vibe_msgs::TissueTopology;
 
-constexpr std::size_t kMostSutures = 10'000, kMostPoints = 1'000'000;  // beyond that it is a mistake, not a session
-constexpr double kFarthest = 1e6;                                      // of a place [m]
+constexpr std::size_t kMaxSutures = 10'000, kMaxPoints = 1'000'000;  // beyond that it is a mistake, not a session
+constexpr double kFarthest = 1e6;                                    // of a place [m]
 
 template <class Count>
 std::string number(Count value) {
@@ -112,11 +112,11 @@ std::string checkBleeding(const vibe_msgs::Bleeding& bleeding, const vibe_msgs::
 }
 
 std::string check(const vibe_msgs::SutureArray& message) {
-  if (message.sutures.size() > kMostSutures || message.bleedings.size() > kMostSutures)
+  if (message.sutures.size() > kMaxSutures || message.bleedings.size() > kMaxSutures)
     return "There are more than ten thousand sutures or bleedings, which cannot be one session.";
   std::size_t points = 0;
   for (const Suture& suture : message.sutures) points += suture.thread.size() + suture.bites.size();
-  if (points > kMostPoints) return "The threads have more than a million points, which cannot be one session.";
+  if (points > kMaxPoints) return "The threads have more than a million points, which cannot be one session.";
   std::string wrong;
   for (std::size_t k = 0; k < message.sutures.size() && wrong.empty(); ++k) wrong = checkSuture(message.sutures[k], k);
   for (std::size_t k = 0; k < message.bleedings.size() && wrong.empty(); ++k)

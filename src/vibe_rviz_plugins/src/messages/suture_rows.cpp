@@ -38,7 +38,7 @@ std::string techniqueText(const vibe_msgs::Suture& suture) {
 std::string helpOf(const SutureRow& row, const vibe_msgs::Suture& suture) {
   std::string text = "Set " + row.set + ", " + row.stage + ": " + countText(suture.bites.size(), "bite") + ", " +
                      std::to_string(suture.tear_outs) + " torn out. Greatest tension now " +
-                     quantityText(greatestTension(suture), 2, "N") + ".";
+                     quantityText(maxTension(suture), 2, "N") + ".";
   if (!suture.technique_name.empty())
     text += "\nTechnique " + row.technique + " away from being another one (100 %: as sure as can be).";
   if (suture.end > 0)
@@ -49,7 +49,7 @@ std::string helpOf(const SutureRow& row, const vibe_msgs::Suture& suture) {
 
 }  // namespace
 
-double greatestTension(const vibe_msgs::Suture& suture) {
+double maxTension(const vibe_msgs::Suture& suture) {
   if (suture.tension.empty() ||
       !std::all_of(suture.tension.begin(), suture.tension.end(), [](double tension) { return std::isfinite(tension); }))
     return std::numeric_limits<double>::quiet_NaN();
@@ -65,7 +65,7 @@ std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures) {
     if (suture.tear_outs > 0) row.bites += " (-" + std::to_string(suture.tear_outs) + ")";
     row.technique = techniqueText(suture);
     row.stage = stageName(suture);
-    row.tension = numberText(greatestTension(suture), 1);
+    row.tension = numberText(maxTension(suture), 1);
     row.warns = suture.tear_outs > 0 || suture.loose || suture.stage == vibe_msgs::Suture::BROKEN;
     row.help = helpOf(row, suture);
     rows.push_back(std::move(row));

@@ -20,6 +20,6 @@ struct SutureRow {
 std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures);
 
 /// Greatest tension of a thread's pieces [N]; NaN without a piece, and where the message has no number.
-double greatestTension(const vibe_msgs::Suture& suture);
+double maxTension(const vibe_msgs::Suture& suture);
 
 }  // namespace vibe

@@ -10,10 +10,10 @@
 namespace vibe {
 namespace {
 
-constexpr std::size_t kMostParticles = 10'000'000;  // beyond that it is a mistake, not an organ
-constexpr std::uint8_t kMostGrade = 3;
-constexpr double kFarthest = 1e6;       // of a place [m]; graphics engines stop the program at boxes without end
-constexpr float kMostWeight = 1000.0F;  // of a particle in a vertex [1]
+constexpr std::size_t kMaxParticles = 10'000'000;  // beyond that it is a mistake, not an organ
+constexpr std::uint8_t kMaxGrade = 3;
+constexpr double kFarthest = 1e6;      // of a place [m]; graphics engines stop the program at boxes without end
+constexpr float kMaxWeight = 1000.0F;  // of a particle in a vertex [1]
 
 std::string number(std::size_t value) {
   return std::to_string(value);
@@ -30,24 +30,24 @@ std::string checkTriangles(const std::vector<std::uint32_t>& triangles, std::siz
   return {};
 }
 
-std::string checkSkin(const vibe_msgs::TissueTopology& message, std::size_t particles) {
-  const auto& offsets = message.skin_offsets;
-  if (message.skin_weights.size() != message.skin_particles.size())
-    return "skin_weights and skin_particles of the topology have different lengths.";
-  if (offsets.front() != 0 || offsets.back() != message.skin_particles.size() ||
+std::string checkRenderSurface(const vibe_msgs::TissueTopology& message, std::size_t particles) {
+  const auto& offsets = message.render_offsets;
+  if (message.render_weights.size() != message.render_particles.size())
+    return "render_weights and render_particles of the topology have different lengths.";
+  if (offsets.front() != 0 || offsets.back() != message.render_particles.size() ||
       !std::is_sorted(offsets.begin(), offsets.end()))
-    return "skin_offsets of the topology do not run from 0 to the length of skin_particles.";
-  for (const std::uint32_t particle : message.skin_particles)
-    if (particle >= particles) return "skin_particles of the topology names a particle that does not exist.";
-  for (const float weight : message.skin_weights)
-    if (!(std::abs(weight) <= kMostWeight)) return "skin_weights of the topology holds a value that is no share.";
+    return "render_offsets of the topology do not run from 0 to the length of render_particles.";
+  for (const std::uint32_t particle : message.render_particles)
+    if (particle >= particles) return "render_particles of the topology names a particle that does not exist.";
+  for (const float weight : message.render_weights)
+    if (!(std::abs(weight) <= kMaxWeight)) return "render_weights of the topology holds a value that is no share.";
   return {};
 }
 
 std::string checkPositions(const std::vector<double>& positions) {
   if (positions.size() % 3 != 0) return "rest_positions of the topology is no list of x, y, z.";
   if (positions.empty()) return "The topology has no particles.";
-  if (positions.size() / 3 > kMostParticles) return "The topology has more than ten million particles.";
+  if (positions.size() / 3 > kMaxParticles) return "The topology has more than ten million particles.";
   for (const double value : positions)
     if (!(std::abs(value) < kFarthest))
       return "rest_positions of the topology holds a value that is no place in metres.";
@@ -66,23 +66,24 @@ std::string checkTopology(const vibe_msgs::TissueTopology& message) {
   const std::size_t count = message.rest_positions.size() / 3;
   if (wrong.empty()) wrong = checkTriangles(message.triangles, count, "triangles");
   if (wrong.empty()) wrong = checkAnatomy(message, count);
-  if (!wrong.empty() || message.skin_offsets.empty()) return wrong;
-  wrong = checkSkin(message, count);
-  return wrong.empty() ? checkTriangles(message.skin_triangles, message.skin_offsets.size() - 1, "skin_triangles")
+  if (!wrong.empty() || message.render_offsets.empty()) return wrong;
+  wrong = checkRenderSurface(message, count);
+  return wrong.empty() ? checkTriangles(message.render_triangles, message.render_offsets.size() - 1, "render_triangles")
                        : wrong;
 }
 
 void takeRest(const std::vector<double>& positions, TissueMesh& mesh) {
   mesh.rest.assign(3 * mesh.vertex_count, 0.0F);
-  if (!mesh.skinned()) {
+  if (!mesh.subdivided()) {
     std::transform(positions.begin(), positions.end(), mesh.rest.begin(),
                    [](double p) { return static_cast<float>(p); });
     return;
   }
   for (std::size_t v = 0; v < mesh.vertex_count; ++v)
-    for (std::uint32_t k = mesh.skin_offsets[v]; k < mesh.skin_offsets[v + 1]; ++k)
+    for (std::uint32_t k = mesh.render_offsets[v]; k < mesh.render_offsets[v + 1]; ++k)
       for (std::size_t c = 0; c < 3; ++c)
-        mesh.rest[3 * v + c] += mesh.skin_weights[k] * static_cast<float>(positions[3 * mesh.skin_particles[k] + c]);
+        mesh.rest[3 * v + c] +=
+            mesh.render_weights[k] * static_cast<float>(positions[3 * mesh.render_particles[k] + c]);
 }
 
 bool arePlaces(const float* values, std::size_t count, std::size_t& where) {
@@ -116,11 +117,11 @@ std::string readTopology(const vibe_msgs::TissueTopology& message, TissueMesh& m
   mesh.frame_id = message.header.frame_id;
   mesh.particle_count = message.rest_positions.size() / 3;
   mesh.particle_triangles = message.triangles;
-  mesh.skin_offsets = message.skin_offsets;
-  mesh.skin_particles = message.skin_particles;
-  mesh.skin_weights = message.skin_weights;
-  mesh.triangles = mesh.skinned() ? message.skin_triangles : message.triangles;
-  mesh.vertex_count = mesh.skinned() ? mesh.skin_offsets.size() - 1 : mesh.particle_count;
+  mesh.render_offsets = message.render_offsets;
+  mesh.render_particles = message.render_particles;
+  mesh.render_weights = message.render_weights;
+  mesh.triangles = mesh.subdivided() ? message.render_triangles : message.triangles;
+  mesh.vertex_count = mesh.subdivided() ? mesh.render_offsets.size() - 1 : mesh.particle_count;
   mesh.region = message.region;
   mesh.wall = message.wall;
   mesh.thickness = message.thickness;
@@ -156,7 +157,7 @@ std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueM
   take(strain, count, frame.strain);
   take(grade, count, frame.grade);
   take(dose, count, frame.dose);
-  for (std::uint8_t& value : frame.grade) value = std::min(value, kMostGrade);
+  for (std::uint8_t& value : frame.grade) value = std::min(value, kMaxGrade);
   return {};
 }
 

@@ -3,7 +3,7 @@
 #include <ros/this_node.h>
 #include <vibe_msgs/StepInput.h>
 
-#include "panels/procedure_feed.hpp"
+#include "panels/procedure_subscriptions.hpp"
 
 namespace vibe {
 namespace {

@@ -40,7 +40,7 @@ void EventList::add(const vibe_msgs::ProcedureEvent& event, double origin) {
   entry->setForeground(colourOf(severity, palette()));
   entry->setToolTip(toQt(severityName(severity)));
   insertItem(0, entry);
-  while (count() > kMost) delete takeItem(count() - 1);
+  while (count() > kMax) delete takeItem(count() - 1);
 }
 
 QSize EventList::sizeHint() const {

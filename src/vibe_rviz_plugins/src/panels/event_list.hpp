@@ -10,7 +10,7 @@ namespace vibe {
 /// again with nothing in between stands there once, with its last time.
 class EventList : public QListWidget {
  public:
-  static constexpr int kMost = 200;
+  static constexpr int kMax = 200;
 
   explicit EventList(QWidget* parent = nullptr);
 

@@ -10,7 +10,7 @@ namespace vibe {
 struct PanelMessages {
   vibe_msgs::ProcedureStateConstPtr state;
   vibe_msgs::SutureArrayConstPtr sutures;
-  vibe_msgs::SolverStatisticsConstPtr performance;
+  vibe_msgs::SolverStatisticsConstPtr solver_statistics;
   geometry_msgs::WrenchStampedConstPtr force;
 };
 

@@ -41,23 +41,23 @@ void PhaseStrip::display(const std::array<PhaseStep, kPhaseCount>& steps) {
   update();
 }
 
-double PhaseStrip::leastWidth(const QFont& face) const {
+double PhaseStrip::minWidth(const QFont& face) const {
   double width = kGap * (kPhaseCount - 1);
   for (const PhaseStep& step : steps_) width += widthOf(step, face);
   return width;
 }
 
 QSize PhaseStrip::sizeHint() const {
-  return {static_cast<int>(leastWidth(font())) + 1, QFontMetrics(bold(font())).height() + kMargin};
+  return {static_cast<int>(minWidth(font())) + 1, QFontMetrics(bold(font())).height() + kMargin};
 }
 
 QSize PhaseStrip::minimumSizeHint() const {
-  return {static_cast<int>(kSmallest * leastWidth(font())) + 1, sizeHint().height()};
+  return {static_cast<int>(kSmallest * minWidth(font())) + 1, sizeHint().height()};
 }
 
 QFont PhaseStrip::fittingFont() const {
   QFont face = font();
-  const double share = std::max(kSmallest, std::min(1.0, width() / leastWidth(face)));
+  const double share = std::max(kSmallest, std::min(1.0, width() / minWidth(face)));
   face.setPointSizeF(share * QFontInfo(face).pointSizeF());
   return face;
 }
@@ -66,7 +66,7 @@ void PhaseStrip::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   const QFont face = fittingFont();
-  const double extra = (width() - leastWidth(face)) / kPhaseCount;
+  const double extra = (width() - minWidth(face)) / kPhaseCount;
   double left = 0;
   for (const PhaseStep& step : steps_) {
     const double width = widthOf(step, face) + extra;

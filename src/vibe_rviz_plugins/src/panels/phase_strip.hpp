@@ -21,8 +21,8 @@ class PhaseStrip : public QWidget {
  private:
   std::array<PhaseStep, kPhaseCount> steps_;
 
-  double leastWidth(const QFont& face) const;  // without clipping [px]
-  QFont fittingFont() const;                   // smaller where there is no room for the whole
+  double minWidth(const QFont& face) const;  // without clipping [px]
+  QFont fittingFont() const;                 // smaller where there is no room for the whole
   void paintStep(QPainter& painter, const QRectF& place, const PhaseStep& step) const;
 };
 

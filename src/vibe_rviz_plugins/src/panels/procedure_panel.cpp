@@ -3,30 +3,30 @@
 #include <QVBoxLayout>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "panels/procedure_cockpit.hpp"
+#include "panels/procedure_widget.hpp"
 
 namespace vibe {
 
-ProcedurePanel::ProcedurePanel(QWidget* parent) : rviz::Panel(parent), cockpit_(new ProcedureCockpit) {
+ProcedurePanel::ProcedurePanel(QWidget* parent) : rviz::Panel(parent), widget_(new ProcedureWidget) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
-  column->addWidget(cockpit_);
-  cockpit_->onNamespaceChanged([this] { Q_EMIT configChanged(); });
+  column->addWidget(widget_);
+  widget_->onNamespaceChanged([this] { Q_EMIT configChanged(); });
 }
 
 void ProcedurePanel::onInitialize() {
-  cockpit_->start();
+  widget_->start();
 }
 
 void ProcedurePanel::load(const rviz::Config& config) {
   rviz::Panel::load(config);
   QString name;
-  if (config.mapGetString("Namespace", &name)) cockpit_->setNamespace(name);
+  if (config.mapGetString("Namespace", &name)) widget_->setNamespace(name);
 }
 
 void ProcedurePanel::save(rviz::Config config) const {
   rviz::Panel::save(config);
-  config.mapSetValue("Namespace", cockpit_->nameSpace());
+  config.mapSetValue("Namespace", widget_->nameSpace());
 }
 
 }  // namespace vibe

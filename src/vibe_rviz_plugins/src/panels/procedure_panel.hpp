@@ -5,7 +5,7 @@
 
 namespace vibe {
 
-class ProcedureCockpit;
+class ProcedureWidget;
 
 /// The cockpit as a panel of rviz. Keeps the namespace in rviz's configuration.
 class ProcedurePanel : public rviz::Panel {
@@ -18,7 +18,7 @@ class ProcedurePanel : public rviz::Panel {
   void save(rviz::Config config) const override;
 
  private:
-  ProcedureCockpit* cockpit_;
+  ProcedureWidget* widget_;
 };
 
 }  // namespace vibe

@@ -13,7 +13,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kMostSteps = 10000;
+constexpr int kMaxSteps = 10000;
 constexpr int kResetPatience = 3000;  // to press reset a second time [ms]
 constexpr double kPatience = 1;       // a call that takes longer is told of and can be given up [s]
 
@@ -41,7 +41,7 @@ SteppingBox::SteppingBox(Actions actions, QWidget* parent)
   reset_->setToolTip("Back to the initial state with the scene's seed; press twice. Stamps go on.");
   stop_waiting_->setToolTip("Gives up the call; the simulator may still carry it out.");
   count_->setToolTip("Steps to take at once.");
-  count_->setRange(1, kMostSteps);
+  count_->setRange(1, kMaxSteps);
   count_->setPrefix("steps: ");
   answer_->setObjectName("answer");
   stop_waiting_->hide();

@@ -9,7 +9,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kMostShown = 8;  // rows without scrolling
+constexpr int kMaxShown = 8;  // rows without scrolling
 
 constexpr int kTechnique = 2;  // column
 
@@ -84,7 +84,7 @@ void SutureTable::displayRow(int row, const SutureRow& content) {
 }
 
 QSize SutureTable::sizeHint() const {
-  const int shown = std::max(1, std::min(rowCount(), kMostShown));
+  const int shown = std::max(1, std::min(rowCount(), kMaxShown));
   return {200,
           horizontalHeader()->sizeHint().height() + shown * verticalHeader()->defaultSectionSize() + 2 * frameWidth()};
 }

@@ -50,8 +50,7 @@ QImage drawnLegend(const std::string& title, const ColourMap& map) {
   }
   painter.setPen(Qt::white);
   for (int k = 0; k < kMarks; ++k) {
-    const double part = static_cast<double>(k) / (kMarks - 1),
-                 value = map.least() + part * (map.greatest() - map.least());
+    const double part = static_cast<double>(k) / (kMarks - 1), value = map.min() + part * (map.max() - map.min());
     const int y = top + static_cast<int>((1 - part) * (kBarLength - 1));
     painter.drawLine(kMargin + kBar, y, kMargin + kBar + 4, y);
     painter.drawText(kMargin + kBar + 10, y - kLine / 2, kWidth, kLine, Qt::AlignVCenter,

@@ -23,7 +23,7 @@ constexpr float kHeadLength = 7e-3F;  // at most, and half of the arrow [m]
 constexpr float kLine = 6e-4F;        // width [m]
 constexpr float kLetter = 1e-2F;      // height [m]
 constexpr double kTextGap = 9e-3;     // from the arrow's tip [m]
-constexpr double kLeastArrow = 5e-4;  // shorter ones are not drawn [m]
+constexpr double kMinArrow = 5e-4;    // shorter ones are not drawn [m]
 
 Ogre::Vector3 toOgre(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
@@ -64,7 +64,7 @@ void PullVisual::setPose(const Ogre::Vector3& position, const Ogre::Quaternion& 
   node_->setOrientation(orientation);
 }
 
-void PullVisual::showHand(const Eigen::Vector3d& place, const Eigen::Vector3d& target) {
+void PullVisual::showPull(const Eigen::Vector3d& place, const Eigen::Vector3d& target) {
   node_->setVisible(true);
   arrow_->getSceneNode()->setVisible(false);
   text_node_->setVisible(false);
@@ -77,7 +77,7 @@ void PullVisual::showHand(const Eigen::Vector3d& place, const Eigen::Vector3d& t
 
 void PullVisual::showForce(const Eigen::Vector3d& place, const Eigen::Vector3d& force, double scale) {
   const double length = force.norm() * scale;
-  const bool shown = length > kLeastArrow;
+  const bool shown = length > kMinArrow;
   arrow_->getSceneNode()->setVisible(shown);
   text_node_->setVisible(shown);
   if (!shown) return;

@@ -26,7 +26,7 @@ class PullVisual {
   void setPose(const Ogre::Vector3& position, const Ogre::Quaternion& orientation);
   /// @param place   where the tissue is held [m]
   /// @param target  where it is wanted [m]
-  void showHand(const Eigen::Vector3d& place, const Eigen::Vector3d& target);
+  void showPull(const Eigen::Vector3d& place, const Eigen::Vector3d& target);
   /// @param force  [N], zero: no arrow
   /// @param scale  length of the arrow per force [m/N]
   void showForce(const Eigen::Vector3d& place, const Eigen::Vector3d& force, double scale);

@@ -18,8 +18,8 @@ constexpr float kFill = 0.16F, kFillOfData = 0.5F;  // light from everywhere
 
 Ogre::AxisAlignedBox boxAround(const Eigen::AlignedBox3f& bounds) {
   if (bounds.isEmpty()) return Ogre::AxisAlignedBox::BOX_NULL;
-  const Eigen::Vector3f &least = bounds.min(), &greatest = bounds.max();
-  return {least.x(), least.y(), least.z(), greatest.x(), greatest.y(), greatest.z()};
+  const Eigen::Vector3f &min = bounds.min(), &max = bounds.max();
+  return {min.x(), min.y(), min.z(), max.x(), max.y(), max.z()};
 }
 
 void setBlending(Ogre::Pass& pass, bool transparent) {
@@ -59,7 +59,7 @@ void TissueVisual::clear() {
 void TissueVisual::setMesh(const TissueMesh& mesh) {
   clear();
   mesh_ = mesh;
-  surface_ = std::make_unique<LivingSurface>(mesh_);
+  surface_ = std::make_unique<DeformableSurface>(mesh_);
   colours_ = std::make_unique<SurfaceColours>(mesh_);
   drawn_.setTopology(mesh_.triangles, mesh_.vertex_count, mesh_.rest);
   applyLook();
@@ -118,7 +118,7 @@ void TissueVisual::setLook(const TissueLook& look) {
 }
 
 void TissueVisual::applyLook() {
-  if (colours_) colours_->choose(look_.colouring, ColourMap(look_.map, look_.least, look_.greatest));
+  if (colours_) colours_->choose(look_.colouring, ColourMap(look_.map, look_.min, look_.max));
   applySide(inside_, look_.inside, false);
   applySide(outside_, look_.outside, true);
 }

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "geometry/living_surface.hpp"
+#include "geometry/deformable_surface.hpp"
 #include "geometry/surface_colours.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "render/dynamic_mesh.hpp"
@@ -23,7 +23,7 @@ struct TissueLook {
   bool surface = true;
   Colouring colouring = Colouring::Tissue;
   std::string map = "viridis";                     ///< see ColourMap
-  double least = 0, greatest = 1;                  ///< values at the ends of the map, in the unit of the colouring
+  double min = 0, max = 1;                         ///< values at the ends of the map, in the unit of the colouring
   Ogre::ColourValue inside{0.86F, 0.47F, 0.42F};   ///< of tissue as it is, mucosa
   Ogre::ColourValue outside{0.84F, 0.62F, 0.56F};  ///< serosa
   double outside_alpha = 0.15;  ///< opacity of the wall looked at straight on from outside; 1 all over: opaque
@@ -32,7 +32,7 @@ struct TissueLook {
   bool scars = true;            ///< show marks and burn scars
   bool particles = false;
   double particle_size = 3e-3;  ///< diameter of their balls [m]
-  bool mesh = false;            ///< lines of the simulated mesh, whose particles are the bones of the drawn skin
+  bool mesh = false;  ///< lines of the simulated mesh, whose particles are the bones of the drawn render surface
 };
 
 /// An organ in a scene of Ogre: set its mesh once, then a frame whenever it has moved. Each frame costs work and
@@ -70,7 +70,7 @@ class TissueVisual {
   TissueMesh mesh_;
   TissueFrame frame_;
   bool has_frame_ = false;
-  std::unique_ptr<LivingSurface> surface_;
+  std::unique_ptr<DeformableSurface> surface_;
   std::unique_ptr<SurfaceColours> colours_;
   DynamicMesh drawn_, bones_;
   std::vector<MovingVertex> bone_vertices_;

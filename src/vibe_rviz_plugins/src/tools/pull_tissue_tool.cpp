@@ -203,7 +203,7 @@ void PullTissueTool::take(const rviz::ViewportMouseEvent& event) {
   hold.since = ros::WallTime::now();
   hold_ = hold;
   send(hold.particle, hold.target());
-  visual_->showHand(hold.place, hold.target());
+  visual_->showPull(hold.place, hold.target());
   sayHowTo();
 }
 
@@ -246,7 +246,7 @@ void PullTissueTool::send(int particle, const Eigen::Vector3d& target) {
 void PullTissueTool::draw(const Eigen::Vector3d& place, const Eigen::Vector3d& force) {
   Eigen::Isometry3d frame;
   if (!framePose(frame)) return;
-  visual_->showHand(place, hold_->target());
+  visual_->showPull(place, hold_->target());
   visual_->showForce(place, force, 1e-3 * static_cast<double>(scale_->getFloat()));
   char text[160];
   std::snprintf(text, sizeof text, "%.2f N at particle %d. Wheel or Shift: towards you or away. Let go: release.",

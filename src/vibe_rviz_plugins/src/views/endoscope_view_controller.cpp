@@ -68,16 +68,16 @@ void EndoscopeViewController::onInitialize() {
 void EndoscopeViewController::onActivate() {
   picture_ = std::make_unique<EndoscopeLens>(*context_->getViewManager()->getRenderPanel()->getViewport());
   broken_ = false;
-  followScope();
+  updateScope();
   bendPicture();
 }
 
 void EndoscopeViewController::update(float /*dt*/, float /*ros_dt*/) {
-  followScope();
+  updateScope();
   bendPicture();
 }
 
-void EndoscopeViewController::followScope() {
+void EndoscopeViewController::updateScope() {
   Ogre::Vector3 place;
   Ogre::Quaternion turn;
   const std::string frame = frame_->getFrameStd();

@@ -34,7 +34,7 @@ class EndoscopeViewController : public rviz::ViewController {
   void onActivate() override;
 
  private:
-  void followScope();
+  void updateScope();
   void bendPicture();
   void tell(const QString& text);
 

@@ -43,12 +43,12 @@ Puddle puddleOf(double volume) {
 }
 
 double extentAlong(const ColouredShape& shape, const Vector3d& direction) {
-  double least = 1e9, most = -1e9;
+  double min = 1e9, max = -1e9;
   for (std::size_t v = 0; v < shape.vertices.size(); ++v) {
-    least = std::min(least, placeOf(shape, v).dot(direction));
-    most = std::max(most, placeOf(shape, v).dot(direction));
+    min = std::min(min, placeOf(shape, v).dot(direction));
+    max = std::max(max, placeOf(shape, v).dot(direction));
   }
-  return most - least;
+  return max - min;
 }
 
 double meanRed(const ColouredShape& shape) {
@@ -57,16 +57,16 @@ double meanRed(const ColouredShape& shape) {
   return sum / static_cast<double>(shape.colours.size()) / 255;
 }
 
-double mostAlpha(const ColouredShape& shape) {
-  PackedColour most = 0;
-  for (const PackedColour colour : shape.colours) most = std::max(most, colour >> 24);
-  return most / 255.0;
+double maxAlpha(const ColouredShape& shape) {
+  PackedColour max = 0;
+  for (const PackedColour colour : shape.colours) max = std::max(max, colour >> 24);
+  return max / 255.0;
 }
 
 double farthestApart(const ColouredShape& a, const ColouredShape& b) {
-  double most = 0;
-  for (std::size_t v = 0; v < a.vertices.size(); ++v) most = std::max(most, (placeOf(a, v) - placeOf(b, v)).norm());
-  return most;
+  double max = 0;
+  for (std::size_t v = 0; v < a.vertices.size(); ++v) max = std::max(max, (placeOf(a, v) - placeOf(b, v)).norm());
+  return max;
 }
 
 /// Of the part over the plane: what a triangle's shadow on the plane covers times its height.
@@ -164,23 +164,23 @@ TEST(Blood, AFountainRisesAsFarAsItsSpeedLets) {
   style.down = -Vector3d::UnitX();
   for (double time = 0; time < 1; time += 0.07) {
     style.time = time;
-    double most = 0;
-    for (const Vector3d& point : jetLine(wound, 0, style)) most = std::max(most, (point - wound.place).x());
-    EXPECT_GT(most, 2e-3);
-    EXPECT_LT(most, 1.4 * 1.4 * 0.5 * 0.5 / (2 * 9.81));
+    double max = 0;
+    for (const Vector3d& point : jetLine(wound, 0, style)) max = std::max(max, (point - wound.place).x());
+    EXPECT_GT(max, 2e-3);
+    EXPECT_LT(max, 1.4 * 1.4 * 0.5 * 0.5 / (2 * 9.81));
   }
 }
 
 TEST(Blood, PulsesWithTheHeartAndOnlyWithTheTimeOfTheMessage) {
   const double beat = 60.0 / 72;
-  double least = 1e9, most = 0, sum = 0;
+  double min = 1e9, max = 0, sum = 0;
   for (int k = 0; k < 100; ++k) {
     const double speed = jetSpeed(k * beat / 100);
-    least = std::min(least, speed), most = std::max(most, speed), sum += speed / 100;
+    min = std::min(min, speed), max = std::max(max, speed), sum += speed / 100;
     EXPECT_NEAR(jetSpeed(k * beat / 100 + 7 * beat), speed, 1e-9);
   }
-  EXPECT_GT(most, 1.5 * least);
-  EXPECT_GT(least, 0);
+  EXPECT_GT(max, 1.5 * min);
+  EXPECT_GT(min, 0);
   EXPECT_NEAR(sum, 0.5, 1e-3);
   BloodStyle now, later;
   later.time = 0.3;
@@ -206,9 +206,9 @@ TEST(Blood, StoppedIsBrownPaleAndStill) {
     wound.rate = 0;
     const ColouredShape stopped = shapeOf(wound);
     EXPECT_LT(meanRed(stopped), meanRed(bleeding) - 0.05);
-    EXPECT_LT(mostAlpha(stopped), mostAlpha(bleeding));
+    EXPECT_LT(maxAlpha(stopped), maxAlpha(bleeding));
     wound.age = 1000;
-    EXPECT_LT(mostAlpha(shapeOf(wound)), mostAlpha(stopped));
+    EXPECT_LT(maxAlpha(shapeOf(wound)), maxAlpha(stopped));
     BloodStyle later;
     later.time = 0.3;
     EXPECT_EQ(farthestApart(shapeOf(wound), shapeOf(wound, later)), 0);

@@ -45,8 +45,8 @@ TEST(ColourMap, EndsHoldWhatLiesOutside) {
   EXPECT_EQ(map.at(1e30), map.steps().back());
   EXPECT_EQ(map.at(std::numeric_limits<double>::quiet_NaN()), map.steps().front());
   EXPECT_EQ(map.at(3), map.steps()[128]);
-  EXPECT_DOUBLE_EQ(map.least(), 2);
-  EXPECT_DOUBLE_EQ(map.greatest(), 4);
+  EXPECT_DOUBLE_EQ(map.min(), 2);
+  EXPECT_DOUBLE_EQ(map.max(), 4);
 }
 
 TEST(ColourMap, RangeWithoutLengthIsDrawnDark) {

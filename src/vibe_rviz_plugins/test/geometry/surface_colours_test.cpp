@@ -39,7 +39,7 @@ TEST(SurfaceColours, AMarkChangesAlphaOfItsVertexOnly) {
 }
 
 TEST(SurfaceColours, AMarkSpreadsOverTheSkinByItsWeights) {
-  const TissueMesh mesh = test::skinnedBall(10, 12);
+  const TissueMesh mesh = test::subdividedBall(10, 12);
   SurfaceColours colours(mesh);
   TissueFrame frame = frameOf(mesh);
   colours.update(frame);

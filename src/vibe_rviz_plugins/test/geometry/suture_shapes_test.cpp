@@ -94,12 +94,12 @@ TEST(SutureShapes, BandsCoverTheSlackThread) {
   for (int k = 0; k <= 40; ++k) {
     const Vector3d on = k < 20 ? Vector3d(line[0] + k / 20.0 * (line[1] - line[0]))
                                : Vector3d(line[1] + (k - 20) / 20.0 * (line[2] - line[1]));
-    double least = 1;
+    double min = 1;
     for (std::size_t t = 0; t < shape.triangles.size(); t += 3)
       for (std::size_t e = 0; e < 3; ++e)
-        least = std::min(least, distanceToSegment(on, placeOf(shape, shape.triangles[t + e]),
-                                                  placeOf(shape, shape.triangles[t + (e + 1) % 3])));
-    EXPECT_LT(least, 0.17e-3) << "at " << k;
+        min = std::min(min, distanceToSegment(on, placeOf(shape, shape.triangles[t + e]),
+                                              placeOf(shape, shape.triangles[t + (e + 1) % 3])));
+    EXPECT_LT(min, 0.17e-3) << "at " << k;
   }
 }
 
@@ -127,9 +127,9 @@ TEST(SutureShapes, FullAndPartialBitesDifferInShapeAndColour) {
   const ColouredShape rings = shapeOf(full, style), balls = shapeOf(partial, style);
   EXPECT_NE(coloursOf(rings), coloursOf(balls));
   const auto nearest = [](const ColouredShape& shape) {
-    double least = 1;
-    for (std::size_t v = 0; v < shape.vertices.size(); ++v) least = std::min(least, placeOf(shape, v).norm());
-    return least;
+    double min = 1;
+    for (std::size_t v = 0; v < shape.vertices.size(); ++v) min = std::min(min, placeOf(shape, v).norm());
+    return min;
   };
   EXPECT_GT(nearest(rings), nearest(balls));  // a ring is open in its middle
 }

@@ -87,7 +87,7 @@ TEST(ProcedureText, marksByWall) {
   EXPECT_EQ(burnsText(state), "1 burn scar, 0 with the muscularis at risk");
 }
 
-TEST(ProcedureText, performanceByName) {
+TEST(ProcedureText, statisticsByName) {
   vibe_msgs::SolverStatistics statistics;
   statistics.stages.resize(2);
   statistics.stages[0].name = "publish";
@@ -97,7 +97,7 @@ TEST(ProcedureText, performanceByName) {
   statistics.stages[1].p99 = 6.5;
   statistics.stages[1].max = 8;
   statistics.state_hash = "0123456789abcdef";
-  const auto rows = performanceRows(statistics);
+  const auto rows = solverStatisticsRows(statistics);
   EXPECT_EQ(rows[0].value, "4.2 / 6.5 / 8.0 ms");
   EXPECT_EQ(rows[1].value, "\u2013") << "there is no stage 'total'";
   EXPECT_EQ(rows.back().value, "01234567");
@@ -109,7 +109,7 @@ TEST(ProcedureText, missedDeadlinesWarn) {
     vibe_msgs::SolverStatistics statistics;
     statistics.missed_deadlines = missed;
     int count = 0;
-    for (const NamedText& row : performanceRows(statistics)) count += row.warns ? 1 : 0;
+    for (const NamedText& row : solverStatisticsRows(statistics)) count += row.warns ? 1 : 0;
     return count;
   };
   EXPECT_EQ(warnings(0), 0);

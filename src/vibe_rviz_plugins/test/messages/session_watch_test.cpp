@@ -44,8 +44,8 @@ TEST(ControlWatch, saysWhoHasControl) {
   EXPECT_FALSE(contains(watch.sentence("/scope/buttons", false, 1, 1, 13), "/vibe_trainee"));
 }
 
-TEST(GreatestOfWindow, tellsTheLastSecond) {
-  GreatestOfWindow window;
+TEST(MaxOfWindow, tellsTheLastSecond) {
+  MaxOfWindow window;
   EXPECT_TRUE(std::isnan(window.value(0)));
   for (int i = 0; i <= 10; ++i) window.add(i == 5 ? 0.08 : 0.01, 0.1 * i + 1e-9 * i);
   EXPECT_NEAR(window.value(1.0), 0.08, 1e-12);

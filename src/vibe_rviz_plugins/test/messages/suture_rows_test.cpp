@@ -61,7 +61,7 @@ TEST(SutureRows, tensionThatIsNoNumberIsADash) {
   sutures.sutures[0].tension[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(sutureRows(sutures)[0].tension, "\u2013");
   sutures.sutures[0].tension.clear();
-  EXPECT_TRUE(std::isnan(greatestTension(sutures.sutures[0])));
+  EXPECT_TRUE(std::isnan(maxTension(sutures.sutures[0])));
 }
 
 TEST(SutureRows, aStageThatIsNotKnownIsANumber) {

@@ -22,12 +22,12 @@ vibe_msgs::TissueTopology tetrahedron() {
   return message;
 }
 
-vibe_msgs::TissueTopology withSkin() {
+vibe_msgs::TissueTopology withRenderSurface() {
   vibe_msgs::TissueTopology message = tetrahedron();
-  message.skin_offsets = {0, 2, 3, 4};
-  message.skin_particles = {0, 1, 2, 3};
-  message.skin_weights = {0.5, 0.5, 1, 1};
-  message.skin_triangles = {0, 1, 2};
+  message.render_offsets = {0, 2, 3, 4};
+  message.render_particles = {0, 1, 2, 3};
+  message.render_weights = {0.5, 0.5, 1, 1};
+  message.render_triangles = {0, 1, 2};
   return message;
 }
 
@@ -78,13 +78,13 @@ TEST(ReadTopology, TakesOverWhatIsThere) {
   EXPECT_EQ(result.particle_count, 4U);
   EXPECT_EQ(result.vertex_count, 4U);
   EXPECT_EQ(result.triangles.size(), 12U);
-  EXPECT_FALSE(result.skinned());
+  EXPECT_FALSE(result.subdivided());
   EXPECT_FLOAT_EQ(result.rest[3], 1);
 }
 
 TEST(ReadTopology, RestOfASkinIsThatOfItsParticles) {
   TissueMesh result;
-  ASSERT_EQ(readTopology(withSkin(), result), "");
+  ASSERT_EQ(readTopology(withRenderSurface(), result), "");
   EXPECT_EQ(result.vertex_count, 3U);
   EXPECT_EQ(result.triangles.size(), 3U);
   EXPECT_FLOAT_EQ(result.rest[0], 0.5F);
@@ -100,17 +100,17 @@ TEST(ReadTopology, SaysWhatIsWrongAndKeepsTheOldOne) {
       [](auto& m) { m.triangles.pop_back(); },
       [](auto& m) { m.region.pop_back(); },
       [](auto& m) { m.thickness.push_back(1); },
-      [](auto& m) { m.skin_offsets[1] = 3, m.skin_offsets[2] = 1; },
-      [](auto& m) { m.skin_offsets.back() = 9; },
-      [](auto& m) { m.skin_offsets.front() = 1; },
-      [](auto& m) { m.skin_particles[2] = 4; },
-      [](auto& m) { m.skin_weights.pop_back(); },
-      [](auto& m) { m.skin_weights[1] = INFINITY; },
-      [](auto& m) { m.skin_weights[1] = -3e38F; },
-      [](auto& m) { m.skin_triangles[1] = 3; },
+      [](auto& m) { m.render_offsets[1] = 3, m.render_offsets[2] = 1; },
+      [](auto& m) { m.render_offsets.back() = 9; },
+      [](auto& m) { m.render_offsets.front() = 1; },
+      [](auto& m) { m.render_particles[2] = 4; },
+      [](auto& m) { m.render_weights.pop_back(); },
+      [](auto& m) { m.render_weights[1] = INFINITY; },
+      [](auto& m) { m.render_weights[1] = -3e38F; },
+      [](auto& m) { m.render_triangles[1] = 3; },
   };
   for (std::size_t k = 0; k < spoils.size(); ++k) {
-    vibe_msgs::TissueTopology message = withSkin();
+    vibe_msgs::TissueTopology message = withRenderSurface();
     spoils[k](message);
     TissueMesh result = mesh();
     EXPECT_NE(readTopology(message, result), "") << k;

@@ -10,12 +10,12 @@
 #include "offscreen.hpp"
 #include "panels/command_box.hpp"
 #include "panels/event_list.hpp"
-#include "panels/glance_view.hpp"
 #include "panels/measures_view.hpp"
 #include "panels/panel_colours.hpp"
-#include "panels/performance_view.hpp"
 #include "panels/phase_strip.hpp"
 #include "panels/range_bar.hpp"
+#include "panels/solver_statistics_view.hpp"
+#include "panels/status_summary.hpp"
 #include "panels/stepping_box.hpp"
 #include "panels/suture_table.hpp"
 
@@ -58,7 +58,7 @@ struct Widgets : testing::Test {
 };
 
 TEST_F(Widgets, aGlanceAnswersTheFourQuestions) {
-  GlanceView view;
+  StatusSummary view;
   PanelMessages messages = session();
   messages.force = force(6.2);
   view.display(messages);
@@ -70,7 +70,7 @@ TEST_F(Widgets, aGlanceAnswersTheFourQuestions) {
 }
 
 TEST_F(Widgets, aGentlePullIsGentle) {
-  GlanceView view;
+  StatusSummary view;
   PanelMessages messages = session();
   messages.force = force(4.9);
   view.display(messages);
@@ -84,7 +84,7 @@ TEST_F(Widgets, aGentlePullIsGentle) {
 }
 
 TEST_F(Widgets, bleedingIsBoldAndQuietAgain) {
-  GlanceView view;
+  StatusSummary view;
   PanelMessages messages = session();
   auto bleeding = boost::make_shared<vibe_msgs::SutureArray>(*messages.sutures);
   bleeding->bleedings.resize(1);
@@ -99,7 +99,7 @@ TEST_F(Widgets, bleedingIsBoldAndQuietAgain) {
 }
 
 TEST_F(Widgets, nothingKnownIsNoZero) {
-  GlanceView view;
+  StatusSummary view;
   view.display({});
   EXPECT_EQ(textOf(view, "header"), "No session");
   for (const char* name : {"Bites", "Bleeding", "Pull", "Marks", "Burns", "Tool"})
@@ -111,7 +111,7 @@ TEST_F(Widgets, nothingKnownIsNoZero) {
 }
 
 TEST_F(Widgets, scenesAreNoMarkup) {
-  GlanceView view;
+  StatusSummary view;
   PanelMessages messages = session();
   auto state = boost::make_shared<vibe_msgs::ProcedureState>(*messages.state);
   state->scene = "<b>bold</b>";
@@ -203,7 +203,7 @@ TEST_F(Widgets, eventsComeNewestFirstAndAreBounded) {
     event.text = std::to_string(i);
     list.add(event, 1);
   }
-  EXPECT_EQ(list.count(), EventList::kMost);
+  EXPECT_EQ(list.count(), EventList::kMax);
 }
 
 TEST_F(Widgets, aNoteThatComesAgainStandsThereOnceAWarningEachTime) {
@@ -281,12 +281,12 @@ TEST_F(Widgets, steppingAsksTheRightThing) {
 }
 
 TEST_F(Widgets, performanceHasDashesWithoutMessages) {
-  PerformanceView view;
+  SolverStatisticsView view;
   EXPECT_EQ(textOf(view, "Solver"), "\u2013");
   auto statistics = boost::make_shared<vibe_msgs::SolverStatistics>();
   statistics->real_time_factor = 0.98;
   PanelMessages messages = session();
-  messages.performance = statistics;
+  messages.solver_statistics = statistics;
   view.display(messages, {0.25, kNaN});
   EXPECT_EQ(textOf(view, "Real-time factor"), "0.98");
   EXPECT_EQ(textOf(view, "Last message"), "0.25 s ago");

@@ -114,9 +114,9 @@ class Robustness(unittest.TestCase):
             lambda m: setattr(m, "rest_positions", []),
             lambda m: setattr(m, "rest_positions", [float("nan")] * 9),
             lambda m: setattr(m, "region", b"\x00"),
-            lambda m: setattr(m, "skin_offsets", [0, 5, 2]),
+            lambda m: setattr(m, "render_offsets", [0, 5, 2]),
             lambda m: setattr(m, "rest_positions", [1e30] * len(m.rest_positions)),
-            lambda m: (setattr(m, "skin_offsets", [0, 1]), setattr(m, "skin_particles", [2**31])),
+            lambda m: (setattr(m, "render_offsets", [0, 1]), setattr(m, "render_particles", [2**31])),
         ):
             message = good.topology()
             spoil(message)
@@ -147,7 +147,7 @@ class Robustness(unittest.TestCase):
         message = good.topology()
         message.triangles = []
         self.show(message, good.particles(), good.sutures())
-        message.triangles, message.skin_offsets = [0, 1, 2], [0]
+        message.triangles, message.render_offsets = [0, 1, 2], [0]
         self.topology.publish(message)
         self.particles.publish(good.particles())
         self.rviz.wait_for_frames(FRAMES)

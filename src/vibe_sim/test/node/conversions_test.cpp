@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vibe_sim/error.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 namespace {
@@ -167,7 +167,7 @@ TEST(Conversions, wrenchIsThatOfTheStateInTheFrameOfTheTip) {
 }
 
 TEST(Conversions, hapticParametersKeepTheirContent) {
-  ToolResponse response;
+  ToolImpedance response;
   response.position = {1, 2, 3};
   response.velocity = {-1, 0, 1};
   response.force = {4, 5, 6};

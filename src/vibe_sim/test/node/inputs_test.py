@@ -36,7 +36,7 @@ class InputsTest(unittest.TestCase):
     def setUpClass(cls):
         cls.applied = Recorder("applied_input", StepInput)
         cls.events = Recorder("procedure/events", ProcedureEvent)
-        cls.performance = Recorder("performance", SolverStatistics)
+        cls.performance = Recorder("solver_statistics", SolverStatistics)
         cls.poses = Recorder("scope/measured_cp", PoseStamped)
         topics = {
             "scope/measured_js": JointState,

@@ -84,7 +84,7 @@ TEST(Topology, describesTheMeshAndItsRestShape) {
   EXPECT_EQ(message.wall.size(), 162u);
   EXPECT_EQ(message.end.size(), 162u);
   EXPECT_FLOAT_EQ(message.thickness[161], 2e-3f);
-  EXPECT_TRUE(message.skin_triangles.empty());
+  EXPECT_TRUE(message.render_triangles.empty());
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 #include "pull_message.hpp"
+#include "vibe_core/constraints/pull_patch.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "vibe_sim/error.hpp"
+#include "vibe_core/common/error.hpp"
 #include "worlds.hpp"
 
 namespace vibe {
@@ -72,10 +73,10 @@ TEST(PullMessage, theStateSaysPlaceTargetAndForce) {
   EXPECT_EQ(held.header.frame_id, "world");
   EXPECT_EQ(held.header.stamp.toNSec(), 7u);
   EXPECT_EQ(held.particle, 5);
-  EXPECT_EQ(held.position.x, heldPlace(world.state).x());
-  EXPECT_EQ(held.target.y, world.state.hand.target.y());
-  EXPECT_EQ(held.force.z, world.state.hand.force.z());
-  EXPECT_GT(world.state.hand.force.norm(), 0.01);
+  EXPECT_EQ(held.position.x, heldPosition(world.state).x());
+  EXPECT_EQ(held.target.y, world.state.pull.target.y());
+  EXPECT_EQ(held.force.z, world.state.pull.force.z());
+  EXPECT_GT(world.state.pull.force.norm(), 0.01);
   world.step();
   EXPECT_EQ(makePullState(world.state, 8).particle, -1);
 }

@@ -24,7 +24,7 @@ class ServicesTest(unittest.TestCase):
         cls.particles = Recorder("tissue/particles", PointCloud2)
         cls.procedure = Recorder("procedure/state", ProcedureState)
         cls.topology = Recorder("tissue/topology", TissueTopology)
-        cls.performance = Recorder("performance", SolverStatistics)
+        cls.performance = Recorder("solver_statistics", SolverStatistics)
         cls.scope = rospy.Publisher("scope/measured_js", JointState, queue_size=100)
         kinds = {
             "pause": SetBool,

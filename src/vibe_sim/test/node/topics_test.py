@@ -39,7 +39,7 @@ class TopicsTest(unittest.TestCase):
         cls.events = Recorder("procedure/events", ProcedureEvent)
         cls.procedure = Recorder("procedure/state", ProcedureState)
         cls.topology = Recorder("tissue/topology", TissueTopology)
-        cls.performance = Recorder("performance", SolverStatistics)
+        cls.performance = Recorder("solver_statistics", SolverStatistics)
         cls.scope = rospy.Publisher("scope/measured_js", JointState, queue_size=100)
         cls.overstitch = rospy.Publisher("overstitch/measured_js", JointState, queue_size=100)
         cls.buttons = rospy.Publisher("scope/buttons", Joy, queue_size=100)
@@ -218,10 +218,10 @@ class TopicsTest(unittest.TestCase):
         self.assertEqual(len(triangles), 2 * 300 - 4)  # Euler's formula for a sphere
         edges = {(a, b) for t in triangles for a, b in ((t[0], t[1]), (t[1], t[2]), (t[2], t[0]))}
         self.assertTrue(all((b, a) in edges for a, b in edges))
-        self.assertEqual(len(topology.skin_triangles), 4 * len(topology.triangles))
-        offsets = topology.skin_offsets
+        self.assertEqual(len(topology.render_triangles), 4 * len(topology.triangles))
+        offsets = topology.render_offsets
         for v in range(len(offsets) - 1):
-            self.assertAlmostEqual(sum(topology.skin_weights[offsets[v] : offsets[v + 1]]), 1, delta=1e-5)
+            self.assertAlmostEqual(sum(topology.render_weights[offsets[v] : offsets[v + 1]]), 1, delta=1e-5)
 
     def test_procedure_state_tells_volume_pressure_and_time(self):
         self.step(61)

@@ -20,7 +20,7 @@ class WallTimeTest(unittest.TestCase):
         cls.particles = Recorder("tissue/particles", PointCloud2)
         cls.applied = Recorder("applied_input", StepInput)
         cls.events = Recorder("procedure/events", ProcedureEvent)
-        cls.performance = Recorder("performance", SolverStatistics)
+        cls.performance = Recorder("solver_statistics", SolverStatistics)
         cls.joints = Recorder("scope/measured_js", JointState)
         cls.simulator = Program("sim_node", "sim_node", scene=scene("light.yaml"))
         rospy.wait_for_service("pause", 20)

@@ -1,0 +1,69 @@
+#pragma once
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "fem/fem_case.hpp"
+#include "solver/elastic_body.hpp"
+
+namespace vibe {
+
+/// A weighted mean over nodes; the weights add up to 1.
+struct NodeMean {
+  std::vector<int> node;
+  std::vector<double> weight;
+};
+
+/// How a case prescribes the motion of whole nodes.
+enum class Hold {
+  AsFixed,      ///< fixed nodes that the caller places: exact, for statics
+  AsConditions  ///< three conditions per node: for motion in time
+};
+
+/// The elastic body of a case on its refined mesh, and its loads at any level.
+class CaseModel {
+ public:
+  CaseModel(const FemCase& bench_case, Hold hold);
+
+  const FemCase& benchCase() const { return case_; }
+  const BenchMesh& mesh() const { return mesh_; }
+  int nodeCount() const { return static_cast<int>(mesh_.nodes.size()); }
+  const std::vector<int>& set(const std::string& name) const { return mesh_.sets.at(name); }
+  const NodeMean& spot(const std::string& name) const { return spots_.at(name); }
+
+  /// Gravity and dead loads belong to the body, so it depends on the level.
+  ElasticBody body(double level) const;
+  bool bodyDependsOnLevel() const { return case_.gravity.norm() > 0 || !case_.forces.empty(); }
+  /// Conditions (the cinch, then three per pull, then held directions of sets) and gas.
+  BodyLoads loads(double level) const;
+  /// Where the prescribed fixed nodes are at a level; (node, position).
+  std::vector<std::pair<int, Eigen::Vector3d>> prescribed(double level) const;
+  /// Interpolates in the rest element that holds the point, or in the nearest one.
+  NodeMean at(const Eigen::Vector3d& point) const;
+  double restVolume() const;  ///< enclosed by the triangles [m^3]
+
+ private:
+  void build();
+  NodeMean makeSpot(const SpotRule& rule) const;
+  NodeMean atTriangle(const Eigen::Vector3d& point) const;
+  NodeMean atTet(const Eigen::Vector3d& point) const;
+  Eigen::Vector3d moved(const SetMotion& motion, const Eigen::Vector3d& rest, double level) const;
+  bool isFixedMotion(const SetMotion& motion) const;
+  void addPullConstraints(double level, BodyLoads& loads) const;
+  void addMotionConstraints(double level, BodyLoads& loads) const;
+
+  const FemCase& case_;
+  Hold hold_;
+  BenchMesh mesh_;
+  std::vector<std::array<int, 10>> quadratic_;
+  ElasticBody body_;
+  std::map<std::string, NodeMean> spots_;
+};
+
+/// Volume enclosed by triangles at the given positions [m^3].
+double enclosedVolume(const std::vector<std::array<int, 3>>& triangles, const MotionView& motion);
+
+/// Makes the shell of a case: elements, and masses and gas through them.
+void buildShell(const FemCase& bench_case, const BenchMesh& mesh, ElasticBody& body);
+
+}  // namespace vibe

@@ -1,0 +1,78 @@
+#include "fem/case_runner.hpp"
+
+#include <cstdio>
+
+#include "fem/case_model.hpp"
+#include "fem/mode_solver.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+bool isDifference(const Sample& sample) {
+  return sample.kind == SampleKind::Profile || sample.kind == SampleKind::StaticField ||
+         sample.kind == SampleKind::Series;
+}
+
+}  // namespace
+
+ResultRow caseRow(const FemCase& bench_case, const std::string& setting, int particles) {
+  ResultRow row;
+  row.bench_case = bench_case.name;
+  row.method = bench_case.element == ElementKind::Shell       ? "shell"
+               : bench_case.element == ElementKind::LinearTet ? "linear_tet"
+                                                              : "quadratic_tet";
+  row.setting = setting;
+  row.particles = particles;
+  return row;
+}
+
+double referenceError(const Sample& sample, std::size_t level, double value) {
+  if (isDifference(sample)) return value;
+  if (level >= sample.reference.size() || !sample.reference[level]) return kNotApplicable;
+  const double wanted = *sample.reference[level];
+  return std::abs(value - wanted) / std::abs(wanted);
+}
+
+void printSample(const Sample& sample, std::size_t level, const std::string& at, double value, std::ostream& log) {
+  char line[200];
+  const double error = referenceError(sample, level, value);
+  if (isDifference(sample)) {
+    std::snprintf(line, sizeof line, "  %-28s %-14s difference %.3f %%\n", sample.name.c_str(), at.c_str(),
+                  100 * value);
+  } else if (std::isnan(error)) {
+    std::snprintf(line, sizeof line, "  %-28s %-14s %.6g\n", sample.name.c_str(), at.c_str(), value);
+  } else {
+    std::snprintf(line, sizeof line, "  %-28s %-14s %.6g  reference %.6g  error %.3f %%\n", sample.name.c_str(),
+                  at.c_str(), value, *sample.reference[level], 100 * error);
+  }
+  log << line;
+}
+
+std::vector<ResultRow> runModes(const FemCase& bench_case, std::ostream& log) {
+  const CaseModel model(bench_case, Hold::AsFixed);
+  const double start = threadMilliseconds();
+  const Modes modes = slowestModes(model.body(0), bench_case.modes->count);
+  const double time = threadMilliseconds() - start;
+  std::vector<ResultRow> rows;
+  for (const Sample& sample : bench_case.samples) {
+    if (sample.mode < 1 || sample.mode > bench_case.modes->count)
+      throw Error(bench_case.file + ": sample '" + sample.name +
+                  "' asks for a mode beyond modes.count; raise the count.");
+    const double value = modes.frequency[static_cast<std::size_t>(sample.mode - 1)];
+    printSample(sample, 0, "", value, log);
+    rows.push_back(caseRow(bench_case, sample.name, model.nodeCount()));
+    rows.back().reference_error = referenceError(sample, 0, value);
+    setTimes({time}, rows.back());
+  }
+  return rows;
+}
+
+std::vector<ResultRow> runCase(const FemCase& bench_case, std::ostream& log) {
+  log << bench_case.name << " (" << bench_case.file << ")\n";
+  if (bench_case.statics) return runStatic(bench_case, log);
+  if (bench_case.transient) return runTransient(bench_case, log);
+  return runModes(bench_case, log);
+}
+
+}  // namespace vibe

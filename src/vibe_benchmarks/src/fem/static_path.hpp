@@ -1,0 +1,36 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "fem/case_model.hpp"
+#include "fem/tangent_guess.hpp"
+#include "solver/implicit_stepper.hpp"
+
+namespace vibe {
+
+/// Follows the equilibria of a case from level to level.
+class StaticPath {
+ public:
+  /// @param tolerance  no node would move farther [m]
+  StaticPath(const CaseModel& model, double tolerance);
+
+  /// @returns false where the solve did not converge; the state is then the last iterate
+  bool advanceTo(double level, int substeps);
+
+  MotionView motion() { return motion_.view(); }
+  const ElasticBody& body() const { return stepper_->body(); }
+  const BodyLoads& loads() const { return loads_; }
+
+ private:
+  bool relax();
+
+  const CaseModel& model_;
+  double tolerance_, level_ = 0;
+  std::unique_ptr<ImplicitStepper> stepper_;
+  std::shared_ptr<StepperScratch> scratch_;
+  TangentGuess guess_;
+  BodyMotion motion_;
+  BodyLoads loads_;
+};
+
+}  // namespace vibe

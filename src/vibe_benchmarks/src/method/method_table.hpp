@@ -1,0 +1,15 @@
+#pragma once
+#include <ostream>
+#include <vector>
+
+#include "output/result_row.hpp"
+
+namespace vibe {
+
+/// Every setting on the wall of 3,618 particles against one time-converged motion, and linear tetrahedra, the
+/// gradient-domain deformation, the simulator's shape matching and Bullet's soft body on the same mesh; pokes in a
+/// foundation; pulls to 30, 40 and 50 mm; the cost of growing numbers of particles.
+/// @param quick  fewer sizes and pulls
+std::vector<ResultRow> runMethods(bool quick, std::ostream& log);
+
+}  // namespace vibe

@@ -1,0 +1,46 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fem/case_model.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/simulation/workspace.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+/// One way of pulling.
+struct PullWay {
+  const char* method;   ///< tissue.model
+  const char* pulling;  ///< suture.cinch_model
+  int particles;        ///< suture.group_particles
+  double strain_limit;  ///< suture.strain_limit [1]
+};
+
+/// The plate of a case in the simulator, with one set of two bites at the spots of the case's cinch.
+class PulledPlate {
+ public:
+  PulledPlate(const CaseModel& plate, const PullWay& way);
+
+  /// A frame in which the cinch draws, unless the wall's strain has reached the limit. @return  false: it has
+  bool draw();
+  void step();
+  double milliseconds() const { return last_; }  ///< CPU time of the last frame
+
+  double apart() const;    ///< the bites, from each other [m]
+  double tension() const;  ///< [N]
+  MotionView motion();
+  const State& state() const { return state_; }
+
+ private:
+  Suture& set() { return state_.procedure.sutures.front(); }
+  const Suture& set() const { return state_.procedure.sutures.front(); }
+
+  std::shared_ptr<const Model> model_;
+  std::unique_ptr<Workspace> workspace_;
+  State state_;
+  double last_ = 0;
+};
+
+}  // namespace vibe

@@ -1,0 +1,72 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "suture/wall_plan.hpp"
+#include "vibe_core/simulation/simulator.hpp"
+
+namespace vibe {
+
+/// What steps cost: one entry per step, in order [ms].
+struct StepCosts {
+  std::vector<double> cpu;   ///< of the thread that steps
+  std::vector<double> wall;  ///< what the user waits for
+};
+
+/// How one set came to be.
+struct SewnSet {
+  int bites = 0;           ///< when it was cinched
+  int technique = 0;       ///< Technique that the T-tag found
+  StepCosts pulling;       ///< from the T-tag to the release of the cinch
+  StepCosts after;         ///< the second after it
+  double max_move = 0;     ///< fastest particle at the end of that second [m/s]
+  double drawn = 0;        ///< thread [m]
+  double tension = 0;      ///< in the first segment when the cinch was let go [N]
+  double max_tension = 0;  ///< in any segment of any set meanwhile [N]
+  double volume = 0;       ///< at the end [m^3]
+  double balance = 0;      ///< energyBalance() since the session's start [J]
+  int fallback_steps = 0;  ///< that the solver took again with small confidence
+  int tear_outs = 0, breaks = 0, recoveries = 0, refusals = 0, loose = 0;  ///< events
+};
+
+/// Sews sets one after the other: bites go straight into the state as the needle would take them (biteAround(), through
+/// the whole wall), T-tag and cinch through their buttons. The scope waits outside of the stomach.
+class SutureSession {
+ public:
+  /// @param model  with gas, scope and suture
+  explicit SutureSession(std::shared_ptr<const Model> model, std::uint64_t seed = 1);
+
+  /// Steps with the insufflator on until nothing moves.
+  /// @throws Error if it still does after a minute of simulated time
+  void settle();
+  /// The same for at most this long [s].
+  /// @return false if something still moves
+  bool calmDown(double longest);
+
+  /// @param after  how long to go on when the cinch is let go [s]
+  SewnSet sew(const std::vector<WallSpot>& spots, double after = 1);
+
+  const Model& model() const { return *model_; }
+  const State& state() const { return state_; }
+  const std::vector<Event>& events() const { return events_; }
+  SurfaceView wall() const { return {model_->organ.surface.triangles, state_.x, state_.y, state_.z}; }
+
+ private:
+  void takeBites(const std::vector<WallSpot>& spots);
+  void press(Button button, bool down, StepCosts& costs, SewnSet& set);
+  void pull(SewnSet& set);
+  void count(std::size_t first_event, SewnSet& set) const;
+
+  std::shared_ptr<const Model> model_;
+  State state_;
+  Workspace workspace_;
+  StepInput input_;
+  std::vector<Event> events_;
+  double start_balance_ = 0;
+};
+
+/// Fastest particle [m/s].
+double maxSpeed(const State& state);
+
+}  // namespace vibe

@@ -1,0 +1,15 @@
+#include "suture/wall_crossing.hpp"
+
+#include <utility>
+
+#include "geometry/self_intersection.hpp"
+
+namespace vibe {
+
+bool wallsCross(const Model& model, const State& state) {
+  SurfaceMesh mesh = model.organ.surface;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) mesh.vertices[v] = {state.x[v], state.y[v], state.z[v]};
+  return findSelfIntersection(TriangleTree(std::move(mesh))).first >= 0;
+}
+
+}  // namespace vibe

@@ -1,0 +1,95 @@
+#include "fem/case_runner.hpp"
+
+#include <sstream>
+
+#include "case_file.hpp"
+
+namespace vibe {
+namespace {
+
+std::vector<ResultRow> run(const std::string& text, std::string* log = nullptr) {
+  const CaseFile file(text);
+  std::ostringstream out;
+  const auto rows = runCase(readCase(file.path()), out);
+  if (log != nullptr) *log = out.str();
+  return rows;
+}
+
+std::string stretch(const std::string& reference) {
+  return blockCase(stretchLoads(),
+                   "static: {levels: [0.5, 1], substeps: 4, tolerance: 1.0e-8 m}\n"
+                   "sample: [{name: force, kind: reaction, set: x_max, direction: [1, 0, 0], reference: " +
+                       reference + "}]\n");
+}
+
+// Nominal stress times section at rest; the closed form of uniaxial tension of W = mu/2 (I-3) - mu ln J + lambda/2 ln^2
+// J.
+double uniaxialForce(double stretch) {
+  const double mu = 30e3 / (2 * 1.45), lambda = 30e3 * 0.45 / (1.45 * 0.1);
+  double low = 0.3, high = 2;  // lateral stretch s: mu (s^2 - 1) + lambda ln(stretch s^2) = 0
+  for (int i = 0; i < 200; ++i) {
+    const double s = 0.5 * (low + high);
+    (mu * (s * s - 1) + lambda * std::log(stretch * s * s) > 0 ? high : low) = s;
+  }
+  const double s = 0.5 * (low + high);
+  return 4e-4 * (mu * (stretch - 1 / stretch) + lambda * std::log(stretch * s * s) / stretch);
+}
+
+TEST(CaseRunner, stretchesABlockAsTheClosedFormSays) {
+  std::ostringstream reference;
+  reference.precision(12);
+  reference << "[" << uniaxialForce(1.25) << ", " << uniaxialForce(1.5) << "]";
+  EXPECT_NEAR(uniaxialForce(1.5), 4.3033722, 1e-6);  // as tabulated with the case
+  std::string log;
+  const auto rows = run(stretch(reference.str()), &log);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_LT(rows[0].reference_error, 1e-4) << log;
+  EXPECT_EQ(log.find("NOT CONVERGED"), std::string::npos) << log;
+  EXPECT_EQ(rows[0].method, "linear_tet");
+  EXPECT_GT(rows[0].ms_p50, 0);
+}
+
+TEST(CaseRunner, reportsTheErrorAgainstAWrongReference) {
+  const auto rows = run(stretch("[none, " + std::to_string(2 * uniaxialForce(1.5)) + "]"));
+  EXPECT_NEAR(rows[0].reference_error, 0.5, 1e-3);
+}
+
+TEST(CaseRunner, findsTheBendingFrequencyOfABar) {
+  // slender: Euler-Bernoulli, f = 1.8751^2 / (2 pi L^2) sqrt(E h^2 / (12 rho))
+  const double wanted = 3.51602 / (2 * std::acos(-1.0) * 0.04) * std::sqrt(30e3 * 0.01 * 0.01 / (12 * 1050));
+  const auto rows =
+      run("name: bar\n"
+          "mesh: {box: {size: [200 mm, 10 mm, 10 mm], cells: [20, 1, 1]}}\n"
+          "element: quadratic_tet\n"
+          "material: {law: neo_hookean, young_modulus: 30 kPa, poisson_ratio: 0}\n"
+          "density: 1050\n"
+          "clamped: [x_min]\n"
+          "modes: {count: 2}\n"
+          "sample: [{name: f1, kind: frequency, mode: 1, reference: " +
+          std::to_string(wanted) + "}, {name: f2, kind: frequency, mode: 2, reference: " + std::to_string(2 * wanted) +
+          "}]\n");
+  EXPECT_LT(rows[0].reference_error, 0.01);
+  EXPECT_NEAR(rows[1].reference_error, 0.5, 0.02);  // a square bar bends both ways alike
+}
+
+TEST(CaseRunner, keepsFrequencyAndAmplitudeOfAReleasedBar) {
+  const auto rows =
+      run("name: bar\n"
+          "mesh: {box: {size: [200 mm, 20 mm, 10 mm], cells: [10, 1, 1]}}\n"
+          "element: quadratic_tet\n"
+          "material: {law: neo_hookean, young_modulus: 30 kPa, poisson_ratio: 0}\n"
+          "density: 1050\n"
+          "clamped: [x_min]\n"
+          "transient: {step: 10 ms, duration: 30 s, iterations: 40, tolerance: 1.0e-7, start: {mode: 1, amplitude: 0.5 "
+          "mm}}\n"
+          "sample:\n"
+          "  - {name: f, kind: frequency, points: [[200 mm, 0, 0]], direction: [0, 0, 1], reference: 0.2159}\n"
+          "  - {name: kept, kind: kept, points: [[200 mm, 0, 0]], direction: [0, 0, 1], reference: 1}\n");
+  EXPECT_LT(rows[0].reference_error, 0.02);
+  EXPECT_LT(rows[1].reference_error, 0.01);
+  EXPECT_LT(std::abs(rows[0].energy_drift), 0.02);
+  EXPECT_NE(rows[0].state_hash, 0U);
+}
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,145 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "procedure/needle.hpp"
+#include "suture/pattern_study.hpp"
+#include "suture/set_scenario.hpp"
+#include "suture/wall_crossing.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/suture/technique.hpp"
+
+namespace vibe {
+namespace {
+
+Scene coarseStomach() {
+  Scene scene = loadScene(VIBE_CORE_DIR "/scenes/stomach.yaml");
+  scene.geometry.particles = 900;
+  scene.gas->flow_limit = 5e-4;  // is full in a second
+  scene.render_surface = false;
+  return scene;
+}
+
+std::shared_ptr<const Model> modelOf(const Scene& scene) {
+  return buildModel(scene, readTextFile(VIBE_DESCRIPTION_DIR "/urdf/scope.urdf", "URDF"));
+}
+
+SetLayout twoSmallSets() {
+  SetLayout layout;
+  layout.sets = 2;
+  layout.bites = 4;
+  layout.share = 0.2;
+  return layout;
+}
+
+TEST(Sutures, TwoSetsComeOutCinchedEveryTimeWithTheSameBits) {
+  const auto model = modelOf(coarseStomach());
+  std::ostringstream log;
+  const ScenarioResult result = runScenario(model, twoSmallSets(), "tiny", 2, log);  // throws if bits differ
+  ASSERT_EQ(result.rows.size(), 2u);
+  for (const ScenarioRow& row : result.rows) {
+    EXPECT_EQ(row.set.tear_outs + row.set.breaks + row.set.recoveries + row.set.refusals + row.set.loose, 0);
+    EXPECT_EQ(row.set.bites, 4);
+    EXPECT_EQ(row.set.technique, static_cast<int>(Technique::U));
+    EXPECT_GT(row.set.drawn, 5e-3);
+    EXPECT_GE(row.set.tension, 0.9 * model->scene.suture->cinch_tension);
+    EXPECT_GT(row.pulling.mean, 0);
+    EXPECT_LE(row.pulling.p50, row.pulling.p99);
+    EXPECT_LE(row.pulling.p99, row.pulling.max);
+  }
+  EXPECT_FALSE(result.crossed);
+}
+
+TEST(Sutures, SetsTakeVolumeAtThePressureTheyDidNotHaveWithoutThem) {
+  const auto model = modelOf(coarseStomach());
+  SutureSession session(model);
+  session.settle();
+  const double before = session.state().volume;
+  session.settle();
+  EXPECT_NEAR(session.state().volume, before, 1e-4 * before);  // negative control: nothing sewn, nothing less
+  const WallPlan plan(model->organ, session.wall());
+  for (const auto& set : planSets(plan, twoSmallSets())) session.sew(set);
+  session.settle();
+  EXPECT_NEAR(session.state().pressure, model->scene.gas->regulated_pressure, 0.01 * session.state().pressure);
+  EXPECT_LT(session.state().volume, (1 - 2e-3) * before);
+}
+
+TEST(Sutures, AThreadThatHoldsLessThanTheCinchPullsIsReportedBroken) {
+  Scene scene = coarseStomach();
+  scene.suture->thread_strength = 1;
+  SutureSession session(modelOf(scene));
+  session.settle();
+  const SewnSet set = session.sew(planSets(WallPlan(session.model().organ, session.wall()), twoSmallSets()).front());
+  EXPECT_EQ(set.breaks, 1);
+  EXPECT_GT(set.max_tension, 0);
+}
+
+TEST(Sutures, APlanLiesWhereItSays) {
+  const auto model = modelOf(coarseStomach());
+  const State state = initialState(*model, 1);
+  const SurfaceView wall{model->organ.surface.triangles, state.x, state.y, state.z};
+  const WallPlan plan(model->organ, wall);
+  EXPECT_GT(plan.length(), 0.15);
+  EXPECT_LT(plan.length(), 0.30);
+  for (const double along : {0.25, 0.5, 0.75}) {
+    const Eigen::Vector3d middle = placeOf(plan.at(along * plan.length(), 0), wall);
+    for (const double across : {-0.02, 0.02}) {
+      const WallSpot spot = plan.at(along * plan.length(), across);
+      EXPECT_NEAR(spot.weight.sum(), 1, 1e-12);
+      EXPECT_GT(spot.weight.minCoeff(), -1e-9);
+      const Eigen::Vector3d away = placeOf(spot, wall) - middle;
+      EXPECT_NEAR(away.norm(), 0.02, 2e-3);  // a chord of the wall
+      EXPECT_LT(away.x() * across, 0);       // negative: to the front
+    }
+  }
+  // distal first
+  const auto alongAxis = [&](double along) {
+    const WallSpot spot = plan.at(along, 0);
+    return biteAround(*model, wall, spot.triangle, placeOf(spot, wall), 4e-3).along;
+  };
+  EXPECT_GT(alongAxis(0), alongAxis(plan.length()) + 0.3);
+  EXPECT_THROW(plan.at(0.5 * plan.length(), 0.5), Error);
+}
+
+TEST(Sutures, PatternsAreWhatTheyAreCalled) {
+  for (const int bites : {4, 7, 10})
+    for (const char* pattern : {"u", "z", "c"}) {
+      // of an arc the square is the box around it: a circle again
+      const Eigen::Vector2d size = pattern[0] == 'c' ? Eigen::Vector2d(0.0067, 0.02) : Eigen::Vector2d(0.018, 0.018);
+      std::vector<Eigen::Vector3d> places;
+      for (const Eigen::Vector2d& p : patternBites(pattern, bites))
+        places.emplace_back(size.x() * p.x(), size.y() * p.y(), 0);
+      ASSERT_EQ(static_cast<int>(places.size()), bites);
+      if (bites == 4 && pattern[0] == 'c') continue;  // four bites of an arc may be a U
+      EXPECT_STREQ(toString(recogniseTechnique(places).technique), pattern) << bites;
+    }
+  EXPECT_THROW(patternBites("u", 5), Error);
+  EXPECT_THROW(patternBites("spiral", 7), Error);
+}
+
+TEST(Sutures, ASlopeIsThatOfALine) {
+  const Slope line = slopeOf({1, 3, 5, 7});
+  EXPECT_NEAR(line.per_step, 2, 1e-12);
+  EXPECT_NEAR(line.error, 0, 1e-12);
+  const Slope bent = slopeOf({0, 1, 0, 1});  // by hand: 0.2, residuals 0.2, -0.6, 0.6, -0.2
+  EXPECT_NEAR(bent.per_step, 0.2, 1e-12);
+  EXPECT_NEAR(bent.error, std::sqrt(0.08), 1e-12);  // sqrt(0.8 / 2 / 5)
+}
+
+TEST(Sutures, CrossingWallsAreSeen) {
+  const auto model = modelOf(coarseStomach());
+  State state = initialState(*model, 1);
+  EXPECT_FALSE(wallsCross(*model, state));
+  for (auto* axis : {&state.x, &state.y, &state.z}) {  // one vertex far out through the other side
+    double middle = 0;
+    for (double place : *axis) middle += place / model->particle_count;
+    (*axis)[300] = middle - 3 * ((*axis)[300] - middle);
+  }
+  EXPECT_TRUE(wallsCross(*model, state));
+}
+
+}  // namespace
+}  // namespace vibe

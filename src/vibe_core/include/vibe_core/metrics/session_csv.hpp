@@ -1,0 +1,31 @@
+#pragma once
+#include <fstream>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "vibe_core/events/event.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+/// One row per step for spreadsheets and scripts. Columns: step, time [s], the seven inputs, tip position in world [m],
+/// force and torque on the tool in scope_tip [N], [N m], grip force [N], particles touched and held, gauge pressure
+/// [Pa], volume [m^3], phase of the procedure, bites in the wall, sutures, greatest tension of a thread [N], blood lost
+/// [m^3], events (kinds separated by ';').
+class SessionCsv {
+ public:
+  /// @param file  "-": standard output
+  /// @throws Error if it cannot be written
+  explicit SessionCsv(const std::string& file);
+
+  void write(const Model& model, const State& state, const std::vector<Event>& events);
+
+ private:
+  std::ofstream file_;
+  std::ostream* out_;
+  std::vector<Eigen::Isometry3d> poses_;
+};
+
+}  // namespace vibe

@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vibe_core/events/event.hpp"
+#include "vibe_core/metrics/organ_measures.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+/// What the organ is compared with. The numbers go on the wire.
+enum class OrganReference : std::uint8_t {
+  Rest = 0,      ///< its rest shape, without gas and tool: nothing else has come yet, or a state was loaded that had
+                 ///< marks or bites already
+  SetPoint = 1,  ///< when the insufflator first reached its set point, before any mark or bite
+  FirstAct = 2   ///< at the first mark or when the needle first went into the wall, without the former
+};
+/// "rest", "set point", "first act".
+const char* toString(OrganReference reference);
+
+/// How the organ has changed. Nothing has a value if the organ cannot be measured.
+struct OrganSkill {
+  OrganReference reference = OrganReference::Rest;
+  double reference_pressure = 0;           ///< gauge, then [Pa]
+  double pressure = 0;                     ///< gauge, at the last measurement [Pa]
+  std::optional<OrganMeasures> before;     ///< the reference
+  std::optional<OrganMeasures> now;        ///< at the last measurement
+  std::optional<double> area_reduction;    ///< of mean_area, 1 - now / before; negative: more than before [1]
+  std::optional<double> volume_reduction;  ///< [1]
+  std::optional<double> length_reduction;  ///< of the axis [1]
+  std::string fault;                       ///< why the organ cannot be measured; empty: it can
+};
+
+/// Measures the organ once per simulated second, and when the reference is taken.
+class OrganTracker {
+ public:
+  /// @param ruler  of the model's organ; null: it cannot be measured
+  /// @param fault  then why
+  OrganTracker(std::shared_ptr<OrganRuler> ruler, std::string fault, const State& start);
+
+  /// After a step with its events.
+  void record(const Model& model, const State& state, const std::vector<Event>& events);
+
+  const OrganSkill& measures() const { return skill_; }
+
+ private:
+  void measure(const State& state);
+  void takeReference(OrganReference reference, const State& state);
+  void compare();
+
+  std::shared_ptr<OrganRuler> ruler_;
+  OrganSkill skill_;
+  bool waits_ = false;  // for a better reference than rest
+  long steps_ = 0;      // since the last measurement
+};
+
+}  // namespace vibe

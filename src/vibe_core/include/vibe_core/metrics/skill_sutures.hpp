@@ -1,0 +1,60 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "vibe_core/geometry/organ.hpp"
+#include "vibe_core/scene/scene.hpp"
+#include "vibe_core/state/procedure_state.hpp"
+#include "vibe_core/suture/technique.hpp"
+
+namespace vibe {
+
+/// The bites of a session. All but `taken` and `torn_out` are of those that hold. A measure that the bites so far do
+/// not define has no value.
+struct BiteSkill {
+  int taken = 0;     ///< with those that tore out
+  int torn_out = 0;  ///< of these
+  int full_thickness = 0;
+  std::array<int, kWallCount> wall{};          ///< by Wall
+  int in_antrum = 0;                           ///< distal of the body: antrum, pylorus
+  int in_fundus = 0;                           ///< proximal of the body: fundus, cardia
+  std::optional<double> spacing_mean;          ///< between neighbours of a set, straight, in the rest shape [m]
+  std::optional<double> spacing_sd;            ///< sample standard deviation [m]
+  std::optional<double> depth_mean;            ///< below the mucosa [m]
+  std::optional<double> depth_sd;              ///< sample standard deviation [m]
+  std::optional<double> full_thickness_share;  ///< [1]
+  std::optional<double> bites_proximal;        ///< share of steps from bite to bite of a set that go proximally [1]
+  std::optional<double> sets_proximal;         ///< the same from the middle of a set to that of the next [1]
+};
+
+/// One set of bites on one thread.
+struct SetSkill {
+  Suture::Stage stage = Suture::Stage::Open;
+  bool loose = false;                      ///< cinched with less than the scene's loose_tension
+  bool named = false;                      ///< technique and margin are known: the T-tag was dropped
+  Technique technique = Technique::Other;  ///< what the set looks like
+  double margin = 0;                       ///< see TechniqueResult [1]
+  int bites = 0;                           ///< that hold
+  int torn_out = 0;                        ///< bites
+  std::optional<double> spacing_mean;      ///< see BiteSkill [m]
+  std::optional<double> along;             ///< mean place on the organ's axis, 0: apex, 1: pylorus
+  std::optional<double> thread;            ///< between first and last bite, now; no value below two bites [m]
+  double drawn = 0;                        ///< by the cinch [m]
+  double tension = 0;                      ///< greatest of its pieces, now [N]
+  std::optional<double> cinch_tension;     ///< when the cinch was released; no value before [N]
+  std::optional<double> duration;          ///< from the first bite to the release of the cinch [s]
+};
+
+/// @param organ  its rest shape is what spacing is measured on
+BiteSkill measureBites(const Organ& organ, const std::vector<Suture>& sutures);
+
+/// @param scene  null: nothing counts as loose
+/// @param sets   becomes one entry per suture; keeps its memory
+void measureSets(const Organ& organ, const SutureScene* scene, const std::vector<Suture>& sutures,
+                 std::vector<SetSkill>& sets);
+
+/// The part of measureSets() that changes from step to step: thread, drawn, tension, for sets measured before.
+void updateSets(const std::vector<Suture>& sutures, std::vector<SetSkill>& sets);
+
+}  // namespace vibe

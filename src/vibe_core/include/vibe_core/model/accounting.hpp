@@ -1,0 +1,31 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+/// Mechanical energy of the tissue, by kind [J]. The gas is isothermal, so its share is the work account
+/// state.energy.gas_work, not a potential here.
+struct Energies {
+  double kinetic = 0;
+  double elastic = 0;
+  double gravity = 0;  ///< zero at rest; 0 where the foundation carries the weight
+  double foundation = 0;
+  double total() const { return kinetic + elastic + gravity + foundation; }
+};
+Energies energies(const Model& model, const State& state);
+
+/// Kinetic energy and potentials minus what tool, gas, threads and hand have put in, plus what mass_damping has taken
+/// out: constant but for the error of the time stepping, falling by what the wall's own viscosity (stiffness_damping)
+/// takes out [J].
+double energyBalance(const Model& model, const State& state);
+
+/// Sum of mass times velocity over the free particles [kg m/s].
+Eigen::Vector3d linearMomentum(const Model& model, const State& state);
+
+/// Sum of position x mass times velocity over the free particles, about the origin of world [kg m^2/s].
+Eigen::Vector3d angularMomentum(const Model& model, const State& state);
+
+}  // namespace vibe

@@ -1,0 +1,51 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "vibe_core/contact/tool_model.hpp"
+#include "vibe_core/geometry/organ.hpp"
+#include "vibe_core/geometry/render_surface.hpp"
+#include "vibe_core/model/tissue_solver.hpp"
+#include "vibe_core/scene/scene.hpp"
+#include "vibe_core/thermal/thermal_dose.hpp"
+#include "vibe_core/tissue/tissue_model.hpp"
+
+namespace vibe {
+
+/// Everything that does not change while the simulation runs. Shared between threads and copies of State.
+struct Model {
+  Scene scene;
+  Organ organ;  ///< rest shape and anatomy
+  int particle_count = 0;
+
+  // per particle, (particle_count)
+  std::vector<double> mass;          ///< [kg]
+  std::vector<double> inverse_mass;  ///< 0: held in place [1/kg]
+  std::vector<double> area;          ///< of wall at rest [m^2]
+
+  double particle_radius = 0;  ///< contact distance from the mid-surface: half the mean wall thickness [m]
+  Eigen::Vector3d unbalanced_gravity =
+      Eigen::Vector3d::Zero();  ///< gravity, 0 where the foundation carries the weight [m/s^2]
+  double rest_volume = 0;       ///< of the lumen [m^3]
+
+  std::shared_ptr<const TissueModel> tissue;  ///< elastic law of the wall
+  std::shared_ptr<const Solver> solver;       ///< time stepping
+
+  std::shared_ptr<const ToolModel> tool;                        ///< null without scope
+  Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world
+  int tip_link = -1;                                            ///< link numbers in tool
+  int helix_link = -1;
+  int grip_link = -1;    ///< carries the helix, which turns in it
+  int needle_link = -1;  ///< its origin is the needle's point
+
+  std::optional<ThermalDose> dose_law;  ///< of the argon beam; empty without scene.marking
+
+  RenderSurface render_surface;  ///< empty without scene.render surface
+
+  /// Place of every particle along the organ's axis at rest, 0: apex of the fundus, 1: pylorus; of an organ without
+  /// these ends along its entry axis. (particle_count), empty without scene.suture.
+  std::vector<double> along;
+};
+
+}  // namespace vibe

@@ -1,0 +1,154 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "vibe_core/geometry/anatomy.hpp"
+#include "vibe_core/thermal/apc_parameters.hpp"
+
+namespace vibe {
+
+/// Shape and resolution of the organ.
+struct GeometryScene {
+  enum class Kind { Stomach, Mesh, Sphere };
+  Kind kind = Kind::Stomach;
+  int particles = 3618;  ///< exactly this many vertices of the mid-surface, 100 to 200,000
+
+  // kind: stomach (procedural)
+  double volume = 0.9e-3;  ///< enclosed volume without stress [m^3]
+
+  // kind: sphere (tests and benchmarks)
+  double radius = 0.05;  ///< [m]
+
+  // kind: mesh (import)
+  std::string file;          ///< OBJ, STL, PLY, glTF; relative to the scene file
+  double unit = 0.0;         ///< metres per unit of the file [m]; 0: from the file's own statement, or an error
+  double target_volume = 0;  ///< scale uniformly to this volume [m^3]; 0: keep the size
+  std::array<double, 3> rotation_rpy{0, 0, 0};  ///< fixed-axis roll, pitch, yaw from the file's axes to ours [rad]
+  std::optional<Eigen::Vector3d> oesophagus, fundus, incisura, pylorus;  ///< landmarks in the file's frame and unit
+};
+
+/// Fibres in the wall, in two families at an angle to each side of the organ's long axis.
+struct FibreScene {
+  double modulus = 10e3;  ///< of each family [Pa]
+  double stiffening = 1;  ///< [1]
+  double angle = 0;       ///< 0: both along the organ, pi/2: both around it [rad]
+};
+
+/// The wall.
+struct TissueScene {
+  std::string model = "shell";   ///< a name in the registry of tissue models
+  std::string law = "yeoh";      ///< elastic law of the wall, of model shell
+  double density = 1050;         ///< [kg/m^3]
+  double young_modulus = 110e3;  ///< [Pa]
+  double poisson_ratio = 0.45;   ///< [1]
+  double stiffening = 2.0;       ///< of the laws fung, gent and yeoh [1]
+  std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
+  std::array<double, kRegionCount> stiffness{1, 1, 1, 1, 1};  ///< factor per Region, of model shell [1]
+  std::optional<FibreScene> fibres;                           ///< of model shell
+  double mass_damping = 30;                                   ///< viscous damping of the velocity [1/s]
+  double stiffness_damping = 15e-6;  ///< viscosity of the wall over its stiffness; quiets short waves [s]
+  int iterations = 4;                ///< quasi-Newton iterations per step, of model shell
+  double spectral_radius = 0.2;      ///< generalised-alpha, of model shell [1]
+  bool self_contact = false;         ///< walls pulled together meet and do not pass through each other, of model shell
+  int substeps = 0;                  ///< solver sub-steps per step; 0: as few as carry the stiffness, see finishModel()
+};
+
+/// Gas in the lumen, isothermal. The insufflator raises or lowers the amount at a limited flow until the regulated
+/// pressure is reached; while it is off the amount is closed in.
+struct GasScene {
+  double initial_pressure = 0;          ///< gauge pressure at the start [Pa]
+  double regulated_pressure = 1333.22;  ///< gauge set point of the insufflator [Pa]
+  double flow_limit = 5e-5;             ///< of the insufflator, at ambient pressure [m^3/s]
+  bool insufflator_on = false;          ///< at the start
+};
+
+struct GravityScene {
+  Eigen::Vector3d acceleration{-9.81, 0, 0};  ///< [m/s^2]; the default is a patient on the back
+};
+
+/// Neighbouring organs: springs from every particle to its place at rest.
+struct FoundationScene {
+  double stiffness = 5e3;      ///< per area of wall [Pa/m]
+  bool carries_weight = true;  ///< the foundation balances the weight, so that the given shape is the shape in place
+};
+
+/// The endoscope with its suturing device.
+struct ScopeScene {
+  std::string urdf = "package://vibe_description/urdf/scope.urdf";
+  bool base_from_anatomy = true;            ///< scope_base at the organ's entry, x axis into the lumen
+  Eigen::Vector3d base_position{0, 0, 0};   ///< else here, in world [m]
+  std::array<double, 3> base_rpy{0, 0, 0};  ///< else so [rad]
+  double friction = 0.1;                    ///< Coulomb coefficient tool on mucosa [1]
+};
+
+/// Tissue helix: holds the particles near its tip.
+struct HelixScene {
+  double reach = 4e-3;              ///< grabs if a particle is this near to the tip [m]
+  double grip_radius = 5e-3;        ///< particles within this distance of the first are held too [m]
+  double hold_force = 8.0;          ///< slips above this force when turned in as far as it goes [N]
+  double hold_turns = 3.0;          ///< turns after which it holds with all of hold_force [1]
+  double initial_hold_force = 0.5;  ///< holds without a turn [N]; between the two the force grows with the turns
+};
+
+/// Needle, thread, T-tag and cinch of the suturing device.
+struct SutureScene {
+  double bite_radius = 4e-3;             ///< the thread pulls on the particles this near to a bite [m]
+  double thread_stiffness = 323;         ///< force per strain, see polypropylene20() [N]
+  double thread_friction = 0.15;         ///< Coulomb coefficient thread on tissue [1]
+  double thread_strength = 14.1;         ///< breaks above this tension [N]
+  double thread_length = 1.2;            ///< of one thread, from the T-tag to where the device lets it go [m]
+  double pull_out_force = 8.0;           ///< tears out of a full-thickness bite above this force [N]
+  int min_bites = 2;                     ///< of a set that can be cinched
+  int max_bites = 32;                    ///< of a set
+  double cinch_speed = 15e-3;            ///< at which the cinch draws thread [m/s]
+  double cinch_tension = 3.0;            ///< at which the cinch stops drawing [N]
+  double loose_tension = 0.5;            ///< a cinch released below this is loose [N]
+  std::string cinch_model = "thread";    ///< how a set pulls: `thread`, or `groups` (ViBE prototype)
+  double strain_limit = 0.5;             ///< of the wall at which `groups` stops drawing [1]
+  int group_particles = 5;               ///< most per group of techniques other than U and Z
+  std::string classifier = "corrected";  ///< or `printed`: equation 2 of the ViBE prototype to the letter
+};
+
+/// Bleeding after a bite: all figures are design choices, no rates are published.
+struct BleedingScene {
+  double mild_probability = 0.25;   ///< of a bite [1]
+  double brisk_probability = 0.03;  ///< of a bite [1]
+  double mild_rate = 1.0e-8;        ///< [m^3/s]
+  double brisk_rate = 2.5e-7;       ///< [m^3/s]
+  double mild_duration = 60;        ///< after which mild bleeding stops by itself [s]
+  double brisk_time = 90;           ///< within which the suture is to be completed [s]
+};
+
+/// Argon plasma coagulation from a probe in the scope.
+struct MarkingScene {
+  ApcParameters apc;
+  /// What the wall does while the pedal is down: `solver`, as ever; `gradient`, it gives way in the gradient domain
+  /// (ViBE prototype).
+  std::string deformation = "solver";
+};
+
+/// What the user wrote, validated. An absent part costs nothing at run time.
+struct Scene {
+  std::string file;  ///< where it was read, empty if built in code
+  std::string name = "unnamed";
+  std::uint64_t seed = 1;
+  double step_period = 1.0 / 60;  ///< simulated time per step [s]
+  GeometryScene geometry;
+  TissueScene tissue;
+  bool attach_oesophagus = false;  ///< hold the particles of this end
+  bool attach_duodenum = false;    ///< hold the particles of this end
+  std::optional<GasScene> gas;
+  std::optional<GravityScene> gravity;
+  std::optional<FoundationScene> foundation;
+  std::optional<ScopeScene> scope;
+  std::optional<HelixScene> helix;
+  std::optional<SutureScene> suture;
+  std::optional<BleedingScene> bleeding;
+  std::optional<MarkingScene> marking;
+  bool render_surface = false;  ///< finer render surface
+};
+
+}  // namespace vibe

@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+/// Writes a state to a file: a versioned header with the model's fingerprint, then the bits of the state.
+/// The file appears whole or not at all.
+/// @throws Error if the file cannot be written
+void saveSnapshot(const Model& model, const State& state, const std::string& file);
+
+/// Reads what saveSnapshot() wrote; the returned state has the same hash.
+/// @throws Error if the file is missing, truncated, of another version, or of a model with another rest shape
+State loadSnapshot(const Model& model, const std::string& file);
+
+}  // namespace vibe

@@ -1,0 +1,41 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "vibe_core/common/thread_pool.hpp"
+#include "vibe_core/haptics/tool_impedance.hpp"
+#include "vibe_core/model/model.hpp"
+
+namespace vibe {
+
+class MarkingScratch;
+
+/// Scratch memory and threads for stepping one model. Carries nothing from one step to the next; not shared between
+/// threads of control.
+class Workspace {
+ public:
+  /// @param threads  used inside a step, 1 or more; the result does not depend on it
+  explicit Workspace(const Model& model, int threads = 1);
+  ~Workspace();
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  SolverScratch& solverScratch() { return *solver_scratch_; }
+  std::vector<Eigen::Isometry3d>& linkPoses() { return link_poses_; }
+  /// Output of the last step beside the state: how the tissue answers the tool; nothing while nothing is touched, and
+  /// with solvers that cannot tell (shape matching).
+  std::optional<ToolImpedance>& toolImpedance() { return tool_impedance_; }
+  MarkingScratch* marking() { return marking_.get(); }  ///< null in a scene without marking or scope
+  int threads() const { return pool_.threads(); }
+
+  ThreadPool& threadPool() { return pool_; }
+
+ private:
+  ThreadPool pool_;
+  std::unique_ptr<SolverScratch> solver_scratch_;
+  std::unique_ptr<MarkingScratch> marking_;
+  std::vector<Eigen::Isometry3d> link_poses_;
+  std::optional<ToolImpedance> tool_impedance_;
+};
+
+}  // namespace vibe

@@ -1,0 +1,71 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "vibe_core/input/step_input.hpp"
+#include "vibe_core/state/procedure_state.hpp"
+#include "vibe_core/state/pull_spring.hpp"
+#include "vibe_core/state/stepper_memory.hpp"
+
+namespace vibe {
+
+/// A particle held by the helix, with its place in the tool.
+struct GripPoint {
+  int particle = -1;
+  Eigen::Vector3d local;  ///< in the frame of the link that carries the helix [m]
+};
+
+/// Sums since the start [J].
+struct EnergyAccount {
+  double tool_work = 0;     ///< done by the tool on the tissue (contact and grip)
+  double gas_work = 0;      ///< done by the gas on the wall
+  double thread_work = 0;   ///< done by threads on the tissue
+  double pull_work = 0;     ///< done by the hand that pulls the tissue
+  double damping_loss = 0;  ///< taken out by viscous damping
+};
+
+/// Contacts interrupted for less than this are one contact [s].
+constexpr double kContactGap = 0.25;
+
+/// Everything that changes. A snapshot is a copy; equal states have equal futures.
+struct State {
+  std::int64_t step = 0;
+  double time = 0;  ///< step * step_period [s]
+  std::uint64_t seed = 1;
+  std::uint64_t random = 0;  ///< state of the generator
+
+  // particles, structure of arrays, (particle count)
+  std::vector<double> x, y, z;         ///< positions [m]
+  std::vector<double> vx, vy, vz;      ///< velocities [m/s]
+  std::vector<double> ax, ay, az;      ///< accelerations; 0 for solvers that have no use for them [m/s^2]
+  std::vector<double> qw, qx, qy, qz;  ///< orientation of each particle's neighbourhood against rest, unit
+  std::vector<double> wx, wy, wz;      ///< angular velocity of the same, in world [rad/s]
+
+  double gas_amount = 0;  ///< absolute pressure times volume [Pa m^3 = J]
+  double pressure = 0;    ///< gauge [Pa]
+  double volume = 0;      ///< of the lumen [m^3]
+  bool pressure_reached = false;
+
+  std::array<double, kJointCount> joints{};  ///< actual positions of the tool's inputs (limits applied) [m], [rad]
+  std::vector<GripPoint> grip;               ///< what the helix holds; empty: nothing
+  bool helix_pressed = false;                ///< button state of the last step, for edges
+  bool in_contact = false;                   ///< the tool touches tissue, or did within the last kContactGap
+  double untouched_time = 0;                 ///< since the tool last touched tissue, while in_contact [s]
+
+  Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in scope_tip [N]
+  Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about the origin of scope_tip, in scope_tip [N m]
+  double grip_force = 0;                                  ///< magnitude of the force on the grip [N]
+  int contact_count = 0;                                  ///< particles touched in the last sub-step
+
+  PullSpring pull;  ///< that pulls the tissue from outside
+
+  ProcedureState procedure;
+
+  EnergyAccount energy;
+
+  StepperMemory solver;  ///< of the implicit solver; empty with another
+};
+
+}  // namespace vibe

@@ -1,0 +1,57 @@
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "vibe_core/input/step_input.hpp"
+
+namespace vibe {
+
+/// Motions, button edges and phases over time [s]. Everything is added in order of time per joint and per button,
+/// and looked up by bisection.
+class Timeline {
+ public:
+  /// Where a joint is before its first motion [m], [rad].
+  void setStart(int joint, double position) { start_[joint] = position; }
+
+  /// The joint moves to a position between two times, as minimumJerk(). begin must not lie before jointFreeAt().
+  void addMotion(int joint, double begin, double end, double to);
+  /// Presses or releases a button. The time must not lie before the button's last edge.
+  void addEdge(int button, double time, bool pressed);
+  void addPhase(double time, const std::string& name);
+  /// The timeline lasts at least until then.
+  void extendTo(double time);
+
+  double jointFreeAt(int joint) const;  ///< end of its last motion, 0 without one
+  double jointTarget(int joint) const;  ///< where its last motion ends
+  bool isPressed(int button) const;     ///< after its last edge
+  double lastEdge(int button) const;    ///< time of its last edge; -infinity without one
+
+  double duration() const { return duration_; }
+  double position(int joint, double time) const;
+  bool pressed(int button, double time) const;
+  const std::string& phase(double time) const;  ///< empty before the first
+
+ private:
+  struct Motion {
+    double begin;
+    double end;
+    double from;
+    double to;
+  };
+  struct Edge {
+    double time;
+    bool pressed;
+  };
+  struct Phase {
+    double time;
+    std::string name;
+  };
+  std::array<double, kJointCount> start_{};
+  std::array<std::vector<Motion>, kJointCount> motions_;
+  std::array<std::vector<Edge>, kButtonCount> edges_;
+  std::vector<Phase> phases_;
+  double duration_ = 0;
+};
+
+}  // namespace vibe

@@ -1,0 +1,177 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "constraints/gas.hpp"
+#include "geometry/regions.hpp"
+#include "geometry/rotation.hpp"
+#include "scene/attachments.hpp"
+#include "tissue/cluster_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
+#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/tissue_registry.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+
+namespace {
+
+void setMasses(Model& model) {
+  const std::size_t n = model.organ.surface.vertices.size();
+  model.area = vertexAreas(model.organ.surface);
+  model.mass.resize(n);
+  model.inverse_mass.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    model.mass[i] = model.scene.tissue.density * model.organ.thickness[i] * model.area[i];
+    model.inverse_mass[i] = isHeld(model.scene, model.organ.end[i]) ? 0 : 1 / model.mass[i];
+  }
+  const double sum = std::accumulate(model.organ.thickness.begin(), model.organ.thickness.end(), 0.0);
+  model.particle_radius = 0.5 * sum / static_cast<double>(n);
+}
+
+Eigen::Isometry3d poseFromRpy(const Eigen::Vector3d& position, const std::array<double, 3>& rpy) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotationFromRpy(rpy);
+  pose.translation() = position;
+  return pose;
+}
+
+// x along the entry, z as near to the patient's front as possible: "up" on the image is anterior at rotation 0
+Eigen::Isometry3d poseFromAnatomy(const Organ& organ) {
+  const Eigen::Vector3d x = organ.entry_axis.normalized();
+  Eigen::Vector3d z = organ.landmarks.anterior - x.dot(organ.landmarks.anterior) * x;
+  if (z.norm() < 1e-6) z = x.unitOrthogonal();
+  z.normalize();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear().col(0) = x;
+  pose.linear().col(1) = z.cross(x);
+  pose.linear().col(2) = z;
+  pose.translation() = organ.entry;
+  return pose;
+}
+
+void addTool(const std::string& tool_urdf, Model& model) {
+  const ScopeScene& scope = *model.scene.scope;
+  model.tool = std::make_shared<const ToolModel>(ToolModel::fromUrdf(tool_urdf, scope.urdf));
+  model.tip_link = model.tool->linkIndex("scope_tip");
+  model.helix_link = model.tool->linkIndex("helix");
+  model.grip_link = model.tool->joints()[static_cast<std::size_t>(model.helix_link) - 1].parent_link;
+  model.needle_link = model.tool->linkIndex("needle");
+  model.tool_base =
+      scope.base_from_anatomy ? poseFromAnatomy(model.organ) : poseFromRpy(scope.base_position, scope.base_rpy);
+}
+
+bool hasStomachEnds(const Organ& organ) {
+  bool oesophagus = false, duodenum = false;
+  for (End end : organ.end) oesophagus |= end == End::Oesophagus, duodenum |= end == End::Duodenum;
+  return oesophagus && duodenum && organ.landmarks.fundus != organ.landmarks.pylorus;
+}
+
+std::vector<double> placesAlong(const Organ& organ) {
+  std::vector<double> along;
+  along.reserve(organ.surface.vertices.size());
+  if (hasStomachEnds(organ)) {
+    const StomachAxis axis = findAxis(organ);
+    for (int v = 0; v < static_cast<int>(organ.surface.vertices.size()); ++v)
+      along.push_back(axis.lengthAt(v) / axis.length());
+    return along;
+  }
+  for (const Eigen::Vector3d& v : organ.surface.vertices) along.push_back(v.dot(organ.entry_axis));
+  const auto [min, max] = std::minmax_element(along.begin(), along.end());
+  const double begin = *min, length = *max - *min;
+  for (double& place : along) place = (place - begin) / length;
+  return along;
+}
+
+// The gas is an explicit spring on the volume: where it is compressed in a small or light organ a sub-step can be too
+// long. h^2 dp/dV sum(a^2 / m) of the breathing mode, in which the wall takes hardly part, has the wall's limit.
+int substepsForGas(const Model& model) {
+  if (!model.scene.gas) return 1;
+  double compliance = 0;
+  for (int i = 0; i < model.particle_count; ++i) compliance += model.area[i] * model.area[i] * model.inverse_mass[i];
+  const double highest =
+      kAmbientPressure + std::max(model.scene.gas->initial_pressure, model.scene.gas->regulated_pressure);
+  const double rate2 = highest / model.rest_volume * compliance;
+  return static_cast<int>(std::ceil(model.scene.step_period * std::sqrt(rate2 / kMaxTotalGain)));
+}
+
+void checkSubstepsForGas(int substeps, int needed) {
+  if (substeps >= needed) return;
+  throw Error("tissue.substeps " + std::to_string(substeps) +
+              " is too few for the gas in this organ, the step would be unstable; use at least " +
+              std::to_string(needed) + ", or leave it out.");
+}
+
+}  // namespace
+
+std::shared_ptr<const Model> buildModel(const Scene& scene, const std::string& tool_urdf, const Progress& progress) {
+  auto model = std::make_shared<Model>();
+  model->scene = scene;
+  model->organ = buildOrgan(scene, progress);
+  finishModel(tool_urdf, *model, progress);
+  return model;
+}
+
+void finishModel(const std::string& tool_urdf, Model& model, const Progress& progress) {
+  if (progress) progress("building the tissue model", 0.9);
+  model.particle_count = static_cast<int>(model.organ.surface.vertices.size());
+  setMasses(model);
+  model.rest_volume = enclosedVolume(model.organ.surface);
+  const bool carried = model.scene.foundation && model.scene.foundation->carries_weight;
+  if (model.scene.gravity && !carried) model.unbalanced_gravity = model.scene.gravity->acceleration;
+  const int for_gas = substepsForGas(model);
+  const TissueAndSolver made = makeTissue(model.scene, model.organ, model.mass, model.area, for_gas);
+  model.tissue = made.tissue;
+  model.solver = made.solver;
+  if (model.solver->usesSubsteps()) checkSubstepsForGas(model.scene.tissue.substeps, for_gas);
+  if (model.scene.scope) addTool(tool_urdf, model);
+  if (model.scene.marking) model.dose_law.emplace(model.scene.marking->apc);
+  if (model.scene.suture) model.along = placesAlong(model.organ);
+  if (model.scene.render_surface) model.render_surface = makeLoopSubdivision(model.organ.surface);
+  if (progress) progress("ready", 1.0);
+}
+
+std::string softnessWarning(const Model& model) {
+  const double ratio = model.tissue->stiffnessRatio();
+  if (ratio > 0.999) return "";
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "Somewhere the wall has %.0f %% of its stiffness; raise tissue.substeps from %d to %.0f, or lower "
+                "tissue.stiffness_damping.",
+                100 * ratio, model.scene.tissue.substeps, std::ceil(model.scene.tissue.substeps / std::sqrt(ratio)));
+  return text;
+}
+
+State initialState(const Model& model, std::uint64_t seed) {
+  State state;
+  state.seed = seed;
+  state.random = seed;
+  const std::size_t n = static_cast<std::size_t>(model.particle_count);
+  for (auto* v : {&state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az, &state.qx, &state.qy, &state.qz,
+                  &state.wx, &state.wy, &state.wz})
+    v->assign(n, 0);
+  state.qw.assign(n, 1);
+  for (const Eigen::Vector3d& p : model.organ.surface.vertices) {
+    state.x.push_back(p.x());
+    state.y.push_back(p.y());
+    state.z.push_back(p.z());
+  }
+  state.volume = model.rest_volume;
+  if (model.scene.marking) {
+    state.procedure.heat.assign(n, 0);
+    state.procedure.dose.assign(n, 0);
+    state.procedure.grade.assign(n, 0);
+  }
+  if (model.scene.gas) {
+    state.gas_amount = gasAmount(model.scene.gas->initial_pressure, state.volume);
+    state.pressure = gaugePressure(state.gas_amount, state.volume);
+  }
+  if (model.tool)
+    for (int i = 0; i < kJointCount; ++i)
+      state.joints[i] = std::clamp(0.0, model.tool->limits()[i].lower, model.tool->limits()[i].upper);
+  return state;
+}
+
+}  // namespace vibe

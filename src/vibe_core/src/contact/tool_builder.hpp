@@ -1,0 +1,40 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "contact/urdf_document.hpp"
+#include "vibe_core/contact/tool_model.hpp"
+
+namespace vibe {
+
+/// Turns a URDF into the parts of a ToolModel, parent links first. Every check of ToolModel::fromUrdf that is not
+/// urdfdom's is here.
+class ToolBuilder {
+ public:
+  /// @throws Error
+  ToolBuilder(const UrdfDocument& document, const std::string& place);
+
+  std::vector<std::string> link_names;
+  std::vector<ToolJoint> joints;
+  std::vector<ToolShape> shapes;
+  std::array<JointLimits, kJointCount> limits{};
+
+ private:
+  void addTree(const urdf::Link& root);
+  int addLink(const urdf::Link& link);
+  void addJoint(const urdf::Joint& joint, int parent, int child);
+  void addInput(const urdf::Joint& joint, int input);
+  int inputOf(const urdf::Joint& joint) const;
+  void checkComplete() const;
+  [[noreturn]] void fail(const char* tag, const std::string& name, const std::string& what) const;
+
+  const UrdfDocument* document_;
+  std::string place_;
+  std::map<std::string, int> link_index_;
+  std::array<bool, kJointCount> found_{};
+};
+
+}  // namespace vibe

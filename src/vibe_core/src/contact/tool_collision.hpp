@@ -1,0 +1,62 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "contact/point_distance.hpp"
+#include "vibe_core/contact/tool_model.hpp"
+
+namespace vibe {
+
+/// A particle that is nearer than the asked distance to a tool shape.
+struct Contact {
+  int particle = -1;
+  int shape = -1;          ///< index into ToolModel::shapes()
+  double distance = 0;     ///< signed distance of the particle's centre from the shape's surface, negative inside [m]
+  Eigen::Vector3d normal;  ///< unit, from the shape towards the particle, in the frame of the link poses
+};
+
+/// Signed distances between particles and the tool's Bullet shapes (see PointDistance).
+/// Deterministic: contacts come in order of particle, then shape. No allocation once the buffers have grown.
+/// A particle whose position is not finite has no contacts.
+class ToolCollision {
+ public:
+  /// @param model  must outlive this
+  explicit ToolCollision(const ToolModel& model);
+
+  /// Pairs of particle and shape that are nearer than `reach`: candidates for as long as no particle moves further
+  /// relative to a shape's surface than `reach` minus the contact distance. x, y, z: particle coordinates [m], (count).
+  /// @param link_poses  pose of every link in the frame of the particles
+  void findCandidates(const std::vector<Eigen::Isometry3d>& link_poses, const double* x, const double* y,
+                      const double* z, int count, double reach);
+
+  /// Contacts among the candidates with distance < `threshold` (particle radius) at the given poses.
+  const std::vector<Contact>& findContacts(const std::vector<Eigen::Isometry3d>& link_poses, const double* x,
+                                           const double* y, const double* z, double threshold);
+
+  int candidateCount() const { return static_cast<int>(candidates_.size()); }
+
+ private:
+  struct Candidate {
+    int particle;
+    int shape;
+  };
+  struct Box {
+    Eigen::Vector3d lower, upper;
+  };
+  struct PlacedShape {
+    Eigen::Matrix3d rotation;     // from the shape's frame to the particles'
+    Eigen::Vector3d translation;  // of the shape's frame
+    Box box;                      // around the shape, grown by the reach; only findCandidates sets it
+  };
+  void place(const std::vector<Eigen::Isometry3d>& link_poses);
+  Box placeBoxes(double reach);
+  Eigen::Vector3d toShape(int shape, const Eigen::Vector3d& p) const;
+
+  const ToolModel* model_;
+  std::vector<PointDistance> distances_;  // per shape
+  std::vector<PlacedShape> placed_;       // per shape
+  std::vector<Candidate> candidates_;
+  std::vector<Contact> contacts_;
+};
+
+}  // namespace vibe

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "vibe_core/contact/tool_model.hpp"
+
+namespace vibe {
+
+/// How a point that moves with a link moves with the tool's inputs: columns in the order of vibe::Joint [m/m], [m/rad].
+/// @param poses  of the links in any one frame, as from ToolModel::forwardKinematics(); the result is in that frame
+/// @param point  in the same frame [m]
+Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
+                                                    int link, const Eigen::Vector3d& point);
+
+}  // namespace vibe

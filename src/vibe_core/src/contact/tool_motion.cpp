@@ -1,0 +1,49 @@
+#include "contact/tool_motion.hpp"
+
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+
+std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {
+  std::array<double, kJointCount> inputs{};
+  for (int i = 0; i < kJointCount; ++i) inputs[i] = start_[i] + fraction * (end_[i] - start_[i]);
+  return inputs;
+}
+
+void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
+  tool_->forwardKinematics(inputs(fraction), poses);
+  for (Eigen::Isometry3d& pose : poses) pose = base_ * pose;
+}
+
+double ToolMotion::travel(const std::vector<Eigen::Isometry3d>& from, const std::vector<Eigen::Isometry3d>& to) const {
+  double farthest = 0;
+  for (const ToolShape& shape : tool_->shapes()) {
+    btVector3 lower, upper;
+    shape.shape->getAabb(btTransform::getIdentity(), lower, upper);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d local((corner & 1) != 0 ? upper.x() : lower.x(), (corner & 2) != 0 ? upper.y() : lower.y(),
+                                  (corner & 4) != 0 ? upper.z() : lower.z());
+      const Eigen::Vector3d p = shape.origin * local;
+      farthest = std::max(farthest, (to[shape.link] * p - from[shape.link] * p).norm());
+    }
+  }
+  return farthest;
+}
+
+std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::array<double, kJointCount>& position,
+                                              const std::array<double, kJointCount>& command, double dt) {
+  std::array<double, kJointCount> result = position;
+  for (int i = 0; i < kJointCount; ++i) {
+    if (!std::isfinite(command[i])) continue;
+    const JointLimits& limit = tool.limits()[i];
+    const double target = std::clamp(command[i], limit.lower, limit.upper);
+    const double furthest = limit.velocity * dt;
+    result[i] = position[i] + std::clamp(target - position[i], -furthest, furthest);
+  }
+  return result;
+}
+
+}  // namespace vibe

@@ -1,0 +1,38 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <vector>
+
+#include "vibe_core/contact/tool_model.hpp"
+
+namespace vibe {
+
+/// Path of the tool during one step: every input moves at constant speed from its start to its end.
+class ToolMotion {
+ public:
+  /// @param base  pose of the tool's root link in world
+  ToolMotion(const ToolModel& tool, const Eigen::Isometry3d& base, const std::array<double, kJointCount>& start,
+             const std::array<double, kJointCount>& end)
+      : tool_(&tool), base_(base), start_(start), end_(end) {}
+
+  /// Pose of every link in world at a fraction [0, 1] of the step.
+  void linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const;
+
+  /// The inputs at a fraction [0, 1] of the step [m], [rad].
+  std::array<double, kJointCount> inputs(double fraction) const;
+
+  /// An upper bound of how far any point of a collision shape moves between two sets of link poses [m].
+  double travel(const std::vector<Eigen::Isometry3d>& from, const std::vector<Eigen::Isometry3d>& to) const;
+
+ private:
+  const ToolModel* tool_;
+  Eigen::Isometry3d base_;
+  std::array<double, kJointCount> start_, end_;
+};
+
+/// Where the inputs are after `dt` when they are asked to go to `command`: within the limits of position and speed.
+/// Entries that are not finite keep their position.
+std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::array<double, kJointCount>& position,
+                                              const std::array<double, kJointCount>& command, double dt);
+
+}  // namespace vibe

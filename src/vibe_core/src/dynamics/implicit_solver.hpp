@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "solver/implicit_stepper.hpp"
+#include "vibe_core/model/tissue_solver.hpp"
+
+namespace vibe {
+
+class ShellElements;
+
+/// The tissue of a scene by implicit steps: one step of ImplicitStepper per step of the simulator. The tool's contacts
+/// and what the helix holds are conditions; the gas is part of the energy.
+class ImplicitSolver : public Solver {
+ public:
+  /// @param shell  the wall, on the particles
+  ImplicitSolver(std::shared_ptr<const ShellElements> shell, ElasticBody body, StepSettings settings);
+
+  std::string name() const override { return "implicit"; }
+  std::unique_ptr<SolverScratch> makeScratch(const Model& model) const override;
+  void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state, SolverScratch& scratch,
+               ThreadPool& pool, StepReport& report) const override;
+
+ private:
+  std::shared_ptr<const ShellElements> shell_;
+  ImplicitStepper stepper_;
+  double absurd_energy_ = 0;  // no load of a procedure stores so much [J]
+};
+
+}  // namespace vibe

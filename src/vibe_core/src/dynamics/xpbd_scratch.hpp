@@ -1,0 +1,28 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <memory>
+#include <vector>
+
+#include "constraints/xpbd_pull.hpp"
+#include "contact/tool_collision.hpp"
+#include "tissue/shape_matching.hpp"
+#include "tissue/shape_matching_kernel.hpp"
+#include "vibe_core/model/tissue_solver.hpp"
+
+namespace vibe {
+
+/// Buffers of XpbdSolver.
+class XpbdScratch : public SolverScratch {
+ public:
+  std::vector<double> old_x, old_y, old_z;        // positions before the sub-step [m]
+  std::vector<double> ahead_x, ahead_y, ahead_z;  // positions a little ahead, where elastic forces are taken [m]
+  std::vector<double> foundation_rate;  // stiffness of each particle's piece of foundation over its mass [1/s^2]
+  SweepBuffers buffers;
+  ClusterSweep sweep{};
+  ClusterSweepFunction sweep_function = nullptr;
+  std::unique_ptr<ToolCollision> collision;
+  XpbdPull pull;
+  std::vector<Eigen::Isometry3d> poses, old_poses, ahead_poses;  // of the tool's links in world
+};
+
+}  // namespace vibe

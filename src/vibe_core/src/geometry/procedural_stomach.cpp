@@ -1,0 +1,155 @@
+#include "geometry/procedural_stomach.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geometry/ball_union.hpp"
+#include "geometry/marching_tetrahedra.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr double kNominalVolume = 0.75e-3;  // [m^3] of the shape below, unscaled
+constexpr double kBlend = 4.5e-3;           // [m]
+constexpr double kFlattening = 0.82;        // depth over width of a section
+constexpr double kSpacing = 5e-3;           // [m] between balls, at which a row of them has no ripple
+constexpr double kCell = 4e-3;              // [m] of the grid that finds the surface
+constexpr double kTubeRadius = 11e-3;       // [m] a scope of 6 mm radius passes with room for the wall
+
+/// Point of the axis of the organ and the radius of the lumen there.
+struct Knot {
+  double x, y, z, radius;  // [mm], x anterior, y left, z cranial
+};
+
+// design: from the fundus down the body, round the bend, up the antrum to the right, through the pylorus
+constexpr Knot kBody[] = {{-17, 43, 60, 39},   {-14, 38, 35, 45},  {-8, 30, 8, 45.5},    {-1, 22, -18, 43},
+                          {5, 11, -42, 39},    {10, -6, -58, 34},  {13, -27, -62, 29.5}, {12, -48, -55, 25.5},
+                          {7, -64, -42, 20.5}, {2, -73, -30, 14.5}};
+constexpr Knot kPylorus{-4, -82, -17, 5};
+constexpr Knot kDuodenum{-10, -91, -2, 12.5};
+constexpr Knot kIncisuraSide{2, -33, -30, 0};  // the surface point nearest to this one
+constexpr Knot kJunction{-9, 0, 46, 0};
+constexpr Knot kGullet{-13, -12, 82, 0};
+
+using Row = std::vector<Eigen::Vector4d>;  // centre and radius [m]
+
+Eigen::Vector4d toMetres(const Knot& k) {
+  return 1e-3 * Eigen::Vector4d(k.x, k.y, k.z, k.radius);
+}
+
+/// Catmull-Rom curve through the knots, sampled about every kSpacing.
+Row sample(const Row& knots) {
+  Row row;
+  const int last = static_cast<int>(knots.size()) - 1;
+  for (int k = 0; k < last; ++k) {
+    const Eigen::Vector4d& p1 = knots[k];
+    const Eigen::Vector4d& p2 = knots[k + 1];
+    const Eigen::Vector4d p0 = k > 0 ? knots[k - 1] : Eigen::Vector4d(2.0 * p1 - p2);
+    const Eigen::Vector4d p3 = k + 1 < last ? knots[k + 2] : Eigen::Vector4d(2.0 * p2 - p1);
+    const int steps = std::max(1, static_cast<int>(std::lround((p2 - p1).head<3>().norm() / kSpacing)));
+    for (int i = 0; i < steps; ++i) {
+      const double t = static_cast<double>(i) / steps;
+      row.push_back(0.5 * (2.0 * p1 + t * (p2 - p0) + t * t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) +
+                           t * t * t * (3.0 * p1 - p0 - 3.0 * p2 + p3)));
+    }
+  }
+  row.push_back(knots.back());
+  return row;
+}
+
+void addRow(BallUnion& balls, const Row& row) {
+  for (const auto& ball : row) balls.add(ball.head<3>(), ball[3], kSpacing);
+}
+
+/// The axis of the organ; tubes have the given radius.
+Row bodyKnots(double tube_radius) {
+  Row knots;
+  for (const auto& k : kBody) knots.push_back(toMetres(k));
+  knots.push_back(toMetres(kPylorus));
+  Eigen::Vector4d duodenum = toMetres(kDuodenum);
+  duodenum[3] *= tube_radius / kTubeRadius;
+  knots.push_back(duodenum);
+  return knots;
+}
+
+Row gulletKnots(double tube_radius) {
+  Row knots{toMetres(kGullet), toMetres(kJunction)};
+  for (auto& k : knots) k[3] = tube_radius;
+  return knots;
+}
+
+Eigen::AlignedBox3d boxAround(const Row& row, double margin) {
+  Eigen::AlignedBox3d box;
+  for (const auto& ball : row) {
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(ball[3] + margin);
+    box.extend(Eigen::Vector3d(ball.head<3>() - reach));
+    box.extend(Eigen::Vector3d(ball.head<3>() + reach));
+  }
+  return box;
+}
+
+TubeEnd makeEnd(const Eigen::Vector4d& end, const Eigen::Vector4d& inner) {
+  return {end.head<3>(), (end - inner).head<3>().normalized(), end[3]};
+}
+
+Eigen::Vector3d highest(const SurfaceMesh& surface, const Eigen::Vector3d& near, double reach) {
+  Eigen::Vector3d best(0, 0, -1e9);
+  for (const auto& v : surface.vertices) {
+    if ((v - near).norm() < reach && v.z() > best.z()) best = v;
+  }
+  return best;
+}
+
+void scale(StomachShape& shape, double factor) {
+  for (auto& v : shape.surface.vertices) v *= factor;
+  Landmarks& l = shape.landmarks;
+  for (Eigen::Vector3d* p :
+       {&l.oesophagus, &l.fundus, &l.incisura, &l.pylorus, &shape.oesophagus.centre, &shape.duodenum.centre}) {
+    *p *= factor;
+  }
+  shape.oesophagus.radius *= factor;
+  shape.duodenum.radius *= factor;
+}
+
+}  // namespace
+
+StomachShape makeStomachShape(double volume) {
+  if (!(volume >= 0.15e-3 && volume <= 4e-3)) {
+    throw Error("geometry.volume is " + std::to_string(volume * 1e3) +
+                " litres; a stomach can be made with 0.15 to 4 litres (0.15e-3 to 4e-3 m^3)");
+  }
+  const double tube_radius = kTubeRadius * std::cbrt(kNominalVolume / volume);
+  const Row knots = bodyKnots(tube_radius);
+  const Row body = sample(knots), gullet = sample(gulletKnots(tube_radius));
+  const auto balls = std::make_shared<BallUnion>(kBlend, kFlattening);
+  addRow(*balls, body);
+  addRow(*balls, gullet);
+
+  StomachShape shape;
+  Eigen::AlignedBox3d box = boxAround(body, 2.0 * kBlend);
+  box.extend(boxAround(gullet, 2.0 * kBlend));
+  shape.surface = marchTetrahedra([&](const Eigen::Vector3d& p) { return balls->value(p); }, box, kCell);
+  for (auto& v : shape.surface.vertices) v = balls->project(v);
+  shape.landmarks.oesophagus = toMetres(kJunction).head<3>();
+  shape.landmarks.fundus = highest(shape.surface, body.front().head<3>(), 1.3 * body.front()[3]);
+  shape.landmarks.incisura = balls->project(toMetres(kIncisuraSide).head<3>());
+  shape.landmarks.pylorus = toMetres(kPylorus).head<3>();
+  // the outermost ball has no neighbour outside and ends low: the rim is at the next one
+  shape.oesophagus = makeEnd(gullet[1], gullet[2]);
+  shape.duodenum = makeEnd(body[body.size() - 2], body[body.size() - 3]);
+
+  const double factor = std::cbrt(volume / enclosedVolume(shape.surface));
+  scale(shape, factor);
+  shape.project = [balls, factor](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    return factor * balls->project(p / factor);
+  };
+  return shape;
+}
+
+}  // namespace vibe

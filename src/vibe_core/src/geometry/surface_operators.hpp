@@ -1,0 +1,25 @@
+#pragma once
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "vibe_core/geometry/surface_mesh.hpp"
+
+namespace vibe {
+
+/// Stiffness matrix of the Laplacian with linear elements on the surface (cotangent weights), symmetric,
+/// positive semi-definite, rows summing to zero [1]. Shape (vertices, vertices).
+Eigen::SparseMatrix<double> cotangentStiffness(const SurfaceMesh& mesh);
+
+/// The function that is 0 on `zeros`, 1 on `ones` and harmonic on the rest of the surface, one value per vertex.
+/// @throws Error if the linear system cannot be solved (a triangle without area, or an unconnected part).
+std::vector<double> harmonicField(const SurfaceMesh& mesh, const std::vector<int>& zeros, const std::vector<int>& ones);
+
+/// Spreads values over the surface by diffusion with about this width; keeps their area-weighted mean.
+/// @param width standard deviation of the spreading [m]
+std::vector<double> diffuse(const SurfaceMesh& mesh, const std::vector<double>& values, double width);
+
+/// Length of the shortest way along edges from the nearest seed to every vertex; infinity where there is none [m].
+/// Along edges, so on an even mesh up to about 15 % longer than the way over the surface.
+std::vector<double> edgeDistances(const SurfaceMesh& mesh, const std::vector<int>& seeds);
+
+}  // namespace vibe

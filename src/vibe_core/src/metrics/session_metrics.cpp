@@ -1,0 +1,118 @@
+#include "vibe_core/metrics/session_metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "contact/tool_motion.hpp"
+#include "metrics/skill_text.hpp"
+#include "vibe_core/model/accounting.hpp"
+
+namespace vibe {
+
+namespace {
+constexpr double kSamplePeriod = 0.1;  // of the costly metrics [s]
+constexpr double kNoForce = 1e-6;      // a reaction below it is none [N]
+}  // namespace
+
+MetricsRecorder::MetricsRecorder(const Model& model, const State& start)
+    : MetricsRecorder(model, start, SkillInstruments(model)) {}
+
+MetricsRecorder::MetricsRecorder(const Model& model, const State& start, SkillInstruments instruments)
+    : instruments_(std::move(instruments)),
+      last_tip_(tipPosition(model, start)),
+      start_balance_(energyBalance(model, start)),
+      strain_(start.x.size()),
+      skill_(instruments_, model, start, last_tip_) {
+  metrics_.skill = skill_.metrics();
+}
+
+void MetricsRecorder::restart(const Model& model, const State& start) {
+  *this = MetricsRecorder(model, start, instruments_);
+}
+
+Eigen::Vector3d MetricsRecorder::tipPosition(const Model& model, const State& state) {
+  if (!model.tool) return Eigen::Vector3d::Zero();
+  model.tool->forwardKinematics(state.joints, poses_);
+  return model.tool_base * poses_[model.tip_link].translation();
+}
+
+void MetricsRecorder::record(const Model& model, const State& state, bool insufflator_on,
+                             const std::vector<Event>& events) {
+  const double dt = model.scene.step_period;
+  metrics_.time = state.time;
+  if (state.contact_count > 0) metrics_.contact_time += dt;
+  if (!state.grip.empty()) metrics_.grip_time += dt;
+  if (insufflator_on) metrics_.insufflation_time += dt;
+  const Eigen::Vector3d tip = tipPosition(model, state);
+  metrics_.path_length += (tip - last_tip_).norm();
+  last_tip_ = tip;
+  const double force = state.tool_force.norm();
+  if (force > kNoForce) {
+    force_sum_ += force * dt;
+    force_time_ += dt;
+    metrics_.mean_force = force_sum_ / force_time_;
+    metrics_.peak_force = std::max(metrics_.peak_force, force);
+  }
+  metrics_.volume = state.volume;
+  metrics_.pressure = state.pressure;
+  metrics_.max_volume = std::max(metrics_.max_volume, state.volume);
+  metrics_.max_pressure = std::max(metrics_.max_pressure, state.pressure);
+  countEvents(events);
+  skill_.record(model, state, tip, events);
+  metrics_.skill = skill_.metrics();
+  if (samples_until_-- <= 0) sample(model, state);
+}
+
+void MetricsRecorder::countEvents(const std::vector<Event>& events) {
+  for (const Event& event : events) {
+    switch (event.kind) {
+      case Event::Kind::Grab:
+        ++metrics_.grabs;
+        break;
+      case Event::Kind::GrabMissed:
+        ++metrics_.missed_grabs;
+        break;
+      case Event::Kind::Release:
+        ++metrics_.releases;
+        break;
+      case Event::Kind::Slip:
+        ++metrics_.slips;
+        break;
+      case Event::Kind::Warning:
+      case Event::Kind::Recovery:
+        ++metrics_.warnings;
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+void MetricsRecorder::sample(const Model& model, const State& state) {
+  samples_until_ = static_cast<int>(std::lround(kSamplePeriod / model.scene.step_period)) - 1;
+  model.tissue->strain(state, strain_.data());
+  for (float strain : strain_) metrics_.max_strain = std::max(metrics_.max_strain, static_cast<double>(strain));
+  metrics_.energy_balance = energyBalance(model, state) - start_balance_;
+}
+
+std::string summarise(const SessionMetrics& m) {
+  char text[1024];
+  std::snprintf(text, sizeof text,
+                "simulated time     %8.2f s\n"
+                "in contact         %8.2f s   holding tissue %.2f s   insufflating %.2f s\n"
+                "path of the tip    %8.3f m\n"
+                "grabs              %8d     missed %d   released %d   slipped %d\n"
+                "force on the tool  %8.2f N peak   %.2f N mean\n"
+                "lumen              %8.1f mL now   %.1f mL greatest   at %.1f mmHg now   %.1f mmHg greatest\n"
+                "strain of the wall %8.1f %% greatest\n"
+                "energy balance     %8.4f J\n"
+                "warnings           %8d",
+                m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.grabs, m.missed_grabs,
+                m.releases, m.slips, m.peak_force, m.mean_force, m.volume * 1e6, m.max_volume * 1e6,
+                m.pressure / 133.322, m.max_pressure / 133.322, 100 * m.max_strain, m.energy_balance, m.warnings);
+  return text + ("\n" + summarise(m.skill));
+}
+
+}  // namespace vibe

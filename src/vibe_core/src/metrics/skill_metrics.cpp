@@ -1,0 +1,96 @@
+#include "vibe_core/metrics/skill_metrics.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kMarkPeriod = 0.1;  // of counting marks that grow [s]
+
+// Grades only rise, so it changes whenever one of them does.
+long sumOf(const std::vector<std::uint8_t>& grades) {
+  return std::accumulate(grades.begin(), grades.end(), 0L);
+}
+
+}  // namespace
+
+BleedingSkill measureBleeding(const ProcedureState& procedure) {
+  BleedingSkill skill;
+  for (const Bleeding& bleeding : procedure.bleedings) {
+    ++(bleeding.brisk ? skill.brisk : skill.mild);
+    skill.now += bleeding.rate > 0 ? 1 : 0;
+    skill.overdue += bleeding.overdue ? 1 : 0;
+  }
+  skill.lost = procedure.blood_lost;
+  return skill;
+}
+
+SkillInstruments::SkillInstruments(const Model& model)
+    : spectrum(std::make_shared<SpectralArcLength>(MotionRecorder::kLongestMovement)),
+      marks(std::make_shared<MarkCounter>(model.organ)) {
+  try {
+    ruler = std::make_shared<OrganRuler>(model.organ);
+  } catch (const Error& error) {
+    ruler_fault = error.what();
+  }
+}
+
+SkillRecorder::SkillRecorder(const SkillInstruments& instruments, const Model& model, const State& start,
+                             const Eigen::Vector3d& tip)
+    : marks_(instruments.marks),
+      phases_(instruments.spectrum),
+      organ_(instruments.ruler, instruments.ruler_fault, start) {
+  if (model.tool) phases_.start(tip, model.scene.step_period);
+  metrics_.organ = organ_.measures();
+  countMarks(start);
+  readSutures(model, start.procedure);
+}
+
+void SkillRecorder::record(const Model& model, const State& state, const Eigen::Vector3d& tip,
+                           const std::vector<Event>& events) {
+  phases_.record(state.procedure.phase, tip, state.tool_force.norm(), model.scene.step_period);
+  metrics_.phases = phases_.measures();
+  organ_.record(model, state, events);
+  metrics_.organ = organ_.measures();
+  updateMarks(model, state);
+  if (events.empty()) {
+    updateSets(state.procedure.sutures, metrics_.sets);
+  } else {
+    counts_.record(events);
+    countMistakes();
+    readSutures(model, state.procedure);
+  }
+  metrics_.bleeding.lost = state.procedure.blood_lost;
+}
+
+// Not by events: a mark that grows into another, or out of the working zone, is none.
+void SkillRecorder::updateMarks(const Model& model, const State& state) {
+  const bool due = ++steps_ >= std::lround(kMarkPeriod / model.scene.step_period);
+  if (due && sumOf(state.procedure.grade) != counted_grades_) countMarks(state);
+}
+
+void SkillRecorder::countMarks(const State& state) {
+  steps_ = 0;
+  counted_grades_ = sumOf(state.procedure.grade);
+  metrics_.marks = marks_->count(state.procedure.grade, state.x, state.y, state.z);
+}
+
+void SkillRecorder::readSutures(const Model& model, const ProcedureState& procedure) {
+  metrics_.bites = measureBites(model.organ, procedure.sutures);
+  measureSets(model.organ, model.scene.suture ? &*model.scene.suture : nullptr, procedure.sutures, metrics_.sets);
+  metrics_.bleeding = measureBleeding(procedure);
+}
+
+void SkillRecorder::countMistakes() {
+  const auto of = [this](Event::Kind kind) { return static_cast<int>(counts_.of(kind)); };
+  metrics_.mistakes.missed_bites = of(Event::Kind::BiteMissed);
+  metrics_.mistakes.withdrawn_bites = of(Event::Kind::BiteWithdrawn);
+  metrics_.mistakes.slips = of(Event::Kind::Slip);
+  metrics_.mistakes.broken_threads = of(Event::Kind::ThreadBroke);
+  metrics_.mistakes.refused = of(Event::Kind::Refused);
+}
+
+}  // namespace vibe

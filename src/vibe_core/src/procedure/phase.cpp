@@ -1,0 +1,66 @@
+#include "procedure/phase.hpp"
+
+#include <string>
+
+#include "procedure/emit_event.hpp"
+
+namespace vibe {
+
+namespace {
+
+// Apart, so that a tremor of the hand at the entry does not end the procedure again and again [m].
+constexpr double kWithdrawn = 0.01;
+constexpr double kInserted = 0.02;
+
+bool everySetIsFinished(const ProcedureState& procedure) {
+  bool cinched = false;
+  for (const Suture& suture : procedure.sutures) {
+    if (!suture.permanent()) return false;
+    cinched |= suture.stage == Suture::Stage::Cinched;
+  }
+  return cinched;
+}
+
+}  // namespace
+
+const char* toString(Phase phase) {
+  switch (phase) {
+    case Phase::Inspect:
+      return "inspect";
+    case Phase::Mark:
+      return "mark";
+    case Phase::Suture:
+      return "suture";
+    case Phase::Pull:
+      return "pull";
+    case Phase::Done:
+      return "done";
+  }
+  return "unknown";
+}
+
+void enterPhase(Phase phase, State& state, std::vector<Event>& events) {
+  if (state.procedure.phase == phase) return;
+  state.procedure.phase = phase;
+  emitEvent(Event::Kind::PhaseChanged, state.time, -1, static_cast<double>(phase),
+            std::string("The phase is now '") + toString(phase) + "'.", events);
+}
+
+void noteMarking(State& state, std::vector<Event>& events) {
+  if (state.procedure.phase != Phase::Pull) enterPhase(Phase::Mark, state, events);
+}
+
+void noteSuturing(State& state, std::vector<Event>& events) {
+  if (state.procedure.phase != Phase::Pull) enterPhase(Phase::Suture, state, events);
+}
+
+void updatePhase(const Model& model, State& state, std::vector<Event>& events) {
+  const double insertion = state.joints[Insertion] - model.tool->limits()[Insertion].lower;
+  const bool done = state.procedure.phase == Phase::Done;
+  const bool at_work = state.procedure.arm_closed || !state.grip.empty();
+  if (!done && !at_work && insertion < kWithdrawn && everySetIsFinished(state.procedure))
+    enterPhase(Phase::Done, state, events);
+  if (done && insertion > kInserted) enterPhase(Phase::Inspect, state, events);
+}
+
+}  // namespace vibe

@@ -1,0 +1,185 @@
+#include "procedure/thread_events.hpp"
+#include "constraints/group_draw.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "procedure/bleeding.hpp"
+#include "procedure/emit_event.hpp"
+#include "procedure/needle.hpp"
+#include "procedure/phase.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr double kMet = 1.01 * kMinSegment;  // a segment no longer than this lies between bites that have met [m]
+
+Eigen::Vector3d placeOf(const Bite& bite, const State& state) {
+  return bitePosition(bite, state.x, state.y, state.z);
+}
+
+void lengthenToTissue(const State& state, Suture& suture) {
+  for (std::size_t k = 0; k < suture.length.size(); ++k) {
+    const double distance = (placeOf(suture.bites[k + 1], state) - placeOf(suture.bites[k], state)).norm();
+    suture.length[k] = std::max(suture.length[k], distance);
+  }
+}
+
+double sum(const std::vector<double>& values) {
+  double all = 0;
+  for (double value : values) all += value;
+  return all;
+}
+
+// A set whose thread no longer pulls. If it was being cinched the device has lost its thread and takes a new one.
+void giveUp(Suture& suture, State& state, std::vector<Event>& events) {
+  const bool active = !suture.permanent();
+  suture.stage = Suture::Stage::Broken;
+  std::fill(suture.tension.begin(), suture.tension.end(), 0.0);
+  if (!active) return;
+  loadThread(state.procedure);
+  enterPhase(Phase::Suture, state, events);
+}
+
+bool breakThread(const SutureScene& scene, int number, State& state, std::vector<Event>& events) {
+  Suture& suture = state.procedure.sutures[number];
+  for (double& tension : suture.tension)
+    if (!std::isfinite(tension)) tension = 0;
+  const double max = *std::max_element(suture.tension.begin(), suture.tension.end());
+  if (max <= scene.thread_strength) return false;
+  emitEvent(Event::Kind::ThreadBroke, state.time, -1, max,
+            "The thread of set " + std::to_string(number + 1) + " broke at " + inNewtons(max) + ", it holds " +
+                inNewtons(scene.thread_strength) + ".",
+            events);
+  giveUp(suture, state, events);
+  return true;
+}
+
+// Its two segments become one; where it was the first or the last, the thread ends at its neighbour.
+void removeBite(int bite, Suture& suture) {
+  const int last = static_cast<int>(suture.bites.size()) - 1;
+  const int segment = bite == 0 ? 0 : bite - 1;
+  if (bite > 0 && bite < last) {
+    suture.length[bite] += suture.length[segment];
+    suture.tension[bite] = std::min(suture.tension[bite], suture.tension[segment]);
+  }
+  suture.length.erase(suture.length.begin() + segment);
+  suture.tension.erase(suture.tension.begin() + segment);
+  suture.bites.erase(suture.bites.begin() + bite);
+  ++suture.tear_outs;
+}
+
+// If both of its segments pulled the same way: spares most bites the look at where they are.
+double maxForceOnBite(const Suture& suture, int bite) {
+  const double before = bite > 0 ? suture.tension[bite - 1] : 0;
+  return before + (bite + 1 < static_cast<int>(suture.bites.size()) ? suture.tension[bite] : 0);
+}
+
+// The bite that is most beyond its hold; -1: none. Sets force to that on it.
+int overloadedBite(const SutureScene& scene, const Suture& suture, const State& state, double& force) {
+  int worst = -1;
+  double max = 1;
+  for (int b = 0; b < static_cast<int>(suture.bites.size()); ++b) {
+    const double hold = holdOfBite(scene, suture.bites[b]);
+    if (maxForceOnBite(suture, b) <= hold) continue;
+    const double on_bite = forceOnBite(suture, b, state).norm();
+    const double load = on_bite / hold;
+    if (load <= max) continue;
+    max = load;
+    worst = b;
+    force = on_bite;
+  }
+  return worst;
+}
+
+void tearOut(const SutureScene& scene, int number, State& state, std::vector<Event>& events) {
+  Suture& suture = state.procedure.sutures[number];
+  double force = 0;
+  const int bite = overloadedBite(scene, suture, state, force);
+  if (bite < 0) return;
+  emitEvent(Event::Kind::TearOut, state.time, nearestParticle(suture.bites[bite]), force,
+            "Bite " + std::to_string(bite + 1) + " of set " + std::to_string(number + 1) + " tore out at " +
+                inNewtons(force) + ", it held " + inNewtons(holdOfBite(scene, suture.bites[bite])) + ".",
+            events);
+  removeBite(bite, suture);
+  forgetBite(number, bite, state.procedure);
+  if (suture.bites.size() < 2) giveUp(suture, state, events);
+}
+
+}  // namespace
+
+Suture* activeSuture(ProcedureState& procedure) {
+  if (procedure.sutures.empty() || procedure.sutures.back().permanent()) return nullptr;
+  return &procedure.sutures.back();
+}
+
+void loadThread(ProcedureState& procedure) {
+  procedure.needle_loaded = true;
+  procedure.needle_on_arm = true;
+  procedure.pierced = false;
+  procedure.pending = Bite{};
+  procedure.thread_used = 0;
+}
+
+double drawThread(double amount, Suture& suture) {
+  double left = amount;
+  for (double& length : suture.length) {
+    const double drawn = std::clamp(length - kMinSegment, 0.0, left);
+    length -= drawn;
+    left -= drawn;
+  }
+  suture.pulled += amount - left;
+  return amount - left;
+}
+
+double cinchTension(const Suture& suture) {
+  double max = 0;
+  for (std::size_t k = 0; k < suture.tension.size(); ++k) {
+    max = std::max(max, suture.tension[k]);
+    if (suture.length[k] > kMet) break;
+  }
+  return max;
+}
+
+Eigen::Vector3d forceOnBite(const Suture& suture, int bite, const State& state) {
+  const Eigen::Vector3d place = placeOf(suture.bites[bite], state);
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  const auto add = [&](int segment, int neighbour) {
+    const Eigen::Vector3d along = placeOf(suture.bites[neighbour], state) - place;
+    const double length = along.norm();
+    if (length > 0) force += suture.tension[segment] / length * along;
+  };
+  if (bite > 0) add(bite - 1, bite - 1);
+  if (bite + 1 < static_cast<int>(suture.bites.size())) add(bite, bite + 1);
+  return force;
+}
+
+double holdOfBite(const SutureScene& scene, const Bite& bite) {
+  return scene.pull_out_force * std::clamp(bite.depth / bite.thickness, 0.25, 1.0);
+}
+
+void updateThreads(const Model& model, State& state, std::vector<Event>& events) {
+  const SutureScene& scene = *model.scene.suture;
+  ProcedureState& procedure = state.procedure;
+  if (Suture* active = activeSuture(procedure)) {
+    const bool open = active->stage == Suture::Stage::Open;
+    if (open || active->stage == Suture::Stage::Tagged) lengthenToTissue(state, *active);
+    if (open) procedure.thread_used = sum(active->length);
+  }
+  for (int number = 0; number < static_cast<int>(procedure.sutures.size()); ++number) {
+    if (!procedure.sutures[number].pulls()) continue;
+    if (!breakThread(scene, number, state, events)) tearOut(scene, number, state, events);
+  }
+}
+
+void slackenThreads(State& state) {
+  for (Suture& suture : state.procedure.sutures) {
+    lengthenToTissue(state, suture);
+    slackenGroup(state, suture.group);
+    std::fill(suture.tension.begin(), suture.tension.end(), 0.0);
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,86 @@
+#include "vibe_core/scene/mesh_guess.hpp"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "geometry/landmark_estimate.hpp"
+#include "geometry/remesh.hpp"
+#include "geometry/rotation.hpp"
+#include "geometry/surface_check.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/mesh_file.hpp"
+#include "vibe_core/scene/mesh_override.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr double kTypicalSize = 0.25;  // largest side of a stomach's bounding box [m]
+constexpr int kGuessVertices = 1500;   // fine enough for landmarks to a few millimetres
+
+double likeliestUnit(const SurfaceMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const auto& v : mesh.vertices) box.extend(v);
+  double best = 1;
+  const auto unlikeliness = [&](double unit) {
+    return std::abs(std::log(box.sizes().maxCoeff() * unit / kTypicalSize));
+  };
+  for (const double unit : {0.01, 0.001, 0.0254})
+    if (unlikeliness(unit) < unlikeliness(best)) best = unit;
+  return best;
+}
+
+std::string describe(const GeometryScene& g, const std::string& mesh_file) {
+  const auto point = [](const Eigen::Vector3d& p) {
+    char text[96];
+    std::snprintf(text, sizeof text, "[%.4g, %.4g, %.4g]", p.x(), p.y(), p.z());
+    return std::string(text);
+  };
+  char head[160];
+  std::snprintf(head, sizeof head, "unit: %g\nrotation_rpy: [%.6f, %.6f, %.6f]\nlandmarks:\n", g.unit,
+                g.rotation_rpy[0], g.rotation_rpy[1], g.rotation_rpy[2]);
+  return "Unit, axes and landmarks of " + mesh_file + " are guesses; look at the regions, and state them in " +
+         sidecarOf(mesh_file) + ":\n" + head + "  oesophagus: " + point(*g.oesophagus) +
+         "\n  fundus: " + point(*g.fundus) + "\n  incisura: " + point(*g.incisura) +
+         "\n  pylorus: " + point(*g.pylorus);
+}
+
+void guess(GeometryScene& geometry) {
+  SurfaceMesh surface = readMeshFile(geometry.file);
+  checkSurface(surface, geometry.file);
+  orientOutwards(surface);
+  if (geometry.unit == 0) geometry.unit = likeliestUnit(surface);
+  if (geometry.rotation_rpy == std::array<double, 3>{0, 0, 0})
+    geometry.rotation_rpy = statesMetres(geometry.file) ? std::array<double, 3>{M_PI / 2, 0, M_PI / 2}
+                                                        : std::array<double, 3>{0, 0, M_PI / 2};
+  const Eigen::Matrix3d map = geometry.unit * rotationFromRpy(geometry.rotation_rpy);
+  for (auto& v : surface.vertices) v = map * v;
+  const Landmarks found = estimateLandmarks(remeshSurface(surface, kGuessVertices, nullptr, {}));
+  const Eigen::Matrix3d back = map.inverse();
+  geometry.oesophagus = back * found.oesophagus;
+  geometry.fundus = back * found.fundus;
+  geometry.incisura = back * found.incisura;
+  geometry.pylorus = back * found.pylorus;
+}
+
+}  // namespace
+
+std::string useMesh(Scene& scene, const std::string& mesh_file) {
+  const GeometryScene& g = scene.geometry;
+  const bool stated = g.oesophagus || g.fundus || g.incisura || g.pylorus;
+  if (stated || std::filesystem::exists(sidecarOf(mesh_file)) || !std::filesystem::is_regular_file(mesh_file)) {
+    applyMeshOverride(scene, mesh_file);
+    return "";
+  }
+  GeometryScene changed = g;
+  changed.kind = GeometryScene::Kind::Mesh;
+  changed.file = mesh_file;
+  guess(changed);
+  scene.geometry = changed;
+  return describe(changed, mesh_file);
+}
+
+}  // namespace vibe

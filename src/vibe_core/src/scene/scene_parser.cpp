@@ -1,0 +1,191 @@
+#include "vibe_core/scene/scene_parser.hpp"
+
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "scene/scene_value.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/schema.hpp"
+#include "vibe_core/scene/yaml_source.hpp"
+
+namespace vibe {
+namespace {
+
+/// Keys and sections directly inside a section.
+std::vector<std::string> keysIn(const std::string& section) {
+  std::vector<std::string> keys;
+  for (const SchemaRow& row : sceneSchema()) {
+    if (sectionOf(row.key) == section) keys.push_back(lastPart(row.key));
+  }
+  for (const SchemaSection& inner : sceneSections()) {
+    if (inner.name != section && *inner.name != '\0' && sectionOf(inner.name) == section) {
+      keys.push_back(lastPart(inner.name));
+    }
+  }
+  return keys;
+}
+
+bool isPackagePath(const std::string& path) {
+  return path.rfind("package://", 0) == 0;
+}
+
+/// What stands in one file, collected into a Scene.
+class SceneReader {
+ public:
+  explicit SceneReader(const YamlSource& source) : source_(source) {}
+
+  Scene read() {
+    readSection(source_.root());
+    checkApplies();
+    checkRequired();
+    checkNeeds();
+    checkProcedure();
+    scene_.file = source_.place();
+    resolve(scene_.geometry.file);
+    if (scene_.scope && !isPackagePath(scene_.scope->urdf)) resolve(scene_.scope->urdf);
+    return scene_;
+  }
+
+  /// @throws Error if a file that the scene names is not there
+  void checkFiles() const {
+    const auto mesh = seen_.find("geometry.file");
+    if (mesh != seen_.end()) checkFile(mesh->second, scene_.geometry.file);
+    const auto urdf = seen_.find("scope.urdf");
+    if (urdf != seen_.end() && !isPackagePath(scene_.scope->urdf)) checkFile(urdf->second, scene_.scope->urdf);
+  }
+
+ private:
+  const YamlSource& source_;
+  Scene scene_;
+  std::map<std::string, YamlField> seen_;
+
+  void readSection(const YamlField& section) {
+    seen_.emplace(section.path, section);
+    findSection(section.path)->enter(scene_);
+    for (const YamlField& field : source_.map(section)) {
+      if (findSection(field.path) != nullptr && !field.path.empty()) {
+        readSection(field);
+      } else if (const SchemaRow* row = findRow(field.path)) {
+        readValue(source_, field, *row, scene_);
+        seen_.emplace(field.path, field);
+      } else {
+        failUnknown(section.path, field);
+      }
+    }
+  }
+
+  [[noreturn]] void failUnknown(const std::string& section, const YamlField& field) const {
+    const std::vector<std::string> here = keysIn(section);
+    if (nearestKey(field.key, here).empty()) {
+      for (const SchemaRow& row : sceneSchema()) {
+        if (lastPart(row.key) != field.key) continue;
+        source_.fail(field, "is not known here; write it as '" + std::string(row.key) + "'");
+      }
+    }
+    source_.fail(field, "is not a known key; " + suggestKey(field.key, here));
+  }
+
+  void checkApplies() const {
+    const GeometryScene::Kind kind = scene_.geometry.kind;
+    const std::string has = std::string("does not apply to geometry.kind '") + toString(kind) + "'; ";
+    const auto landmarks = seen_.find("geometry.landmarks");
+    if (landmarks != seen_.end() && kind != GeometryScene::Kind::Mesh) {
+      source_.fail(landmarks->second, has + "remove it or write 'kind: mesh'");
+    }
+    for (const SchemaRow& row : sceneSchema()) {
+      const auto field = seen_.find(row.key);
+      if (field == seen_.end() || !row.only_for || *row.only_for == kind) continue;
+      source_.fail(field->second, has + "remove it or write 'kind: " + toString(*row.only_for) + "'");
+    }
+  }
+
+  void checkRequired() const {
+    for (const SchemaRow& row : sceneSchema()) {
+      const bool applies = !row.only_for || *row.only_for == scene_.geometry.kind;
+      const auto section = seen_.find(sectionOf(row.key));
+      if (!row.required || !applies || section == seen_.end() || seen_.count(row.key) > 0) continue;
+      source_.fail(section->second, "lacks the key '" + lastPart(row.key) + "' (" + row.help + "); add it");
+    }
+  }
+
+  void checkNeeds() const {
+    for (const SchemaSection& section : sceneSections()) {
+      const auto field = seen_.find(section.name);
+      if (section.needs == nullptr || field == seen_.end() || seen_.count(section.needs) > 0) continue;
+      const std::string needed = section.needs;
+      source_.fail(field->second,
+                   "needs the section '" + needed + "', " + section.needs_why + "; add '" + needed + ": {}'");
+    }
+  }
+
+  /// Values that are right alone but not together.
+  void checkProcedure() const {
+    if (const auto& suture = scene_.suture) {
+      checkOrder("suture.least_bites", suture->min_bites, "suture.most_bites", suture->max_bites);
+      checkOrder("suture.loose_tension", suture->loose_tension, "suture.cinch_tension", suture->cinch_tension);
+      checkOrder("suture.cinch_tension", suture->cinch_tension, "suture.thread_strength", suture->thread_strength);
+      if (suture->loose_tension == suture->cinch_tension) {
+        source_.fail(written("suture.loose_tension", "suture.cinch_tension"),
+                     "leaves every cinch loose; write a loose_tension below the cinch_tension");
+      }
+    }
+    if (const auto& marking = scene_.marking) {
+      checkOrder("marking.mark_energy", marking->apc.mark_energy, "marking.burn_energy", marking->apc.burn_energy);
+      checkOrder("marking.burn_energy", marking->apc.burn_energy, "marking.deep_energy", marking->apc.deep_energy);
+    }
+    const auto& bleeding = scene_.bleeding;
+    if (bleeding && bleeding->mild_probability + bleeding->brisk_probability > 1) {
+      source_.fail(written("bleeding.mild_probability", "bleeding.brisk_probability"),
+                   "is too much: mild_probability and brisk_probability together must be at most 1; lower one of them");
+    }
+  }
+
+  /// Of two keys at odds with each other the one that the user wrote; the other may be a default.
+  const YamlField& written(const std::string& key, const std::string& other) const {
+    const auto field = seen_.find(key);
+    return field != seen_.end() ? field->second : seen_.at(other);
+  }
+
+  void checkOrder(const std::string& low, double low_value, const std::string& high, double high_value) const {
+    if (low_value <= high_value) return;
+    const std::string unit = findRow(low)->unit;
+    const bool low_is_written = seen_.count(low) > 0;
+    const std::string here = showQuantity(low_is_written ? low_value : high_value, unit);
+    const std::string there = showQuantity(low_is_written ? high_value : low_value, unit);
+    source_.fail(written(low, high), "is " + here + ", but " + (low_is_written ? high : low) + " is " + there +
+                                         "; write at " + (low_is_written ? "most" : "least") + " that");
+  }
+
+  void resolve(std::string& path) const {
+    if (path.empty() || std::filesystem::path(path).is_absolute()) return;
+    path = (std::filesystem::path(source_.place()).parent_path() / path).lexically_normal().string();
+  }
+
+  void checkFile(const YamlField& field, const std::string& path) const {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(path, ignored)) return;
+    source_.fail(field, "there is no file '" + path + "'; give a path relative to the scene file");
+  }
+};
+
+/// Small for a scene, large enough for any comment: no scene needs more than a few kilobytes.
+constexpr YamlLimits kSceneLimits{};
+
+}  // namespace
+
+Scene loadScene(const std::string& file) {
+  const YamlSource source = YamlSource::load(file, kSceneLimits);
+  SceneReader reader(source);
+  Scene scene = reader.read();
+  reader.checkFiles();
+  return scene;
+}
+
+Scene parseScene(const std::string& yaml, const std::string& place) {
+  const YamlSource source = YamlSource::parse(yaml, place, kSceneLimits);
+  return SceneReader(source).read();
+}
+
+}  // namespace vibe

@@ -1,0 +1,11 @@
+#pragma once
+#include <vector>
+
+#include "vibe_core/scene/schema.hpp"
+
+namespace vibe {
+
+/// Rows of the sections helix, suture, bleeding and marking: what the procedure adds to the organ and the scope.
+std::vector<SchemaRow> procedureRows();
+
+}  // namespace vibe

@@ -1,0 +1,48 @@
+#include "vibe_core/scene/schema.hpp"
+
+namespace vibe {
+
+const std::vector<SchemaSection>& sceneSections() {
+  static const auto nothing = [](Scene&) {};
+  static const auto always = [](const Scene&) { return true; };
+  static const std::vector<SchemaSection> sections = {
+      {"", "The top level.", nothing, always},
+      {"geometry", "Shape and resolution of the organ.", nothing, always},
+      {"geometry.landmarks", "Points that tell the regions and walls of an imported surface; all four.", nothing,
+       [](const Scene& s) { return s.geometry.oesophagus.has_value(); }},
+      {"tissue", "The wall.", nothing, always},
+      {"tissue.thickness", "Thickness of the wall by region.", nothing, always},
+      {"tissue.stiffness", "Stiffness of the wall of the shell by region.", nothing, always},
+      {"tissue.fibres", "Fibres in the wall of the shell (Holzapfel, Gasser, Ogden 2000). Without it none are there.",
+       [](Scene& s) { s.tissue.fibres.emplace(); }, [](const Scene& s) { return s.tissue.fibres.has_value(); }},
+      {"attachments", "Ends that are held in place. Without them the organ is free.", nothing, always},
+      {"gas", "Gas in the lumen with an insufflator. Without it the lumen is empty space without pressure.",
+       [](Scene& s) { s.gas.emplace(); }, [](const Scene& s) { return s.gas.has_value(); }},
+      {"gravity", "Weight of the wall.", [](Scene& s) { s.gravity.emplace(); },
+       [](const Scene& s) { return s.gravity.has_value(); }},
+      {"foundation", "Neighbouring organs: springs from every particle to its place at rest.",
+       [](Scene& s) { s.foundation.emplace(); }, [](const Scene& s) { return s.foundation.has_value(); }},
+      {"scope", "The endoscope with its suturing device.", [](Scene& s) { s.scope.emplace(); },
+       [](const Scene& s) { return s.scope.has_value(); }},
+      {"scope.base", "Pose of the root link. Without it the scope enters where the oesophagus ends.",
+       [](Scene& s) { s.scope->base_from_anatomy = false; },
+       [](const Scene& s) { return s.scope.has_value() && !s.scope->base_from_anatomy; }},
+      {"helix", "Tissue helix of the suturing device; needs `scope`.", [](Scene& s) { s.helix.emplace(); },
+       [](const Scene& s) { return s.helix.has_value(); }, "scope", "whose tool carries the helix"},
+      {"suture",
+       "Needle, thread, T-tag and cinch of the suturing device; needs `helix`. Without it the needle takes no bites.",
+       [](Scene& s) { s.suture.emplace(); }, [](const Scene& s) { return s.suture.has_value(); }, "helix",
+       "which brings the wall to the needle"},
+      {"bleeding", "Bleeding after a bite, drawn from the seed; needs `suture`. Without it no bite bleeds.",
+       [](Scene& s) { s.bleeding.emplace(); }, [](const Scene& s) { return s.bleeding.has_value(); }, "suture",
+       "whose bites bleed"},
+      {"marking",
+       "Argon plasma coagulation from a probe in the scope: marks and burns ([marking.md](marking.md)); needs `scope`. "
+       "Without it the pedal does nothing.",
+       [](Scene& s) { s.marking.emplace(); }, [](const Scene& s) { return s.marking.has_value(); }, "scope",
+       "whose tip carries the probe"},
+  };
+  return sections;
+}
+
+}  // namespace vibe

@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+
+#include "vibe_core/scene/yaml_source.hpp"
+
+namespace vibe {
+
+/// Reads the text once without building anything: refuses what is too large, nested too deeply for a recursive
+/// parser, not YAML, or not exactly one document.
+/// @throws Error with place:line
+void checkYaml(const std::string& text, const std::string& place, const YamlLimits& limits);
+
+}  // namespace vibe

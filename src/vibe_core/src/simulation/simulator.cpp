@@ -1,0 +1,150 @@
+#include "vibe_core/simulation/simulator.hpp"
+#include "vibe_core/constraints/pull_patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "constraints/gas.hpp"
+#include "contact/tool_motion.hpp"
+#include "procedure/marking.hpp"
+#include "procedure/marking_touch.hpp"
+#include "procedure/procedure.hpp"
+#include "procedure/thread_events.hpp"
+#include "vibe_core/procedure/helix_grip.hpp"
+
+namespace vibe {
+
+namespace {
+
+void addEvent(Event::Kind kind, double time, double value, std::string text, std::vector<Event>& events) {
+  Event event;
+  event.kind = kind;
+  event.time = time;
+  event.value = value;
+  event.text = std::move(text);
+  events.push_back(std::move(event));
+}
+
+// Forces are reported in the tip's frame at the end of the step.
+void storeForces(const Model& model, const StepReport& report, const std::vector<Eigen::Isometry3d>& poses,
+                 State& state) {
+  const Eigen::Matrix3d to_tip = poses[model.tip_link].linear().transpose();
+  state.tool_force = to_tip * report.tool_force;
+  state.tool_torque = to_tip * report.tool_torque;
+  state.grip_force = report.grip_force.norm();
+  state.contact_count = report.contact_count;
+}
+
+void reportContact(int contact_count, double dt, State& state, std::vector<Event>& events) {
+  const bool touching = contact_count > 0;
+  if (touching && !state.in_contact)
+    addEvent(Event::Kind::ContactBegin, state.time, contact_count, "The tool touches tissue.", events);
+  state.untouched_time = touching || !state.in_contact ? 0 : state.untouched_time + dt;
+  const bool ended = state.in_contact && state.untouched_time >= kContactGap;
+  if (ended) addEvent(Event::Kind::ContactEnd, state.time, 0, "The tool no longer touches tissue.", events);
+  state.in_contact = touching || (state.in_contact && !ended);
+}
+
+void reportPressure(const GasScene& gas, bool insufflator_on, State& state, std::vector<Event>& events) {
+  const double tolerance = std::max(1.0, 0.01 * std::abs(gas.regulated_pressure));
+  const bool reached = insufflator_on && std::abs(state.pressure - gas.regulated_pressure) < tolerance;
+  if (reached && !state.pressure_reached)
+    addEvent(Event::Kind::PressureReached, state.time, state.pressure, "The insufflator has reached its set point.",
+             events);
+  state.pressure_reached = reached;
+}
+
+bool isFinite(const State& state) {
+  double sum = state.gas_amount;
+  for (const auto* v : {&state.x, &state.y, &state.z, &state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az,
+                        &state.qw, &state.qx, &state.qy, &state.qz})
+    for (double value : *v) sum += 0 * value;  // NaN or infinity anywhere makes the sum NaN
+  return std::isfinite(sum);
+}
+
+// A state without finite numbers has no future; start the tissue again from rest and say so.
+void recover(const Model& model, State& state, std::vector<Event>& events) {
+  const State fresh = initialState(model, state.seed);
+  state.x = fresh.x, state.y = fresh.y, state.z = fresh.z;
+  state.vx = fresh.vx, state.vy = fresh.vy, state.vz = fresh.vz;
+  state.ax = fresh.ax, state.ay = fresh.ay, state.az = fresh.az;
+  state.solver = fresh.solver;
+  state.qw = fresh.qw, state.qx = fresh.qx, state.qy = fresh.qy, state.qz = fresh.qz;
+  state.wx = fresh.wx, state.wy = fresh.wy, state.wz = fresh.wz;
+  state.gas_amount = fresh.gas_amount;
+  state.pressure = fresh.pressure;
+  state.volume = fresh.volume;
+  state.energy = fresh.energy;
+  state.grip.clear();
+  state.pull = PullSpring();
+  slackenThreads(state);
+  coolDown(state);
+  state.tool_force.setZero();
+  state.tool_torque.setZero();
+  state.grip_force = 0;
+  addEvent(Event::Kind::Recovery, state.time, 0,
+           "The tissue reached positions that are not numbers and was put back to rest; check masses and stiffness of "
+           "the scene.",
+           events);
+}
+
+void moveTissue(const Model& model, const ToolMotion* motion, bool pedal, bool insufflator_on, State& state,
+                Workspace& workspace, StepReport& report) {
+  const auto solve = [&] {
+    model.solver->advance(model, motion, insufflator_on, state, workspace.solverScratch(), workspace.threadPool(),
+                          report);
+  };
+  MarkingTouch* touch = motion && workspace.marking() ? workspace.marking()->touch.get() : nullptr;
+  if (!touch) return solve();
+  if (pedal && MarkingTouch::mayReplaceSolver(state)) return touch->update(*motion, state, report);
+  touch->handBack(*motion, solve, state);
+}
+
+}  // namespace
+
+void step(const Model& model, State& state, const StepInput& input, Workspace& workspace, std::vector<Event>& events) {
+  const double dt = model.scene.step_period;
+  const bool insufflator_on = model.scene.gas && (model.scene.gas->insufflator_on || input.buttons[Insufflate] != 0);
+  const bool pedal = input.buttons[ApcPedal] != 0;
+  BeamStep beam{pedal, pedal && state.procedure.pressed[ApcPedal] == 0, 0};
+  const double gas_before = state.gas_amount;
+  std::optional<ToolMotion> motion;
+  std::vector<Eigen::Isometry3d>& poses = workspace.linkPoses();
+  if (model.tool) {
+    const auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
+    motion.emplace(*model.tool, model.tool_base, state.joints, end);
+    motion->linkPoses(0, poses);
+    updateGrip(model, poses, input.buttons[HelixGrab] != 0, state, events);
+    commandProcedure(model, poses, input, state, events);
+    state.joints = end;
+  } else {
+    commandProcedure(model, {}, input, state, events);  // says which part of the scene is missing
+  }
+  movePullSpring(model, input, state);
+  StepReport report;
+  moveTissue(model, motion ? &*motion : nullptr, pedal, insufflator_on, state, workspace, report);
+  beam.insufflation = std::max(0.0, (state.gas_amount - gas_before) / (kAmbientPressure * dt));
+  workspace.toolImpedance() = report.tool_impedance;
+  ++state.step;
+  state.time = static_cast<double>(state.step) * dt;
+  if (model.tool) {
+    motion->linkPoses(1, poses);
+    storeForces(model, report, poses, state);
+    reportContact(report.contact_count, dt, state, events);
+    releaseOverloadedGrip(model, state, events);
+    if (workspace.marking()) updateMarking(model, poses, beam, state, *workspace.marking(), events);
+    updateProcedure(model, state, events);
+  }
+  if (model.scene.gas) reportPressure(*model.scene.gas, insufflator_on, state, events);
+  if (report.speed_limited > 0)
+    addEvent(Event::Kind::Recovery, state.time, report.speed_limited,
+             "Particles were slowed to keep the step stable; move the tool slower or raise tissue.substeps.", events);
+  if (report.put_back)
+    addEvent(Event::Kind::Recovery, state.time, 0,
+             "The tissue was stretched beyond reason or turned inside out and is led back to rest; undo what did it.",
+             events);
+  if (!isFinite(state)) recover(model, state, events);
+}
+
+}  // namespace vibe

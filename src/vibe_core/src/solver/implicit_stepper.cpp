@@ -1,0 +1,281 @@
+#include "solver/implicit_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/factor_schedule.hpp"
+#include "solver/quasi_newton.hpp"
+#include "solver/rigid_guess.hpp"
+#include "solver/step_rows.hpp"
+#include "solver/time_scheme.hpp"
+
+namespace vibe {
+
+namespace {
+
+// A step of one iteration swings up where the stiffness exceeds that of the factor (its error (1 - ratio) enters the
+// acceleration), one of two from twice that on.
+constexpr double kMarginOfOne = 2;
+constexpr double kGuessGrowth = 2;  // of the elastic energy that a guess may bring
+constexpr int kFallbackSteps = 10;
+constexpr int kFallbackIterations = 12;
+constexpr int kSatisfyConstraints = 6;     // iterations after which the conditions hold, whatever it takes
+constexpr double kFallbackMaxMove = 0.05;  // of the size of the body, per iteration
+constexpr double kSafeStrain = 0.02;       // which a last, unverified move may bring where it is longest
+constexpr double kUsualGrowth = 1.5;       // of the usual move, beyond which it is verified although it is short
+constexpr double kUsualShare = 0.1;
+constexpr double kArrived = 0.5;   // of the first direction: a step that is left with more is taken again
+constexpr int kRefactorEvery = 6;  // iterations of a static solve
+constexpr int kRefactorSlow = 3;   // the same where it does not contract
+constexpr double kSlow = 0.3;
+
+// between two nodes of one element [m]
+double shortestDistance(const ElasticBody& body) {
+  double shortest2 = std::numeric_limits<double>::max();
+  for (const auto& [nodes, size] : body.elements->nodeGroups())
+    for (std::size_t first = 0; first < nodes->size(); first += static_cast<std::size_t>(size))
+      for (int a = 0; a < size; ++a)
+        for (int b = 0; b < a; ++b) {
+          const int p = (*nodes)[first + a], q = (*nodes)[first + b];
+          if (p >= 0 && q >= 0 && p != q) shortest2 = std::min(shortest2, (body.rest[p] - body.rest[q]).squaredNorm());
+        }
+  return std::sqrt(shortest2);
+}
+
+FactorSchedule scheduleOf(const StepSettings& settings, double inertia) {
+  FactorSchedule schedule;
+  schedule.inertia = inertia;
+  schedule.margin = settings.iterations == 1 && !settings.backward_euler ? kMarginOfOne : 1;
+  schedule.steps = settings.refactor_interval > 0
+                       ? std::max(1, static_cast<int>(std::lround(settings.refactor_interval / settings.step)))
+                       : 0;
+  schedule.distance = settings.refactor_distance;
+  return schedule;
+}
+
+StepSettings fallbackOf(StepSettings settings) {
+  settings.backward_euler = true;
+  return settings;
+}
+
+}  // namespace
+
+BodyMotion::BodyMotion(const ElasticBody& body) {
+  for (int k = 0; k < 3; ++k) {
+    for (const Eigen::Vector3d& p : body.rest) x[k].push_back(p[k]);
+    v[k].assign(body.rest.size(), 0);
+    a[k].assign(body.rest.size(), 0);
+  }
+}
+
+MotionView BodyMotion::view() {
+  return {{x[0].data(), x[1].data(), x[2].data()},
+          {v[0].data(), v[1].data(), v[2].data()},
+          {a[0].data(), a[1].data(), a[2].data()}};
+}
+
+struct ImplicitStepper::Plan {
+  Plan(const ElasticBody& body, const StepSettings& settings, FactorStorage factor_storage)
+      : pattern(std::make_shared<const BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups()))),
+        factor_plan(makeFactorPlan(*pattern)),
+        scheme(settings, body.mass_damping, body.stiffness_damping),
+        fallback_scheme(fallbackOf(settings), body.mass_damping, body.stiffness_damping),
+        schedule(scheduleOf(settings, scheme.inertia)),
+        storage(factor_storage),
+        free(body.foundation.empty() &&
+             std::none_of(body.fixed.begin(), body.fixed.end(), [](char fixed) { return fixed != 0; })),
+        safe_length(kSafeStrain * shortestDistance(body)) {
+    for (const Eigen::Vector3d& p : body.rest) size = std::max(size, (p - body.rest[0]).norm());
+  }
+
+  std::shared_ptr<const BlockPattern> pattern;
+  std::shared_ptr<const FactorPlan> factor_plan;
+  TimeScheme scheme, fallback_scheme;
+  FactorSchedule schedule;
+  FactorStorage storage;
+  bool free;           // nothing holds the body
+  double safe_length;  // of a move that is not verified [m]
+  double size = 0;     // of the body [m]
+};
+
+ImplicitStepper::ImplicitStepper(ElasticBody body, StepSettings settings, FactorStorage storage)
+    : body_(std::move(body)), settings_(settings), plan_(std::make_unique<Plan>(body_, settings_, storage)) {}
+
+ImplicitStepper::~ImplicitStepper() = default;
+
+std::shared_ptr<StepperScratch> ImplicitStepper::makeScratch() const {
+  return std::make_shared<StepperScratch>(body_.rest, plan_->factor_plan, plan_->storage, plan_->pattern);
+}
+
+void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) const {
+  FactorSchedule::nameHere(body_, motion, memory);
+}
+
+StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory,
+                                  StepperScratch& scratch) const {
+  plan_->schedule.advance(body_, motion, memory);
+  plan_->schedule.provide(body_, loads.attachments, memory, scratch);
+  ++memory.steps;
+  StepOutcome outcome;
+  outcome.fallback = settings_.backward_euler || memory.fallback > 0;
+  if (memory.fallback > 0) --memory.fallback;
+  if (!attempt(motion, loads, memory, scratch, outcome) && !outcome.fallback) {
+    memory.fallback = kFallbackSteps;
+    outcome = StepOutcome();
+    outcome.fallback = true;
+    attempt(motion, loads, memory, scratch, outcome);
+  }
+  if (!outcome.finite) return outcome;
+  const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
+  storeForces(scratch, scheme.z_gain / scheme.x_gain, loads);
+  finishStep(motion, outcome.fallback, scratch);
+  return outcome;
+}
+
+// One iteration does not get far and starts where inertia leads. More of them start where the nodes are: what the
+// iterations of the last step left over is in the velocity and the acceleration, and would swing up.
+bool ImplicitStepper::extrapolates(bool fallback) const {
+  return !fallback && settings_.iterations == 1;
+}
+
+void ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperScratch& scratch) const {
+  const TimeScheme& scheme = fallback ? plan_->fallback_scheme : plan_->scheme;
+  const bool from_hat = extrapolates(fallback);
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const double x = motion.x[k][i];
+      const double hat = body_.fixed[i] != 0 ? x : scheme.hat_z(x, motion.v[k][i], motion.a[k][i]);
+      scratch.z_hat[4 * i + k] = hat;
+      scratch.z[4 * i + k] = from_hat ? hat : x;
+    }
+  if (!from_hat && !fallback && plan_->free) moveRigidly(body_, motion, scheme, scratch);
+}
+
+// @returns false where no lower energy was found, or is not after many iterations
+bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, StepperMemory& memory,
+                              StepperScratch& scratch, StepOutcome& outcome) const {
+  const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
+  guess(motion, outcome.fallback, scratch);
+  buildRows(loads, motion, scratch);
+  setStepTargets(loads, motion, scheme, scratch);
+  Potential potential(body_, loads, scheme.inertia, scratch);
+  QuasiNewton newton(body_, potential, loads, scratch,
+                     std::min(plan_->safe_length, kUsualGrowth * memory.usual_length));
+  newton.start();
+  // a guess with far more energy may be tangled and lead to a tangled minimum: then from where the nodes are
+  if (extrapolates(outcome.fallback) && !(potential.elasticEnergy() <= kGuessGrowth * memory.elastic_energy)) {
+    startFromHere(motion, scratch);
+    newton.start();
+  }
+  scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
+  scratch.schur.setGas(scratch.volume_gradient.data(), potential.gasStiffness(), *scratch.factor);
+  const bool arrived = iterate(newton, memory, outcome);
+  outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
+  memory.elastic_energy = potential.elasticEnergy();
+  return outcome.finite && arrived;
+}
+
+// An iteration that does not contract would leave the stiff motions to swing up: it goes on until it does.
+bool ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const {
+  const int min = outcome.fallback && !settings_.backward_euler ? kFallbackIterations : 1;
+  const int enough = std::max(min, settings_.iterations), max = std::max(enough, kFallbackIterations);
+  const double longest = outcome.fallback ? kFallbackMaxMove * plan_->size : std::numeric_limits<double>::max();
+  double first_length = 0;
+  bool done = false;
+  while (outcome.iterations < max && !done && !outcome.converged && !newton.failed()) {
+    outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < enough);
+    if (outcome.iterations++ == 0) first_length = newton.directionLength();
+    if (outcome.iterations == kSatisfyConstraints && newton.satisfyConstraints()) continue;  // and on from there
+    done = outcome.iterations >= enough && newton.contracts();
+    outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
+  }
+  memory.usual_length += kUsualShare * (first_length - memory.usual_length);
+  // where all that is left to move is rounding, so is the energy that does not fall
+  return outcome.converged || (!newton.failed() && (done || newton.directionLength() < kArrived * first_length));
+}
+
+void ImplicitStepper::startFromHere(const MotionView& motion, StepperScratch& scratch) const {
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    for (int k = 0; k < 3; ++k) scratch.z[4 * i + k] = motion.x[k][i];
+}
+
+void ImplicitStepper::finishStep(const MotionView& motion, bool fallback, StepperScratch& scratch) const {
+  const TimeScheme& scheme = fallback ? plan_->fallback_scheme : plan_->scheme;
+  const double per_gain = 1 / scheme.z_gain;
+  for (int k = 0; k < 3; ++k) {
+    double *const x = motion.x[k], *const v = motion.v[k], *const a = motion.a[k];
+    const double* const z = scratch.z.data() + k;
+    for (int i = 0; i < body_.nodeCount(); ++i) {
+      if (body_.fixed[i] != 0) continue;
+      const double end = (z[4 * i] - scheme.free_z(x[i], v[i], a[i])) * per_gain;
+      x[i] = scheme.free_x(x[i], v[i], a[i]) + scheme.x_gain * end;
+      v[i] += scheme.free_v_a * a[i] + scheme.v_gain * end;
+      a[i] = end;
+    }
+  }
+}
+
+StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, StepperScratch& scratch, double tolerance,
+                                    int max_iterations) const {
+  if (scratch.making.valid()) scratch.making.get();
+  scratch.factor_id = scratch.next_id = 0;
+  startFromHere(motion, scratch);
+  buildRows(loads, motion, scratch);
+  setEquilibriumTargets(loads, scratch);
+  Potential potential(body_, loads, 0, scratch);
+  QuasiNewton newton(body_, potential, loads, scratch);
+  StepOutcome outcome;
+  double before = std::numeric_limits<double>::max();
+  while (outcome.iterations < max_iterations && !outcome.converged && std::isfinite(outcome.last_move)) {
+    const bool slow = newton.directionLength() > kSlow * before;
+    before = newton.directionLength();
+    if (outcome.iterations % kRefactorEvery == 0 || (slow && outcome.iterations % kRefactorSlow == 0)) {
+      refactorHere(loads.attachments, scratch);
+      newton.start();
+      ++outcome.refactorisations;
+    }
+    scratch.schur.setGas(scratch.volume_gradient.data(), potential.gasStiffness(), *scratch.factor);
+    outcome.last_move = newton.iterate(kFallbackMaxMove * plan_->size, true);
+    ++outcome.iterations;
+    outcome.converged = newton.directionLength() < std::max(tolerance, newton.resolution());
+    if (newton.failed()) newton.start();
+  }
+  outcome.finite = std::isfinite(outcome.last_move);
+  if (!outcome.finite) return outcome;
+  storeForces(scratch, 1, loads);
+  placeAtRest(scratch, motion);
+  return outcome;
+}
+
+void ImplicitStepper::refactorHere(const std::vector<AttachmentPoint>& attachments, StepperScratch& scratch) const {
+  std::vector<float> positions(3 * body_.rest.size());
+  for (std::size_t i = 0; i < body_.rest.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(scratch.z[4 * i + k]);
+  if (!factorAt(body_, positions, 0, 1, scratch.matrix, *scratch.factor))
+    factorAt(body_, {}, 0, 1, scratch.matrix, *scratch.factor);
+  scratch.attachments = AttachmentColumns();
+  extendAttachmentColumns(*scratch.factor, attachments, scratch.attachments);
+  scratch.schur.reset(*scratch.factor, body_.nodeCount());
+  scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
+}
+
+void ImplicitStepper::placeAtRest(const StepperScratch& scratch, const MotionView& motion) const {
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      motion.x[k][i] = scratch.z[4 * i + k];
+      motion.v[k][i] = motion.a[k][i] = 0;
+    }
+}
+
+double ImplicitStepper::elasticEnergy(const MotionView& motion, StepperScratch& scratch) const {
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    for (int k = 0; k < 3; ++k) scratch.displacement[4 * i + k] = static_cast<float>(motion.x[k][i] - body_.rest[i][k]);
+  std::fill(scratch.work.begin(), scratch.work.end(), 0.0F);
+  double energy = 0;
+  for (int p = 0; p < body_.elements->pieceCount(); ++p)
+    energy += body_.elements->evaluate(p, scratch.displacement.data(), scratch.work.data());
+  return energy;
+}
+
+}  // namespace vibe

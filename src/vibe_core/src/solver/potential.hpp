@@ -1,0 +1,37 @@
+#pragma once
+
+#include "solver/stepper_scratch.hpp"
+
+namespace vibe {
+
+/// What a step minimises: elastic energy, gas, foundation, dead loads, and half the inertia times the squared distance
+/// from where inertia alone would put the nodes.
+class Potential {
+ public:
+  /// @param inertia  mass times this is the spring to z_hat [1/s^2]; 0: a static problem
+  Potential(const ElasticBody& body, const BodyLoads& loads, double inertia, StepperScratch& scratch)
+      : body_(body), gas_(loads.gas), extra_(loads.extra), inertia_(inertia), scratch_(scratch) {}
+
+  /// Value [J] at z; the gradient [N] goes to `gradient` (4 per node). Also sets the scratch's volume, pressure and
+  /// volume gradient.
+  double evaluate(const std::vector<double>& z, std::vector<float>& gradient);
+  /// How fast the pressure falls with the volume [Pa/m^3].
+  double gasStiffness() const;
+  double elasticEnergy() const { return elastic_; }  ///< part of the last value [J]
+  double noise() const { return noise_; }            ///< rounding error of the last value [J]
+
+ private:
+  double gasEnergy();
+  double addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
+  double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient);
+  double addSprings(const std::vector<double>& z, std::vector<float>& gradient) const;
+
+  const ElasticBody& body_;
+  const GasLoad& gas_;
+  const EnergyTerm* extra_;
+  double inertia_;
+  StepperScratch& scratch_;
+  double noise_ = 0, elastic_ = 0;
+};
+
+}  // namespace vibe

@@ -1,0 +1,265 @@
+#include "solver/quasi_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/energy_term.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr double kSufficientDecrease = 1e-4;  // Armijo
+constexpr int kMaxHalvings = 12;
+constexpr double kUnmet = 100;           // of the resolution: what rows lack beyond it is no rounding
+constexpr double kSmallResidual = 1e-4;  // of the rows, of the direction
+constexpr double kThreadShare = 3e-4;    // of a lack: rows of threads may move in a pair by a third of its length
+constexpr double kSlidePart = 0.5;
+constexpr double kSafeContraction = 0.5;
+constexpr double kSafeRest = 0.1;  // of the first direction
+
+double dot(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum[4] = {0, 0, 0, 0};
+  for (std::size_t i = 0; i < a.size(); i += 4)
+    for (int k = 0; k < 4; ++k) sum[k] += static_cast<double>(a[i + k]) * b[i + k];
+  return (sum[0] + sum[1]) + sum[2];
+}
+
+void addScaled(double scale, const std::vector<float>& a, std::vector<float>& to) {
+  const auto s = static_cast<float>(scale);
+  for (std::size_t i = 0; i < a.size(); ++i) to[i] += s * a[i];
+}
+
+double largest(const std::vector<float>& a) {
+  float max = 0;
+  for (std::size_t i = 0; i < a.size(); i += 4)
+    max = std::max(max, a[i] * a[i] + a[i + 1] * a[i + 1] + a[i + 2] * a[i + 2]);
+  return std::sqrt(static_cast<double>(max));
+}
+
+}  // namespace
+
+QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch,
+                         double safe_length)
+    : body_(body),
+      potential_(potential),
+      gas_(loads.gas),
+      extra_(loads.extra),
+      scratch_(scratch),
+      safe_length_(safe_length) {}
+
+void QuasiNewton::start() {
+  restart();
+  last_length_ = -1;
+  value_ = potential_.evaluate(scratch_.z, scratch_.gradient);
+}
+
+// What the rows lack to their targets at z.
+void QuasiNewton::rowResidual() {
+  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
+    const ConstraintRow& row = scratch_.rows[r];
+    double value = 0;
+    for (std::size_t k = 0; k < row.node.size(); ++k) {
+      const double* z = &scratch_.z[4 * static_cast<std::size_t>(row.node[k])];
+      value += row.coefficient[k].dot(Eigen::Vector3d(z[0], z[1], z[2]));
+    }
+    scratch_.rhs[static_cast<Eigen::Index>(r)] = row.spring ? 0 : scratch_.target[static_cast<Eigen::Index>(r)] - value;
+  }
+}
+
+// How far the rows that act move; what is not touched and thread that is slack may move as they like.
+double QuasiNewton::rowResiduals() const {
+  const ConstraintSchur& schur = scratch_.schur;
+  double max = 0;
+  for (Eigen::Index r = 0; r < scratch_.rhs.size(); ++r) {
+    const ConstraintRow& row = scratch_.rows[static_cast<std::size_t>(r)];
+    if (row.spring) continue;
+    if (row.thread < 0 || schur.forces()[r] > 0)
+      max = std::max(max, (row.attachment[0] < 0 ? 1 : kThreadShare) * std::abs(schur.moves()[r]));
+  }
+  return max;
+}
+
+// By the smoothest move, whatever the energy: what a tool holds goes where the tool goes. Far moves lower the energy
+// only in small parts, of which no number arrives.
+bool QuasiNewton::satisfyConstraints() {
+  if (extra_ != nullptr && extra_->acts()) return false;  // walls that meet may forbid it
+  StepperScratch& s = scratch_;
+  rowResidual();
+  double max = 0;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const ConstraintRow& row = s.rows[r];
+    if (row.friction >= 0) continue;
+    double& rhs = s.rhs[static_cast<Eigen::Index>(r)];
+    if (row.compliance > 0) rhs = 0;
+    max = std::max(max, std::abs(rhs));
+  }
+  if (max <= std::max(kSmallResidual * direction_length_, kUnmet * resolution())) return false;
+  std::fill(s.half.begin(), s.half.end(), 0.0F);
+  s.schur.eliminate(s.rhs, 0, s.half.data());
+  s.factor->backward(s.half.data());
+  s.factor->store(s.half.data(), s.direction.data());
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    if (body_.fixed[i] != 0)
+      for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
+  setTrial(1);
+  s.z.swap(s.trial);
+  contracts_ = false;
+  start();
+  return true;
+}
+
+double QuasiNewton::resolution() const {
+  return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.displacement);
+}
+
+// Those that the last elimination found.
+void QuasiNewton::addRowForces(double sign, std::vector<float>& vector) const {
+  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
+    const ConstraintRow& row = scratch_.rows[r];
+    const double force = sign * scratch_.schur.forces()[static_cast<Eigen::Index>(r)];
+    if (row.spring || force == 0) continue;
+    for (std::size_t i = 0; i < row.node.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        vector[4 * static_cast<std::size_t>(row.node[i]) + k] += static_cast<float>(force * row.coefficient[i][k]);
+  }
+}
+
+// Once per step, so that all iterations look for the same equilibrium. What walls that touch resist is not in the
+// factor: thread slides half as far as it foresees.
+void QuasiNewton::slideThreads() {
+  if (threads_have_slid_) return;
+  threads_have_slid_ = true;
+  StepperScratch& s = scratch_;
+  s.slid.setZero(static_cast<Eigen::Index>(s.rows.size()));
+  for (std::size_t r = 0; r + 1 < s.rows.size(); ++r) {
+    if (s.rows[r].thread < 0 || s.rows[r + 1].thread != s.rows[r].thread) continue;
+    const auto row = static_cast<Eigen::Index>(r);
+    s.slid[row] = kSlidePart * s.schur.slid(static_cast<int>(r));
+    s.target[row] += s.slid[row];
+    s.target[row + 1] -= s.slid[row];
+  }
+  s.schur.holdThreads();
+}
+
+// Two-loop recursion (Nocedal 1980) with the factor, the rows and the gas as initial inverse.
+void QuasiNewton::findDirection() {
+  StepperScratch& s = scratch_;
+  rowResidual();
+  s.work = s.gradient;
+  // rows may bear far more than what is left to gain: of a pair that moves them by a rounding, that would be all one
+  // sees
+  if (s.pairs > 0) addRowForces(-1, s.work);
+  double alpha[StepperScratch::kHistory];
+  for (int i = s.pairs - 1; i >= 0; --i) {
+    alpha[i] = s.curvature[i] * dot(s.move[i], s.work);
+    addScaled(-alpha[i], s.change[i], s.work);
+  }
+  if (s.pairs > 0) addRowForces(1, s.work);
+  for (float& value : s.work) value = -value;
+  s.factor->load(s.work.data(), s.half.data());
+  s.factor->forward(s.half.data());
+  const double swelling = gas_.control == GasLoad::Control::Volume ? gas_.target_volume - s.volume : 0;
+  s.schur.eliminate(s.rhs, swelling, s.half.data());
+  residual_ = rowResiduals();
+  slideThreads();
+  s.factor->backward(s.half.data());
+  s.factor->store(s.half.data(), s.direction.data());
+  for (int i = 0; i < s.pairs; ++i) {
+    const double beta = -s.curvature[i] * dot(s.change[i], s.direction);
+    addScaled(-(alpha[i] - beta), s.move[i], s.direction);
+  }
+  for (int i = 0; i < body_.nodeCount(); ++i)
+    if (body_.fixed[i] != 0)
+      for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
+  direction_length_ = largest(s.direction);
+  slope_ = dot(s.gradient, s.direction);
+}
+
+// The value with the rows' (and a prescribed volume's) forces as multipliers: it falls along the direction although the
+// rows move.
+double QuasiNewton::lagrangian(double part) const {
+  double sum = 0;
+  for (Eigen::Index r = 0; r < scratch_.rhs.size(); ++r)
+    if (!scratch_.rows[static_cast<std::size_t>(r)].spring)
+      sum += scratch_.schur.forces()[r] * scratch_.schur.moves()[r] * (1 - part);
+  return sum;
+}
+
+void QuasiNewton::setTrial(double part) {
+  for (std::size_t i = 0; i < scratch_.z.size(); ++i)
+    scratch_.trial[i] = scratch_.z[i] + part * static_cast<double>(scratch_.direction[i]);
+}
+
+void QuasiNewton::keepPair(double part) {
+  StepperScratch& s = scratch_;
+  if (s.pairs == StepperScratch::kHistory) {
+    std::rotate(s.move.begin(), s.move.begin() + 1, s.move.end());
+    std::rotate(s.change.begin(), s.change.begin() + 1, s.change.end());
+    std::rotate(s.curvature.begin(), s.curvature.begin() + 1, s.curvature.end());
+    --s.pairs;
+  }
+  std::vector<float>&move = s.move[s.pairs], &change = s.change[s.pairs];
+  const auto p = static_cast<float>(part);
+  for (std::size_t i = 0; i < move.size(); ++i) {
+    move[i] = p * s.direction[i];
+    change[i] = s.trial_gradient[i] - s.gradient[i];
+  }
+  const double product = dot(move, change);
+  if (!(product > 1e-8 * std::sqrt(dot(move, move) * dot(change, change)))) return;
+  s.curvature[s.pairs++] = 1 / product;
+}
+
+double QuasiNewton::iterate(double max, bool verify) {
+  findDirection();
+  if (!std::isfinite(direction_length_)) return direction_length_;
+  return advance(max, verify);
+}
+
+double QuasiNewton::advance(double max, bool verify) {
+  StepperScratch& s = scratch_;
+  double part = direction_length_ > max ? max / direction_length_ : 1;
+  if (first_length_ == 0) first_length_ = direction_length_;
+  const bool shrinks = last_length_ > 0 && direction_length_ < kSafeContraction * last_length_ &&
+                       direction_length_ < kSafeRest * first_length_;
+  contracts_ = part == 1 && (shrinks || direction_length_ < safe_length_);
+  const bool safe = !verify && contracts_;
+  last_length_ = -1;  // only a whole step says how fast the next ones shrink
+  if (safe) {
+    setTrial(1);
+    s.z.swap(s.trial);
+    if (gas_.control == GasLoad::Control::Amount) {  // as the direction foresees them
+      s.pressure += s.schur.gasForce();
+      s.volume = gas_.amount / (s.pressure + gas_.ambient);
+    }
+    return direction_length_;
+  }
+  const double prescribed = gas_.control == GasLoad::Control::Volume ? s.schur.gasForce() : 0;
+  const double old_pressure = gas_.pressure;
+  const double from = value_ + lagrangian(0);
+  double to = value_;
+  for (int halving = 0;; ++halving) {
+    setTrial(part);
+    if (prescribed != 0) gas_.pressure = old_pressure + part * prescribed;
+    to = potential_.evaluate(s.trial, s.trial_gradient);
+    if (prescribed != 0) break;  // the volume is held: no energy to compare
+    const double slope = slope_ - lagrangian(0);
+    const double decrease = to + lagrangian(part) - from;
+    if (std::isfinite(to) && decrease <= kSufficientDecrease * part * slope + potential_.noise()) break;
+    if (halving == kMaxHalvings) {
+      failed_ = true;
+      return 0;
+    }
+    part *= std::isfinite(to) ? 0.5 : 0.1;
+  }
+  // a pair in which the rows move would move them again
+  if (residual_ <= kSmallResidual * direction_length_) keepPair(part);
+  if (part == 1) last_length_ = direction_length_;
+  value_ = to;
+  s.gradient.swap(s.trial_gradient);
+  s.z.swap(s.trial);
+  return part * direction_length_;
+}
+
+}  // namespace vibe

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "solver/potential.hpp"
+
+namespace vibe {
+
+/// Iterations of L-BFGS on top of the scratch's factor towards the minimum of a potential under the scratch's rows.
+class QuasiNewton {
+ public:
+  /// @param safe_length  a last move shorter than this is not verified [m]
+  QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch,
+              double safe_length = 0);
+
+  /// Evaluates at the scratch's z.
+  void start();
+  /// Forgets the history; needed after a new factor.
+  void restart() { scratch_.pairs = 0; }
+  /// One step: direction, then as much of it as lowers the energy.
+  /// @param most    no node moves farther [m]
+  /// @param verify  false: the end point is not evaluated if the move is safe, because it is short or
+  ///                because the iteration is contracting (then no more iterations may follow)
+  /// @returns how far a node moved at most [m]
+  double iterate(double max, bool verify);
+  /// Moves to where the conditions hold, if they do not yet and no walls are near. The history is lost.
+  /// @returns whether it moved; then more iterations must follow
+  bool satisfyConstraints();
+  /// Length of the full direction of the last iterate [m].
+  double directionLength() const { return direction_length_; }
+  double value() const { return value_; }
+  /// Rounding error of the displacements, which are single precision [m].
+  double resolution() const;
+  /// The last iterate moved less than half of the one before and a tenth of the first, or a safe length.
+  bool contracts() const { return contracts_; }
+  /// The last iterate found no lower energy along its direction, and did not move.
+  bool failed() const { return failed_; }
+
+ private:
+  void findDirection();
+  void rowResidual();
+  void slideThreads();
+  double rowResiduals() const;
+  void addRowForces(double sign, std::vector<float>& vector) const;
+  double lagrangian(double value) const;
+  double advance(double max, bool verify);
+  void keepPair(double part);
+  void setTrial(double part);
+
+  const ElasticBody& body_;
+  Potential& potential_;
+  GasLoad& gas_;
+  const EnergyTerm* extra_;
+  StepperScratch& scratch_;
+  double safe_length_;
+  double value_ = 0;
+  double direction_length_ = 0, last_length_ = -1;
+  double slope_ = 0;
+  double first_length_ = 0;
+  bool threads_have_slid_ = false;
+  bool failed_ = false, contracts_ = false;
+  double residual_ = 0;  // of the rows, largest [m]
+};
+
+}  // namespace vibe

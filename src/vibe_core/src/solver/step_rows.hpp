@@ -1,0 +1,21 @@
+#pragma once
+
+#include "solver/stepper_scratch.hpp"
+#include "solver/time_scheme.hpp"
+
+namespace vibe {
+
+/// The conditions, contacts and threads of the loads as rows for the positions at which forces are evaluated, in the
+/// scratch's rows: the conditions first, then a normal and two tangents per contact, then the threads' segments, whose
+/// lengths are linear about the given positions.
+void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch& scratch);
+/// What each row wants of the equilibrium itself, in the scratch's target.
+void setEquilibriumTargets(const BodyLoads& loads, StepperScratch& scratch);
+/// The same for a step: rows are met at its end, so that z has to go as much farther or less far.
+void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
+                    StepperScratch& scratch);
+/// The rows' forces back to the loads, and how far the threads slid.
+/// @param gain  of the rows' values over positions, see setStepTargets(); 1 in an equilibrium
+void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads);
+
+}  // namespace vibe

@@ -1,0 +1,27 @@
+#include "solver/stepper_scratch.hpp"
+
+namespace vibe {
+
+StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_positions,
+                               std::shared_ptr<const FactorPlan> plan, FactorStorage storage,
+                               std::shared_ptr<const BlockPattern> pattern)
+    : factor(std::make_unique<Factor>(plan, storage)),
+      next_factor(std::make_unique<Factor>(plan, storage)),
+      matrix(pattern),
+      next_matrix(pattern) {
+  const std::size_t size = 4 * rest_positions.size();
+  for (auto* v : {&rest, &z, &z_hat, &trial}) v->assign(size, 0);
+  for (auto* v : {&displacement, &gradient, &trial_gradient, &volume_gradient, &direction, &work}) v->assign(size, 0);
+  for (std::size_t i = 0; i < rest_positions.size(); ++i)
+    for (int k = 0; k < 3; ++k) rest[4 * i + k] = rest_positions[i][k];
+  half.assign(3 * rest_positions.size() + 16, 0);
+  move.assign(kHistory, std::vector<float>(size));
+  change.assign(kHistory, std::vector<float>(size));
+  curvature.assign(kHistory, 0);
+}
+
+StepperScratch::~StepperScratch() {
+  if (making.valid()) making.wait();
+}
+
+}  // namespace vibe

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "solver/constraint_schur.hpp"
+#include "solver/implicit_stepper.hpp"
+
+namespace vibe {
+
+/// All memory of an ImplicitStepper. Node vectors are 4 numbers per node.
+class StepperScratch {
+ public:
+  StepperScratch(const std::vector<Eigen::Vector3d>& rest, std::shared_ptr<const FactorPlan> plan,
+                 FactorStorage storage, std::shared_ptr<const BlockPattern> pattern);
+  ~StepperScratch();
+
+  static constexpr int kHistory = 6;
+
+  std::unique_ptr<Factor> factor, next_factor;
+  BlockMatrix matrix, next_matrix;
+  std::uint64_t factor_id = 0, next_id = 0;         // what they are about; 0: nothing
+  std::future<bool> making;                         // of next_factor
+  AttachmentColumns attachments, next_attachments;  // of `factor`, of `next_factor`
+  ConstraintSchur schur;
+  std::vector<double> rest;                      // positions [m]
+  std::vector<double> z, z_hat;                  // unknown, where inertia wants it [m]
+  std::vector<double> trial;                     // [m]
+  std::vector<float> displacement;               // of the point under evaluation [m]
+  std::vector<float> gradient, trial_gradient;   // [N]
+  std::vector<float> volume_gradient;            // [m^2]
+  std::vector<float> direction, work;            // [m]
+  std::vector<float> half;                       // in elimination order
+  std::vector<std::vector<float>> move, change;  // L-BFGS pairs
+  std::vector<double> curvature;                 // 1 / (move . change)
+  int pairs = 0;
+  std::vector<ConstraintRow> rows;
+  Eigen::VectorXd target, rhs, force;
+  Eigen::VectorXd slid;             // thread that slid out of a row in this step, to the scale of the rows [m]
+  double volume = 0, pressure = 0;  // of the point under evaluation
+};
+
+}  // namespace vibe

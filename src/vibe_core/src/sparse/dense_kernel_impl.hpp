@@ -1,0 +1,42 @@
+#pragma once
+
+#include <xsimd/xsimd.hpp>
+
+#include "sparse/dense_kernel.hpp"
+
+namespace vibe {
+namespace {
+
+template <class Arch>
+struct DenseKernel {
+  using Pack = xsimd::batch<double, Arch>;
+  static constexpr int kWidth = static_cast<int>(Pack::size);
+  static constexpr int kParts = 2;  // 2 x 6 sums, 2 numbers of A and one of B fit into 16 registers
+
+  static void tile(const double* a, const double* b, int depth, double* c, std::int64_t stride) {
+    Pack sum[kDenseColumns][kParts];
+    for (auto& column : sum)
+      for (Pack& part : column) part = Pack(0.0);
+    for (int k = 0; k < depth; ++k, a += kDenseRows, b += kDenseColumns) {
+      Pack row[kParts];
+      for (int i = 0; i < kParts; ++i) row[i] = Pack::load_aligned(a + i * kWidth);
+      for (int j = 0; j < kDenseColumns; ++j) {
+        const Pack factor(b[j]);
+        for (int i = 0; i < kParts; ++i) sum[j][i] = xsimd::fma(row[i], factor, sum[j][i]);
+      }
+    }
+    for (int j = 0; j < kDenseColumns; ++j)
+      for (int i = 0; i < kParts; ++i) {
+        double* to = c + j * stride + i * kWidth;
+        (Pack::load_unaligned(to) - sum[j][i]).store_unaligned(to);
+      }
+  }
+
+  static void update(const double* a, int row_panels, const double* b, int depth, double* c, std::int64_t stride) {
+    for (int panel = 0; panel < row_panels; ++panel, a += depth * kDenseRows, c += kDenseRows)
+      for (int row = 0; row < kDenseRows; row += kParts * kWidth) tile(a + row, b, depth, c + row, stride);
+  }
+};
+
+}  // namespace
+}  // namespace vibe

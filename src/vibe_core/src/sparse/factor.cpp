@@ -1,0 +1,194 @@
+#include "sparse/factor.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "sparse/aligned_buffer.hpp"
+#include "sparse/factor_plan.hpp"
+#include "sparse/multifrontal.hpp"
+#include "sparse/panel_pack.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr std::int64_t kLargeFactor = 16 << 20;  // bytes
+
+// several threads may solve with one factor
+template <class Number>
+Number* workOfThread(std::int64_t count) {
+  thread_local AlignedBuffer<Number> buffer;
+  if (buffer.size() < count) buffer.resize(count);
+  return buffer.data();
+}
+
+std::int64_t workSize(const FactorPlan& plan) {
+  return plan.largest_front + kTile;
+}
+
+PanelKernels kernelsFor(FactorStorage storage) {
+  switch (storage) {
+    case FactorStorage::Half:
+      return halfKernels(bestInstructionPath());
+    case FactorStorage::Float:
+      return floatKernels(bestInstructionPath());
+    default:
+      return doubleKernels();
+  }
+}
+
+}  // namespace
+
+struct Factor::Storage {
+  Storage(const FactorPlan& plan_wanted, FactorStorage storage)
+      : plan(plan_wanted), kind(storage), kernels(kernelsFor(storage)), multifrontal(plan) {
+    const int rows = 3 * plan.pattern.size;
+    scale.resize(rows);
+    float_scale.resize(rows);
+    column_scale.resize(rows);
+    if (kind == FactorStorage::Half) half.resize(plan.panel_size);
+    if (kind == FactorStorage::Float) single.resize(plan.panel_size);
+    if (kind == FactorStorage::Double) wide.resize(plan.panel_size);
+  }
+
+  const void* numbers() const {
+    if (kind == FactorStorage::Half) return half.data();
+    if (kind == FactorStorage::Float) return single.data();
+    return wide.data();
+  }
+
+  PanelSet panels() const {
+    return {plan.steps.data(),     static_cast<int>(plan.steps.size()),
+            plan.row_index.data(), numbers(),
+            column_scale.data(),   ahead()};
+  }
+
+  // measured: panels that stay in the last cache want a shorter distance than those that come from memory
+  std::ptrdiff_t ahead() const {
+    const std::int64_t bytes = plan.panel_size * (kind == FactorStorage::Half    ? 2
+                                                  : kind == FactorStorage::Float ? 4
+                                                                                 : 8);
+    return bytes < kLargeFactor ? 8192 : 16384;
+  }
+
+  bool takeScale(const BlockMatrix& matrix) {
+    for (int k = 0; k < plan.pattern.size; ++k)
+      for (int a = 0; a < 3; ++a) {
+        const double entry = matrix.diagonal()[plan.order[k]](a, a);
+        if (!(entry > 0) || !std::isfinite(entry)) return false;
+        scale[3 * k + a] = 1 / std::sqrt(entry);
+        float_scale[3 * k + a] = static_cast<float>(scale[3 * k + a]);
+      }
+    return true;
+  }
+
+  void take(int s, const DoublePanel& panel) {
+    const PanelStep& step = plan.steps[s];
+    float* columns = column_scale.data() + step.first_row;
+    if (kind == FactorStorage::Half) packPanel(panel, step, half.data() + step.panel, columns);
+    if (kind == FactorStorage::Float) packPanel(panel, step, single.data() + step.panel, columns);
+    if (kind == FactorStorage::Double) packPanel(panel, step, wide.data() + step.panel, columns);
+  }
+
+  const FactorPlan& plan;
+  FactorStorage kind;
+  PanelKernels kernels;
+  Multifrontal multifrontal;
+  std::vector<double> scale;  // D, in elimination order
+  std::vector<float> float_scale, column_scale;
+  AlignedBuffer<std::uint16_t> half;
+  AlignedBuffer<float> single;
+  AlignedBuffer<double> wide;
+};
+
+Factor::Factor(std::shared_ptr<const FactorPlan> plan, FactorStorage storage)
+    : plan_(std::move(plan)), storage_(std::make_unique<Storage>(*plan_, storage)) {}
+
+Factor::~Factor() = default;
+
+bool Factor::compute(const BlockMatrix& matrix) {
+  const BlockPattern& pattern = matrix.pattern();
+  if (pattern.size != plan_->pattern.size || pattern.start != plan_->pattern.start ||
+      pattern.column != plan_->pattern.column)
+    throw Error("a matrix of " + std::to_string(pattern.size) + " nodes and " + std::to_string(pattern.column.size()) +
+                " blocks does not have the pattern of its factor's plan (" + std::to_string(plan_->pattern.size) +
+                " nodes, " + std::to_string(plan_->pattern.column.size()) +
+                " blocks): make the plan from its pattern.");
+  return storage_->takeScale(matrix) &&
+         storage_->multifrontal.run(matrix, storage_->scale,
+                                    [this](int s, const DoublePanel& panel) { storage_->take(s, panel); });
+}
+
+int Factor::rows() const {
+  return 3 * plan_->pattern.size;
+}
+
+void Factor::load(const float* nodes4, float* vector) const {
+  const float* scale = storage_->float_scale.data();
+  for (const int node : plan_->order) {
+    for (int a = 0; a < 3; ++a) vector[a] = scale[a] * nodes4[4 * node + a];
+    vector += 3;
+    scale += 3;
+  }
+}
+
+void Factor::store(const float* vector, float* nodes4) const {
+  const float* scale = storage_->float_scale.data();
+  for (const int node : plan_->order) {
+    for (int a = 0; a < 3; ++a) nodes4[4 * node + a] = scale[a] * vector[a];
+    nodes4[4 * node + 3] = 0;
+    vector += 3;
+    scale += 3;
+  }
+}
+
+void Factor::forward(float* vector) const {
+  storage_->kernels.forward(storage_->panels(), vector, workOfThread<float>(workSize(*plan_)));
+}
+
+void Factor::backward(float* vector) const {
+  storage_->kernels.backward(storage_->panels(), vector, workOfThread<float>(workSize(*plan_)));
+}
+
+void Factor::solve(const double* b, double* x) const {
+  if (storage_->kind != FactorStorage::Double)
+    throw Error(
+        "a factor stored in half or single precision cannot solve in double: make it with "
+        "FactorStorage::Double.");
+  double* vector = workOfThread<double>(rows() + kTile + workSize(*plan_));
+  for (int k = 0; k < plan_->pattern.size; ++k)
+    for (int a = 0; a < 3; ++a) vector[3 * k + a] = storage_->scale[3 * k + a] * b[3 * plan_->order[k] + a];
+  solveDouble(storage_->panels(), vector, vector + rows() + kTile);
+  for (int k = 0; k < plan_->pattern.size; ++k)
+    for (int a = 0; a < 3; ++a) x[3 * plan_->order[k] + a] = storage_->scale[3 * k + a] * vector[3 * k + a];
+}
+
+void Factor::halfColumns(int node, HalfColumns& out) const {
+  const int row = 3 * plan_->position[node];
+  const std::int64_t vector_size = (3 * rows() + kTile) / kTile * kTile;
+  float* vectors = workOfThread<float>(vector_size + 3 * workSize(*plan_));
+  out.begin.clear();
+  out.count.clear();
+  for (int s = plan_->holder[plan_->position[node]]; s != -1; s = plan_->fronts[s].parent) {
+    const PanelStep& step = plan_->steps[s];
+    out.begin.push_back(step.first_row);
+    out.count.push_back(step.columns);
+    std::fill_n(vectors + 3 * step.first_row, 3 * step.columns, 0.0F);
+  }
+  for (int a = 0; a < 3; ++a) vectors[3 * (row + a) + a] = storage_->float_scale[row + a];
+  out.value.clear();
+  int from = row - out.begin.front();
+  for (int s = plan_->holder[plan_->position[node]]; s != -1; s = plan_->fronts[s].parent) {
+    const PanelStep& step = plan_->steps[s];
+    storage_->kernels.stepOfThree(storage_->panels(), s, from, vectors, vectors + vector_size);
+    from = 0;
+    const float* own = vectors + 3 * step.first_row;
+    out.value.insert(out.value.end(), own, own + 3 * step.columns);
+  }
+}
+
+std::int64_t Factor::nonzeros() const {
+  return plan_->nonzeros;
+}
+
+}  // namespace vibe

@@ -1,0 +1,143 @@
+#include "sparse/factor_plan.hpp"
+
+#include <algorithm>
+
+#include "sparse/elimination.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr int kFirstSeed = 1, kSeeds = 4;
+
+class Planner {
+ public:
+  Planner(const BlockPattern& pattern, const std::vector<Supernode>& supernodes)
+      : plan_(std::make_shared<FactorPlan>()), supernodes_(supernodes) {
+    plan_->pattern = pattern;
+  }
+
+  std::shared_ptr<const FactorPlan> make() {
+    numberNodes();
+    for (const Supernode& supernode : supernodes_) addStep(supernode);
+    for (std::size_t s = 0; s < supernodes_.size(); ++s) addRuns(static_cast<int>(s));
+    addEntries();
+    measureStack();
+    return plan_;
+  }
+
+ private:
+  void numberNodes() {
+    plan_->position.resize(plan_->pattern.size);
+    for (std::size_t s = 0; s < supernodes_.size(); ++s)
+      for (const int node : supernodes_[s].nodes) {
+        plan_->position[node] = static_cast<int>(plan_->order.size());
+        plan_->order.push_back(node);
+        plan_->holder.push_back(static_cast<int>(s));
+      }
+  }
+
+  void addStep(const Supernode& supernode) {
+    const int nodes = static_cast<int>(supernode.nodes.size()), below = static_cast<int>(supernode.rows.size());
+    const std::int64_t columns = 3 * nodes, rows = columns + 3 * below;
+    PanelStep step{};
+    step.first_row = 3 * plan_->position[supernode.nodes.front()];
+    step.columns = 3 * nodes;
+    step.row_blocks = static_cast<int>((rows + kTile - 1) / kTile);
+    step.below_nodes = below;
+    step.first_index = static_cast<std::int64_t>(plan_->row_index.size());
+    step.panel = plan_->panel_size;
+    plan_->steps.push_back(step);
+    for (const int node : supernode.rows) plan_->row_index.push_back(3 * plan_->position[node]);
+    std::sort(plan_->row_index.begin() + step.first_index, plan_->row_index.end());
+    plan_->panel_size += (panelSize(step.columns, step.row_blocks) + 63) / 64 * 64;
+    plan_->nonzeros += columns * (columns + 1) / 2 + columns * 3 * below;
+    plan_->largest_front = std::max(plan_->largest_front, static_cast<int>(rows));
+  }
+
+  // where a row of the vector (the first of a node) is in the front of a supernode
+  int rowInFront(int s, int row) const {
+    const PanelStep& step = plan_->steps[s];
+    if (row < step.first_row + step.columns) return row - step.first_row;
+    const auto first = plan_->row_index.begin() + step.first_index;
+    const auto found = std::lower_bound(first, first + step.below_nodes, row);
+    return step.columns + 3 * static_cast<int>(found - first);
+  }
+
+  void addRuns(int s) {
+    FactorPlan::Front front;
+    front.parent = supernodes_[s].parent;
+    front.first_run = static_cast<int>(plan_->runs.size());
+    const PanelStep& step = plan_->steps[s];
+    for (int i = 0; i < step.below_nodes; ++i) {
+      const int to = rowInFront(front.parent, plan_->row_index[step.first_index + i]);
+      const bool first = i == 0;
+      if (!first && plan_->runs.back().to + plan_->runs.back().count == to)
+        plan_->runs.back().count += 3;
+      else
+        plan_->runs.push_back({3 * i, to, 3});
+    }
+    front.run_count = static_cast<int>(plan_->runs.size()) - front.first_run;
+    plan_->fronts.push_back(front);
+  }
+
+  void addEntries() {
+    std::vector<std::vector<FactorPlan::Entry>> entries(supernodes_.size());
+    const BlockPattern& pattern = plan_->pattern;
+    for (int i = 0; i < pattern.size; ++i) {
+      addEntry(entries, -1 - i, i, i);
+      for (int k = pattern.start[i]; k < pattern.start[i + 1]; ++k) addEntry(entries, k, i, pattern.column[k]);
+    }
+    for (std::size_t s = 0; s < entries.size(); ++s) {
+      plan_->fronts[s].first_entry = static_cast<int>(plan_->entries.size());
+      plan_->fronts[s].entry_count = static_cast<int>(entries[s].size());
+      plan_->entries.insert(plan_->entries.end(), entries[s].begin(), entries[s].end());
+    }
+  }
+
+  void addEntry(std::vector<std::vector<FactorPlan::Entry>>& entries, int block, int row_node, int column_node) const {
+    const int row = plan_->position[row_node], column = plan_->position[column_node];
+    const int s = plan_->holder[std::min(row, column)];
+    entries[s].push_back(
+        {block, rowInFront(s, 3 * std::max(row, column)), rowInFront(s, 3 * std::min(row, column)), row < column});
+  }
+
+  // update matrices wait on a stack: a supernode takes those of its children off, then puts its own
+  void measureStack() {
+    const auto size = [this](int s) {
+      const std::int64_t rows = 3 * plan_->steps[s].below_nodes;
+      return rows * rows;
+    };
+    std::vector<std::vector<int>> children(supernodes_.size());
+    std::int64_t used = 0;
+    for (int s = 0; s < static_cast<int>(supernodes_.size()); ++s) {
+      plan_->fronts[s].child_count = static_cast<int>(children[s].size());
+      for (const int child : children[s]) used -= size(child);
+      used += size(s);
+      plan_->stack_size = std::max(plan_->stack_size, used);
+      if (plan_->fronts[s].parent != -1) children[plan_->fronts[s].parent].push_back(s);
+    }
+  }
+
+  std::shared_ptr<FactorPlan> plan_;
+  const std::vector<Supernode>& supernodes_;
+};
+
+double totalCost(const std::vector<Supernode>& supernodes) {
+  double cost = 0;
+  for (const Supernode& s : supernodes)
+    cost += solveCost(static_cast<int>(s.nodes.size()), static_cast<int>(s.rows.size()));
+  return cost;
+}
+
+}  // namespace
+
+std::shared_ptr<const FactorPlan> makeFactorPlan(const BlockPattern& pattern) {
+  std::vector<Supernode> best;
+  for (int seed = kFirstSeed; seed < kFirstSeed + kSeeds; ++seed) {
+    std::vector<Supernode> supernodes = amalgamate(symbolicFactor(pattern, nestedDissection(pattern, seed)));
+    if (best.empty() || totalCost(supernodes) < totalCost(best)) best = std::move(supernodes);
+  }
+  return Planner(pattern, best).make();
+}
+
+}  // namespace vibe

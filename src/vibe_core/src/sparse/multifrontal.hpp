@@ -1,0 +1,60 @@
+#pragma once
+
+#include <vector>
+
+#include "sparse/aligned_buffer.hpp"
+#include "sparse/factor_plan.hpp"
+#include "sparse/front_elimination.hpp"
+
+namespace vibe {
+
+/// The numbers of one supernode as the factorisation leaves them: W of PanelStep in double, column-major, `stride`
+/// numbers from column to column, zero above the diagonal and below the last row.
+struct DoublePanel {
+  const double* numbers;
+  std::int64_t stride;
+};
+
+/// Multifrontal Cholesky factorisation (Duff and Reid, ACM Trans. Math. Softw. 9 (1983)) of one matrix after another
+/// over the same plan. Keeps its memory between them.
+class Multifrontal {
+ public:
+  explicit Multifrontal(const FactorPlan& plan);
+
+  /// Factors D A D and hands the panel of every supernode to `take(supernode, panel)`, in ascending order.
+  /// @param scale  D, by row in elimination order
+  /// @returns false where a pivot is not positive: numerically, the matrix is not positive definite
+  template <class Take>
+  bool run(const BlockMatrix& matrix, const std::vector<double>& scale, const Take& take) {
+    stack_top_ = 0;
+    waiting_.clear();
+    for (int s = 0; s < static_cast<int>(plan_.steps.size()); ++s) {
+      assemble(s, matrix, scale);
+      if (!elimination_.run(front_.data(), rows(s), plan_.steps[s].columns)) return false;
+      take(s, DoublePanel{front_.data(), FrontElimination::stride(rows(s))});
+      pushUpdate(s);
+    }
+    return true;
+  }
+
+ private:
+  struct Update {
+    int supernode;
+    std::int64_t begin;
+  };
+
+  int rows(int s) const;  // of the front
+  void assemble(int s, const BlockMatrix& matrix, const std::vector<double>& scale);
+  void addEntry(const FactorPlan::Entry& entry, int s, const BlockMatrix& matrix, const std::vector<double>& scale);
+  int rowOfFront(int s, int row) const;
+  void addUpdate(const Update& update, std::int64_t front_stride);
+  void pushUpdate(int s);
+
+  const FactorPlan& plan_;
+  FrontElimination elimination_;
+  AlignedBuffer<double> front_, stack_;
+  std::vector<Update> waiting_;
+  std::int64_t stack_top_ = 0;
+};
+
+}  // namespace vibe

@@ -1,0 +1,92 @@
+#include "sparse/panel_kernel.hpp"
+
+#include <algorithm>
+
+namespace vibe {
+
+PanelKernels halfKernelsSse2();
+PanelKernels halfKernelsAvx2();
+PanelKernels floatKernelsSse2();
+PanelKernels floatKernelsAvx2();
+
+InstructionPath bestInstructionPath() {
+  // no processor has AVX2 without the conversions of F16C
+  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 ? InstructionPath::Avx2
+                                                                                   : InstructionPath::Sse2;
+}
+
+PanelKernels halfKernels(InstructionPath path) {
+  return path == InstructionPath::Avx2 ? halfKernelsAvx2() : halfKernelsSse2();
+}
+
+PanelKernels floatKernels(InstructionPath path) {
+  return path == InstructionPath::Avx2 ? floatKernelsAvx2() : floatKernelsSse2();
+}
+
+namespace {
+
+/// The panels in double, without vector instructions: for checks, not for speed.
+struct PlainKernel {
+  // calls visit(column, first row of a block, its 8 numbers) for the whole panel
+  template <class Visit>
+  static void forEachColumn(const PanelSet& set, const PanelStep& step, const Visit& visit) {
+    const double* p = static_cast<const double*>(set.numbers) + step.panel;
+    for (int first = 0; first < step.columns; first += kTile)
+      for (int block = first / kTile; block < step.row_blocks; ++block)
+        for (int column = first; column < std::min(first + kTile, step.columns); ++column, p += kTile)
+          visit(column, block * kTile, p);
+  }
+
+  template <class Real>
+  static void forwardStep(const PanelSet& set, const PanelStep& step, Real* vector, int stride, Real* work) {
+    std::fill(work, work + step.row_blocks * kTile, Real(0));
+    Real* own = vector + step.first_row * stride;
+    forEachColumn(set, step, [&](int column, int row, const double* number) {
+      for (int i = 0; i < kTile; ++i) work[row + i] += static_cast<Real>(number[i]) * own[column * stride];
+    });
+    for (int i = 0; i < step.columns; ++i) own[i * stride] = work[i];
+    const Real* update = work + step.columns;
+    for (int i = 0; i < step.below_nodes; ++i)
+      for (int a = 0; a < 3; ++a) vector[(set.row_index[step.first_index + i] + a) * stride] += *update++;
+  }
+
+  template <class Real>
+  static void backwardStep(const PanelSet& set, const PanelStep& step, Real* vector, Real* work) {
+    Real* own = vector + step.first_row;
+    std::fill(std::copy(own, own + step.columns, work), work + step.row_blocks * kTile, Real(0));
+    Real* below = work + step.columns;
+    for (int i = 0; i < step.below_nodes; ++i)
+      for (int a = 0; a < 3; ++a) *below++ = vector[set.row_index[step.first_index + i] + a];
+    std::fill(own, own + step.columns, Real(0));
+    forEachColumn(set, step, [&](int column, int row, const double* number) {
+      for (int i = 0; i < kTile; ++i) own[column] += static_cast<Real>(number[i]) * work[row + i];
+    });
+  }
+
+  template <class Real>
+  static void forward(const PanelSet& set, Real* vector, Real* work) {
+    for (int s = 0; s < set.step_count; ++s) forwardStep(set, set.steps[s], vector, 1, work);
+  }
+
+  template <class Real>
+  static void backward(const PanelSet& set, Real* vector, Real* work) {
+    for (int s = set.step_count - 1; s >= 0; --s) backwardStep(set, set.steps[s], vector, work);
+  }
+
+  static void stepOfThree(const PanelSet& set, int step, int, float* vectors, float* work) {
+    for (int k = 0; k < 3; ++k) forwardStep(set, set.steps[step], vectors + k, 3, work);
+  }
+};
+
+}  // namespace
+
+PanelKernels doubleKernels() {
+  return {PlainKernel::forward<float>, PlainKernel::backward<float>, PlainKernel::stepOfThree};
+}
+
+void solveDouble(const PanelSet& set, double* vector, double* work) {
+  PlainKernel::forward(set, vector, work);
+  PlainKernel::backward(set, vector, work);
+}
+
+}  // namespace vibe

@@ -1,0 +1,92 @@
+#include "sparse/panel_pack.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace vibe {
+namespace {
+
+std::uint32_t bits(float value) {
+  std::uint32_t result = 0;
+  std::memcpy(&result, &value, sizeof(result));
+  return result;
+}
+
+constexpr std::uint32_t kSmallestNormalHalf = 113U << 23;  // 2^-14, as the bits of a float
+constexpr int kLargestExponent = 14;  // scaled columns reach at most 2^14: a quarter of what a half holds
+
+// to nearest even; below 2^15 and with subnormal results made zero, neither of which needs a branch
+std::uint16_t toHalf(float value) {
+  const std::uint32_t magnitude = bits(value) & 0x7fffffffU;
+  const std::uint32_t rounded = magnitude + 0xfffU + (magnitude >> 13 & 1U);
+  const std::uint32_t half = (rounded >> 13) - (112U << 10) + (bits(value) >> 16 & 0x8000U);
+  return static_cast<std::uint16_t>(magnitude < kSmallestNormalHalf ? 0U : half);
+}
+
+/// One column of a panel on its way from double to what is stored. The loops are such that a compiler vectorises them.
+template <class Number>
+struct Column {
+  std::vector<Number> numbers;
+
+  float take(const double* from, int count) {
+    numbers.resize(count);
+    for (int i = 0; i < count; ++i) numbers[i] = static_cast<Number>(from[i]);
+    return 1;
+  }
+};
+
+template <>
+struct Column<std::uint16_t> {
+  std::vector<std::uint16_t> numbers;
+  std::vector<float> rounded;
+
+  // The scale is a power of two, so that scaling rounds nothing. With it no column overflows a half, and what is lost
+  // as subnormal is less than 2^-27 of the column's largest number.
+  float take(const double* from, int count) {
+    numbers.resize(count);
+    rounded.resize(count);
+    float* single = rounded.data();
+    for (int i = 0; i < count; ++i) single[i] = static_cast<float>(from[i]);
+    std::int32_t largest = 0;  // positive floats order as their bits do
+    for (int i = 0; i < count; ++i)
+      largest = std::max(largest, static_cast<std::int32_t>(bits(single[i]) & 0x7fffffffU));
+    const int exponent = (largest >> 23) - 127 + 1 - kLargestExponent;
+    const float scale = std::ldexp(1.0F, exponent), factor = std::ldexp(1.0F, -exponent);
+    std::uint16_t* half = numbers.data();
+    for (int i = 0; i < count; ++i) half[i] = toHalf(single[i] * factor);
+    return scale;
+  }
+};
+
+template <class Number>
+void pack(const DoublePanel& panel, const PanelStep& step, Number* to, float* column_scale) {
+  thread_local Column<Number> column;
+  const int rows = step.row_blocks * kTile;
+  for (int first = 0; first < step.columns; first += kTile) {
+    const int width = std::min(kTile, step.columns - first);
+    for (int j = 0; j < width; ++j) {
+      column_scale[first + j] = column.take(panel.numbers + (first + j) * panel.stride + first, rows - first);
+      const Number* from = column.numbers.data();
+      Number* block = to + j * kTile;
+      for (int row = first; row < rows; row += kTile, from += kTile, block += width * kTile)
+        std::memcpy(block, from, kTile * sizeof(Number));
+    }
+    to += width * (rows - first);
+  }
+}
+
+}  // namespace
+
+void packPanel(const DoublePanel& panel, const PanelStep& step, std::uint16_t* to, float* column_scale) {
+  pack(panel, step, to, column_scale);
+}
+void packPanel(const DoublePanel& panel, const PanelStep& step, float* to, float* column_scale) {
+  pack(panel, step, to, column_scale);
+}
+void packPanel(const DoublePanel& panel, const PanelStep& step, double* to, float* column_scale) {
+  pack(panel, step, to, column_scale);
+}
+
+}  // namespace vibe

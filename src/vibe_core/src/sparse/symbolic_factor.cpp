@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <iterator>
+
+#include "sparse/elimination.hpp"
+
+namespace vibe {
+namespace {
+
+std::vector<int> inverse(const std::vector<int>& order) {
+  std::vector<int> place(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = static_cast<int>(k);
+  return place;
+}
+
+// of each node in elimination order the earlier nodes that it couples with
+std::vector<std::vector<int>> earlierNeighbours(const BlockPattern& pattern, const std::vector<int>& place) {
+  std::vector<std::vector<int>> earlier(pattern.size);
+  for (int i = 0; i < pattern.size; ++i)
+    for (int k = pattern.start[i]; k < pattern.start[i + 1]; ++k) {
+      const int a = place[i], b = place[pattern.column[k]];
+      earlier[std::max(a, b)].push_back(std::min(a, b));
+    }
+  return earlier;
+}
+
+// Liu, "The role of elimination trees in sparse factorization", SIAM J. Matrix Anal. Appl. 11 (1990), algorithm 4.2
+std::vector<int> eliminationTree(const std::vector<std::vector<int>>& earlier) {
+  const int size = static_cast<int>(earlier.size());
+  std::vector<int> parent(size, -1), ancestor(size, -1);
+  for (int i = 0; i < size; ++i)
+    for (int k : earlier[i])
+      while (k != -1 && k != i) {
+        const int next = ancestor[k];
+        ancestor[k] = i;
+        if (next == -1) parent[k] = i;
+        k = next;
+      }
+  return parent;
+}
+
+std::vector<int> postorder(const std::vector<int>& parent) {
+  const int size = static_cast<int>(parent.size());
+  std::vector<std::vector<int>> children(size);
+  std::vector<int> stack, visited;
+  for (int k = size - 1; k >= 0; --k)
+    if (parent[k] == -1)
+      stack.push_back(k);
+    else
+      children[parent[k]].push_back(k);
+  while (!stack.empty()) {  // parents before children, then the whole turned round
+    const int k = stack.back();
+    stack.pop_back();
+    visited.push_back(k);
+    stack.insert(stack.end(), children[k].rbegin(), children[k].rend());
+  }
+  std::reverse(visited.begin(), visited.end());
+  return visited;
+}
+
+// rows below the diagonal of each column of the factor
+std::vector<std::vector<int>> factorColumns(const std::vector<std::vector<int>>& earlier,
+                                            const std::vector<int>& parent) {
+  const int size = static_cast<int>(earlier.size());
+  std::vector<std::vector<int>> rows(size);
+  for (int i = 0; i < size; ++i)
+    for (const int k : earlier[i]) rows[k].push_back(i);  // ascending, as i ascends
+  std::vector<int> merged;
+  for (int k = 0; k < size; ++k) {
+    if (parent[k] == -1) continue;
+    std::vector<int>& above = rows[parent[k]];
+    merged.clear();
+    std::set_union(above.begin(), above.end(), rows[k].begin() + 1, rows[k].end(), std::back_inserter(merged));
+    above = merged;
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<Supernode> symbolicFactor(const BlockPattern& pattern, std::vector<int> order) {
+  // a postorder of the tree is an equivalent order, in which every supernode is a run of columns
+  const std::vector<int> turned = postorder(eliminationTree(earlierNeighbours(pattern, inverse(order))));
+  std::vector<int> sorted(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = order[turned[k]];
+  order = sorted;
+  const std::vector<std::vector<int>> earlier = earlierNeighbours(pattern, inverse(order));
+  const std::vector<int> parent = eliminationTree(earlier);
+  const std::vector<std::vector<int>> rows = factorColumns(earlier, parent);
+
+  std::vector<Supernode> supernodes;
+  std::vector<int> holder(order.size()), last_column;
+  for (int k = 0; k < static_cast<int>(order.size()); ++k) {
+    const bool continues = k > 0 && parent[k - 1] == k && rows[k - 1].size() == rows[k].size() + 1;
+    if (!continues) {
+      supernodes.emplace_back();
+      last_column.push_back(k);
+    }
+    supernodes.back().nodes.push_back(order[k]);
+    last_column.back() = k;
+    holder[k] = static_cast<int>(supernodes.size()) - 1;
+  }
+  for (std::size_t s = 0; s < supernodes.size(); ++s) {
+    const int last = last_column[s];
+    if (parent[last] != -1) supernodes[s].parent = holder[parent[last]];
+    for (const int row : rows[last]) supernodes[s].rows.push_back(order[row]);
+  }
+  return supernodes;
+}
+
+}  // namespace vibe

@@ -1,0 +1,226 @@
+#include "suture/capstan.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "suture/thread_run.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+
+namespace {
+
+using namespace detail;
+
+constexpr double kTolerance = 1e-9;
+constexpr int kMaxSweeps = 300;
+
+void check(bool right, const char* what, const char* remedy) {
+  if (!right) throw Error(std::string("A thread through eyelets was given ") + what + ": " + remedy + ".");
+}
+
+/// Segments first..last: between two eyelets that hold (or ends) thread moves freely or by friction.
+struct Run {
+  int first, last;
+  int size() const { return last - first + 1; }
+};
+
+class SlideProblem {
+ public:
+  SlideProblem(const Eigen::Ref<const Eigen::VectorXd>& residual, const Eigen::Ref<const Eigen::MatrixXd>& compliance,
+               const Eigen::Ref<const Eigen::VectorXd>& factor)
+      : residual_(residual), factor_(factor), compliance_(compliance) {
+    const int m = static_cast<int>(residual_.size());
+    tension_ = SegmentVector::Zero(m);
+    slide_ = SegmentVector::Zero(m - 1);
+    slack_ = SegmentVector::Zero(m);
+    eyelets_.fill(Eyelet::Sticks);
+    tight_.fill(false);
+    Run run{0, 0};
+    for (int k = 0; k < m; ++k) {
+      run.last = k;
+      if (k + 1 < m && !holds(k)) continue;
+      runs_[run_count_++] = run;
+      run.first = k + 1;
+    }
+  }
+
+  /// Runs lean on each other through the tissue only: each is solved for given tensions of the others until what
+  /// sticks, slides and hangs slack is right; that solves all of them at once.
+  bool solve() {
+    bool reached = false;
+    for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+      reached = true;
+      for (int r = 0; r < run_count_; ++r) reached = solveRun(runs_[r]) && reached;
+      if (run_count_ > 1 && reached) solveTogether();
+      takeUpSlack();
+      if (isSolution()) return true;
+      if (run_count_ == 1) return false;
+    }
+    return false;
+  }
+
+  void write(ThreadSlide& result) const {
+    result.tension = tension_.cwiseMax(0);
+    result.slide = slide_;
+    result.slack = slack_.cwiseMax(0);
+  }
+
+ private:
+  bool holds(int k) const { return factor_[k] >= kHoldingFactor; }
+
+  /// What segments lack beside the pull of the other runs.
+  SegmentVector residualOf(const Run& run) const {
+    SegmentVector others = tension_;
+    others.segment(run.first, run.size()).setZero();
+    return residual_.segment(run.first, run.size()) - compliance_.middleRows(run.first, run.size()) * others;
+  }
+
+  bool solveRun(const Run& run) {
+    const int n = run.size();
+    const SegmentVector residual = residualOf(run);
+    const bool tight = residual.sum() > 0;
+    std::fill_n(tight_.begin() + run.first, n, tight);
+    tension_.segment(run.first, n).setZero();
+    if (!tight) return true;
+    const SegmentMatrix compliance = compliance_.block(run.first, run.first, n, n);
+    const SegmentVector factor = factor_.segment(run.first, n - 1);
+    Eyelets eyelets;
+    eyelets.fill(Eyelet::Sticks);
+    SegmentVector tension, slide;
+    const bool reached = updatePath(compliance, residual, factor, eyelets, tension, slide);
+    std::copy_n(eyelets.begin(), n - 1, eyelets_.begin() + run.first);
+    tension_.segment(run.first, n) = tension;
+    slide_.segment(run.first, n - 1) = slide;
+    return reached;
+  }
+
+  void solveTogether() {
+    SegmentPath residual(residual_.size(), 2), tension, slide;
+    residual.col(0) = residual_;
+    residual.col(1).setZero();
+    if (!solveLinked(compliance_, residual, factor_, eyelets_, tight_, tension, slide)) return;
+    if (tension.col(0).minCoeff() < 0) return;  // not yet the right ones: go on from the runs' own tensions
+    tension_ = tension.col(0);
+    slide_ = slide.col(0);
+  }
+
+  /// Deals out the thread of slack runs, and finds what is left over.
+  void takeUpSlack() {
+    const int m = static_cast<int>(residual_.size());
+    slack_ = compliance_ * tension_ - residual_;
+    for (int r = 0; r < run_count_; ++r)
+      if (!tight_[runs_[r].first]) dealOut(runs_[r]);
+    for (int k = 0; k + 1 < m; ++k) {
+      if (!tight_[k] || !tight_[k + 1]) continue;
+      slack_[k] -= slide_[k];
+      slack_[k + 1] += slide_[k];
+    }
+  }
+
+  /// A slack run has thread enough: segments that lack some get it from the parts that the least friction keeps away.
+  void dealOut(const Run& run) {
+    slide_.segment(run.first, run.size() - 1).setZero();
+    for (int k = run.first; k <= run.last; ++k) {
+      while (slack_[k] < 0) {
+        const int giver = nearestGiver(run, k);
+        if (giver < 0) break;  // rounding
+        const double amount = std::min(slack_[giver], -slack_[k]);
+        slack_[giver] -= amount;
+        slack_[k] += amount;
+        for (int e = std::min(giver, k); e < std::max(giver, k); ++e) slide_[e] += giver < k ? amount : -amount;
+      }
+    }
+  }
+
+  int nearestGiver(const Run& run, int taker) const {
+    int giver = -1;
+    double min = std::numeric_limits<double>::infinity();
+    for (const int direction : {-1, 1}) {
+      double friction = 0;
+      for (int k = taker + direction; k >= run.first && k <= run.last; k += direction) {
+        friction += std::log(factor_[direction < 0 ? k : k - 1]);
+        if (slack_[k] <= 0) continue;
+        if (friction < min) {
+          min = friction;
+          giver = k;
+        }
+        break;
+      }
+    }
+    return giver;
+  }
+
+  bool isSolution() const {
+    const double max = tension_.cwiseAbs().maxCoeff();
+    const double length = kTolerance * (residual_.cwiseAbs() + (compliance_ * tension_).cwiseAbs()).maxCoeff();
+    const double force = kTolerance * max;
+    for (int k = 0; k < residual_.size(); ++k) {
+      if (!(tension_[k] >= -force) || !(slack_[k] >= -length)) return false;
+      if (tension_[k] > force && !(slack_[k] <= length)) return false;
+    }
+    for (int k = 0; k < slide_.size(); ++k)
+      if (!eyeletIsRight(k, force, length)) return false;
+    return true;
+  }
+
+  bool eyeletIsRight(int k, double force, double length) const {
+    if (holds(k)) return slide_[k] == 0;
+    const double forward = factor_[k] * tension_[k] - tension_[k + 1];
+    const double backward = factor_[k] * tension_[k + 1] - tension_[k];
+    const double rounding = force * factor_[k];
+    if (!(forward >= -rounding) || !(backward >= -rounding)) return false;
+    if (slide_[k] > length && !(forward <= rounding)) return false;
+    return !(slide_[k] < -length && !(backward <= rounding));
+  }
+
+  SegmentVector residual_, factor_, tension_, slide_, slack_;
+  SegmentMatrix compliance_;
+  std::array<Run, kMaxThreadSegments> runs_;
+  int run_count_ = 0;
+  Eyelets eyelets_;
+  Tight tight_;
+};
+
+void checkProblem(const Eigen::Ref<const Eigen::VectorXd>& residual,
+                  const Eigen::Ref<const Eigen::MatrixXd>& compliance,
+                  const Eigen::Ref<const Eigen::VectorXd>& factor) {
+  const Eigen::Index m = residual.size();
+  check(m >= 1 && m <= kMaxThreadSegments, "no segments or more than 64",
+        "give 1 to 64, and divide a longer thread at a point that holds it");
+  check(compliance.rows() == m && compliance.cols() == m && factor.size() == m - 1, "sizes that do not fit each other",
+        "give a square compliance of that size and a capstan factor per eyelet between two segments");
+  check(residual.allFinite() && compliance.allFinite(), "lengths or compliances that are not finite",
+        "check the positions of the eyelets and the stiffness of the tissue");
+  check((compliance.diagonal().array() > 0).all() && compliance.sum() > 0, "a compliance that is not positive",
+        "a segment must give when it is pulled, at least by the stretch of its thread");
+  check((factor.array() >= 1).all(), "a capstan factor that is not 1 or more", "take it from capstanFactor()");
+}
+
+}  // namespace
+
+double turningAngle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d in = b - a, out = c - b;
+  return std::atan2(in.cross(out).norm(), in.dot(out));
+}
+
+double capstanFactor(double friction, double angle) {
+  if (!(friction >= 0) || !(angle >= 0))
+    throw Error("An eyelet has the friction " + std::to_string(friction) + " and turns the thread by " +
+                std::to_string(angle) + " rad: both must be numbers from 0 on.");
+  if (friction == 0 || angle == 0) return std::isinf(friction) ? friction : 1;
+  return std::exp(friction * angle);
+}
+
+void slideThread(const Eigen::Ref<const Eigen::VectorXd>& residual, const Eigen::Ref<const Eigen::MatrixXd>& compliance,
+                 const Eigen::Ref<const Eigen::VectorXd>& capstan_factor, ThreadSlide& result) {
+  checkProblem(residual, compliance, capstan_factor);
+  SlideProblem problem(residual, compliance, capstan_factor);
+  result.converged = problem.solve();
+  problem.write(result);
+}
+
+}  // namespace vibe

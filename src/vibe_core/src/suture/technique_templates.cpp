@@ -1,0 +1,223 @@
+#include "suture/technique_templates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+using Complex = std::complex<double>;
+using Points = std::vector<Complex>;
+
+constexpr int kMaxUneven = 6;         // most bite vectors of one side of a polygon for one of another
+constexpr double kAlongShare = 0.25;  // of drawings with bites spaced evenly, wherever the corners are
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+/// A leg of a drawing: where it points [rad], how long it is, how many bite vectors it is made of.
+struct Leg {
+  double direction;
+  double length;
+  int vectors;
+};
+
+Points bitesAtCorners(const std::vector<Leg>& legs) {
+  Points points{0};
+  for (const Leg& leg : legs) {
+    const Complex step = std::polar(leg.length / leg.vectors, leg.direction);
+    for (int k = 0; k < leg.vectors; ++k) points.push_back(points.back() + step);
+  }
+  return points;
+}
+
+Points bitesAlong(const std::vector<Leg>& legs, int count, double used) {
+  double total = 0;
+  for (const Leg& leg : legs) total += leg.length;
+  Points points;
+  for (int k = 0; k < count; ++k) {
+    double left = used * total * k / (count - 1);
+    Complex at = 0;
+    for (const Leg& leg : legs) {
+      at += std::polar(std::clamp(left, 0.0, leg.length), leg.direction);
+      left -= leg.length;
+    }
+    points.push_back(at);
+  }
+  return points;
+}
+
+/// Collects drawings and brings them to unit size.
+class Album {
+ public:
+  explicit Album(int bite_count) : count_(bite_count) {}
+
+  /// What a drawing weighs if the `count` of its kind are to have this share of what the technique has so far.
+  double share(Technique technique, double part, int count) const {
+    double sum = 0;
+    for (const TechniqueTemplate& t : templates_) sum += t.technique == technique ? t.weight / 2 : 0;
+    return part * sum / count;
+  }
+
+  void add(Technique technique, Points points, std::array<int, 2> corners = {-1, -1}, double weight = 1) {
+    Complex centre = 0;
+    for (const Complex& p : points) centre += p / static_cast<double>(count_);
+    double square = 0;
+    for (Complex& p : points) square += std::norm(p -= centre);
+    for (Complex& p : points) p /= std::sqrt(square);
+    Complex own = 0;
+    for (const Complex& p : points) own += std::conj(p * p);
+    TechniqueTemplate made{technique, std::move(points), corners, own, weight};
+    templates_.push_back(made);
+    std::reverse(made.bites.begin(), made.bites.end());
+    if (corners[0] >= 0) made.corners = {count_ - 1 - corners[1], count_ - 1 - corners[0]};
+    templates_.push_back(std::move(made));
+  }
+
+  std::vector<TechniqueTemplate> take() {
+    std::array<double, kTechniqueCount> sum{};
+    for (const TechniqueTemplate& t : templates_) sum[static_cast<int>(t.technique)] += t.weight;
+    for (TechniqueTemplate& t : templates_) t.weight /= sum[static_cast<int>(t.technique)];
+    return std::move(templates_);
+  }
+
+  int count() const { return count_; }
+
+ private:
+  int count_;
+  std::vector<TechniqueTemplate> templates_;
+};
+
+/// How often hands share bites among sides so: evenly more often than not.
+double evenness(int min, int max) {
+  return static_cast<double>(min) / max;
+}
+
+/// U and Z: two legs joined by a bar that turns by `turn` [rad] from the first and by `back` into the second.
+void addTwoCorners(Album& album, Technique technique, double turn, double back, double weight) {
+  const int vectors = album.count() - 1;
+  for (int first = 1; first <= vectors - 2; ++first)
+    for (int bar = 1; bar <= vectors - 1 - first; ++bar) {
+      const int last = vectors - first - bar, max = std::max(first, last);
+      const std::array<int, 2> corners{first, first + bar};
+      const double even = evenness(std::min(first, last), max) * evenness(std::min(bar, max), bar) * weight;
+      // bites spaced equally everywhere, or legs of equal length whatever the number of their bites
+      if (max <= 2 * std::min(first, last) && bar <= 2 * max)
+        album.add(technique,
+                  bitesAtCorners({{0, 1.0 * first, first}, {turn, 1.0 * bar, bar}, {turn + back, 1.0 * last, last}}),
+                  corners, even);
+      for (const double length : {0.5, 1.0})
+        album.add(technique, bitesAtCorners({{0, 1, first}, {turn, length, bar}, {turn + back, 1, last}}), corners,
+                  even / 2);
+    }
+}
+
+/// A U or Z whose corners no bite needs to hit, for those who space bites evenly along a line they see.
+void addAlong(Album& album, Technique technique, double turn, double back, const std::vector<double>& bars) {
+  const int last = album.count() - 1;
+  const double weight = album.share(technique, kAlongShare, static_cast<int>(bars.size()));
+  for (const double bar : bars) {
+    const auto corner = [&](double at) { return static_cast<int>(std::lround(last * at / (2 + bar))); };
+    const std::array<int, 2> corners{std::max(1, corner(1) - (corner(1) == corner(1 + bar))), corner(1 + bar)};
+    album.add(technique, bitesAlong({{0, 1, 1}, {turn, bar, 1}, {turn + back, 1, 1}}, album.count(), 1), corners,
+              weight);
+  }
+}
+
+void addU(Album& album) {
+  for (const double lean : {-20, 0, 20})
+    addTwoCorners(album, Technique::U, (90 + lean) * kDegree, (90 - lean) * kDegree, lean == 0 ? 1 : 0.5);
+  if (album.count() >= 5) addAlong(album, Technique::U, 90 * kDegree, 90 * kDegree, {0.25, 0.5, 0.8});
+}
+
+void addZ(Album& album) {
+  for (const double turn : {95, 120, 135, 150})
+    addTwoCorners(album, Technique::Z, turn * kDegree, -turn * kDegree, turn < 100 ? 0.5 : 1);
+  if (album.count() >= 5) addAlong(album, Technique::Z, 130 * kDegree, -130 * kDegree, {1, 1.4});
+}
+
+void addCorner(Album& album) {
+  const int vectors = album.count() - 1;
+  for (int first = 1; first <= vectors - 1; ++first) {
+    const int last = vectors - first;
+    const auto [min, max] = std::minmax({first, last});
+    for (const double turn : {100, 120, 140}) {
+      if (max <= 2 * min)
+        album.add(Technique::Triangular, bitesAtCorners({{0, 1.0 * first, first}, {turn * kDegree, 1.0 * last, last}}));
+      album.add(Technique::Triangular, bitesAtCorners({{0, 1, first}, {turn * kDegree, 1, last}}), {-1, -1},
+                evenness(min, max));
+    }
+  }
+  if (vectors < 5) return;  // with four or five bites no more than a bend is left of a corner that no bite hits
+  const double along = album.share(Technique::Triangular, kAlongShare, 2);
+  for (const double turn : {110, 130})
+    album.add(Technique::Triangular, bitesAlong({{0, 1, 1}, {turn * kDegree, 1, 1}}, album.count(), 1), {-1, -1},
+              along);
+}
+
+/// A polygon whose last side may end short of the first bite.
+void addPolygon(Album& album, Technique technique, int sides, double shortest, double weight) {
+  const double turn = 360 * kDegree / sides;
+  const int vectors = album.count() - 1;
+  std::vector<int> shared(sides, 1);
+  const auto add = [&] {
+    const auto [min, max] = std::minmax_element(shared.begin(), shared.end());
+    if (*max > kMaxUneven * *min) return;
+    for (const double last : {1.0, shortest}) {
+      std::vector<Leg> legs;
+      for (int k = 0; k < sides; ++k) legs.push_back({k * turn, k == sides - 1 ? last : 1, shared[k]});
+      album.add(technique, bitesAtCorners(legs), {-1, -1}, weight * evenness(*min, *max) * (last < 1 ? 0.5 : 1));
+    }
+  };
+  // every way to share the bite vectors among the sides
+  const auto fill = [&](auto&& self, int side, int left) -> void {
+    if (side == sides - 1) {
+      shared[side] = left;
+      return add();
+    }
+    for (shared[side] = 1; left - shared[side] >= sides - 1 - side; ++shared[side])
+      self(self, side + 1, left - shared[side]);
+  };
+  if (vectors >= sides) fill(fill, 0, vectors);
+  if (vectors <= sides) return;
+  std::vector<Leg> legs;
+  for (int k = 0; k < sides; ++k) legs.push_back({k * turn, 1, 1});
+  const double along = album.share(technique, kAlongShare, 2);
+  for (const double used : {1.0, 1.0 - 1.0 / album.count()})
+    album.add(technique, bitesAlong(legs, album.count(), used), {-1, -1}, along);
+}
+
+Points arc(int count, double sweep) {
+  Points points;
+  for (int k = 0; k < count; ++k) points.push_back(std::polar(1.0, sweep * k / (count - 1)));
+  return points;
+}
+
+void addC(Album& album) {
+  // with four bites the chords of three quarters of a circle are three sides of a square, which is a U
+  const int max = album.count() == 4 ? 210 : 280;
+  for (int sweep = 170; sweep <= max; sweep += 20) album.add(Technique::C, arc(album.count(), sweep * kDegree));
+}
+
+void addRunning(Album& album) {
+  for (const double zigzag : {0.0, 0.15, 0.3}) {
+    Points points;
+    for (int k = 0; k < album.count(); ++k) points.emplace_back(k, k % 2 == 0 ? zigzag : -zigzag);
+    album.add(Technique::Running, points, {-1, -1}, zigzag > 0 ? 0.5 : 2);
+  }
+  for (const double sweep : {30, 60}) album.add(Technique::Running, arc(album.count(), sweep * kDegree));
+}
+
+}  // namespace
+
+std::vector<TechniqueTemplate> techniqueTemplates(int bite_count) {
+  Album album(bite_count);
+  addU(album);
+  addZ(album);
+  addCorner(album);
+  addPolygon(album, Technique::Triangular, 3, 0.67, 2);
+  addPolygon(album, Technique::Square, 4, 0.6, 1);
+  addC(album);
+  addRunning(album);
+  return album.take();
+}
+
+}  // namespace vibe

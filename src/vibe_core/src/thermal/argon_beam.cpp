@@ -1,0 +1,155 @@
+#include "vibe_core/thermal/argon_beam.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+
+namespace {
+
+constexpr double kRim = 1.75;         // radii; the footprint has 0.9 % of its power per area there
+constexpr double kMeshCarries = 0.6;  // radius over longest side: the middle of a triangle lies 0.58 sides from corners
+
+double footprint(double distance, double radius) {
+  const double s = distance / radius;
+  return std::exp(-0.5 * s * s * s * s);
+}
+
+/// Twice the area vector of a triangle, outwards.
+Eigen::Vector3d areaVector(const SurfaceView& wall, const std::array<int, 3>& t) {
+  const Eigen::Vector3d a = wall.position(t[0]);
+  return (wall.position(t[1]) - a).cross(wall.position(t[2]) - a);
+}
+
+double longestSide(const SurfaceView& wall, const std::array<int, 3>& t) {
+  const Eigen::Vector3d a = wall.position(t[0]), b = wall.position(t[1]), c = wall.position(t[2]);
+  return std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
+}
+
+}  // namespace
+
+struct ArgonBeam::Ray {
+  Eigen::Vector3d start, direction;  // unit
+  double length;
+  Eigen::Array3d low, high;  // box around it
+
+  Ray(const Eigen::Vector3d& from, const Eigen::Vector3d& unit, double reach)
+      : start(from), direction(unit), length(reach) {
+    const Eigen::Array3d a = from.array(), b = (from + reach * unit).array();
+    low = a.min(b);
+    high = a.max(b);
+  }
+
+  /// Whether the triangle's box and the ray's have no point in common; true for corners that are not numbers.
+  bool farFrom(const std::vector<double>& values, int axis, const std::array<int, 3>& t) const {
+    const double p = values[t[0]], q = values[t[1]], r = values[t[2]];
+    const bool reaches =
+        (p >= low[axis] || q >= low[axis] || r >= low[axis]) && (p <= high[axis] || q <= high[axis] || r <= high[axis]);
+    return !reaches;
+  }
+
+  /// Length to the triangle (Moeller and Trumbore 1997), negative if it is missed.
+  double meet(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) const {
+    const Eigen::Vector3d ab = b - a, ac = c - a, h = direction.cross(ac), s = start - a, q = s.cross(ab);
+    const double det = ab.dot(h);
+    if (!(std::abs(det) > 0)) return -1;
+    const double u = s.dot(h) / det, v = direction.dot(q) / det;
+    return u >= 0 && v >= 0 && u + v <= 1 ? ac.dot(q) / det : -1;
+  }
+};
+
+ArgonBeam::ArgonBeam(const SurfaceMesh& surface)
+    : neighbours_(vertexNeighbours(surface)),
+      triangles_of_(surface.vertices.size()),
+      seen_(surface.vertices.size(), 0) {
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (const int v : surface.triangles[t]) triangles_of_[v].push_back(static_cast<int>(t));
+  patch_.reserve(surface.vertices.size());
+  shares_.reserve(surface.vertices.size());
+}
+
+const BeamHit& ArgonBeam::fire(const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, const SurfaceView& wall,
+                               double half_wall, const ApcParameters& parameters) {
+  hit_ = BeamHit{};
+  shares_.clear();
+  const double norm = direction.norm();
+  if (!tip.allFinite() || !std::isfinite(norm) || norm <= 0) return hit_;
+  // a tip pressed into the wall may be beyond its mid-surface; behind the tip there is nothing but the scope
+  const Eigen::Vector3d unit = direction / norm;
+  const double probe_end = half_wall + parameters.probe_length;
+  const Ray ray(tip - half_wall * unit, unit, probe_end + parameters.reach + half_wall);
+  cast(ray, wall);
+  if (hit_.triangle < 0) return hit_;
+  hit_.point = ray.start + ray_length_ * unit;
+  hit_.gap = std::max(0.0, ray_length_ - half_wall - probe_end);
+  spreadOver(ray, wall, parameters);
+  return hit_;
+}
+
+void ArgonBeam::cast(const Ray& ray, const SurfaceView& wall) {
+  ray_length_ = ray.length;
+  for (std::size_t i = 0; i < wall.triangles.size(); ++i) {
+    const auto& t = wall.triangles[i];
+    if (ray.farFrom(wall.x, 0, t) || ray.farFrom(wall.y, 1, t) || ray.farFrom(wall.z, 2, t)) continue;
+    const double length = ray.meet(wall.position(t[0]), wall.position(t[1]), wall.position(t[2]));
+    if (!(length >= 0 && length <= ray_length_)) continue;
+    if (length == ray_length_ && hit_.triangle >= 0) continue;
+    ray_length_ = length;
+    hit_.triangle = static_cast<int>(i);
+  }
+}
+
+double ArgonBeam::areaFacing(int particle, const Ray& ray, const SurfaceView& wall) const {
+  const double side = areaVector(wall, wall.triangles[hit_.triangle]).dot(ray.direction) < 0 ? -1 : 1;
+  double area = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (const int t : triangles_of_[particle]) {
+    const Eigen::Vector3d twice = areaVector(wall, wall.triangles[t]);
+    area += twice.norm() / 6;
+    normal += twice;
+  }
+  return side * normal.dot(ray.direction) > 0 ? area : 0;
+}
+
+/// Particles under the footprint: reached from the triangle hit along sides, without leaving it or turning away.
+void ArgonBeam::collect(const Ray& ray, const SurfaceView& wall) {
+  patch_.clear();
+  const auto visit = [&](int particle) {
+    if (seen_[particle] != 0) return;
+    const double distance = (wall.position(particle) - hit_.point).norm();
+    if (!(distance <= kRim * hit_.radius)) return;
+    const double area = areaFacing(particle, ray, wall);
+    if (!(area > 0)) return;
+    seen_[particle] = 1;
+    patch_.push_back(particle);
+    const double cover = footprint(distance, hit_.radius);
+    shares_.push_back({particle, area * cover, 0, cover});
+  };
+  for (const int corner : wall.triangles[hit_.triangle]) visit(corner);
+  for (std::size_t i = 0; i < patch_.size(); ++i)
+    for (const int next : neighbours_[patch_[i]]) visit(next);
+  for (const int particle : patch_) seen_[particle] = 0;
+}
+
+void ArgonBeam::spreadOver(const Ray& ray, const SurfaceView& wall, const ApcParameters& parameters) {
+  const double radius = parameters.spot_radius + hit_.gap * std::tan(parameters.spread);
+  const double dilution = (parameters.spot_radius / radius) * (parameters.spot_radius / radius);
+  hit_.radius = std::max(radius, kMeshCarries * longestSide(wall, wall.triangles[hit_.triangle]));
+  collect(ray, wall);
+  double sum = 0;
+  for (const BeamShare& share : shares_) sum += share.power;
+  if (!(sum > 0)) {
+    // at the very edge of a fold all corners may look away: the beam slides past
+    shares_.clear();
+    hit_ = BeamHit{};
+    return;
+  }
+  const double absorbed = parameters.power * parameters.efficiency;
+  for (BeamShare& share : shares_) {
+    share.power *= absorbed / sum;
+    share.spot_power = absorbed * dilution * share.cover;
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,73 @@
+#pragma once
+#include <memory>
+
+#include "tissue/cluster_set.hpp"
+#include "vibe_core/geometry/organ.hpp"
+#include "vibe_core/scene/scene.hpp"
+#include "vibe_core/tissue/tissue_model.hpp"
+
+namespace vibe {
+
+/// Oriented-particle shape matching on the wall, the tissue model of Erden et al. (ViBE): every particle and its
+/// one-ring is a cluster that wants to keep its shape up to a rigid motion,
+///   E = sum over clusters of 1 / (2 alpha) * sum over members of m |x - goal|^2      [J]
+/// with alpha [s^2] an XPBD compliance (Macklin, Mueller & Chentanez 2016; with lambda reset every sub-step one
+/// projection moves a member towards its goal). Two things make the method obey a modulus:
+/// * alpha is chosen per cluster so that a uniform in-plane stretch costs the energy of an isotropic membrane,
+///   E t / (1 - nu) strain^2 per area: alpha = sum m |r|^2 / (2 E t A / (1 - nu)).
+/// * the clusters of a sweep see the same positions (Jacobi), those at the start of the sub-step, and move their
+/// members
+///   by h^2 / alpha of the way: the equilibrium is that of E whatever the sub-step, and energy is conserved. (The usual
+///   order, projection after prediction, damps motion and is stable only for a third of the stiffness.) The fraction
+///   is limited where the sub-step would be too long to be stable; stiffnessRatio() then falls below 1.
+/// Conserves linear momentum exactly and angular momentum up to the exchange with the particles' own orientation.
+///
+/// Limitations: the response to shear equals that to dilation (an in-plane Poisson ratio of 0 scaled to the dilation
+/// modulus); the stress is linear in stretch, so there is a pressure beyond which the organ bursts; bending stiffness
+/// follows from the ring's size, not from the thickness (right within a factor of 1.5 when the particle spacing is
+/// about 1.7 times the wall). Measured errors: docs/accuracy.md.
+class ShapeMatching : public TissueModel {
+ public:
+  /// @param masses  of the particles [kg]
+  /// @param areas   of wall per particle at rest [m^2]
+  /// @param step_period  divided into tissue.substeps, or, if that is 0, as few as carry the
+  ///                     stiffness, `at_least` or more [s]
+  ShapeMatching(const Organ& organ, const TissueScene& tissue, const std::vector<double>& masses,
+                const std::vector<double>& areas, double step_period, int at_least = 1);
+
+  std::string name() const override { return "shape_matching"; }
+  double energy(const State& state) const override;
+  void addForces(const State& state, double* fx, double* fy, double* fz) const override;
+  void strain(const State& state, float* out) const override;
+  double stiffnessRatio() const override { return stiffness_ratio_; }
+
+  int substeps() const { return substeps_; }
+  const ClusterSet& clusters() const { return clusters_; }
+
+ private:
+  ClusterSet clusters_;
+  std::vector<double> masses_;
+  int substeps_;
+  double substep_;  // [s]
+  double stiffness_ratio_ = 1;
+};
+
+/// Buffers of a sweep; sized by makeSweepBuffers().
+struct SweepBuffers {
+  std::vector<double> dx, dy, dz;              ///< by slot
+  std::vector<double> qw, qx, qy, qz;          ///< by lane
+  std::vector<double> wx, wy, wz;              ///< by lane
+  std::vector<double> area_x, area_y, area_z;  ///< by lane
+  std::vector<double> spread;                  ///< by lane
+};
+SweepBuffers makeSweepBuffers(const ClusterSet& clusters);
+
+/// Orientations and angular velocities from the state's order (particles) to the sweep's (lanes), and back.
+void loadOrientations(const ClusterSet& clusters, const State& state, SweepBuffers& buffers);
+void storeOrientations(const ClusterSet& clusters, const SweepBuffers& buffers, State& state);
+
+struct ClusterSweep;
+/// Binds the constant arrays, the buffers and the positions of `state`.
+ClusterSweep bindSweep(const ClusterSet& clusters, const State& state, SweepBuffers& buffers);
+
+}  // namespace vibe

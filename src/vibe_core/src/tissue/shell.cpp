@@ -1,0 +1,209 @@
+#include "tissue/shell.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tissue/shell_fibres.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr int kElementsPerPiece = 2000;  // fewer do not pay for a second thread
+constexpr int kPieces = 8;
+constexpr int kReferenceSteps = 12;  // of Newton's method for the stretch across the wall, in double precision
+
+}  // namespace
+
+ShellElements::ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin, ShellKernel kernel)
+    : mesh_(std::move(mesh)), origin_(origin), kernel_(kernel) {
+  checkMesh();
+  for (std::size_t m = 0; m < mesh_.materials.size(); ++m) {
+    checkMaterial(mesh_.materials[m], "material " + std::to_string(m) + " of the shell");
+    constants_.push_back(lawConstants(mesh_.materials[m]));
+  }
+  findNeighbours();
+  measure();
+  measureFibres();
+  makeBatches();
+}
+
+ShellElements::~ShellElements() = default;
+
+void ShellElements::makeBatches() {
+  std::vector<std::vector<int>> groups(2 * mesh_.materials.size());
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e)
+    groups[2 * static_cast<std::size_t>(materialOf(e)) + (atBoundary(e) ? 1 : 0)].push_back(static_cast<int>(e));
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (!groups[g].empty()) addRun(groups[g], static_cast<int>(g / 2), g % 2 == 1);
+  piece_count_ = static_cast<int>(mesh_.triangles.size()) > kElementsPerPiece ? kPieces : 1;
+}
+
+// Neighbours in the mesh are neighbours in its order. They go into the same lane of successive batches, not into the
+// lanes of one batch: adding to a node that the lane before has just written would wait for that.
+void ShellElements::addRun(const std::vector<int>& triangles, int material, bool ghosts) {
+  const int count = static_cast<int>(triangles.size()), batches = (count + kTetLanes - 1) / kTetLanes;
+  runs_.push_back({batch_count_, batch_count_ + batches, material, ghosts, batch_rest_.size()});
+  for (int window = 0; window < batches; window += kWindow) {
+    const int length = std::min(kWindow, batches - window);
+    for (int step = 0; step < length; ++step) {
+      std::array<int, kTetLanes> lanes;
+      for (int lane = 0; lane < kTetLanes; ++lane) {
+        const int slot = window * kTetLanes + lane * length + step;
+        lanes[static_cast<std::size_t>(lane)] = slot < count ? triangles[static_cast<std::size_t>(slot)] : -1;
+      }
+      addBatch(lanes, ghosts ? kShellGhostRows : kShellRows);
+    }
+  }
+}
+
+void ShellElements::addBatch(const std::array<int, kTetLanes>& triangles, int rows) {
+  const int filler = *std::max_element(triangles.begin(), triangles.end());  // -1: the lane is empty
+  const std::size_t node = batch_node_.size(), row = batch_rest_.size();
+  batch_node_.resize(node + 6);
+  batch_rest_.resize(row + static_cast<std::size_t>(rows));
+  const std::size_t fibre = batch_fibre_.size();
+  if (!fibre_rest_.empty()) batch_fibre_.resize(fibre + kFibreRows);
+  for (std::size_t lane = 0; lane < kTetLanes; ++lane) {
+    const bool empty = triangles[lane] < 0;
+    const std::size_t e = static_cast<std::size_t>(empty ? filler : triangles[lane]);
+    for (int a = 0; a < 6; ++a) {
+      // a ghost adds 0 to node 1; an empty lane has all its nodes there
+      const int real = patchNode(e, a) >= 0 && !empty ? patchNode(e, a) : patchNode(e, 0);
+      batch_node_[node + static_cast<std::size_t>(a)].lane[lane] = 4 * static_cast<std::uint32_t>(real);
+    }
+    for (int k = 0; k < rows; ++k)
+      batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = static_cast<float>(rest(e)[k]);
+    for (int k = 0; k < kFibreRows && !fibre_rest_.empty(); ++k)
+      batch_fibre_[fibre + static_cast<std::size_t>(k)].lane[lane] =
+          empty ? 0.0F : static_cast<float>(fibre_rest_[kFibreRows * e + static_cast<std::size_t>(k)]);
+    if (!empty) continue;
+    // it has no size and weighs nothing
+    const auto clear = [&](int k) { batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = 0; };
+    for (int k = 0; k < 15; ++k) clear(kShellPatch + k);
+    for (int k = 0; k < 3; ++k) clear(kShellSide + 4 * k + 3);
+    clear(kShellBend);
+  }
+  ++batch_count_;
+}
+
+double ShellElements::evaluatePiece(int piece, ShellSweep sweep, double* volume) const {
+  const int first = static_cast<int>(static_cast<std::int64_t>(batch_count_) * piece / piece_count_);
+  const int last = static_cast<int>(static_cast<std::int64_t>(batch_count_) * (piece + 1) / piece_count_);
+  sweep.node = batch_node_.data();
+  double energy = 0;
+  for (const Run& run : runs_) {
+    sweep.first = std::max(first, run.first), sweep.last = std::min(last, run.last);
+    if (sweep.first >= sweep.last) continue;
+    const auto material = static_cast<std::size_t>(run.material);
+    const std::size_t rows = run.ghosts ? kShellGhostRows : kShellRows;
+    sweep.rest = batch_rest_.data() + run.row + rows * static_cast<std::size_t>(sweep.first - run.first);
+    sweep.ghosts = run.ghosts;
+    sweep.law = mesh_.materials[material].law;
+    sweep.poisson_ratio = mesh_.materials[material].poisson_ratio;
+    sweep.constants = &constants_[material];
+    energy += kernel_.sweep(sweep);
+    if (batch_fibre_.empty()) continue;
+    sweep.fibre = batch_fibre_.data() + static_cast<std::size_t>(kFibreRows * sweep.first);
+    sweep.fibre_stiffening = mesh_.fibres.stiffening;
+    energy += kernel_.fibres(sweep);
+  }
+  if (volume != nullptr) *volume += sweep.volume;
+  return energy;
+}
+
+double ShellElements::evaluate(int piece, const float* displacement4, float* gradient4) const {
+  ShellSweep sweep{};
+  sweep.displacement4 = displacement4, sweep.gradient4 = gradient4;
+  return evaluatePiece(piece, sweep, nullptr);
+}
+
+double ShellElements::evaluate(int piece, const float* displacement4, float* gradient4, float* volume_gradient4,
+                               double& volume) const {
+  ShellSweep sweep{};
+  sweep.displacement4 = displacement4, sweep.gradient4 = gradient4, sweep.volume_gradient4 = volume_gradient4;
+  return evaluatePiece(piece, sweep, &volume);
+}
+
+void ShellElements::gather(std::size_t triangle, const double* displacement, double (&v)[5][3]) const {
+  const double* first = displacement + 3 * patchNode(triangle, 0);
+  for (int a = 0; a < 5; ++a) {
+    const int node = patchNode(triangle, a + 1);
+    for (int r = 0; r < 3; ++r) v[a][r] = node < 0 ? 0 : displacement[3 * node + r] - first[r];
+  }
+  const double* rows = rest(triangle);
+  placeGhosts([rows](int row) { return rows[row]; }, v);
+}
+
+double ShellElements::evaluate(const double* displacement, double* gradient) const {
+  std::fill(gradient, gradient + 3 * mesh_.nodes.size(), 0.0);
+  double energy = 0;
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
+    const auto material = static_cast<std::size_t>(materialOf(e));
+    const Material& m = mesh_.materials[material];
+    double u[5][3], f[5][3];
+    gather(e, displacement, u);
+    const auto rows = [values = rest(e)](int row) { return values[row]; };
+    energy += withLaw(m.law, [&](auto tag) {
+      return shellEnergy<decltype(tag)::value, kReferenceSteps>(
+          WallTerms<double>(constants_[material], m.poisson_ratio), rows, u, f);
+    });
+    if (!fibre_rest_.empty())
+      energy += fibreEnergy(
+          mesh_.fibres.stiffening, rows, [values = &fibre_rest_[kFibreRows * e]](int row) { return values[row]; }, u,
+          f);
+    returnGhosts(rows, f);
+    for (int a = 0; a < 5; ++a) {
+      const int node = patchNode(e, a + 1);
+      if (node < 0) continue;
+      for (int r = 0; r < 3; ++r) gradient[3 * node + r] += f[a][r], gradient[3 * patchNode(e, 0) + r] -= f[a][r];
+    }
+  }
+  return energy;
+}
+
+double ShellElements::volume(const double* displacement, double* gradient) const {
+  std::fill(gradient, gradient + 3 * mesh_.nodes.size(), 0.0);
+  double sum = 0;
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
+    double u[5][3], first[3], share[3];
+    gather(e, displacement, u);
+    for (int r = 0; r < 3; ++r) first[r] = displacement[3 * patchNode(e, 0) + r];
+    sum += coneVolume([values = rest(e)](int row) { return values[row]; }, u, first, share);
+    for (const int node : mesh_.triangles[e])
+      for (int r = 0; r < 3; ++r) gradient[3 * node + r] += share[r];
+  }
+  return sum;
+}
+
+std::vector<std::pair<const std::vector<int>*, int>> ShellElements::nodeGroups() const {
+  return {{&patch_nodes_, 6}};
+}
+
+std::vector<double> ShellElements::lumpedMass(double density) const {
+  std::vector<double> mass(mesh_.nodes.size(), 0.0);
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e)
+    for (const int node : mesh_.triangles[e])
+      mass[static_cast<std::size_t>(node)] += density * mesh_.thickness[e] * areaOf(e) / 3;
+  return mass;
+}
+
+void ShellElements::strain(const double* displacement, float* out) const {
+  std::vector<double> now(mesh_.nodes.size(), 0.0), rest(mesh_.nodes.size(), 0.0);
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
+    const auto& t = mesh_.triangles[e];
+    Eigen::Vector3d x[3];
+    for (std::size_t a = 0; a < 3; ++a)
+      x[a] = mesh_.nodes[static_cast<std::size_t>(t[a])] + Eigen::Map<const Eigen::Vector3d>(displacement + 3 * t[a]);
+    const double area = (x[1] - x[0]).cross(x[2] - x[0]).norm() / 2;
+    for (const int node : t) {
+      now[static_cast<std::size_t>(node)] += area;
+      rest[static_cast<std::size_t>(node)] += areaOf(e);
+    }
+  }
+  for (std::size_t i = 0; i < now.size(); ++i)
+    out[i] = rest[i] > 0 ? static_cast<float>(std::sqrt(now[i] / rest[i]) - 1) : 0.0f;
+}
+
+}  // namespace vibe

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "tissue/tetrahedra_kernel.hpp"
+
+namespace vibe {
+
+// Rows of numbers that a triangle of a shell has at rest, see ShellElements. A side is that opposite the node of the
+// same number; its apex is the node beyond it.
+constexpr int kShellPatch = 0;       ///< positions of the nodes 2, 3 and the three apexes less that of node 1 [m]
+constexpr int kShellSide = 15;       ///< per side: entries 11, 12, 22 of T [1/m], then twice the volume [m^3]
+constexpr int kShellNormal = 27;     ///< normal of the patch at the centroid, shortened by kShellSoftness [1]
+constexpr int kShellLength = 30;     ///< 36 times the area element at the centroid, lengthened by kShellSoftness [m^2]
+constexpr int kShellBend = 31;       ///< area times half the bending stiffness at rest, by (36 area elements)^4 / 36^2
+constexpr int kShellOrigin = 32;     ///< position of node 1 less the origin of the volume [m]
+constexpr int kShellRows = 35;       ///< of a triangle with three neighbours
+constexpr int kShellGhost = 35;      ///< per side: 1 if a triangle is beyond it, else 0; then sqrt(2) n if clamped
+constexpr int kShellGhostRows = 47;  ///< of the others
+
+// Rows of a triangle with fibres, beside those above.
+constexpr int kFibreSide = 0;      ///< per side and family: the direction in the basis of the side's T, 0 0 for none
+constexpr int kFibreModulus = 12;  ///< [Pa]
+constexpr int kFibreRows = 13;
+
+/// What evaluating some batches of triangles of one material takes; see TetSweep.
+struct ShellSweep {
+  const TetOffsets* node;  ///< (batches * 6)
+  const TetReals* rest;    ///< (batches * kShellRows or kShellGhostRows), from batch `first`
+  bool ghosts;             ///< the rows of ghosts are there
+  int first, last;         ///< batches, for `node`
+  Law law;
+  double poisson_ratio;
+  const LawConstants* constants;
+  const TetReals* fibre;       ///< (batches * kFibreRows), from batch `first`; for fibres only
+  double fibre_stiffening;     ///< for fibres only
+  const float* displacement4;  ///< [m]
+  float* gradient4;            ///< added to [N]
+  float* volume_gradient4;     ///< added to [m^2]; null: not wanted
+  double volume;               ///< out, added to, if wanted [m^3]
+};
+
+/// Returns the energy [J] and adds its gradient.
+using ShellSweepFunction = double (*)(ShellSweep& sweep);
+
+/// The kernel of one instruction path.
+struct ShellKernel {
+  const char* name;
+  ShellSweepFunction sweep;
+  ShellSweepFunction fibres;  ///< what fibres add to the above, without the volume
+};
+ShellKernel shellKernelSse2();
+ShellKernel shellKernelAvx2();  ///< AVX2, FMA; call its function only on a machine that has both
+
+/// The widest path that this machine can run.
+ShellKernel chooseShellKernel();
+
+}  // namespace vibe

@@ -1,0 +1,99 @@
+#pragma once
+
+#include "tissue/shell_fibres.hpp"
+#include "tissue/tetrahedra_kernel_impl.hpp"  // how lanes load nodes and add to them
+
+namespace vibe {
+namespace {
+
+/// Most steps of Newton's method for the stretch across the wall. The laws without (ln J)^2 take all of them, the
+/// neo-Hookean one needs no second; the others take as many as they need.
+template <Law law>
+constexpr int thicknessSteps() {
+  if (law == Law::NeoHookean) return 1;
+  return law == Law::StableNeoHookean || law == Law::MacklinMueller ? 2 : 7;
+}
+
+template <class Arch>
+struct ShellKernelOf {
+  using Lanes = TetLanes<Arch>;
+  using Pack = typename Lanes::Pack;
+  static constexpr int kWidth = static_cast<int>(Pack::size);
+
+  /// The displacements of a patch less that of node 1, without ghosts.
+  [[gnu::always_inline]] static void gather(const ShellSweep& s, const TetOffsets* offset, int lane, Pack (&u1)[3],
+                                            Pack (&u)[5][3]) {
+    Lanes::load(s.displacement4, offset[0].lane + lane, u1);
+    for (int a = 0; a < 5; ++a) {
+      Lanes::load(s.displacement4, offset[a + 1].lane + lane, u[a]);
+      for (int r = 0; r < 3; ++r) u[a][r] = u[a][r] - u1[r];
+    }
+  }
+  [[gnu::always_inline]] static void scatter(const ShellSweep& s, const TetOffsets* offset, int lane,
+                                             const Pack (&f)[5][3]) {
+    Pack f1[3];
+    for (int r = 0; r < 3; ++r) f1[r] = -(((f[0][r] + f[1][r]) + (f[2][r] + f[3][r])) + f[4][r]);
+    Lanes::add(s.gradient4, offset[0].lane + lane, f1);
+    for (int a = 0; a < 5; ++a) Lanes::add(s.gradient4, offset[a + 1].lane + lane, f[a]);
+  }
+
+  template <Law law, bool ghosts, bool volume>
+  static double sweepAll(ShellSweep& s) {
+    const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
+    typename Lanes::Sum energy, enclosed;
+    const TetReals* rows = s.rest;
+    for (int batch = s.first; batch < s.last; ++batch, rows += ghosts ? kShellGhostRows : kShellRows)
+      for (int lane = 0; lane < kTetLanes; lane += kWidth) {
+        const TetOffsets* offset = s.node + batch * 6;
+        const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
+        Pack u1[3], u[5][3], f[5][3];
+        gather(s, offset, lane, u1, u);
+        if constexpr (ghosts) placeGhosts(rest, u);
+        energy.add(shellEnergy<law, thicknessSteps<law>()>(terms, rest, u, f));
+        if constexpr (ghosts) returnGhosts(rest, f);
+        scatter(s, offset, lane, f);
+        if constexpr (volume) {
+          Pack share[3];
+          enclosed.add(coneVolume(rest, u, u1, share));
+          for (int a = 0; a < 3; ++a) Lanes::add(s.volume_gradient4, offset[a].lane + lane, share);
+        }
+      }
+    if constexpr (volume) s.volume += enclosed.total();
+    return energy.total();
+  }
+
+  template <bool ghosts>
+  static double sweepFibresOf(ShellSweep& s) {
+    typename Lanes::Sum energy;
+    const TetReals *rows = s.rest, *fibres = s.fibre;
+    for (int batch = s.first; batch < s.last;
+         ++batch, rows += ghosts ? kShellGhostRows : kShellRows, fibres += kFibreRows)
+      for (int lane = 0; lane < kTetLanes; lane += kWidth) {
+        const TetOffsets* offset = s.node + batch * 6;
+        const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
+        const auto fibre = [=](int row) { return Pack::load_aligned(fibres[row].lane + lane); };
+        Pack u1[3], u[5][3], f[5][3];
+        gather(s, offset, lane, u1, u);
+        for (auto& node : f)
+          for (Pack& value : node) value = Pack(0.0f);
+        if constexpr (ghosts) placeGhosts(rest, u);
+        energy.add(fibreEnergy(s.fibre_stiffening, rest, fibre, u, f));
+        if constexpr (ghosts) returnGhosts(rest, f);
+        scatter(s, offset, lane, f);
+      }
+    return energy.total();
+  }
+
+  static double sweepFibres(ShellSweep& s) { return s.ghosts ? sweepFibresOf<true>(s) : sweepFibresOf<false>(s); }
+
+  static double sweep(ShellSweep& s) {
+    return withLaw(s.law, [&](auto tag) {
+      constexpr Law law = decltype(tag)::value;
+      if (s.ghosts) return s.volume_gradient4 ? sweepAll<law, true, true>(s) : sweepAll<law, true, false>(s);
+      return s.volume_gradient4 ? sweepAll<law, false, true>(s) : sweepAll<law, false, false>(s);
+    });
+  }
+};
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,330 @@
+#pragma once
+
+#include "tissue/shell_kernel.hpp"
+#include "tissue/shell_plane_stress.hpp"
+
+// The energy of one triangle of a shell and its gradient, for one triangle or a pack of them; see material_law.hpp for
+// why everything is in an unnamed namespace.
+
+namespace vibe {
+namespace {
+
+// Square of the part of the area element at rest that is added to it, so that the normal n = c / sqrt(c.c + softness)
+// has a derivative where the area c vanishes. It makes a flat wall softer in bending by as much.
+constexpr double kShellSoftness = 1e-5;
+// 1 / (squared stretch of the area) is kept up to the first in the stiffness of bending, then bent to a limit of 6.
+constexpr double kThinningStart = 2, kThinningEnd = 6;
+
+template <class B>
+[[gnu::always_inline]] inline B dot(const B (&a)[3], const B (&b)[3]) {
+  return mulAdd(a[2], b[2], B(mulAdd(a[1], b[1], B(a[0] * b[0]))));
+}
+template <class B>
+[[gnu::always_inline]] inline void cross(const B (&a)[3], const B (&b)[3], B (&out)[3]) {
+  for (int r = 0; r < 3; ++r) out[r] = minor(a[(r + 1) % 3], b[(r + 2) % 3], a[(r + 2) % 3], b[(r + 1) % 3]);
+}
+
+/// Symmetric 2 x 2 matrices: 11, 12, 22.
+/// T^T a T for an upper triangular T
+template <class B>
+[[gnu::always_inline]] inline void pullBack(const B (&t)[3], const B (&a)[3], B (&out)[3]) {
+  const B x = mulAdd(t[1], a[0], B(t[2] * a[1])), y = mulAdd(t[1], a[1], B(t[2] * a[2]));
+  out[0] = t[0] * t[0] * a[0];
+  out[1] = t[0] * x;
+  out[2] = mulAdd(t[1], x, B(t[2] * y));
+}
+/// T g T^T
+template <class B>
+[[gnu::always_inline]] inline void pushForward(const B (&t)[3], const B (&g)[3], B (&out)[3]) {
+  const B x = mulAdd(t[0], g[0], B(t[1] * g[1])), z = mulAdd(t[0], g[1], B(t[1] * g[2]));
+  out[0] = mulAdd(t[0], x, B(t[1] * z));
+  out[1] = t[2] * z;
+  out[2] = t[2] * t[2] * g[2];
+}
+
+/// The strain S = C - 1 at the middle of a side.
+template <class B>
+[[gnu::always_inline]] inline void sideStrain(const B (&t)[3], const B (&e)[3], const B (&d)[3], const B (&ue)[3],
+                                              const B (&ud)[3], B (&s)[3]) {
+  const B half = constant<B>(0.5), two = constant<B>(2);
+  B sum_e[3], sum_d[3];
+  for (int r = 0; r < 3; ++r) sum_e[r] = mulAdd(two, e[r], ue[r]), sum_d[r] = mulAdd(two, d[r], ud[r]);
+  const B change[3] = {dot(ue, sum_e), half * (dot(ue, sum_d) + dot(sum_e, ud)), dot(ud, sum_d)};
+  pullBack(t, change, s);
+}
+
+/// Twice the energy of the membrane at the middle of a side, and the derivatives by e and d.
+/// @param e, d    the side, and the apex beyond it less the node opposite; at rest
+/// @param ue, ud  their displacements
+template <Law law, int Steps, class B, class Rest>
+[[gnu::always_inline]] inline B sideEnergy(const WallTerms<B>& terms, const Rest& rest, int side, const B (&e)[3],
+                                           const B (&d)[3], const B (&ue)[3], const B (&ud)[3], B (&fe)[3],
+                                           B (&fd)[3]) {
+  const int row = kShellSide + 4 * side;
+  const B t[3] = {rest(row), rest(row + 1), rest(row + 2)};
+  B s[3];
+  sideStrain(t, e, d, ue, ud, s);
+  const PlaneStress<B> p = planeStress<law, Steps>(terms, B(s[0] + s[2]), minor(s[0], s[2], s[1], s[1]));
+  // dW/dC = W_I (1 - y^2 cof C), cof C = 1 + cof S
+  const B volume = rest(row + 3), w = p.by_i * volume, square = w * p.square, shear = w + square;
+  const B g[3] = {-mulAdd(shear, s[2], square), shear * s[1], -mulAdd(shear, s[0], square)};
+  B a[3];
+  pushForward(t, g, a);
+  for (int r = 0; r < 3; ++r) {
+    const B now_e = e[r] + ue[r], now_d = d[r] + ud[r];
+    fe[r] = mulAdd(a[0], now_e, B(a[1] * now_d));
+    fd[r] = mulAdd(a[1], now_e, B(a[2] * now_d));
+  }
+  return volume * p.energy;
+}
+
+/// The nodes 2 and 3 and the apexes, each less node 1.
+template <class B>
+using Patch = B[5][3];
+
+/// The sum of what a function as sideEnergy returns for the three sides; adds its gradients to f.
+template <class Side, class B>
+[[gnu::always_inline]] inline B overSides(const Side& side_energy, const Patch<B>& x, const Patch<B>& u, Patch<B>& f) {
+  B energy = constant<B>(0), e[3], d[3], ue[3], ud[3], fe[3], fd[3];
+  for (int r = 0; r < 3; ++r) {
+    e[r] = x[1][r] - x[0][r], d[r] = x[2][r];
+    ue[r] = u[1][r] - u[0][r], ud[r] = u[2][r];
+  }
+  energy = energy + side_energy(0, e, d, ue, ud, fe, fd);
+  for (int r = 0; r < 3; ++r) f[0][r] = f[0][r] - fe[r], f[1][r] = f[1][r] + fe[r], f[2][r] = f[2][r] + fd[r];
+  for (int r = 0; r < 3; ++r) d[r] = x[0][r] - x[3][r], ud[r] = u[0][r] - u[3][r];
+  energy = energy + side_energy(1, x[1], d, u[1], ud, fe, fd);
+  for (int r = 0; r < 3; ++r) f[1][r] = f[1][r] + fe[r], f[0][r] = f[0][r] + fd[r], f[3][r] = f[3][r] - fd[r];
+  for (int r = 0; r < 3; ++r) d[r] = x[1][r] - x[4][r], ud[r] = u[1][r] - u[4][r];
+  energy = energy + side_energy(2, x[0], d, u[0], ud, fe, fd);
+  for (int r = 0; r < 3; ++r) f[0][r] = f[0][r] + fe[r], f[1][r] = f[1][r] + fd[r], f[4][r] = f[4][r] - fd[r];
+  return energy;
+}
+
+/// Adds the membrane's gradient to f; returns twice its energy.
+template <Law law, int Steps, class B, class Rest>
+[[gnu::always_inline]] inline B membraneEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
+                                               const Patch<B>& u, Patch<B>& f) {
+  const auto side = [&](int k, const B(&e)[3], const B(&d)[3], const B(&ue)[3], const B(&ud)[3], B(&fe)[3], B(&fd)[3])
+      __attribute__((always_inline)) {
+    return sideEnergy<law, Steps>(terms, rest, k, e, d, ue, ud, fe, fd);
+  };
+  return overSides(side, x, u, f);
+}
+
+/// Six times the tangents of the surface at the centroid, by the two coordinates.
+template <class B>
+[[gnu::always_inline]] inline void tangents(const Patch<B>& x, B (&first)[3], B (&second)[3]) {
+  const B four = constant<B>(4);
+  for (int r = 0; r < 3; ++r) {
+    first[r] = mulAdd(four, x[0][r], B(x[2][r] - x[3][r]));
+    second[r] = mulAdd(four, x[1][r], B(x[2][r] - x[4][r]));
+  }
+}
+
+/// Second derivatives of the surface by the coordinates: 11, 12, 22.
+template <class B>
+[[gnu::always_inline]] inline void secondDerivatives(const Patch<B>& x, B (&h)[3][3]) {
+  const B two = constant<B>(2);
+  for (int r = 0; r < 3; ++r) {
+    h[0][r] = minusMul(two, x[1][r], B(x[2][r] + x[3][r]));
+    h[1][r] = x[2][r] - (x[0][r] + x[1][r]);
+    h[2][r] = minusMul(two, x[0][r], B(x[2][r] + x[4][r]));
+  }
+}
+
+/// The bent surface: b - B without cancellation, and what its derivative takes.
+template <class B>
+struct Bent {
+  B g[2][3];       ///< tangents
+  B c[3];          ///< g0 x g1
+  B square;        ///< c.c
+  B n[3];          ///< normal
+  B inverse;       ///< 1 / length of c = g0 x g1
+  B thin;          ///< (length at rest / length)^2
+  B rest_h[3][3];  ///< second derivatives at rest
+  B move_h[3][3];  ///< their displacement
+  B change[3];     ///< b - B: 11, 12, 22
+};
+
+template <class B, class Rest>
+[[gnu::always_inline]] inline Bent<B> bentSurface(const Rest& rest, const Patch<B>& x, const Patch<B>& u) {
+  Bent<B> out;
+  B g0[3], g1[3], u0[3], u1[3], part[3], more[3];
+  tangents(x, g0, g1);
+  tangents(u, u0, u1);
+  for (int r = 0; r < 3; ++r) out.g[0][r] = g0[r] + u0[r], out.g[1][r] = g1[r] + u1[r];
+  cross(g0, u1, part);
+  cross(u0, out.g[1], more);
+  const B normal[3] = {rest(kShellNormal), rest(kShellNormal + 1), rest(kShellNormal + 2)}, length = rest(kShellLength);
+  B both[3];
+  for (int r = 0; r < 3; ++r) {
+    more[r] = part[r] + more[r];
+    out.c[r] = mulAdd(length, normal[r], more[r]);
+    both[r] = mulAdd(length, normal[r], out.c[r]);
+  }
+  out.square = dot(out.c, out.c);
+  const B now = rootOf(B(mulAdd(B(constant<B>(kShellSoftness) * length), length, out.square)));
+  const B reach = now + length, both_inverse = constant<B>(1) / (now * reach);
+  out.inverse = both_inverse * reach;
+  const B ratio = length * out.inverse, longer = dot(more, both) * (both_inverse * now);
+  out.thin = ratio * ratio;
+  B turn[3];
+  for (int r = 0; r < 3; ++r) {
+    out.n[r] = out.c[r] * out.inverse;
+    turn[r] = minusMul(longer, normal[r], more[r]) * out.inverse;
+  }
+  secondDerivatives(x, out.rest_h);
+  secondDerivatives(u, out.move_h);
+  for (int k = 0; k < 3; ++k) out.change[k] = dot(out.n, out.move_h[k]) + dot(turn, out.rest_h[k]);
+  return out;
+}
+
+/// How the energy of bending depends on the squared stretch of the area, D.
+template <class B>
+struct BendingFactor {
+  B whole, by_thin;      ///< 1 / D^2 times c, the squared stretch across the wall; its derivative by thin = 1 / D
+  B mean, mean_by_thin;  ///< share of the mean curvature, 1 at rest
+};
+
+/// The second derivative of the neo-Hookean plane-stress energy mu/2 tr C + f(D) at the stretched metric: with
+/// f' = -mu/2 c/D and f'' = mu/2 c/D^2 R, R = (2 mu c + 2 lambda) / (2 mu c + lambda), a strain that is linear across
+/// the wall costs (R h^2 - 2 g) mu c, h and g being the sum and the product of the two curvatures. c(D) by the rational
+/// function, R(c) by the straight line that have the right value and slope at rest (for nu = 0.45 c is 1 % off at D =
+/// 4, 5 % at D = 1/4).
+template <class B>
+[[gnu::always_inline]] inline BendingFactor<B> bendingFactor(const WallTerms<B>& terms, const B& thin) {
+  const B start = constant<B>(kThinningStart), end = constant<B>(kThinningEnd), one = constant<B>(1);
+  const B kept = smaller(thin, end), over = larger(B(kept - start), constant<B>(0));
+  const B bend = over * constant<B>(0.5 / (kThinningEnd - kThinningStart));
+  const B tau = minusMul(bend, over, kept), slope = minusMul(constant<B>(2), bend, one);
+  const B s = larger(terms.thickness_guess, constant<B>(0));
+  const B inverse = one / mulAdd(one - s, tau, s), across = tau * inverse, by = s * inverse * inverse * slope;
+  const B square = tau * tau;
+  BendingFactor<B> out;
+  out.whole = square * across;
+  out.by_thin = mulAdd(square, by, constant<B>(2) * tau * across * slope);
+  out.mean = minusMul(terms.mean_softening, across - one, one);
+  out.mean_by_thin = -terms.mean_softening * by;
+  return out;
+}
+
+/// Adds the gradient to f; returns the energy: with the metric a and the change k of the curvature at the centroid,
+/// (mean (cof a : k)^2 - 2 (1 - nu) det a det k) whole, a polynomial in a and k that is never negative.
+template <class B, class Rest>
+[[gnu::always_inline]] inline B bendingEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
+                                              const Patch<B>& u, Patch<B>& f) {
+  const B two = constant<B>(2), four = constant<B>(4), gauss_share = two - two * terms.poisson_ratio;
+  const Bent<B> s = bentSurface(rest, x, u);
+  const B a[3] = {dot(s.g[0], s.g[0]), dot(s.g[0], s.g[1]), dot(s.g[1], s.g[1])};
+  const BendingFactor<B> factor = bendingFactor(terms, s.thin);
+  const B* k = s.change;
+  const B mean = mulAdd(a[2], k[0], B(minusMul(B(two * a[1]), k[1], B(a[0] * k[2]))));
+  const B gauss = gauss_share * minor(k[0], k[2], k[1], k[1]), whole = rest(kShellBend) * factor.whole;
+  const B square = mean * mean, form = minusMul(s.square, gauss, B(factor.mean * square));
+  const B pull = two * whole * factor.mean * mean, twist = whole * gauss_share * s.square;
+  const B m0 = minusMul(twist, k[2], B(pull * a[2])), m2 = minusMul(twist, k[0], B(pull * a[0]));
+  const B m1 = two * minusMul(pull, a[1], B(twist * k[1]));  // of b_12 and b_21
+  const B by_thin = mulAdd(rest(kShellBend) * factor.by_thin, form, B(whole * factor.mean_by_thin * square));
+  // half the derivative by c.c
+  const B widen = -mulAdd(B(by_thin * s.thin), B(s.inverse * s.inverse), B(whole * gauss));
+  B q[3], p[3], pull0[3], pull1[3];
+  for (int r = 0; r < 3; ++r) {
+    const B h0 = s.rest_h[0][r] + s.move_h[0][r], h1 = s.rest_h[1][r] + s.move_h[1][r];
+    q[r] = mulAdd(m0, h0, B(mulAdd(m1, h1, B(m2 * (s.rest_h[2][r] + s.move_h[2][r])))));
+  }
+  const B along = dot(s.n, q);
+  for (int r = 0; r < 3; ++r) p[r] = mulAdd(B(two * widen), s.c[r], B(s.inverse * minusMul(along, s.n[r], q[r])));
+  cross(s.g[1], p, pull0);
+  cross(p, s.g[0], pull1);
+  const B by0 = two * pull * k[2], by1 = -two * pull * k[1], by2 = two * pull * k[0];
+  for (int r = 0; r < 3; ++r) {
+    pull0[r] = mulAdd(by0, s.g[0][r], B(mulAdd(by1, s.g[1][r], pull0[r])));
+    pull1[r] = mulAdd(by2, s.g[1][r], B(mulAdd(by1, s.g[0][r], pull1[r])));
+  }
+  const B second = mulAdd(two, m2, m1), third = mulAdd(two, m0, m1), all = m0 + m1 + m2;
+  for (int r = 0; r < 3; ++r) {
+    f[0][r] = minusMul(second, s.n[r], B(mulAdd(four, pull0[r], f[0][r])));
+    f[1][r] = minusMul(third, s.n[r], B(mulAdd(four, pull1[r], f[1][r])));
+    f[2][r] = mulAdd(all, s.n[r], B(f[2][r] + (pull0[r] + pull1[r])));
+    f[3][r] = mulAdd(m0, s.n[r], B(f[3][r] - pull0[r]));
+    f[4][r] = mulAdd(m2, s.n[r], B(f[4][r] - pull1[r]));
+  }
+  return whole * form;
+}
+
+/// Energy of a triangle; its gradient by the nodes 2 to 6 is written to f, that by node 1 is minus their sum.
+template <Law law, int Steps, class B, class Rest>
+[[gnu::always_inline]] inline B shellEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& u,
+                                            Patch<B>& f) {
+  Patch<B> x;
+  for (int a = 0; a < 5; ++a)
+    for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), f[a][r] = constant<B>(0);
+  const B membrane = membraneEnergy<law, Steps>(terms, rest, x, u, f);
+  return mulAdd(constant<B>(0.5), membrane, bendingEnergy(terms, rest, x, u, f));
+}
+
+/// The nodes beside a side, and the one opposite it; 0 is node 1.
+constexpr int kBeside[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+
+/// Puts the ghosts of sides without a neighbour where they belong: the mirror image of the node opposite in the middle
+/// of the side; across a clamped side, moved along the normal as that node itself.
+template <class B, class Rest>
+[[gnu::always_inline]] inline void placeGhosts(const Rest& rest, Patch<B>& u) {
+  const B one = constant<B>(1), half = constant<B>(0.5), zero = constant<B>(0);
+  for (int side = 0; side < 3; ++side) {
+    const int row = kShellGhost + 4 * side, p = kBeside[side][0], q = kBeside[side][1];
+    const B real = rest(row), m[3] = {rest(row + 1), rest(row + 2), rest(row + 3)};
+    B sum[3], arm[3];
+    for (int r = 0; r < 3; ++r) {
+      sum[r] = (p == 0 ? zero : u[p - 1][r]) + (q == 0 ? zero : u[q - 1][r]);
+      arm[r] = (side == 0 ? zero : u[side - 1][r]) - half * sum[r];
+    }
+    const B along = dot(m, arm);
+    for (int r = 0; r < 3; ++r) {
+      const B ghost = mulAdd(m[r], along, B(sum[r] - (side == 0 ? zero : u[side - 1][r])));
+      u[side + 2][r] = mulAdd(real, u[side + 2][r], B((one - real) * ghost));
+    }
+  }
+}
+
+/// The transpose of placeGhosts.
+template <class B, class Rest>
+[[gnu::always_inline]] inline void returnGhosts(const Rest& rest, Patch<B>& f) {
+  const B half = constant<B>(0.5);
+  for (int side = 0; side < 3; ++side) {
+    const int row = kShellGhost + 4 * side, p = kBeside[side][0], q = kBeside[side][1];
+    const B real = rest(row), m[3] = {rest(row + 1), rest(row + 2), rest(row + 3)};
+    B ghost[3];
+    for (int r = 0; r < 3; ++r) {
+      const B own = real * f[side + 2][r];
+      ghost[r] = f[side + 2][r] - own;
+      f[side + 2][r] = own;
+    }
+    const B along = dot(m, ghost);
+    for (int r = 0; r < 3; ++r) {
+      const B beside = minusMul(B(half * along), m[r], ghost[r]);
+      if (p != 0) f[p - 1][r] = f[p - 1][r] + beside;
+      if (q != 0) f[q - 1][r] = f[q - 1][r] + beside;
+      if (side != 0) f[side - 1][r] = mulAdd(along, m[r], B(f[side - 1][r] - ghost[r]));
+    }
+  }
+}
+
+/// Sixth of the area vector of a triangle times 2, the third that each node gets; returns the volume of the cone to the
+/// origin.
+template <class B, class Rest>
+[[gnu::always_inline]] inline B coneVolume(const Rest& rest, const Patch<B>& u, const B (&u1)[3], B (&share)[3]) {
+  const B sixth = constant<B>(1.0 / 6);
+  B e[3], d[3], at[3];
+  for (int r = 0; r < 3; ++r) {
+    e[r] = rest(kShellPatch + r) + u[0][r], d[r] = rest(kShellPatch + 3 + r) + u[1][r];
+    at[r] = rest(kShellOrigin + r) + u1[r];
+  }
+  cross(e, d, share);
+  for (int r = 0; r < 3; ++r) share[r] = sixth * share[r];
+  return dot(at, share);
+}
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "tissue/shell.hpp"
+#include "vibe_core/geometry/organ.hpp"
+#include "vibe_core/scene/scene.hpp"
+#include "vibe_core/tissue/tissue_model.hpp"
+
+namespace vibe {
+
+/// The wall of an organ as a shell whose nodes are the particles (tissue.model: shell).
+class ShellTissue : public TissueModel {
+ public:
+  /// @param masses  of the particles [kg]; where fixed[i] is not 0 the particle is held
+  /// @throws Error for an unknown tissue.law, and as ShellElements
+  ShellTissue(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed);
+
+  std::string name() const override { return "shell"; }
+  double energy(const State& state) const override;
+  void addForces(const State& state, double* fx, double* fy, double* fz) const override;
+  void strain(const State& state, float* out) const override;
+  double stiffnessRatio() const override { return 1; }
+
+  std::shared_ptr<const ShellElements> elements() const { return elements_; }
+
+ private:
+  std::vector<double> displacement(const State& state) const;
+  std::shared_ptr<const ShellElements> elements_;
+};
+
+/// The law that tissue.law names.
+/// @throws Error for an unknown one, naming the known ones
+Law lawByName(const std::string& name);
+
+}  // namespace vibe

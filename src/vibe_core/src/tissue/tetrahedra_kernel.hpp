@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+
+#include "vibe_core/tissue/material.hpp"
+
+namespace vibe {
+
+struct LawConstants;
+
+constexpr int kTetLanes = 8;  ///< elements in a batch
+
+/// One number of each element of a batch.
+struct alignas(32) TetReals {
+  float lane[kTetLanes];
+};
+/// Of each element of a batch, where a node's four numbers begin: 4 * node.
+struct alignas(32) TetOffsets {
+  std::uint32_t lane[kTetLanes];
+};
+
+/// What evaluating some batches of elements of one material takes. Plain pointers, so that the translation units of the
+/// kernel share no inline code that one of them could compile for the wrong machine.
+struct TetSweep {
+  const TetOffsets* node;  ///< (batches * nodes per element)
+  const TetReals* rest;    ///< (batches * batch_stride), see TetElements
+  int batch_stride;        ///< rows of `rest` per batch
+  int point_stride;        ///< rows of `rest` from one integration point to the next; 0: all have the same
+  int first, last;         ///< batches
+  Law law;
+  const LawConstants* constants;
+  const float* displacement4;  ///< [m]
+  float* gradient4;            ///< added to [N]
+};
+
+/// Returns the energy [J] and adds its gradient.
+using TetSweepFunction = double (*)(const TetSweep& sweep);
+
+/// The kernels of one instruction path.
+struct TetKernel {
+  const char* name;
+  TetSweepFunction linear, quadratic;
+};
+TetKernel tetKernelSse2();
+TetKernel tetKernelAvx2();  ///< AVX2, FMA; call its functions only on a machine that has both
+
+/// The widest path that this machine can run.
+TetKernel chooseTetKernel();
+
+}  // namespace vibe

@@ -1,0 +1,177 @@
+#pragma once
+
+#include "tissue/material_law.hpp"
+
+// The energy of one tetrahedron and its gradient, for one element or a pack of them; see material_law.hpp for why
+// everything is in an unnamed namespace.
+
+namespace vibe {
+namespace {
+
+// Barycentric coordinates of the four integration points: one kGaussNear, the others kGaussFar.
+constexpr double kGaussNear = 0.58541019662496845446;
+constexpr double kGaussFar = 0.13819660112501051518;
+
+/// c - a b
+template <class B>
+inline B minusMul(const B& a, const B& b, const B& c) {
+  return c - a * b;
+}
+template <class T, class A>
+inline xsimd::batch<T, A> minusMul(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b,
+                                   const xsimd::batch<T, A>& c) {
+  return xsimd::fnma(a, b, c);
+}
+
+/// a b - c d
+template <class B>
+inline B minor(const B& a, const B& b, const B& c, const B& d) {
+  return minusMul(c, d, B(a * b));
+}
+
+/// Number of the node on the edge between two vertices of a quadratic tetrahedron; the vertex itself for a = b.
+constexpr int kEdgeNode[4][4] = {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}};
+
+/// Cofactors of h.
+template <class B>
+[[gnu::always_inline]] inline void cofactors(const B (&h)[3][3], B (&cof)[3][3]) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) {
+      const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+      cof[r][c] = minor(h[r1][c1], h[r2][c2], h[r1][c2], h[r2][c1]);
+    }
+}
+
+/// Energy of a volume from the gradient h of the displacement, and its derivative by h:
+/// P = 2 W_I (F - cof F) + balance cof F with cof F = (1 + tr h) 1 - ht + cof h.
+template <Law law, class B>
+[[gnu::always_inline]] inline B strainEnergy(const LawTerms<B>& terms, const B (&h)[3][3], const B& volume,
+                                             B (&p)[3][3]) {
+  B cof[3][3];
+  cofactors(h, cof);
+  const B trace = h[0][0] + h[1][1] + h[2][2];
+  B higher = cof[0][0] + cof[1][1] + cof[2][2];  // J - 1 - trace
+  for (int c = 0; c < 3; ++c) higher = mulAdd(h[0][c], cof[0][c], higher);
+  B square = h[0][0] * h[0][0];
+  for (int k = 1; k < 9; ++k) square = mulAdd(h[k / 3][k % 3], h[k / 3][k % 3], square);
+  const B two = constant<B>(2);
+  const LawAt<B> w =
+      lawAt<law>(terms, B(mulAdd(two, trace, square)), B(trace + higher), B(minusMul(two, higher, square)));
+  const B direct = two * w.by_i * volume, balance = w.balance * volume, mixed = direct - balance;
+  const B diagonal = minusMul(mixed, trace, balance);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) {
+      const B sum = mulAdd(direct, h[r][c], B(mixed * (h[c][r] - cof[r][c])));
+      p[r][c] = r == c ? B(sum + diagonal) : sum;
+    }
+  return w.energy * volume;
+}
+
+/// What an integration point adds to the energy, and the derivative of that by the edges.
+/// @param edge   derivatives of the displacement by the barycentric coordinates 1, 2, 3, less that by coordinate 0
+/// @param rest   (row) -> ten rows of TetElements
+/// @param force  of the three edges, overwritten
+template <Law law, class B, class Rest>
+[[gnu::always_inline]] inline B pointEnergy(const LawTerms<B>& terms, const B (&edge)[3][3], const Rest& rest,
+                                            B (&force)[3][3]) {
+  B h[3][3], p[3][3];
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      h[r][c] = mulAdd(edge[2][r], rest(6 + c), mulAdd(edge[1][r], rest(3 + c), B(edge[0][r] * rest(c))));
+  const B energy = strainEnergy<law>(terms, h, rest(9), p);
+  for (int i = 0; i < 3; ++i)
+    for (int r = 0; r < 3; ++r)
+      force[i][r] = mulAdd(p[r][2], rest(3 * i + 2), mulAdd(p[r][1], rest(3 * i + 1), B(p[r][0] * rest(3 * i))));
+  return energy;
+}
+
+template <Law law, class B, class Rest>
+[[gnu::always_inline]] inline B linearEnergy(const LawTerms<B>& terms, const B (&u)[4][3], const Rest& rest,
+                                             B (&force)[4][3]) {
+  B edge[3][3], pull[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int r = 0; r < 3; ++r) edge[i][r] = u[i + 1][r] - u[0][r];
+  const auto row = [&](int k) { return rest(0, k); };
+  const B energy = pointEnergy<law>(terms, edge, row, pull);
+  for (int r = 0; r < 3; ++r) {
+    force[0][r] = -(pull[0][r] + pull[1][r] + pull[2][r]);
+    for (int i = 0; i < 3; ++i) force[i + 1][r] = pull[i][r];
+  }
+  return energy;
+}
+
+// Quadratic displacements: the derivative by coordinate i at point k is base_i + kSteep u_(ik), where u_(ik) is on the
+// edge between the two vertices (u_k for i = k) and base_i = kCorner u_i + kMiddle (sum of the edges at i).
+constexpr double kCorner = 4 * kGaussFar - 1;
+constexpr double kMiddle = 4 * kGaussFar;
+constexpr double kSteep = 4 * (kGaussNear - kGaussFar);
+
+template <class B>
+[[gnu::always_inline]] inline void edgesAt(int point, const B (&u)[10][3], const B (&base)[4][3], B (&edge)[3][3]) {
+  const B steep = constant<B>(kSteep);
+  for (int r = 0; r < 3; ++r) {
+    const B first = mulAdd(steep, u[kEdgeNode[0][point]][r], base[0][r]);
+    for (int i = 0; i < 3; ++i) edge[i][r] = mulAdd(steep, u[kEdgeNode[i + 1][point]][r], base[i + 1][r]) - first;
+  }
+}
+
+// The transpose of edgesAt: to the nodes directly, and to the sums that belong to base.
+template <class B>
+[[gnu::always_inline]] inline void addPull(int point, const B (&pull)[3][3], B (&sum)[4][3], B (&force)[10][3]) {
+  const B steep = constant<B>(kSteep);
+  for (int r = 0; r < 3; ++r) {
+    const B last = -(pull[0][r] + pull[1][r] + pull[2][r]);
+    for (int i = 0; i < 4; ++i) {
+      const B part = i == 0 ? last : pull[i - 1][r];
+      sum[i][r] = sum[i][r] + part;
+      B& target = force[kEdgeNode[i][point]][r];
+      target = mulAdd(steep, part, target);
+    }
+  }
+}
+
+template <Law law, class B, class Rest>
+[[gnu::always_inline]] inline B quadraticEnergy(const LawTerms<B>& terms, const B (&u)[10][3], const Rest& rest,
+                                                B (&force)[10][3]) {
+  const B corner = constant<B>(kCorner), middle = constant<B>(kMiddle), zero = constant<B>(0);
+  B edge[3][3], pull[3][3], base[4][3], sum[4][3];
+  for (int i = 0; i < 4; ++i)
+    for (int r = 0; r < 3; ++r) {
+      const int *edges = kEdgeNode[i], a = (i + 1) % 4, b = (i + 2) % 4, c = (i + 3) % 4;
+      base[i][r] = mulAdd(corner, u[i][r], B(middle * (u[edges[a]][r] + u[edges[b]][r] + u[edges[c]][r])));
+      sum[i][r] = zero;
+    }
+  for (auto& node : force) node[0] = zero, node[1] = zero, node[2] = zero;
+  B energy = zero;
+  for (int point = 0; point < 4; ++point) {
+    edgesAt(point, u, base, edge);
+    const auto row = [&](int number) { return rest(point, number); };
+    energy = energy + pointEnergy<law>(terms, edge, row, pull);
+    addPull(point, pull, sum, force);
+  }
+  for (int i = 0; i < 4; ++i)
+    for (int r = 0; r < 3; ++r) {
+      force[i][r] = mulAdd(corner, sum[i][r], force[i][r]);
+      for (int other = 0; other < i; ++other) {
+        B& target = force[kEdgeNode[i][other]][r];
+        target = mulAdd(middle, B(sum[i][r] + sum[other][r]), target);
+      }
+    }
+  return energy;
+}
+
+/// Energy of an element; the gradient is written to `force`.
+/// @param u     displacements of the nodes
+/// @param rest  (point, row) -> the rows of TetElements
+template <int Nodes, Law law, class B, class Rest>
+[[gnu::always_inline]] inline B elementEnergy(const LawTerms<B>& terms, const B (&u)[Nodes][3], const Rest& rest,
+                                              B (&force)[Nodes][3]) {
+  if constexpr (Nodes == 4) {
+    return linearEnergy<law>(terms, u, rest, force);
+  } else {
+    return quadraticEnergy<law>(terms, u, rest, force);
+  }
+}
+
+}  // namespace
+}  // namespace vibe

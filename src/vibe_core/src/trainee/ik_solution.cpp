@@ -1,0 +1,109 @@
+#include "trainee/ik_solution.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+namespace vibe {
+
+namespace {
+
+constexpr int kRounds = 10;               // the tip turns with the joints, and its point with it
+constexpr int kDirectedRounds = 5;        // of them; then the direction stays, so that the point is reached
+constexpr double kMissWeight = 1 / 2e-3;  // a miss of 2 mm is as bad as half a radian of turn
+constexpr double kTurnWeight = 2;
+constexpr double kMoveWeight = 0.15;  // per radian of joints: rather near where the hand is
+constexpr double kSlice = 0.02;       // of the axis, on both sides
+
+Eigen::Vector3d positionOf(const State& state, int i) {
+  return {state.x[i], state.y[i], state.z[i]};
+}
+
+IkSolution aimFrom(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+                   const Eigen::Vector3d& offset, const std::array<double, kJointCount>& start) {
+  const ToolModel& tool = *model.tool;
+  const Eigen::Isometry3d to_base = model.tool_base.inverse();
+  std::vector<Eigen::Isometry3d> poses;
+  IkSolution aim{start};
+  for (int round = 0; round < kRounds; ++round) {
+    tool.forwardKinematics(aim.joints, poses);
+    Eigen::Isometry3d target = poses[model.tip_link];
+    const Eigen::Vector3d ahead = to_base.linear() * direction;
+    if (round < kDirectedRounds)
+      target.linear() =
+          Eigen::Quaterniond::FromTwoVectors(target.linear().col(0), ahead).toRotationMatrix() * target.linear();
+    target.translation() = to_base * point - poses[model.tip_link].linear() * offset;
+    aim.joints = tool.inverseKinematics(target, aim.joints);
+  }
+  tool.forwardKinematics(aim.joints, poses);
+  const Eigen::Isometry3d tip = model.tool_base * poses[model.tip_link];
+  aim.miss = (tip * offset - point).norm();
+  aim.turn = std::acos(std::clamp(tip.linear().col(0).dot(direction), -1.0, 1.0));
+  return aim;
+}
+
+double costOf(const IkSolution& aim, const std::array<double, kJointCount>& start) {
+  double moved = 0;
+  for (int j = Rotation; j <= TipLeftRight; ++j) moved += std::abs(aim.joints[j] - start[j]);
+  return kMissWeight * aim.miss + kTurnWeight * aim.turn + kMoveWeight * moved;
+}
+
+}  // namespace
+
+WallPlace placeOf(const Model& model, const State& state, int particle) {
+  WallPlace place{positionOf(state, particle), Eigen::Vector3d::Zero()};
+  for (const auto& t : model.organ.surface.triangles) {
+    if (t[0] != particle && t[1] != particle && t[2] != particle) continue;
+    const Eigen::Vector3d a = positionOf(state, t[0]);
+    place.outward += (positionOf(state, t[1]) - a).cross(positionOf(state, t[2]) - a);
+  }
+  place.outward.normalize();
+  return place;
+}
+
+int particleAt(const Model& model, double along, double angle) {
+  const auto& rest = model.organ.surface.vertices;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero(), greater = Eigen::Vector3d::Zero();
+  int count = 0, greater_count = 0;
+  const auto inSlice = [&](int i) {
+    return std::abs(model.along[i] - along) < kSlice && model.organ.end[i] == End::None;
+  };
+  for (int i = 0; i < model.particle_count; ++i) {
+    if (!inSlice(i)) continue;
+    centre += rest[i], ++count;
+    if (model.organ.wall[i] == Wall::GreaterCurvature) greater += rest[i], ++greater_count;
+  }
+  if (count == 0 || greater_count == 0) return -1;
+  centre /= count;
+  const Eigen::Vector3d side = model.organ.landmarks.anterior;
+  Eigen::Vector3d out = greater / greater_count - centre;
+  out = (out - side * side.dot(out)).normalized();
+  const Eigen::Vector3d wanted = std::cos(angle) * out + std::sin(angle) * side;
+  int best = -1;
+  double max = -1;
+  for (int i = 0; i < model.particle_count; ++i) {
+    if (!inSlice(i)) continue;
+    const double nearness =
+        wanted.dot((rest[i] - centre).normalized()) - std::abs(model.along[i] - along);  // both of the order of 0.01
+    if (nearness > max) max = nearness, best = i;
+  }
+  return best;
+}
+
+IkSolution aimAt(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+                 const Eigen::Vector3d& offset, const std::array<double, kJointCount>& start) {
+  IkSolution best;
+  double min = std::numeric_limits<double>::infinity();
+  for (const double turn : {0.0, 0.7, -0.7, 1.5, -1.5})
+    for (const double bend : {0.0, 0.5, 1.2}) {
+      std::array<double, kJointCount> from = start;
+      from[Rotation] = std::clamp(from[Rotation] + turn, -3.1, 3.1);
+      if (bend > 0) from[TipUpDown] = bend;
+      const IkSolution aim = aimFrom(model, point, direction, offset, from);
+      const double cost = costOf(aim, start);
+      if (cost < min) min = cost, best = aim;
+    }
+  return best;
+}
+
+}  // namespace vibe

@@ -1,0 +1,92 @@
+// Threads in a wall of shell, solved with the step.
+#include <gtest/gtest.h>
+
+#include "solver/pulled_sheet.hpp"
+#include "suture/capstan.hpp"
+
+namespace vibe {
+namespace {
+
+using test::PulledSheet;
+using test::sheetParticle;
+using test::sheetScene;
+
+constexpr int kMiddle = test::kColumns / 2, kRow = test::kRows / 2;
+
+// Three bites in a bow: 16 mm to either side of the middle, and one off their line.
+PulledSheet bow(double friction) {
+  Scene scene = sheetScene("shell", "thread");
+  scene.suture->thread_friction = friction;
+  PulledSheet sheet(scene, 4);
+  Suture& set = sheet.set();
+  Bite between = set.bites.front();
+  between.particle = {sheetParticle(kMiddle + 1, kRow + 3)};
+  set.bites.insert(set.bites.begin() + 1, between);
+  set.tension = {0, 0};
+  set.length = {(sheet.bite(1) - sheet.bite(0)).norm(), (sheet.bite(2) - sheet.bite(1)).norm()};
+  return sheet;
+}
+
+double pull(PulledSheet& sheet) {
+  const double whole = sheet.set().length[0] + sheet.set().length[1];
+  sheet.draw(8e-3);
+  sheet.run(2);
+  EXPECT_NEAR(sheet.set().length[0] + sheet.set().length[1], whole - 8e-3, 1e-9) << "what slides stays thread";
+  return sheet.set().tension[0] / sheet.set().tension[1];
+}
+
+void expectOnTheThread(const PulledSheet& sheet) {
+  const Suture& set = sheet.set();
+  for (int k = 0; k < 2; ++k)
+    EXPECT_NEAR((sheet.bite(k + 1) - sheet.bite(k)).norm(),
+                set.length[k] * (1 + set.tension[k] / sheet.model->scene.suture->thread_stiffness), 2e-6);
+}
+
+TEST(ShellThread, WithoutFrictionOneTensionIsEverywhere) {
+  PulledSheet sheet = bow(0);
+  EXPECT_NEAR(pull(sheet), 1, 1e-3);
+  EXPECT_GT(sheet.set().tension[0], 0.1);
+  expectOnTheThread(sheet);
+}
+
+TEST(ShellThread, DrawnFromOneEndTheTensionFallsByTheCapstanFactor) {
+  PulledSheet sheet = bow(0.15);
+  const double ratio = pull(sheet);
+  const double max = capstanFactor(0.15, turningAngle(sheet.bite(0), sheet.bite(1), sheet.bite(2)));
+  EXPECT_GT(max, 1.1);
+  EXPECT_NEAR(ratio, max, 0.02 * max);
+  expectOnTheThread(sheet);
+}
+
+TEST(ShellThread, AKnotLetsNothingSlide) {
+  PulledSheet sheet = bow(0.15);
+  sheet.draw(4e-3);
+  sheet.run(0.5);
+  PulledSheet held = bow(1e3);
+  const double second = held.set().length[1];
+  held.draw(4e-3);
+  held.run(0.5);
+  EXPECT_EQ(held.set().length[1], second);
+  EXPECT_LT(sheet.set().length[1], second - 1e-4) << "the control slides";
+}
+
+TEST(ShellThread, SlackPullsNothing) {
+  PulledSheet sheet = bow(0.15);
+  for (double& length : sheet.set().length) length += 1e-3;
+  sheet.run(0.5);
+  EXPECT_EQ(sheet.set().tension, (std::vector<double>{0, 0}));
+  EXPECT_LT(sheet.maxShift(), 1e-9);
+}
+
+TEST(ShellThread, WhatTheWorkspaceRemembersDoesNotMatter) {
+  PulledSheet one = bow(0.15), other = bow(0.15);
+  for (int k = 0; k < 12; ++k) {
+    one.draw(0.5e-3), other.draw(0.5e-3);
+    other.workspace = std::make_unique<Workspace>(*other.model);
+    ASSERT_EQ(hash(one.state), hash(other.state)) << k;
+  }
+  EXPECT_GT(one.set().tension[0], 0.05);
+}
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,40 @@
+#pragma once
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/contact/tool_model.hpp"
+
+namespace vibe {
+
+inline std::string scopePath() {
+  return std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf";
+}
+
+/// The text of the endoscope's URDF.
+inline std::string scopeText() {
+  std::ifstream file(scopePath());
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (text.str().empty()) throw std::runtime_error("cannot read " + scopePath());
+  return text.str();
+}
+
+inline ToolModel loadScope() {
+  return ToolModel::fromUrdf(scopeText(), "scope.urdf");
+}
+
+/// What the Error says that `action` throws; empty if it throws none.
+template <typename Action>
+std::string messageOf(Action&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace vibe

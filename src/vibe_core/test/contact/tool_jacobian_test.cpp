@@ -1,0 +1,33 @@
+#include "contact/tool_jacobian.hpp"
+
+#include <gtest/gtest.h>
+
+#include "contact/scope_fixture.hpp"
+
+namespace vibe {
+namespace {
+
+TEST(ToolJacobian, IsHowPointsOfEveryLinkMove) {
+  const ToolModel tool = loadScope();
+  const std::array<double, kJointCount> inputs = {0.07, 0.4, 0.5, -0.3, 0.01, 0.8, 0.004};
+  const Eigen::Vector3d local(0.01, -0.02, 0.005);
+  std::vector<Eigen::Isometry3d> poses, ahead, behind;
+  tool.forwardKinematics(inputs, poses);
+  constexpr double kStep = 1e-5;
+  for (int link = 0; link < tool.linkCount(); ++link) {
+    const auto jacobian = pointJacobian(tool, poses, link, poses[link] * local);
+    for (int j = 0; j < kJointCount; ++j) {
+      auto more = inputs, less = inputs;
+      more[j] += kStep;
+      less[j] -= kStep;
+      tool.forwardKinematics(more, ahead);
+      tool.forwardKinematics(less, behind);
+      const Eigen::Vector3d moved = (ahead[link] * local - behind[link] * local) / (2 * kStep);
+      EXPECT_LT((jacobian.col(j) - moved).norm(), 1e-8) << tool.linkName(link) << ", " << kJointNames[j];
+    }
+  }
+  EXPECT_GT(pointJacobian(tool, poses, tool.linkIndex("scope_tip"), Eigen::Vector3d::Zero()).col(TipUpDown).norm(), 0);
+}
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,383 @@
+// Marking in whole steps: pedal, beam, heat, events, and the two ways in which the wall gives way.
+#include <gtest/gtest.h>
+#include "allocation_count.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "procedure/marking.hpp"
+#include "procedure/procedure_bench.hpp"
+#include "vibe_core/simulation/snapshot.hpp"
+
+namespace vibe {
+namespace {
+
+using test::World;
+using Kind = Event::Kind;
+
+constexpr double kRadius = 0.058, kWall = 2e-3, kGap = 3e-3;
+
+/// A ball on a foundation at rest; the scope enters at the top and looks down.
+Scene markingScene() {
+  Scene scene;
+  scene.tissue.model = "shell";
+  scene.foundation = FoundationScene{};
+  scene.scope = ScopeScene{};
+  scene.scope->base_from_anatomy = false;
+  scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
+  scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
+  scene.marking = MarkingScene{};
+  return scene;
+}
+
+Scene gradientScene() {
+  Scene scene = markingScene();
+  scene.marking->deformation = "gradient";
+  return scene;
+}
+
+struct Stage : World {
+  StepInput input;
+
+  /// @param gap  from the probe's end to the mucosa at the bottom [m]
+  explicit Stage(const Scene& scene = markingScene(), double gap = kGap, int level = 4)
+      : World(scene, openBall(level), test::scopeText()) {
+    placeTip(gap);
+    state.joints = input.joints;
+    input.buttons[ApcPedal] = 1;
+  }
+
+  static Organ openBall(int level) {
+    Organ organ = test::plainOrgan(test::icosphere(kRadius, level), kWall);
+    for (std::size_t i = 0; i < organ.end.size(); ++i)  // the scope enters here
+      if (organ.surface.vertices[i].z() > 0.8 * kRadius) organ.end[i] = End::Oesophagus;
+    return organ;
+  }
+
+  void placeTip(double gap) { input.joints[Insertion] = 2 * kRadius - kWall / 2 - gap - ApcParameters{}.probe_length; }
+  void press(double seconds) {
+    input.buttons[ApcPedal] = 1;
+    run(seconds, input);
+  }
+  void release(double seconds) {
+    input.buttons[ApcPedal] = 0;
+    run(seconds, input);
+  }
+  int graded(BurnGrade min) const {
+    int n = 0;
+    for (const std::uint8_t grade : state.procedure.grade) n += grade >= static_cast<std::uint8_t>(min) ? 1 : 0;
+    return n;
+  }
+  float hottest() const { return *std::max_element(state.procedure.heat.begin(), state.procedure.heat.end()); }
+  float maxDose() const { return *std::max_element(state.procedure.dose.begin(), state.procedure.dose.end()); }
+};
+
+TEST(MarkingStep, TwoSecondsMakeOneMark) {
+  Stage stage;
+  stage.press(2);
+  EXPECT_EQ(stage.count(Kind::Mark), 1);
+  EXPECT_EQ(stage.count(Kind::Burn), 0);
+  EXPECT_EQ(stage.count(Kind::Refused), 0);
+  EXPECT_NEAR(stage.state.procedure.beam_energy, 80, 1e-6);
+  EXPECT_GT(stage.graded(BurnGrade::Mark), 0);
+  const Eigen::Vector3d aim(0, 0, -kRadius);
+  for (int i = 0; i < stage.model->particle_count; ++i) {
+    const double distance = (stage.position(i) - aim).norm();
+    const int grade = stage.state.procedure.grade[i];
+    EXPECT_TRUE(grade == 0 || distance < 8e-3) << distance;
+    EXPECT_TRUE(grade == 1 || distance > 2e-3) << distance;
+  }
+  for (const Event& event : stage.events) {
+    if (event.kind != Kind::Mark) continue;
+    const double threshold = ThermalDose(ApcParameters{}).threshold(BurnGrade::Mark);
+    EXPECT_GE(event.value, threshold);
+    EXPECT_LT(event.value, threshold + 40.0 / 60) << "said in the step in which it came to be";
+    EXPECT_LT((stage.model->organ.surface.vertices[event.particle] - aim).norm(), 5e-3);
+    EXPECT_NE(event.text.find("anterior"), std::string::npos) << event.text;
+  }
+}
+
+TEST(MarkingStep, ThePhaseBecomesMark) {
+  Stage stage;
+  stage.release(0.1);
+  EXPECT_EQ(stage.state.procedure.phase, Phase::Inspect);
+  stage.press(0.1);
+  EXPECT_EQ(stage.state.procedure.phase, Phase::Mark);
+  EXPECT_EQ(stage.count(Kind::PhaseChanged), 1);
+}
+
+TEST(MarkingStep, FifteenSecondsBurnAndTwentyAreNotDeep) {
+  Stage stage;
+  stage.press(15);
+  EXPECT_EQ(stage.count(Kind::Burn), 1) << "one scar, one event";
+  stage.press(5);
+  EXPECT_EQ(stage.count(Kind::Mark), 1);
+  EXPECT_EQ(stage.count(Kind::Burn), 1);
+  EXPECT_EQ(stage.count(Kind::DeepBurn), 0);
+  EXPECT_GT(stage.graded(BurnGrade::Burn), 0);
+  EXPECT_LT(stage.graded(BurnGrade::Burn), stage.graded(BurnGrade::Mark));
+  stage.press(30);
+  EXPECT_EQ(stage.count(Kind::DeepBurn), 1);
+}
+
+TEST(MarkingStep, OutOfReachIsRefusedOnceAndActsWhenItComesNear) {
+  Stage stage(markingScene(), 0.02);
+  stage.press(1);
+  EXPECT_EQ(stage.count(Kind::Refused), 1);
+  EXPECT_EQ(stage.events.front().value, ApcPedal);
+  EXPECT_NE(stage.events.front().text.find("15.0 mm"), std::string::npos) << stage.events.front().text;
+  EXPECT_EQ(stage.state.procedure.phase, Phase::Inspect);
+  EXPECT_EQ(stage.state.procedure.beam_energy, 0);
+  EXPECT_EQ(stage.hottest(), 0);
+  stage.release(0.1);
+  stage.press(0.1);
+  EXPECT_EQ(stage.count(Kind::Refused), 2) << "once per press";
+  stage.placeTip(kGap);
+  stage.press(2);
+  EXPECT_EQ(stage.count(Kind::Refused), 2);
+  EXPECT_EQ(stage.count(Kind::Mark), 1);
+}
+
+TEST(MarkingStep, ASceneWithoutMarkingRefusesAndHasNoMemoryForIt) {
+  Scene scene = markingScene();
+  scene.marking.reset();
+  Stage stage(scene);
+  stage.press(0.5);
+  ASSERT_EQ(stage.count(Kind::Refused), 1);
+  EXPECT_NE(stage.events.front().text.find("'marking'"), std::string::npos) << stage.events.front().text;
+  EXPECT_TRUE(stage.state.procedure.dose.empty());
+  EXPECT_TRUE(stage.state.procedure.heat.empty());
+  EXPECT_TRUE(stage.state.procedure.grade.empty());
+  EXPECT_EQ(stage.workspace->marking(), nullptr);
+  EXPECT_FALSE(stage.model->dose_law.has_value());
+}
+
+TEST(MarkingStep, SleepingTissueIsMarkedAndCools) {
+  Stage stage;
+  stage.release(1);
+  ASSERT_GE(stage.state.solver.rest_steps, 15) << "the tissue sleeps";
+  const std::int64_t steps = stage.state.solver.steps;
+  stage.press(2);
+  EXPECT_EQ(stage.count(Kind::Mark), 1);
+  EXPECT_LT(stage.state.solver.steps - steps, 20) << "it was asleep";
+  const float hot = stage.hottest(), dose = stage.maxDose();
+  EXPECT_EQ(hot, dose);
+  stage.release(10);
+  EXPECT_NEAR(stage.hottest(), hot * std::exp(-10 * ApcParameters{}.tissue_cooling), 1e-4 * hot);
+  EXPECT_EQ(stage.maxDose(), dose);
+}
+
+/// Synthetic poses: the beam wherever the test wants it.
+void beamAt(Stage& stage, const Eigen::Vector3d& direction, double seconds) {
+  std::vector<Eigen::Isometry3d> poses(stage.model->tool->linkCount(), Eigen::Isometry3d::Identity());
+  Eigen::Isometry3d& tip = poses[stage.model->tip_link];
+  tip.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), direction).toRotationMatrix();
+  tip.translation() = (kRadius - kWall / 2 - kGap - ApcParameters{}.probe_length) * direction;
+  const long steps = std::lround(seconds * 60);
+  for (long k = 0; k < steps; ++k)
+    updateMarking(*stage.model, poses, {true, k == 0, 0}, stage.state, *stage.workspace->marking(), stage.events);
+}
+
+TEST(MarkingStep, ALineIsOneEventAndAnotherSpotAnother) {
+  Stage stage;
+  for (int k = 0; k <= 40; ++k) {  // 46 mm at 5 mm/s
+    const double angle = 0.02 * k;
+    beamAt(stage, Eigen::Vector3d(std::cos(angle), std::sin(angle), 0), 0.02 * kRadius / 5e-3);
+  }
+  EXPECT_GT(stage.graded(BurnGrade::Mark), 15);
+  EXPECT_EQ(stage.count(Kind::Mark), 1);
+  beamAt(stage, Eigen::Vector3d(0, -1, 0), 2);
+  EXPECT_EQ(stage.count(Kind::Mark), 2);
+  EXPECT_NE(stage.events.back().text.find("2 marks"), std::string::npos) << stage.events.back().text;
+}
+
+TEST(MarkingStep, InsufflationCools) {
+  Stage still, cooled;
+  const auto cool = [](Stage& stage, double flow) {
+    beamAt(stage, Eigen::Vector3d(0, 1, 0), 2);
+    std::vector<Eigen::Isometry3d> poses(stage.model->tool->linkCount(), Eigen::Isometry3d::Identity());
+    for (int k = 0; k < 600; ++k)
+      updateMarking(*stage.model, poses, {false, false, flow}, stage.state, *stage.workspace->marking(), stage.events);
+  };
+  cool(still, 0);
+  cool(cooled, 3 * kLitrePerMinute);
+  EXPECT_NEAR(cooled.hottest() / still.hottest(), std::exp(-10 * 3 * ApcParameters{}.insufflation_cooling), 1e-4);
+}
+
+TEST(MarkingStep, TheFlowOfTheInsufflatorReachesTheHeat) {
+  Scene scene = markingScene();
+  scene.gas = GasScene{};
+  Stage closed(scene, kGap, 3), blown(scene, kGap, 3);
+  for (Stage* stage : {&closed, &blown}) {
+    stage->press(2);
+    stage->input.buttons[Insufflate] = stage == &blown ? 1 : 0;
+  }
+  ASSERT_EQ(closed.hottest(), blown.hottest());
+  const double gas = blown.state.gas_amount;
+  closed.release(1);
+  blown.release(1);
+  const double litres = (blown.state.gas_amount - gas) / 101325 / 1e-3;
+  ASSERT_GT(litres, 0.01);
+  EXPECT_NEAR(std::log(closed.hottest() / blown.hottest()), litres * 60 * ApcParameters{}.insufflation_cooling, 1e-5);
+}
+
+TEST(MarkingStep, SameBitsOnEveryRun) {
+  for (const Scene& scene : {markingScene(), gradientScene()}) {
+    Stage a(scene, -2e-3, 3), b(scene, -2e-3, 3);
+    for (Stage* stage : {&a, &b}) {
+      stage->press(1);
+      stage->release(0.2);
+      stage->press(0.3);
+    }
+    EXPECT_EQ(hash(a.state), hash(b.state));
+    EXPECT_GT(a.hottest(), 0);
+  }
+}
+
+TEST(MarkingStep, ASnapshotWithinABurnContinuesToTheBit) {
+  for (const Scene& scene : {markingScene(), gradientScene()}) {
+    Stage stage(scene, -11e-3, 3);  // the tip pushes the wall
+    stage.press(3);
+    EXPECT_EQ(stage.state.procedure.base_x.empty(), scene.marking->deformation == "solver");
+    const std::string file = ::testing::TempDir() + "vibe_marking_step_test.bin";
+    saveSnapshot(*stage.model, stage.state, file);
+    State loaded = loadSnapshot(*stage.model, file);
+    std::remove(file.c_str());
+    ASSERT_EQ(hash(loaded), hash(stage.state));
+    Workspace other(*stage.model);
+    std::vector<Event> events;
+    for (int k = 0; k < 700; ++k) {
+      stage.input.buttons[ApcPedal] = k < 600 ? 1 : 0;
+      stage.step(stage.input);
+      step(*stage.model, loaded, stage.input, other, events);
+      ASSERT_EQ(hash(loaded), hash(stage.state)) << scene.marking->deformation << ", step " << k;
+    }
+    EXPECT_GT(stage.graded(BurnGrade::Burn), 0);
+  }
+}
+
+TEST(MarkingStep, ASnapshotOfASceneWithoutMarkingIsAnothers) {
+  Scene without = markingScene();
+  without.marking.reset();
+  Stage stage(without, kGap, 2), other(markingScene(), kGap, 2);
+  const std::string file = ::testing::TempDir() + "vibe_marking_step_without.bin";
+  saveSnapshot(*stage.model, stage.state, file);
+  EXPECT_THROW(loadSnapshot(*other.model, file), std::exception);
+  EXPECT_NO_THROW(loadSnapshot(*stage.model, file));
+  std::remove(file.c_str());
+}
+
+TEST(MarkingStep, RecoveryKeepsMarksAndLosesHeat) {
+  Stage stage(markingScene(), kGap, 3);
+  stage.press(2);
+  const std::vector<float> dose = stage.state.procedure.dose;
+  const int marked = stage.graded(BurnGrade::Mark);
+  stage.state.x[5] = std::numeric_limits<double>::quiet_NaN();
+  stage.input.buttons[ApcPedal] = 0;
+  stage.step(stage.input);
+  ASSERT_GE(stage.count(Kind::Recovery), 1);
+  EXPECT_EQ(stage.state.procedure.dose, dose);
+  EXPECT_EQ(stage.graded(BurnGrade::Mark), marked);
+  EXPECT_EQ(stage.hottest(), 0);
+  stage.press(2);
+  EXPECT_GT(stage.hottest(), 0);
+}
+
+TEST(MarkingStep, NoMemoryIsAskedForOnceItRuns) {
+  if (!VIBE_COUNTS_ALLOCATIONS) GTEST_SKIP() << "a sanitizer brings its own memory";
+  Stage stage;
+  stage.press(2);
+  stage.release(1);
+  long before = test::allocations;
+  stage.release(1);
+  EXPECT_EQ(test::allocations, before);
+  stage.press(0.1);
+  before = test::allocations;
+  stage.press(0.5);
+  EXPECT_EQ(test::allocations, before) << "while nothing new happens not with the pedal down either";
+}
+
+/// How far the fastest particle goes in a step.
+double largestMove(Stage& stage) {
+  const State before = stage.state;
+  stage.step(stage.input);
+  double largest = 0;
+  for (int i = 0; i < stage.model->particle_count; ++i)
+    largest = std::max(largest, (stage.position(i) - Eigen::Vector3d(before.x[i], before.y[i], before.z[i])).norm());
+  return largest;
+}
+
+TEST(MarkingGradient, FollowsTheToolAndHandsBackWithoutAJump) {
+  Stage stage(gradientScene(), -5e-3);
+  stage.press(0.5);
+  EXPECT_FALSE(stage.state.procedure.base_x.empty());
+  stage.placeTip(-14e-3);  // 4 mm into the wall
+  for (int k = 0; k < 60; ++k) EXPECT_LT(largestMove(stage), 3.5e-3) << "as fast as the tool, 2.5 mm a step";
+  EXPECT_GT(stage.maxShift(), 2e-3);
+  EXPECT_LT(stage.maxShift(), 6e-3);
+  EXPECT_GT(stage.state.contact_count, 0);
+  EXPECT_EQ(stage.state.tool_force.norm(), 0) << "shape without mechanics";
+  EXPECT_EQ(*std::max_element(stage.state.vz.begin(), stage.state.vz.end()), 0);
+  const double pushed = stage.maxShift();
+  stage.input.buttons[ApcPedal] = 0;
+  for (int k = 0; k < 60; ++k) EXPECT_LT(largestMove(stage), 1e-3) << k;
+  EXPECT_TRUE(stage.state.procedure.base_x.empty());
+  EXPECT_GT(stage.state.tool_force.norm(), 0.01) << "the shell takes over and is felt";
+  EXPECT_NEAR(stage.maxShift(), pushed, 1e-3) << "the tool is still there";
+  EXPECT_EQ(stage.count(Kind::Recovery), 0);
+}
+
+TEST(MarkingGradient, SpringsBackWhereTheToolLeavesAndTheSolverAgreesWhereNothingIsTouched) {
+  Stage gradient(gradientScene(), -13e-3), solver(markingScene(), -13e-3);
+  for (Stage* stage : {&gradient, &solver}) {
+    stage->press(0.5);
+    stage->placeTip(kGap);
+    stage->press(1);
+  }
+  EXPECT_GT(gradient.graded(BurnGrade::Mark), 0);
+  const State base = gradient.state;
+  EXPECT_EQ(base.x, base.procedure.base_x) << "to the bit";
+  EXPECT_LT(gradient.maxShift(), 1e-9);
+  EXPECT_TRUE(solver.state.procedure.base_x.empty());
+}
+
+TEST(MarkingGradient, APedalThatComesDownAgainAtOnceFindsThePresentWall) {
+  Stage stage(gradientScene(), -5e-3);
+  stage.placeTip(-14e-3);
+  stage.press(1);
+  const double old_base = stage.state.procedure.base_z[0];
+  stage.input.buttons[ApcPedal] = 0;
+  stage.step(stage.input);
+  ASSERT_FALSE(stage.state.procedure.base_x.empty()) << "the solver still takes it over";
+  EXPECT_EQ(stage.state.procedure.base_x, stage.state.x);
+  EXPECT_NE(stage.state.procedure.base_z[0], old_base);
+  stage.input.buttons[ApcPedal] = 1;
+  EXPECT_LT(largestMove(stage), 1e-3);
+}
+
+TEST(MarkingGradient, ACinchThatDrawsNeedsTheSolver) {
+  Stage stage(gradientScene(), kGap, 2);
+  stage.press(0.1);
+  EXPECT_FALSE(stage.state.procedure.base_x.empty());
+  stage.state.procedure.sutures.emplace_back().stage = Suture::Stage::Cinching;
+  stage.press(0.1);
+  EXPECT_TRUE(stage.state.procedure.base_x.empty());
+}
+
+TEST(MarkingGradient, GasStaysInAndIsCompressed) {
+  Scene scene = gradientScene();
+  scene.gas = GasScene{};
+  scene.gas->initial_pressure = 500;
+  Stage stage(scene, 5e-3);
+  stage.release(1);
+  const double amount = stage.state.gas_amount;
+  stage.placeTip(-13.5e-3);
+  stage.input.buttons[Insufflate] = 1;
+  stage.press(1);
+  EXPECT_EQ(stage.state.gas_amount, amount) << "the insufflator pauses";
+  EXPECT_NEAR((stage.state.pressure + 101325) * stage.state.volume, amount, 1e-9 * amount);
+}
+
+}  // namespace
+}  // namespace vibe

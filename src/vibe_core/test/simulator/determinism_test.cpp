@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <limits>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/simulation/snapshot.hpp"
+#include "worlds.hpp"
+
+namespace vibe {
+namespace {
+
+using test::bareScene;
+using test::icosphere;
+using test::plainOrgan;
+using test::World;
+
+Scene livelyScene() {
+  Scene scene = bareScene();
+  scene.tissue.mass_damping = 5;
+  scene.gravity = GravityScene{};
+  scene.foundation = FoundationScene{};
+  scene.foundation->carries_weight = false;
+  scene.gas = GasScene{};
+  scene.gas->insufflator_on = true;
+  return scene;
+}
+
+World livelyWorld(int threads = 1, double pressure = 1333) {
+  Scene scene = livelyScene();
+  scene.gas->regulated_pressure = pressure;
+  return World(scene, plainOrgan(icosphere(0.05, 3), 2e-3), "", threads);
+}
+
+TEST(Determinism, SameBitsOnEveryRunAndThreadCount) {
+  World a = livelyWorld(), b = livelyWorld(), c = livelyWorld(2), d = livelyWorld(5);
+  for (World* world : {&a, &b, &c, &d}) world->run(0.5);
+  EXPECT_EQ(hash(a.state), hash(b.state));
+  EXPECT_EQ(hash(a.state), hash(c.state));
+  EXPECT_EQ(hash(a.state), hash(d.state));
+  EXPECT_EQ(a.state.x, d.state.x);
+}
+
+TEST(Determinism, HashSeesTheLeastDifference) {
+  World a = livelyWorld(), b = livelyWorld(1, std::nextafter(1333.0, 2000.0));
+  EXPECT_EQ(hash(a.state), hash(b.state));
+  a.run(0.5);
+  b.run(0.5);
+  EXPECT_EQ(hash(a.state) == hash(b.state), a.state.x == b.state.x);
+  State changed = a.state;
+  changed.x[7] = std::nextafter(changed.x[7], 1.0);
+  EXPECT_NE(hash(changed), hash(a.state));
+  changed = a.state;
+  changed.joints[2] += 1e-12;
+  EXPECT_NE(hash(changed), hash(a.state));
+  changed = a.state;
+  changed.grip.push_back({3, Eigen::Vector3d::Zero()});
+  EXPECT_NE(hash(changed), hash(a.state));
+}
+
+TEST(Determinism, ACopyOfTheStateHasTheSameFuture) {
+  World world = livelyWorld();
+  world.run(0.3);
+  State copy = world.state;
+  Workspace other(*world.model);
+  std::vector<Event> events;
+  for (int i = 0; i < 20; ++i) {
+    world.step();
+    step(*world.model, copy, {}, other, events);
+  }
+  EXPECT_EQ(hash(copy), hash(world.state));
+}
+
+class SnapshotFile : public ::testing::Test {
+ protected:
+  std::string file = ::testing::TempDir() + "vibe_snapshot_test.bin";
+  ~SnapshotFile() override { std::remove(file.c_str()); }
+};
+
+TEST_F(SnapshotFile, ContinuesToTheBit) {
+  World world = livelyWorld();
+  world.run(0.3);
+  world.state.grip.push_back({5, Eigen::Vector3d(1e-3, 2e-3, 3e-3)});
+  saveSnapshot(*world.model, world.state, file);
+  State loaded = loadSnapshot(*world.model, file);
+  EXPECT_EQ(hash(loaded), hash(world.state));
+  EXPECT_EQ(loaded.energy.gas_work, world.state.energy.gas_work);
+  EXPECT_EQ(loaded.tool_force, world.state.tool_force);
+}
+
+TEST_F(SnapshotFile, RefusesWhatDoesNotFit) {
+  World world = livelyWorld();
+  saveSnapshot(*world.model, world.state, file);
+  EXPECT_NO_THROW(loadSnapshot(*world.model, file));
+  World other(livelyScene(), plainOrgan(icosphere(0.051, 3), 2e-3));
+  EXPECT_THROW(loadSnapshot(*other.model, file), Error);
+  EXPECT_THROW(loadSnapshot(*world.model, file + ".missing"), Error);
+  EXPECT_THROW(saveSnapshot(*world.model, world.state, "/no/such/folder/s"), Error);
+  std::string bytes;
+  {
+    std::ifstream in(file, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  for (std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{12}, bytes.size() / 2, bytes.size() - 1}) {
+    std::ofstream(file, std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(size));
+    EXPECT_THROW(loadSnapshot(*world.model, file), Error) << size << " bytes";
+  }
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes << "x";
+  EXPECT_THROW(loadSnapshot(*world.model, file), Error);
+}
+
+TEST(Recovery, StateThatIsNoNumberIsPutBackAndReported) {
+  World world = livelyWorld();
+  world.state.vx[9] = std::numeric_limits<double>::quiet_NaN();
+  world.run(0.1);
+  EXPECT_GE(world.count(Event::Kind::Recovery), 1);
+  for (double x : world.state.x) ASSERT_TRUE(std::isfinite(x));
+  world.events.clear();
+  world.run(1.0);
+  EXPECT_EQ(world.count(Event::Kind::Recovery), 0) << "it goes on as if nothing had been";
+}
+
+TEST(Recovery, AThrowAtAbsurdSpeedIsLimitedAndReported) {
+  World world = livelyWorld();
+  world.state.vx[9] = 1e6;
+  world.run(2.0);
+  EXPECT_GE(world.count(Event::Kind::Recovery), 1);
+  for (double x : world.state.x) ASSERT_LT(std::abs(x), 0.2);
+}
+
+}  // namespace
+}  // namespace vibe

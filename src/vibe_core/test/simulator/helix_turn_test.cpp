@@ -1,0 +1,79 @@
+// The helix is a corkscrew: turned in the wall that it holds, it goes round and the wall stays.
+#include <gtest/gtest.h>
+
+#include "contact/scope_fixture.hpp"
+#include "worlds.hpp"
+
+namespace vibe {
+namespace {
+
+using test::icosphere;
+using test::plainOrgan;
+using test::World;
+
+constexpr double kRadius = 0.06;
+
+World ballWorld(const std::string& model) {
+  Scene scene;
+  scene.tissue.model = model;
+  scene.foundation = FoundationScene{};
+  scene.scope = ScopeScene{};
+  scene.scope->base_from_anatomy = false;
+  scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
+  scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
+  scene.helix = HelixScene{};
+  scene.helix->hold_turns = 0;  // holds with all of its force from the first touch
+  scene.helix->reach = 8e-3;
+  scene.helix->grip_radius = 10e-3;
+  Organ organ = plainOrgan(icosphere(kRadius, 3), 2.3e-3);
+  for (std::size_t i = 0; i < organ.end.size(); ++i)  // the scope enters here
+    if (organ.surface.vertices[i].z() > 0.85 * kRadius) organ.end[i] = End::Oesophagus;
+  return World(scene, std::move(organ), scopeText());
+}
+
+class HelixTurn : public ::testing::TestWithParam<const char*> {
+ protected:
+  HelixTurn() : world(ballWorld(GetParam())) {
+    input.joints[Insertion] = 0.09;
+    input.joints[HelixAdvance] = 0.028;
+    world.run(1.5, input);
+    input.buttons[HelixGrab] = 1;
+    world.run(1, input);
+    for (const GripPoint& point : world.state.grip) before.push_back(world.position(point.particle));
+  }
+  // Farthest way of a held particle [m].
+  double moved() const {
+    double max = 0;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      max = std::max(max, (world.position(world.state.grip[i].particle) - before[i]).norm());
+    return max;
+  }
+  World world;
+  StepInput input;
+  std::vector<Eigen::Vector3d> before;
+};
+
+TEST_P(HelixTurn, LeavesTheHeldPatchInPlace) {
+  ASSERT_GT(before.size(), 2u) << "one particle could not be wound up";
+  const Eigen::Vector3d torque = world.state.tool_torque;
+  for (const double turns : {0.5, 1.25, 3.0}) {
+    input.joints[HelixRotation] = 2 * M_PI * turns;
+    world.run(0.5, input);
+    ASSERT_NEAR(world.state.joints[HelixRotation], 2 * M_PI * turns, 1e-9);
+    ASSERT_EQ(world.state.grip.size(), before.size());
+    EXPECT_LT(moved(), 1e-6) << turns << " turns";
+  }
+  EXPECT_LT((world.state.tool_torque - torque).norm(), 1e-4);
+}
+
+TEST_P(HelixTurn, WhereTheWholeScopeTurnsItTakesThePatchAlong) {
+  input.joints[Rotation] = 0.5;
+  world.run(1, input);
+  ASSERT_EQ(world.state.grip.size(), before.size());
+  EXPECT_GT(moved(), 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, HelixTurn, ::testing::Values("shell", "shape_matching"));
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,162 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tissue/tetrahedra.hpp"
+
+/// Solids and displacements for the tests of tetrahedra.
+namespace vibe::test {
+
+/// A box of cubes with the given number along each axis, cut into six tetrahedra each (Kuhn's division).
+inline TetMesh<4> tetBox(std::array<int, 3> cubes, double side, const Material& material) {
+  TetMesh<4> mesh;
+  mesh.materials = {material};
+  const auto number = [&](const std::array<int, 3>& at) {
+    return (at[0] * (cubes[1] + 1) + at[1]) * (cubes[2] + 1) + at[2];
+  };
+  std::array<int, 3> c;
+  for (c[0] = 0; c[0] <= cubes[0]; ++c[0])
+    for (c[1] = 0; c[1] <= cubes[1]; ++c[1])
+      for (c[2] = 0; c[2] <= cubes[2]; ++c[2]) mesh.nodes.push_back(side * Eigen::Vector3d(c[0], c[1], c[2]));
+  for (c[0] = 0; c[0] < cubes[0]; ++c[0])
+    for (c[1] = 0; c[1] < cubes[1]; ++c[1])
+      for (c[2] = 0; c[2] < cubes[2]; ++c[2]) {
+        std::array<std::size_t, 3> axes = {0, 1, 2};
+        do {
+          std::array<int, 3> at = c;
+          std::array<int, 4> element = {number(at), 0, 0, 0};
+          for (std::size_t k = 0; k < 3; ++k) ++at[axes[k]], element[k + 1] = number(at);
+          const bool odd = (axes[0] > axes[1]) ^ (axes[0] > axes[2]) ^ (axes[1] > axes[2]);
+          if (odd) std::swap(element[2], element[3]);
+          mesh.elements.push_back(element);
+        } while (std::next_permutation(axes.begin(), axes.end()));
+      }
+  return mesh;
+}
+
+/// Vertices moved by up to `amount`, so that no two elements are alike.
+template <int Nodes>
+TetMesh<Nodes> shaken(TetMesh<Nodes> mesh, double amount, unsigned seed = 3) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> uniform(-amount, amount);
+  for (auto& node : mesh.nodes)
+    for (int c = 0; c < 3; ++c) node[c] += uniform(generator);
+  return mesh;
+}
+
+inline Eigen::VectorXd randomDisplacement(int nodes, double amount, unsigned seed = 5) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> uniform(-amount, amount);
+  Eigen::VectorXd u(3 * nodes);
+  for (double& value : u) value = uniform(generator);
+  return u;
+}
+
+/// x -> F x
+template <int Nodes>
+Eigen::VectorXd affine(const TetMesh<Nodes>& mesh, const Eigen::Matrix3d& deformation) {
+  Eigen::VectorXd u(3 * static_cast<Eigen::Index>(mesh.nodes.size()));
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+    u.segment<3>(3 * static_cast<Eigen::Index>(i)) = deformation * mesh.nodes[i] - mesh.nodes[i];
+  return u;
+}
+
+inline Eigen::Matrix3d someRotation() {
+  return Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+}
+
+struct Evaluation {
+  double energy;
+  Eigen::VectorXd gradient;
+};
+
+inline Evaluation inDouble(const ElasticElements& elements, const Eigen::VectorXd& u) {
+  Evaluation out{0, Eigen::VectorXd(u.size())};
+  out.energy = elements.evaluate(u.data(), out.gradient.data());
+  return out;
+}
+
+inline std::vector<float> fourFloats(const Eigen::VectorXd& u) {
+  std::vector<float> out(static_cast<std::size_t>(u.size() / 3 * 4), 0.0f);
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    out[static_cast<std::size_t>(i / 3 * 4 + i % 3)] = static_cast<float>(u[i]);
+  return out;
+}
+
+/// All pieces into one output.
+inline Evaluation inSingle(const ElasticElements& elements, const Eigen::VectorXd& u) {
+  const std::vector<float> in = fourFloats(u);
+  std::vector<float> gradient(in.size(), 0.0f);
+  Evaluation out{0, Eigen::VectorXd(u.size())};
+  for (int piece = 0; piece < elements.pieceCount(); ++piece)
+    out.energy += elements.evaluate(piece, in.data(), gradient.data());
+  for (Eigen::Index i = 0; i < u.size(); ++i) out.gradient[i] = gradient[static_cast<std::size_t>(i / 3 * 4 + i % 3)];
+  return out;
+}
+
+inline Eigen::MatrixXd denseStiffness(const ElasticElements& elements, const Eigen::VectorXd& u) {
+  const auto pattern = std::make_shared<BlockPattern>(blockPattern(elements.nodeCount(), elements.nodeGroups()));
+  BlockMatrix stiffness(pattern);
+  stiffness.setZero();
+  elements.addStiffness(u.data(), stiffness);
+  Eigen::MatrixXd out(u.size(), u.size());
+  Eigen::VectorXd unit = Eigen::VectorXd::Zero(u.size());
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    unit[i] = 1;
+    stiffness.multiply(unit.data(), out.col(i).data());
+    unit[i] = 0;
+  }
+  return out;
+}
+
+inline constexpr double kE = 3e4, kNu = 0.45, kSide = 0.01;
+inline const std::vector<Law> kLaws = {
+    Law::NeoHookean, Law::StableNeoHookean, Law::MacklinMueller, Law::Fung, Law::Gent, Law::Yeoh};
+
+inline Material material(Law law) {
+  return {law, kE, kNu, 0.8};
+}
+
+inline TetMesh<4> linearMesh(Law law, std::array<int, 3> cubes = {2, 1, 1}) {
+  return shaken(tetBox(cubes, kSide, material(law)), 0.1 * kSide);
+}
+inline TetMesh<10> straightMesh(Law law, std::array<int, 3> cubes = {2, 1, 1}) {
+  return quadraticMesh(linearMesh(law, cubes)).mesh;
+}
+inline TetMesh<10> curvedMesh(Law law, std::array<int, 3> cubes = {2, 1, 1}) {
+  return shaken(straightMesh(law, cubes), 0.04 * kSide);
+}
+
+// All kinds of element, of every law.
+inline void forAllElements(
+    const std::function<void(const ElasticElements&, const std::vector<Eigen::Vector3d>&)>& check,
+    std::array<int, 3> cubes = {2, 1, 1}, TetKernel kernel = chooseTetKernel()) {
+  for (const Law law : kLaws) {
+    const TetElements<4> linear(linearMesh(law, cubes), kernel);
+    const TetElements<10> straight(straightMesh(law, cubes), kernel), curved(curvedMesh(law, cubes), kernel);
+    const std::string name = "law " + std::to_string(static_cast<int>(law));
+    {
+      SCOPED_TRACE(name + ", linear");
+      check(linear, linear.mesh().nodes);
+    }
+    {
+      SCOPED_TRACE(name + ", straight quadratic");
+      check(straight, straight.mesh().nodes);
+    }
+    {
+      SCOPED_TRACE(name + ", curved quadratic");
+      check(curved, curved.mesh().nodes);
+    }
+  }
+}
+
+}  // namespace vibe::test

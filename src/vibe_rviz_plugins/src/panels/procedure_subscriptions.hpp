@@ -1,0 +1,49 @@
+#pragma once
+#include <ros/node_handle.h>
+#include <vibe_msgs/ProcedureEvent.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "messages/session_watch.hpp"
+#include "panels/panel_messages.hpp"
+
+namespace vibe {
+
+/// Seconds of a clock that never jumps.
+double steadySeconds();
+
+/// Listens to what the panel shows. Callbacks come in the thread that spins the node's queue, which in rviz is that of
+/// the widgets.
+class ProcedureSubscriptions {
+ public:
+  using EventHandler = std::function<void(const vibe_msgs::ProcedureEvent&)>;
+  explicit ProcedureSubscriptions(EventHandler handle_event) : handle_event_(std::move(handle_event)) {}
+
+  /// Begins anew in this namespace, which has been checked; empty: that of the node.
+  void listen(const std::string& name_space);
+
+  const PanelMessages& messages() const { return messages_; }
+  Freshness freshness(double now) const;
+  /// One sentence while there is no simulator; empty if all is well.
+  std::string complaint(double now) const { return simulator_.complaint(state_topic_, now); }
+  /// Stamp that counts as the beginning of the session's time [s].
+  double origin() const;
+
+ private:
+  EventHandler handle_event_;
+  std::vector<ros::Subscriber> subscribers_;
+  PanelMessages messages_;
+  std::string state_topic_;
+  SimulatorWatch simulator_;
+  MaxOfWindow delay_;
+  double last_moving_ = 0;  // arrival of the last force or state [s]
+
+  template <class Message>
+  void take(boost::shared_ptr<const Message>& place, const boost::shared_ptr<const Message>& message);
+  void subscribeAll(ros::NodeHandle& handle);
+  void noteArrival(const ros::Time& stamp);
+};
+
+}  // namespace vibe

@@ -1,0 +1,73 @@
+#pragma once
+#include <QWidget>
+
+#include "panels/button_sender.hpp"
+#include "panels/procedure_subscriptions.hpp"
+#include "panels/service_caller.hpp"
+
+class QLabel;
+class QLineEdit;
+class QVBoxLayout;
+
+namespace vibe {
+
+class CommandBox;
+class EventList;
+class StatusSummary;
+class MeasuresView;
+class SolverStatisticsView;
+class SteppingBox;
+class SutureTable;
+
+/// All of the panel: the parts one below the other in an area that scrolls, the messages they show, and what happens
+/// when something is pressed. Needs ros::init(); knows nothing of rviz.
+class ProcedureWidget : public QWidget {
+ public:
+  explicit ProcedureWidget(QWidget* parent = nullptr);
+  ~ProcedureWidget() override;
+
+  /// Where the simulator is; empty: in the namespace of this program. One that cannot be used is refused with a
+  /// sentence, and the present one stays.
+  void setNamespace(const QString& name);
+  QString nameSpace() const { return name_space_; }
+  /// Called when the user has chosen another namespace.
+  void onNamespaceChanged(std::function<void()> changed) { namespace_changed_ = std::move(changed); }
+
+  /// Starts to listen and to show.
+  void start();
+  /// Shows what there is now; otherwise ten times a second.
+  void refresh();
+
+  QSize sizeHint() const override;
+
+ private:
+  QString name_space_;
+  std::function<void()> namespace_changed_;
+  QLabel* status_;
+  StatusSummary* summary_;
+  CommandBox* commands_;
+  SteppingBox* stepping_;
+  SutureTable* sutures_;
+  MeasuresView* measures_;
+  EventList* events_;
+  SolverStatisticsView* solver_statistics_;
+  QLineEdit* name_space_edit_;
+  std::string waited_for_;  // full name of the service that is being called; empty: none
+  double waits_since_ = 0;  // [s]
+  bool gives_up_ = false;
+  std::string wrong_namespace_;
+  ProcedureSubscriptions subscriptions_;
+  ButtonSender sender_;
+  ServiceCaller caller_;  // last: its thread ends before anything else goes
+
+  QWidget* makeContent();
+  CommandBox* makeCommands();
+  SteppingBox* makeStepping();
+  Moment moment() const;
+  std::string fullName(const std::string& service) const;
+  void callService(const std::string& service, const std::function<bool(const std::string&)>& call);
+  void takeAnswer(const ServiceCaller::Answer& answer);
+  void displayStatus(double now);
+};
+
+}  // namespace vibe

@@ -1,0 +1,44 @@
+#include "panels/solver_statistics_view.hpp"
+
+#include <QGridLayout>
+#include <QLabel>
+
+#include "messages/number_text.hpp"
+#include "messages/procedure_text.hpp"
+#include "panels/text_rows.hpp"
+
+namespace vibe {
+namespace {
+
+const char* const kAgeHelp = "Wall time since the last message of the tool or, without one, of the state.";
+const char* const kDelayHelp =
+    "From the sample to its arrival here, greatest of the last second. Surgeons did worse with 105 ms of added delay "
+    "(Kumcu et al. 2016). "
+    "Not known with simulated time, whose stamps are no wall time.";
+
+}  // namespace
+
+SolverStatisticsView::SolverStatisticsView(QWidget* parent) : QWidget(parent) {
+  makeSmaller(*this);
+  auto* grid = new QGridLayout(this);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setVerticalSpacing(2);
+  rows_ = std::make_unique<TextRows>(grid);
+  display({}, {});
+}
+
+SolverStatisticsView::~SolverStatisticsView() = default;
+
+void SolverStatisticsView::display(const PanelMessages& messages, const Freshness& freshness) {
+  static const vibe_msgs::SolverStatistics kNothing;
+  for (const NamedText& row :
+       solverStatisticsRows(messages.solver_statistics ? *messages.solver_statistics : kNothing)) {
+    rows_->set(toQt(row.name), messages.solver_statistics ? toQt(row.value) : kNoValue, toQt(row.help));
+    rows_->mark(toQt(row.name), messages.solver_statistics && row.warns);
+  }
+  const bool known = static_cast<bool>(messages.state);
+  rows_->set("Last message", known ? toQt(quantityText(freshness.age, 2, "s") + " ago") : kNoValue, kAgeHelp);
+  rows_->set("Delay", known ? toQt(quantityText(1e3 * freshness.delay, 0, "ms")) : kNoValue, kDelayHelp);
+}
+
+}  // namespace vibe

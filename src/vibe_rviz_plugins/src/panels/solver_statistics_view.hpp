@@ -1,0 +1,23 @@
+#pragma once
+#include <QWidget>
+#include <memory>
+
+#include "panels/panel_messages.hpp"
+
+namespace vibe {
+
+class TextRows;
+
+/// How well the simulator keeps up, and how old what is shown is.
+class SolverStatisticsView : public QWidget {
+ public:
+  explicit SolverStatisticsView(QWidget* parent = nullptr);
+  ~SolverStatisticsView() override;
+
+  void display(const PanelMessages& messages, const Freshness& freshness);
+
+ private:
+  std::unique_ptr<TextRows> rows_;
+};
+
+}  // namespace vibe

@@ -1,0 +1,115 @@
+#include "panels/status_summary.hpp"
+
+#include <QFont>
+#include <QGridLayout>
+#include <QLabel>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "messages/number_text.hpp"
+#include "messages/procedure_text.hpp"
+#include "messages/reference_values.hpp"
+#include "panels/phase_strip.hpp"
+#include "panels/range_bar.hpp"
+#include "panels/text_rows.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kStatePeriod = 1;  // between two messages of the state at most, in simulated time [s]
+
+/// The state comes once a second; the force, which comes with every step, says how much later it is by now.
+double timeNow(const PanelMessages& messages) {
+  double later = 0;
+  if (messages.force) later = (messages.force->header.stamp - messages.state->header.stamp).toSec();
+  return messages.state->time + std::max(0.0, std::min(later, kStatePeriod));
+}
+
+double forceNow(const geometry_msgs::WrenchStamped& wrench) {
+  const auto& f = wrench.wrench.force;
+  return std::sqrt(f.x * f.x + f.y * f.y + f.z * f.z);
+}
+
+QString forceText(double force) {
+  const QString number = toQt(quantityText(force, 1, "N"));
+  if (!std::isfinite(force)) return number;
+  if (force == 0) return number + ", no contact";
+  return number + (force > kPullingForce.high ? ": too hard, seldom above 5 N" : ", gentle enough");
+}
+
+}  // namespace
+
+StatusSummary::StatusSummary(QWidget* parent)
+    : QWidget(parent), header_(wrappingLabel()), phases_(new PhaseStrip), force_bar_(new RangeBar) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  header_->setObjectName("header");
+  header_->setToolTip("Scene, simulated time since the start of the state, and whether steps are taken.");
+  QFont font = header_->font();
+  font.setBold(true);
+  header_->setFont(font);
+  column->addWidget(header_);
+  column->addWidget(phases_);
+  auto* grid = new QGridLayout;
+  column->addLayout(grid);
+  rows_ = std::make_unique<TextRows>(grid);
+  rows_->add("Tool", "What the tool does to the organ at the moment, and where the needle is.");
+  rows_->add("Bites", "In the set at work, and in all sets.");
+  rows_->add("Bleeding", "Bites that bleed now, and the blood lost so far. Completing a set stops what bleeds in it.");
+  rows_->add("Pull", toQt(explain(kPullingForce)));
+  force_bar_->setToolTip(toQt(explain(kPullingForce)));
+  grid->addWidget(force_bar_, grid->rowCount(), 1);
+  rows_->add("Marks", "Marks that hang together are one zone; by wall.");
+  rows_->add("Burns", "Zones with a burn scar or worse, and those where the muscularis is at risk.");
+}
+
+StatusSummary::~StatusSummary() = default;
+
+void StatusSummary::display(const PanelMessages& messages) {
+  displayState(messages);
+  displayBleeding(messages);
+  displayForce(messages);
+}
+
+void StatusSummary::displayState(const PanelMessages& messages) {
+  if (!messages.state) {
+    header_->setText("No session");
+    phases_->display(phaseSteps(""));
+    for (const char* name : {"Tool", "Bites", "Marks", "Burns"}) rows_->set(name, kNoValue);
+    return;
+  }
+  const vibe_msgs::ProcedureState& state = *messages.state;
+  header_->setText(
+      toQt(state.scene + ", " + durationText(timeNow(messages)) + (state.paused ? ", PAUSED" : ", running")));
+  phases_->display(phaseSteps(state.procedure_phase));
+  rows_->set("Tool", toQt(toolText(state)));
+  rows_->set("Bites", toQt(bitesText(state, messages.sutures.get())));
+  rows_->mark("Bites", state.tear_outs > 0);
+  rows_->set("Marks", toQt(marksText(state)));
+  rows_->set("Burns", toQt(burnsText(state)));
+  rows_->mark("Burns", state.deep_burn_zones > 0);
+}
+
+void StatusSummary::displayBleeding(const PanelMessages& messages) {
+  if (!messages.sutures) {
+    rows_->set("Bleeding", kNoValue);
+    rows_->mark("Bleeding", false);
+    return;
+  }
+  const BleedingSummary bleeding = summariseBleeding(*messages.sutures);
+  const std::string lost = " (" + quantityText(1e6 * bleeding.lost, 1, "mL") + " lost)";
+  rows_->set("Bleeding", toQt(bleedingText(bleeding) + (bleeding.lost > 0 ? lost : std::string())));
+  rows_->mark("Bleeding", bleeding.brisk + bleeding.mild > 0);
+}
+
+void StatusSummary::displayForce(const PanelMessages& messages) {
+  const double force = messages.force ? forceNow(*messages.force) : std::numeric_limits<double>::quiet_NaN();
+  const Rating rating = rate(kPullingForce, force, false);
+  rows_->set("Pull", forceText(force));
+  rows_->mark("Pull", rating == Rating::Outside);
+  force_bar_->display(barShape(kPullingForce, force), rating);
+}
+
+}  // namespace vibe

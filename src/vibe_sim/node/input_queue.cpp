@@ -1,0 +1,128 @@
+#include "input_queue.hpp"
+#include "vibe_core/constraints/pull_patch.hpp"
+
+#include <algorithm>
+
+#include "vibe_core/state/pull_spring.hpp"
+
+namespace vibe {
+namespace {
+
+std::string reachTip(const InputSample& sample, const Model& model, StepInput& input) {
+  if (!model.tool)
+    return "scope/servo_cp has no effect because the scene '" + model.scene.name +
+           "' has no scope; load a scene with one.";
+  const bool in_world = sample.target == ScopeTarget::TipInWorld;
+  const Eigen::Isometry3d pose = in_world ? model.tool_base.inverse() * sample.tip_pose : sample.tip_pose;
+  input.joints = model.tool->inverseKinematics(pose, input.joints);
+  return "";
+}
+
+// A pull that the model cannot follow lets go: what was held before is not what is wanted now.
+std::string applyPull(const InputSample& sample, const Model& model, StepInput& input) {
+  const bool asks = sample.pull_particle >= 0 && sample.pull_particle != input.pull_particle;
+  const std::string reason = asks ? pullRejection(model, sample.pull_particle) : "";
+  input.pull_particle = reason.empty() ? sample.pull_particle : -1;
+  input.pull_target = input.pull_particle < 0 ? Eigen::Vector3d::Zero() : sample.pull_target;
+  return reason.empty() ? "" : "tissue/pull has no effect because " + reason;
+}
+
+/// @return one sentence if the model cannot use the sample, otherwise empty
+std::string applySample(const InputSample& sample, const Model& model, StepInput& input) {
+  if (sample.target != ScopeTarget::Joints) return reachTip(sample, model, input);
+  switch (sample.channel) {
+    case InputChannel::Scope:
+      std::copy_n(sample.joints.begin(), kScopeJointCount, input.joints.begin());
+      break;
+    case InputChannel::Overstitch:
+      std::copy(sample.joints.begin() + kScopeJointCount, sample.joints.end(), input.joints.begin() + kScopeJointCount);
+      break;
+    case InputChannel::Buttons:
+      input.buttons = sample.buttons;
+      break;
+    case InputChannel::Pull:
+      return applyPull(sample, model, input);
+  }
+  return "";
+}
+
+}  // namespace
+
+bool InputQueue::push(const InputSample& sample) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  Queue& queue = queues_[static_cast<int>(sample.channel)];
+  InputSample item = sample;
+  item.stamp = std::max(sample.stamp, applied_until_);
+  const auto later = std::upper_bound(queue.waiting.begin(), queue.waiting.end(), item.stamp,
+                                      [](std::int64_t stamp, const InputSample& other) { return stamp < other.stamp; });
+  const bool replaces = later != queue.waiting.begin() && std::prev(later)->stamp == item.stamp;
+  if (!replaces && queue.waiting.size() >= kCapacity) return false;
+  if (replaces) {
+    *std::prev(later) = item;
+  } else {
+    queue.waiting.insert(later, item);
+  }
+  queue.newest = std::max(queue.newest, sample.stamp);
+  return true;
+}
+
+bool InputQueue::knownUntil(std::int64_t stamp) const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return std::all_of(queues_.begin(), queues_.begin() + kLockstepChannelCount,
+                     [stamp](const Queue& queue) { return queue.newest >= stamp; });
+}
+
+std::string InputQueue::missingAt(std::int64_t stamp) const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  std::string names;
+  for (int channel = 0; channel < kLockstepChannelCount; ++channel) {
+    if (queues_[channel].newest >= stamp) continue;
+    names += (names.empty() ? "" : ", ") + std::string(toString(static_cast<InputChannel>(channel)));
+  }
+  return names;
+}
+
+std::vector<std::string> InputQueue::apply(std::int64_t stamp, const Model& model, StepInput& input) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> unusable;
+  for (Queue& queue : queues_) {
+    while (!queue.waiting.empty() && queue.waiting.front().stamp <= stamp) {
+      const InputSample& sample = queue.waiting.front();
+      std::string sentence = applySample(sample, model, input);
+      if (!sentence.empty()) unusable.push_back(std::move(sentence));
+      if (sample.channel == InputChannel::Pull) last_pull_ = stamp;
+      queue.waiting.pop_front();
+    }
+  }
+  if (input.pull_particle >= 0 && stamp - last_pull_ > kPullTimeout) {
+    input.pull_particle = -1;
+    input.pull_target.setZero();
+    unusable.push_back(
+        "The hand on tissue/pull has been silent for 2 s and lets go; send its target again while it "
+        "holds.");
+  }
+  applied_until_ = std::max(applied_until_, stamp);
+  return unusable;
+}
+
+void InputQueue::clear() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  queues_ = {};
+  applied_until_ = last_pull_ = 0;
+}
+
+const char* toString(InputChannel channel) {
+  switch (channel) {
+    case InputChannel::Scope:
+      return "scope/measured_js";
+    case InputChannel::Overstitch:
+      return "overstitch/measured_js";
+    case InputChannel::Buttons:
+      return "scope/buttons";
+    case InputChannel::Pull:
+      return "tissue/pull";
+  }
+  return "";
+}
+
+}  // namespace vibe

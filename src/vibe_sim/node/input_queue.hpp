@@ -1,0 +1,77 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "vibe_core/input/step_input.hpp"
+#include "vibe_core/model/model.hpp"
+
+namespace vibe {
+
+/// Where an input comes from. Each has its own queue, because each has its own rate.
+enum class InputChannel { Scope, Overstitch, Buttons, Pull };
+constexpr int kInputChannelCount = 4;
+constexpr int kLockstepChannelCount = 3;  ///< the first ones; nobody has to pull the tissue
+
+/// A hand of which nothing is heard for longer lets go: its program may be gone [ns of the simulator's time].
+constexpr std::int64_t kPullTimeout = 2'000'000'000;
+
+/// What a sample of the channel Scope says: joint positions, or the pose that scope_tip is to reach.
+enum class ScopeTarget { Joints, TipInWorld, TipInBase };
+
+/// One valid message, free of ROS. Only the values of its channel count.
+struct InputSample {
+  InputChannel channel = InputChannel::Scope;
+  std::int64_t stamp = 0;  ///< time of the sample [ns]; 0: as soon as possible
+  std::array<double, kJointCount> joints{};
+  std::array<std::uint8_t, kButtonCount> buttons{};
+  ScopeTarget target = ScopeTarget::Joints;
+  Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();  ///< in world or in the tool's root link
+  int pull_particle = -1;
+  Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< in world [m]
+};
+
+/// Holds what has arrived until the step for which it is due, and the last valid values after that. All functions may
+/// be called from any thread.
+class InputQueue {
+ public:
+  /// Samples that may wait in one channel; more means that somebody stamps far into the future.
+  static constexpr std::size_t kCapacity = 4096;
+
+  /// A sample with the stamp of one that still waits replaces it.
+  /// @return false if the channel is full and the sample was not taken
+  bool push(const InputSample& sample);
+
+  /// Whether every channel of lock-step has delivered a sample stamped `stamp` or later: all that matters at that time
+  /// is known.
+  bool knownUntil(std::int64_t stamp) const;
+  /// Channels for which that is not so, for people.
+  std::string missingAt(std::int64_t stamp) const;
+
+  /// Applies to `input` everything that is due at `stamp`, in the order of stamps; samples from the past count as of
+  /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics; a hand that has
+  /// been silent for kPullTimeout lets go.
+  /// @return one sentence per sample that the model cannot use
+  std::vector<std::string> apply(std::int64_t stamp, const Model& model, StepInput& input);
+
+  /// Forgets everything, e.g. because time starts again.
+  void clear();
+
+ private:
+  struct Queue {
+    std::deque<InputSample> waiting;  // ascending stamps
+    std::int64_t newest = 0;          // greatest stamp ever delivered
+  };
+  mutable std::mutex mutex_;
+  std::array<Queue, kInputChannelCount> queues_;
+  std::int64_t applied_until_ = 0;
+  std::int64_t last_pull_ = 0;  // time at which a sample of Pull was applied last
+};
+
+const char* toString(InputChannel channel);
+
+}  // namespace vibe

@@ -1,0 +1,206 @@
+#include "input_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include "worlds.hpp"
+
+namespace vibe {
+namespace {
+
+InputSample scopeAt(double insertion, std::int64_t stamp) {
+  InputSample sample;
+  sample.stamp = stamp;
+  sample.joints[Insertion] = insertion;
+  return sample;
+}
+
+InputSample buttonsAt(std::uint8_t grab, std::int64_t stamp) {
+  InputSample sample;
+  sample.channel = InputChannel::Buttons;
+  sample.stamp = stamp;
+  sample.buttons[HelixGrab] = grab;
+  return sample;
+}
+
+InputSample overstitchAt(double advance, std::int64_t stamp) {
+  InputSample sample;
+  sample.channel = InputChannel::Overstitch;
+  sample.stamp = stamp;
+  sample.joints[HelixAdvance] = advance;
+  return sample;
+}
+
+InputSample pullAt(int particle, double x, std::int64_t stamp) {
+  InputSample sample;
+  sample.channel = InputChannel::Pull;
+  sample.stamp = stamp;
+  sample.pull_particle = particle;
+  sample.pull_target.x() = x;
+  return sample;
+}
+
+class InputQueueTest : public testing::Test {
+ protected:
+  InputQueue queue;
+  Model model;  // without a tool
+  StepInput input;
+};
+
+TEST_F(InputQueueTest, futureSamplesWaitUntilTheyAreDue) {
+  queue.push(scopeAt(0.1, 100));
+  queue.push(scopeAt(0.2, 200));
+  queue.apply(99, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.0);
+  queue.apply(100, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.1);
+  queue.apply(1000, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.2);
+}
+
+TEST_F(InputQueueTest, lastValueStaysInForce) {
+  queue.push(buttonsAt(1, 10));
+  queue.apply(10, model, input);
+  queue.apply(20, model, input);
+  EXPECT_EQ(input.buttons[HelixGrab], 1);
+}
+
+TEST_F(InputQueueTest, stampZeroAndThePastCountAsNowInTheOrderOfArrival) {
+  queue.apply(500, model, input);
+  queue.push(scopeAt(0.1, 400));
+  queue.push(scopeAt(0.2, 0));
+  queue.push(scopeAt(0.3, 300));
+  queue.apply(501, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.3);
+}
+
+TEST_F(InputQueueTest, samplesOutOfOrderAreAppliedInTheOrderOfStamps) {
+  queue.push(scopeAt(0.3, 300));
+  queue.push(scopeAt(0.1, 100));
+  queue.push(scopeAt(0.2, 200));
+  queue.apply(250, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.2);
+}
+
+TEST_F(InputQueueTest, aRepeatedStampReplacesWhatWaits) {
+  for (int i = 0; i < 10000; ++i) EXPECT_TRUE(queue.push(scopeAt(0.001 * i, 100)));
+  queue.apply(100, model, input);
+  EXPECT_DOUBLE_EQ(input.joints[Insertion], 9.999);
+}
+
+TEST_F(InputQueueTest, channelsTouchTheirOwnValuesOnly) {
+  input.joints = {1, 2, 3, 4, 5, 6, 7};
+  queue.push(overstitchAt(0.01, 1));
+  queue.apply(1, model, input);
+  EXPECT_EQ(input.joints, (std::array<double, kJointCount>{1, 2, 3, 4, 0.01, 0, 0}));
+  queue.push(scopeAt(0.02, 2));
+  queue.apply(2, model, input);
+  EXPECT_EQ(input.joints, (std::array<double, kJointCount>{0.02, 0, 0, 0, 0.01, 0, 0}));
+}
+
+TEST_F(InputQueueTest, aFullChannelRefusesAndTheOthersDoNotCare) {
+  for (std::size_t i = 0; i < InputQueue::kCapacity; ++i) {
+    ASSERT_TRUE(queue.push(scopeAt(0, static_cast<std::int64_t>(1000 + i))));
+  }
+  EXPECT_FALSE(queue.push(scopeAt(0, 999999)));
+  EXPECT_TRUE(queue.push(buttonsAt(1, 999999)));
+  queue.apply(1000, model, input);
+  EXPECT_TRUE(queue.push(scopeAt(0, 999999)));
+}
+
+TEST_F(InputQueueTest, lockstepKnowsATimeWhenEveryChannelHasReachedIt) {
+  EXPECT_FALSE(queue.knownUntil(100));
+  queue.push(scopeAt(0, 100));
+  queue.push(overstitchAt(0, 105));
+  EXPECT_EQ(queue.missingAt(100), "scope/buttons");
+  queue.push(buttonsAt(0, 99));
+  EXPECT_FALSE(queue.knownUntil(100));
+  queue.push(buttonsAt(0, 100));
+  EXPECT_TRUE(queue.knownUntil(100));
+  EXPECT_FALSE(queue.knownUntil(101));
+  EXPECT_EQ(queue.missingAt(101), "scope/measured_js, scope/buttons");
+  // applying does not make it forget what it knows
+  queue.apply(100, model, input);
+  EXPECT_TRUE(queue.knownUntil(100));
+  queue.clear();
+  EXPECT_FALSE(queue.knownUntil(100));
+}
+
+class PullQueueTest : public testing::Test {
+ protected:
+  test::World world{test::bareScene(), test::plainOrgan(test::icosphere(0.05, 2), 2e-3)};
+  InputQueue queue;
+  StepInput input;
+  std::vector<std::string> apply(std::int64_t stamp) { return queue.apply(stamp, *world.model, input); }
+};
+
+TEST_F(PullQueueTest, aPullIsLatchedLikeEveryInput) {
+  queue.push(pullAt(3, 0.01, 100));
+  queue.push(pullAt(3, 0.02, 200));
+  queue.push(pullAt(-1, 0.03, 300));
+  EXPECT_TRUE(apply(99).empty());
+  EXPECT_EQ(input.pull_particle, -1);
+  apply(150);
+  EXPECT_EQ(input.pull_particle, 3);
+  EXPECT_EQ(input.pull_target.x(), 0.01);
+  apply(299);
+  EXPECT_EQ(input.pull_target.x(), 0.02);
+  apply(300);
+  EXPECT_EQ(input.pull_particle, -1);
+  EXPECT_TRUE(input.pull_target.isZero());
+}
+
+TEST_F(PullQueueTest, aSilentHandLetsGoAndSaysSoOnce) {
+  queue.push(pullAt(3, 0.01, 1000));
+  apply(1000);
+  EXPECT_TRUE(apply(1000 + kPullTimeout).empty());
+  EXPECT_EQ(input.pull_particle, 3);
+  const std::vector<std::string> sentences = apply(1001 + kPullTimeout);
+  ASSERT_EQ(sentences.size(), 1u);
+  EXPECT_NE(sentences[0].find("tissue/pull"), std::string::npos);
+  EXPECT_EQ(input.pull_particle, -1);
+  EXPECT_TRUE(apply(2000 + kPullTimeout).empty());
+  queue.push(pullAt(3, 0.01, 0));  // without a stamp it counts from when it came
+  apply(3000 + kPullTimeout);
+  EXPECT_EQ(input.pull_particle, 3);
+  EXPECT_TRUE(apply(2000 + 2 * kPullTimeout).empty());
+  EXPECT_EQ(input.pull_particle, 3);
+}
+
+TEST_F(PullQueueTest, aPullFromBeforeTheFirstStepCountsAsOfThatStep) {
+  queue.push(pullAt(3, 0.01, 0));
+  EXPECT_TRUE(apply(3 * kPullTimeout).empty());
+  EXPECT_EQ(input.pull_particle, 3);
+}
+
+TEST_F(PullQueueTest, aParticleThatDoesNotExistIsASentenceAndLetsGo) {
+  queue.push(pullAt(3, 0.01, 1));
+  apply(1);
+  queue.push(pullAt(world.model->particle_count, 0.01, 2));
+  const std::vector<std::string> sentences = apply(2);
+  ASSERT_EQ(sentences.size(), 1u);
+  EXPECT_NE(sentences[0].find(std::to_string(world.model->particle_count)), std::string::npos);
+  EXPECT_EQ(input.pull_particle, -1);
+}
+
+TEST_F(PullQueueTest, lockstepDoesNotWaitForAHand) {
+  queue.push(scopeAt(0, 100));
+  queue.push(overstitchAt(0, 100));
+  EXPECT_FALSE(queue.knownUntil(100));
+  queue.push(buttonsAt(0, 100));
+  EXPECT_TRUE(queue.knownUntil(100));
+  EXPECT_EQ(queue.missingAt(101).find("tissue/pull"), std::string::npos);
+}
+
+TEST_F(InputQueueTest, aTipTargetWithoutAScopeIsReportedAndChangesNothing) {
+  InputSample sample = scopeAt(0, 1);
+  sample.target = ScopeTarget::TipInWorld;
+  queue.push(sample);
+  input.joints[Insertion] = 0.05;
+  const std::vector<std::string> sentences = queue.apply(1, model, input);
+  ASSERT_EQ(sentences.size(), 1u);
+  EXPECT_NE(sentences[0].find("no scope"), std::string::npos);
+  EXPECT_EQ(input.joints[Insertion], 0.05);
+}
+
+}  // namespace
+}  // namespace vibe
