@@ -1,8 +1,9 @@
 #include "vibe_core/builder/tissue_registry.hpp"
 
+#include "constraints/attachment.hpp"
+#include "constraints/foundation.hpp"
 #include "dynamics/implicit_solver.hpp"
 #include "dynamics/xpbd_solver.hpp"
-#include "scene/attachments.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shell_tissue.hpp"
 #include "vibe_core/common/error.hpp"
@@ -22,16 +23,14 @@ TissueAndSolver makeShapeMatching(Scene& scene, const Organ& organ, const std::v
 
 TissueAndSolver makeShell(Scene& scene, const Organ& organ, const std::vector<double>& masses,
                           const std::vector<double>& areas, int) {
-  const std::size_t n = masses.size();
   ElasticBody body;
-  for (std::size_t i = 0; i < n; ++i) body.fixed.push_back(isHeld(scene, organ.end[i]) ? 1 : 0);
+  body.fixed = attachedNodes(scene, organ);
   auto tissue = std::make_shared<const ShellTissue>(scene.tissue, organ, body.fixed);
   body.elements = tissue->elements();
   body.shell = tissue->elements().get();
   body.rest.assign(organ.surface.vertices.begin(), organ.surface.vertices.end());
   body.mass = masses;
-  if (scene.foundation)
-    for (double area : areas) body.foundation.push_back(scene.foundation->stiffness * area);
+  body.foundation = foundationSprings(scene, areas);
   const bool carried = scene.foundation && scene.foundation->carries_weight;
   if (scene.gravity && !carried) body.gravity = scene.gravity->acceleration;
   body.mass_damping = scene.tissue.mass_damping;
