@@ -97,7 +97,7 @@ void ImpedanceEstimator::startMaking(const std::vector<float>& gas_direction, do
     next_->setRows(next_rows_);
     next_->setGas(next_gas_, gas_stiffness);
     next_mass_.setZero();
-    if (body_.mass_damping > 0 && !next_rows_.empty()) next_mass_ = next_->movingMass(next_motion_);
+    if (body_.mass_damping > 0 && next_rows_.count() > 0) next_mass_ = next_->movingMass(next_motion_);
     return true;
   });
 }
@@ -113,11 +113,10 @@ bool ImpedanceEstimator::farFrom(const std::array<const double*, 3>& positions) 
 }
 
 void ImpedanceEstimator::setRows(const ToolContactRows& touch) {
-  rows_.resize(touch.rows.size());
-  motion_.resize(static_cast<Eigen::Index>(rows_.size()), kToolMotions);
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    rows_[r].node.assign(1, touch.rows[r].node);
-    rows_[r].coefficient.assign(1, touch.rows[r].direction);
+  rows_.equations.clear();
+  motion_.resize(static_cast<Eigen::Index>(touch.rows.size()), kToolMotions);
+  for (std::size_t r = 0; r < touch.rows.size(); ++r) {
+    rows_.equations.add().form.setNode(touch.rows[r].node, touch.rows[r].direction);
     motion_.row(static_cast<Eigen::Index>(r)) = touch.rows[r].motion;
   }
 }

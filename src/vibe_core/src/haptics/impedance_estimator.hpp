@@ -73,7 +73,7 @@ class ImpedanceEstimator {
   std::unique_ptr<StaticStiffness> rest_, made_, next_;
   StaticStiffness* present_;
   std::vector<float> linearization_point_, next_linearization_point_, next_gas_;  // empty `linearization_point_`: rest
-  std::vector<ConstraintRow> rows_, next_rows_;
+  ConstraintRows rows_, next_rows_;
   Eigen::MatrixXd motion_, next_motion_;        // (rows x kToolMotions)
   Eigen::MatrixXd solved_;                      // force of each row per motion (rows x kToolMotions)
   Eigen::LDLT<Eigen::MatrixXd> factor_;         // of the rows' compliance

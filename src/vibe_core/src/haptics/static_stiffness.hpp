@@ -19,8 +19,8 @@ class StaticStiffness {
   bool make(const std::vector<float>& positions);
   /// The gas: force per pressure (4 per node) [m^2], how fast the pressure falls with the volume [Pa/m^3]; 0: none.
   void setGas(const std::vector<float>& direction4, double stiffness);
-  /// Rows that are equations; columns of nodes seen before cost nothing.
-  void setRows(const std::vector<ConstraintRow>& rows);
+  /// Equations only; columns of nodes seen before cost nothing.
+  void setRows(const ConstraintRows& rows);
 
   /// Compliance between the rows [m/N].
   const Eigen::MatrixXd& compliance() const { return schur_.compliance(); }

@@ -55,29 +55,24 @@ void QuasiNewton::start() {
   value_ = potential_.evaluate(scratch_.z, scratch_.gradient);
 }
 
-// What the rows lack to their targets at z.
+// How far the rows are from their targets at z. The potential has the springs.
 void QuasiNewton::rowResidual() {
-  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
-    const ConstraintRow& row = scratch_.rows[r];
-    double value = 0;
-    for (std::size_t k = 0; k < row.node.size(); ++k) {
-      const double* z = &scratch_.z[4 * static_cast<std::size_t>(row.node[k])];
-      value += row.coefficient[k].dot(Eigen::Vector3d(z[0], z[1], z[2]));
-    }
-    scratch_.rhs[static_cast<Eigen::Index>(r)] = row.spring ? 0 : scratch_.target[static_cast<Eigen::Index>(r)] - value;
-  }
+  scratch_.rhs.setZero();
+  scratch_.rows.forEachMultiplier(
+      [this](int row, const LinearForm& form) { scratch_.rhs[row] = scratch_.target[row] - form.value(scratch_.z); });
 }
 
-// How far the rows that act move; what is not touched and thread that is slack may move as they like.
+// How far the rows that act move. Contacts that do not touch and slack threads may move freely.
 double QuasiNewton::rowResiduals() const {
-  const ConstraintSchur& schur = scratch_.schur;
+  const Eigen::VectorXd &moves = scratch_.schur.moves(), &forces = scratch_.schur.forces();
+  const int contacts_end = scratch_.rows.contactRow(scratch_.rows.contacts.size());
   double max = 0;
-  for (Eigen::Index r = 0; r < scratch_.rhs.size(); ++r) {
-    const ConstraintRow& row = scratch_.rows[static_cast<std::size_t>(r)];
-    if (row.spring) continue;
-    if (row.thread < 0 || schur.forces()[r] > 0)
-      max = std::max(max, (row.attachment[0] < 0 ? 1 : kThreadShare) * std::abs(schur.moves()[r]));
-  }
+  for (int row = 0; row < contacts_end; ++row) max = std::max(max, std::abs(moves[row]));
+  for (const ThreadRows& thread : scratch_.rows.threads)
+    for (int k = 0; k < thread.count(); ++k) {
+      const int row = thread.pullRow(k);
+      if (forces[row] > 0) max = std::max(max, kThreadShare * std::abs(moves[row]));
+    }
   return max;
 }
 
@@ -88,11 +83,9 @@ bool QuasiNewton::satisfyConstraints() {
   StepperScratch& s = scratch_;
   rowResidual();
   double max = 0;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    const ConstraintRow& row = s.rows[r];
-    if (row.friction >= 0) continue;
-    double& rhs = s.rhs[static_cast<Eigen::Index>(r)];
-    if (row.compliance > 0) rhs = 0;
+  for (std::size_t i = 0; i < s.rows.equations.size(); ++i) {
+    double& rhs = s.rhs[static_cast<Eigen::Index>(i)];
+    if (s.rows.equations[i].compliance > 0) rhs = 0;
     max = std::max(max, std::abs(rhs));
   }
   if (max <= std::max(kSmallResidual * direction_length_, kUnmet * resolution())) return false;
@@ -114,16 +107,12 @@ double QuasiNewton::resolution() const {
   return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.displacement);
 }
 
-// Those that the last elimination found.
+// The forces that the last elimination found.
 void QuasiNewton::addRowForces(double sign, std::vector<float>& vector) const {
-  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
-    const ConstraintRow& row = scratch_.rows[r];
-    const double force = sign * scratch_.schur.forces()[static_cast<Eigen::Index>(r)];
-    if (row.spring || force == 0) continue;
-    for (std::size_t i = 0; i < row.node.size(); ++i)
-      for (int k = 0; k < 3; ++k)
-        vector[4 * static_cast<std::size_t>(row.node[i]) + k] += static_cast<float>(force * row.coefficient[i][k]);
-  }
+  scratch_.rows.forEachMultiplier([&](int row, const LinearForm& form) {
+    const double force = sign * scratch_.schur.forces()[row];
+    if (force != 0) form.addForce(force, vector);
+  });
 }
 
 // Once per step, so that all iterations look for the same equilibrium. What walls that touch resist is not in the
@@ -132,14 +121,14 @@ void QuasiNewton::slideThreads() {
   if (threads_have_slid_) return;
   threads_have_slid_ = true;
   StepperScratch& s = scratch_;
-  s.slid.setZero(static_cast<Eigen::Index>(s.rows.size()));
-  for (std::size_t r = 0; r + 1 < s.rows.size(); ++r) {
-    if (s.rows[r].thread < 0 || s.rows[r + 1].thread != s.rows[r].thread) continue;
-    const auto row = static_cast<Eigen::Index>(r);
-    s.slid[row] = kSlidePart * s.schur.slid(static_cast<int>(r));
-    s.target[row] += s.slid[row];
-    s.target[row + 1] -= s.slid[row];
-  }
+  s.slid.setZero(s.rows.count());
+  for (const ThreadRows& thread : s.rows.threads)
+    for (int k = 0; k + 1 < thread.count(); ++k) {
+      const int row = thread.pullRow(k);
+      s.slid[row] = kSlidePart * s.schur.slid(row);
+      s.target[row] += s.slid[row];
+      s.target[row + 1] -= s.slid[row];
+    }
   s.schur.holdThreads();
 }
 
@@ -181,9 +170,9 @@ void QuasiNewton::findDirection() {
 // rows move.
 double QuasiNewton::lagrangian(double part) const {
   double sum = 0;
-  for (Eigen::Index r = 0; r < scratch_.rhs.size(); ++r)
-    if (!scratch_.rows[static_cast<std::size_t>(r)].spring)
-      sum += scratch_.schur.forces()[r] * scratch_.schur.moves()[r] * (1 - part);
+  scratch_.rows.forEachMultiplier([&](int row, const LinearForm&) {
+    sum += scratch_.schur.forces()[row] * scratch_.schur.moves()[row] * (1 - part);
+  });
   return sum;
 }
 
