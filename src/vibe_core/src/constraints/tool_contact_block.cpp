@@ -11,8 +11,8 @@ namespace vibe {
 
 namespace {
 
-// Particles this near to the tool may be reached within the step. Design choice: tissue and tool approach each other at
-// no more than 0.12 m/s in a step of 1/60 s [m].
+// Particles that are predicted this near to the tool become contacts, because they may be reached within the step.
+// Design choice: covers 0.12 m/s that the prediction from velocities does not foresee in a step of 1/60 s [m].
 constexpr double kContactMargin = 2e-3;
 // Share of the largest friction above which a contact counts as sliding. Design choice: the contact iterations stop
 // within this of the cone [1].

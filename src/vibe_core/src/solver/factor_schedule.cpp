@@ -8,7 +8,9 @@
 namespace vibe {
 namespace {
 
-constexpr double kShift = 1e-7;  // of the stiffness, so that a free body can be factored
+// Spring at every node over the mean diagonal of the stiffness, so that a free body can be factored without inertia.
+// Design choice: the rounding of single precision, in which the solution is stored [1].
+constexpr double kShift = 1e-7;
 
 std::uint64_t hashOf(const std::vector<float>& values) {  // FNV-1a over 32-bit words; 1: nothing
   std::uint64_t hash = 1469598103934665603ULL;

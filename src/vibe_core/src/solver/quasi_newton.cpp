@@ -10,14 +10,32 @@ namespace vibe {
 
 namespace {
 
-constexpr double kSufficientDecrease = 1e-4;  // Armijo
+// Share of the linear prediction by which the energy must fall (Armijo). Nocedal, Wright 2006, Numerical Optimization,
+// section 3.1: "c1 is chosen to be quite small, say c1 = 1e-4" [1].
+constexpr double kSufficientDecrease = 1e-4;
+// Halvings of a step before it counts as failed. Design choice: a part of 2e-4 of a direction is below what a step can
+// use.
 constexpr int kMaxHalvings = 12;
-constexpr double kUnmet = 100;           // of the resolution: what rows lack beyond it is no rounding
-constexpr double kSmallResidual = 1e-4;  // of the rows, of the direction
-constexpr double kThreadShare = 3e-4;    // of a lack: rows of threads may move in a pair by a third of its length
+// Residual of the constraints over the resolution of single precision, above which it is not rounding. Design choice:
+// a row sums up to some ten nodes, each a few roundings off [1].
+constexpr double kUnmet = 100;
+// Residual of the rows over the length of the direction, below which the rows hardly move. Design choice: a pair of the
+// history with larger row moves would repeat them in later directions [1].
+constexpr double kSmallResidual = 1e-4;
+// The same for threads: their rows may move by this part of a residual, because a thread is elastic. Design choice:
+// with kSmallResidual the rows of threads may move by a third of a direction [1].
+constexpr double kThreadShare = 3e-4;
+// Part of the foreseen slide of a thread that is taken in a step. Design choice: the factor does not contain
+// self-contact, which resists the slide where walls touch; with half of it the slide does not overshoot [1].
 constexpr double kSlidePart = 0.5;
+// Length of a direction over the one before, below which the iteration contracts. Design choice: halving per iteration
+// is the weakest rate that bounds the rest by the last move [1].
 constexpr double kSafeContraction = 0.5;
-constexpr double kSafeRest = 0.1;  // of the first direction
+// The same over the first direction. Design choice: a step may leave a tenth of its first move [1].
+constexpr double kSafeRest = 0.1;
+// Smallest cosine between move and change of gradient of a pair that is kept. Design choice: the rounding of single
+// precision; below it the curvature has no correct digit [1].
+constexpr double kMinPairCosine = 1e-8;
 
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
   double sum[4] = {0, 0, 0, 0};
@@ -76,8 +94,8 @@ double QuasiNewton::rowResiduals() const {
   return max;
 }
 
-// By the smoothest move, whatever the energy: what a tool holds goes where the tool goes. Far moves lower the energy
-// only in small parts, of which no number arrives.
+// By the move of least energy of the factor, whatever the true energy: what a tool holds goes where the tool goes. The
+// line search would admit only small parts of a far move, and no number of them meets the constraint.
 bool QuasiNewton::satisfyConstraints() {
   if (extra_ != nullptr && extra_->acts()) return false;  // walls that meet may forbid it
   StepperScratch& s = scratch_;
@@ -115,8 +133,7 @@ void QuasiNewton::addRowForces(double sign, std::vector<float>& vector) const {
   });
 }
 
-// Once per step, so that all iterations look for the same equilibrium. What walls that touch resist is not in the
-// factor: thread slides half as far as it foresees.
+// Once per step, so that all iterations look for the same equilibrium.
 void QuasiNewton::slideThreads() {
   if (threads_have_slid_) return;
   threads_have_slid_ = true;
@@ -137,8 +154,8 @@ void QuasiNewton::findDirection() {
   StepperScratch& s = scratch_;
   rowResidual();
   s.work = s.gradient;
-  // rows may bear far more than what is left to gain: of a pair that moves them by a rounding, that would be all one
-  // sees
+  // forces of rows may be far larger than the remaining gradient: without this, a pair that moves rows by a rounding
+  // would consist of their forces only
   if (s.pairs > 0) addRowForces(-1, s.work);
   double alpha[StepperScratch::kHistory];
   for (int i = s.pairs - 1; i >= 0; --i) {
@@ -196,7 +213,7 @@ void QuasiNewton::keepPair(double part) {
     change[i] = s.trial_gradient[i] - s.gradient[i];
   }
   const double product = dot(move, change);
-  if (!(product > 1e-8 * std::sqrt(dot(move, move) * dot(change, change)))) return;
+  if (!(product > kMinPairCosine * std::sqrt(dot(move, move) * dot(change, change)))) return;
   s.curvature[s.pairs++] = 1 / product;
 }
 
