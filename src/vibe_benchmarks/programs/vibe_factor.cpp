@@ -22,7 +22,7 @@ const char kHelp[] =
     "  --scene FILE      organ with tissue.model: shell (default: package://vibe_core/scenes/stomach.yaml)\n"
     "  --help            this text\n"
     "analyse: order of elimination, once per mesh; factor: once per linearization point, in the background;\n"
-    "solve: several times per step.\n";
+    "solve: several times per step. CHOLMOD calls the BLAS of the system, which decides its times.\n";
 
 constexpr int kRepeats = 15;  // design choice: the median of so many is steady to a few percent
 
