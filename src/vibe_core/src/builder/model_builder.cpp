@@ -125,7 +125,8 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   const TissueAndSolver made = makeTissue(model.scene, model.organ, model.mass, model.area, for_gas);
   model.tissue = made.tissue;
   model.solver = made.solver;
-  if (model.solver->usesSubsteps()) checkSubstepsForGas(model.scene.tissue.substeps, for_gas);
+  model.substeps = made.substeps;
+  if (model.solver->usesSubsteps()) checkSubstepsForGas(model.substeps, for_gas);
   if (model.scene.scope) addTool(tool_urdf, model);
   if (model.scene.marking) model.dose_law.emplace(model.scene.marking->apc);
   if (model.scene.suture) model.along = placesAlong(model.organ);
@@ -140,7 +141,7 @@ std::string softnessWarning(const Model& model) {
   std::snprintf(text, sizeof text,
                 "Somewhere the wall has %.0f %% of its stiffness; raise tissue.substeps from %d to %.0f, or lower "
                 "tissue.stiffness_damping.",
-                100 * ratio, model.scene.tissue.substeps, std::ceil(model.scene.tissue.substeps / std::sqrt(ratio)));
+                100 * ratio, model.substeps, std::ceil(model.substeps / std::sqrt(ratio)));
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 
+#include "scene/renamed_keys.hpp"
 #include "scene/scene_value.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
@@ -77,6 +78,8 @@ class SceneReader {
   }
 
   [[noreturn]] void failUnknown(const std::string& section, const YamlField& field) const {
+    if (const char* name = newNameOf(field.path))
+      source_.fail(field, "has a new name; write it as '" + std::string(name) + "'");
     const std::vector<std::string> here = keysIn(section);
     if (nearestKey(field.key, here).empty()) {
       for (const SchemaRow& row : sceneSchema()) {
@@ -123,7 +126,7 @@ class SceneReader {
   /// Values that are right alone but not together.
   void checkProcedure() const {
     if (const auto& suture = scene_.suture) {
-      checkOrder("suture.least_bites", suture->min_bites, "suture.most_bites", suture->max_bites);
+      checkOrder("suture.min_bites", suture->min_bites, "suture.max_bites", suture->max_bites);
       checkOrder("suture.loose_tension", suture->loose_tension, "suture.cinch_tension", suture->cinch_tension);
       checkOrder("suture.cinch_tension", suture->cinch_tension, "suture.thread_strength", suture->thread_strength);
       if (suture->loose_tension == suture->cinch_tension) {

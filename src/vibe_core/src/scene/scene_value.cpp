@@ -21,7 +21,8 @@ struct Reader {
   Scene& scene;
 
   void operator()(std::string& (*at)(Scene&)) const {
-    at(scene) = row.words.empty() ? source.text(field) : source.choice(field, row.words);
+    const std::vector<std::string> words = wordsOf(row);
+    at(scene) = words.empty() ? source.text(field) : source.choice(field, words);
   }
   void operator()(bool& (*at)(Scene&)) const { at(scene) = source.boolean(field); }
   void operator()(int& (*at)(Scene&)) const { at(scene) = static_cast<int>(integer()); }

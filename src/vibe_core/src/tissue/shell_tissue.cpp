@@ -3,24 +3,11 @@
 #include <map>
 
 #include "tissue/wall_fibres.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
 
 namespace {
-
-struct NamedLaw {
-  const char* name;
-  Law law;
-};
-
-constexpr NamedLaw kLaws[] = {{"neo_hookean", Law::NeoHookean},
-                              {"stable_neo_hookean", Law::StableNeoHookean},
-                              {"macklin_mueller", Law::MacklinMueller},
-                              {"fung", Law::Fung},
-                              {"gent", Law::Gent},
-                              {"yeoh", Law::Yeoh}};
 
 // Per triangle: the mean of what tissue.stiffness says of its nodes.
 std::vector<double> stiffnessFactors(const TissueScene& tissue, const Organ& organ) {
@@ -72,15 +59,6 @@ Eigen::Vector3d centreOf(const Organ& organ) {
 }
 
 }  // namespace
-
-Law lawByName(const std::string& name) {
-  std::string known;
-  for (const NamedLaw& law : kLaws) {
-    if (name == law.name) return law.law;
-    known += (known.empty() ? "" : ", ") + std::string(law.name);
-  }
-  throw Error("tissue.law '" + name + "' is unknown; use one of: " + known + ".");
-}
 
 ShellTissue::ShellTissue(const TissueScene& tissue, const Organ& organ, const std::vector<char>& fixed)
     : elements_(std::make_shared<const ShellElements>(shellMesh(tissue, organ, fixed), centreOf(organ))) {}

@@ -39,7 +39,7 @@ class Solver {
  public:
   virtual ~Solver() = default;
   virtual std::string name() const = 0;
-  /// Divides the step into tissue.substeps explicit ones.
+  /// Divides the step into model.substeps explicit ones.
   virtual bool usesSubsteps() const { return false; }
   virtual std::unique_ptr<SolverScratch> makeScratch(const Model& model) const = 0;
 

@@ -32,9 +32,12 @@ struct SchemaRow {
   /// Shown instead of the struct's value if that stands for "absent"; the key is then left out when written.
   const char* absent = nullptr;
   bool required = false;  ///< in its section (and for its geometry.kind)
-  /// The words that a text may be, in the order of the documentation; empty: any text.
+  /// The words that a text may be, in the order of the documentation; empty: see wordsOf().
   std::vector<std::string> words = {};
 };
+
+/// The words that the text of a row may be: its own, or the open list of choicesOf(). Empty: any text.
+std::vector<std::string> wordsOf(const SchemaRow& row);
 
 /// A part of a scene file that holds keys.
 struct SchemaSection {
