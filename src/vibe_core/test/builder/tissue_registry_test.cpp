@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scene/expect_error.hpp"
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/scene/choices.hpp"
@@ -39,7 +41,7 @@ TEST(TissueRegistry, RegisteredModelsAreReadBuiltAndSuggested) {
 }
 
 TEST(TissueRegistry, EveryWordHasAFactory) {
-  for (const std::string& name : {"shell", "shape_matching"}) {
+  for (const std::string name : {"shell", "shape_matching"}) {
     const auto names = tissueModelNames();
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end());
     EXPECT_EQ(buildModel(sphere("model: " + name), "")->tissue->name(), name);
