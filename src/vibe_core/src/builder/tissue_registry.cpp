@@ -3,9 +3,10 @@
 #include <map>
 #include <mutex>
 
+#include "constraints/attachment.hpp"
+#include "constraints/foundation.hpp"
 #include "dynamics/implicit_solver.hpp"
 #include "dynamics/xpbd_solver.hpp"
-#include "scene/attachments.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shell_tissue.hpp"
 #include "vibe_core/common/error.hpp"
@@ -29,12 +30,10 @@ TissueAndSolver makeShapeMatching(const TissueRequest& request) {
 ElasticBody shellBody(const TissueRequest& request) {
   const Scene& scene = request.scene;
   ElasticBody body;
-  for (std::size_t i = 0; i < request.masses.size(); ++i)
-    body.fixed.push_back(isHeld(scene, request.organ.end[i]) ? 1 : 0);
+  body.fixed = attachedNodes(scene, request.organ);
   body.rest.assign(request.organ.surface.vertices.begin(), request.organ.surface.vertices.end());
   body.mass = request.masses;
-  if (scene.foundation)
-    for (double area : request.areas) body.foundation.push_back(scene.foundation->stiffness * area);
+  body.foundation = foundationSprings(scene, request.areas);
   const bool carried = scene.foundation && scene.foundation->carries_weight;
   if (scene.gravity && !carried) body.gravity = scene.gravity->acceleration;
   body.mass_damping = scene.tissue.mass_damping;

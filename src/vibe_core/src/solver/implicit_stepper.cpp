@@ -248,7 +248,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
   return outcome;
 }
 
-void ImplicitStepper::refactorHere(const std::vector<AttachmentPoint>& attachments, StepperScratch& scratch) const {
+void ImplicitStepper::refactorHere(const RowList<AttachmentPoint>& attachments, StepperScratch& scratch) const {
   std::vector<float> positions(3 * body_.rest.size());
   for (std::size_t i = 0; i < body_.rest.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(scratch.z[4 * i + k]);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/energy_term.hpp"
 #include "tissue/shell.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {
 

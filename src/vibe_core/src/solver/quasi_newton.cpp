@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/energy_term.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {
 
