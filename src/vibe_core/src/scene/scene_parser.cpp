@@ -32,7 +32,7 @@ bool isPackagePath(const std::string& path) {
   return path.rfind("package://", 0) == 0;
 }
 
-/// What stands in one file, collected into a Scene.
+/// Reads one file into a Scene.
 class SceneReader {
  public:
   explicit SceneReader(const YamlSource& source) : source_(source) {}
@@ -49,7 +49,7 @@ class SceneReader {
     return scene_;
   }
 
-  /// @throws Error if a file that the scene names is not there
+  /// @throws Error if a file that the scene names does not exist
   void checkFiles() const {
     const auto mesh = seen_.find("geometry.file");
     if (mesh != seen_.end()) checkFile(mesh->second, scene_.geometry.file);
@@ -123,7 +123,7 @@ class SceneReader {
     }
   }
 
-  /// Values that are right alone but not together.
+  /// Checks values against each other.
   void checkProcedure() const {
     if (const auto& suture = scene_.suture) {
       checkOrder("suture.min_bites", suture->min_bites, "suture.max_bites", suture->max_bites);
@@ -145,7 +145,7 @@ class SceneReader {
     }
   }
 
-  /// Of two keys at odds with each other the one that the user wrote; the other may be a default.
+  /// Of two keys that contradict each other, the one that the user wrote; the other may be a default.
   const YamlField& written(const std::string& key, const std::string& other) const {
     const auto field = seen_.find(key);
     return field != seen_.end() ? field->second : seen_.at(other);
@@ -173,7 +173,7 @@ class SceneReader {
   }
 };
 
-/// Small for a scene, large enough for any comment: no scene needs more than a few kilobytes.
+/// The default limits: a scene needs a few kilobytes, so they leave room for any comment.
 constexpr YamlLimits kSceneLimits{};
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "tissue/tetrahedra_point.hpp"
 
-// The laws of a solid in a wall without stress across it, for one wall or a pack of them; see material_law.hpp for why
+// The laws of a solid in a wall without stress across it, for one wall or a pack of them; see law_terms.hpp for why
 // everything is in an unnamed namespace.
 
 namespace vibe {

@@ -9,7 +9,7 @@ namespace vibe {
 
 namespace {
 
-// Per triangle: the mean of what tissue.stiffness says of its nodes.
+// Per triangle: the mean of tissue.stiffness over its nodes.
 std::vector<double> stiffnessFactors(const TissueScene& tissue, const Organ& organ) {
   std::vector<double> out;
   for (const auto& t : organ.surface.triangles) {
@@ -74,7 +74,7 @@ std::vector<double> ShellTissue::displacement(const State& state) const {
   return u;
 }
 
-// In single precision as in the solver: a tenth of the time, and an error of a millionth.
+// In single precision, like the solver: ten times as fast, with a relative error of 1e-6.
 double ShellTissue::energy(const State& state) const {
   const std::vector<Eigen::Vector3d>& rest = elements_->mesh().nodes;
   std::vector<float> displacement4(4 * rest.size(), 0.0F), gradient4(4 * rest.size(), 0.0F);

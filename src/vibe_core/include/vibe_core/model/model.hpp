@@ -13,7 +13,7 @@
 
 namespace vibe {
 
-/// Everything that does not change while the simulation runs. Shared between threads and copies of State.
+/// Everything that is constant during a simulation. Can be shared between threads and any number of states.
 struct Model {
   Scene scene;  ///< as the user wrote it; nothing changes it
   Organ organ;  ///< rest shape and anatomy
@@ -44,8 +44,8 @@ struct Model {
 
   RenderSurface render_surface;  ///< empty without scene.render_surface
 
-  /// Place of every particle along the organ's axis at rest, 0: apex of the fundus, 1: pylorus; of an organ without
-  /// these ends along its entry axis. (particle_count), empty without scene.suture.
+  /// Position of every particle along the axis of the organ at rest, 0: apex of the fundus, 1: pylorus; for an organ
+  /// without these ends, along its entry axis. (particle_count), empty without scene.suture.
   std::vector<double> along;
 };
 

@@ -11,8 +11,8 @@
 
 namespace vibe {
 
-/// Where a key's value lives in a Scene whose optional parts are present. The type of the reference is the type of
-/// the key, so that the table cannot disagree with the struct.
+/// Where the value of a key is stored in a Scene whose optional parts are present. The type of the reference is the
+/// type of the key, so that the table cannot disagree with the struct.
 using SceneAccess =
     std::variant<std::string& (*)(Scene&), bool& (*)(Scene&), int& (*)(Scene&), std::uint64_t& (*)(Scene&),
                  double& (*)(Scene&), Eigen::Vector3d& (*)(Scene&), std::array<double, 3>& (*)(Scene&),
