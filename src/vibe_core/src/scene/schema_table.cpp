@@ -68,7 +68,8 @@ std::vector<SchemaRow> tissueRows() {
       {"tissue.model", [](Scene& s) -> std::string& { return s.tissue.model; }, "", 0, 0,
        "how the wall is modelled; see the table below", "fastest for its error, see accuracy.md"},
       {"tissue.law", [](Scene& s) -> std::string& { return s.tissue.law; }, "", 0, 0,
-       "elastic law of the wall, of model shell; see the table below",
+       "elastic law of the wall, of model shell: energy per volume at rest, see the table below. There I = tr(F^T F), "
+       "J = det F, K = I - 3 - 2 ln J, b is the stiffening, and mu and lambda are the Lame constants",
        "stomach wall stiffens exponentially: Fung fits of porcine stomach, Dargar 2019, doi 10.1115/1.4043259"},
       {"tissue.stiffening", [](Scene& s) -> double& { return s.tissue.stiffening; }, "1", 0, 100,
        "b of the laws fung, gent and yeoh, see the table below",
