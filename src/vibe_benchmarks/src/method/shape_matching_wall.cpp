@@ -87,7 +87,7 @@ class MatchedWall {
     return force;
   }
 
-  int substeps() const { return model_->scene.tissue.substeps * kStepsPerFrame; }
+  int substeps() const { return model_->substeps * kStepsPerFrame; }
 
  private:
   Eigen::Vector3d place(int n) const { return {state_.x[n], state_.y[n], state_.z[n]}; }

@@ -35,7 +35,7 @@ void XpbdSolver::advance(const Model& model, const ToolMotion* motion, bool insu
                          SolverScratch& scratch, ThreadPool& pool, StepReport& report) const {
   XpbdSubstep substep(model, tissue_->clusters(), motion, insufflator_on, state, static_cast<XpbdScratch&>(scratch),
                       pool, report);
-  const int count = model.scene.tissue.substeps;
+  const int count = model.substeps;
   for (int i = 0; i < count; ++i) substep.run(i, count);
   substep.finish(count);
 }

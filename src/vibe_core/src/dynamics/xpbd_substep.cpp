@@ -41,7 +41,7 @@ XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const T
       pool_(pool),
       report_(report),
       scratch_(scratch),
-      h_(model.scene.step_period / model.scene.tissue.substeps),
+      h_(model.scene.step_period / model.substeps),
       inverse_h_(1 / h_),
       stiffness_damping_(model.scene.tissue.stiffness_damping),
       weight_(model.unbalanced_gravity) {

@@ -175,7 +175,7 @@ std::uint64_t fingerprint(const Model& model) {
   rest.vx = model.mass;
   rest.vy = model.inverse_mass;
   rest.gas_amount = model.scene.step_period;
-  rest.step = model.scene.tissue.substeps;
+  rest.step = model.substeps;
   for (char c : model.scene.tissue.model) rest.random = rest.random * 31 + static_cast<unsigned char>(c);
   for (bool part : {model.scene.scope.has_value(), model.scene.helix.has_value(), model.scene.suture.has_value(),
                     model.scene.marking.has_value()})
