@@ -292,7 +292,7 @@ void ImplicitStep::reportResponse() {
   const double gas_stiffness = model_.scene.gas ? state_.gas_amount / (stepper.volume * stepper.volume) : 0;
   report_.tool_impedance =
       scratch_.response->update(state_.step, scratch_.touch, {state_.x.data(), state_.y.data(), state_.z.data()},
-                                stepper.volume_gradient, gas_stiffness);
+                                stepper.volume_gradient, gas_stiffness, state_.impedance);
 }
 
 // force: tissue on tool [N] at a point in world; tool_step: how far the tool moved there in this step [m]

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vibe_core/input/step_input.hpp"
+#include "vibe_core/state/impedance_memory.hpp"
 #include "vibe_core/state/procedure_state.hpp"
 #include "vibe_core/state/pull_spring.hpp"
 #include "vibe_core/state/stepper_memory.hpp"
@@ -29,7 +30,8 @@ struct EnergyAccount {
 /// Contacts interrupted for less than this are one contact [s].
 constexpr double kContactGap = 0.25;
 
-/// Everything that changes. A snapshot is a copy; equal states have equal futures.
+/// Everything that changes. A snapshot is a copy; equal states have equal futures. Every member of it, and of the
+/// structs in it, is in a table of state_fields.hpp, from which hash, snapshot and comparison follow.
 struct State {
   std::int64_t step = 0;
   double time = 0;  ///< step * step_period [s]
@@ -59,13 +61,14 @@ struct State {
   double grip_force = 0;                                  ///< magnitude of the force on the grip [N]
   int contact_count = 0;                                  ///< particles touched in the last sub-step
 
-  PullSpring pull;  ///< that pulls the tissue from outside
+  PullSpring pull;  ///< pulls the tissue from outside
 
   ProcedureState procedure;
 
   EnergyAccount energy;
 
-  StepperMemory solver;  ///< of the implicit solver; empty with another
+  StepperMemory solver;       ///< of the implicit solver; empty with another
+  ImpedanceMemory impedance;  ///< of the implicit solver's tool impedance; empty with another
 };
 
 }  // namespace vibe
