@@ -10,12 +10,12 @@ namespace vibe {
 
 namespace {
 
-constexpr double kInterval = 0.25;       // between renewals of the stiffness [s]
-constexpr double kFar = 5e-4;            // a node that has moved farther asks for a renewal [m]
-constexpr double kShortestStep = 2e-5;   // of the tool in a frame that says something about the slope [m]
-constexpr double kMinEigenvalue = 1e-3;  // of the greatest: softer directions have no equilibrium
+constexpr double kInterval = 0.25;       // between renewals of the stiffness; design choice [s]
+constexpr double kFar = 5e-4;            // a larger move of a node triggers a renewal; design choice [m]
+constexpr double kShortestStep = 2e-5;   // of the tool in a frame from which a slope is taken; design choice [m]
+constexpr double kMinEigenvalue = 1e-3;  // relative to the maximum; softer directions have no equilibrium
 
-// The displacement that takes the force away, in the directions that have a stiffness.
+// The displacement that relieves the force, in the directions that have a stiffness.
 Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::Vector3d& force) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stiffness);
   const double min = kMinEigenvalue * eigen.eigenvalues().maxCoeff();

@@ -90,7 +90,7 @@ class Simulation {
   std::int64_t stepCount() const { return state_.step; }           ///< since the initial state, through snapshots
   double stepPeriod() const { return model_->scene.step_period; }  ///< [s]
   const std::vector<Event>& events() const { return events_; }     ///< of the last step
-  /// How the tissue answered the tool in the last step; nothing while nothing is touched, and with shape matching.
+  /// Impedance of the tissue at the tool in the last step; empty while nothing is touched, and with shape matching.
   const std::optional<ToolImpedance>& toolImpedance() const { return workspace_->toolImpedance(); }
   /// Since the state was last replaced; zero without SimulationSettings::metrics.
   const SessionMetrics& metrics() const;

@@ -12,10 +12,10 @@
 
 namespace vibe {
 
-/// A particle held by the helix, with its place in the tool.
+/// A particle held by the helix.
 struct GripPoint {
   int particle = -1;
-  Eigen::Vector3d local;  ///< in the frame of the link that carries the helix [m]
+  Eigen::Vector3d local;  ///< where, in the frame of the link that carries the helix [m]
 };
 
 /// Sums since the start [J].
@@ -23,11 +23,11 @@ struct EnergyAccount {
   double tool_work = 0;     ///< done by the tool on the tissue (contact and grip)
   double gas_work = 0;      ///< done by the gas on the wall
   double thread_work = 0;   ///< done by threads on the tissue
-  double pull_work = 0;     ///< done by the hand that pulls the tissue
-  double damping_loss = 0;  ///< taken out by viscous damping
+  double pull_work = 0;     ///< done by the pull spring
+  double damping_loss = 0;  ///< dissipated by viscous damping
 };
 
-/// Contacts interrupted for less than this are one contact [s].
+/// Interruptions of a contact shorter than this do not end it [s].
 constexpr double kContactGap = 0.25;
 
 /// Everything that changes. A snapshot is a copy; equal states have equal futures. Every member of it, and of the
@@ -41,9 +41,9 @@ struct State {
   // particles, structure of arrays, (particle count)
   std::vector<double> x, y, z;         ///< positions [m]
   std::vector<double> vx, vy, vz;      ///< velocities [m/s]
-  std::vector<double> ax, ay, az;      ///< accelerations; 0 for solvers that have no use for them [m/s^2]
-  std::vector<double> qw, qx, qy, qz;  ///< orientation of each particle's neighbourhood against rest, unit
-  std::vector<double> wx, wy, wz;      ///< angular velocity of the same, in world [rad/s]
+  std::vector<double> ax, ay, az;      ///< accelerations; 0 with solvers that do not use them [m/s^2]
+  std::vector<double> qw, qx, qy, qz;  ///< unit quaternion: rotation of the particle's surroundings from rest
+  std::vector<double> wx, wy, wz;      ///< its angular velocity, in world [rad/s]
 
   double gas_amount = 0;  ///< absolute pressure times volume [Pa m^3 = J]
   double pressure = 0;    ///< gauge [Pa]
