@@ -18,7 +18,8 @@ const char kHelp[] =
     "usage: vibe_replay BAG\n"
     "Repeats a recorded session from its topics scene and applied_input, without a roscore, and prints its summary "
     "with the state hash.\n"
-    "Ends with 0 if the recording's own hash is the same, with 1 if it is not, with 2 if it cannot be repeated.\n";
+    "Ends with 0 if the recording's own hash is the same or cannot be compared, with 1 if it differs, with 2 if the "
+    "recording cannot be repeated.\n";
 
 /// @return 0 if the hash is the recorded one, or there is none to compare it with
 int compare(const Recording& recording, const std::string& result) {
