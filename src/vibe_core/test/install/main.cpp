@@ -1,21 +1,22 @@
-// Loads a scene that vibe_core installs, simulates a second and prints the state's hash.
-#include <cstdio>
+// run_scene SCENE SECONDS: runs a scene without input and prints the hash of its last state, as vibe_headless does.
+#include <cmath>
+#include <cstdlib>
 #include <exception>
+#include <iostream>
 
 #include "vibe_core/metrics/run_summary.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
   try {
-    vibe::Simulation simulation(vibe::loadModel("package://vibe_core/scenes/sphere.yaml"));
-    vibe::StepInput input;
-    input.buttons[vibe::Insufflate] = 1;
-    while (simulation.time() < 1) simulation.step(input);
-    std::printf("%d particles, %.0f mL\n", simulation.model().particle_count, 1e6 * simulation.state().volume);
-    std::printf("state hash: %s\n", vibe::toHex(simulation.hash()).c_str());
+    vibe::Simulation simulation(vibe::loadModel(argv[1]));
+    const long steps = std::lround(std::atof(argv[2]) / simulation.stepPeriod());
+    simulation.run(steps, [](double) { return vibe::StepInput(); });
+    std::cout << "state hash: " << vibe::toHex(simulation.hash()) << "\n";
     return 0;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
+    std::cerr << "run_scene: " << error.what() << "\n";
     return 2;
   }
 }
