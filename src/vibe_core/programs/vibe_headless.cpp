@@ -169,7 +169,7 @@ int run(const Options& o) {
     if (!o.quiet)
       for (const Event& event : events)
         std::fprintf(stderr, "%s%7.2f s  %s: %s\n", show ? "\r" : "", event.time, toString(event.kind),
-                     event.text.c_str());
+                     describe(event).c_str());
     if (show && k % 30 == 0) printProgress(state.time, duration, script.get());
   }
   if (show) std::fprintf(stderr, "\r%-60s\r", "");

@@ -33,7 +33,6 @@ void Session::step() {
   events.clear();
   vibe::step(*model, state, input, *workspace, events);
   recorder.record(*model, state, insufflatorIsOn(*model, input), events);
-  counts.record(events);
 }
 
 void Session::replaceState(State new_state) {
@@ -42,7 +41,6 @@ void Session::replaceState(State new_state) {
   input = holdingInput(state);
   recorder.restart(*model, state);
   events.clear();
-  counts = EventCounts();
 }
 
 void Session::replaceModel(std::shared_ptr<const Model> new_model) {

@@ -6,7 +6,6 @@
 #include "sim_time.hpp"
 #include "vibe_core/events/event.hpp"
 #include "vibe_core/input/step_input.hpp"
-#include "vibe_core/metrics/event_counts.hpp"
 #include "vibe_core/metrics/session_metrics.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/simulation/workspace.hpp"
@@ -36,7 +35,6 @@ class Session {
   TimeLine time;
   StepInput input;             ///< what the next step uses
   std::vector<Event> events;   ///< of the last step
-  EventCounts counts;          ///< since the state took over
   std::uint32_t revision = 1;  ///< of the topology
   int threads;
 };
