@@ -190,6 +190,7 @@ TEST(ThermalDose, DoesNotDependOnTheMesh) {
     for (std::size_t p = 0; p < areas.size(); ++p)
       if (law.grade(world.dose[p]) == BurnGrade::Mark) area[fine] += areas[p];
   }
+  // measured: 2.8, 3.4, 2.7, 2.8 and 12.0 %
   EXPECT_NEAR(mark[0] / mark[1], 1, 0.04);
   EXPECT_NEAR(burn[0] / burn[1], 1, 0.04);
   EXPECT_NEAR(held[0] / held[1], 1, 0.04);
