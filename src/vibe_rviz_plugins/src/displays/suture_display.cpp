@@ -1,14 +1,9 @@
 #include "displays/suture_display.hpp"
 
-#include <OgreSceneNode.h>
-#include <ros/message_traits.h>
-#include <rviz/display_context.h>
-#include <rviz/frame_manager.h>
 #include <rviz/properties/bool_property.h>
 #include <rviz/properties/color_property.h>
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/float_property.h>
-#include <rviz/properties/ros_topic_property.h>
 #include <rviz/properties/vector_property.h>
 
 #include <pluginlib/class_list_macros.hpp>
@@ -18,16 +13,6 @@
 
 namespace vibe {
 namespace {
-
-using rviz::StatusProperty;
-
-const char* const kStatusTopic = "Topic";
-const char* const kStatusMessage = "Message";
-const char* const kStatusTransform = "Transform";
-
-QString messageType() {
-  return QString::fromStdString(ros::message_traits::datatype<vibe_msgs::SutureArray>());
-}
 
 PackedColour packedOf(const QColor& colour) {
   return packed(colour.redF(), colour.greenF(), colour.blueF());
@@ -44,12 +29,16 @@ bool pulses(const SutureScene& scene) {
   return false;
 }
 
+std::string contentOf(const SutureScene& scene) {
+  std::size_t bites = 0;
+  for (const SutureSet& set : scene.sets) bites += set.bites.size();
+  return std::to_string(scene.sets.size()) + " sutures, " + std::to_string(bites) + " bites, " +
+         std::to_string(scene.wounds.size()) + " bleedings.";
+}
+
 }  // namespace
 
-SutureDisplay::SutureDisplay() {
-  topic_property_ = new rviz::RosTopicProperty("Topic", "sutures", messageType(),
-                                               "vibe_msgs/SutureArray topic with the threads of the session.", this,
-                                               SLOT(changeTopic()));
+SutureDisplay::SutureDisplay() : MessageDisplay("sutures") {
   addThreadProperties();
   addPartProperties();
   addBleedingProperties();
@@ -130,67 +119,29 @@ void SutureDisplay::addBleedingProperties() {
 }
 
 void SutureDisplay::onInitialize() {
-  try {
-    visual_ = std::make_unique<SutureVisual>(*scene_node_);
-  } catch (const std::exception& error) {
-    setStatusStd(StatusProperty::Error, "Resources", error.what());
-  }
+  MessageDisplay::onInitialize();
   changeStyle();
 }
 
+void SutureDisplay::makeVisual() {
+  visual_ = std::make_unique<SutureVisual>(*scene_node_);
+}
+
 void SutureDisplay::onEnable() {
-  subscribe();
+  MessageDisplay::onEnable();
   changeLegend();
 }
 
 void SutureDisplay::onDisable() {
-  subscriber_.shutdown();
-  reset();
+  MessageDisplay::onDisable();
   changeLegend();
 }
 
-void SutureDisplay::setTopic(const QString& topic, const QString&) {
-  topic_property_->setString(topic);
-}
-
-void SutureDisplay::changeTopic() {
-  reset();
-}
-
-void SutureDisplay::subscribe() {
-  subscriber_.shutdown();
-  if (!visual_) return;
-  const std::string topic = topic_property_->getTopicStd();
-  if (topic.empty()) {
-    setStatus(StatusProperty::Error, kStatusTopic, "No topic is set; choose one of type vibe_msgs/SutureArray.");
-    return;
-  }
-  try {
-    // only the newest counts: every message tells everything
-    subscriber_ = update_nh_.subscribe(topic, 1, &SutureDisplay::receive, this);
-    setStatusStd(StatusProperty::Warn, kStatusTopic, "No message on '" + topic + "' yet; is the simulator running?");
-    waiting_ = true;
-  } catch (const ros::Exception& error) {
-    setStatusStd(StatusProperty::Error, kStatusTopic, std::string("Cannot listen: ") + error.what() + ".");
-  }
-}
-
-void SutureDisplay::reset() {
-  Display::reset();
-  latest_.reset(), shown_.reset();
+void SutureDisplay::clear() {
   scene_ = {};
-  if (visual_) visual_->clear();
+  visual_->clear();
   changeLegend();
   threads_changed_ = blood_changed_ = false;
-  placed_.reset();
-  said_.clear();
-  if (isEnabled()) subscribe();  // the topic is latched: it comes again
-}
-
-void SutureDisplay::receive(const vibe_msgs::SutureArray::ConstPtr& message) {
-  if (waiting_) setStatus(StatusProperty::Ok, kStatusTopic, "Messages arrive.");
-  waiting_ = false;
-  latest_ = message;
 }
 
 void SutureDisplay::changeStyle() {
@@ -228,75 +179,31 @@ void SutureDisplay::changeLegend() {
   legend_->show(drawnLegend("Thread tension [N]", style_.tension_map));
 }
 
-void SutureDisplay::fixedFrameChanged() {
-  placed_.reset();
-}
-
-void SutureDisplay::update(float, float) {
-  if (!visual_) return;
-  if (latest_) report();
-  if (!shown_) return;
-  place();
-  if (!threads_changed_ && !blood_changed_) return;
-  if (threads_changed_) draw();
-  if (blood_changed_) drawBlood();
-  threads_changed_ = blood_changed_ = false;
-  context_->queueRender();
-}
-
-/// Reads the newest message and finds out what of it is new.
-void SutureDisplay::report() {
-  const vibe_msgs::SutureArray::ConstPtr message = latest_;
-  latest_.reset();
+/// Finds out what of the message is new, so that only this is drawn again.
+MessageReport SutureDisplay::read(const vibe_msgs::SutureArray& message) {
   SutureScene scene;
-  const std::string wrong = readSutures(*message, scene);
-  if (!wrong.empty()) {
-    if (wrong != said_) setStatusStd(StatusProperty::Error, kStatusMessage, wrong);
-    said_ = wrong;
-    return;
-  }
-  std::size_t bites = 0;
-  for (const SutureSet& set : scene.sets) bites += set.bites.size();
-  const std::string said = std::to_string(scene.sets.size()) + " sutures, " + std::to_string(bites) + " bites, " +
-                           std::to_string(scene.wounds.size()) + " bleedings.";
-  if (said != said_) setStatusStd(StatusProperty::Ok, kStatusMessage, said);  // a status costs more than drawing
-  said_ = said;
-  const bool threads_same = shown_ && shown_->sutures == message->sutures;
-  const bool blood_same = threads_same && shown_->bleedings == message->bleedings && !pulses(scene);
+  const std::string wrong = readSutures(message, scene);
+  if (!wrong.empty()) return {wrong, false};
+  const bool threads_same = shown() != nullptr && shown()->sutures == message.sutures;
+  const bool blood_same = threads_same && shown()->bleedings == message.bleedings && !pulses(scene);
   threads_changed_ |= !threads_same;
   blood_changed_ |= !blood_same;
-  blood_style_.time = message->header.stamp.toSec();
-  shown_ = message;
+  blood_style_.time = message.header.stamp.toSec();
   const bool first = scene_.sets.empty() != scene.sets.empty();
   scene_ = std::move(scene);
   if (first) changeLegend();
+  return {contentOf(scene_)};
 }
 
-/// The frame of the message may move against the fixed frame also while no message comes.
-void SutureDisplay::place() {
-  Ogre::Vector3 position;
-  Ogre::Quaternion orientation;
-  const std::string& frame = shown_->header.frame_id;
-  const bool known = context_->getFrameManager()->getTransform(frame, ros::Time(), position, orientation);
-  const bool news = !placed_ || *placed_ != known;
-  placed_ = known;
-  if (!known) {
-    scene_node_->setVisible(false);
-    if (news)
-      setStatusStd(StatusProperty::Error, kStatusTransform,
-                   "There is no transform from '" + frame + "' to '" + fixed_frame_.toStdString() +
-                       "'; choose another fixed frame or publish it.");
-    return;
-  }
-  if (news) {
-    setStatus(StatusProperty::Ok, kStatusTransform, "Known.");
-    scene_node_->setVisible(true);
-  }
-  scene_node_->setPosition(position);
-  scene_node_->setOrientation(orientation);
+bool SutureDisplay::draw() {
+  const bool changed = threads_changed_ || blood_changed_;
+  if (threads_changed_) drawThreads();
+  if (blood_changed_) drawBlood();
+  threads_changed_ = blood_changed_ = false;
+  return changed;
 }
 
-void SutureDisplay::draw() {
+void SutureDisplay::drawThreads() {
   shape_.clear();
   appendSutures(scene_, style_, shape_);
   visual_->showSolids(shape_);

@@ -2,7 +2,6 @@
 
 #include <OgreSceneNode.h>
 #include <rviz/display_context.h>
-#include <rviz/frame_manager.h>
 #include <rviz/properties/bool_property.h>
 #include <rviz/properties/color_property.h>
 #include <rviz/properties/enum_property.h>
@@ -14,6 +13,7 @@
 #include "messages/tissue_messages.hpp"
 #include "render/legend.hpp"
 #include "render/tissue_visual.hpp"
+#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 
 namespace vibe {
 namespace {
@@ -265,19 +265,14 @@ void TissueDisplay::drawLatest() {
 }
 
 bool TissueDisplay::place(const std_msgs::Header& header) {
-  Ogre::Vector3 position;
-  Ogre::Quaternion orientation;
-  auto& frames = *context_->getFrameManager();
-  if (!frames.getTransform(header, position, orientation) &&
-      !frames.getTransform(header.frame_id, ros::Time(), position, orientation)) {
-    std::string reason;
-    frames.transformHasProblems(header.frame_id, ros::Time(), reason);
-    complain("Transform",
-             "No transform from '" + header.frame_id + "' to '" + fixed_frame_.toStdString() + "': " + reason);
+  FramePose pose;
+  const std::string wrong = lookUpFrame(*context_, header.frame_id, header.stamp, pose);
+  if (!wrong.empty()) {
+    complain("Transform", wrong);
     return false;
   }
-  scene_node_->setPosition(position);
-  scene_node_->setOrientation(orientation);
+  scene_node_->setPosition(pose.position);
+  scene_node_->setOrientation(pose.orientation);
   return true;
 }
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/tube.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
 namespace {

@@ -2,8 +2,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/coloured_shape.hpp"
 #include "geometry/suture_scene.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "geometry/incidence.hpp"
-#include "geometry/moving_vertex.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "geometry/vertex_span.hpp"
+#include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
 namespace vibe {
 

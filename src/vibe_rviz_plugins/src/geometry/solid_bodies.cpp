@@ -1,8 +1,8 @@
-#include "geometry/solid_bodies.hpp"
+#include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
 #include <cmath>
 
-#include "geometry/revolved.hpp"
+#include "vibe_rviz_plugins/geometry/revolved.hpp"
 
 namespace vibe {
 namespace {

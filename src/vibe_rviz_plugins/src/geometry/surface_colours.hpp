@@ -1,10 +1,10 @@
 #pragma once
 #include <vector>
 
-#include "geometry/colour_map.hpp"
 #include "geometry/incidence.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "geometry/vertex_span.hpp"
+#include "vibe_rviz_plugins/geometry/colour_map.hpp"
 
 namespace vibe {
 

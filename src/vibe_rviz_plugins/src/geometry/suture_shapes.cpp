@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "geometry/revolved.hpp"
 #include "geometry/suture_frame.hpp"
-#include "geometry/tube.hpp"
+#include "vibe_rviz_plugins/geometry/revolved.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
 namespace {

@@ -2,9 +2,9 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "geometry/colour_map.hpp"
-#include "geometry/coloured_shape.hpp"
 #include "geometry/suture_scene.hpp"
+#include "vibe_rviz_plugins/geometry/colour_map.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 

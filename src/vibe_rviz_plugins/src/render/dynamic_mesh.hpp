@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/moving_vertex.hpp"
+#include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
 namespace Ogre {
 class Entity;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/colour_map.hpp"
+#include "vibe_rviz_plugins/geometry/colour_map.hpp"
 
 namespace Ogre {
 class Overlay;

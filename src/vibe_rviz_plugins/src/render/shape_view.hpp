@@ -1,6 +1,6 @@
 #pragma once
-#include "geometry/coloured_shape.hpp"
 #include "render/dynamic_mesh.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/coloured_shape.hpp"
 #include "render/shape_view.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace Ogre {
 class SceneNode;

@@ -4,7 +4,6 @@
 #include <OgreRay.h>
 #include <OgreViewport.h>
 #include <rviz/display_context.h>
-#include <rviz/frame_manager.h>
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/string_property.h>
 #include <rviz/render_panel.h>
@@ -17,6 +16,7 @@
 
 #include "messages/tissue_messages.hpp"
 #include "render/pull_visual.hpp"
+#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 #include "views/endoscope_view_controller.hpp"
 
 namespace vibe {
@@ -142,16 +142,15 @@ std::string PullTissueTool::findTissue() {
 }
 
 bool PullTissueTool::framePose(Eigen::Isometry3d& pose) {
-  Ogre::Vector3 position;
-  Ogre::Quaternion orientation;
-  if (!context_->getFrameManager()->getTransform(mesh_.frame_id, ros::Time(), position, orientation)) {
-    say("No transform from '" + mesh_.frame_id + "' to '" + context_->getFixedFrame().toStdString() +
-        "'; choose another fixed frame.");
+  FramePose found;
+  const std::string wrong = lookUpFrame(*context_, mesh_.frame_id, ros::Time(), found);
+  if (!wrong.empty()) {
+    say(wrong);
     return false;
   }
-  visual_->setPose(position, orientation);
-  pose = Eigen::Translation3d(toEigen(position)) *
-         Eigen::Quaterniond(orientation.w, orientation.x, orientation.y, orientation.z);
+  visual_->setPose(found.position, found.orientation);
+  const Ogre::Quaternion& q = found.orientation;
+  pose = Eigen::Translation3d(toEigen(found.position)) * Eigen::Quaterniond(q.w, q.x, q.y, q.z);
   return true;
 }
 

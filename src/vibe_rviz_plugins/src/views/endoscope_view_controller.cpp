@@ -18,6 +18,7 @@
 #include <cmath>
 
 #include "render/optical_frame.hpp"
+#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 
 namespace vibe {
 namespace {
@@ -78,17 +79,14 @@ void EndoscopeViewController::update(float /*dt*/, float /*ros_dt*/) {
 }
 
 void EndoscopeViewController::updateScope() {
-  Ogre::Vector3 place;
-  Ogre::Quaternion turn;
-  const std::string frame = frame_->getFrameStd();
-  if (!context_->getFrameManager()->getTransform(frame, ros::Time(), place, turn)) {
-    tell(QString("There is no transform from '%1' to '%2'; start the simulator and robot_state_publisher, or choose "
-                 "another Camera Frame.")
-             .arg(QString::fromStdString(frame), context_->getFixedFrame()));
+  FramePose pose;
+  const std::string wrong = lookUpFrame(*context_, frame_->getFrameStd(), ros::Time(), pose);
+  if (!wrong.empty()) {
+    tell(QString::fromStdString(wrong));
     return;
   }
-  camera_->setPosition(place);
-  camera_->setOrientation(turn * opticalToOgre());
+  camera_->setPosition(pose.position);
+  camera_->setOrientation(pose.orientation * opticalToOgre());
   if (!broken_) tell("");
 }
 

@@ -1,9 +1,9 @@
-#include "geometry/revolved.hpp"
+#include "vibe_rviz_plugins/geometry/revolved.hpp"
 
 #include <gtest/gtest.h>
 
-#include "geometry/tube.hpp"
 #include "shape_measures.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
 namespace {

@@ -1,4 +1,4 @@
-#include "geometry/tube.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 #include <gtest/gtest.h>
 

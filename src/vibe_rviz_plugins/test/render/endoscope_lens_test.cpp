@@ -15,11 +15,11 @@
 #include <gtest/gtest.h>
 #include <rviz/ogre_helpers/render_system.h>
 
-#include "geometry/solid_bodies.hpp"
 #include "render/offscreen_camera.hpp"
 #include "render/resources.hpp"
 #include "render/shape_view.hpp"
 #include "render/virtual_display.hpp"
+#include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
 namespace vibe {
 namespace {

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/coloured_shape.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 
