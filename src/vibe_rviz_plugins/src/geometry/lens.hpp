@@ -12,8 +12,8 @@ enum class LensKind {
   Rectilinear,  ///< radius = f tan theta: straight things stay straight, as in a pinhole camera
 };
 
-constexpr double kLeastFieldOfView = 0.174533;  ///< 10 degrees [rad]
-constexpr double kMostFieldOfView = 2.96706;    ///< 170 degrees; a plane picture of 180 degrees has no end [rad]
+constexpr double kMinFieldOfView = 0.174533;  ///< 10 degrees [rad]
+constexpr double kMaxFieldOfView = 2.96706;    ///< 170 degrees; a plane picture of 180 degrees has no end [rad]
 
 /// A camera whose picture is a circle in the middle of a rectangle. Frame: z forward, x right, y down. Pixels: the
 /// middle of the first one is (0, 0), x right, y down.

@@ -24,7 +24,7 @@ class EndoscopeLens : private Ogre::Viewport::Listener {
   EndoscopeLens& operator=(const EndoscopeLens&) = delete;
 
   /// To be called before each picture; cheap where nothing has changed, the size of the viewport included.
-  /// @param field_of_view  across the circle, within kLeastFieldOfView and kMostFieldOfView [rad]
+  /// @param field_of_view  across the circle, within kMinFieldOfView and kMaxFieldOfView [rad]
   /// @param sharpness      as in sourceFor()
   /// @throws std::runtime_error  the graphics card cannot do it
   void set(LensKind lens, double field_of_view, double sharpness);

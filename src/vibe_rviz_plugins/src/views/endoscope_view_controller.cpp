@@ -37,8 +37,8 @@ EndoscopeViewController::EndoscopeViewController() {
                                      "Frame of the endoscope's camera: z forward, x right, y down.", this);
   field_of_view_ = new rviz::FloatProperty(
       "Field of view", kFieldOfView, "Angle across the round picture in degrees; 140 for most gastroscopes.", this);
-  field_of_view_->setMin(static_cast<float>(kLeastFieldOfView / kDegree));
-  field_of_view_->setMax(static_cast<float>(kMostFieldOfView / kDegree));
+  field_of_view_->setMin(static_cast<float>(kMinFieldOfView / kDegree));
+  field_of_view_->setMax(static_cast<float>(kMaxFieldOfView / kDegree));
   lens_ = new rviz::EnumProperty("Lens", "Equidistant",
                                  "Equidistant: equal angles are equally wide, as with real endoscopes. Rectilinear: "
                                  "straight lines stay straight, and the middle is small.",

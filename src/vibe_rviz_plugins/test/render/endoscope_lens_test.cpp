@@ -15,6 +15,8 @@
 #include <gtest/gtest.h>
 #include <rviz/ogre_helpers/render_system.h>
 
+#include <cmath>
+
 #include "render/offscreen_camera.hpp"
 #include "render/resources.hpp"
 #include "render/shape_view.hpp"
@@ -52,6 +54,14 @@ class EndoscopeLensTest : public ::testing::Test {
   static void showBall(const Eigen::Vector3d& place) {
     ColouredShape shape;
     appendSphere(Eigen::Isometry3d(Eigen::Translation3d(place)), 0.01, packed(1, 0.5, 0), shape);
+    ball_->show(shape);
+  }
+
+  /// A red wall at this distance in place of the ball [m].
+  static void showWall(double distance) {
+    ColouredShape shape;
+    appendBox(Eigen::Isometry3d(Eigen::Translation3d(0, 0, -distance - 0.005)), {0.4, 0.4, 0.01}, packed(1, 0, 0),
+              shape);
     ball_->show(shape);
   }
 
@@ -104,15 +114,24 @@ TEST_F(EndoscopeLensTest, ShowsARoundPictureOnBlackAndTheBallAsLargeAsItsAngle) 
   EXPECT_NEAR(bright, kHeight * angle / (140 * kDegree), 2);
 }
 
-TEST_F(EndoscopeLensTest, LampOfTheEndoscopeFadesWithTheDistance) {
+// What media/solid.frag shows of red that faces the lamp: ambient light and the lamp, whose light falls off with the
+// square of the distance beyond its reach, then the exposure of the camera. Level of the red channel, 0 to 255.
+double redAt(double distance) {
+  const double reach = 0.06, ambient = 0.22, diffuse = 0.78, gloss = 0.3, exposure = 1.5;
+  const double lamp = 2 / (1 + distance * distance / (reach * reach));
+  return 255 * (1 - std::exp(-exposure * (ambient + (diffuse + gloss) * lamp)));
+}
+
+TEST_F(EndoscopeLensTest, LampOfTheEndoscopeFadesWithTheSquareOfTheDistance) {
   EndoscopeLens lens(*viewport_);
   lens.set(LensKind::Rectilinear, 60 * kDegree, 1);
-  const int near = light(draw(), kWidth / 2, kHeight / 2);
-  showBall({0, 0, -0.3});
-  const int far = light(draw(), kWidth / 2, kHeight / 2);
+  for (const double distance : {0.04, 0.06, 0.09, 0.14, 0.2, 0.29}) {
+    showWall(distance);
+    const int red = draw()[3 * (kHeight / 2 * kWidth + kWidth / 2)];
+    EXPECT_NEAR(red, redAt(distance), 1) << distance;  // measured: 0.5, the rounding of a level
+    EXPECT_GT(std::abs(red - redAt(1.1 * distance)), 1.5) << distance;  // control: a tenth farther away is seen
+  }
   showBall({0, 0, -0.05});
-  EXPECT_GT(far, 30);
-  EXPECT_LT(3 * far, 2 * near);
 }
 
 TEST_F(EndoscopeLensTest, LeavesTheViewAsItWas) {
