@@ -13,6 +13,7 @@ struct DeviceSample {
   std::array<double, 4> joints{};  ///< insertion [m], rotation, tip up/down, tip left/right [rad]
   std::array<bool, 6> buttons{};   ///< in the order of scope/buttons; true while pressed
 };
+// [/recipe]
 
 /// Finds the samples in the bytes of the device, which takes 100 samples per second. A frame has 12 bytes; numbers of
 /// two bytes are little-endian:
@@ -37,7 +38,6 @@ class DeviceStream {
   std::size_t skippedBytes() const { return skipped_bytes_; }
   std::size_t droppedFrames() const { return dropped_frames_; }  ///< repeated or out of order
   std::size_t lostFrames() const { return lost_frames_; }        ///< missing in the sequence, for any reason
-                                                                 // [/recipe]
 
  private:
   bool isNew(std::uint8_t sequence);
