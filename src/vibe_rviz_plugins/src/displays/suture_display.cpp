@@ -22,7 +22,7 @@ Ogre::Vector3 ogreOf(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-/// Blood moves with the time of the message only where it pulses.
+/// The shape of blood depends on the time of the message only if it pulses.
 bool pulses(const SutureScene& scene) {
   for (const Wound& wound : scene.wounds)
     if (wound.brisk && wound.rate > 0) return true;
@@ -53,68 +53,70 @@ void SutureDisplay::addThreadProperties() {
   colour_property_->addOption("Tension", static_cast<int>(ThreadColour::Tension));
   colour_property_->addOption("One colour", static_cast<int>(ThreadColour::One));
   colour_property_->addOption("One per suture", static_cast<int>(ThreadColour::PerSuture));
-  map_property_ = new rviz::EnumProperty("Colour map", "viridis", "From no tension (dark) to the greatest (light).",
-                                         colour_property_, SLOT(changeStyle()), this);
+  map_property_ =
+      new rviz::EnumProperty("Colour map", "viridis", "Colours from no tension (dark) to the maximum tension (light).",
+                             colour_property_, SLOT(changeStyle()), this);
   for (const std::string& name : colourMapNames()) map_property_->addOptionStd(name);
-  max_property_ = new rviz::FloatProperty("Greatest tension", 4,
-                                          "Tension in newtons at the upper end of the colour map; a cinch draws "
-                                          "until 3 N, a full bite tears out at about 8 N.",
+  max_property_ = new rviz::FloatProperty("Maximum tension", 4,
+                                          "Tension in newtons at the upper end of the colour map; a cinch pulls up "
+                                          "to 3 N, a full-thickness bite tears out at about 8 N.",
                                           colour_property_, SLOT(changeStyle()), this);
   max_property_->setMin(0.01F);
   legend_property_ = new rviz::BoolProperty(
-      "Legend", true, "Shows what the colours mean in the lower right corner of the views, once there is a thread.",
+      "Legend", true, "Shows the colour scale in the lower right corner of the views, once there is a thread.",
       colour_property_, SLOT(changeLegend()), this);
   slack_property_ = new rviz::ColorProperty("Slack", QColor(237, 242, 255),
-                                            "Colour of thread without tension, in bands with a darker one.",
+                                            "Colour of thread without tension, which alternates with a darker one.",
                                             colour_property_, SLOT(changeStyle()), this);
   one_property_ = new rviz::ColorProperty("Colour", QColor(31, 77, 217),
-                                          "Colour of all threads; polypropylene for surgery is dyed blue.",
+                                          "Colour of all threads; surgical polypropylene is dyed blue.",
                                           colour_property_, SLOT(changeStyle()), this);
   diameter_property_ = new rviz::FloatProperty("Thread diameter", 0.00032F,
                                                "Diameter of the thread in metres; the default is that of size 2-0.",
                                                this, SLOT(changeStyle()));
   diameter_property_->setMin(1e-5F);
   diameter_property_->setMax(0.01F);
-  emphasis_property_ = new rviz::FloatProperty("Emphasis", 1,
-                                               "Threads are drawn this many times as thick as they are, symbols grow "
-                                               "with its square root; 3 can be read with the whole organ in view.",
-                                               this, SLOT(changeStyle()));
+  emphasis_property_ =
+      new rviz::FloatProperty("Emphasis", 1,
+                              "Factor by which threads are drawn thicker than they are; symbols grow with its "
+                              "square root. With 3, threads are visible with the whole organ in view.",
+                              this, SLOT(changeStyle()));
   emphasis_property_->setMin(0.1F);
   emphasis_property_->setMax(20);
 }
 
 void SutureDisplay::addPartProperties() {
   bites_property_ = new rviz::BoolProperty(
-      "Bites", true, "Draws a green ring at every bite through the whole wall and an orange ball at every partial one.",
-      this, SLOT(changeStyle()));
+      "Bites", true, "Draws a green ring at every full-thickness bite and an orange ball at every partial one.", this,
+      SLOT(changeStyle()));
   ends_property_ = new rviz::BoolProperty("T-tags and cinches", true,
-                                          "Draws the bar at the thread's end and the bobbin that holds its beginning.",
-                                          this, SLOT(changeStyle()));
-  label_property_ = new rviz::BoolProperty(
-      "Technique", true,
-      "Writes at each set its number, the recognised technique and how sure it is (0 to 1), or how many bites it has.",
-      this, SLOT(changeStyle()));
-  label_height_property_ = new rviz::FloatProperty("Height", 0.006F, "Height of the letters in metres.",
-                                                   label_property_, SLOT(changeStyle()), this);
+                                          "Draws the T-tag at the end of the thread and the cinch at its start.", this,
+                                          SLOT(changeStyle()));
+  label_property_ = new rviz::BoolProperty("Technique", true,
+                                           "Labels each set with its number and the recognised technique and its "
+                                           "margin (0 to 1), or with its number of bites.",
+                                           this, SLOT(changeStyle()));
+  label_height_property_ = new rviz::FloatProperty("Height", 0.006F, "Height of the letters [m].", label_property_,
+                                                   SLOT(changeStyle()), this);
   label_height_property_->setMin(1e-4F);
   corners_property_ = new rviz::BoolProperty("Transition points", true,
-                                             "Draws a magenta ring around the bites at which a U or Z turns.", this,
+                                             "Draws a magenta ring around the bites at the corners of a U or Z.", this,
                                              SLOT(changeStyle()));
   links_property_ = new rviz::BoolProperty(
       "Index groups", false,
-      "Draws a broken band between the bites whose tissue a technique brings together: the legs of a U, the diagonals "
-      "of a Z, of all others each bite and the next.",
+      "Draws a dashed band between the bites that a technique brings together: the legs of a U, the diagonals of a Z, "
+      "otherwise each bite and the next.",
       this, SLOT(changeStyle()));
 }
 
 void SutureDisplay::addBleedingProperties() {
   bleeding_property_ = new rviz::BoolProperty("Bleeding", true,
-                                              "Draws mild bleeding as a dark film that grows, brisk bleeding as a "
-                                              "bright jet that pulses, and what has stopped in brown.",
+                                              "Draws mild bleeding as a growing dark film, brisk bleeding as a "
+                                              "pulsing bright jet, and stopped bleeding in brown.",
                                               this, SLOT(changeStyle()));
   down_property_ = new rviz::VectorProperty("Down", Ogre::Vector3(-1, 0, 0),
-                                            "Direction of gravity in the frame of the message; the default is a "
-                                            "patient on the back.",
+                                            "Direction of gravity in the frame of the message; the default is for a "
+                                            "patient in supine position.",
                                             bleeding_property_, SLOT(changeStyle()), this);
 }
 
@@ -179,7 +181,7 @@ void SutureDisplay::changeLegend() {
   legend_->show(drawnLegend("Thread tension [N]", style_.tension_map));
 }
 
-/// Finds out what of the message is new, so that only this is drawn again.
+/// Compares the message with the one before, so that only what has changed is drawn again.
 MessageReport SutureDisplay::read(const vibe_msgs::SutureArray& message) {
   SutureScene scene;
   const std::string wrong = readSutures(message, scene);

@@ -55,7 +55,7 @@ class SutureDisplay : public MessageDisplay<vibe_msgs::SutureArray> {
   SutureScene scene_;
   SutureStyle style_;
   BloodStyle blood_style_;
-  ColouredShape shape_;  // kept for its memory
+  ColouredShape shape_;  // a member to reuse its memory
   bool threads_changed_ = false, blood_changed_ = false;
 
   rviz::EnumProperty *colour_property_, *map_property_;

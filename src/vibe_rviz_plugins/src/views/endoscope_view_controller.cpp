@@ -30,25 +30,27 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 }  // namespace
 
 EndoscopeViewController::EndoscopeViewController() {
-  // Not only because it does nothing: rviz hides it, announces that a little later, and by then crashes if the view has
-  // already given way to another, as on a busy machine.
+  // The property has no effect here, and rviz hides it with a delayed signal that crashes if the view has been
+  // replaced by then, which happens on a busy machine.
   stereo_.reset(takeChild(stereo_enable_));
   frame_ = new rviz::TfFrameProperty("Camera Frame", kFrame,
                                      "Frame of the endoscope's camera: z forward, x right, y down.", this);
   field_of_view_ = new rviz::FloatProperty(
-      "Field of view", kFieldOfView, "Angle across the round picture in degrees; 140 for most gastroscopes.", this);
+      "Field of view", kFieldOfView, "Angle across the circular image in degrees; most gastroscopes have 140.", this);
   field_of_view_->setMin(static_cast<float>(kMinFieldOfView / kDegree));
   field_of_view_->setMax(static_cast<float>(kMaxFieldOfView / kDegree));
-  lens_ = new rviz::EnumProperty("Lens", "Equidistant",
-                                 "Equidistant: equal angles are equally wide, as with real endoscopes. Rectilinear: "
-                                 "straight lines stay straight, and the middle is small.",
-                                 this);
+  lens_ = new rviz::EnumProperty(
+      "Lens", "Equidistant",
+      "Equidistant: the radius is proportional to the angle, as in real endoscopes. Rectilinear: "
+      "straight lines stay straight, and the centre is small.",
+      this);
   lens_->addOption("Equidistant", static_cast<int>(LensKind::Equidistant));
   lens_->addOption("Rectilinear", static_cast<int>(LensKind::Rectilinear));
-  sharpness_ = new rviz::FloatProperty("Sharpness", 1,
-                                       "1 draws every detail that the middle of the picture can show; less is faster, "
-                                       "which helps without a graphics card.",
-                                       this);
+  sharpness_ =
+      new rviz::FloatProperty("Sharpness", 1,
+                              "Resolution relative to the centre of the image. 1 draws every detail; less is faster, "
+                              "which helps without a graphics card.",
+                              this);
   sharpness_->setMin(0.2f);
   sharpness_->setMax(2);
   status_ = new rviz::StringProperty("Status", "", "Whether the view can follow the endoscope.", this);
@@ -105,12 +107,13 @@ void EndoscopeViewController::bendPicture() {
 void EndoscopeViewController::tell(const QString& text) {
   const bool changed = status_->getString() != text;
   if (changed) status_->setString(text);
-  // other messages wipe rviz' status line, so a fault is said again
+  // other messages replace the status line of rviz, so a fault is repeated
   if (changed || !text.isEmpty()) setStatus(text);
 }
 
 void EndoscopeViewController::handleMouseEvent(rviz::ViewportMouseEvent& /*event*/) {
-  if (status_->getString().isEmpty()) setStatus("The view follows the endoscope; choose another type of view to move.");
+  if (status_->getString().isEmpty())
+    setStatus("The view follows the endoscope; choose another type of view to move freely.");
 }
 
 void EndoscopeViewController::reset() {

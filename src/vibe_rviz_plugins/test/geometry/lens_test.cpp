@@ -37,7 +37,7 @@ TEST_P(BothLenses, CircleTouchesTheNearerEdgesAndIsHalfTheFieldOfViewFromTheAxis
   }
 }
 
-TEST_P(BothLenses, MiddleShowsTheAxisAndItsNeighboursAreOneFocalLengthApartPerRadian) {
+TEST_P(BothLenses, CentreIsTheAxisAndItsScaleIsTheFocalLengthPerRadian) {
   const RoundCamera round = camera(GetParam());
   EXPECT_LT((pixelOf(round, {0, 0, 0.1}) - round.middle()).norm(), 1e-12);
   EXPECT_LT((rayOf(round, round.middle()) - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
@@ -90,14 +90,14 @@ TEST(Lens, RightCameraOfAPairSeesPointsDisplacedByFocalLengthTimesBaselineOverDe
   EXPECT_EQ(numbersOf(round, 0).p[3], 0);
 }
 
-TEST(Lens, BehindARectilinearCameraIsNowhereAndBehindAnEquidistantOneIsFarOut) {
+TEST(Lens, PointBehindTheCameraHasNoPixelIfRectilinearAndADistantOneIfEquidistant) {
   EXPECT_TRUE(std::isnan(pixelOf(camera(LensKind::Rectilinear), {0.01, 0, -0.01}).x()));
   const Eigen::Vector2d pixel = pixelOf(camera(LensKind::Equidistant), {0.01, 0, -0.01});
   EXPECT_NEAR((pixel - camera(LensKind::Equidistant).middle()).norm(), 240 * 135 / 70., 1e-9);
   EXPECT_TRUE(std::isnan(pixelOf(camera(LensKind::Equidistant), {0, 0, 0}).x()));
 }
 
-TEST_P(BothLenses, SourceIsAsSharpInTheMiddleAndHoldsTheCircle) {
+TEST_P(BothLenses, SourceHasTheSharpnessOfTheCentreAndContainsTheCircle) {
   const RoundCamera round = camera(GetParam());
   for (const double sharpness : {0.5, 1., 2.}) {
     const SquareSource source = sourceFor(round, sharpness, 16384);

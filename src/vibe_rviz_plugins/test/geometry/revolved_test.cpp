@@ -64,7 +64,7 @@ TEST(Revolved, ABobbinHasRimsAndAWaist) {
   EXPECT_LT(waist, 0.7 * rim);
 }
 
-TEST(Revolved, AProfileOfOnePointIsNothing) {
+TEST(Revolved, ProfileOfOnePointDrawsNothing) {
   ColouredShape shape;
   appendRevolved({{0, 0.1}}, kCentre, kAxis, packed(1, 1, 1), 8, shape);
   EXPECT_TRUE(shape.vertices.empty());

@@ -101,7 +101,7 @@ Ogre::Camera* EndoscopeLensTest::camera_ = nullptr;
 Ogre::TexturePtr EndoscopeLensTest::picture_;
 Ogre::Viewport* EndoscopeLensTest::viewport_ = nullptr;
 
-TEST_F(EndoscopeLensTest, ShowsARoundPictureOnBlackAndTheBallAsLargeAsItsAngle) {
+TEST_F(EndoscopeLensTest, ShowsACircularImageOnBlackAndTheBallAtItsAngularSize) {
   EndoscopeLens lens(*viewport_);
   lens.set(LensKind::Equidistant, 140 * kDegree, 1);
   const Pixels pixels = draw();
@@ -128,7 +128,7 @@ TEST_F(EndoscopeLensTest, LampOfTheEndoscopeFadesWithTheSquareOfTheDistance) {
   for (const double distance : {0.04, 0.06, 0.09, 0.14, 0.2, 0.29}) {
     showWall(distance);
     const int red = draw()[3 * (kHeight / 2 * kWidth + kWidth / 2)];
-    EXPECT_NEAR(red, redAt(distance), 1) << distance;  // measured: 0.5, the rounding of a level
+    EXPECT_NEAR(red, redAt(distance), 1) << distance;                   // measured: 0.5, the rounding of a level
     EXPECT_GT(std::abs(red - redAt(1.1 * distance)), 1.5) << distance;  // control: a tenth farther away is seen
   }
   showBall({0, 0, -0.05});
@@ -152,7 +152,7 @@ TEST_F(EndoscopeLensTest, LeavesTheViewAsItWas) {
 }
 
 // As rviz ends: its window goes before its views. The address sanitizer sees a lens that does not notice.
-TEST_F(EndoscopeLensTest, AViewportThatGoesFirstTakesNothingWithItThatIsNeeded) {
+TEST_F(EndoscopeLensTest, ViewportMayBeDeletedFirst) {
   Ogre::RenderTarget& target = *picture_->getBuffer()->getRenderTarget();
   auto useOnce = [&target] {
     Ogre::Viewport* other = target.addViewport(camera_, 1, 0, 0, 0.5F, 0.5F);
@@ -168,7 +168,7 @@ TEST_F(EndoscopeLensTest, AViewportThatGoesFirstTakesNothingWithItThatIsNeeded) 
   EXPECT_EQ(resources(), before);
 }
 
-TEST_F(EndoscopeLensTest, NothingStaysHoweverOftenItIsChanged) {
+TEST_F(EndoscopeLensTest, LeavesNoResourcesBehind) {
   auto useOnce = [] {
     EndoscopeLens lens(*viewport_);
     for (const double degrees : {60., 100., 140.}) {

@@ -5,8 +5,8 @@
 
 namespace vibe {
 
-// Bodies as robot descriptions have them, appended to a shape: in the middle of the pose, a cylinder along its z. All
-// lengths in metres, above 0.
+// Appends the bodies of robot descriptions to a shape, centred at the pose, a cylinder along its z axis. All lengths
+// are in metres and positive.
 
 void appendSphere(const Eigen::Isometry3d& pose, double radius, PackedColour colour, ColouredShape& shape);
 void appendCylinder(const Eigen::Isometry3d& pose, double radius, double length, PackedColour colour,
