@@ -145,7 +145,7 @@ void ImplicitStep::reportImpedance() {
   const double gas_stiffness = model_.scene.gas ? state_.gas_amount / (stepper.volume * stepper.volume) : 0;
   report_.tool_impedance =
       scratch_.impedance->update(state_.step, scratch_.tool_rows, {state_.x.data(), state_.y.data(), state_.z.data()},
-                                 stepper.volume_gradient, gas_stiffness);
+                                 stepper.volume_gradient, gas_stiffness, state_.impedance);
 }
 
 void ImplicitStep::accountDamping() {
