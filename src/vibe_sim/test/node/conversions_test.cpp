@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/input/step_input_fields.hpp"
 
 namespace vibe {
 namespace {
@@ -65,6 +66,37 @@ TEST(Conversions, stepInputSurvivesTheRoundTripBitForBit) {
   EXPECT_EQ(read.pull_particle, 4711);
   EXPECT_EQ(read.pull_target, input.pull_target);
   EXPECT_TRUE(std::signbit(read.pull_target.y()));
+}
+
+/// An archive that changes the last bit of plain value number `target`; `count` is how many there are.
+struct BitFlip {
+  std::size_t target = static_cast<std::size_t>(-1), count = 0;
+  template <class T>
+  void block(T* data, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i)
+      if (count++ == target) *reinterpret_cast<unsigned char*>(data + i) ^= 1;
+  }
+};
+
+/// The message carries every field of StepInput under the same name. A field that is added to StepInput alone fails
+/// here.
+TEST(Conversions, everyBitOfEveryFieldOfStepInputIsInTheMessage) {
+  const std::string definition = ros::message_traits::definition<vibe_msgs::StepInput>();
+  StepInput counted;
+  visitFields(counted, [&](std::string_view name, const auto&) {
+    EXPECT_NE(definition.find(" " + std::string(name) + "\n"), std::string::npos) << name;
+  });
+  EXPECT_EQ(makeStepInput(counted, 0, 0).version, kStepInputVersion);
+  BitFlip all;
+  transfer(all, counted);
+  EXPECT_EQ(all.count, static_cast<std::size_t>(kJointCount + kButtonCount + 4));
+  for (std::size_t i = 0; i < all.count; ++i) {
+    StepInput input;
+    BitFlip flip{i};
+    transfer(flip, input);
+    EXPECT_NE(firstDifference(input, StepInput()), "");
+    EXPECT_EQ(firstDifference(input, readStepInput(makeStepInput(input, 0, 0))), "") << "value " << i;
+  }
 }
 
 TEST(Conversions, jointsAreFoundByNameInAnyOrder) {
@@ -202,26 +234,32 @@ TEST(Conversions, eventsKeepTheirContent) {
   event.kind = Event::Kind::Slip;
   event.particle = 12;
   event.value = 8.5;
-  event.text = "torn off";
+  event.limit = 4;
+  event.amount = 1;
   const vibe_msgs::ProcedureEvent message = makeEvent(event, 3);
   EXPECT_EQ(message.kind, vibe_msgs::ProcedureEvent::SLIP);
   EXPECT_EQ(message.particle, 12);
   EXPECT_EQ(message.value, 8.5);
-  EXPECT_EQ(message.text, "torn off");
+  EXPECT_EQ(message.text, "The tissue tore off the helix at 8.50 N; after 1.0 turns the helix holds 4.00 N.");
+  const vibe_msgs::ProcedureEvent warning = makeWarning("The topic is silent.", 4'000'000'000);
+  EXPECT_EQ(warning.kind, vibe_msgs::ProcedureEvent::WARNING);
+  EXPECT_EQ(warning.particle, -1);
+  EXPECT_EQ(warning.text, "The topic is silent.");
+  EXPECT_EQ(warning.header.stamp.toNSec(), 4'000'000'000u);
 }
 
-TEST(Conversions, phaseFollowsWhatHappens) {
+TEST(Conversions, toolStateFollowsWhatHappens) {
   State state;
   StepInput input;
-  EXPECT_STREQ(phaseOf(state, input), "free");
+  EXPECT_STREQ(toolStateOf(state, input), "free");
   state.in_contact = true;
-  EXPECT_STREQ(phaseOf(state, input), "contact");
+  EXPECT_STREQ(toolStateOf(state, input), "contact");
   input.buttons[Insufflate] = 1;
-  EXPECT_STREQ(phaseOf(state, input), "insufflation");
+  EXPECT_STREQ(toolStateOf(state, input), "insufflation");
   state.pressure_reached = true;
-  EXPECT_STREQ(phaseOf(state, input), "contact");
+  EXPECT_STREQ(toolStateOf(state, input), "contact");
   state.grip.emplace_back();
-  EXPECT_STREQ(phaseOf(state, input), "grip");
+  EXPECT_STREQ(toolStateOf(state, input), "grip");
 }
 
 }  // namespace
