@@ -142,6 +142,11 @@ class EndoscopeCameraTest(unittest.TestCase):
         ready = lambda: min(p.get_num_connections() for p in (self.topology, self.particles, self.tf)) > 0
         self.assertTrue(wait_until(ready), "the program does not listen")
 
+    def setUp(self):
+        # the connections of the program before end a little after it, and would be taken for those of the next one
+        gone = lambda: max(p.get_num_connections() for p in (self.topology, self.particles, self.tf)) == 0
+        self.assertTrue(wait_until(gone), "the program before still listens")
+
     def send_pose(self, stamp, place):
         transform = TransformStamped(child_frame_id=CAMERA)
         transform.header.stamp, transform.header.frame_id = stamp, FRAME
