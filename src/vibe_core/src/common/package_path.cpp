@@ -35,9 +35,10 @@ std::filesystem::path findPackage(const std::string& package) {
   for (const auto& prefix : ownPrefixes()) candidates.push_back(prefix / "share" / package);
   for (const auto& candidate : candidates)
     if (std::filesystem::exists(candidate / "package.xml")) return candidate;
-  throw Error("There is no package '" + package +
-              "' in ROS_PACKAGE_PATH, in CMAKE_PREFIX_PATH or where this program is installed; source the setup.bash of "
-              "the workspace that has it, or set CMAKE_PREFIX_PATH to the prefix under which it is installed.");
+  throw Error(
+      "There is no package '" + package +
+      "' in ROS_PACKAGE_PATH, in CMAKE_PREFIX_PATH or where this program is installed; source the setup.bash of "
+      "the workspace that has it, or set CMAKE_PREFIX_PATH to the prefix under which it is installed.");
 }
 
 }  // namespace
