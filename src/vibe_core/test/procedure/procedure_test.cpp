@@ -22,9 +22,7 @@ using Kind = Event::Kind;
 /// Integers that are the same everywhere (Steele, Lea & Flood 2014).
 struct Dice {
   std::uint64_t state;
-  int below(int n) {
-    return static_cast<int>(nextInteger(state) % static_cast<std::uint64_t>(n));
-  }
+  int below(int n) { return static_cast<int>(nextInteger(state) % static_cast<std::uint64_t>(n)); }
 };
 
 void expectSoundBite(const Bite& bite) {

@@ -14,9 +14,7 @@ using Eigen::VectorXd;
 /// Numbers that are the same everywhere.
 struct Random {
   std::uint64_t state;
-  double operator()(double low, double high) {
-    return low + (high - low) * nextUniform(state);
-  }
+  double operator()(double low, double high) { return low + (high - low) * nextUniform(state); }
 };
 
 struct Problem {
