@@ -17,7 +17,7 @@ constexpr char kVariable[] = "VIBE_MESH_READER";
 
 std::filesystem::path findReader() {
   if (const char* named = std::getenv(kVariable); named != nullptr && *named != '\0') return named;
-  const std::filesystem::path found = findOwnProgram(kProgram);
+  std::filesystem::path found = findOwnProgram(kProgram);
   if (!found.empty()) return found;
   throw Error(std::string("geometry.file: the program ") + kProgram +
               ", which reads meshes, is installed neither beside this program nor beside the library; set " +
