@@ -17,8 +17,7 @@
 #include "vibe_core/metrics/session_csv.hpp"
 #include "vibe_core/scene/mesh_guess.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
-#include "vibe_core/simulation/simulator.hpp"
-#include "vibe_core/simulation/snapshot.hpp"
+#include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
 namespace {
@@ -82,47 +81,41 @@ void printScriptLength(const Options& o) {
   std::printf("%.3f\n", loadScript(o)->duration());
 }
 
+void printEvents(const std::vector<Event>& events, bool over_progress) {
+  for (const Event& event : events)
+    std::fprintf(stderr, "%s%7.2f s  %s: %s\n", over_progress ? "\r" : "", event.time, toString(event.kind),
+                 event.text.c_str());
+}
+
 void run(const Options& o) {
   if (o.script_length) return printScriptLength(o);
   const std::shared_ptr<const Model> model = load(o);
   const std::unique_ptr<TraineeScript> script = loadScript(o);
   const std::string softness = softnessWarning(*model);
   if (!softness.empty()) std::fprintf(stderr, "%s\n", softness.c_str());
-  const double dt = model->scene.step_period;
   const double duration = o.duration > 0 ? o.duration : (script ? script->duration() : 10);
-  const long steps = std::lround(duration / dt);
-
-  State state = initialState(*model, model->scene.seed);
-  Workspace workspace(*model, o.threads);
-  MetricsRecorder recorder(*model, state);
-  std::unique_ptr<SessionCsv> csv = o.csv.empty() ? nullptr : std::make_unique<SessionCsv>(o.csv);
-  std::vector<Event> events;
-  StepTimer timer;
+  const std::unique_ptr<SessionCsv> csv = o.csv.empty() ? nullptr : std::make_unique<SessionCsv>(o.csv);
   const bool show = !o.quiet && isatty(STDERR_FILENO) == 1;
+
+  SimulationSettings settings;
+  settings.threads = o.threads;
+  Simulation simulation(model, settings);
   const double begin = steadyTime();
-  for (long k = 0; k < steps; ++k) {
-    const StepInput input = script ? script->at(static_cast<double>(state.step) * dt) : StepInput{};
-    events.clear();
-    timer.start();
-    step(*model, state, input, workspace, events);
-    timer.stop();
-    const bool insufflator_on =
-        model->scene.gas && (model->scene.gas->insufflator_on || input.buttons[Insufflate] != 0);
-    recorder.record(*model, state, insufflator_on, events);
-    if (csv) csv->write(*model, state, events);
-    if (!o.quiet)
-      for (const Event& event : events)
-        std::fprintf(stderr, "%s%7.2f s  %s: %s\n", show ? "\r" : "", event.time, toString(event.kind),
-                     event.text.c_str());
-    if (show && k % 30 == 0) printProgress(state.time, duration, script.get());
-  }
+  simulation.run(
+      std::lround(duration / simulation.stepPeriod()),
+      [&](double time) { return script ? script->at(time) : StepInput{}; },
+      [&](const Simulation& s) {
+        if (csv) csv->write(*model, s.state(), s.events());
+        if (!o.quiet) printEvents(s.events(), show);
+        if (show && s.stepCount() % 30 == 1) printProgress(s.time(), duration, script.get());
+      });
   if (show) std::fprintf(stderr, "\r%-60s\r", "");
-  if (!o.snapshot.empty()) saveSnapshot(*model, state, o.snapshot);
+  if (!o.snapshot.empty()) simulation.saveSnapshot(o.snapshot);
   if (o.quiet)
-    std::cout << "state hash: " << toHex(hash(state)) << "\n";
+    std::cout << "state hash: " << toHex(simulation.hash()) << "\n";
   else
-    std::cout << runSummary(recorder.metrics(), timer.cpu.all, model->particle_count, state.time, steadyTime() - begin,
-                            hash(state));
+    std::cout << runSummary(simulation.metrics(), simulation.timer().cpu.all, model->particle_count, simulation.time(),
+                            steadyTime() - begin, simulation.hash());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/input/step_input_fields.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
 namespace vibe {
@@ -223,6 +224,7 @@ vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, st
   vibe_msgs::StepInput message;
   message.header.stamp = toRosTime(stamp);
   message.step = static_cast<std::uint64_t>(step);
+  message.version = kStepInputVersion;
   std::copy(input.joints.begin(), input.joints.end(), message.joints.begin());
   std::copy(input.buttons.begin(), input.buttons.end(), message.buttons.begin());
   message.pull_particle = input.pull_particle;

@@ -138,7 +138,7 @@ void addSkill(const SkillMetrics& skill, vibe_msgs::ProcedureState& message) {
 }  // namespace
 
 vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunStatus& status) {
-  const SessionMetrics& metrics = session.recorder.metrics();
+  const SessionMetrics& metrics = session.metrics();
   vibe_msgs::ProcedureState message;
   message.header.stamp = toRosTime(session.now());
   message.scene = session.model->scene.name;
@@ -174,7 +174,7 @@ vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunSt
 }
 
 std::string kindOf(const Session& session, const RunStatus& status) {
-  const SessionMetrics& metrics = session.recorder.metrics();
+  const SessionMetrics& metrics = session.metrics();
   std::string kind = session.model->scene.name + '|' + phaseOf(session.state, session.input);
   for (int count : {metrics.grabs, metrics.missed_grabs, metrics.releases, metrics.slips, metrics.warnings,
                     static_cast<int>(session.state.grip.size()), status.paused ? 1 : 0}) {

@@ -147,7 +147,7 @@ void Publishers::tool(const Session& session, std::int64_t stamp) {
 }
 
 void Publishers::haptic(const Session& session, std::int64_t stamp) {
-  const std::optional<ToolImpedance>& response = session.workspace->toolImpedance();
+  const std::optional<ToolImpedance>& response = session.toolImpedance();
   if (!response) {
     if (haptic_touching_) hapticRelease(stamp);
     return;

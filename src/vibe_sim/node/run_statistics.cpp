@@ -5,7 +5,6 @@
 
 #include "conversions.hpp"
 #include "vibe_core/metrics/run_summary.hpp"
-#include "vibe_core/simulation/simulator.hpp"
 
 namespace vibe {
 namespace {
@@ -18,9 +17,9 @@ double ratio(double simulated, double wall) {
 
 }  // namespace
 
-void RunStatistics::begin() {
+void RunStatistics::begin(Session& session) {
   begin_ = steadyTime();
-  startWindow();
+  startWindow(session);
 }
 
 void RunStatistics::countStep(double period) {
@@ -33,12 +32,12 @@ bool RunStatistics::windowIsOver() const {
   return steadyTime() - window_begin_ >= kWindow;
 }
 
-void RunStatistics::startWindow() {
+void RunStatistics::startWindow(Session& session) {
   window_begin_ = steadyTime();
   window_simulated_ = 0;
   all_missed_deadlines_ += missed_deadlines;
   missed_deadlines = 0;
-  for (StepTimer* timer : {&solver, &publish, &total}) {
+  for (StepTimer* timer : {&session.simulation.timer(), &publish, &total}) {
     timer->cpu.window.clear();
     timer->wall.window.clear();
   }
@@ -48,10 +47,11 @@ vibe_msgs::SolverStatistics RunStatistics::message(const Session& session,
                                                    DurationHistogram DurationRecord::*which) const {
   vibe_msgs::SolverStatistics message;
   message.header.stamp = toRosTime(session.now());
+  const StepTimer& solver = session.simulation.timer();
   message.stages = {makeStageTime("solver", solver.cpu.*which), makeStageTime("solver_wall", solver.wall.*which),
                     makeStageTime("publish", publish.wall.*which), makeStageTime("total", total.wall.*which)};
   message.steps = static_cast<std::uint64_t>(steps);
-  message.state_hash = toHex(hash(session.state));
+  message.state_hash = toHex(session.simulation.hash());
   const std::vector<double>& inverse_mass = session.model->inverse_mass;
   message.particle_count = static_cast<std::uint32_t>(session.model->particle_count);
   message.active_count = static_cast<std::uint32_t>(
@@ -77,7 +77,7 @@ vibe_msgs::SolverStatistics RunStatistics::wholeMessage(const Session& session) 
 }
 
 std::string RunStatistics::progressLine(const Session& session) const {
-  const DurationHistogram& times = solver.cpu.window;
+  const DurationHistogram& times = session.simulation.timer().cpu.window;
   char line[160];
   std::snprintf(line, sizeof line, "t = %7.2f s  %-12s  %5.2f x real time  solver p50 %5.2f ms  p99 %5.2f ms",
                 session.state.time, phaseOf(session.state, session.input),
@@ -87,8 +87,8 @@ std::string RunStatistics::progressLine(const Session& session) const {
 }
 
 std::string RunStatistics::summary(const Session& session) const {
-  return runSummary(session.recorder.metrics(), solver.cpu.all, session.model->particle_count, simulated_,
-                    steadyTime() - begin_, hash(session.state));
+  return runSummary(session.metrics(), session.simulation.timer().cpu.all, session.model->particle_count, simulated_,
+                    steadyTime() - begin_, session.simulation.hash());
 }
 
 }  // namespace vibe

@@ -9,17 +9,17 @@
 
 namespace vibe {
 
-/// How long the work takes and how well it keeps up. Belongs to the stepping thread.
+/// How long the work takes and whether it keeps up with time. The times of the steps themselves are those of
+/// Simulation::timer(). Belongs to the stepping thread.
 class RunStatistics {
  public:
-  StepTimer solver;                    ///< step() of the library
   StepTimer publish;                   ///< filling and sending messages
   StepTimer total;                     ///< both, and the latching of inputs
   std::int64_t steps = 0;              ///< since the start of the process
   std::uint32_t missed_deadlines = 0;  ///< in the window
 
   /// The stepping begins now; time before does not count.
-  void begin();
+  void begin(Session& session);
   void countStep(double period);
   bool windowIsOver() const;  ///< one second has passed
 
@@ -30,7 +30,7 @@ class RunStatistics {
   /// Several lines for people at the end; the last is "state hash: <16 hex digits>".
   std::string summary(const Session& session) const;
 
-  void startWindow();
+  void startWindow(Session& session);
 
  private:
   double begin_ = 0;                        // steady time [s]

@@ -1,44 +1,41 @@
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <vector>
+#include <optional>
 
 #include "sim_time.hpp"
-#include "vibe_core/events/event.hpp"
-#include "vibe_core/input/step_input.hpp"
 #include "vibe_core/metrics/event_counts.hpp"
-#include "vibe_core/metrics/session_metrics.hpp"
-#include "vibe_core/model/model.hpp"
-#include "vibe_core/simulation/workspace.hpp"
-#include "vibe_core/state/state.hpp"
+#include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe {
 
-/// What is simulated at the moment: belongs to the stepping thread and is touched by no other.
+/// The node's simulation with the time on its stamps. Belongs to the stepping thread and is touched by no other.
 class Session {
  public:
   Session(std::shared_ptr<const Model> new_model, std::uint64_t seed, std::int64_t origin, int threads);
 
-  /// One step with the present `input`; what happened is in `events` afterwards.
-  void step();
+  /// One step with an input.
+  void step(const StepInput& new_input);
 
-  /// Another state of the same model takes over. Held commands fit the new state, so that nothing jumps.
+  /// Another state of the same model takes over; its stamps follow those of the old one.
   void replaceState(State new_state);
   /// Another model takes over, at its initial state.
   void replaceModel(std::shared_ptr<const Model> new_model);
 
   std::int64_t now() const { return time.stamp(state.step); }  ///< stamp of the state [ns]
+  const SessionMetrics& metrics() const { return simulation.metrics(); }
+  const std::optional<ToolImpedance>& toolImpedance() const { return simulation.toolImpedance(); }
 
-  std::shared_ptr<const Model> model;
-  State state;
-  std::unique_ptr<Workspace> workspace;
-  MetricsRecorder recorder;
+  Simulation simulation;
   TimeLine time;
-  StepInput input;             ///< what the next step uses
-  std::vector<Event> events;   ///< of the last step
   EventCounts counts;          ///< since the state took over
   std::uint32_t revision = 1;  ///< of the topology
-  int threads;
+
+  // parts of the simulation
+  const std::shared_ptr<const Model>& model;
+  const State& state;
+  const StepInput& input;            ///< in force
+  const std::vector<Event>& events;  ///< of the last step
 };
 
 }  // namespace vibe

@@ -80,7 +80,7 @@ void Stepper::run() {
 void Stepper::loop() {
   publishers_.announceModel(session_);
   publishers_.wholeState(session_, status_);
-  statistics_.begin();
+  statistics_.begin(session_);
   restartPace(wallNow());
   while (true) {
     {
@@ -180,17 +180,17 @@ void Stepper::checkPatience(Hold hold) {
 
 void Stepper::takeStep() {
   hold_ = Hold::None;
-  if (statistics_.steps == 0) statistics_.begin();
+  if (statistics_.steps == 0) statistics_.begin(session_);
   statistics_.total.start();
   const bool wall = parameters_.time_source == TimeSource::Wall;
-  for (const std::string& sentence : queue_.apply(wall ? wallNow() : session_.now(), *session_.model, session_.input)) {
+  StepInput input = session_.input;
+  for (const std::string& sentence : queue_.apply(wall ? wallNow() : session_.now(), *session_.model, input)) {
     ROS_WARN_STREAM(sentence);
     publishers_.warn(sentence);
   }
+  session_.simulation.setInput(input);
   publishers_.appliedInput(session_);
-  statistics_.solver.start();
-  session_.step();
-  statistics_.solver.stop();
+  session_.step(input);
   statistics_.publish.start();
   publishers_.stepResult(session_, status_);
   statistics_.publish.stop();
@@ -207,7 +207,7 @@ void Stepper::reportEverySecond() {
   publishers_.solver_statistics(statistics_.windowMessage(session_));
   std::printf("%s%s\n", statistics_.progressLine(session_).c_str(), status_.paused ? "  (paused)" : "");
   std::fflush(stdout);
-  statistics_.startWindow();
+  statistics_.startWindow(session_);
 }
 
 void Stepper::fail(const std::string& sentence) {

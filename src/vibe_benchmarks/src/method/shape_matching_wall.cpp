@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "constraints/gas.hpp"
-#include "vibe_core/simulation/simulator.hpp"
+#include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe {
 namespace {
@@ -37,47 +37,48 @@ std::shared_ptr<const Model> makeModel(const BenchWall& wall, bool tool_held) {
   return model;
 }
 
-/// A model with its state. The gas is let in or out at every step, so that its pressure is constant.
+/// A simulation of the wall. The gas is let in or out at every step, so that its pressure is constant.
 class MatchedWall {
  public:
-  explicit MatchedWall(const BenchWall& wall) : wall_(wall), model_(makeModel(wall, false)) {
-    state_ = initialState(*model_, 1);
-    makeWorkspace();
-  }
+  explicit MatchedWall(const BenchWall& wall)
+      : wall_(wall), simulation_(makeModel(wall, false), SimulationSettings::study(1)) {}
 
   void holdTool() {
-    model_ = makeModel(wall_, true);
-    makeWorkspace();
+    State state = simulation_.state();
     for (const int node : wall_.tool) {
       held_.push_back(place(node));
-      state_.vx[node] = state_.vy[node] = state_.vz[node] = 0;
+      state.vx[node] = state.vy[node] = state.vz[node] = 0;
     }
+    simulation_.replaceModel(makeModel(wall_, true));
+    simulation_.replaceState(std::move(state));
   }
 
   /// @param distance  of the disc from where it was taken [m]
   void step(double distance) {
+    State& state = simulation_.editState();
     for (std::size_t i = 0; i < held_.size(); ++i) {
       const Eigen::Vector3d to = held_[i] + distance * wall_.pull_direction;
       const int node = wall_.tool[i];
-      state_.x[node] = to.x(), state_.y[node] = to.y(), state_.z[node] = to.z();
+      state.x[node] = to.x(), state.y[node] = to.y(), state.z[node] = to.z();
     }
-    state_.gas_amount = gasAmount(wall_.pressure, state_.volume);
-    events_.clear();
-    vibe::step(*model_, state_, StepInput{}, *workspace_, events_);
+    state.gas_amount = gasAmount(wall_.pressure, state.volume);
+    simulation_.step(StepInput{});
   }
 
   BodyMotion motion() const {
+    const State& state = simulation_.state();
     BodyMotion motion(wall_.body);
-    motion.x = {state_.x, state_.y, state_.z};
-    motion.v = {state_.vx, state_.vy, state_.vz};
+    motion.x = {state.x, state.y, state.z};
+    motion.v = {state.vx, state.vy, state.vz};
     return motion;
   }
 
   /// Of the disc on the wall along the pull, against elasticity and pressure [N].
   double force() const {
-    const std::size_t count = state_.x.size();
+    const State& state = simulation_.state();
+    const std::size_t count = state.x.size();
     std::vector<double> fx(count), fy(count), fz(count);
-    model_->tissue->addForces(state_, fx.data(), fy.data(), fz.data());
+    simulation_.model().tissue->addForces(state, fx.data(), fy.data(), fz.data());
     for (const auto& t : wall_.mesh.triangles) {
       const Eigen::Vector3d third = wall_.pressure / 6 * (place(t[1]) - place(t[0])).cross(place(t[2]) - place(t[0]));
       for (const int n : t) fx[n] += third.x(), fy[n] += third.y(), fz[n] += third.z();
@@ -87,17 +88,16 @@ class MatchedWall {
     return force;
   }
 
-  int substeps() const { return model_->scene.tissue.substeps * kStepsPerFrame; }
+  int substeps() const { return simulation_.model().substeps * kStepsPerFrame; }
 
  private:
-  Eigen::Vector3d place(int n) const { return {state_.x[n], state_.y[n], state_.z[n]}; }
-  void makeWorkspace() { workspace_ = std::make_unique<Workspace>(*model_); }
+  Eigen::Vector3d place(int n) const {
+    const State& state = simulation_.state();
+    return {state.x[n], state.y[n], state.z[n]};
+  }
 
   const BenchWall& wall_;
-  std::shared_ptr<const Model> model_;
-  std::unique_ptr<Workspace> workspace_;
-  State state_;
-  std::vector<Event> events_;
+  Simulation simulation_;
   std::vector<Eigen::Vector3d> held_;
 };
 

@@ -5,7 +5,6 @@
 
 #include "output/result_row.hpp"
 #include "procedure/thread_events.hpp"
-#include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe {
@@ -74,42 +73,38 @@ std::shared_ptr<const Model> makeModel(const CaseModel& plate, const PullWay& wa
 
 }  // namespace
 
-PulledPlate::PulledPlate(const CaseModel& plate, const PullWay& way) : model_(makeModel(plate, way)) {
-  state_ = initialState(*model_, 1);
-  workspace_ = std::make_unique<Workspace>(*model_);
+PulledPlate::PulledPlate(const CaseModel& plate, const PullWay& way)
+    : simulation_(makeModel(plate, way), SimulationSettings::study(1)) {
   const FemCase& c = plate.benchCase();
-  Suture& suture = state_.procedure.sutures.emplace_back();
+  Suture& suture = simulation_.editState().procedure.sutures.emplace_back();
   for (const std::string& spot : {c.cinch->first, c.cinch->second})
     suture.bites.push_back(biteAt(plate.spot(spot), c.thickness));
   suture.length = {apart()};
   suture.tension = {0};
   suture.technique = static_cast<std::uint8_t>(Technique::Other);
   suture.stage = Suture::Stage::Cinching;
-  if (model_->scene.suture->cinch_model == "groups") findGroup(*model_, state_, suture);
+  if (simulation_.model().scene.suture->cinch_model == "groups") findGroup(simulation_.model(), state(), suture);
 }
 
 bool PulledPlate::draw() {
-  const SutureScene& scene = *model_->scene.suture;
-  const double amount = scene.cinch_speed * model_->scene.step_period;
+  const SutureScene& scene = *simulation_.model().scene.suture;
+  const double amount = scene.cinch_speed * simulation_.model().scene.step_period;
   double drawn = 0;
   if (scene.cinch_model == "thread")
     drawn = drawThread(amount, set());
-  else if (groupStrain(*model_, state_, set().group) < scene.strain_limit)
+  else if (groupStrain(simulation_.model(), state(), set().group) < scene.strain_limit)
     drawn = drawGroup(amount, set());
   step();
   return drawn > 0;
 }
 
 void PulledPlate::step() {
-  std::vector<Event> events;
-  const double before = threadMilliseconds();
-  vibe::step(*model_, state_, StepInput{}, *workspace_, events);
-  last_ = threadMilliseconds() - before;
+  simulation_.step(StepInput{});
 }
 
 double PulledPlate::apart() const {
-  return (bitePosition(set().bites[0], state_.x, state_.y, state_.z) -
-          bitePosition(set().bites[1], state_.x, state_.y, state_.z))
+  return (bitePosition(set().bites[0], state().x, state().y, state().z) -
+          bitePosition(set().bites[1], state().x, state().y, state().z))
       .norm();
 }
 
@@ -118,9 +113,10 @@ double PulledPlate::tension() const {
 }
 
 MotionView PulledPlate::motion() {
-  return {{state_.x.data(), state_.y.data(), state_.z.data()},
-          {state_.vx.data(), state_.vy.data(), state_.vz.data()},
-          {state_.ax.data(), state_.ay.data(), state_.az.data()}};
+  State& state = simulation_.editState();
+  return {{state.x.data(), state.y.data(), state.z.data()},
+          {state.vx.data(), state.vy.data(), state.vz.data()},
+          {state.ax.data(), state.ay.data(), state.az.data()}};
 }
 
 }  // namespace vibe

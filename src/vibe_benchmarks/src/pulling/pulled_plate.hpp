@@ -4,9 +4,7 @@
 #include <vector>
 
 #include "fem/case_model.hpp"
-#include "vibe_core/model/model.hpp"
-#include "vibe_core/simulation/workspace.hpp"
-#include "vibe_core/state/state.hpp"
+#include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe {
 
@@ -26,21 +24,18 @@ class PulledPlate {
   /// A frame in which the cinch draws, unless the wall's strain has reached the limit. @return  false: it has
   bool draw();
   void step();
-  double milliseconds() const { return last_; }  ///< CPU time of the last frame
+  double milliseconds() const { return 1e3 * simulation_.timer().last_cpu; }  ///< CPU time of the last frame
 
   double apart() const;    ///< the bites, from each other [m]
   double tension() const;  ///< [N]
   MotionView motion();
-  const State& state() const { return state_; }
+  const State& state() const { return simulation_.state(); }
 
  private:
-  Suture& set() { return state_.procedure.sutures.front(); }
-  const Suture& set() const { return state_.procedure.sutures.front(); }
+  Suture& set() { return simulation_.editState().procedure.sutures.front(); }
+  const Suture& set() const { return state().procedure.sutures.front(); }
 
-  std::shared_ptr<const Model> model_;
-  std::unique_ptr<Workspace> workspace_;
-  State state_;
-  double last_ = 0;
+  Simulation simulation_;
 };
 
 }  // namespace vibe

@@ -6,7 +6,6 @@
 #include "procedure/needle.hpp"
 #include "procedure/thread_events.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/step_timer.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe {
@@ -28,13 +27,18 @@ double maxSpeed(const State& state) {
 }
 
 SutureSession::SutureSession(std::shared_ptr<const Model> model, std::uint64_t seed)
-    : model_(std::move(model)), state_(initialState(*model_, seed)), workspace_(*model_) {
-  if (!model_->scene.gas || !model_->scene.suture || !model_->tool)
-    throw Error("The scene '" + model_->scene.name +
-                "' needs the sections gas, scope and suture to be sewn; add them.");
-  input_.joints = state_.joints;
+    : simulation_(std::move(model), SimulationSettings::study(seed)) {
+  const Scene& scene = simulation_.model().scene;
+  if (!scene.gas || !scene.suture || !simulation_.model().tool)
+    throw Error("The scene '" + scene.name + "' needs the sections gas, scope and suture to be sewn; add them.");
+  input_.joints = state().joints;
   input_.buttons[Insufflate] = 1;
-  start_balance_ = energyBalance(*model_, state_);
+  start_balance_ = energyBalance(simulation_.model(), state());
+}
+
+void SutureSession::step() {
+  const std::vector<Event>& happened = simulation_.step(input_);
+  events_.insert(events_.end(), happened.begin(), happened.end());
 }
 
 void SutureSession::settle() {
@@ -43,48 +47,47 @@ void SutureSession::settle() {
 }
 
 bool SutureSession::calmDown(double longest) {
-  const double end = state_.time + longest, target = model_->scene.gas->regulated_pressure;
+  const double end = state().time + longest, target = model().scene.gas->regulated_pressure;
   do {
-    if (state_.time > end) return false;
-    step(*model_, state_, input_, workspace_, events_);
-  } while (std::abs(state_.pressure - target) > 1e-3 * target || maxSpeed(state_) > kStill);
+    if (state().time > end) return false;
+    step();
+  } while (std::abs(state().pressure - target) > 1e-3 * target || maxSpeed(state()) > kStill);
   return true;
 }
 
 void SutureSession::takeBites(const std::vector<WallSpot>& spots) {
   Suture suture;
-  suture.begin = state_.time;
+  suture.begin = state().time;
   for (const WallSpot& spot : spots) {
     const Eigen::Vector3d place = placeOf(spot, wall());
-    suture.bites.push_back(biteAround(*model_, wall(), spot.triangle, place, model_->scene.suture->bite_radius));
+    suture.bites.push_back(biteAround(model(), wall(), spot.triangle, place, model().scene.suture->bite_radius));
     suture.bites.back().depth = suture.bites.back().thickness;
-    suture.bites.back().time = state_.time;
+    suture.bites.back().time = state().time;
   }
-  const auto where = [&](std::size_t k) { return bitePosition(suture.bites[k], state_.x, state_.y, state_.z); };
+  const auto where = [&](std::size_t k) { return bitePosition(suture.bites[k], state().x, state().y, state().z); };
   for (std::size_t k = 1; k < spots.size(); ++k) suture.length.push_back((where(k) - where(k - 1)).norm());
   suture.tension.assign(suture.length.size(), 0.0);
-  state_.procedure.sutures.push_back(std::move(suture));
+  simulation_.editState().procedure.sutures.push_back(std::move(suture));
 }
 
 void SutureSession::press(Button button, bool down, StepCosts& costs, SewnSet& set) {
   input_.buttons[button] = down ? 1 : 0;
-  const double cpu = threadCpuTime(), wall = steadyTime();
-  step(*model_, state_, input_, workspace_, events_);
-  costs.cpu.push_back(1e3 * (threadCpuTime() - cpu));
-  costs.wall.push_back(1e3 * (steadyTime() - wall));
-  if (state_.solver.fallback > 0) ++set.fallback_steps;
-  for (const Suture& suture : state_.procedure.sutures)
+  step();
+  costs.cpu.push_back(1e3 * simulation_.timer().last_cpu);
+  costs.wall.push_back(1e3 * simulation_.timer().last_wall);
+  if (state().solver.fallback > 0) ++set.fallback_steps;
+  for (const Suture& suture : state().procedure.sutures)
     for (double tension : suture.tension) set.max_tension = std::max(set.max_tension, tension);
 }
 
 void SutureSession::pull(SewnSet& set) {
-  const SutureScene& scene = *model_->scene.suture;
-  const int longest = static_cast<int>(kLongestPull / model_->scene.step_period);
-  const int hold = static_cast<int>(kHold / model_->scene.step_period);
+  const SutureScene& scene = *model().scene.suture;
+  const int longest = static_cast<int>(kLongestPull / model().scene.step_period);
+  const int hold = static_cast<int>(kHold / model().scene.step_period);
   for (int k = 0, held = 0; k < longest && held < hold; ++k) {
-    const double before = state_.procedure.sutures.back().pulled;
+    const double before = state().procedure.sutures.back().pulled;
     press(Cinch, true, set.pulling, set);
-    const Suture& suture = state_.procedure.sutures.back();
+    const Suture& suture = state().procedure.sutures.back();
     if (suture.permanent()) break;  // it broke
     const bool tight = cinchTension(suture) >= scene.cinch_tension, all_in = suture.pulled - before < kNothing;
     held = tight || all_in ? held + 1 : 0;
@@ -110,16 +113,16 @@ SewnSet SutureSession::sew(const std::vector<WallSpot>& spots, double after) {
   press(TTag, true, set.pulling, set);
   press(TTag, false, set.pulling, set);
   pull(set);
-  const int steps = static_cast<int>(std::lround(after / model_->scene.step_period));
+  const int steps = static_cast<int>(std::lround(after / model().scene.step_period));
   for (int k = 0; k < steps; ++k) press(Cinch, false, set.after, set);
-  const Suture& suture = state_.procedure.sutures.back();
+  const Suture& suture = state().procedure.sutures.back();
   set.bites = static_cast<int>(suture.bites.size());
   set.technique = suture.technique;
   set.drawn = suture.pulled;
   set.tension = suture.cinch_tension;
-  set.max_move = maxSpeed(state_);
-  set.volume = state_.volume;
-  set.balance = energyBalance(*model_, state_) - start_balance_;
+  set.max_move = maxSpeed(state());
+  set.volume = state().volume;
+  set.balance = energyBalance(model(), state()) - start_balance_;
   count(first_event, set);
   return set;
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "suture/wall_plan.hpp"
-#include "vibe_core/simulation/simulator.hpp"
+#include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe {
 
@@ -47,22 +47,21 @@ class SutureSession {
   /// @param after  how long to go on when the cinch is let go [s]
   SewnSet sew(const std::vector<WallSpot>& spots, double after = 1);
 
-  const Model& model() const { return *model_; }
-  const State& state() const { return state_; }
+  const Model& model() const { return simulation_.model(); }
+  const State& state() const { return simulation_.state(); }
   const std::vector<Event>& events() const { return events_; }
-  SurfaceView wall() const { return {model_->organ.surface.triangles, state_.x, state_.y, state_.z}; }
+  SurfaceView wall() const { return {model().organ.surface.triangles, state().x, state().y, state().z}; }
 
  private:
+  void step();
   void takeBites(const std::vector<WallSpot>& spots);
   void press(Button button, bool down, StepCosts& costs, SewnSet& set);
   void pull(SewnSet& set);
   void count(std::size_t first_event, SewnSet& set) const;
 
-  std::shared_ptr<const Model> model_;
-  State state_;
-  Workspace workspace_;
+  Simulation simulation_;
   StepInput input_;
-  std::vector<Event> events_;
+  std::vector<Event> events_;  // since the beginning
   double start_balance_ = 0;
 };
 

@@ -47,8 +47,10 @@ void StepTimer::start() {
 }
 
 void StepTimer::stop() {
-  cpu.add(threadCpuTime() - cpu_start_);
-  wall.add(steadyTime() - wall_start_);
+  last_cpu = threadCpuTime() - cpu_start_;
+  last_wall = steadyTime() - wall_start_;
+  cpu.add(last_cpu);
+  wall.add(last_wall);
 }
 
 double threadCpuTime() {

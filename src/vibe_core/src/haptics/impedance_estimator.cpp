@@ -4,16 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vibe_core/common/fnv1a.hpp"
+
 namespace vibe {
 
 namespace {
 
-constexpr double kInterval = 0.25;       // between renewals of the stiffness [s]
-constexpr double kFar = 5e-4;            // a node that has moved farther asks for a renewal [m]
-constexpr double kShortestStep = 2e-5;   // of the tool in a frame that says something about the slope [m]
-constexpr double kMinEigenvalue = 1e-3;  // of the greatest: softer directions have no equilibrium
+constexpr double kInterval = 0.25;       // between renewals of the stiffness; design choice [s]
+constexpr double kFar = 5e-4;            // a larger move of a node triggers a renewal; design choice [m]
+constexpr double kShortestStep = 2e-5;   // of the tool in a frame from which a slope is taken; design choice [m]
+constexpr double kMinEigenvalue = 1e-3;  // relative to the maximum; softer directions have no equilibrium
 
-// The displacement that takes the force away, in the directions that have a stiffness.
+// The displacement that relieves the force, in the directions that have a stiffness.
 Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::Vector3d& force) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stiffness);
   const double min = kMinEigenvalue * eigen.eigenvalues().maxCoeff();
@@ -24,6 +26,38 @@ Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::V
   return sum;
 }
 
+std::uint64_t idOf(const ImpedanceBasis& basis) {
+  Fnv1a hash;
+  hash.addWords(basis.positions.data(), basis.positions.size());
+  hash.addWords(basis.gas_direction.data(), basis.gas_direction.size());
+  hash.add(&basis.gas_stiffness, sizeof basis.gas_stiffness);
+  hash.add(basis.node.data(), basis.node.size() * sizeof(int));
+  for (const Eigen::Vector3d& direction : basis.direction) hash.add(direction.data(), 3 * sizeof(double));
+  for (const auto& motion : basis.row_motion) hash.add(motion.data(), sizeof motion);
+  return std::max<std::uint64_t>(1, hash.result());
+}
+
+// Keeps the capacity of the lists.
+void clear(ImpedanceBasis& basis) {
+  basis.id = 0;
+  basis.positions.clear();
+  basis.gas_direction.clear();
+  basis.gas_stiffness = 0;
+  basis.node.clear();
+  basis.direction.clear();
+  basis.row_motion.clear();
+}
+
+void setGas(const std::vector<float>& direction, double stiffness, ImpedanceBasis& basis) {
+  basis.gas_direction = direction;
+  basis.gas_stiffness = stiffness;
+}
+
+template <std::size_t N>
+Eigen::Map<Eigen::Matrix<double, static_cast<int>(N), 1>> asVector(std::array<double, N>& values) {
+  return Eigen::Map<Eigen::Matrix<double, static_cast<int>(N), 1>>(values.data());
+}
+
 }  // namespace
 
 ImpedanceEstimator::ImpedanceEstimator(const ElasticBody& body, double step_period)
@@ -31,8 +65,9 @@ ImpedanceEstimator::ImpedanceEstimator(const ElasticBody& body, double step_peri
   const auto pattern =
       std::make_shared<const BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups()));
   const auto plan = makeFactorPlan(*pattern);
-  for (auto* stiffness : {&rest_, &made_, &next_}) *stiffness = std::make_unique<StaticStiffness>(body, pattern, plan);
-  present_ = rest_->make({}) ? rest_.get() : nullptr;
+  for (Made* made : {&rest_, &current_, &next_})
+    made->stiffness = std::make_unique<StaticStiffness>(body, pattern, plan);
+  rest_.usable = rest_.stiffness->make({});
 }
 
 ImpedanceEstimator::~ImpedanceEstimator() {
@@ -41,90 +76,143 @@ ImpedanceEstimator::~ImpedanceEstimator() {
 
 std::optional<ToolImpedance> ImpedanceEstimator::update(std::int64_t step, const ToolContactRows& touch,
                                                         const std::array<const double*, 3>& positions,
-                                                        const std::vector<float>& gas_direction, double gas_stiffness) {
-  const bool consecutive = step == last_step_ + 1;
-  if (step <= last_step_ || step > last_step_ + interval_) begin(step, gas_direction, gas_stiffness);
-  last_step_ = step;
+                                                        const std::vector<float>& gas_direction, double gas_stiffness,
+                                                        ImpedanceMemory& memory) {
+  const bool consecutive = step - 1 == memory.last_step;
+  if (step <= memory.last_step || step > memory.last_step + interval_)
+    begin(step, gas_direction, gas_stiffness, memory);
+  memory.last_step = step;
   setRows(touch);
-  if (step >= next_renewal_) {
-    next_renewal_ = step + interval_;
-    renew(touch, positions, gas_direction, gas_stiffness);
+  provide(memory);
+  if (step >= memory.next_renewal) {
+    memory.next_renewal = step + interval_;
+    renew(touch, positions, gas_direction, gas_stiffness, memory);
   }
   if (touch.rows.empty() || present_ == nullptr) {
-    has_last_ = false;
+    memory.has_last = false;
     return std::nullopt;
   }
-  return respond(touch, consecutive);
+  return respond(touch, consecutive, memory);
 }
 
-// Whatever an earlier touch has left behind does not count.
-void ImpedanceEstimator::begin(std::int64_t step, const std::vector<float>& gas_direction, double gas_stiffness) {
-  if (making_.valid()) making_.get();
-  next_renewal_ = step;
-  linearization_point_.clear();
-  mass_.setZero();
-  last_nodes_.clear();
-  slope_.forget(), joint_slope_.forget();
-  if (present_ == nullptr) return;
-  present_ = rest_.get();
-  rest_->setRows({});
-  rest_->setGas(gas_direction, gas_stiffness);
+// Nothing of an earlier touch counts.
+void ImpedanceEstimator::begin(std::int64_t step, const std::vector<float>& gas_direction, double gas_stiffness,
+                               ImpedanceMemory& memory) {
+  memory.next_renewal = step;
+  clear(memory.next);
+  clear(memory.current);
+  setGas(gas_direction, gas_stiffness, memory.current);
+  memory.current.id = idOf(memory.current);
+  memory.last_nodes.clear();
+  SlopeCorrection<3>(memory.slope).forget();
+  SlopeCorrection<kScopeJointCount>(memory.joint_slope).forget();
 }
 
-// What was begun an interval ago takes over; the next is begun if anything has moved.
+// The stiffness begun an interval ago takes over; the next is begun if anything has moved.
 void ImpedanceEstimator::renew(const ToolContactRows& touch, const std::array<const double*, 3>& positions,
-                               const std::vector<float>& gas_direction, double gas_stiffness) {
-  if (making_.valid() && making_.get()) {
-    made_.swap(next_);
-    present_ = made_.get();
-    linearization_point_.swap(next_linearization_point_);
-    mass_ = next_mass_;
+                               const std::vector<float>& gas_direction, double gas_stiffness, ImpedanceMemory& memory) {
+  if (memory.next.id != 0) {
+    finishNext();
+    if (next_.usable) std::swap(memory.current, memory.next);
+    clear(memory.next);
+    provide(memory);
   }
-  const bool lacks_mass = body_.mass_damping > 0 && mass_.isZero() && !touch.rows.empty();
-  if (!lacks_mass && !farFrom(positions)) return;
-  next_linearization_point_.resize(3 * body_.rest.size());
-  for (std::size_t i = 0; i < next_linearization_point_.size(); ++i)
-    next_linearization_point_[i] = static_cast<float>(positions[i % 3][i / 3]);
-  startMaking(gas_direction, gas_stiffness);
+  const bool has_mass = present_ != nullptr && !present_->mass.isZero();
+  const bool lacks_mass = body_.mass_damping > 0 && !has_mass && !touch.rows.empty();
+  if (!lacks_mass && !farFrom(memory.current.positions, positions)) return;
+  ImpedanceBasis& next = memory.next;
+  next.positions.resize(3 * body_.rest.size());
+  for (std::size_t i = 0; i < next.positions.size(); ++i)
+    next.positions[i] = static_cast<float>(positions[i % 3][i / 3]);
+  setGas(gas_direction, gas_stiffness, next);
+  for (const ToolRow& row : touch.rows) {
+    next.node.push_back(row.node);
+    next.direction.push_back(row.direction);
+    asVector(next.row_motion.emplace_back()) = row.motion.transpose();
+  }
+  next.id = idOf(next);
+  makeInBackground(next);
 }
 
-void ImpedanceEstimator::startMaking(const std::vector<float>& gas_direction, double gas_stiffness) {
-  next_gas_ = gas_direction;
-  next_rows_ = rows_;
-  next_motion_ = motion_;
-  making_ = std::async(std::launch::async, [this, gas_stiffness] {
-    if (!next_->make(next_linearization_point_)) return false;
-    next_->setRows(next_rows_);
-    next_->setGas(next_gas_, gas_stiffness);
-    next_mass_.setZero();
-    if (body_.mass_damping > 0 && !next_rows_.empty()) next_mass_ = next_->movingMass(next_motion_);
-    return true;
-  });
+// Makes or finds the stiffness of the current basis, and has the next one made. After a step of the same session both
+// are there already.
+void ImpedanceEstimator::provide(const ImpedanceMemory& memory) {
+  const ImpedanceBasis& basis = memory.current;
+  if (basis.positions.empty()) {
+    provideAtRest(basis);
+  } else {
+    if (current_.id != basis.id && next_.id == basis.id) {
+      finishNext();
+      std::swap(current_, next_);
+      next_.id = 0;
+    }
+    if (current_.id != basis.id) {
+      current_.id = basis.id;
+      make(basis, current_);
+    }
+    present_ = current_.usable ? &current_ : nullptr;
+  }
+  if (memory.next.id != 0 && next_.id != memory.next.id) makeInBackground(memory.next);
 }
 
-bool ImpedanceEstimator::farFrom(const std::array<const double*, 3>& positions) const {
+void ImpedanceEstimator::provideAtRest(const ImpedanceBasis& basis) {
+  present_ = rest_.usable ? &rest_ : nullptr;
+  if (!rest_.usable || rest_.id == basis.id) return;
+  rest_.id = basis.id;
+  rest_.stiffness->setRows({});
+  rest_.stiffness->setGas(basis.gas_direction, basis.gas_stiffness);
+}
+
+void ImpedanceEstimator::finishNext() {
+  if (making_.valid()) making_.get();
+}
+
+void ImpedanceEstimator::makeInBackground(const ImpedanceBasis& basis) {
+  finishNext();
+  next_basis_ = basis;
+  next_.id = basis.id;
+  making_ = std::async(std::launch::async, [this] { make(next_basis_, next_); });
+}
+
+void ImpedanceEstimator::make(const ImpedanceBasis& basis, Made& out) const {
+  out.mass.setZero();
+  out.usable = out.stiffness->make(basis.positions);
+  if (!out.usable) return;
+  ConstraintRows rows;
+  Eigen::MatrixXd motion(static_cast<Eigen::Index>(basis.node.size()), kToolMotions);
+  for (std::size_t r = 0; r < basis.node.size(); ++r) {
+    rows.equations.add().form.setNode(basis.node[r], basis.direction[r]);
+    for (std::size_t m = 0; m < kToolMotions; ++m) motion(static_cast<Eigen::Index>(r), m) = basis.row_motion[r][m];
+  }
+  out.stiffness->setRows(rows);
+  out.stiffness->setGas(basis.gas_direction, basis.gas_stiffness);
+  if (body_.mass_damping > 0 && rows.count() > 0) out.mass = out.stiffness->movingMass(motion);
+}
+
+bool ImpedanceEstimator::farFrom(const std::vector<float>& linearization_point,
+                                 const std::array<const double*, 3>& positions) const {
   for (int i = 0; i < body_.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) {
       const double from =
-          linearization_point_.empty() ? body_.rest[i][k] : static_cast<double>(linearization_point_[3 * i + k]);
+          linearization_point.empty() ? body_.rest[i][k] : static_cast<double>(linearization_point[3 * i + k]);
       if (!(std::abs(positions[k][i] - from) <= kFar)) return true;
     }
   return false;
 }
 
 void ImpedanceEstimator::setRows(const ToolContactRows& touch) {
-  rows_.resize(touch.rows.size());
-  motion_.resize(static_cast<Eigen::Index>(rows_.size()), kToolMotions);
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    rows_[r].node.assign(1, touch.rows[r].node);
-    rows_[r].coefficient.assign(1, touch.rows[r].direction);
+  rows_.equations.clear();
+  motion_.resize(static_cast<Eigen::Index>(touch.rows.size()), kToolMotions);
+  for (std::size_t r = 0; r < touch.rows.size(); ++r) {
+    rows_.equations.add().form.setNode(touch.rows[r].node, touch.rows[r].direction);
     motion_.row(static_cast<Eigen::Index>(r)) = touch.rows[r].motion;
   }
 }
 
-std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& touch, bool consecutive) {
-  present_->setRows(rows_);
-  factor_.compute(present_->compliance());
+std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& touch, bool consecutive,
+                                                         ImpedanceMemory& memory) {
+  present_->stiffness->setRows(rows_);
+  factor_.compute(present_->stiffness->compliance());
   solved_.resize(motion_.rows(), kToolMotions);
   for (Eigen::Index c = 0; c < kToolMotions; ++c) solved_.col(c) = factor_.solve(motion_.col(c));
   const Motions found = motion_.transpose().lazyProduct(solved_);
@@ -133,65 +221,68 @@ std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& 
 
   nodes_.clear();
   for (const ToolRow& row : touch.rows) nodes_.push_back(row.node);
-  const bool comparable = touch.smooth && consecutive && nodes_ == last_nodes_;
-  has_last_ = has_last_ && consecutive;
-  last_nodes_.swap(nodes_);
-  return response(touch, stiffness, comparable);
+  const bool comparable = touch.smooth && consecutive && nodes_ == memory.last_nodes;
+  memory.has_last = memory.has_last && consecutive;
+  memory.last_nodes.swap(nodes_);
+  return response(touch, stiffness, comparable, memory);
 }
 
-// Particles that come into touch and leave it again can make the forces of contacts jump to and fro from frame to
-// frame, which a hand would feel as a buzz. While they do, the mean of two frames counts, the earlier force brought to
+// Particles that gain and lose contact can make the contact forces alternate from frame to frame, which a hand would
+// feel as a buzz. While they alternate, the output is the mean of two frames, with the earlier force extrapolated to
 // the present place by the stiffness.
-Eigen::Matrix<double, kToolMotions, 1> ImpedanceEstimator::calmForce(const ToolContactRows& touch,
-                                                                     const Eigen::Matrix3d& k_tip,
-                                                                     const Eigen::Matrix3d& b_tip,
-                                                                     const JointMatrix& k_joints,
-                                                                     const JointMatrix& b_joints) {
-  Eigen::Matrix<double, kToolMotions, 1> force = touch.force, jump = Eigen::Matrix<double, kToolMotions, 1>::Zero();
-  if (has_last_ && touch.contacts) {
-    const Eigen::Matrix<double, kToolMotions, 1> moved = touch.place - last_place_, faster = touch.speed - last_speed_;
-    jump = touch.force - last_force_;
+Eigen::Matrix<double, kToolMotions, 1> ImpedanceEstimator::calmForce(
+    const ToolContactRows& touch, const Eigen::Matrix3d& k_tip, const Eigen::Matrix3d& b_tip,
+    const JointMatrix& k_joints, const JointMatrix& b_joints, ImpedanceMemory& memory) const {
+  auto last_place = asVector(memory.last_place), last_speed = asVector(memory.last_speed);
+  auto last_force = asVector(memory.last_force), last_jump = asVector(memory.last_jump);
+  MotionVector force = touch.force, jump = MotionVector::Zero();
+  if (memory.has_last && touch.contacts) {
+    const MotionVector moved = touch.place - last_place, faster = touch.speed - last_speed;
+    jump = touch.force - last_force;
     jump.head<3>() += k_tip * moved.head<3>() + b_tip * faster.head<3>();
     jump.tail<kScopeJointCount>() +=
         k_joints * moved.tail<kScopeJointCount>() + b_joints * faster.tail<kScopeJointCount>();
-    if (jump.head<3>().dot(last_jump_.head<3>()) < 0) force -= 0.5 * jump;
+    if (jump.head<3>().dot(last_jump.head<3>()) < 0) force -= 0.5 * jump;
   }
-  last_jump_ = jump;
-  has_last_ = true;
-  last_place_ = touch.place, last_speed_ = touch.speed, last_force_ = touch.force;
+  last_jump = jump;
+  memory.has_last = true;
+  last_place = touch.place, last_speed = touch.speed, last_force = touch.force;
   return force;
 }
 
 // The stiffness of translations and that of the joints are corrected each along its own motion.
-ToolImpedance ImpedanceEstimator::response(const ToolContactRows& touch, const Motions& stiffness, bool comparable) {
+ToolImpedance ImpedanceEstimator::response(const ToolContactRows& touch, const Motions& stiffness, bool comparable,
+                                           ImpedanceMemory& memory) {
   using Joints = Eigen::Matrix<double, kScopeJointCount, 1>;
-  const Motions drag = body_.mass_damping * mass_, damping = body_.stiffness_damping * stiffness + drag;
+  SlopeCorrection<3> slope(memory.slope);
+  SlopeCorrection<kScopeJointCount> joint_slope(memory.joint_slope);
+  const Motions drag = body_.mass_damping * present_->mass, damping = body_.stiffness_damping * stiffness + drag;
   const Eigen::Matrix<double, kToolMotions, 1>&x = touch.place, &v = touch.speed;
   const Eigen::Vector3d tip = x.head<3>();
   const Joints joints = x.tail<kScopeJointCount>();
   const Eigen::Matrix3d k_tip = stiffness.topLeftCorner<3, 3>(), b_tip = damping.topLeftCorner<3, 3>();
   const JointMatrix k_joints = stiffness.bottomRightCorner<kScopeJointCount, kScopeJointCount>();
   const JointMatrix b_joints = damping.bottomRightCorner<kScopeJointCount, kScopeJointCount>();
-  const bool tip_moved = (tip - slope_.lastPlace()).norm() > kShortestStep;
-  const Joints turned = joints - joint_slope_.lastPlace();
+  const bool tip_moved = (tip - slope.lastPlace()).norm() > kShortestStep;
+  const Joints turned = joints - joint_slope.lastPlace();
   double row_move = 0;
   for (Eigen::Index r = 0; r < motion_.rows(); ++r)
     row_move = std::max(row_move, std::abs(motion_.row(r).tail<kScopeJointCount>().dot(turned)));
   const bool joints_moved = row_move > kShortestStep;
-  slope_.observe(k_tip, tip, touch.force.head<3>() + b_tip * v.head<3>(), comparable && tip_moved);
-  joint_slope_.observe(k_joints, joints, touch.force.tail<kScopeJointCount>() + b_joints * v.tail<kScopeJointCount>(),
-                       comparable && joints_moved);
+  slope.observe(k_tip, tip, touch.force.head<3>() + b_tip * v.head<3>(), comparable && tip_moved);
+  joint_slope.observe(k_joints, joints, touch.force.tail<kScopeJointCount>() + b_joints * v.tail<kScopeJointCount>(),
+                      comparable && joints_moved);
 
   const Eigen::Matrix<double, kToolMotions, 1> f =
-      calmForce(touch, slope_.corrected(k_tip), b_tip, joint_slope_.corrected(k_joints), b_joints);
+      calmForce(touch, slope.corrected(k_tip), b_tip, joint_slope.corrected(k_joints), b_joints, memory);
   ToolImpedance out;
   out.position = tip;
   out.velocity = v.head<3>();
   out.force = f.head<3>();
-  out.stiffness = slope_.corrected(k_tip);
+  out.stiffness = slope.corrected(k_tip);
   out.damping = body_.stiffness_damping * out.stiffness + drag.topLeftCorner<3, 3>();
   out.equilibrium = tip + solveWhereStiff(out.stiffness, Eigen::Vector3d(out.force + out.damping * out.velocity));
-  const JointMatrix corrected = joint_slope_.corrected(k_joints);
+  const JointMatrix corrected = joint_slope.corrected(k_joints);
   for (int j = 0; j < kScopeJointCount; ++j) {
     JointResponse& joint = out.joints[j];
     joint.position = x[3 + j];

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <cstdint>
 #include <future>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -11,11 +10,9 @@
 #include "haptics/slope_correction.hpp"
 #include "haptics/static_stiffness.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
+#include "vibe_core/state/impedance_memory.hpp"
 
 namespace vibe {
-
-/// Three translations of the tool, then the joints of the scope.
-constexpr int kToolMotions = 3 + kScopeJointCount;
 
 /// Where the tool acts on the tissue in one direction.
 struct ToolRow {
@@ -24,19 +21,19 @@ struct ToolRow {
   Eigen::Matrix<double, 1, kToolMotions> motion;  ///< how its target moves with each of the tool's motions
 };
 
-/// What one step tells about the tool in the tissue.
+/// The tool in the tissue in one step.
 struct ToolContactRows {
   std::vector<ToolRow> rows;                     ///< in force; empty: near, but nothing is touched
   Eigen::Matrix<double, kToolMotions, 1> place;  ///< scope_tip [m] and joints [m], [rad] where the forces hold
   Eigen::Matrix<double, kToolMotions, 1> speed;  ///< of the same, per second
   Eigen::Matrix<double, kToolMotions, 1> force;  ///< tissue on tool [N], and its efforts on the joints [N], [N m]
   bool contacts = false;                         ///< some rows are contacts
-  bool smooth = true;                            ///< false: an exceptional step; its force says nothing about slopes
+  bool smooth = true;                            ///< false: an exceptional step, whose force is no use for slopes
 };
 
-/// Finds a ToolImpedance from the rows of each step and a stiffness that is renewed in the background.
-/// Time in it is counted in steps, so its results do not depend on the speed of threads. Memory from one step to the
-/// next: results differ for a moment after a state was loaded; the simulation itself never depends on them.
+/// Estimates a ToolImpedance from the rows of each step and a stiffness that is renewed in the background every quarter
+/// of a second. Time is counted in steps and the past is in an ImpedanceMemory, so that the results depend neither on
+/// the speed of threads nor on what an estimator has done before: its members are caches of what the memory names.
 class ImpedanceEstimator {
  public:
   /// Factors the stiffness at rest: costs tens of step times.
@@ -48,43 +45,54 @@ class ImpedanceEstimator {
   /// @param positions      of the nodes [m]
   /// @param gas_direction  volume gradient (4 per node) [m^2]
   /// @param gas_stiffness  [Pa/m^3]; 0: none
+  /// @param memory         of the steps before, and of this one afterwards
   /// @returns nothing where nothing is touched
   std::optional<ToolImpedance> update(std::int64_t step, const ToolContactRows& touch,
                                       const std::array<const double*, 3>& positions,
-                                      const std::vector<float>& gas_direction, double gas_stiffness);
+                                      const std::vector<float>& gas_direction, double gas_stiffness,
+                                      ImpedanceMemory& memory);
 
  private:
   using Motions = Eigen::Matrix<double, kToolMotions, kToolMotions>;
   using JointMatrix = Eigen::Matrix<double, kScopeJointCount, kScopeJointCount>;
-  void begin(std::int64_t step, const std::vector<float>& gas_direction, double gas_stiffness);
+  using MotionVector = Eigen::Matrix<double, kToolMotions, 1>;
+
+  /// A stiffness as its basis says.
+  struct Made {
+    std::uint64_t id = 0;  // of the basis; 0: nothing
+    std::unique_ptr<StaticStiffness> stiffness;
+    bool usable = false;             // it is positive definite
+    Motions mass = Motions::Zero();  // moving along [kg], [kg m], [kg m^2]
+  };
+
+  static void begin(std::int64_t step, const std::vector<float>& gas_direction, double gas_stiffness,
+                    ImpedanceMemory& memory);
   void renew(const ToolContactRows& touch, const std::array<const double*, 3>& positions,
-             const std::vector<float>& gas_direction, double gas_stiffness);
-  void startMaking(const std::vector<float>& gas_direction, double gas_stiffness);
-  bool farFrom(const std::array<const double*, 3>& positions) const;
+             const std::vector<float>& gas_direction, double gas_stiffness, ImpedanceMemory& memory);
+  void provide(const ImpedanceMemory& memory);
+  void provideAtRest(const ImpedanceBasis& basis);
+  void finishNext();
+  void makeInBackground(const ImpedanceBasis& basis);
+  void make(const ImpedanceBasis& basis, Made& out) const;
+  bool farFrom(const std::vector<float>& linearization_point, const std::array<const double*, 3>& positions) const;
   void setRows(const ToolContactRows& touch);
-  Eigen::Matrix<double, kToolMotions, 1> calmForce(const ToolContactRows& touch, const Eigen::Matrix3d& k_tip,
-                                                   const Eigen::Matrix3d& b_tip, const JointMatrix& k_joints,
-                                                   const JointMatrix& b_joints);
-  std::optional<ToolImpedance> respond(const ToolContactRows& touch, bool consecutive);
-  ToolImpedance response(const ToolContactRows& touch, const Motions& stiffness, bool comparable);
+  MotionVector calmForce(const ToolContactRows& touch, const Eigen::Matrix3d& k_tip, const Eigen::Matrix3d& b_tip,
+                         const JointMatrix& k_joints, const JointMatrix& b_joints, ImpedanceMemory& memory) const;
+  std::optional<ToolImpedance> respond(const ToolContactRows& touch, bool consecutive, ImpedanceMemory& memory);
+  ToolImpedance response(const ToolContactRows& touch, const Motions& stiffness, bool comparable,
+                         ImpedanceMemory& memory);
 
   const ElasticBody& body_;
-  int interval_;  // steps
-  std::unique_ptr<StaticStiffness> rest_, made_, next_;
-  StaticStiffness* present_;
-  std::vector<float> linearization_point_, next_linearization_point_, next_gas_;  // empty `linearization_point_`: rest
-  std::vector<ConstraintRow> rows_, next_rows_;
-  Eigen::MatrixXd motion_, next_motion_;        // (rows x kToolMotions)
-  Eigen::MatrixXd solved_;                      // force of each row per motion (rows x kToolMotions)
-  Eigen::LDLT<Eigen::MatrixXd> factor_;         // of the rows' compliance
-  Motions mass_ = Motions::Zero(), next_mass_;  // moving along [kg], [kg m], [kg m^2]
-  std::future<bool> making_;
-  std::int64_t last_step_ = std::numeric_limits<std::int64_t>::max(), next_renewal_ = 0;
-  std::vector<int> nodes_, last_nodes_;
-  bool has_last_ = false;  // response
-  Eigen::Matrix<double, kToolMotions, 1> last_place_, last_speed_, last_force_, last_jump_;
-  SlopeCorrection<3> slope_;
-  SlopeCorrection<kScopeJointCount> joint_slope_;
+  int interval_;                // steps
+  Made rest_, current_, next_;  // `rest_` serves bases without positions
+  Made* present_ = nullptr;     // of the memory's current basis; null: not usable
+  std::future<void> making_;    // of next_
+  ImpedanceBasis next_basis_;   // read by `making_`
+  ConstraintRows rows_;
+  Eigen::MatrixXd motion_;               // (rows x kToolMotions)
+  Eigen::MatrixXd solved_;               // force of each row per motion (rows x kToolMotions)
+  Eigen::LDLT<Eigen::MatrixXd> factor_;  // of the rows' compliance
+  std::vector<int> nodes_;
 };
 
 }  // namespace vibe

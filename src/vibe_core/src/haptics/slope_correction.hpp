@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "vibe_core/state/impedance_memory.hpp"
+
 namespace vibe {
 
 /// Corrects a stiffness along the latest motion to the change of force that was observed along it: with the step s and
@@ -14,14 +16,22 @@ class SlopeCorrection {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
 
-  void forget() { known_ = has_pair_ = false; }
+  /// @param memory  of the past frames; must outlive this
+  explicit SlopeCorrection(SlopeMemory<N>& memory)
+      : memory_(memory),
+        place_(memory.place.data()),
+        force_(memory.force.data()),
+        step_(memory.step.data()),
+        change_(memory.change.data()) {}
+
+  void forget() { memory_.known = memory_.has_pair = false; }
 
   /// @param place   of the tool
   /// @param force   elastic part, at `place`
-  /// @param usable  the step from the last place to this one is long enough, and the same is touched
+  /// @param usable  the step from the last place to this one is long enough, and the same nodes are touched
   void observe(const Matrix& stiffness, const Vector& place, const Vector& force, bool usable) {
-    if (known_ && usable) keepPair(stiffness, place - place_, force_ - force);
-    known_ = true;
+    if (memory_.known && usable) keepPair(stiffness, place - place_, force_ - force);
+    memory_.known = true;
     place_ = place;
     force_ = force;
   }
@@ -29,14 +39,14 @@ class SlopeCorrection {
   Matrix corrected(const Matrix& stiffness) const {
     const Vector pulled = stiffness * step_;
     const double expected = step_.dot(pulled);
-    if (!has_pair_ || !(expected > 0)) return stiffness;
+    if (!memory_.has_pair || !(expected > 0)) return stiffness;
     return stiffness - pulled * pulled.transpose() / expected + change_ * change_.transpose() / step_.dot(change_);
   }
 
-  const Vector& lastPlace() const { return place_; }
+  Vector lastPlace() const { return place_; }
 
  private:
-  static constexpr double kMin = 0.2, kMax = 2;  // times the expected slope; beyond, it is not a slope that was seen
+  static constexpr double kMin = 0.2, kMax = 2;  // times the expected slope; outside, it is not taken for a slope
   static constexpr double kMaxAngle = 2;         // inverse cosine of the angle between step and change
 
   void keepPair(const Matrix& stiffness, const Vector& step, const Vector& change) {
@@ -45,7 +55,7 @@ class SlopeCorrection {
     if (!(observed >= kMin * expected && observed <= kMax * expected && observed > 0)) return;
     step_ = step;
     change_ = change;
-    has_pair_ = true;
+    memory_.has_pair = true;
     // the units of the components differ; the roots of the stiffnesses make them comparable
     const Vector scale = stiffness.diagonal().cwiseMax(0).cwiseSqrt();
     double step2 = 0, change2 = 0;
@@ -57,8 +67,8 @@ class SlopeCorrection {
     if (skew || (scale.array() == 0).any()) change_ = pulled * (observed / expected);  // its size along the step only
   }
 
-  bool known_ = false, has_pair_ = false;
-  Vector place_ = Vector::Zero(), force_ = Vector::Zero(), step_ = Vector::Zero(), change_ = Vector::Zero();
+  SlopeMemory<N>& memory_;
+  Eigen::Map<Vector> place_, force_, step_, change_;
 };
 
 }  // namespace vibe

@@ -6,8 +6,8 @@ namespace vibe {
 
 namespace {
 
-// What nothing holds would have no stiffness to factor; of the mass this much is a spring [1/s^2]. Organs have their
-// slowest motions above 10 rad/s, so it is below a hundredth of any stiffness there.
+// A free body has a singular stiffness, so each mass is on a weak spring: stiffness per mass [1/s^2]. The slowest modes
+// of organs are above 10 rad/s, so this is below a hundredth of any stiffness there.
 constexpr double kMinSpring = 1;
 
 }  // namespace
@@ -41,7 +41,7 @@ void StaticStiffness::setGas(const std::vector<float>& direction4, double stiffn
   schur_.setGas(direction4.data(), stiffness, factor_);
 }
 
-void StaticStiffness::setRows(const std::vector<ConstraintRow>& rows) {
+void StaticStiffness::setRows(const ConstraintRows& rows) {
   schur_.setRows(rows, factor_);
 }
 

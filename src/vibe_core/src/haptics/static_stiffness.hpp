@@ -8,24 +8,25 @@
 
 namespace vibe {
 
-/// The stiffness of a body about some positions, without inertia, and what a few rows feel of it.
+/// The stiffness of a body at given positions, without inertia, and the compliance of a few rows.
 class StaticStiffness {
  public:
   StaticStiffness(const ElasticBody& body, std::shared_ptr<const BlockPattern> pattern,
                   std::shared_ptr<const FactorPlan> plan);
 
-  /// Factors the stiffness about positions (3 * nodes) [m]; empty: rest. Costs tens of step times.
+  /// Factors the stiffness at positions (3 * nodes) [m]; empty: rest. Costs tens of step times.
   /// @returns false where it is not positive definite; the object is then unusable until the next success
   bool make(const std::vector<float>& positions);
-  /// The gas: force per pressure (4 per node) [m^2], how fast the pressure falls with the volume [Pa/m^3]; 0: none.
+  /// The gas. direction4: force per pressure (4 per node) [m^2]; stiffness: fall of pressure per volume [Pa/m^3], 0:
+  /// none.
   void setGas(const std::vector<float>& direction4, double stiffness);
-  /// Rows that are equations; columns of nodes seen before cost nothing.
-  void setRows(const std::vector<ConstraintRow>& rows);
+  /// Sets the rows, all equations. Nodes that had rows before cost nothing.
+  void setRows(const ConstraintRows& rows);
 
   /// Compliance between the rows [m/N].
   const Eigen::MatrixXd& compliance() const { return schur_.compliance(); }
-  /// The mass that moves along when the rows' values are moved slowly: T^T M T with T the displacements for each column
-  /// of `motion` (rows x modes), as Guyan reduction has it [kg].
+  /// The mass that moves along when the rows' values are moved slowly, by Guyan reduction: T^T M T, with T the
+  /// displacements for each column of `motion` (rows x modes) [kg].
   Eigen::MatrixXd movingMass(const Eigen::MatrixXd& motion);
 
  private:

@@ -70,6 +70,7 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
   state.vx = fresh.vx, state.vy = fresh.vy, state.vz = fresh.vz;
   state.ax = fresh.ax, state.ay = fresh.ay, state.az = fresh.az;
   state.solver = fresh.solver;
+  state.impedance = fresh.impedance;
   state.qw = fresh.qw, state.qx = fresh.qx, state.qy = fresh.qy, state.qz = fresh.qz;
   state.wx = fresh.wx, state.wy = fresh.wy, state.wz = fresh.wz;
   state.gas_amount = fresh.gas_amount;
@@ -103,9 +104,13 @@ void moveTissue(const Model& model, const ToolMotion* motion, bool pedal, bool i
 
 }  // namespace
 
+bool insufflatorIsOn(const Model& model, const StepInput& input) {
+  return model.scene.gas && (model.scene.gas->insufflator_on || input.buttons[Insufflate] != 0);
+}
+
 void step(const Model& model, State& state, const StepInput& input, Workspace& workspace, std::vector<Event>& events) {
   const double dt = model.scene.step_period;
-  const bool insufflator_on = model.scene.gas && (model.scene.gas->insufflator_on || input.buttons[Insufflate] != 0);
+  const bool insufflator_on = insufflatorIsOn(model, input);
   const bool pedal = input.buttons[ApcPedal] != 0;
   BeamStep beam{pedal, pedal && state.procedure.pressed[ApcPedal] == 0, 0};
   const double gas_before = state.gas_amount;

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <limits>
 
-#include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
 namespace vibe {
@@ -25,11 +24,8 @@ std::string number(double value) {
 
 }  // namespace
 
-ScriptRecorder::ScriptRecorder(std::shared_ptr<const Model> model, std::string header)
-    : model_(std::move(model)),
-      state_(initialState(*model_, model_->scene.seed)),
-      workspace_(*model_),
-      script_(std::move(header) + "actions:\n") {}
+ScriptRecorder::ScriptRecorder(const std::shared_ptr<const Model>& model, std::string header)
+    : simulation_(model, SimulationSettings::study(model->scene.seed)), script_(std::move(header) + "actions:\n") {}
 
 void ScriptRecorder::act(const std::string& action) {
   script_ += "  - " + action + "\n";
@@ -40,13 +36,12 @@ void ScriptRecorder::act(const std::string& action) {
 }
 
 void ScriptRecorder::play() {
-  const TraineeScript script = TraineeScript::parse(script_, "the rehearsed script");
-  const double dt = model_->scene.step_period;
-  const std::int64_t end = std::lround(script.duration() / dt);  // as the programs that play scripts have it
-  while (state_.step < end) {
-    const StepInput input = script.at(static_cast<double>(state_.step) * dt);
-    step(*model_, state_, input, workspace_, events_);
-  }
+  const TraineeScript script = TraineeScript::parse(script_, "the recorded script");
+  // the number of steps that programs take which play scripts
+  const std::int64_t end = std::lround(script.duration() / simulation_.stepPeriod());
+  simulation_.run(
+      end - simulation_.stepCount(), [&](double time) { return script.at(time); },
+      [this](const Simulation& s) { events_.insert(events_.end(), s.events().begin(), s.events().end()); });
 }
 
 void ScriptRecorder::wait(double seconds) {
@@ -59,7 +54,7 @@ void ScriptRecorder::moveTo(const std::array<double, kJointCount>& joints, doubl
   for (int j = 0; j < kJointCount; ++j) {
     if (!std::isfinite(joints[j]) || std::abs(joints[j] - joints_[j]) < 1e-6) continue;
     const double way = std::abs(joints[j] - joints_[j]);
-    time = std::max({time, way / (pace * kHandSpeed[j]), kPeakOverMean * way / model_->tool->limits()[j].velocity});
+    time = std::max({time, way / (pace * kHandSpeed[j]), kPeakOverMean * way / model().tool->limits()[j].velocity});
     text += (text.empty() ? "" : ", ") + std::string(kJointNames[j]) + ": " + number(joints[j]);
     joints_[j] = joints[j];
   }

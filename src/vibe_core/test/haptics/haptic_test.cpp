@@ -8,6 +8,7 @@
 
 #include "contact/scope_fixture.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
+#include "vibe_core/state/state_fields.hpp"
 #include "worlds.hpp"
 
 namespace vibe {
@@ -94,6 +95,82 @@ TEST(Haptic, AHandPullsAtTheToolThroughTheTissue) {
   EXPECT_LT((forceOn(world) - alone).norm(), 0.02 * pull.norm());
 }
 
+/// Every number of a tool impedance, in order; empty: nothing is touched.
+std::vector<double> numbersOf(const std::optional<ToolImpedance>& impedance) {
+  std::vector<double> all;
+  if (!impedance) return all;
+  const auto add = [&all](const auto& matrix) { all.insert(all.end(), matrix.data(), matrix.data() + matrix.size()); };
+  add(impedance->position), add(impedance->velocity), add(impedance->force);
+  add(impedance->stiffness), add(impedance->damping), add(impedance->equilibrium);
+  for (const JointResponse& j : impedance->joints)
+    all.insert(all.end(), {j.position, j.velocity, j.effort, j.stiffness, j.damping, j.equilibrium});
+  return all;
+}
+
+/// The tool slides along the wall and presses on and off; with `grip` it pulls at what the helix holds.
+StepInput slide(int step, bool grip) {
+  const double part = 0.5 * (1 - std::cos(2 * M_PI * step / 47.0));
+  StepInput input = grip ? at(0.1 - 0.01 * part, 0.028, true) : at(0.12 + 0.008 * part);
+  input.joints[Rotation] = 0.3 * part;
+  return input;
+}
+
+/// Continues a session from a snapshot that was taken after `steps` steps of a touch.
+/// @param forget  drop the memory of the estimate
+/// @return how many of the next 60 steps have another impedance than the session that was not interrupted
+int differingSteps(int steps, bool grip, bool forget) {
+  World world = ballWorld(kFrame);
+  if (grip)
+    takeHold(world);
+  else
+    world.run(1.2, at(0.12));
+  for (int i = 0; i < steps; ++i) world.step(slide(i, grip));
+  EXPECT_TRUE(world.workspace->toolImpedance());
+  const std::string file = ::testing::TempDir() + "vibe_haptic_test.bin";
+  saveSnapshot(*world.model, world.state, file);
+  State loaded = loadSnapshot(*world.model, file);
+  std::remove(file.c_str());
+  if (forget) loaded.impedance = ImpedanceMemory();
+  Workspace other(*world.model);
+  std::vector<Event> events;
+  int differing = 0, touched = 0;
+  for (int i = steps; i < steps + 60; ++i) {  // over several renewals
+    world.step(slide(i, grip));
+    step(*world.model, loaded, slide(i, grip), other, events);
+    const std::vector<double> expected = numbersOf(world.workspace->toolImpedance());
+    touched += expected.empty() ? 0 : 1;
+    differing += numbersOf(other.toolImpedance()) == expected ? 0 : 1;
+  }
+  EXPECT_GT(touched, 30);
+  EXPECT_EQ(firstDifference(loaded, world.state).empty(), !forget) << firstDifference(loaded, world.state);
+  EXPECT_EQ(loaded.x, world.state.x) << "positions do not depend on the estimate";
+  return differing;
+}
+
+TEST(Haptic, ASnapshotContinuesTheImpedanceToTheBit) {
+  for (const bool grip : {false, true})
+    for (const int steps : {1, 20, 28, 41}) {  // between renewals of the stiffness, at one, and while one is made
+      EXPECT_EQ(differingSteps(steps, grip, false), 0) << "after " << steps << " steps, grip " << grip;
+      EXPECT_GT(differingSteps(steps, grip, true), 5) << "without the memory, after " << steps << " steps";
+    }
+}
+
+// What is left of another session in the workspace does not count.
+TEST(Haptic, AUsedWorkspaceGivesTheImpedanceOfANewOne) {
+  World used = ballWorld(kFrame), fresh = ballWorld(kFrame);
+  used.run(2, at(0.13));
+  ASSERT_TRUE(used.workspace->toolImpedance());
+  used.state = initialState(*used.model, 1);
+  fresh.state = initialState(*fresh.model, 1);
+  int touched = 0;
+  for (int i = 0; i < 150; ++i) {
+    used.step(at(0.13)), fresh.step(at(0.13));
+    touched += fresh.workspace->toolImpedance() ? 1 : 0;
+    ASSERT_EQ(numbersOf(used.workspace->toolImpedance()), numbersOf(fresh.workspace->toolImpedance())) << "step " << i;
+  }
+  EXPECT_GT(touched, 30);
+}
+
 TEST(Haptic, ShapeMatchingCannotTell) {
   World world = ballWorld(kFrame, "shape_matching");
   world.run(2, at(0.13));
@@ -153,7 +230,7 @@ TEST(Haptic, StiffnessIsTheSlopeOfTheSettledForce) {
   const double slope = (force[0] - force[1]).z() / (2 * kMove);  // inserting goes down
   ASSERT_GT(slope, 10);
   world.state = held;
-  world.workspace = std::make_unique<Workspace>(*world.model);
+  world.state.impedance = ImpedanceMemory();  // without a slope observed in earlier motion
   world.run(0.6, at(0.098, 0.028, true));
   // before the first motion: never too soft, and 21 % too stiff here
   EXPECT_NEAR(world.workspace->toolImpedance()->stiffness(2, 2) / slope, 1.21, 0.02);

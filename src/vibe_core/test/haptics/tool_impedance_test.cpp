@@ -43,12 +43,14 @@ class Estimate {
   explicit Estimate(ElasticBody of) : body(std::move(of)), motion(body), estimator(body, kFrame) {}
 
   std::optional<ToolImpedance> next(const ToolContactRows& touch) {
-    return estimator.update(step++, touch, {motion.x[0].data(), motion.x[1].data(), motion.x[2].data()}, kNoGas, 0);
+    return estimator.update(step++, touch, {motion.x[0].data(), motion.x[1].data(), motion.x[2].data()}, kNoGas, 0,
+                            memory);
   }
 
   ElasticBody body;
   BodyMotion motion;
   ImpedanceEstimator estimator;
+  ImpedanceMemory memory;
   std::int64_t step = 0;
 };
 
@@ -177,7 +179,8 @@ TEST(SlopeCorrection, StaysSymmetricAndPositiveSemidefiniteWhateverIsSeen) {
     std::srand(static_cast<unsigned>(seed));
     const Eigen::Matrix3d root = Eigen::Matrix3d::Random();
     const Eigen::Matrix3d stiffness = 100 * root * root.transpose();
-    SlopeCorrection<3> slope;
+    SlopeMemory<3> memory;
+    SlopeCorrection<3> slope(memory);
     slope.observe(stiffness, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), false);
     slope.observe(stiffness, 1e-3 * Eigen::Vector3d::Random(), 0.1 * Eigen::Vector3d::Random(), true);
     const Eigen::Matrix3d corrected = slope.corrected(stiffness);

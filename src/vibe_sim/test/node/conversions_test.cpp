@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/input/step_input_fields.hpp"
 
 namespace vibe {
 namespace {
@@ -65,6 +66,37 @@ TEST(Conversions, stepInputSurvivesTheRoundTripBitForBit) {
   EXPECT_EQ(read.pull_particle, 4711);
   EXPECT_EQ(read.pull_target, input.pull_target);
   EXPECT_TRUE(std::signbit(read.pull_target.y()));
+}
+
+/// An archive that changes the last bit of plain value number `target`; `count` is how many there are.
+struct BitFlip {
+  std::size_t target = static_cast<std::size_t>(-1), count = 0;
+  template <class T>
+  void block(T* data, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i)
+      if (count++ == target) *reinterpret_cast<unsigned char*>(data + i) ^= 1;
+  }
+};
+
+/// The message carries every field of StepInput under the same name. A field that is added to StepInput alone fails
+/// here.
+TEST(Conversions, everyBitOfEveryFieldOfStepInputIsInTheMessage) {
+  const std::string definition = ros::message_traits::definition<vibe_msgs::StepInput>();
+  StepInput counted;
+  visitFields(counted, [&](std::string_view name, const auto&) {
+    EXPECT_NE(definition.find(" " + std::string(name) + "\n"), std::string::npos) << name;
+  });
+  EXPECT_EQ(makeStepInput(counted, 0, 0).version, kStepInputVersion);
+  BitFlip all;
+  transfer(all, counted);
+  EXPECT_EQ(all.count, static_cast<std::size_t>(kJointCount + kButtonCount + 4));
+  for (std::size_t i = 0; i < all.count; ++i) {
+    StepInput input;
+    BitFlip flip{i};
+    transfer(flip, input);
+    EXPECT_NE(firstDifference(input, StepInput()), "");
+    EXPECT_EQ(firstDifference(input, readStepInput(makeStepInput(input, 0, 0))), "") << "value " << i;
+  }
 }
 
 TEST(Conversions, jointsAreFoundByNameInAnyOrder) {

@@ -45,8 +45,10 @@ class StepTimer {
   void start();
   void stop();
 
-  DurationRecord cpu;   ///< [s]
-  DurationRecord wall;  ///< [s]
+  DurationRecord cpu;    ///< [s]
+  DurationRecord wall;   ///< [s]
+  double last_cpu = 0;   ///< of the last piece of work [s]
+  double last_wall = 0;  ///< of the last piece of work [s]
 
  private:
   double cpu_start_ = 0;

@@ -16,12 +16,12 @@ enum Button : int { ApcPedal, HelixGrab, Needle, TTag, Cinch, Insufflate };
 constexpr int kButtonCount = 6;
 extern const std::array<const char*, kButtonCount> kButtonNames;  ///< "apc_pedal", "helix_grab", ...
 
-/// Everything from outside that one step uses. What is recorded is exactly this, so a replay has the same bits.
+/// All external input of one step, and exactly what a recording stores, so that a replay has the same bits.
 struct StepInput {
   std::array<double, kJointCount> joints{};               ///< commanded joint positions [m], [rad]
   std::array<std::uint8_t, kButtonCount> buttons{};       ///< 1 while pressed
-  int pull_particle = -1;                                 ///< at which a hand pulls the tissue; -1: none
-  Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< where that hand wants the tissue to be, world [m]
+  int pull_particle = -1;                                 ///< that the pull spring holds; -1: none
+  Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< to which the spring pulls it, world [m]
 };
 
 }  // namespace vibe

@@ -10,13 +10,18 @@
 
 namespace vibe {
 
-/// One step of model.scene.step_period: the whole simulator. No globals, no wall clock, no allocation beyond what
-/// `workspace` and `events` keep. The result depends on model, state and input only, not on the thread count.
+/// One step of model.scene.step_period: the whole simulator. Programs use class Simulation, which calls it. No globals,
+/// no wall clock, no allocation beyond what `workspace` and `events` keep. The result depends on model, state and input
+/// only, not on the thread count.
 /// @param workspace  scratch memory, made once per thread of control by Workspace(model); carries nothing between steps
 /// @param events     what happened is appended
 void step(const Model& model, State& state, const StepInput& input, Workspace& workspace, std::vector<Event>& events);
 
-/// FNV-1a, 64 bit, over everything in the state that influences the future.
+/// The gas source of the scene, or the button, is on.
+bool insufflatorIsOn(const Model& model, const StepInput& input);
+
+/// FNV-1a, 64 bit, over the list of the state's fields and the bits of all of them (state_fields.hpp): equal hashes
+/// mean equal states of builds with the same fields.
 std::uint64_t hash(const State& state);
 
 }  // namespace vibe

@@ -6,13 +6,14 @@
 
 namespace vibe {
 
-/// Writes a state to a file: a versioned header with the model's fingerprint, then the bits of the state.
-/// The file appears whole or not at all.
+/// Writes a state to a file: a header with the version and the list of the state's fields (state_fields.hpp) and the
+/// model's fingerprint, then the bits of all fields. The file appears whole or not at all.
 /// @throws Error if the file cannot be written
 void saveSnapshot(const Model& model, const State& state, const std::string& file);
 
 /// Reads what saveSnapshot() wrote; the returned state has the same hash.
-/// @throws Error if the file is missing, truncated, of another version, or of a model with another rest shape
+/// @throws Error if the file is missing, truncated, of another version, or of a model with another rest shape, or if it
+/// holds a state that no session of the model can have reached
 State loadSnapshot(const Model& model, const std::string& file);
 
 }  // namespace vibe

@@ -10,8 +10,8 @@ namespace vibe {
 
 class MarkingScratch;
 
-/// Scratch memory and threads for stepping one model. Carries nothing from one step to the next; not shared between
-/// threads of control.
+/// Scratch memory, caches and threads for stepping one model. Results do not depend on what a workspace was used for
+/// before. One thread of control at a time.
 class Workspace {
  public:
   /// @param threads  used inside a step, 1 or more; the result does not depend on it
@@ -22,8 +22,8 @@ class Workspace {
 
   SolverScratch& solverScratch() { return *solver_scratch_; }
   std::vector<Eigen::Isometry3d>& linkPoses() { return link_poses_; }
-  /// Output of the last step beside the state: how the tissue answers the tool; nothing while nothing is touched, and
-  /// with solvers that cannot tell (shape matching).
+  /// Output of the last step beside the state: mechanical impedance of the tissue at the tool. Empty while nothing is
+  /// touched, and with solvers that do not estimate it (shape matching).
   std::optional<ToolImpedance>& toolImpedance() { return tool_impedance_; }
   MarkingScratch* marking() { return marking_.get(); }  ///< null in a scene without marking or scope
   int threads() const { return pool_.threads(); }

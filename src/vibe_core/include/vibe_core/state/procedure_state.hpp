@@ -8,7 +8,7 @@
 
 namespace vibe {
 
-/// What the trainee is about. Follows from what is done; no phase forbids another's commands for good.
+/// Phase of the procedure. It follows from what the trainee does; every command is possible in every phase.
 enum class Phase : std::uint8_t { Inspect = 0, Mark = 1, Suture = 2, Pull = 3, Done = 4 };
 const char* toString(Phase phase);
 
@@ -20,10 +20,10 @@ struct Bleeding {
   double begin = 0;      ///< [s]
   double rate = 0;       ///< [m^3/s]; 0: it has stopped
   double amount = 0;     ///< lost so far [m^3]
-  bool overdue = false;  ///< brisk, and the suture was not completed in time: reported
+  bool overdue = false;  ///< brisk, and reported because the suture was not completed in time
 };
 
-/// Where the procedure stands: everything of the state that is not tissue or tool.
+/// State of the procedure: everything that is not tissue, tool or solver.
 struct ProcedureState {
   Phase phase = Phase::Inspect;
   std::array<std::uint8_t, kButtonCount> pressed{};  ///< buttons of the last step, for edges
@@ -32,26 +32,26 @@ struct ProcedureState {
   std::vector<float> heat;          ///< see thermal_dose.hpp
   std::vector<float> dose;          ///< see thermal_dose.hpp
   std::vector<std::uint8_t> grade;  ///< BurnGrade reached
-  double beam_energy = 0;           ///< given to the tissue so far [J]
-  /// The wall before the pedal went down, while it gives way in the gradient domain; as the solver takes it over, the
-  /// wall before the last step; else empty. (particle count) [m]
+  double beam_energy = 0;           ///< delivered to the tissue so far [J]
+  /// While the argon beam deforms the wall in the gradient domain, the wall before the pedal was pressed; while the
+  /// solver takes it over, the wall before the last step; else empty. (particle count) [m]
   std::vector<double> base_x, base_y, base_z;
 
   // helix
-  double grip_rotation = 0;  ///< helix_rotation when it took hold [rad]
-  double grip_turns = 0;     ///< most turns into the tissue since then [1]
+  double grip_rotation = 0;  ///< helix_rotation when the grip began [rad]
+  double grip_turns = 0;     ///< maximum of turns into the tissue since then [1]
 
   // needle
-  bool arm_closed = false;    ///< the needle arm has come to its closed end and not yet back to its open one
-  bool needle_on_arm = true;  ///< else in the anchor exchange (or, after the T-tag was dropped, gone with it)
+  bool arm_closed = false;    ///< the needle arm has reached its closed end and has not been fully open since
+  bool needle_on_arm = true;  ///< else in the anchor exchange or, after the T-tag was dropped, gone with it
   bool needle_loaded = true;  ///< there is a needle with a thread: false between T-tag and cinch
-  /// The arm went through tissue as it closed and has not opened since. While the needle is on it, `pending` becomes a
-  /// bite when the exchange takes the needle; once it is taken, the arm must open before the needle can come back.
+  /// The arm went through tissue when it closed and has not opened since. While the needle is on the arm, `pending`
+  /// becomes a bite when the exchange takes the needle. Then the arm must open before it can take the needle back.
   bool pierced = false;
   Bite pending;
 
   std::vector<Suture> sutures;  ///< in the order of their first bites; the last may be open
-  double thread_used = 0;       ///< of the present thread [m]
+  double thread_used = 0;       ///< of the current thread [m]
   std::vector<Bleeding> bleedings;
   double blood_lost = 0;  ///< [m^3]
 };

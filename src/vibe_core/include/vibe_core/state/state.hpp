@@ -5,16 +5,17 @@
 #include <vector>
 
 #include "vibe_core/input/step_input.hpp"
+#include "vibe_core/state/impedance_memory.hpp"
 #include "vibe_core/state/procedure_state.hpp"
 #include "vibe_core/state/pull_spring.hpp"
 #include "vibe_core/state/stepper_memory.hpp"
 
 namespace vibe {
 
-/// A particle held by the helix, with its place in the tool.
+/// A particle held by the helix.
 struct GripPoint {
   int particle = -1;
-  Eigen::Vector3d local;  ///< in the frame of the link that carries the helix [m]
+  Eigen::Vector3d local;  ///< where, in the frame of the link that carries the helix [m]
 };
 
 /// Sums since the start [J].
@@ -22,14 +23,15 @@ struct EnergyAccount {
   double tool_work = 0;     ///< done by the tool on the tissue (contact and grip)
   double gas_work = 0;      ///< done by the gas on the wall
   double thread_work = 0;   ///< done by threads on the tissue
-  double pull_work = 0;     ///< done by the hand that pulls the tissue
-  double damping_loss = 0;  ///< taken out by viscous damping
+  double pull_work = 0;     ///< done by the pull spring
+  double damping_loss = 0;  ///< dissipated by viscous damping
 };
 
-/// Contacts interrupted for less than this are one contact [s].
+/// Interruptions of a contact shorter than this do not end it [s].
 constexpr double kContactGap = 0.25;
 
-/// Everything that changes. A snapshot is a copy; equal states have equal futures.
+/// Everything that changes. A snapshot is a copy; equal states have equal futures. Every member of it, and of the
+/// structs in it, is in a table of state_fields.hpp, from which hash, snapshot and comparison follow.
 struct State {
   std::int64_t step = 0;
   double time = 0;  ///< step * step_period [s]
@@ -39,9 +41,9 @@ struct State {
   // particles, structure of arrays, (particle count)
   std::vector<double> x, y, z;         ///< positions [m]
   std::vector<double> vx, vy, vz;      ///< velocities [m/s]
-  std::vector<double> ax, ay, az;      ///< accelerations; 0 for solvers that have no use for them [m/s^2]
-  std::vector<double> qw, qx, qy, qz;  ///< orientation of each particle's neighbourhood against rest, unit
-  std::vector<double> wx, wy, wz;      ///< angular velocity of the same, in world [rad/s]
+  std::vector<double> ax, ay, az;      ///< accelerations; 0 with solvers that do not use them [m/s^2]
+  std::vector<double> qw, qx, qy, qz;  ///< unit quaternion: rotation of the particle's surroundings from rest
+  std::vector<double> wx, wy, wz;      ///< its angular velocity, in world [rad/s]
 
   double gas_amount = 0;  ///< absolute pressure times volume [Pa m^3 = J]
   double pressure = 0;    ///< gauge [Pa]
@@ -59,13 +61,14 @@ struct State {
   double grip_force = 0;                                  ///< magnitude of the force on the grip [N]
   int contact_count = 0;                                  ///< particles touched in the last sub-step
 
-  PullSpring pull;  ///< that pulls the tissue from outside
+  PullSpring pull;  ///< pulls the tissue from outside
 
   ProcedureState procedure;
 
   EnergyAccount energy;
 
-  StepperMemory solver;  ///< of the implicit solver; empty with another
+  StepperMemory solver;       ///< of the implicit solver; empty with another
+  ImpedanceMemory impedance;  ///< of the implicit solver's tool impedance; empty with another
 };
 
 }  // namespace vibe

@@ -5,20 +5,20 @@
 
 namespace vibe {
 
-/// What of its past a stepper needs for the next step, beside the motion: part of the state of a simulation. The factor
-/// itself is only a cache: it is made again wherever a scratch does not hold the one that the memory names.
+/// What an implicit stepper carries from step to step beside the motion. The factor itself is a cache: it is computed
+/// again wherever the scratch does not hold the one that the memory names.
 struct StepperMemory {
-  std::vector<float> linearization_point;  ///< positions that the factor is about (3 * nodes); empty: rest
-  std::vector<float> next;                 ///< positions of the next factor; empty: none is being made
+  std::vector<float> linearization_point;  ///< positions of the factor in use (3 * nodes) [m]; empty: rest
+  std::vector<float> next;                 ///< positions of the next factor (3 * nodes) [m]; empty: there is none
   std::uint64_t linearization_id = 0;      ///< hash of `linearization_point`
   std::uint64_t next_id = 0;               ///< hash of `next`
-  std::int64_t steps = 0;                  ///< taken
-  std::int64_t due = 0;                    ///< step at which the next factor takes over
+  std::int64_t steps = 0;                  ///< number of steps taken
+  std::int64_t due = 0;                    ///< value of `steps` at which the next factor takes over
   double elastic_energy = 0;               ///< at the end of the last step [J]
-  double usual_length = 0;                 ///< running mean of the first moves of the steps [m]
-  int rest_steps = 0;                      ///< steps in a row in which nothing moved
-  int recovery_steps = 0;                  ///< steps still to be taken straight towards rest
-  int fallback = 0;                        ///< steps still to be taken with backward Euler and many iterations
+  double usual_length = 0;                 ///< running mean of the first moves of steps [m]
+  int rest_steps = 0;                      ///< consecutive steps in which nothing moved
+  int recovery_steps = 0;                  ///< remaining steps of a recovery, which lead straight to rest
+  int fallback = 0;                        ///< remaining steps with backward Euler and many iterations
 };
 
 }  // namespace vibe

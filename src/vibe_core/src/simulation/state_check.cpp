@@ -1,4 +1,4 @@
-#include "simulation/procedure_check.hpp"
+#include "simulation/state_check.hpp"
 
 #include <cmath>
 
@@ -60,9 +60,7 @@ std::string bleedingDamage(const Bleeding& bleeding, const ProcedureState& proce
   return "";
 }
 
-}  // namespace
-
-std::string findDamage(const ProcedureState& procedure, int particle_count) {
+std::string procedureDamage(const ProcedureState& procedure, int particle_count) {
   if (procedure.phase > Phase::Done) return "its phase does not exist";
   const std::size_t doses = procedure.dose.size();
   const bool fits = doses == 0 || doses == static_cast<std::size_t>(particle_count);
@@ -82,15 +80,62 @@ std::string findDamage(const ProcedureState& procedure, int particle_count) {
   return damage;
 }
 
-std::string findDamage(const PullSpring& pull, int particle_count) {
-  if (pull.weight.size() != pull.node.size()) return "the hand that pulls has not one weight per particle";
+std::string pullDamage(const PullSpring& pull, int particle_count) {
+  if (pull.weight.size() != pull.node.size()) return "the pull spring has not one weight per particle";
   if (pull.particle < -1 || pull.particle >= particle_count || pull.holds() != (pull.particle >= 0))
-    return "the hand pulls at a particle that does not exist";
+    return "the pull spring holds a particle that does not exist";
   for (int node : pull.node)
-    if (node < 0 || node >= particle_count) return "the hand holds a particle that does not exist";
-  if (!allFinite(pull.weight) || !pull.target.allFinite() || !pull.force.allFinite())
-    return "the hand's pull is not a number";
+    if (node < 0 || node >= particle_count) return "the pull spring holds a particle that does not exist";
+  if (!allFinite(pull.weight) || !pull.target.allFinite() || !pull.force.allFinite()) return "the pull is not a number";
   return "";
+}
+
+std::string particleDamage(const State& s, std::size_t particle_count) {
+  for (const auto* list :
+       {&s.x, &s.y, &s.z, &s.vx, &s.vy, &s.vz, &s.ax, &s.ay, &s.az, &s.qw, &s.qx, &s.qy, &s.qz, &s.wx, &s.wy, &s.wz})
+    if (list->size() != particle_count) return "it has another number of particles than its organ";
+  if (s.grip.size() > particle_count) return "it holds more tissue than there is";
+  for (const GripPoint& point : s.grip)
+    if (point.particle < 0 || static_cast<std::size_t>(point.particle) >= particle_count)
+      return "it holds a particle that does not exist";
+  return "";
+}
+
+bool isEmptyOr(std::size_t size, std::size_t particle_count, std::size_t per_particle) {
+  return size == 0 || size == per_particle * particle_count;
+}
+
+std::string basisDamage(const ImpedanceBasis& basis, std::size_t particle_count) {
+  if (!isEmptyOr(basis.positions.size(), particle_count, 3) ||
+      !isEmptyOr(basis.gas_direction.size(), particle_count, 4))
+    return "its tool impedance remembers another organ";
+  if (basis.gas_stiffness != 0 && basis.gas_direction.empty()) return "its tool impedance has gas without a direction";
+  if (basis.direction.size() != basis.node.size() || basis.row_motion.size() != basis.node.size())
+    return "its tool impedance has not one direction per row";
+  for (int node : basis.node)
+    if (node < 0 || static_cast<std::size_t>(node) >= particle_count)
+      return "its tool impedance remembers a particle that does not exist";
+  return "";
+}
+
+std::string solverDamage(const State& s, std::size_t particle_count) {
+  if (!isEmptyOr(s.solver.linearization_point.size(), particle_count, 3) ||
+      !isEmptyOr(s.solver.next.size(), particle_count, 3))
+    return "its solver remembers another organ";
+  const std::string damage = basisDamage(s.impedance.current, particle_count);
+  return damage.empty() ? basisDamage(s.impedance.next, particle_count) : damage;
+}
+
+}  // namespace
+
+std::string findDamage(const State& state, const Model& model) {
+  const int count = model.particle_count;
+  std::string damage = particleDamage(state, static_cast<std::size_t>(count));
+  if (damage.empty()) damage = solverDamage(state, static_cast<std::size_t>(count));
+  if (damage.empty()) damage = procedureDamage(state.procedure, count);
+  if (damage.empty()) damage = pullDamage(state.pull, count);
+  if (damage.empty() && model.scene.marking && state.procedure.dose.empty()) damage = "its marks are missing";
+  return damage;
 }
 
 }  // namespace vibe

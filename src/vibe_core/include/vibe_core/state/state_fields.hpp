@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+
+#include "vibe_core/common/fields.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+/// Version of the fields of State, which snapshots carry. Raise it with every change of the lists below.
+constexpr std::uint32_t kStateVersion = 5;
+
+VIBE_FIELDS(Bite, particle, weight, time, depth, thickness, region, wall, along);
+VIBE_FIELDS(TissueGroup, particle, offset, middle, weight, drawn);
+VIBE_FIELDS(Suture, stage, bites, length, tension, taken, technique, technique_margin, transitions, pulled,
+            cinch_tension, begin, end, tear_outs, group);
+VIBE_FIELDS(Bleeding, suture, bite, particle, brisk, begin, rate, amount, overdue);
+VIBE_FIELDS(ProcedureState, phase, pressed, heat, dose, grade, beam_energy, base_x, base_y, base_z, grip_rotation,
+            grip_turns, arm_closed, needle_on_arm, needle_loaded, pierced, pending, sutures, thread_used, bleedings,
+            blood_lost);
+VIBE_FIELDS(PullSpring, particle, node, weight, target, force);
+VIBE_FIELDS(GripPoint, particle, local);
+VIBE_FIELDS(EnergyAccount, tool_work, gas_work, thread_work, pull_work, damping_loss);
+VIBE_FIELDS(StepperMemory, linearization_point, next, linearization_id, next_id, steps, due, elastic_energy,
+            usual_length, rest_steps, recovery_steps, fallback);
+VIBE_FIELDS(ImpedanceBasis, id, positions, gas_direction, gas_stiffness, node, direction, row_motion);
+VIBE_FIELDS(SlopeMemory<3>, known, has_pair, place, force, step, change);
+VIBE_FIELDS(SlopeMemory<kScopeJointCount>, known, has_pair, place, force, step, change);
+VIBE_FIELDS(ImpedanceMemory, last_step, next_renewal, current, next, last_nodes, has_last, last_place, last_speed,
+            last_force, last_jump, slope, joint_slope);
+VIBE_FIELDS(State, step, time, seed, random, x, y, z, vx, vy, vz, ax, ay, az, qw, qx, qy, qz, wx, wy, wz, gas_amount,
+            pressure, volume, pressure_reached, joints, grip, helix_pressed, in_contact, untouched_time, tool_force,
+            tool_torque, grip_force, contact_count, pull, procedure, energy, solver, impedance);
+
+}  // namespace vibe

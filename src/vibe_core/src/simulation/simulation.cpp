@@ -1,0 +1,95 @@
+#include "vibe_core/simulation/simulation.hpp"
+
+#include <utility>
+
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/simulation/snapshot.hpp"
+
+namespace vibe {
+namespace {
+
+StepInput holdingInput(const State& state) {
+  StepInput input;
+  input.joints = state.joints;
+  input.buttons[HelixGrab] = state.helix_pressed ? 1 : 0;
+  input.buttons[Cinch] = state.procedure.pressed[Cinch];  // releasing it would make the set permanent
+  return input;
+}
+
+}  // namespace
+
+std::shared_ptr<const Model> loadModel(const std::string& address, const Progress& progress) {
+  const Scene scene = loadScene(resolveAddress(address));
+  const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
+  return buildModel(scene, urdf, progress);
+}
+
+Simulation::Simulation(std::shared_ptr<const Model> model, const SimulationSettings& settings)
+    : model_(std::move(model)),
+      settings_(settings),
+      state_(initialState(*model_, settings.seed.value_or(model_->scene.seed))),
+      workspace_(std::make_unique<Workspace>(*model_, settings.threads)),
+      input_(holdingInput(state_)) {
+  if (settings.metrics) recorder_.emplace(*model_, state_);
+}
+
+const std::vector<Event>& Simulation::step(const StepInput& input) {
+  setInput(input);
+  return step();
+}
+
+const std::vector<Event>& Simulation::step() {
+  events_.clear();
+  timer_.start();
+  vibe::step(*model_, state_, input_, *workspace_, events_);
+  timer_.stop();
+  if (recorder_) recorder_->record(*model_, state_, insufflatorIsOn(*model_, input_), events_);
+  return events_;
+}
+
+void Simulation::run(std::int64_t steps, const InputSource& source, const Observer& observer) {
+  for (std::int64_t k = 0; k < steps; ++k) {
+    step(source(state_.time));
+    if (observer) observer(*this);
+  }
+}
+
+const SessionMetrics& Simulation::metrics() const {
+  static const SessionMetrics kNone;
+  return recorder_ ? recorder_->metrics() : kNone;
+}
+
+std::uint64_t Simulation::hash() const {
+  return vibe::hash(state_);
+}
+
+void Simulation::reset(std::optional<std::uint64_t> seed) {
+  replaceState(initialState(*model_, seed.value_or(model_->scene.seed)));
+}
+
+void Simulation::replaceState(State state) {
+  state_ = std::move(state);
+  input_ = holdingInput(state_);
+  if (recorder_) recorder_->restart(*model_, state_);
+  events_.clear();
+}
+
+void Simulation::replaceModel(std::shared_ptr<const Model> model) {
+  State state = initialState(*model, model->scene.seed);
+  auto workspace = std::make_unique<Workspace>(*model, settings_.threads);
+  if (recorder_) recorder_.emplace(*model, state);
+  workspace_ = std::move(workspace);  // before the model goes, which it refers to
+  model_ = std::move(model);
+  replaceState(std::move(state));
+}
+
+void Simulation::saveSnapshot(const std::string& file) const {
+  vibe::saveSnapshot(*model_, state_, file);
+}
+
+void Simulation::loadSnapshot(const std::string& file) {
+  replaceState(vibe::loadSnapshot(*model_, file));
+}
+
+}  // namespace vibe

@@ -1,0 +1,164 @@
+// Class Simulation: the same bits as step() alone, and all that it keeps beside them.
+#include "vibe_core/simulation/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "contact/scope_fixture.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/input/step_input_fields.hpp"
+#include "vibe_core/state/state_fields.hpp"
+#include "worlds.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kRadius = 0.05;
+
+/// A ball with gas on a foundation; with a scope that looks in at the top.
+std::shared_ptr<const Model> ball(double radius = kRadius) {
+  Scene scene = test::bareScene();
+  scene.seed = 5;
+  scene.tissue.mass_damping = 5;
+  scene.foundation = FoundationScene{};
+  scene.gas = GasScene{};
+  scene.scope = ScopeScene{};
+  scene.scope->base_from_anatomy = false;
+  scene.scope->base_position = Eigen::Vector3d(0, 0, radius);
+  scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
+  return test::World(scene, test::plainOrgan(test::icosphere(radius, 2), 2e-3), scopeText()).model;
+}
+
+StepInput inputAt(double time) {
+  StepInput input;
+  input.joints[Insertion] = 0.1 * time;
+  input.joints[Rotation] = time;
+  input.buttons[Insufflate] = time > 0.2 ? 1 : 0;
+  return input;
+}
+
+TEST(Simulation, TakesTheStepsOfTheFreeFunction) {
+  const auto model = ball();
+  Simulation simulation(model);
+  State state = initialState(*model, 5);
+  Workspace workspace(*model);
+  std::vector<Event> events;
+  EXPECT_EQ(firstDifference(simulation.state(), state), "");
+  for (int k = 0; k < 30; ++k) {
+    events.clear();
+    step(*model, state, inputAt(state.time), workspace, events);
+    simulation.step(inputAt(simulation.time()));
+    ASSERT_EQ(firstDifference(simulation.state(), state), "") << "step " << k;
+    ASSERT_EQ(simulation.events().size(), events.size());
+  }
+  EXPECT_EQ(simulation.hash(), hash(state));
+  EXPECT_EQ(simulation.stepCount(), 30);
+  EXPECT_DOUBLE_EQ(simulation.time(), 0.5);
+  EXPECT_EQ(simulation.timer().cpu.all.count(), 30U);
+}
+
+TEST(Simulation, RunAsksForEveryInputAndTellsTheObserverOfEveryStep) {
+  const auto model = ball();
+  Simulation a(model), b(model);
+  int asked = 0, told = 0;
+  a.run(
+      20, [&](double time) { return ++asked, inputAt(time); },
+      [&](const Simulation& s) { EXPECT_EQ(s.stepCount(), ++told); });
+  EXPECT_EQ(asked, 20);
+  EXPECT_EQ(told, 20);
+  for (int k = 0; k < 20; ++k) b.step(inputAt(b.time()));
+  EXPECT_EQ(firstDifference(a.state(), b.state()), "");
+}
+
+TEST(Simulation, AnInputStaysInForce) {
+  const auto model = ball();
+  Simulation a(model), b(model);
+  a.step(inputAt(1)), a.step(), a.step();
+  for (int k = 0; k < 3; ++k) b.step(inputAt(1));
+  EXPECT_EQ(firstDifference(a.state(), b.state()), "");
+  EXPECT_NE(a.hash(), Simulation(model).hash());
+}
+
+TEST(Simulation, TheFirstInputHoldsTheState) {
+  Simulation simulation(ball());
+  const auto joints = simulation.state().joints;
+  simulation.step();
+  EXPECT_EQ(simulation.state().joints, joints);
+  State held = simulation.state();
+  held.helix_pressed = true;
+  held.procedure.pressed[Cinch] = 1;
+  held.joints[Rotation] = 0.25;
+  simulation.replaceState(held);
+  EXPECT_EQ(simulation.input().joints, held.joints);
+  EXPECT_EQ(simulation.input().buttons[HelixGrab], 1);
+  EXPECT_EQ(simulation.input().buttons[Cinch], 1);
+  EXPECT_EQ(simulation.input().pull_particle, -1);
+}
+
+TEST(Simulation, ResetGoesBackToTheBeginning) {
+  Simulation simulation(ball()), fresh(ball());
+  for (int k = 0; k < 10; ++k) simulation.step(inputAt(1));
+  EXPECT_GT(simulation.metrics().path_length, 0);
+  simulation.reset();
+  EXPECT_EQ(firstDifference(simulation.state(), fresh.state()), "");
+  EXPECT_EQ(firstDifference(simulation.input(), fresh.input()), "");
+  EXPECT_EQ(simulation.metrics().path_length, 0);
+  EXPECT_TRUE(simulation.events().empty());
+  simulation.reset(99);
+  EXPECT_EQ(simulation.state().seed, 99U);
+  SimulationSettings settings;
+  settings.seed = 99;
+  EXPECT_EQ(simulation.hash(), Simulation(ball(), settings).hash());
+}
+
+TEST(Simulation, ASnapshotContinuesToTheBit) {
+  const auto model = ball();
+  const std::string file = ::testing::TempDir() + "vibe_simulation_test.bin";
+  Simulation a(model), b(model);
+  for (int k = 0; k < 10; ++k) a.step(inputAt(1));
+  a.saveSnapshot(file);
+  b.loadSnapshot(file);
+  EXPECT_EQ(firstDifference(a.state(), b.state()), "");
+  for (int k = 0; k < 10; ++k) a.step(inputAt(1)), b.step(inputAt(1));
+  EXPECT_EQ(firstDifference(a.state(), b.state()), "");
+  // a snapshot that cannot be loaded changes nothing
+  Simulation other(ball(0.06));
+  other.step(inputAt(1));
+  const std::uint64_t before = other.hash();
+  EXPECT_THROW(other.loadSnapshot(file), Error);
+  EXPECT_EQ(other.hash(), before);
+  std::remove(file.c_str());
+}
+
+TEST(Simulation, AnotherModelTakesOverAtItsBeginning) {
+  Simulation simulation(ball());
+  for (int k = 0; k < 10; ++k) simulation.step(inputAt(1));
+  const auto larger = ball(0.06);
+  simulation.replaceModel(larger);
+  EXPECT_EQ(simulation.sharedModel(), larger);
+  Simulation fresh(larger);
+  for (int k = 0; k < 10; ++k) simulation.step(inputAt(0.5)), fresh.step(inputAt(0.5));
+  EXPECT_EQ(firstDifference(simulation.state(), fresh.state()), "");
+  EXPECT_EQ(simulation.metrics().path_length, fresh.metrics().path_length);
+}
+
+TEST(Simulation, RecordsMetricsUnlessToldNotTo) {
+  const auto model = ball();
+  Simulation recorded(model), bare(model, SimulationSettings::study(5));
+  for (int k = 0; k < 30; ++k) recorded.step(inputAt(1)), bare.step(inputAt(1));
+  EXPECT_NEAR(recorded.metrics().insufflation_time, 0.5, 1e-9);
+  EXPECT_GT(recorded.metrics().path_length, 1e-3);
+  EXPECT_EQ(bare.metrics().insufflation_time, 0);
+  EXPECT_EQ(bare.metrics().path_length, 0);
+  EXPECT_EQ(firstDifference(recorded.state(), bare.state()), "");
+}
+
+TEST(Simulation, LoadsAShippedScene) {
+  const auto model = loadModel(std::string(VIBE_CORE_DIR) + "/scenes/sphere.yaml");
+  EXPECT_EQ(model->scene.name, "sphere");
+  EXPECT_THROW(loadModel("package://vibe_core/scenes/no_such_scene.yaml"), Error);
+}
+
+}  // namespace
+}  // namespace vibe

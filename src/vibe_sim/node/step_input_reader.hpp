@@ -1,0 +1,33 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "message_layout.hpp"
+#include "vibe_core/input/step_input.hpp"
+
+namespace vibe {
+
+/// One message of the topic applied_input.
+struct RecordedStep {
+  std::uint64_t step = 0;  ///< its number
+  StepInput input;
+  bool has_version = false;  ///< the message says of which version it is; false: it is from before there were versions
+};
+
+/// Reads serialised vibe_msgs/StepInput of this and of older releases. It finds the fields by the definition that a
+/// recording carries, so their order, and fields that it does not know, do not matter. Versions: kStepInputVersion.
+class StepInputReader {
+ public:
+  /// @param definition  of the message, see MessageLayout
+  explicit StepInputReader(const std::string& definition) : layout_(definition) {}
+
+  /// What the step used, bit for bit. Fields that an older version lacks have their defaults.
+  /// @throws Error if the message is of a version that this build does not read, or damaged
+  RecordedStep read(const std::uint8_t* bytes, std::size_t size) const;
+
+ private:
+  MessageLayout layout_;
+};
+
+}  // namespace vibe
