@@ -34,7 +34,7 @@ class DocumentationTest(unittest.TestCase):
         published, subscribed, _ = master.getSystemState()
         topics = {t for t, nodes in published + subscribed if "/sim_node" in nodes} - NOT_OURS
         types = dict(master.getTopicTypes())
-        self.assertEqual(len(topics), 21, topics)
+        self.assertEqual(len(topics), 22, topics)
         for topic in topics:
             with self.subTest(topic=topic):
                 name = topic if topic == "/clock" else topic[1:]
