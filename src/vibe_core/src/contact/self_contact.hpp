@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "solver/elastic_body.hpp"
-#include "vibe_core/solver/energy_term.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {
 
