@@ -1,7 +1,7 @@
 # The form of the code is a test like any other.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for name in format door launch bash python; do
+for name in format door rooms launch bash python; do
   check "lint $name" "$root/scripts/lint" --only "$name"
 done
 
@@ -12,13 +12,58 @@ findsBadFormat() {
 }
 check 'lint sees a file that is not formatted' findsBadFormat
 
-seesRosInLibrary() {
-  local tree="$scratch/tree with space"
-  mkdir -p "$tree/src/vibe_sim/src" "$tree/src/vibe_sim/node" "$tree/.ci"
+# Makes a small workspace without a problem, in a folder with a space in its name, and prints the folder.
+copyOfTree() {
+  local tree
+  tree=$(mktemp -d "$scratch/tree with space XXXXXX")
+  mkdir -p "$tree/src/vibe_sim/node" "$tree/.ci" "$tree/docs"
+  mkdir -p "$tree"/src/vibe_core/{include/vibe_core,src}/{common,state,solver}
   cp -r "$root/scripts" "$tree/"
-  echo '#include <ros/time.h>' >"$tree/src/vibe_sim/node/allowed.cpp"
-  "$tree/scripts/lint" --only door || return 1
-  echo '#include "std_msgs/Header.h"' >"$tree/src/vibe_sim/src/forbidden.cpp"
-  ! "$tree/scripts/lint" --only door
+  cp "$root/docs/architecture.md" "$tree/docs/"
+  echo '#include "vibe_core/common/error.hpp"' >"$tree/src/vibe_core/include/vibe_core/state/state.hpp"
+  echo '#include <stdexcept>' >"$tree/src/vibe_core/include/vibe_core/common/error.hpp"
+  echo '#include "vibe_core/state/state.hpp"' >"$tree/src/vibe_core/src/solver/stepper.hpp"
+  echo '#include "solver/stepper.hpp"' >"$tree/src/vibe_core/src/solver/stepper.cpp"
+  echo "$tree"
 }
-check 'lint sees ROS in a library' seesRosInLibrary
+
+# findsRosIn FILE LINE: adds a file with this line below src/ of a tree that passes; lint must name the file
+findsRosIn() {
+  local tree
+  tree=$(copyOfTree)
+  echo '#include <ros/time.h>' >"$tree/src/vibe_sim/node/allowed.cpp"
+  "$tree/scripts/lint" --only door || { echo 'finds ROS where none is'; return 1; }
+  mkdir -p "$(dirname "$tree/src/$1")"
+  echo "$2" >"$tree/src/$1"
+  refuses 1 'not clean: door' bash -c '"$1" --only door 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
+    grep -F "$1:1:" "$tree/said"
+}
+check 'lint sees ROS in the core' findsRosIn vibe_core/src/common/a.cpp '#include <ros/ros.h>'
+check 'lint sees a message in a public header' findsRosIn vibe_core/include/vibe_core/common/a.hpp \
+  '#include "std_msgs/Header.h"'
+check 'lint sees ROS in a program of the core' findsRosIn vibe_core/programs/a.cpp '#  include <tf2_ros/buffer.h>'
+check 'lint sees ROS in a test of the core' findsRosIn vibe_core/test/common/a_test.cpp '#include <rosbag/bag.h>'
+check 'lint sees ROS in the benchmarks' findsRosIn vibe_benchmarks/src/fem/a.cpp '#include "vibe_msgs/TissueState.h"'
+check 'lint sees ROS in a library of the displays' findsRosIn vibe_rviz_plugins/src/geometry/a.hpp \
+  '#include <rviz/display.h>'
+
+# findsRoomProblem FILE LINE PATTERN: adds a line to a file of an orderly tree; lint must name file, line and problem
+findsRoomProblem() {
+  local tree
+  tree=$(copyOfTree)
+  "$tree/scripts/lint" --only rooms || { echo 'finds a problem in an orderly tree'; return 1; }
+  mkdir -p "$(dirname "$tree/src/vibe_core/$1")"
+  printf '#include <vector>\n%s\n' "$2" >>"$tree/src/vibe_core/$1"
+  refuses 1 'not clean: rooms' bash -c '"$1" --only rooms 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
+    cat "$tree/said" && grep -qE "^src/vibe_core/$1:[0-9]+: .*$3" "$tree/said"
+}
+check 'lint sees a circle between rooms' \
+  findsRoomProblem src/state/a.cpp '#include "solver/stepper.hpp"' 'solver comes after state'
+check 'lint sees a public include that goes up' findsRoomProblem include/vibe_core/common/error.hpp \
+  '#include "vibe_core/state/state.hpp"' 'state comes after common'
+check 'lint sees an internal include in a public header' findsRoomProblem include/vibe_core/solver/a.hpp \
+  '#include "solver/stepper.hpp"' 'public header includes the internal'
+check 'lint sees an include by bare name' findsRoomProblem src/solver/a.cpp '#include "stepper.hpp"' 'does not name its room'
+check 'lint sees a room that is not in the table' findsRoomProblem src/attic/a.cpp '' 'lies in no room'
+check 'lint sees an include of a header that is not there' findsRoomProblem src/solver/a.cpp \
+  '#include "vibe_core/state/lost.hpp"' 'is no public header'

@@ -1,11 +1,9 @@
 // Whole procedures of sutures: what each set costs, and what patterns do to the stomach.
-#include <getopt.h>
-
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <string>
 
+#include "common/command_line.hpp"
 #include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"
 #include "vibe_core/common/error.hpp"
@@ -16,17 +14,11 @@ namespace {
 
 using namespace vibe;
 
-const char kHelp[] =
-    "usage: vibe_sutures scenarios|patterns [options]\n"
-    "  scenarios        14 sets of 4 bites and 8 sets of 7 sewn to the end: CPU time per step of each set\n"
-    "  patterns         volume, length and area of the stomach before and after sets of the patterns C, U and Z\n"
-    "  --scene FILE     default package://vibe_core/scenes/stomach.yaml\n"
-    "  --repeats N      of each scenario, default 3; of each step the cheapest counts\n"
-    "  --quick          one run of each scenario; patterns with one tension and width only\n"
-    "  --csv FILE       write the rows there (- for standard output)\n"
-    "  --help           this text\n"
-    "Bites are put into the wall by the program, as the needle would take them; T-tag and cinch go through their "
-    "buttons.\n";
+const char kAbout[] =
+    "Sews whole procedures of sutures.\n"
+    "  scenarios  14 sets of 4 bites and 8 sets of 7 to the end: CPU time per step of each set\n"
+    "  patterns   volume, length and area of the stomach before and after sets of the patterns C, U and Z\n"
+    "The program puts bites into the wall as the needle would take them; T-tag and cinch go through their buttons.";
 
 struct Options {
   std::string mode, csv, scene = "package://vibe_core/scenes/stomach.yaml";
@@ -34,41 +26,17 @@ struct Options {
   bool quick = false;
 };
 
-int numberOf(const std::string& text) {
-  std::size_t used = 0;
-  int number = 0;
-  try {
-    number = std::stoi(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used == 0 || used != text.size() || number < 1 || number > 1000)
-    throw Error("vibe_sutures: --repeats '" + text + "' is no number from 1 to 1000; give one.");
-  return number;
-}
-
-Options parse(int argc, char** argv) {
-  static const option kOptions[] = {
-      {"scene", required_argument, nullptr, 's'}, {"repeats", required_argument, nullptr, 'r'},
-      {"quick", no_argument, nullptr, 'q'},       {"csv", required_argument, nullptr, 'o'},
-      {"help", no_argument, nullptr, 'h'},        {nullptr, 0, nullptr, 0}};
-  Options options;
-  for (int c; (c = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
-    if (c == 's') options.scene = optarg;
-    if (c == 'r') options.repeats = numberOf(optarg);
-    if (c == 'q') options.quick = true;
-    if (c == 'o') options.csv = optarg;
-    if (c == 'h') {
-      std::cout << kHelp;
-      std::exit(0);
-    }
-    if (c == '?') throw Error("vibe_sutures: unknown option; see --help.");
-  }
-  if (optind + 1 == argc) options.mode = argv[optind];
-  if (options.mode != "scenarios" && options.mode != "patterns")
-    throw Error("vibe_sutures: say one of scenarios and patterns; see --help.");
-  if (options.quick) options.repeats = 1;
-  return options;
+void addOptions(CLI::App& app, Options& o) {
+  app.add_option("scenarios|patterns", o.mode, "what to sew")
+      ->type_name("")
+      ->required()
+      ->check(CLI::IsMember({"scenarios", "patterns"}).description(""));
+  app.add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
+  app.add_option("--repeats", o.repeats, "runs of each scenario (default: 3); of each step the fastest counts")
+      ->type_name("N")
+      ->check(wholeFrom(1, 1000));
+  app.add_flag("--quick", o.quick, "one run of each scenario; patterns with one tension and width only");
+  app.add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
 }
 
 Scene sceneOf(const Options& options) {
@@ -114,12 +82,11 @@ void runPatterns(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const Options options = parse(argc, argv);
+  Options options;
+  CLI::App app{kAbout, "vibe_sutures"};
+  addOptions(app, options);
+  return runProgram(app, argc, argv, [&] {
+    if (options.quick) options.repeats = 1;
     options.mode == "scenarios" ? runScenarios(options) : runPatterns(options);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  }
+  });
 }

@@ -1,5 +1,6 @@
 #include "fem/case_runner.hpp"
 
+#include <chrono>
 #include <sstream>
 
 #include "case_file.hpp"
@@ -41,12 +42,18 @@ TEST(CaseRunner, stretchesABlockAsTheClosedFormSays) {
   reference << "[" << uniaxialForce(1.25) << ", " << uniaxialForce(1.5) << "]";
   EXPECT_NEAR(uniaxialForce(1.5), 4.3033722, 1e-6);  // as tabulated with the case
   std::string log;
+  const auto begin = std::chrono::steady_clock::now();
   const auto rows = run(stretch(reference.str()), &log);
+  const std::chrono::duration<double, std::milli> whole = std::chrono::steady_clock::now() - begin;
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_LT(rows[0].reference_error, 1e-4) << log;
   EXPECT_EQ(log.find("NOT CONVERGED"), std::string::npos) << log;
   EXPECT_EQ(rows[0].method, "linear_tet");
-  EXPECT_GT(rows[0].ms_p50, 0);
+  // times of single steps: in order, and none longer than the whole run
+  EXPECT_GT(rows[0].ms_p50, 1e-3 * whole.count() / 8) << "8 steps share the run with its preparation";
+  EXPECT_LE(rows[0].ms_p50, rows[0].ms_p99);
+  EXPECT_LE(rows[0].ms_p99, rows[0].ms_max);
+  EXPECT_LE(rows[0].ms_max, whole.count());
 }
 
 TEST(CaseRunner, reportsTheErrorAgainstAWrongReference) {
@@ -72,23 +79,33 @@ TEST(CaseRunner, findsTheBendingFrequencyOfABar) {
   EXPECT_NEAR(rows[1].reference_error, 0.5, 0.02);  // a square bar bends both ways alike
 }
 
+std::string releasedBar(const std::string& seconds, const std::string& amplitude) {
+  return "name: bar\n"
+         "mesh: {box: {size: [200 mm, 20 mm, 10 mm], cells: [10, 1, 1]}}\n"
+         "element: quadratic_tet\n"
+         "material: {law: neo_hookean, young_modulus: 30 kPa, poisson_ratio: 0}\n"
+         "density: 1050\n"
+         "clamped: [x_min]\n"
+         "transient: {step: 10 ms, duration: " +
+         seconds + " s, iterations: 40, tolerance: 1.0e-7, start: {mode: 1, amplitude: " + amplitude +
+         " mm}}\n"
+         "sample:\n"
+         "  - {name: f, kind: frequency, points: [[200 mm, 0, 0]], direction: [0, 0, 1], reference: 0.2159}\n"
+         "  - {name: kept, kind: kept, points: [[200 mm, 0, 0]], direction: [0, 0, 1], reference: 1}\n";
+}
+
 TEST(CaseRunner, keepsFrequencyAndAmplitudeOfAReleasedBar) {
-  const auto rows =
-      run("name: bar\n"
-          "mesh: {box: {size: [200 mm, 20 mm, 10 mm], cells: [10, 1, 1]}}\n"
-          "element: quadratic_tet\n"
-          "material: {law: neo_hookean, young_modulus: 30 kPa, poisson_ratio: 0}\n"
-          "density: 1050\n"
-          "clamped: [x_min]\n"
-          "transient: {step: 10 ms, duration: 30 s, iterations: 40, tolerance: 1.0e-7, start: {mode: 1, amplitude: 0.5 "
-          "mm}}\n"
-          "sample:\n"
-          "  - {name: f, kind: frequency, points: [[200 mm, 0, 0]], direction: [0, 0, 1], reference: 0.2159}\n"
-          "  - {name: kept, kind: kept, points: [[200 mm, 0, 0]], direction: [0, 0, 1], reference: 1}\n");
+  const auto rows = run(releasedBar("30", "0.5"));
   EXPECT_LT(rows[0].reference_error, 0.02);
   EXPECT_LT(rows[1].reference_error, 0.01);
   EXPECT_LT(std::abs(rows[0].energy_drift), 0.02);
-  EXPECT_NE(rows[0].state_hash, 0U);
+}
+
+TEST(CaseRunner, hashesTheLastState) {
+  const std::uint64_t hash = run(releasedBar("10", "0.5"))[0].state_hash;
+  EXPECT_EQ(run(releasedBar("10", "0.5"))[0].state_hash, hash) << "the same run";
+  EXPECT_NE(run(releasedBar("10.01", "0.5"))[0].state_hash, hash) << "one step more";
+  EXPECT_NE(run(releasedBar("10", "0.500001"))[0].state_hash, hash) << "another start";
 }
 
 }  // namespace

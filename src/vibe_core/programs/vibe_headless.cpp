@@ -1,15 +1,15 @@
 // Runs a scene under a trainee script without ROS: CSV out, summary and state hash at the end. For sweeps and tests.
-#include <getopt.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"
@@ -24,96 +24,41 @@ namespace {
 
 using namespace vibe;
 
-const char kHelp[] =
-    "usage: vibe_headless [options]\n"
-    "Runs a scene under a trainee script as fast as possible, without a roscore.\n"
-    "  --scene FILE      scene to run (default: package://vibe_core/scenes/stomach.yaml)\n"
-    "  --script FILE     what the trainee does (default: nothing)\n"
-    "  --mesh FILE       organ from this surface instead of the scene's\n"
-    "  --duration S      simulated seconds (default: the script's length, else 10)\n"
-    "  --csv FILE        one row per step (default: none; - for standard output)\n"
-    "  --snapshot FILE   write the last state there\n"
-    "  --threads N       threads inside a step (default 1); does not change the result\n"
-    "  --seed N          instead of the scene's\n"
-    "  --quiet           print the state hash only\n"
-    "  --script-length   print how long the script is [s], and end\n"
-    "  --help            this text\n";
-
 struct Options {
   std::string scene = "package://vibe_core/scenes/stomach.yaml";
   std::string script, mesh, csv, snapshot;
   double duration = 0;
   int threads = 1;
-  std::string seed;
+  std::optional<std::uint64_t> seed;
   bool quiet = false;
   bool script_length = false;
 };
 
-double toNumber(const std::string& option, const std::string& text, double lowest) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(value >= lowest) || !std::isfinite(value))
-    throw Error("--" + option + " '" + text + "' is no number of at least " + std::to_string(lowest) + "; see --help.");
-  return value;
-}
-
-Options parse(int argc, char** argv) {
-  static const option kOptions[] = {
-      {"scene", 1, nullptr, 's'},         {"script", 1, nullptr, 't'}, {"mesh", 1, nullptr, 'm'},
-      {"duration", 1, nullptr, 'd'},      {"csv", 1, nullptr, 'c'},    {"snapshot", 1, nullptr, 'p'},
-      {"threads", 1, nullptr, 'n'},       {"seed", 1, nullptr, 'e'},   {"quiet", 0, nullptr, 'q'},
-      {"script-length", 0, nullptr, 'l'}, {"help", 0, nullptr, 'h'},   {nullptr, 0, nullptr, 0}};
-  Options o;
-  opterr = 0;
-  for (int c; (c = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
-    const std::string value = optarg == nullptr ? "" : optarg;
-    switch (c) {
-      case 's':
-        o.scene = value;
-        break;
-      case 't':
-        o.script = value;
-        break;
-      case 'm':
-        o.mesh = value;
-        break;
-      case 'd':
-        o.duration = toNumber("duration", value, 0);
-        break;
-      case 'c':
-        o.csv = value;
-        break;
-      case 'p':
-        o.snapshot = value;
-        break;
-      case 'n':
-        o.threads = static_cast<int>(toNumber("threads", value, 1));
-        break;
-      case 'e':
-        o.seed = value;
-        break;
-      case 'q':
-        o.quiet = true;
-        break;
-      case 'l':
-        o.script_length = true;
-        break;
-      case 'h':
-        std::cout << kHelp;
-        std::exit(0);
-      default:
-        throw Error("Option '" + std::string(argv[optind - 1]) + "' is unknown or lacks its value; see --help.");
-    }
-  }
-  if (optind < argc) throw Error("'" + std::string(argv[optind]) + "' is no option; see --help.");
-  return o;
+void addOptions(CLI::App& app, Options& o) {
+  app.add_option("--scene", o.scene, "scene to run (default: package://vibe_core/scenes/stomach.yaml)")
+      ->type_name("FILE");
+  app.add_option("--script", o.script, "what the trainee does (default: nothing)")->type_name("FILE");
+  app.add_option("--mesh", o.mesh, "surface of the organ instead of the scene's")->type_name("FILE");
+  app.add_option("--duration", o.duration, "simulated seconds (default: length of the script, else 10)")
+      ->type_name("S")
+      ->check(finiteFrom(0));
+  app.add_option("--csv", o.csv, "write one row per step there (- for standard output)")->type_name("FILE");
+  app.add_option("--snapshot", o.snapshot, "write the last state there")->type_name("FILE");
+  app.add_option("--threads", o.threads, "threads inside a step (default: 1); the result is the same")
+      ->type_name("N")
+      ->check(wholeFrom(1, 1024));
+  app.add_option("--seed", o.seed, "seed of random numbers instead of the scene's")
+      ->type_name("N")
+      ->check(finiteFrom(0));
+  app.add_flag("--quiet", o.quiet, "print the state hash only");
+  app.add_flag("--script-length", o.script_length, "print the length of the script [s] and end");
 }
 
 std::shared_ptr<const Model> load(const Options& o) {
   Scene scene = loadScene(resolveAddress(o.scene));
-  const std::string guesses = o.mesh.empty() ? "" : useMesh(scene, o.mesh);
+  const std::string guesses = o.mesh.empty() ? "" : useMesh(scene, std::filesystem::absolute(resolveAddress(o.mesh)));
   if (!guesses.empty()) std::fprintf(stderr, "%s\n", guesses.c_str());
-  if (!o.seed.empty()) scene.seed = static_cast<std::uint64_t>(toNumber("seed", o.seed, 0));
+  if (o.seed) scene.seed = *o.seed;
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
   const bool show = !o.quiet && isatty(STDERR_FILENO) == 1;
   return buildModel(scene, urdf, [show](const std::string& what, double fraction) {
@@ -131,10 +76,9 @@ void printProgress(double time, double duration, const TraineeScript* script) {
   std::fprintf(stderr, "\r%7.2f of %.2f s  %-30s", time, duration, doing.c_str());
 }
 
-int printScriptLength(const Options& o) {
+void printScriptLength(const Options& o) {
   if (o.script.empty()) throw Error("--script-length needs a --script.");
   std::printf("%.3f\n", loadScript(o)->duration());
-  return 0;
 }
 
 void printEvents(const std::vector<Event>& events, bool over_progress) {
@@ -143,7 +87,7 @@ void printEvents(const std::vector<Event>& events, bool over_progress) {
                  describe(event).c_str());
 }
 
-int run(const Options& o) {
+void run(const Options& o) {
   if (o.script_length) return printScriptLength(o);
   const std::shared_ptr<const Model> model = load(o);
   const std::unique_ptr<TraineeScript> script = loadScript(o);
@@ -172,16 +116,13 @@ int run(const Options& o) {
   else
     std::cout << runSummary(simulation.metrics(), simulation.timer().cpu.all, model->particle_count, simulation.time(),
                             steadyTime() - begin, simulation.hash());
-  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(parse(argc, argv));
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "vibe_headless: %s\n", error.what());
-    return 2;
-  }
+  Options options;
+  CLI::App app{"Runs a scene under a trainee script as fast as possible, without ROS.", "vibe_headless"};
+  addOptions(app, options);
+  return runProgram(app, argc, argv, [&] { run(options); });
 }

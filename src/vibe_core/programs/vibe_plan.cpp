@@ -1,13 +1,10 @@
 // Writes a trainee script that performs a whole sleeve gastroplasty on a scene, by performing it: for scenes whose
 // stomach or device is not the default one, and for the scripts that ship.
-#include <getopt.h>
-
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
-#include <iostream>
 #include <string>
 
+#include "common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/metrics/run_summary.hpp"
@@ -19,59 +16,23 @@ namespace {
 
 using namespace vibe;
 
-const char kHelp[] =
-    "usage: vibe_plan --output FILE [options]\n"
-    "Performs a sleeve gastroplasty on a scene, looking where the wall is before every motion, and writes what the "
-    "hands\n"
-    "did as a trainee script.\n"
-    "  --scene FILE    scene (default: package://vibe_core/scenes/stomach.yaml)\n"
-    "  --style WORD    expert (default), novice, or states: marks, a burn and one set\n"
-    "  --sets N        sutures instead of the style's\n"
-    "  --bites N       bites per suture instead of the style's\n"
-    "  --output FILE   the script\n"
-    "  --events        also print what happens\n"
-    "  --help          this text\n";
-
 struct Options {
   std::string scene = "package://vibe_core/scenes/stomach.yaml", style = "expert", output;
   int sets = 0, bites = 0;
   bool events = false;
 };
 
-int toCount(const std::string& option, const std::string& text) {
-  char* end = nullptr;
-  const long value = std::strtol(text.c_str(), &end, 10);
-  if (text.empty() || *end != '\0' || value < 1 || value > 64)
-    throw Error("--" + option + " '" + text + "' is no number from 1 to 64; see --help.");
-  return static_cast<int>(value);
-}
-
-Options parse(int argc, char** argv) {
-  static const option kOptions[] = {
-      {"scene", 1, nullptr, 's'},  {"style", 1, nullptr, 't'},  {"sets", 1, nullptr, 'n'}, {"bites", 1, nullptr, 'b'},
-      {"output", 1, nullptr, 'o'}, {"events", 0, nullptr, 'e'}, {"help", 0, nullptr, 'h'}, {nullptr, 0, nullptr, 0}};
-  Options o;
-  opterr = 0;
-  for (int c; (c = getopt_long(argc, argv, "", kOptions, nullptr)) != -1;) {
-    const std::string value = optarg == nullptr ? "" : optarg;
-    if (c == 's') o.scene = value;
-    if (c == 't') o.style = value;
-    if (c == 'n') o.sets = toCount("sets", value);
-    if (c == 'b') o.bites = toCount("bites", value);
-    if (c == 'o') o.output = value;
-    if (c == 'e') o.events = true;
-    if (c == 'h') {
-      std::cout << kHelp;
-      std::exit(0);
-    }
-    if (c == '?')
-      throw Error("Option '" + std::string(argv[optind - 1]) + "' is unknown or lacks its value; see --help.");
-  }
-  if (optind < argc) throw Error("'" + std::string(argv[optind]) + "' is no option; see --help.");
-  if (o.output.empty()) throw Error("There is no --output; name the file for the script.");
-  if (o.style != "expert" && o.style != "novice" && o.style != "states")
-    throw Error("--style '" + o.style + "' is unknown; use expert, novice or states.");
-  return o;
+void addOptions(CLI::App& app, Options& o) {
+  app.add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
+  app.add_option("--style", o.style, "expert (default), novice, or states: marks, a burn and one set")
+      ->type_name("WORD")
+      ->check(CLI::IsMember({"expert", "novice", "states"}).description(""));
+  app.add_option("--sets", o.sets, "number of sutures instead of the style's")->type_name("N")->check(wholeFrom(1, 64));
+  app.add_option("--bites", o.bites, "bites per suture instead of the style's")
+      ->type_name("N")
+      ->check(wholeFrom(1, 64));
+  app.add_option("--output", o.output, "file for the script")->type_name("FILE")->required();
+  app.add_flag("--events", o.events, "print the events, too");
 }
 
 EsgStyle novice() {
@@ -132,7 +93,7 @@ std::string headerOf(const Options& o) {
          (novice ? "  scale: 4\n" : "") + "\n";
 }
 
-int run(const Options& o) {
+void run(const Options& o) {
   const Scene scene = loadScene(resolveAddress(o.scene));
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
   ScriptRecorder rehearsal(buildModel(scene, urdf, {}), headerOf(o));
@@ -148,16 +109,16 @@ int run(const Options& o) {
   if (!file) throw Error("'" + o.output + "' cannot be written; check its folder.");
   std::printf("%.2f s of simulated time, state hash: %s\n", rehearsal.state().time,
               toHex(hash(rehearsal.state())).c_str());
-  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(parse(argc, argv));
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "vibe_plan: %s\n", error.what());
-    return 2;
-  }
+  Options options;
+  CLI::App app{
+      "Performs a sleeve gastroplasty on a scene and writes the inputs as a trainee script. The program looks\n"
+      "where the wall is before every motion.",
+      "vibe_plan"};
+  addOptions(app, options);
+  return runProgram(app, argc, argv, [&] { run(options); });
 }

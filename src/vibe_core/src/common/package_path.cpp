@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "common/own_place.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -31,10 +32,13 @@ std::filesystem::path findPackage(const std::string& package) {
     if (folder.filename() == package) candidates.push_back(folder);
   }
   for (const auto& prefix : foldersOf("CMAKE_PREFIX_PATH")) candidates.push_back(prefix / "share" / package);
+  for (const auto& prefix : ownPrefixes()) candidates.push_back(prefix / "share" / package);
   for (const auto& candidate : candidates)
     if (std::filesystem::exists(candidate / "package.xml")) return candidate;
-  throw Error("There is no package '" + package +
-              "' in ROS_PACKAGE_PATH; source the setup.bash of the workspace that has it.");
+  throw Error(
+      "There is no package '" + package +
+      "' in ROS_PACKAGE_PATH, in CMAKE_PREFIX_PATH or where this program is installed; source the setup.bash of "
+      "the workspace that has it, or set CMAKE_PREFIX_PATH to the prefix under which it is installed.");
 }
 
 }  // namespace

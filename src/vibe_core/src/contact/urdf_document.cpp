@@ -1,12 +1,11 @@
 #include "contact/urdf_document.hpp"
 
 #include <console_bridge/console.h>
+#include <tinyxml2.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <algorithm>
 #include <mutex>
 
-#include "contact/xml_scan.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -54,19 +53,32 @@ urdf::ModelInterfaceSharedPtr parseQuietly(const std::string& text, std::string&
   return model;
 }
 
+// the first element <tag name="..."> in or below the siblings that begin with `element`; null if there is none
+const tinyxml2::XMLElement* findNamed(const tinyxml2::XMLElement* element, const std::string& tag,
+                                      const std::string& name) {
+  for (; element != nullptr; element = element->NextSiblingElement()) {
+    if (tag == element->Name() && element->Attribute("name", name.c_str()) != nullptr) return element;
+    if (const auto* inside = findNamed(element->FirstChildElement(), tag, name)) return inside;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
-UrdfDocument::UrdfDocument(const std::string& text, const std::string& place) : text_(text), place_(place) {
+UrdfDocument::UrdfDocument(const std::string& text, const std::string& place)
+    : lines_(std::make_unique<tinyxml2::XMLDocument>()), place_(place) {
+  lines_->Parse(text.c_str(), text.size());
   std::string reason;
   model_ = parseQuietly(text, reason);
   if (model_ && model_->getRoot()) return;
-  if (const int line = firstBrokenTagLine(text); line > 0)
-    throw Error(place + ":" + std::to_string(line) + ": the XML of this URDF is broken here (" + reason +
-                "); close what is open and quote every value.");
+  const bool has_tags = text.find('<') != std::string::npos;
+  if (has_tags && lines_->Error())
+    throw Error(place + ":" + std::to_string(lines_->ErrorLineNum()) + ": the XML of this URDF is broken here (" +
+                reason + "); close what is open and quote every value.");
   throw Error(whereNamedIn(reason) + ": this is not a valid URDF (" + reason + "); correct that element.");
 }
 
-// urdfdom writes the names it speaks of in square brackets
+// urdfdom writes names in square brackets
 std::string UrdfDocument::whereNamedIn(const std::string& message) const {
   std::size_t begin = message.find('[');
   for (; begin != std::string::npos; begin = message.find('[', begin + 1)) {
@@ -88,16 +100,8 @@ UrdfDocument::~UrdfDocument() {
 }
 
 std::string UrdfDocument::where(const std::string& tag, const std::string& name) const {
-  for (const char quote : {'"', '\''}) {
-    const std::string attribute = "name=" + (quote + name) + quote;
-    for (std::size_t at = text_.find(attribute); at != std::string::npos; at = text_.find(attribute, at + 1)) {
-      const std::size_t open = text_.rfind('<', at);
-      if (open == std::string::npos || text_.compare(open + 1, tag.size(), tag) != 0) continue;
-      const auto line = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1;
-      return place_ + ":" + std::to_string(line);
-    }
-  }
-  return place_;
+  const tinyxml2::XMLElement* element = findNamed(lines_->RootElement(), tag, name);
+  return element == nullptr ? place_ : place_ + ":" + std::to_string(element->GetLineNum());
 }
 
 }  // namespace vibe

@@ -2,11 +2,16 @@
 #include <urdf_model/model.h>
 #include <urdf_world/types.h>
 
+#include <memory>
 #include <string>
+
+namespace tinyxml2 {
+class XMLDocument;
+}
 
 namespace vibe {
 
-/// A URDF as urdfdom reads it, with what is needed to say where in the text something is wrong.
+/// A URDF as urdfdom reads it. tinyxml2 reads the same text for the numbers of the lines in errors.
 class UrdfDocument {
  public:
   /// @param text   the URDF
@@ -25,7 +30,7 @@ class UrdfDocument {
  private:
   std::string whereNamedIn(const std::string& message) const;
 
-  std::string text_;
+  std::unique_ptr<tinyxml2::XMLDocument> lines_;
   std::string place_;
   urdf::ModelInterfaceSharedPtr model_;
 };

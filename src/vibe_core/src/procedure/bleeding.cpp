@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "common/random.hpp"
 #include "events/emit_event.hpp"
 
 namespace vibe {
@@ -10,17 +11,6 @@ namespace vibe {
 namespace {
 
 constexpr double kRounding = 1e-9;  // tolerance for the rounding of times that are sums of steps [s]
-
-// SplitMix64 (Steele, Lea & Flood 2014): gives the same numbers on every machine, unlike
-// std::uniform_real_distribution.
-double nextUniform(std::uint64_t& state) {
-  state += 0x9e3779b97f4a7c15ULL;
-  std::uint64_t z = state;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  z ^= z >> 31;
-  return static_cast<double>(z >> 11) * 0x1.0p-53;
-}
 
 Event& emitBleeding(Event::Kind kind, const Bleeding& bleeding, double time, double value, std::vector<Event>& events) {
   Event& event = emitEvent(kind, time, bleeding.particle, value, events);

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "common/random.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -19,15 +20,9 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
 
-  std::uint64_t integer() {  // SplitMix64 (Steele, Lea & Flood 2014)
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return z ^ (z >> 31);
-  }
-  double uniform() { return static_cast<double>(integer() >> 11) * 0x1.0p-53; }
+  double uniform() { return nextUniform(state_); }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  int below(int count) { return static_cast<int>(integer() % static_cast<std::uint64_t>(count)); }
+  int below(int count) { return static_cast<int>(nextInteger(state_) % static_cast<std::uint64_t>(count)); }
   double normal() {  // Box & Muller 1958
     return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(2 * kPi * uniform());
   }

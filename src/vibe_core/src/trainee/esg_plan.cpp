@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/random.hpp"
 #include "procedure/thread_events.hpp"
 #include "trainee/ik_solution.hpp"
 #include "vibe_core/common/error.hpp"
@@ -69,13 +70,7 @@ class EsgPlanResult {
 
   double nextNormal() {
     double sum = -6;
-    for (int k = 0; k < 12; ++k) {  // SplitMix64, see trainee/tremor.cpp
-      random_ += 0x9e3779b97f4a7c15ULL;
-      std::uint64_t z = random_;
-      z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-      z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-      sum += static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
-    }
+    for (int k = 0; k < 12; ++k) sum += nextUniform(random_);
     return sum;
   }
 

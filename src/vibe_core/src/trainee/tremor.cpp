@@ -2,21 +2,13 @@
 
 #include <cmath>
 
+#include "common/random.hpp"
+
 namespace vibe {
 namespace {
 
 constexpr double kTwoPi = 6.28318530717958647692;
 constexpr int kWaveCount = 6;  // enough that the sum does not look periodic within a session
-
-/// SplitMix64 (Steele, Lea & Flood 2014): the same numbers on every machine, unlike std::uniform_real_distribution.
-double nextUniform(std::uint64_t& state) {
-  state += 0x9e3779b97f4a7c15ULL;
-  std::uint64_t z = state;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  z ^= z >> 31;
-  return static_cast<double>(z >> 11) * 0x1.0p-53;
-}
 
 }  // namespace
 

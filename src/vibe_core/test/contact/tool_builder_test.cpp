@@ -76,7 +76,7 @@ class BadUrdf : public testing::TestWithParam<int> {
         {"Unquoted", replaced(good, "velocity=\"0.15\"", "velocity=\"0.15"),
          "scope.urdf:LINE: the XML of this URDF is broken here (Error reading Attributes)", "velocity=\"0.15"},
         {"WrongEndTag", replaced(good, "</collision>", "</colision>"),
-         "scope.urdf:LINE: the XML of this URDF is broken here (", "</colision>"},
+         "scope.urdf:LINE: the XML of this URDF is broken here (", "<collision"},
         {"NotANumber", replaced(good, "lower=\"0\" upper=\"0.3\"", "lower=\"0\" upper=\"0,3\""),
          "scope.urdf: this is not a valid URDF (upper value (0,3) is not a valid float); correct that element.", ""},
         {"ContinuousJoint",

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "allocation_count.hpp"
+#include "common/random.hpp"
 #include "procedure/procedure_bench.hpp"
 
 namespace vibe {
@@ -21,13 +22,7 @@ using Kind = Event::Kind;
 /// Integers that are the same everywhere (Steele, Lea & Flood 2014).
 struct Dice {
   std::uint64_t state;
-  int below(int n) {
-    state += 0x9e3779b97f4a7c15ULL;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return static_cast<int>((z ^ (z >> 31)) % static_cast<std::uint64_t>(n));
-  }
+  int below(int n) { return static_cast<int>(nextInteger(state) % static_cast<std::uint64_t>(n)); }
 };
 
 void expectSoundBite(const Bite& bite) {

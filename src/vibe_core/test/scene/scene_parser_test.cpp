@@ -157,9 +157,8 @@ TEST(SceneParser, SutureValuesThatAreAtOddsNameTheOneThatIsWritten) {
   EXPECT_ERROR(withSuture("loose_tension: 4 N"), "suture.loose_tension: is 4 N, but suture.cinch_tension is 3 N");
   EXPECT_ERROR(withSuture("loose_tension: 3 N"), "suture.loose_tension: leaves every cinch loose");
   EXPECT_ERROR(withSuture("", "brisk_probability: 0.9"), "dir/s.yaml:4: bleeding.brisk_probability: is too much");
-  EXPECT_EQ(
-      errorOf([] { withSuture("min_bites: 8, max_bites: 8, cinch_tension: 14.1", "brisk_probability: 0.75"); }),
-      "no error");
+  EXPECT_EQ(errorOf([] { withSuture("min_bites: 8, max_bites: 8, cinch_tension: 14.1", "brisk_probability: 0.75"); }),
+            "no error");
 }
 
 TEST(SceneParser, PathsAreRelativeToTheFile) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "common/random.hpp"
 #include "suture/capstan.hpp"
 
 namespace vibe::test {
@@ -10,16 +11,10 @@ namespace vibe::test {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// SplitMix64: the same problems everywhere.
+/// Numbers that are the same everywhere.
 struct Random {
   std::uint64_t state;
-  double operator()(double low, double high) {
-    state += 0x9e3779b97f4a7c15ULL;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return low + (high - low) * static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
-  }
+  double operator()(double low, double high) { return low + (high - low) * nextUniform(state); }
 };
 
 struct Problem {
