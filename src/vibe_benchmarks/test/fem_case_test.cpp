@@ -4,6 +4,7 @@
 
 #include "case_file.hpp"
 #include "scene/expect_error.hpp"
+#include "vibe_core/scene/choices.hpp"
 
 namespace vibe {
 namespace {
@@ -25,6 +26,17 @@ FemCase read(const std::string& text) {
 
 std::string good() {
   return blockCase(stretchLoads(), kRun);
+}
+
+// The words are those of scene files, in any order.
+TEST(FemCase, lawsAreThoseOfSceneFiles) {
+  for (const Choice& choice : choicesOf("tissue.law")) {
+    const std::string law = "law: " + choice.word + ", stiffening: 1";
+    EXPECT_EQ(nameOf(read(replaced(good(), "law: neo_hookean", law)).material.law), choice.word);
+  }
+  const std::string typo = replaced(good(), "law: neo_hookean", "law: yeho");
+  EXPECT_ERROR(read(typo), "material.law: 'yeho' is not known here; did you mean 'yeoh'?");
+  EXPECT_ERROR(read(replaced(good(), "law: neo_hookean", "law: fung")), "the stiffening is 0, but must be above 0");
 }
 
 TEST(FemCase, readsABlock) {

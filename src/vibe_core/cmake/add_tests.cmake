@@ -20,3 +20,9 @@ foreach(source ${TEST_SOURCES})
                                              VIBE_DESCRIPTION_DIR="${CMAKE_CURRENT_SOURCE_DIR}/../vibe_description")
   target_link_libraries(${test} vibe_core vibe_core_options ${BULLET_LIBRARIES} PkgConfig::URDFDOM)
 endforeach()
+
+# CHOLMOD checks the sparse factor; only this test links it
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+target_include_directories(cholmod_test SYSTEM PRIVATE ${CHOLMOD_INCLUDE_DIR})
+target_link_libraries(cholmod_test ${CHOLMOD_LIBRARY})

@@ -2,6 +2,7 @@
 
 #include "fem/case_reader.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/scene/choices.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
 
 namespace vibe {
@@ -10,16 +11,11 @@ namespace {
 constexpr double kHuge = 1e12;
 
 void readMaterial(const CaseReader& reader, const YamlField& field, FemCase& out) {
-  static const std::vector<std::string> laws = {"neo_hookean", "stable_neo_hookean", "macklin_mueller", "fung", "gent",
-                                                "yeoh"};
+  std::vector<std::string> laws;
+  for (const Choice& choice : choicesOf("tissue.law")) laws.push_back(choice.word);
   Material& m = out.material;
   reader.readMap(field, {"law", "young_modulus", "poisson_ratio"},
-                 {{"law",
-                   [&](const YamlField& f) {
-                     const std::string law = reader.source().choice(f, laws);
-                     for (std::size_t i = 0; i < laws.size(); ++i)
-                       if (laws[i] == law) m.law = static_cast<Law>(i);
-                   }},
+                 {{"law", [&](const YamlField& f) { m.law = lawByName(reader.source().choice(f, laws)); }},
                   {"young_modulus", [&](const YamlField& f) { m.young_modulus = reader.number(f, "Pa", 0, kHuge); }},
                   {"poisson_ratio", [&](const YamlField& f) { m.poisson_ratio = reader.number(f, "1", -1, 0.5); }},
                   {"stiffening", [&](const YamlField& f) { m.stiffening = reader.number(f, "1", 0, kHuge); }}});

@@ -2,7 +2,7 @@
 #include <array>
 #include <vector>
 
-#include "solver/energy_term.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {
 

@@ -88,7 +88,7 @@ class MatchedWall {
     return force;
   }
 
-  int substeps() const { return simulation_.model().scene.tissue.substeps * kStepsPerFrame; }
+  int substeps() const { return simulation_.model().substeps * kStepsPerFrame; }
 
  private:
   Eigen::Vector3d place(int n) const {

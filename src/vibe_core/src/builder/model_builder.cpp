@@ -38,7 +38,8 @@ Eigen::Isometry3d poseFromRpy(const Eigen::Vector3d& position, const std::array<
   return pose;
 }
 
-// x along the entry, z as near to the patient's front as possible: "up" on the image is anterior at rotation 0
+// x points along the entry, z as far to the front of the patient as possible: "up" in the image is anterior at
+// rotation 0
 Eigen::Isometry3d poseFromAnatomy(const Organ& organ) {
   const Eigen::Vector3d x = organ.entry_axis.normalized();
   Eigen::Vector3d z = organ.landmarks.anterior - x.dot(organ.landmarks.anterior) * x;
@@ -85,8 +86,8 @@ std::vector<double> placesAlong(const Organ& organ) {
   return along;
 }
 
-// The gas is an explicit spring on the volume: where it is compressed in a small or light organ a sub-step can be too
-// long. h^2 dp/dV sum(a^2 / m) of the breathing mode, in which the wall takes hardly part, has the wall's limit.
+// The gas acts as an explicit spring on the volume. In a small or light organ, a substep can be too long for it: in the
+// breathing mode, to which the wall contributes little, h^2 dp/dV sum(a^2 / m) has the same limit as for the wall.
 int substepsForGas(const Model& model) {
   if (!model.scene.gas) return 1;
   double compliance = 0;
@@ -125,7 +126,8 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   const TissueAndSolver made = makeTissue(model.scene, model.organ, model.mass, model.area, for_gas);
   model.tissue = made.tissue;
   model.solver = made.solver;
-  if (model.solver->usesSubsteps()) checkSubstepsForGas(model.scene.tissue.substeps, for_gas);
+  model.substeps = made.substeps;
+  if (model.solver->usesSubsteps()) checkSubstepsForGas(model.substeps, for_gas);
   if (model.scene.scope) addTool(tool_urdf, model);
   if (model.scene.marking) model.dose_law.emplace(model.scene.marking->apc);
   if (model.scene.suture) model.along = placesAlong(model.organ);
@@ -138,9 +140,9 @@ std::string softnessWarning(const Model& model) {
   if (ratio > 0.999) return "";
   char text[160];
   std::snprintf(text, sizeof text,
-                "Somewhere the wall has %.0f %% of its stiffness; raise tissue.substeps from %d to %.0f, or lower "
+                "The wall has only %.0f %% of its stiffness in places; raise tissue.substeps from %d to %.0f, or lower "
                 "tissue.stiffness_damping.",
-                100 * ratio, model.scene.tissue.substeps, std::ceil(model.scene.tissue.substeps / std::sqrt(ratio)));
+                100 * ratio, model.substeps, std::ceil(model.substeps / std::sqrt(ratio)));
   return text;
 }
 

@@ -26,7 +26,7 @@ constexpr double kOesophagusRadius = 10e-3;  // [m] of the held patch of an impo
 constexpr double kPylorusRadius = 9e-3;      // [m]
 constexpr double kScopeRadius = 6e-3;        // [m]
 constexpr int kScopeRays = 8;                // along the surface of the scope
-constexpr int kDirections = 2000;            // tried for the scope's way in
+constexpr int kDirections = 2000;            // that are tried for the scope
 
 void checkParticles(int particles) {
   if (particles < kFewestParticles || particles > kMaxParticles) {
@@ -49,7 +49,7 @@ Eigen::Vector3d centroid(const SurfaceMesh& mesh) {
   return o + sum / volume;
 }
 
-/// Applies p -> factor * p + shift to everything in the organ that has a place.
+/// Applies p -> factor * p + shift to all positions in the organ.
 void transform(Organ& organ, double factor, const Eigen::Vector3d& shift) {
   Landmarks& l = organ.landmarks;
   for (Eigen::Vector3d* p : {&l.oesophagus, &l.fundus, &l.incisura, &l.pylorus, &organ.entry}) *p = factor * *p + shift;
@@ -96,7 +96,7 @@ void markPatch(Organ& organ, const Eigen::Vector3d& point, double radius, End en
   organ.end[nearest] = end;
 }
 
-/// How far a scope gets from `start` along `direction` before its surface meets the wall [m].
+/// How far a scope can move from `start` along `direction` before its surface touches the wall [m].
 double clearLength(const TriangleTree& tree, const Eigen::Vector3d& start, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d side = direction.unitOrthogonal();
   double clear = tree.firstHit(start, direction);
@@ -107,7 +107,7 @@ double clearLength(const TriangleTree& tree, const Eigen::Vector3d& start, const
   return clear;
 }
 
-/// The direction from a hole in the wall in which a straight scope gets farthest.
+/// The direction in which a straight scope can move farthest from a hole in the wall.
 Eigen::Vector3d longestWayIn(const SurfaceMesh& mesh, const Eigen::Vector3d& entry) {
   const TriangleTree tree(mesh);
   const auto& wall = mesh.triangles[tree.closest(entry).triangle];

@@ -1,41 +1,52 @@
 #include "vibe_core/builder/tissue_registry.hpp"
 
+#include <map>
+#include <mutex>
+
+#include "constraints/attachment.hpp"
+#include "constraints/foundation.hpp"
 #include "dynamics/implicit_solver.hpp"
 #include "dynamics/xpbd_solver.hpp"
-#include "scene/attachments.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shell_tissue.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/scene/choices.hpp"
+#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/tissue_model_list.hpp"
 
 namespace vibe {
 
 namespace {
 
-using Factory = TissueAndSolver (*)(Scene&, const Organ&, const std::vector<double>&, const std::vector<double>&, int);
+constexpr const char* kKey = "tissue.model";
 
-TissueAndSolver makeShapeMatching(Scene& scene, const Organ& organ, const std::vector<double>& masses,
-                                  const std::vector<double>& areas, int at_least) {
-  auto tissue = std::make_shared<const ShapeMatching>(organ, scene.tissue, masses, areas, scene.step_period, at_least);
-  scene.tissue.substeps = tissue->substeps();
-  return {tissue, std::make_shared<const XpbdSolver>(tissue)};
+TissueAndSolver makeShapeMatching(const TissueRequest& request) {
+  const Scene& scene = request.scene;
+  auto tissue = std::make_shared<const ShapeMatching>(request.organ, scene.tissue, request.masses, request.areas,
+                                                      scene.step_period, request.min_substeps);
+  return {tissue, std::make_shared<const XpbdSolver>(tissue), tissue->substeps()};
 }
 
-TissueAndSolver makeShell(Scene& scene, const Organ& organ, const std::vector<double>& masses,
-                          const std::vector<double>& areas, int) {
-  const std::size_t n = masses.size();
+ElasticBody shellBody(const TissueRequest& request) {
+  const Scene& scene = request.scene;
   ElasticBody body;
-  for (std::size_t i = 0; i < n; ++i) body.fixed.push_back(isHeld(scene, organ.end[i]) ? 1 : 0);
-  auto tissue = std::make_shared<const ShellTissue>(scene.tissue, organ, body.fixed);
-  body.elements = tissue->elements();
-  body.shell = tissue->elements().get();
-  body.rest.assign(organ.surface.vertices.begin(), organ.surface.vertices.end());
-  body.mass = masses;
-  if (scene.foundation)
-    for (double area : areas) body.foundation.push_back(scene.foundation->stiffness * area);
+  body.fixed = attachedNodes(scene, request.organ);
+  body.rest.assign(request.organ.surface.vertices.begin(), request.organ.surface.vertices.end());
+  body.mass = request.masses;
+  body.foundation = foundationSprings(scene, request.areas);
   const bool carried = scene.foundation && scene.foundation->carries_weight;
   if (scene.gravity && !carried) body.gravity = scene.gravity->acceleration;
   body.mass_damping = scene.tissue.mass_damping;
   body.stiffness_damping = scene.tissue.stiffness_damping;
+  return body;
+}
+
+TissueAndSolver makeShell(const TissueRequest& request) {
+  const Scene& scene = request.scene;
+  ElasticBody body = shellBody(request);
+  auto tissue = std::make_shared<const ShellTissue>(scene.tissue, request.organ, body.fixed);
+  body.elements = tissue->elements();
+  body.shell = tissue->elements().get();
   StepSettings settings;
   settings.step = scene.step_period;
   settings.iterations = scene.tissue.iterations;
@@ -43,30 +54,49 @@ TissueAndSolver makeShell(Scene& scene, const Organ& organ, const std::vector<do
   return {tissue, std::make_shared<const ImplicitSolver>(tissue->elements(), std::move(body), settings)};
 }
 
-struct Entry {
-  const char* name;
-  Factory make;
+struct Registry {
+  std::mutex mutex;
+  std::map<std::string, TissueFactory> factories;
 };
 
-// A new tissue model is one line here, its own two files, and a test.
-constexpr Entry kEntries[] = {{"shape_matching", makeShapeMatching}, {"shell", makeShell}};
+Registry& registry() {
+#define VIBE_FACTORY(name, word, meaning) {#word, make##name},
+  static Registry registry{{}, {VIBE_TISSUE_MODELS(VIBE_FACTORY)}};
+#undef VIBE_FACTORY
+  return registry;
+}
+
+/// An empty function for an unknown name.
+TissueFactory factoryOf(const std::string& name) {
+  Registry& all = registry();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  const auto factory = all.factories.find(name);
+  return factory == all.factories.end() ? TissueFactory() : factory->second;
+}
 
 }  // namespace
 
 std::vector<std::string> tissueModelNames() {
   std::vector<std::string> names;
-  for (const Entry& entry : kEntries) names.emplace_back(entry.name);
+  for (const Choice& choice : choicesOf(kKey)) names.push_back(choice.word);
   return names;
 }
 
-TissueAndSolver makeTissue(Scene& scene, const Organ& organ, const std::vector<double>& masses,
-                           const std::vector<double>& areas, int at_least) {
-  std::string known;
-  for (const Entry& entry : kEntries) {
-    if (scene.tissue.model == entry.name) return entry.make(scene, organ, masses, areas, at_least);
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
-  }
-  throw Error("tissue.model '" + scene.tissue.model + "' is unknown; use one of: " + known + ".");
+void registerTissueModel(const std::string& name, const std::string& meaning, TissueFactory factory) {
+  if (!factory) throw Error("tissue model '" + name + "': there is no factory; pass one");
+  Registry& all = registry();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  addChoice(kKey, {name, meaning});
+  all.factories.emplace(name, std::move(factory));
+}
+
+TissueAndSolver makeTissue(const Scene& scene, const Organ& organ, const std::vector<double>& masses,
+                           const std::vector<double>& areas, int min_substeps) {
+  const TissueFactory factory = factoryOf(scene.tissue.model);
+  if (!factory)
+    throw Error(std::string(kKey) + " '" + scene.tissue.model + "' is unknown; " +
+                suggestKey(scene.tissue.model, tissueModelNames()));
+  return factory({scene, organ, masses, areas, min_substeps});
 }
 
 }  // namespace vibe

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "solver/energy_term.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/elastic_body.hpp"
-#include "solver/energy_term.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe {

@@ -4,6 +4,7 @@
 
 #include "dynamics/implicit_step.hpp"
 #include "tissue/shell.hpp"
+#include "vibe_core/constraints/constraint_registry.hpp"
 
 namespace vibe {
 
@@ -23,15 +24,8 @@ ImplicitSolver::ImplicitSolver(std::shared_ptr<const ShellElements> shell, Elast
 std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) const {
   auto scratch = std::make_unique<ImplicitScratch>();
   scratch->stepper = stepper_.makeScratch();
-  for (auto* v : {&scratch->ahead_x, &scratch->ahead_y, &scratch->ahead_z})
-    v->resize(static_cast<std::size_t>(model.particle_count));
-  if (model.tool) {
-    scratch->collision = std::make_unique<ToolCollision>(*model.tool);
-    scratch->response = std::make_unique<ImpedanceEstimator>(stepper_.body(), model.scene.step_period);
-  }
-  if (model.scene.tissue.self_contact)
-    scratch->walls =
-        std::make_unique<SelfContact>(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus);
+  scratch->blocks = makeConstraintBlocks(model);
+  if (model.tool) scratch->impedance = std::make_unique<ImpedanceEstimator>(stepper_.body(), model.scene.step_period);
   return scratch;
 }
 

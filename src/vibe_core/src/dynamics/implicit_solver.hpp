@@ -10,8 +10,8 @@ namespace vibe {
 
 class ShellElements;
 
-/// The tissue of a scene by implicit steps: one step of ImplicitStepper per step of the simulator. The tool's contacts
-/// and what the helix holds are conditions; the gas is part of the energy.
+/// Advances the tissue of a scene by implicit steps: one step of ImplicitStepper per step of the simulator. What acts
+/// on the tissue comes from constraint blocks, see constraint_registry.hpp.
 class ImplicitSolver : public Solver {
  public:
   /// @param shell  the wall, on the particles
@@ -25,7 +25,7 @@ class ImplicitSolver : public Solver {
  private:
   std::shared_ptr<const ShellElements> shell_;
   ImplicitStepper stepper_;
-  double absurd_energy_ = 0;  // no load of a procedure stores so much [J]
+  double absurd_energy_ = 0;  // above what any load of a procedure stores [J]
 };
 
 }  // namespace vibe

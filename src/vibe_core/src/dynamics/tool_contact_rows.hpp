@@ -1,12 +1,14 @@
 #pragma once
 
-#include "dynamics/implicit_step.hpp"
+#include "contact/tool_motion.hpp"
+#include "dynamics/implicit_scratch.hpp"
+#include "vibe_core/model/model.hpp"
 
 namespace vibe {
 
-/// What the step just taken tells about the tool in the tissue: rows in force, forces and where they hold; goes to
-/// scratch.touch.
+/// The touches of the last step as rows for the tool's impedance, with the motion of their targets per motion of the
+/// tool: from scratch.touches to scratch.tool_rows.
 void findToolContactRows(const Model& model, const ToolMotion& motion, const ImplicitStepper& stepper,
-                         const StepReport& report, const State& state, ImplicitScratch& scratch);
+                         const StepReport& report, ImplicitScratch& scratch);
 
 }  // namespace vibe

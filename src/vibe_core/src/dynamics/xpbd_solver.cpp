@@ -3,25 +3,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/gas.hpp"
+#include "constraints/foundation.hpp"
 #include "contact/tool_motion.hpp"
 #include "dynamics/xpbd_scratch.hpp"
 #include "dynamics/xpbd_substep.hpp"
 #include "vibe_core/common/thread_pool.hpp"
+#include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
 
 std::unique_ptr<SolverScratch> XpbdSolver::makeScratch(const Model& model) const {
+  rejectAddedConstraints(model);
   auto scratch = std::make_unique<XpbdScratch>();
   const std::size_t n = static_cast<std::size_t>(model.particle_count);
   for (auto* v :
        {&scratch->old_x, &scratch->old_y, &scratch->old_z, &scratch->ahead_x, &scratch->ahead_y, &scratch->ahead_z})
     v->resize(n);
-  const double foundation = model.scene.foundation ? model.scene.foundation->stiffness : 0;
-  for (std::size_t i = 0; i < n; ++i)
-    scratch->foundation_rate.push_back(foundation * model.area[i] * model.inverse_mass[i]);
+  const std::vector<double> foundation = foundationSprings(model.scene, model.area);
+  scratch->foundation_rate.assign(n, 0);
+  for (std::size_t i = 0; i < foundation.size(); ++i)
+    scratch->foundation_rate[i] = foundation[i] * model.inverse_mass[i];
   scratch->buffers = makeSweepBuffers(tissue_->clusters());
   scratch->sweep_function = chooseClusterSweep();
   if (model.tool) scratch->collision = std::make_unique<ToolCollision>(*model.tool);
@@ -32,7 +35,7 @@ void XpbdSolver::advance(const Model& model, const ToolMotion* motion, bool insu
                          SolverScratch& scratch, ThreadPool& pool, StepReport& report) const {
   XpbdSubstep substep(model, tissue_->clusters(), motion, insufflator_on, state, static_cast<XpbdScratch&>(scratch),
                       pool, report);
-  const int count = model.scene.tissue.substeps;
+  const int count = model.substeps;
   for (int i = 0; i < count; ++i) substep.run(i, count);
   substep.finish(count);
 }

@@ -7,7 +7,7 @@
 namespace vibe {
 
 /// Extended position-based dynamics with small steps (Macklin et al. 2016, 2019) for shape matching: in each of
-/// scene.tissue.substeps sub-steps one sweep over all clusters, move, hold the grip, push out of the tool, derive
+/// model.substeps sub-steps one sweep over all clusters, move, hold the grip, push out of the tool, derive
 /// velocities. The lumen's volume and its derivative come from the sweep. Forces on the tool are impulses over the
 /// step: (mass * correction) / sub-step^2, averaged.
 class XpbdSolver : public Solver {

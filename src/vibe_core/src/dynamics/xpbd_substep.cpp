@@ -3,17 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/depenetration.hpp"
 #include "constraints/gas.hpp"
+#include "contact/deepest_contact.hpp"
 #include "contact/tool_motion.hpp"
+#include "model/max_speed.hpp"
+#include "model/tool_push.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr int kGrain = 64;                   // cluster groups per piece of parallel work
-constexpr int kCandidateInterval = 10;       // sub-steps between searches for contact candidates
-constexpr double kDepenetrationSpeed = 0.1;  // a particle found inside the tool is pushed out no faster [m/s]
-constexpr double kMaxSpeed = 50;  // far above any wave in tissue; beyond it a speed is limited and reported [m/s]
+// Cluster groups per piece of parallel work. Design choice: a piece takes some ten microseconds, long beside the cost
+// of handing it to a thread. Fixed, so that sums do not depend on the number of threads.
+constexpr int kGrain = 64;
+// Sub-steps between searches for contact candidates. Design choice: a search costs about as much as ten evaluations of
+// its candidates.
+constexpr int kCandidateInterval = 10;
+// Largest distance that tissue may travel between two searches. Design choice: faster tissue is about to be slowed by
+// kMaxSpeed, and a longer reach would make every particle a candidate [m].
+constexpr double kMaxTravel = 0.01;
+// Added to the reach of a search. Design choice: covers accelerations between two searches [m].
+constexpr double kCandidateMargin = 1e-3;
+// Above this a particle is slowed down, and an event reports it. Design choice: far above the speed of any elastic wave
+// in soft tissue (shear waves: 1 to 10 m/s), so that only an unstable step gets there [m/s].
+constexpr double kMaxSpeed = 50;
 
 }  // namespace
 
@@ -27,7 +41,7 @@ XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const T
       pool_(pool),
       report_(report),
       scratch_(scratch),
-      h_(model.scene.step_period / model.scene.tissue.substeps),
+      h_(model.scene.step_period / model.substeps),
       inverse_h_(1 / h_),
       stiffness_damping_(model.scene.tissue.stiffness_damping),
       weight_(model.unbalanced_gravity) {
@@ -63,13 +77,9 @@ void XpbdSubstep::moveTool(int index, int count) {
 void XpbdSubstep::findCandidates(int index, int count) {
   const int last = std::min(index + kCandidateInterval, count);
   motion_->linkPoses(static_cast<double>(last) / count, scratch_.ahead_poses);
-  double fastest2 = 0;
-  for (int i = 0; i < model_.particle_count; ++i)
-    fastest2 =
-        std::max(fastest2, state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i]);
-  const double tissue_travel = std::min(2 * std::sqrt(fastest2) * h_ * kCandidateInterval, 0.01);
+  const double tissue_travel = std::min(2 * std::sqrt(maxSpeedSquared(state_)) * h_ * kCandidateInterval, kMaxTravel);
   const double reach =
-      model_.particle_radius + motion_->travel(scratch_.poses, scratch_.ahead_poses) + tissue_travel + 1e-3;
+      model_.particle_radius + motion_->travel(scratch_.poses, scratch_.ahead_poses) + tissue_travel + kCandidateMargin;
   scratch_.collision->findCandidates(scratch_.poses, state_.x.data(), state_.y.data(), state_.z.data(),
                                      model_.particle_count, reach);
 }
@@ -144,7 +154,7 @@ void XpbdSubstep::holdGrip() {
     shiftParticle(i, shift);
     const Eigen::Vector3d force = model_.mass[i] / (h_ * h_) * shift;  // tool on tissue
     report_.grip_force -= force;
-    pushTool(-force, target, target - old_helix * point.local);
+    pushTool(-force, target, target - old_helix * point.local, tip(), report_, state_.energy);
   }
 }
 
@@ -153,16 +163,12 @@ void XpbdSubstep::resolveContacts() {
   const auto& contacts = scratch_.collision->findContacts(scratch_.poses, state_.x.data(), state_.y.data(),
                                                           state_.z.data(), model_.particle_radius);
   int touched = 0;
-  for (std::size_t first = 0, next; first < contacts.size(); first = next) {
-    // contacts come by particle; where shapes overlap, the deepest leads out of both
-    std::size_t deepest = first;
-    for (next = first + 1; next < contacts.size() && contacts[next].particle == contacts[first].particle; ++next)
-      if (contacts[next].distance < contacts[deepest].distance) deepest = next;
+  forEachDeepest(contacts, [&](const Contact& contact) {
     // the ends are open where the organ goes on: the scope passes through their closing surface
-    if (model_.organ.end[contacts[deepest].particle] != End::None) continue;
-    pushOut(contacts[deepest]);
+    if (model_.organ.end[contact.particle] != End::None) return;
+    pushOut(contact);
     ++touched;
-  }
+  });
   report_.contact_count = std::max(report_.contact_count, touched);
 }
 
@@ -183,14 +189,7 @@ void XpbdSubstep::pushOut(const Contact& contact) {
   const double sliding = tangential.norm();
   if (sliding > 0) shift -= std::min(1.0, model_.scene.scope->friction * depth / sliding) * tangential;
   shiftParticle(i, shift);
-  pushTool(-model_.mass[i] / (h_ * h_) * shift, p, tool_step);
-}
-
-// force: tissue on tool [N] at a point in world; tool_step: how far the tool moved there in this sub-step [m]
-void XpbdSubstep::pushTool(const Eigen::Vector3d& force, const Eigen::Vector3d& at, const Eigen::Vector3d& tool_step) {
-  report_.tool_force += force;
-  report_.tool_torque += (at - scratch_.poses[model_.tip_link].translation()).cross(force);
-  state_.energy.tool_work -= force.dot(tool_step);
+  pushTool(-model_.mass[i] / (h_ * h_) * shift, p, tool_step, tip(), report_, state_.energy);
 }
 
 // A displacement imposed on a particle is an impulse.

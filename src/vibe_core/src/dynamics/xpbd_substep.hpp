@@ -35,7 +35,7 @@ class XpbdSubstep {
   void limitSpeeds();
   void limitSpeed(int i, double speed2);
   void lookAhead();
-  void pushTool(const Eigen::Vector3d& impulse_force, const Eigen::Vector3d& at, const Eigen::Vector3d& tool_step);
+  Eigen::Vector3d tip() const { return scratch_.poses[model_.tip_link].translation(); }
   void accountDamping(double decay);
 
   const Model& model_;

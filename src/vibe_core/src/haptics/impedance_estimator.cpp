@@ -178,16 +178,15 @@ void ImpedanceEstimator::make(const ImpedanceBasis& basis, Made& out) const {
   out.mass.setZero();
   out.usable = out.stiffness->make(basis.positions);
   if (!out.usable) return;
-  std::vector<ConstraintRow> rows(basis.node.size());
-  Eigen::MatrixXd motion(static_cast<Eigen::Index>(rows.size()), kToolMotions);
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    rows[r].node.assign(1, basis.node[r]);
-    rows[r].coefficient.assign(1, basis.direction[r]);
+  ConstraintRows rows;
+  Eigen::MatrixXd motion(static_cast<Eigen::Index>(basis.node.size()), kToolMotions);
+  for (std::size_t r = 0; r < basis.node.size(); ++r) {
+    rows.equations.add().form.setNode(basis.node[r], basis.direction[r]);
     for (std::size_t m = 0; m < kToolMotions; ++m) motion(static_cast<Eigen::Index>(r), m) = basis.row_motion[r][m];
   }
   out.stiffness->setRows(rows);
   out.stiffness->setGas(basis.gas_direction, basis.gas_stiffness);
-  if (body_.mass_damping > 0 && !rows.empty()) out.mass = out.stiffness->movingMass(motion);
+  if (body_.mass_damping > 0 && rows.count() > 0) out.mass = out.stiffness->movingMass(motion);
 }
 
 bool ImpedanceEstimator::farFrom(const std::vector<float>& linearization_point,
@@ -202,11 +201,10 @@ bool ImpedanceEstimator::farFrom(const std::vector<float>& linearization_point,
 }
 
 void ImpedanceEstimator::setRows(const ToolContactRows& touch) {
-  rows_.resize(touch.rows.size());
-  motion_.resize(static_cast<Eigen::Index>(rows_.size()), kToolMotions);
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    rows_[r].node.assign(1, touch.rows[r].node);
-    rows_[r].coefficient.assign(1, touch.rows[r].direction);
+  rows_.equations.clear();
+  motion_.resize(static_cast<Eigen::Index>(touch.rows.size()), kToolMotions);
+  for (std::size_t r = 0; r < touch.rows.size(); ++r) {
+    rows_.equations.add().form.setNode(touch.rows[r].node, touch.rows[r].direction);
     motion_.row(static_cast<Eigen::Index>(r)) = touch.rows[r].motion;
   }
 }

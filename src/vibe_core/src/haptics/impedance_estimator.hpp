@@ -88,7 +88,7 @@ class ImpedanceEstimator {
   Made* present_ = nullptr;     // of the memory's current basis; null: not usable
   std::future<void> making_;    // of next_
   ImpedanceBasis next_basis_;   // read by `making_`
-  std::vector<ConstraintRow> rows_;
+  ConstraintRows rows_;
   Eigen::MatrixXd motion_;               // (rows x kToolMotions)
   Eigen::MatrixXd solved_;               // force of each row per motion (rows x kToolMotions)
   Eigen::LDLT<Eigen::MatrixXd> factor_;  // of the rows' compliance

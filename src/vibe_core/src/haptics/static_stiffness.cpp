@@ -41,7 +41,7 @@ void StaticStiffness::setGas(const std::vector<float>& direction4, double stiffn
   schur_.setGas(direction4.data(), stiffness, factor_);
 }
 
-void StaticStiffness::setRows(const std::vector<ConstraintRow>& rows) {
+void StaticStiffness::setRows(const ConstraintRows& rows) {
   schur_.setRows(rows, factor_);
 }
 

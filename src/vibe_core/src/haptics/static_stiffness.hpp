@@ -21,7 +21,7 @@ class StaticStiffness {
   /// none.
   void setGas(const std::vector<float>& direction4, double stiffness);
   /// Sets the rows, all equations. Nodes that had rows before cost nothing.
-  void setRows(const std::vector<ConstraintRow>& rows);
+  void setRows(const ConstraintRows& rows);
 
   /// Compliance between the rows [m/N].
   const Eigen::MatrixXd& compliance() const { return schur_.compliance(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "constraints/gas.hpp"
+#include "contact/deepest_contact.hpp"
 #include "geometry/lumen.hpp"
 
 namespace vibe {
@@ -89,16 +90,12 @@ void MarkingTouch::find(const State& state, const std::vector<double>& x, const 
   const double radius = model_.particle_radius;
   collision_.findCandidates(poses_, x.data(), y.data(), z.data(), model_.particle_count, radius);
   const auto& contacts = collision_.findContacts(poses_, x.data(), y.data(), z.data(), radius);
-  for (std::size_t first = 0, next; first < contacts.size(); first = next) {
-    std::size_t deepest = first;  // of a particle in several shapes
-    for (next = first + 1; next < contacts.size() && contacts[next].particle == contacts[first].particle; ++next)
-      if (contacts[next].distance < contacts[deepest].distance) deepest = next;
-    const Contact& contact = contacts[deepest];
+  forEachDeepest(contacts, [&](const Contact& contact) {
     const int i = contact.particle;
     // the ends are open where the organ goes on
-    if (model_.organ.end[i] != End::None || !(model_.inverse_mass[i] > 0)) continue;
+    if (model_.organ.end[i] != End::None || !(model_.inverse_mass[i] > 0)) return;
     touches.push_back({i, Eigen::Vector3d(x[i], y[i], z[i]) + (radius - contact.distance) * contact.normal});
-  }
+  });
 }
 
 }  // namespace vibe

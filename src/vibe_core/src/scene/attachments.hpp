@@ -5,7 +5,7 @@
 
 namespace vibe {
 
-/// Whether the scene holds the particles of this end in place.
+/// Whether the scene fixes the particles of this end.
 inline bool isHeld(const Scene& scene, End end) {
   return (end == End::Oesophagus && scene.attach_oesophagus) || (end == End::Duodenum && scene.attach_duodenum);
 }

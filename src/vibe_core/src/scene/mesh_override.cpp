@@ -14,7 +14,7 @@
 namespace vibe {
 namespace {
 
-/// Keys of `geometry` that say how to read a surface; the sidecar has them at its top level.
+/// Keys of `geometry` that describe a surface file; a sidecar file has them at its top level.
 const std::vector<std::string> kSidecarKeys{"unit", "target_volume", "rotation_rpy", "landmarks"};
 const std::vector<std::string> kLandmarkKeys{"oesophagus", "fundus", "incisura", "pylorus"};
 
@@ -51,7 +51,7 @@ std::string missingLandmarks(const GeometryScene& geometry) {
 }
 
 void checkComplete(const GeometryScene& geometry, const std::string& mesh_file) {
-  // A target volume sets the scale by itself.
+  // A target volume determines the scale without a unit.
   const bool lacks_unit = geometry.unit == 0 && geometry.target_volume == 0 && !statesMetres(mesh_file);
   const std::string points = missingLandmarks(geometry);
   if (!lacks_unit && points.empty()) return;

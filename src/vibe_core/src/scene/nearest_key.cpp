@@ -6,7 +6,7 @@
 namespace vibe {
 namespace {
 
-/// Longer words come from broken files; comparing them costs time and helps nobody.
+/// Longer words come from broken files and are not compared, which would be slow.
 constexpr std::size_t kLongestWord = 64;
 
 std::string normalised(const std::string& word) {
@@ -39,7 +39,7 @@ int editDistance(const std::string& a, const std::string& b) {
 std::string nearestKey(const std::string& word, const std::vector<std::string>& candidates) {
   const std::string wanted = normalised(word);
   std::string best;
-  // Two slips in a short word, a third of a long one; beyond that a guess is more confusing than none.
+  // At most two edits in a short word, or a third of a long one; a farther guess would confuse.
   int best_distance = std::max(2, static_cast<int>(wanted.size()) / 3) + 1;
   for (const std::string& candidate : candidates) {
     const int distance = editDistance(wanted, normalised(candidate));

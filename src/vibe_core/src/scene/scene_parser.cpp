@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 
+#include "scene/renamed_keys.hpp"
 #include "scene/scene_value.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
@@ -31,7 +32,7 @@ bool isPackagePath(const std::string& path) {
   return path.rfind("package://", 0) == 0;
 }
 
-/// What stands in one file, collected into a Scene.
+/// Reads one file into a Scene.
 class SceneReader {
  public:
   explicit SceneReader(const YamlSource& source) : source_(source) {}
@@ -48,7 +49,7 @@ class SceneReader {
     return scene_;
   }
 
-  /// @throws Error if a file that the scene names is not there
+  /// @throws Error if a file that the scene names does not exist
   void checkFiles() const {
     const auto mesh = seen_.find("geometry.file");
     if (mesh != seen_.end()) checkFile(mesh->second, scene_.geometry.file);
@@ -77,6 +78,8 @@ class SceneReader {
   }
 
   [[noreturn]] void failUnknown(const std::string& section, const YamlField& field) const {
+    if (const char* name = newNameOf(field.path))
+      source_.fail(field, "has a new name; write it as '" + std::string(name) + "'");
     const std::vector<std::string> here = keysIn(section);
     if (nearestKey(field.key, here).empty()) {
       for (const SchemaRow& row : sceneSchema()) {
@@ -120,10 +123,10 @@ class SceneReader {
     }
   }
 
-  /// Values that are right alone but not together.
+  /// Checks values against each other.
   void checkProcedure() const {
     if (const auto& suture = scene_.suture) {
-      checkOrder("suture.least_bites", suture->min_bites, "suture.most_bites", suture->max_bites);
+      checkOrder("suture.min_bites", suture->min_bites, "suture.max_bites", suture->max_bites);
       checkOrder("suture.loose_tension", suture->loose_tension, "suture.cinch_tension", suture->cinch_tension);
       checkOrder("suture.cinch_tension", suture->cinch_tension, "suture.thread_strength", suture->thread_strength);
       if (suture->loose_tension == suture->cinch_tension) {
@@ -142,7 +145,7 @@ class SceneReader {
     }
   }
 
-  /// Of two keys at odds with each other the one that the user wrote; the other may be a default.
+  /// Of two keys that contradict each other, the one that the user wrote; the other may be a default.
   const YamlField& written(const std::string& key, const std::string& other) const {
     const auto field = seen_.find(key);
     return field != seen_.end() ? field->second : seen_.at(other);
@@ -170,7 +173,7 @@ class SceneReader {
   }
 };
 
-/// Small for a scene, large enough for any comment: no scene needs more than a few kilobytes.
+/// The default limits: a scene needs a few kilobytes, so they leave room for any comment.
 constexpr YamlLimits kSceneLimits{};
 
 }  // namespace

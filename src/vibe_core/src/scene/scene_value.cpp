@@ -3,7 +3,7 @@
 namespace vibe {
 namespace {
 
-/// Lengths in an imported file have the file's unit, so that none may be written.
+/// Lengths of an imported file are in the unit of that file, so no unit may be written.
 std::string unitOf(const SchemaRow& row) {
   return std::string(row.unit) == "file units" ? "1" : row.unit;
 }
@@ -13,7 +13,7 @@ Eigen::Vector3d readVector(const YamlSource& source, const YamlField& field, con
   return {values[0], values[1], values[2]};
 }
 
-/// Reads the value of each type that a row can have.
+/// Reads a value of each type that a row can have.
 struct Reader {
   const YamlSource& source;
   const YamlField& field;
@@ -21,7 +21,8 @@ struct Reader {
   Scene& scene;
 
   void operator()(std::string& (*at)(Scene&)) const {
-    at(scene) = row.words.empty() ? source.text(field) : source.choice(field, row.words);
+    const std::vector<std::string> words = wordsOf(row);
+    at(scene) = words.empty() ? source.text(field) : source.choice(field, words);
   }
   void operator()(bool& (*at)(Scene&)) const { at(scene) = source.boolean(field); }
   void operator()(int& (*at)(Scene&)) const { at(scene) = static_cast<int>(integer()); }
@@ -51,7 +52,7 @@ std::string vectorText(const Vector& value) {
   return "[" + showQuantity(value[0], "") + ", " + showQuantity(value[1], "") + ", " + showQuantity(value[2], "") + "]";
 }
 
-/// Single quotes keep every printable text as it is.
+/// In single quotes YAML keeps every printable text unchanged.
 std::string quotedText(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);

@@ -21,7 +21,7 @@ bool isWritten(const SchemaRow& row, Scene& full) {
 }  // namespace
 
 std::string toYaml(const Scene& scene) {
-  Scene full = completeScene(scene);  // rows reach into every part
+  Scene full = completeScene(scene);  // rows access every section
   std::ostringstream out;
   for (const SchemaSection& section : sceneSections()) {
     if (!section.isPresent(scene)) continue;

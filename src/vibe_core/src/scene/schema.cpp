@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "scene/scene_value.hpp"
+#include "vibe_core/scene/choices.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe {
@@ -17,7 +18,8 @@ std::string wordList(const std::vector<std::string>& words) {
 std::string rangeText(const SchemaRow& row) {
   if (std::holds_alternative<GeometryScene::Kind& (*)(Scene&)>(row.access)) return "stomach, mesh, sphere";
   if (std::holds_alternative<bool& (*)(Scene&)>(row.access)) return "true, false";
-  if (!row.words.empty()) return wordList(row.words);
+  const std::vector<std::string> words = wordsOf(row);
+  if (!words.empty()) return wordList(words);
   if (std::holds_alternative<std::string& (*)(Scene&)>(row.access)) return "text";
   return showQuantity(row.low, "") + " to " + showQuantity(row.high, "");
 }
@@ -29,6 +31,15 @@ std::string unitText(const SchemaRow& row) {
   const std::string unit = row.unit;
   if (unit.empty() || unit == "1") return unit;
   return three ? "3 x " + unit : unit;
+}
+
+/// A table of the words of a key with an open list.
+void describeChoices(const SchemaRow& row, std::ostream& out) {
+  const std::vector<Choice> choices = choicesOf(row.key);
+  if (choices.empty()) return;
+  out << "| `" << row.key << "` | meaning |\n|---|---|\n";
+  for (const Choice& choice : choices) out << "| `" << choice.word << "` | " << choice.meaning << " |\n";
+  out << "\n";
 }
 
 void describeSection(const SchemaSection& section, std::ostream& out) {
@@ -43,9 +54,18 @@ void describeSection(const SchemaSection& section, std::ostream& out) {
         << " | " << row.source << " |\n";
   }
   out << "\n";
+  for (const SchemaRow& row : sceneSchema()) {
+    if (sectionOf(row.key) == name) describeChoices(row, out);
+  }
 }
 
 }  // namespace
+
+std::vector<std::string> wordsOf(const SchemaRow& row) {
+  std::vector<std::string> words = row.words;
+  for (const Choice& choice : choicesOf(row.key)) words.push_back(choice.word);
+  return words;
+}
 
 const SchemaRow* findRow(const std::string& key) {
   for (const SchemaRow& row : sceneSchema()) {

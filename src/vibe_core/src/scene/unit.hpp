@@ -4,7 +4,7 @@
 
 namespace vibe {
 
-/// Exponents of the base dimensions. Angle counts as one, so that a length is never taken for an angle.
+/// Exponents of the base dimensions. Angle is one of them, so that a length is never mistaken for an angle.
 struct Dimension {
   int length = 0;
   int mass = 0;
@@ -26,10 +26,10 @@ struct Unit {
 /// Conversion factors: BIPM, The International System of Units, 9th edition 2019; mmHg as 133.322387415 Pa.
 std::optional<Unit> parseUnit(const std::string& text);
 
-/// A value in SI, or what is wrong with the text (a half sentence for an error message, with a remedy).
+/// A value in SI, or what is wrong with the text (the end of a sentence for an error message, with a remedy).
 struct Quantity {
   double value = 0;
-  std::string problem;  ///< empty if the value is good
+  std::string problem;  ///< empty if the value is valid
 };
 
 /// Reads "10 mmHg", "2.3 mm", "30 1/s" or a plain number, which is taken in `si_unit`.

@@ -11,7 +11,7 @@
 namespace vibe {
 namespace {
 
-/// Follows the parser's events and stops it before its recursion grows.
+/// Receives the events of the parser and stops it before its recursion gets too deep.
 class DepthWatch : public YAML::EventHandler {
  public:
   DepthWatch(const std::string& place, int limit) : place_(place), limit_(limit) {}

@@ -5,7 +5,7 @@
 
 namespace vibe {
 
-/// Reads the text once without building anything: refuses what is too large, nested too deeply for a recursive
+/// Parses the text once without building anything. Rejects text that is too large, nested too deeply for a recursive
 /// parser, not YAML, or not exactly one document.
 /// @throws Error with place:line
 void checkYaml(const std::string& text, const std::string& place, const YamlLimits& limits);

@@ -17,8 +17,8 @@
 namespace vibe {
 namespace {
 
-constexpr std::size_t kLongestText = 4096;
-constexpr int kDeepestMerge = 8;
+constexpr std::size_t kMaxText = 4096;
+constexpr int kMaxMergeDepth = 8;
 constexpr std::size_t kMaxMerged = 16;
 
 constexpr std::size_t kShown = 60;  // of a user's text in an error message
@@ -100,7 +100,7 @@ void YamlSource::collect(const YamlField& field, int merge_depth, std::vector<Ya
     const std::string& key = entry.first.Scalar();
     const std::string path = field.path.empty() ? key : field.path + "." + key;
     YamlField next{key, path, lineOf(entry.first), entry.second};
-    if (!seen.insert(key).second) fail(next, "stands here a second time; keep one of the two");
+    if (!seen.insert(key).second) fail(next, "is given a second time; keep one of the two");
     if (key == "<<") {
       merged.reset(entry.second);
     } else {
@@ -119,16 +119,16 @@ void YamlSource::merge(const YamlField& field, const YAML::Node& sources, int me
   } else {
     maps.push_back(sources);
   }
-  // Deep or circular chains of merges have no use in these files.
-  if (merge_depth >= kDeepestMerge) fail(field, "merges maps into each other too deeply with <<; write the keys out");
+  // These files need no deep or circular merges.
+  if (merge_depth >= kMaxMergeDepth) fail(field, "merges maps into each other too deeply with <<; write the keys out");
   std::set<std::string> known;
   for (const YamlField& own : fields) known.insert(own.key);
   for (const YAML::Node& source : maps) {
-    if (!source.IsMap()) fail(field, "merges something that is no map with <<; merge an alias of a map");
+    if (!source.IsMap()) fail(field, "merges something with << that is not a map; merge an alias of a map");
     std::vector<YamlField> more;
     collect({field.key, field.path, field.line, source}, merge_depth + 1, more);
     for (const YamlField& candidate : more) {
-      if (known.insert(candidate.key).second) fields.push_back(candidate);  // what the map itself says wins
+      if (known.insert(candidate.key).second) fields.push_back(candidate);  // keys of the map itself take precedence
     }
   }
 }
@@ -149,7 +149,7 @@ std::vector<YamlField> YamlSource::list(const YamlField& field) const {
 std::string YamlSource::scalar(const YamlField& field, const std::string& expected) const {
   if (!field.value.IsScalar()) fail(field, std::string("is ") + kindName(field.value) + ", it must be " + expected);
   const std::string& text = field.value.Scalar();
-  if (text.size() > kLongestText) fail(field, "is longer than 4096 characters; shorten it");
+  if (text.size() > kMaxText) fail(field, "is longer than 4096 characters; shorten it");
   return text;
 }
 
@@ -225,7 +225,7 @@ std::string YamlSource::choice(const YamlField& field, const std::vector<std::st
 
 std::string showQuantity(double value, const std::string& si_unit) {
   char text[40];
-  // The shortest form that reads back to the same number.
+  // The shortest text that reads back as the same number.
   for (int digits = 6; digits <= 17; ++digits) {
     std::snprintf(text, sizeof text, "%.*g", digits, value);
     if (parseNumber(text).value == value) break;

@@ -85,7 +85,7 @@ std::uint64_t fingerprint(const Model& model) {
   add(model.mass, hash);
   add(model.inverse_mass, hash);
   hash.add(&model.scene.step_period, sizeof model.scene.step_period);
-  hash.add(&model.scene.tissue.substeps, sizeof model.scene.tissue.substeps);
+  hash.add(&model.substeps, sizeof model.substeps);
   hash.add(model.scene.tissue.model.data(), model.scene.tissue.model.size());
   for (bool part : {model.scene.scope.has_value(), model.scene.helix.has_value(), model.scene.suture.has_value(),
                     model.scene.marking.has_value()})

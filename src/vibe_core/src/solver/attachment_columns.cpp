@@ -57,7 +57,7 @@ HalfColumns attachmentColumns(const Factor& factor, const AttachmentPoint& attac
   return sum;
 }
 
-void extendAttachmentColumns(const Factor& factor, const std::vector<AttachmentPoint>& attachments,
+void extendAttachmentColumns(const Factor& factor, const RowList<AttachmentPoint>& attachments,
                              AttachmentColumns& columns) {
   std::size_t same = 0;
   while (same < attachments.size() && same < columns.attachments.size() &&

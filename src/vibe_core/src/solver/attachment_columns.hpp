@@ -19,7 +19,7 @@ struct AttachmentColumns {
 };
 
 /// @param columns  changed in place; keeps what it knows of spots at the head of the list that are the same
-void extendAttachmentColumns(const Factor& factor, const std::vector<AttachmentPoint>& attachments,
+void extendAttachmentColumns(const Factor& factor, const RowList<AttachmentPoint>& attachments,
                              AttachmentColumns& columns);
 
 /// Product of two sparse vectors: both consist of whole runs; those on the common part of the paths are the same runs.

@@ -7,8 +7,12 @@ namespace vibe {
 
 namespace {
 
-constexpr int kContactSweeps = 1000;   // opposed contacts, as of a pinch, need hundreds, others few
-constexpr double kContactMove = 1e-9;  // sweeps end when none moves its contact farther [m]
+// Limit of the Gauss-Seidel sweeps. Measured: contacts that oppose each other, as in a pinch, need hundreds; others
+// few.
+constexpr int kContactSweeps = 1000;
+// Sweeps end when no force moves its contact farther than this. Design choice: a hundredth of the tolerance of a step
+// [m].
+constexpr double kContactMove = 1e-9;
 
 }  // namespace
 
@@ -62,11 +66,10 @@ const Eigen::Matrix3f& ConstraintSchur::gram(int a, int b) {
 }
 
 // The columns that this step does not need go when there are too many.
-void ConstraintSchur::makeRoom(const std::vector<ConstraintRow>& rows, std::size_t attachment_count) {
-  std::size_t rhs = attachment_count;
-  for (const ConstraintRow& row : rows)
-    if (row.attachment[0] < 0) rhs += row.node.size();
-  if (key_of_slot_.size() + rhs > kMaxSlots) {
+void ConstraintSchur::makeRoom(const ConstraintRows& rows, std::size_t attachment_count) {
+  std::size_t needed = attachment_count + 3 * rows.contacts.size();
+  for (const EquationRow& row : rows.equations) needed += row.form.node.size();
+  if (key_of_slot_.size() + needed > kMaxSlots) {
     for (int key : key_of_slot_) slot_of_key_[key] = -1;
     key_of_slot_.clear();
     std::fill(gram_known_.begin(), gram_known_.end(), char{0});
@@ -74,61 +77,72 @@ void ConstraintSchur::makeRoom(const std::vector<ConstraintRow>& rows, std::size
   slot_of_key_.resize(static_cast<std::size_t>(node_count_) + attachment_count, -1);
 }
 
-void ConstraintSchur::setRow(const ConstraintRow& from, const Factor& factor, const AttachmentColumns* attachments,
-                             SlotRow& row) {
-  row.compliance = from.compliance;
-  row.friction = from.friction;
-  row.slot.clear();
-  if (from.attachment[0] >= 0) {
-    for (const int attachment : from.attachment)
-      row.slot.push_back(slotOf(node_count_ + attachment, factor, attachments));
-    row.coefficient.assign({from.along, -from.along});
-    return;
-  }
-  for (const int node : from.node) row.slot.push_back(slotOf(node, factor, attachments));
-  row.coefficient = from.coefficient;
+void ConstraintSchur::setRow(int row, const LinearForm& form, double compliance, const Factor& factor) {
+  SlotRow& to = rows_[row];
+  to.compliance = compliance;
+  to.slot.clear();
+  for (const int node : form.node) to.slot.push_back(slotOf(node, factor, nullptr));
+  to.coefficient = form.coefficient;
 }
 
-void ConstraintSchur::setRows(const std::vector<ConstraintRow>& rows, const Factor& factor,
-                              const AttachmentColumns* attachments) {
+// From an attachment point to the next: the same as a form in their nodes, in fewer columns.
+void ConstraintSchur::setRow(int row, int attachment, const Eigen::Vector3d& along, double compliance,
+                             const Factor& factor, const AttachmentColumns* attachments) {
+  SlotRow& to = rows_[row];
+  to.compliance = compliance;
+  to.slot.clear();
+  for (const int a : {attachment, attachment + 1}) to.slot.push_back(slotOf(node_count_ + a, factor, attachments));
+  to.coefficient.assign({along, -along});
+}
+
+void ConstraintSchur::setThreadRows(const ThreadRows& thread, const Factor& factor,
+                                    const AttachmentColumns* attachments) {
+  for (int k = 0; k < thread.count(); ++k) {
+    const SegmentRows& segment = thread.segments[k];
+    setRow(thread.pullRow(k), thread.first_attachment + k, segment.along, segment.compliance, factor, attachments);
+    for (int j = 0; j < 2; ++j)
+      setRow(thread.turnRow(k, j), thread.first_attachment + k, segment.across[j], segment.turn_compliance, factor,
+             attachments);
+  }
+}
+
+void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, const AttachmentColumns* attachments) {
   makeRoom(rows, attachments == nullptr ? 0 : attachments->attachments.size());
   attachments_ = attachments;
-  row_count_ = static_cast<int>(rows.size());
-  if (rows_.size() < rows.size()) rows_.resize(rows.size());  // they never become fewer, and keep their memory
-  for (std::size_t i = 0; i < rows.size(); ++i) setRow(rows[i], factor, attachments, rows_[i]);
+  row_count_ = rows.count();
+  const auto count = static_cast<std::size_t>(row_count_);
+  if (rows_.size() < count) rows_.resize(count);  // they never become fewer, and keep their memory
+  int row = 0;
+  for (const EquationRow& equation : rows.equations) setRow(row++, equation.form, equation.compliance, factor);
+  for (const ContactRows& contact : rows.contacts)
+    for (const LinearForm& form : contact.form) setRow(row++, form, 0, factor);
+  for (const ThreadRows& thread : rows.threads) setThreadRows(thread, factor, attachments);
   sortRows(rows);
   findUsedSlots();
   formCompliance();
 }
 
-void ConstraintSchur::sortRows(const std::vector<ConstraintRow>& rows) {
-  equations_.clear(), contacts_.clear();
+void ConstraintSchur::sortRows(const ConstraintRows& rows) {
+  equations_.clear(), inequalities_.clear(), contacts_.clear();
   thread_count_ = 0;
-  const auto count = static_cast<int>(rows.size());
-  for (int i = 0; i < count; ++i) {
-    if (rows[i].thread >= 0) continue;
-    if (rows[i].friction < 0) {
-      equations_.push_back(i);
-    } else {
-      for (int k = 0; k < 3; ++k) contacts_.push_back(i + k);
-      i += 2;
-    }
+  for (int i = 0; i < static_cast<int>(rows.equations.size()); ++i) equations_.push_back(i);
+  rows.forEachSpring([this](int row, const LinearForm&, double) { equations_.push_back(row); });
+  for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
+    contacts_.push_back({static_cast<int>(inequalities_.size()), rows.contacts[c].friction});
+    for (int k = 0; k < 3; ++k) inequalities_.push_back(rows.contactRow(c) + k);
   }
-  touching_ = static_cast<int>(contacts_.size());
-  for (int i = 0; i < count; ++i)
-    if (rows[i].thread >= 0 && (i == 0 || rows[i - 1].thread != rows[i].thread)) addThread(rows, i);
+  for (const ThreadRows& thread : rows.threads)
+    if (thread.count() > 0) addThread(thread);
 }
 
-void ConstraintSchur::addThread(const std::vector<ConstraintRow>& rows, std::size_t first) {
+void ConstraintSchur::addThread(const ThreadRows& rows) {
   if (threads_.size() == static_cast<std::size_t>(thread_count_)) threads_.emplace_back();
   Thread& thread = threads_[thread_count_++];
-  thread.first = static_cast<int>(contacts_.size());
-  thread.count = 0;
-  std::size_t i = first;
-  for (; i < rows.size() && rows[i].thread == rows[first].thread; ++i, ++thread.count)
-    contacts_.push_back(static_cast<int>(i));
+  thread.first = static_cast<int>(inequalities_.size());
+  thread.count = rows.count();
+  for (int k = 0; k < thread.count; ++k) inequalities_.push_back(rows.pullRow(k));
   thread.capstan.resize(thread.count - 1);
-  for (int k = 0; k + 1 < thread.count; ++k) thread.capstan[k] = rows[first + k].capstan;
+  for (int k = 0; k + 1 < thread.count; ++k) thread.capstan[k] = rows.segments[k].capstan;
   thread.slide.tension.setZero(thread.count);
   thread.slide.slide.setZero(thread.count - 1);
 }
@@ -218,7 +232,7 @@ double ConstraintSchur::complianceBetween(int i, int j) {
 
 // The equations are eliminated from the contacts. Loops, since indexed views of Eigen ask for memory.
 void ConstraintSchur::formBlocks() {
-  const auto e = static_cast<Eigen::Index>(equations_.size()), c = static_cast<Eigen::Index>(contacts_.size());
+  const auto e = static_cast<Eigen::Index>(equations_.size()), c = static_cast<Eigen::Index>(inequalities_.size());
   if (e > 0) {
     block_.resize(e, e);
     for (Eigen::Index j = 0; j < e; ++j)
@@ -228,12 +242,12 @@ void ConstraintSchur::formBlocks() {
   if (c == 0) return;
   schur_.resize(c, c);
   for (Eigen::Index j = 0; j < c; ++j)
-    for (Eigen::Index i = 0; i < c; ++i) schur_(i, j) = compliance_(contacts_[i], contacts_[j]);
+    for (Eigen::Index i = 0; i < c; ++i) schur_(i, j) = compliance_(inequalities_[i], inequalities_[j]);
   if (e == 0) return;
   cross_.resize(e, c);
   coupling_.resize(e, c);
   for (Eigen::Index j = 0; j < c; ++j) {
-    for (Eigen::Index i = 0; i < e; ++i) cross_(i, j) = compliance_(equations_[i], contacts_[j]);
+    for (Eigen::Index i = 0; i < e; ++i) cross_(i, j) = compliance_(equations_[i], inequalities_[j]);
     coupling_.col(j) = equation_factor_.solve(cross_.col(j));
   }
   schur_.noalias() -= cross_.transpose().lazyProduct(coupling_);
@@ -242,19 +256,19 @@ void ConstraintSchur::formBlocks() {
 // Projected Gauss-Seidel on the contacts and the threads with the equations eliminated, to their forces from what each
 // row lacks.
 void ConstraintSchur::solveContacts() {
-  const auto n = static_cast<int>(contacts_.size());
+  const auto n = static_cast<int>(inequalities_.size());
   contact_force_.setZero(n);
   double moved = 2 * kContactMove;
   for (int sweep = 0; sweep < kContactSweeps && moved > kContactMove; ++sweep) {
     moved = sweepContacts(contact_force_);
     for (int t = 0; t < thread_count_; ++t) moved = std::max(moved, sweepThread(threads_[t], contact_force_));
-    if (touching_ == 0 && thread_count_ == 1) break;  // it is alone
+    if (contacts_.empty() && thread_count_ == 1) break;  // it is alone
   }
-  for (int i = 0; i < n; ++i) force_[contacts_[i]] = contact_force_[i];
+  for (int i = 0; i < n; ++i) force_[inequalities_[i]] = contact_force_[i];
   for (int t = 0; t < thread_count_; ++t) {
     const Thread& thread = threads_[t];
     for (int k = 0; k + 1 < thread.count; ++k) {
-      const int row = contacts_[thread.first + k];
+      const int row = inequalities_[thread.first + k];
       const double slid = thread.slide.slide[k];
       slid_[row] = slid;
       moves_[row] += slid;  // the segment has lost it: its spots have to come nearer
@@ -265,11 +279,12 @@ void ConstraintSchur::solveContacts() {
 
 double ConstraintSchur::sweepContacts(Eigen::VectorXd& lambda) {
   double moved = 0;
-  for (int i = 0; i < touching_; i += 3) {
+  for (const Contact& contact : contacts_) {
+    const int i = contact.first;
     const Eigen::Vector3d before = lambda.segment<3>(i);
     const double normal_residual = contact_residual_[i] - schur_.row(i).dot(lambda);
     lambda[i] = std::max(0.0, lambda[i] + normal_residual / schur_(i, i));
-    const double limit = rows_[contacts_[i]].friction * lambda[i];
+    const double limit = contact.friction * lambda[i];
     for (int k = 1; k < 3; ++k)
       lambda[i + k] += (contact_residual_[i + k] - schur_.row(i + k).dot(lambda)) / schur_(i + k, i + k);
     const double size = std::hypot(lambda[i + 1], lambda[i + 2]);
@@ -303,13 +318,13 @@ double ConstraintSchur::sweepThread(Thread& thread, Eigen::VectorXd& lambda) {
 
 // The rows' forces from what each of them lacks.
 void ConstraintSchur::solveRows() {
-  const auto e = static_cast<Eigen::Index>(equations_.size()), c = static_cast<Eigen::Index>(contacts_.size());
+  const auto e = static_cast<Eigen::Index>(equations_.size()), c = static_cast<Eigen::Index>(inequalities_.size());
   force_.setZero(rowCount());
   equation_residual_.resize(e);
   for (Eigen::Index i = 0; i < e; ++i) equation_residual_[i] = residual_[equations_[i]];
   if (c > 0) {
     contact_residual_.resize(c);
-    for (Eigen::Index i = 0; i < c; ++i) contact_residual_[i] = residual_[contacts_[i]];
+    for (Eigen::Index i = 0; i < c; ++i) contact_residual_[i] = residual_[inequalities_[i]];
     if (e > 0) contact_residual_.noalias() -= coupling_.transpose() * equation_residual_;
     solveContacts();
     if (e > 0) equation_residual_.noalias() -= cross_ * contact_force_;

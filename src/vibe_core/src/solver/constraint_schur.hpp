@@ -6,52 +6,36 @@
 #include <vector>
 
 #include "solver/attachment_columns.hpp"
+#include "solver/constraint_rows.hpp"
 #include "sparse/factor.hpp"
 #include "suture/capstan.hpp"
 
 namespace vibe {
 
-/// One row of the few conditions beside the big system: sum of coefficient . d at the nodes.
-struct ConstraintRow {
-  std::vector<int> node;
-  std::vector<Eigen::Vector3d> coefficient;
-  double compliance = 0;
-  double friction = -1;  ///< below 0: an equation; 0 and above: the normal row of a contact, two tangents follow
-  /// A row with compliance of which the potential knows energy and force: the elimination adds what its stiffness does.
-  bool spring = false;
-  int thread = -1;     ///< segments of one thread, which only pull, follow each other; -1: no thread
-  double capstan = 1;  ///< largest ratio of the tensions of this segment and the next
-  /// Spots between which the row runs: the same as the nodes, in fewer columns; -1: none.
-  std::array<int, 2> attachment{{-1, -1}};
-  Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< coefficient of the first spot; of the second: -along
-};
-
-/// Block elimination (Woodbury) of a few conditions and of the gas, with the vectors half solved: for A = L Lt a row j
+/// Block elimination (Woodbury) of a few constraints and of the gas, with the vectors half solved: for A = L Lt a row j
 /// becomes Z = L^-1 j, sparse because it lives on the elimination tree's paths of its nodes, and the compliance between
 /// rows is Z^T Z. Columns of nodes are kept until the factor changes, so that a touched node costs once.
 class ConstraintSchur {
  public:
   /// Forgets everything about the old factor.
   void reset(const Factor& factor, int node_count);
-  /// @param spots  that the threads' rows run between, about the same factor; null without threads. A list that does
-  /// not
-  ///               begin with the one before needs a reset().
-  void setRows(const std::vector<ConstraintRow>& rows, const Factor& factor,
-               const AttachmentColumns* attachments = nullptr);
+  /// @param attachments  points that the threads run between, about the same factor; null without threads. A list that
+  ///                     does not begin with the one before needs a reset().
+  void setRows(const ConstraintRows& rows, const Factor& factor, const AttachmentColumns* attachments = nullptr);
   /// The gas: force `direction` (4 per node) per pressure, pressure falling by stiffness per volume. stiffness 0: none;
   /// infinite: the volume is prescribed.
   void setGas(const float* direction4, double stiffness, const Factor& factor);
 
   int rowCount() const { return row_count_; }
   /// Given y = L^-1 (right-hand side), finds the forces of rows and gas so that the rows' values of the solution are
-  /// `wanted` (rows that are equations) or at least that (contacts and threads), and adds them to y. Threads slide
-  /// where friction does not hold them.
-  /// @param swelling  wanted change of volume where it is prescribed [m^3]
+  /// `rhs` (equations) or at least that (contacts and threads), and adds them to y. Threads slide where friction does
+  /// not hold them.
+  /// @param swelling  change of volume where it is prescribed [m^3]
   void eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, double swelling, float* y);
   const Eigen::VectorXd& forces() const { return force_; }
   double gasForce() const { return gas_force_; }
-  /// How far the values of the rows that act move in the solution: `wanted`, less what compliance leaves, with what
-  /// threads slid besides [m].
+  /// How far the values of the rows that act move in the solution: `rhs`, less what compliance leaves, plus what
+  /// threads slid [m].
   const Eigen::VectorXd& moves() const { return moves_; }
   /// Thread that slid out of a row into the next row of its thread [m].
   double slid(int row) const { return slid_[row]; }
@@ -62,22 +46,29 @@ class ConstraintSchur {
 
  private:
   static constexpr int kMaxSlots = 384;
-  /// A row as the elimination sees it: in slots, which are nodes or spots whose columns are known.
+  /// A row as the elimination sees it: in slots, which are nodes or attachment points whose columns are known.
   struct SlotRow {
     std::vector<int> slot;
     std::vector<Eigen::Vector3d> coefficient;
-    double compliance = 0, friction = -1;
+    double compliance = 0;
+  };
+  struct Contact {
+    int first = 0;  // of inequalities_: normal, two tangents
+    double friction = 0;
   };
   struct Thread {
-    int first = 0, count = 0;  // of contacts_
+    int first = 0, count = 0;  // of inequalities_
     Eigen::VectorXd capstan;
     ThreadSlide slide;
   };
-  void makeRoom(const std::vector<ConstraintRow>& rows, std::size_t attachment_count);
+  void makeRoom(const ConstraintRows& rows, std::size_t attachment_count);
   int slotOf(int key, const Factor& factor, const AttachmentColumns* attachments);
-  void setRow(const ConstraintRow& from, const Factor& factor, const AttachmentColumns* attachments, SlotRow& row);
-  void sortRows(const std::vector<ConstraintRow>& rows);
-  void addThread(const std::vector<ConstraintRow>& rows, std::size_t first);
+  void setRow(int row, const LinearForm& form, double compliance, const Factor& factor);
+  void setRow(int row, int attachment, const Eigen::Vector3d& along, double compliance, const Factor& factor,
+              const AttachmentColumns* attachments);
+  void setThreadRows(const ThreadRows& thread, const Factor& factor, const AttachmentColumns* attachments);
+  void sortRows(const ConstraintRows& rows);
+  void addThread(const ThreadRows& thread);
   const Eigen::Matrix3f& gram(int a, int b);
   void findUsedSlots();
   void findRowValues(const float* y);
@@ -92,7 +83,7 @@ class ConstraintSchur {
   void solveEquations();
 
   int node_count_ = 0;
-  std::vector<int> slot_of_key_;  // of nodes, then of spots
+  std::vector<int> slot_of_key_;  // of nodes, then of attachment points
   std::vector<int> key_of_slot_;
   std::vector<HalfColumns> columns_;
   std::vector<Eigen::Matrix3f> gram_;  // of slots a >= b, row after row
@@ -103,8 +94,9 @@ class ConstraintSchur {
   std::vector<int> used_slots_;
   std::vector<Eigen::Vector3f> seen_;  // per slot: a vector's value at the node, or the rows' force on it
   Eigen::VectorXd row_value_;
-  std::vector<int> equations_, contacts_;  // row numbers; contacts: normals and tangents, then segments of threads
-  int touching_ = 0;                       // of contacts_, before the threads
+  std::vector<int> equations_;     // row numbers: those of equations, then of springs
+  std::vector<int> inequalities_;  // row numbers: normals and tangents of contacts, then pulls of threads
+  std::vector<Contact> contacts_;
   std::vector<Thread> threads_;
   int thread_count_ = 0;
   std::vector<float> gas_;  // L^-1 of the gas direction

@@ -8,7 +8,9 @@
 namespace vibe {
 namespace {
 
-constexpr double kShift = 1e-7;  // of the stiffness, so that a free body can be factored
+// Spring at every node over the mean diagonal of the stiffness, so that a free body can be factored without inertia.
+// Design choice: the rounding of single precision, in which the solution is stored [1].
+constexpr double kShift = 1e-7;
 
 std::uint64_t hashOf(const std::vector<float>& values) {  // FNV-1a over 32-bit words; 1: nothing
   std::uint64_t hash = 1469598103934665603ULL;
@@ -79,7 +81,7 @@ void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, 
   memory.due = memory.steps + steps;
 }
 
-void FactorSchedule::provide(const ElasticBody& body, const std::vector<AttachmentPoint>& attachments,
+void FactorSchedule::provide(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
                              const StepperMemory& memory, StepperScratch& scratch) const {
   if (scratch.factor_id != memory.linearization_id) {
     if (scratch.making.valid()) scratch.making.get();
@@ -99,7 +101,7 @@ void FactorSchedule::provide(const ElasticBody& body, const std::vector<Attachme
 }
 
 // What was not made beside the factor: spots that came since, or after some went.
-void FactorSchedule::provideAttachments(const ElasticBody& body, const std::vector<AttachmentPoint>& attachments,
+void FactorSchedule::provideAttachments(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
                                         StepperScratch& scratch) {
   const std::vector<AttachmentPoint>& known = scratch.attachments.attachments;
   const bool begins = known.size() <= attachments.size() && std::equal(known.begin(), known.end(), attachments.begin());
@@ -107,7 +109,7 @@ void FactorSchedule::provideAttachments(const ElasticBody& body, const std::vect
   extendAttachmentColumns(*scratch.factor, attachments, scratch.attachments);
 }
 
-void FactorSchedule::makeInBackground(const ElasticBody& body, const std::vector<AttachmentPoint>& attachments,
+void FactorSchedule::makeInBackground(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
                                       const StepperMemory& memory, StepperScratch& scratch) const {
   if (scratch.making.valid()) scratch.making.get();
   scratch.next_id = memory.next_id;

@@ -20,16 +20,16 @@ struct FactorSchedule {
   /// Lets the next factor take over where it is due, and names the positions of the one after.
   void advance(const ElasticBody& body, const MotionView& motion, StepperMemory& memory) const;
   /// The factor that the memory names, and the columns of the spots about it.
-  void provide(const ElasticBody& body, const std::vector<AttachmentPoint>& attachments, const StepperMemory& memory,
+  void provide(const ElasticBody& body, const RowList<AttachmentPoint>& attachments, const StepperMemory& memory,
                StepperScratch& scratch) const;
   /// The present positions, from this step on.
   static void nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory);
 
  private:
   bool farFrom(const ElasticBody& body, const MotionView& motion, const std::vector<float>& about) const;
-  void makeInBackground(const ElasticBody& body, const std::vector<AttachmentPoint>& attachments,
+  void makeInBackground(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
                         const StepperMemory& memory, StepperScratch& scratch) const;
-  static void provideAttachments(const ElasticBody& body, const std::vector<AttachmentPoint>& attachments,
+  static void provideAttachments(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
                                  StepperScratch& scratch);
 };
 

@@ -14,20 +14,43 @@ namespace vibe {
 
 namespace {
 
-// A step of one iteration swings up where the stiffness exceeds that of the factor (its error (1 - ratio) enters the
-// acceleration), one of two from twice that on.
+// Stiffness of the factor over that of the body where a step has one iteration. Such a step is unstable where the true
+// stiffness exceeds that of the factor: its error (1 - ratio) enters the acceleration. With two or more iterations it
+// is unstable only beyond twice the stiffness of the factor (docs/architecture.md, initial guess of a step) [1].
 constexpr double kMarginOfOne = 2;
-constexpr double kGuessGrowth = 2;  // of the elastic energy that a guess may bring
+// Elastic energy of an extrapolated guess over that of the last step, above which the guess is dropped. Design choice:
+// a guess along a smooth motion changes the energy by a few percent per step [1].
+constexpr double kGuessGrowth = 2;
+// Steps with backward Euler after a step that failed. Design choice: a sixth of a second at 60 Hz, in which backward
+// Euler damps what made the step fail.
 constexpr int kFallbackSteps = 10;
+// Iterations of such a step, and limit of any other. Design choice: twice the history of six pairs, so that L-BFGS can
+// show its superlinear rate.
 constexpr int kFallbackIterations = 12;
-constexpr int kSatisfyConstraints = 6;     // iterations after which the conditions hold, whatever it takes
-constexpr double kFallbackMaxMove = 0.05;  // of the size of the body, per iteration
-constexpr double kSafeStrain = 0.02;       // which a last, unverified move may bring where it is longest
-constexpr double kUsualGrowth = 1.5;       // of the usual move, beyond which it is verified although it is short
+// Iterations after which the constraints are met exactly, whatever that costs in energy. Design choice: half of the
+// limit, so that as many iterations remain to reduce the energy again.
+constexpr int kSatisfyConstraints = 6;
+// Largest move of a fallback or static iteration over the size of the body. Design choice: about a fold of the wall of
+// a stomach (1 cm in 20 cm), within which the linearization is still of some use [1].
+constexpr double kFallbackMaxMove = 0.05;
+// Strain that a last, unverified move may bring to the shortest edge. Design choice: elastic forces are linear up to
+// strains of this order, so that such a move cannot raise the energy [1].
+constexpr double kSafeStrain = 0.02;
+// Length of a first move over its running mean, beyond which a short move is verified as well. Design choice: larger
+// moves mean that something new acts [1].
+constexpr double kUsualGrowth = 1.5;
+// Weight of the last step in that running mean. Design choice: a memory of ten steps [1].
 constexpr double kUsualShare = 0.1;
-constexpr double kArrived = 0.5;   // of the first direction: a step that is left with more is taken again
-constexpr int kRefactorEvery = 6;  // iterations of a static solve
-constexpr int kRefactorSlow = 3;   // the same where it does not contract
+// Length of the last direction over the first, above which a step counts as not converged and is repeated. Design
+// choice: a step that leaves half of its move has not found the equilibrium [1].
+constexpr double kArrived = 0.5;
+// Iterations of a static solve between two factors. Design choice: a factor costs about as much as ten iterations; six
+// is the history that a new factor discards.
+constexpr int kRefactorEvery = 6;
+// The same where the iterations contract slowly.
+constexpr int kRefactorSlow = 3;
+// Length of a direction over the one before, above which a static solve counts as slow. Design choice: at this rate six
+// iterations gain three decimals [1].
 constexpr double kSlow = 0.3;
 
 // between two nodes of one element [m]
@@ -133,8 +156,8 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
   return outcome;
 }
 
-// One iteration does not get far and starts where inertia leads. More of them start where the nodes are: what the
-// iterations of the last step left over is in the velocity and the acceleration, and would swing up.
+// A single iteration does not move far and starts from the inertial prediction. With more iterations a step starts from
+// the present positions: the error of the last step is in velocity and acceleration, and would grow.
 bool ImplicitStepper::extrapolates(bool fallback) const {
   return !fallback && settings_.iterations == 1;
 }
@@ -163,7 +186,7 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
   QuasiNewton newton(body_, potential, loads, scratch,
                      std::min(plan_->safe_length, kUsualGrowth * memory.usual_length));
   newton.start();
-  // a guess with far more energy may be tangled and lead to a tangled minimum: then from where the nodes are
+  // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
   if (extrapolates(outcome.fallback) && !(potential.elasticEnergy() <= kGuessGrowth * memory.elastic_energy)) {
     startFromHere(motion, scratch);
     newton.start();
@@ -176,7 +199,7 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
   return outcome.finite && arrived;
 }
 
-// An iteration that does not contract would leave the stiff motions to swing up: it goes on until it does.
+// Iterations go on until they contract: otherwise stiff motions would grow from step to step.
 bool ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const {
   const int min = outcome.fallback && !settings_.backward_euler ? kFallbackIterations : 1;
   const int enough = std::max(min, settings_.iterations), max = std::max(enough, kFallbackIterations);
@@ -191,7 +214,7 @@ bool ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOu
     outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
   }
   memory.usual_length += kUsualShare * (first_length - memory.usual_length);
-  // where all that is left to move is rounding, so is the energy that does not fall
+  // where the remaining move is rounding, so is an energy that does not fall
   return outcome.converged || (!newton.failed() && (done || newton.directionLength() < kArrived * first_length));
 }
 
@@ -248,7 +271,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
   return outcome;
 }
 
-void ImplicitStepper::refactorHere(const std::vector<AttachmentPoint>& attachments, StepperScratch& scratch) const {
+void ImplicitStepper::refactorHere(const RowList<AttachmentPoint>& attachments, StepperScratch& scratch) const {
   std::vector<float> positions(3 * body_.rest.size());
   for (std::size_t i = 0; i < body_.rest.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(scratch.z[4 * i + k]);

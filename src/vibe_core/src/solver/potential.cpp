@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/energy_term.hpp"
 #include "tissue/shell.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {
 
 namespace {
-constexpr double kRounding = 6e-8;  // of single precision, relative
+constexpr double kRounding = 6e-8;  // half a unit in the last place of single precision (2^-24) [1]
 }
 
 double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gradient) {
@@ -48,18 +48,14 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
 
 double Potential::addSprings(const std::vector<double>& z, std::vector<float>& gradient) const {
   double energy = 0;
-  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
-    const ConstraintRow& row = scratch_.rows[r];
-    if (!row.spring) continue;
-    double longer = -scratch_.target[static_cast<Eigen::Index>(r)];
-    for (std::size_t i = 0; i < row.node.size(); ++i)
-      for (int k = 0; k < 3; ++k) longer += row.coefficient[i][k] * z[4 * static_cast<std::size_t>(row.node[i]) + k];
-    const double force = longer / row.compliance;
+  scratch_.rows.forEachSpring([&](int r, const LinearForm& form, double compliance) {
+    double longer = -scratch_.target[r];
+    for (std::size_t i = 0; i < form.node.size(); ++i)
+      for (int k = 0; k < 3; ++k) longer += form.coefficient[i][k] * z[4 * static_cast<std::size_t>(form.node[i]) + k];
+    const double force = longer / compliance;
     energy += 0.5 * force * longer;
-    for (std::size_t i = 0; i < row.node.size(); ++i)
-      for (int k = 0; k < 3; ++k)
-        gradient[4 * static_cast<std::size_t>(row.node[i]) + k] += static_cast<float>(force * row.coefficient[i][k]);
-  }
+    form.addForce(force, gradient);
+  });
   return energy;
 }
 

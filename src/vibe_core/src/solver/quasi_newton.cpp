@@ -4,20 +4,38 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/energy_term.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr double kSufficientDecrease = 1e-4;  // Armijo
+// Share of the linear prediction by which the energy must fall (Armijo). Nocedal, Wright 2006, Numerical Optimization,
+// section 3.1: "c1 is chosen to be quite small, say c1 = 1e-4" [1].
+constexpr double kSufficientDecrease = 1e-4;
+// Halvings of a step before it counts as failed. Design choice: a part of 2e-4 of a direction is below what a step can
+// use.
 constexpr int kMaxHalvings = 12;
-constexpr double kUnmet = 100;           // of the resolution: what rows lack beyond it is no rounding
-constexpr double kSmallResidual = 1e-4;  // of the rows, of the direction
-constexpr double kThreadShare = 3e-4;    // of a lack: rows of threads may move in a pair by a third of its length
+// Residual of the constraints over the resolution of single precision, above which it is not rounding. Design choice:
+// a row sums up to some ten nodes, each a few roundings off [1].
+constexpr double kUnmet = 100;
+// Residual of the rows over the length of the direction, below which the rows hardly move. Design choice: a pair of the
+// history with larger row moves would repeat them in later directions [1].
+constexpr double kSmallResidual = 1e-4;
+// The same for threads: their rows may move by this part of a residual, because a thread is elastic. Design choice:
+// with kSmallResidual the rows of threads may move by a third of a direction [1].
+constexpr double kThreadShare = 3e-4;
+// Part of the foreseen slide of a thread that is taken in a step. Design choice: the factor does not contain
+// self-contact, which resists the slide where walls touch; with half of it the slide does not overshoot [1].
 constexpr double kSlidePart = 0.5;
+// Length of a direction over the one before, below which the iteration contracts. Design choice: halving per iteration
+// is the weakest rate that bounds the rest by the last move [1].
 constexpr double kSafeContraction = 0.5;
-constexpr double kSafeRest = 0.1;  // of the first direction
+// The same over the first direction. Design choice: a step may leave a tenth of its first move [1].
+constexpr double kSafeRest = 0.1;
+// Smallest cosine between move and change of gradient of a pair that is kept. Design choice: the rounding of single
+// precision; below it the curvature has no correct digit [1].
+constexpr double kMinPairCosine = 1e-8;
 
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
   double sum[4] = {0, 0, 0, 0};
@@ -55,44 +73,37 @@ void QuasiNewton::start() {
   value_ = potential_.evaluate(scratch_.z, scratch_.gradient);
 }
 
-// What the rows lack to their targets at z.
+// How far the rows are from their targets at z. The potential has the springs.
 void QuasiNewton::rowResidual() {
-  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
-    const ConstraintRow& row = scratch_.rows[r];
-    double value = 0;
-    for (std::size_t k = 0; k < row.node.size(); ++k) {
-      const double* z = &scratch_.z[4 * static_cast<std::size_t>(row.node[k])];
-      value += row.coefficient[k].dot(Eigen::Vector3d(z[0], z[1], z[2]));
-    }
-    scratch_.rhs[static_cast<Eigen::Index>(r)] = row.spring ? 0 : scratch_.target[static_cast<Eigen::Index>(r)] - value;
-  }
+  scratch_.rhs.setZero();
+  scratch_.rows.forEachMultiplier(
+      [this](int row, const LinearForm& form) { scratch_.rhs[row] = scratch_.target[row] - form.value(scratch_.z); });
 }
 
-// How far the rows that act move; what is not touched and thread that is slack may move as they like.
+// How far the rows that act move. Contacts that do not touch and slack threads may move freely.
 double QuasiNewton::rowResiduals() const {
-  const ConstraintSchur& schur = scratch_.schur;
+  const Eigen::VectorXd &moves = scratch_.schur.moves(), &forces = scratch_.schur.forces();
+  const int contacts_end = scratch_.rows.contactRow(scratch_.rows.contacts.size());
   double max = 0;
-  for (Eigen::Index r = 0; r < scratch_.rhs.size(); ++r) {
-    const ConstraintRow& row = scratch_.rows[static_cast<std::size_t>(r)];
-    if (row.spring) continue;
-    if (row.thread < 0 || schur.forces()[r] > 0)
-      max = std::max(max, (row.attachment[0] < 0 ? 1 : kThreadShare) * std::abs(schur.moves()[r]));
-  }
+  for (int row = 0; row < contacts_end; ++row) max = std::max(max, std::abs(moves[row]));
+  for (const ThreadRows& thread : scratch_.rows.threads)
+    for (int k = 0; k < thread.count(); ++k) {
+      const int row = thread.pullRow(k);
+      if (forces[row] > 0) max = std::max(max, kThreadShare * std::abs(moves[row]));
+    }
   return max;
 }
 
-// By the smoothest move, whatever the energy: what a tool holds goes where the tool goes. Far moves lower the energy
-// only in small parts, of which no number arrives.
+// By the move of least energy of the factor, whatever the true energy: what a tool holds goes where the tool goes. The
+// line search would admit only small parts of a far move, and no number of them meets the constraint.
 bool QuasiNewton::satisfyConstraints() {
   if (extra_ != nullptr && extra_->acts()) return false;  // walls that meet may forbid it
   StepperScratch& s = scratch_;
   rowResidual();
   double max = 0;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    const ConstraintRow& row = s.rows[r];
-    if (row.friction >= 0) continue;
-    double& rhs = s.rhs[static_cast<Eigen::Index>(r)];
-    if (row.compliance > 0) rhs = 0;
+  for (std::size_t i = 0; i < s.rows.equations.size(); ++i) {
+    double& rhs = s.rhs[static_cast<Eigen::Index>(i)];
+    if (s.rows.equations[i].compliance > 0) rhs = 0;
     max = std::max(max, std::abs(rhs));
   }
   if (max <= std::max(kSmallResidual * direction_length_, kUnmet * resolution())) return false;
@@ -114,32 +125,27 @@ double QuasiNewton::resolution() const {
   return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.displacement);
 }
 
-// Those that the last elimination found.
+// The forces that the last elimination found.
 void QuasiNewton::addRowForces(double sign, std::vector<float>& vector) const {
-  for (std::size_t r = 0; r < scratch_.rows.size(); ++r) {
-    const ConstraintRow& row = scratch_.rows[r];
-    const double force = sign * scratch_.schur.forces()[static_cast<Eigen::Index>(r)];
-    if (row.spring || force == 0) continue;
-    for (std::size_t i = 0; i < row.node.size(); ++i)
-      for (int k = 0; k < 3; ++k)
-        vector[4 * static_cast<std::size_t>(row.node[i]) + k] += static_cast<float>(force * row.coefficient[i][k]);
-  }
+  scratch_.rows.forEachMultiplier([&](int row, const LinearForm& form) {
+    const double force = sign * scratch_.schur.forces()[row];
+    if (force != 0) form.addForce(force, vector);
+  });
 }
 
-// Once per step, so that all iterations look for the same equilibrium. What walls that touch resist is not in the
-// factor: thread slides half as far as it foresees.
+// Once per step, so that all iterations look for the same equilibrium.
 void QuasiNewton::slideThreads() {
   if (threads_have_slid_) return;
   threads_have_slid_ = true;
   StepperScratch& s = scratch_;
-  s.slid.setZero(static_cast<Eigen::Index>(s.rows.size()));
-  for (std::size_t r = 0; r + 1 < s.rows.size(); ++r) {
-    if (s.rows[r].thread < 0 || s.rows[r + 1].thread != s.rows[r].thread) continue;
-    const auto row = static_cast<Eigen::Index>(r);
-    s.slid[row] = kSlidePart * s.schur.slid(static_cast<int>(r));
-    s.target[row] += s.slid[row];
-    s.target[row + 1] -= s.slid[row];
-  }
+  s.slid.setZero(s.rows.count());
+  for (const ThreadRows& thread : s.rows.threads)
+    for (int k = 0; k + 1 < thread.count(); ++k) {
+      const int row = thread.pullRow(k);
+      s.slid[row] = kSlidePart * s.schur.slid(row);
+      s.target[row] += s.slid[row];
+      s.target[row + 1] -= s.slid[row];
+    }
   s.schur.holdThreads();
 }
 
@@ -148,8 +154,8 @@ void QuasiNewton::findDirection() {
   StepperScratch& s = scratch_;
   rowResidual();
   s.work = s.gradient;
-  // rows may bear far more than what is left to gain: of a pair that moves them by a rounding, that would be all one
-  // sees
+  // forces of rows may be far larger than the remaining gradient: without this, a pair that moves rows by a rounding
+  // would consist of their forces only
   if (s.pairs > 0) addRowForces(-1, s.work);
   double alpha[StepperScratch::kHistory];
   for (int i = s.pairs - 1; i >= 0; --i) {
@@ -181,9 +187,9 @@ void QuasiNewton::findDirection() {
 // rows move.
 double QuasiNewton::lagrangian(double part) const {
   double sum = 0;
-  for (Eigen::Index r = 0; r < scratch_.rhs.size(); ++r)
-    if (!scratch_.rows[static_cast<std::size_t>(r)].spring)
-      sum += scratch_.schur.forces()[r] * scratch_.schur.moves()[r] * (1 - part);
+  scratch_.rows.forEachMultiplier([&](int row, const LinearForm&) {
+    sum += scratch_.schur.forces()[row] * scratch_.schur.moves()[row] * (1 - part);
+  });
   return sum;
 }
 
@@ -207,7 +213,7 @@ void QuasiNewton::keepPair(double part) {
     change[i] = s.trial_gradient[i] - s.gradient[i];
   }
   const double product = dot(move, change);
-  if (!(product > 1e-8 * std::sqrt(dot(move, move) * dot(change, change)))) return;
+  if (!(product > kMinPairCosine * std::sqrt(dot(move, move) * dot(change, change)))) return;
   s.curvature[s.pairs++] = 1 / product;
 }
 

@@ -8,21 +8,11 @@
 namespace vibe {
 namespace {
 
-constexpr double kShortestSegment = 1e-6;  // that has a direction [m]
-constexpr double kMinTension = 1e-6;       // of a segment's resistance to being turned [N]
-
-void addContact(const ContactConstraint& contact, ConstraintRow* rows) {
-  const Eigen::Vector3d normal = contact.normal, tangent = normal.unitOrthogonal();
-  const Eigen::Vector3d directions[3] = {normal, tangent, normal.cross(tangent)};
-  for (int k = 0; k < 3; ++k) {
-    rows[k].node.assign(1, contact.node);
-    rows[k].coefficient.assign(1, directions[k]);
-    rows[k].compliance = 0;
-    rows[k].friction = contact.friction;
-    rows[k].thread = rows[k].attachment[0] = -1;
-    rows[k].spring = false;
-  }
-}
+// Shortest segment that has a direction. Design choice: far below the size of a bite, far above rounding [m].
+constexpr double kShortestSegment = 1e-6;
+// Tension of a slack segment for its resistance to being turned. Design choice: keeps the compliance finite at a force
+// that nobody can measure [N].
+constexpr double kMinTension = 1e-6;
 
 Eigen::Vector3d positionOf(const AttachmentPoint& attachment, const MotionView& motion) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -31,73 +21,64 @@ Eigen::Vector3d positionOf(const AttachmentPoint& attachment, const MotionView& 
   return sum;
 }
 
-void addAttachment(const AttachmentPoint& attachment, const Eigen::Vector3d& along, ConstraintRow& row) {
+void addAttachment(const AttachmentPoint& attachment, const Eigen::Vector3d& along, LinearForm& form) {
   for (std::size_t i = 0; i < attachment.node.size(); ++i) {
-    row.node.push_back(attachment.node[i]);
-    row.coefficient.emplace_back(attachment.weight[i] * along);
+    form.node.push_back(attachment.node[i]);
+    form.coefficient.emplace_back(attachment.weight[i] * along);
   }
 }
 
-// Between two spots that follow each other, along `along` at the first and against it at the second.
-void runBetween(const BodyLoads& loads, int first, const Eigen::Vector3d& along, ConstraintRow& row) {
-  row.attachment = {first, first + 1};
-  row.along = along;
-  row.node.clear(), row.coefficient.clear();
-  addAttachment(loads.attachments[first], along, row);
-  addAttachment(loads.attachments[first + 1], -along, row);
+// Between two attachment points that follow each other, along `along` at the first and against it at the second.
+void runBetween(const BodyLoads& loads, int first, const Eigen::Vector3d& along, LinearForm& form) {
+  form.node.clear(), form.coefficient.clear();
+  addAttachment(loads.attachments[first], along, form);
+  addAttachment(loads.attachments[first + 1], -along, form);
 }
 
-// A tense segment resists being turned: two springs across it. Its direction is that at the start of the step, and what
-// turning does to the pull is stiff beside soft tissue.
-void addTurning(const BodyLoads& loads, int first, const Eigen::Vector3d& along, double compliance,
-                ConstraintRow* rows) {
-  const Eigen::Vector3d across = along.unitOrthogonal();
-  const Eigen::Vector3d directions[2] = {across, along.cross(across)};
-  for (int k = 0; k < 2; ++k) {
-    rows[k].thread = -1;
-    rows[k].spring = true;
-    rows[k].friction = -1;
-    rows[k].compliance = compliance;
-    runBetween(loads, first, directions[k], rows[k]);
-  }
-}
-
-// Two spots in one place have no direction between them: then any will do, it pulls nothing that is not there.
+// Two points in one place have no direction between them. Then any direction is correct, because the pull is zero.
 Eigen::Vector3d directionOf(const Eigen::Vector3d& between) {
   const double length = between.norm();
   return length > kShortestSegment ? Eigen::Vector3d(between / length) : Eigen::Vector3d(Eigen::Vector3d::UnitX());
 }
 
-// Three rows per segment: its pull, which are together since one thread slides as a whole, then all that turn.
-void addThread(const BodyLoads& loads, int number, const MotionView& motion, ConstraintRow* rows) {
-  const ThreadLoad& thread = loads.threads[number];
+// A tense segment resists being turned: two springs across it. Its direction is that at the start of the step, and the
+// effect of turning on the pull is stiff beside soft tissue.
+void setSegment(const BodyLoads& loads, const ThreadLoad& thread, int k, const Eigen::Vector3d& between,
+                SegmentRows& segment) {
+  const int first = thread.first_attachment + k;
+  segment.along = directionOf(between);
+  segment.compliance = std::max(thread.length[k], kMinThread) / thread.stiffness;
+  runBetween(loads, first, segment.along, segment.pull);
+  const Eigen::Vector3d across = segment.along.unitOrthogonal();
+  segment.across = {across, segment.along.cross(across)};
+  segment.turn_compliance = std::max(between.norm(), kMinThread) / std::max(thread.tension[k], kMinTension);
+  for (std::size_t j = 0; j < 2; ++j) runBetween(loads, first, segment.across[j], segment.turn[j]);
+}
+
+void setThread(const BodyLoads& loads, const ThreadLoad& thread, const MotionView& motion, ThreadRows& rows) {
+  rows.first_attachment = thread.first_attachment;
+  rows.segments.clear();
+  if (thread.length.empty()) return;
   Eigen::Vector3d from = positionOf(loads.attachments[thread.first_attachment], motion), before = from;
-  for (std::size_t k = 0; k < thread.length.size(); ++k) {
-    const int first = thread.first_attachment + static_cast<int>(k);
-    const Eigen::Vector3d to = positionOf(loads.attachments[first + 1], motion);
-    ConstraintRow& row = rows[k];
-    row.thread = number;
-    row.spring = false;
-    row.friction = 0;
-    row.compliance = std::max(thread.length[k], kMinThread) / thread.stiffness;
-    runBetween(loads, first, directionOf(to - from), row);
-    const double tension = std::max(thread.tension[k], kMinTension);
-    addTurning(loads, first, row.along, std::max((to - from).norm(), kMinThread) / tension,
-               rows + thread.length.size() + 2 * k);
-    if (k > 0) rows[k - 1].capstan = capstanFactor(thread.friction, turningAngle(before, from, to));
+  for (int k = 0; k < static_cast<int>(thread.length.size()); ++k) {
+    const Eigen::Vector3d to = positionOf(loads.attachments[thread.first_attachment + k + 1], motion);
+    if (k > 0) rows.segments.back().capstan = capstanFactor(thread.friction, turningAngle(before, from, to));
+    setSegment(loads, thread, k, to - from, rows.segments.add());
     before = from;
     from = to;
   }
 }
 
-std::size_t threadRows(const BodyLoads& loads) {
-  std::size_t sum = 0;
-  for (const ThreadLoad& thread : loads.threads) sum += 3 * thread.length.size();
-  return sum;
+void setContact(const ContactConstraint& contact, ContactRows& rows) {
+  const Eigen::Vector3d normal = contact.normal, tangent = normal.unitOrthogonal();
+  rows.form[0].setNode(contact.node, normal);
+  rows.form[1].setNode(contact.node, tangent);
+  rows.form[2].setNode(contact.node, normal.cross(tangent));
+  rows.friction = contact.friction;
 }
 
-// Where spots have met, as much thread as they are large stays between them: what slid out of it beyond that comes from
-// the nearest segments that have more.
+// Where attachment points have met, as much thread as they are large stays between them. What slid out beyond that
+// comes from the nearest segments that have more.
 void fillShortSegments(std::vector<double>& length) {
   const auto count = static_cast<int>(length.size());
   for (int k = 0; k < count; ++k)
@@ -110,93 +91,96 @@ void fillShortSegments(std::vector<double>& length) {
       }
 }
 
-double threadTarget(const BodyLoads& loads, std::size_t row) {
-  for (const ThreadLoad& thread : loads.threads) {
-    const std::size_t segments = thread.length.size();
-    if (row < segments) return -std::max(thread.length[row], kMinThread);
-    if (row < 3 * segments) return 0;
-    row -= 3 * segments;
+// Target of each row for the positions at the end of the step.
+void setTargets(const BodyLoads& loads, const ConstraintRows& rows, Eigen::VectorXd& target) {
+  target.setZero(rows.count());
+  for (std::size_t i = 0; i < loads.constraints.size(); ++i) target[i] = loads.constraints[i].target;
+  for (std::size_t c = 0; c < loads.contacts.size(); ++c) {
+    const ContactConstraint& contact = loads.contacts[c];
+    const int row = rows.contactRow(c);
+    target[row] = contact.offset;
+    for (int k = 1; k < 3; ++k) target[row + k] = rows.contacts[c].form[k].coefficient[0].dot(contact.anchor);
   }
-  return 0;
+  for (std::size_t t = 0; t < loads.threads.size(); ++t)
+    for (int k = 0; k < rows.threads[t].count(); ++k)
+      target[rows.threads[t].pullRow(k)] = -std::max(loads.threads[t].length[k], kMinThread);
 }
 
-double rowTarget(const BodyLoads& loads, const std::vector<ConstraintRow>& rows, std::size_t r) {
-  if (r < loads.constraints.size()) return loads.constraints[r].target;
-  const std::size_t threads = loads.constraints.size() + 3 * loads.contacts.size();
-  if (r >= threads) return threadTarget(loads, r - threads);
-  const std::size_t k = (r - loads.constraints.size()) % 3;
-  const ContactConstraint& contact = loads.contacts[(r - loads.constraints.size()) / 3];
-  return k == 0 ? contact.offset : rows[r].coefficient[0].dot(contact.anchor);
+// A target for z from one for x at the end of the step.
+double stepTarget(const LinearForm& form, double target, const MotionView& motion, const TimeScheme& scheme) {
+  double residual = target, free = 0;  // residual: of x at the end without acceleration
+  for (std::size_t k = 0; k < form.node.size(); ++k)
+    for (int c = 0; c < 3; ++c) {
+      const int i = form.node[k];
+      const double weight = form.coefficient[k][c];
+      residual -= weight * scheme.free_x(motion.x[c][i], motion.v[c][i], motion.a[c][i]);
+      free += weight * scheme.free_z(motion.x[c][i], motion.v[c][i], motion.a[c][i]);
+    }
+  return free + scheme.z_gain / scheme.x_gain * residual;
+}
+
+void scaleCompliances(double gain, ConstraintRows& rows) {
+  for (EquationRow& row : rows.equations) row.compliance *= gain;
+  for (ThreadRows& thread : rows.threads)
+    for (SegmentRows& segment : thread.segments) segment.compliance *= gain, segment.turn_compliance *= gain;
+}
+
+void storeThread(const StepperScratch& scratch, const ThreadRows& rows, double gain, ThreadLoad& thread) {
+  thread.tension.resize(thread.length.size());
+  for (int k = 0; k < rows.count(); ++k) {
+    thread.tension[k] = scratch.schur.forces()[rows.pullRow(k)];
+    if (k + 1 == rows.count()) continue;
+    const double slid = scratch.slid[rows.pullRow(k)] / gain;
+    thread.length[k] -= slid;
+    thread.length[k + 1] += slid;
+  }
+  fillShortSegments(thread.length);
 }
 
 }  // namespace
 
 void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch& scratch) {
-  std::vector<ConstraintRow>& rows = scratch.rows;
-  rows.resize(loads.constraints.size() + 3 * loads.contacts.size() + threadRows(loads));
-  std::size_t r = 0;
+  ConstraintRows& rows = scratch.rows;
+  rows.clear();
   for (const LinearConstraint& constraint : loads.constraints) {
-    rows[r].node = constraint.node;
-    rows[r].coefficient = constraint.coefficient;
-    rows[r].compliance = constraint.compliance;
-    rows[r].thread = rows[r].attachment[0] = -1;
-    rows[r].spring = false;
-    rows[r++].friction = -1;
+    EquationRow& row = rows.equations.add();
+    row.form.node = constraint.node;
+    row.form.coefficient = constraint.coefficient;
+    row.compliance = constraint.compliance;
   }
-  for (const ContactConstraint& contact : loads.contacts) addContact(contact, &rows[r]), r += 3;
-  for (std::size_t t = 0; t < loads.threads.size(); ++t) {
-    if (loads.threads[t].length.empty()) continue;
-    addThread(loads, static_cast<int>(t), motion, &rows[r]);
-    r += 3 * loads.threads[t].length.size();
-  }
-  scratch.target.resize(static_cast<Eigen::Index>(rows.size()));
-  scratch.rhs.resize(static_cast<Eigen::Index>(rows.size()));
+  for (const ContactConstraint& contact : loads.contacts) setContact(contact, rows.contacts.add());
+  for (const ThreadLoad& thread : loads.threads) setThread(loads, thread, motion, rows.threads.add());
+  rows.number();
+  scratch.target.resize(rows.count());
+  scratch.rhs.resize(rows.count());
 }
 
 void setEquilibriumTargets(const BodyLoads& loads, StepperScratch& scratch) {
-  for (std::size_t r = 0; r < scratch.rows.size(); ++r)
-    scratch.target[static_cast<Eigen::Index>(r)] = rowTarget(loads, scratch.rows, r);
+  setTargets(loads, scratch.rows, scratch.target);
 }
 
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
                     StepperScratch& scratch) {
-  const double gain = scheme.z_gain / scheme.x_gain;
-  for (std::size_t r = 0; r < scratch.rows.size(); ++r) {
-    ConstraintRow& row = scratch.rows[r];
-    double residual = rowTarget(loads, scratch.rows, r), free = 0;  // lack: of x at the end without acceleration
-    for (std::size_t k = 0; k < row.node.size(); ++k)
-      for (int c = 0; c < 3; ++c) {
-        const int i = row.node[k];
-        const double weight = row.coefficient[k][c];
-        residual -= weight * scheme.free_x(motion.x[c][i], motion.v[c][i], motion.a[c][i]);
-        free += weight * scheme.free_z(motion.x[c][i], motion.v[c][i], motion.a[c][i]);
-      }
-    scratch.target[static_cast<Eigen::Index>(r)] = free + gain * residual;
-    row.compliance *= gain;
-  }
+  setTargets(loads, scratch.rows, scratch.target);
+  const auto set = [&](int row, const LinearForm& form) {
+    scratch.target[row] = stepTarget(form, scratch.target[row], motion, scheme);
+  };
+  scratch.rows.forEachMultiplier(set);
+  scratch.rows.forEachSpring([&set](int row, const LinearForm& form, double) { set(row, form); });
+  scaleCompliances(scheme.z_gain / scheme.x_gain, scratch.rows);
 }
 
 void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
   const Eigen::VectorXd& force = scratch.schur.forces();
-  Eigen::Index r = 0;
-  for (LinearConstraint& constraint : loads.constraints) constraint.force = force[r++];
-  for (ContactConstraint& contact : loads.contacts) {
+  const ConstraintRows& rows = scratch.rows;
+  for (std::size_t i = 0; i < loads.constraints.size(); ++i) loads.constraints[i].force = force[i];
+  for (std::size_t c = 0; c < loads.contacts.size(); ++c) {
+    ContactConstraint& contact = loads.contacts[c];
     contact.force.setZero();
-    for (int k = 0; k < 3; ++k, ++r)
-      contact.force += force[r] * scratch.rows[static_cast<std::size_t>(r)].coefficient[0];
+    for (int k = 0; k < 3; ++k)
+      contact.force += force[rows.contactRow(c) + k] * rows.contacts[c].form[k].coefficient[0];
   }
-  for (ThreadLoad& thread : loads.threads) {  // its pulls, then what it has slid
-    thread.tension.resize(thread.length.size());
-    for (std::size_t k = 0; k < thread.length.size(); ++k, ++r) {
-      thread.tension[k] = force[r];
-      if (k + 1 == thread.length.size()) continue;
-      const double slid = scratch.slid[r] / gain;
-      thread.length[k] -= slid;
-      thread.length[k + 1] += slid;
-    }
-    r += 2 * static_cast<Eigen::Index>(thread.length.size());
-    fillShortSegments(thread.length);
-  }
+  for (std::size_t t = 0; t < loads.threads.size(); ++t) storeThread(scratch, rows.threads[t], gain, loads.threads[t]);
   loads.gas.volume = scratch.volume;
   loads.gas.pressure = scratch.pressure;
 }

@@ -5,13 +5,13 @@
 
 namespace vibe {
 
-/// The conditions, contacts and threads of the loads as rows for the positions at which forces are evaluated, in the
-/// scratch's rows: the conditions first, then a normal and two tangents per contact, then the threads' segments, whose
-/// lengths are linear about the given positions.
+/// The constraints, contacts and threads of the loads as rows for the positions at which forces are evaluated, in the
+/// scratch's rows. The lengths of segments of thread are linearised about the given positions.
 void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch& scratch);
-/// What each row wants of the equilibrium itself, in the scratch's target.
+/// The values that the rows have in the equilibrium itself, in the scratch's target.
 void setEquilibriumTargets(const BodyLoads& loads, StepperScratch& scratch);
-/// The same for a step: rows are met at its end, so that z has to go as much farther or less far.
+/// The same for a step: rows are met at its end, so that z has to move by the scheme's ratio of gains times as much.
+/// Scales the compliances of the rows in the same way.
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
                     StepperScratch& scratch);
 /// The rows' forces back to the loads, and how far the threads slid.

@@ -36,7 +36,7 @@ class StepperScratch {
   std::vector<std::vector<float>> move, change;  // L-BFGS pairs
   std::vector<double> curvature;                 // 1 / (move . change)
   int pairs = 0;
-  std::vector<ConstraintRow> rows;
+  ConstraintRows rows;
   Eigen::VectorXd target, rhs, force;
   Eigen::VectorXd slid;             // thread that slid out of a row in this step, to the scale of the rows [m]
   double volume = 0, pressure = 0;  // of the point under evaluation

@@ -1,36 +1,40 @@
 #pragma once
 
-#include <array>
+#include <vector>
 
-#include "solver/energy_term.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {
 
-/// Two energies as one.
+/// Several energies as one, added in the order in which they were given.
 class SumTerm : public EnergyTerm {
  public:
-  /// @param first, second  null: not there
-  void set(const EnergyTerm* first, const EnergyTerm* second) { terms_ = {first, second}; }
+  void clear() { terms_.clear(); }
+  /// @param term  null: nothing is added
+  void add(const EnergyTerm* term) {
+    if (term != nullptr) terms_.push_back(term);
+  }
 
-  /// The one that is there where there is only one, so that it is called without a detour; null: none is.
+  /// The only term if there is one, so that it is called directly; null without terms.
   const EnergyTerm* simplest() const {
-    if (terms_[0] != nullptr && terms_[1] != nullptr) return this;
-    return terms_[0] != nullptr ? terms_[0] : terms_[1];
+    if (terms_.size() > 1) return this;
+    return terms_.empty() ? nullptr : terms_.front();
   }
 
   double evaluate(const double* positions4, float* gradient4) const override {
     double energy = 0;
-    for (const EnergyTerm* term : terms_)
-      if (term != nullptr) energy += term->evaluate(positions4, gradient4);
+    for (const EnergyTerm* term : terms_) energy += term->evaluate(positions4, gradient4);
     return energy;
   }
 
   bool acts() const override {
-    return (terms_[0] != nullptr && terms_[0]->acts()) || (terms_[1] != nullptr && terms_[1]->acts());
+    for (const EnergyTerm* term : terms_)
+      if (term->acts()) return true;
+    return false;
   }
 
  private:
-  std::array<const EnergyTerm*, 2> terms_{{nullptr, nullptr}};
+  std::vector<const EnergyTerm*> terms_;
 };
 
 }  // namespace vibe

@@ -16,11 +16,11 @@ ClusterSet buildClusters(const Organ& organ, const TissueScene& tissue, const st
 /// Sets gain = substep^2 / compliance, limited where a member of the cluster would otherwise be moved too far in one
 /// sweep, and the compliance accordingly: explicit integration of a stiffness with a viscous part of time constant
 /// stiffness_damping is stable while the gains of all clusters of a particle sum to less than
-/// 4 / (1 + 2 stiffness_damping / substep); kMostTotalGain takes the place of the 4.
-/// @return the smallest of simulated over asked stiffness, 1 if nothing was limited
+/// 4 / (1 + 2 stiffness_damping / substep); kMaxTotalGain takes the place of the 4.
+/// @return the minimum of simulated over requested stiffness, 1 if nothing was limited
 double setGains(ClusterSet& clusters, double substep, double stiffness_damping);
 
-/// The fewest sub-steps of a step for which setGains() limits nothing.
+/// The smallest number of substeps per step for which setGains() limits nothing.
 int fewestSubsteps(const ClusterSet& clusters, double step_period, double stiffness_damping);
 
 /// Leaves a margin for stretched states, contacts and grips.

@@ -23,9 +23,9 @@ constexpr int kExtractions = 6;     // Newton steps to a rotation; three are usu
 constexpr double kFarTurn = 0.5;    // [rad] of one of them
 constexpr double kSameTurn = 1e-7;  // [rad]
 
-/// The rotation r nearest to a matrix a, that with the greatest r : a, from another one near it. Newton's method on
+/// The rotation r nearest to a matrix a, which maximises r : a, starting from a rotation near it. Newton's method on
 /// small turns w from the left: gradient sum_k r_k x a_k over the columns, minus Hessian tr(s) - s, s = sym(a r^T).
-/// Unlike a polar decomposition it has no trouble with the flat neighbourhoods of a surface, whose a has rank two.
+/// Unlike a polar decomposition it also works for flat neighbourhoods of a surface, where a has rank two.
 Matrix3d rotationOf(const Matrix3d& a, Matrix3d r) {
   for (int i = 0; i < kExtractions; ++i) {
     const Vector3d gradient = r.col(0).cross(a.col(0)) + r.col(1).cross(a.col(1)) + r.col(2).cross(a.col(2));
@@ -33,7 +33,7 @@ Matrix3d rotationOf(const Matrix3d& a, Matrix3d r) {
     const double trace = product.trace();
     const Matrix3d hessian = trace * Matrix3d::Identity() - 0.5 * (product + product.transpose());
     const double size = std::abs(trace) + 1e-300;
-    // far from the rotation the Hessian is of no use; its trace bounds it
+    // far from the rotation the Hessian is not usable; its trace is a bound
     const bool useful = hessian.determinant() > 1e-6 * size * size * size && trace > 0;
     Vector3d turn = useful ? Vector3d(hessian.inverse() * gradient) : Vector3d(gradient / (2 * size));
     const double angle = turn.norm();
@@ -212,7 +212,7 @@ void GradientDeformation::solve(std::vector<Vector3d>& positions) {
     }
     right_.row(unknown_[i]) = sum;
   }
-  // what factor_.solve() does, in memory that is there
+  // same as factor_.solve(), but in existing memory
   permuted_.noalias() = factor_.permutationP() * right_;
   factor_.matrixL().solveInPlace(permuted_);
   permuted_.array().colwise() *= inverse_diagonal_.array();

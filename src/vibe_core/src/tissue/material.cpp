@@ -1,7 +1,6 @@
 #include "vibe_core/tissue/material.hpp"
 
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "tissue/material_law.hpp"
@@ -10,19 +9,22 @@
 namespace vibe {
 namespace {
 
-bool hasLogOfVolume(Law law) {
-  return law != Law::StableNeoHookean && law != Law::MacklinMueller;
+LawLimits limitsOf(Law law) {
+  if (const MaterialLaw* registered = registeredLaw(law)) return registered->limits();
+  return withLaw(law, [](auto tag) { return LawFormula<decltype(tag)::value>::kLimits; });
 }
 
-// of K times the stiffening
-double profileLimit(Law law) {
-  if (law == Law::Fung) return kFungLimit;
-  if (law == Law::Gent) return kGentLimit;
-  if (law == Law::Yeoh) return kYeohLimit;
-  return std::numeric_limits<double>::infinity();
+/// Names of the laws whose limits have a flag set, or do not.
+std::string lawsWith(bool LawLimits::*flag, bool set) {
+  std::string names;
+  for (int k = 0; k < kLawCount; ++k) {
+    const Law law = static_cast<Law>(k);
+    if (limitsOf(law).*flag == set) names += (names.empty() ? "" : ", ") + nameOf(law);
+  }
+  return names;
 }
 
-[[noreturn]] void reject(const std::string& place, const char* name, double value, const char* range) {
+[[noreturn]] void reject(const std::string& place, const char* name, double value, const std::string& range) {
   std::ostringstream message;
   message << place << ": " << name << " is " << value << ", but must be " << range << '.';
   throw Error(message.str());
@@ -32,14 +34,17 @@ double profileLimit(Law law) {
 
 void checkMaterial(const Material& material, const std::string& place) {
   const double e = material.young_modulus, nu = material.poisson_ratio, b = material.stiffening;
+  if (static_cast<int>(material.law) >= kLawCount && registeredLaw(material.law) == nullptr)
+    throw Error(place + ": the law has a number that no law has; use lawByName() or registerMaterialLaw().");
+  const LawLimits limits = limitsOf(material.law);
   if (!(e > 0) || !std::isfinite(e)) reject(place, "Young's modulus", e, "a finite number above 0 Pa");
   if (!(nu > -1 && nu < 0.5)) reject(place, "Poisson's ratio", nu, "above -1 and below 0.5");
-  if (nu < 0 && hasLogOfVolume(material.law))
+  if (nu < 0 && !limits.negative_poisson_ratio)
     reject(place, "Poisson's ratio", nu,
-           "0 or more for this law (the stable neo-Hookean and the Macklin-Mueller law allow less)");
+           "0 or more for this law (allowed below 0: " + lawsWith(&LawLimits::negative_poisson_ratio, true) + ")");
   if (!(b >= 0) || !std::isfinite(b)) reject(place, "the stiffening", b, "a finite number, 0 or more");
-  if (b == 0 && (material.law == Law::Fung || material.law == Law::Gent))
-    reject(place, "the stiffening", b, "above 0 for the laws of Fung and Gent (neo-Hookean is the law without it)");
+  if (b == 0 && limits.needs_stiffening)
+    reject(place, "the stiffening", b, "above 0 for the law " + nameOf(material.law) + " (neo_hookean is without it)");
 }
 
 LawConstants lawConstants(const Material& material) {
@@ -47,11 +52,12 @@ LawConstants lawConstants(const Material& material) {
   const double nu = material.poisson_ratio;
   const double mu = material.young_modulus / (2 * (1 + nu));
   const double lambda = 2 * mu * nu / (1 - 2 * nu);
-  if (material.law == Law::StableNeoHookean) return {4.0 / 3 * mu, lambda + 5.0 / 6 * mu, 0, 0};
-  if (material.law == Law::MacklinMueller) return {mu, lambda + mu, 0, 0};
-  const double b = material.stiffening;
-  const double limit = b > 0 ? profileLimit(material.law) / b : std::numeric_limits<double>::infinity();
-  return {mu, lambda, b, limit};
+  return withLaw(material.law, [&](auto tag) {
+    using Formula = LawFormula<decltype(tag)::value>;
+    LawConstants constants = Formula::constants(mu, lambda, material.stiffening, Formula::kLimit);
+    constants.registered = registeredLaw(material.law);
+    return constants;
+  });
 }
 
 }  // namespace vibe

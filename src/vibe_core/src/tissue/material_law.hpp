@@ -1,255 +1,39 @@
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <xsimd/xsimd.hpp>
+#include "tissue/law_formulas.hpp"
 
-#include "vibe_core/tissue/material.hpp"
-
-// The laws of vibe::Law as functions of the invariants, for one scalar or a pack of them. Everything is a template or
-// inline in an unnamed namespace: this file is compiled for several instruction sets, and a function shared between
-// them could run on a machine that lacks the instructions.
+// A law of the list by its number, for one scalar or a pack of them; see law_terms.hpp for why everything is in an
+// unnamed namespace.
 
 namespace vibe {
-
-/// Constants of a law, from E, nu and stiffening; what they mean depends on the law.
-struct LawConstants {
-  double shear;       ///< mu; ms for StableNeoHookean [Pa]
-  double bulk;        ///< lambda; ls for StableNeoHookean, lm for MacklinMueller [Pa]
-  double stiffening;  ///< b, or 1/Jm [1]
-  double limit;       ///< K from which the function of K is continued by its second order Taylor polynomial [1]
-};
-
-/// @throws Error for a material that checkMaterial refuses
-LawConstants lawConstants(const Material& material);
-
 namespace {
 
-// ln J is replaced by a twice continuously differentiable function below this J: the curvature of ln J there, brought
-// linearly to zero over the width, then a straight line. Its slope stays positive, so the force pushes back, and the
-// energy grows with J^2 only: single precision does not overflow before a deformation of 1e5.
-constexpr double kLogStart = 0.2;
-constexpr double kLogWidth = 1.2;
-// limit * stiffening: they let Fung stiffen 400 times (a stretch of 3 for b = 1), Gent 20 times and Yeoh 5,000 times.
-constexpr double kFungLimit = 6;
-constexpr double kGentLimit = 0.95;
-constexpr double kYeohLimit = 100;
-
-template <class B>
-struct ScalarOf {
-  using Type = B;
-};
-template <class T, class A>
-struct ScalarOf<xsimd::batch<T, A>> {
-  using Type = T;
-};
-
-/// The constant in the precision of B, in all lanes.
-template <class B>
-inline B constant(double value) {
-  return B(static_cast<typename ScalarOf<B>::Type>(value));
-}
-
-/// a b + c, fused where the instruction set has it
-template <class B>
-inline B mulAdd(const B& a, const B& b, const B& c) {
-  return a * b + c;
-}
-template <class T, class A>
-inline xsimd::batch<T, A> mulAdd(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b,
-                                 const xsimd::batch<T, A>& c) {
-  return xsimd::fma(a, b, c);
-}
-
-template <class B>
-inline B larger(const B& a, const B& b) {
-  return a > b ? a : b;
-}
-template <class T, class A>
-inline xsimd::batch<T, A> larger(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b) {
-  return xsimd::max(a, b);
-}
-template <class B>
-inline B smaller(const B& a, const B& b) {
-  return a < b ? a : b;
-}
-template <class T, class A>
-inline xsimd::batch<T, A> smaller(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b) {
-  return xsimd::min(a, b);
-}
-
-inline double choose(bool condition, double yes, double no) {
-  return condition ? yes : no;
-}
-template <class A>
-inline xsimd::batch<float, A> choose(const xsimd::batch_bool<float, A>& condition, const xsimd::batch<float, A>& yes,
-                                     const xsimd::batch<float, A>& no) {
-  return xsimd::select(condition, yes, no);
-}
-
-/// exp(x) - 1, accurate near 0; |x| < 80
-inline double expMinusOne(double x) {
-  return std::expm1(x);
-}
-
-/// In single precision: x = n ln 2 + r, and the Taylor series of exp(r) - 1 for |r| <= ln(2)/2 (relative error 2e-8).
-/// xsimd's own uses constants that are not compiled per instruction set.
-template <class A>
-inline xsimd::batch<float, A> expMinusOne(const xsimd::batch<float, A>& x) {
-  using F = xsimd::batch<float, A>;
-  using N = xsimd::batch<std::int32_t, A>;
-  const F rounding(12582912.0f);  // 1.5 * 2^23: the sum has no bits for fractions left
-  const F rounded = mulAdd(x, F(1.442695041f), rounding);
-  const F n = rounded - rounding;
-  const F r = mulAdd(n, F(2.12194440e-4f), mulAdd(n, F(-0.693359375f), x));  // ln 2 in two parts, the first exact
-  const F r2 = r * r;
-  const F p23 = mulAdd(F(1.0f / 6), r, F(0.5f)), p45 = mulAdd(F(1.0f / 120), r, F(1.0f / 24));
-  const F p67 = mulAdd(F(1.0f / 5040), r, F(1.0f / 720));
-  const F small = mulAdd(mulAdd(mulAdd(p67, r2, p45), r2, p23), r2, r);
-  const N exponent = xsimd::bitwise_cast<N>(rounded) - N(0x4b400000 - 127);
-  const F scale = xsimd::bitwise_cast<F>(exponent << 23);
-  return mulAdd(scale, small, scale - F(1.0f));
-}
-
-/// x - ln(1 + x), x > -1, with a small relative error near 0 too: the energy of small strains is made of it.
-inline double logGap(double x) {
-  return x - std::log1p(x);
-}
-
-/// In single precision: ln(1 + x) = ln m + e ln 2 with m in [sqrt(1/2), sqrt(2)) and t = m - 1; t - ln(1 + t) is
-/// t^2/2 - t^3 p(t), p interpolated at Chebyshev nodes (relative error 1e-7).
-template <class A>
-inline xsimd::batch<float, A> logGap(const xsimd::batch<float, A>& x) {
-  using F = xsimd::batch<float, A>;
-  using N = xsimd::batch<std::int32_t, A>;
-  const N root_half(0x3f3504f3);
-  const N bits = xsimd::bitwise_cast<N>(F(1.0f) + x) + (N(0x3f800000) - root_half);
-  const F exponent = xsimd::to_float((bits >> 23) - N(127));
-  const F mantissa = xsimd::bitwise_cast<F>((bits & N(0x007fffff)) + root_half);
-  const F t = xsimd::select(exponent == F(0.0f), x, mantissa - F(1.0f));
-  // p in pairs of terms, so that the products do not wait for one another
-  const F t2 = t * t;
-  const F p01 = mulAdd(F(-0.2500030642f), t, F(0.3333333073f)), p23 = mulAdd(F(-0.1664128146f), t, F(0.2000104509f));
-  const F p45 = mulAdd(F(-0.1299818376f), t, F(0.1421449592f)), p67 = mulAdd(F(-0.07902743774f), t, F(0.1262231985f));
-  const F p = mulAdd(mulAdd(p67, t2, p45), t2 * t2, mulAdd(p23, t2, p01));
-  return mulAdd(t2, F(0.5f) - t * p, (x - t) - exponent * F(0.6931471806f));
-}
-
-/// L = ln J, continued for small J.
-template <class B>
-struct LogVolume {
-  B value;
-  B gap;        ///< (J - 1) - L
-  B slope;      ///< L'
-  B defect;     ///< 1 - L'
-  B curvature;  ///< L''
-};
-
-/// @param j  J - 1
-template <class B>
-inline LogVolume<B> logVolume(const B& j) {
-  const B curvature0 = constant<B>(1 / (kLogStart * kLogStart)), half(constant<B>(0.5));
-  const B inside = larger(j, constant<B>(kLogStart - 1));
-  const B below = j - inside;  // 0 for J above the start
-  const B bent = larger(below, constant<B>(-kLogWidth));
-  const B straight = below - bent;
-  const B inverse = constant<B>(1) / (constant<B>(1) + inside);
-  // integrals of the curvature 1 + bent / width
-  const B first = bent * mulAdd(bent, constant<B>(0.5 / kLogWidth), constant<B>(1));
-  const B second = bent * bent * mulAdd(bent, constant<B>(1 / (6 * kLogWidth)), half);
-  LogVolume<B> out;
-  out.slope = inverse - curvature0 * first;
-  out.defect = mulAdd(curvature0, first, inside * inverse);
-  out.gap = logGap(inside) + mulAdd(curvature0, second, below - inverse * bent) - out.slope * straight;
-  out.value = j - out.gap;
-  out.curvature = -(inverse * inverse) * mulAdd(bent, constant<B>(1 / kLogWidth), constant<B>(1));
-  return out;
-}
-
-/// LawConstants in all lanes.
-template <class B>
-struct LawTerms {
-  B shear, bulk, stiffening, limit;
-
-  explicit LawTerms(const LawConstants& c)
-      : shear(constant<B>(c.shear)),
-        bulk(constant<B>(c.bulk)),
-        stiffening(constant<B>(c.stiffening)),
-        limit(constant<B>(c.limit)) {}
-};
-
-/// A function of K and its derivatives.
-template <class B>
-struct Profile {
-  B value, first, second, third;
-};
-
-/// The part of the energy that depends on K = I - 3 - 2 L alone.
+/// The part of the energy that depends on K = I - 3 - 2 ln J alone.
 template <Law law, class B>
 inline Profile<B> profile(const LawTerms<B>& c, const B& k) {
-  const B half_shear = constant<B>(0.5) * c.shear, one = constant<B>(1), zero = constant<B>(0);
-  if constexpr (law == Law::NeoHookean) {
+  const B half_shear = constant<B>(0.5) * c.shear, zero = constant<B>(0);
+  if constexpr (LawFormula<law>::kConstantSlope) {
     return {half_shear * k, half_shear, zero, zero};
   } else {
     const B inside = smaller(k, c.limit), beyond = k - inside, x = c.stiffening * inside;
-    B value, first, second, third;
-    if constexpr (law == Law::Yeoh) {
-      value = inside * mulAdd(x, mulAdd(x, constant<B>(1.0 / 6), constant<B>(0.5)), one);
-      first = mulAdd(x, mulAdd(x, constant<B>(0.5), one), one);
-      second = c.stiffening * (one + x);
-      third = c.stiffening * c.stiffening;
-    } else if constexpr (law == Law::Fung) {
-      const B grown = expMinusOne(x);
-      value = grown / c.stiffening;
-      first = one + grown;
-      second = c.stiffening * first;
-      third = c.stiffening * second;
-    } else {
-      static_assert(law == Law::Gent, "a law without a profile");
-      value = inside + logGap(B(-x)) / c.stiffening;
-      first = one / (one - x);
-      second = c.stiffening * first * first;
-      third = constant<B>(2) * c.stiffening * first * second;
-    }
+    const auto [value, first, second, third] = LawFormula<law>::profile(c, inside, x);
     const B bend = second * beyond;
     return {half_shear * mulAdd(beyond, mulAdd(constant<B>(0.5), bend, first), value), half_shear * (first + bend),
             half_shear * second, choose(k < c.limit, B(half_shear * third), zero)};
   }
 }
 
-/// Energy per volume at rest and its derivatives by I and J [Pa]. `balance` is W_J + 2 W_I, which is 0 at rest: with it
-/// the stress 2 W_I F + W_J cof F = 2 W_I (F - cof F) + balance cof F has no large terms that cancel.
-template <class B>
-struct LawAt {
-  B energy;
-  B by_i, by_j, balance;
-  B by_ii, by_ij, by_jj;
-};
-
 /// @param i     I - 3
 /// @param j     J - 1
 /// @param even  i - 2 j, of second order in the strain. Given separately because the energy near rest depends on it:
-/// the
-///              caller that has the displacement gradient H knows it without cancellation,
+///              the caller that has the displacement gradient H knows it without cancellation,
 ///              i - 2 j = H:H - 2 m(H) - 2 det H with m the sum of the principal 2 x 2 minors. Otherwise pass i - 2 j.
 /// What the caller does not read is not computed once this is inlined.
 template <Law law, class B>
 [[gnu::always_inline]] inline LawAt<B> lawAt(const LawTerms<B>& c, const B& i, const B& j, const B& even) {
-  const B zero = constant<B>(0), half = constant<B>(0.5), two = constant<B>(2);
+  const B half = constant<B>(0.5), two = constant<B>(2);
   LawAt<B> out;
-  if constexpr (law == Law::MacklinMueller) {
-    out.energy = half * mulAdd(c.shear, even, c.bulk * j * j);
-    out.by_i = half * c.shear;
-    out.balance = c.bulk * j;
-    out.by_ii = zero, out.by_ij = zero, out.by_jj = c.bulk;
-  } else if constexpr (law == Law::StableNeoHookean) {
-    // i - ln(1 + i/4) = 3/4 i + the gap of i/4
-    const B quarter = constant<B>(0.25) * i, inverse = constant<B>(1) / (constant<B>(4) + i);
-    out.energy = mulAdd(constant<B>(0.375) * c.shear, even, half * mulAdd(c.bulk * j, j, c.shear * logGap(quarter)));
-    out.by_i = half * c.shear * (constant<B>(1) - inverse);
-    out.balance = mulAdd(c.bulk, j, c.shear * quarter * inverse);
-    out.by_ii = half * c.shear * inverse * inverse, out.by_ij = zero, out.by_jj = c.bulk;
-  } else {
+  if constexpr (LawFormula<law>::kLogVolume) {
     const LogVolume<B> l = logVolume(j);
     const Profile<B> p = profile<law>(c, B(mulAdd(two, l.gap, even)));
     const B pull = c.bulk * l.value;
@@ -259,6 +43,8 @@ template <Law law, class B>
     out.by_ii = p.second;
     out.by_ij = -two * l.slope * p.second;
     out.by_jj = l.slope * l.slope * (constant<B>(4) * p.second + c.bulk) + l.curvature * (pull - two * p.first);
+  } else {
+    out = LawFormula<law>::at(c, i, j, even);
   }
   out.by_j = out.balance - two * out.by_i;
   return out;
@@ -269,24 +55,17 @@ struct LawTag {
   static constexpr Law value = law;
 };
 
-/// visit(LawTag<law>()) for a law known at run time
+/// visit(LawTag<law>()) for a law known at run time; every registered law has the tag kRegisteredLaw.
 template <class Visitor>
 inline auto withLaw(Law law, const Visitor& visit) {
   switch (law) {
-    case Law::StableNeoHookean:
-      return visit(LawTag<Law::StableNeoHookean>());
-    case Law::MacklinMueller:
-      return visit(LawTag<Law::MacklinMueller>());
-    case Law::Fung:
-      return visit(LawTag<Law::Fung>());
-    case Law::Gent:
-      return visit(LawTag<Law::Gent>());
-    case Law::Yeoh:
-      return visit(LawTag<Law::Yeoh>());
-    case Law::NeoHookean:
-      break;
+#define VIBE_VISIT(name, word, formula) \
+  case Law::name:                       \
+    return visit(LawTag<Law::name>());
+    VIBE_MATERIAL_LAWS(VIBE_VISIT)
+#undef VIBE_VISIT
   }
-  return visit(LawTag<Law::NeoHookean>());
+  return visit(LawTag<kRegisteredLaw>());
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kElementsPerPiece = 2000;  // fewer do not pay for a second thread
+constexpr int kElementsPerPiece = 2000;  // a second thread does not pay off for fewer
 constexpr int kPieces = 8;
 constexpr int kReferenceSteps = 12;  // of Newton's method for the stretch across the wall, in double precision
 
@@ -79,7 +79,7 @@ void ShellElements::addBatch(const std::array<int, kTetLanes>& triangles, int ro
       batch_fibre_[fibre + static_cast<std::size_t>(k)].lane[lane] =
           empty ? 0.0F : static_cast<float>(fibre_rest_[kFibreRows * e + static_cast<std::size_t>(k)]);
     if (!empty) continue;
-    // it has no size and weighs nothing
+    // it has neither size nor energy
     const auto clear = [&](int k) { batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = 0; };
     for (int k = 0; k < 15; ++k) clear(kShellPatch + k);
     for (int k = 0; k < 3; ++k) clear(kShellSide + 4 * k + 3);

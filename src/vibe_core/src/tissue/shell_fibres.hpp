@@ -3,7 +3,7 @@
 #include "tissue/shell_point.hpp"
 
 // The energy of the fibres of one triangle of a shell and its gradient, for one triangle or a pack of them; see
-// material_law.hpp for why everything is in an unnamed namespace.
+// law_terms.hpp for why everything is in an unnamed namespace.
 
 namespace vibe {
 namespace {

@@ -6,14 +6,6 @@
 namespace vibe {
 namespace {
 
-/// Most steps of Newton's method for the stretch across the wall. The laws without (ln J)^2 take all of them, the
-/// neo-Hookean one needs no second; the others take as many as they need.
-template <Law law>
-constexpr int thicknessSteps() {
-  if (law == Law::NeoHookean) return 1;
-  return law == Law::StableNeoHookean || law == Law::MacklinMueller ? 2 : 7;
-}
-
 template <class Arch>
 struct ShellKernelOf {
   using Lanes = TetLanes<Arch>;
@@ -49,7 +41,7 @@ struct ShellKernelOf {
         Pack u1[3], u[5][3], f[5][3];
         gather(s, offset, lane, u1, u);
         if constexpr (ghosts) placeGhosts(rest, u);
-        energy.add(shellEnergy<law, thicknessSteps<law>()>(terms, rest, u, f));
+        energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps>(terms, rest, u, f));
         if constexpr (ghosts) returnGhosts(rest, f);
         scatter(s, offset, lane, f);
         if constexpr (volume) {

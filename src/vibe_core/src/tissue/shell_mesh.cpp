@@ -8,7 +8,7 @@
 #include "tissue/shell_point.hpp"
 #include "vibe_core/common/error.hpp"
 
-// What a shell knows of its mesh at rest: who lies beyond which side, and the rows of shell_kernel.hpp.
+// Data of a shell at rest: the neighbours of each side, and the rows of shell_kernel.hpp.
 
 namespace vibe {
 namespace {

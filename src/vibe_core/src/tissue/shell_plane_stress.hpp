@@ -4,7 +4,7 @@
 
 #include "tissue/tetrahedra_point.hpp"
 
-// The laws of a solid in a wall without stress across it, for one wall or a pack of them; see material_law.hpp for why
+// The laws of a solid in a wall without stress across it, for one wall or a pack of them; see law_terms.hpp for why
 // everything is in an unnamed namespace.
 
 namespace vibe {
@@ -108,10 +108,10 @@ inline bool allOf(const xsimd::batch_bool<float, A>& condition) {
 /// not overflow there, and J is above kLogStart.
 constexpr double kPlainAreaLow = 0.1, kPlainAreaHigh = 1e6, kPlainLog = 1.5;
 /// A step in L of fourth order may be the last one if it is below this: it leaves 1e-6 at most (measured 0.2 step^4),
-/// and in double precision nothing. The derivatives of Gent's law grow too fast for more.
+/// and in double precision nothing.
 template <Law law, class B>
 constexpr double lastStep() {
-  return std::is_same_v<B, double> ? 1e-4 : law == Law::Gent ? 0.004 : 0.05;
+  return std::is_same_v<B, double> ? 1e-4 : LawFormula<law>::kLastStepOfLog;
 }
 
 /// exp(x) - 1 - x without cancellation, |x| <= kPlainLog (relative error 8e-6 there, 2e-7 for |x| <= 1), or what is
@@ -165,7 +165,7 @@ template <Law law, class B>
 [[gnu::always_inline]] inline B logGuess(const WallTerms<B>& terms, WallMetric<B>& m) {
   const B one = constant<B>(1), half = constant<B>(0.5), zero = constant<B>(0), area = one + m.more;
   B linear, bend;  // -h / h' and h'' / (2 h')
-  if constexpr (law == Law::NeoHookean) {
+  if constexpr (LawFormula<law>::kConstantSlope) {
     const B first = half * terms.law.shear, scaled = mulAdd(terms.quarter_bulk, area, first);
     const B both = one / (area * scaled), inverse = both * area;  // 1 / (D h')
     m.inverse_area = both * scaled;
@@ -198,7 +198,7 @@ template <Law law, int Steps, class B, class Mask>
     const B inverse = one / slope, thick = at.p.first * at.c, linear = -h * inverse;
     B twist = thick;
     curve = thick;
-    if constexpr (law != Law::NeoHookean) {
+    if constexpr (!LawFormula<law>::kConstantSlope) {
       const B bent = constant<B>(3) * at.p.second * at.c;
       const B cubic = at.p.third * at.across * at.across;
       curve = mulAdd(bent, at.across, mulAdd(cubic, at.across, thick));
@@ -215,7 +215,7 @@ template <Law law, int Steps, class B, class Mask>
   out.energy = mulAdd(z, mulAdd(z, B(half * mulAdd(B(constant<B>(1.0 / 3) * z), curve, slope)), h),
                       mulAdd(half * at.pull, log, at.p.value));
   out.by_i = at.p.first;
-  if constexpr (law != Law::NeoHookean) {
+  if constexpr (!LawFormula<law>::kConstantSlope) {
     const B moved = mulAdd(at.c, growth - z, B(at.across * z));  // of K
     out.by_i = mulAdd(moved, mulAdd(half * moved, at.p.third, at.p.second), at.p.first);
   }
@@ -271,12 +271,12 @@ template <Law law, int Steps, class B>
 [[gnu::always_inline]] inline PlaneStress<B> planeStress(const WallTerms<B>& terms, const B& trace,
                                                          const B& minor_strain) {
   const B more = trace + minor_strain;
-  if constexpr (law == Law::StableNeoHookean || law == Law::MacklinMueller) {
+  if constexpr (!LawFormula<law>::kLogVolume) {
     return planeStressOfAny<law, Steps>(terms, more, minor_strain);
   } else {
     auto plain = within(more, 0, 0);
     PlaneStress<B> out;
-    if constexpr (law == Law::NeoHookean && Steps == 1) {
+    if constexpr (LawFormula<law>::kConstantSlope && Steps == 1) {
       out = planeStressOfNeoHookean(terms, more, minor_strain);
       plain = within(more, kPlainAreaLow - 1, kPlainAreaHigh);
     } else {

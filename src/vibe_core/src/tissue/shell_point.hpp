@@ -3,7 +3,7 @@
 #include "tissue/shell_kernel.hpp"
 #include "tissue/shell_plane_stress.hpp"
 
-// The energy of one triangle of a shell and its gradient, for one triangle or a pack of them; see material_law.hpp for
+// The energy of one triangle of a shell and its gradient, for one triangle or a pack of them; see law_terms.hpp for
 // why everything is in an unnamed namespace.
 
 namespace vibe {

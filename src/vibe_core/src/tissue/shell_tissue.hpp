@@ -30,8 +30,4 @@ class ShellTissue : public TissueModel {
   std::shared_ptr<const ShellElements> elements_;
 };
 
-/// The law that tissue.law names.
-/// @throws Error for an unknown one, naming the known ones
-Law lawByName(const std::string& name);
-
 }  // namespace vibe

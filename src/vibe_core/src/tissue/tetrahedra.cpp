@@ -11,7 +11,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kElementsPerPiece = 2000;  // fewer do not pay for a second thread
+constexpr int kElementsPerPiece = 2000;  // a second thread does not pay off for fewer
 constexpr int kPieces = 8;
 
 // Positions by the barycentric coordinates 1, 2, 3, less that by coordinate 0, at an integration point; in columns.
@@ -153,7 +153,7 @@ void TetElements<Nodes>::addBatch(const std::array<int, kTetLanes>& elements) {
     const std::size_t e = static_cast<std::size_t>(empty ? filler : elements[lane]);
     for (std::size_t a = 0; a < Nodes; ++a)
       batch_node_[node + a].lane[lane] = 4 * static_cast<std::uint32_t>(mesh_.elements[e][a]);
-    // an empty lane does not deform and weighs nothing
+    // an empty lane has neither deformation nor energy
     for (int k = 0; k < points * kRows; ++k)
       batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = empty ? 0 : static_cast<float>(rest(e, 0)[k]);
   }

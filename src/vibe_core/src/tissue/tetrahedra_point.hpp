@@ -2,7 +2,7 @@
 
 #include "tissue/material_law.hpp"
 
-// The energy of one tetrahedron and its gradient, for one element or a pack of them; see material_law.hpp for why
+// The energy of one tetrahedron and its gradient, for one element or a pack of them; see law_terms.hpp for why
 // everything is in an unnamed namespace.
 
 namespace vibe {

@@ -174,7 +174,7 @@ TEST(GroupPull, IsAbsentWhereNothingPullsByGroups) {
   pull.prepare(*thread.model, thread.state);
   EXPECT_EQ(pull.count(), 0) << "the scene asks for the thread";
   SumTerm terms;
-  terms.set(nullptr, nullptr);
+  terms.add(nullptr);
   EXPECT_EQ(terms.simplest(), nullptr) << "the step has no further energy at all";
   PulledSheet groups(sheetScene("shell", "groups"), 4);
   groups.set().stage = Suture::Stage::Tagged;
@@ -183,9 +183,9 @@ TEST(GroupPull, IsAbsentWhereNothingPullsByGroups) {
   groups.set().stage = Suture::Stage::Cinched;
   pull.prepare(*groups.model, groups.state);
   EXPECT_EQ(pull.count(), 1);
-  terms.set(nullptr, &pull);
+  terms.add(&pull);
   EXPECT_EQ(terms.simplest(), &pull);
-  terms.set(&pull, &pull);
+  terms.add(&pull);
   std::vector<double> z(4 * static_cast<std::size_t>(groups.model->particle_count), 0.0);
   std::vector<float> once(z.size(), 0), twice(z.size(), 0);
   EXPECT_DOUBLE_EQ(terms.simplest()->evaluate(z.data(), twice.data()), 2 * pull.evaluate(z.data(), once.data()));

@@ -141,15 +141,15 @@ Scene withSuture(const std::string& suture, const std::string& bleeding = "") {
 
 TEST(SceneParser, SutureWordsNameTheNearest) {
   EXPECT_EQ(withSuture("cinch_model: groups, classifier: printed").suture->cinch_model, "groups");
-  EXPECT_ERROR(withSuture("pulling: tread"),
+  EXPECT_ERROR(withSuture("cinch_model: tread"),
                "dir/s.yaml:3: suture.cinch_model: 'tread' is not known here; did you mean "
                "'thread'?");
   EXPECT_ERROR(withSuture("classifier: paper"), "known are corrected, printed");
 }
 
 TEST(SceneParser, SutureValuesThatAreAtOddsNameTheOneThatIsWritten) {
-  EXPECT_ERROR(withSuture("least_bites: 9, most_bites: 8"),
-               "dir/s.yaml:3: suture.least_bites: is 9, but suture.most_bites is 8; write at most that");
+  EXPECT_ERROR(withSuture("min_bites: 9, max_bites: 8"),
+               "dir/s.yaml:3: suture.min_bites: is 9, but suture.max_bites is 8; write at most that");
   EXPECT_ERROR(withSuture("cinch_tension: 20 N"),
                "suture.cinch_tension: is 20 N, but suture.thread_strength is 14.1 N");
   EXPECT_ERROR(withSuture("thread_strength: 2 N"),
@@ -158,7 +158,7 @@ TEST(SceneParser, SutureValuesThatAreAtOddsNameTheOneThatIsWritten) {
   EXPECT_ERROR(withSuture("loose_tension: 3 N"), "suture.loose_tension: leaves every cinch loose");
   EXPECT_ERROR(withSuture("", "brisk_probability: 0.9"), "dir/s.yaml:4: bleeding.brisk_probability: is too much");
   EXPECT_EQ(
-      errorOf([] { withSuture("least_bites: 8, most_bites: 8, cinch_tension: 14.1", "brisk_probability: 0.75"); }),
+      errorOf([] { withSuture("min_bites: 8, max_bites: 8, cinch_tension: 14.1", "brisk_probability: 0.75"); }),
       "no error");
 }
 

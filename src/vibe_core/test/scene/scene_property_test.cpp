@@ -34,8 +34,9 @@ struct Randomise {
   void operator()(GeometryScene::Kind& (*)(Scene&)) const {}
   void operator()(std::string& (*at)(Scene&)) const {
     static const std::string letters = "abc XYZ'\"#:{}[],&*!|>%@`~-_.?\\0123\u00e4";
-    if (!row.words.empty()) {
-      at(scene) = row.words[random() % row.words.size()];
+    const std::vector<std::string> words = wordsOf(row);
+    if (!words.empty()) {
+      at(scene) = words[random() % words.size()];
       return;
     }
     std::string text = "/";  // an absolute path stays as it is

@@ -82,7 +82,7 @@ TEST_P(EveryRow, TakesTheEndsOfItsRange) {
 
 TEST_P(EveryRow, TakesItsWords) {
   const SchemaRow& row = GetParam();
-  for (const std::string& word : row.words) {
+  for (const std::string& word : wordsOf(row)) {
     Scene scene = parseScene(textWith(row, word).yaml, "s.yaml");
     EXPECT_EQ(valueText(row, scene), "'" + word + "'");
   }
@@ -112,7 +112,7 @@ TEST_P(EveryRow, RefusesTheWrongType) {
   if (holds<int>(row)) expectRejected(row, "150.5", "is not a whole number");
   if (holds<bool>(row)) expectRejected(row, "3", "neither true nor false");
   if (holds<GeometryScene::Kind>(row)) expectRejected(row, "stomac", "did you mean 'stomach'?");
-  for (const std::string& word : row.words) expectRejected(row, word + "x", "did you mean '" + word + "'?");
+  for (const std::string& word : wordsOf(row)) expectRejected(row, word + "x", "did you mean '" + word + "'?");
   expectRejected(row, "~", "is empty");
 }
 

@@ -18,8 +18,8 @@ inline void enterWithNeeds(const std::string& name, Scene& scene) {
 
 /// Moves what a key is compared with out of its way, so that all of its range is allowed.
 inline void makeRoom(const std::string& key, Scene& scene) {
-  if (scene.suture && key == "suture.least_bites") scene.suture->max_bites = 1000;
-  if (scene.suture && key == "suture.most_bites") scene.suture->min_bites = 2;
+  if (scene.suture && key == "suture.min_bites") scene.suture->max_bites = 1000;
+  if (scene.suture && key == "suture.max_bites") scene.suture->min_bites = 2;
   if (scene.suture && key == "suture.loose_tension") scene.suture->cinch_tension = 1000;
   if (scene.suture && key == "suture.loose_tension") scene.suture->thread_strength = 1000;
   if (scene.suture && key == "suture.cinch_tension") scene.suture->loose_tension = 0;

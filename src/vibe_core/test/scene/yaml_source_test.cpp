@@ -62,7 +62,7 @@ TEST(YamlSource, SurvivesStairsOfIndentation) {
 
 TEST(YamlSource, FindsDuplicateKeys) {
   const YamlSource source = parsed("a: 1\nb: 2\na: 3\n");
-  EXPECT_ERROR(source.map(source.root()), "f.yaml:3: a: stands here a second time");
+  EXPECT_ERROR(source.map(source.root()), "f.yaml:3: a: is given a second time");
 }
 
 TEST(YamlSource, AliasesAndMergesWork) {
@@ -82,7 +82,7 @@ TEST(YamlSource, MergingHasLimits) {
   const YamlSource circular = parsed("a: &x {<<: *x, p: 1}\n");
   EXPECT_ERROR(circular.map(circular.map(circular.root())[0]), "merges maps into each other too deeply");
   const YamlSource number = parsed("<<: 5\na: 1\n");
-  EXPECT_ERROR(number.map(number.root()), "merges something that is no map");
+  EXPECT_ERROR(number.map(number.root()), "merges something with << that is not a map");
   const YamlSource many = parsed("a: &x {p: 1}\n<<: [" + repeated("*x, ", 1000) + "*x]\n");
   EXPECT_ERROR(many.map(many.root()), "merge at most 16");
 }

@@ -9,32 +9,15 @@
 #include <random>
 
 #include "sparse/closed_mesh.hpp"
+#include "sparse/eigen_matrix.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
 namespace {
 
 using test::closedMesh;
+using test::eigenMatrix;
 using test::shellMatrix;
-
-Eigen::SparseMatrix<double> sparse(const BlockMatrix& matrix) {
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto put = [&](int row, int column, const Eigen::Matrix3d& block) {
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) entries.emplace_back(3 * row + i, 3 * column + j, block(i, j));
-  };
-  const BlockPattern& pattern = matrix.pattern();
-  for (int i = 0; i < pattern.size; ++i) {
-    put(i, i, matrix.diagonal()[i]);
-    for (int k = pattern.start[i]; k < pattern.start[i + 1]; ++k) {
-      put(i, pattern.column[k], matrix.lower()[k]);
-      put(pattern.column[k], i, matrix.lower()[k].transpose());
-    }
-  }
-  Eigen::SparseMatrix<double> result(3 * pattern.size, 3 * pattern.size);
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
-}
 
 Eigen::VectorXd randomVector(int rows, std::mt19937& generator) {
   std::normal_distribution<double> normal;
@@ -94,7 +77,7 @@ double relativeError(const BlockMatrix& matrix, const Eigen::VectorXd& x, const 
 void expectSolves(const BlockMatrix& matrix, std::mt19937& generator) {
   const auto plan = makeFactorPlan(matrix.pattern());
   const Eigen::VectorXd b = randomVector(3 * matrix.pattern().size, generator);
-  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> reference(sparse(matrix));
+  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> reference(eigenMatrix(matrix));
   ASSERT_EQ(reference.info(), Eigen::Success);
   const Eigen::VectorXd expected = reference.solve(b);
 
@@ -176,7 +159,7 @@ TEST(FactorTest, HalfPrecisionPreconditionsStiffMatrices) {
 TEST(FactorTest, HalfColumnsGiveBlocksOfTheInverse) {
   const BlockMatrix matrix = shellMatrix(closedMesh(7), 1.0, 0.1);
   const int nodes = matrix.pattern().size;
-  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> reference(sparse(matrix));
+  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> reference(eigenMatrix(matrix));
   const auto plan = makeFactorPlan(matrix.pattern());
   for (const auto& [storage, tolerance] : {std::pair(FactorStorage::Half, 4e-3), std::pair(FactorStorage::Float, 1e-5),
                                            std::pair(FactorStorage::Double, 1e-5)}) {
@@ -245,7 +228,8 @@ TEST(FactorTest, RefusesWhatIsNotPositiveDefinite) {
 
   BlockMatrix negative = good, indefinite = good, poisoned = good;
   negative.add(9, 9, -50.0 * Eigen::Matrix3d::Identity());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum{Eigen::MatrixXd(sparse(good)), Eigen::EigenvaluesOnly};
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum{Eigen::MatrixXd(eigenMatrix(good)),
+                                                                Eigen::EigenvaluesOnly};
   for (int i = 0; i < nodes; ++i) indefinite.add(i, i, -1.01 * spectrum.eigenvalues()[0] * Eigen::Matrix3d::Identity());
   poisoned.add(7, 7, std::numeric_limits<double>::quiet_NaN() * Eigen::Matrix3d::Identity());
   BlockMatrix poisoned_beside = good;

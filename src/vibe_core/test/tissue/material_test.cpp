@@ -12,8 +12,10 @@ namespace vibe {
 namespace {
 
 constexpr double kE = 3e4, kNu = 0.45;
-const std::vector<Law> kLaws = {Law::NeoHookean, Law::StableNeoHookean, Law::MacklinMueller, Law::Fung, Law::Gent,
-                                Law::Yeoh};
+// every law of the list
+#define VIBE_LAW(name, word, formula) Law::name,
+const std::vector<Law> kLaws = {VIBE_MATERIAL_LAWS(VIBE_LAW)};
+#undef VIBE_LAW
 
 Material material(Law law, double stiffening = 0.8) {
   return {law, kE, kNu, stiffening};

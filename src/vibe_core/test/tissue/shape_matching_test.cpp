@@ -207,7 +207,7 @@ TEST(ShapeMatching, TooLongSubstepsAreReportedAsSoftness) {
 }
 
 TEST(ShapeMatching, FewestSubstepsCarryTheStiffnessAndOneLessDoesNot) {
-  const int substeps = smallWorld(3, 0).model->scene.tissue.substeps;
+  const int substeps = smallWorld(3, 0).model->substeps;
   ASSERT_GT(substeps, 2);
   EXPECT_EQ(smallWorld(3, substeps).model->tissue->stiffnessRatio(), 1.0);
   EXPECT_LT(smallWorld(3, substeps - 1).model->tissue->stiffnessRatio(), 1.0);

@@ -19,8 +19,9 @@
 namespace vibe::test {
 
 inline constexpr double kE = 3e4, kNu = 0.45, kSide = 0.01, kThickness = 0.003;
-inline const std::vector<Law> kLaws = {
-    Law::NeoHookean, Law::StableNeoHookean, Law::MacklinMueller, Law::Fung, Law::Gent, Law::Yeoh};
+#define VIBE_LAW(name, word, formula) Law::name,
+inline const std::vector<Law> kLaws = {VIBE_MATERIAL_LAWS(VIBE_LAW)};  // every law of the list
+#undef VIBE_LAW
 
 inline Material material(Law law) {
   return {law, kE, kNu, 0.8};

@@ -66,7 +66,7 @@ TEST(ScriptReader, Moves) {
   EXPECT_ERROR(play("- {move: {insertion: 1 cm}, in: 0 s}\n"), "out of range");
   EXPECT_ERROR(play("- {move: {insertion: 20 m}, in: 1 s}\n"), "out of range");
   EXPECT_ERROR(play("- {move: {insertion: .nan}, in: 1 s}\n"), "not finite");
-  EXPECT_ERROR(play("- {move: {rotation: 1 rad, rotation: 2 rad}, in: 1 s}\n"), "stands here a second time");
+  EXPECT_ERROR(play("- {move: {rotation: 1 rad, rotation: 2 rad}, in: 1 s}\n"), "is given a second time");
   EXPECT_ERROR(play("- {move_by: {insertion: 0.6}, in: 1 s}\n- {move_by: {insertion: 0.6}, in: 1 s}\n"),
                "leads to 1.2 m");
 }

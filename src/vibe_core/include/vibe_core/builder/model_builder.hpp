@@ -10,18 +10,18 @@
 
 namespace vibe {
 
-/// Scene -> Model: everything that does not change while the simulation runs. Deterministic.
+/// Builds the model of a scene: everything that is constant during the simulation. Deterministic.
 /// @param tool_urdf  text of the URDF that scene.scope names (the library does not know packages); unused without scope
 /// @throws Error
 std::shared_ptr<const Model> buildModel(const Scene& scene, const std::string& tool_urdf,
                                         const Progress& progress = {});
 
-/// The part of buildModel() after the organ is there, for organs made in code: fills everything but model.scene and
-/// model.organ, which the caller has set.
+/// The second part of buildModel(), for organs made in code: fills everything except model.scene and model.organ, which
+/// the caller has set and which stay as they are.
 /// @throws Error
 void finishModel(const std::string& tool_urdf, Model& model, const Progress& progress = {});
 
-/// One sentence if the sub-steps are too long for the asked stiffness, empty if they are not.
+/// One sentence if the substeps are too long for the requested stiffness, otherwise empty.
 std::string softnessWarning(const Model& model);
 
 /// The state at time 0: rest shape, scope at the lower end of its range, gas at its initial pressure.

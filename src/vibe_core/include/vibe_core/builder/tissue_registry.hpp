@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,15 +15,34 @@ namespace vibe {
 struct TissueAndSolver {
   std::shared_ptr<const TissueModel> tissue;
   std::shared_ptr<const Solver> solver;
+  int substeps = 0;  ///< of a solver that usesSubsteps(): per step, at least 1; 0 for others
 };
 
-/// Names that tissue.model accepts, in order of age.
+/// What a tissue model is built from.
+struct TissueRequest {
+  const Scene& scene;
+  const Organ& organ;                 ///< rest shape, thickness and regions
+  const std::vector<double>& masses;  ///< of the particles (particle count) [kg]
+  const std::vector<double>& areas;   ///< of wall per particle (particle count) [m^2]
+  int min_substeps = 1;               ///< that something else needs, where the scene leaves the number open
+};
+
+/// Builds tissue and solver. @throws Error for a scene that the model cannot serve
+using TissueFactory = std::function<TissueAndSolver(const TissueRequest&)>;
+
+/// Words that tissue.model accepts: those of the library, then the registered ones.
 std::vector<std::string> tissueModelNames();
 
-/// @param scene     scene.tissue.substeps of 0 is replaced by the fewest that carry the stiffness
-/// @param at_least  sub-steps that something else needs; an asked number of sub-steps is not changed
-/// @throws Error for an unknown name, naming the known ones
-TissueAndSolver makeTissue(Scene& scene, const Organ& organ, const std::vector<double>& masses,
-                           const std::vector<double>& areas, int at_least = 1);
+/// Makes a tissue model known under a word of tissue.model, for the rest of the program. Call it before the scene is
+/// read. Safe to call from any thread.
+/// @param meaning  one line for people
+/// @throws Error if the word is not usable, see addChoice(), or the factory is empty
+void registerTissueModel(const std::string& name, const std::string& meaning, TissueFactory factory);
+
+/// Builds the tissue that scene.tissue.model names.
+/// @param min_substeps  see TissueRequest; a number that the scene states is not changed
+/// @throws Error for an unknown name, with the nearest or all known ones, and what the factory throws
+TissueAndSolver makeTissue(const Scene& scene, const Organ& organ, const std::vector<double>& masses,
+                           const std::vector<double>& areas, int min_substeps = 1);
 
 }  // namespace vibe

@@ -6,8 +6,8 @@
 
 namespace vibe {
 
-/// Mechanical energy of the tissue, by kind [J]. The gas is isothermal, so its share is the work account
-/// state.energy.gas_work, not a potential here.
+/// Mechanical energy of the tissue, by kind [J]. The gas is isothermal; its share is counted as work in
+/// state.energy.gas_work and not as a potential here.
 struct Energies {
   double kinetic = 0;
   double elastic = 0;
@@ -17,9 +17,9 @@ struct Energies {
 };
 Energies energies(const Model& model, const State& state);
 
-/// Kinetic energy and potentials minus what tool, gas, threads and hand have put in, plus what mass_damping has taken
-/// out: constant but for the error of the time stepping, falling by what the wall's own viscosity (stiffness_damping)
-/// takes out [J].
+/// Kinetic and potential energy, minus the work of tool, gas, threads and pull spring, plus the energy that
+/// mass_damping dissipated [J]. It is constant up to the error of the time stepping, except that stiffness_damping,
+/// which is not in the account, lowers it.
 double energyBalance(const Model& model, const State& state);
 
 /// Sum of mass times velocity over the free particles [kg m/s].

@@ -13,9 +13,9 @@
 
 namespace vibe {
 
-/// Everything that does not change while the simulation runs. Shared between threads and copies of State.
+/// Everything that is constant during a simulation. Can be shared between threads and any number of states.
 struct Model {
-  Scene scene;
+  Scene scene;  ///< as the user wrote it; nothing changes it
   Organ organ;  ///< rest shape and anatomy
   int particle_count = 0;
 
@@ -31,6 +31,7 @@ struct Model {
 
   std::shared_ptr<const TissueModel> tissue;  ///< elastic law of the wall
   std::shared_ptr<const Solver> solver;       ///< time stepping
+  int substeps = 0;  ///< per step, of a solver that uses them: the asked number, or the fewest that are stable; else 0
 
   std::shared_ptr<const ToolModel> tool;                        ///< null without scope
   Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world
@@ -41,10 +42,10 @@ struct Model {
 
   std::optional<ThermalDose> dose_law;  ///< of the argon beam; empty without scene.marking
 
-  RenderSurface render_surface;  ///< empty without scene.render surface
+  RenderSurface render_surface;  ///< empty without scene.render_surface
 
-  /// Place of every particle along the organ's axis at rest, 0: apex of the fundus, 1: pylorus; of an organ without
-  /// these ends along its entry axis. (particle_count), empty without scene.suture.
+  /// Position of every particle along the axis of the organ at rest, 0: apex of the fundus, 1: pylorus; for an organ
+  /// without these ends, along its entry axis. (particle_count), empty without scene.suture.
   std::vector<double> along;
 };
 

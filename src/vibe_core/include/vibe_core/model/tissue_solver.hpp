@@ -13,17 +13,17 @@ struct State;
 class ToolMotion;
 class ThreadPool;
 
-/// What one step did besides changing the state.
+/// Results of one step beside the new state.
 struct StepReport {
   Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in world [N]
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about scope_tip, mean over the step, in world [N m]
   Eigen::Vector3d grip_force = Eigen::Vector3d::Zero();   ///< part of tool_force that acts on the helix [N]
-  std::optional<ToolImpedance> tool_impedance;  ///< nothing where nothing is touched, or the solver cannot tell
-  int contact_count = 0;                        ///< most particles touched at once
-  int iterations = 0;                           ///< of an implicit solver
-  bool fallback = false;                        ///< the step needed backward Euler and more iterations
-  bool put_back = false;                        ///< a state beyond hope began its way back to rest
-  int speed_limited = 0;                        ///< times a particle's speed had to be limited
+  std::optional<ToolImpedance> tool_impedance;            ///< empty without contact, or if the solver computes none
+  int contact_count = 0;                                  ///< maximum number of particles touched at once
+  int iterations = 0;                                     ///< of an implicit solver
+  bool fallback = false;                                  ///< the step needed backward Euler and more iterations
+  bool put_back = false;                                  ///< the state was not usable; its recovery to rest began
+  int speed_limited = 0;                                  ///< how often the speed of a particle was limited
 };
 
 /// Scratch memory of a solver; carries nothing from one step to the next.
@@ -34,12 +34,12 @@ class SolverScratch {
 
 /// Advances the tissue by one step under everything that acts on it: its own elasticity, gas, weight, foundation, the
 /// moving tool and what the helix holds. Constant; all memory is in State and SolverScratch, so one solver serves many
-/// states. An explicit, a position-based and an implicit method fit alike: the step is the solver's to divide.
+/// states. The method may be explicit, position-based or implicit, and may divide the step.
 class Solver {
  public:
   virtual ~Solver() = default;
   virtual std::string name() const = 0;
-  /// Divides the step into tissue.substeps explicit ones.
+  /// Divides the step into model.substeps explicit ones.
   virtual bool usesSubsteps() const { return false; }
   virtual std::unique_ptr<SolverScratch> makeScratch(const Model& model) const = 0;
 

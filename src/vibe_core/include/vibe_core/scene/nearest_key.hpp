@@ -9,10 +9,10 @@ namespace vibe {
 int editDistance(const std::string& a, const std::string& b);
 
 /// The candidate that a user most likely meant by `word`, or empty if none is near. Upper and lower case, '-' and '_'
-/// are taken as equal; of equally near ones the first wins.
+/// count as equal; the first of equally near candidates is returned.
 std::string nearestKey(const std::string& word, const std::vector<std::string>& candidates);
 
-/// Remedy for an unknown word: "did you mean 'x'?" or, if nothing is near, "known are a, b, c".
+/// Remedy for an unknown word: "did you mean 'x'?" or, without a near candidate, "known are a, b, c".
 std::string suggestKey(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace vibe

@@ -39,8 +39,8 @@ struct FibreScene {
 
 /// The wall.
 struct TissueScene {
-  std::string model = "shell";   ///< a name in the registry of tissue models
-  std::string law = "yeoh";      ///< elastic law of the wall, of model shell
+  std::string model = "shell";   ///< a word of choicesOf("tissue.model")
+  std::string law = "yeoh";      ///< a word of choicesOf("tissue.law"), of model shell
   double density = 1050;         ///< [kg/m^3]
   double young_modulus = 110e3;  ///< [Pa]
   double poisson_ratio = 0.45;   ///< [1]
@@ -48,12 +48,12 @@ struct TissueScene {
   std::array<double, kRegionCount> thickness{1.97e-3, 1.97e-3, 2.33e-3, 2.70e-3, 2.70e-3};  ///< per Region [m]
   std::array<double, kRegionCount> stiffness{1, 1, 1, 1, 1};  ///< factor per Region, of model shell [1]
   std::optional<FibreScene> fibres;                           ///< of model shell
-  double mass_damping = 30;                                   ///< viscous damping of the velocity [1/s]
-  double stiffness_damping = 15e-6;  ///< viscosity of the wall over its stiffness; quiets short waves [s]
+  double mass_damping = 30;                                   ///< Rayleigh damping, mass part [1/s]
+  double stiffness_damping = 15e-6;  ///< Rayleigh damping, stiffness part; damps short waves [s]
   int iterations = 4;                ///< quasi-Newton iterations per step, of model shell
   double spectral_radius = 0.2;      ///< generalised-alpha, of model shell [1]
-  bool self_contact = false;         ///< walls pulled together meet and do not pass through each other, of model shell
-  int substeps = 0;                  ///< solver sub-steps per step; 0: as few as carry the stiffness, see finishModel()
+  bool self_contact = false;         ///< contact between walls that are pulled together, of model shell
+  int substeps = 0;  ///< substeps per step, of model shape_matching; 0: the fewest that are stable, see Model
 };
 
 /// Gas in the lumen, isothermal. The insufflator raises or lowers the amount at a limited flow until the regulated
@@ -69,37 +69,37 @@ struct GravityScene {
   Eigen::Vector3d acceleration{-9.81, 0, 0};  ///< [m/s^2]; the default is a patient on the back
 };
 
-/// Neighbouring organs: springs from every particle to its place at rest.
+/// Neighbouring organs: springs from every particle to its position at rest.
 struct FoundationScene {
   double stiffness = 5e3;      ///< per area of wall [Pa/m]
-  bool carries_weight = true;  ///< the foundation balances the weight, so that the given shape is the shape in place
+  bool carries_weight = true;  ///< the foundation balances the weight, so that the organ is at rest in its given shape
 };
 
 /// The endoscope with its suturing device.
 struct ScopeScene {
   std::string urdf = "package://vibe_description/urdf/scope.urdf";
   bool base_from_anatomy = true;            ///< scope_base at the organ's entry, x axis into the lumen
-  Eigen::Vector3d base_position{0, 0, 0};   ///< else here, in world [m]
-  std::array<double, 3> base_rpy{0, 0, 0};  ///< else so [rad]
+  Eigen::Vector3d base_position{0, 0, 0};   ///< otherwise this position, in world [m]
+  std::array<double, 3> base_rpy{0, 0, 0};  ///< and this orientation [rad]
   double friction = 0.1;                    ///< Coulomb coefficient tool on mucosa [1]
 };
 
 /// Tissue helix: holds the particles near its tip.
 struct HelixScene {
-  double reach = 4e-3;              ///< grabs if a particle is this near to the tip [m]
-  double grip_radius = 5e-3;        ///< particles within this distance of the first are held too [m]
-  double hold_force = 8.0;          ///< slips above this force when turned in as far as it goes [N]
-  double hold_turns = 3.0;          ///< turns after which it holds with all of hold_force [1]
+  double reach = 4e-3;              ///< grips if a particle is within this distance of the tip [m]
+  double grip_radius = 5e-3;        ///< particles within this distance of the first are held as well [m]
+  double hold_force = 8.0;          ///< slips above this force when fully turned in [N]
+  double hold_turns = 3.0;          ///< turns until it is fully turned in [1]
   double initial_hold_force = 0.5;  ///< holds without a turn [N]; between the two the force grows with the turns
 };
 
 /// Needle, thread, T-tag and cinch of the suturing device.
 struct SutureScene {
-  double bite_radius = 4e-3;             ///< the thread pulls on the particles this near to a bite [m]
+  double bite_radius = 4e-3;             ///< the thread pulls on the particles within this distance of a bite [m]
   double thread_stiffness = 323;         ///< force per strain, see polypropylene20() [N]
   double thread_friction = 0.15;         ///< Coulomb coefficient thread on tissue [1]
   double thread_strength = 14.1;         ///< breaks above this tension [N]
-  double thread_length = 1.2;            ///< of one thread, from the T-tag to where the device lets it go [m]
+  double thread_length = 1.2;            ///< of one thread, from the T-tag to where the device releases it [m]
   double pull_out_force = 8.0;           ///< tears out of a full-thickness bite above this force [N]
   int min_bites = 2;                     ///< of a set that can be cinched
   int max_bites = 32;                    ///< of a set
@@ -109,10 +109,10 @@ struct SutureScene {
   std::string cinch_model = "thread";    ///< how a set pulls: `thread`, or `groups` (ViBE prototype)
   double strain_limit = 0.5;             ///< of the wall at which `groups` stops drawing [1]
   int group_particles = 5;               ///< most per group of techniques other than U and Z
-  std::string classifier = "corrected";  ///< or `printed`: equation 2 of the ViBE prototype to the letter
+  std::string classifier = "corrected";  ///< or `printed`: equation 2 of the ViBE prototype as printed
 };
 
-/// Bleeding after a bite: all figures are design choices, no rates are published.
+/// Bleeding after a bite. All values are design choices; no rates are published.
 struct BleedingScene {
   double mild_probability = 0.25;   ///< of a bite [1]
   double brisk_probability = 0.03;  ///< of a bite [1]
@@ -125,12 +125,12 @@ struct BleedingScene {
 /// Argon plasma coagulation from a probe in the scope.
 struct MarkingScene {
   ApcParameters apc;
-  /// What the wall does while the pedal is down: `solver`, as ever; `gradient`, it gives way in the gradient domain
-  /// (ViBE prototype).
+  /// How the wall deforms while the pedal is down: `solver` keeps the tissue model, `gradient` makes the wall give way
+  /// in the gradient domain (ViBE prototype).
   std::string deformation = "solver";
 };
 
-/// What the user wrote, validated. An absent part costs nothing at run time.
+/// The content of a scene file, validated. An absent part costs nothing at run time.
 struct Scene {
   std::string file;  ///< where it was read, empty if built in code
   std::string name = "unnamed";
@@ -138,8 +138,8 @@ struct Scene {
   double step_period = 1.0 / 60;  ///< simulated time per step [s]
   GeometryScene geometry;
   TissueScene tissue;
-  bool attach_oesophagus = false;  ///< hold the particles of this end
-  bool attach_duodenum = false;    ///< hold the particles of this end
+  bool attach_oesophagus = false;  ///< fix the particles of this end
+  bool attach_duodenum = false;    ///< fix the particles of this end
   std::optional<GasScene> gas;
   std::optional<GravityScene> gravity;
   std::optional<FoundationScene> foundation;

@@ -11,8 +11,8 @@
 
 namespace vibe {
 
-/// Where a key's value lives in a Scene whose optional parts are present. The type of the reference is the type of
-/// the key, so that the table cannot disagree with the struct.
+/// Where the value of a key is stored in a Scene whose optional parts are present. The type of the reference is the
+/// type of the key, so that the table cannot disagree with the struct.
 using SceneAccess =
     std::variant<std::string& (*)(Scene&), bool& (*)(Scene&), int& (*)(Scene&), std::uint64_t& (*)(Scene&),
                  double& (*)(Scene&), Eigen::Vector3d& (*)(Scene&), std::array<double, 3>& (*)(Scene&),
@@ -32,9 +32,12 @@ struct SchemaRow {
   /// Shown instead of the struct's value if that stands for "absent"; the key is then left out when written.
   const char* absent = nullptr;
   bool required = false;  ///< in its section (and for its geometry.kind)
-  /// The words that a text may be, in the order of the documentation; empty: any text.
+  /// The words that a text may be, in the order of the documentation; empty: see wordsOf().
   std::vector<std::string> words = {};
 };
+
+/// The words that the text of a row may be: its own, or the open list of choicesOf(). Empty: any text.
+std::vector<std::string> wordsOf(const SchemaRow& row);
 
 /// A part of a scene file that holds keys.
 struct SchemaSection {

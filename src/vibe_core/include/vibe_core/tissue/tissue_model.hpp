@@ -6,13 +6,13 @@ namespace vibe {
 
 struct State;
 
-/// The elastic law of the wall on its rest shape: what any solver needs to know of it. Constant after building.
-/// Implementations are listed in tissue_registry.cpp.
+/// The elasticity of a wall with a given rest shape, independent of the solver. Constant after construction.
+/// Implementations: see builder/tissue_registry.hpp.
 class TissueModel {
  public:
   virtual ~TissueModel() = default;
 
-  /// The name under which scenes ask for it (tissue.model).
+  /// Its name; that of the library's models is the word of tissue.model.
   virtual std::string name() const = 0;
 
   /// Stored elastic energy at the positions and orientations of `state` [J].
@@ -24,8 +24,8 @@ class TissueModel {
   /// Mean in-plane stretch around each particle against rest, minus 1 [1]; array of (particle count).
   virtual void strain(const State& state, float* out) const = 0;
 
-  /// Simulated stiffness over asked stiffness, the worst over the wall: below 1 the solver's sub-steps are too long
-  /// for the asked modulus and the wall is softer than asked.
+  /// Simulated stiffness over requested stiffness, the minimum over the wall. Below 1, the substeps are too long for
+  /// the requested modulus, and the wall is softer than requested.
   virtual double stiffnessRatio() const = 0;
 };
 

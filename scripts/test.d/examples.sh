@@ -1,0 +1,85 @@
+# The examples build against the workspace as packages of their own, their tests pass, and CONTRIBUTING.md shows them.
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+examples=$root/examples
+devel=$root/devel${VIBE_VARIANT:-}
+
+# contributing FILE: every block of code of CONTRIBUTING.md below a line `<!-- file: PATH -->` is that file, or what
+# `<!-- file: PATH from: TEXT to: TEXT -->` cuts out of it: from the first line with one text to the next with the other.
+contributing() {
+  /usr/bin/python3 "$root/scripts/lib/check_code_blocks.py" "$1" "$root"
+}
+
+showsTheFiles() {
+  contributing "$root/CONTRIBUTING.md"
+}
+check 'code in CONTRIBUTING.md is that of the files it names' showsTheFiles
+
+# Controls: a block that differs, a file that is missing and a page without blocks are noticed.
+noticesADifference() {
+  sed '0,/registerMaterialLaw/s//registerMaterialLaws/' "$root/CONTRIBUTING.md" >"$scratch/changed.md"
+  ! cmp -s "$root/CONTRIBUTING.md" "$scratch/changed.md" || return 1
+  ! contributing "$scratch/changed.md" || return 1
+  sed 's#<!-- file: examples/#<!-- file: nowhere/#' "$root/CONTRIBUTING.md" >"$scratch/missing.md"
+  ! contributing "$scratch/missing.md" || return 1
+  echo 'no code' >"$scratch/none.md"
+  ! contributing "$scratch/none.md"
+}
+check 'a difference to the files is noticed' noticesADifference
+
+if [ ! -f "$devel/setup.bash" ]; then
+  echo 'skipped examples (not built; scripts/build builds what they need)'
+  exit 0
+fi
+if [ -n "${VIBE_VARIANT:-}" ]; then
+  echo 'skipped examples with sanitizers (they are built as users build them)'
+  exit 0
+fi
+set +u
+# shellcheck disable=SC1091
+source "$devel/setup.bash"
+set -u
+
+# build NAME: a catkin workspace that holds this example alone, on top of the built one.
+build() {
+  local space=$scratch/$1
+  mkdir -p "$space/src"
+  ln -s /usr/share/catkin/cmake/toplevel.cmake "$space/src/CMakeLists.txt"
+  ln -s "$examples/$1" "$space/src/$1"
+  cmake -S "$space/src" -B "$space/build" -DCATKIN_DEVEL_PREFIX="$space/devel" -DCMAKE_BUILD_TYPE=Release \
+    -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 || return 1
+  cmake --build "$space/build" -j2 || return 1
+  ! grep -q '^tests:' <(cmake --build "$space/build" --target help | sed -E 's/^\.\.\. ([a-z]+).*/\1:/') ||
+    cmake --build "$space/build" --target tests -j2
+}
+
+runTests() {
+  (cd "$scratch/$1/build" && ctest --output-on-failure --no-tests=error --timeout 600)
+}
+
+# atMost COUNT NAME: the example needs no more files, tests and what makes it a package (CMakeLists.txt, package.xml)
+# aside; a limit for how many places an extension touches.
+atMost() {
+  local files
+  files=$(cd "$examples/$2" && find . -type f ! -path './test/*' ! -name CMakeLists.txt ! -name package.xml)
+  printf '%s\n' "$files"
+  [ "$(wc -l <<<"$files")" -le "$1" ]
+}
+
+declare -A limit=([law]=1 [constraint]=2 [display]=3)
+for folder in "$examples"/*/; do
+  name=$(basename "$folder")
+  check "examples/$name builds outside the workspace" build "$name"
+  check "examples/$name passes its tests" runTests "$name"
+  [ -z "${limit[$name]:-}" ] || check "examples/$name needs at most ${limit[$name]} files" atMost "${limit[$name]}" "$name"
+done
+
+# The shipped programs know the law once its library is loaded, and only then.
+programKnowsTheLaw() {
+  local library=$scratch/law/devel/lib/libvibe_example_law.so headless=$devel/lib/vibe_core/vibe_headless
+  printf 'geometry: {kind: sphere, particles: 200}\ntissue: {law: polynomial}\n' >"$scratch/polynomial.yaml"
+  LD_PRELOAD=$library "$headless" --quiet --duration 0.1 --scene "$scratch/polynomial.yaml" || return 1
+  refuses 2 "polynomial.yaml:2: tissue.law: 'polynomial' is not known here" \
+    "$headless" --quiet --duration 0.1 --scene "$scratch/polynomial.yaml"
+}
+check 'vibe_headless runs a scene with the law of the example' programKnowsTheLaw

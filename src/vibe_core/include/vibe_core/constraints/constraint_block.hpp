@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "vibe_core/contact/tool_poses.hpp"
+#include "vibe_core/solver/body_loads.hpp"
+
+namespace vibe {
+
+class EnergyTerm;
+struct Model;
+struct State;
+
+/// One step, as constraint blocks see it.
+struct StepContext {
+  const Model& model;
+  State& state;           ///< before the solve: at the start of the step; after it: at its end
+  double step;            ///< duration [s]
+  const ToolPoses* tool;  ///< null without a tool
+  bool insufflator_on;    ///< for the gas
+};
+
+/// What a block means for tissue at rest. A step is skipped while all blocks of a resting tissue agree to `Sleep`.
+enum class Activity {
+  Sleep,   ///< nothing that resting tissue does not balance already
+  Wake,    ///< the loads change: the step is computed, and tissue that stays at rest in it still counts as resting
+  Disturb  ///< something outside acts: the tissue does not count as resting
+};
+
+/// The force between the tool and one node during a step.
+struct ToolTouch {
+  enum class Kind { Grip, Contact };
+  Kind kind = Kind::Contact;
+  int node = -1;
+  int link = -1;           ///< of the tool
+  Eigen::Vector3d point;   ///< where the force acts at the end of the step, world [m]
+  Eigen::Vector3d motion;  ///< of the tool at this point during the step [m]
+  Eigen::Vector3d force;   ///< tool on tissue, mean over the step [N]
+  /// Unit directions in which the node follows the tool, the first direction_count of them: all three where it sticks,
+  /// the normal where it slides. The impedance of the tool is computed from them.
+  std::array<Eigen::Vector3d, 3> direction;
+  int direction_count = 0;
+};
+
+/// One kind of load or constraint on the tissue, for example the grip or the threads. The implicit step asks its blocks
+/// in the order of registration, see constraint_registry.hpp, and knows no kinds. All functions run on the thread that
+/// steps; none allocates once the block's buffers have grown.
+///
+/// A block belongs to the scratch memory of one simulation. It must not carry anything from one step to the next that
+/// results depend on: what has to last is in State.
+///
+/// In every step: prepare(). If the tissue is awake: begin(). Then either recover(), or energyTerm(), the solve,
+/// correct() and store().
+class ConstraintBlock {
+ public:
+  virtual ~ConstraintBlock() = default;
+
+  /// Adds this step's constraints, contacts and threads to the loads. Must not change the state: the step may be
+  /// skipped.
+  virtual Activity prepare(const StepContext& context, BodyLoads& loads) = 0;
+
+  /// The step is computed: changes of the state that come before the solve.
+  virtual void begin(const StepContext& /*context*/, BodyLoads& /*loads*/) {}
+
+  /// A potential energy that acts in this step; null: none. It must live until the end of the step.
+  virtual const EnergyTerm* energyTerm(const StepContext& /*context*/) { return nullptr; }
+
+  /// After the solve: moves nodes to where they may be. Runs for all blocks before any store().
+  virtual void correct(const StepContext& /*context*/) {}
+
+  /// After the solve: reads forces from the loads, stores what has to last in the state, adds its work to
+  /// State::energy (loads from outside to pull_work) and its forces between tool and tissue to `touches`.
+  virtual void store(const StepContext& /*context*/, const BodyLoads& /*loads*/, std::vector<ToolTouch>& /*touches*/) {}
+
+  /// In place of the solve, while tissue that was lost is led back to rest: the nodes have been moved already, and the
+  /// block gives up its forces and whatever would pull the tissue away again.
+  virtual void recover(const StepContext& /*context*/) {}
+};
+
+}  // namespace vibe

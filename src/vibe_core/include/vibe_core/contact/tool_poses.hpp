@@ -1,0 +1,13 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace vibe {
+
+/// Poses of the tool's links in world at the start and at the end of a step, in the order of the links of Model::tool.
+struct ToolPoses {
+  std::vector<Eigen::Isometry3d> start, end;
+};
+
+}  // namespace vibe

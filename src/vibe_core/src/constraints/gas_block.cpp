@@ -1,0 +1,51 @@
+#include "constraints/gas_block.hpp"
+
+#include "constraints/gas.hpp"
+#include "geometry/lumen.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+namespace {
+
+class GasBlock : public ConstraintBlock {
+ public:
+  Activity prepare(const StepContext& context, BodyLoads& loads) override {
+    loads.gas.control = GasLoad::Control::Amount;
+    return context.insufflator_on ? Activity::Disturb : Activity::Sleep;
+  }
+
+  void begin(const StepContext& context, BodyLoads& loads) override {
+    State& state = context.state;
+    start_volume_ = state.volume;
+    start_pressure_ = state.pressure;
+    if (context.insufflator_on)
+      state.gas_amount = insufflate(*context.model.scene.gas, state.gas_amount, state.volume, context.step);
+    loads.gas.amount = state.gas_amount;
+    loads.gas.ambient = kAmbientPressure;
+    loads.gas.volume = state.volume;
+  }
+
+  void store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override { measure(context); }
+  void recover(const StepContext& context) override { measure(context); }
+
+ private:
+  // Volume, pressure and work of the gas on the wall, by the trapezoidal rule.
+  void measure(const StepContext& context) const {
+    State& state = context.state;
+    state.volume = lumenVolume(context.model.organ.surface, state.x, state.y, state.z);
+    state.pressure = gaugePressure(state.gas_amount, state.volume);
+    state.energy.gas_work += 0.5 * (start_pressure_ + state.pressure) * (state.volume - start_volume_);
+  }
+
+  double start_volume_ = 0, start_pressure_ = 0;  // of the step [m^3], [Pa]
+};
+
+}  // namespace
+
+std::unique_ptr<ConstraintBlock> makeGasBlock(const Model& model) {
+  return model.scene.gas ? std::make_unique<GasBlock>() : nullptr;
+}
+
+}  // namespace vibe

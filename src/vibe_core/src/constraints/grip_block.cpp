@@ -1,0 +1,52 @@
+#include "constraints/grip_block.hpp"
+
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+namespace {
+
+class GripBlock : public ConstraintBlock {
+ public:
+  Activity prepare(const StepContext& context, BodyLoads& loads) override {
+    first_.clear();
+    if (context.tool == nullptr) return Activity::Sleep;
+    for (const GripPoint& point : context.state.grip) {
+      node_[0] = point.particle;
+      const Eigen::Vector3d target = context.tool->end[context.model.grip_link] * point.local;
+      first_.push_back(loads.addPoint(node_, weight_, target, 0));
+    }
+    return context.state.grip.empty() ? Activity::Sleep : Activity::Disturb;
+  }
+
+  void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
+    const int link = context.model.grip_link;
+    for (std::size_t g = 0; g < first_.size(); ++g) {
+      const GripPoint& point = context.state.grip[g];
+      ToolTouch touch;
+      touch.kind = ToolTouch::Kind::Grip;
+      touch.node = point.particle;
+      touch.link = link;
+      touch.point = context.tool->end[link] * point.local;
+      touch.motion = touch.point - context.tool->start[link] * point.local;
+      touch.force = loads.pointForce(first_[g]);
+      touch.direction = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
+      touch.direction_count = 3;
+      touches.push_back(touch);
+    }
+  }
+
+ private:
+  std::vector<std::size_t> first_;  // constraint of each held particle
+  std::vector<int> node_{0};
+  std::vector<double> weight_{1};
+};
+
+}  // namespace
+
+std::unique_ptr<ConstraintBlock> makeGripBlock(const Model& model) {
+  return model.tool ? std::make_unique<GripBlock>() : nullptr;
+}
+
+}  // namespace vibe

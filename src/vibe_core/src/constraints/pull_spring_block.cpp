@@ -1,0 +1,43 @@
+#include "constraints/pull_spring_block.hpp"
+
+#include "vibe_core/constraints/pull_patch.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+namespace {
+
+class PullSpringBlock : public ConstraintBlock {
+ public:
+  Activity prepare(const StepContext& context, BodyLoads& loads) override {
+    const PullSpring& pull = context.state.pull;
+    if (!pull.holds()) return Activity::Sleep;
+    first_ = loads.addPoint(pull.node, pull.weight, pull.target, 1 / kPullStiffness);
+    start_ = heldPosition(context.state);
+    return Activity::Disturb;
+  }
+
+  void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>&) override {
+    PullSpring& pull = context.state.pull;
+    if (!pull.holds()) return;
+    pull.force = loads.pointForce(first_);
+    context.state.energy.pull_work += pull.force.dot(heldPosition(context.state) - start_);
+  }
+
+  void recover(const StepContext& context) override {
+    context.state.pull.target = heldPosition(context.state);
+    context.state.pull.force.setZero();
+  }
+
+ private:
+  std::size_t first_ = 0;                            // of its constraints
+  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();  // of the patch [m]
+};
+
+}  // namespace
+
+std::unique_ptr<ConstraintBlock> makePullSpringBlock(const Model&) {
+  return std::make_unique<PullSpringBlock>();
+}
+
+}  // namespace vibe

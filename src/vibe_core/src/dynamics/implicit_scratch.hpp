@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "haptics/impedance_estimator.hpp"
+#include "solver/implicit_stepper.hpp"
+#include "solver/sum_term.hpp"
+#include "vibe_core/constraints/constraint_block.hpp"
+#include "vibe_core/model/tissue_solver.hpp"
+
+namespace vibe {
+
+/// Buffers of ImplicitSolver.
+struct ImplicitScratch : SolverScratch {
+  std::shared_ptr<StepperScratch> stepper;
+  std::vector<std::unique_ptr<ConstraintBlock>> blocks;  // in the order in which they are asked
+  BodyLoads loads;
+  SumTerm terms;  // energies of the blocks
+  ToolPoses poses;
+  std::vector<ToolTouch> touches;                 // of the last step
+  std::unique_ptr<ImpedanceEstimator> impedance;  // null without a tool
+  ToolContactRows tool_rows;
+};
+
+}  // namespace vibe

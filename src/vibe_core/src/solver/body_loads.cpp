@@ -1,0 +1,33 @@
+#include "vibe_core/solver/body_loads.hpp"
+
+namespace vibe {
+
+void BodyLoads::clear() {
+  constraints.clear();
+  contacts.clear();
+  attachments.clear();
+  threads.clear();
+  gas = GasLoad();
+  extra = nullptr;
+}
+
+std::size_t BodyLoads::addPoint(const std::vector<int>& node, const std::vector<double>& weight,
+                                const Eigen::Vector3d& target, double compliance) {
+  const std::size_t first = constraints.size();
+  for (int k = 0; k < 3; ++k) {
+    LinearConstraint& constraint = constraints.add();
+    constraint.node = node;
+    constraint.coefficient.clear();
+    for (double w : weight) constraint.coefficient.emplace_back(w * Eigen::Vector3d::Unit(k));
+    constraint.target = target[k];
+    constraint.compliance = compliance;
+    constraint.force = 0;
+  }
+  return first;
+}
+
+Eigen::Vector3d BodyLoads::pointForce(std::size_t first) const {
+  return {constraints[first].force, constraints[first + 1].force, constraints[first + 2].force};
+}
+
+}  // namespace vibe

@@ -1,0 +1,127 @@
+// When a factor is renewed is decided by the state alone, and which one is used by its name.
+#include "solver/factor_schedule.hpp"
+
+#include <gtest/gtest.h>
+
+#include "solver/implicit_worlds.hpp"
+
+namespace vibe {
+namespace {
+
+using namespace test;
+
+constexpr FactorSchedule kSchedule{3600, 1, 3, 1e-3};
+
+struct Fixture {
+  Fixture() : body(cantilever({3, 1, 1})), stepper(body, {}), motion(body), scratch(stepper.makeScratch()) {}
+  void moveTip(double by) { motion.x[2].back() = body.rest.back().z() + by; }
+  void step() {
+    kSchedule.advance(body, motion.view(), memory);
+    kSchedule.provide(body, {}, memory, *scratch);
+    ++memory.steps;
+  }
+  std::vector<float> solution(const StepperScratch& of) const {
+    std::vector<float> nodes4(4 * body.rest.size(), 1.0F), half(of.half.size(), 0.0F);
+    of.factor->load(nodes4.data(), half.data());
+    of.factor->forward(half.data());
+    of.factor->backward(half.data());
+    of.factor->store(half.data(), nodes4.data());
+    return nodes4;
+  }
+  ElasticBody body;
+  ImplicitStepper stepper;
+  BodyMotion motion;
+  StepperMemory memory;
+  std::shared_ptr<StepperScratch> scratch;
+};
+
+TEST(FactorSchedule, TissueThatStaysNeedsNoOtherFactor) {
+  Fixture fixture;
+  fixture.moveTip(0.9e-3);
+  for (int i = 0; i < 10; ++i) fixture.step();
+  EXPECT_TRUE(fixture.memory.next.empty());
+  EXPECT_TRUE(fixture.memory.linearization_point.empty()) << "still the factor about rest";
+  EXPECT_NE(fixture.memory.linearization_id, 0u);
+}
+
+TEST(FactorSchedule, PositionsAreNamedWhenANodeIsFarAndTakeOverAfterTheGivenSteps) {
+  Fixture fixture;
+  fixture.step();
+  const std::uint64_t rest = fixture.memory.linearization_id;
+  fixture.moveTip(1.1e-3);
+  fixture.step();
+  ASSERT_FALSE(fixture.memory.next.empty());
+  EXPECT_EQ(fixture.memory.due, 1 + kSchedule.steps);
+  const std::uint64_t next = fixture.memory.next_id;
+  EXPECT_NE(next, rest);
+  fixture.moveTip(5e-3);  // later motion does not change what was named
+  for (int i = 0; i < kSchedule.steps - 1; ++i) {
+    fixture.step();
+    EXPECT_EQ(fixture.memory.linearization_id, rest) << "step " << i;
+    EXPECT_EQ(fixture.scratch->factor_id, rest);
+  }
+  fixture.step();
+  EXPECT_EQ(fixture.memory.linearization_id, next);
+  EXPECT_EQ(fixture.scratch->factor_id, next);
+  EXPECT_FLOAT_EQ(fixture.memory.linearization_point.back(), static_cast<float>(fixture.body.rest.back().z() + 1.1e-3));
+}
+
+TEST(FactorSchedule, EqualPositionsHaveEqualNames) {
+  Fixture a, b, c;
+  for (Fixture* fixture : {&a, &b}) fixture->moveTip(2e-3);
+  c.moveTip(2.001e-3);
+  for (Fixture* fixture : {&a, &b, &c})
+    FactorSchedule::nameHere(fixture->body, fixture->motion.view(), fixture->memory);
+  EXPECT_EQ(a.memory.linearization_id, b.memory.linearization_id);
+  EXPECT_NE(a.memory.linearization_id, c.memory.linearization_id);
+}
+
+TEST(FactorSchedule, AnIntervalOfZeroKeepsTheFactor) {
+  Fixture fixture;
+  FactorSchedule schedule = kSchedule;
+  schedule.steps = 0;
+  fixture.moveTip(0.1);
+  for (int i = 0; i < 10; ++i, ++fixture.memory.steps)
+    schedule.advance(fixture.body, fixture.motion.view(), fixture.memory);
+  EXPECT_TRUE(fixture.memory.next.empty());
+}
+
+TEST(FactorSchedule, APositionThatIsNotFiniteCountsAsFar) {
+  Fixture fixture;
+  fixture.moveTip(std::nan(""));
+  kSchedule.advance(fixture.body, fixture.motion.view(), fixture.memory);
+  EXPECT_FALSE(fixture.memory.next.empty());
+}
+
+// A replay has no factor in the background, a session has: both must have the same bits.
+TEST(FactorSchedule, AFactorFromTheBackgroundHasTheBitsOfOneMadeAtOnce) {
+  Fixture fixture;
+  fixture.step();
+  const std::vector<float> about_rest = fixture.solution(*fixture.scratch);
+  fixture.moveTip(4e-3);
+  for (int i = 0; i < 1 + kSchedule.steps; ++i) fixture.step();
+  const std::vector<float> from_background = fixture.solution(*fixture.scratch);
+  EXPECT_NE(from_background, about_rest) << "negative control: the factor has not changed";
+  const auto fresh = fixture.stepper.makeScratch();
+  StepperMemory memory = fixture.memory;
+  memory.next.clear();
+  kSchedule.provide(fixture.body, {}, memory, *fresh);
+  EXPECT_EQ(fixture.solution(*fresh), from_background);
+}
+
+TEST(FactorSchedule, AttachmentColumnsFollowTheirFactor) {
+  Fixture fixture;
+  RowList<AttachmentPoint> points{{{4, 5}, {0.5, 0.5}}};
+  kSchedule.advance(fixture.body, fixture.motion.view(), fixture.memory);
+  kSchedule.provide(fixture.body, points, fixture.memory, *fixture.scratch);
+  ASSERT_EQ(fixture.scratch->attachments.columns.size(), 1u);
+  points.push_back({{7}, {1}});
+  kSchedule.provide(fixture.body, points, fixture.memory, *fixture.scratch);
+  EXPECT_EQ(fixture.scratch->attachments.columns.size(), 2u);
+  points.clear();
+  kSchedule.provide(fixture.body, points, fixture.memory, *fixture.scratch);
+  EXPECT_TRUE(fixture.scratch->attachments.columns.empty());
+}
+
+}  // namespace
+}  // namespace vibe
