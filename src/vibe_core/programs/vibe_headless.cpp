@@ -140,7 +140,7 @@ int printScriptLength(const Options& o) {
 void printEvents(const std::vector<Event>& events, bool over_progress) {
   for (const Event& event : events)
     std::fprintf(stderr, "%s%7.2f s  %s: %s\n", over_progress ? "\r" : "", event.time, toString(event.kind),
-                 event.text.c_str());
+                 describe(event).c_str());
 }
 
 int run(const Options& o) {

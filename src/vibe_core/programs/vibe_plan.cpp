@@ -137,7 +137,7 @@ int run(const Options& o) {
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
   ScriptRecorder rehearsal(buildModel(scene, urdf, {}), headerOf(o));
   rehearsal.on_event = [&o](const Event& event) {
-    if (o.events) std::fprintf(stderr, "%8.2f s  %s: %s\n", event.time, toString(event.kind), event.text.c_str());
+    if (o.events) std::fprintf(stderr, "%8.2f s  %s: %s\n", event.time, toString(event.kind), describe(event).c_str());
   };
   performEsg(styleOf(o), rehearsal, [&rehearsal](const std::string& what) {
     std::fprintf(stderr, "%8.2f s  %s\n", rehearsal.state().time, what.c_str());

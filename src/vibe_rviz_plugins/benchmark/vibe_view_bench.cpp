@@ -146,7 +146,7 @@ double median(const std::vector<double>& sorted) {
   return sorted[sorted.size() / 2];
 }
 
-// What the issue of speed is about: what this package adds to a frame.
+// The time that this package adds to a frame.
 double added(const Samples& samples) {
   return median(samples[Geometry]) + median(samples[Colours]) + median(samples[Upload]);
 }

@@ -1,16 +1,16 @@
 #version 120
-// Bends a plane picture as the endoscope's lens does, and blackens what is outside of its circle.
-uniform sampler2D picture;        // the plane one
-uniform vec2 picture_size;        // of the bent one [px]
+// Applies the projection of the endoscope lens to a plane image; black outside of the circle.
+uniform sampler2D picture;        // the plane image
+uniform vec2 picture_size;        // of the result [px]
 uniform float radius;             // of the circle [px]
 uniform float half_angle;         // between the axis and the circle [rad]
 uniform float equidistant;        // 1: radius = f theta, 0: radius = f tan theta
-uniform float source_half_width;  // tangent of the angle to the middle of an edge of the plane picture
-uniform float source_size;        // of an edge of the plane picture [px]
+uniform float source_half_width;  // tangent of the angle to the centre of an edge of the plane image
+uniform float source_size;        // edge of the plane image [px]
 
-varying vec2 place;  // in the bent picture, 0 to 1
+varying vec2 place;  // in the result, 0 to 1
 
-const int kMostSamples = 12;
+const int kMaxSamples = 12;
 
 void main() {
   vec2 aside = (place - 0.5) * picture_size;
@@ -23,12 +23,12 @@ void main() {
   vec2 direction = r > 0.0 ? aside / r : vec2(0.0);
   float share = min(r, radius) / radius;
   float tangent = equidistant > 0.5 ? tan(share * half_angle) : share * tan(half_angle);
-  // how far apart in the plane picture neighbours on a ray are: near the rim several pixels, which are averaged
+  // distance in the plane image of radial neighbours; near the rim it is several pixels, which are averaged
   float slope = equidistant > 0.5 ? half_angle * (1.0 + tangent * tangent) : tan(half_angle);
   float step = slope / radius;
-  int samples = int(clamp(ceil(step / source_half_width * 0.5 * source_size - 0.25), 1.0, float(kMostSamples)));
+  int samples = int(clamp(ceil(step / source_half_width * 0.5 * source_size - 0.25), 1.0, float(kMaxSamples)));
   vec3 light = vec3(0.0);
-  for (int k = 0; k < kMostSamples; ++k) {
+  for (int k = 0; k < kMaxSamples; ++k) {
     if (k >= samples) break;
     float along = tangent + step * ((float(k) + 0.5) / float(samples) - 0.5);
     light += texture2D(picture, 0.5 + 0.5 * direction * along / source_half_width).rgb;

@@ -1,8 +1,8 @@
 #version 120
-// A solid thing of the vertex' colour under the lamp at the camera.
+// A solid body with vertex colours, lit by a lamp at the camera.
 uniform float gloss;  // strength of highlights
-uniform float glow;   // 1: its own light only, as of a sign
-uniform float reach;  // of the lamp: half as bright there [m]; 0: as bright everywhere
+uniform float glow;   // 1: emissive only, for symbols
+uniform float reach;  // of the lamp: distance of half intensity [m]; 0: constant intensity
 
 varying vec3 view_position;
 varying vec3 view_normal;
@@ -17,6 +17,6 @@ void main() {
   vec3 shaded = colour.rgb * mix(0.22 + 0.78 * lamp * facing, 1.0, glow);
   vec3 light = shaded + gloss * lamp * pow(facing, 40.0);
   float brightest = max(max(light.r, light.g), max(light.b, 0.001));
-  if (reach > 0.0) light *= (1.0 - exp(-1.5 * brightest)) / brightest;  // as tissue.frag does
+  if (reach > 0.0) light *= (1.0 - exp(-1.5 * brightest)) / brightest;  // the same as in tissue.frag
   gl_FragColor = vec4(light, colour.a);
 }

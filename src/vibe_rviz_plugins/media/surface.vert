@@ -1,5 +1,5 @@
 #version 120
-// Place and normal in the camera's frame, the vertex' colour, and its place on the resting organ.
+// Position and normal in the camera frame, vertex colour, and position on the organ at rest.
 uniform mat4 worldViewProj;
 uniform mat4 worldView;
 

@@ -1,15 +1,15 @@
 #version 120
-// Wet tissue. Colour: red, green, blue of the vertex times `tint`; its alpha says how far heat has gone:
-// 1 untouched, 2/3 a mark, 1/3 a burn scar, 0 burnt deep.
+// Wet tissue. Colour: red, green, blue of the vertex times `tint`; its alpha is the effect of heat:
+// 1 none, 2/3 mark, 1/3 burn scar, 0 deep burn.
 uniform float side;        // 1: seen from outside, -1: seen from inside
-uniform vec4 tint;         // alpha: opacity where the wall is seen straight on
-uniform float edge_alpha;  // opacity where it is seen from the side
+uniform vec4 tint;         // alpha: opacity of the wall seen head-on
+uniform float edge_alpha;  // opacity at grazing angles
 uniform float wet;         // strength of highlights, 0: dull
 uniform float relief;      // height of the fine relief [m]
 uniform float grain;       // how much the fine pattern changes the colour
-uniform float fill;        // light from everywhere; colours that mean something need much of it
+uniform float fill;        // ambient light; more for data colours
 uniform float scars;       // 1: show heat, 0: do not; from outside it is shown only through a transparent wall
-uniform float reach;       // of the lamp: half as bright there [m]; 0: as bright everywhere
+uniform float reach;       // of the lamp: distance of half intensity [m]; 0: constant intensity
 
 varying vec3 view_position;
 varying vec3 view_normal;
@@ -50,7 +50,7 @@ vec3 heated(vec3 base, float heat) {
 
 void main() {
   float heat = scars * 3.0 * (1.0 - colour.a);
-  // patterns finer than a pixel would glitter: they fade into their mean
+  // patterns finer than a pixel fade into their mean, otherwise they would alias
   float pixel = length(fwidth(rest));
   float fine = mix(noise(rest * 800.0), 0.5, smoothstep(0.15, 0.5, 800.0 * pixel));
   float coarse = mix(noise(rest * vec3(230.0, 230.0, 140.0)), 0.5, smoothstep(0.3, 0.8, 230.0 * pixel));
@@ -68,10 +68,10 @@ void main() {
   vec3 aside = normalize(to_eye + normalize(vec3(0.35, 0.75, 0.55)));
   float gloss = pow(facing, 90.0) + (reach > 0.0 ? 0.0 : 0.6 * pow(max(dot(normal, aside), 0.0), 60.0));
   vec3 light = shaded + wet * lamp * gloss * vec3(1.0, 0.97, 0.93) * (1.0 - 0.8 * clamp(heat - 1.0, 0.0, 1.0));
-  // a camera in the dark adjusts its exposure: bright places keep their colour instead of becoming white
+  // exposure: bright areas keep their colour instead of becoming white
   float brightest = max(max(light.r, light.g), max(light.b, 0.001));
   if (reach > 0.0) light *= (1.0 - exp(-1.5 * brightest)) / brightest;
   float opacity = mix(edge_alpha, tint.a, facing);
-  opacity = max(opacity, 0.75 * smoothstep(0.05, 0.4, heat));  // marks show through a wall of glass
+  opacity = max(opacity, 0.75 * smoothstep(0.05, 0.4, heat));  // marks are visible through a transparent wall
   gl_FragColor = vec4(light, clamp(opacity + wet * gloss * 0.6, 0.0, 1.0));
 }

@@ -10,14 +10,14 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
-/// Reads parameters and remembers which there are, so that any other is an error.
+/// Reads parameters and remembers their names, so that any other parameter is an error.
 class Reader {
  public:
   explicit Reader(const ros::NodeHandle& node) : node_(node) {}
 
   void number(const std::string& name, double min, double max, double& value) {
     if (!has(name)) return;
-    // a whole number is a number too; a text or a list is none
+    // accepts integers and floating-point numbers
     if (!node_.getParam(name, value) || !(value >= min && value <= max)) {
       std::ostringstream range;
       range << "a number from " << min << " to " << max;

@@ -7,7 +7,7 @@
 
 namespace vibe {
 
-/// What the user can choose of endoscope_camera.
+/// Parameters of endoscope_camera.
 struct CameraOptions {
   RoundCamera round;
   double sharpness = 1;  ///< as in sourceFor()
@@ -15,10 +15,10 @@ struct CameraOptions {
   bool stereo = false;
   double baseline = 0.004;                            ///< from the left lens to the right one [m]
   std::string camera_frame = "scope_camera_optical";  ///< where the camera is, the left one of a pair
-  std::string frame_id, right_frame_id;               ///< in the headers; the same unless told otherwise
+  std::string frame_id, right_frame_id;               ///< in the headers; default: camera_frame
 };
 
-/// @param node  whose private parameters are read
+/// @param node  its private parameters are read
 /// @throws std::runtime_error  one is unknown, of the wrong type or out of range, in one sentence
 CameraOptions readCameraOptions(const ros::NodeHandle& node);
 

@@ -9,9 +9,10 @@
 namespace vibe {
 namespace {
 
-constexpr unsigned kWaiting = 10;      // states that wait for their transforms; more means that none will come
-constexpr std::size_t kSutures = 240;  // messages kept, so that one as old as the state can be found
-constexpr double kSaidAgain = 5;       // a fault that lasts [s of wall time]
+constexpr unsigned kWaiting =
+    10;  // states that wait for their transforms; if there are more, no transform is to be expected
+constexpr std::size_t kSutures = 240;  // messages kept to find the one that belongs to a state
+constexpr double kRepeatPeriod = 5;    // of the warning about a fault that lasts [s of wall time]
 
 Eigen::Isometry3d poseOf(const geometry_msgs::Transform& transform) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -73,7 +74,7 @@ void EndoscopeCamera::listen() {
                                                                                kWaiting, node_);
   filter_->connectInput(particles_);
   filter_->registerCallback(&EndoscopeCamera::receiveParticles, this);
-  // drawing may be slower than the simulator: the newest state is what counts
+  // drawing may be slower than the simulator; only the newest state is drawn
   particles_.subscribe(node_, "tissue/particles", 2);
 }
 
@@ -105,14 +106,14 @@ void EndoscopeCamera::receiveParticles(const sensor_msgs::PointCloud2::ConstPtr&
   const ros::WallTime begin = ros::WallTime::now();
   const std::string problem = scene_.setParticles(*message);
   if (!problem.empty()) {
-    ROS_WARN_STREAM_THROTTLE(kSaidAgain, problem);
+    ROS_WARN_STREAM_THROTTLE(kRepeatPeriod, problem);
     return;
   }
   const EndoscopeScene::PoseOf pose_of = [&](const std::string& frame) {
     return find(frame, message->header.frame_id, stamp);
   };
   const std::optional<Eigen::Isometry3d> camera = pose_of(options_.camera_frame);
-  if (!camera) return;  // the filter saw it, so only time that was set back in between can lead here
+  if (!camera) return;  // the filter has seen this transform; it can be missing only if time was set back since
   drawSutures(stamp, pose_of);
   scene_.placeInstrument(pose_of);
   for (Eye& eye : eyes_) publish(eye, *camera, stamp);
@@ -128,7 +129,7 @@ void EndoscopeCamera::drawSutures(const ros::Time& stamp, const EndoscopeScene::
   if (problem.empty())
     drawn_sutures_ = latest;
   else
-    ROS_WARN_STREAM_THROTTLE(kSaidAgain, problem);
+    ROS_WARN_STREAM_THROTTLE(kRepeatPeriod, problem);
 }
 
 void EndoscopeCamera::publish(Eye& eye, const Eigen::Isometry3d& camera, const ros::Time& stamp) {

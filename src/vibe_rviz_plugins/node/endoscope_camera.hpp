@@ -21,19 +21,19 @@
 
 namespace vibe {
 
-/// Publishes what the endoscope sees as images, one or two of each state of the tissue. An image bears the stamp of the
-/// tissue it shows, with everything else as it was at that time. While nobody listens to the images it listens to
-/// nothing. One thread: that which calls ros::spin().
+/// Publishes what the endoscope sees as images, one or two per state of the tissue. An image has the stamp of the
+/// tissue it shows, with everything else as it was at that time. Without subscribers it subscribes to nothing. Runs in
+/// the thread that calls ros::spin().
 class EndoscopeCamera {
  public:
-  /// @throws std::runtime_error  the graphics system cannot do it
+  /// @throws std::runtime_error  the graphics system does not support it
   EndoscopeCamera(ros::NodeHandle node, const CameraOptions& options, Ogre::SceneManager& scene,
                   const std::string& description);
 
  private:
-  /// One of the lenses: a single one, or left and right.
+  /// One of the lenses: the only one, or left or right.
   struct Eye {
-    double aside;  ///< to the right of the camera's frame [m]
+    double aside;  ///< distance to the right of the camera frame [m]
     sensor_msgs::CameraInfo numbers;
     ros::Publisher image, info;
     std::size_t listeners() const { return image.getNumSubscribers() + info.getNumSubscribers(); }
@@ -58,7 +58,7 @@ class EndoscopeCamera {
   std::vector<Eye> eyes_;
   ImageDue due_;
 
-  // while somebody listens
+  // while there are subscribers
   tf2_ros::Buffer transforms_;
   std::unique_ptr<tf2_ros::TransformListener> transform_listener_;
   ros::Subscriber topology_, sutures_;

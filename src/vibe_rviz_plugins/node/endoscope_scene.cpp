@@ -11,7 +11,7 @@
 namespace vibe {
 namespace {
 
-/// As it looks: no colour that means something, nothing that is not there.
+/// Natural look: no data colours, no particles, no mesh.
 SutureStyle realStyle() {
   SutureStyle style;
   style.colouring = ThreadColour::One;

@@ -15,12 +15,12 @@
 
 namespace vibe {
 
-/// All that an endoscope sees, in a scene of Ogre: tissue, sutures, blood, instrument. Its frame is that of the
-/// particles. What is wrong with a message is answered in a sentence, and the scene stays as it is; an empty answer:
-/// nothing.
+/// Everything that an endoscope sees, in a scene of Ogre: tissue, sutures, blood, instrument. Its frame is that of the
+/// particles. Functions that take a message return one sentence if it is wrong, and the scene stays as it is; otherwise
+/// they return an empty string.
 class EndoscopeScene {
  public:
-  /// Where a frame is in that of the scene at the moment that is drawn.
+  /// Pose of a frame in the frame of the scene at the time that is drawn.
   using PoseOf = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame)>;
 
   /// @param description  URDF of the instrument

@@ -7,8 +7,8 @@
 #include <rviz/mesh_loader.h>
 #include <urdf/model.h>
 
-#include "geometry/solid_bodies.hpp"
 #include "render/resources.hpp"
+#include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
 namespace vibe {
 namespace {

@@ -29,7 +29,7 @@ class Instrument {
   Instrument(const Instrument&) = delete;
   Instrument& operator=(const Instrument&) = delete;
 
-  /// Puts every link where `poseOf(frame)` says it is in the scene; links of which it knows nothing are not drawn.
+  /// Moves every link to `poseOf(frame)` in the scene; links without a pose are not drawn.
   void place(const std::function<std::optional<Eigen::Isometry3d>(const std::string&)>& poseOf);
 
  private:

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/coloured_shape.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 

@@ -22,7 +22,7 @@ static_assert(
     same(Event::Kind::Release, Wire::RELEASE) && same(Event::Kind::Slip, Wire::SLIP) &&
     same(Event::Kind::ContactBegin, Wire::CONTACT_BEGIN) && same(Event::Kind::ContactEnd, Wire::CONTACT_END) &&
     same(Event::Kind::PressureReached, Wire::PRESSURE_REACHED) && same(Event::Kind::Warning, Wire::WARNING) &&
-    same(Event::Kind::Recovery, Wire::RECOVERY) && same(Event::Kind::Refused, Wire::REFUSED) &&
+    same(Event::Kind::Recovery, Wire::RECOVERY) && same(Event::Kind::Rejected, Wire::REJECTED) &&
     same(Event::Kind::Mark, Wire::MARK) && same(Event::Kind::Burn, Wire::BURN) &&
     same(Event::Kind::DeepBurn, Wire::DEEP_BURN) && same(Event::Kind::HelixTurned, Wire::HELIX_TURNED) &&
     same(Event::Kind::Bite, Wire::BITE) && same(Event::Kind::BiteMissed, Wire::BITE_MISSED) &&
@@ -323,7 +323,15 @@ vibe_msgs::ProcedureEvent makeEvent(const Event& event, std::int64_t stamp) {
   message.kind = static_cast<std::uint8_t>(event.kind);
   message.particle = event.particle;
   message.value = event.value;
-  message.text = event.text;
+  message.text = describe(event);
+  return message;
+}
+
+vibe_msgs::ProcedureEvent makeWarning(const std::string& text, std::int64_t stamp) {
+  Event event;
+  event.kind = Event::Kind::Warning;
+  vibe_msgs::ProcedureEvent message = makeEvent(event, stamp);
+  message.text = text;
   return message;
 }
 
@@ -357,7 +365,7 @@ vibe_msgs::StageTime makeStageTime(const std::string& name, const DurationHistog
   return message;
 }
 
-const char* phaseOf(const State& state, const StepInput& input) {
+const char* toolStateOf(const State& state, const StepInput& input) {
   if (!state.grip.empty()) return "grip";
   if (input.buttons[Insufflate] && !state.pressure_reached) return "insufflation";
   return state.in_contact ? "contact" : "free";

@@ -69,10 +69,12 @@ geometry_msgs::TransformStamped makeTransform(const Eigen::Isometry3d& pose, con
 /// The scene as a scene file that builds the same model anywhere: absolute paths, the seed in use.
 std_msgs::String makeSceneText(const Scene& scene, std::uint64_t seed);
 vibe_msgs::ProcedureEvent makeEvent(const Event& event, std::int64_t stamp);
+/// A warning of the node itself, such as an input that it cannot use.
+vibe_msgs::ProcedureEvent makeWarning(const std::string& text, std::int64_t stamp);
 vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revision, std::int64_t stamp);
 vibe_msgs::StageTime makeStageTime(const std::string& name, const DurationHistogram& durations);
 
-/// What the tool does to the organ at the moment: "insufflation", "grip", "contact" or "free".
-const char* phaseOf(const State& state, const StepInput& input);
+/// What the tool does to the organ at the moment: "grip", "insufflation", "contact" or "free".
+const char* toolStateOf(const State& state, const StepInput& input);
 
 }  // namespace vibe

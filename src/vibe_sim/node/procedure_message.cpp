@@ -35,7 +35,7 @@ void countSuture(const Suture& suture, const Scene& scene, vibe_msgs::ProcedureS
 }
 
 void addProcedure(const ProcedureState& procedure, const Scene& scene, vibe_msgs::ProcedureState& message) {
-  message.procedure_phase = toString(procedure.phase);
+  message.phase = toString(procedure.phase);
   message.marks = countGrades(procedure.grade, BurnGrade::Mark);
   message.burns = countGrades(procedure.grade, BurnGrade::Burn);
   message.deep_burns = countGrades(procedure.grade, BurnGrade::Deep);
@@ -49,27 +49,37 @@ void addProcedure(const ProcedureState& procedure, const Scene& scene, vibe_msgs
   message.thread_used = procedure.thread_used;
 }
 
-void addCounts(const EventCounts& counts, vibe_msgs::ProcedureState& message) {
-  message.missed_bites = counts.of(Event::Kind::BiteMissed);
-  message.withdrawn_bites = counts.of(Event::Kind::BiteWithdrawn);
-  message.refused = counts.of(Event::Kind::Refused);
-  message.overdue_bleedings = counts.of(Event::Kind::BleedingOverdue);
+/// Contact begins and ends too often to publish at once.
+long countWithoutContact(const EventCounts& counts) {
+  return counts.total() - counts.of(Event::Kind::ContactBegin) - counts.of(Event::Kind::ContactEnd);
 }
 
-/// Contact comes and goes too often to be told at once.
-std::uint64_t countTold(const EventCounts& counts) {
-  return counts.total() - counts.of(Event::Kind::ContactBegin) - counts.of(Event::Kind::ContactEnd);
+std::uint32_t countOf(Event::Kind kind, const EventCounts& counts) {
+  return static_cast<std::uint32_t>(counts.of(kind));
+}
+
+void addCounts(const EventCounts& counts, vibe_msgs::SkillMetrics& message) {
+  using Kind = Event::Kind;
+  message.grabs = countOf(Kind::Grab, counts);
+  message.missed_grabs = countOf(Kind::GrabMissed, counts);
+  message.releases = countOf(Kind::Release, counts);
+  message.slips = countOf(Kind::Slip, counts);
+  message.missed_bites = countOf(Kind::BiteMissed, counts);
+  message.withdrawn_bites = countOf(Kind::BiteWithdrawn, counts);
+  message.broken_threads = countOf(Kind::ThreadBroke, counts);
+  message.overdue_bleedings = countOf(Kind::BleedingOverdue, counts);
+  message.rejected = countOf(Kind::Rejected, counts);
 }
 
 double valueOrNan(std::optional<double> value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-double peakForce(const ForceMeasures& force) {
-  return valueOrNan(force.loaded_time > 0 ? std::optional<double>(force.peak) : std::nullopt);
+double maxForce(const ForceMeasures& force) {
+  return valueOrNan(force.loaded_time > 0 ? std::optional<double>(force.max) : std::nullopt);
 }
 
-void addPhases(const PhasesSkill& phases, vibe_msgs::ProcedureState& message) {
+void addPhases(const PhasesSkill& phases, vibe_msgs::SkillMetrics& message) {
   for (std::size_t k = 0; k < phases.phase.size(); ++k) {
     const PhaseSkill& skill = phases.phase[k];
     message.phase_time[k] = skill.time;
@@ -78,7 +88,7 @@ void addPhases(const PhasesSkill& phases, vibe_msgs::ProcedureState& message) {
     message.phase_spectral_arc_length[k] = valueOrNan(skill.motion.spectral_arc_length);
     message.phase_submovements[k] = static_cast<std::uint32_t>(skill.motion.submovements);
     message.phase_economy[k] = valueOrNan(skill.motion.economy);
-    message.phase_peak_force[k] = peakForce(skill.force);
+    message.phase_max_force[k] = maxForce(skill.force);
     message.phase_mean_force[k] = valueOrNan(skill.force.mean);
     message.phase_time_above[k] = skill.force.time_above;
   }
@@ -89,7 +99,7 @@ void addPhases(const PhasesSkill& phases, vibe_msgs::ProcedureState& message) {
   message.time_above = phases.whole.force.time_above;
 }
 
-void addMarks(const MarkSkill& marks, vibe_msgs::ProcedureState& message) {
+void addMarks(const MarkSkill& marks, vibe_msgs::SkillMetrics& message) {
   const auto on = [&marks](Wall wall) {
     return static_cast<std::uint32_t>(marks.wall[static_cast<std::size_t>(wall)]);
   };
@@ -102,7 +112,7 @@ void addMarks(const MarkSkill& marks, vibe_msgs::ProcedureState& message) {
   message.deep_burn_zones = static_cast<std::uint32_t>(marks.deep_burns);
 }
 
-void addBites(const BiteSkill& bites, vibe_msgs::ProcedureState& message) {
+void addBites(const BiteSkill& bites, vibe_msgs::SkillMetrics& message) {
   message.bite_spacing_mean = valueOrNan(bites.spacing_mean);
   message.bite_spacing_sd = valueOrNan(bites.spacing_sd);
   message.bite_depth_mean = valueOrNan(bites.depth_mean);
@@ -114,7 +124,7 @@ void addBites(const BiteSkill& bites, vibe_msgs::ProcedureState& message) {
   message.sets_proximal = valueOrNan(bites.sets_proximal);
 }
 
-void addOrgan(const OrganSkill& organ, vibe_msgs::ProcedureState& message) {
+void addOrgan(const OrganSkill& organ, vibe_msgs::SkillMetrics& message) {
   message.organ_reference = toString(organ.reference);
   message.reference_pressure = organ.reference_pressure;
   message.organ_pressure = organ.pressure;
@@ -125,63 +135,60 @@ void addOrgan(const OrganSkill& organ, vibe_msgs::ProcedureState& message) {
   message.length_reduction = valueOrNan(organ.length_reduction);
 }
 
-void addSkill(const SkillMetrics& skill, vibe_msgs::ProcedureState& message) {
+void addSkill(const SkillMetrics& skill, vibe_msgs::SkillMetrics& message) {
   addPhases(skill.phases, message);
   addMarks(skill.marks, message);
   addBites(skill.bites, message);
   addOrgan(skill.organ, message);
   message.mild_bleedings = static_cast<std::uint32_t>(skill.bleeding.mild);
   message.brisk_bleedings = static_cast<std::uint32_t>(skill.bleeding.brisk);
-  message.broken_threads = static_cast<std::uint32_t>(skill.mistakes.broken_threads);
 }
 
 }  // namespace
 
 vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunStatus& status) {
-  const SessionMetrics& metrics = session.metrics();
   vibe_msgs::ProcedureState message;
   message.header.stamp = toRosTime(session.now());
   message.scene = session.model->scene.name;
   message.seed = session.state.seed;
   message.step = static_cast<std::uint64_t>(session.state.step);
   message.step_period = session.time.period();
+  message.time = session.state.time;
   message.origin = toRosTime(session.time.origin());
   message.paused = status.paused;
-  message.phase = phaseOf(session.state, session.input);
+  message.tool_state = toolStateOf(session.state, session.input);
   message.held_particles = static_cast<std::uint32_t>(session.state.grip.size());
   message.volume = session.state.volume;
   message.pressure = session.state.pressure;
+  addProcedure(session.state.procedure, session.model->scene, message);
+  return message;
+}
+
+vibe_msgs::SkillMetrics makeSkillMetrics(const Session& session) {
+  const SessionMetrics& metrics = session.metrics();
+  vibe_msgs::SkillMetrics message;
+  message.header.stamp = toRosTime(session.now());
   message.time = metrics.time;
   message.contact_time = metrics.contact_time;
   message.grip_time = metrics.grip_time;
   message.insufflation_time = metrics.insufflation_time;
   message.path_length = metrics.path_length;
-  message.peak_force = metrics.peak_force;
+  message.max_force = metrics.max_force;
   message.mean_force = metrics.mean_force;
   message.max_volume = metrics.max_volume;
   message.max_pressure = metrics.max_pressure;
   message.max_strain = metrics.max_strain;
   message.energy_balance = metrics.energy_balance;
-  message.grabs = static_cast<std::uint32_t>(metrics.grabs);
-  message.missed_grabs = static_cast<std::uint32_t>(metrics.missed_grabs);
-  message.releases = static_cast<std::uint32_t>(metrics.releases);
-  message.slips = static_cast<std::uint32_t>(metrics.slips);
-  message.warnings = static_cast<std::uint32_t>(metrics.warnings);
-  addProcedure(session.state.procedure, session.model->scene, message);
-  addCounts(session.counts, message);
+  message.warnings = static_cast<std::uint32_t>(metrics.warnings());
+  addCounts(metrics.events, message);
   addSkill(metrics.skill, message);
   return message;
 }
 
 std::string kindOf(const Session& session, const RunStatus& status) {
-  const SessionMetrics& metrics = session.metrics();
-  std::string kind = session.model->scene.name + '|' + phaseOf(session.state, session.input);
-  for (int count : {metrics.grabs, metrics.missed_grabs, metrics.releases, metrics.slips, metrics.warnings,
-                    static_cast<int>(session.state.grip.size()), status.paused ? 1 : 0}) {
-    kind += '|' + std::to_string(count);
-  }
-  kind += '|' + std::to_string(countTold(session.counts));
-  return kind;
+  return session.model->scene.name + '|' + toolStateOf(session.state, session.input) + '|' +
+         std::to_string(session.state.grip.size()) + (status.paused ? "|paused|" : "|") +
+         std::to_string(countWithoutContact(session.metrics().events));
 }
 
 }  // namespace vibe

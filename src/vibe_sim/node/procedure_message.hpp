@@ -1,5 +1,6 @@
 #pragma once
 #include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SkillMetrics.h>
 
 #include <string>
 
@@ -8,9 +9,13 @@
 
 namespace vibe {
 
+/// Where the procedure stands, from the present state.
 vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunStatus& status);
 
-/// What of the procedure's state must reach listeners at once when it changes: phase, counts, scene, pause.
+/// The measures of skill so far.
+vibe_msgs::SkillMetrics makeSkillMetrics(const Session& session);
+
+/// Changes with whatever must be published at once: scene, pause, tool state, held particles, any event but contact.
 std::string kindOf(const Session& session, const RunStatus& status);
 
 }  // namespace vibe

@@ -3,6 +3,7 @@
 #include <rosgraph_msgs/Clock.h>
 #include <std_msgs/String.h>
 #include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SkillMetrics.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,7 @@ namespace {
 
 constexpr double kParticleRate = 60;                      // of tissue/particles and sutures in simulated time [Hz]
 constexpr double kHapticRate = 100;                       // of haptic/parameters at most, in simulated time [Hz]
-constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of both states when nothing happens [ns]
+constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure and sutures when nothing happens [ns]
 
 // Queues are long because a simulation that runs faster than the wall clock must not lose messages to a recorder that
 // is busy for a moment; of the large clouds as many as fit into some 60 MB.
@@ -44,6 +45,7 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       topology_(handle.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
       particles_(handle.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue)),
       procedure_(handle.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
+      skill_metrics_(handle.advertise<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kSmallQueue, true)),
       events_(handle.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
       sutures_(handle.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, true)),
       applied_input_(handle.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue)),
@@ -105,6 +107,7 @@ void Publishers::procedureState(const Session& session, const RunStatus& status)
   last_kind_ = kindOf(session, status);
   last_procedure_ = session.now();
   procedure_.publish(makeProcedureState(session, status));
+  skill_metrics_.publish(makeSkillMetrics(session));
 }
 
 bool Publishers::suturesAreDue(const Session& session) const {
@@ -122,16 +125,13 @@ void Publishers::sutures(const Session& session) {
 }
 
 void Publishers::warn(const std::string& text) {
-  Event event;
-  event.kind = Event::Kind::Warning;
-  event.text = text;
-  events_.publish(makeEvent(event, now_));
+  events_.publish(makeWarning(text, now_));
 }
 
 bool Publishers::hasListener() const {
-  const auto all = {&scope_pose_,        &helix_pose_, &wrench_, &joint_states_, &topology_,
-                    &particles_,         &procedure_,  &events_, &sutures_,      &applied_input_,
-                    &solver_statistics_, &scene_,      &haptic_, &pull_,         &clock_};
+  const auto all = {&scope_pose_, &helix_pose_,    &wrench_, &joint_states_, &topology_,      &particles_,
+                    &procedure_,  &skill_metrics_, &events_, &sutures_,      &applied_input_, &solver_statistics_,
+                    &scene_,      &haptic_,        &pull_,   &clock_};
   return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 

@@ -15,7 +15,7 @@
 
 namespace vibe {
 
-/// What procedure/state says beside the session.
+/// What procedure/state says in addition to the session.
 struct RunStatus {
   bool paused = false;
 };
@@ -38,6 +38,7 @@ class Publishers {
   void wholeState(const Session& session, const RunStatus& status);
   /// The time again, although it stands still, for nodes that have just started and wait for time.
   void repeatClock(const Session& session);
+  /// procedure/state and procedure/skill_metrics.
   void procedureState(const Session& session, const RunStatus& status);
 
   void solver_statistics(const vibe_msgs::SolverStatistics& message) { solver_statistics_.publish(message); }
@@ -50,8 +51,8 @@ class Publishers {
   bool hasRecorder() const { return applied_input_.getNumSubscribers() > 0; }
 
  private:
-  ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, topology_, particles_, procedure_, events_, sutures_,
-      applied_input_, solver_statistics_, scene_, haptic_, pull_, clock_;
+  ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, topology_, particles_, procedure_, skill_metrics_,
+      events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, clock_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;

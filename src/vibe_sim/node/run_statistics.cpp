@@ -80,7 +80,7 @@ std::string RunStatistics::progressLine(const Session& session) const {
   const DurationHistogram& times = session.simulation.timer().cpu.window;
   char line[160];
   std::snprintf(line, sizeof line, "t = %7.2f s  %-12s  %5.2f x real time  solver p50 %5.2f ms  p99 %5.2f ms",
-                session.state.time, phaseOf(session.state, session.input),
+                session.state.time, toolStateOf(session.state, session.input),
                 ratio(window_simulated_, steadyTime() - window_begin_), 1e3 * times.quantile(0.5),
                 1e3 * times.quantile(0.99));
   return line;

@@ -23,13 +23,12 @@ Session::Session(std::shared_ptr<const Model> new_model, std::uint64_t seed, std
       events(simulation.events()) {}
 
 void Session::step(const StepInput& new_input) {
-  counts.record(simulation.step(new_input));
+  simulation.step(new_input);
 }
 
 void Session::replaceState(State new_state) {
   time.continueWith(state.step, new_state.step, simulation.stepPeriod());
   simulation.replaceState(std::move(new_state));
-  counts = EventCounts();
 }
 
 void Session::replaceModel(std::shared_ptr<const Model> new_model) {
@@ -37,7 +36,6 @@ void Session::replaceModel(std::shared_ptr<const Model> new_model) {
   simulation.replaceModel(std::move(new_model));
   time.continueWith(old_step, state.step, simulation.stepPeriod());
   ++revision;
-  counts = EventCounts();
 }
 
 }  // namespace vibe

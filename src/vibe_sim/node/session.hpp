@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "sim_time.hpp"
-#include "vibe_core/metrics/event_counts.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe {
@@ -28,7 +27,6 @@ class Session {
 
   Simulation simulation;
   TimeLine time;
-  EventCounts counts;          ///< since the state took over
   std::uint32_t revision = 1;  ///< of the topology
 
   // parts of the simulation

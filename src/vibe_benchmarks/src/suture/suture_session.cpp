@@ -101,7 +101,7 @@ void SutureSession::count(std::size_t first_event, SewnSet& set) const {
     set.tear_outs += kind == Event::Kind::TearOut;
     set.breaks += kind == Event::Kind::ThreadBroke;
     set.recoveries += kind == Event::Kind::Recovery;
-    set.refusals += kind == Event::Kind::Refused;
+    set.refusals += kind == Event::Kind::Rejected;
     set.loose += kind == Event::Kind::CinchLoose;
   }
 }

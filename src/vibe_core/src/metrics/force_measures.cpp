@@ -17,7 +17,7 @@ void ForceRecorder::add(double magnitude, double dt) {
     throw Error("A ForceRecorder was given a force or a step that is not a finite number; leave such steps out.");
   sums_.time += dt;
   sums_.impulse += magnitude * dt;
-  sums_.peak = std::max(sums_.peak, magnitude);
+  sums_.max = std::max(sums_.max, magnitude);
   if (magnitude > settings_.threshold) sums_.time_above += dt;
   if (magnitude > settings_.noise) {
     sums_.loaded_time += dt;

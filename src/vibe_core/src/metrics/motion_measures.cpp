@@ -83,7 +83,7 @@ void MotionRecorder::add(const Eigen::Vector3d& position, double dt) {
 
 void MotionRecorder::sample(const Eigen::Vector3d& point) {
   const double speed = (point - points_.back()).norm() / period_;
-  sums_.peak_speed = std::max(sums_.peak_speed, speed);
+  sums_.max_speed = std::max(sums_.max_speed, speed);
   speed_.push_back(speed);
   points_.push_back(point);
   steady_.push_back(steadied(point));

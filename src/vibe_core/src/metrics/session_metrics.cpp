@@ -13,7 +13,7 @@ namespace vibe {
 
 namespace {
 constexpr double kSamplePeriod = 0.1;  // of the costly metrics [s]
-constexpr double kNoForce = 1e-6;      // a reaction below it is none [N]
+constexpr double kNoForce = 1e-6;      // smaller forces count as none [N]
 }  // namespace
 
 MetricsRecorder::MetricsRecorder(const Model& model, const State& start)
@@ -25,6 +25,7 @@ MetricsRecorder::MetricsRecorder(const Model& model, const State& start, SkillIn
       start_balance_(energyBalance(model, start)),
       strain_(start.x.size()),
       skill_(instruments_, model, start, last_tip_) {
+  metrics_.time = start.time;
   metrics_.skill = skill_.metrics();
 }
 
@@ -53,41 +54,16 @@ void MetricsRecorder::record(const Model& model, const State& state, bool insuff
     force_sum_ += force * dt;
     force_time_ += dt;
     metrics_.mean_force = force_sum_ / force_time_;
-    metrics_.peak_force = std::max(metrics_.peak_force, force);
+    metrics_.max_force = std::max(metrics_.max_force, force);
   }
   metrics_.volume = state.volume;
   metrics_.pressure = state.pressure;
   metrics_.max_volume = std::max(metrics_.max_volume, state.volume);
   metrics_.max_pressure = std::max(metrics_.max_pressure, state.pressure);
-  countEvents(events);
-  skill_.record(model, state, tip, events);
+  metrics_.events.record(events);
+  skill_.record(model, state, tip, events, metrics_.events);
   metrics_.skill = skill_.metrics();
   if (samples_until_-- <= 0) sample(model, state);
-}
-
-void MetricsRecorder::countEvents(const std::vector<Event>& events) {
-  for (const Event& event : events) {
-    switch (event.kind) {
-      case Event::Kind::Grab:
-        ++metrics_.grabs;
-        break;
-      case Event::Kind::GrabMissed:
-        ++metrics_.missed_grabs;
-        break;
-      case Event::Kind::Release:
-        ++metrics_.releases;
-        break;
-      case Event::Kind::Slip:
-        ++metrics_.slips;
-        break;
-      case Event::Kind::Warning:
-      case Event::Kind::Recovery:
-        ++metrics_.warnings;
-        break;
-      default:
-        break;
-    }
-  }
 }
 
 void MetricsRecorder::sample(const Model& model, const State& state) {
@@ -97,21 +73,27 @@ void MetricsRecorder::sample(const Model& model, const State& state) {
   metrics_.energy_balance = energyBalance(model, state) - start_balance_;
 }
 
+int SessionMetrics::warnings() const {
+  return events.of(Event::Kind::Warning) + events.of(Event::Kind::Recovery);
+}
+
 std::string summarise(const SessionMetrics& m) {
+  using Kind = Event::Kind;
   char text[1024];
   std::snprintf(text, sizeof text,
                 "simulated time     %8.2f s\n"
                 "in contact         %8.2f s   holding tissue %.2f s   insufflating %.2f s\n"
                 "path of the tip    %8.3f m\n"
                 "grabs              %8d     missed %d   released %d   slipped %d\n"
-                "force on the tool  %8.2f N peak   %.2f N mean\n"
-                "lumen              %8.1f mL now   %.1f mL greatest   at %.1f mmHg now   %.1f mmHg greatest\n"
-                "strain of the wall %8.1f %% greatest\n"
+                "force on the tool  %8.2f N max   %.2f N mean\n"
+                "lumen              %8.1f mL now   %.1f mL max   at %.1f mmHg now   %.1f mmHg max\n"
+                "strain of the wall %8.1f %% max\n"
                 "energy balance     %8.4f J\n"
                 "warnings           %8d",
-                m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.grabs, m.missed_grabs,
-                m.releases, m.slips, m.peak_force, m.mean_force, m.volume * 1e6, m.max_volume * 1e6,
-                m.pressure / 133.322, m.max_pressure / 133.322, 100 * m.max_strain, m.energy_balance, m.warnings);
+                m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.events.of(Kind::Grab),
+                m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force,
+                m.mean_force, m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322,
+                100 * m.max_strain, m.energy_balance, m.warnings());
   return text + ("\n" + summarise(m.skill));
 }
 

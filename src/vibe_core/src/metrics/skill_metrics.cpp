@@ -50,7 +50,7 @@ SkillRecorder::SkillRecorder(const SkillInstruments& instruments, const Model& m
 }
 
 void SkillRecorder::record(const Model& model, const State& state, const Eigen::Vector3d& tip,
-                           const std::vector<Event>& events) {
+                           const std::vector<Event>& events, const EventCounts& counts) {
   phases_.record(state.procedure.phase, tip, state.tool_force.norm(), model.scene.step_period);
   metrics_.phases = phases_.measures();
   organ_.record(model, state, events);
@@ -59,8 +59,7 @@ void SkillRecorder::record(const Model& model, const State& state, const Eigen::
   if (events.empty()) {
     updateSets(state.procedure.sutures, metrics_.sets);
   } else {
-    counts_.record(events);
-    countMistakes();
+    readMistakes(counts);
     readSutures(model, state.procedure);
   }
   metrics_.bleeding.lost = state.procedure.blood_lost;
@@ -84,13 +83,12 @@ void SkillRecorder::readSutures(const Model& model, const ProcedureState& proced
   metrics_.bleeding = measureBleeding(procedure);
 }
 
-void SkillRecorder::countMistakes() {
-  const auto of = [this](Event::Kind kind) { return static_cast<int>(counts_.of(kind)); };
-  metrics_.mistakes.missed_bites = of(Event::Kind::BiteMissed);
-  metrics_.mistakes.withdrawn_bites = of(Event::Kind::BiteWithdrawn);
-  metrics_.mistakes.slips = of(Event::Kind::Slip);
-  metrics_.mistakes.broken_threads = of(Event::Kind::ThreadBroke);
-  metrics_.mistakes.refused = of(Event::Kind::Refused);
+void SkillRecorder::readMistakes(const EventCounts& counts) {
+  metrics_.mistakes.missed_bites = counts.of(Event::Kind::BiteMissed);
+  metrics_.mistakes.withdrawn_bites = counts.of(Event::Kind::BiteWithdrawn);
+  metrics_.mistakes.slips = counts.of(Event::Kind::Slip);
+  metrics_.mistakes.broken_threads = counts.of(Event::Kind::ThreadBroke);
+  metrics_.mistakes.rejected = counts.of(Event::Kind::Rejected);
 }
 
 }  // namespace vibe

@@ -32,15 +32,15 @@ std::string percent(std::optional<double> value) {
 
 std::string phaseLine(const char* name, const PhaseSkill& skill) {
   const MotionMeasures& motion = skill.motion;
-  const auto peak = skill.force.loaded_time > 0 ? std::optional<double>(skill.force.peak) : std::nullopt;
+  const auto max_force = skill.force.loaded_time > 0 ? std::optional<double>(skill.force.max) : std::nullopt;
   return format("%-9s %9.2f %9.3f ", name, skill.time, motion.path_length) +
          number(motion.log_dimensionless_jerk, 1, 2, 8) + number(motion.spectral_arc_length, 1, 2, 8) +
-         format("%9d", motion.submovements) + number(motion.economy, 1, 2, 9) + number(peak, 1, 2, 8) +
+         format("%9d", motion.submovements) + number(motion.economy, 1, 2, 9) + number(max_force, 1, 2, 8) +
          number(skill.force.mean, 1, 2, 8) + format("%9.2f\n", skill.force.time_above);
 }
 
 std::string phaseTable(const PhasesSkill& phases) {
-  std::string text = "phase        time s    path m     LDLJ   SPARC  submov.  economy  peak N  mean N  > 5 N s\n";
+  std::string text = "phase        time s    path m     LDLJ   SPARC  submov.  economy   max N  mean N  > 5 N s\n";
   for (int k = 0; k < kPhaseCount; ++k)
     if (phases.phase[k].time > 0) text += phaseLine(toString(static_cast<Phase>(k)), phases.phase[k]);
   return text + phaseLine("whole", phases.whole);
@@ -113,7 +113,7 @@ std::string summarise(const SkillMetrics& m) {
       phaseTable(m.phases) + markLine(m.marks) + biteLines(m.bites, m.mistakes) + setTable(m.sets) +
       format("bleeding           %8.2f mL lost   mild %d   brisk %d   now %d   overdue %d\n", m.bleeding.lost * kMl,
              m.bleeding.mild, m.bleeding.brisk, m.bleeding.now, m.bleeding.overdue) +
-      format("mistakes           %8d refused   slips %d   torn out %d   threads broken %d\n", m.mistakes.refused,
+      format("mistakes           %8d rejected   slips %d   torn out %d   threads broken %d\n", m.mistakes.rejected,
              m.mistakes.slips, m.bites.torn_out, m.mistakes.broken_threads) +
       organLines(m.organ);
   text.pop_back();

@@ -50,15 +50,15 @@ const std::vector<SurfaceSection::Loop>& SurfaceSection::cut(const std::vector<d
   std::fill(done_.begin(), done_.end(), char{0});
   loops_.clear();
   for (int t = 0; t < static_cast<int>(triangles_.size()); ++t)
-    if (!done_[t] && downEdge(t) >= 0) loops_.push_back(update(t, x, y, z, point, normal, label));
+    if (!done_[t] && downEdge(t) >= 0) loops_.push_back(trace(t, x, y, z, point, normal, label));
   return loops_;
 }
 
 /// Walks from triangle to triangle: in over the edge that goes down, out over the one that goes up, which the next one
 /// sees go down. With the outside on the right hand this runs counter-clockwise seen against the normal.
-SurfaceSection::Loop SurfaceSection::update(int first, const std::vector<double>& x, const std::vector<double>& y,
-                                            const std::vector<double>& z, const Eigen::Vector3d& point,
-                                            const Eigen::Vector3d& normal, const std::vector<double>& label) {
+SurfaceSection::Loop SurfaceSection::trace(int first, const std::vector<double>& x, const std::vector<double>& y,
+                                           const std::vector<double>& z, const Eigen::Vector3d& point,
+                                           const Eigen::Vector3d& normal, const std::vector<double>& label) {
   Loop loop;
   int labelled = 0;
   Eigen::Vector3d last = Eigen::Vector3d::Zero(), start = last;

@@ -2,18 +2,17 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <string>
 
-#include "procedure/emit_event.hpp"
+#include "events/emit_event.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr double kRounding = 1e-9;  // of sums of steps [s]
+constexpr double kRounding = 1e-9;  // tolerance for the rounding of times that are sums of steps [s]
 
-/// SplitMix64 (Steele, Lea & Flood 2014): the same numbers on every machine, unlike std::uniform_real_distribution.
+// SplitMix64 (Steele, Lea & Flood 2014): gives the same numbers on every machine, unlike
+// std::uniform_real_distribution.
 double nextUniform(std::uint64_t& state) {
   state += 0x9e3779b97f4a7c15ULL;
   std::uint64_t z = state;
@@ -23,21 +22,16 @@ double nextUniform(std::uint64_t& state) {
   return static_cast<double>(z >> 11) * 0x1.0p-53;
 }
 
-std::string beginText(const Bleeding& bleeding) {
-  char text[160];
-  std::snprintf(text, sizeof text, "Bite %d of set %d bleeds %s, %.2f ml per minute%s", bleeding.bite + 1,
-                bleeding.suture + 1, bleeding.brisk ? "briskly" : "mildly", bleeding.rate * 60e6,
-                bleeding.brisk ? "; complete and cinch the set." : ".");
-  return text;
+Event& emitBleeding(Event::Kind kind, const Bleeding& bleeding, double time, double value, std::vector<Event>& events) {
+  Event& event = emitEvent(kind, time, bleeding.particle, value, events);
+  event.suture = bleeding.suture;
+  event.bite = bleeding.bite;
+  return event;
 }
 
-void stop(Bleeding& bleeding, const char* why, double time, std::vector<Event>& events) {
+void stop(Bleeding& bleeding, EventDetail how, double time, std::vector<Event>& events) {
   bleeding.rate = 0;
-  emitEvent(Event::Kind::BleedingStopped, time, bleeding.particle, bleeding.amount,
-            std::string("A ") + (bleeding.brisk ? "brisk" : "mild") + " bleeding of set " +
-                std::to_string(bleeding.suture + 1) + " stopped " + why + " after " + inMillilitres(bleeding.amount) +
-                ".",
-            events);
+  emitBleeding(Event::Kind::BleedingStopped, bleeding, time, bleeding.amount, events).detail = how;
 }
 
 }  // namespace
@@ -54,8 +48,8 @@ void bleedFromBite(const Model& model, int suture, int bite, int particle, State
   bleeding.brisk = draw < scene.brisk_probability;
   bleeding.begin = state.time;
   bleeding.rate = bleeding.brisk ? scene.brisk_rate : scene.mild_rate;
-  emitEvent(bleeding.brisk ? Event::Kind::BleedingBrisk : Event::Kind::BleedingMild, state.time, particle,
-            bleeding.rate, beginText(bleeding), events);
+  emitBleeding(bleeding.brisk ? Event::Kind::BleedingBrisk : Event::Kind::BleedingMild, bleeding, state.time,
+               bleeding.rate, events);
   state.procedure.bleedings.push_back(bleeding);
 }
 
@@ -68,19 +62,18 @@ void updateBleedings(const Model& model, State& state, std::vector<Event>& event
     bleeding.amount += lost;
     state.procedure.blood_lost += lost;
     const double age = state.time - bleeding.begin + kRounding;
-    if (!bleeding.brisk && age >= scene.mild_duration) stop(bleeding, "by itself", state.time, events);
+    if (!bleeding.brisk && age >= scene.mild_duration) stop(bleeding, EventDetail::MildByItself, state.time, events);
     if (!bleeding.brisk || bleeding.overdue || age < scene.brisk_time) continue;
     bleeding.overdue = true;
-    emitEvent(Event::Kind::BleedingOverdue, state.time, bleeding.particle, bleeding.amount,
-              "The brisk bleeding of set " + std::to_string(bleeding.suture + 1) + " was not stopped in time, " +
-                  inMillilitres(bleeding.amount) + " so far; complete and cinch the set.",
-              events);
+    emitBleeding(Event::Kind::BleedingOverdue, bleeding, state.time, bleeding.amount, events);
   }
 }
 
 void stopBleedings(int suture, State& state, std::vector<Event>& events) {
-  for (Bleeding& bleeding : state.procedure.bleedings)
-    if (bleeding.suture == suture && bleeding.rate > 0) stop(bleeding, "under the cinch", state.time, events);
+  for (Bleeding& bleeding : state.procedure.bleedings) {
+    if (bleeding.suture != suture || bleeding.rate <= 0) continue;
+    stop(bleeding, bleeding.brisk ? EventDetail::BriskCinched : EventDetail::MildCinched, state.time, events);
+  }
 }
 
 void forgetBite(int suture, int bite, ProcedureState& procedure) {

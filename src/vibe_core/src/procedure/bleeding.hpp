@@ -7,19 +7,21 @@
 
 namespace vibe {
 
-// Without scene.bleeding these do nothing and draw no random number.
+// Without scene.bleeding, bleedFromBite() and updateBleedings() do nothing and draw no random number.
 
-/// Draws whether a bite just taken bleeds, and begins it. One draw per bite whatever comes of it, so that no bite's
-/// outcome depends on the parameters' effect on the bites before.
+/// Decides at random whether a new bite bleeds, and starts the bleeding. There is exactly one draw per bite, so that
+/// the outcome of a bite does not depend on the outcomes of earlier ones.
 void bleedFromBite(const Model& model, int suture, int bite, int particle, State& state, std::vector<Event>& events);
 
-/// What a step of all bleedings adds up to; mild ones stop by themselves, brisk ones become overdue.
+/// Advances all bleedings by one step: adds up the blood lost, stops mild ones after their duration, and reports brisk
+/// ones that were not stopped in time.
 void updateBleedings(const Model& model, State& state, std::vector<Event>& events);
 
-/// The cinch presses the walls of a set together: its bleedings stop.
+/// Stops the bleedings of a set, because the cinch presses its walls together.
 void stopBleedings(int suture, State& state, std::vector<Event>& events);
 
-/// A bite tore out of its set: later bites move up; what bleeds there goes on bleeding until the set is cinched.
+/// Call when a bite has torn out: renumbers the later bites of its set. Its bleeding continues until the set is
+/// cinched.
 void forgetBite(int suture, int bite, ProcedureState& procedure);
 
 }  // namespace vibe

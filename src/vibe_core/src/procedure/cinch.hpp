@@ -9,11 +9,11 @@ namespace vibe {
 
 // Both need scene.suture.
 
-/// The button of the T-tag went down: the needle is dropped at the last bite.
+/// Call when the button of the T-tag is pressed: drops the needle at the last bite, or rejects the command.
 void dropTTag(const Model& model, State& state, std::vector<Event>& events);
 
-/// The cinch: begins to draw when its button goes down, draws while it is held, makes the set permanent when it is
-/// let go.
+/// Call in every step. The cinch starts when its button is pressed, draws thread while the button is held, and makes
+/// the set permanent when it is released.
 void commandCinch(const Model& model, bool pressed, bool was_pressed, State& state, std::vector<Event>& events);
 
 }  // namespace vibe

@@ -1,46 +1,17 @@
 #include "vibe_core/procedure/helix_grip.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "events/emit_event.hpp"
 #include "procedure/phase.hpp"
 
 namespace vibe {
 
 namespace {
 
-std::string millimetres(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f mm", metres * 1e3);
-  return text;
-}
-
-std::string newtons(double force) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f N", force);
-  return text;
-}
-
-std::string inTurns(double turns) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f turns", turns);
-  return text;
-}
-
 Eigen::Vector3d position(const State& state, int particle) {
   return {state.x[particle], state.y[particle], state.z[particle]};
-}
-
-Event makeEvent(Event::Kind kind, double time, int particle, double value, std::string text) {
-  Event event;
-  event.kind = kind;
-  event.time = time;
-  event.particle = particle;
-  event.value = value;
-  event.text = std::move(text);
-  return event;
 }
 
 int nearestFreeParticle(const Model& model, const State& state, const Eigen::Vector3d& tip, double& distance) {
@@ -64,9 +35,7 @@ void takeHold(const Model& model, const std::vector<Eigen::Isometry3d>& link_pos
   double distance = 0;
   const int target = nearestFreeParticle(model, state, tip, distance);
   if (target < 0 || distance > helix.reach) {
-    events.push_back(makeEvent(Event::Kind::GrabMissed, state.time, target, distance,
-                               "The helix found no tissue: the nearest is " + millimetres(distance) +
-                                   " from its tip and it reaches " + millimetres(helix.reach) + "."));
+    emitEvent(Event::Kind::GrabMissed, state.time, target, distance, events).limit = helix.reach;
     return;
   }
   const Eigen::Isometry3d to_grip = link_poses[model.grip_link].inverse();
@@ -78,9 +47,9 @@ void takeHold(const Model& model, const std::vector<Eigen::Isometry3d>& link_pos
     if ((p - centre).norm() <= helix.grip_radius) state.grip.push_back({i, to_grip * p});
   }
   const double held = static_cast<double>(state.grip.size());
-  events.push_back(makeEvent(Event::Kind::Grab, state.time, target, held,
-                             "The helix holds the " + std::string(toString(model.organ.region[target])) + ", " +
-                                 toString(model.organ.wall[target]) + " wall."));
+  Event& event = emitEvent(Event::Kind::Grab, state.time, target, held, events);
+  event.region = model.organ.region[target];
+  event.wall = model.organ.wall[target];
   state.procedure.grip_rotation = state.joints[HelixRotation];
   state.procedure.grip_turns = 0;
   if (model.scene.suture) noteSuturing(state, events);
@@ -94,8 +63,8 @@ void countTurns(const Model& model, State& state, std::vector<Event>& events) {
   if (!(turns > before)) return;
   state.procedure.grip_turns = turns;
   if (before < helix.hold_turns && turns >= helix.hold_turns)
-    events.push_back(makeEvent(Event::Kind::HelixTurned, state.time, state.grip.front().particle, turns,
-                               "The helix is " + inTurns(turns) + " in and holds " + newtons(helix.hold_force) + "."));
+    emitEvent(Event::Kind::HelixTurned, state.time, state.grip.front().particle, turns, events).limit =
+        helix.hold_force;
 }
 
 }  // namespace
@@ -108,8 +77,7 @@ void updateGrip(const Model& model, const std::vector<Eigen::Isometry3d>& link_p
   state.helix_pressed = pressed;
   if (went_down && state.grip.empty()) takeHold(model, link_poses, state, events);
   if (went_up && !state.grip.empty()) {
-    events.push_back(makeEvent(Event::Kind::Release, state.time, state.grip.front().particle, state.grip_force,
-                               "The helix let go of the tissue at " + newtons(state.grip_force) + "."));
+    emitEvent(Event::Kind::Release, state.time, state.grip.front().particle, state.grip_force, events);
     state.grip.clear();
   }
 }
@@ -125,9 +93,9 @@ void releaseOverloadedGrip(const Model& model, State& state, std::vector<Event>&
   countTurns(model, state, events);
   const double hold = holdingForce(*model.scene.helix, state.procedure.grip_turns);
   if (state.grip_force <= hold) return;
-  events.push_back(makeEvent(Event::Kind::Slip, state.time, state.grip.front().particle, state.grip_force,
-                             "The helix tore off at " + newtons(state.grip_force) + ", after " +
-                                 inTurns(state.procedure.grip_turns) + " it holds " + newtons(hold) + "."));
+  Event& event = emitEvent(Event::Kind::Slip, state.time, state.grip.front().particle, state.grip_force, events);
+  event.limit = hold;
+  event.amount = state.procedure.grip_turns;
   state.grip.clear();
 }
 

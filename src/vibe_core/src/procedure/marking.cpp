@@ -1,9 +1,8 @@
 #include "procedure/marking.hpp"
 
 #include <algorithm>
-#include <string>
 
-#include "procedure/emit_event.hpp"
+#include "events/emit_event.hpp"
 #include "procedure/marking_touch.hpp"
 #include "procedure/phase.hpp"
 
@@ -16,18 +15,13 @@ Event::Kind kindOf(BurnGrade grade) {
   return grade == BurnGrade::Burn ? Event::Kind::Burn : Event::Kind::Mark;
 }
 
-std::string place(const Burn& burn) {
-  return std::string("wall ") + toString(burn.wall) + ", region " + toString(burn.region);
-}
-
-std::string describe(const Burn& burn, int marks) {
-  if (burn.grade == BurnGrade::Deep)
-    return "The beam has stayed so long that the muscularis is at risk (" + place(burn) + "); go on elsewhere.";
-  if (burn.grade == BurnGrade::Burn)
-    return "The beam has stayed so long that a scar remains (" + place(burn) + "); a mark takes about a second.";
-  const std::string outside = inWorkingZone(burn.region, burn.wall) ? "" : ", outside the working zone";
-  return "A mark begins (" + place(burn) + outside + "), " + std::to_string(marks) +
-         (marks == 1 ? " mark is there now." : " marks are there now.");
+void emitBurn(const Burn& burn, double dose, std::size_t marks, double time, std::vector<Event>& events) {
+  Event& event = emitEvent(kindOf(burn.grade), time, burn.particle, dose, events);
+  event.region = burn.region;
+  event.wall = burn.wall;
+  if (event.kind != Event::Kind::Mark) return;
+  event.detail = inWorkingZone(burn.region, burn.wall) ? EventDetail::InZone : EventDetail::OutOfZone;
+  event.amount = static_cast<double>(marks);
 }
 
 bool beginsThere(const Burn& burn, const std::vector<int>& neighbours, const std::vector<std::uint8_t>& grade) {
@@ -43,10 +37,7 @@ void fireBeam(const Model& model, const std::vector<Eigen::Isometry3d>& link_pos
   const BeamHit& hit = scratch.beam.fire(tip.translation(), tip.linear().col(0), wall, model.particle_radius, apc);
   if (hit.triangle >= 0) return noteMarking(state, events);
   if (went_down)
-    reject(ApcPedal, state.time,
-           "The argon beam meets no tissue within " + inMillimetres(apc.probe_length + apc.reach) +
-               " in front of the scope: go nearer.",
-           events);
+    reject(ApcPedal, RejectReason::BeamOutOfReach, state.time, events).limit = apc.probe_length + apc.reach;
 }
 
 void recordBurns(const Model& model, State& state, MarkingScratch& scratch, std::vector<Event>& events) {
@@ -56,9 +47,8 @@ void recordBurns(const Model& model, State& state, MarkingScratch& scratch, std:
     procedure.grade[burn.particle] = static_cast<std::uint8_t>(burn.grade);
     if (!begins) continue;
     const SurfaceView wall{model.organ.surface.triangles, state.x, state.y, state.z};
-    const auto marks = scratch.finder.find(*model.dose_law, procedure.dose, wall).size();
-    emitEvent(kindOf(burn.grade), state.time, burn.particle, procedure.dose[burn.particle],
-              describe(burn, static_cast<int>(marks)), events);
+    const std::size_t marks = scratch.finder.find(*model.dose_law, procedure.dose, wall).size();
+    emitBurn(burn, procedure.dose[burn.particle], marks, state.time, events);
   }
 }
 

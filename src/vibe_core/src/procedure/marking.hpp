@@ -14,7 +14,7 @@ namespace vibe {
 
 class MarkingTouch;
 
-/// Memory for marking in the scenes that have it. Carries nothing from one step to the next.
+/// Scratch memory for marking. Carries nothing from one step to the next.
 class MarkingScratch {
  public:
   /// @param model  with scene.marking and a tool; must outlive this
@@ -26,29 +26,30 @@ class MarkingScratch {
   ArgonBeam beam;
   MarkFinder finder;
   std::vector<Burn> burns;
-  const std::vector<BeamShare> no_beam;      ///< what the wall gets while the pedal is up
+  const std::vector<BeamShare> no_beam;      ///< the power on the wall while the pedal is up: none
   std::vector<std::vector<int>> neighbours;  ///< (particles)
-  std::unique_ptr<MarkingTouch> touch;       ///< null unless the wall gives way in the gradient domain
+  std::unique_ptr<MarkingTouch> touch;       ///< null unless marking.deformation is gradient
 };
 
-/// What a step is to the argon beam.
+/// What the argon beam needs to know about a step.
 struct BeamStep {
-  bool pedal = false;       ///< down
-  bool went_down = false;   ///< in this step
-  double insufflation = 0;  ///< gas that came in, at ambient pressure [m^3/s]
+  bool pedal = false;       ///< the pedal is down
+  bool went_down = false;   ///< it went down in this step
+  double insufflation = 0;  ///< gas that flowed in, at ambient pressure [m^3/s]
 };
 
-/// After the tissue has moved: the beam heats what is in front of the probe while the pedal is down, and what is warm
-/// cools whether it is or not, also where the tissue sleeps. A pedal that goes down with no tissue in reach is refused
-/// once; the beam then acts as soon as it comes to tissue.
+/// Call after the tissue has moved. While the pedal is down, the beam heats the tissue in front of the probe. Warm
+/// tissue cools in every step, also while the tissue is at rest. If no tissue is in reach when the pedal goes down, the
+/// command is rejected once; the beam acts as soon as it reaches tissue.
 ///
-/// Events: one when a mark, a burn scar or a deep burn begins, which is where no neighbour of a particle has that grade
-/// yet; as it grows, like a line that is drawn, it says no more. What is marked is told by the grades of all particles.
+/// Events: one when a mark, a burn scar or a deep burn begins, that is, when a particle reaches that grade and none of
+/// its neighbours has it yet. Growth of the same zone, such as a line that is drawn, causes no event. The grades of all
+/// particles are in the state.
 /// @param link_poses  of the tool's links in world at the end of the step
 void updateMarking(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, const BeamStep& step,
                    State& state, MarkingScratch& scratch, std::vector<Event>& events);
 
-/// Puts back what marking holds when the tissue starts again from rest: it is cold, and marks stay.
+/// Resets the heat when the tissue starts again from rest. Marks stay.
 void coolDown(State& state);
 
 }  // namespace vibe

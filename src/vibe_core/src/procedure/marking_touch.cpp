@@ -10,7 +10,7 @@ namespace vibe {
 
 namespace {
 
-constexpr double kFarthest = 0.8e-3;  // in a step of the handover, if the tool stands still [m]
+constexpr double kFarthest = 0.8e-3;  // move of a particle in a step of the handover; design choice [m]
 
 }  // namespace
 
@@ -39,16 +39,16 @@ void MarkingTouch::update(const ToolMotion& motion, State& state, StepReport& re
 
 void MarkingTouch::handBack(const ToolMotion& motion, const std::function<void()>& solver_step, State& state) {
   if (state.procedure.base_x.empty()) return solver_step();
-  // from here on the base is where a step begins, so that a pedal that comes down again finds the present wall
+  // from now on the base is the shape before the step, so that pressing the pedal again starts from the present wall
   storeBase(state);
-  state.solver.rest_steps = 0;  // it must not sleep in a shape that is not its own
+  state.solver.rest_steps = 0;  // the solver must not stop in a shape that is no equilibrium
   motion.linkPoses(0, old_poses_);
   motion.linkPoses(1, poses_);
   solver_step();
   limitStep(kFarthest + motion.travel(old_poses_, poses_), state);
 }
 
-/// Shortens the last step, or ends the handover if there is no need to.
+// Shortens the last step, or ends the handover if the step was short enough.
 void MarkingTouch::limitStep(double farthest, State& state) const {
   ProcedureState& procedure = state.procedure;
   double largest = 0;
@@ -92,7 +92,7 @@ void MarkingTouch::find(const State& state, const std::vector<double>& x, const 
   const auto& contacts = collision_.findContacts(poses_, x.data(), y.data(), z.data(), radius);
   forEachDeepest(contacts, [&](const Contact& contact) {
     const int i = contact.particle;
-    // the ends are open where the organ goes on
+    // the ends are open: the organ continues there
     if (model_.organ.end[i] != End::None || !(model_.inverse_mass[i] > 0)) return;
     touches.push_back({i, Eigen::Vector3d(x[i], y[i], z[i]) + (radius - contact.distance) * contact.normal});
   });

@@ -12,13 +12,13 @@
 
 namespace vibe {
 
-/// In place of the solver while the pedal is down (marking.deformation: gradient): the wall as it was when the pedal
-/// went down gives way to the tool and to what the helix holds, see GradientTouch and its limits. Nothing has a speed,
-/// threads do not pull, no force is felt, the insufflator pauses and the energy account stands still. When the pedal
-/// comes up the solver goes on from the shape that is there, which is none of its own: its first steps are shortened
-/// until they are small by themselves.
+/// Replaces the solver while the pedal is down (marking.deformation: gradient): the wall as it was when the pedal went
+/// down is deformed by the tool and by the tissue that the helix holds, see GradientTouch and its limits. Meanwhile
+/// velocities are zero, threads do not pull, the tool feels no force, the insufflator pauses and the energy account
+/// does not change. When the pedal is released, the solver continues from the present shape. This shape is no
+/// equilibrium of the solver, so its first steps are shortened until they are small by themselves.
 ///
-/// Not used while a cinch draws thread or a lost wall is led home: both need the solver.
+/// Not used while a cinch draws thread, while the tissue is pulled, or during a recovery: these need the solver.
 class MarkingTouch {
  public:
   /// @param model  with a tool; must outlive this
@@ -29,8 +29,8 @@ class MarkingTouch {
   /// One step.
   void update(const ToolMotion& motion, State& state, StepReport& report);
 
-  /// One step of the solver, which takes the wall over where the gradient domain has left it. No particle goes farther
-  /// than 0.8 mm and the way of the tool.
+  /// One step of the solver from the shape that the gradient domain has left. No particle moves farther than 0.8 mm
+  /// plus the motion of the tool.
   void handBack(const ToolMotion& motion, const std::function<void()>& solver_step, State& state);
 
  private:
@@ -43,7 +43,7 @@ class MarkingTouch {
   const Model& model_;
   ToolCollision collision_;
   GradientTouch touch_;
-  std::vector<Eigen::Isometry3d> old_poses_, poses_;  // of the tool's links in world, about a step
+  std::vector<Eigen::Isometry3d> old_poses_, poses_;  // of the tool's links in world, before and after a step
 };
 
 }  // namespace vibe

@@ -7,10 +7,10 @@ namespace vibe {
 
 namespace {
 
-constexpr double kFreeSwing = 0.3;  // of the chord, before the needle's point passes the cap [1]
-constexpr double kMaxDepth = 0.01;  // half of the width of the needle's bow: it reaches no deeper [m]
+constexpr double kFreeSwing = 0.3;  // share of the chord before the needle's point passes the cap [1]
+constexpr double kMaxDepth = 0.01;  // half of the width of the curved needle, which reaches no deeper [m]
 
-// Particle numbers that are connected within the radius, by growing along triangles from the first.
+// Particles within the radius that are connected to the triangle, found by region growing over triangles.
 std::vector<int> connectedWithin(const SurfaceView& wall, int triangle, const Eigen::Vector3d& point, double radius) {
   const auto isNear = [&](int v) { return (wall.position(v) - point).norm() < radius; };
   std::vector<int> near;  // triangles that have a corner within the radius
@@ -89,7 +89,7 @@ NeedleReach reachOfNeedle(const Model& model, const State& state, const Eigen::V
   const SurfaceView wall{model.organ.surface.triangles, state.x, state.y, state.z};
   const DeepestPoint deepest = deepestPoint(wall, begin, end);
   NeedleReach reach;
-  reach.depth = -1;  // a metre of gap where the wall has no triangle with numbers
+  reach.depth = -1;  // a gap of one metre if no triangle of the wall has finite positions
   if (deepest.triangle < 0) return reach;
   Bite bite = biteAround(model, wall, deepest.triangle, deepest.point, model.scene.suture->bite_radius);
   reach.depth = std::min(deepest.distance + 0.5 * bite.thickness, kMaxDepth);

@@ -10,29 +10,30 @@
 
 namespace vibe {
 
-/// From where to where the needle's point goes into tissue as the arm closes, in world [m]: the last 70 % of the chord
-/// from its open to its closed place. Before that it swings free of the cap.
-/// @param link_poses  in world; only that of the link which carries the needle is used
+/// Path of the needle's point through tissue as the arm closes, in world [m]: the last 70 % of the chord from its open
+/// to its closed position. Before that the needle moves outside of the cap.
+/// @param link_poses  of the tool's links in world; only that of the needle's link is used
+/// @return begin and end
 std::pair<Eigen::Vector3d, Eigen::Vector3d> needlePath(const Model& model,
                                                        const std::vector<Eigen::Isometry3d>& link_poses);
 
-/// What the needle meets on its path through the deformed wall.
+/// How far the needle reaches into the deformed wall.
 struct NeedleReach {
-  double depth = 0;  ///< below the mucosa at its deepest, at most 10 mm; <= 0: no tissue, -depth is the gap [m]
-  Bite bite;         ///< where the thread would go; empty without tissue
+  double depth = 0;  ///< greatest depth below the mucosa, at most 10 mm; <= 0: no tissue, -depth is the gap [m]
+  Bite bite;         ///< where the thread would be; empty without tissue
 };
 
 /// @param begin, end  of the needle's path, in world [m]
 NeedleReach reachOfNeedle(const Model& model, const State& state, const Eigen::Vector3d& begin,
                           const Eigen::Vector3d& end);
 
-/// The particles around a place of the wall, with weights that fall smoothly to 0 at `radius`: area at rest times
-/// (1 - (d / radius)^2)^2. Only the sheet of wall that is connected to the place counts, not a wall opposite to it.
-/// The corners of the triangle take part always: where the mesh is coarse the radius grows to 1.5 times their distance.
+/// The particles around a point of the wall, with weights that fall smoothly to 0 at `radius`: area at rest times
+/// (1 - (d / radius)^2)^2. Only wall that is connected to the point within the radius counts, not a wall opposite to
+/// it. The corners of the triangle always take part: on a coarse mesh the radius grows to 1.5 times their distance.
 /// @param point  on `triangle` [m]
 Bite biteAround(const Model& model, const SurfaceView& wall, int triangle, const Eigen::Vector3d& point, double radius);
 
-/// The particle of the bite that pulls most; -1 without particles.
+/// The particle of the bite with the largest weight; -1 without particles.
 int nearestParticle(const Bite& bite);
 
 }  // namespace vibe

@@ -1,10 +1,9 @@
 #include "procedure/needle_arm.hpp"
 
 #include <algorithm>
-#include <string>
 
+#include "events/emit_event.hpp"
 #include "procedure/bleeding.hpp"
-#include "procedure/emit_event.hpp"
 #include "procedure/needle.hpp"
 #include "procedure/phase.hpp"
 #include "procedure/thread_events.hpp"
@@ -13,27 +12,23 @@ namespace vibe {
 
 namespace {
 
-constexpr double kClosed = 0.95;  // of the joint's range; apart, so that a tremor does not open and close the arm
+// Of the range of the joint. Hysteresis: a tremor must not open and close the arm; design choice.
+constexpr double kClosed = 0.95;
 constexpr double kOpen = 0.10;
-constexpr double kMinNewSegment = 1e-3;  // [m]
+constexpr double kMinNewSegment = 1e-3;  // so that two bites at one place have thread between them; design choice [m]
 
 void meetTissue(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state,
                 std::vector<Event>& events) {
   const auto [begin, end] = needlePath(model, link_poses);
   NeedleReach reach = reachOfNeedle(model, state, begin, end);
   if (reach.depth <= 0) {
-    emitEvent(Event::Kind::BiteMissed, state.time, -1, -reach.depth,
-              "The needle met no tissue, it passed the wall by " + inMillimetres(-reach.depth) +
-                  "; draw more of it in with the helix.",
-              events);
+    emitEvent(Event::Kind::BiteMissed, state.time, -1, -reach.depth, events);
     return;
   }
   ProcedureState& procedure = state.procedure;
   procedure.pierced = true;
   procedure.pending = std::move(reach.bite);
-  emitEvent(Event::Kind::Pierced, state.time, nearestParticle(procedure.pending), reach.depth,
-            "The needle is " + inMillimetres(reach.depth) + " deep in the wall; hand it to the anchor exchange.",
-            events);
+  emitEvent(Event::Kind::Pierced, state.time, nearestParticle(procedure.pending), reach.depth, events);
   noteSuturing(state, events);
 }
 
@@ -41,13 +36,11 @@ void closeArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_pos
               std::vector<Event>& events) {
   state.procedure.arm_closed = true;
   if (!state.procedure.needle_loaded)
-    reject(-1, state.time,
-           "The arm closed without a needle, which went with the T-tag: cinch the set to get a new one.", events);
+    reject(-1, RejectReason::ClosedWithoutNeedle, state.time, events);
   else if (state.procedure.needle_on_arm)
     meetTissue(model, link_poses, state, events);
   else
-    emitEvent(Event::Kind::ArmClosed, state.time, -1, 0,
-              "The arm closed over the anchor exchange, which holds the needle and can hand it back.", events);
+    emitEvent(Event::Kind::ArmClosed, state.time, -1, 0, events);
 }
 
 void openArm(State& state, std::vector<Event>& events) {
@@ -56,8 +49,7 @@ void openArm(State& state, std::vector<Event>& events) {
   const bool withdrawn = procedure.pierced && procedure.needle_on_arm;
   procedure.pierced = false;
   if (!withdrawn) return;
-  emitEvent(Event::Kind::BiteWithdrawn, state.time, nearestParticle(procedure.pending), 0,
-            "The needle was drawn back out of the wall: no bite, the anchor exchange did not have it yet.", events);
+  emitEvent(Event::Kind::BiteWithdrawn, state.time, nearestParticle(procedure.pending), 0, events);
   procedure.pending = Bite{};
 }
 
@@ -67,35 +59,39 @@ double distanceFromLast(const Suture* open, const State& state) {
   return (bitePosition(state.procedure.pending, state.x, state.y, state.z) - last).norm();
 }
 
-// Empty: nothing stands against the bite.
-std::string reasonAgainstBite(const SutureScene& scene, const Suture* open, double spacing, const State& state) {
-  if (!open && static_cast<int>(state.procedure.sutures.size()) >= kMaxSutures)
-    return "A session holds " + std::to_string(kMaxSutures) + " sets, and all are used: reset to begin anew.";
-  if (!open) return "";
-  if (static_cast<int>(open->bites.size()) >= scene.max_bites)
-    return "The set has its " + std::to_string(scene.max_bites) +
-           " bites: open the arm to withdraw the needle, then drop the T-tag.";
-  if (state.procedure.thread_used + spacing > scene.thread_length)
-    return "The thread is used up, " + inMillimetres(scene.thread_length - state.procedure.thread_used) +
-           " are left and this bite needs " + inMillimetres(spacing) +
-           ": open the arm to withdraw the needle, then drop the T-tag.";
-  return "";
+// True, with an event, if the bite cannot be taken.
+bool rejectBite(const SutureScene& scene, const Suture* open, double spacing, const State& state,
+                std::vector<Event>& events) {
+  const auto no = [&](RejectReason reason, double limit) {
+    Event& event = reject(Needle, reason, state.time, events);
+    event.limit = limit;
+    event.amount = spacing;
+    return true;
+  };
+  if (!open) {
+    const bool full = static_cast<int>(state.procedure.sutures.size()) >= kMaxSutures;
+    return full && no(RejectReason::TooManySets, kMaxSutures);
+  }
+  if (static_cast<int>(open->bites.size()) >= scene.max_bites) return no(RejectReason::SetFull, scene.max_bites);
+  const bool too_long = state.procedure.thread_used + spacing > scene.thread_length;
+  return too_long && no(RejectReason::ThreadUsedUp, scene.thread_length - state.procedure.thread_used);
 }
 
-std::string biteText(const Bite& bite, int bite_number, int set_number, double spacing) {
-  std::string text = "Bite " + std::to_string(bite_number) + " of set " + std::to_string(set_number) + ": " +
-                     (bite.fullThickness() ? "full" : "partial") + " thickness, " + inMillimetres(bite.depth) +
-                     " deep, " + toString(bite.region) + ", " + toString(bite.wall) + " wall";
-  if (bite_number > 1) text += ", " + inMillimetres(spacing) + " from the bite before";
-  return text + ".";
+void emitBite(const Bite& bite, int set, int number, double spacing, double time, std::vector<Event>& events) {
+  Event& event = emitEvent(Event::Kind::Bite, time, nearestParticle(bite), bite.depth, events);
+  event.detail = bite.fullThickness() ? EventDetail::FullThickness : EventDetail::PartialThickness;
+  event.suture = set;
+  event.bite = number;
+  event.amount = spacing;
+  event.region = bite.region;
+  event.wall = bite.wall;
 }
 
 void takeBite(const Model& model, State& state, std::vector<Event>& events) {
   ProcedureState& procedure = state.procedure;
   Suture* open = activeSuture(procedure);  // open, as there is a needle
   const double spacing = distanceFromLast(open, state);
-  const std::string reason = reasonAgainstBite(*model.scene.suture, open, spacing, state);
-  if (!reason.empty()) return reject(Needle, state.time, reason, events);
+  if (rejectBite(*model.scene.suture, open, spacing, state, events)) return;
   if (!open) {
     open = &procedure.sutures.emplace_back();
     open->begin = state.time;
@@ -111,11 +107,16 @@ void takeBite(const Model& model, State& state, std::vector<Event>& events) {
   }
   open->bites.push_back(std::move(bite));
   const int set = static_cast<int>(procedure.sutures.size()) - 1, number = static_cast<int>(open->bites.size()) - 1;
-  const int particle = nearestParticle(open->bites.back());
-  emitEvent(Event::Kind::Bite, state.time, particle, open->bites.back().depth,
-            biteText(open->bites.back(), number + 1, set + 1, spacing), events);
+  emitBite(open->bites.back(), set, number, spacing, state.time, events);
   noteSuturing(state, events);
-  bleedFromBite(model, set, number, particle, state, events);
+  bleedFromBite(model, set, number, nearestParticle(open->bites.back()), state, events);
+}
+
+// None: the needle can change sides.
+RejectReason reasonAgainstExchange(const ProcedureState& procedure) {
+  if (!procedure.needle_loaded) return RejectReason::NoNeedle;
+  if (!procedure.arm_closed) return RejectReason::ArmOpen;
+  return procedure.pierced ? RejectReason::ArmStillInBite : RejectReason::None;
 }
 
 }  // namespace
@@ -130,20 +131,16 @@ void updateArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_po
 
 void exchangeNeedle(const Model& model, State& state, std::vector<Event>& events) {
   ProcedureState& procedure = state.procedure;
-  if (!procedure.needle_loaded)
-    return reject(Needle, state.time, "There is no needle, it went with the T-tag: cinch the set to get a new one.",
-                  events);
-  if (!procedure.arm_closed)
-    return reject(Needle, state.time, "The arm is open and meets the anchor exchange only when closed: close it first.",
-                  events);
-  if (procedure.pierced && procedure.needle_on_arm) return takeBite(model, state, events);
-  if (procedure.pierced)
-    return reject(Needle, state.time,
-                  "The arm is still in the bite just taken: open and close it before the needle comes back to it.",
-                  events);
+  const bool bites = procedure.needle_loaded && procedure.arm_closed && procedure.pierced && procedure.needle_on_arm;
+  if (bites) return takeBite(model, state, events);
+  const RejectReason reason = reasonAgainstExchange(procedure);
+  if (reason != RejectReason::None) {
+    reject(Needle, reason, state.time, events);
+    return;
+  }
   procedure.needle_on_arm = !procedure.needle_on_arm;
-  emitEvent(Event::Kind::NeedleExchanged, state.time, -1, procedure.needle_on_arm ? 1 : 0,
-            procedure.needle_on_arm ? "The arm holds the needle." : "The anchor exchange holds the needle.", events);
+  emitEvent(Event::Kind::NeedleExchanged, state.time, -1, procedure.needle_on_arm ? 1 : 0, events).detail =
+      procedure.needle_on_arm ? EventDetail::NeedleOnArm : EventDetail::NeedleInExchange;
 }
 
 }  // namespace vibe

@@ -8,16 +8,18 @@
 
 namespace vibe {
 
-/// Most sets of a session: the paper's scenarios have 14.
+/// Limit of the sets of a session. Design choice: the largest scenario of the ViBE paper has 14.
 constexpr int kMaxSutures = 64;
 
 // All need scene.suture and a tool.
 
-/// The arm's joint, which may have come to an end of its range: pierces when it closes, withdraws when it opens.
+/// Call in every step: the needle pierces the wall when the arm's joint reaches its closed end, and is withdrawn when
+/// it reaches its open end.
 void updateArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state,
                std::vector<Event>& events);
 
-/// The button of the anchor exchange went down: the needle changes between arm and exchange, or a bite is complete.
+/// Call when the button of the anchor exchange is pressed: the needle changes sides or completes a bite, or the command
+/// is rejected.
 void exchangeNeedle(const Model& model, State& state, std::vector<Event>& events);
 
 }  // namespace vibe

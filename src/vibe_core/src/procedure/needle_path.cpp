@@ -12,7 +12,7 @@ namespace vibe {
 
 namespace {
 
-constexpr int kSamples = 64;        // of the path: a fifth of a millimetre apart on the needle's
+constexpr int kSamples = 64;        // of the path; 0.2 mm apart on that of the needle; design choice
 constexpr double kOnEdge = 1e-6;    // barycentric coordinate below which a point lies on an edge
 constexpr double kTouching = 1e-9;  // [m]
 constexpr double kPi = 3.14159265358979323846;
@@ -33,7 +33,7 @@ double distanceFromSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, c
   return (p - a - t * ab).norm();
 }
 
-// Every point of the path has a vertex at least this near: distances from one vertex are greatest at an end.
+// Every point of the path has a vertex within this distance: the distance to a vertex is largest at an end of the path.
 double reachOfPath(const SurfaceView& wall, const Eigen::Vector3d& begin, const Eigen::Vector3d& end) {
   double min = std::numeric_limits<double>::infinity();
   for (int v = 0; v < static_cast<int>(wall.x.size()); ++v) {
@@ -57,7 +57,7 @@ std::vector<Candidate> trianglesNear(const SurfaceView& wall, const Eigen::Vecto
   return near;
 }
 
-// The angle that a triangle takes around a point of it: all of the turn inside, half of it on an edge.
+// Angle of a triangle at one of its points: the full angle inside, half of it on an edge.
 double angleAround(const Corners& c, const Eigen::Vector3d& p) {
   const Eigen::Vector3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
   const double area2 = normal.squaredNorm();

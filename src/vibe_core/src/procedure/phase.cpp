@@ -1,14 +1,12 @@
 #include "procedure/phase.hpp"
 
-#include <string>
-
-#include "procedure/emit_event.hpp"
+#include "events/emit_event.hpp"
 
 namespace vibe {
 
 namespace {
 
-// Apart, so that a tremor of the hand at the entry does not end the procedure again and again [m].
+// Hysteresis: a tremor of the hand at the entry must not end the procedure again and again; design choice [m].
 constexpr double kWithdrawn = 0.01;
 constexpr double kInserted = 0.02;
 
@@ -23,27 +21,10 @@ bool everySetIsFinished(const ProcedureState& procedure) {
 
 }  // namespace
 
-const char* toString(Phase phase) {
-  switch (phase) {
-    case Phase::Inspect:
-      return "inspect";
-    case Phase::Mark:
-      return "mark";
-    case Phase::Suture:
-      return "suture";
-    case Phase::Pull:
-      return "pull";
-    case Phase::Done:
-      return "done";
-  }
-  return "unknown";
-}
-
 void enterPhase(Phase phase, State& state, std::vector<Event>& events) {
   if (state.procedure.phase == phase) return;
   state.procedure.phase = phase;
-  emitEvent(Event::Kind::PhaseChanged, state.time, -1, static_cast<double>(phase),
-            std::string("The phase is now '") + toString(phase) + "'.", events);
+  emitEvent(Event::Kind::PhaseChanged, state.time, -1, static_cast<double>(phase), events);
 }
 
 void noteMarking(State& state, std::vector<Event>& events) {

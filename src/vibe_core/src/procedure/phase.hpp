@@ -7,24 +7,25 @@
 
 namespace vibe {
 
-// Phases follow from what is done and forbid nothing:
-//   Inspect  at the start, and when the scope goes in again after Done
-//   Mark     from when the argon beam is used, unless a thread is being pulled
+// The phase follows from the actions; no phase forbids a command:
+//   Inspect  at the start, and when the scope is inserted again after Done
+//   Mark     from the first use of the argon beam, except between T-tag and cinch
 //   Suture   from the first grab of the helix or the first pierced wall; again when a set is finished
 //   Pull     from the T-tag to the release of the cinch
-//   Done     all sets are permanent, at least one is cinched, the arm is open and holds nothing, and the scope is drawn
-//            back to less than 1 cm
+//   Done     all sets are permanent, at least one is cinched, the arm is open, the helix holds nothing, and the scope
+//   is
+//            withdrawn to less than 1 cm
 
-/// Enters a phase; an Event::Kind::PhaseChanged says so unless it is the present one.
+/// Enters a phase, with an Event::Kind::PhaseChanged unless it is the present one.
 void enterPhase(Phase phase, State& state, std::vector<Event>& events);
 
-/// The argon beam is used.
+/// Call when the argon beam heats tissue.
 void noteMarking(State& state, std::vector<Event>& events);
 
-/// The helix has grabbed, or the needle has pierced.
+/// Call when the helix has grabbed or the needle has pierced the wall.
 void noteSuturing(State& state, std::vector<Event>& events);
 
-/// Done, and Inspect after it, from how far the scope is in.
+/// Enters Done, and Inspect after it, depending on the insertion of the scope.
 void updatePhase(const Model& model, State& state, std::vector<Event>& events);
 
 }  // namespace vibe

@@ -1,10 +1,8 @@
 #include "procedure/procedure.hpp"
 
-#include <string>
-
+#include "events/emit_event.hpp"
 #include "procedure/bleeding.hpp"
 #include "procedure/cinch.hpp"
-#include "procedure/emit_event.hpp"
 #include "procedure/needle_arm.hpp"
 #include "procedure/phase.hpp"
 #include "procedure/thread_events.hpp"
@@ -13,34 +11,30 @@ namespace vibe {
 
 namespace {
 
-// The part of the scene that a button needs and the scene does not have; null: it has it.
-const char* missingPart(const Model& model, int button) {
+// None: the scene has the section that the button needs.
+RejectReason missingSection(const Model& model, int button) {
   const Scene& scene = model.scene;
-  if (button == Insufflate) return scene.gas ? nullptr : "gas";
-  if (!model.tool) return "scope";
+  if (button == Insufflate) return scene.gas ? RejectReason::None : RejectReason::NoGas;
+  if (!model.tool) return RejectReason::NoScope;
   switch (button) {
     case ApcPedal:
-      return scene.marking ? nullptr : "marking";
+      return scene.marking ? RejectReason::None : RejectReason::NoMarking;
     case HelixGrab:
-      return scene.helix ? nullptr : "helix";
+      return scene.helix ? RejectReason::None : RejectReason::NoHelix;
     case Needle:
     case TTag:
     case Cinch:
-      return scene.suture ? nullptr : "suture";
+      return scene.suture ? RejectReason::None : RejectReason::NoSuture;
     default:
-      return nullptr;
+      return RejectReason::None;
   }
 }
 
-void rejectWithoutPart(const Model& model, const StepInput& input, const State& state, std::vector<Event>& events) {
+void rejectWithoutSection(const Model& model, const StepInput& input, const State& state, std::vector<Event>& events) {
   for (int button = 0; button < kButtonCount; ++button) {
     if (input.buttons[button] == 0 || state.procedure.pressed[button] != 0) continue;
-    const char* part = missingPart(model, button);
-    if (!part) continue;
-    reject(button, state.time,
-           std::string("The button '") + kButtonNames[button] + "' does nothing, the scene has no section '" + part +
-               "'; add `" + part + ":` to it.",
-           events);
+    const RejectReason reason = missingSection(model, button);
+    if (reason != RejectReason::None) reject(button, reason, state.time, events);
   }
 }
 
@@ -48,10 +42,10 @@ void rejectWithoutPart(const Model& model, const StepInput& input, const State& 
 
 void commandProcedure(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, const StepInput& input,
                       State& state, std::vector<Event>& events) {
-  rejectWithoutPart(model, input, state, events);
+  rejectWithoutSection(model, input, state, events);
   const std::array<std::uint8_t, kButtonCount> before = state.procedure.pressed;
   const auto wentDown = [&](Button button) { return input.buttons[button] != 0 && before[button] == 0; };
-  // when several come in one step: marking, needle, T-tag, cinch, each finding what the one before it did
+  // several in one step act in the order needle, T-tag, cinch; each sees the effect of the one before
   if (model.scene.suture && model.tool) {
     updateArm(model, link_poses, state, events);
     if (wentDown(Needle)) exchangeNeedle(model, state, events);

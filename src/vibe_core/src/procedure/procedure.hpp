@@ -9,17 +9,16 @@
 
 namespace vibe {
 
-/// The procedure as a state machine, ROS-free and deterministic. Every button and every closing of the needle arm
-/// either acts or leaves one Event::Kind::Refused with its reason; no state of it refuses everything.
+// The procedure as a deterministic state machine. Every pressed button and every closing of the needle arm either acts
+// or emits one Event::Kind::Rejected with the reason. From every state a set can be finished.
 
-/// Before the tissue moves: needle, exchange, T-tag, cinch and marking follow the input; lengths of threads that are
-/// being drawn in become shorter. Call after updateGrip().
+/// Call before the tissue moves and after updateGrip(): applies the input to needle, exchange, T-tag and cinch, and
+/// shortens the threads that are being drawn.
 /// @param link_poses  of the tool's links in world at the start of the step
 void commandProcedure(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, const StepInput& input,
                       State& state, std::vector<Event>& events);
 
-/// After the tissue has moved, with the tensions of the step: threads that broke, bites that tore out, bleeding,
-/// phases.
+/// Call after the tissue has moved: breaks overloaded threads, tears out overloaded bites, updates bleeding and phase.
 void updateProcedure(const Model& model, State& state, std::vector<Event>& events);
 
 }  // namespace vibe

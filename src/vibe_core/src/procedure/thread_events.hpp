@@ -8,38 +8,39 @@
 
 namespace vibe {
 
-/// Shortest length of a segment, and what the solver leaves between bites that have met: more drawn out of it would
-/// pull nothing [m].
+/// Shortest length of a segment, which the solver keeps between bites that have met. Drawing more out of a segment
+/// would have no effect [m].
 constexpr double kMinSegment = kMinThread;
 
-/// The set that the present thread runs through: the last one, unless it is permanent. Null: none.
+/// The set of the present thread: the last one, unless it is permanent. Null: none.
 Suture* activeSuture(ProcedureState& procedure);
 
-/// A new needle with its thread on the arm.
+/// Puts a new needle with a new thread on the arm.
 void loadThread(ProcedureState& procedure);
 
-/// Draws thread out of a set: out of the segment at the cinch, and where that is down to kLeastSegment out of the next.
+/// Draws thread out of a set: out of the segment at the cinch until it is as short as kMinSegment, then out of the
+/// next.
 /// @param amount  [m]
-/// @return what was drawn, less than `amount` where every segment is as short as it can be [m]
+/// @return amount drawn; less than `amount` if every segment is as short as it can be [m]
 double drawThread(double amount, Suture& suture);
 
-/// With which the device holds the thread: the tension of the segment that it draws from, which is beyond those whose
-/// bites have met (kLeastSegment), and at least theirs. Where bites lie on each other the tissue pulls their segment
-/// apart no more, so its own tension says nothing about what is drawn [N].
+/// Tension at the cinch: the maximum over the segments from the cinch to the first one whose bites have not met (which
+/// is longer than kMinSegment). The tissue cannot stretch a segment between bites that touch, so the tension of such a
+/// segment alone does not show how hard the thread is drawn [N].
 double cinchTension(const Suture& suture);
 
 /// Force of the thread on a bite: the sum of the tensions of the segments beside it, each along its segment [N].
 Eigen::Vector3d forceOnBite(const Suture& suture, int bite, const State& state);
 
-/// The force above which a bite tears out: all of scene.suture->pull_out_force where the thread runs behind the whole
-/// wall, less by the part of the wall that holds it, a quarter at least [N].
+/// Force above which a bite tears out: scene.suture->pull_out_force times the share of the wall's thickness that the
+/// bite goes through, at least a quarter and at most 1 [N].
 double holdOfBite(const SutureScene& scene, const Bite& bite);
 
-/// After a step: thread that runs free follows the tissue; threads that pull break above their strength and tear out of
-/// the wall, of each set at most one bite per step, the one that is most beyond its hold.
+/// Call after a step. Thread that runs freely follows the tissue. Threads that pull break above their strength; bites
+/// tear out above their hold, in each set at most one per step, the one with the highest ratio of force to hold.
 void updateThreads(const Model& model, State& state, std::vector<Event>& events);
 
-/// All threads become as long as they need be to lie without tension; for tissue that was put back to rest.
+/// Lengthens all threads until they have no tension, for tissue that was put back to rest.
 void slackenThreads(State& state);
 
 }  // namespace vibe

@@ -7,6 +7,7 @@
 
 #include "constraints/gas.hpp"
 #include "contact/tool_motion.hpp"
+#include "events/emit_event.hpp"
 #include "procedure/marking.hpp"
 #include "procedure/marking_touch.hpp"
 #include "procedure/procedure.hpp"
@@ -16,15 +17,6 @@
 namespace vibe {
 
 namespace {
-
-void addEvent(Event::Kind kind, double time, double value, std::string text, std::vector<Event>& events) {
-  Event event;
-  event.kind = kind;
-  event.time = time;
-  event.value = value;
-  event.text = std::move(text);
-  events.push_back(std::move(event));
-}
 
 // Forces are reported in the tip's frame at the end of the step.
 void storeForces(const Model& model, const StepReport& report, const std::vector<Eigen::Isometry3d>& poses,
@@ -38,11 +30,10 @@ void storeForces(const Model& model, const StepReport& report, const std::vector
 
 void reportContact(int contact_count, double dt, State& state, std::vector<Event>& events) {
   const bool touching = contact_count > 0;
-  if (touching && !state.in_contact)
-    addEvent(Event::Kind::ContactBegin, state.time, contact_count, "The tool touches tissue.", events);
+  if (touching && !state.in_contact) emitEvent(Event::Kind::ContactBegin, state.time, -1, contact_count, events);
   state.untouched_time = touching || !state.in_contact ? 0 : state.untouched_time + dt;
   const bool ended = state.in_contact && state.untouched_time >= kContactGap;
-  if (ended) addEvent(Event::Kind::ContactEnd, state.time, 0, "The tool no longer touches tissue.", events);
+  if (ended) emitEvent(Event::Kind::ContactEnd, state.time, -1, 0, events);
   state.in_contact = touching || (state.in_contact && !ended);
 }
 
@@ -50,8 +41,7 @@ void reportPressure(const GasScene& gas, bool insufflator_on, State& state, std:
   const double tolerance = std::max(1.0, 0.01 * std::abs(gas.regulated_pressure));
   const bool reached = insufflator_on && std::abs(state.pressure - gas.regulated_pressure) < tolerance;
   if (reached && !state.pressure_reached)
-    addEvent(Event::Kind::PressureReached, state.time, state.pressure, "The insufflator has reached its set point.",
-             events);
+    emitEvent(Event::Kind::PressureReached, state.time, -1, state.pressure, events);
   state.pressure_reached = reached;
 }
 
@@ -84,10 +74,7 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
   state.tool_force.setZero();
   state.tool_torque.setZero();
   state.grip_force = 0;
-  addEvent(Event::Kind::Recovery, state.time, 0,
-           "The tissue reached positions that are not numbers and was put back to rest; check masses and stiffness of "
-           "the scene.",
-           events);
+  emitEvent(Event::Kind::Recovery, state.time, -1, 0, events).detail = EventDetail::NotFinite;
 }
 
 void moveTissue(const Model& model, const ToolMotion* motion, bool pedal, bool insufflator_on, State& state,
@@ -143,12 +130,8 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   }
   if (model.scene.gas) reportPressure(*model.scene.gas, insufflator_on, state, events);
   if (report.speed_limited > 0)
-    addEvent(Event::Kind::Recovery, state.time, report.speed_limited,
-             "Particles were slowed to keep the step stable; move the tool slower or raise tissue.substeps.", events);
-  if (report.put_back)
-    addEvent(Event::Kind::Recovery, state.time, 0,
-             "The tissue was stretched beyond reason or turned inside out and is led back to rest; undo what did it.",
-             events);
+    emitEvent(Event::Kind::Recovery, state.time, -1, report.speed_limited, events).detail = EventDetail::SpeedLimited;
+  if (report.put_back) emitEvent(Event::Kind::Recovery, state.time, -1, 0, events).detail = EventDetail::Distorted;
   if (!isFinite(state)) recover(model, state, events);
 }
 

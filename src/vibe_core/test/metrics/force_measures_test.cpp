@@ -14,7 +14,7 @@ constexpr double kDt = 1e-3;
 
 TEST(ForceMeasures, ofNothingAreNone) {
   const ForceMeasures m = ForceRecorder().measures();
-  EXPECT_EQ(m.peak, 0);
+  EXPECT_EQ(m.max, 0);
   EXPECT_EQ(m.impulse, 0);
   EXPECT_FALSE(m.mean);
   EXPECT_FALSE(m.share_above);
@@ -32,7 +32,7 @@ TEST(ForceMeasures, ofAHalfSine) {
   const double above = 2 * (1 - 2 / M_PI * std::asin(5.0 / 8));
   EXPECT_NEAR(m.time, 4, 1e-9);
   EXPECT_NEAR(m.loaded_time, 2, 1e-9);
-  EXPECT_NEAR(m.peak, 8, 1e-5);
+  EXPECT_NEAR(m.max, 8, 1e-5);
   EXPECT_NEAR(m.impulse, 32 / M_PI, 1e-4);
   EXPECT_NEAR(*m.mean, 16 / M_PI, 1e-4);
   EXPECT_NEAR(m.time_above, above, 2 * kDt);

@@ -79,7 +79,7 @@ TEST(MotionRecorder, measuresAReach) {
   EXPECT_NEAR(m.time, 4, 1e-9);
   EXPECT_NEAR(m.path_length, 0.1, 1e-12);
   EXPECT_NEAR(*m.mean_speed, 0.025, 1e-9);
-  EXPECT_NEAR(m.peak_speed, 15.0 / 8 * 0.05, 1e-4);
+  EXPECT_NEAR(m.max_speed, 15.0 / 8 * 0.05, 1e-4);
   EXPECT_NEAR(m.movement_time, 2, 0.1);
   EXPECT_NEAR(m.movement_time + m.idle_time, m.time, 1e-9);
   EXPECT_EQ(m.movements, 1);
@@ -121,7 +121,7 @@ TEST(MotionRecorder, ofACircle) {
           .measures();
   EXPECT_NEAR(m.path_length, 0.05 * M_PI, 1e-4);
   EXPECT_NEAR(*m.economy, 2 * std::sqrt(2) / M_PI, 1e-4);
-  EXPECT_NEAR(m.peak_speed, 0.05 * M_PI, 1e-4);
+  EXPECT_NEAR(m.max_speed, 0.05 * M_PI, 1e-4);
   EXPECT_EQ(m.submovements, 1);
   EXPECT_FALSE(m.log_dimensionless_jerk);
   EXPECT_TRUE(m.spectral_arc_length);
@@ -157,7 +157,7 @@ TEST(MotionRecorder, tremorLowersBothSmoothnesses) {
 TEST(MotionRecorder, aTremblingHandAtRestIsAtRest) {
   const auto m = record([](double t) { return Eigen::Vector3d(2e-3 * std::sin(2 * M_PI * 9 * t), 0, 0); }, 5);
   EXPECT_EQ(m.measures().movements, 0);
-  EXPECT_GT(m.measures().peak_speed, 0.09) << "although it is fast";
+  EXPECT_GT(m.measures().max_speed, 0.09) << "although it is fast";
   const auto slow = record([](double t) { return Eigen::Vector3d(2e-3 * std::sin(2 * M_PI * 2 * t), 0, 0); }, 5);
   EXPECT_EQ(slow.measures().movements, 1) << "to and fro on purpose is no tremor";
 }
@@ -214,7 +214,7 @@ TEST(MotionRecorder, livesWithUnevenSteps) {
   recorder.finish();
   const MotionMeasures m = recorder.measures();
   EXPECT_NEAR(m.path_length, 0.1, 1e-12);
-  EXPECT_NEAR(m.peak_speed, 15.0 / 8 * 0.05, 1e-3);
+  EXPECT_NEAR(m.max_speed, 15.0 / 8 * 0.05, 1e-3);
   EXPECT_NEAR(*m.spectral_arc_length, *spectralArcLength(sampleReach(0.1, 2, 1e-3), 1e-3), 0.02);
   EXPECT_EQ(m.submovements, 1);
 }

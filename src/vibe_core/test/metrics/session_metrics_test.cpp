@@ -50,12 +50,12 @@ TEST_F(SessionMetricsTest, meanForceIsOverTheTimeWithAForce) {
     bench.state().tool_force = Eigen::Vector3d(0, force, 0);
     step();
   }
-  EXPECT_DOUBLE_EQ(metrics().peak_force, 4);
+  EXPECT_DOUBLE_EQ(metrics().max_force, 4);
   EXPECT_NEAR(metrics().mean_force, 3, 1e-12);
   EXPECT_NEAR(*metrics().skill.phases.whole.force.mean, 3, 1e-12);
 }
 
-TEST_F(SessionMetricsTest, keepsTheGreatestVolumeAndPressure) {
+TEST_F(SessionMetricsTest, keepsTheMaxVolumeAndPressure) {
   for (double factor : {1.0, 3.0, 2.0}) {
     bench.state().volume = factor * 1e-4;
     bench.state().pressure = factor * 100;
@@ -70,16 +70,18 @@ TEST_F(SessionMetricsTest, keepsTheGreatestVolumeAndPressure) {
 TEST_F(SessionMetricsTest, countsEventsByKind) {
   step({Kind::Grab, Kind::Grab, Kind::Grab, Kind::GrabMissed, Kind::Release, Kind::Release});
   step({Kind::Slip, Kind::Warning, Kind::Recovery, Kind::Bite, Kind::PhaseChanged});
-  EXPECT_EQ(metrics().grabs, 3);
-  EXPECT_EQ(metrics().missed_grabs, 1);
-  EXPECT_EQ(metrics().releases, 2);
-  EXPECT_EQ(metrics().slips, 1);
-  EXPECT_EQ(metrics().warnings, 2);
+  EXPECT_EQ(metrics().events.of(Kind::Grab), 3);
+  EXPECT_EQ(metrics().events.of(Kind::GrabMissed), 1);
+  EXPECT_EQ(metrics().events.of(Kind::Release), 2);
+  EXPECT_EQ(metrics().events.of(Kind::Slip), 1);
+  EXPECT_EQ(metrics().events.of(Kind::BiteMissed), 0);
+  EXPECT_EQ(metrics().warnings(), 2);
+  EXPECT_EQ(metrics().events.total(), 11);
 }
 
 TEST_F(SessionMetricsTest, aRestartIsAsGoodAsANewOne) {
   bench.state().joints[Insertion] = 0.05;
-  step({Kind::Grab, Kind::Refused});
+  step({Kind::Grab, Kind::Rejected});
   bench.bite(0);
   recorder.restart(bench.model(), bench.state());
   MetricsRecorder fresh(bench.model(), bench.state());
@@ -88,7 +90,8 @@ TEST_F(SessionMetricsTest, aRestartIsAsGoodAsANewOne) {
   std::vector<Event> events(1);
   events[0].kind = Kind::Grab;
   fresh.record(bench.model(), bench.state(), false, events);
-  EXPECT_EQ(metrics().grabs, 1);
+  EXPECT_EQ(metrics().events.of(Kind::Grab), 1);
+  EXPECT_EQ(metrics().events.total(), 1);
   EXPECT_EQ(summarise(metrics()), summarise(fresh.metrics()));
 }
 

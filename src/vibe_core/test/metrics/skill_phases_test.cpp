@@ -44,7 +44,7 @@ TEST_F(PhaseSkillTest, ofAReachInEachOfTwoPhases) {
   EXPECT_NEAR(*of(Phase::Mark).motion.economy, 1, 1e-9);
   EXPECT_NEAR(*of(Phase::Mark).motion.log_dimensionless_jerk, -std::log(204.8), 0.1);
   EXPECT_NEAR(*of(Phase::Suture).motion.spectral_arc_length, -1.41, 0.02);
-  EXPECT_DOUBLE_EQ(of(Phase::Mark).force.peak, 2);
+  EXPECT_DOUBLE_EQ(of(Phase::Mark).force.max, 2);
   EXPECT_EQ(of(Phase::Mark).force.time_above, 0);
   EXPECT_NEAR(of(Phase::Suture).force.time_above, 1, 1e-9);
   EXPECT_EQ(of(Phase::Pull).time, 0);

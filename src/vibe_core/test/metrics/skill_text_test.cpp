@@ -25,7 +25,7 @@ SkillMetrics session() {
   suture.motion.log_dimensionless_jerk = -17.25;
   suture.motion.spectral_arc_length = -2.5;
   suture.force.loaded_time = 10;
-  suture.force.peak = 6.5;
+  suture.force.max = 6.5;
   suture.force.mean = 1.25;
   suture.force.time_above = 0.5;
   m.phases.whole = suture;
@@ -80,7 +80,7 @@ SkillMetrics session() {
 
 TEST(SkillText, ofAWholeSession) {
   const std::vector<std::string> expected = {
-      "phase        time s    path m     LDLJ   SPARC  submov.  economy  peak N  mean N  > 5 N s",
+      "phase        time s    path m     LDLJ   SPARC  submov.  economy   max N  mean N  > 5 N s",
       "suture       123.46     2.500   -17.25   -2.50       42     0.75    6.50    1.25     0.50",
       "whole        123.46     2.500   -17.25   -2.50       42     0.75    6.50    1.25     0.50",
       "marks                    12     in the zone 11   anterior 5   greater curvature 4   posterior 3   burns 2   "
@@ -92,7 +92,7 @@ TEST(SkillText, ofAWholeSession) {
       "  1  triangular   0.93      7     1   0.71        18.2       45.1      80.2     0.31   0.28    75.2  loose",
       "  2  -               -      1     0      -           -          -       0.0        -   0.00       -  open",
       "bleeding               2.30 mL lost   mild 3   brisk 2   now 1   overdue 1",
-      "mistakes                  8 refused   slips 6   torn out 1   threads broken 7",
+      "mistakes                  8 rejected   slips 6   torn out 1   threads broken 7",
       "organ                  12.0 mmHg now   15.0 mmHg before (set point)",
       "  area of the body     40.0 cm2 before 60.0   reduced by 33.3 %",
       "  volume              900.0 mL  before 1200.0   reduced by 25.0 %",

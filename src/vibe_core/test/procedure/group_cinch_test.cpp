@@ -40,7 +40,7 @@ TEST(GroupCinch, FindsTheGroupOnceAndDrawsItAtTheSpeedOfTheCinch) {
   EXPECT_EQ(suture.group.drawn, drawn) << "tight enough";
   bench.hold(Cinch, false);
   EXPECT_EQ(bench.count(Kind::Cinched), 1);
-  EXPECT_NE(bench.events.front().text.find("the wall was drawn by"), std::string::npos);
+  EXPECT_NE(describe(bench.events.front()).find("the wall was drawn by"), std::string::npos);
   EXPECT_EQ(suture.stage, Suture::Stage::Cinched);
   EXPECT_EQ(suture.group.drawn, drawn) << "permanent";
 }

@@ -105,7 +105,7 @@ TEST_F(HelixGrip, ASlipSaysAtHowManyTurns) {
   turnTo(1.5);
   ASSERT_EQ(world.count(Kind::Slip), 1);
   EXPECT_EQ(world.events.back().value, 6);
-  EXPECT_NE(world.events.back().text.find("1.5 turns"), std::string::npos) << world.events.back().text;
+  EXPECT_NE(describe(world.events.back()).find("1.5 turns"), std::string::npos) << describe(world.events.back());
   EXPECT_TRUE(world.state.grip.empty());
 }
 

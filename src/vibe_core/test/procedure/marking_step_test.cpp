@@ -78,7 +78,7 @@ TEST(MarkingStep, TwoSecondsMakeOneMark) {
   stage.press(2);
   EXPECT_EQ(stage.count(Kind::Mark), 1);
   EXPECT_EQ(stage.count(Kind::Burn), 0);
-  EXPECT_EQ(stage.count(Kind::Refused), 0);
+  EXPECT_EQ(stage.count(Kind::Rejected), 0);
   EXPECT_NEAR(stage.state.procedure.beam_energy, 80, 1e-6);
   EXPECT_GT(stage.graded(BurnGrade::Mark), 0);
   const Eigen::Vector3d aim(0, 0, -kRadius);
@@ -94,7 +94,7 @@ TEST(MarkingStep, TwoSecondsMakeOneMark) {
     EXPECT_GE(event.value, threshold);
     EXPECT_LT(event.value, threshold + 40.0 / 60) << "said in the step in which it came to be";
     EXPECT_LT((stage.model->organ.surface.vertices[event.particle] - aim).norm(), 5e-3);
-    EXPECT_NE(event.text.find("anterior"), std::string::npos) << event.text;
+    EXPECT_NE(describe(event).find("anterior"), std::string::npos) << describe(event);
   }
 }
 
@@ -124,18 +124,18 @@ TEST(MarkingStep, FifteenSecondsBurnAndTwentyAreNotDeep) {
 TEST(MarkingStep, OutOfReachIsRefusedOnceAndActsWhenItComesNear) {
   Stage stage(markingScene(), 0.02);
   stage.press(1);
-  EXPECT_EQ(stage.count(Kind::Refused), 1);
+  EXPECT_EQ(stage.count(Kind::Rejected), 1);
   EXPECT_EQ(stage.events.front().value, ApcPedal);
-  EXPECT_NE(stage.events.front().text.find("15.0 mm"), std::string::npos) << stage.events.front().text;
+  EXPECT_NE(describe(stage.events.front()).find("15.0 mm"), std::string::npos) << describe(stage.events.front());
   EXPECT_EQ(stage.state.procedure.phase, Phase::Inspect);
   EXPECT_EQ(stage.state.procedure.beam_energy, 0);
   EXPECT_EQ(stage.hottest(), 0);
   stage.release(0.1);
   stage.press(0.1);
-  EXPECT_EQ(stage.count(Kind::Refused), 2) << "once per press";
+  EXPECT_EQ(stage.count(Kind::Rejected), 2) << "once per press";
   stage.placeTip(kGap);
   stage.press(2);
-  EXPECT_EQ(stage.count(Kind::Refused), 2);
+  EXPECT_EQ(stage.count(Kind::Rejected), 2);
   EXPECT_EQ(stage.count(Kind::Mark), 1);
 }
 
@@ -144,8 +144,8 @@ TEST(MarkingStep, ASceneWithoutMarkingRefusesAndHasNoMemoryForIt) {
   scene.marking.reset();
   Stage stage(scene);
   stage.press(0.5);
-  ASSERT_EQ(stage.count(Kind::Refused), 1);
-  EXPECT_NE(stage.events.front().text.find("'marking'"), std::string::npos) << stage.events.front().text;
+  ASSERT_EQ(stage.count(Kind::Rejected), 1);
+  EXPECT_NE(describe(stage.events.front()).find("'marking'"), std::string::npos) << describe(stage.events.front());
   EXPECT_TRUE(stage.state.procedure.dose.empty());
   EXPECT_TRUE(stage.state.procedure.heat.empty());
   EXPECT_TRUE(stage.state.procedure.grade.empty());
@@ -189,7 +189,7 @@ TEST(MarkingStep, ALineIsOneEventAndAnotherSpotAnother) {
   EXPECT_EQ(stage.count(Kind::Mark), 1);
   beamAt(stage, Eigen::Vector3d(0, -1, 0), 2);
   EXPECT_EQ(stage.count(Kind::Mark), 2);
-  EXPECT_NE(stage.events.back().text.find("2 marks"), std::string::npos) << stage.events.back().text;
+  EXPECT_NE(describe(stage.events.back()).find("2 marks"), std::string::npos) << describe(stage.events.back());
 }
 
 TEST(MarkingStep, InsufflationCools) {

@@ -115,7 +115,7 @@ struct Bench {
   }
   std::string refusal() const {
     for (const Event& event : events)
-      if (event.kind == Event::Kind::Refused) return event.text;
+      if (event.kind == Event::Kind::Rejected) return describe(event);
     return "";
   }
 };

@@ -119,7 +119,7 @@ TEST(ProcedureTable, EveryNewCommandActsOnceOrIsRefusedOnceAndARefusalChangesNot
   explore(bench, [&](Bench& b, const Command& command, const Snapshot& before) {
     int acting = 0;
     for (Kind kind : command.acting) acting += b.count(kind);
-    const int no = b.count(Kind::Refused);
+    const int no = b.count(Kind::Rejected);
     const bool is_new = isNewCommand(command, before.state, b.state());
     const bool must_answer =
         is_new && (!command.acting.empty() || command.name == "pedal" || command.name == "insufflate");
@@ -179,9 +179,9 @@ TEST(ProcedureTable, ASceneWithoutAPartSaysSoOncePerPress) {
       input.buttons[button] = 1;
       world.events.clear();
       for (int k = 0; k < 5; ++k) world.step(input);
-      ASSERT_EQ(world.count(Kind::Refused), 1) << kButtonNames[button];
+      ASSERT_EQ(world.count(Kind::Rejected), 1) << kButtonNames[button];
       EXPECT_EQ(world.events.front().value, button);
-      texts.insert(world.events.front().text);
+      texts.insert(describe(world.events.front()));
       world.step();
     }
     EXPECT_EQ(texts.size(), static_cast<std::size_t>(kButtonCount));
@@ -199,7 +199,7 @@ TEST(ProcedureTable, TheHelixGrabsOrMissesOncePerPress) {
     world.step();
   }
   EXPECT_EQ(world.count(Kind::Grab) + world.count(Kind::GrabMissed), 3);
-  EXPECT_EQ(world.count(Kind::Refused), 0);
+  EXPECT_EQ(world.count(Kind::Rejected), 0);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST(Procedure, GoesFromTheFirstBiteToACinchedSet) {
     ASSERT_EQ(bench.count(Kind::Bite), 1);
     EXPECT_FALSE(bench.procedure().needle_on_arm);
     bench.press(Needle);
-    EXPECT_EQ(bench.count(Kind::Refused), 1) << "the arm is still in the bite";
+    EXPECT_EQ(bench.count(Kind::Rejected), 1) << "the arm is still in the bite";
     bench.openArm();
     bench.closeInAir();
     bench.press(Needle);
@@ -242,11 +242,11 @@ TEST(Procedure, EverythingPressedAtOnceIsTakenInOrder) {
   EXPECT_EQ(bench.count(Kind::CinchPulling), 1);
   std::set<int> refused;
   for (const Event& event : bench.events)
-    if (event.kind == Kind::Refused) refused.insert(static_cast<int>(event.value));
+    if (event.kind == Kind::Rejected) refused.insert(static_cast<int>(event.value));
   EXPECT_EQ(refused, (std::set<int>{ApcPedal, Needle, Insufflate}));
   expectSound(bench);
   bench.act();
-  EXPECT_EQ(bench.count(Kind::Refused), 0) << "a held button asks once";
+  EXPECT_EQ(bench.count(Kind::Rejected), 0) << "a held button asks once";
 }
 
 TEST(Procedure, AThousandBitesInASecond) {
@@ -291,6 +291,14 @@ Scene hardScene(std::uint64_t seed) {
   return scene;
 }
 
+// An event whose detail or reason is missing would show as its name, or as a rejection without a remedy.
+void expectDescribed(const std::vector<Event>& events) {
+  for (const Event& event : events) {
+    EXPECT_NE(describe(event), std::string(toString(event.kind)) + ".");
+    EXPECT_EQ(event.kind == Kind::Rejected, event.reason != RejectReason::None) << toString(event.kind);
+  }
+}
+
 TEST(Procedure, NoOrderOfCommandsSpoilsTheStateOrClosesTheWayToASet) {
   int bites = 0, cinched = 0, broken = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -299,6 +307,7 @@ TEST(Procedure, NoOrderOfCommandsSpoilsTheStateOrClosesTheWayToASet) {
     for (int k = 0; k < 1000; ++k) {
       randomCommand(bench, dice);
       expectSound(bench);
+      expectDescribed(bench.events);
       if (::testing::Test::HasFailure()) FAIL() << "seed " << seed << ", command " << k;
     }
     const std::size_t sets = bench.procedure().sutures.size();
@@ -324,7 +333,7 @@ TEST(Procedure, TheSameCommandsDoTheSame) {
     Dice dice{99};
     for (int k = 0; k < 1500; ++k) randomCommand(bench, dice);
     std::string told;
-    for (const Event& event : bench.world.events) told += event.text + "\n";
+    for (const Event& event : bench.world.events) told += describe(event) + "\n";
     return told;
   };
   EXPECT_TRUE(run(1) == run(1));
@@ -377,7 +386,7 @@ TEST(Procedure, TheWholeSimulatorBearsCommandsThatAreNoNumbers) {
     for (int i = 0; i < world.model->particle_count; ++i) ASSERT_TRUE(world.position(i).allFinite());
     for (double joint : world.state.joints) ASSERT_TRUE(std::isfinite(joint));
   }
-  EXPECT_GT(world.count(Kind::Refused), 10);
+  EXPECT_GT(world.count(Kind::Rejected), 10);
   EXPECT_EQ(world.count(Kind::Recovery), 0);
 }
 

@@ -113,7 +113,7 @@ TEST_F(ProcedureTissue, TheCinchDrawsTheBitesTogetherAndKeepsThem) {
   bite(-0.3);
   bite(0.3);
   ASSERT_EQ(world.count(Kind::Bite), 2);
-  ASSERT_EQ(world.count(Kind::Refused), 0);
+  ASSERT_EQ(world.count(Kind::Rejected), 0);
   world.run(1, input);
   const double apart = (place(1) - place(0)).norm();
   ASSERT_GT(apart, 8e-3);

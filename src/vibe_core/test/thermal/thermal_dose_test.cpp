@@ -190,11 +190,12 @@ TEST(ThermalDose, DoesNotDependOnTheMesh) {
     for (std::size_t p = 0; p < areas.size(); ++p)
       if (law.grade(world.dose[p]) == BurnGrade::Mark) area[fine] += areas[p];
   }
-  EXPECT_NEAR(mark[0] / mark[1], 1, 0.15);
-  EXPECT_NEAR(burn[0] / burn[1], 1, 0.15);
-  EXPECT_NEAR(held[0] / held[1], 1, 0.15);
-  EXPECT_NEAR(drawn[0] / drawn[1], 1, 0.15);
-  EXPECT_NEAR(area[0] / area[1], 1, 0.15);
+  // measured: 2.8, 3.4, 2.7, 2.8 and 12.0 %
+  EXPECT_NEAR(mark[0] / mark[1], 1, 0.04);
+  EXPECT_NEAR(burn[0] / burn[1], 1, 0.04);
+  EXPECT_NEAR(held[0] / held[1], 1, 0.04);
+  EXPECT_NEAR(drawn[0] / drawn[1], 1, 0.04);
+  EXPECT_NEAR(area[0] / area[1], 1, 0.13);
   RecordProperty("figures", std::to_string(mark[0] / mark[1]) + " " + std::to_string(burn[0] / burn[1]) + " " +
                                 std::to_string(held[0] / held[1]) + " " + std::to_string(drawn[0] / drawn[1]) + " " +
                                 std::to_string(area[0] / area[1]));

@@ -1,14 +1,9 @@
 #include "displays/suture_display.hpp"
 
-#include <OgreSceneNode.h>
-#include <ros/message_traits.h>
-#include <rviz/display_context.h>
-#include <rviz/frame_manager.h>
 #include <rviz/properties/bool_property.h>
 #include <rviz/properties/color_property.h>
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/float_property.h>
-#include <rviz/properties/ros_topic_property.h>
 #include <rviz/properties/vector_property.h>
 
 #include <pluginlib/class_list_macros.hpp>
@@ -19,16 +14,6 @@
 namespace vibe {
 namespace {
 
-using rviz::StatusProperty;
-
-const char* const kStatusTopic = "Topic";
-const char* const kStatusMessage = "Message";
-const char* const kStatusTransform = "Transform";
-
-QString messageType() {
-  return QString::fromStdString(ros::message_traits::datatype<vibe_msgs::SutureArray>());
-}
-
 PackedColour packedOf(const QColor& colour) {
   return packed(colour.redF(), colour.greenF(), colour.blueF());
 }
@@ -37,19 +22,23 @@ Ogre::Vector3 ogreOf(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-/// Blood moves with the time of the message only where it pulses.
+/// The shape of blood depends on the time of the message only if it pulses.
 bool pulses(const SutureScene& scene) {
   for (const Wound& wound : scene.wounds)
     if (wound.brisk && wound.rate > 0) return true;
   return false;
 }
 
+std::string contentOf(const SutureScene& scene) {
+  std::size_t bites = 0;
+  for (const SutureSet& set : scene.sets) bites += set.bites.size();
+  return std::to_string(scene.sets.size()) + " sutures, " + std::to_string(bites) + " bites, " +
+         std::to_string(scene.wounds.size()) + " bleedings.";
+}
+
 }  // namespace
 
-SutureDisplay::SutureDisplay() {
-  topic_property_ = new rviz::RosTopicProperty("Topic", "sutures", messageType(),
-                                               "vibe_msgs/SutureArray topic with the threads of the session.", this,
-                                               SLOT(changeTopic()));
+SutureDisplay::SutureDisplay() : MessageDisplay("sutures") {
   addThreadProperties();
   addPartProperties();
   addBleedingProperties();
@@ -64,133 +53,97 @@ void SutureDisplay::addThreadProperties() {
   colour_property_->addOption("Tension", static_cast<int>(ThreadColour::Tension));
   colour_property_->addOption("One colour", static_cast<int>(ThreadColour::One));
   colour_property_->addOption("One per suture", static_cast<int>(ThreadColour::PerSuture));
-  map_property_ = new rviz::EnumProperty("Colour map", "viridis", "From no tension (dark) to the greatest (light).",
-                                         colour_property_, SLOT(changeStyle()), this);
+  map_property_ =
+      new rviz::EnumProperty("Colour map", "viridis", "Colours from no tension (dark) to the maximum tension (light).",
+                             colour_property_, SLOT(changeStyle()), this);
   for (const std::string& name : colourMapNames()) map_property_->addOptionStd(name);
-  max_property_ = new rviz::FloatProperty("Greatest tension", 4,
-                                          "Tension in newtons at the upper end of the colour map; a cinch draws "
-                                          "until 3 N, a full bite tears out at about 8 N.",
+  max_property_ = new rviz::FloatProperty("Maximum tension", 4,
+                                          "Tension in newtons at the upper end of the colour map; a cinch pulls up "
+                                          "to 3 N, a full-thickness bite tears out at about 8 N.",
                                           colour_property_, SLOT(changeStyle()), this);
   max_property_->setMin(0.01F);
   legend_property_ = new rviz::BoolProperty(
-      "Legend", true, "Shows what the colours mean in the lower right corner of the views, once there is a thread.",
+      "Legend", true, "Shows the colour scale in the lower right corner of the views, once there is a thread.",
       colour_property_, SLOT(changeLegend()), this);
   slack_property_ = new rviz::ColorProperty("Slack", QColor(237, 242, 255),
-                                            "Colour of thread without tension, in bands with a darker one.",
+                                            "Colour of thread without tension, which alternates with a darker one.",
                                             colour_property_, SLOT(changeStyle()), this);
   one_property_ = new rviz::ColorProperty("Colour", QColor(31, 77, 217),
-                                          "Colour of all threads; polypropylene for surgery is dyed blue.",
+                                          "Colour of all threads; surgical polypropylene is dyed blue.",
                                           colour_property_, SLOT(changeStyle()), this);
   diameter_property_ = new rviz::FloatProperty("Thread diameter", 0.00032F,
                                                "Diameter of the thread in metres; the default is that of size 2-0.",
                                                this, SLOT(changeStyle()));
   diameter_property_->setMin(1e-5F);
   diameter_property_->setMax(0.01F);
-  emphasis_property_ = new rviz::FloatProperty("Emphasis", 1,
-                                               "Threads are drawn this many times as thick as they are, symbols grow "
-                                               "with its square root; 3 can be read with the whole organ in view.",
-                                               this, SLOT(changeStyle()));
+  emphasis_property_ =
+      new rviz::FloatProperty("Emphasis", 1,
+                              "Factor by which threads are drawn thicker than they are; symbols grow with its "
+                              "square root. With 3, threads are visible with the whole organ in view.",
+                              this, SLOT(changeStyle()));
   emphasis_property_->setMin(0.1F);
   emphasis_property_->setMax(20);
 }
 
 void SutureDisplay::addPartProperties() {
   bites_property_ = new rviz::BoolProperty(
-      "Bites", true, "Draws a green ring at every bite through the whole wall and an orange ball at every partial one.",
-      this, SLOT(changeStyle()));
+      "Bites", true, "Draws a green ring at every full-thickness bite and an orange ball at every partial one.", this,
+      SLOT(changeStyle()));
   ends_property_ = new rviz::BoolProperty("T-tags and cinches", true,
-                                          "Draws the bar at the thread's end and the bobbin that holds its beginning.",
-                                          this, SLOT(changeStyle()));
-  label_property_ = new rviz::BoolProperty(
-      "Technique", true,
-      "Writes at each set its number, the recognised technique and how sure it is (0 to 1), or how many bites it has.",
-      this, SLOT(changeStyle()));
-  label_height_property_ = new rviz::FloatProperty("Height", 0.006F, "Height of the letters in metres.",
-                                                   label_property_, SLOT(changeStyle()), this);
+                                          "Draws the T-tag at the end of the thread and the cinch at its start.", this,
+                                          SLOT(changeStyle()));
+  label_property_ = new rviz::BoolProperty("Technique", true,
+                                           "Labels each set with its number and the recognised technique and its "
+                                           "margin (0 to 1), or with its number of bites.",
+                                           this, SLOT(changeStyle()));
+  label_height_property_ = new rviz::FloatProperty("Height", 0.006F, "Height of the letters [m].", label_property_,
+                                                   SLOT(changeStyle()), this);
   label_height_property_->setMin(1e-4F);
   corners_property_ = new rviz::BoolProperty("Transition points", true,
-                                             "Draws a magenta ring around the bites at which a U or Z turns.", this,
+                                             "Draws a magenta ring around the bites at the corners of a U or Z.", this,
                                              SLOT(changeStyle()));
   links_property_ = new rviz::BoolProperty(
       "Index groups", false,
-      "Draws a broken band between the bites whose tissue a technique brings together: the legs of a U, the diagonals "
-      "of a Z, of all others each bite and the next.",
+      "Draws a dashed band between the bites that a technique brings together: the legs of a U, the diagonals of a Z, "
+      "otherwise each bite and the next.",
       this, SLOT(changeStyle()));
 }
 
 void SutureDisplay::addBleedingProperties() {
   bleeding_property_ = new rviz::BoolProperty("Bleeding", true,
-                                              "Draws mild bleeding as a dark film that grows, brisk bleeding as a "
-                                              "bright jet that pulses, and what has stopped in brown.",
+                                              "Draws mild bleeding as a growing dark film, brisk bleeding as a "
+                                              "pulsing bright jet, and stopped bleeding in brown.",
                                               this, SLOT(changeStyle()));
   down_property_ = new rviz::VectorProperty("Down", Ogre::Vector3(-1, 0, 0),
-                                            "Direction of gravity in the frame of the message; the default is a "
-                                            "patient on the back.",
+                                            "Direction of gravity in the frame of the message; the default is for a "
+                                            "patient in supine position.",
                                             bleeding_property_, SLOT(changeStyle()), this);
 }
 
 void SutureDisplay::onInitialize() {
-  try {
-    visual_ = std::make_unique<SutureVisual>(*scene_node_);
-  } catch (const std::exception& error) {
-    setStatusStd(StatusProperty::Error, "Resources", error.what());
-  }
+  MessageDisplay::onInitialize();
   changeStyle();
 }
 
+void SutureDisplay::makeVisual() {
+  visual_ = std::make_unique<SutureVisual>(*scene_node_);
+}
+
 void SutureDisplay::onEnable() {
-  subscribe();
+  MessageDisplay::onEnable();
   changeLegend();
 }
 
 void SutureDisplay::onDisable() {
-  subscriber_.shutdown();
-  reset();
+  MessageDisplay::onDisable();
   changeLegend();
 }
 
-void SutureDisplay::setTopic(const QString& topic, const QString&) {
-  topic_property_->setString(topic);
-}
-
-void SutureDisplay::changeTopic() {
-  reset();
-}
-
-void SutureDisplay::subscribe() {
-  subscriber_.shutdown();
-  if (!visual_) return;
-  const std::string topic = topic_property_->getTopicStd();
-  if (topic.empty()) {
-    setStatus(StatusProperty::Error, kStatusTopic, "No topic is set; choose one of type vibe_msgs/SutureArray.");
-    return;
-  }
-  try {
-    // only the newest counts: every message tells everything
-    subscriber_ = update_nh_.subscribe(topic, 1, &SutureDisplay::receive, this);
-    setStatusStd(StatusProperty::Warn, kStatusTopic, "No message on '" + topic + "' yet; is the simulator running?");
-    waiting_ = true;
-  } catch (const ros::Exception& error) {
-    setStatusStd(StatusProperty::Error, kStatusTopic, std::string("Cannot listen: ") + error.what() + ".");
-  }
-}
-
-void SutureDisplay::reset() {
-  Display::reset();
-  latest_.reset(), shown_.reset();
+void SutureDisplay::clear() {
   scene_ = {};
-  if (visual_) visual_->clear();
+  visual_->clear();
   changeLegend();
   threads_changed_ = blood_changed_ = false;
-  placed_.reset();
-  said_.clear();
-  if (isEnabled()) subscribe();  // the topic is latched: it comes again
-}
-
-void SutureDisplay::receive(const vibe_msgs::SutureArray::ConstPtr& message) {
-  if (waiting_) setStatus(StatusProperty::Ok, kStatusTopic, "Messages arrive.");
-  waiting_ = false;
-  latest_ = message;
 }
 
 void SutureDisplay::changeStyle() {
@@ -228,75 +181,31 @@ void SutureDisplay::changeLegend() {
   legend_->show(drawnLegend("Thread tension [N]", style_.tension_map));
 }
 
-void SutureDisplay::fixedFrameChanged() {
-  placed_.reset();
-}
-
-void SutureDisplay::update(float, float) {
-  if (!visual_) return;
-  if (latest_) report();
-  if (!shown_) return;
-  place();
-  if (!threads_changed_ && !blood_changed_) return;
-  if (threads_changed_) draw();
-  if (blood_changed_) drawBlood();
-  threads_changed_ = blood_changed_ = false;
-  context_->queueRender();
-}
-
-/// Reads the newest message and finds out what of it is new.
-void SutureDisplay::report() {
-  const vibe_msgs::SutureArray::ConstPtr message = latest_;
-  latest_.reset();
+/// Compares the message with the one before, so that only what has changed is drawn again.
+MessageReport SutureDisplay::read(const vibe_msgs::SutureArray& message) {
   SutureScene scene;
-  const std::string wrong = readSutures(*message, scene);
-  if (!wrong.empty()) {
-    if (wrong != said_) setStatusStd(StatusProperty::Error, kStatusMessage, wrong);
-    said_ = wrong;
-    return;
-  }
-  std::size_t bites = 0;
-  for (const SutureSet& set : scene.sets) bites += set.bites.size();
-  const std::string said = std::to_string(scene.sets.size()) + " sutures, " + std::to_string(bites) + " bites, " +
-                           std::to_string(scene.wounds.size()) + " bleedings.";
-  if (said != said_) setStatusStd(StatusProperty::Ok, kStatusMessage, said);  // a status costs more than drawing
-  said_ = said;
-  const bool threads_same = shown_ && shown_->sutures == message->sutures;
-  const bool blood_same = threads_same && shown_->bleedings == message->bleedings && !pulses(scene);
+  const std::string wrong = readSutures(message, scene);
+  if (!wrong.empty()) return {wrong, false};
+  const bool threads_same = shown() != nullptr && shown()->sutures == message.sutures;
+  const bool blood_same = threads_same && shown()->bleedings == message.bleedings && !pulses(scene);
   threads_changed_ |= !threads_same;
   blood_changed_ |= !blood_same;
-  blood_style_.time = message->header.stamp.toSec();
-  shown_ = message;
+  blood_style_.time = message.header.stamp.toSec();
   const bool first = scene_.sets.empty() != scene.sets.empty();
   scene_ = std::move(scene);
   if (first) changeLegend();
+  return {contentOf(scene_)};
 }
 
-/// The frame of the message may move against the fixed frame also while no message comes.
-void SutureDisplay::place() {
-  Ogre::Vector3 position;
-  Ogre::Quaternion orientation;
-  const std::string& frame = shown_->header.frame_id;
-  const bool known = context_->getFrameManager()->getTransform(frame, ros::Time(), position, orientation);
-  const bool news = !placed_ || *placed_ != known;
-  placed_ = known;
-  if (!known) {
-    scene_node_->setVisible(false);
-    if (news)
-      setStatusStd(StatusProperty::Error, kStatusTransform,
-                   "There is no transform from '" + frame + "' to '" + fixed_frame_.toStdString() +
-                       "'; choose another fixed frame or publish it.");
-    return;
-  }
-  if (news) {
-    setStatus(StatusProperty::Ok, kStatusTransform, "Known.");
-    scene_node_->setVisible(true);
-  }
-  scene_node_->setPosition(position);
-  scene_node_->setOrientation(orientation);
+bool SutureDisplay::draw() {
+  const bool changed = threads_changed_ || blood_changed_;
+  if (threads_changed_) drawThreads();
+  if (blood_changed_) drawBlood();
+  threads_changed_ = blood_changed_ = false;
+  return changed;
 }
 
-void SutureDisplay::draw() {
+void SutureDisplay::drawThreads() {
   shape_.clear();
   appendSutures(scene_, style_, shape_);
   visual_->showSolids(shape_);

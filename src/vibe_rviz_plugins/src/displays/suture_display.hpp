@@ -1,22 +1,19 @@
 #pragma once
-#include <rviz/display.h>
 #include <vibe_msgs/SutureArray.h>
 
 #include <memory>
-#include <optional>
-#include <string>
 
 #include "geometry/blood_shapes.hpp"
 #include "geometry/suture_scene.hpp"
 #include "geometry/suture_shapes.hpp"
 #include "render/suture_visual.hpp"
+#include "vibe_rviz_plugins/display_base/message_display.hpp"
 
 namespace rviz {
 class BoolProperty;
 class ColorProperty;
 class EnumProperty;
 class FloatProperty;
-class RosTopicProperty;
 class VectorProperty;
 }  // namespace rviz
 
@@ -25,24 +22,18 @@ namespace vibe {
 class Legend;
 
 /// Threads with bites, tension, T-tags, cinches, the recognised technique, and bleeding, from vibe_msgs/SutureArray.
-class SutureDisplay : public rviz::Display {
+class SutureDisplay : public MessageDisplay<vibe_msgs::SutureArray> {
   Q_OBJECT
  public:
   SutureDisplay();
   ~SutureDisplay() override;
 
-  void onInitialize() override;
-  void update(float wall_dt, float ros_dt) override;
-  void reset() override;
-  void setTopic(const QString& topic, const QString& datatype) override;
-
  protected:
+  void onInitialize() override;
   void onEnable() override;
   void onDisable() override;
-  void fixedFrameChanged() override;
 
  private Q_SLOTS:
-  void changeTopic();
   void changeStyle();
   void changeLegend();
 
@@ -50,28 +41,23 @@ class SutureDisplay : public rviz::Display {
   void addThreadProperties();
   void addPartProperties();
   void addBleedingProperties();
-  void subscribe();
-  void receive(const vibe_msgs::SutureArray::ConstPtr& message);
-  void place();
-  void draw();
+  void makeVisual() override;
+  void clear() override;
+  MessageReport read(const vibe_msgs::SutureArray& message) override;
+  bool draw() override;
+  void drawThreads();
   void drawLabels();
   void drawBlood();
-  void report();
   bool showsTension() const { return style_.colouring == ThreadColour::Tension; }
 
   std::unique_ptr<SutureVisual> visual_;
   std::unique_ptr<Legend> legend_;
-  ros::Subscriber subscriber_;
-  vibe_msgs::SutureArray::ConstPtr shown_, latest_;  // latest_: not read yet
   SutureScene scene_;
   SutureStyle style_;
   BloodStyle blood_style_;
-  ColouredShape shape_;  // kept for its memory
-  bool threads_changed_ = false, blood_changed_ = false, waiting_ = true;
-  std::string said_;            // last status of the message
-  std::optional<bool> placed_;  // whether the transform was known; none: not asked yet
+  ColouredShape shape_;  // a member to reuse its memory
+  bool threads_changed_ = false, blood_changed_ = false;
 
-  rviz::RosTopicProperty* topic_property_;
   rviz::EnumProperty *colour_property_, *map_property_;
   rviz::FloatProperty *max_property_, *diameter_property_, *emphasis_property_, *label_height_property_;
   rviz::ColorProperty *slack_property_, *one_property_;

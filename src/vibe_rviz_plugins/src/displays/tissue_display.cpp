@@ -2,7 +2,6 @@
 
 #include <OgreSceneNode.h>
 #include <rviz/display_context.h>
-#include <rviz/frame_manager.h>
 #include <rviz/properties/bool_property.h>
 #include <rviz/properties/color_property.h>
 #include <rviz/properties/enum_property.h>
@@ -14,17 +13,18 @@
 #include "messages/tissue_messages.hpp"
 #include "render/legend.hpp"
 #include "render/tissue_visual.hpp"
+#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 
 namespace vibe {
 namespace {
 
 using rviz::StatusProperty;
 
-// Ranges that a colouring begins with, in its unit.
+// Default range of a colouring, in its unit.
 struct Range {
   float min, max;
 };
-Range usualRange(Colouring colouring) {
+Range defaultRange(Colouring colouring) {
   switch (colouring) {
     case Colouring::Heat:
       return {0, 80};
@@ -83,18 +83,19 @@ void TissueDisplay::addTopics() {
   topology_topic_ = new rviz::RosTopicProperty(
       "Topology Topic", "tissue/topology",
       QString::fromStdString(ros::message_traits::datatype<vibe_msgs::TissueTopology>()),
-      "Topic of vibe_msgs/TissueTopology: the mesh and its anatomy.", this, SLOT(subscribe()), this);
+      "Topic of type vibe_msgs/TissueTopology: the mesh and its anatomy.", this, SLOT(subscribe()), this);
   particles_topic_ = new rviz::RosTopicProperty(
       "Particles Topic", "tissue/particles",
       QString::fromStdString(ros::message_traits::datatype<sensor_msgs::PointCloud2>()),
-      "Topic of sensor_msgs/PointCloud2: where the particles of that mesh are now.", this, SLOT(subscribe()), this);
+      "Topic of type sensor_msgs/PointCloud2: current positions of the particles of this mesh.", this,
+      SLOT(subscribe()), this);
 }
 
 void TissueDisplay::addColours() {
   colouring_ =
       new rviz::EnumProperty("Colour by", "Tissue",
-                             "What the surface's colour says: tissue as it is, its region or wall, strain, the "
-                             "heat it was given, or the thickness of the wall.",
+                             "What the colour of the surface shows: natural tissue, region, wall, strain, heat "
+                             "received, or wall thickness.",
                              this, SLOT(changeColouring()), this);
   colouring_->addOption("Tissue", static_cast<int>(Colouring::Tissue));
   colouring_->addOption("Region", static_cast<int>(Colouring::Region));
@@ -103,23 +104,24 @@ void TissueDisplay::addColours() {
   colouring_->addOption("Heat", static_cast<int>(Colouring::Heat));
   colouring_->addOption("Thickness", static_cast<int>(Colouring::Thickness));
   map_ = new rviz::EnumProperty("Colour map", "viridis",
-                                "From a number to a colour, in steps that look equally large; cividis looks alike to "
-                                "people with any colour vision.",
+                                "Perceptually uniform map from values to colours; cividis looks the same with "
+                                "and without colour vision deficiency.",
                                 colouring_, SLOT(changeLook()), this);
   int number = 0;
   for (const std::string& name : colourMapNames()) map_->addOption(QString::fromStdString(name), number++);
-  const Range range = usualRange(Colouring::Strain);
-  min_ = new rviz::FloatProperty("From", range.min, "Value at the map's dark end: strain [1], heat [J], thickness [m].",
-                                 colouring_, SLOT(changeLook()), this);
-  max_ = new rviz::FloatProperty("To", range.max, "Value at the map's bright end: strain [1], heat [J], thickness [m].",
-                                 colouring_, SLOT(changeLook()), this);
-  legend_shown_ =
-      new rviz::BoolProperty("Legend", true, "Show what the colours mean in the lower left corner of the views.",
-                             colouring_, SLOT(changeLegend()), this);
+  const Range range = defaultRange(Colouring::Strain);
+  min_ = new rviz::FloatProperty("From", range.min,
+                                 "Value at the dark end of the map: strain [1], heat [J], thickness [m].", colouring_,
+                                 SLOT(changeLook()), this);
+  max_ = new rviz::FloatProperty("To", range.max,
+                                 "Value at the bright end of the map: strain [1], heat [J], thickness [m].", colouring_,
+                                 SLOT(changeLook()), this);
+  legend_shown_ = new rviz::BoolProperty("Legend", true, "Show the colour scale in the lower left corner of the views.",
+                                         colouring_, SLOT(changeLegend()), this);
 }
 
 void TissueDisplay::addSurface() {
-  surface_ = new rviz::BoolProperty("Surface", true, "Draw the organ's surface.", this, SLOT(changeLook()), this);
+  surface_ = new rviz::BoolProperty("Surface", true, "Draw the surface of the organ.", this, SLOT(changeLook()), this);
   inside_ = new rviz::ColorProperty("Inside", QColor(219, 120, 107), "Colour of the mucosa, which lines the inside.",
                                     surface_, SLOT(changeLook()), this);
   outside_ =
@@ -127,20 +129,19 @@ void TissueDisplay::addSurface() {
                               surface_, SLOT(changeLook()), this);
   outside_alpha_ = bounded(
       new rviz::FloatProperty("Outside opacity", 0.15F,
-                              "Of the wall looked at straight on from outside: 0 shows the inside only, 1 hides it.",
+                              "Opacity of the wall seen head-on from outside: 0 shows the inside only, 1 hides it.",
                               surface_, SLOT(changeLook()), this),
       0, 1);
   wetness_ = bounded(new rviz::FloatProperty("Wetness", 0.4F, "Strength of highlights: 0 is dull, 1 very wet.",
                                              surface_, SLOT(changeLook()), this),
                      0, 1);
-  relief_ =
-      bounded(new rviz::FloatProperty("Relief", 0.0006F,
-                                      "Height of the mucosa's fine relief [m]; drawn by its shading, not in the shape.",
-                                      surface_, SLOT(changeLook()), this),
-              0, 0.01F);
+  relief_ = bounded(new rviz::FloatProperty("Relief", 0.0006F,
+                                            "Height of the fine relief of the mucosa [m]; it is shading, not geometry.",
+                                            surface_, SLOT(changeLook()), this),
+                    0, 0.01F);
   scars_ = new rviz::BoolProperty(
       "Marks and burns", true,
-      "Show what the argon beam did on the inside: pale marks, brown burn scars, black where the "
+      "Show the effects of the argon beam on the inside: pale marks, brown burn scars, black where the "
       "muscularis is at risk.",
       surface_, SLOT(changeLook()), this);
 }
@@ -148,13 +149,12 @@ void TissueDisplay::addSurface() {
 void TissueDisplay::addParts() {
   particles_ = new rviz::BoolProperty("Particles", false, "Draw the simulated particles as balls.", this,
                                       SLOT(changeLook()), this);
-  particle_size_ =
-      bounded(new rviz::FloatProperty("Diameter", 0.003F, "Of the balls [m].", particles_, SLOT(changeLook()), this),
-              0.0001F, 0.1F);
-  bones_ = new rviz::BoolProperty(
-      "Bones", false,
-      "Draw the edges of the simulated mesh, whose particles are the bones of the drawn render_surface.", this,
-      SLOT(changeLook()), this);
+  particle_size_ = bounded(
+      new rviz::FloatProperty("Diameter", 0.003F, "Diameter of the balls [m].", particles_, SLOT(changeLook()), this),
+      0.0001F, 0.1F);
+  simulation_mesh_ = new rviz::BoolProperty(
+      "Simulation mesh", false, "Draw the edges of the simulation mesh, whose particles determine the render surface.",
+      this, SLOT(changeLook()), this);
 }
 
 void TissueDisplay::onInitialize() {
@@ -203,16 +203,16 @@ void TissueDisplay::subscribe() {
     topology_subscriber_ = update_nh_.subscribe(topology_topic_->getTopicStd(), 2, &TissueDisplay::takeTopology, this);
     particles_subscriber_ =
         update_nh_.subscribe(particles_topic_->getTopicStd(), 1, &TissueDisplay::takeParticles, this);
-    sayWaiting();
+    reportWaiting();
   } catch (const ros::Exception& error) {
-    setStatusStd(StatusProperty::Error, "Topic", std::string("This is no name of a topic: ") + error.what());
+    setStatusStd(StatusProperty::Error, "Topic", std::string("Cannot subscribe: ") + error.what() + ".");
   }
 }
 
-void TissueDisplay::sayWaiting() {
+void TissueDisplay::reportWaiting() {
   if (!has_mesh_)
     setStatusStd(StatusProperty::Warn, "Topology",
-                 "No message on " + topology_topic_->getTopicStd() + " yet; is a simulator running?");
+                 "No message on " + topology_topic_->getTopicStd() + " yet; is the simulator running?");
   if (frames_ == 0)
     setStatusStd(StatusProperty::Warn, "Particles", "No message on " + particles_topic_->getTopicStd() + " yet.");
 }
@@ -233,8 +233,8 @@ void TissueDisplay::takeTopology(const vibe_msgs::TissueTopology::ConstPtr& mess
                    " triangles drawn.");
 }
 
-void TissueDisplay::complain(const std::string& about, const std::string& text) {
-  complained_ = true;
+void TissueDisplay::reportError(const std::string& about, const std::string& text) {
+  has_error_ = true;
   setStatusStd(StatusProperty::Error, about, text);
 }
 
@@ -251,33 +251,28 @@ void TissueDisplay::drawLatest() {
   latest_.reset();
   const std::string wrong = readParticles(*message, mesh_, frame_);
   if (!wrong.empty()) {
-    complain("Particles", wrong);
+    reportError("Particles", wrong);
     return;
   }
   if (!place(message->header)) return;
   visual_->setFrame(frame_);
-  if (frames_++ == 0 || complained_) {  // not for every frame: a status costs more than drawing
-    setStatus(StatusProperty::Ok, "Particles", "Drawn as they come.");
+  if (frames_++ == 0 || has_error_) {  // not for every frame: setting a status costs more than drawing
+    setStatus(StatusProperty::Ok, "Particles", "The latest message is drawn.");
     setStatus(StatusProperty::Ok, "Transform", "Known.");
-    complained_ = false;
+    has_error_ = false;
   }
   context_->queueRender();
 }
 
 bool TissueDisplay::place(const std_msgs::Header& header) {
-  Ogre::Vector3 position;
-  Ogre::Quaternion orientation;
-  auto& frames = *context_->getFrameManager();
-  if (!frames.getTransform(header, position, orientation) &&
-      !frames.getTransform(header.frame_id, ros::Time(), position, orientation)) {
-    std::string reason;
-    frames.transformHasProblems(header.frame_id, ros::Time(), reason);
-    complain("Transform",
-             "No transform from '" + header.frame_id + "' to '" + fixed_frame_.toStdString() + "': " + reason);
+  FramePose pose;
+  const std::string wrong = lookUpFrame(*context_, header.frame_id, header.stamp, pose);
+  if (!wrong.empty()) {
+    reportError("Transform", wrong);
     return false;
   }
-  scene_node_->setPosition(position);
-  scene_node_->setOrientation(orientation);
+  scene_node_->setPosition(pose.position);
+  scene_node_->setOrientation(pose.orientation);
   return true;
 }
 
@@ -288,9 +283,10 @@ void TissueDisplay::fixedFrameChanged() {
 void TissueDisplay::changeColouring() {
   const auto colouring = static_cast<Colouring>(colouring_->getOptionInt());
   const bool ranged = hasRange(colouring);
-  const Range range = usualRange(colouring);
+  const Range range = defaultRange(colouring);
   map_->setHidden(!ranged), min_->setHidden(!ranged), max_->setHidden(!ranged);
-  if (ranged) min_->setFloat(range.min), max_->setFloat(range.max);  // a loaded configuration sets its own after
+  if (ranged)
+    min_->setFloat(range.min), max_->setFloat(range.max);  // a loaded configuration sets its own range afterwards
   changeLook();
 }
 
@@ -310,7 +306,7 @@ void TissueDisplay::changeLook() {
   look.scars = scars_->getBool();
   look.particles = particles_->getBool();
   look.particle_size = static_cast<double>(particle_size_->getFloat());
-  look.mesh = bones_->getBool();
+  look.mesh = simulation_mesh_->getBool();
   visual_->setLook(look);
   changeLegend();
   context_->queueRender();

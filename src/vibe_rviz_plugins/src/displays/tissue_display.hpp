@@ -21,8 +21,8 @@ namespace vibe {
 class Legend;
 class TissueVisual;
 
-/// Draws the organ of tissue/topology where tissue/particles says it is. Draws one frame per picture, the latest: a
-/// flood of messages costs no drawing.
+/// Draws the organ of tissue/topology with the positions of tissue/particles. Only the latest message is drawn, at most
+/// once per frame of rviz, so a flood of messages does not slow it down.
 class TissueDisplay : public rviz::Display {
   Q_OBJECT
  public:
@@ -55,20 +55,20 @@ class TissueDisplay : public rviz::Display {
   void takeParticles(const sensor_msgs::PointCloud2::ConstPtr& message);
   void drawLatest();
   bool place(const std_msgs::Header& header);
-  void sayWaiting();
-  void complain(const std::string& about, const std::string& text);
+  void reportWaiting();
+  void reportError(const std::string& about, const std::string& text);
 
   rviz::RosTopicProperty *topology_topic_, *particles_topic_;
   rviz::EnumProperty *colouring_, *map_;
   rviz::FloatProperty *min_, *max_, *outside_alpha_, *wetness_, *relief_, *particle_size_;
-  rviz::BoolProperty *legend_shown_, *surface_, *scars_, *particles_, *bones_;
+  rviz::BoolProperty *legend_shown_, *surface_, *scars_, *particles_, *simulation_mesh_;
   rviz::ColorProperty *inside_, *outside_;
 
   ros::Subscriber topology_subscriber_, particles_subscriber_;
   sensor_msgs::PointCloud2::ConstPtr latest_;  // not drawn yet
   TissueMesh mesh_;
   TissueFrame frame_;
-  bool has_mesh_ = false, complained_ = false;
+  bool has_mesh_ = false, has_error_ = false;
   std::size_t frames_ = 0;
   std::unique_ptr<TissueVisual> visual_;
   std::unique_ptr<Legend> legend_;

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/tube.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
 namespace {
@@ -17,13 +17,13 @@ constexpr double kGravity = 9.81;         // [m/s^2]
 constexpr double kHeartRate = 72 / 60.0;  // [1/s]
 constexpr double kMeanSpeed = 0.5;  // of blood leaving a small artery into gas [m/s]; rises some 13 mm; design choice
 constexpr double kPulse = 0.3;      // part of the speed that pulses
-constexpr double kFilm = 2.5e-3, kPool = 3.5e-3;            // thickest blood lies on a wall, in a hollow [m]
-constexpr double kWidestFilm = 11e-3, kWidestPool = 15e-3;  // beyond that a curved wall hides the rest [m]
-constexpr double kMinDrop = 8e-3, kMaxDrop = 50e-3;         // a jet falls this far below its wound [m]
-constexpr double kFromCeiling = 35e-3;                      // and at least this far from a wall that is overhead [m]
-constexpr double kSteep = 0.5;                              // cosine to gravity from which a wall is ceiling or floor
-constexpr double kThinnestJet = 0.55e-3;                    // [m]
-constexpr double kBrown = 45;                               // age at which stopped blood is half brown [s]
+constexpr double kFilm = 2.5e-3, kPool = 3.5e-3;                  // maximum height of blood on a wall, in a hollow [m]
+constexpr double kMaxFilmRadius = 11e-3, kMaxPoolRadius = 15e-3;  // beyond, a curved wall hides the rest [m]
+constexpr double kMinDrop = 8e-3, kMaxDrop = 50e-3;               // a jet falls this far below its wound [m]
+constexpr double kFromCeiling = 35e-3;  // and at least this far from a wall that is overhead [m]
+constexpr double kSteep = 0.5;          // cosine to gravity from which a wall is ceiling or floor
+constexpr double kMinJet = 0.55e-3;     // [m]
+constexpr double kBrown = 45;           // age at which stopped blood is half brown [s]
 constexpr int kJetPoints = 24;
 
 struct Shade {
@@ -45,7 +45,7 @@ Shade shadeOf(const Wound& wound) {
   return mixed(kDark, kClot, 0.5 + 0.5 * wound.age / (wound.age + kBrown));
 }
 
-/// Between -1 and 1, of a wound's number: an outline of its own.
+/// Pseudo-random value from -1 to 1 for the number of a wound, so that outlines differ.
 double wobble(int number, int which) {
   const double value = std::sin(12.9898 * (number + 1) + 78.233 * (which + 1)) * 43758.5453;
   return 2 * (value - std::floor(value)) - 1;
@@ -83,7 +83,7 @@ double areaOf(const Outline& outline) {
 }
 
 double puddleHeight(const Puddle& puddle) {
-  return std::min(puddle.thickest, std::cbrt(puddle.volume * 3 / (2 * kPi)));
+  return std::min(puddle.max_height, std::cbrt(puddle.volume * 3 / (2 * kPi)));
 }
 
 void addPuddleVertex(const Puddle& puddle, const Vector3d& out, double reach, double part, double height,
@@ -98,7 +98,7 @@ void addPuddleVertex(const Puddle& puddle, const Vector3d& out, double reach, do
   shape.colours.push_back(std::abs(part - 1) > 0.01 ? puddle.middle : puddle.rim);
 }
 
-/// How far a wound's blood falls: to the lowest place of the wall that is known.
+/// How far the blood of a wound falls: to the lowest known position of the wall.
 double dropBelow(const Wound& wound, const SutureScene& scene, const Vector3d& down) {
   double lowest = 0;
   for (const SutureSet& set : scene.sets)
@@ -115,8 +115,8 @@ void appendFilm(const Wound& wound, const BloodStyle& style, ColouredShape& shap
   film.up = wound.inward.norm() > 0.5 ? wound.inward : Vector3d(-style.down);
   film.creep = style.down - style.down.dot(film.up) * film.up;
   film.volume = wound.amount;
-  film.thickest = kFilm;
-  film.widest = kWidestFilm;
+  film.max_height = kFilm;
+  film.max_radius = kMaxFilmRadius;
   film.number = wound.number;
   film.middle = packedOf(shade);
   film.rim = packedOf(shade, 0.7);
@@ -130,26 +130,26 @@ void appendPool(const Wound& wound, const Vector3d& landing, const BloodStyle& s
   pool.up = -style.down;
   pool.creep = Vector3d::Zero();
   pool.volume = wound.amount;
-  pool.thickest = kPool;
-  pool.widest = kWidestPool;
+  pool.max_height = kPool;
+  pool.max_radius = kMaxPoolRadius;
   pool.number = wound.number + 100;
   pool.middle = packedOf(wound.rate > 0 ? shade : shadeOf(wound));
   pool.rim = packedOf(wound.rate > 0 ? shade : shadeOf(wound), 0.75);
   appendPuddle(pool, shape);
 }
 
-/// The jet is whole at first and breaks up into drops.
+/// The jet is continuous at first and breaks up into drops.
 void appendJet(const Wound& wound, const std::vector<Vector3d>& line, const BloodStyle& style, ColouredShape& shape) {
   constexpr std::size_t kWhole = 15;
   const double steady = std::sqrt(wound.rate / (kPi * kMeanSpeed));
-  const double radius = std::max(kThinnestJet, steady) * std::sqrt(style.emphasis);
+  const double radius = std::max(kMinJet, steady) * std::sqrt(style.emphasis);
   std::vector<TubePoint> jet;
   for (std::size_t k = 0; k < kWhole; ++k) {
     const double swell = 1 + 0.35 * std::sin(2 * kPi * (0.19 * static_cast<double>(k) - style.time * 5));
     jet.push_back({line[k], radius * swell * (1 - 0.3 * static_cast<double>(k) / kWhole), packedOf(kBright)});
   }
   appendTube(jet, 8, shape);
-  // drops differ in size and stray from the way
+  // drops differ in size and deviate from the path
   for (std::size_t k = kWhole; k < line.size(); ++k) {
     const auto number = static_cast<int>(3 * k);
     const Vector3d stray(wobble(wound.number, number), wobble(wound.number, number + 1),
@@ -169,7 +169,7 @@ void appendWound(const Wound& wound, const SutureScene& scene, const BloodStyle&
   if (wound.rate > 0) appendJet(wound, jetLine(wound, drop, style), style, shape);
 }
 
-/// Of blood that leaves the wall with the mean speed, a little aside so that it does not fall back on its own way.
+/// Path of blood with the mean initial speed, slightly oblique so that it does not fall back onto itself.
 struct Flight {
   Vector3d leave;   // unit
   double duration;  // until it lands [s]
@@ -212,7 +212,7 @@ Vector3d jetLanding(const Wound& wound, double drop, const BloodStyle& style) {
 double puddleRadius(const Puddle& puddle) {
   const double height = puddleHeight(puddle);
   if (!(height > 0)) return 0;
-  return std::min(puddle.widest, std::sqrt(1.5 * puddle.volume / (height * areaOf(outlineOf(puddle)))));
+  return std::min(puddle.max_radius, std::sqrt(1.5 * puddle.volume / (height * areaOf(outlineOf(puddle)))));
 }
 
 void appendPuddle(const Puddle& puddle, ColouredShape& shape) {

@@ -1,4 +1,4 @@
-#include "geometry/colour_map.hpp"
+#include "vibe_rviz_plugins/geometry/colour_map.hpp"
 
 namespace vibe {
 namespace {

@@ -5,9 +5,9 @@
 namespace vibe {
 namespace {
 
-constexpr std::size_t kFewerThan = 4;  // a part of the particles above one in so many is not worth telling apart
+constexpr std::size_t kMaxMovedShare = 4;  // if more than one particle in this many has moved, all are updated
 
-// Adds an item to a list once; the marks are taken away by who empties the list.
+// Adds an item to a list once; whoever clears the list also clears the marks.
 void addOnce(std::uint32_t item, std::vector<std::uint8_t>& marks, std::vector<std::uint32_t>& list) {
   if (marks[item] != 0) return;
   marks[item] = 1;
@@ -36,7 +36,7 @@ VertexSpan DeformableSurface::update(const std::vector<float>& positions) {
   const bool first = positions_.empty();
   if (first) positions_.assign(positions.size(), 0);
   findMoved(positions);
-  if (first || moved_.size() * kFewerThan >= places_.size()) {
+  if (first || moved_.size() * kMaxMovedShare >= places_.size()) {
     moveAll();
     return {0, vertices_.size()};
   }

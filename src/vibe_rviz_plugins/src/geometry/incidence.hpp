@@ -4,7 +4,7 @@
 
 namespace vibe {
 
-/// Which items belong to each of a number of groups, one group after the other: items[first[g]] to items[first[g + 1]].
+/// The items of each group, group by group: items[first[g]] to items[first[g + 1]].
 struct Incidence {
   std::vector<std::uint32_t> first, items;
 
@@ -12,12 +12,12 @@ struct Incidence {
   const std::uint32_t* end(std::size_t group) const { return items.data() + first[group + 1]; }
 };
 
-/// The lists of `groups_of_item` turned around: item i is in the groups groups_of_item[k], k from offset[i] to
+/// Inverts lists of groups per item: item i is in the groups groups_of_item[k], k from offset[i] to
 /// offset[i + 1]. Items are in ascending order in each group.
 /// @param groups  their number; all entries of groups_of_item are below it
 Incidence turnedAround(const std::vector<std::uint32_t>& offset, const std::vector<std::uint32_t>& groups_of_item,
                        std::size_t groups);
-/// The same for items that are in `each` groups, as the triangles of a mesh have three corners.
+/// The same for items that are in `each` groups, such as triangles with three corners.
 Incidence turnedAround(const std::vector<std::uint32_t>& groups_of_item, std::size_t each, std::size_t groups);
 
 }  // namespace vibe

@@ -7,17 +7,17 @@
 namespace vibe {
 namespace {
 
-constexpr int kSmallestPicture = 16, kLargestPicture = 4096;  // [px]
+constexpr int kMinPicture = 16, kMaxPicture = 4096;  // [px]
 constexpr int kBorder = 2;  // pixels of the source beyond the circle, so that its rim has neighbours to blend with
 
 }  // namespace
 
 std::string problemOf(const RoundCamera& camera) {
   // written so that NaN is a problem too
-  if (!(camera.field_of_view >= kLeastFieldOfView && camera.field_of_view <= kMostFieldOfView))
+  if (!(camera.field_of_view >= kMinFieldOfView && camera.field_of_view <= kMaxFieldOfView))
     return "the field of view must be 10 to 170 degrees";
   for (const int size : {camera.width, camera.height})
-    if (size < kSmallestPicture || size > kLargestPicture) return "width and height must be 16 to 4096 pixels";
+    if (size < kMinPicture || size > kMaxPicture) return "width and height must be 16 to 4096 pixels";
   return "";
 }
 

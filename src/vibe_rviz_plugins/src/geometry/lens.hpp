@@ -6,17 +6,18 @@
 
 namespace vibe {
 
-/// How a lens turns the angle theta between a ray and the optical axis into a distance from the middle of the picture.
+/// Projection of a lens: how the angle theta between a ray and the optical axis gives the distance from the image
+/// centre.
 enum class LensKind {
   Equidistant,  ///< radius = f theta, as endoscopes are built
-  Rectilinear,  ///< radius = f tan theta: straight things stay straight, as in a pinhole camera
+  Rectilinear,  ///< radius = f tan theta: straight lines stay straight, as in a pinhole camera
 };
 
-constexpr double kLeastFieldOfView = 0.174533;  ///< 10 degrees [rad]
-constexpr double kMostFieldOfView = 2.96706;    ///< 170 degrees; a plane picture of 180 degrees has no end [rad]
+constexpr double kMinFieldOfView = 0.174533;  ///< 10 degrees [rad]
+constexpr double kMaxFieldOfView = 2.96706;   ///< 170 degrees; a plane image of 180 degrees would be infinite [rad]
 
-/// A camera whose picture is a circle in the middle of a rectangle. Frame: z forward, x right, y down. Pixels: the
-/// middle of the first one is (0, 0), x right, y down.
+/// A camera whose image is a circle in the centre of a rectangle. Frame: z forward, x right, y down. Pixels: the centre
+/// of the first one is (0, 0), x right, y down.
 struct RoundCamera {
   LensKind lens = LensKind::Equidistant;
   double field_of_view = 2.443461;  ///< across the circle [rad]
@@ -26,16 +27,16 @@ struct RoundCamera {
   Eigen::Vector2d middle() const { return {0.5 * (width - 1), 0.5 * (height - 1)}; }
 };
 
-/// What keeps this from being a camera, as a sentence; empty: nothing.
+/// Why this camera is impossible, as a sentence without capital and period; empty: it is possible.
 std::string problemOf(const RoundCamera& camera);
 
-/// Focal length with which the field of view just fills the circle [px].
+/// Focal length with which the field of view fills the circle [px].
 double focalLength(const RoundCamera& camera);
 
-/// Distance from the middle [px] of a ray at this angle from the axis [rad]; below a right angle for a rectilinear
+/// Distance from the centre [px] of a ray at this angle from the axis [rad]; below a right angle for a rectilinear
 /// lens.
 double radiusAt(const RoundCamera& camera, double angle);
-/// The inverse: angle from the axis [rad] at this distance from the middle [px].
+/// The inverse: angle from the axis [rad] at this distance from the centre [px].
 double angleAt(const RoundCamera& camera, double radius);
 
 /// Pixel of a point in the camera's frame; not a number for the origin, and with a rectilinear lens behind the camera.
@@ -43,18 +44,18 @@ Eigen::Vector2d pixelOf(const RoundCamera& camera, const Eigen::Vector3d& point)
 /// Unit vector of the ray through a pixel, which may lie outside of the circle.
 Eigen::Vector3d rayOf(const RoundCamera& camera, const Eigen::Vector2d& pixel);
 
-/// The round picture is made from a plane square one, which is what graphics cards draw.
+/// The circular image is computed from a plane square image, which is what graphics cards draw.
 struct SquareSource {
   double half_width = 0;  ///< tangent of the angle between the axis and the middle of an edge [1]
   int size = 0;           ///< of an edge [px]
 };
 
-/// How large that has to be.
-/// @param sharpness  pixels of the source for one of the picture, in the middle; 1: nothing is lost
-/// @param most       edge that must not be exceeded, sharpness gives way [px]
+/// The required size of the square image.
+/// @param sharpness  pixels of the source per pixel of the image at the centre; 1: no detail is lost
+/// @param max        maximum edge, at the expense of sharpness [px]
 SquareSource sourceFor(const RoundCamera& camera, double sharpness, int max);
 
-/// The numbers of a sensor_msgs/CameraInfo.
+/// Parameters of a sensor_msgs/CameraInfo.
 struct CameraNumbers {
   std::string distortion_model;
   std::vector<double> d;
@@ -62,7 +63,7 @@ struct CameraNumbers {
   std::array<double, 12> p;
 };
 
-/// @param baseline  how far to the right of the first camera of a pair this one is [m]; 0: it is the first, or the only
+/// @param baseline  distance to the right of the first camera of a stereo pair [m]; 0: first or only camera
 CameraNumbers numbersOf(const RoundCamera& camera, double baseline);
 
 }  // namespace vibe

@@ -9,8 +9,8 @@ namespace vibe {
 
 namespace {
 
-constexpr double kRim = 1e-9;          // of a triangle, so that a ray does not slip between two [1]
-constexpr double kMinDistance = 1e-6;  // what lies at the eye itself is not seen [m]
+constexpr double kRim = 1e-9;  // tolerance of triangle edges, so that a ray does not pass between two triangles [1]
+constexpr double kMinDistance = 1e-6;  // hits closer to the origin are ignored [m]
 constexpr double kMinSlope = 1e-9;     // between a ray and a plane that meet [1]
 
 using Corners = std::array<Eigen::Vector3d, 3>;

@@ -7,7 +7,7 @@
 
 namespace vibe {
 
-/// A half line from a point on.
+/// A half-line.
 struct Ray {
   Eigen::Vector3d origin;     ///< [m]
   Eigen::Vector3d direction;  ///< unit
@@ -16,19 +16,19 @@ struct Ray {
 /// Where a ray meets a surface.
 struct RayHit {
   std::size_t triangle = 0;    ///< number of the triangle
-  std::uint32_t particle = 0;  ///< its corner that is nearest to the place
+  std::uint32_t particle = 0;  ///< nearest corner of this triangle
   double distance = 0;         ///< from the ray's origin [m]
   Eigen::Vector3d place;       ///< [m]
 };
 
-/// The first triangle that a ray meets, from whichever side; nothing if it meets none. Triangles behind the origin,
-/// without area, or with corners that are not there or not finite are passed over.
+/// The first triangle that a ray hits, from either side; empty if it hits none. Triangles behind the origin, without
+/// area, or with corners that do not exist or are not finite are skipped.
 /// @param positions  x y z per corner [m]
 /// @param triangles  three corner numbers each
 std::optional<RayHit> firstHit(const Ray& ray, const std::vector<float>& positions,
                                const std::vector<std::uint32_t>& triangles);
 
-/// Where a ray meets the plane through `place` with this normal; nothing if it runs along it or away from it.
+/// Where a ray meets the plane through `place` with this normal; empty if it is parallel or points away.
 std::optional<Eigen::Vector3d> meetPlane(const Ray& ray, const Eigen::Vector3d& place, const Eigen::Vector3d& normal);
 
 }  // namespace vibe

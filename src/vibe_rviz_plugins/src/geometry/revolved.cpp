@@ -1,10 +1,10 @@
-#include "geometry/revolved.hpp"
+#include "vibe_rviz_plugins/geometry/revolved.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/tube.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
 namespace {

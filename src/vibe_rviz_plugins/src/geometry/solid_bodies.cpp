@@ -1,8 +1,8 @@
-#include "geometry/solid_bodies.hpp"
+#include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
 #include <cmath>
 
-#include "geometry/revolved.hpp"
+#include "vibe_rviz_plugins/geometry/revolved.hpp"
 
 namespace vibe {
 namespace {
@@ -40,7 +40,7 @@ void appendCylinder(const Eigen::Isometry3d& pose, double radius, double length,
                     ColouredShape& shape) {
   const double end = 0.5 * length;
   const Eigen::Vector3d axis = pose.linear().col(2);
-  // three pieces, so that the edges between them stay sharp
+  // three separate parts keep the edges sharp
   for (const std::vector<ProfilePoint>& profile : {std::vector<ProfilePoint>{{end, 0}, {end, radius}},
                                                    {{end, radius}, {-end, radius}},
                                                    {{-end, radius}, {-end, 0}}})

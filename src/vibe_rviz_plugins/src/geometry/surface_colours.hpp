@@ -1,24 +1,24 @@
 #pragma once
 #include <vector>
 
-#include "geometry/colour_map.hpp"
 #include "geometry/incidence.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "geometry/vertex_span.hpp"
+#include "vibe_rviz_plugins/geometry/colour_map.hpp"
 
 namespace vibe {
 
-/// What the colour of tissue says.
+/// What the colour of tissue shows.
 enum class Colouring { Tissue, Region, Wall, Strain, Heat, Thickness };
 
-/// Regions and walls, in the order of their numbers in vibe_msgs/TissueTopology: colours that people with any kind of
-/// colour vision tell apart (Okabe & Ito 2008).
+/// Regions and walls, in the order of their numbers in vibe_msgs/TissueTopology: colours that are distinct with any
+/// colour vision deficiency (Okabe & Ito 2008).
 const std::vector<PackedColour>& regionColours();
 const std::vector<PackedColour>& wallColours();
 
-/// Colours of the vertices of an organ. Red, green and blue say what the Colouring asks for, white for tissue as it is;
-/// alpha says how far heat has gone, as media/tissue.frag draws it: 255 untouched, 170 a mark, 85 a burn scar, 0 burnt
-/// deep. Only vertices of particles whose colour has changed are worked on.
+/// Colours of the vertices of an organ. Red, green and blue depend on the Colouring and are white for natural tissue;
+/// alpha encodes the effect of heat as media/tissue.frag draws it: 255 none, 170 mark, 85 burn scar, 0 deep burn. Only
+/// vertices of particles whose colour has changed are updated.
 class SurfaceColours {
  public:
   explicit SurfaceColours(const TissueMesh& mesh);
@@ -28,7 +28,7 @@ class SurfaceColours {
   void choose(Colouring colouring, const ColourMap& map);
   Colouring colouring() const { return colouring_; }
 
-  /// @return  the vertices that are no longer what they were
+  /// @return  the vertices that have changed
   VertexSpan update(const TissueFrame& frame);
   const std::vector<PackedColour>& colours() const { return colours_; }
 
@@ -45,7 +45,7 @@ class SurfaceColours {
   std::vector<float> render_weights_;
   Incidence vertices_of_particle_;  // empty without a render surface
 
-  std::vector<PackedColour> of_particle_, colours_;  // as drawn last
+  std::vector<PackedColour> of_particle_, colours_;  // of the last frame
   std::vector<std::uint32_t> touched_;
   std::vector<std::uint8_t> mark_;
 };

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-#include "geometry/tube.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
 namespace {

@@ -5,20 +5,20 @@
 
 namespace vibe {
 
-// Directions in which the parts of a suture lie, from the places of its bites and thread alone. All are unit vectors,
-// turn with the suture, and are defined for every set, also when all its bites lie in one place.
+// Orientation of the parts of a suture from the positions of its bites and thread. All are unit vectors, rotate with
+// the suture, and are defined for every set, even if all bites coincide.
 
-/// Of the plane nearest to the bites; where they lie on a line, at right angles to it.
+/// Normal of the plane that fits the bites best; perpendicular to the line if they are collinear.
 Eigen::Vector3d planeNormal(const SutureSet& set);
 
-/// Of a ring around a bite: out of the wall if its side is known, so that the ring lies flat on it; else that of the
-/// thread, the mean of the ways there and on.
+/// Axis of the ring at a bite: normal to the wall if its side is known, so that the ring lies flat on it; otherwise the
+/// mean direction of the thread before and after.
 Eigen::Vector3d biteAxis(const SutureSet& set, std::size_t bite);
 
-/// Along the T-tag: it lies across the thread that holds it, flat on the wall.
+/// Axis of the T-tag, which lies flat on the wall across the thread.
 Eigen::Vector3d tagAxis(const SutureSet& set);
 
-/// Along the cinch: the thread runs through it.
+/// Axis of the cinch, along the thread.
 Eigen::Vector3d cinchAxis(const SutureSet& set);
 
 }  // namespace vibe

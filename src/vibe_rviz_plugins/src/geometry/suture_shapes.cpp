@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "geometry/revolved.hpp"
 #include "geometry/suture_frame.hpp"
-#include "geometry/tube.hpp"
+#include "vibe_rviz_plugins/geometry/revolved.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
 namespace {
@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr int kThreadSides = 8;
 constexpr int kSymbolSides = 16;
 
-// Sizes of what a suturing device leaves behind; design choices near those of devices on the market.
+// Sizes of the implants of a suturing device; design choices close to commercial devices.
 constexpr double kTagLength = 6.5e-3, kTagRadius = 0.45e-3;
 constexpr double kCinchLength = 6e-3, kCinchRadius = 1.3e-3;
 constexpr double kBiteRadius = 1.3e-3, kBiteThickness = 0.28e-3;
@@ -50,7 +50,7 @@ double lengthOf(const std::vector<Vector3d>& line) {
   return length;
 }
 
-/// Cuts a line into an odd number of bands of about the wanted length, each with its own first and last point.
+/// Cuts a line into an odd number of bands of about the requested length, each with its own first and last point.
 std::vector<std::vector<Vector3d>> bandsOf(const std::vector<Vector3d>& line, double wanted) {
   const double whole = lengthOf(line);
   const int bands = 2 * static_cast<int>(std::min(100.0, whole / wanted / 2)) + 1;
@@ -85,8 +85,8 @@ bool isHeld(const SutureSet& set, std::size_t bite) {
   return (set.has_cinch && bite == 0) || (set.has_t_tag && bite + 1 == set.bites.size());
 }
 
-/// A full bite is a ring around the thread, a partial one a ball: seen from any side they are not confused. Where a
-/// cinch or T-tag stands on the bite a wider ring of its colour shows around it.
+/// A full-thickness bite is a ring around the thread, a partial one a ball, so that they differ from all sides. At a
+/// cinch or T-tag, the ring is wider and surrounds it.
 void appendBite(const SutureSet& set, std::size_t number, bool held, double size, ColouredShape& shape) {
   const SutureBite& bite = set.bites[number];
   const PackedColour colour = bite.full_thickness ? kFullBite : kPartialBite;

@@ -2,9 +2,9 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "geometry/colour_map.hpp"
-#include "geometry/coloured_shape.hpp"
 #include "geometry/suture_scene.hpp"
+#include "vibe_rviz_plugins/geometry/colour_map.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 
@@ -13,7 +13,7 @@ enum class ThreadColour { Tension, One, PerSuture };
 /// How sutures are drawn.
 struct SutureStyle {
   double thread_diameter = 0.32e-3;  ///< of 2-0 polypropylene (USP <861>: 0.300 to 0.339 mm) [m]
-  double emphasis = 1;               ///< thread and symbols are this much thicker than they are
+  double emphasis = 1;               ///< factor for the thickness of thread and symbols
   ThreadColour colouring = ThreadColour::Tension;
   ColourMap tension_map;  ///< [N]
   PackedColour slack_colour = packed(0.93, 0.95, 1.0);
@@ -23,20 +23,20 @@ struct SutureStyle {
   double threadRadius() const { return 0.5 * thread_diameter * emphasis; }
 };
 
-/// A colour of its own for each of twelve sutures that follow each other.
+/// Colour of a suture; twelve consecutive sutures have different colours.
 PackedColour sutureColour(std::size_t number);
 
-/// Threads, bites, T-tags, cinches and corners, appended. Slack thread is banded with its colour and a darker one, so
-/// that it is told from tense thread also without colours.
+/// Appends threads, bites, T-tags, cinches and corners. Slack thread has bands of its colour and a darker one, so that
+/// it differs from taut thread without relying on colour.
 void appendSutures(const SutureScene& scene, const SutureStyle& style, ColouredShape& shape);
 
-/// The index groups: a flat broken band along each link, appended.
+/// Appends the index groups: a flat dashed band along each link.
 void appendLinks(const SutureScene& scene, const SutureStyle& style, ColouredShape& shape);
 
-/// What is written at a set: its number from 1, the technique's letter or name with its margin, and whatever is wrong.
+/// Label of a set: its number from 1, the name of the technique with its margin, and faults.
 std::string labelOf(const SutureSet& set, std::size_t number);
 
-/// Where it is written: the middle of the bites, moved into the lumen by `distance` [m].
+/// Position of the label: the centroid of the bites, moved into the lumen by `distance` [m].
 Eigen::Vector3d labelPlace(const SutureSet& set, double distance);
 
 }  // namespace vibe

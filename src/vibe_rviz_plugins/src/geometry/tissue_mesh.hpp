@@ -5,10 +5,10 @@
 
 namespace vibe {
 
-/// What does not change of an organ while it moves, as tissue/topology tells it. "Vertex" is of the drawn surface,
-/// "particle" of the simulated one; without a render surface they are the same.
+/// Constant data of an organ, from tissue/topology. A "vertex" belongs to the drawn surface, a "particle" to the
+/// simulated one; without a render surface they are the same.
 struct TissueMesh {
-  std::uint32_t revision = 0;  ///< frames of another revision do not belong to it
+  std::uint32_t revision = 0;  ///< frames must have the same revision
   std::string name;            ///< of the scene
   std::string frame_id;        ///< of the positions at rest
   std::size_t particle_count = 0, vertex_count = 0;
@@ -32,7 +32,7 @@ struct TissueMesh {
 struct TissueFrame {
   std::uint32_t revision = 0;
   std::vector<float> positions;  ///< x y z per particle [m]
-  std::vector<float> strain;     ///< mean in-plane stretch minus 1 [1]; empty if not told
+  std::vector<float> strain;     ///< mean in-plane stretch minus 1 [1]; empty if not given
   std::vector<std::uint8_t>
       grade;                ///< 0 none, 1 mark, 2 burn scar, 3 muscularis at risk; empty in scenes without marks
   std::vector<float> dose;  ///< largest heat so far, as energy of a whole spot [J]; empty like grade

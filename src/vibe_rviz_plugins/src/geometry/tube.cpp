@@ -1,4 +1,4 @@
-#include "geometry/tube.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,8 +10,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kCoincident = 1e-3;           // of the radius
-constexpr double kSharpTurn = 20 * kPi / 180;  // from here on a joint is swept instead of mitred: a mitre sticks out
+constexpr double kCoincident = 1e-3;  // of the radius
+constexpr double kSharpTurn =
+    20 * kPi / 180;  // sharper joints are swept instead of mitred, because a mitre would stick out
 constexpr double kSweepStep = 23 * kPi / 180;  // of a swept joint, and of a round end
 constexpr double kReversal = 1e-6;             // sine below which a turn has no plane
 

@@ -4,7 +4,7 @@
 
 namespace vibe {
 
-/// Vertices from `first` up to, without, `last`: what of a buffer is to be sent again.
+/// Vertices from `first` up to but excluding `last`: the part of a buffer that must be sent again.
 struct VertexSpan {
   std::size_t first = 0, last = 0;
 

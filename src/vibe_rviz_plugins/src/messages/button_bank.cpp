@@ -3,8 +3,8 @@
 namespace vibe {
 namespace {
 
-constexpr double kShortestPress = 0.1;  // design choice: several steps at 60 Hz [s]
-constexpr double kStepsPressed = 2;     // one may be under way when the message comes
+constexpr double kMinPress = 0.1;    // design choice: several steps at 60 Hz [s]
+constexpr double kStepsPressed = 2;  // one may be in progress when the message arrives
 
 bool isCommand(int button) {
   return button >= 0 && button < kCommandCount;
@@ -13,7 +13,7 @@ bool isCommand(int button) {
 bool wasSeen(const Moment& pressed, const Moment& now) {
   if (now.paused) return now.step != pressed.step;
   const bool set_back = now.stamp < pressed.stamp;
-  return now.wall - pressed.wall >= kShortestPress &&
+  return now.wall - pressed.wall >= kMinPress &&
          (set_back || now.stamp - pressed.stamp >= kStepsPressed * now.step_period);
 }
 
@@ -21,14 +21,17 @@ bool wasSeen(const Moment& pressed, const Moment& now) {
 
 const std::array<Command, kCommandCount>& commands() {
   static const std::array<Command, kCommandCount> all = {{
-      {"APC pedal", "Heats the wall while it is held, with the probe 0 to 5 mm from it: marks, then burns.", false},
-      {"Helix grab", "Press to take hold of the tissue at the helix, press again to let it go.", true},
+      {"APC pedal", "Heats the wall while held, with the probe 0 to 5 mm away: first marks, then burns.", false},
+      {"Helix grab", "Press to grab the tissue at the helix; press again to release it.", true},
       {"Needle",
-       "Gives the needle to the exchange after the arm has closed (a bite), or takes it back for the next one.", false},
-      {"T-tag", "Drops the needle as the thread's anchor after the last bite of a set; no more bites in it.", false},
-      {"Cinch", "Hold to draw the thread in; letting go crimps the cinch and cuts the thread: the set is permanent.",
+       "Passes the needle to the exchange after the arm has closed (a bite), or takes it back for the next one.",
        false},
-      {"Insufflate", "Press to let gas flow in up to the set point, press again to stop.", true},
+      {"T-tag",
+       "Drops the needle as the anchor of the thread after the last bite of a set; the set then takes no more bites.",
+       false},
+      {"Cinch", "Hold to draw the thread in; releasing crimps the cinch and cuts the thread, and the set is permanent.",
+       false},
+      {"Insufflate", "Press to insufflate up to the set point; press again to stop.", true},
   }};
   return all;
 }
@@ -55,7 +58,7 @@ bool ButtonBank::settle(const Moment& now) {
   bool changed = false;
   for (std::size_t i = 0; i < down_.size(); ++i) {
     if (commands()[i].toggles || down_[i] == 0) continue;
-    // what was pressed in a pause begins to count when the pause is over
+    // a button pressed in a pause counts from the end of the pause
     if (now.paused && now.step == pressed_[i].step) pressed_[i] = now;
     if (!let_go_[i] || !wasSeen(pressed_[i], now)) continue;
     down_[i] = 0;

@@ -6,41 +6,41 @@
 
 namespace vibe {
 
-/// A command of the trainee's: a button of the topic scope/buttons.
+/// A command of the trainee: a button of the topic scope/buttons.
 struct Command {
   std::string label, help;
-  bool toggles;  ///< stays down until it is pressed again; else it is down only while it is held
+  bool toggles;  ///< stays down until it is pressed again; otherwise it is down only while held
 };
 constexpr int kCommandCount = 6;
 
 /// In the order of the topic: APC pedal, helix grab, needle, T-tag, cinch, insufflate.
 const std::array<Command, kCommandCount>& commands();
 
-/// When something is pressed, on the clocks that matter.
+/// The time at which a button is pressed, on all clocks in use.
 struct Moment {
   double wall = 0;         ///< steady clock [s]
   double stamp = 0;        ///< of messages, simulated or wall time [s]
   double step_period = 0;  ///< of the simulator [s]
-  std::uint64_t step = 0;  ///< the simulator's, as far as known
+  std::uint64_t step = 0;  ///< of the simulator, as far as known
   bool paused = false;
 };
 
-/// Which buttons are down. A click may be shorter than a step of the simulator, or fall into a pause; it would be lost.
-/// A button that was let go therefore stays down until the simulator must have seen it.
+/// Which buttons are down. A click that is shorter than a step of the simulator, or that falls into a pause, would be
+/// lost. A released button therefore stays down until the simulator must have seen it.
 class ButtonBank {
  public:
-  /// A button of those that toggle changes sides, another goes down.
+  /// A toggle button changes its state, any other goes down.
   void press(int button, const Moment& now);
-  /// Of those that toggle nothing happens; another comes up when settle() finds that it was down for long enough.
+  /// Has no effect on toggle buttons; any other comes up when settle() finds that it was down for long enough.
   void release(int button);
   /// True if a button came up.
   bool settle(const Moment& now);
-  /// Takes over the state of the buttons that toggle from somebody else's message; any other size is ignored.
+  /// Takes over the state of the toggle buttons from the message of another publisher; a wrong size is ignored.
   void adopt(const std::vector<std::int32_t>& buttons);
-  /// Everything that is not a toggle comes up at once.
+  /// All buttons that are not toggles come up at once.
   void liftHeld();
 
-  /// 1: down. What a message has to say.
+  /// 1: down, as in the message.
   const std::array<std::int32_t, kCommandCount>& down() const { return down_; }
 
  private:

@@ -25,7 +25,7 @@ std::string checkLayout(const sensor_msgs::PointCloud2& cloud) {
   const std::size_t row = std::size_t{cloud.width} * cloud.point_step;
   if (cloud.height > 1 && cloud.row_step != row) return "The cloud has gaps between its rows, which is not supported.";
   if (cloud.data.size() < row * cloud.height)
-    return "The cloud is cut short: it has " + std::to_string(cloud.data.size()) + " bytes and tells of " +
+    return "The cloud is cut short: it has " + std::to_string(cloud.data.size()) + " bytes instead of " +
            std::to_string(row * cloud.height) + ".";
   return {};
 }

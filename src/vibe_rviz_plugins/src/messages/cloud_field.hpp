@@ -6,7 +6,7 @@
 
 namespace vibe {
 
-/// One field of a point cloud, found by name: the value of point i is at(i). Valid as long as the message is.
+/// One field of a point cloud: at(i) is the value of point i. Valid as long as the message.
 class CloudField {
  public:
   CloudField() = default;
@@ -25,11 +25,12 @@ class CloudField {
   std::size_t stride_ = 0;
 };
 
-/// Empty if the cloud's sizes agree with its data and its byte order is this machine's, else what is wrong.
+/// Checks sizes and byte order of a cloud.
+/// @return empty; otherwise one sentence that says what is wrong
 std::string checkLayout(const sensor_msgs::PointCloud2& cloud);
 
-/// Finds a field of this type (sensor_msgs/PointField). Empty if it is there, or is not and need not be; else what is
-/// wrong. The layout has been checked.
+/// Finds a field of this type (sensor_msgs/PointField) in a cloud whose layout has been checked.
+/// @return empty, also if an optional field is absent; otherwise one sentence that says what is wrong
 std::string findField(const sensor_msgs::PointCloud2& cloud, const std::string& name, std::uint8_t type, bool required,
                       CloudField& field);
 

@@ -23,7 +23,7 @@ constexpr std::array<Kind, 32> kKinds = {{
     {"Pressure reached", Severity::Note},
     {"Warning", Severity::Warning},
     {"Recovery", Severity::Warning},
-    {"Refused", Severity::Warning},
+    {"Rejected", Severity::Warning},
     {"Mark", Severity::Note},
     {"Burn", Severity::Warning},
     {"Deep burn", Severity::Harm},
@@ -48,7 +48,7 @@ constexpr std::array<Kind, 32> kKinds = {{
     {"Arm closed", Severity::Note},
 }};
 static_assert(Event::ARM_CLOSED == kKinds.size() - 1);
-static_assert(Event::REFUSED == 9 && Event::BITE == 14 && Event::BLEEDING_OVERDUE == 21 && Event::TEAR_OUT == 27);
+static_assert(Event::REJECTED == 9 && Event::BITE == 14 && Event::BLEEDING_OVERDUE == 21 && Event::TEAR_OUT == 27);
 
 }  // namespace
 
@@ -78,7 +78,7 @@ bool isListed(const vibe_msgs::ProcedureEvent& event) {
 
 std::string eventText(const vibe_msgs::ProcedureEvent& event) {
   if (event.text.empty()) return std::string(event.kind < kKinds.size() ? kKinds[event.kind].title : "Event") + ".";
-  return event.kind == Event::REFUSED ? "Refused: " + event.text : event.text;
+  return event.kind == Event::REJECTED ? "Rejected: " + event.text : event.text;
 }
 
 }  // namespace vibe

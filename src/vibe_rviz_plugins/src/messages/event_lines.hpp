@@ -18,7 +18,7 @@ std::string severityName(Severity severity);
 /// does now is told elsewhere.
 bool isListed(const vibe_msgs::ProcedureEvent& event);
 
-/// Its sentence, after "Refused: " for a command that could not act; of an event without a sentence the title.
+/// Its sentence, with "Rejected: " before it for a command that could not act. The title if there is no sentence.
 std::string eventText(const vibe_msgs::ProcedureEvent& event);
 
 }  // namespace vibe

@@ -9,7 +9,7 @@ bool ImageDue::isDue(const ros::Time& stamp) {
   const bool again = !any_ || stamp < last_;
   last_ = stamp;
   if (!again && stamp < next_ - ros::Duration(kSlack * period_)) return false;
-  // from when it was due, so that the mean rate is right also where states do not come at a multiple of it
+  // counted from the due time, so that the mean rate is right even if the rate of the states is not a multiple of it
   const ros::Duration period(period_);
   next_ = again || stamp > next_ + period ? stamp + period : next_ + period;
   any_ = true;

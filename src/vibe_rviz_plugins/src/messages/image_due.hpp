@@ -3,14 +3,14 @@
 
 namespace vibe {
 
-/// Says for which of the states that come an image is due, so that images come at a rate in the time of their stamps.
+/// Decides for which of the states an image is drawn, so that images have a given rate in the time of their stamps.
 class ImageDue {
  public:
   /// @param rate  images per second [Hz]; 0: every state
   explicit ImageDue(double rate) : period_(rate > 0 ? 1 / rate : 0) {}
 
-  /// Whether the state with this stamp is to be drawn. A stamp before the last one means that time was set back: the
-  /// count begins again.
+  /// Whether the state with this stamp is drawn. A stamp before the last one means that time was set back; counting
+  /// then starts again.
   bool isDue(const ros::Time& stamp);
 
  private:

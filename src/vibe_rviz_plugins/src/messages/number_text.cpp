@@ -7,7 +7,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kLongestPlain = 1e9;  // beyond that digits say nothing any more
+constexpr double kMaxPlain = 1e9;  // larger numbers are written with an exponent
 
 std::string twoDigits(long value) {
   return (value < 10 ? "0" : "") + std::to_string(value);
@@ -19,9 +19,9 @@ const char* const kNoValue = "\u2013";
 
 std::string numberText(double value, int decimals) {
   if (!std::isfinite(value)) return kNoValue;
-  const bool plain = std::abs(value) < kLongestPlain;
+  const bool plain = std::abs(value) < kMaxPlain;
   std::array<char, 64> text{};
-  // to_chars, because printf writes a comma where Qt has set such a locale
+  // to_chars, because printf writes a comma if Qt has set such a locale
   const auto result = std::to_chars(text.data(), text.data() + text.size(), value,
                                     plain ? std::chars_format::fixed : std::chars_format::scientific,
                                     plain ? std::max(0, std::min(decimals, 9)) : 1);
@@ -35,7 +35,7 @@ std::string quantityText(double value, int decimals, const std::string& unit) {
 }
 
 std::string durationText(double seconds) {
-  if (!std::isfinite(seconds) || seconds < 0 || seconds >= kLongestPlain) return kNoValue;
+  if (!std::isfinite(seconds) || seconds < 0 || seconds >= kMaxPlain) return kNoValue;
   if (seconds < 59.95) return quantityText(seconds, 1, "s");
   const long whole = std::lround(seconds);
   const std::string last = twoDigits(whole % 60);

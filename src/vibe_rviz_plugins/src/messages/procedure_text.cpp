@@ -29,9 +29,9 @@ void addStage(const vibe_msgs::SolverStatistics& statistics, const std::string& 
 
 }  // namespace
 
-std::array<PhaseStep, kPhaseCount> phaseSteps(const std::string& procedure_phase) {
+std::array<PhaseStep, kPhaseCount> phaseSteps(const std::string& phase) {
   std::array<PhaseStep, kPhaseCount> steps;
-  const auto present = std::find(kPhases.begin(), kPhases.end(), procedure_phase);
+  const auto present = std::find(kPhases.begin(), kPhases.end(), phase);
   for (std::size_t i = 0; i < kPhases.size(); ++i) {
     steps[i].name = kPhases[i];
     if (present == kPhases.end()) continue;
@@ -42,11 +42,11 @@ std::array<PhaseStep, kPhaseCount> phaseSteps(const std::string& procedure_phase
 }
 
 std::string toolText(const vibe_msgs::ProcedureState& state) {
-  std::string tool = "Does '" + state.phase + "'.";
-  if (state.phase == "grip") tool = "Holds tissue (" + countText(state.held_particles, "particle") + ").";
-  if (state.phase == "insufflation") tool = "Gas flows in.";
-  if (state.phase == "contact") tool = "Touches tissue.";
-  if (state.phase == "free") tool = "Touches nothing.";
+  std::string tool = "Does '" + state.tool_state + "'.";
+  if (state.tool_state == "grip") tool = "Holds tissue (" + countText(state.held_particles, "particle") + ").";
+  if (state.tool_state == "insufflation") tool = "Gas flows in.";
+  if (state.tool_state == "contact") tool = "Touches tissue.";
+  if (state.tool_state == "free") tool = "Touches nothing.";
   return tool + " " + needleText(state);
 }
 
@@ -82,17 +82,17 @@ std::string bleedingText(const BleedingSummary& bleeding) {
   return text.empty() ? "nothing bleeds" : text;
 }
 
-std::string marksText(const vibe_msgs::ProcedureState& state) {
-  if (state.mark_zones == 0) return "none";
-  return countText(state.mark_zones, "zone") + ", " + std::to_string(state.mark_zones_inside) +
-         " where sutures go: anterior " + std::to_string(state.mark_zones_anterior) + ", greater curvature " +
-         std::to_string(state.mark_zones_greater_curvature) + ", posterior " +
-         std::to_string(state.mark_zones_posterior);
+std::string marksText(const vibe_msgs::SkillMetrics& skill) {
+  if (skill.mark_zones == 0) return "none";
+  return countText(skill.mark_zones, "zone") + ", " + std::to_string(skill.mark_zones_inside) +
+         " where sutures go: anterior " + std::to_string(skill.mark_zones_anterior) + ", greater curvature " +
+         std::to_string(skill.mark_zones_greater_curvature) + ", posterior " +
+         std::to_string(skill.mark_zones_posterior);
 }
 
-std::string burnsText(const vibe_msgs::ProcedureState& state) {
-  if (state.burn_zones == 0) return "none";
-  return countText(state.burn_zones, "burn scar") + ", " + std::to_string(state.deep_burn_zones) +
+std::string burnsText(const vibe_msgs::SkillMetrics& skill) {
+  if (skill.burn_zones == 0) return "none";
+  return countText(skill.burn_zones, "burn scar") + ", " + std::to_string(skill.deep_burn_zones) +
          " with the muscularis at risk";
 }
 

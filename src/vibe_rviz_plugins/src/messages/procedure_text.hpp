@@ -1,5 +1,6 @@
 #pragma once
 #include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SkillMetrics.h>
 #include <vibe_msgs/SolverStatistics.h>
 #include <vibe_msgs/SutureArray.h>
 
@@ -18,7 +19,7 @@ struct PhaseStep {
 constexpr int kPhaseCount = 5;
 
 /// With an unknown phase no step is the present one and none lies behind.
-std::array<PhaseStep, kPhaseCount> phaseSteps(const std::string& procedure_phase);
+std::array<PhaseStep, kPhaseCount> phaseSteps(const std::string& phase);
 
 /// What the tool does now: "Holds tissue. Needle on the arm."
 std::string toolText(const vibe_msgs::ProcedureState& state);
@@ -35,9 +36,9 @@ BleedingSummary summariseBleeding(const vibe_msgs::SutureArray& sutures);
 std::string bleedingText(const BleedingSummary& bleeding);
 
 /// "11 zones, 10 where sutures go: anterior 4, greater curvature 4, posterior 3".
-std::string marksText(const vibe_msgs::ProcedureState& state);
+std::string marksText(const vibe_msgs::SkillMetrics& skill);
 /// "none", or "2 burn scars, 1 with the muscularis at risk".
-std::string burnsText(const vibe_msgs::ProcedureState& state);
+std::string burnsText(const vibe_msgs::SkillMetrics& skill);
 
 /// How well the simulator keeps up, as name and value.
 struct NamedText {

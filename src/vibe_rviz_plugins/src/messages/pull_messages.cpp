@@ -4,8 +4,8 @@ namespace vibe {
 
 namespace {
 
-constexpr double kFarthest = 1e6;   // a place farther away is a mistake [m]
-constexpr double kStrongest = 1e6;  // [N]
+constexpr double kMaxCoordinate = 1e6;  // [m]
+constexpr double kMaxForce = 1e6;       // [N]
 
 template <class Message>
 bool read(const Message& message, double max, Eigen::Vector3d& result) {
@@ -18,10 +18,13 @@ bool read(const Message& message, double max, Eigen::Vector3d& result) {
 std::string readPullState(const vibe_msgs::TissuePullState& message, PullState& state) {
   PullState read_state;
   read_state.particle = message.particle;
-  if (message.particle < -1) return "The hand's particle is " + std::to_string(message.particle) + ".";
-  if (!read(message.position, kFarthest, read_state.place) || !read(message.target, kFarthest, read_state.target))
-    return "The hand's place or target is no place in metres.";
-  if (!read(message.force, kStrongest, read_state.force)) return "The hand's force is no force in newtons.";
+  if (message.particle < -1)
+    return "The pull spring refers to particle " + std::to_string(message.particle) + ", which does not exist.";
+  if (!read(message.position, kMaxCoordinate, read_state.position) ||
+      !read(message.target, kMaxCoordinate, read_state.target))
+    return "The position or the target of the pull spring is invalid (not finite, or beyond 1000 km).";
+  if (!read(message.force, kMaxForce, read_state.force))
+    return "The force of the pull spring is invalid (not finite, or beyond 1e6 N).";
   state = read_state;
   return "";
 }

@@ -6,15 +6,16 @@
 
 namespace vibe {
 
-/// The simulator's hand after a step.
+/// The pull spring after a step.
 struct PullState {
-  int particle = -1;                                 ///< -1: it has let go
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();   ///< of the held patch [m]
-  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< after the simulator's limits [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< hand on tissue [N]
+  int particle = -1;                                   ///< -1: it is released
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the held patch [m]
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();    ///< after the simulator's limits [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< of the spring on the tissue [N]
 };
 
-/// Checks and takes over a message. An empty answer: it is right and the result is filled; else what is wrong.
+/// Checks and reads a message.
+/// @return empty, and the state is set; otherwise one sentence that says what is wrong
 std::string readPullState(const vibe_msgs::TissuePullState& message, PullState& state);
 
 }  // namespace vibe

@@ -29,24 +29,24 @@ double bitesPerSet(Session session) {
 
 double offTheBody(Session session) {
   if (session.state.bites == 0) return kNone;
-  return session.state.bites_in_antrum + session.state.bites_in_fundus;
+  return session.skill.bites_in_antrum + session.skill.bites_in_fundus;
 }
 
 double shareAbove(Session session) {
-  return session.state.time > 0 ? 100 * session.state.time_above / session.state.time : kNone;
+  return session.skill.time > 0 ? 100 * session.skill.time_above / session.skill.time : kNone;
 }
 
-/// 0 N stands for "there never was a force", which is not a gentle touch.
-double peakForce(Session session) {
-  return session.state.contact_time > 0 || session.state.grip_time > 0 ? session.state.peak_force : kNone;
+/// 0 N also means that there never was a force. Without contact and grip there is no value.
+double maxForce(Session session) {
+  return session.skill.contact_time > 0 || session.skill.grip_time > 0 ? session.skill.max_force : kNone;
 }
 
 double fullThickness(Session session) {
-  return 100 * session.state.full_thickness_share;
+  return 100 * session.skill.full_thickness_share;
 }
 
 double spacing(Session session) {
-  return 1e3 * session.state.bite_spacing_mean;
+  return 1e3 * session.skill.bite_spacing_mean;
 }
 
 double pressure(Session session) {
@@ -54,15 +54,15 @@ double pressure(Session session) {
 }
 
 double minutes(Session session) {
-  return session.state.time / 60;
+  return session.skill.time / 60;
 }
 
 double areaReduction(Session session) {
-  return 100 * session.state.area_reduction;
+  return 100 * session.skill.area_reduction;
 }
 
 double lengthReduction(Session session) {
-  return 100 * session.state.length_reduction;
+  return 100 * session.skill.length_reduction;
 }
 
 double bloodLost(Session session) {
@@ -70,7 +70,7 @@ double bloodLost(Session session) {
 }
 
 double setsProximal(Session session) {
-  return 100 * session.state.sets_proximal;
+  return 100 * session.skill.sets_proximal;
 }
 
 double sutures(Session session) {
@@ -78,7 +78,7 @@ double sutures(Session session) {
 }
 
 double jerk(Session session) {
-  return session.state.log_dimensionless_jerk;
+  return session.skill.log_dimensionless_jerk;
 }
 
 const char* const kForces =
@@ -122,7 +122,7 @@ std::vector<Measure> organMeasures() {
 
 std::vector<Measure> handMeasures() {
   return {
-      {"Peak force", "N", 1, peakForce, "Greatest force of the tissue on the tool so far.", kForces, 0, 8, 12, false},
+      {"Max force", "N", 1, maxForce, "Greatest force of the tissue on the tool so far.", kForces, 0, 8, 12, false},
       {"Time above 5 N", "%", 1, shareAbove, "Share of the time with a force of the tissue on the tool above 5 N.",
        kForces, 0, 1.6, 5, false},
       {"Blood lost", "mL", 1, bloodLost, "By all bites together.", "", 0, 0, 50, false},

@@ -1,5 +1,6 @@
 #pragma once
 #include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SkillMetrics.h>
 #include <vibe_msgs/SutureArray.h>
 
 #include <string>
@@ -10,6 +11,7 @@ namespace vibe {
 /// What the measures of a session are taken from.
 struct SessionMessages {
   const vibe_msgs::ProcedureState& state;
+  const vibe_msgs::SkillMetrics& skill;
   const vibe_msgs::SutureArray* sutures;  ///< null: not come yet
 };
 

@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kSilentAfter = 2;  // as the simulator has it [s]
+constexpr double kSilentAfter = 2;  // the same as in the simulator [s]
 constexpr double kWindow = 1;       // [s]
 
 }  // namespace
@@ -18,8 +18,8 @@ constexpr double kWindow = 1;       // [s]
 std::string SimulatorWatch::complaint(const std::string& topic, double now) const {
   if (waits()) return "Waiting for the simulator on " + topic + "; start it, or set the namespace below.";
   if (!isGone(now)) return {};
-  return "The simulator is gone: nothing on " + topic + " for " + quantityText(silence(now), 0, "s") +
-         "; what is shown is old.";
+  return "The simulator is gone: no message on " + topic + " for " + quantityText(silence(now), 0, "s") +
+         "; the values shown are old.";
 }
 
 std::string ControlWatch::rival(double now) const {
@@ -34,10 +34,11 @@ std::string ControlWatch::sentence(const std::string& topic, bool in_control, un
     if (listeners == 0) return "You press the buttons, but no simulator listens to " + topic + ".";
     return "You have control of " + topic + ".";
   }
-  if (!other.empty()) return other + " has control of " + topic + "; stop it to take control, only one is obeyed.";
+  if (!other.empty())
+    return other + " has control of " + topic + "; stop it to take control, because only one publisher is obeyed.";
   if (others > 0)
     return "Nobody presses buttons, but " + countText(others, "silent publisher") + " of " + topic +
-           " may take control again; switch on 'Take control' before.";
+           " may take control again; switch on 'Take control' first.";
   return "Nobody has control of " + topic + "; switch on 'Take control' to press buttons.";
 }
 

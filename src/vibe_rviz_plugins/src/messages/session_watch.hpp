@@ -7,21 +7,21 @@ namespace vibe {
 
 constexpr double kGoneAfter = 3;  ///< the simulator sends at least once a second of wall time, even while paused [s]
 
-/// Whether the simulator is there, from when it was heard last.
+/// Decides from the time of the last message whether the simulator is running.
 class SimulatorWatch {
  public:
   void heard(double now) {
     last_ = now;
     ever_ = true;
   }
-  /// Another namespace: nothing was heard there.
+  /// For another namespace, in which no message has come yet.
   void forget() { ever_ = false; }
   bool waits() const { return !ever_; }
   bool isGone(double now) const { return ever_ && now - last_ > kGoneAfter; }
   double silence(double now) const { return now - last_; }
 
   /// One sentence; empty if all is well.
-  /// @param topic  full name of the one that is listened to
+  /// @param topic  full name of the subscribed topic
   std::string complaint(const std::string& topic, double now) const;
 
  private:
@@ -29,17 +29,17 @@ class SimulatorWatch {
   bool ever_ = false;
 };
 
-/// Who presses the buttons. The simulator obeys one publisher of a topic, the first, until that one has been silent for
-/// two seconds, and refuses any other.
+/// Finds out who presses the buttons. The simulator obeys the first publisher of a topic until it has been silent for
+/// two seconds, and ignores all others.
 class ControlWatch {
  public:
-  /// A message of somebody else's has come.
+  /// A message of another publisher has come.
   void heard(const std::string& publisher, double now) {
     publisher_ = publisher;
     last_ = now;
   }
   void forget() { publisher_.clear(); }
-  /// The other one that is obeyed; empty: none.
+  /// The other publisher that is obeyed; empty: none.
   std::string rival(double now) const;
 
   /// Who has control, in one sentence.
@@ -53,11 +53,11 @@ class ControlWatch {
   double last_ = 0;
 };
 
-/// The greatest number of the last whole second.
+/// Maximum of the last whole second.
 class MaxOfWindow {
  public:
   void add(double value, double now);
-  /// NaN if nothing has come for a while, or not for long enough.
+  /// NaN if there was no value for a while, or if there is no whole second yet.
   double value(double now) const;
 
  private:
@@ -65,7 +65,7 @@ class MaxOfWindow {
   bool has_last_ = false;
 };
 
-/// Empty if a namespace can be used, else one sentence.
+/// @return empty if a namespace can be used; otherwise one sentence that says why not
 std::string checkNamespace(const std::string& name);
 
 }  // namespace vibe

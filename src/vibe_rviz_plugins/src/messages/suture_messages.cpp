@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 using vibe_msgs::Suture;
 using Topology = vibe_msgs::TissueTopology;
 
-constexpr std::size_t kMaxSutures = 10'000, kMaxPoints = 1'000'000;  // beyond that it is a mistake, not a session
-constexpr double kFarthest = 1e6;                                    // of a place [m]
+constexpr std::size_t kMaxSutures = 10'000, kMaxPoints = 1'000'000;  // more is a mistake
+constexpr double kMaxCoordinate = 1e6;                               // [m]
 
 template <class Count>
 std::string number(Count value) {
@@ -24,23 +24,24 @@ Vector3d vectorOf(const geometry_msgs::Point& point) {
   return {point.x, point.y, point.z};
 }
 
-bool isPlace(const geometry_msgs::Point& point) {
-  return std::abs(point.x) < kFarthest && std::abs(point.y) < kFarthest && std::abs(point.z) < kFarthest;
+bool isValidPosition(const geometry_msgs::Point& point) {
+  return std::abs(point.x) < kMaxCoordinate && std::abs(point.y) < kMaxCoordinate && std::abs(point.z) < kMaxCoordinate;
 }
 
 bool isAmount(double value) {
   return std::isfinite(value) && value >= 0;
 }
 
-const std::string kNoPlace = " is no place in metres; the last good drawing stays.";
+const std::string kInvalidPosition = " is invalid (not finite, or beyond 1000 km); the last valid message is shown.";
 
-std::string checkPlaces(const Suture& suture, const std::string& which) {
+std::string checkPositions(const Suture& suture, const std::string& which) {
   for (std::size_t k = 0; k < suture.bites.size(); ++k)
-    if (!isPlace(suture.bites[k].position)) return "The position of bite " + number(k) + which + kNoPlace;
+    if (!isValidPosition(suture.bites[k].position))
+      return "The position of bite " + number(k) + which + kInvalidPosition;
   for (std::size_t k = 0; k < suture.thread.size(); ++k)
-    if (!isPlace(suture.thread[k])) return "Point " + number(k) + " of thread" + which + kNoPlace;
-  if (suture.has_t_tag && !isPlace(suture.t_tag)) return "t_tag" + which + kNoPlace;
-  if (suture.has_cinch && !isPlace(suture.cinch)) return "cinch" + which + kNoPlace;
+    if (!isValidPosition(suture.thread[k])) return "Point " + number(k) + " of thread" + which + kInvalidPosition;
+  if (suture.has_t_tag && !isValidPosition(suture.t_tag)) return "t_tag" + which + kInvalidPosition;
+  if (suture.has_cinch && !isValidPosition(suture.cinch)) return "cinch" + which + kInvalidPosition;
   return {};
 }
 
@@ -56,11 +57,11 @@ std::string checkOffsets(const Suture& suture, const std::string& which) {
   return {};
 }
 
-/// An empty thread is right where there is nothing to draw.
+/// A thread may be empty if there is nothing to draw.
 std::string checkThread(const Suture& suture, const std::string& which) {
   if (suture.thread.empty() && suture.thread_offsets.empty()) return {};
   if (suture.thread.empty() || suture.thread_offsets.empty())
-    return "Of thread and thread_offsets" + which + " only one is empty; send both or neither.";
+    return "Only one of thread and thread_offsets" + which + " is empty; send both or neither.";
   std::string wrong = checkOffsets(suture, which);
   if (!wrong.empty()) return wrong;
   const std::size_t pieces = suture.bites.size() - 1;
@@ -75,10 +76,10 @@ std::string checkThread(const Suture& suture, const std::string& which) {
 std::string checkTransitions(const Suture& suture, const std::string& which) {
   const auto last = static_cast<int>(suture.taken.size()) - 2;
   for (const int transition : suture.transitions) {
-    // a list that was never filled is all zero
+    // a list that was never set is all zero
     const bool unset = suture.technique == Suture::TECHNIQUE_OTHER && suture.taken.empty() && transition == 0;
     if (!unset && transition != -1 && (transition < 0 || transition + 1 > last))
-      return "transitions" + which + " names number " + number(transition) + ", but the pattern has " +
+      return "transitions" + which + " refers to bite " + number(transition) + ", but the pattern has " +
              number(suture.taken.size()) + " bites; send -1 where there is none.";
   }
   return {};
@@ -86,19 +87,20 @@ std::string checkTransitions(const Suture& suture, const std::string& which) {
 
 std::string checkSuture(const Suture& suture, std::size_t k) {
   const std::string which = " of suture " + number(k);
-  if (suture.stage > Suture::BROKEN) return "The stage" + which + " is " + number(+suture.stage) + ", which is none.";
+  if (suture.stage > Suture::BROKEN)
+    return "The stage" + which + " is " + number(+suture.stage) + ", which does not exist.";
   if (suture.technique > Suture::TECHNIQUE_C)
-    return "The technique" + which + " is " + number(+suture.technique) + ", which is none.";
+    return "The technique" + which + " is " + number(+suture.technique) + ", which does not exist.";
   if (!(suture.technique_margin >= 0 && suture.technique_margin <= 1))
     return "technique_margin" + which + " is not between 0 and 1.";
-  std::string wrong = checkPlaces(suture, which);
+  std::string wrong = checkPositions(suture, which);
   if (wrong.empty()) wrong = checkThread(suture, which);
   return wrong.empty() ? checkTransitions(suture, which) : wrong;
 }
 
 std::string checkBleeding(const vibe_msgs::Bleeding& bleeding, const vibe_msgs::SutureArray& message, std::size_t k) {
   const std::string which = " of bleeding " + number(k);
-  if (!isPlace(bleeding.position)) return "The position" + which + kNoPlace;
+  if (!isValidPosition(bleeding.position)) return "The position" + which + kInvalidPosition;
   if (!isAmount(bleeding.rate) || !isAmount(bleeding.amount) || !std::isfinite(bleeding.begin))
     return "rate, amount or begin" + which + " is negative or not finite; send m^3/s, m^3 and s.";
   if (bleeding.suture < 0 || static_cast<std::size_t>(bleeding.suture) >= message.sutures.size())
@@ -113,10 +115,10 @@ std::string checkBleeding(const vibe_msgs::Bleeding& bleeding, const vibe_msgs::
 
 std::string check(const vibe_msgs::SutureArray& message) {
   if (message.sutures.size() > kMaxSutures || message.bleedings.size() > kMaxSutures)
-    return "There are more than ten thousand sutures or bleedings, which cannot be one session.";
+    return "There are more than ten thousand sutures or bleedings, which is a mistake.";
   std::size_t points = 0;
   for (const Suture& suture : message.sutures) points += suture.thread.size() + suture.bites.size();
-  if (points > kMaxPoints) return "The threads have more than a million points, which cannot be one session.";
+  if (points > kMaxPoints) return "The threads have more than a million points, which is a mistake.";
   std::string wrong;
   for (std::size_t k = 0; k < message.sutures.size() && wrong.empty(); ++k) wrong = checkSuture(message.sutures[k], k);
   for (std::size_t k = 0; k < message.bleedings.size() && wrong.empty(); ++k)

@@ -7,16 +7,15 @@
 
 namespace vibe {
 
-/// Checks and takes over the threads of a session and what bleeds. An empty answer: the message is right and `scene` is
-/// filled; else it is a sentence that says what is wrong, and `scene` is as it was.
+/// Checks and reads the threads and bleeding of a session.
+/// @return empty, and `scene` is set; otherwise one sentence that says what is wrong, and `scene` is unchanged
 ///
-/// Checked: every place a place in metres, tensions, amounts and rates finite and not below zero, thread_offsets in
-/// order and one per bite, lengths and tensions one per piece, stage and technique known, transitions at bites,
-/// bleedings at sutures and bites that are there.
+/// Checked: valid positions; tensions, amounts and rates finite and not negative; thread_offsets in order and one per
+/// bite; lengths and tensions one per piece; known stage and technique; transitions, sutures and bites that exist.
 ///
-/// The lumen's side of a wall comes from the bite's wall and region and the axes of the world frame (x anterior, y to
-/// the patient's left, z to the head): the anterior wall looks to the back, the greater curvature of the body to the
-/// right and up, and so on. It is right to some 30 degrees for a stomach in its usual place.
+/// The direction into the lumen follows from wall and region of a bite and the axes of the world frame (x anterior, y
+/// to the patient's left, z to the head): from the anterior wall to posterior, from the greater curvature of the body
+/// to the right and up, and so on. It is accurate to about 30 degrees for a stomach in normal position.
 std::string readSutures(const vibe_msgs::SutureArray& message, SutureScene& scene);
 
 }  // namespace vibe

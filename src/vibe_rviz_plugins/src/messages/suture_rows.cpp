@@ -30,17 +30,17 @@ std::string stageName(const vibe_msgs::Suture& suture) {
 std::string techniqueText(const vibe_msgs::Suture& suture) {
   if (suture.technique_name.empty()) return kNoValue;
   std::string name = suture.technique_name;
-  // letters are names of patterns: U, Z, C; words stay as they are
+  // patterns that are named by a letter (U, Z, C) are written in upper case
   if (name.size() == 1) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   return name + " " + numberText(100 * suture.technique_margin, 0) + "%";
 }
 
 std::string helpOf(const SutureRow& row, const vibe_msgs::Suture& suture) {
   std::string text = "Set " + row.set + ", " + row.stage + ": " + countText(suture.bites.size(), "bite") + ", " +
-                     std::to_string(suture.tear_outs) + " torn out. Greatest tension now " +
+                     std::to_string(suture.tear_outs) + " torn out. Maximum tension now " +
                      quantityText(maxTension(suture), 2, "N") + ".";
   if (!suture.technique_name.empty())
-    text += "\nTechnique " + row.technique + " away from being another one (100 %: as sure as can be).";
+    text += "\nTechnique " + row.technique + " is the margin to the next technique (100 %: certain).";
   if (suture.end > 0)
     text += "\nCinched with " + quantityText(suture.cinch_tension, 2, "N") + " after drawing " +
             quantityText(1e3 * suture.pulled, 0, "mm") + " of thread.";

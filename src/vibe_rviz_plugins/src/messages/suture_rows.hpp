@@ -12,14 +12,14 @@ struct SutureRow {
   std::string bites;      ///< "7" that hold; "6 (-1)" with one that tore out
   std::string technique;  ///< "U 83%" with the margin; a dash before the T-tag
   std::string stage;      ///< "open", "tagged", "cinching", "cinched", "loose", "broken"
-  std::string tension;    ///< greatest of all pieces now [N]
+  std::string tension;    ///< maximum over all pieces now [N]
   bool warns = false;     ///< loose, broken or torn out
   std::string help;       ///< all of it in words
 };
 
 std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures);
 
-/// Greatest tension of a thread's pieces [N]; NaN without a piece, and where the message has no number.
+/// Maximum tension of the pieces of a thread [N]; NaN without pieces or if the message contains NaN.
 double maxTension(const vibe_msgs::Suture& suture);
 
 }  // namespace vibe

@@ -10,10 +10,10 @@
 namespace vibe {
 namespace {
 
-constexpr std::size_t kMaxParticles = 10'000'000;  // beyond that it is a mistake, not an organ
+constexpr std::size_t kMaxParticles = 10'000'000;  // more is a mistake
 constexpr std::uint8_t kMaxGrade = 3;
-constexpr double kFarthest = 1e6;      // of a place [m]; graphics engines stop the program at boxes without end
-constexpr float kMaxWeight = 1000.0F;  // of a particle in a vertex [1]
+constexpr double kMaxCoordinate = 1e6;  // [m]; graphics libraries abort on bounding boxes that are not finite
+constexpr float kMaxWeight = 1000.0F;   // of a particle in a vertex of the render surface [1]
 
 std::string number(std::size_t value) {
   return std::to_string(value);
@@ -22,11 +22,11 @@ std::string number(std::size_t value) {
 std::string checkTriangles(const std::vector<std::uint32_t>& triangles, std::size_t count, const char* array) {
   if (triangles.size() % 3 != 0)
     return std::string(array) + " of the topology has " + number(triangles.size()) +
-           " entries, which is no multiple of 3.";
+           " entries, which is not a multiple of 3.";
   for (const std::uint32_t corner : triangles)
     if (corner >= count)
-      return std::string(array) + " of the topology names number " + number(corner) + ", but there are only " +
-             number(count) + ".";
+      return std::string(array) + " of the topology refers to vertex " + number(corner) + ", but there are only " +
+             number(count) + " vertices.";
   return {};
 }
 
@@ -40,17 +40,17 @@ std::string checkRenderSurface(const vibe_msgs::TissueTopology& message, std::si
   for (const std::uint32_t particle : message.render_particles)
     if (particle >= particles) return "render_particles of the topology names a particle that does not exist.";
   for (const float weight : message.render_weights)
-    if (!(std::abs(weight) <= kMaxWeight)) return "render_weights of the topology holds a value that is no share.";
+    if (!(std::abs(weight) <= kMaxWeight)) return "render_weights of the topology contains an invalid weight.";
   return {};
 }
 
 std::string checkPositions(const std::vector<double>& positions) {
-  if (positions.size() % 3 != 0) return "rest_positions of the topology is no list of x, y, z.";
+  if (positions.size() % 3 != 0) return "The length of rest_positions of the topology is not a multiple of 3.";
   if (positions.empty()) return "The topology has no particles.";
   if (positions.size() / 3 > kMaxParticles) return "The topology has more than ten million particles.";
   for (const double value : positions)
-    if (!(std::abs(value) < kFarthest))
-      return "rest_positions of the topology holds a value that is no place in metres.";
+    if (!(std::abs(value) < kMaxCoordinate))
+      return "rest_positions of the topology contains an invalid position (not finite, or beyond 1000 km).";
   return {};
 }
 
@@ -86,9 +86,9 @@ void takeRest(const std::vector<double>& positions, TissueMesh& mesh) {
             mesh.render_weights[k] * static_cast<float>(positions[3 * mesh.render_particles[k] + c]);
 }
 
-bool arePlaces(const float* values, std::size_t count, std::size_t& where) {
+bool arePositions(const float* values, std::size_t count, std::size_t& where) {
   for (where = 0; where < count; ++where)
-    if (!(std::abs(static_cast<double>(values[where])) < kFarthest)) return false;
+    if (!(std::abs(static_cast<double>(values[where])) < kMaxCoordinate)) return false;
   return true;
 }
 
@@ -96,7 +96,7 @@ std::string checkRevision(const CloudField& field, std::size_t count, std::uint3
   for (std::size_t i = 0; i < count; ++i)
     if (field.at<std::uint32_t>(i) != revision)
       return "The particles belong to topology revision " + number(field.at<std::uint32_t>(i)) +
-             " and the topology is " + number(revision) + "; waiting for the one that fits.";
+             ", but the topology has revision " + number(revision) + "; waiting for the matching one.";
   return {};
 }
 
@@ -152,8 +152,9 @@ std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueM
     frame.positions[3 * i + 2] = z.at<float>(i);
   }
   std::size_t where = 0;
-  if (!arePlaces(frame.positions.data(), 3 * count, where))
-    return "The place of particle " + number(where / 3) + " is no place in metres; the last good frame stays.";
+  if (!arePositions(frame.positions.data(), 3 * count, where))
+    return "The position of particle " + number(where / 3) +
+           " is invalid (not finite, or beyond 1000 km); the last valid frame is shown.";
   take(strain, count, frame.strain);
   take(grade, count, frame.grade);
   take(dose, count, frame.dose);

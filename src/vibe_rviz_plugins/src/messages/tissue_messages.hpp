@@ -8,13 +8,13 @@
 
 namespace vibe {
 
-// Messages come from anywhere: a bag, another program, a test. What is wrong with one is told in a sentence, and then
-// nothing is drawn from it. An empty answer: it is right and the result is filled.
+// Messages may come from any source. The functions return an empty string and fill the result, or one sentence that
+// says what is wrong with the message; then nothing is drawn from it.
 
-/// Checks and takes over a topology: numbers in range, weights and positions finite, arrays of matching lengths.
+/// Checks and reads a topology: numbers in range, weights and positions finite, arrays of matching lengths.
 std::string readTopology(const vibe_msgs::TissueTopology& message, TissueMesh& mesh);
 
-/// Checks and takes over a frame of particles: fields by name and type, count and revision as the mesh has them,
+/// Checks and reads a frame of particles: fields by name and type, count and revision as the mesh has them,
 /// positions finite. Reuses the memory of `frame`.
 std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueMesh& mesh, TissueFrame& frame);
 

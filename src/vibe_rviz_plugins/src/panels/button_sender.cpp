@@ -9,9 +9,9 @@ namespace vibe {
 namespace {
 
 constexpr std::uint32_t kQueue = 100;
-constexpr double kTaking = 1;     // a simulator that stands still says nothing [s]
+constexpr double kTaking = 1;     // a paused simulator publishes no input [s]
 constexpr double kClosing = 0.5;  // [s]
-// other parts of the same program may press buttons too; this tells their messages from ours
+// identifies messages of this panel, because other parts of the same program may press buttons too
 const char* const kFrame = "procedure_panel";
 
 }  // namespace
@@ -35,7 +35,7 @@ void ButtonSender::hear(const ros::MessageEvent<const sensor_msgs::Joy>& event) 
   const sensor_msgs::Joy& message = *event.getMessage();
   if (own_program && message.header.frame_id == kFrame) return;
   watch_.heard(event.getPublisherName(), steadySeconds());
-  // What a tool of this program presses is obeyed like our own: saying otherwise would make the helix let go again.
+  // Buttons pressed by another part of this program are obeyed too; contradicting them would release the helix.
   if (!in_control_ || own_program) bank_.adopt(message.buttons);
 }
 

@@ -9,41 +9,43 @@
 
 namespace vibe {
 
-/// Publishes scope/buttons while it has control: at every change and whenever tick() is called, which is to happen ten
-/// times a second. Without control nothing is advertised, so that the simulator has no second publisher to refuse.
+/// Publishes scope/buttons while it has control: at every change and whenever tick() is called, which should be ten
+/// times a second. Without control nothing is advertised, so that the simulator has no second publisher to ignore.
 class ButtonSender {
  public:
-  /// Begins anew in this namespace, which has been checked, without control.
+  /// Starts again in this (valid) namespace, without control.
   void listen(const std::string& name_space);
 
-  /// Taking control has no effect while somebody else has it; sentence() says who. Else it first looks what the
-  /// simulator's last step used, so that nothing is let go that is held: that takes a step, or a second without one.
+  /// Taking control has no effect while another publisher has it; sentence() says which. Otherwise it first waits for
+  /// the input of the last step, so that held tissue is not released; this takes one step, or a second if there is
+  /// none.
   void setControl(bool on, double now);
   bool inControl() const { return in_control_; }
   bool isTakingControl() const { return static_cast<bool>(last_input_); }
 
-  // Without control these do nothing.
+  // These have no effect without control.
   void press(int button, const Moment& now);
   void release(int button, const Moment& now);
 
   void tick(const Moment& now);
 
-  /// What is pressed by whoever has control.
+  /// Buttons pressed by the publisher in control.
   const std::array<std::int32_t, kCommandCount>& down() const { return bank_.down(); }
-  /// Who that is, in one sentence.
+  /// Who is in control, in one sentence.
   std::string sentence(double now) const;
 
  private:
   ros::NodeHandle handle_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;
-  ros::Subscriber last_input_;  // while control is being taken; others may count who listens to that topic
+  ros::Subscriber last_input_;  // only while control is being taken, because the number of subscribers of this topic
+                                // matters elsewhere
   ButtonBank bank_;
   ControlWatch watch_;
   std::string topic_;
   bool in_control_ = false;
   double taking_since_ = 0;   // [s]
-  double closing_since_ = 0;  // the last message needs a moment before the publisher may go [s]
+  double closing_since_ = 0;  // the last message needs a moment before the publisher shuts down [s]
 
   void hear(const ros::MessageEvent<const sensor_msgs::Joy>& event);
   void beginControl();

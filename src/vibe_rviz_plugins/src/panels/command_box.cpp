@@ -33,11 +33,11 @@ CommandBox::CommandBox(Actions actions, QWidget* parent)
     makeButton(button);
     grid->addWidget(buttons_[static_cast<std::size_t>(button)], 1 + button / kColumns, button % kColumns);
   }
-  // below the buttons and never less than two lines: a sentence that changes must not move a button that is aimed at
+  // below the buttons and at least two lines high, so that a changing sentence does not move the buttons
   sentence_->setMinimumHeight(2 * sentence_->fontMetrics().lineSpacing());
   sentence_->setAlignment(Qt::AlignTop);
   grid->addWidget(sentence_, 1 + (kCommandCount + kColumns - 1) / kColumns, 0, 1, kColumns);
-  // clicked, not toggled: only what the user does counts, not what display() sets
+  // clicked, not toggled: reacts to the user only, not to display()
   QObject::connect(control_, &QPushButton::clicked, this, [this](bool on) { actions_.control(on); });
 }
 

@@ -13,7 +13,7 @@ namespace vibe {
 /// The six buttons of the device and the switch that takes control of them.
 class CommandBox : public QWidget {
  public:
-  /// What happens when something is pressed; all are set by the owner.
+  /// Actions of the buttons; the owner sets all of them.
   struct Actions {
     std::function<void(bool on)> control;
     std::function<void(int button)> press, release;
@@ -21,8 +21,8 @@ class CommandBox : public QWidget {
 
   explicit CommandBox(Actions actions, QWidget* parent = nullptr);
 
-  /// @param down      what is pressed by whoever has control
-  /// @param sentence  who that is
+  /// @param down      buttons pressed by the publisher in control
+  /// @param sentence  who is in control
   void display(bool in_control, const std::array<std::int32_t, kCommandCount>& down, const std::string& sentence);
 
  private:

@@ -6,8 +6,8 @@
 
 namespace vibe {
 
-/// What happened last, newest first, each with the symbol of its severity. Keeps a bounded number. A note that comes
-/// again with nothing in between stands there once, with its last time.
+/// Recent events, newest first, each with the symbol of its severity. Their number is limited. A note that repeats
+/// without another event in between is listed once, with its last time.
 class EventList : public QListWidget {
  public:
   static constexpr int kMax = 200;
@@ -20,7 +20,7 @@ class EventList : public QListWidget {
   QSize minimumSizeHint() const override { return sizeHint(); }
 
  private:
-  std::string newest_;  // sentence of the uppermost entry
+  std::string newest_;  // sentence of the top entry
 };
 
 }  // namespace vibe

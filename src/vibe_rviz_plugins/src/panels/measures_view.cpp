@@ -42,10 +42,11 @@ void MeasuresView::display(const PanelMessages& messages) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Measure& measure = measures()[i];
     double value = std::numeric_limits<double>::quiet_NaN();
-    if (messages.state) value = measure.value({*messages.state, messages.sutures.get()});
+    if (messages.state && messages.skill)
+      value = measure.value({*messages.state, *messages.skill, messages.sutures.get()});
     rows_[i].value->setText(toQt(quantityText(value, measure.decimals, measure.unit)));
     if (!rows_[i].bar) continue;
-    const Rating rating = rate(measure, value, messages.state && messages.state->procedure_phase == "done");
+    const Rating rating = rate(measure, value, messages.state && messages.state->phase == "done");
     rows_[i].bar->display(barShape(measure, value), rating);
     rows_[i].bar->setToolTip(toQt(explain(measure) + "\nNow: " + ratingText(rating) + "."));
   }

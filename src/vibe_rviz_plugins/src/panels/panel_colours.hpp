@@ -8,8 +8,8 @@
 
 namespace vibe {
 
-/// Colours and symbols of the panel, readable on light and on dark styles. No meaning lies in a colour alone: every
-/// symbol has a shape of its own.
+/// Colours and symbols of the panel, legible with light and dark styles. No meaning depends on colour alone: every
+/// symbol has its own shape.
 
 QColor goodColour(const QPalette& palette);
 QColor warningColour(const QPalette& palette);

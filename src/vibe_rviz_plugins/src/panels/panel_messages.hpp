@@ -1,6 +1,7 @@
 #pragma once
 #include <geometry_msgs/WrenchStamped.h>
 #include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SkillMetrics.h>
 #include <vibe_msgs/SolverStatistics.h>
 #include <vibe_msgs/SutureArray.h>
 
@@ -9,6 +10,7 @@ namespace vibe {
 /// The last message of every topic that the panel shows; null: none has come.
 struct PanelMessages {
   vibe_msgs::ProcedureStateConstPtr state;
+  vibe_msgs::SkillMetricsConstPtr skill;
   vibe_msgs::SutureArrayConstPtr sutures;
   vibe_msgs::SolverStatisticsConstPtr solver_statistics;
   geometry_msgs::WrenchStampedConstPtr force;

@@ -38,6 +38,8 @@ void ProcedureSubscriptions::subscribeAll(ros::NodeHandle& handle) {
     take(messages_.state, message);
     if (!messages_.force) noteArrival(message->header.stamp);
   }));
+  add(handle.subscribe<vibe_msgs::SkillMetrics>("procedure/skill_metrics", 1,
+                                                [this](const auto& message) { take(messages_.skill, message); }));
   add(handle.subscribe<geometry_msgs::WrenchStamped>("scope/measured_cf", 1, [this](const auto& message) {
     take(messages_.force, message);
     noteArrival(message->header.stamp);

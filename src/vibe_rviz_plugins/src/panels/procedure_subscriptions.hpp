@@ -11,17 +11,17 @@
 
 namespace vibe {
 
-/// Seconds of a clock that never jumps.
+/// Time of a steady clock [s].
 double steadySeconds();
 
-/// Listens to what the panel shows. Callbacks come in the thread that spins the node's queue, which in rviz is that of
-/// the widgets.
+/// Subscribes to what the panel shows. Callbacks run in the thread that spins the queue of the node, which in rviz is
+/// the thread of the widgets.
 class ProcedureSubscriptions {
  public:
   using EventHandler = std::function<void(const vibe_msgs::ProcedureEvent&)>;
   explicit ProcedureSubscriptions(EventHandler handle_event) : handle_event_(std::move(handle_event)) {}
 
-  /// Begins anew in this namespace, which has been checked; empty: that of the node.
+  /// Starts again in this (valid) namespace; empty: that of the node.
   void listen(const std::string& name_space);
 
   const PanelMessages& messages() const { return messages_; }

@@ -19,9 +19,9 @@
 namespace vibe {
 namespace {
 
-constexpr int kMinWidth = 260;                      // nothing is clipped [px]
-constexpr int kGoodWidth = 340, kGoodHeight = 640;  // [px]
-constexpr int kPeriod = 100;                        // of refresh() and of the buttons' messages [ms]
+constexpr int kMinWidth = 260;                                // nothing is clipped [px]
+constexpr int kPreferredWidth = 340, kPreferredHeight = 640;  // [px]
+constexpr int kPeriod = 100;                                  // of refresh() and of the buttons' messages [ms]
 
 void addPart(QVBoxLayout* column, const QString& title, QWidget* part) {
   QLabel* label = wrappingLabel();
@@ -73,7 +73,7 @@ ProcedureWidget::ProcedureWidget(QWidget* parent)
 ProcedureWidget::~ProcedureWidget() = default;
 
 QSize ProcedureWidget::sizeHint() const {
-  return {kGoodWidth, kGoodHeight};
+  return {kPreferredWidth, kPreferredHeight};
 }
 
 QWidget* ProcedureWidget::makeContent() {
@@ -89,8 +89,7 @@ QWidget* ProcedureWidget::makeContent() {
   addPart(column, "Simulator", solver_statistics_);
   name_space_edit_->setObjectName("namespace");
   name_space_edit_->setPlaceholderText("that of rviz");
-  name_space_edit_->setToolTip(
-      "Where the simulator's topics are, for example /room1; empty: in the namespace of rviz.");
+  name_space_edit_->setToolTip("Namespace of the topics of the simulator, for example /room1; empty: that of rviz.");
   QObject::connect(name_space_edit_, &QLineEdit::editingFinished, this, [this] {
     if (name_space_edit_->text() == name_space_) return;
     setNamespace(name_space_edit_->text());

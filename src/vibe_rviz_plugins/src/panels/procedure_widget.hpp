@@ -19,23 +19,23 @@ class SolverStatisticsView;
 class SteppingBox;
 class SutureTable;
 
-/// All of the panel: the parts one below the other in an area that scrolls, the messages they show, and what happens
-/// when something is pressed. Needs ros::init(); knows nothing of rviz.
+/// The whole panel: its parts in a scroll area, the messages they show, and the actions of the buttons. Needs
+/// ros::init(), but not rviz.
 class ProcedureWidget : public QWidget {
  public:
   explicit ProcedureWidget(QWidget* parent = nullptr);
   ~ProcedureWidget() override;
 
-  /// Where the simulator is; empty: in the namespace of this program. One that cannot be used is refused with a
-  /// sentence, and the present one stays.
+  /// Sets the namespace of the simulator; empty: that of this program. An invalid one is rejected with a sentence, and
+  /// the present one stays.
   void setNamespace(const QString& name);
   QString nameSpace() const { return name_space_; }
   /// Called when the user has chosen another namespace.
   void onNamespaceChanged(std::function<void()> changed) { namespace_changed_ = std::move(changed); }
 
-  /// Starts to listen and to show.
+  /// Starts to subscribe and to display.
   void start();
-  /// Shows what there is now; otherwise ten times a second.
+  /// Updates the display now; otherwise it is updated ten times a second.
   void refresh();
 
   QSize sizeHint() const override;

@@ -6,8 +6,7 @@
 namespace vibe {
 
 /// A small horizontal bar: the published range as a band, the value as a mark on it. The mark is a filled circle within
-/// the range, a triangle outside, an open circle where there is nothing to hold it against; beyond the bar's end it is
-/// an arrow.
+/// the range, a triangle outside, an open circle without a range, and an arrow beyond the end of the bar.
 class RangeBar : public QWidget {
  public:
   explicit RangeBar(QWidget* parent = nullptr);

@@ -17,7 +17,7 @@ ServiceCaller::~ServiceCaller() {
     ends_ = true;
   }
   changed_.notify_all();
-  // The call may not have begun yet when its connection is dropped, and would then connect anew: drop until it is over.
+  // A call that has not begun yet when its connection is dropped would connect again, so drop until it is over.
   for (giveUp(); isBusy(); giveUp()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   thread_.join();
 }
@@ -68,7 +68,7 @@ template <class Service>
 ServiceCaller::Answer ServiceCaller::call(const std::string& name, Service service) {
   if (!ros::service::exists(name, false))
     return {false, "There is no service " + name + "; start the simulator or set the namespace."};
-  // persistent, because only such a client's connection can be dropped while it waits
+  // persistent, because only the connection of such a client can be dropped while it waits
   ros::ServiceClient client = ros::NodeHandle().serviceClient<Service>(name, true);
   {
     std::lock_guard<std::mutex> lock(mutex_);
@@ -78,7 +78,8 @@ ServiceCaller::Answer ServiceCaller::call(const std::string& name, Service servi
   const bool answered = client.call(service);
   std::lock_guard<std::mutex> lock(mutex_);
   if (given_up_) return {false, "The call of " + name + " was given up; the simulator may still carry it out."};
-  if (!answered) return {false, "The service " + name + " did not answer; look whether the simulator still runs."};
+  if (!answered)
+    return {false, "The service " + name + " did not answer; check whether the simulator is still running."};
   return {static_cast<bool>(service.response.success), service.response.message};
 }
 

@@ -9,30 +9,30 @@
 
 namespace vibe {
 
-/// Calls the simulator's services from a thread of its own, so that nobody waits: neither for a service that takes
-/// long nor for one that hangs. One call at a time.
+/// Calls the services of the simulator in a separate thread, so that the panel does not wait for a service that is slow
+/// or hangs. One call at a time.
 class ServiceCaller {
  public:
   struct Answer {
     bool success;
-    std::string sentence;  ///< the simulator's, or why there is none
+    std::string sentence;  ///< answer of the simulator, or the reason why there is none
   };
-  /// Called from the thread of the calls.
+  /// Called in the thread of the calls.
   using Report = std::function<void(const Answer&)>;
 
   explicit ServiceCaller(Report report);
-  /// Gives up the call under way.
+  /// Abandons the call in progress.
   ~ServiceCaller();
 
-  // Full names; false: a call is under way.
+  // Full names. Returns false if a call is in progress.
   bool pause(const std::string& service, bool paused);
   bool step(const std::string& service, unsigned n);
-  /// With the scene's seed; stamps go on.
+  /// Uses the seed of the scene; stamps continue.
   bool reset(const std::string& service);
 
   bool isBusy();
-  /// Drops the connection of the call under way, which then answers that it was given up. Returns at once; has no
-  /// effect on a call that is about to connect, so ask again while it is busy.
+  /// Drops the connection of the call in progress, which then reports that it was given up. Returns immediately; has no
+  /// effect on a call that is about to connect, so call again while it is busy.
   void giveUp();
 
  private:
@@ -41,7 +41,7 @@ class ServiceCaller {
   std::condition_variable changed_;
   std::function<Answer()> work_;
   bool busy_ = false, ends_ = false, given_up_ = false;
-  ros::ServiceClient client_;  // of the call under way
+  ros::ServiceClient client_;  // of the call in progress
   std::thread thread_;
 
   template <class Service>

@@ -10,11 +10,12 @@
 namespace vibe {
 namespace {
 
-const char* const kAgeHelp = "Wall time since the last message of the tool or, without one, of the state.";
+const char* const kAgeHelp = "Wall time since the last message about the tool or, without a tool, about the state.";
 const char* const kDelayHelp =
-    "From the sample to its arrival here, greatest of the last second. Surgeons did worse with 105 ms of added delay "
+    "Time from the sample to its arrival here, maximum of the last second. Surgeons did worse with 105 ms of added "
+    "delay "
     "(Kumcu et al. 2016). "
-    "Not known with simulated time, whose stamps are no wall time.";
+    "Not known with simulated time, because stamps are not wall time then.";
 
 }  // namespace
 

@@ -8,7 +8,7 @@ namespace vibe {
 
 class TextRows;
 
-/// How well the simulator keeps up, and how old what is shown is.
+/// Solver times, real-time factor and latency.
 class SolverStatisticsView : public QWidget {
  public:
   explicit SolverStatisticsView(QWidget* parent = nullptr);

@@ -69,6 +69,7 @@ StatusSummary::~StatusSummary() = default;
 
 void StatusSummary::display(const PanelMessages& messages) {
   displayState(messages);
+  displaySkill(messages);
   displayBleeding(messages);
   displayForce(messages);
 }
@@ -77,19 +78,23 @@ void StatusSummary::displayState(const PanelMessages& messages) {
   if (!messages.state) {
     header_->setText("No session");
     phases_->display(phaseSteps(""));
-    for (const char* name : {"Tool", "Bites", "Marks", "Burns"}) rows_->set(name, kNoValue);
+    for (const char* name : {"Tool", "Bites"}) rows_->set(name, kNoValue);
     return;
   }
   const vibe_msgs::ProcedureState& state = *messages.state;
   header_->setText(
       toQt(state.scene + ", " + durationText(timeNow(messages)) + (state.paused ? ", PAUSED" : ", running")));
-  phases_->display(phaseSteps(state.procedure_phase));
+  phases_->display(phaseSteps(state.phase));
   rows_->set("Tool", toQt(toolText(state)));
   rows_->set("Bites", toQt(bitesText(state, messages.sutures.get())));
   rows_->mark("Bites", state.tear_outs > 0);
-  rows_->set("Marks", toQt(marksText(state)));
-  rows_->set("Burns", toQt(burnsText(state)));
-  rows_->mark("Burns", state.deep_burn_zones > 0);
+}
+
+void StatusSummary::displaySkill(const PanelMessages& messages) {
+  const vibe_msgs::SkillMetrics* skill = messages.skill.get();
+  rows_->set("Marks", skill ? toQt(marksText(*skill)) : QString(kNoValue));
+  rows_->set("Burns", skill ? toQt(burnsText(*skill)) : QString(kNoValue));
+  rows_->mark("Burns", skill && skill->deep_burn_zones > 0);
 }
 
 void StatusSummary::displayBleeding(const PanelMessages& messages) {

@@ -28,6 +28,7 @@ class StatusSummary : public QWidget {
   std::unique_ptr<TextRows> rows_;
 
   void displayState(const PanelMessages& messages);
+  void displaySkill(const PanelMessages& messages);
   void displayBleeding(const PanelMessages& messages);
   void displayForce(const PanelMessages& messages);
 };

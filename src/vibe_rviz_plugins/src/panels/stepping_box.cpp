@@ -14,8 +14,8 @@ namespace vibe {
 namespace {
 
 constexpr int kMaxSteps = 10000;
-constexpr int kResetPatience = 3000;  // to press reset a second time [ms]
-constexpr double kPatience = 1;       // a call that takes longer is told of and can be given up [s]
+constexpr int kResetTimeout = 3000;  // to press reset a second time [ms]
+constexpr double kSlowCall = 1;      // a call that takes longer is reported and can be abandoned [s]
 
 }  // namespace
 
@@ -36,10 +36,10 @@ SteppingBox::SteppingBox(Actions actions, QWidget* parent)
   grid->addWidget(count_, 1, 1);
   grid->addWidget(answer_, 2, 0, 1, 2);
   grid->addWidget(stop_waiting_, 3, 0, 1, 2);
-  pause_->setToolTip("Stops the simulation or lets it go on.");
+  pause_->setToolTip("Pauses or resumes the simulation.");
   step_->setToolTip("Takes this many steps while the simulation is paused.");
-  reset_->setToolTip("Back to the initial state with the scene's seed; press twice. Stamps go on.");
-  stop_waiting_->setToolTip("Gives up the call; the simulator may still carry it out.");
+  reset_->setToolTip("Returns to the initial state with the seed of the scene; press twice. Stamps continue.");
+  stop_waiting_->setToolTip("Abandons the call; the simulator may still carry it out.");
   count_->setToolTip("Steps to take at once.");
   count_->setRange(1, kMaxSteps);
   count_->setPrefix("steps: ");
@@ -56,7 +56,7 @@ void SteppingBox::connectAll() {
   QObject::connect(stop_waiting_, &QPushButton::clicked, this, [this] { actions_.stop_waiting(); });
 }
 
-// a reset cannot be taken back, and a question in a window of its own would stand in the way of rviz
+// a reset cannot be undone, and a dialog would block rviz
 void SteppingBox::pressReset() {
   if (asked_) {
     asked_ = false;
@@ -66,7 +66,7 @@ void SteppingBox::pressReset() {
   }
   asked_ = true;
   reset_->setText("Sure?");
-  QTimer::singleShot(kResetPatience, this, [this] {
+  QTimer::singleShot(kResetTimeout, this, [this] {
     asked_ = false;
     reset_->setText("Reset");
   });
@@ -80,10 +80,10 @@ void SteppingBox::displayState(bool known, bool paused) {
 void SteppingBox::displayWaiting(const std::string& service, double seconds) {
   waiting_ = true;
   enableAll();
-  stop_waiting_->setVisible(seconds > kPatience);
+  stop_waiting_->setVisible(seconds > kSlowCall);
   answer_->setPalette(palette());
   answer_->setText(toQt("Waiting for " + service +
-                        (seconds > kPatience ? ": no answer for " + quantityText(seconds, 0, "s") + "." : ".")));
+                        (seconds > kSlowCall ? ": no answer for " + quantityText(seconds, 0, "s") + "." : ".")));
 }
 
 void SteppingBox::displayAnswer(bool success, const std::string& sentence) {

@@ -9,10 +9,10 @@ class QSpinBox;
 
 namespace vibe {
 
-/// Pause, single steps and reset, and what the simulator answered.
+/// Pause, single steps and reset, and the answer of the simulator.
 class SteppingBox : public QWidget {
  public:
-  /// What happens when something is pressed; all are set by the owner and must return at once.
+  /// Actions of the buttons; the owner sets all of them, and they must return immediately.
   struct Actions {
     std::function<void(bool paused)> pause;
     std::function<void(unsigned n)> step;
@@ -22,11 +22,11 @@ class SteppingBox : public QWidget {
 
   explicit SteppingBox(Actions actions, QWidget* parent = nullptr);
 
-  /// @param known  whether a state has come at all
+  /// @param known  whether a state has been received
   void displayState(bool known, bool paused);
-  /// A call is under way since so many seconds.
+  /// A call has been in progress for this time [s].
   void displayWaiting(const std::string& service, double seconds);
-  /// None is.
+  /// No call is in progress.
   void displayAnswer(bool success, const std::string& sentence);
 
  private:

@@ -18,12 +18,12 @@ struct Column {
   const char* help;
 };
 constexpr std::array<Column, 5> kColumns = {{
-    {"#", "Number of the set, in the order of the first bites."},
-    {"Bites", "Bites that hold; in brackets those that tore out."},
-    {"Technique", "What the set looks like, and how far that is from another technique; recognised at the T-tag."},
+    {"#", "Number of the set, in the order of first bites."},
+    {"Bites", "Bites that hold; torn-out bites in brackets."},
+    {"Technique", "Recognised technique and its margin; recognised when the T-tag is dropped."},
     {"Stage",
      "Open: takes bites. Tagged: the T-tag is dropped. Cinched: permanent. Loose: cinched with too little tension."},
-    {"N", "Greatest tension of the thread now [N]."},
+    {"N", "Maximum tension of the thread now [N]."},
 }};
 
 }  // namespace
@@ -47,7 +47,7 @@ SutureTable::SutureTable(QWidget* parent) : QTableWidget(0, static_cast<int>(kCo
   verticalHeader()->setDefaultSectionSize(fontMetrics().height() + 6);
   horizontalHeader()->setMinimumSectionSize(1);
   horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-  // the longest name of a technique may not fit; its tool tip has it
+  // the longest name of a technique may not fit; the tool tip shows it
   horizontalHeader()->setSectionResizeMode(kTechnique, QHeaderView::Stretch);
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }

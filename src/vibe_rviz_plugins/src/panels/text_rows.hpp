@@ -8,16 +8,16 @@ class QWidget;
 
 namespace vibe {
 
-/// Two columns of labels: what it is, and what it says now. Long values wrap.
+/// Two columns of labels: names and current values. Long values wrap.
 class TextRows {
  public:
-  /// Rows are added below what the layout has already.
+  /// Rows are added below the present contents of the layout.
   explicit TextRows(QGridLayout* layout) : layout_(layout) {}
 
   void add(const QString& name, const QString& help);
-  /// Adds the row if there is none of this name.
+  /// Adds the row if there is none with this name.
   void set(const QString& name, const QString& value, const QString& help = {});
-  /// Bold and in this colour's meaning; needs the row.
+  /// Shows the value in bold in the colour of a warning; the row must exist.
   void mark(const QString& name, bool warns);
   QLabel* value(const QString& name) const;
 
@@ -26,13 +26,13 @@ class TextRows {
   std::map<QString, QLabel*> values_;
 };
 
-/// A label that wraps, can be selected with the mouse and never asks for more width than it gets.
+/// A label that wraps, can be selected with the mouse and never requests more width than it gets.
 QLabel* wrappingLabel(QWidget* parent = nullptr);
 
-/// A little smaller, for what is looked at more rarely and has to fit into a narrow dock. Before its children are made.
+/// Makes the font a little smaller, for secondary information in a narrow dock. Call it before the children are made.
 void makeSmaller(QWidget& widget);
 
-/// The text of a message. Whatever it holds, it is shown as it is and not taken for HTML.
+/// Converts text of a message to Qt; it is shown literally and not interpreted as HTML.
 inline QString toQt(const std::string& text) {
   return QString::fromStdString(text);
 }

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/moving_vertex.hpp"
+#include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
 namespace Ogre {
 class Entity;
@@ -16,29 +16,30 @@ class SceneNode;
 
 namespace vibe {
 
-/// Triangles with vertices that move, in hardware buffers: what does not change is not sent again. Vertices and
-/// colours lie in buffers of their own, so that tissue that moves without changing colour sends only its vertices.
+/// Triangles with moving vertices in hardware buffers. Only what changes is sent to the graphics card; vertices and
+/// colours have separate buffers, so tissue that moves without changing colour sends only its vertices.
 /// To be used from the thread that renders.
 class DynamicMesh {
  public:
-  /// @param parent     node to hang it on; outlives this
-  /// @param materials  the triangles are drawn once with each of them, all from the same vertices; see materials.hpp
+  /// @param parent     parent node; must outlive this object
+  /// @param materials  the triangles are drawn once with each material, from the same vertices; see resources.hpp
   DynamicMesh(Ogre::SceneNode& parent, std::vector<Ogre::MaterialPtr> materials);
   ~DynamicMesh();
   DynamicMesh(const DynamicMesh&) = delete;
   DynamicMesh& operator=(const DynamicMesh&) = delete;
 
-  /// New triangles; vertices (at the origin) and colours (white) are to be set again. No triangles: draws nothing.
+  /// Sets new triangles. Vertices (now at the origin) and colours (now white) must be set again. Without triangles,
+  /// nothing is drawn.
   /// @param triangles  three vertex numbers each, counter-clockwise seen from outside
   /// @param fixed      x y z per vertex that shaders read as texture coordinate, for example the place at rest, so that
   ///                   a texture moves with the surface; empty: zero
   void setTopology(const std::vector<std::uint32_t>& triangles, std::size_t vertex_count,
                    const std::vector<float>& fixed = {});
-  /// Vertices from `first` on.
+  /// Sets the vertices from `first` on.
   void setVertices(const MovingVertex* vertices, std::size_t first, std::size_t count);
-  /// Colours of the vertices from `first` on.
+  /// Sets the colours of the vertices from `first` on.
   void setColours(const PackedColour* colours, std::size_t first, std::size_t count);
-  /// Box around all vertices; what lies outside may not be drawn.
+  /// Sets the box around all vertices; anything outside may be culled.
   void setBounds(const Ogre::AxisAlignedBox& bounds);
 
   void setMaterials(std::vector<Ogre::MaterialPtr> materials);

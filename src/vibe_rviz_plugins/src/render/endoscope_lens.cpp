@@ -20,8 +20,8 @@
 namespace vibe {
 namespace {
 
-constexpr int kLargestSource = 4096;  // what every graphics card can do [px]
-constexpr float kReach = 0.06f;       // of the lamp, as in media/vibe.material: half as bright there [m]
+constexpr int kMaxSource = 4096;  // what every graphics card can do [px]
+constexpr float kReach = 0.06f;   // of the lamp, as in media/vibe.material: distance of half intensity [m]
 const char* const kSource = "source";
 
 void drawScene(Ogre::CompositionTechnique& technique, std::uint32_t visibility) {
@@ -57,7 +57,7 @@ EndoscopeLens::~EndoscopeLens() {
   if (viewport_ != nullptr) viewport_->removeListener(this);
 }
 
-// Ogre drops the viewport's compositors itself.
+// Ogre removes the compositors of the viewport itself.
 void EndoscopeLens::viewportDestroyed(Ogre::Viewport*) {
   viewport_ = nullptr;
 }
@@ -65,7 +65,7 @@ void EndoscopeLens::viewportDestroyed(Ogre::Viewport*) {
 void EndoscopeLens::set(LensKind lens, double field_of_view, double sharpness) {
   if (viewport_ == nullptr) return;
   const RoundCamera wanted{lens, field_of_view, viewport_->getActualWidth(), viewport_->getActualHeight()};
-  if (!problemOf(wanted).empty()) return remove();  // a window that is too small to show anything
+  if (!problemOf(wanted).empty()) return remove();  // the window is too small to show anything
   const bool same = !name_.empty() && sharpness == sharpness_ && wanted.lens == camera_.lens &&
                     wanted.field_of_view == camera_.field_of_view && wanted.width == camera_.width &&
                     wanted.height == camera_.height;
@@ -73,10 +73,10 @@ void EndoscopeLens::set(LensKind lens, double field_of_view, double sharpness) {
     remove();
     camera_ = wanted;
     sharpness_ = sharpness;
-    source_ = sourceFor(camera_, sharpness, kLargestSource);
+    source_ = sourceFor(camera_, sharpness, kMaxSource);
     make(source_);
   }
-  // each time: who owns the viewport adapts the camera to the window whenever that changes
+  // each time, because the owner of the viewport adapts the camera to the window
   Ogre::Camera* eye = viewport_->getCamera();
   eye->setAspectRatio(1);
   eye->setFOVy(Ogre::Radian(static_cast<Ogre::Real>(2 * std::atan(source_.half_width))));
@@ -116,7 +116,7 @@ void EndoscopeLens::make(const SquareSource& source) {
   auto& texture = *technique.createTextureDefinition(kSource);
   texture.width = texture.height = static_cast<std::uint32_t>(source.size);
   texture.formatList.push_back(Ogre::PF_BYTE_RGBA);
-  texture.fsaa = false;  // bending the picture blends neighbours anyway
+  texture.fsaa = false;  // the lens blends neighbours anyway
   drawScene(technique, viewport_->getVisibilityMask());
   drawBent(technique, material_);
   if (manager.addCompositor(viewport_, name_) == nullptr) {

@@ -12,10 +12,10 @@ class SceneNode;
 
 namespace vibe {
 
-/// Makes a viewport show what an endoscope shows: bent by its lens, black outside of a circle, lit by its lamp: scheme
-/// kEndoscopeScheme for materials of this package, a light in the scene for those of others. The viewport's camera has
-/// to be where the lens is; its angles are set here. Ends when deleted or when the viewport is: rviz takes its window
-/// down before its views. The scene has to outlive it.
+/// Makes a viewport show the image of an endoscope: with the projection of its lens, black outside of a circle, and lit
+/// by its lamp (scheme kEndoscopeScheme for materials of this package, a light in the scene for other materials). The
+/// camera of the viewport must be at the lens; its angles are set here. The effect ends when this object or the
+/// viewport is deleted; rviz deletes its window before its views. The scene must outlive this object.
 class EndoscopeLens : private Ogre::Viewport::Listener {
  public:
   explicit EndoscopeLens(Ogre::Viewport& viewport);
@@ -23,13 +23,13 @@ class EndoscopeLens : private Ogre::Viewport::Listener {
   EndoscopeLens(const EndoscopeLens&) = delete;
   EndoscopeLens& operator=(const EndoscopeLens&) = delete;
 
-  /// To be called before each picture; cheap where nothing has changed, the size of the viewport included.
-  /// @param field_of_view  across the circle, within kLeastFieldOfView and kMostFieldOfView [rad]
+  /// Call before each frame; cheap if nothing has changed, including the size of the viewport.
+  /// @param field_of_view  across the circle, within kMinFieldOfView and kMaxFieldOfView [rad]
   /// @param sharpness      as in sourceFor()
-  /// @throws std::runtime_error  the graphics card cannot do it
+  /// @throws std::runtime_error  the graphics card does not support it
   void set(LensKind lens, double field_of_view, double sharpness);
 
-  /// The camera whose picture the viewport shows, in pixels of the viewport, as of the last set().
+  /// The camera whose image the viewport shows, in pixels of the viewport, as of the last set().
   const RoundCamera& camera() const { return camera_; }
 
  private:

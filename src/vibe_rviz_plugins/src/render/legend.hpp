@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/colour_map.hpp"
+#include "vibe_rviz_plugins/geometry/colour_map.hpp"
 
 namespace Ogre {
 class Overlay;
@@ -15,7 +15,7 @@ class OverlayContainer;
 
 namespace vibe {
 
-/// A colour and what it stands for.
+/// A colour and its meaning.
 struct LegendEntry {
   PackedColour colour;
   std::string text;
@@ -26,7 +26,7 @@ QImage drawnLegend(const std::string& title, const ColourMap& map);
 /// The legend of a list of colours.
 QImage drawnLegend(const std::string& title, const std::vector<LegendEntry>& entries);
 
-/// A picture that stays in a corner of rviz' views. To be used from the thread that renders.
+/// An image in a corner of the views of rviz. To be used from the thread that renders.
 class Legend {
  public:
   enum class Corner { BottomLeft, BottomRight };

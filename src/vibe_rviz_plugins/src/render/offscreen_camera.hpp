@@ -17,10 +17,10 @@ namespace vibe {
 
 class EndoscopeLens;
 
-/// Takes endoscopic pictures of a scene into memory, with no window. To be used from the thread that renders.
+/// Renders endoscope images of a scene into memory, without a window. To be used from the thread that renders.
 class OffscreenCamera {
  public:
-  /// @param scene      outlives this
+  /// @param scene      must outlive this object
   /// @param sharpness  as in sourceFor()
   /// @throws std::runtime_error  the graphics system cannot do it
   OffscreenCamera(Ogre::SceneManager& scene, const RoundCamera& round, double sharpness);

@@ -13,8 +13,8 @@ class Shape;
 
 namespace vibe {
 
-/// A hand at the tissue: a ball where it holds, a thin line to where it wants the tissue, an arrow of the force with
-/// its newtons beside it. All places in one frame. To be used from the thread that renders.
+/// The pull spring: a ball at the held patch, a thin line to the target, and an arrow of the force with its magnitude
+/// beside it. All positions are in one frame. To be used from the thread that renders.
 class PullVisual {
  public:
   explicit PullVisual(Ogre::SceneManager& scene);
@@ -22,10 +22,10 @@ class PullVisual {
   PullVisual(const PullVisual&) = delete;
   PullVisual& operator=(const PullVisual&) = delete;
 
-  /// Where the frame of the places is in the fixed frame.
+  /// Sets the pose of the frame of the positions in the fixed frame.
   void setPose(const Ogre::Vector3& position, const Ogre::Quaternion& orientation);
-  /// @param place   where the tissue is held [m]
-  /// @param target  where it is wanted [m]
+  /// @param place   position of the held patch [m]
+  /// @param target  end of the spring [m]
   void showPull(const Eigen::Vector3d& place, const Eigen::Vector3d& target);
   /// @param force  [N], zero: no arrow
   /// @param scale  length of the arrow per force [m/N]

@@ -5,17 +5,16 @@
 
 namespace vibe {
 
-/// Ogre's resource group of this package: materials and shaders of media/ and everything made at run time.
+/// Resource group of this package in Ogre: materials and shaders of media/ and everything created at run time.
 extern const char* const kResourceGroup;
-/// Material scheme of a viewport that shows what the endoscope sees: its own light, no sight through walls from inside.
+/// Material scheme of the endoscope view: lit by its own lamp, walls opaque from inside.
 extern const char* const kEndoscopeScheme;
 
-/// Makes the materials of this package known to Ogre, once. To be called first by everything that draws, after Ogre has
-/// a render window.
+/// Registers the materials of this package with Ogre, once. Call it before drawing, after Ogre has a render window.
 /// @throws std::runtime_error  the package's media folder cannot be found
 void loadResources();
 
-/// A name that nothing else in this process has.
+/// A name that is unique in this process.
 std::string uniqueName(const std::string& what);
 
 /// A copy of a material of media/vibe.material, so that one display's settings do not change another's. The caller

@@ -1,14 +1,14 @@
 #pragma once
-#include "geometry/coloured_shape.hpp"
 #include "render/dynamic_mesh.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 
-/// A shape on the graphics card that sends only what is new: all of it when its triangles change, else vertices and
-/// colours as far as they differ from what is there.
+/// A shape on the graphics card. Everything is sent if the triangles change, otherwise only the vertices or colours
+/// that differ.
 class ShapeView {
  public:
-  /// @param parent  node to hang it on; outlives this
+  /// @param parent  parent node; must outlive this object
   ShapeView(Ogre::SceneNode& parent, Ogre::MaterialPtr material);
 
   void show(const ColouredShape& shape);

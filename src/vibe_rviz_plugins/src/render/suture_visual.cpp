@@ -16,7 +16,7 @@ Ogre::MaterialPtr with(Ogre::MaterialPtr material, const char* parameter, float 
   return material;
 }
 
-/// Drawn before all that is sorted by distance: the organ's glassy wall must not lie now over the blood, now under it.
+/// Drawn before everything that is sorted by distance; otherwise the order of blood and transparent wall would flicker.
 Ogre::MaterialPtr beforeGlass(Ogre::MaterialPtr material) {
   for (Ogre::Technique* technique : material->getTechniques())
     technique->getPass(0)->setTransparentSortingEnabled(false);
@@ -45,7 +45,7 @@ SutureVisual::~SutureVisual() {
 void SutureVisual::addText(const std::string& text) {
   Text added{parent_.createChildSceneNode(), std::make_unique<rviz::MovableText>(text)};
   added.text->setTextAlignment(rviz::MovableText::H_CENTER, rviz::MovableText::V_CENTER);
-  added.text->showOnTop(true);  // a technique is to be read from outside too
+  added.text->showOnTop(true);  // legible from outside the organ too
   added.node->attachObject(added.text.get());
   texts_.push_back(std::move(added));
 }
@@ -62,7 +62,7 @@ void SutureVisual::showLabels(const std::vector<SutureLabel>& labels, double hei
   for (std::size_t k = 0; k < labels.size(); ++k) {
     texts_[k].node->setPosition(labels[k].place);
     if (texts_[k].text->getCaption() != labels[k].text) texts_[k].text->setCaption(labels[k].text);
-    texts_[k].text->setCharacterHeight(static_cast<float>(height));  // these do nothing when they are the same
+    texts_[k].text->setCharacterHeight(static_cast<float>(height));  // no effect if unchanged
     texts_[k].text->setSpaceWidth(static_cast<float>(0.3 * height));
   }
 }

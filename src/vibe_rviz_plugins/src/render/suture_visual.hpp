@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/coloured_shape.hpp"
 #include "render/shape_view.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace Ogre {
 class SceneNode;
@@ -23,11 +23,11 @@ struct SutureLabel {
   Ogre::Vector3 place;  ///< in the frame of the node [m]
 };
 
-/// What is drawn of sutures, in Ogre: solid things, signs that shine by themselves, blood, and texts. To be used from
+/// Sutures in a scene of Ogre: solid bodies, self-luminous symbols, blood, and labels. To be used from
 /// the thread that renders.
 class SutureVisual {
  public:
-  /// @param parent  node to hang it on; outlives this
+  /// @param parent  parent node; must outlive this object
   /// @throws std::runtime_error  the package's media folder cannot be found
   explicit SutureVisual(Ogre::SceneNode& parent);
   ~SutureVisual();
@@ -37,7 +37,7 @@ class SutureVisual {
   void showSolids(const ColouredShape& shape) { solids_->show(shape); }
   void showSigns(const ColouredShape& shape) { signs_->show(shape); }
   void showBlood(const ColouredShape& shape) { blood_->show(shape); }
-  /// @param height  of a letter [m]
+  /// @param height  of the letters [m]
   void showLabels(const std::vector<SutureLabel>& labels, double height);
   void clear();
 

@@ -12,9 +12,9 @@
 namespace vibe {
 namespace {
 
-constexpr double kEdgeAlpha = 0.9;  // a wall seen from the side is hardly transparent
+constexpr double kEdgeAlpha = 0.9;  // opacity of a wall at grazing angles
 constexpr double kGrain = 0.25;
-constexpr float kFill = 0.16F, kFillOfData = 0.5F;  // light from everywhere
+constexpr float kFill = 0.16F, kFillOfData = 0.5F;  // ambient light
 
 Ogre::AxisAlignedBox boxAround(const Eigen::AlignedBox3f& bounds) {
   if (bounds.isEmpty()) return Ogre::AxisAlignedBox::BOX_NULL;
@@ -35,7 +35,7 @@ TissueVisual::TissueVisual(Ogre::SceneNode& parent)
       outside_(copyMaterial("vibe/tissue_outside")),
       wire_(copyMaterial("vibe/wire")),
       drawn_(parent, {inside_, outside_}),
-      bones_(parent, {wire_}),
+      mesh_lines_(parent, {wire_}),
       points_(std::make_unique<rviz::PointCloud>()) {
   points_->setRenderMode(rviz::PointCloud::RM_SPHERES);
   node_.attachObject(points_.get());
@@ -52,7 +52,7 @@ void TissueVisual::clear() {
   has_frame_ = false;
   mesh_ = {};
   surface_.reset(), colours_.reset();
-  drawn_.setTopology({}, 0), bones_.setTopology({}, 0);
+  drawn_.setTopology({}, 0), mesh_lines_.setTopology({}, 0);
   points_->clear();
 }
 
@@ -72,7 +72,7 @@ void TissueVisual::setFrame(const TissueFrame& frame) {
   drawn_.setVisible(look_.surface);
   if (look_.surface) sendSurface(frame_);
   if (look_.particles) sendParticles(frame_);
-  if (look_.mesh) sendBones(frame_);
+  if (look_.mesh) sendMesh(frame_);
 }
 
 void TissueVisual::sendSurface(const TissueFrame& frame) {
@@ -97,20 +97,20 @@ void TissueVisual::sendParticles(const TissueFrame& frame) {
   points_->addPoints(points.data(), static_cast<std::uint32_t>(points.size()));
 }
 
-void TissueVisual::sendBones(const TissueFrame& frame) {
-  if (bones_.triangleCount() == 0) bones_.setTopology(mesh_.particle_triangles, mesh_.particle_count);
-  bone_vertices_.resize(mesh_.particle_count);
+void TissueVisual::sendMesh(const TissueFrame& frame) {
+  if (mesh_lines_.triangleCount() == 0) mesh_lines_.setTopology(mesh_.particle_triangles, mesh_.particle_count);
+  mesh_vertices_.resize(mesh_.particle_count);
   for (std::size_t i = 0; i < mesh_.particle_count; ++i)
-    bone_vertices_[i] = {{frame.positions[3 * i], frame.positions[3 * i + 1], frame.positions[3 * i + 2]}, {0, 0, 1}};
-  bones_.setVertices(bone_vertices_.data(), 0, bone_vertices_.size());
-  bones_.setBounds(Ogre::AxisAlignedBox::BOX_INFINITE);
+    mesh_vertices_[i] = {{frame.positions[3 * i], frame.positions[3 * i + 1], frame.positions[3 * i + 2]}, {0, 0, 1}};
+  mesh_lines_.setVertices(mesh_vertices_.data(), 0, mesh_vertices_.size());
+  mesh_lines_.setBounds(Ogre::AxisAlignedBox::BOX_INFINITE);
 }
 
 void TissueVisual::setLook(const TissueLook& look) {
   look_ = look;
   applyLook();
   drawn_.setVisible(look_.surface);
-  bones_.setVisible(look_.mesh);
+  mesh_lines_.setVisible(look_.mesh);
   points_->setVisible(look_.particles);
   if (!has_frame_) return;
   const TissueFrame frame = frame_;
@@ -123,7 +123,7 @@ void TissueVisual::applyLook() {
   applySide(outside_, look_.outside, true);
 }
 
-// What a colour means must not be changed by the tissue's own colour, its pattern or by bright highlights.
+// Data colours must not be changed by the natural colour, the fine pattern or bright highlights.
 void TissueVisual::applySide(Ogre::MaterialPtr& material, const Ogre::ColourValue& natural, bool outside) {
   const bool plain = look_.colouring == Colouring::Tissue;
   const auto opacity = static_cast<float>(outside ? look_.outside_alpha : 1.0);

@@ -24,31 +24,31 @@ struct TissueLook {
   Colouring colouring = Colouring::Tissue;
   std::string map = "viridis";                     ///< see ColourMap
   double min = 0, max = 1;                         ///< values at the ends of the map, in the unit of the colouring
-  Ogre::ColourValue inside{0.86F, 0.47F, 0.42F};   ///< of tissue as it is, mucosa
-  Ogre::ColourValue outside{0.84F, 0.62F, 0.56F};  ///< serosa
-  double outside_alpha = 0.15;  ///< opacity of the wall looked at straight on from outside; 1 all over: opaque
+  Ogre::ColourValue inside{0.86F, 0.47F, 0.42F};   ///< natural colour of the mucosa
+  Ogre::ColourValue outside{0.84F, 0.62F, 0.56F};  ///< natural colour of the serosa
+  double outside_alpha = 0.15;  ///< opacity of the wall seen head-on from outside; with 1 all of it is opaque
   double wetness = 0.4;         ///< strength of highlights, 0 to 1
-  double relief = 0.6e-3;       ///< height of the fine relief, drawn by shading only [m]
+  double relief = 0.6e-3;       ///< height of the fine relief, which is shading only [m]
   bool scars = true;            ///< show marks and burn scars
   bool particles = false;
   double particle_size = 3e-3;  ///< diameter of their balls [m]
-  bool mesh = false;  ///< lines of the simulated mesh, whose particles are the bones of the drawn render surface
+  bool mesh = false;            ///< edges of the simulation mesh, whose particles determine the render surface
 };
 
-/// An organ in a scene of Ogre: set its mesh once, then a frame whenever it has moved. Each frame costs work and
-/// transfer for what has changed only. To be used from the thread that renders.
+/// An organ in a scene of Ogre. Set its mesh once, then a frame whenever it has moved. A frame costs work and transfer
+/// only for what has changed. To be used from the thread that renders.
 class TissueVisual {
  public:
-  /// @param parent  in whose frame positions are; outlives this
+  /// @param parent  frame of all positions; must outlive this object
   /// @throws std::runtime_error  the package's materials are not found
   explicit TissueVisual(Ogre::SceneNode& parent);
   ~TissueVisual();
   TissueVisual(const TissueVisual&) = delete;
   TissueVisual& operator=(const TissueVisual&) = delete;
 
-  /// Another organ; nothing is drawn until a frame comes.
+  /// Sets another organ. Nothing is drawn until the next frame.
   void setMesh(const TissueMesh& mesh);
-  /// @param frame  of the mesh: readParticles() has checked it
+  /// @param frame  of this mesh, checked by readParticles()
   void setFrame(const TissueFrame& frame);
   void setLook(const TissueLook& look);
   /// Draws nothing until the next mesh.
@@ -62,7 +62,7 @@ class TissueVisual {
   void applySide(Ogre::MaterialPtr& material, const Ogre::ColourValue& natural, bool outside);
   void sendSurface(const TissueFrame& frame);
   void sendParticles(const TissueFrame& frame);
-  void sendBones(const TissueFrame& frame);
+  void sendMesh(const TissueFrame& frame);
 
   Ogre::SceneNode& node_;
   TissueLook look_;
@@ -72,8 +72,8 @@ class TissueVisual {
   bool has_frame_ = false;
   std::unique_ptr<DeformableSurface> surface_;
   std::unique_ptr<SurfaceColours> colours_;
-  DynamicMesh drawn_, bones_;
-  std::vector<MovingVertex> bone_vertices_;
+  DynamicMesh drawn_, mesh_lines_;
+  std::vector<MovingVertex> mesh_vertices_;
   std::unique_ptr<rviz::PointCloud> points_;
 };
 

@@ -17,7 +17,7 @@ namespace {
 constexpr int kPatience = 30;  // for Xvfb to be ready, on a busy machine [s]
 
 const char* const kRemedy =
-    "There is no display, and Xvfb, which would stand in for one, does not start; install it with apt-get install "
+    "There is no display, and Xvfb, which would replace it, does not start; install it with apt-get install "
     "xvfb.";
 
 bool displayAnswers() {

@@ -4,7 +4,6 @@
 #include <OgreRay.h>
 #include <OgreViewport.h>
 #include <rviz/display_context.h>
-#include <rviz/frame_manager.h>
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/string_property.h>
 #include <rviz/render_panel.h>
@@ -17,20 +16,21 @@
 
 #include "messages/tissue_messages.hpp"
 #include "render/pull_visual.hpp"
+#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 #include "views/endoscope_view_controller.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr double kNotch = 2e-3 / 120;  // of the wheel, towards or away [m per eighth of a degree]
-constexpr double kPatience = 3;        // without an answer before it is said [s]
+constexpr double kWheelStep = 2e-3 / 120;  // motion in depth [m per eighth of a degree of the wheel]
+constexpr double kAnswerTimeout = 3;       // without an answer before a status says so [s]
 
 Eigen::Vector3d toEigen(const Ogre::Vector3& v) {
   return {v.x, v.y, v.z};
 }
 
-// In rviz' own views, and in that of the endoscope, whose lens bends the picture.
+// Works in the views of rviz and in the endoscope view, whose lens distorts the picture.
 Ogre::Ray viewRay(const rviz::ViewportMouseEvent& event, int x, int y) {
   const Ogre::Camera& camera = *event.viewport->getCamera();
   const auto* scope = dynamic_cast<const EndoscopeViewController*>(event.panel->getViewController());
@@ -46,8 +46,9 @@ Ogre::Ray viewRay(const rviz::ViewportMouseEvent& event, int x, int y) {
 
 PullTissueTool::PullTissueTool() {
   shortcut_key_ = 'p';
-  namespace_ = new rviz::StringProperty("Namespace", "", "Of the simulator's topics; empty: that of rviz.",
-                                        getPropertyContainer(), SLOT(connectAgain()), this);
+  namespace_ =
+      new rviz::StringProperty("Namespace", "", "Namespace of the topics of the simulator; empty: that of rviz.",
+                               getPropertyContainer(), SLOT(connectAgain()), this);
   scale_ = new rviz::FloatProperty("Arrow per newton", 20, "Length of the arrow for a force of 1 N [mm].",
                                    getPropertyContainer());
   scale_->setMin(0.1F);
@@ -86,14 +87,14 @@ void PullTissueTool::connect() {
   const std::string name = namespace_->getStdString();
   const std::string prefix = name.empty() || name.back() == '/' ? name : name + "/";
   topology_trouble_ =
-      "No message on " + handle_.resolveName(prefix + "tissue/topology") + " yet; start a simulator, then pull.";
+      "No message on " + handle_.resolveName(prefix + "tissue/topology") + " yet; start a simulator first.";
   try {
     publisher_ = handle_.advertise<vibe_msgs::TissuePull>(prefix + "tissue/pull", 10);
     topology_subscriber_ = handle_.subscribe(prefix + "tissue/topology", 2, &PullTissueTool::takeTopology, this);
     particles_subscriber_ = handle_.subscribe(prefix + "tissue/particles", 1, &PullTissueTool::takeParticles, this);
     state_subscriber_ = handle_.subscribe(prefix + "tissue/pull_state", 10, &PullTissueTool::takeState, this);
   } catch (const ros::Exception& error) {
-    topology_trouble_ = "The tool's namespace '" + name + "' is no name for topics; change it in Tool Properties.";
+    topology_trouble_ = "The namespace '" + name + "' of the tool is invalid; change it in Tool Properties.";
     say(topology_trouble_);
   }
 }
@@ -108,7 +109,7 @@ void PullTissueTool::disconnect() {
 }
 
 void PullTissueTool::takeTopology(const vibe_msgs::TissueTopology::ConstPtr& message) {
-  letGo();  // the particles have other numbers now
+  letGo();  // the particle numbers have changed
   topology_trouble_ = readTopology(*message, mesh_);
   if (!topology_trouble_.empty()) say(topology_trouble_);
 }
@@ -119,39 +120,39 @@ void PullTissueTool::takeState(const vibe_msgs::TissuePullState::ConstPtr& messa
   const std::string wrong = readPullState(*message, state);
   if (!wrong.empty()) return say(wrong);
   if (state.particle != hold_->particle) return;
-  if (!hold_->felt) hold_->place = state.place;  // the middle of the patch, so that a click alone does not pull
-  hold_->felt = true;
+  if (!hold_->answered) hold_->place = state.position;  // the centre of the patch, so that a click alone does not pull
+  hold_->answered = true;
   hold_->since = ros::WallTime::now();
-  draw(state.place, state.force);
+  draw(state.position, state.force);
 }
 
 void PullTissueTool::update(float, float) {
   if (!hold_) return;
   send(hold_->particle, hold_->target());
-  if ((ros::WallTime::now() - hold_->since).toSec() < kPatience) return;
-  say("The simulator does not answer on " + state_subscriber_.getTopic() + "; is it paused, or its tissue held there?");
+  if ((ros::WallTime::now() - hold_->since).toSec() < kAnswerTimeout) return;
+  say("The simulator does not answer on " + state_subscriber_.getTopic() +
+      "; is it paused, or is the tissue fixed there?");
 }
 
-// Empty if there is tissue to take hold of, else why not.
+// Empty if there is tissue to hold, otherwise the reason why not.
 std::string PullTissueTool::findTissue() {
   if (!topology_trouble_.empty()) return topology_trouble_;
   if (!latest_) return "No message on " + particles_subscriber_.getTopic() + " yet; is the simulator running?";
   if (publisher_.getNumSubscribers() == 0)
-    return "Nobody listens to " + publisher_.getTopic() + "; this simulator cannot be pulled at, or has gone.";
+    return "Nobody subscribes to " + publisher_.getTopic() + "; is the simulator still running?";
   return readParticles(*latest_, mesh_, tissue_);
 }
 
 bool PullTissueTool::framePose(Eigen::Isometry3d& pose) {
-  Ogre::Vector3 position;
-  Ogre::Quaternion orientation;
-  if (!context_->getFrameManager()->getTransform(mesh_.frame_id, ros::Time(), position, orientation)) {
-    say("No transform from '" + mesh_.frame_id + "' to '" + context_->getFixedFrame().toStdString() +
-        "'; choose another fixed frame.");
+  FramePose found;
+  const std::string wrong = lookUpFrame(*context_, mesh_.frame_id, ros::Time(), found);
+  if (!wrong.empty()) {
+    say(wrong);
     return false;
   }
-  visual_->setPose(position, orientation);
-  pose = Eigen::Translation3d(toEigen(position)) *
-         Eigen::Quaterniond(orientation.w, orientation.x, orientation.y, orientation.z);
+  visual_->setPose(found.position, found.orientation);
+  const Ogre::Quaternion& q = found.orientation;
+  pose = Eigen::Translation3d(toEigen(found.position)) * Eigen::Quaterniond(q.w, q.x, q.y, q.z);
   return true;
 }
 
@@ -175,7 +176,7 @@ int PullTissueTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
     letGo();
     return Render;
   }
-  if (hold_ && event.type == QEvent::MouseMove && !event.left()) letGo();  // released where rviz did not see it
+  if (hold_ && event.type == QEvent::MouseMove && !event.left()) letGo();  // released outside of rviz
   if (hold_ && (event.left() || event.wheel_delta != 0)) {
     drag(event);
     return Render;
@@ -183,7 +184,7 @@ int PullTissueTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   const bool of_view = event.middle() || event.right() || event.acting_button != Qt::NoButton || event.wheel_delta != 0;
   if (!of_view || event.left() || event.panel->getViewController() == nullptr) return 0;
   event.panel->getViewController()->handleMouseEvent(event);
-  sayHowTo();  // in place of what the view has just said of its own left button
+  sayHowTo();  // replaces the status text that the view has just set
   return Render;
 }
 
@@ -220,7 +221,7 @@ void PullTissueTool::drag(rviz::ViewportMouseEvent& event) {
     return;
   }
   const Eigen::Vector3d pixel = meetPlane(rayOf(event, frame, 1), hold_->cursor, along).value_or(*under) - *under;
-  const double way = event.wheel_delta != 0 ? kNotch * event.wheel_delta : pixel.norm() * (event.last_y - event.y);
+  const double way = event.wheel_delta != 0 ? kWheelStep * event.wheel_delta : pixel.norm() * (event.last_y - event.y);
   hold_->drag += way * along;
   hold_->cursor = meetPlane(rayOf(event, frame), hold_->cursor + way * along, along).value_or(hold_->cursor);
 }
@@ -249,7 +250,8 @@ void PullTissueTool::draw(const Eigen::Vector3d& place, const Eigen::Vector3d& f
   visual_->showPull(place, hold_->target());
   visual_->showForce(place, force, 1e-3 * static_cast<double>(scale_->getFloat()));
   char text[160];
-  std::snprintf(text, sizeof text, "%.2f N at particle %d. Wheel or Shift: towards you or away. Let go: release.",
+  std::snprintf(text, sizeof text,
+                "%.2f N at particle %d. Wheel or Shift: towards you or away. Release the button to let go.",
                 force.norm(), hold_->particle);
   say(text);
   context_->queueRender();
@@ -260,7 +262,7 @@ void PullTissueTool::say(const std::string& text) {
 }
 
 void PullTissueTool::sayHowTo() {
-  say("Left button: take hold of the tissue and pull it. Wheel or Shift: towards you or away. Middle, right: the "
+  say("Left button: hold and pull the tissue. Wheel or Shift: towards you or away. Middle and right button: move the "
       "view.");
 }
 

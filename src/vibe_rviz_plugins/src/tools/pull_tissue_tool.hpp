@@ -25,8 +25,8 @@ namespace vibe {
 
 class PullVisual;
 
-/// Takes hold of the tissue under the mouse and pulls it, by ordinary commands on tissue/pull. Listens to the tissue
-/// only while it is the tool in use.
+/// Pulls the tissue under the mouse with commands on tissue/pull. Subscribes to the tissue only while it is the active
+/// tool.
 class PullTissueTool : public rviz::Tool {
   Q_OBJECT
 
@@ -44,14 +44,14 @@ class PullTissueTool : public rviz::Tool {
   void connectAgain();
 
  private:
-  /// What the mouse holds. All in the frame of the topology.
+  /// What the mouse holds. Positions are in the frame of the topology.
   struct Hold {
     int particle = -1;
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();   ///< where the tissue was when it was taken [m]
-    Eigen::Vector3d drag = Eigen::Vector3d::Zero();    ///< how far the mouse has gone since [m]
-    Eigen::Vector3d cursor = Eigen::Vector3d::Zero();  ///< what is under the mouse, as deep as the target [m]
-    bool felt = false;                                 ///< the simulator has answered
-    ros::WallTime since;                               ///< of the last answer, or of the beginning
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();   ///< of the tissue when it was grabbed [m]
+    Eigen::Vector3d drag = Eigen::Vector3d::Zero();    ///< motion of the mouse since then [m]
+    Eigen::Vector3d cursor = Eigen::Vector3d::Zero();  ///< point under the mouse at the depth of the target [m]
+    bool answered = false;                             ///< the simulator has answered
+    ros::WallTime since;                               ///< time of the last answer, or of the start
     Eigen::Vector3d target() const { return place + drag; }
   };
 
@@ -62,7 +62,7 @@ class PullTissueTool : public rviz::Tool {
   void takeState(const vibe_msgs::TissuePullState::ConstPtr& message);
   std::string findTissue();
   bool framePose(Eigen::Isometry3d& pose);
-  /// Through the mouse, or as many pixels below it.
+  /// Ray through the mouse, or this number of pixels below it.
   Ray rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below = 0) const;
   Eigen::Vector3d viewDirection(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const;
   void take(const rviz::ViewportMouseEvent& event);
@@ -82,7 +82,7 @@ class PullTissueTool : public rviz::Tool {
   sensor_msgs::PointCloud2::ConstPtr latest_;
   TissueMesh mesh_;
   TissueFrame tissue_;
-  std::string topology_trouble_;  // why there is no mesh; empty: there is one
+  std::string topology_trouble_;  // why there is no mesh; empty if there is one
   std::optional<Hold> hold_;
   std::unique_ptr<PullVisual> visual_;
   bool active_ = false;

@@ -18,6 +18,7 @@
 #include <cmath>
 
 #include "render/optical_frame.hpp"
+#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 
 namespace vibe {
 namespace {
@@ -29,25 +30,27 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 }  // namespace
 
 EndoscopeViewController::EndoscopeViewController() {
-  // Not only because it does nothing: rviz hides it, announces that a little later, and by then crashes if the view has
-  // already given way to another, as on a busy machine.
+  // The property has no effect here, and rviz hides it with a delayed signal that crashes if the view has been
+  // replaced by then, which happens on a busy machine.
   stereo_.reset(takeChild(stereo_enable_));
   frame_ = new rviz::TfFrameProperty("Camera Frame", kFrame,
                                      "Frame of the endoscope's camera: z forward, x right, y down.", this);
   field_of_view_ = new rviz::FloatProperty(
-      "Field of view", kFieldOfView, "Angle across the round picture in degrees; 140 for most gastroscopes.", this);
-  field_of_view_->setMin(static_cast<float>(kLeastFieldOfView / kDegree));
-  field_of_view_->setMax(static_cast<float>(kMostFieldOfView / kDegree));
-  lens_ = new rviz::EnumProperty("Lens", "Equidistant",
-                                 "Equidistant: equal angles are equally wide, as with real endoscopes. Rectilinear: "
-                                 "straight lines stay straight, and the middle is small.",
-                                 this);
+      "Field of view", kFieldOfView, "Angle across the circular image in degrees; most gastroscopes have 140.", this);
+  field_of_view_->setMin(static_cast<float>(kMinFieldOfView / kDegree));
+  field_of_view_->setMax(static_cast<float>(kMaxFieldOfView / kDegree));
+  lens_ = new rviz::EnumProperty(
+      "Lens", "Equidistant",
+      "Equidistant: the radius is proportional to the angle, as in real endoscopes. Rectilinear: "
+      "straight lines stay straight, and the centre is small.",
+      this);
   lens_->addOption("Equidistant", static_cast<int>(LensKind::Equidistant));
   lens_->addOption("Rectilinear", static_cast<int>(LensKind::Rectilinear));
-  sharpness_ = new rviz::FloatProperty("Sharpness", 1,
-                                       "1 draws every detail that the middle of the picture can show; less is faster, "
-                                       "which helps without a graphics card.",
-                                       this);
+  sharpness_ =
+      new rviz::FloatProperty("Sharpness", 1,
+                              "Resolution relative to the centre of the image. 1 draws every detail; less is faster, "
+                              "which helps without a graphics card.",
+                              this);
   sharpness_->setMin(0.2f);
   sharpness_->setMax(2);
   status_ = new rviz::StringProperty("Status", "", "Whether the view can follow the endoscope.", this);
@@ -78,17 +81,14 @@ void EndoscopeViewController::update(float /*dt*/, float /*ros_dt*/) {
 }
 
 void EndoscopeViewController::updateScope() {
-  Ogre::Vector3 place;
-  Ogre::Quaternion turn;
-  const std::string frame = frame_->getFrameStd();
-  if (!context_->getFrameManager()->getTransform(frame, ros::Time(), place, turn)) {
-    tell(QString("There is no transform from '%1' to '%2'; start the simulator and robot_state_publisher, or choose "
-                 "another Camera Frame.")
-             .arg(QString::fromStdString(frame), context_->getFixedFrame()));
+  FramePose pose;
+  const std::string wrong = lookUpFrame(*context_, frame_->getFrameStd(), ros::Time(), pose);
+  if (!wrong.empty()) {
+    tell(QString::fromStdString(wrong));
     return;
   }
-  camera_->setPosition(place);
-  camera_->setOrientation(turn * opticalToOgre());
+  camera_->setPosition(pose.position);
+  camera_->setOrientation(pose.orientation * opticalToOgre());
   if (!broken_) tell("");
 }
 
@@ -107,12 +107,13 @@ void EndoscopeViewController::bendPicture() {
 void EndoscopeViewController::tell(const QString& text) {
   const bool changed = status_->getString() != text;
   if (changed) status_->setString(text);
-  // other messages wipe rviz' status line, so a fault is said again
+  // other messages replace the status line of rviz, so a fault is repeated
   if (changed || !text.isEmpty()) setStatus(text);
 }
 
 void EndoscopeViewController::handleMouseEvent(rviz::ViewportMouseEvent& /*event*/) {
-  if (status_->getString().isEmpty()) setStatus("The view follows the endoscope; choose another type of view to move.");
+  if (status_->getString().isEmpty())
+    setStatus("The view follows the endoscope; choose another type of view to move freely.");
 }
 
 void EndoscopeViewController::reset() {

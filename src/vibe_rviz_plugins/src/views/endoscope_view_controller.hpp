@@ -13,7 +13,7 @@ class TfFrameProperty;
 
 namespace vibe {
 
-/// What the trainee sees: rviz' view from the camera in the endoscope's tip, which it follows.
+/// View of rviz from the camera at the tip of the endoscope, which it follows: what the trainee sees.
 class EndoscopeViewController : public rviz::ViewController {
   Q_OBJECT
  public:
@@ -23,10 +23,10 @@ class EndoscopeViewController : public rviz::ViewController {
   void update(float dt, float ros_dt) override;
   void handleMouseEvent(rviz::ViewportMouseEvent& event) override;
   void reset() override;
-  /// Other views ask the one before them for a target frame; that of the endoscope is not for them.
+  /// Another view that follows asks this one for its target frame; it gets none.
   rviz::Property* subProp(const QString& name) override;
 
-  /// How pixels of the view become rays; null while the picture is not bent by a lens.
+  /// Projection of the lens; null while the view has no lens.
   const RoundCamera* roundCamera() const { return picture_ ? &picture_->camera() : nullptr; }
 
  protected:
@@ -43,10 +43,10 @@ class EndoscopeViewController : public rviz::ViewController {
   rviz::EnumProperty* lens_;
   rviz::FloatProperty* sharpness_;
   rviz::StringProperty* status_;
-  std::unique_ptr<rviz::Property> stereo_;  ///< rviz' own, which has no meaning here
-  rviz::Property no_target_;                ///< what they are told
-  std::unique_ptr<EndoscopeLens> picture_;  ///< only while this is the view in use
-  bool broken_ = false;                     ///< the graphics card cannot do it: said once, not tried again
+  std::unique_ptr<rviz::Property> stereo_;  ///< property of rviz that has no meaning here
+  rviz::Property no_target_;                ///< target frame for other views
+  std::unique_ptr<EndoscopeLens> picture_;  ///< only while this view is active
+  bool broken_ = false;                     ///< the graphics card cannot draw the lens; not tried again
 };
 
 }  // namespace vibe

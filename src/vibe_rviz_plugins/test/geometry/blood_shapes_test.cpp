@@ -37,8 +37,8 @@ Puddle puddleOf(double volume) {
   puddle.up = Vector3d(1, 2, -1).normalized();
   puddle.creep = Vector3d::Zero();
   puddle.volume = volume;
-  puddle.thickest = 2.5e-3;
-  puddle.widest = 1;
+  puddle.max_height = 2.5e-3;
+  puddle.max_radius = 1;
   return puddle;
 }
 
@@ -82,7 +82,7 @@ double volumeOver(const ColouredShape& shape, const Puddle& puddle) {
   return sum;
 }
 
-TEST(Puddle, HoldsWhatWasLost) {
+TEST(Puddle, VolumeIsTheAmountLost) {
   for (const double volume : {1e-9, 1e-8, 1e-7, 6e-7})
     for (const double creep : {0.0, 0.6, 1.0}) {
       Puddle puddle = puddleOf(volume);
@@ -94,13 +94,13 @@ TEST(Puddle, HoldsWhatWasLost) {
     }
 }
 
-TEST(Puddle, GrowsNoWiderThanItMay) {
+TEST(Puddle, RadiusHasAMaximum) {
   Puddle puddle = puddleOf(1e-4);
-  puddle.widest = 0.01;
+  puddle.max_radius = 0.01;
   EXPECT_EQ(puddleRadius(puddle), 0.01);
 }
 
-TEST(Puddle, ADropIsAHalfBall) {
+TEST(Puddle, SmallDropIsAHemisphere) {
   const Puddle puddle = puddleOf(1e-10);
   EXPECT_NEAR(puddleRadius(puddle), std::cbrt(1e-10 * 3 / (2 * kPi)), 0.05 * puddleRadius(puddle));
 }
@@ -119,7 +119,7 @@ TEST(Puddle, CreepsDownwards) {
   EXPECT_GT(below, 1.5 * above);
 }
 
-TEST(Blood, MildGrowsWithWhatWasLost) {
+TEST(Blood, MildBleedingGrowsWithTheAmountLost) {
   Wound wound = woundOf(false);
   double before = 0;
   for (const double amount : {1e-9, 1e-8, 1e-7, 5e-7}) {
@@ -130,7 +130,7 @@ TEST(Blood, MildGrowsWithWhatWasLost) {
   }
 }
 
-TEST(Blood, MildStaysAtItsWoundAndBriskFlies) {
+TEST(Blood, MildBleedingStaysAtTheWoundAndBriskBleedingHasAJet) {
   const double mild = extentAlong(shapeOf(woundOf(false)), Vector3d::UnitX());
   const double brisk = extentAlong(shapeOf(woundOf(true)), Vector3d::UnitX());
   EXPECT_LT(mild, 5e-3);
@@ -141,7 +141,7 @@ TEST(Blood, BriskIsBrighter) {
   EXPECT_GT(meanRed(shapeOf(woundOf(true))), meanRed(shapeOf(woundOf(false))) + 0.15);
 }
 
-TEST(Blood, BriskFallsTheWayOfGravity) {
+TEST(Blood, JetFallsInTheDirectionOfGravity) {
   Wound wound = woundOf(true);
   wound.inward = Vector3d::UnitY();
   for (const Vector3d& down : {Vector3d(-1, 0, 0), Vector3d(0, 0, -1)}) {
@@ -157,7 +157,7 @@ TEST(Blood, BriskFallsTheWayOfGravity) {
 }
 
 /// Blood leaves upwards from the floor, and comes down again.
-TEST(Blood, AFountainRisesAsFarAsItsSpeedLets) {
+TEST(Blood, FountainRisesToTheBallisticHeight) {
   Wound wound = woundOf(true);
   wound.inward = Vector3d::UnitX();
   BloodStyle style;
@@ -190,7 +190,7 @@ TEST(Blood, PulsesWithTheHeartAndOnlyWithTheTimeOfTheMessage) {
 }
 
 /// A jet that pulses changes places, not triangles: nothing but vertices is sent again.
-TEST(Blood, TrianglesStayWhileItPulses) {
+TEST(Blood, TrianglesAreConstantWhileThePulseChanges) {
   BloodStyle style;
   const ColouredShape first = shapeOf(woundOf(true), style);
   for (double time = 0; time < 1; time += 0.05) {
@@ -199,7 +199,7 @@ TEST(Blood, TrianglesStayWhileItPulses) {
   }
 }
 
-TEST(Blood, StoppedIsBrownPaleAndStill) {
+TEST(Blood, StoppedBleedingIsBrownPaleAndConstant) {
   for (const bool brisk : {false, true}) {
     Wound wound = woundOf(brisk);
     const ColouredShape bleeding = shapeOf(wound);
@@ -215,7 +215,7 @@ TEST(Blood, StoppedIsBrownPaleAndStill) {
   }
 }
 
-TEST(Blood, TheWallBelowEndsTheJet) {
+TEST(Blood, JetEndsAtTheWallBelow) {
   SutureScene scene;
   scene.wounds = {woundOf(true)};
   scene.sets.resize(1);
@@ -227,7 +227,7 @@ TEST(Blood, TheWallBelowEndsTheJet) {
   EXPECT_GT(depth, extentAlong(shapeOf(woundOf(true)), Vector3d::UnitX()) + 0.005);
 }
 
-TEST(Blood, NothingLostIsNothing) {
+TEST(Blood, WithoutBleedingNothingIsDrawn) {
   Wound wound = woundOf(false);
   wound.rate = wound.amount = 0;
   EXPECT_TRUE(shapeOf(wound).vertices.empty());

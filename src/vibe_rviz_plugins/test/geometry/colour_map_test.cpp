@@ -1,9 +1,14 @@
-#include "geometry/colour_map.hpp"
+#include "vibe_rviz_plugins/geometry/colour_map.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace vibe {
 namespace {
@@ -19,24 +24,56 @@ double lightness(PackedColour colour) {
   return luminance > 0.008856 ? 116 * std::cbrt(luminance) - 16 : 903.3 * luminance;
 }
 
+using ColourOf = std::function<PackedColour(double)>;  // of a value between 0 and 1
+
+/// Smallest and largest of 16 equal steps, as a share of the mean step in lightness. Even steps: both near 1; a map
+/// that gets darker somewhere: below 0.
+std::pair<double, double> stepsOfLightness(const ColourOf& colour) {
+  const double mean = (lightness(colour(1)) - lightness(colour(0))) / 16;
+  double min = HUGE_VAL, max = -HUGE_VAL;
+  for (int k = 0; k < 16; ++k) {
+    const double step = (lightness(colour((k + 1) / 16.0)) - lightness(colour(k / 16.0))) / mean;
+    min = std::min(min, step), max = std::max(max, step);
+  }
+  return {min, max};
+}
+
+/// The rainbow of old: blue, cyan, green, yellow, red.
+PackedColour rainbow(double value) {
+  return packed(std::clamp(4 * value - 2, 0.0, 1.0), std::clamp(2 - std::abs(4 * value - 2), 0.0, 1.0),
+                std::clamp(2 - 4 * value, 0.0, 1.0));
+}
+
 class EveryMap : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryMap, GetsLighterInEvenSteps) {
   const ColourMap map(GetParam(), 0, 1);
-  const double whole = lightness(map.at(1)) - lightness(map.at(0));
-  EXPECT_GT(whole, 70);
-  for (int k = 0; k < 16; ++k) {
-    const double part = lightness(map.at((k + 1) / 16.0)) - lightness(map.at(k / 16.0));
-    EXPECT_GT(part, 0.5 * whole / 16) << k;
-    EXPECT_LT(part, 1.6 * whole / 16) << k;
-  }
+  const auto [min, max] = stepsOfLightness([&map](double value) { return map.at(value); });
+  EXPECT_GT(lightness(map.at(1)) - lightness(map.at(0)), 70);
+  EXPECT_GT(min, 0.5);
+  EXPECT_LT(max, 1.4);  // measured: 0.510 to 1.257 for magma, 0.885 to 1.287 for the others
 }
 
 INSTANTIATE_TEST_SUITE_P(Maps, EveryMap, testing::ValuesIn(colourMapNames()));
 
-TEST(ColourMap, ARainbowWouldNotPass) {
-  const double yellow = lightness(packed(1, 1, 0)), red = lightness(packed(1, 0, 0));
-  EXPECT_LT(red, yellow);  // the upper half of the rainbow gets darker
+TEST(ColourMap, RainbowFailsTheCheckOfEvenSteps) {
+  const auto [min, max] = stepsOfLightness(rainbow);
+  EXPECT_LT(min, 0);  // its upper half gets darker
+  EXPECT_GT(max, 1.6);
+}
+
+// The values that matplotlib gives for viridis, magma and cividis at 0.25, 0.5 and 0.75.
+TEST(ColourMap, ColoursAreThoseOfMatplotlib) {
+  const std::map<std::string, std::array<std::array<int, 3>, 3>> expected{
+      {"viridis", {{{59, 82, 139}, {33, 145, 140}, {94, 201, 98}}}},
+      {"magma", {{{81, 18, 124}, {183, 55, 121}, {252, 137, 97}}}},
+      {"cividis", {{{67, 78, 108}, {125, 124, 120}, {188, 174, 108}}}}};
+  for (const auto& [name, colours] : expected)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const PackedColour colour = ColourMap(name, 0, 1).at(0.25 * static_cast<double>(k + 1));
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        EXPECT_NEAR(static_cast<int>(colour >> (8 * channel) & 255U), colours[k][channel], 2) << name << " " << k;
+    }
 }
 
 TEST(ColourMap, EndsHoldWhatLiesOutside) {

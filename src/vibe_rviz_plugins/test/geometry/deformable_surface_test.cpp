@@ -40,13 +40,13 @@ float worstNormal(std::uint32_t rows, std::uint32_t around) {
   return worst;
 }
 
-TEST(DeformableSurface, NormalsOfABallBecomeItsRadiiAsTheMeshGetsFiner) {
+TEST(DeformableSurface, NormalsOfABallConvergeToTheRadialDirection) {
   const float coarse = worstNormal(20, 40), fine = worstNormal(40, 80);
   EXPECT_LT(coarse, 0.04F);
   EXPECT_LT(fine, 0.6F * coarse);
 }
 
-TEST(DeformableSurface, TurningTheOrganTurnsItsNormals) {
+TEST(DeformableSurface, NormalsRotateWithTheOrgan) {
   const TissueMesh mesh = test::subdividedBall(20, 30);
   DeformableSurface still(mesh), turned(mesh);
   still.update(mesh.rest);
@@ -59,7 +59,7 @@ TEST(DeformableSurface, TurningTheOrganTurnsItsNormals) {
   }
 }
 
-TEST(DeformableSurface, NothingMovedMeansNothingToSend) {
+TEST(DeformableSurface, WithoutMotionNothingIsSent) {
   const TissueMesh mesh = test::subdividedBall(20, 30);
   DeformableSurface surface(mesh);
   surface.update(mesh.rest);
@@ -68,7 +68,7 @@ TEST(DeformableSurface, NothingMovedMeansNothingToSend) {
 
 class PartlyMoved : public testing::TestWithParam<bool> {};
 
-TEST_P(PartlyMoved, APatchLooksAsIfEverythingHadBeenDrawnAnew) {
+TEST_P(PartlyMoved, ResultEqualsThatOfAFullUpdate) {
   const TissueMesh mesh = GetParam() ? test::subdividedBall(20, 30) : test::ballMesh(20, 30);
   DeformableSurface kept(mesh), fresh(mesh);
   kept.update(mesh.rest);
@@ -81,7 +81,7 @@ TEST_P(PartlyMoved, APatchLooksAsIfEverythingHadBeenDrawnAnew) {
   EXPECT_LT(sent.count(), mesh.vertex_count / 2);
 }
 
-TEST_P(PartlyMoved, WhatIsNotSentHasNotChanged) {
+TEST_P(PartlyMoved, VerticesThatAreNotSentHaveNotChanged) {
   const TissueMesh mesh = GetParam() ? test::subdividedBall(20, 30) : test::ballMesh(20, 30);
   DeformableSurface surface(mesh);
   surface.update(mesh.rest);
@@ -98,7 +98,7 @@ TEST_P(PartlyMoved, WhatIsNotSentHasNotChanged) {
 
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutSkin, PartlyMoved, testing::Bool());
 
-TEST(DeformableSurface, BoundsHoldEveryVertexAndNotMore) {
+TEST(DeformableSurface, BoundsAreTight) {
   const TissueMesh mesh = test::ballMesh(21, 40);
   DeformableSurface surface(mesh);
   EXPECT_TRUE(surface.bounds().isEmpty());

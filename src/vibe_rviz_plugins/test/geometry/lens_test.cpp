@@ -37,7 +37,7 @@ TEST_P(BothLenses, CircleTouchesTheNearerEdgesAndIsHalfTheFieldOfViewFromTheAxis
   }
 }
 
-TEST_P(BothLenses, MiddleShowsTheAxisAndItsNeighboursAreOneFocalLengthApartPerRadian) {
+TEST_P(BothLenses, CentreIsTheAxisAndItsScaleIsTheFocalLengthPerRadian) {
   const RoundCamera round = camera(GetParam());
   EXPECT_LT((pixelOf(round, {0, 0, 0.1}) - round.middle()).norm(), 1e-12);
   EXPECT_LT((rayOf(round, round.middle()) - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
@@ -72,9 +72,10 @@ TEST_P(BothLenses, NumbersOfCameraInfoProjectAsThePictureDoes) {
 TEST(Lens, EquidistantEnlargesTheMiddleAndRectilinearTheRim) {
   EXPECT_NEAR(focalLength(camera(LensKind::Equidistant)), 240 / (70 * kDegree), 1e-9);
   EXPECT_NEAR(focalLength(camera(LensKind::Rectilinear)), 240 / std::tan(70 * kDegree), 1e-9);
-  // half of the field of view is half of the circle with the one, less with the other
+  // half of the field of view is half of the circle with the one, about a quarter with the other
   EXPECT_NEAR(radiusAt(camera(LensKind::Equidistant), 35 * kDegree), 120, 1e-9);
-  EXPECT_LT(radiusAt(camera(LensKind::Rectilinear), 35 * kDegree), 70);
+  EXPECT_NEAR(radiusAt(camera(LensKind::Rectilinear), 35 * kDegree),
+              240 * std::tan(35 * kDegree) / std::tan(70 * kDegree), 1e-9);
 }
 
 TEST(Lens, RightCameraOfAPairSeesPointsDisplacedByFocalLengthTimesBaselineOverDepth) {
@@ -89,14 +90,14 @@ TEST(Lens, RightCameraOfAPairSeesPointsDisplacedByFocalLengthTimesBaselineOverDe
   EXPECT_EQ(numbersOf(round, 0).p[3], 0);
 }
 
-TEST(Lens, BehindARectilinearCameraIsNowhereAndBehindAnEquidistantOneIsFarOut) {
+TEST(Lens, PointBehindTheCameraHasNoPixelIfRectilinearAndADistantOneIfEquidistant) {
   EXPECT_TRUE(std::isnan(pixelOf(camera(LensKind::Rectilinear), {0.01, 0, -0.01}).x()));
   const Eigen::Vector2d pixel = pixelOf(camera(LensKind::Equidistant), {0.01, 0, -0.01});
   EXPECT_NEAR((pixel - camera(LensKind::Equidistant).middle()).norm(), 240 * 135 / 70., 1e-9);
   EXPECT_TRUE(std::isnan(pixelOf(camera(LensKind::Equidistant), {0, 0, 0}).x()));
 }
 
-TEST_P(BothLenses, SourceIsAsSharpInTheMiddleAndHoldsTheCircle) {
+TEST_P(BothLenses, SourceHasTheSharpnessOfTheCentreAndContainsTheCircle) {
   const RoundCamera round = camera(GetParam());
   for (const double sharpness : {0.5, 1., 2.}) {
     const SquareSource source = sourceFor(round, sharpness, 16384);
@@ -109,13 +110,21 @@ TEST_P(BothLenses, SourceIsAsSharpInTheMiddleAndHoldsTheCircle) {
   EXPECT_EQ(sourceFor(round, 100, 2048).size, 2048);
 }
 
-TEST(Lens, SaysWhatIsWrong) {
-  EXPECT_EQ(problemOf(camera(LensKind::Equidistant)), "");
-  EXPECT_NE(problemOf(camera(LensKind::Equidistant, 171)), "");
-  EXPECT_NE(problemOf(camera(LensKind::Rectilinear, 9)), "");
-  EXPECT_NE(problemOf(camera(LensKind::Rectilinear, std::nan(""))), "");
-  EXPECT_NE(problemOf(camera(LensKind::Rectilinear, 140, 15, 480)), "");
-  EXPECT_NE(problemOf(camera(LensKind::Rectilinear, 140, 640, 4097)), "");
+TEST(Lens, LimitsOfFieldOfViewAndSizeAreInside) {
+  for (const double radians : {kMinFieldOfView, kMaxFieldOfView})
+    EXPECT_EQ(problemOf({LensKind::Rectilinear, radians, 640, 480}), "");
+  for (const int size : {16, 4096}) EXPECT_EQ(problemOf(camera(LensKind::Equidistant, 140, size, size)), "");
+}
+
+TEST(Lens, ProblemNamesTheQuantityAndItsRange) {
+  const std::string angle = "the field of view must be 10 to 170 degrees";
+  const std::string size = "width and height must be 16 to 4096 pixels";
+  for (const double degrees : {-140., 0., 9.99, 170.01, std::nan(""), HUGE_VAL})
+    EXPECT_EQ(problemOf(camera(LensKind::Equidistant, degrees)), angle) << degrees;
+  for (const int edge : {-640, 0, 15, 4097}) {
+    EXPECT_EQ(problemOf(camera(LensKind::Rectilinear, 140, edge, 480)), size) << edge;
+    EXPECT_EQ(problemOf(camera(LensKind::Rectilinear, 140, 640, edge)), size) << edge;
+  }
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ Ray towards(const Vector3d& origin, const Vector3d& place) {
   return {origin, (place - origin).normalized()};
 }
 
-TEST(RayHit, fromOutsideTheNearFaceIsMet) {
+TEST(RayHit, NearFaceIsHitFromOutside) {
   const auto hit = firstHit(towards({3, 0.1, 0.2}, {0.5, 0.1, 0.2}), kCube, kFaces);
   ASSERT_TRUE(hit);
   EXPECT_NEAR(hit->distance, 2.5, 1e-12);
@@ -29,13 +29,13 @@ TEST(RayHit, fromOutsideTheNearFaceIsMet) {
   EXPECT_EQ(hit->particle, 6U);  // the corner at (.5, .5, .5)
 }
 
-TEST(RayHit, fromInsideTheWallIsMetFromBehind) {
+TEST(RayHit, WallIsHitFromInside) {
   const auto hit = firstHit(towards({0.1, 0, 0}, {-2, 0.3, -0.1}), kCube, kFaces);
   ASSERT_TRUE(hit);
   EXPECT_NEAR(hit->place.x(), -0.5, 1e-12);
 }
 
-TEST(RayHit, whatLiesBehindOrBesideIsNotMet) {
+TEST(RayHit, TrianglesBehindAndBesideAreNotHit) {
   EXPECT_FALSE(firstHit(towards({3, 0, 0}, {4, 0, 0}), kCube, kFaces));
   EXPECT_FALSE(firstHit(towards({3, 0, 0}, {0.5, 0.51, 0}), kCube, kFaces));
   EXPECT_TRUE(firstHit(towards({3, 0, 0}, {0.5, 0.49, 0}), kCube, kFaces));
@@ -43,7 +43,7 @@ TEST(RayHit, whatLiesBehindOrBesideIsNotMet) {
 }
 
 // No ray from inside may escape, not even through edges and corners.
-TEST(RayHit, aClosedSurfaceHasNoHoles) {
+TEST(RayHit, ClosedSurfaceHasNoHoles) {
   for (int i = 0; i <= 40; ++i)
     for (int j = 0; j <= 40; ++j) {
       const Vector3d aim(0.5, -0.5 + i / 40.0, -0.5 + j / 40.0);
@@ -51,7 +51,7 @@ TEST(RayHit, aClosedSurfaceHasNoHoles) {
     }
 }
 
-TEST(RayHit, movesWithTheSurface) {
+TEST(RayHit, HitMovesWithTheSurface) {
   const Eigen::Isometry3d motion =
       Eigen::Translation3d(1, -2, 3) * Eigen::AngleAxisd(1.1, Vector3d(1, 2, 3).normalized());
   std::vector<float> moved;
@@ -68,7 +68,7 @@ TEST(RayHit, movesWithTheSurface) {
   EXPECT_NEAR(there->distance, here->distance, 1e-6);
 }
 
-TEST(RayHit, badTrianglesArePassedOver) {
+TEST(RayHit, InvalidTrianglesAreSkipped) {
   std::vector<float> positions = kCube;
   std::vector<std::uint32_t> faces = {1, 1, 2, 900, 901, 902};  // no area; no such corners
   faces.insert(faces.end(), kFaces.begin(), kFaces.end());
@@ -80,7 +80,7 @@ TEST(RayHit, badTrianglesArePassedOver) {
   EXPECT_NEAR(hit->place.x(), -0.5, 1e-12);
 }
 
-TEST(MeetPlane, isOnTheRayAndInThePlane) {
+TEST(MeetPlane, PointIsOnTheRayAndInThePlane) {
   const Ray ray = towards({1, 2, 3}, {0, 0, 0});
   const Vector3d place(0.3, 0.1, -0.2), normal(0.2, 1, 0.5);
   const auto met = meetPlane(ray, place, normal);
@@ -89,7 +89,7 @@ TEST(MeetPlane, isOnTheRayAndInThePlane) {
   EXPECT_LT((*met - ray.origin).normalized().cross(ray.direction).norm(), 1e-12);
 }
 
-TEST(MeetPlane, nothingAlongOrBehind) {
+TEST(MeetPlane, ParallelAndRecedingRaysMeetNothing) {
   EXPECT_FALSE(meetPlane({{0, 0, 1}, {1, 0, 0}}, {0, 0, 0}, {0, 0, 1}));
   EXPECT_FALSE(meetPlane({{0, 0, 1}, {0, 0, 1}}, {0, 0, 0}, {0, 0, 1}));
   EXPECT_TRUE(meetPlane({{0, 0, 1}, {0, 0, -1}}, {0, 0, 0}, {0, 0, 1}));

@@ -1,9 +1,9 @@
-#include "geometry/revolved.hpp"
+#include "vibe_rviz_plugins/geometry/revolved.hpp"
 
 #include <gtest/gtest.h>
 
-#include "geometry/tube.hpp"
 #include "shape_measures.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
 namespace {
@@ -64,7 +64,7 @@ TEST(Revolved, ABobbinHasRimsAndAWaist) {
   EXPECT_LT(waist, 0.7 * rim);
 }
 
-TEST(Revolved, AProfileOfOnePointIsNothing) {
+TEST(Revolved, ProfileOfOnePointDrawsNothing) {
   ColouredShape shape;
   appendRevolved({{0, 0.1}}, kCentre, kAxis, packed(1, 1, 1), 8, shape);
   EXPECT_TRUE(shape.vertices.empty());

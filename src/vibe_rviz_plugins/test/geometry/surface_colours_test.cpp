@@ -16,7 +16,7 @@ TissueFrame frameOf(const TissueMesh& mesh) {
   return frame;
 }
 
-TEST(SurfaceColours, TissueThatNothingHappenedToIsWhiteAndSentOnce) {
+TEST(SurfaceColours, NaturalTissueIsWhiteAndSentOnce) {
   const TissueMesh mesh = test::ballMesh(10, 12);
   SurfaceColours colours(mesh);
   const TissueFrame frame = frameOf(mesh);
@@ -25,7 +25,7 @@ TEST(SurfaceColours, TissueThatNothingHappenedToIsWhiteAndSentOnce) {
   EXPECT_TRUE(colours.update(frame).empty());
 }
 
-TEST(SurfaceColours, AMarkChangesAlphaOfItsVertexOnly) {
+TEST(SurfaceColours, MarkChangesAlphaOfItsVertexOnly) {
   const TissueMesh mesh = test::ballMesh(10, 12);
   SurfaceColours colours(mesh);
   TissueFrame frame = frameOf(mesh);
@@ -38,7 +38,7 @@ TEST(SurfaceColours, AMarkChangesAlphaOfItsVertexOnly) {
   EXPECT_EQ(colours.colours()[51], 0xffffffffU);
 }
 
-TEST(SurfaceColours, AMarkSpreadsOverTheSkinByItsWeights) {
+TEST(SurfaceColours, MarkIsInterpolatedOnTheRenderSurface) {
   const TissueMesh mesh = test::subdividedBall(10, 12);
   SurfaceColours colours(mesh);
   TissueFrame frame = frameOf(mesh);
@@ -62,7 +62,7 @@ TEST(SurfaceColours, StrainFollowsTheMapAndItsRange) {
   EXPECT_NE(colours.colours()[2], colours.colours()[3]);
 }
 
-TEST(SurfaceColours, WhatATopologyDoesNotTellIsDrawnAsTissue) {
+TEST(SurfaceColours, MissingDataIsDrawnAsNaturalTissue) {
   const TissueMesh mesh = test::ballMesh(10, 12);  // without anatomy
   TissueFrame frame;
   frame.positions = mesh.rest;
@@ -75,7 +75,7 @@ TEST(SurfaceColours, WhatATopologyDoesNotTellIsDrawnAsTissue) {
   }
 }
 
-TEST(SurfaceColours, RegionsHaveColoursOfTheirOwnAndUnknownNumbersNone) {
+TEST(SurfaceColours, RegionsHaveDistinctColoursAndUnknownNumbersNone) {
   TissueMesh mesh = test::ballMesh(10, 12);
   mesh.region.assign(mesh.particle_count, 2);
   mesh.region[5] = 3;

@@ -60,7 +60,7 @@ TEST(SutureShapes, ThreadHasItsTrueDiameter) {
   }
 }
 
-TEST(SutureShapes, ColourTellsTension) {
+TEST(SutureShapes, ColourShowsTension) {
   SutureSet set = corner();
   const SutureStyle style = threadOnly();
   const auto colours = coloursOf(shapeOf(set, style));
@@ -70,7 +70,7 @@ TEST(SutureShapes, ColourTellsTension) {
   EXPECT_EQ(coloursOf(shapeOf(set, style)).count(style.tension_map.at(1.5)), 0u);
 }
 
-TEST(SutureShapes, SlackThreadIsBandedAndTenseIsNot) {
+TEST(SutureShapes, SlackThreadHasBandsAndTautThreadHasNone) {
   SutureSet set = corner();
   for (const ThreadColour colouring : {ThreadColour::Tension, ThreadColour::One, ThreadColour::PerSuture}) {
     SutureStyle style = threadOnly();
@@ -134,7 +134,7 @@ TEST(SutureShapes, FullAndPartialBitesDifferInShapeAndColour) {
   EXPECT_GT(nearest(rings), nearest(balls));  // a ring is open in its middle
 }
 
-TEST(SutureShapes, PartsAreDrawnOnlyWhenWanted) {
+TEST(SutureShapes, PartsAreDrawnOnlyIfSelected) {
   SutureSet set = corner();
   set.has_t_tag = set.has_cinch = true;
   set.t_tag = set.bites[2].place, set.cinch = set.bites[0].place;
@@ -169,7 +169,7 @@ TEST(SutureShapes, LinksJoinTheirBites) {
   EXPECT_TRUE(shape.vertices.empty());
 }
 
-TEST(SutureShapes, BitesInOnePlaceAreDrawnToo) {
+TEST(SutureShapes, CoincidentBitesAreDrawn) {
   SutureSet set = corner();
   for (SutureBite& bite : set.bites) bite.place.setZero(), bite.inward.setZero();
   for (ThreadPiece& piece : set.pieces)
@@ -186,7 +186,7 @@ TEST(SutureShapes, BitesInOnePlaceAreDrawnToo) {
   EXPECT_TRUE(isSound(links));
 }
 
-TEST(SutureShapes, LabelsTellTechniqueAndWhatIsWrong) {
+TEST(SutureShapes, LabelsShowTechniqueAndFaults) {
   SutureSet set = corner();
   EXPECT_EQ(labelOf(set, 0), "1: 3 bites");
   set.bites.resize(1);
@@ -199,7 +199,7 @@ TEST(SutureShapes, LabelsTellTechniqueAndWhatIsWrong) {
   EXPECT_NE(labelOf(set, 1).find("broken"), std::string::npos);
 }
 
-TEST(SutureShapes, LabelsStandInTheLumen) {
+TEST(SutureShapes, LabelsAreInTheLumen) {
   SutureSet set = corner();
   EXPECT_LT((labelPlace(set, 0.01) - Vector3d(0.04 / 3, 0.02 / 3, 0.01)).norm(), 1e-12);
   for (SutureBite& bite : set.bites) bite.inward.setZero();
@@ -207,7 +207,7 @@ TEST(SutureShapes, LabelsStandInTheLumen) {
   EXPECT_EQ(labelPlace({}, 0.01), Vector3d::Zero());
 }
 
-TEST(SutureFrame, DirectionsTurnWithTheSuture) {
+TEST(SutureFrame, DirectionsRotateWithTheSuture) {
   SutureSet set = corner();
   const Eigen::AngleAxisd turn(0.8, Vector3d(1, 2, 3).normalized());
   SutureSet turned = set;
@@ -221,7 +221,7 @@ TEST(SutureFrame, DirectionsTurnWithTheSuture) {
   EXPECT_LT(std::abs(planeNormal(set).dot(planeNormal(turned))), 0.99);  // control: it did turn
 }
 
-TEST(SutureFrame, TheTagLiesAcrossTheThreadOnTheWall) {
+TEST(SutureFrame, TagLiesAcrossTheThreadOnTheWall) {
   SutureSet set = corner();
   set.pieces.pop_back();
   EXPECT_NEAR(std::abs(planeNormal(set).z()), 1, 1e-12);
@@ -230,14 +230,14 @@ TEST(SutureFrame, TheTagLiesAcrossTheThreadOnTheWall) {
   EXPECT_NEAR(cinchAxis(set).x(), 1, 1e-12);
 }
 
-TEST(SutureFrame, ARingLiesOnTheWallOrAroundTheThread) {
+TEST(SutureFrame, RingLiesOnTheWallOrAroundTheThread) {
   SutureSet set = corner();
   EXPECT_EQ(biteAxis(set, 0), Vector3d::UnitZ());
   for (SutureBite& bite : set.bites) bite.inward.setZero();
   EXPECT_NEAR(biteAxis(set, 0).x(), 1, 1e-12);
 }
 
-TEST(SutureFrame, IsDefinedWithoutAnything) {
+TEST(SutureFrame, DirectionsAreDefinedForAnEmptySuture) {
   const SutureSet none;
   for (const Vector3d& axis : {planeNormal(none), biteAxis(none, 0), tagAxis(none), cinchAxis(none)})
     EXPECT_NEAR(axis.norm(), 1, 1e-12);

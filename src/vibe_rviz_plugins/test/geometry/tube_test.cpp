@@ -1,4 +1,4 @@
-#include "geometry/tube.hpp"
+#include "vibe_rviz_plugins/geometry/tube.hpp"
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ TEST(Tube, EveryVertexOfASmoothTubeLiesOnTheRadius) {
     ASSERT_NEAR(distanceToLine(placeOf(shape, v), line), kRadius, 0.003 * kRadius + kRounding) << "vertex " << v;
 }
 
-TEST(Tube, NothingSticksOutOfSharpCorners) {
+TEST(Tube, NoVertexSticksOutAtSharpCorners) {
   EXPECT_LT(farthestOff(tubeOf(nasty()), nasty(), kRadius), 0.016 * kRadius + kRounding);  // 1 / cos(10 degrees)
   for (int seed = 0; seed < 20; ++seed) {
     const Line line = randomLine(seed);
@@ -114,7 +114,7 @@ TEST(Tube, IsClosedAndFacesOutwards) {
   }
 }
 
-TEST(Tube, NormalsPointAwayFromTheMiddleLine) {
+TEST(Tube, NormalsPointAwayFromTheCentreLine) {
   const Line line = helix(60);
   const ColouredShape shape = tubeOf(line);
   for (std::size_t v = 0; v < shape.vertices.size(); ++v) {
@@ -138,7 +138,7 @@ TEST(Tube, EnclosesTheVolumeOfItsLength) {
   }
 }
 
-TEST(Tube, ABallIsABall) {
+TEST(Tube, BallHasItsRadiusAndVolume) {
   ColouredShape shape;
   appendBall({0.1, -0.2, 0.05}, 0.004, packed(1, 0, 0), 40, shape);
   for (std::size_t v = 0; v < shape.vertices.size(); ++v)
@@ -180,7 +180,7 @@ TEST(Tube, TakesItsColoursAndRadiiFromThePoints) {
   }
 }
 
-TEST(Tube, IsAppendedBehindWhatIsThere) {
+TEST(Tube, IsAppendedToTheShape) {
   ColouredShape shape;
   appendTube({{0, 0, 0}, {0.1, 0, 0}}, 0.001, packed(1, 1, 1), 8, shape);
   const std::size_t vertices = shape.vertices.size(), triangles = shape.triangles.size();
@@ -189,11 +189,11 @@ TEST(Tube, IsAppendedBehindWhatIsThere) {
   for (std::size_t t = 0; t < triangles; ++t) EXPECT_EQ(shape.triangles[triangles + t], shape.triangles[t] + vertices);
 }
 
-TEST(Tube, WithoutPointsThereIsNothing) {
+TEST(Tube, WithoutPointsNothingIsDrawn) {
   EXPECT_TRUE(tubeOf({}).vertices.empty());
 }
 
-TEST(Tube, AnyNormalIsAtRightAngles) {
+TEST(Tube, AnyNormalIsPerpendicular) {
   for (const Vector3d& v : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, -1), Vector3d(1, 2, 3).normalized()}) {
     EXPECT_NEAR(anyNormal(v).dot(v), 0, 1e-12);
     EXPECT_NEAR(anyNormal(v).norm(), 1, 1e-12);

@@ -17,7 +17,7 @@ Moment at(double seconds, bool paused = false, std::uint64_t step = 0) {
   return moment;
 }
 
-TEST(ButtonBank, holdsAsLongAsHeld) {
+TEST(ButtonBank, ButtonIsDownWhileHeld) {
   ButtonBank bank;
   bank.press(Apc, at(10));
   EXPECT_EQ(bank.down(), (Buttons{1, 0, 0, 0, 0, 0}));
@@ -28,7 +28,7 @@ TEST(ButtonBank, holdsAsLongAsHeld) {
   EXPECT_EQ(bank.down(), Buttons{});
 }
 
-TEST(ButtonBank, togglesStay) {
+TEST(ButtonBank, TogglesStayDown) {
   ButtonBank bank;
   bank.press(Helix, at(1));
   bank.release(Helix);
@@ -38,7 +38,7 @@ TEST(ButtonBank, togglesStay) {
   EXPECT_EQ(bank.down(), Buttons{});
 }
 
-TEST(ButtonBank, whichOnesToggle) {
+TEST(ButtonBank, HelixAndInsufflatorToggle) {
   ButtonBank bank;
   for (int button = 0; button < kCommandCount; ++button) {
     bank.press(button, at(1));
@@ -48,7 +48,7 @@ TEST(ButtonBank, whichOnesToggle) {
   EXPECT_EQ(bank.down(), (Buttons{0, 1, 0, 0, 0, 1}));
 }
 
-TEST(ButtonBank, aShortClickIsSeen) {
+TEST(ButtonBank, ShortClickIsSeen) {
   ButtonBank bank;
   bank.press(Needle, at(1));
   bank.release(Needle);
@@ -58,7 +58,7 @@ TEST(ButtonBank, aShortClickIsSeen) {
   EXPECT_EQ(bank.down()[Needle], 0);
 }
 
-TEST(ButtonBank, simulatedTimeThatStandsStillIsWaitedFor) {
+TEST(ButtonBank, ButtonStaysDownWhileSimulatedTimeStandsStill) {
   ButtonBank bank;
   bank.press(TTag, at(1));
   bank.release(TTag);
@@ -69,7 +69,7 @@ TEST(ButtonBank, simulatedTimeThatStandsStillIsWaitedFor) {
   EXPECT_TRUE(bank.settle(late));
 }
 
-TEST(ButtonBank, timeThatIsSetBackIsNotWaitedFor) {
+TEST(ButtonBank, TimeSetBackReleasesTheButton) {
   ButtonBank bank;
   bank.press(TTag, at(1000));
   bank.release(TTag);
@@ -78,7 +78,7 @@ TEST(ButtonBank, timeThatIsSetBackIsNotWaitedFor) {
   EXPECT_TRUE(bank.settle(back));
 }
 
-TEST(ButtonBank, aPauseIsWaitedFor) {
+TEST(ButtonBank, ButtonStaysDownDuringAPause) {
   ButtonBank bank;
   bank.press(Needle, at(1, true, 7));
   bank.release(Needle);
@@ -87,7 +87,7 @@ TEST(ButtonBank, aPauseIsWaitedFor) {
   EXPECT_TRUE(bank.settle(at(50.2, false, 13)));
 }
 
-TEST(ButtonBank, aSingleStepInAPauseIsEnough) {
+TEST(ButtonBank, SingleStepInAPauseIsEnough) {
   ButtonBank bank;
   bank.press(Needle, at(1, true, 7));
   bank.release(Needle);
@@ -95,7 +95,7 @@ TEST(ButtonBank, aSingleStepInAPauseIsEnough) {
   EXPECT_TRUE(bank.settle(at(2, true, 8)));
 }
 
-TEST(ButtonBank, takesOverTogglesOnly) {
+TEST(ButtonBank, AdoptsTogglesOnly) {
   ButtonBank bank;
   bank.adopt({1, 1, 1, 1, 1, 1});
   EXPECT_EQ(bank.down(), (Buttons{0, 1, 0, 0, 0, 1}));
@@ -103,7 +103,7 @@ TEST(ButtonBank, takesOverTogglesOnly) {
   EXPECT_EQ(bank.down(), (Buttons{0, 1, 0, 0, 0, 1})) << "a message of the wrong size";
 }
 
-TEST(ButtonBank, liftsWhatIsHeld) {
+TEST(ButtonBank, LiftsHeldButtons) {
   ButtonBank bank;
   bank.press(Apc, at(1));
   bank.press(Cinch, at(1));
@@ -112,7 +112,7 @@ TEST(ButtonBank, liftsWhatIsHeld) {
   EXPECT_EQ(bank.down(), (Buttons{0, 0, 0, 0, 0, 1}));
 }
 
-TEST(ButtonBank, whatIsNoButtonDoesNothing) {
+TEST(ButtonBank, InvalidButtonHasNoEffect) {
   ButtonBank bank;
   for (const int button : {-1, 6, 1000}) {
     bank.press(button, at(1));

@@ -15,7 +15,7 @@ Event makeEvent(std::uint8_t kind, const std::string& text) {
 }
 
 TEST(EventLines, severities) {
-  for (const std::uint8_t kind : {Event::WARNING, Event::REFUSED, Event::SLIP, Event::CINCH_LOOSE, Event::BITE_MISSED})
+  for (const std::uint8_t kind : {Event::WARNING, Event::REJECTED, Event::SLIP, Event::CINCH_LOOSE, Event::BITE_MISSED})
     EXPECT_EQ(severityOf(kind), Severity::Warning) << int{kind};
   for (const std::uint8_t kind : {Event::BLEEDING_MILD, Event::BLEEDING_BRISK, Event::BLEEDING_OVERDUE})
     EXPECT_EQ(severityOf(kind), Severity::Bleeding) << int{kind};
@@ -33,7 +33,7 @@ TEST(EventLines, aKindFromTheFutureIsANote) {
 }
 
 TEST(EventLines, textOrTitle) {
-  EXPECT_EQ(eventText(makeEvent(Event::REFUSED, "No needle.")), "Refused: No needle.");
+  EXPECT_EQ(eventText(makeEvent(Event::REJECTED, "No needle.")), "Rejected: No needle.");
   EXPECT_EQ(eventText(makeEvent(Event::TEAR_OUT, "Bite 2 tore out.")), "Bite 2 tore out.");
   EXPECT_EQ(eventText(makeEvent(Event::TEAR_OUT, "")), "Tear-out.");
   EXPECT_EQ(eventText(makeEvent(200, "")), "Event.");

@@ -16,7 +16,7 @@ TEST(ImageDue, EveryStateWithoutARate) {
   EXPECT_EQ(imagesOf(due, 1, 60, 60), 60);
 }
 
-TEST(ImageDue, MeanRateIsRightAlsoWhereStatesDoNotFit) {
+TEST(ImageDue, MeanRateIsRightEvenIfStatesAreNotAMultiple) {
   for (const double rate : {10., 20., 25., 30., 50.}) {
     ImageDue due(rate);
     EXPECT_NEAR(imagesOf(due, 1, 60, 600), 10 * rate, 1) << rate;
@@ -29,7 +29,7 @@ TEST(ImageDue, NoMoreImagesThanStatesAndNoBurstAfterAGap) {
   EXPECT_EQ(imagesOf(due, 100, 60, 60), 30);
 }
 
-TEST(ImageDue, GoesOnAfterTimeWasSetBack) {
+TEST(ImageDue, ContinuesAfterTimeWasSetBack) {
   ImageDue due(30);
   EXPECT_TRUE(due.isDue(ros::Time(100)));
   EXPECT_TRUE(due.isDue(ros::Time(1)));

@@ -34,14 +34,14 @@ TEST(ProcedureText, anUnknownPhaseIsNone) {
 
 TEST(ProcedureText, theToolAndTheNeedle) {
   vibe_msgs::ProcedureState state;
-  state.phase = "grip";
+  state.tool_state = "grip";
   state.held_particles = 12;
   EXPECT_EQ(toolText(state), "Holds tissue (12 particles). No needle.");
-  state.phase = "free";
+  state.tool_state = "free";
   state.needle_loaded = true;
   EXPECT_EQ(toolText(state), "Touches nothing. Needle in the exchange.");
   state.needle_on_arm = true;
-  state.phase = "dances";
+  state.tool_state = "dances";
   EXPECT_EQ(toolText(state), "Does 'dances'. Needle on the arm.");
 }
 
@@ -75,16 +75,16 @@ TEST(ProcedureText, onlyWhatBleedsNowBleeds) {
 }
 
 TEST(ProcedureText, marksByWall) {
-  vibe_msgs::ProcedureState state;
-  EXPECT_EQ(marksText(state), "none");
-  EXPECT_EQ(burnsText(state), "none");
-  state.mark_zones = 3;
-  state.mark_zones_inside = 2;
-  state.mark_zones_anterior = 1;
-  state.mark_zones_posterior = 2;
-  state.burn_zones = 1;
-  EXPECT_EQ(marksText(state), "3 zones, 2 where sutures go: anterior 1, greater curvature 0, posterior 2");
-  EXPECT_EQ(burnsText(state), "1 burn scar, 0 with the muscularis at risk");
+  vibe_msgs::SkillMetrics skill;
+  EXPECT_EQ(marksText(skill), "none");
+  EXPECT_EQ(burnsText(skill), "none");
+  skill.mark_zones = 3;
+  skill.mark_zones_inside = 2;
+  skill.mark_zones_anterior = 1;
+  skill.mark_zones_posterior = 2;
+  skill.burn_zones = 1;
+  EXPECT_EQ(marksText(skill), "3 zones, 2 where sutures go: anterior 1, greater curvature 0, posterior 2");
+  EXPECT_EQ(burnsText(skill), "1 burn scar, 0 with the muscularis at risk");
 }
 
 TEST(ProcedureText, statisticsByName) {

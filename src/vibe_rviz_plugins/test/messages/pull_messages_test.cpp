@@ -14,16 +14,16 @@ vibe_msgs::TissuePullState goodState() {
   return message;
 }
 
-TEST(PullMessages, aGoodStateIsTakenOver) {
+TEST(PullMessages, ValidStateIsRead) {
   PullState state;
   EXPECT_EQ(readPullState(goodState(), state), "");
   EXPECT_EQ(state.particle, 7);
-  EXPECT_EQ(state.place, Eigen::Vector3d(0.1, 0, 0));
+  EXPECT_EQ(state.position, Eigen::Vector3d(0.1, 0, 0));
   EXPECT_EQ(state.target, Eigen::Vector3d(0, 0.2, 0));
   EXPECT_EQ(state.force, Eigen::Vector3d(0, 0, -3));
 }
 
-TEST(PullMessages, whatIsNoNumberOrTooLargeIsASentenceAndChangesNothing) {
+TEST(PullMessages, InvalidValuesAreReportedAndChangeNothing) {
   PullState state;
   readPullState(goodState(), state);
   for (double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e7}) {
@@ -40,7 +40,7 @@ TEST(PullMessages, whatIsNoNumberOrTooLargeIsASentenceAndChangesNothing) {
   EXPECT_NE(readPullState(message, state), "");
 }
 
-TEST(PullMessages, aHandThatHasLetGoIsAGoodState) {
+TEST(PullMessages, ReleasedSpringIsAValidState) {
   PullState state;
   EXPECT_EQ(readPullState(vibe_msgs::TissuePullState(), state), "");
   vibe_msgs::TissuePullState message;

@@ -19,9 +19,9 @@ const Measure& find(const std::string& label) {
   return *found;
 }
 
-double valueOf(const std::string& label, const vibe_msgs::ProcedureState& state,
+double valueOf(const std::string& label, const vibe_msgs::ProcedureState& state, const vibe_msgs::SkillMetrics& skill,
                const vibe_msgs::SutureArray* sutures = nullptr) {
-  return find(label).value({state, sutures});
+  return find(label).value({state, skill, sutures});
 }
 
 vibe_msgs::Suture makeSet(std::uint8_t stage, std::size_t bites, std::uint32_t tear_outs = 0) {
@@ -51,40 +51,43 @@ TEST(ReferenceValues, everyMeasureIsComplete) {
 
 TEST(ReferenceValues, unitsAreConverted) {
   vibe_msgs::ProcedureState state;
-  state.area_reduction = 0.346;
+  vibe_msgs::SkillMetrics skill;
+  skill.area_reduction = 0.346;
   state.blood_lost = 12e-6;
   state.pressure = 1333.22;
-  state.bite_spacing_mean = 0.021;
-  state.full_thickness_share = 0.75;
-  state.time = 120;
-  state.time_above = 3;
-  EXPECT_NEAR(valueOf("Area reduction", state), 34.6, 1e-9);
-  EXPECT_NEAR(valueOf("Blood lost", state), 12, 1e-9);
-  EXPECT_NEAR(valueOf("Gas pressure", state), 10, 1e-9);
-  EXPECT_NEAR(valueOf("Bite spacing", state), 21, 1e-9);
-  EXPECT_NEAR(valueOf("Full thickness", state), 75, 1e-9);
-  EXPECT_NEAR(valueOf("Time", state), 2, 1e-9);
-  EXPECT_NEAR(valueOf("Time above 5 N", state), 2.5, 1e-9);
+  skill.bite_spacing_mean = 0.021;
+  skill.full_thickness_share = 0.75;
+  skill.time = 120;
+  skill.time_above = 3;
+  EXPECT_NEAR(valueOf("Area reduction", state, skill), 34.6, 1e-9);
+  EXPECT_NEAR(valueOf("Blood lost", state, skill), 12, 1e-9);
+  EXPECT_NEAR(valueOf("Gas pressure", state, skill), 10, 1e-9);
+  EXPECT_NEAR(valueOf("Bite spacing", state, skill), 21, 1e-9);
+  EXPECT_NEAR(valueOf("Full thickness", state, skill), 75, 1e-9);
+  EXPECT_NEAR(valueOf("Time", state, skill), 2, 1e-9);
+  EXPECT_NEAR(valueOf("Time above 5 N", state, skill), 2.5, 1e-9);
 }
 
 TEST(ReferenceValues, whatIsNotDefinedHasNoValue) {
-  const vibe_msgs::ProcedureState nothing_done;
-  for (const char* label : {"Bites per set", "Off the body", "Time above 5 N", "Peak force"})
-    EXPECT_TRUE(std::isnan(valueOf(label, nothing_done))) << label;
-  vibe_msgs::ProcedureState touched;
+  const vibe_msgs::ProcedureState state;
+  const vibe_msgs::SkillMetrics nothing_done;
+  for (const char* label : {"Bites per set", "Off the body", "Time above 5 N", "Max force"})
+    EXPECT_TRUE(std::isnan(valueOf(label, state, nothing_done))) << label;
+  vibe_msgs::SkillMetrics touched;
   touched.contact_time = 1;
   touched.time = 1;
-  EXPECT_EQ(valueOf("Peak force", touched), 0);
-  EXPECT_EQ(valueOf("Time above 5 N", touched), 0);
+  EXPECT_EQ(valueOf("Max force", state, touched), 0);
+  EXPECT_EQ(valueOf("Time above 5 N", state, touched), 0);
 }
 
 TEST(ReferenceValues, openSetsAreNotAveraged) {
   vibe_msgs::SutureArray sutures;
   sutures.sutures = {makeSet(vibe_msgs::Suture::CINCHED, 7), makeSet(vibe_msgs::Suture::TAGGED, 8, 1),
                      makeSet(vibe_msgs::Suture::OPEN, 1)};
-  EXPECT_NEAR(valueOf("Bites per set", {}, &sutures), 8, 1e-12);  // one of nine tore out and was a bite all the same
+  EXPECT_NEAR(valueOf("Bites per set", {}, {}, &sutures), 8,
+              1e-12);  // one of nine tore out and was a bite all the same
   sutures.sutures.erase(sutures.sutures.begin(), sutures.sutures.begin() + 2);
-  EXPECT_TRUE(std::isnan(valueOf("Bites per set", {}, &sutures)));
+  EXPECT_TRUE(std::isnan(valueOf("Bites per set", {}, {}, &sutures)));
 }
 
 TEST(ReferenceValues, ratesEachSideOfARange) {
@@ -114,7 +117,7 @@ TEST(ReferenceValues, pullingIsTooHardAboveFiveNewton) {
 TEST(ReferenceValues, rangesInWords) {
   EXPECT_EQ(rangeText(find("Bites per set")), "6.0 to 9.0");
   EXPECT_EQ(rangeText(find("Area reduction")), "at least 34.6 %");
-  EXPECT_EQ(rangeText(find("Peak force")), "at most 8.0 N");
+  EXPECT_EQ(rangeText(find("Max force")), "at most 8.0 N");
   EXPECT_EQ(rangeText(find("Sets proximal")), "100 %");
   EXPECT_EQ(rangeText(find("Bite spacing")), "");
   EXPECT_NE(explain(find("Bite spacing")).find("No reference is published"), std::string::npos);

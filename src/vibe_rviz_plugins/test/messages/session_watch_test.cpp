@@ -11,7 +11,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(SimulatorWatch, waitsThenHearsThenLoses) {
+TEST(SimulatorWatch, WaitsThenRunsThenIsGone) {
   SimulatorWatch watch;
   EXPECT_TRUE(contains(watch.complaint("/procedure/state", 5), "Waiting for the simulator on /procedure/state"));
   watch.heard(10);
@@ -24,7 +24,7 @@ TEST(SimulatorWatch, waitsThenHearsThenLoses) {
   EXPECT_TRUE(contains(watch.complaint("/procedure/state", 15), "Waiting"));
 }
 
-TEST(ControlWatch, aRivalIsOneThatWasHeardLately) {
+TEST(ControlWatch, RivalIsARecentPublisher) {
   ControlWatch watch;
   EXPECT_EQ(watch.rival(0), "");
   watch.heard("/vibe_trainee", 10);
@@ -32,7 +32,7 @@ TEST(ControlWatch, aRivalIsOneThatWasHeardLately) {
   EXPECT_EQ(watch.rival(12.1), "");
 }
 
-TEST(ControlWatch, saysWhoHasControl) {
+TEST(ControlWatch, SaysWhoHasControl) {
   ControlWatch watch;
   EXPECT_TRUE(contains(watch.sentence("/scope/buttons", false, 0, 0, 0), "Nobody has control"));
   EXPECT_TRUE(contains(watch.sentence("/scope/buttons", false, 1, 0, 0), "1 silent publisher"));
@@ -44,7 +44,7 @@ TEST(ControlWatch, saysWhoHasControl) {
   EXPECT_FALSE(contains(watch.sentence("/scope/buttons", false, 1, 1, 13), "/vibe_trainee"));
 }
 
-TEST(MaxOfWindow, tellsTheLastSecond) {
+TEST(MaxOfWindow, GivesTheLastWholeSecond) {
   MaxOfWindow window;
   EXPECT_TRUE(std::isnan(window.value(0)));
   for (int i = 0; i <= 10; ++i) window.add(i == 5 ? 0.08 : 0.01, 0.1 * i + 1e-9 * i);
@@ -54,7 +54,7 @@ TEST(MaxOfWindow, tellsTheLastSecond) {
   EXPECT_TRUE(std::isnan(window.value(5))) << "no whole second before it";
 }
 
-TEST(Namespace, isChecked) {
+TEST(Namespace, IsChecked) {
   for (const char* good : {"", "/", "/room1", "room1", "a/b"}) EXPECT_EQ(checkNamespace(good), "") << good;
   for (const char* bad : {"1room", "with space", "a-b", "\u00e4"}) EXPECT_NE(checkNamespace(bad), "") << bad;
 }

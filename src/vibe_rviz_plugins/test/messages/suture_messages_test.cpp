@@ -23,7 +23,7 @@ SutureScene sceneOf(const SutureArray& message) {
   return scene;
 }
 
-TEST(SutureMessages, TakesOverAWholeSession) {
+TEST(SutureMessages, ReadsAWholeSession) {
   const SutureScene scene = sceneOf(session());
   ASSERT_EQ(scene.sets.size(), 2u);
   const SutureSet& set = scene.sets[0];
@@ -42,7 +42,7 @@ TEST(SutureMessages, TakesOverAWholeSession) {
   EXPECT_TRUE(scene.sets[1].pieces.empty());
 }
 
-TEST(SutureMessages, TakesOverWhatBleeds) {
+TEST(SutureMessages, ReadsBleeding) {
   const SutureScene scene = sceneOf(session());
   ASSERT_EQ(scene.wounds.size(), 3u);
   EXPECT_FALSE(scene.wounds[0].brisk);
@@ -52,17 +52,17 @@ TEST(SutureMessages, TakesOverWhatBleeds) {
   EXPECT_EQ(scene.wounds[2].inward, Eigen::Vector3d::Zero());   // the bite is gone
 }
 
-TEST(SutureMessages, AnEmptySessionIsRight) {
+TEST(SutureMessages, EmptySessionIsValid) {
   SutureScene scene = sceneOf(session());
   EXPECT_EQ(readSutures({}, scene), "");
   EXPECT_TRUE(scene.sets.empty() && scene.wounds.empty());
 }
 
-TEST(SutureMessages, CornersAreTheBitesBehindTheTransitions) {
+TEST(SutureMessages, CornersAreTheBitesAfterTheTransitions) {
   EXPECT_EQ(sceneOf(session()).sets[0].corners, (std::vector<std::size_t>{2, 3}));
 }
 
-TEST(SutureMessages, LinksAreWhatTheTechniqueBringsTogether) {
+TEST(SutureMessages, LinksFollowTheTechnique) {
   SutureArray message = session();
   EXPECT_EQ(sceneOf(message).sets[0].links, (Links{{0, 2}, {3, 5}}));  // the legs
   message.sutures[0].technique = vibe_msgs::Suture::TECHNIQUE_Z;
@@ -103,8 +103,10 @@ const std::vector<Fault>& faults() {
        [](SutureArray& m) { std::swap(m.sutures[0].thread_offsets[2], m.sutures[0].thread_offsets[3]); }},
       {"thread_offsets", [](SutureArray& m) { m.sutures[0].thread_offsets[0] = 1; }},
       {"thread_offsets", [](SutureArray& m) { m.sutures[0].bites.clear(), m.bleedings.clear(); }},
-      {"only one is empty", [](SutureArray& m) { m.sutures[0].thread.clear(); }},
-      {"only one is empty", [](SutureArray& m) { m.sutures[0].thread_offsets.clear(); }},
+      {"Only one of thread and thread_offsets of suture 0 is empty",
+       [](SutureArray& m) { m.sutures[0].thread.clear(); }},
+      {"Only one of thread and thread_offsets of suture 0 is empty",
+       [](SutureArray& m) { m.sutures[0].thread_offsets.clear(); }},
       {"tension and length", [](SutureArray& m) { m.sutures[0].tension.pop_back(); }},
       {"tension and length", [](SutureArray& m) { m.sutures[0].length.push_back(1); }},
       {"A tension", [](SutureArray& m) { m.sutures[0].tension[1] = kNan; }},
@@ -129,7 +131,7 @@ const std::vector<Fault>& faults() {
   return list;
 }
 
-TEST(SutureMessages, EveryFaultIsToldInOneSentence) {
+TEST(SutureMessages, EveryFaultIsReportedInOneSentence) {
   for (const Fault& fault : faults()) {
     SutureArray message = session();
     fault.make(message);
@@ -141,7 +143,7 @@ TEST(SutureMessages, EveryFaultIsToldInOneSentence) {
   }
 }
 
-TEST(SutureMessages, AFaultLeavesTheLastGoodScene) {
+TEST(SutureMessages, FaultLeavesTheLastValidScene) {
   SutureScene scene = sceneOf(session());
   SutureArray message = session();
   message.sutures.resize(1);
@@ -151,7 +153,7 @@ TEST(SutureMessages, AFaultLeavesTheLastGoodScene) {
 }
 
 // What a simulator really sends must not be refused.
-TEST(SutureMessages, UsualStatesAreRight) {
+TEST(SutureMessages, UsualStatesAreValid) {
   const std::vector<std::function<void(SutureArray&)>> usual{
       [](SutureArray& m) { m.sutures[1] = vibe_msgs::Suture(), m.bleedings.clear(); },
       [](SutureArray& m) {
@@ -203,7 +205,7 @@ const std::vector<Spoil>& spoils() {
 }
 
 /// Two faults at once, any numbers: an answer, no crash (under the sanitizers too).
-TEST(SutureMessages, NoNumberCrashesIt) {
+TEST(SutureMessages, RandomNumbersDoNotCrash) {
   std::mt19937 random(4);
   for (int round = 0; round < 4000; ++round) {
     SutureArray message = session();

@@ -18,7 +18,7 @@ vibe_msgs::SutureArray oneSet(std::uint8_t stage) {
   return sutures;
 }
 
-TEST(SutureRows, anOpenSet) {
+TEST(SutureRows, OpenSet) {
   const auto rows = sutureRows(oneSet(vibe_msgs::Suture::OPEN));
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].set, "1");
@@ -29,7 +29,7 @@ TEST(SutureRows, anOpenSet) {
   EXPECT_FALSE(rows[0].warns);
 }
 
-TEST(SutureRows, aCinchedSetHasATechnique) {
+TEST(SutureRows, CinchedSetHasATechnique) {
   auto sutures = oneSet(vibe_msgs::Suture::CINCHED);
   sutures.sutures[0].technique_name = "u";
   sutures.sutures[0].technique_margin = 0.834;
@@ -44,7 +44,7 @@ TEST(SutureRows, aCinchedSetHasATechnique) {
   EXPECT_EQ(sutureRows(sutures)[0].technique, "running 83%");
 }
 
-TEST(SutureRows, whatWentWrongWarns) {
+TEST(SutureRows, FaultsWarn) {
   auto sutures = oneSet(vibe_msgs::Suture::CINCHED);
   sutures.sutures[0].loose = true;
   EXPECT_EQ(sutureRows(sutures)[0].stage, "loose");
@@ -56,7 +56,7 @@ TEST(SutureRows, whatWentWrongWarns) {
   EXPECT_EQ(sutureRows(torn)[0].bites, "7 (-2)");
 }
 
-TEST(SutureRows, tensionThatIsNoNumberIsADash) {
+TEST(SutureRows, TensionThatIsNotFiniteIsADash) {
   auto sutures = oneSet(vibe_msgs::Suture::TAGGED);
   sutures.sutures[0].tension[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(sutureRows(sutures)[0].tension, "\u2013");
@@ -64,7 +64,7 @@ TEST(SutureRows, tensionThatIsNoNumberIsADash) {
   EXPECT_TRUE(std::isnan(maxTension(sutures.sutures[0])));
 }
 
-TEST(SutureRows, aStageThatIsNotKnownIsANumber) {
+TEST(SutureRows, UnknownStageIsANumber) {
   EXPECT_EQ(sutureRows(oneSet(77))[0].stage, "stage 77");
   EXPECT_TRUE(sutureRows({}).empty());
 }

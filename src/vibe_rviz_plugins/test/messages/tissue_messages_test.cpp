@@ -72,7 +72,7 @@ TissueMesh mesh() {
   return result;
 }
 
-TEST(ReadTopology, TakesOverWhatIsThere) {
+TEST(ReadTopology, ReadsAllFields) {
   const TissueMesh result = mesh();
   EXPECT_EQ(result.revision, 7U);
   EXPECT_EQ(result.particle_count, 4U);
@@ -82,7 +82,7 @@ TEST(ReadTopology, TakesOverWhatIsThere) {
   EXPECT_FLOAT_EQ(result.rest[3], 1);
 }
 
-TEST(ReadTopology, RestOfASkinIsThatOfItsParticles) {
+TEST(ReadTopology, RestOfTheRenderSurfaceFollowsTheParticles) {
   TissueMesh result;
   ASSERT_EQ(readTopology(withRenderSurface(), result), "");
   EXPECT_EQ(result.vertex_count, 3U);
@@ -90,7 +90,7 @@ TEST(ReadTopology, RestOfASkinIsThatOfItsParticles) {
   EXPECT_FLOAT_EQ(result.rest[0], 0.5F);
 }
 
-TEST(ReadTopology, SaysWhatIsWrongAndKeepsTheOldOne) {
+TEST(ReadTopology, ReportsFaultsAndKeepsTheFormerMesh) {
   using Spoil = std::function<void(vibe_msgs::TissueTopology&)>;
   const std::vector<Spoil> spoils{
       [](auto& m) { m.rest_positions.clear(); },
@@ -118,7 +118,7 @@ TEST(ReadTopology, SaysWhatIsWrongAndKeepsTheOldOne) {
   }
 }
 
-TEST(ReadParticles, TakesOverWhatIsThere) {
+TEST(ReadParticles, ReadsAllFields) {
   TissueFrame frame;
   ASSERT_EQ(readParticles(cloudOf(4, 7), mesh(), frame), "");
   EXPECT_FLOAT_EQ(frame.positions[3 * 2 + 1], 4);
@@ -136,17 +136,17 @@ TEST(ReadParticles, MarksAndStrainMayBeAbsent) {
   EXPECT_TRUE(frame.dose.empty());
 }
 
-TEST(ReadParticles, SaysWhatIsWrong) {
+TEST(ReadParticles, ReportsFaults) {
   using Spoil = std::function<void(sensor_msgs::PointCloud2&)>;
   const std::vector<std::pair<std::string, Spoil>> spoils{
       {"revision", [](auto& m) { m = cloudOf(4, 8); }},
       {"particles", [](auto& m) { m = cloudOf(5, 7); }},
-      {"particle 2 is no place",
+      {"particle 2 is invalid",
        [](auto& m) {
          const float bad = NAN;
          std::memcpy(&m.data[2 * sizeof(Point) + 4], &bad, 4);
        }},
-      {"particle 3 is no place",
+      {"particle 3 is invalid",
        [](auto& m) {
          const float bad = 3e38F;  // finite, but the organ around it is not
          std::memcpy(&m.data[3 * sizeof(Point) + 8], &bad, 4);
@@ -168,7 +168,7 @@ TEST(ReadParticles, SaysWhatIsWrong) {
   }
 }
 
-TEST(ReadParticles, RandomBytesDoNoHarm) {
+TEST(ReadParticles, RandomBytesDoNotCrash) {
   std::mt19937 engine(5);
   const auto random = [&engine] { return static_cast<std::uint32_t>(engine()); };
   const TissueMesh small = mesh();

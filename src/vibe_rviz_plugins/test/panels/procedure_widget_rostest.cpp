@@ -109,7 +109,7 @@ struct ProcedureWidgetTest : testing::Test {
   }
 };
 
-TEST_F(ProcedureWidgetTest, servicesAnswer) {
+TEST_F(ProcedureWidgetTest, ServicesAnswer) {
   Services services("/fast");
   open("/fast");
   click(*widget, "Pause");
@@ -122,13 +122,13 @@ TEST_F(ProcedureWidgetTest, servicesAnswer) {
   EXPECT_TRUE(services.keep_time);
 }
 
-TEST_F(ProcedureWidgetTest, aServiceThatDoesNotExistIsNamed) {
+TEST_F(ProcedureWidgetTest, MissingServiceIsNamed) {
   open("/nowhere");
   click(*widget, "Pause");
   EXPECT_TRUE(answers(5, "There is no service /nowhere/pause")) << answer();
 }
 
-TEST_F(ProcedureWidgetTest, aSlowServiceFreezesNothing) {
+TEST_F(ProcedureWidgetTest, SlowServiceDoesNotBlockThePanel) {
   Services services("/slow");
   services.takes = 5;
   open("/slow");
@@ -148,7 +148,7 @@ TEST_F(ProcedureWidgetTest, aSlowServiceFreezesNothing) {
   EXPECT_LT(longest, 1500) << "the widgets stood still [ms]";
 }
 
-TEST_F(ProcedureWidgetTest, aCallCanBeGivenUp) {
+TEST_F(ProcedureWidgetTest, CallCanBeAbandoned) {
   Services services("/hangs");
   services.takes = 30;
   open("/hangs");
@@ -164,7 +164,7 @@ TEST_F(ProcedureWidgetTest, aCallCanBeGivenUp) {
   EXPECT_LT(timer.elapsed(), 10000);
 }
 
-TEST_F(ProcedureWidgetTest, closesDuringACall) {
+TEST_F(ProcedureWidgetTest, ClosesDuringACall) {
   Services services("/closes");
   services.takes = 30;
   open("/closes");
@@ -176,7 +176,7 @@ TEST_F(ProcedureWidgetTest, closesDuringACall) {
   EXPECT_LT(timer.elapsed(), 3000);
 }
 
-TEST_F(ProcedureWidgetTest, buttonsBecomeMessages) {
+TEST_F(ProcedureWidgetTest, ButtonsBecomeMessages) {
   std::vector<sensor_msgs::Joy> heard;
   ros::NodeHandle handle("/quiet");
   const ros::Subscriber subscriber = handle.subscribe<sensor_msgs::Joy>(
@@ -207,7 +207,7 @@ TEST_F(ProcedureWidgetTest, buttonsBecomeMessages) {
   EXPECT_TRUE(waitFor(3, [&] { return subscriber.getNumPublishers() == 0; }));
 }
 
-TEST_F(ProcedureWidgetTest, whatIsHeldStaysHeld) {
+TEST_F(ProcedureWidgetTest, HeldButtonsStayHeld) {
   ros::NodeHandle handle("/held");
   std::vector<std::vector<int>> heard;
   const ros::Subscriber subscriber = handle.subscribe<sensor_msgs::Joy>(
@@ -228,7 +228,7 @@ TEST_F(ProcedureWidgetTest, whatIsHeldStaysHeld) {
   EXPECT_TRUE(waitFor(2, [&] { return applied.getNumSubscribers() == 0; }));
 }
 
-TEST_F(ProcedureWidgetTest, anotherOneInControlIsRespected) {
+TEST_F(ProcedureWidgetTest, OtherPublisherInControlIsRespected) {
   open("/busy");
   const auto sentence = [&] { return textOf(*widget, "control sentence"); };
   ASSERT_TRUE(waitFor(10, [&] { return contains(sentence(), "/busy/rival has control"); })) << sentence();
@@ -238,7 +238,7 @@ TEST_F(ProcedureWidgetTest, anotherOneInControlIsRespected) {
   EXPECT_FALSE(widget->findChild<QPushButton*>("Needle")->isEnabled());
 }
 
-TEST_F(ProcedureWidgetTest, saysWhetherTheSimulatorIsThere) {
+TEST_F(ProcedureWidgetTest, SaysWhetherTheSimulatorIsRunning) {
   open("/lonely");
   const auto status = [&] { return textOf(*widget, "status"); };
   EXPECT_TRUE(waitFor(2, [&] { return contains(status(), "Waiting for the simulator on /lonely/procedure/state"); }))
@@ -254,7 +254,7 @@ TEST_F(ProcedureWidgetTest, saysWhetherTheSimulatorIsThere) {
   EXPECT_TRUE(waitFor(6, [&] { return contains(status(), "gone"); })) << status();
 }
 
-TEST_F(ProcedureWidgetTest, aNamespaceThatCannotBeUsedIsRefused) {
+TEST_F(ProcedureWidgetTest, InvalidNamespaceIsRejected) {
   open("/good");
   widget->setNamespace("not good");
   EXPECT_EQ(widget->nameSpace(), "/good");
@@ -262,7 +262,7 @@ TEST_F(ProcedureWidgetTest, aNamespaceThatCannotBeUsedIsRefused) {
   EXPECT_TRUE(contains(textOf(*widget, "status"), "'not good' cannot be used"));
 }
 
-TEST_F(ProcedureWidgetTest, theNamespaceIsKeptInTheConfiguration) {
+TEST_F(ProcedureWidgetTest, NamespaceIsSavedInTheConfiguration) {
   offscreenApplication();
   ProcedurePanel panel;
   rviz::Config config;

@@ -36,17 +36,20 @@ struct Widgets : testing::Test {
     state->scene = "stomach";
     state->time = 83;
     state->header.stamp.fromSec(84);
-    state->phase = "contact";
-    state->procedure_phase = "suture";
+    state->tool_state = "contact";
+    state->phase = "suture";
     state->bites = 9;
     state->sutures = 2;
-    state->area_reduction = kNaN;
+    auto skill = boost::make_shared<vibe_msgs::SkillMetrics>();
+    skill->area_reduction = kNaN;
+    skill->mark_zones = 3;
+    skill->burn_zones = skill->deep_burn_zones = 1;
     auto sutures = boost::make_shared<vibe_msgs::SutureArray>();
     sutures->sutures.resize(2);
     sutures->sutures[0].stage = vibe_msgs::Suture::CINCHED;
     sutures->sutures[0].bites.resize(7);
     sutures->sutures[1].bites.resize(2);
-    return {state, sutures, nullptr, nullptr};
+    return {state, skill, sutures, nullptr, nullptr};
   }
 
   static geometry_msgs::WrenchStampedConstPtr force(double newton) {
@@ -67,6 +70,13 @@ TEST_F(Widgets, aGlanceAnswersTheFourQuestions) {
   EXPECT_TRUE(contains(textOf(view, "Bleeding"), "nothing bleeds"));
   EXPECT_TRUE(contains(textOf(view, "Pull"), "6.2 N: too hard"));
   EXPECT_TRUE(contains(textOf(view, "Tool"), "Touches tissue."));
+  EXPECT_TRUE(contains(textOf(view, "Marks"), "3 zones"));
+  EXPECT_TRUE(contains(textOf(view, "Burns"), "1 with the muscularis at risk"));
+  EXPECT_TRUE(view.findChild<QLabel*>("Burns")->font().bold());
+  messages.skill = nullptr;
+  view.display(messages);
+  EXPECT_EQ(textOf(view, "Burns"), "\u2013");
+  EXPECT_FALSE(view.findChild<QLabel*>("Burns")->font().bold());
 }
 
 TEST_F(Widgets, aGentlePullIsGentle) {
@@ -187,11 +197,11 @@ TEST_F(Widgets, symbolsDifferByShape) {
 TEST_F(Widgets, eventsComeNewestFirstAndAreBounded) {
   EventList list;
   vibe_msgs::ProcedureEvent event;
-  event.kind = vibe_msgs::ProcedureEvent::REFUSED;
+  event.kind = vibe_msgs::ProcedureEvent::REJECTED;
   event.header.stamp.fromSec(11);
   event.text = "first";
   list.add(event, 1);
-  EXPECT_EQ(list.item(0)->text(), "10.0 s  Refused: first");
+  EXPECT_EQ(list.item(0)->text(), "10.0 s  Rejected: first");
   event.text = "second";
   list.add(event, 1);
   EXPECT_TRUE(list.item(0)->text().contains("second"));

@@ -15,11 +15,13 @@
 #include <gtest/gtest.h>
 #include <rviz/ogre_helpers/render_system.h>
 
-#include "geometry/solid_bodies.hpp"
+#include <cmath>
+
 #include "render/offscreen_camera.hpp"
 #include "render/resources.hpp"
 #include "render/shape_view.hpp"
 #include "render/virtual_display.hpp"
+#include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
 namespace vibe {
 namespace {
@@ -52,6 +54,14 @@ class EndoscopeLensTest : public ::testing::Test {
   static void showBall(const Eigen::Vector3d& place) {
     ColouredShape shape;
     appendSphere(Eigen::Isometry3d(Eigen::Translation3d(place)), 0.01, packed(1, 0.5, 0), shape);
+    ball_->show(shape);
+  }
+
+  /// A red wall at this distance in place of the ball [m].
+  static void showWall(double distance) {
+    ColouredShape shape;
+    appendBox(Eigen::Isometry3d(Eigen::Translation3d(0, 0, -distance - 0.005)), {0.4, 0.4, 0.01}, packed(1, 0, 0),
+              shape);
     ball_->show(shape);
   }
 
@@ -91,7 +101,7 @@ Ogre::Camera* EndoscopeLensTest::camera_ = nullptr;
 Ogre::TexturePtr EndoscopeLensTest::picture_;
 Ogre::Viewport* EndoscopeLensTest::viewport_ = nullptr;
 
-TEST_F(EndoscopeLensTest, ShowsARoundPictureOnBlackAndTheBallAsLargeAsItsAngle) {
+TEST_F(EndoscopeLensTest, ShowsACircularImageOnBlackAndTheBallAtItsAngularSize) {
   EndoscopeLens lens(*viewport_);
   lens.set(LensKind::Equidistant, 140 * kDegree, 1);
   const Pixels pixels = draw();
@@ -104,15 +114,24 @@ TEST_F(EndoscopeLensTest, ShowsARoundPictureOnBlackAndTheBallAsLargeAsItsAngle) 
   EXPECT_NEAR(bright, kHeight * angle / (140 * kDegree), 2);
 }
 
-TEST_F(EndoscopeLensTest, LampOfTheEndoscopeFadesWithTheDistance) {
+// What media/solid.frag shows of red that faces the lamp: ambient light and the lamp, whose light falls off with the
+// square of the distance beyond its reach, then the exposure of the camera. Level of the red channel, 0 to 255.
+double redAt(double distance) {
+  const double reach = 0.06, ambient = 0.22, diffuse = 0.78, gloss = 0.3, exposure = 1.5;
+  const double lamp = 2 / (1 + distance * distance / (reach * reach));
+  return 255 * (1 - std::exp(-exposure * (ambient + (diffuse + gloss) * lamp)));
+}
+
+TEST_F(EndoscopeLensTest, LampOfTheEndoscopeFadesWithTheSquareOfTheDistance) {
   EndoscopeLens lens(*viewport_);
   lens.set(LensKind::Rectilinear, 60 * kDegree, 1);
-  const int near = light(draw(), kWidth / 2, kHeight / 2);
-  showBall({0, 0, -0.3});
-  const int far = light(draw(), kWidth / 2, kHeight / 2);
+  for (const double distance : {0.04, 0.06, 0.09, 0.14, 0.2, 0.29}) {
+    showWall(distance);
+    const int red = draw()[3 * (kHeight / 2 * kWidth + kWidth / 2)];
+    EXPECT_NEAR(red, redAt(distance), 1) << distance;                   // measured: 0.5, the rounding of a level
+    EXPECT_GT(std::abs(red - redAt(1.1 * distance)), 1.5) << distance;  // control: a tenth farther away is seen
+  }
   showBall({0, 0, -0.05});
-  EXPECT_GT(far, 30);
-  EXPECT_LT(3 * far, 2 * near);
 }
 
 TEST_F(EndoscopeLensTest, LeavesTheViewAsItWas) {
@@ -133,7 +152,7 @@ TEST_F(EndoscopeLensTest, LeavesTheViewAsItWas) {
 }
 
 // As rviz ends: its window goes before its views. The address sanitizer sees a lens that does not notice.
-TEST_F(EndoscopeLensTest, AViewportThatGoesFirstTakesNothingWithItThatIsNeeded) {
+TEST_F(EndoscopeLensTest, ViewportMayBeDeletedFirst) {
   Ogre::RenderTarget& target = *picture_->getBuffer()->getRenderTarget();
   auto useOnce = [&target] {
     Ogre::Viewport* other = target.addViewport(camera_, 1, 0, 0, 0.5F, 0.5F);
@@ -149,7 +168,7 @@ TEST_F(EndoscopeLensTest, AViewportThatGoesFirstTakesNothingWithItThatIsNeeded) 
   EXPECT_EQ(resources(), before);
 }
 
-TEST_F(EndoscopeLensTest, NothingStaysHoweverOftenItIsChanged) {
+TEST_F(EndoscopeLensTest, LeavesNoResourcesBehind) {
   auto useOnce = [] {
     EndoscopeLens lens(*viewport_);
     for (const double degrees : {60., 100., 140.}) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""rviz with the shipped configuration, and messages that are wrong, too many or too large: it says so in a status,
-draws the next good message, and its window lives on."""
+"""rviz with the shipped configuration and invalid, too many or too large messages: a status reports them, the next
+valid message is drawn, and rviz keeps running."""
 
 import time
 import unittest
@@ -16,7 +16,7 @@ from vibe_msgs.msg import SutureArray, TissueTopology
 import tissue_messages as good
 from rviz_under_test import RvizUnderTest
 
-FRAMES = 5  # that must follow whatever came
+FRAMES = 5  # drawn after each message
 STORM_RATE, STORM = 600.0, 3000  # ten times the simulator's [1/s], and how many messages
 MOST_GROWTH = 100e6  # of memory in a storm [B]
 ROWS, AROUND = 300, 200  # 60,002 particles
@@ -58,7 +58,7 @@ class Robustness(unittest.TestCase):
         self.show(good.topology(), good.particles(), good.sutures())
 
     def show(self, topology, particles, sutures):
-        """Good messages, until they are drawn."""
+        """Publishes valid messages until they are drawn."""
         self.topology.publish(topology)
         self.sutures.publish(sutures)
         count = len(topology.rest_positions) // 3
@@ -72,7 +72,7 @@ class Robustness(unittest.TestCase):
         self.rviz.wait_for_frames(FRAMES)
 
     def refuses(self, publisher, message, status, part):
-        """One wrong message is told, the window lives on, and the next good one is drawn."""
+        """One invalid message is reported, and rviz keeps running."""
         publisher.publish(message)
         display = "Sutures" if publisher is self.sutures else "Stomach"
         self.rviz.wait_for_status(display, status, "Error", part)
@@ -81,9 +81,9 @@ class Robustness(unittest.TestCase):
     def test_particles_that_are_wrong(self):
         cases = [
             (good.particles(revision=7), "revision 7"),
-            (good.particles(change=set_one("x", float("nan"))), "no place"),
-            (good.particles(change=set_all("z", float("inf"))), "no place"),
-            (good.particles(change=set_one("y", 3e38)), "no place"),
+            (good.particles(change=set_one("x", float("nan"))), "invalid"),
+            (good.particles(change=set_all("z", float("inf"))), "invalid"),
+            (good.particles(change=set_one("y", 3e38)), "invalid"),
             (good.particles(rows=41), "particles"),
             (good.particles(rows=0 + 2, around=3), "particles"),
         ]
@@ -136,8 +136,8 @@ class Robustness(unittest.TestCase):
             self.refuses(self.sutures, message, "Message", "")
             self.setUp()
 
-    def test_numbers_that_are_not(self):
-        """Of strain nothing depends but colour: nothing to say, and the window lives on."""
+    def test_strain_that_is_not_finite(self):
+        """Strain affects colours only, so there is no status, and rviz keeps running."""
         for value in (float("nan"), float("inf"), 3e38):
             self.particles.publish(good.particles(change=set_all("strain", value)))
             self.rviz.wait_for_frames(FRAMES)
@@ -163,7 +163,7 @@ class Robustness(unittest.TestCase):
         self.rviz.wait_for_status("Sutures", "Transform", "Ok", "")
 
     def test_storm(self):
-        """Ten times the simulator's rate: frames go on meanwhile, memory does not grow, and the last message counts."""
+        """At ten times the rate of the simulator rviz keeps drawing, and its memory does not grow."""
         particles, sutures = good.particles(), good.sutures()
         before = self.rviz.report()
         rate, begin = rospy.Rate(STORM_RATE), time.monotonic()

@@ -27,6 +27,10 @@
 #include <QTimer>
 #include <cstdio>
 #include <fstream>
+#include <utility>
+#include <vector>
+
+#include "vibe_rviz_plugins/display_base/property_help.hpp"
 
 namespace {
 
@@ -70,32 +74,35 @@ void addFailedPlugins(rviz::VisualizationFrame& frame, QJsonArray& statuses) {
   for (rviz::FailedPanel* panel : frame.findChildren<rviz::FailedPanel*>()) failed(panel->getName());
 }
 
-// Counts the properties of this package's own things, and names those that have no help sentence.
-void askForHelp(const rviz::Property& parent, const QString& path, int& count, QJsonArray& silent) {
-  for (int i = 0; i < parent.numChildren(); ++i) {
-    const rviz::Property* child = parent.childAtUnchecked(i);
-    if (dynamic_cast<const rviz::StatusProperty*>(child) != nullptr) continue;
-    const QString name = path + "/" + child->getName();
-    ++count;
-    if (child->getDescription().trimmed().isEmpty()) silent.append(name);
-    askForHelp(*child, name, count, silent);
-  }
+bool isOurs(const QString& class_id) {
+  return class_id.startsWith("vibe_rviz_plugins/");
+}
+
+// What of this package's displays, tools and view has properties.
+std::vector<std::pair<const rviz::Property*, QString>> ownParents(rviz::VisualizationManager& manager) {
+  std::vector<std::pair<const rviz::Property*, QString>> parents;
+  rviz::DisplayGroup& displays = *manager.getRootDisplayGroup();
+  for (int i = 0; i < displays.numDisplays(); ++i)
+    if (isOurs(displays.getDisplayAt(i)->getClassId()))
+      parents.emplace_back(displays.getDisplayAt(i), displays.getDisplayAt(i)->getName());
+  rviz::ToolManager& tools = *manager.getToolManager();
+  for (int i = 0; i < tools.numTools(); ++i)
+    if (isOurs(tools.getTool(i)->getClassId()))
+      parents.emplace_back(tools.getTool(i)->getPropertyContainer(), tools.getTool(i)->getName());
+  rviz::ViewController* view = manager.getViewManager()->getCurrent();
+  if (isOurs(view->getClassId())) parents.emplace_back(view, view->getName());
+  return parents;
 }
 
 QJsonObject helpOf(rviz::VisualizationManager& manager) {
   int count = 0;
-  QJsonArray silent;
-  rviz::DisplayGroup& displays = *manager.getRootDisplayGroup();
-  for (int i = 0; i < displays.numDisplays(); ++i)
-    if (displays.getDisplayAt(i)->getClassId().startsWith("vibe_rviz_plugins/"))
-      askForHelp(*displays.getDisplayAt(i), displays.getDisplayAt(i)->getName(), count, silent);
-  rviz::ToolManager& tools = *manager.getToolManager();
-  for (int i = 0; i < tools.numTools(); ++i)
-    if (tools.getTool(i)->getClassId().startsWith("vibe_rviz_plugins/"))
-      askForHelp(*tools.getTool(i)->getPropertyContainer(), tools.getTool(i)->getName(), count, silent);
-  rviz::ViewController* view = manager.getViewManager()->getCurrent();
-  if (view->getClassId().startsWith("vibe_rviz_plugins/")) askForHelp(*view, view->getName(), count, silent);
-  return {{"properties", count}, {"without_help", silent}};
+  QJsonArray missing;
+  for (const auto& [parent, name] : ownParents(manager)) {
+    const vibe::PropertyHelp help = vibe::checkPropertyHelp(*parent, name.toStdString());
+    count += help.count;
+    for (const std::string& path : help.missing) missing.append(QString::fromStdString(path));
+  }
+  return {{"properties", count}, {"without_help", missing}};
 }
 
 double residentMemory() {

@@ -234,26 +234,32 @@ TEST(Conversions, eventsKeepTheirContent) {
   event.kind = Event::Kind::Slip;
   event.particle = 12;
   event.value = 8.5;
-  event.text = "torn off";
+  event.limit = 4;
+  event.amount = 1;
   const vibe_msgs::ProcedureEvent message = makeEvent(event, 3);
   EXPECT_EQ(message.kind, vibe_msgs::ProcedureEvent::SLIP);
   EXPECT_EQ(message.particle, 12);
   EXPECT_EQ(message.value, 8.5);
-  EXPECT_EQ(message.text, "torn off");
+  EXPECT_EQ(message.text, "The tissue tore off the helix at 8.50 N; after 1.0 turns the helix holds 4.00 N.");
+  const vibe_msgs::ProcedureEvent warning = makeWarning("The topic is silent.", 4'000'000'000);
+  EXPECT_EQ(warning.kind, vibe_msgs::ProcedureEvent::WARNING);
+  EXPECT_EQ(warning.particle, -1);
+  EXPECT_EQ(warning.text, "The topic is silent.");
+  EXPECT_EQ(warning.header.stamp.toNSec(), 4'000'000'000u);
 }
 
-TEST(Conversions, phaseFollowsWhatHappens) {
+TEST(Conversions, toolStateFollowsWhatHappens) {
   State state;
   StepInput input;
-  EXPECT_STREQ(phaseOf(state, input), "free");
+  EXPECT_STREQ(toolStateOf(state, input), "free");
   state.in_contact = true;
-  EXPECT_STREQ(phaseOf(state, input), "contact");
+  EXPECT_STREQ(toolStateOf(state, input), "contact");
   input.buttons[Insufflate] = 1;
-  EXPECT_STREQ(phaseOf(state, input), "insufflation");
+  EXPECT_STREQ(toolStateOf(state, input), "insufflation");
   state.pressure_reached = true;
-  EXPECT_STREQ(phaseOf(state, input), "contact");
+  EXPECT_STREQ(toolStateOf(state, input), "contact");
   state.grip.emplace_back();
-  EXPECT_STREQ(phaseOf(state, input), "grip");
+  EXPECT_STREQ(toolStateOf(state, input), "grip");
 }
 
 }  // namespace

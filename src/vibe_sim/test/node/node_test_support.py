@@ -134,9 +134,10 @@ class Program:
 
 def find_program(program):
     for folder in os.environ["CMAKE_PREFIX_PATH"].split(os.pathsep):
-        path = os.path.join(folder, "lib", "vibe_sim", program)
-        if os.path.exists(path):
-            return path
+        for package in ("vibe_sim", "vibe_core"):
+            path = os.path.join(folder, "lib", package, program)
+            if os.path.exists(path):
+                return path
     raise rospkg.ResourceNotFound(program)
 
 

@@ -22,12 +22,6 @@ class ProcedureMessage : public ::testing::Test {
     return Session(world.model, 1, 1'000'000'000, 1);
   }
 
-  void happen(std::initializer_list<Event::Kind> kinds) {
-    std::vector<Event> events;
-    for (Event::Kind kind : kinds) events.emplace_back().kind = kind;
-    session.counts.record(events);
-  }
-
   /// A step that leads to the present state, with these events.
   void record(std::initializer_list<Event::Kind> kinds = {}) {
     std::vector<Event> events;
@@ -36,6 +30,7 @@ class ProcedureMessage : public ::testing::Test {
   }
 
   vibe_msgs::ProcedureState message() const { return makeProcedureState(session, {}); }
+  vibe_msgs::SkillMetrics skill() const { return makeSkillMetrics(session); }
   std::string kind() const { return kindOf(session, {}); }
 
   Suture& addSuture(Suture::Stage stage, int full, int partial = 0) {
@@ -52,10 +47,10 @@ class ProcedureMessage : public ::testing::Test {
 
 TEST_F(ProcedureMessage, beginsWithALoadedNeedleAndNothingDone) {
   const vibe_msgs::ProcedureState m = message();
-  EXPECT_EQ(m.phase, "free");
-  EXPECT_EQ(m.procedure_phase, "inspect");
+  EXPECT_EQ(m.tool_state, "free");
+  EXPECT_EQ(m.phase, "inspect");
   EXPECT_TRUE(m.needle_loaded && m.needle_on_arm);
-  EXPECT_EQ(m.marks + m.burns + m.bites + m.sutures + m.tear_outs + m.refused + m.bleeding, 0u);
+  EXPECT_EQ(m.marks + m.burns + m.bites + m.sutures + m.tear_outs + m.bleeding, 0u);
   EXPECT_TRUE(m.techniques.empty());
 }
 
@@ -64,7 +59,7 @@ TEST_F(ProcedureMessage, countsParticlesByGradeWithTheWorseOnesIncluded) {
   procedure.beam_energy = 60;
   procedure.phase = Phase::Mark;
   const vibe_msgs::ProcedureState m = message();
-  EXPECT_EQ(m.procedure_phase, "mark");
+  EXPECT_EQ(m.phase, "mark");
   EXPECT_EQ(m.marks, 4u);
   EXPECT_EQ(m.burns, 2u);
   EXPECT_EQ(m.deep_burns, 1u);
@@ -101,22 +96,43 @@ TEST_F(ProcedureMessage, countsWhatBleedsNow) {
 
 TEST_F(ProcedureMessage, countsEventsAndForgetsThemWithTheState) {
   using Kind = Event::Kind;
-  happen({Kind::BiteMissed, Kind::BiteMissed, Kind::BiteWithdrawn, Kind::Refused, Kind::Refused, Kind::Refused});
-  happen({Kind::BleedingOverdue});
-  EXPECT_EQ(message().missed_bites, 2u);
-  EXPECT_EQ(message().withdrawn_bites, 1u);
-  EXPECT_EQ(message().refused, 3u);
-  EXPECT_EQ(message().overdue_bleedings, 1u);
+  record({Kind::BiteMissed, Kind::BiteMissed, Kind::BiteWithdrawn, Kind::Rejected, Kind::Rejected, Kind::Rejected});
+  record({Kind::BleedingOverdue});
+  EXPECT_EQ(skill().missed_bites, 2u);
+  EXPECT_EQ(skill().withdrawn_bites, 1u);
+  EXPECT_EQ(skill().rejected, 3u);
+  EXPECT_EQ(skill().overdue_bleedings, 1u);
   session.replaceState(state);
-  EXPECT_EQ(message().refused + message().missed_bites, 0u);
+  EXPECT_EQ(skill().rejected + skill().missed_bites, 0u);
+}
+
+TEST_F(ProcedureMessage, sessionMeasuresAndStateHaveTheSameTime) {
+  state.time = 2.5;
+  state.step = 150;
+  state.contact_count = 1;
+  state.tool_force = Eigen::Vector3d(3, 0, 4);
+  state.volume = 1e-3;
+  record({Event::Kind::Grab, Event::Kind::Release, Event::Kind::Slip, Event::Kind::GrabMissed, Event::Kind::Recovery});
+  EXPECT_EQ(skill().time, 2.5);
+  EXPECT_EQ(message().time, 2.5);
+  EXPECT_EQ(skill().header.stamp, message().header.stamp);
+  EXPECT_NEAR(skill().contact_time, session.model->scene.step_period, 1e-12);
+  EXPECT_EQ(skill().grip_time + skill().insufflation_time + skill().path_length, 0);
+  EXPECT_DOUBLE_EQ(skill().max_force, 5);
+  EXPECT_DOUBLE_EQ(skill().mean_force, 5);
+  EXPECT_EQ(skill().max_volume, 1e-3);
+  EXPECT_EQ(message().volume, 1e-3);
+  const vibe_msgs::SkillMetrics m = skill();
+  EXPECT_EQ(std::vector<std::uint32_t>({m.grabs, m.missed_grabs, m.releases, m.slips, m.warnings}),
+            std::vector<std::uint32_t>(5, 1));
 }
 
 TEST_F(ProcedureMessage, whatIsNotDefinedYetIsNan) {
-  const vibe_msgs::ProcedureState m = message();
+  const vibe_msgs::SkillMetrics m = skill();
   for (double value :
        {m.economy, m.log_dimensionless_jerk, m.spectral_arc_length, m.bite_spacing_mean, m.bite_spacing_sd,
         m.bite_depth_mean, m.bite_depth_sd, m.full_thickness_share, m.bites_proximal, m.sets_proximal, m.lumen_area,
-        m.organ_length, m.area_reduction, m.length_reduction, m.phase_economy[0], m.phase_peak_force[4],
+        m.organ_length, m.area_reduction, m.length_reduction, m.phase_economy[0], m.phase_max_force[4],
         m.phase_mean_force[2], m.phase_log_dimensionless_jerk[1], m.phase_spectral_arc_length[3]})
     EXPECT_TRUE(std::isnan(value));
   EXPECT_EQ(m.phase_time[0] + m.time_above + m.volume_reduction, 0);
@@ -132,11 +148,11 @@ TEST_F(ProcedureMessage, timesAndForcesStandAtTheirPhase) {
   state.tool_force = Eigen::Vector3d(0, 0, 2);
   record();
   record();
-  const vibe_msgs::ProcedureState m = message();
+  const vibe_msgs::SkillMetrics m = skill();
   EXPECT_NEAR(m.phase_time[0], dt, 1e-12);
   EXPECT_NEAR(m.phase_time[3], 2 * dt, 1e-12);
   EXPECT_EQ(m.phase_time[2], 0);
-  EXPECT_EQ(m.phase_peak_force[0], 6);
+  EXPECT_EQ(m.phase_max_force[0], 6);
   EXPECT_EQ(m.phase_mean_force[3], 2);
   EXPECT_NEAR(m.phase_time_above[0], dt, 1e-12);
   EXPECT_EQ(m.phase_time_above[3], 0);
@@ -155,17 +171,20 @@ TEST_F(ProcedureMessage, tellsHowBitesLie) {
   suture.bites[0].region = Region::Antrum;
   suture.bites[1].region = suture.bites[2].region = Region::Fundus;
   record({Event::Kind::Bite});
-  const vibe_msgs::ProcedureState m = message();
+  const vibe_msgs::SkillMetrics m = skill();
   EXPECT_DOUBLE_EQ(m.full_thickness_share, 0.75);
   EXPECT_DOUBLE_EQ(m.bite_depth_mean, 2.5e-3);
   EXPECT_DOUBLE_EQ(m.bite_depth_sd, 1e-3);
-  EXPECT_GT(m.bite_spacing_mean, 0);
-  EXPECT_GE(m.bite_spacing_sd, 0);
+  const auto& vertices = session.model->organ.surface.vertices;
+  Eigen::Vector3d spacing;  // bite k is at vertex k
+  for (int k = 0; k < 3; ++k) spacing[k] = (vertices[k + 1] - vertices[k]).norm();
+  EXPECT_NEAR(m.bite_spacing_mean, spacing.mean(), 1e-12);
+  EXPECT_NEAR(m.bite_spacing_sd, std::sqrt((spacing.array() - spacing.mean()).square().sum() / 2), 1e-12);
   EXPECT_DOUBLE_EQ(m.bites_proximal, 2.0 / 3);
   EXPECT_TRUE(std::isnan(m.sets_proximal));
   EXPECT_EQ(m.bites_in_antrum, 1u);
   EXPECT_EQ(m.bites_in_fundus, 2u);
-  EXPECT_EQ(m.technique_margins, std::vector<double>{0.5});
+  EXPECT_EQ(message().technique_margins, std::vector<double>{0.5});
 }
 
 TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
@@ -178,7 +197,7 @@ TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
   state.pressure = 1000;
   record({Event::Kind::PressureReached, Event::Kind::DeepBurn, Event::Kind::ThreadBroke, Event::Kind::ThreadBroke});
   for (int k = 0; k < std::ceil(0.1 / session.model->scene.step_period); ++k) record();  // marks are counted then
-  const vibe_msgs::ProcedureState m = message();
+  const vibe_msgs::SkillMetrics m = skill();
   EXPECT_EQ(m.mark_zones, 1u);
   EXPECT_EQ(m.mark_zones_inside, 1u);
   EXPECT_EQ(m.mark_zones_anterior, 1u);
@@ -194,7 +213,7 @@ TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
   EXPECT_NEAR(m.volume_reduction, 0, 1e-12);
   for (double& value : state.x) value *= 0.5;
   for (int k = 0; k < std::lround(1 / session.model->scene.step_period); ++k) record();
-  EXPECT_NEAR(message().volume_reduction, 0.5, 1e-9);
+  EXPECT_NEAR(skill().volume_reduction, 0.5, 1e-9);
 }
 
 TEST_F(ProcedureMessage, aNewStateBringsItsBitesAndNotWhatWasRecorded) {
@@ -203,23 +222,23 @@ TEST_F(ProcedureMessage, aNewStateBringsItsBitesAndNotWhatWasRecorded) {
   loaded.procedure.sutures.emplace_back().bites.resize(3);
   for (Bite& bite : loaded.procedure.sutures[0].bites) bite.depth = 4e-3;
   session.replaceState(loaded);
-  EXPECT_EQ(message().broken_threads, 0u);
-  EXPECT_EQ(message().phase_time[0], 0);
-  EXPECT_DOUBLE_EQ(message().bite_depth_mean, 4e-3);
+  EXPECT_EQ(skill().broken_threads, 0u);
+  EXPECT_EQ(skill().phase_time[0], 0);
+  EXPECT_DOUBLE_EQ(skill().bite_depth_mean, 4e-3);
   session.replaceModel(makeSession().model);
-  EXPECT_TRUE(std::isnan(message().bite_depth_mean));
+  EXPECT_TRUE(std::isnan(skill().bite_depth_mean));
   for (int k = 0; k < 100; ++k) record({Event::Kind::Mark});  // with the organ of the new model
-  EXPECT_GT(message().phase_time[0], 0);
+  EXPECT_GT(skill().phase_time[0], 0);
 }
 
 TEST_F(ProcedureMessage, everyEventButContactIsToldAtOnce) {
   std::string before = kind();
-  happen({Event::Kind::ContactBegin, Event::Kind::ContactEnd});
+  record({Event::Kind::ContactBegin, Event::Kind::ContactEnd});
   EXPECT_EQ(kind(), before);
   for (int k = 0; k <= static_cast<int>(Event::Kind::ArmClosed); ++k) {
     const auto event = static_cast<Event::Kind>(k);
     if (event == Event::Kind::ContactBegin || event == Event::Kind::ContactEnd) continue;
-    happen({event});
+    record({event});
     EXPECT_NE(kind(), before) << toString(event);
     before = kind();
   }

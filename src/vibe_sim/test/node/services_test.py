@@ -177,9 +177,10 @@ class ServicesTest(unittest.TestCase):
         self.assertTrue(self.call["step"](1).success)
 
     def test_calls_from_several_sides_at_once_are_all_answered(self):
-        replies = []
+        replies = {"step": [], "pause": []}
+
         def work(service, argument):
-            replies.append(self.call[service](argument))
+            replies[service].append(self.call[service](argument))
 
         threads = [threading.Thread(target=work, args=("step", 50)) for _ in range(3)]
         threads.append(threading.Thread(target=work, args=("pause", True)))
@@ -188,9 +189,17 @@ class ServicesTest(unittest.TestCase):
             thread.start()
         for thread in threads:
             thread.join(20)
-        self.assertEqual(len(replies), 4)
         self.assertLess(time.monotonic() - begin, 20)
-        self.assertTrue(any(reply.success for reply in replies))
+        self.assertEqual([reply.success for reply in replies["pause"]], [True])
+        # a request for steps is either done as a whole or rejected while another is being done
+        self.assertEqual(len(replies["step"]), 3)
+        done = [reply for reply in replies["step"] if reply.success]
+        self.assertGreaterEqual(len(done), 1)
+        for reply in replies["step"]:
+            self.assertIn("Took 50 steps" if reply.success else "another caller", reply.message)
+        self.assertTrue(wait_until(lambda: len(self.applied.messages) >= 50 * len(done)))
+        rospy.rostime.wallsleep(0.2)
+        self.assertEqual([m.step for m in self.applied.messages], list(range(50 * len(done))))
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from node_test_support import EPOCH, OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS
 from node_test_support import Recorder, buttons, joints, stamp_of, wait_until
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Joy, PointCloud2
-from vibe_msgs.msg import ProcedureEvent, ProcedureState, SolverStatistics, StepInput, SutureArray
+from vibe_msgs.msg import ProcedureEvent, ProcedureState, SkillMetrics, SolverStatistics, StepInput, SutureArray
 from vibe_msgs.msg import TissuePull, TissuePullState, TissueTopology
 from vibe_msgs.srv import Reset, Step
 
@@ -38,6 +38,7 @@ class TopicsTest(unittest.TestCase):
         cls.clock = Recorder("/clock", Clock)
         cls.events = Recorder("procedure/events", ProcedureEvent)
         cls.procedure = Recorder("procedure/state", ProcedureState)
+        cls.skill = Recorder("procedure/skill_metrics", SkillMetrics)
         cls.topology = Recorder("tissue/topology", TissueTopology)
         cls.performance = Recorder("solver_statistics", SolverStatistics)
         cls.scope = rospy.Publisher("scope/measured_js", JointState, queue_size=100)
@@ -50,7 +51,8 @@ class TopicsTest(unittest.TestCase):
         rospy.wait_for_service("step", 20)
         cls.step_service = rospy.ServiceProxy("step", Step)
         cls.reset_service = rospy.ServiceProxy("reset", Reset)
-        everything = list(cls.recorders.values()) + [cls.clock, cls.events, cls.procedure, cls.performance, cls.pull_state]
+        everything = list(cls.recorders.values()) + [
+            cls.clock, cls.events, cls.procedure, cls.skill, cls.performance, cls.pull_state]
         assert wait_until(lambda: all(r.is_connected() for r in everything), 20)
         publishers = (cls.scope, cls.overstitch, cls.buttons, cls.pull)
         assert wait_until(lambda: all(p.get_num_connections() > 0 for p in publishers), 20)
@@ -58,7 +60,7 @@ class TopicsTest(unittest.TestCase):
     def setUp(self):
         self.assertTrue(self.reset_service(seed=0, keep_time=False).success)
         wait_until(lambda: self.procedure.messages and self.procedure.messages[-1].step == 0)
-        for recorder in list(self.recorders.values()) + [self.events, self.procedure, self.clock]:
+        for recorder in list(self.recorders.values()) + [self.events, self.procedure, self.skill, self.clock]:
             recorder.clear()
 
     def step(self, n):
@@ -243,7 +245,7 @@ class TopicsTest(unittest.TestCase):
         self.assertIsNotNone(event)
         self.assertAlmostEqual(event.value, 1333, delta=0.02 * 1333)
         states = self.procedure.messages
-        self.assertEqual(states[0].phase, "insufflation")
+        self.assertEqual(states[0].tool_state, "insufflation")
         self.assertGreater(states[-1].volume, states[0].volume)
 
     def test_grab_holds_tissue_and_release_lets_it_go(self):
@@ -254,14 +256,34 @@ class TopicsTest(unittest.TestCase):
         self.assertIsNotNone(grab)
         self.assertGreaterEqual(grab.value, 1)
         held = self.procedure.find(lambda m: m.held_particles > 0)
-        self.assertEqual(held.phase, "grip")
+        self.assertEqual(held.tool_state, "grip")
         self.assertEqual(held.held_particles, grab.value)
         self.command((0.075, 0, 0, 0), (0.004, 0, 0))
         release = self.events.find(lambda m: m.kind == ProcedureEvent.RELEASE)
         self.assertIsNotNone(release)
         self.assertGreater(release.header.stamp, grab.header.stamp)
-        last = self.procedure.find(lambda m: m.releases == 1)
-        self.assertEqual((last.grabs, last.held_particles), (1, 0))
+        last = self.skill.find(lambda m: m.releases == 1)
+        self.assertIsNotNone(last)
+        self.assertEqual((last.grabs, last.header.stamp), (1, release.header.stamp))
+        self.assertGreater(last.max_force, 0)
+        state = self.procedure.find(lambda m: m.header.stamp == release.header.stamp)
+        self.assertEqual(state.held_particles, 0)
+
+    def test_skill_metrics_are_latched_and_come_with_the_state(self):
+        self.step(150)
+        state = self.procedure.find(lambda m: m.step > 110)  # twice, once per second
+        self.assertIsNotNone(state)
+        self.assertIsNotNone(self.skill.find(lambda m: m.header.stamp == state.header.stamp))
+        # the one of the reset may come late
+        self.assertEqual(set(self.skill.stamps()) - {EPOCH}, set(self.procedure.stamps()) - {EPOCH})
+        late = Recorder("procedure/skill_metrics", SkillMetrics)
+        message = late.find(lambda m: True)
+        self.assertIsNotNone(message, "latched")
+        self.assertEqual(message.header.stamp, state.header.stamp)
+        self.assertAlmostEqual(message.time, message.phase_time[0], delta=1e-9)  # all of it inspection
+        self.assertEqual((message.grabs, message.rejected, message.organ_reference), (0, 0, "rest"))
+        self.assertTrue(math.isnan(message.bite_depth_mean))
+        late.subscriber.unregister()
 
     def test_sutures_are_latched_and_empty_at_the_start(self):
         self.step(1)
@@ -307,16 +329,17 @@ class TopicsTest(unittest.TestCase):
         self.assertEqual([m.particle for m in self.pull_state.messages].count(-1), 1)
         self.assertEqual(self.pull_state.messages[-1].force.x, 0)
 
-    def test_a_cinch_without_a_thread_is_refused_with_a_reason(self):
+    def test_a_cinch_without_a_thread_is_rejected_with_a_reason(self):
         self.command((0, 0, 0, 0), pressed=())
         self.command((0, 0, 0, 0), pressed=(4,))
-        refused = self.events.find(lambda m: m.kind == ProcedureEvent.REFUSED)
-        self.assertIsNotNone(refused)
-        self.assertEqual(refused.value, 4)
-        self.assertGreater(len(refused.text), 10)
-        state = self.procedure.find(lambda m: m.refused == 1)
+        rejected = self.events.find(lambda m: m.kind == ProcedureEvent.REJECTED)
+        self.assertIsNotNone(rejected)
+        self.assertEqual(rejected.value, 4)
+        self.assertEqual(rejected.text, "There is no thread to cinch: take bites and drop the T-tag first.")
+        self.assertIsNotNone(self.skill.find(lambda m: m.rejected == 1))
+        state = self.procedure.find(lambda m: m.header.stamp == rejected.header.stamp)
         self.assertIsNotNone(state)
-        self.assertEqual((state.procedure_phase, state.sutures, state.bites), ("inspect", 0, 0))
+        self.assertEqual((state.phase, state.sutures, state.bites), ("inspect", 0, 0))
         self.assertTrue(state.needle_loaded and state.needle_on_arm)
 
     def test_performance_is_reported_once_a_second(self):

@@ -1,53 +1,124 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <type_traits>
+
+#include "vibe_core/geometry/anatomy.hpp"
 
 namespace vibe {
 
-/// Something that happened in a step. The kinds' numbers go on the wire (vibe_msgs/ProcedureEvent).
+/// Why a command could not act. describe() gives the sentence with the remedy.
+enum class RejectReason : std::uint8_t {
+  None,
+  NoGas,           ///< the scene has no section of this name; so do the next four
+  NoScope,         ///< as above
+  NoMarking,       ///< as above
+  NoHelix,         ///< as above
+  NoSuture,        ///< as above
+  BeamOutOfReach,  ///< no tissue in front of the argon probe; limit: its reach [m]
+  ClosedWithoutNeedle,
+  NoNeedle,  ///< the needle went with the T-tag
+  ArmOpen,
+  ArmStillInBite,
+  TooManySets,   ///< limit: sets of a session
+  SetFull,       ///< limit: bites of a set
+  ThreadUsedUp,  ///< amount: what the bite needs, limit: what is left [m]
+  TTagDropped,   ///< already, for this set
+  NoBite,
+  NeedleInWall,
+  TooFewBites,  ///< amount: bites of the set, limit: what it needs
+  NoThread,     ///< to cinch
+  NoTTag
+};
+constexpr int kRejectReasonCount = 20;
+
+/// Which of the things that share a kind has happened.
+enum class EventDetail : std::uint8_t {
+  None,
+  NotFinite,         ///< Recovery: positions were not finite; the tissue starts again from rest
+  SpeedLimited,      ///< Recovery: value: particles that were slowed
+  Distorted,         ///< Recovery: overstretched or inverted tissue is led back to rest
+  InZone,            ///< Mark: in the working zone, see inWorkingZone()
+  OutOfZone,         ///< Mark: outside of it
+  FullThickness,     ///< Bite: through the whole wall
+  PartialThickness,  ///< Bite: not through
+  NeedleOnArm,       ///< NeedleExchanged
+  NeedleInExchange,  ///< NeedleExchanged
+  MildByItself,      ///< BleedingStopped
+  MildCinched,       ///< BleedingStopped: by the cinch of its set
+  BriskCinched,      ///< BleedingStopped: by the cinch of its set
+  ThreadDrawn,       ///< Cinched, CinchLoose: amount: thread drawn by the cinch [m]
+  WallDrawn          ///< Cinched, CinchLoose: amount: way of the wall (suture.cinch_model: groups) [m]
+};
+constexpr int kEventDetailCount = 15;
+
+/// Something that happened in a step, as plain numbers; describe() makes a sentence of it. The numbers of the kinds are
+/// those of vibe_msgs/ProcedureEvent.
 struct Event {
   enum class Kind : std::uint8_t {
-    Grab = 0,          ///< the helix took hold; particle: the targeted one, value: particles held
-    GrabMissed = 1,    ///< pressed, but no tissue in reach; value: distance to the nearest particle [m]
-    Release = 2,       ///< let go on command; value: force just before [N]
-    Slip = 3,          ///< torn off above the hold force; value: force [N]
+    Grab = 0,          ///< the helix took hold; particle: the targeted one, value: particles held; region, wall
+    GrabMissed = 1,    ///< no tissue in reach; value: distance to the nearest particle, limit: reach of the helix [m]
+    Release = 2,       ///< the helix let go on command; value: force just before [N]
+    Slip = 3,          ///< the tissue tore off; value: force, limit: what the helix holds [N]; amount: turns
     ContactBegin = 4,  ///< the tool touches tissue; value: particles touched
     ContactEnd = 5,
-    PressureReached = 6,  ///< the insufflator has reached its set point; value: gauge pressure [Pa]
-    Warning = 7,          ///< text says what and what to do
-    Recovery = 8,         ///< the solver met a state it could not continue from and recovered; text says how
-    Refused = 9,          ///< a command could not act; text gives the one reason and what to do; value: Button or -1
-    Mark = 10,      ///< a mark begins, apart from all others; particle: where, value: dose there [J]. Said once: a mark
-                    ///< that grows, as a line does that is drawn, says no more. So do burns:
-    Burn = 11,      ///< a burn scar begins; value: dose there [J]
-    DeepBurn = 12,  ///< the muscularis begins to be at risk; value: dose there [J]
-    HelixTurned = 13,      ///< the helix is in as far as it holds best; value: turns
-    Bite = 14,             ///< the exchange took the needle: a bite; particle: nearest, value: depth [m]
+    PressureReached = 6,   ///< the insufflator has reached its set point; value: gauge pressure [Pa]
+    Warning = 7,           ///< of a program about its inputs, which brings its own sentence; never from a step
+    Recovery = 8,          ///< the solver met a state from which it could not continue; detail: how it recovered
+    Rejected = 9,          ///< a command could not act; reason: why; value: Button, or -1: the needle arm
+    Mark = 10,             ///< a mark begins; particle: where, value: dose there [J], amount: marks; region, wall. A
+                           ///< mark that grows, such as a line that is drawn, causes no further event; so do burns:
+    Burn = 11,             ///< a burn scar begins; value: dose there [J]; region, wall
+    DeepBurn = 12,         ///< the muscularis begins to be at risk; value: dose there [J]; region, wall
+    HelixTurned = 13,      ///< the helix holds as well as it can; value: turns, limit: what it holds [N]
+    Bite = 14,             ///< the exchange took the needle; particle: nearest, value: depth [m], amount: distance from
+                           ///< the bite before [m]; suture, bite, region, wall
     BiteMissed = 15,       ///< the arm closed and met no tissue; value: gap between needle and mucosa [m]
     BiteWithdrawn = 16,    ///< the arm opened before the exchange had the needle: no bite
     NeedleExchanged = 17,  ///< value: 1: the arm holds the needle again, 0: the exchange holds it
-    BleedingMild = 18,     ///< value: rate [m^3/s]
-    BleedingBrisk = 19,    ///< complete the suture; value: rate [m^3/s]
-    BleedingStopped = 20,  ///< value: amount lost there [m^3]
-    BleedingOverdue = 21,  ///< brisk bleeding was not stopped in time; value: amount so far [m^3]
-    TechniqueFound = 22,   ///< at the T-tag; value: Technique, text names it
-    TTagDropped = 23,      ///< value: bites of the set
-    CinchPulling = 24,     ///< the cinch begins to draw thread
-    Cinched = 25,          ///< the set is permanent; value: tension [N]
-    CinchLoose = 26,       ///< cinched, but slack; value: tension [N]
-    TearOut = 27,          ///< a bite tore out of the wall; particle: nearest, value: force on it [N]
-    ThreadBroke = 28,      ///< value: tension [N]
-    PhaseChanged = 29,     ///< value: Phase, text names it
-    Pierced = 30,          ///< the arm closed and the needle went into the wall; value: depth below the mucosa [m]
-    ArmClosed = 31         ///< the arm closed without a needle, over the exchange that holds it
+    BleedingMild = 18,     ///< value: rate [m^3/s]; suture, bite
+    BleedingBrisk = 19,    ///< complete the suture; value: rate [m^3/s]; suture, bite
+    BleedingStopped = 20,  ///< value: amount lost there [m^3]; suture
+    BleedingOverdue = 21,  ///< brisk bleeding was not stopped in time; value: amount so far [m^3]; suture
+    TechniqueFound = 22,   ///< at the T-tag; value: Technique; suture
+    TTagDropped = 23,      ///< value: bites of the set; suture
+    CinchPulling = 24,     ///< the cinch begins to draw thread; suture
+    Cinched = 25,          ///< the set is permanent; value: tension [N]; suture
+    CinchLoose = 26,       ///< cinched, but slack; value: tension [N]; suture
+    TearOut = 27,       ///< a bite tore out; particle: nearest, value: force on it, limit: its hold [N]; suture, bite
+    ThreadBroke = 28,   ///< value: tension, limit: strength of the thread [N]; suture
+    PhaseChanged = 29,  ///< value: Phase
+    Pierced = 30,       ///< the arm closed and the needle went into the wall; value: depth below the mucosa [m]
+    ArmClosed = 31      ///< the arm closed without a needle, over the exchange that holds it
   };
+
+  // Members that the kind does not name keep their defaults.
   Kind kind = Kind::Warning;
-  double time = 0;    ///< simulated time of the step's end [s]
+  EventDetail detail = EventDetail::None;
+  RejectReason reason = RejectReason::None;
+  Region region = Region::Body;
+  Wall wall = Wall::Anterior;
+  double time = 0;    ///< simulated time at the end of the step [s]
   int particle = -1;  ///< -1: none
   double value = 0;
-  std::string text;  ///< one sentence for people
+  double limit = 0;            ///< what value or amount is compared with
+  double amount = 0;           ///< a second number
+  int suture = -1, bite = -1;  ///< numbers from 0; -1: none
 };
+constexpr int kEventKindCount = 32;
 
+static_assert(std::is_trivially_copyable_v<Event>, "an event carries facts; describe() forms the text");
+
+/// Name of a kind: "grab", "bite missed". "unknown" outside of the enum.
 const char* toString(Event::Kind kind);
+
+/// Name of a reason: "no needle". "unknown" outside of the enum.
+const char* toString(RejectReason reason);
+
+/// Unit of Event::value, "m" or "N"; empty: a count, a code or nothing.
+const char* unitOfValue(Event::Kind kind);
+
+/// One sentence for people, with units; for a rejected command the reason and the remedy.
+std::string describe(const Event& event);
 
 }  // namespace vibe

@@ -1,29 +1,30 @@
 #pragma once
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "vibe_core/events/event.hpp"
 
 namespace vibe {
 
-/// How often each kind of event has happened.
+/// How often each kind of event has happened. Whatever counts events reads this.
 class EventCounts {
  public:
+  /// @param events  of one step
   void record(const std::vector<Event>& events) {
-    for (const Event& event : events) ++counts_[static_cast<std::uint8_t>(event.kind)];
+    for (const Event& event : events) ++counts_[static_cast<std::size_t>(event.kind)];
   }
 
-  std::uint32_t of(Event::Kind kind) const { return counts_[static_cast<std::uint8_t>(kind)]; }
+  int of(Event::Kind kind) const { return counts_[static_cast<std::size_t>(kind)]; }
 
-  std::uint64_t total() const {
-    std::uint64_t sum = 0;
-    for (std::uint32_t count : counts_) sum += count;
+  /// Of all kinds.
+  long total() const {
+    long sum = 0;
+    for (int count : counts_) sum += count;
     return sum;
   }
 
  private:
-  std::array<std::uint32_t, 256> counts_{};  // a kind is one byte
+  std::array<int, kEventKindCount> counts_{};
 };
 
 }  // namespace vibe

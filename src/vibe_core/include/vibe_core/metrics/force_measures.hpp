@@ -4,12 +4,12 @@
 
 namespace vibe {
 
-/// What a force was like.
+/// Measures of a force over time.
 struct ForceMeasures {
-  double time = 0;                    ///< recorded [s]
+  double time = 0;                    ///< that was recorded [s]
   double loaded_time = 0;             ///< with a force above noise [s]
   double time_above = 0;              ///< with a force above the threshold [s]
-  double peak = 0;                    ///< [N]
+  double max = 0;                     ///< [N]
   double impulse = 0;                 ///< integral of the magnitude over time [N s]
   std::optional<double> mean;         ///< over loaded_time; no value without load [N]
   std::optional<double> share_above;  ///< time_above / time; no value without time [1]
@@ -19,11 +19,11 @@ struct ForceSettings {
   /// Forces above it count in time_above [N]. Default: Trejos et al. 2011, Surg Endosc 25:186: instruments in
   /// transgastric procedures in pigs pushed with more than 5 N in 1.6 % of the samples, with almost 8 N at most.
   double threshold = 5;
-  double noise = 1e-6;  ///< forces up to it are none [N]; design choice
+  double noise = 1e-6;  ///< smaller forces count as none [N]; design choice
 };
 
-/// Measures a force as it happens. Call add() once per step; no memory, a few additions. Exact if what is given is the
-/// mean over the step, but for the peak, which a mean lowers.
+/// Accumulates the measures of a force. Call add() once per step; it costs a few additions and does not allocate. With
+/// the mean over the step as input all measures are exact except the maximum, which a mean lowers.
 class ForceRecorder {
  public:
   /// @throws Error if a setting is negative or not finite

@@ -9,17 +9,17 @@
 
 namespace vibe {
 
-/// How a point moved. A measure that the motion so far does not define has no value.
+/// Measures of the motion of a point. A measure that the motion so far does not define has no value.
 struct MotionMeasures {
   double time = 0;                   ///< recorded [s]
-  double movement_time = 0;          ///< in movements [s]
-  double idle_time = 0;              ///< the rest [s]
+  double movement_time = 0;          ///< spent in movements [s]
+  double idle_time = 0;              ///< time - movement_time [s]
   double path_length = 0;            ///< of the polygon through all positions given [m]
-  double peak_speed = 0;             ///< over one sample period [m/s]
-  int movements = 0;                 ///< begun
+  double max_speed = 0;              ///< over one sample period [m/s]
+  int movements = 0;                 ///< number that have begun
   int submovements = 0;              ///< peaks of the speed without tremor, see PeakCounter
   std::optional<double> mean_speed;  ///< path_length / time [m/s]
-  std::optional<double> economy;     ///< straight lines of the movements over their paths, 0 to 1; higher is better [1]
+  std::optional<double> economy;  ///< straight distances of movements over path lengths, 0 to 1; higher is better [1]
   std::optional<double> log_dimensionless_jerk;  ///< see logDimensionlessJerk(), mean over movements by duration [1]
   std::optional<double> spectral_arc_length;     ///< SPARC, see SpectralArcLength, mean over movements by duration [1]
 };

@@ -10,8 +10,7 @@
 
 namespace vibe {
 
-/// Size and shape of the organ at one moment. What an organ without an axis or without a body does not have, has no
-/// value.
+/// Size and shape of the organ at one moment. Measures that need an axis or a body have no value without one.
 struct OrganMeasures {
   double volume = 0;                        ///< enclosed by the surface of the particles [m^3]
   std::optional<double> length;             ///< along the axis, from the apex of the fundus to the duodenal end [m]
@@ -81,7 +80,7 @@ class OrganRuler {
   std::vector<Eigen::Vector3d> axis_;  // apex, rings, outlet, at the last measurement
 };
 
-/// How much less there is than before, as a share: 1 - now / before. Negative for more; no value without a before.
+/// 1 - now / before. Negative if there is more than before; no value without both.
 std::optional<double> reduction(std::optional<double> before, std::optional<double> now);
 
 }  // namespace vibe

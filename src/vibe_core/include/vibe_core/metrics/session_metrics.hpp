@@ -3,42 +3,41 @@
 #include <vector>
 
 #include "vibe_core/events/event.hpp"
+#include "vibe_core/metrics/event_counts.hpp"
 #include "vibe_core/metrics/skill_metrics.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
 
-/// What a session was like so far. Updated once per step by MetricsRecorder.
+/// Measures of a session so far. MetricsRecorder updates them once per step.
 struct SessionMetrics {
   double time = 0;               ///< simulated since the start [s]
   double contact_time = 0;       ///< the tool touched tissue [s]
   double grip_time = 0;          ///< the helix held tissue [s]
   double insufflation_time = 0;  ///< the insufflator was on [s]
   double path_length = 0;        ///< of scope_tip [m]
-  double peak_force = 0;         ///< greatest tissue reaction on the tool [N]
-  double mean_force = 0;         ///< of the reaction while there is any [N]
+  double max_force = 0;          ///< of the tissue on the tool [N]
+  double mean_force = 0;         ///< of that force while there is any [N]
   double volume = 0;             ///< of the lumen, now [m^3]
   double max_volume = 0;         ///< [m^3]
   double pressure = 0;           ///< gauge, now [Pa]
   double max_pressure = 0;       ///< [Pa]
   double max_strain = 0;         ///< in-plane, over particles and time, sampled ten times a second [1]
   double energy_balance = 0;     ///< see energyBalance(), sampled ten times a second; drift since the start [J]
-  int grabs = 0;
-  int missed_grabs = 0;
-  int releases = 0;
-  int slips = 0;
-  int warnings = 0;  ///< warnings and recoveries
+  EventCounts events;            ///< since the start, by kind
   SkillMetrics skill;
+
+  int warnings() const;  ///< warnings and recoveries
 };
 
-/// Accumulates SessionMetrics; the only state is what it sums. Reads the state and changes nothing of it.
+/// Accumulates SessionMetrics. Reads the state of the simulation and does not change it.
 class MetricsRecorder {
  public:
   /// @param model  its organ must outlive this
   MetricsRecorder(const Model& model, const State& start);
 
-  /// Begins afresh with another state of the same model, without the costly part of making one.
+  /// Starts again with another state of the same model, without the expensive part of the construction.
   void restart(const Model& model, const State& start);
 
   /// Call after every step() with its events.
@@ -48,7 +47,6 @@ class MetricsRecorder {
 
  private:
   MetricsRecorder(const Model& model, const State& start, SkillInstruments instruments);
-  void countEvents(const std::vector<Event>& events);
   void sample(const Model& model, const State& state);
   Eigen::Vector3d tipPosition(const Model& model, const State& state);
 
@@ -64,7 +62,7 @@ class MetricsRecorder {
   SkillRecorder skill_;
 };
 
-/// The metrics, skill after all else, as lines of text for people, without a trailing newline.
+/// The metrics as lines of text for people, the skill measures last, without a trailing newline.
 std::string summarise(const SessionMetrics& metrics);
 
 }  // namespace vibe

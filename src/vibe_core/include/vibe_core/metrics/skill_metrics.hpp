@@ -16,23 +16,23 @@
 namespace vibe {
 
 struct BleedingSkill {
-  int mild = 0, brisk = 0;  ///< begun
-  int now = 0;              ///< of these, that bleed now
+  int mild = 0, brisk = 0;  ///< that have begun
+  int now = 0;              ///< of these: bleeding now
   int overdue = 0;          ///< brisk ones that were not stopped in time
   double lost = 0;          ///< in total [m^3]
 };
 
-/// Counted from events, so since the start, the last reset or the last load.
+/// Counts of events since the start, the last reset or the last load.
 struct MistakeSkill {
   int missed_bites = 0;     ///< the arm closed and met no tissue
   int withdrawn_bites = 0;  ///< the arm opened before the exchange had the needle
   int slips = 0;            ///< tissue torn off the helix
   int broken_threads = 0;
-  int refused = 0;  ///< commands that could not act
+  int rejected = 0;  ///< commands that could not act
 };
 
-/// How well the procedure is done so far; definitions and sources: docs/metrics.md. Phases and mistakes are what was
-/// recorded; marks, bites, sets and bleeding are what the state holds, so a loaded state brings its own.
+/// Skill measures of the procedure so far; definitions and sources: docs/metrics.md. Phases and mistakes are recorded;
+/// marks, bites, sets and bleeding follow from the state, so a loaded state brings its own.
 struct SkillMetrics {
   PhasesSkill phases;
   MarkSkill marks;
@@ -45,7 +45,8 @@ struct SkillMetrics {
 
 BleedingSkill measureBleeding(const ProcedureState& procedure);
 
-/// What measuring needs and is costly to make (some 40 ms for 3,618 particles): once per model, used in one thread.
+/// What the measures need and what is expensive to make (some 40 ms for 3,618 particles): once per model, for one
+/// thread.
 struct SkillInstruments {
   /// @param model  its organ must outlive this
   explicit SkillInstruments(const Model& model);
@@ -53,19 +54,21 @@ struct SkillInstruments {
   std::shared_ptr<SpectralArcLength> spectrum;
   std::shared_ptr<MarkCounter> marks;
   std::shared_ptr<OrganRuler> ruler;  ///< null: the organ cannot be measured
-  std::string ruler_fault;            ///< then why
+  std::string ruler_fault;            ///< the reason in that case
 };
 
 /// Keeps SkillMetrics up to date. Costs a few microseconds per step and 0.4 ms once per simulated second (the organ).
-/// Asks for no memory but when marks or bites are added. Marks are counted ten times a second while they grow (40 us).
+/// Allocates only when marks or bites are added. Growing marks are counted ten times a second (40 us).
 class SkillRecorder {
  public:
   SkillRecorder(const SkillInstruments& instruments, const Model& model, const State& start,
                 const Eigen::Vector3d& tip);
 
-  /// After a step with its events.
-  /// @param tip  scope_tip in world, any without a tool [m]
-  void record(const Model& model, const State& state, const Eigen::Vector3d& tip, const std::vector<Event>& events);
+  /// Call after a step with its events.
+  /// @param tip  position of scope_tip in world [m]; ignored without a tool
+  /// @param counts  of all events so far, with those of the step
+  void record(const Model& model, const State& state, const Eigen::Vector3d& tip, const std::vector<Event>& events,
+              const EventCounts& counts);
 
   const SkillMetrics& metrics() const { return metrics_; }
 
@@ -73,13 +76,12 @@ class SkillRecorder {
   void updateMarks(const Model& model, const State& state);
   void countMarks(const State& state);
   void readSutures(const Model& model, const ProcedureState& procedure);
-  void countMistakes();
+  void readMistakes(const EventCounts& counts);
 
   std::shared_ptr<MarkCounter> marks_;
   PhaseRecorder phases_;
   OrganTracker organ_;
-  EventCounts counts_;
-  long counted_grades_ = 0;  // sum of all when marks were counted last
+  long counted_grades_ = 0;  // sum of all grades at the last count
   int steps_ = 0;            // since then
   SkillMetrics metrics_;
 };

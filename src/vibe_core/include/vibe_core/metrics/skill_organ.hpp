@@ -12,20 +12,20 @@
 
 namespace vibe {
 
-/// What the organ is compared with. The numbers go on the wire.
+/// What the organ is compared with.
 enum class OrganReference : std::uint8_t {
-  Rest = 0,      ///< its rest shape, without gas and tool: nothing else has come yet, or a state was loaded that had
-                 ///< marks or bites already
+  Rest = 0,      ///< the rest shape, without gas and tool: before one of the others, or for a state that was loaded
+                 ///< with marks or bites
   SetPoint = 1,  ///< when the insufflator first reached its set point, before any mark or bite
-  FirstAct = 2   ///< at the first mark or when the needle first went into the wall, without the former
+  FirstAct = 2   ///< at the first mark or when the needle first pierced the wall, if that was earlier
 };
 /// "rest", "set point", "first act".
 const char* toString(OrganReference reference);
 
-/// How the organ has changed. Nothing has a value if the organ cannot be measured.
+/// How the organ has changed. Without values if the organ cannot be measured.
 struct OrganSkill {
   OrganReference reference = OrganReference::Rest;
-  double reference_pressure = 0;           ///< gauge, then [Pa]
+  double reference_pressure = 0;           ///< gauge, of the reference [Pa]
   double pressure = 0;                     ///< gauge, at the last measurement [Pa]
   std::optional<OrganMeasures> before;     ///< the reference
   std::optional<OrganMeasures> now;        ///< at the last measurement
@@ -39,10 +39,10 @@ struct OrganSkill {
 class OrganTracker {
  public:
   /// @param ruler  of the model's organ; null: it cannot be measured
-  /// @param fault  then why
+  /// @param fault  the reason in that case
   OrganTracker(std::shared_ptr<OrganRuler> ruler, std::string fault, const State& start);
 
-  /// After a step with its events.
+  /// Call after a step with its events.
   void record(const Model& model, const State& state, const std::vector<Event>& events);
 
   const OrganSkill& measures() const { return skill_; }
@@ -54,7 +54,7 @@ class OrganTracker {
 
   std::shared_ptr<OrganRuler> ruler_;
   OrganSkill skill_;
-  bool waits_ = false;  // for a better reference than rest
+  bool waits_ = false;  // for a reference other than rest
   long steps_ = 0;      // since the last measurement
 };
 

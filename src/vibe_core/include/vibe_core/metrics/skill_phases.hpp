@@ -12,30 +12,30 @@ namespace vibe {
 
 constexpr int kPhaseCount = 5;  ///< see Phase
 
-/// How scope_tip moved and what tissue did to it, in one phase or in a whole session.
+/// Motion of scope_tip and force on it, in one phase or in a whole session.
 struct PhaseSkill {
   double time = 0;        ///< [s]
-  MotionMeasures motion;  ///< nothing without a tool
+  MotionMeasures motion;  ///< empty without a tool
   ForceMeasures force;    ///< of the tissue on the tool, mean over each step
 };
 
 struct PhasesSkill {
-  std::array<PhaseSkill, kPhaseCount> phase;  ///< by Phase; a phase that comes back goes on
-  PhaseSkill whole;                           ///< the phases' times, paths and impulses add up to it
+  std::array<PhaseSkill, kPhaseCount> phase;  ///< by Phase; a phase that recurs continues its record
+  PhaseSkill whole;                           ///< times, paths and impulses of the phases add up to it
 };
 
-/// Measures every phase by itself and the whole. A step belongs to the phase at its end. The change of phase ends the
-/// movement under way for the phase, not for the whole, whose counts of movements may so be less than the sum.
+/// Measures each phase and the whole session. A step belongs to the phase at its end. A change of phase ends the
+/// current movement for the phase but not for the whole session, so the whole may have fewer movements than the sum.
 class PhaseRecorder {
  public:
   /// @param spectrum  tables shared by all recorders; used in one thread
   explicit PhaseRecorder(const std::shared_ptr<SpectralArcLength>& spectrum);
 
-  /// Where the tip is at the start, before the first step.
+  /// @param tip  position at the start, before the first step [m]
   /// @param dt  length of the steps to come [s]
   void start(const Eigen::Vector3d& tip, double dt);
 
-  /// After a step. Motion that is not finite, or without start(), and forces that are not finite are left out.
+  /// Call after a step. Positions and forces that are not finite are ignored; so is motion without start().
   /// @param tip    in world [m]
   /// @param force  [N]
   void record(Phase phase, const Eigen::Vector3d& tip, double force, double dt);

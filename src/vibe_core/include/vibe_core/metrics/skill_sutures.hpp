@@ -10,10 +10,10 @@
 
 namespace vibe {
 
-/// The bites of a session. All but `taken` and `torn_out` are of those that hold. A measure that the bites so far do
-/// not define has no value.
+/// The bites of a session. All members but `taken` and `torn_out` are about bites that hold. A measure that the bites
+/// so far do not define has no value.
 struct BiteSkill {
-  int taken = 0;     ///< with those that tore out
+  int taken = 0;     ///< including those that tore out
   int torn_out = 0;  ///< of these
   int full_thickness = 0;
   std::array<int, kWallCount> wall{};          ///< by Wall
@@ -33,28 +33,29 @@ struct SetSkill {
   Suture::Stage stage = Suture::Stage::Open;
   bool loose = false;                      ///< cinched with less than the scene's loose_tension
   bool named = false;                      ///< technique and margin are known: the T-tag was dropped
-  Technique technique = Technique::Other;  ///< what the set looks like
+  Technique technique = Technique::Other;  ///< that was recognised
   double margin = 0;                       ///< see TechniqueResult [1]
   int bites = 0;                           ///< that hold
   int torn_out = 0;                        ///< bites
   std::optional<double> spacing_mean;      ///< see BiteSkill [m]
-  std::optional<double> along;             ///< mean place on the organ's axis, 0: apex, 1: pylorus
+  std::optional<double> along;             ///< mean position on the organ's axis, 0: apex, 1: pylorus
   std::optional<double> thread;            ///< between first and last bite, now; no value below two bites [m]
   double drawn = 0;                        ///< by the cinch [m]
-  double tension = 0;                      ///< greatest of its pieces, now [N]
+  double tension = 0;                      ///< max over its segments, now [N]
   std::optional<double> cinch_tension;     ///< when the cinch was released; no value before [N]
   std::optional<double> duration;          ///< from the first bite to the release of the cinch [s]
 };
 
-/// @param organ  its rest shape is what spacing is measured on
+/// @param organ  spacing is measured on its rest shape
 BiteSkill measureBites(const Organ& organ, const std::vector<Suture>& sutures);
 
 /// @param scene  null: nothing counts as loose
-/// @param sets   becomes one entry per suture; keeps its memory
+/// @param sets   result, one entry per suture; its memory is reused
 void measureSets(const Organ& organ, const SutureScene* scene, const std::vector<Suture>& sutures,
                  std::vector<SetSkill>& sets);
 
-/// The part of measureSets() that changes from step to step: thread, drawn, tension, for sets measured before.
+/// Updates the members that change from step to step: thread, drawn, tension.
+/// @param sets  from measureSets()
 void updateSets(const std::vector<Suture>& sutures, std::vector<SetSkill>& sets);
 
 }  // namespace vibe

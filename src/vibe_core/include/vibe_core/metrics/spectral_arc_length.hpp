@@ -7,14 +7,14 @@ namespace vibe {
 
 /// SPARC, the smoothness of one movement from the spectrum of its speed: minus the length of the curve of the
 /// magnitude spectrum, both axes scaled to one,
-///   -integral_0^wc sqrt((1 / wc)^2 + (dV / dw)^2) dw,   V(w) = |speed spectrum| / its greatest value,
+///   -integral_0^wc sqrt((1 / wc)^2 + (dV / dw)^2) dw,   V(w) = |speed spectrum| / its maximum,
 /// where wc is the last frequency up to 10 Hz at which V is at least 0.05, and the record is padded with zeros to 16
 /// times the next power of two: Balasubramanian, Melendez-Calderon, Roby-Brami & Burdet 2015, J NeuroEng Rehabil
 /// 12:112. Negative; nearer to 0 is smoother. A minimum-jerk reach has -1.41, whatever its length and duration.
-/// Made for single movements from rest to rest; on others it is defined, but says less.
+/// Made for single movements from rest to rest; for other motions it is defined but less meaningful.
 ///
-/// Keeps the tables of the Fourier transform, so that of() asks for no memory for records up to `longest`. Not to be
-/// used by two threads at once.
+/// Keeps the tables of the Fourier transform, so that of() does not allocate for records up to `longest`. Not for use
+/// by two threads at once.
 class SpectralArcLength {
  public:
   /// @param longest  samples of the longest record without new memory; about 0.7 KiB are kept for each
@@ -36,7 +36,7 @@ class SpectralArcLength {
   std::vector<double> magnitude_;
 };
 
-/// The same for a single record, without keeping anything.
+/// The same for a single record, without keeping tables.
 std::optional<double> spectralArcLength(const std::vector<double>& speed, double period);
 
 }  // namespace vibe

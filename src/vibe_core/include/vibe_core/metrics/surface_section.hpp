@@ -7,14 +7,13 @@
 
 namespace vibe {
 
-/// Cuts a closed surface with planes. Keeps the neighbourhood of the triangles and the memory for a cut, so that a cut
-/// asks for none after the first few. Costs two looks at every vertex and triangle.
+/// Cuts a closed surface with planes. Keeps the adjacency of the triangles and the memory of a cut, so that later cuts
+/// do not allocate. A cut visits every vertex and triangle twice.
 class SurfaceSection {
  public:
   /// One closed line of a section.
   struct Loop {
-    double area =
-        0;  ///< enclosed; negative around a hole, where the inside of the surface is outside of the loop [m^2]
+    double area = 0;   ///< enclosed; negative if the inside of the surface is outside of the loop (a hole) [m^2]
     double label = 0;  ///< mean of the labels at the edges it cuts; NaN for none
   };
 
@@ -32,14 +31,14 @@ class SurfaceSection {
 
  private:
   int downEdge(int triangle) const;
-  Loop update(int first, const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
-              const Eigen::Vector3d& point, const Eigen::Vector3d& normal, const std::vector<double>& label);
+  Loop trace(int first, const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
+             const Eigen::Vector3d& point, const Eigen::Vector3d& normal, const std::vector<double>& label);
 
   std::vector<std::array<int, 3>> triangles_;
   std::vector<std::array<int, 3>> neighbour_;  // across the edge from corner k to corner k + 1
   std::vector<double> height_;                 // of the vertices above the plane [m]
-  std::vector<char> above_;                    // vertices
-  std::vector<char> done_;                     // triangles
+  std::vector<char> above_;                    // (vertices)
+  std::vector<char> done_;                     // (triangles)
   std::vector<Loop> loops_;
 };
 

@@ -3,14 +3,14 @@
 
 namespace vibe {
 
-/// What moves of a vertex, as it lies in a vertex buffer.
+/// The part of a vertex that moves, in the layout of a vertex buffer.
 struct MovingVertex {
   float position[3];  ///< [m]
   float normal[3];    ///< unit
 };
 static_assert(sizeof(MovingVertex) == 24, "the vertex buffer has no gaps");
 
-/// Colour as it lies in a vertex buffer: red in the lowest byte, then green, blue, alpha.
+/// Colour in the layout of a vertex buffer: red in the lowest byte, then green, blue, alpha.
 using PackedColour = std::uint32_t;
 
 /// @param red, green, blue, alpha  [0, 1], clamped

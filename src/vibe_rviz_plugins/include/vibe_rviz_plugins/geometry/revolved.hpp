@@ -2,14 +2,14 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/coloured_shape.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 
-/// A point of the outline of a turned body: how far along the axis and how far from it [m].
+/// A point of the outline of a body of revolution: position along the axis and distance from it [m].
 using ProfilePoint = Eigen::Vector2d;
 
-/// Appends the body that the profile makes when it is turned about the axis through `origin`. The profile runs so that
+/// Appends the body of revolution of a profile about the axis through `origin`. The profile runs so that
 /// the outside is on its right when the axis points up and the profile lies to the right of it (from the top down for
 /// a closed body such as a ball). A first or last point on the axis closes the body there.
 /// @param axis   unit
@@ -17,14 +17,14 @@ using ProfilePoint = Eigen::Vector2d;
 void appendRevolved(const std::vector<ProfilePoint>& profile, const Eigen::Vector3d& origin,
                     const Eigen::Vector3d& axis, PackedColour colour, int sides, ColouredShape& shape);
 
-/// A ring (torus) around the axis.
-/// @param radius     of the circle in the middle of the ring's body [m]
-/// @param thickness  radius of the body itself [m]
+/// Appends a ring (torus) around the axis.
+/// @param radius     major radius [m]
+/// @param thickness  minor radius [m]
 void appendRing(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, double radius, double thickness,
                 PackedColour colour, int sides, ColouredShape& shape);
 
-/// A bobbin: two rims and a waist between them, as the cinch of a suturing device.
-/// @param length, rim  whole length and radius of the rims [m]
+/// Appends a bobbin (two rims and a waist between them), the shape of the cinch of a suturing device.
+/// @param length, rim  total length and radius of the rims [m]
 void appendBobbin(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, double length, double rim,
                   PackedColour colour, int sides, ColouredShape& shape);
 

@@ -1,12 +1,12 @@
 #pragma once
 #include <Eigen/Geometry>
 
-#include "geometry/coloured_shape.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 
-// Bodies as robot descriptions have them, appended to a shape: in the middle of the pose, a cylinder along its z. All
-// lengths in metres, above 0.
+// Appends the bodies of robot descriptions to a shape, centred at the pose, a cylinder along its z axis. All lengths
+// are in metres and positive.
 
 void appendSphere(const Eigen::Isometry3d& pose, double radius, PackedColour colour, ColouredShape& shape);
 void appendCylinder(const Eigen::Isometry3d& pose, double radius, double length, PackedColour colour,

@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "geometry/moving_vertex.hpp"
+#include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
 namespace vibe {
 
-/// From a value to a colour. The maps are those of matplotlib (van der Walt & Smith 2015; Nunez, Anderton & Renslow
-/// 2018 for cividis; CC0): lightness grows evenly, so equal steps of the value look equally large and a print in grey
+/// Maps values to colours. The maps are those of matplotlib (van der Walt & Smith 2015; Nunez, Anderton & Renslow
+/// 2018 for cividis; CC0): lightness grows evenly, so equal steps of the value look equally large and a greyscale print
 /// keeps the order.
 class ColourMap {
  public:
@@ -19,8 +19,8 @@ class ColourMap {
   /// @param name  one of colourMapNames(); another: viridis
   ColourMap(const std::string& name, double min, double max);
 
-  /// Values outside are drawn like the ends, NaN like the lower end. Equal ends: everything at or below is the lower
-  /// end.
+  /// Values out of range get the colour of the nearer end, NaN that of the lower end. If the range is empty, every
+  /// value gets the colour of the lower end.
   PackedColour at(double value) const { return steps_[static_cast<std::size_t>(index(value))]; }
 
   double min() const { return min_; }

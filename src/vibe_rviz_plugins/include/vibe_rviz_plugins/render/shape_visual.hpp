@@ -1,0 +1,32 @@
+#pragma once
+#include <memory>
+
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
+
+namespace Ogre {
+class SceneNode;
+}
+
+namespace vibe {
+
+/// A solid shape in a scene of Ogre, with the material of this package that also follows the light of the endoscope.
+/// To be used from the thread that renders.
+class ShapeVisual {
+ public:
+  /// @param parent  in whose frame the vertices are; outlives this
+  /// @throws std::runtime_error  the media folder of vibe_rviz_plugins cannot be found
+  explicit ShapeVisual(Ogre::SceneNode& parent);
+  ~ShapeVisual();
+  ShapeVisual(const ShapeVisual&) = delete;
+  ShapeVisual& operator=(const ShapeVisual&) = delete;
+
+  /// Draws this shape in place of the former one; an empty shape draws nothing.
+  /// @param shape  without problem (see problemOf())
+  void show(const ColouredShape& shape);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace vibe
