@@ -44,8 +44,12 @@ const std::vector<Event>& Simulation::step() {
   timer_.start();
   vibe::step(*model_, state_, input_, *workspace_, events_);
   timer_.stop();
-  if (recorder_) recorder_->record(*model_, state_, insufflatorIsOn(*model_, input_), events_);
+  record(events_);
   return events_;
+}
+
+void Simulation::record(const std::vector<Event>& events) {
+  if (recorder_) recorder_->record(*model_, state_, insufflatorIsOn(*model_, input_), events);
 }
 
 void Simulation::run(std::int64_t steps, const InputSource& source, const Observer& observer) {

@@ -12,7 +12,8 @@ namespace {
 class ProcedureMessage : public ::testing::Test {
  protected:
   Session session = makeSession();
-  ProcedureState& procedure = session.state.procedure;
+  State& state = session.simulation.editState();
+  ProcedureState& procedure = state.procedure;
 
   static Session makeSession() {
     Scene scene = test::bareScene();
@@ -25,7 +26,7 @@ class ProcedureMessage : public ::testing::Test {
   void record(std::initializer_list<Event::Kind> kinds = {}) {
     std::vector<Event> events;
     for (Event::Kind kind : kinds) events.emplace_back().kind = kind;
-    session.recorder.record(*session.model, session.state, false, events);
+    session.simulation.record(events);
   }
 
   vibe_msgs::ProcedureState message() const { return makeProcedureState(session, {}); }
@@ -101,16 +102,16 @@ TEST_F(ProcedureMessage, countsEventsAndForgetsThemWithTheState) {
   EXPECT_EQ(skill().withdrawn_bites, 1u);
   EXPECT_EQ(skill().rejected, 3u);
   EXPECT_EQ(skill().overdue_bleedings, 1u);
-  session.replaceState(session.state);
+  session.replaceState(state);
   EXPECT_EQ(skill().rejected + skill().missed_bites, 0u);
 }
 
 TEST_F(ProcedureMessage, sessionMeasuresAndStateHaveTheSameTime) {
-  session.state.time = 2.5;
-  session.state.step = 150;
-  session.state.contact_count = 1;
-  session.state.tool_force = Eigen::Vector3d(3, 0, 4);
-  session.state.volume = 1e-3;
+  state.time = 2.5;
+  state.step = 150;
+  state.contact_count = 1;
+  state.tool_force = Eigen::Vector3d(3, 0, 4);
+  state.volume = 1e-3;
   record({Event::Kind::Grab, Event::Kind::Release, Event::Kind::Slip, Event::Kind::GrabMissed, Event::Kind::Recovery});
   EXPECT_EQ(skill().time, 2.5);
   EXPECT_EQ(message().time, 2.5);
@@ -141,10 +142,10 @@ TEST_F(ProcedureMessage, whatIsNotDefinedYetIsNan) {
 
 TEST_F(ProcedureMessage, timesAndForcesStandAtTheirPhase) {
   const double dt = session.model->scene.step_period;
-  session.state.tool_force = Eigen::Vector3d(0, 6, 0);
+  state.tool_force = Eigen::Vector3d(0, 6, 0);
   record();
   procedure.phase = Phase::Pull;
-  session.state.tool_force = Eigen::Vector3d(0, 0, 2);
+  state.tool_force = Eigen::Vector3d(0, 0, 2);
   record();
   record();
   const vibe_msgs::SkillMetrics m = skill();
@@ -187,13 +188,13 @@ TEST_F(ProcedureMessage, tellsHowBitesLie) {
 }
 
 TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
-  procedure.grade.assign(session.state.x.size(), 0);
+  procedure.grade.assign(state.x.size(), 0);
   procedure.grade[0] = 3;
   procedure.bleedings.resize(3);
   procedure.bleedings[1].brisk = true;
-  for (auto* coordinate : {&session.state.x, &session.state.y, &session.state.z})
+  for (auto* coordinate : {&state.x, &state.y, &state.z})
     for (double& value : *coordinate) value *= 0.5;
-  session.state.pressure = 1000;
+  state.pressure = 1000;
   record({Event::Kind::PressureReached, Event::Kind::DeepBurn, Event::Kind::ThreadBroke, Event::Kind::ThreadBroke});
   for (int k = 0; k < std::ceil(0.1 / session.model->scene.step_period); ++k) record();  // marks are counted then
   const vibe_msgs::SkillMetrics m = skill();
@@ -210,14 +211,14 @@ TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
   EXPECT_EQ(m.reference_pressure, 1000);
   EXPECT_EQ(m.organ_pressure, 1000);
   EXPECT_NEAR(m.volume_reduction, 0, 1e-12);
-  for (double& value : session.state.x) value *= 0.5;
+  for (double& value : state.x) value *= 0.5;
   for (int k = 0; k < std::lround(1 / session.model->scene.step_period); ++k) record();
   EXPECT_NEAR(skill().volume_reduction, 0.5, 1e-9);
 }
 
 TEST_F(ProcedureMessage, aNewStateBringsItsBitesAndNotWhatWasRecorded) {
   record({Event::Kind::ThreadBroke});
-  State loaded = session.state;
+  State loaded = state;
   loaded.procedure.sutures.emplace_back().bites.resize(3);
   for (Bite& bite : loaded.procedure.sutures[0].bites) bite.depth = 4e-3;
   session.replaceState(loaded);

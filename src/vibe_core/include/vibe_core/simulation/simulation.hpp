@@ -116,6 +116,8 @@ class Simulation {
   /// For studies that put things into the state between steps (bites, drawn thread, prescribed positions), which no
   /// trainee can. Whoever does so keeps the state one that the model can have reached.
   State& editState() { return state_; }
+  /// Counts the present state with these events in the metrics, as the end of a step does. For edited states.
+  void record(const std::vector<Event>& events);
 
  private:
   std::shared_ptr<const Model> model_;
