@@ -14,9 +14,9 @@ namespace vibe {
 
 namespace {
 
-constexpr std::size_t kColumn = 22;  // where the meaning of an option begins
+constexpr std::size_t kColumn = 22;  // column where the description of an option begins
 
-// a word that is unknown comes first: it may be the misspelt name of an option that is required
+// unknown words come first: one may be the misspelt name of a required option
 std::string sentenceFor(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining();
   if (unknown.empty()) return std::string(error.what()) + "; see --help.";
@@ -25,7 +25,7 @@ std::string sentenceFor(const CLI::App& app, const CLI::ParseError& error) {
                                       : "'" + word + "' is not an option; see --help.";
 }
 
-/// Whether there is work to do; false if only the help text was asked for.
+/// Whether to continue; false if only the help text was requested.
 bool parse(CLI::App& app, int argc, const char* const* argv) {
   app.set_help_flag("--help", "print this text and end");
   app.get_formatter()->column_width(kColumn);

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kLevels = 3;  // from PREFIX/lib/ARCHITECTURE or PREFIX/lib/NAME up to PREFIX, and one to spare
+constexpr int kLevels = 3;  // from PREFIX/lib/ARCHITECTURE or PREFIX/lib/NAME up to PREFIX, plus one
 
 void addOnce(std::vector<fs::path>& paths, const fs::path& path) {
   if (!path.empty() && std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);

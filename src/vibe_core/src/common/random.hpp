@@ -3,7 +3,7 @@
 
 namespace vibe {
 
-/// SplitMix64 (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number generators", figure 16): gives the same
+/// SplitMix64 (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number generators", figure 16). Gives the same
 /// numbers on every machine, unlike the distributions of the standard library.
 /// @param state  any number as seed; each call advances it
 inline std::uint64_t nextInteger(std::uint64_t& state) {

@@ -37,7 +37,7 @@ double DurationHistogram::quantile(double q) const {
   std::uint64_t seen = 0;
   int bin = 0;
   while (bin < kBins - 1 && (seen += bins_[bin]) < std::max<std::uint64_t>(rank, 1)) ++bin;
-  // the middle of the bin halves the worst error; no quantile is above the maximum, which is known exactly
+  // the middle of the bin halves the maximum error; no quantile exceeds the maximum, which is exact
   return std::min(kShortest * std::exp((bin + 0.5) * kLogRatio), max_);
 }
 

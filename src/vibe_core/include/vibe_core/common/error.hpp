@@ -4,8 +4,8 @@
 
 namespace vibe {
 
-/// What every loader and builder of this library throws: one sentence that names the thing that is wrong, the
-/// place (file, line, key, vertex ...) and the remedy. Programs print what() and exit with 2; nothing else is needed.
+/// The exception type of every loader and builder of this library. The message is one sentence that names the error,
+/// its place (file, line, key, vertex ...) and the remedy. Programs print what() and exit with status 2.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

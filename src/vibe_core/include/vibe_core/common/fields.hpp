@@ -14,14 +14,14 @@
 
 #include "vibe_core/common/fnv1a.hpp"
 
-/// Field tables: a struct of plain data names its members once, and everything that stores, hashes or compares it
-/// follows from that one list.
+/// Field tables: a struct of plain data lists its members once, and storing, hashing and comparing it are derived from
+/// that list.
 ///
 /// A member is a number, an enum, a std::array of these, an Eigen matrix of fixed size, another described struct, or a
 /// std::vector of any of them (but not of bool).
 
-/// Describes a struct; use it in namespace vibe, with all members in the order of their declaration. The members are
-/// taken apart by a structured binding, so a member that is missing from the list does not compile.
+/// Describes a struct. Use it in namespace vibe, with all members in the order of their declaration. A structured
+/// binding decomposes the struct, so a member missing from the list is a compile-time error.
 #define VIBE_FIELDS(Type, ...)                               \
   template <>                                                \
   struct FieldTable<Type> {                                  \
@@ -53,7 +53,7 @@ constexpr bool kList<std::vector<T>> = true;
 template <class T>
 constexpr bool kPlain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// A block: a fixed number of plain values side by side.
+/// A block: a fixed number of contiguous plain values.
 template <class T>
 struct Block {
   static_assert(kPlain<T>, "a field is a plain value, an array, a fixed matrix, a list or a struct with VIBE_FIELDS");
@@ -87,7 +87,7 @@ struct Block<Eigen::Matrix<T, Rows, Columns, Options>> {
   }
 };
 
-/// Name number `index` of "first, second, third".
+/// Name number `index` in "first, second, third".
 constexpr std::string_view nameAt(std::string_view names, std::size_t index) {
   for (; index > 0; --index) names.remove_prefix(names.find(',') + 1);
   while (!names.empty() && (names.front() == ' ' || names.front() == '\n')) names.remove_prefix(1);
@@ -122,8 +122,8 @@ void visitFieldPairs(const T& a, const T& b, Visit&& visit) {
   fields::visitPairs(Table::kNames, left, right, visit, std::make_index_sequence<std::tuple_size_v<decltype(left)>>());
 }
 
-/// Takes a value through an archive, member by member. The archive has
-///   block(data, count)  for plain values side by side,
+/// Passes a value through an archive, member by member. The archive provides
+///   block(data, count)  for contiguous plain values,
 ///   list(vector)        for a std::vector: its size, then its items.
 template <class Archive, class T>
 void transfer(Archive& archive, T& value) {
@@ -137,7 +137,7 @@ void transfer(Archive& archive, T& value) {
   }
 }
 
-/// What list() of an archive does that only reads values: the size as 64 bits, then the items.
+/// Implementation of list() for an archive that only reads values: the size as 64 bits, then the items.
 template <class Archive, class T>
 void transferList(Archive& archive, const std::vector<T>& items) {
   static_assert(!std::is_same_v<T, bool>, "a std::vector<bool> has no bytes; use std::uint8_t");
@@ -233,8 +233,8 @@ std::string typeText() {
 
 }  // namespace fields
 
-/// The first field whose bits differ, and how: "procedure.sutures[1].length[0]: 0.02 against 0.03"; empty if all bits
-/// are equal.
+/// The first field whose bits differ, with both values: "procedure.sutures[1].length[0]: 0.02 against 0.03"; empty if
+/// all bits are equal.
 template <class T>
 std::string firstDifference(const T& a, const T& b) {
   return fields::difference(a, b, "");
@@ -246,7 +246,7 @@ std::string fieldList() {
   return fields::typeText<T>();
 }
 
-/// Hash of fieldList(): differs between builds whose structs differ.
+/// Hash of fieldList(). It differs between builds whose structs differ.
 template <class T>
 std::uint64_t fieldFingerprint() {
   static const std::uint64_t fingerprint = [] {

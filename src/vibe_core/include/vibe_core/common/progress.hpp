@@ -4,8 +4,8 @@
 
 namespace vibe {
 
-/// Called by long work (mesh import, remeshing, model building): what is being done, and how far it is [0, 1].
-/// An empty function is allowed and means that nobody listens.
+/// Callback of long operations (mesh import, remeshing, model building): the current activity and its progress [0, 1].
+/// May be empty.
 using Progress = std::function<void(const std::string& what, double fraction)>;
 
 }  // namespace vibe

@@ -4,10 +4,10 @@
 
 namespace vibe {
 
-/// Threads for the parallel parts of a step. The results of a step do not depend on how many there are.
+/// Threads for the parallel parts of a step. The results of a step do not depend on their number.
 class ThreadPool {
  public:
-  /// @param threads  used in parallelFor(), 1 or more; 1 uses the calling thread only
+  /// @param threads  number of threads in parallelFor(), 1 or more; 1 uses the calling thread only
   explicit ThreadPool(int threads = 1);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -15,8 +15,8 @@ class ThreadPool {
 
   int threads() const { return threads_; }
 
-  /// Calls body(first, last) for consecutive pieces of [0, count) of at most `grain`. The pieces do not depend on the
-  /// number of threads.
+  /// Calls body(first, last) for consecutive pieces of [0, count) with at most `grain` items each. The pieces do not
+  /// depend on the number of threads.
   void parallelFor(int count, int grain, const std::function<void(int first, int last)>& body);
 
  private:
