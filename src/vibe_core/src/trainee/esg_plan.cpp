@@ -13,11 +13,11 @@ namespace vibe {
 
 namespace {
 
-constexpr double kHelixOut = 26e-3;   // helix_advance while it is screwed in [m]
-constexpr double kHelixHome = 2e-3;   // [m]
-constexpr double kStandOff = 10e-3;   // of the helix before it is put to the wall [m]
-constexpr double kNear = 3e-3;        // the helix reaches a little farther [m]
-constexpr double kInto = 1.5e-3;      // the wall, so that it is in reach for certain [m]
+constexpr double kHelixOut = 26e-3;  // helix_advance while it is screwed in [m]
+constexpr double kHelixHome = 2e-3;  // [m]
+constexpr double kStandOff = 10e-3;  // gap between helix and wall before contact [m]
+constexpr double kNear = 3e-3;  // gap below which the wall is in reach of the helix, which reaches a little farther [m]
+constexpr double kInto = 1.5e-3;      // depth into the wall, so that it is surely in reach [m]
 constexpr double kBeamGap = 3e-3;     // from the probe to the wall [m]
 constexpr double kFill = 9;           // time to insufflate [s]
 constexpr double kLongestCinch = 12;  // [s]
@@ -80,7 +80,7 @@ class EsgPlanResult {
     return placeOf(hand_.model(), hand_.state(), particle);
   }
 
-  // From the helix' point to the nearest particle [m].
+  // Distance from the tip of the helix to the nearest particle [m].
   double helixGap() const {
     const Model& model = hand_.model();
     const State& state = hand_.state();
@@ -122,9 +122,9 @@ class EsgPlanResult {
     return from + part * (to - from);
   }
 
-  // A U of two rows across the greater curvature; the bites in between close the turn.
+  // A U of two rows across the greater curvature; the bites in between form the bend.
   Target bitePlace(int set, int bite) const {
-    const int row = (style_.bites - 1) / 2;  // bites of a row
+    const int row = (style_.bites - 1) / 2;  // bites per row
     const double pitch = 1.0 / style_.sets;
     const double first = (set + 0.25) * pitch, second = (set + 0.75) * pitch;
     const auto angle = [&](int k) { return style_.spread * (1 - 2.0 * k / std::max(1, row - 1)); };
@@ -154,7 +154,7 @@ class EsgPlanResult {
     return bitten;
   }
 
-  // The exchange gets the needle where it went through all of the wall; the last time wherever it went.
+  // Exchanges the needle if it has penetrated the full wall. On the last attempt, any bite is accepted.
   bool closeArmAt(double drawn, bool last) {
     hand_.move(HelixAdvance, drawn, 0.8);
     if (hand_.state().grip.empty()) return false;
@@ -172,7 +172,7 @@ class EsgPlanResult {
   bool grab(const Target& target) {
     const Eigen::Vector3d helix(kHelixOut - 2e-3, 2.8e-3, -2.2e-3);
     const Eigen::Vector3d error = style_.aim_error * Eigen::Vector3d(nextNormal(), nextNormal(), nextNormal());
-    for (const double into : {-kStandOff, kInto, 2 * kInto, 4 * kInto}) {  // the wall gives way: after it, if need be
+    for (const double into : {-kStandOff, kInto, 2 * kInto, 4 * kInto}) {  // the wall yields: follow it if necessary
       if (into > kInto && helixGap() < kNear) break;
       const WallPlace place = aimed(target);
       std::array<double, kJointCount> joints =
@@ -185,7 +185,7 @@ class EsgPlanResult {
     return !hand_.state().grip.empty();
   }
 
-  // Helix out of the wall, then a little away from it.
+  // Removes the helix from the wall, then retracts a little.
   void letGo() {
     hand_.act("{release: helix_grab}");
     std::array<double, kJointCount> joints = hand_.joints();

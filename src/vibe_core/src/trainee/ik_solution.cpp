@@ -8,12 +8,13 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRounds = 10;               // the tip turns with the joints, and its point with it
-constexpr int kDirectedRounds = 5;        // of them; then the direction stays, so that the point is reached
-constexpr double kMissWeight = 1 / 2e-3;  // a miss of 2 mm is as bad as half a radian of turn
+constexpr int kRounds = 10;  // of iteration: the tip turns with the joints, and the target point with it
+constexpr int kDirectedRounds =
+    5;  // of these, aiming the direction too; then the direction is kept, so that the point is reached
+constexpr double kMissWeight = 1 / 2e-3;  // a miss of 2 mm costs as much as half a radian of turn
 constexpr double kTurnWeight = 2;
-constexpr double kMoveWeight = 0.15;  // per radian of joints: rather near where the hand is
-constexpr double kSlice = 0.02;       // of the axis, on both sides
+constexpr double kMoveWeight = 0.15;  // per radian of joint motion: prefers solutions near the current position
+constexpr double kSlice = 0.02;       // of the axis, to both sides
 
 Eigen::Vector3d positionOf(const State& state, int i) {
   return {state.x[i], state.y[i], state.z[i]};

@@ -13,12 +13,12 @@ namespace {
 constexpr int kMaxActions = 100000;
 constexpr double kLongestScript = 86400;  // a day [s]
 constexpr double kShortestMotion = 0.01;  // faster than any hand [s]
-// A button must stay as it is for the longest step that a scene allows, or the simulator could miss the press.
+// A button must keep its state for the longest step that a scene allows, or the simulator could miss the press.
 constexpr double kShortestPress = 0.1;  // [s]
-// Times are sums of what the user wrote, so that 0.1 s + 0.2 s lies a little after 0.3 s.
+// Times are sums of user input, so 0.1 s + 0.2 s is slightly more than 0.3 s.
 constexpr double kRounding = 1e-9;  // [s]
 
-/// A verb and the keys that may stand beside it.
+/// A verb and the keys allowed with it.
 struct Verb {
   const char* name;
   std::vector<std::string> options;
@@ -61,7 +61,7 @@ const char* speedUnitOf(int joint) {
   return isLength(joint) ? "m/s" : "rad/s";
 }
 
-/// Far beyond any device: the simulator clamps to the tool's own limits, this only refuses slips of the unit.
+/// Far beyond any device. The simulator clamps to the tool's own limits; this check only rejects unit errors.
 double largestPosition(int joint) {
   return isLength(joint) ? 1.0 : 100.0;
 }
@@ -101,7 +101,7 @@ TraineeScript ScriptReader::read() {
       source_.fail(field, "is not a known key; " + suggestKey(field.key, keys));
     }
   }
-  // Only now, because the actions need the start wherever it stands in the file.
+  // In a second pass, because the actions need the start, which may stand anywhere in the file.
   for (const YamlField& field : fields) {
     if (field.key == "actions") readActions(field);
   }
@@ -182,7 +182,7 @@ const YamlField* ScriptReader::option(const Action& action, const char* key) con
   return nullptr;
 }
 
-/// @return NaN if the option is not there
+/// @return NaN if the option is absent
 double ScriptReader::timeOption(const Action& action, const char* key, double low) const {
   const YamlField* field = option(action, key);
   return field == nullptr ? std::nan("") : source_.quantity(*field, "s", low, kLongestScript);

@@ -8,7 +8,7 @@
 
 namespace vibe {
 
-/// Turns the YAML of a trainee script into its timeline. Format: docs/trainee_scripts.md.
+/// Converts the YAML of a trainee script into its timeline. Format: docs/trainee_scripts.md.
 class ScriptReader {
  public:
   explicit ScriptReader(const YamlSource& source) : source_(source) {}
@@ -17,7 +17,7 @@ class ScriptReader {
   TraineeScript read();
 
  private:
-  /// One item of the list of actions: its verb and the keys that go with it.
+  /// One entry of the list of actions: its verb and the accompanying keys.
   struct Action {
     YamlField place;
     YamlField verb;
@@ -26,7 +26,7 @@ class ScriptReader {
 
   const YamlSource& source_;
   TraineeScript script_;
-  double clock_ = 0;  // when the next action begins [s]
+  double clock_ = 0;  // start time of the next action [s]
   int action_count_ = 0;
 
   void readStart(const YamlField& field);
@@ -38,7 +38,7 @@ class ScriptReader {
   const YamlField* option(const Action& action, const char* key) const;
   double timeOption(const Action& action, const char* key, double low) const;
 
-  /// Each takes the time at which the action begins and returns when it ends [s].
+  /// Each takes the start time of the action and returns its end time [s].
   double play(const Action& action, double begin, bool in_group);
   double playGroup(const Action& action, double begin);
   double playMove(const Action& action, double begin, bool relative);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPeakOverMean = 1.875;  // of the speed of a minimum-jerk movement (Flash & Hogan 1985)
 
-// mean speeds of an experienced hand, design choice [m/s], [rad/s]
+// mean speeds of an experienced operator, design choice [m/s], [rad/s]
 constexpr std::array<double, kJointCount> kHandSpeed{0.04, 1.2, 1.2, 1.2, 0.025, 12.5, 0.05};
 
 std::string number(double value) {
@@ -37,7 +37,7 @@ void ScriptRecorder::act(const std::string& action) {
 
 void ScriptRecorder::play() {
   const TraineeScript script = TraineeScript::parse(script_, "the recorded script");
-  // the number of steps that programs take which play scripts
+  // the same number of steps as in the programs that play scripts
   const std::int64_t end = std::lround(script.duration() / simulation_.stepPeriod());
   simulation_.run(
       end - simulation_.stepCount(), [&](double time) { return script.at(time); },

@@ -8,7 +8,7 @@
 namespace vibe {
 namespace {
 
-/// Room for the greatest number of actions that the reader takes.
+/// Room for the maximum number of actions that the reader accepts.
 constexpr YamlLimits kScriptLimits{16u << 20, 32};
 
 }  // namespace

@@ -16,11 +16,11 @@ Tremor::Tremor(const TremorSettings& settings, std::uint64_t seed) {
   const double band = settings.high_frequency - settings.low_frequency;
   std::uint64_t random = seed;
   for (int joint = 0; joint < kJointCount; ++joint) {
-    // A sinusoid of amplitude a has the root mean square a / sqrt(2); independent ones add in squares.
+    // A sinusoid of amplitude a has the root mean square a / sqrt(2); the squares of independent ones add up.
     const double amplitude = settings.scale * settings.amplitude[joint] * std::sqrt(2.0 / kWaveCount);
     for (int k = 0; k < kWaveCount; ++k) {
-      // One frequency in each equal part of the band, so that a seed can neither leave it nor crowd one spot. Drawn
-      // for silent joints too, so that giving one joint a tremor does not change another's.
+      // One frequency in each equal part of the band, so that no seed leaves the band or clusters its frequencies.
+      // Drawn for joints without tremor too, so that adding a tremor to one joint does not change another's.
       const double frequency = settings.low_frequency + band * (k + nextUniform(random)) / kWaveCount;
       const double phase = kTwoPi * nextUniform(random);
       if (amplitude > 0) waves_[joint].push_back({kTwoPi * frequency, phase, amplitude});

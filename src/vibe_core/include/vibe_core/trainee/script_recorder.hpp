@@ -13,20 +13,20 @@
 
 namespace vibe {
 
-/// Writes a trainee script while playing it, so that each action can be chosen by what the one before did to the
-/// tissue. The resulting script is open-loop: played on the same scene and seed it does the same again, to the bit.
+/// Writes a trainee script while playing it, so that each action can depend on the state of the tissue after the
+/// previous one. The resulting script is open-loop: on the same scene and seed it reproduces the run bit for bit.
 class ScriptRecorder {
  public:
   /// @param header  of the script: name, seed, tremor; YAML lines without "actions:"
   ScriptRecorder(const std::shared_ptr<const Model>& model, std::string header);
 
   /// Appends an action in the format of docs/trainee_scripts.md, without the dash, and plays it.
-  /// @throws Error if the script does not allow it
+  /// @throws Error if the script format does not allow it
   void act(const std::string& action);
   void phase(const std::string& name) { act("phase: " + name); }
   void wait(double seconds);
-  /// Moves joints to positions at the speed of a hand, in at least `min` seconds.
-  /// @param joints  entries that are not finite stay
+  /// Moves joints to positions at hand speed, in at least `min` seconds.
+  /// @param joints  entries that are not finite keep their position
   void moveTo(const std::array<double, kJointCount>& joints, double min);
   void move(Joint joint, double position, double min);
   void hold(Button button, double seconds);
@@ -38,9 +38,9 @@ class ScriptRecorder {
 
   const Model& model() const { return simulation_.model(); }
   const State& state() const { return simulation_.state(); }
-  /// Where the last command sent the joints, without tremor [m], [rad].
+  /// Last commanded joint positions, without tremor [m], [rad].
   const std::array<double, kJointCount>& joints() const { return joints_; }
-  /// Of the last action.
+  /// Events of the last action.
   const std::vector<Event>& events() const { return events_; }
   bool happened(Event::Kind kind) const;
   const std::string& script() const { return script_; }

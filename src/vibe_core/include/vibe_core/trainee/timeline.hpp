@@ -7,30 +7,31 @@
 
 namespace vibe {
 
-/// Motions, button edges and phases over time [s]. Everything is added in order of time per joint and per button,
-/// and looked up by bisection.
+/// Motions, button edges and phases over time [s]. Entries are added in order of time for each joint and button, and
+/// looked up by bisection.
 class Timeline {
  public:
-  /// Where a joint is before its first motion [m], [rad].
+  /// Position of a joint before its first motion [m], [rad].
   void setStart(int joint, double position) { start_[joint] = position; }
 
-  /// The joint moves to a position between two times, as minimumJerk(). begin must not lie before jointFreeAt().
+  /// Adds a motion of a joint to a position between two times, with the profile minimumJerk(). begin must not lie
+  /// before jointFreeAt().
   void addMotion(int joint, double begin, double end, double to);
   /// Presses or releases a button. The time must not lie before the button's last edge.
   void addEdge(int button, double time, bool pressed);
   void addPhase(double time, const std::string& name);
-  /// The timeline lasts at least until then.
+  /// Extends the timeline to at least this time.
   void extendTo(double time);
 
-  double jointFreeAt(int joint) const;  ///< end of its last motion, 0 without one
-  double jointTarget(int joint) const;  ///< where its last motion ends
+  double jointFreeAt(int joint) const;  ///< end time of its last motion, 0 without one
+  double jointTarget(int joint) const;  ///< target of its last motion
   bool isPressed(int button) const;     ///< after its last edge
   double lastEdge(int button) const;    ///< time of its last edge; -infinity without one
 
   double duration() const { return duration_; }
   double position(int joint, double time) const;
   bool pressed(int button, double time) const;
-  const std::string& phase(double time) const;  ///< empty before the first
+  const std::string& phase(double time) const;  ///< empty before the first phase
 
  private:
   struct Motion {

@@ -7,21 +7,22 @@
 
 namespace vibe {
 
-/// A scripted trainee: joint motions and button presses over time, read from YAML. Format in docs/trainee_scripts.md.
-/// Pure function of time and seed: at(t) gives the same bits on every call, run and machine with the same libm.
+/// A scripted trainee: joint motions and button presses over time, read from YAML. docs/trainee_scripts.md describes
+/// the format. A pure function of time and seed: at(t) gives the same bits on every call, run and machine with the same
+/// libm.
 class TraineeScript {
  public:
-  /// @throws Error with file, line and remedy for anything the format does not know.
+  /// @throws Error with file, line and remedy for input that does not follow the format.
   static TraineeScript load(const std::string& file);
   static TraineeScript parse(const std::string& yaml, const std::string& place);
 
-  /// What the trainee's hands do at time t [s]; before 0 as at 0, after duration() as at the end.
+  /// Input of the trainee at time t [s]. Constant before 0 and after duration().
   StepInput at(double time) const;
 
   double duration() const { return timeline_.duration(); }  ///< [s]
   const std::string& name() const { return name_; }
 
-  /// What the trainee says he does at time t ("insert", "insufflate" ...), for the progress line.
+  /// Current phase at time t ("insert", "insufflate" ...), for the progress line.
   const std::string& phaseAt(double time) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace vibe {
 
-/// What a trainee's hands add to what they mean to do.
+/// Parameters of the tremor that is added to the intended motion.
 struct TremorSettings {
   double low_frequency = 8;                     ///< [Hz]
   double high_frequency = 12;                   ///< [Hz]
@@ -15,9 +15,9 @@ struct TremorSettings {
   double scale = 1;                             ///< multiplies all amplitudes
 };
 
-/// Involuntary movement of the hands: per joint a sum of sinusoids whose frequencies are spread over a band and whose
-/// phases are random. Physiological tremor of the hand lies at 8 to 12 Hz: Elble & Randall 1976, J Neurophysiol
-/// 39(2):370. Pure function of seed and time, mean zero over long times.
+/// Involuntary movement of the hands: for each joint a sum of sinusoids with frequencies spread over a band and random
+/// phases. Physiological tremor of the hand lies at 8 to 12 Hz: Elble & Randall 1976, J Neurophysiol 39(2):370. A pure
+/// function of seed and time, with zero mean over long times.
 class Tremor {
  public:
   Tremor() = default;
