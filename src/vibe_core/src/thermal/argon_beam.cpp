@@ -8,8 +8,9 @@ namespace vibe {
 
 namespace {
 
-constexpr double kRim = 1.75;         // radii; the footprint has 0.9 % of its power per area there
-constexpr double kMeshCarries = 0.6;  // radius over longest side: the middle of a triangle lies 0.58 sides from corners
+constexpr double kRim = 1.75;  // in radii; beyond, the power per area is below 0.9 % of the maximum
+constexpr double kMeshCarries =
+    0.6;  // radius over longest edge: the centroid of a triangle lies 0.58 edges from its corners
 
 double footprint(double distance, double radius) {
   const double s = distance / radius;
@@ -41,7 +42,7 @@ struct ArgonBeam::Ray {
     high = a.max(b);
   }
 
-  /// Whether the triangle's box and the ray's have no point in common; true for corners that are not numbers.
+  /// Whether the boxes of the triangle and of the ray are disjoint; true for corners that are not numbers.
   bool farFrom(const std::vector<double>& values, int axis, const std::array<int, 3>& t) const {
     const double p = values[t[0]], q = values[t[1]], r = values[t[2]];
     const bool reaches =
@@ -49,7 +50,7 @@ struct ArgonBeam::Ray {
     return !reaches;
   }
 
-  /// Length to the triangle (Moeller and Trumbore 1997), negative if it is missed.
+  /// Distance along the ray to the triangle (Moeller and Trumbore 1997), negative if the ray misses it.
   double meet(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) const {
     const Eigen::Vector3d ab = b - a, ac = c - a, h = direction.cross(ac), s = start - a, q = s.cross(ab);
     const double det = ab.dot(h);
@@ -75,7 +76,8 @@ const BeamHit& ArgonBeam::fire(const Eigen::Vector3d& tip, const Eigen::Vector3d
   shares_.clear();
   const double norm = direction.norm();
   if (!tip.allFinite() || !std::isfinite(norm) || norm <= 0) return hit_;
-  // a tip pressed into the wall may be beyond its mid-surface; behind the tip there is nothing but the scope
+  // a tip pressed into the wall may be beyond its mid-surface, so the ray starts behind the tip, where there is only
+  // the scope
   const Eigen::Vector3d unit = direction / norm;
   const double probe_end = half_wall + parameters.probe_length;
   const Ray ray(tip - half_wall * unit, unit, probe_end + parameters.reach + half_wall);
@@ -112,7 +114,7 @@ double ArgonBeam::areaFacing(int particle, const Ray& ray, const SurfaceView& wa
   return side * normal.dot(ray.direction) > 0 ? area : 0;
 }
 
-/// Particles under the footprint: reached from the triangle hit along sides, without leaving it or turning away.
+/// Particles under the footprint: reached from the hit triangle along edges, within the footprint and facing the probe.
 void ArgonBeam::collect(const Ray& ray, const SurfaceView& wall) {
   patch_.clear();
   const auto visit = [&](int particle) {
@@ -140,7 +142,7 @@ void ArgonBeam::spreadOver(const Ray& ray, const SurfaceView& wall, const ApcPar
   double sum = 0;
   for (const BeamShare& share : shares_) sum += share.power;
   if (!(sum > 0)) {
-    // at the very edge of a fold all corners may look away: the beam slides past
+    // at the very edge of a fold all corners may face away: the beam passes by
     shares_.clear();
     hit_ = BeamHit{};
     return;

@@ -50,7 +50,7 @@ void MarkFinder::measureWalls(const ThermalDose& law, const std::vector<float>& 
       marked_[static_cast<int>(organ_.wall[p])].push_back(p);
   }
   for (int w = 0; w < kWallCount; ++w) {
-    // farthest from any, then farthest from that: the ends of a line, without trying all pairs
+    // the point farthest from any point, then the one farthest from that: the ends of a line, without trying all pairs
     double length = 0;
     if (!marked_[w].empty()) farthest(farthest(marked_[w].front(), marked_[w], length), marked_[w], length);
     walls_[w] = {static_cast<int>(marked_[w].size()), length};

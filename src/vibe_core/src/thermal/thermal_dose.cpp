@@ -11,9 +11,9 @@ namespace vibe {
 
 namespace {
 
-constexpr double kReferencePower = 40;                   // [W] of the publications on burns, and the greater of marks
+constexpr double kReferencePower = 40;  // [W] of the publications on burns, and the higher power of those on marks
 constexpr double kReferenceArgon = 1 * kLitrePerMinute;  // [m^3/s]
-constexpr float kCold = 1e-15f;  // [J] less is none: decaying for ever it would end in slow denormal numbers
+constexpr float kCold = 1e-15f;  // [J] smaller values become 0: endless decay would end in slow denormal numbers
 
 /// Rate of cooling [1/s].
 double coolingRate(const ApcParameters& p, GasFlow flow, double cover) {
@@ -49,7 +49,7 @@ ThermalDose::ThermalDose(const ApcParameters& parameters) : parameters_(paramete
   thresholds_[3] = retained(parameters_.deep_energy);
 }
 
-/// What a spot still holds when the reference beam has given it this energy [J].
+/// Heat that remains in a spot after the reference beam has applied this energy [J].
 double ThermalDose::retained(double energy) const {
   const double rate = coolingRate(parameters_, {kReferenceArgon, 0}, 1);
   return kReferencePower * heldTime(rate, energy / kReferencePower);

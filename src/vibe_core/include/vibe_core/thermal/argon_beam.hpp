@@ -9,52 +9,55 @@
 
 namespace vibe {
 
-/// What one particle gets of the beam.
+/// Share of the beam that one particle receives.
 struct BeamShare {
   int particle = -1;
-  double power = 0;       ///< into the wall that the particle stands for; the shares sum to power * efficiency [W]
+  double power = 0;       ///< into the wall area of the particle; the shares sum to power * efficiency [W]
   double spot_power = 0;  ///< the same per area, times the area of the footprint at contact [W]
-  double cover = 0;       ///< of the footprint: 1 in its middle, 0 at its rim
+  double cover = 0;       ///< coverage by the footprint: 1 at its centre, 0 at its rim
 };
 
-/// Where the beam meets the wall.
+/// Intersection of the beam with the wall.
 struct BeamHit {
-  int triangle = -1;                                ///< -1: nothing in reach
+  int triangle = -1;                                ///< -1: no tissue in reach
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the mid-surface, in world [m]
-  double gap = 0;                                   ///< from the probe's end to the tissue; 0: it touches [m]
+  double gap = 0;                                   ///< from the end of the probe to the tissue; 0: contact [m]
   double radius = 0;                                ///< of the footprint [m]
 };
 
-/// The argon plasma beam of the endoscope: which particles of a deformed wall it heats, and with what power.
+/// The argon plasma beam of the endoscope: selects the particles of a deformed wall that are heated and computes their
+/// power.
 ///
-/// The beam is a ray from the scope's tip; the first triangle that it meets is heated, what lies behind is not. The
-/// footprint lies around the point met, on the part of the surface that is connected to it and faces the probe:
+/// The beam is a ray from the tip of the scope. It heats the first triangle that it hits and nothing behind it. The
+/// footprint lies around the hit point, on the part of the surface that is connected to it and faces the probe:
 ///   q(d) ~ exp(-(d/r)^4 / 2),  r = spot_radius + gap * tan(spread),
-/// flat in the middle: dried tissue conducts worse, so the arc leaves it for what is beside it. The form is a design
-/// choice. Particles share the power by q times the area around them, so the power is conserved to rounding and the
-/// power per area converges under refinement. Because q is flat, a particle at a distance of 0.7 r from the middle of
-/// a spot still gets 0.89 of the greatest power per area.
+/// The profile is flat in the middle because dried tissue conducts worse, so the arc moves on to the tissue beside it.
+/// The form is a design choice. Particles share the power in proportion to q times their area. The power is therefore
+/// conserved to rounding, and the power per area converges under refinement. Because q is flat, a particle at a
+/// distance of 0.7 r from the centre of a spot still receives 0.89 of the maximum power per area.
 ///
-/// Limits: a straight ray: tissue beside the probe is not found. d is the straight distance, so the footprint is too
-/// long across folds sharper than r. On meshes coarser than 1.7 r between particles the footprint is as wide as the
-/// mesh can carry.
+/// Limits: The ray is straight, so tissue beside the probe is not found. d is the straight distance, so the footprint
+/// is too long across folds sharper than r. On meshes with a particle spacing above 1.7 r the footprint is as wide as
+/// the mesh can represent.
 ///
-/// Holds scratch memory and no state; allocates in its first calls only; not shared between threads of control.
+/// Holds scratch memory but no state. Allocates in its first calls only. Not thread-safe.
 class ArgonBeam {
  public:
   /// @param surface  the wall at rest, for its connections
   explicit ArgonBeam(const SurfaceMesh& surface);
 
   /// @param tip        of the scope, in world [m]
-  /// @param direction  of the beam, in world; any length but zero
+  /// @param direction  of the beam, in world; any nonzero length
   /// @param wall       deformed, with the triangles of the surface at rest
-  /// @param half_wall  from the mid-surface to the mucosa [m]
-  /// Nothing is hit if a number of the pose is not finite.
+  /// @param half_wall  distance from the mid-surface to the mucosa [m]
+  /// There is no hit if a component of the pose is not finite.
   const BeamHit& fire(const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, const SurfaceView& wall,
                       double half_wall, const ApcParameters& parameters);
 
   const BeamHit& hit() const { return hit_; }
-  const std::vector<BeamShare>& shares() const { return shares_; }  ///< of the last fire(), nearest connection first
+  const std::vector<BeamShare>& shares() const {
+    return shares_;
+  }  ///< of the last fire(), in order of connection from the hit
 
  private:
   struct Ray;

@@ -9,35 +9,35 @@
 
 namespace vibe {
 
-/// A mark: particles with a grade, connected by sides of triangles. A drawn line is one mark.
+/// A mark: a set of particles with a grade, connected by triangle edges. A drawn line is one mark.
 struct MarkZone {
-  int particle = -1;  ///< the one with the largest dose; wall and region are its own
-  int count = 0;      ///< particles
+  int particle = -1;  ///< the particle with the largest dose; determines wall and region
+  int count = 0;      ///< number of particles
   Wall wall = Wall::Anterior;
   Region region = Region::Body;
   BurnGrade grade = BurnGrade::None;  ///< the worst
   Eigen::Vector3d centre =
-      Eigen::Vector3d::Zero();  ///< mean of the particles, in world; of a long mark off the wall [m]
+      Eigen::Vector3d::Zero();  ///< mean of the particles, in world; off the wall for a long mark [m]
   double area = 0;              ///< of the rest shape [m^2]
   bool in_zone = false;         ///< every particle lies in the working zone
 };
 
 /// The marks of one wall in the working zone.
 struct WallMarks {
-  int count = 0;      ///< particles
-  double length = 0;  ///< from one end to the other in the rest shape, straight; 0: none, or one [m]
+  int count = 0;      ///< number of particles
+  double length = 0;  ///< straight distance between the ends in the rest shape; 0: no particle, or one [m]
 };
 
-/// Whether sutures of an endoscopic sleeve gastroplasty go there: the body but for its lesser curvature. Antrum and
-/// fundus are spared (Updates Surg 2022, 10.1007/s13304-022-01385-4); anterior wall, greater curvature and posterior
-/// wall are marked (Kumbhari 2017, VideoGIE, 10.1016/j.vgie.2017.01.002; Erden et al., section 2.1.1).
+/// Whether the sutures of an endoscopic sleeve gastroplasty are placed there: the body except its lesser curvature.
+/// Antrum and fundus are spared (Updates Surg 2022, 10.1007/s13304-022-01385-4); anterior wall, greater curvature and
+/// posterior wall are marked (Kumbhari 2017, VideoGIE, 10.1016/j.vgie.2017.01.002; Erden et al., section 2.1.1).
 bool inWorkingZone(Region region, Wall wall);
 
-/// Finds what is marked. Meant for after a step in which a grade has risen; some tens of microseconds.
-/// Holds scratch memory and no state; not shared between threads of control.
+/// Finds the marks. Intended for use after a step in which a grade has risen; takes some tens of microseconds. Holds
+/// scratch memory but no state. Not thread-safe.
 class MarkFinder {
  public:
-  /// @param organ  must outlive this
+  /// @param organ  must outlive this object
   explicit MarkFinder(const Organ& organ);
 
   /// Marks in ascending order of their lowest particle number.
