@@ -24,7 +24,7 @@ std::filesystem::path findReader() {
               kVariable + " to its path.");
 }
 
-/// Larger files may take longer and use more memory.
+/// Larger files get more time and memory.
 WorkLimits limitsFor(const std::string& path) {
   std::error_code none;
   const std::uintmax_t size = std::filesystem::file_size(path, none);
@@ -49,7 +49,7 @@ SurfaceMesh readWithAssimp(const std::string& path) {
 
 SurfaceMesh readWithAssimp(const std::string& path, const WorkLimits& limits) {
   const std::filesystem::path reader = findReader();
-  // the program's own limit on time is only for the case that this process ends before it
+  // the time limit in the program itself applies only if this process ends first
   const std::string seconds = std::to_string(limits.seconds + 5), memory = std::to_string(limits.memory);
   try {
     return unpackMesh(runHelper(reader, {path, seconds, memory}, limits));

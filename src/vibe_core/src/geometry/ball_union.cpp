@@ -19,7 +19,7 @@ void BallUnion::add(const Eigen::Vector3d& centre, double radius, double spacing
 }
 
 double BallUnion::evaluate(const Eigen::Vector3d& p, Eigen::Vector3d* gradient) const {
-  // shifted by the nearest ball, so that the exponentials neither overflow nor all vanish far away
+  // shift by the nearest ball, so that the exponentials neither overflow nor all underflow far away
   double shift = -1e300;
   for (const auto& ball : balls_) shift = std::max(shift, ball.radius - offset(p, ball).norm());
   double sum = 0.0;

@@ -4,17 +4,17 @@
 
 namespace vibe {
 
-/// Smooth union of balls along curves: a field whose zero surface is one smooth sheet around all of them,
+/// Smooth union of balls along curves: a field whose zero level set is one smooth surface around all of them,
 ///   f(p) = -k log sum_i w_i exp((r_i - |D (p - c_i)|) / k),   D = diag(1 / flattening, 1, 1).
-/// Close to the surface f is roughly the signed distance, negative inside.
+/// Close to the surface f is approximately the signed distance, negative inside.
 class BallUnion {
  public:
-  /// @param blend      k: width over which neighbouring parts melt into each other [m]
-  /// @param flattening depth of a section along x over its width [1]
+  /// @param blend      k: blending width between neighbouring parts [m]
+  /// @param flattening ratio of depth (along x) to width of a section [1]
   BallUnion(double blend, double flattening) : blend_(blend), flattening_(flattening) {}
 
-  /// A ball of a row of balls with this spacing. The weight is chosen such that a long straight row has a surface at
-  /// `radius` whatever the spacing.
+  /// Adds a ball of a row of balls with this spacing. The weight is chosen such that a long straight row has its
+  /// surface at `radius` for any spacing.
   void add(const Eigen::Vector3d& centre, double radius, double spacing);
 
   double value(const Eigen::Vector3d& p) const;

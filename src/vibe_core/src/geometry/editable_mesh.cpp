@@ -14,7 +14,7 @@ Eigen::Vector3d cross3(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const
   return (b - a).cross(c - a);
 }
 
-/// Whether the turn from one area vector to the other is below 60 degrees.
+/// Whether the angle between the two area vectors is below 60 degrees.
 bool sameSide(const Eigen::Vector3d& before, const Eigen::Vector3d& after) {
   return before.dot(after) > 0.5 * before.norm() * after.norm();
 }
@@ -35,7 +35,7 @@ std::vector<EditableMesh::Edge> EditableMesh::edges() const {
   for (const auto& t : triangles_) {
     if (t[0] < 0) continue;
     for (int k = 0; k < 3; ++k) {
-      if (t[k] < t[(k + 1) % 3]) list.emplace_back(t[k], t[(k + 1) % 3]);  // its other triangle has it the other way
+      if (t[k] < t[(k + 1) % 3]) list.emplace_back(t[k], t[(k + 1) % 3]);  // the other triangle has the edge in reverse
     }
   }
   std::sort(list.begin(), list.end());
@@ -114,7 +114,7 @@ int EditableMesh::split(int a, int b, const Eigen::Vector3d& position) {
 bool EditableMesh::staysUpright(int moved, int other, const Eigen::Vector3d& position, double longest) const {
   for (const int number : around_[moved]) {
     const auto& t = triangles_[number];
-    if (t[0] == other || t[1] == other || t[2] == other) continue;  // it vanishes
+    if (t[0] == other || t[1] == other || t[2] == other) continue;  // this triangle vanishes
     std::array<Eigen::Vector3d, 3> corner;
     for (int k = 0; k < 3; ++k) {
       corner[k] = t[k] == moved ? position : positions_[t[k]];
@@ -136,7 +136,7 @@ bool EditableMesh::mayCollapse(int a, int b, const Eigen::Vector3d& position, do
 bool EditableMesh::collapse(int a, int b, const Eigen::Vector3d& position, bool gently, double longest) {
   const auto sides = trianglesOf(a, b);
   const auto opposite = wings(a, b);
-  // link condition: the two vertices share no neighbours but the wings, else two sheets would be glued together
+  // link condition: the two vertices share no neighbours except the wings; otherwise two sheets would be joined
   int shared = 0;
   for (const int number : around_[b]) {
     const auto& t = triangles_[number];

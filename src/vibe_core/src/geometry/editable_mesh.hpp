@@ -8,8 +8,8 @@
 
 namespace vibe {
 
-/// A closed, oriented triangle surface whose edges can be split, collapsed and flipped.
-/// Every operation keeps it closed, oriented and manifold, or refuses. Vertices keep their numbers until toMesh().
+/// A closed, oriented triangle surface with edge split, collapse and flip. Every operation keeps the surface closed,
+/// oriented and manifold, or is rejected. Vertices keep their numbers until toMesh().
 class EditableMesh {
  public:
   using Edge = std::pair<int, int>;  ///< vertex numbers, the smaller first
@@ -30,24 +30,24 @@ class EditableMesh {
   bool isEdge(int a, int b) const;
   double length(const Edge& edge) const { return (positions_[edge.first] - positions_[edge.second]).norm(); }
 
-  /// Vertices opposite to the edge: on its left and on its right, seen from outside along a -> b.
+  /// Vertices opposite the edge: on its left and on its right, seen from outside along a -> b.
   std::array<int, 2> wings(int a, int b) const;
 
   /// Twice the area of the triangle, along its outward normal.
   Eigen::Vector3d areaVector(int triangle) const;
 
-  /// Puts a new vertex on the edge; returns its number.
+  /// Inserts a new vertex on the edge and returns its number.
   int split(int a, int b, const Eigen::Vector3d& position);
 
-  /// Merges b into a at `position`. Refuses (false) if the surface would not stay manifold, or, when `gently`,
-  /// if a triangle would turn over, a valence leave 4..9 or an edge become longer than `longest`.
+  /// Merges b into a at `position`. Returns false if the surface would not stay manifold or, with `gently`, if a
+  /// triangle would flip over, a valence would leave 4..9 or an edge would become longer than `longest`.
   bool collapse(int a, int b, const Eigen::Vector3d& position, bool gently, double longest);
 
-  /// Turns the edge in its quadrilateral. Refuses (false) if the turned edge exists already, a valence would fall
-  /// below 4, or the two new triangles would fold.
+  /// Flips the edge in its quadrilateral. Returns false if the flipped edge exists already, a valence would fall below
+  /// 4, or the two new triangles would fold.
   bool flip(int a, int b);
 
-  SurfaceMesh toMesh() const;  ///< without the gaps in the numbering
+  SurfaceMesh toMesh() const;  ///< with consecutive vertex numbers
 
  private:
   std::array<int, 2> trianglesOf(int a, int b) const;  ///< left and right of a -> b
@@ -58,7 +58,7 @@ class EditableMesh {
   void removeFrom(int vertex, int triangle);
 
   std::vector<Eigen::Vector3d> positions_;
-  std::vector<std::array<int, 3>> triangles_;  ///< a removed one has vertex -1
+  std::vector<std::array<int, 3>> triangles_;  ///< a removed triangle has vertex -1
   std::vector<std::vector<int>> around_;       ///< triangles of each vertex; empty: removed
   int alive_count_ = 0;
 };

@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What posix_spawn() needs to know about files and signals.
+/// File and signal settings for posix_spawn().
 class SpawnSetup {
  public:
   explicit SpawnSetup(int output) {

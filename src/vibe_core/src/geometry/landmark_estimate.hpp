@@ -4,13 +4,13 @@
 
 namespace vibe {
 
-/// Guesses the landmarks of a stomach from its shape alone, for a surface in our axes (x anterior, y to the patient's
-/// left, z cranial): the fundus is the highest point, the pylorus the farthest from it along the surface; the shortest
-/// path on the surface between them runs along the lesser curvature and meets the oesophagus a third of the way from
-/// the fundus; the incisura is where the rest of the path is farthest from its chord.
-/// On a real stomach (BodyParts3D FMA7148) the points are within 3 cm of those read off by eye; look at the result.
+/// Estimates the landmarks of a stomach from its shape alone, for a surface with x anterior, y to the patient's left
+/// and z cranial. The fundus is the highest point and the pylorus the point farthest from it along the surface. The
+/// shortest path on the surface between them runs along the lesser curvature and meets the oesophagus a third of the
+/// way from the fundus. The incisura is the point where the rest of the path is farthest from its chord. On a real
+/// stomach (BodyParts3D FMA7148) the points are within 3 cm of manually placed ones; check the result.
 /// @param surface  closed, evenly meshed (see remeshSurface()): distances are measured along edges
-/// @throws Error if the surface is so round that there is no lesser curvature (oesophagus and pylorus within 2 cm)
+/// @throws Error if the surface is too round to have a lesser curvature (oesophagus and pylorus within 2 cm)
 Landmarks estimateLandmarks(const SurfaceMesh& surface);
 
 }  // namespace vibe

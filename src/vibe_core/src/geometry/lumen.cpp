@@ -5,7 +5,7 @@
 namespace vibe {
 
 namespace {
-// relative to the first vertex: the sums over a closed surface do not change and round off less
+// relative to the first vertex: this does not change the sums over a closed surface and reduces round-off
 Eigen::Vector3d corner(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
                        int i) {
   return {x[i] - x[0], y[i] - y[0], z[i] - z[0]};

@@ -88,7 +88,7 @@ class Marcher {
     const std::int64_t key = a * static_cast<std::int64_t>(values_.size()) + b;
     const auto [entry, is_new] = vertex_of_edge_.emplace(key, static_cast<int>(mesh_.vertices.size()));
     if (is_new) {
-      // kept off the nodes: several crossings there would coincide and make triangles without area
+      // kept away from the nodes: several crossings there would coincide and form triangles without area
       const double t = std::clamp(values_[a] / (values_[a] - values_[b]), 0.05, 0.95);
       mesh_.vertices.emplace_back((1.0 - t) * place(a) + t * place(b));
     }

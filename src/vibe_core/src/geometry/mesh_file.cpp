@@ -19,7 +19,7 @@ namespace vibe {
 
 namespace {
 
-constexpr double kWeldTolerance = 1e-6;  // of the size of the surface
+constexpr double kWeldTolerance = 1e-6;  // relative to the size of the surface
 
 void checkFile(const std::string& path) {
   std::error_code ignored;
@@ -80,7 +80,7 @@ SurfaceMesh weld(const SurfaceMesh& mesh, double tolerance) {
   if (mesh.vertices.empty()) return merged;
   Eigen::AlignedBox3d box;
   for (const auto& v : mesh.vertices) box.extend(v);
-  // at most 2^40 cells along a side, so that the cell numbers are exact
+  // at most 2^40 cells per side, so that the cell numbers are exact
   const double cell_size = std::max({tolerance, box.sizes().maxCoeff() * 1e-12, 1e-300});
   std::map<Cell, std::vector<int>> cells;
   std::vector<int> number;

@@ -30,7 +30,7 @@ std::string beginning(const std::string& path) {
 
 std::uint32_t number(const std::string& bytes, std::size_t place) {
   std::uint32_t value = 0;
-  std::memcpy(&value, bytes.data() + place, sizeof value);  // little endian, like the processors this runs on
+  std::memcpy(&value, bytes.data() + place, sizeof value);  // little endian, like the supported processors
   return value;
 }
 

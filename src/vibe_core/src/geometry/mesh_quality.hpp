@@ -3,7 +3,7 @@
 
 namespace vibe {
 
-/// How even a triangle surface is.
+/// Uniformity measures of a triangle surface.
 struct MeshQuality {
   double mean_edge = 0;       ///< [m]
   double edge_variation = 0;  ///< standard deviation of the edge lengths over their mean [1]

@@ -26,7 +26,7 @@ void put(std::string& bytes, const T* values, std::size_t count) {
   throw Error("the reader returns no complete surface");
 }
 
-/// Numbers of vertices and triangles; fails unless exactly that many follow.
+/// Numbers of vertices and triangles; fails unless exactly that amount of data follows.
 std::array<std::uint64_t, 2> readCounts(const std::string& bytes) {
   std::array<std::uint64_t, 2> counts{};
   const std::size_t head = kWordSize + sizeof counts;

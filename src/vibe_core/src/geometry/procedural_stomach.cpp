@@ -18,22 +18,22 @@ namespace {
 constexpr double kNominalVolume = 0.75e-3;  // [m^3] of the shape below, unscaled
 constexpr double kBlend = 4.5e-3;           // [m]
 constexpr double kFlattening = 0.82;        // depth over width of a section
-constexpr double kSpacing = 5e-3;           // [m] between balls, at which a row of them has no ripple
-constexpr double kCell = 4e-3;              // [m] of the grid that finds the surface
-constexpr double kTubeRadius = 11e-3;       // [m] a scope of 6 mm radius passes with room for the wall
+constexpr double kSpacing = 5e-3;           // [m] between balls; small enough that a row has no ripples
+constexpr double kCell = 4e-3;              // [m] of the grid for surface extraction
+constexpr double kTubeRadius = 11e-3;       // [m] a scope of 6 mm radius passes with clearance for the wall
 
 /// Point of the axis of the organ and the radius of the lumen there.
 struct Knot {
   double x, y, z, radius;  // [mm], x anterior, y left, z cranial
 };
 
-// design: from the fundus down the body, round the bend, up the antrum to the right, through the pylorus
+// design choice: from the fundus down the body, around the bend, up the antrum to the right, through the pylorus
 constexpr Knot kBody[] = {{-17, 43, 60, 39},   {-14, 38, 35, 45},  {-8, 30, 8, 45.5},    {-1, 22, -18, 43},
                           {5, 11, -42, 39},    {10, -6, -58, 34},  {13, -27, -62, 29.5}, {12, -48, -55, 25.5},
                           {7, -64, -42, 20.5}, {2, -73, -30, 14.5}};
 constexpr Knot kPylorus{-4, -82, -17, 5};
 constexpr Knot kDuodenum{-10, -91, -2, 12.5};
-constexpr Knot kIncisuraSide{2, -33, -30, 0};  // the surface point nearest to this one
+constexpr Knot kIncisuraSide{2, -33, -30, 0};  // the incisura is the surface point nearest to this one
 constexpr Knot kJunction{-9, 0, 46, 0};
 constexpr Knot kGullet{-13, -12, 82, 0};
 
@@ -140,7 +140,7 @@ StomachShape makeStomachShape(double volume) {
   shape.landmarks.fundus = highest(shape.surface, body.front().head<3>(), 1.3 * body.front()[3]);
   shape.landmarks.incisura = balls->project(toMetres(kIncisuraSide).head<3>());
   shape.landmarks.pylorus = toMetres(kPylorus).head<3>();
-  // the outermost ball has no neighbour outside and ends low: the rim is at the next one
+  // the outermost ball has no outer neighbour and is smaller there: the rim is at the next one
   shape.oesophagus = makeEnd(gullet[1], gullet[2]);
   shape.duodenum = makeEnd(body[body.size() - 2], body[body.size() - 3]);
 

@@ -13,10 +13,10 @@ namespace vibe {
 namespace {
 
 constexpr double kCardiaReach = 20e-3;       // [m] around the junction
-constexpr double kCardiaRadius = 26e-3;      // [m] around the oesophagus, against the way up the side of the fundus
+constexpr double kCardiaRadius = 26e-3;      // [m] around the oesophagus; excludes the way up the side of the fundus
 constexpr double kPyloricCanal = 30e-3;      // [m] Loyola University radiology: the pyloric canal is 3 cm long
 constexpr double kFundusPatch = 12e-3;       // [m] around the apex, where the axis begins
-constexpr double kTransition = 10e-3;        // [m] of the thickness over region borders, standard deviation
+constexpr double kTransition = 10e-3;        // [m] of the thickness across region borders, standard deviation
 constexpr double kFarthestLandmark = 40e-3;  // [m] from the surface: half of a large lumen
 
 int nearestVertex(const SurfaceMesh& mesh, const Eigen::Vector3d& p) {
@@ -60,7 +60,7 @@ double distanceToGullet(const Organ& organ, const Eigen::Vector3d& p) {
   return (to_p - t * line).norm();
 }
 
-/// Length of the piece of oesophagus between the end and the junction.
+/// Length of the oesophagus segment between the end and the junction.
 double gulletLength(const Organ& organ) {
   return (organ.entry - organ.landmarks.oesophagus).norm();
 }

@@ -7,7 +7,7 @@
 
 namespace vibe {
 
-/// The side of the stomach at an angle around its axis (see StomachAxis::angleAt); each takes a quarter.
+/// The side of the stomach at an angle around its axis (see StomachAxis::angleAt). Each side covers a quarter.
 Wall wallAtAngle(double angle);
 
 /// Axis of an organ whose surface, ends and landmarks are known.
@@ -18,11 +18,11 @@ StomachAxis findAxis(const Organ& organ);
 ///   fundus   higher than the junction
 ///   pylorus  the last 3 cm (at most half of the way from the incisura) and the duodenum behind it
 ///   antrum   beyond the incisura
-///   body     the rest.
+///   body     everything else.
 /// @throws Error if a landmark is farther than 4 cm from the surface (wrong frame or unit).
 void labelStomach(Organ& organ);
 
-/// Thickness per vertex from the thickness per region, going over gradually within about 2 cm [m].
+/// Thickness per vertex from the thickness per region, with gradual transitions over about 2 cm [m].
 std::vector<double> thicknessFromRegions(const SurfaceMesh& mesh, const std::vector<Region>& region,
                                          const std::array<double, kRegionCount>& thickness);
 

@@ -19,7 +19,7 @@ namespace {
 constexpr int kFewestVertices = 12;
 constexpr int kShapingRounds = 12;   // of splits, collapses, flips and relaxation
 constexpr int kRelaxingRounds = 15;  // with the final number of vertices
-constexpr int kCountRounds = 400;    // bound on the search for the exact number
+constexpr int kCountRounds = 400;    // limit of the search for the exact number
 constexpr int kSplitRounds = 12;     // halvings of an edge within one round
 
 /// One run of remesh().
@@ -33,7 +33,7 @@ class Remesher {
     collapseShort();
     flipForValence();
     relax();
-    // the thresholds leave the number some percent off: steer the edge length towards the wanted number
+    // the thresholds miss the target number by some percent: adjust the edge length accordingly
     edge_ *= std::clamp(std::sqrt(static_cast<double>(mesh_.vertexCount()) / wanted_), 0.9, 1.1);
   }
 
@@ -63,7 +63,7 @@ class Remesher {
   SurfaceMesh result() const { return mesh_.toMesh(); }
 
  private:
-  /// Edge of equilateral triangles when so many vertices cover the area.
+  /// Edge length of equilateral triangles when this number of vertices covers the area.
   static double evenEdge(double area, int vertices) { return std::sqrt(2.0 * area / (std::sqrt(3.0) * vertices)); }
 
   std::vector<EditableMesh::Edge> edgesByLength(bool longest_first) const {
@@ -144,7 +144,7 @@ class Remesher {
     }
   }
 
-  /// Moves every vertex within its tangent plane to the centre of the triangles around it, then onto the surface.
+  /// Moves every vertex within its tangent plane to the centre of the surrounding triangles, then onto the surface.
   void relax() {
     std::vector<Eigen::Vector3d> moved(mesh_.vertexEnd());
     for (int v = 0; v < mesh_.vertexEnd(); ++v) {
@@ -179,7 +179,7 @@ class Remesher {
   double edge_;  ///< wanted edge length [m]
 };
 
-/// Area-weighted mean edge: the length scale of the facets that the eye sees.
+/// Area-weighted mean edge: the length scale of the visible facets.
 double facetEdge(const SurfaceMesh& mesh) {
   double sum = 0.0, total = 0.0;
   for (const auto& t : mesh.triangles) {
@@ -220,7 +220,7 @@ SurfaceMesh remeshSurface(const SurfaceMesh& input, int vertices, RemeshReport* 
   SurfaceMesh mesh = remesh(
       input, vertices, [&](const Eigen::Vector3d& p) { return tree.closest(p).point; }, progress);
 
-  // facets wider than the new triangles would show as creases
+  // facets wider than the new triangles would be visible as creases
   const double edge = facetEdge(mesh);
   const double ratio = facetEdge(input) / edge;
   const bool coarse = ratio > 1.5;

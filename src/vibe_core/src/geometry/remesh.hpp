@@ -7,7 +7,7 @@
 
 namespace vibe {
 
-/// Nearest point of the surface that a remeshed surface has to lie on.
+/// Returns the nearest point of the surface onto which a remeshed surface is projected.
 using Projection = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 
 /// Covers a closed surface evenly with exactly `vertices` vertices: isotropic remeshing by splits, collapses, flips
@@ -19,16 +19,16 @@ using Projection = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 /// @throws Error if so few vertices cannot carry the shape.
 SurfaceMesh remesh(const SurfaceMesh& input, int vertices, const Projection& project, const Progress& progress = {});
 
-/// How far a remeshed surface is from its input.
+/// Deviation of a remeshed surface from its input.
 struct RemeshReport {
   double mean_distance = 0;  ///< from the new vertices to the input [m]
   double max_distance = 0;   ///< [m]
   double volume_error = 0;   ///< (new - old) / old [1]
-  bool smoothed = false;     ///< the input was coarser than the result: its creases were smoothed
+  bool smoothed = false;     ///< the input was coarser than the result, and its creases were smoothed
 };
 
-/// remesh() on the input's own triangles, with the input's volume. Where the input is coarser than the result its
-/// creases are smoothed away (Taubin, A signal processing approach to fair surface design, 1995).
+/// Calls remesh() on the triangles of the input, preserving its volume. Where the input is coarser than the result, its
+/// creases are smoothed (Taubin, A signal processing approach to fair surface design, 1995).
 SurfaceMesh remeshSurface(const SurfaceMesh& input, int vertices, RemeshReport* report = nullptr,
                           const Progress& progress = {});
 

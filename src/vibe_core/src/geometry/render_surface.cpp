@@ -16,7 +16,7 @@ Edge makeEdge(int a, int b) {
   return a < b ? Edge(a, b) : Edge(b, a);
 }
 
-/// What Loop's rule for a new vertex needs: its number, and the vertices opposite to the edge.
+/// Data of Loop's rule for a new vertex: its number, and the vertices opposite the edge.
 struct EdgeVertex {
   int number = 0;
   std::array<int, 2> opposite{-1, -1};

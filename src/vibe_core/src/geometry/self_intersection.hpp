@@ -5,8 +5,8 @@
 
 namespace vibe {
 
-/// First pair of triangles that cross each other, (-1, -1) if there is none. Triangles that merely touch at the
-/// vertices or edges they share do not cross; coplanar overlap and contact without crossing are not found.
+/// First pair of triangles that cross each other; (-1, -1) if there is none. Contact at shared vertices or edges does
+/// not count. Coplanar overlap and contact without crossing are not detected.
 std::pair<int, int> findSelfIntersection(const TriangleTree& tree);
 
 }  // namespace vibe

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxStations = 60;
 constexpr int kVerticesPerStation = 8;  // at least
-constexpr int kSmoothings = 3;          // of the curve, against the unevenness of the sections
+constexpr int kSmoothings = 3;          // of the curve, to even out irregular sections
 
 }  // namespace
 
@@ -61,8 +61,8 @@ void StomachAxis::orientStations(const Eigen::Vector3d& anterior) {
     Station& station = stations_[s];
     const Eigen::Vector3d along = stations_[std::min(s + 1, count - 1)].centre - stations_[std::max(s - 1, 0)].centre;
     station.tangent = along.normalized();
-    // where the organ runs to the front or the back, its front side says little about the section: there the
-    // direction of the section before counts more
+    // where the organ runs to the front or the back, its front side determines the section poorly; there the direction
+    // of the previous section has more weight
     const Eigen::Vector3d front = anterior - anterior.dot(station.tangent) * station.tangent;
     Eigen::Vector3d direction = previous - previous.dot(station.tangent) * station.tangent;
     direction = front.squaredNorm() * front + (1.0 - front.squaredNorm()) * direction;

@@ -134,7 +134,7 @@ void checkOrientation(const SurfaceMesh& mesh, const std::vector<Side>& sides, c
               "; make the orientation of the faces consistent");
 }
 
-/// With closed edges, a vertex where two sheets touch has more than one fan of triangles.
+/// In a mesh with closed edges, a vertex where two sheets touch has more than one fan of triangles.
 void checkManifoldVertices(const SurfaceMesh& mesh, const std::string& name) {
   std::vector<std::vector<int>> around(mesh.vertices.size());
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {

@@ -5,17 +5,18 @@
 
 namespace vibe {
 
-/// Accepts a surface that can become an organ: finite vertices, no triangle without area, every edge between exactly
-/// two triangles of the same orientation, every vertex with one fan of triangles, one part, no handle, and no
-/// triangle through another. Vertices that no triangle uses are allowed.
-/// @param name what messages call the surface, such as the file
-/// @throws Error at the first of these that is violated: how often, and where first (coordinates as in the mesh).
+/// Checks that a surface can become an organ: finite vertices, no triangle without area, every edge between exactly two
+/// triangles of the same orientation, every vertex with one fan of triangles, one connected part, no handle, and no
+/// self-intersection. Unused vertices are allowed.
+/// @param name name of the surface in messages, such as the file
+/// @throws Error at the first violated condition, with the number of violations and the place of the first (coordinates
+///         as in the mesh).
 void checkSurface(const SurfaceMesh& mesh, const std::string& name);
 
-/// Throws if a vertex is not a finite number, or a triangle refers to a vertex that is not there.
+/// Throws if a vertex is not finite, or a triangle refers to a missing vertex.
 void checkNumbers(const SurfaceMesh& mesh, const std::string& name);
 
-/// Turns all triangles over if the enclosed volume is negative; returns whether it did.
+/// Reverses all triangles if the enclosed volume is negative. Returns whether it did.
 bool orientOutwards(SurfaceMesh& mesh);
 
 }  // namespace vibe

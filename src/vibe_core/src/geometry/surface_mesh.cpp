@@ -17,7 +17,7 @@ Eigen::Vector3d doubledAreaVector(const SurfaceMesh& mesh, const std::array<int,
 
 double enclosedVolume(const SurfaceMesh& mesh) {
   if (mesh.vertices.empty()) return 0.0;
-  // measured from a vertex of the mesh: far from the origin the tetrahedra would be large and cancel badly
+  // relative to a vertex of the mesh: far from the origin the tetrahedra would be large and cancel badly
   const Eigen::Vector3d origin = mesh.vertices.front();
   double sum = 0.0;
   for (const auto& t : mesh.triangles) {

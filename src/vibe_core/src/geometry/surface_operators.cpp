@@ -61,7 +61,7 @@ std::vector<double> harmonicField(const SurfaceMesh& mesh, const std::vector<int
     fixed[v] = true;
     right[v] = 1.0;
   }
-  // fixed values go to the right-hand side, rows and columns of fixed vertices become those of the identity
+  // move fixed values to the right-hand side; replace rows and columns of fixed vertices by those of the identity
   const Eigen::VectorXd known = right;
   for (int column = 0; column < matrix.outerSize(); ++column) {
     for (Matrix::InnerIterator entry(matrix, column); entry; ++entry) {

@@ -14,12 +14,12 @@ Eigen::SparseMatrix<double> cotangentStiffness(const SurfaceMesh& mesh);
 /// @throws Error if the linear system cannot be solved (a triangle without area, or an unconnected part).
 std::vector<double> harmonicField(const SurfaceMesh& mesh, const std::vector<int>& zeros, const std::vector<int>& ones);
 
-/// Spreads values over the surface by diffusion with about this width; keeps their area-weighted mean.
-/// @param width standard deviation of the spreading [m]
+/// Smooths values over the surface by diffusion with about this width. Preserves their area-weighted mean.
+/// @param width standard deviation of the diffusion kernel [m]
 std::vector<double> diffuse(const SurfaceMesh& mesh, const std::vector<double>& values, double width);
 
-/// Length of the shortest way along edges from the nearest seed to every vertex; infinity where there is none [m].
-/// Along edges, so on an even mesh up to about 15 % longer than the way over the surface.
+/// Length of the shortest path along edges from the nearest seed to every vertex; infinity if there is none [m]. On an
+/// even mesh such paths are up to about 15 % longer than those across the surface.
 std::vector<double> edgeDistances(const SurfaceMesh& mesh, const std::vector<int>& seeds);
 
 }  // namespace vibe

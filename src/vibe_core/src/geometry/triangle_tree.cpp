@@ -93,7 +93,7 @@ int TriangleTree::build(int begin, int end) {
   nodes_[number].end = end;
   if (end - begin <= kLeafSize) return number;
 
-  // halves by number along the longest side; equal centres are told apart by the triangle's number
+  // split by number along the longest side; the triangle number breaks ties of equal centres
   int axis = 0;
   centres.sizes().maxCoeff(&axis);
   const int middle = begin + (end - begin) / 2;
@@ -170,7 +170,7 @@ bool TriangleTree::pairs(int a, int b, const std::function<bool(int, int)>& visi
   if (na.left < 0 && nb.left < 0) return leafPairs(na, nb, a == b, visit);
   if (a == b)
     return pairs(na.left, na.left, visit) && pairs(na.left, na.right, visit) && pairs(na.right, na.right, visit);
-  // open the node with more triangles
+  // descend into the node with more triangles
   if (nb.left < 0 || (na.left >= 0 && na.end - na.begin >= nb.end - nb.begin)) {
     return pairs(na.left, b, visit) && pairs(na.right, b, visit);
   }

@@ -11,8 +11,8 @@ namespace vibe {
 Eigen::Vector3d closestPointOnTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                        const Eigen::Vector3d& c);
 
-/// Boxes around boxes around the triangles of a surface, for nearest points, rays and overlapping pairs.
-/// Keeps a copy of the mesh. Deterministic. All queries may run in several threads at once.
+/// A bounding volume hierarchy (axis-aligned boxes) over the triangles of a surface, for nearest points, rays and
+/// overlapping pairs. Keeps a copy of the mesh. Deterministic. Queries are thread-safe.
 class TriangleTree {
  public:
   struct Hit {

@@ -4,18 +4,19 @@
 
 namespace vibe {
 
-/// Parts of the stomach along its length, from the oesophagus to the duodenum. The numbers go on the wire.
+/// Parts of the stomach along its length, from the oesophagus to the duodenum. The values are part of the message
+/// format.
 enum class Region : std::uint8_t { Cardia = 0, Fundus = 1, Body = 2, Antrum = 3, Pylorus = 4 };
 constexpr int kRegionCount = 5;
 
-/// Sides of the stomach around its axis. The numbers go on the wire.
+/// Sides of the stomach around its axis. The values are part of the message format.
 enum class Wall : std::uint8_t { Anterior = 0, GreaterCurvature = 1, Posterior = 2, LesserCurvature = 3 };
 constexpr int kWallCount = 4;
 
-/// Where the organ continues into its neighbours; particles of an end are held in place.
+/// The neighbouring organ at an end of the stomach. The particles of an end are held in place.
 enum class End : std::uint8_t { None = 0, Oesophagus = 1, Duodenum = 2 };
 
-/// Points that define regions and walls of a stomach surface, in the frame of the mesh after scaling and rotation
+/// Points that define the regions and walls of a stomach surface, in the frame of the mesh after scaling and rotation
 /// (x anterior, y to the patient's left, z cranial) [m].
 struct Landmarks {
   Eigen::Vector3d oesophagus = Eigen::Vector3d::Zero();  ///< centre of the gastro-oesophageal junction

@@ -6,9 +6,9 @@
 
 namespace vibe {
 
-/// A finer surface to draw, bound linearly to the particles: vertex v is at
+/// A finer surface for rendering, bound linearly to the particles. The position of render vertex v is
 ///   sum over k in [offsets[v], offsets[v+1]) of weights[k] * x[particles[k]],
-/// the weights of a vertex sum to 1. So it follows every affine motion of the particles exactly.
+/// where the weights of a vertex sum to 1. The surface therefore follows every affine motion of the particles exactly.
 struct RenderSurface {
   std::vector<std::array<int, 3>> triangles;  ///< render vertex numbers, outward
   std::vector<int> offsets;                   ///< (vertex count + 1)
@@ -16,7 +16,8 @@ struct RenderSurface {
   std::vector<float> weights;                 ///< (offsets.back())
 };
 
-/// One level of Loop subdivision (Loop 1987) of the particle mesh, as weights: four times the triangles.
+/// Subdivides the particle mesh once by Loop's scheme (Loop 1987), expressed as weights. The result has four times the
+/// triangles.
 RenderSurface makeLoopSubdivision(const SurfaceMesh& particles);
 
 /// Positions of the render vertices for given particle positions [m].

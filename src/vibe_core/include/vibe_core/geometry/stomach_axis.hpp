@@ -6,12 +6,12 @@
 
 namespace vibe {
 
-/// Curve through the middle of a stomach from the fundus to the pylorus, with the place of every vertex along and
-/// around it. Sections are level sets of the harmonic function between the two ends of the surface, so they follow
-/// any bend; the curve joins their centres.
+/// The centreline of a stomach from the fundus to the pylorus, with the position of every vertex along and around it.
+/// Sections are level sets of the harmonic function between the two ends of the surface, so they follow any bend. The
+/// curve joins their centres.
 class StomachAxis {
  public:
-  /// A section of the organ.
+  /// A cross-section of the organ.
   struct Station {
     double length = 0;                                   ///< along the curve from its start [m]
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();    ///< [m]
@@ -20,10 +20,11 @@ class StomachAxis {
     Eigen::Vector3d greater = Eigen::Vector3d::Zero();   ///< unit vector in the section, towards the greater curvature
   };
 
-  /// @param mesh     evenly meshed, closed
+  /// @param mesh     closed, evenly meshed
   /// @param fundus   vertices around the apex of the fundus
   /// @param pylorus  vertices at the far end
-  /// @param ignored  one entry per vertex: true for side branches (the oesophagus), which must not pull the centres
+  /// @param ignored  one entry per vertex: true for side branches (the oesophagus), which are left out of the section
+  ///         centres
   /// @param anterior unit direction towards the patient's front
   StomachAxis(const SurfaceMesh& mesh, const std::vector<int>& fundus, const std::vector<int>& pylorus,
               const std::vector<bool>& ignored, const Eigen::Vector3d& anterior);
@@ -31,10 +32,11 @@ class StomachAxis {
   const std::vector<Station>& stations() const { return stations_; }
   double length() const { return stations_.back().length; }  ///< [m]
 
-  /// Place of a vertex along the curve, from 0 to length() [m].
+  /// Position of a vertex along the curve, from 0 to length() [m].
   double lengthAt(int vertex) const { return vertex_length_[vertex]; }
 
-  /// Angle of a vertex around the curve: 0 anterior, pi/2 greater curvature, +-pi posterior, -pi/2 lesser [rad].
+  /// Angle of a vertex around the curve: 0 anterior, pi/2 greater curvature, +-pi posterior, -pi/2 lesser curvature
+  /// [rad].
   double angleAt(int vertex) const { return vertex_angle_[vertex]; }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace vibe {
 
-/// A triangle surface. Closed and oriented outwards once checkSurface() has accepted it.
+/// A triangle surface. It is closed and oriented outwards once checkSurface() has accepted it.
 struct SurfaceMesh {
   std::vector<Eigen::Vector3d> vertices;      ///< positions [m]
   std::vector<std::array<int, 3>> triangles;  ///< vertex numbers, counter-clockwise seen from outside
@@ -17,13 +17,13 @@ double enclosedVolume(const SurfaceMesh& mesh);
 /// Sum of the triangle areas [m^2].
 double surfaceArea(const SurfaceMesh& mesh);
 
-/// A third of the area of the triangles around each vertex; the sum is surfaceArea() [m^2].
+/// One third of the area of the triangles around each vertex [m^2]. The sum is surfaceArea().
 std::vector<double> vertexAreas(const SurfaceMesh& mesh);
 
-/// Area-weighted unit normals; zero where a vertex has no triangle.
+/// Area-weighted unit normals; zero for a vertex without triangles.
 std::vector<Eigen::Vector3d> vertexNormals(const SurfaceMesh& mesh);
 
-/// Neighbours of every vertex along edges, each list ascending.
+/// Neighbours of every vertex along edges, each list in ascending order.
 std::vector<std::vector<int>> vertexNeighbours(const SurfaceMesh& mesh);
 
 }  // namespace vibe

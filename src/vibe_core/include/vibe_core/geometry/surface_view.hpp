@@ -5,7 +5,7 @@
 
 namespace vibe {
 
-/// A deformed surface where it lies: triangles of the rest mesh, positions in structure of arrays. Owns nothing.
+/// A non-owning view of a deformed surface: the triangles of the rest mesh and positions as a structure of arrays.
 struct SurfaceView {
   const std::vector<std::array<int, 3>>& triangles;  ///< vertex numbers
   const std::vector<double>&x, &y, &z;               ///< (vertices) [m]
