@@ -6,7 +6,8 @@
 
 namespace vibe {
 
-/// Calls `use` once per touched particle, with the deepest of its contacts: where shapes overlap, it leads out of both.
+/// Calls `use` once per touched particle, with its deepest contact. Where shapes overlap, this contact leads out of
+/// both.
 /// @param contacts  in the order of their particles
 template <class Use>
 void forEachDeepest(const std::vector<Contact>& contacts, Use use) {

@@ -44,8 +44,8 @@ InverseKinematics::Residual InverseKinematics::residual(const Inputs& inputs) {
   return r;
 }
 
-// change of the tip's position and (weighted) direction per input, at poses_; turning about the direction itself
-// does not change it and is projected out
+// derivative of the tip position and the (weighted) direction with respect to each input, at poses_; rotation about the
+// direction itself does not change it and is projected out
 InverseKinematics::Jacobian InverseKinematics::jacobian() const {
   Jacobian j = Jacobian::Zero();
   const Eigen::Vector3d position = poses_[tip_].translation();
@@ -53,7 +53,8 @@ InverseKinematics::Jacobian InverseKinematics::jacobian() const {
   for (const int index : path_) {
     const ToolJoint& joint = tool_.joints()[index];
     const Eigen::Isometry3d& child = poses_[joint.child_link];
-    const Eigen::Vector3d axis = joint.multiplier * (child.linear() * joint.axis);  // the joint's motion keeps its axis
+    const Eigen::Vector3d axis =
+        joint.multiplier * (child.linear() * joint.axis);  // the motion of a joint does not change its axis
     if (joint.type == ToolJoint::Type::Prismatic) {
       j.col(joint.input).head<3>() += axis;
       continue;
@@ -71,7 +72,7 @@ InverseKinematics::Inputs InverseKinematics::moved(const Inputs& from, const Ste
   return result;
 }
 
-// an input at a limit that wants to go beyond takes no part in this step
+// an input at a limit that would leave its range is excluded from this step
 void InverseKinematics::holdAtLimits(const Inputs& inputs, const Step& gradient,
                                      Eigen::Matrix<double, kFree, kFree>& matrix, Step& right) const {
   for (int i = 0; i < kFree; ++i) {
@@ -97,7 +98,7 @@ InverseKinematics::Inputs InverseKinematics::descend(Inputs inputs, double& cost
     bool better = false;
     while (!better && damping < 1e9) {
       Eigen::Matrix<double, kFree, kFree> matrix = normal;
-      // the constant keeps inputs still that do nothing here: the rotation of a straight scope
+      // the constant keeps inputs without effect still, such as the rotation of a straight scope
       matrix.diagonal() += damping * (normal.diagonal() + Step::Constant(1e-7));
       Step right = gradient;
       holdAtLimits(inputs, gradient, matrix, right);

@@ -14,9 +14,9 @@ class InverseKinematics {
 
   InverseKinematics(const ToolModel& tool, const Eigen::Isometry3d& target);
 
-  /// The solution that is reached downhill from `start`. Only if that misses the target by more than a millimetre
-  /// (or its equal in direction), other turns and bends are tried, and one is taken if it halves the error at least:
-  /// a tool that follows a moving target must not jump for little.
+  /// The solution found by descent from `start`. Only if it misses the target by more than a millimetre (or the
+  /// equivalent in direction) are other turns and bends tried. One of these is chosen only if it at least halves the
+  /// error, so that a tool that follows a moving target does not jump for a small gain.
   Inputs solve(const Inputs& start);
 
  private:

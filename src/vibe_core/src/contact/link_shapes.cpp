@@ -15,7 +15,7 @@ namespace {
 
 using ShapePointer = std::shared_ptr<const btConvexShape>;
 
-constexpr double kSamePlace = 1e-6;  // two lengths of a URDF that differ by less are meant to be equal [m]
+constexpr double kSamePlace = 1e-6;  // lengths in a URDF that differ by less are considered equal [m]
 
 void requireLength(double value, const char* what) {
   if (!(value >= 1e-6 && value <= 10))
@@ -38,7 +38,7 @@ ToolShape makeBox(const urdf::Box& box) {
   auto* shape = new btBoxShape(half);
   ToolShape result;
   result.shape = ShapePointer(shape);
-  shape->setMargin(0);  // Bullet's default of 40 mm is for crates: larger than the whole tool
+  shape->setMargin(0);  // Bullet's default of 40 mm is larger than the whole tool
   return result;
 }
 
@@ -67,7 +67,7 @@ const urdf::Cylinder* asCylinder(const urdf::Collision& collision) {
   return dynamic_cast<const urdf::Cylinder*>(collision.geometry.get());
 }
 
-// the not yet used sphere of this radius at this point, or -1
+// the unused sphere of this radius at this point, or -1
 int findSphere(const std::vector<urdf::CollisionSharedPtr>& all, const std::vector<bool>& used, double radius,
                const Eigen::Vector3d& centre) {
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -78,7 +78,7 @@ int findSphere(const std::vector<urdf::CollisionSharedPtr>& all, const std::vect
   return -1;
 }
 
-// takes the two end spheres of a cylinder away if both are there
+// removes the two end spheres of a cylinder if both exist
 bool takeEnds(const urdf::Collision& collision, const std::vector<urdf::CollisionSharedPtr>& all,
               std::vector<bool>& used) {
   const urdf::Cylinder& cylinder = *asCylinder(collision);

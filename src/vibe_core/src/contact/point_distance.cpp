@@ -14,8 +14,8 @@ namespace vibe {
 
 namespace {
 
-constexpr double kNoDirection = 1e-15;  // a shorter vector is rounding and has no direction [m]
-constexpr double kGjkSize = 100;        // diagonal at which GJK measures a shape [Bullet's units]
+constexpr double kNoDirection = 1e-15;  // a shorter vector is rounding error and has no direction [m]
+constexpr double kGjkSize = 100;        // diagonal to which a shape is scaled for GJK [Bullet's units]
 
 Eigen::Vector3d toEigen(const btVector3& v) {
   return {v.x(), v.y(), v.z()};
@@ -38,7 +38,7 @@ PointDistance::PointDistance(const btConvexShape& shape) : shape_(&shape) {
       break;
     }
     case BOX_SHAPE_PROXYTYPE:
-      if (shape.getMargin() > 0) break;  // Bullet rounds its edges
+      if (shape.getMargin() > 0) break;  // Bullet rounds the edges of such shapes
       kind_ = Kind::Box;
       half_ = toEigen(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin());
       break;
@@ -80,7 +80,7 @@ double PointDistance::fromSphere(const Eigen::Vector3d& p, Eigen::Vector3d& norm
   if (length > kNoDirection)
     normal = p / length;
   else
-    normal = Eigen::Vector3d::Unit((axis_ + 1) % 3);  // across a capsule's axis
+    normal = Eigen::Vector3d::Unit((axis_ + 1) % 3);  // perpendicular to the axis of a capsule
   return length - radius_;
 }
 
@@ -125,8 +125,8 @@ double PointDistance::fromCylinder(const Eigen::Vector3d& p, Eigen::Vector3d& no
 double PointDistance::byGjk(const btConvexShape& shape, const Eigen::Vector3d& p, Eigen::Vector3d& normal) {
   btVector3 lower, upper;
   shape.getAabb(btTransform::getIdentity(), lower, upper);
-  // Bullet's tolerances are absolute and made for things of a metre: with float scalars a cylinder of 1 cm came out
-  // 4 mm wrong, enlarged to kGjkSize it does not
+  // Bullet's tolerances are absolute and meant for objects of a metre: with float scalars the distance to a cylinder of
+  // 1 cm had an error of 4 mm; scaled to kGjkSize it does not
   const btScalar scale = static_cast<btScalar>(kGjkSize) / (upper - lower).length();
   const btUniformScalingShape enlarged(const_cast<btConvexShape*>(&shape), scale);  // only reads it
   const Eigen::Matrix<btScalar, 3, 1> at = p.cast<btScalar>() * scale;
@@ -140,7 +140,8 @@ double PointDistance::byGjk(const btConvexShape& shape, const Eigen::Vector3d& p
     normal /= length;
     return distance / static_cast<double>(scale);
   }
-  // Bullet finds no direction for a point that lies on the surface within its accuracy: outwards from the middle then
+  // Bullet finds no direction for a point on the surface within its accuracy; use the direction outwards from the
+  // centre
   const Eigen::Vector3d outwards = p - toEigen((lower + upper) / 2);
   normal = outwards.norm() > kNoDirection ? outwards.normalized() : Eigen::Vector3d::UnitX();
   return 0;

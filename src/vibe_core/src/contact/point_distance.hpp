@@ -5,21 +5,21 @@ class btConvexShape;
 
 namespace vibe {
 
-/// Signed distance of a point from a convex Bullet shape. Spheres, capsules, boxes and cylinders (without rounding
-/// margin) are measured in closed form in double precision from the Bullet shape's dimensions; every other convex
-/// shape by Bullet's GJK and EPA. Refers to the shape, which must outlive it.
+/// Signed distance of a point from a convex Bullet shape. For spheres, capsules, boxes and cylinders (without rounding
+/// margin) it is computed in closed form in double precision from the dimensions of the Bullet shape, for every other
+/// convex shape by Bullet's GJK and EPA. Refers to the shape, which must outlive this object.
 class PointDistance {
  public:
   explicit PointDistance(const btConvexShape& shape);
 
-  /// @param p       in the shape's frame, finite [m]
-  /// @param normal  unit, from the nearest point of the surface outwards; where several are equally near (a centre, an
-  ///                axis) one of them, always the same
+  /// @param p       in the frame of the shape, finite [m]
+  /// @param normal  unit, from the nearest point of the surface outwards; if several points are equally near (a centre,
+  ///         an axis), always the same one
   /// @return distance from the surface, negative inside [m]
   double operator()(const Eigen::Vector3d& p, Eigen::Vector3d& normal) const;
 
-  /// The general route, for any convex shape. Its error on shapes of the tool's size is 3e-6 m, because Debian's Bullet
-  /// calculates with floats.
+  /// The general method, for any convex shape. Its error on shapes of the size of the tool is 3e-6 m, because Debian's
+  /// Bullet uses single precision.
   static double byGjk(const btConvexShape& shape, const Eigen::Vector3d& p, Eigen::Vector3d& normal);
 
  private:
@@ -33,7 +33,7 @@ class PointDistance {
   Kind kind_ = Kind::Other;
   int axis_ = 2;                                    // of capsule and cylinder: 0 x, 1 y, 2 z
   double radius_ = 0;                               // of sphere, capsule, cylinder [m]
-  double half_length_ = 0;                          // of the capsule's straight part, of the cylinder [m]
+  double half_length_ = 0;                          // of the straight part of a capsule, of a cylinder [m]
   Eigen::Vector3d half_ = Eigen::Vector3d::Zero();  // half sides of the box [m]
 };
 

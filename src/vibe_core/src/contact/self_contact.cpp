@@ -15,18 +15,18 @@ namespace vibe {
 namespace {
 
 constexpr double kOneWallThicknesses = 2.5, kOneWallEdges = 3;  // along the surface
-constexpr double kFacingCosine = 0.3;   // of the normals of walls that meet: the next wall along a line faces this one
-constexpr double kSoftness = 0.1;       // modulus across what meets, of the wall's
+constexpr double kFacingCosine = 0.3;   // of the normals of walls in contact: the next wall along a line faces this one
+constexpr double kSoftness = 0.1;       // modulus of the contact, relative to that of the wall
 constexpr double kOnset = 0.25;         // strain over which contact sets in
-constexpr double kStraightBelow = 0.2;  // part of the thickness under which the energy goes on straight
-constexpr double kDrag = 2;         // of the force by the distance: more than the way it turns as a vertex slides on
-constexpr double kAhead = 1;        // thicknesses searched beyond where walls press, so that most steps need no
-constexpr double kMinAhead = 0.1;   // search
-constexpr double kFlatSight = 0.8;  // of the distance along edges of a flat wall, a straight one at the least
-constexpr double kFloor = 0.05;     // thicknesses that walls are kept apart
-constexpr double kLeg = 6e-3;       // a step with longer moves is followed in parts, so that few walls are near [m]
+constexpr double kStraightBelow = 0.2;  // fraction of the thickness below which the energy is extended linearly
+constexpr double kDrag = 2;             // relative to force over distance: more than the force turns as a vertex slides
+constexpr double kAhead = 1;            // thicknesses searched beyond the contact distance, so that most steps need no
+constexpr double kMinAhead = 0.1;       // search
+constexpr double kFlatSight = 0.8;      // smallest straight distance on a flat wall, relative to that along edges
+constexpr double kFloor = 0.05;         // minimum distance of walls, in thicknesses
+constexpr double kLeg = 6e-3;           // a step with longer moves is split into parts, so that few walls are near [m]
 
-/// Energy per A E' t / 2 of a wall squeezed to s of its thickness, and its slope by s.
+/// Energy per A E' t / 2 of a wall squeezed to s of its thickness, and its derivative with respect to s.
 std::pair<double, double> squeeze(double s) {
   if (s >= 1 + kOnset) return {0, 0};
   const double kept = std::max(s, kStraightBelow), strain = 1 - kept;
@@ -56,9 +56,10 @@ void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double
                 " Pa; it must be above 0.");
 }
 
-/// Square of the farthest way between two sets of points; not finite if one of them is not [m^2].
+/// Square of the largest distance between two sets of points; not finite if one of them is not [m^2].
 double farthest(const std::array<std::vector<double>, 3>& from, const double* const* to, std::size_t count) {
-  double max[4] = {0, 0, 0, 0}, sum[4] = {0, 0, 0, 0};  // side by side: this is all that walls far apart cost
+  double max[4] = {0, 0, 0, 0},
+         sum[4] = {0, 0, 0, 0};  // four independent accumulators: this is the only cost for walls that are far apart
   const double *a = from[0].data(), *b = from[1].data(), *c = from[2].data();
   const auto add = [&](std::size_t i, std::size_t k) {
     const double x = to[0][i] - a[i], y = to[1][i] - b[i], z = to[2][i] - c[i];
@@ -94,7 +95,7 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
   const double edge = meanEdge(rest_), one_wall = std::max(kOneWallThicknesses * max_thickness_, kOneWallEdges * edge);
-  // seen from a vertex, a flat wall that is not one with it any more stays out of sight
+  // seen from a vertex, a flat wall that no longer counts as one wall with it stays beyond the search distance
   ahead_ = std::clamp(kFlatSight * one_wall - 0.5 * edge - max_thickness_ * (1 + kOnset), kMinAhead * max_thickness_,
                       kAhead * max_thickness_);
   memory_ = std::make_unique<SelfContactMemory>(rest_, std::vector<double>(thickness_.size(), one_wall),
@@ -114,7 +115,7 @@ void SelfContact::detect(const double* x, const double* y, const double* z, doub
   addPairs(reach);
 }
 
-// Keeps the positions and finds how far they are from those of the last search.
+// Stores the positions and computes their distance from those of the last search.
 bool SelfContact::start(const double* x, const double* y, const double* z, double& moved) {
   const double* now[3] = {x, y, z};
   SelfContactMemory& m = *memory_;
@@ -142,7 +143,8 @@ double SelfContact::meanThickness(int vertex, int triangle) const {
   return 0.5 * (thickness_[vertex] + (thickness_[n[0]] + thickness_[n[1]] + thickness_[n[2]]) / 3);
 }
 
-// 1 where the normals of a vertex and of a triangle are more than perpendicular, 0 where they do not face each other.
+// 1 where the angle between the normals of a vertex and of a triangle is more than a right angle, 0 where they do not
+// face each other.
 double SelfContact::facing(int vertex, int triangle) const {
   const SelfContactMemory& m = *memory_;
   auto areaVector = [&](int t) -> Eigen::Vector3d {
@@ -157,7 +159,7 @@ double SelfContact::facing(int vertex, int triangle) const {
   return size > 0 ? std::clamp(1 - own.dot(other) / (kFacingCosine * size), 0.0, 1.0) : 0;
 }
 
-// Of a vertex, the nearest triangle that faces it, and the nearest on the opposite side of that.
+// For a vertex, the nearest triangle that faces it, and the nearest on the opposite side.
 void SelfContact::addPairs(double reach) {
   std::vector<SelfContactPaths::Approach>& near = memory_->near;
   for (std::size_t first = 0, next; first < near.size(); first = next) {
@@ -199,7 +201,7 @@ void SelfContact::addPair(int near, double facing) {
   pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kOnset));
   pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
   if (!(pair.stiffness > 0)) return;
-  // within the step the normal stays, so what presses now has to slide slowly
+  // the normal is constant within the step, so active contacts have to slide slowly
   const double s = foot.away.norm() / pair.thickness;
   pair.away = foot.away;
   pair.drag =
@@ -277,7 +279,7 @@ void SelfContact::findApproaches(bool anew, double distance) {
     }
     return;
   }
-  cover_ = -1;  // the search knows other positions now
+  cover_ = -1;  // the positions of the search have changed
   m.search.findNear(m.position, distance, m.found);
   for (const auto& near : m.found) {
     const auto& n = rest_.triangles[near.triangle];

@@ -13,28 +13,29 @@ namespace vibe {
 
 class SelfContactMemory;
 
-/// Walls of a shell that meet: an energy while a step is solved, and paths that end before a wall at its end.
+/// Self-contact of a shell: a contact energy during the solution of a step, and a limit on the paths at its end.
 ///
-/// Energy. Where a vertex comes nearer to another part of the middle surface than the mean t of the two thicknesses,
-/// the two half walls between are squeezed from t to the distance d and store the energy of a bar in Hencky's
+/// Energy. Where the distance d of a vertex from another part of the middle surface is below t, the mean of the two
+/// thicknesses, the two half walls in between are squeezed from t to d. They store the energy of a bar in Hencky's
 /// logarithmic strain (1928), per vertex of area A
 ///   W = A E' t / 2 * ln(s)^2 / 2,  s = d / t,
-/// half of A E' t because the other wall's vertices store the rest. E' is a tenth of the wall's modulus: what meets is
-/// mucosa, and a stiffness near the wall's own against bending is what the iterations of a step resolve. It stiffens
-/// as d goes to 0; below 20 % of t it goes on straight, so that force and energy stay finite in any state.
-/// Contact sets in from t + 25 % to t - 25 %, with a continuous stiffness. Within a step d is measured along the way
-/// between vertex and triangle at its start: convex, smooth, and a vertex that an iterate puts through the other wall
-/// is pushed back. What presses slides against a drag of twice its force per distance and step, which goes with the
-/// motion: without it the walls, whose normals change as they slide, would never come to rest.
+/// half of A E' t because the vertices of the other wall store the rest. E' is a tenth of the modulus of the wall: the
+/// mucosa is in contact, and the iterations of a step can resolve a stiffness of the order of the bending stiffness of
+/// the wall. The stiffness grows as d goes to 0. Below 20 % of t the energy is extended linearly, so that force and
+/// energy stay finite in any state. Contact sets in from t + 25 % to t - 25 %, with a continuous stiffness. Within a
+/// step d is measured along the direction between vertex and triangle at its start. This is convex and smooth, and a
+/// vertex that an iterate moves through the other wall is pushed back. A drag of twice the contact force per distance
+/// and step resists sliding and vanishes with the motion. Without it the walls, whose normals change as they slide,
+/// would never come to rest.
 ///
-/// Paths. resolvePenetrations() ends the straight paths of the nodes over a step before any vertex, edge or triangle
-/// passes through another wall, whatever made them move. So walls that were apart stay apart, and need no memory of
-/// sides.
+/// Paths. resolvePenetrations() shortens the straight paths of the nodes over a step so that no vertex, edge or
+/// triangle passes through another wall, whatever the cause of the motion. Walls that were apart therefore stay apart,
+/// and no record of sides is needed.
 ///
-/// Only walls that face each other press: the vertex's normal and the triangle's have a cosine below 0.3. Parts of the
-/// surface within 2.5 thicknesses or 3 mean edges along edges, or two edges, are one wall, which neither presses on
-/// itself nor is kept apart: folds sharper than that are beneath the resolution of the mesh. Walls that are nearer than
-/// t at rest touch there. No friction at rest.
+/// Only walls that face each other are in contact: the cosine between the normals of vertex and triangle is below 0.3.
+/// Parts of the surface within 2.5 thicknesses or 3 mean edge lengths along edges, or within two edges, count as one
+/// wall, which has no contact with itself and is not kept apart: sharper folds are below the resolution of the mesh.
+/// Walls that are nearer than t at rest touch at that distance. There is no static friction.
 class SelfContact : public EnergyTerm {
  public:
   /// A vertex and the triangle of another wall that is nearest to it on one side.
@@ -42,7 +43,7 @@ class SelfContact : public EnergyTerm {
     std::array<int, 4> node;  ///< vertex, triangle
     Eigen::Vector3d weight;   ///< barycentric, of the foot
     Eigen::Vector3d normal;   ///< unit, from the foot to the vertex
-    double thickness;         ///< distance at which they touch [m]
+    double thickness;         ///< distance at first contact [m]
     double stiffness;         ///< A E' t / 2 [J]
     Eigen::Vector3d away;     ///< from the foot to the vertex at detect() [m]
     double drag;              ///< resists sliding from there within the step [N/m]
@@ -51,27 +52,28 @@ class SelfContact : public EnergyTerm {
   /// @param rest           the middle surface at rest, consistently oriented; its vertices are the nodes [m]
   /// @param thickness      per vertex [m]
   /// @param young_modulus  of the wall [Pa]
-  /// @throws Error if a triangle names no vertex, or a thickness or the modulus is not above 0, or sizes differ
+  /// @throws Error if a triangle refers to a missing vertex, a thickness or the modulus is not positive, or sizes
+  ///         differ
   SelfContact(SurfaceMesh rest, std::vector<double> thickness, double young_modulus);
   ~SelfContact() override;
 
-  /// Finds what may meet within the step; call once before it. Depends only on the arguments, not on earlier calls.
-  /// Allocates only while its memory grows. A position that is not finite leaves nothing to meet.
-  /// @param reach  how much nearer two walls are expected to come in this step [m]
+  /// Finds the possible contacts within a step; call once before the step. The result depends only on the arguments,
+  /// not on earlier calls. Allocates only while its buffers grow. If a position is not finite, there are no contacts.
+  /// @param reach  expected largest decrease of the distance between two walls in this step [m]
   void detect(const double* x, const double* y, const double* z, double reach);
 
   double evaluate(const double* positions4, float* gradient4) const override;
 
-  /// Takes nodes back towards where detect() saw them, as far as it needs for no wall to have passed through another on
-  /// the straight way from there. Walls that were apart at detect() end at least 5 % of the least thickness apart, or
-  /// 90 % of their distance where they were nearer. A node taken back gets the velocity of the way it went.
+  /// Moves nodes back towards their positions at detect() as far as necessary so that no wall passes through another on
+  /// the straight path from there. Walls that were apart at detect() end at least 5 % of the smallest thickness apart,
+  /// or 90 % of their distance if they were nearer. The velocity of a node moved back is that of its shortened path.
   /// @param step  the time since detect() [s]
-  /// @returns the nodes taken back
+  /// @returns the nodes moved back
   const std::vector<int>& resolvePenetrations(const MotionView& motion, double step);
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   bool acts() const override { return !pairs_.empty(); }
-  int searchCount() const { return searches_; }  ///< detect() calls that could not tell without a search
+  int searchCount() const { return searches_; }  ///< detect() calls that needed a search
 
  private:
   bool start(const double* x, const double* y, const double* z, double& moved);
@@ -88,11 +90,11 @@ class SelfContact : public EnergyTerm {
   std::vector<double> thickness_;
   double stiffness_;  // E' [Pa]
   double min_thickness_ = 0, max_thickness_ = 0;
-  double ahead_ = 0;          // of where walls press, searched [m]
+  double ahead_ = 0;          // search distance beyond contact [m]
   std::vector<double> area_;  // per vertex at rest [m^2]
   std::unique_ptr<SelfContactMemory> memory_;
-  double cover_ = -1;  // everything nearer than this was found by the last search [m]; < 0: nothing is known
-  double moved_ = 0;   // farthest a node had moved since then at detect() [m]
+  double cover_ = -1;  // the last search found everything nearer than this [m]; < 0: none yet
+  double moved_ = 0;   // largest distance of a node at detect() from its position at the last search [m]
   int searches_ = 0;
   std::vector<Pair> pairs_;
   std::vector<int> stopped_;

@@ -9,7 +9,7 @@
 
 namespace vibe {
 
-/// What a SelfContact works with between the calls of a step.
+/// Working memory of a SelfContact between the calls of a step.
 class SelfContactMemory {
  public:
   SelfContactMemory(const SurfaceMesh& rest, const std::vector<double>& one_wall, double floor)
@@ -24,10 +24,10 @@ class SelfContactMemory {
   SelfContactSearch search;
   SelfContactPaths paths;
   std::array<std::vector<double>, 3> start, searched;  // positions at detect(), at the last search [m]
-  std::vector<SelfContactPaths::Approach> near;        // of the last search, `away` as at detect()
+  std::vector<SelfContactPaths::Approach> near;        // found by the last search, `away` as at detect()
   std::vector<SelfContactPaths::Approach> approaches;
   std::vector<SelfContactSearch::Near> found;
-  std::vector<Eigen::Vector3d> position, move, whole;  // of a part of a step, `whole`: before shortening [m]
+  std::vector<Eigen::Vector3d> position, move, whole;  // over a part of a step; `whole`: before shortening [m]
   std::vector<char> stopped;
 };
 

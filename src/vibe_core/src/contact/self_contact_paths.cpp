@@ -10,12 +10,12 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRounds = 5;          // of shortening, before what still meets is stopped where it is
-constexpr int kStops = 200;         // rounds of stopping, before everything is
-constexpr int kAdvances = 100;      // towards a meeting
-constexpr double kKept = 0.1;       // part of the distance above the floor that is left
-constexpr double kNearest = 0.9;    // part of a distance below the floor that is left
-constexpr double kTouching = 1e-9;  // nearer than this two parts have met before [m]
+constexpr int kRounds = 5;          // of shortening, before nodes that still collide are stopped in place
+constexpr int kStops = 200;         // rounds of stopping, before all nodes are stopped
+constexpr int kAdvances = 100;      // steps towards a collision
+constexpr double kKept = 0.1;       // remaining fraction of the distance above the floor
+constexpr double kNearest = 0.9;    // remaining fraction of a distance below the floor
+constexpr double kTouching = 1e-9;  // two parts that are nearer than this are already in contact [m]
 
 using Points = std::array<Eigen::Vector3d, 4>;
 
@@ -49,15 +49,15 @@ bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const 
     for (const auto& [one, other] : pairs_) shortened = shortenPair(one, other, round >= kRounds) || shortened;
     if (!shortened) return any;
     any = true;
-    news_.swap(next_news_);  // what did not change is still free
+    news_.swap(next_news_);  // unchanged moves are still free of collisions
     std::fill(next_news_.begin(), next_news_.end(), char{0});
   }
   std::fill(move.begin(), move.end(), Eigen::Vector3d::Zero());
   return any;
 }
 
-// Two triangles that a plane across the shortest way between them keeps apart at the start and at the end of their
-// straight paths stay apart: the distance along its normal is a concave function of time.
+// Two triangles that are separated at the start and at the end of their straight paths by a plane perpendicular to the
+// shortest connection between them stay apart: the distance along its normal is a concave function of time.
 void SelfContactPaths::collect(const std::vector<Approach>& approaches) {
   pairs_.clear();
   for (const Approach& approach : approaches) {
@@ -109,7 +109,7 @@ bool SelfContactPaths::shortenPrimitive(const Primitive& primitive, bool stop) {
 }
 
 // Additive continuous collision detection (Li, Kaufman, Jiang: Codimensional Incremental Potential Contact, 2021):
-// advances by what the distance allows until it is used up.
+// advances by steps that the distance permits until it is used up.
 double SelfContactPaths::freePart(const Primitive& primitive) const {
   Points at, move;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();

@@ -9,20 +9,21 @@
 
 namespace vibe {
 
-/// Straight paths of the nodes of a surface, shortened so that no part of it passes through another wall.
+/// Straight paths of the nodes of a surface, shortened so that no part of the surface passes through another wall.
 class SelfContactPaths {
  public:
-  /// @param floor  distance to which walls may approach [m]
+  /// @param floor  minimum distance of walls [m]
   SelfContactPaths(const std::vector<std::array<int, 3>>& triangles, const SelfContactSearch& search, double floor);
 
-  /// A vertex and a triangle that may come near each other, and the way from the triangle to the vertex at the start.
+  /// A vertex and a triangle that may come near each other, and the vector from the triangle to the vertex at the
+  /// start.
   struct Approach {
     SelfContactSearch::Near near;
     Eigen::Vector3d away;
   };
 
-  /// @param approaches  all between different walls that are nearer than twice the longest move, the floor and half the
-  ///                    longest edge at the vertex
+  /// @param approaches  all pairs of different walls that are nearer than the sum of twice the longest move, the floor
+  ///         and half the longest edge at the vertex
   /// @param move        in and out [m]
   /// @returns whether any was shortened
   bool shorten(const std::vector<Eigen::Vector3d>& start, const std::vector<Approach>& approaches,
@@ -31,7 +32,7 @@ class SelfContactPaths {
  private:
   struct Primitive {
     std::array<int, 4> node;
-    int split;  // how many of the nodes belong to the first part: 1: vertex and triangle, 2: two edges
+    int split;  // number of nodes in the first part: 1: vertex and triangle, 2: two edges
   };
   void collect(const std::vector<Approach>& approaches);
   bool isNews(int triangle) const;

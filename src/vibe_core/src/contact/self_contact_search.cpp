@@ -30,7 +30,7 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const std::vector<
   joinWalls(rest, one_wall);
 }
 
-// Dijkstra's paths along edges from every vertex, and everything within two edges.
+// Dijkstra's shortest paths along edges from every vertex, and all vertices within two edges.
 void SelfContactSearch::joinWalls(const SurfaceMesh& rest, const std::vector<double>& one_wall) {
   const auto neighbours = vertexNeighbours(rest);
   const int n = static_cast<int>(rest.vertices.size());
@@ -82,7 +82,7 @@ void SelfContactSearch::findNear(const std::vector<Eigen::Vector3d>& positions, 
                                  std::vector<Near>& found) {
   found.clear();
   measureEdges(positions);
-  // no point of a triangle is farther from its nearest vertex than this part of its longest edge
+  // a point of a triangle is never farther from its nearest vertex than this fraction of its longest edge
   layGrid(positions, distance + longest_edge_ * (0.5 + 1 / std::sqrt(3.0)));
   fillCells(positions);
   for (int i = 0; i < static_cast<int>(positions.size()); ++i)

@@ -8,18 +8,19 @@
 
 namespace vibe {
 
-/// Parts of a surface that are near in space but not along it, by a uniform grid of cells over the vertices.
+/// Finds parts of a surface that are near in space but not along it, with a uniform grid of cells over the vertices.
 class SelfContactSearch {
  public:
   struct Near {
     int vertex, triangle;
   };
 
-  /// @param one_wall  per vertex, distance along edges within which the surface is one wall with it [m]
+  /// @param one_wall  per vertex, distance along edges within which the surface counts as the same wall [m]
   SelfContactSearch(const SurfaceMesh& rest, const std::vector<double>& one_wall);
 
-  /// The vertices and triangles of different walls that are nearer to each other than the distance and half the longest
-  /// edge at the vertex, ascending. Where none is found no edge is nearer to an edge than the distance either. [m]
+  /// The vertices and triangles of different walls that are nearer to each other than the distance plus half the
+  /// longest edge at the vertex, ascending. If there are none, no two edges of different walls are nearer than the
+  /// distance either. [m]
   void findNear(const std::vector<Eigen::Vector3d>& positions, double distance, std::vector<Near>& found);
   /// Longest edge of the triangles at a vertex at the last findNear() [m].
   double longestEdge(int vertex) const { return edge_[vertex]; }

@@ -10,8 +10,8 @@
 
 namespace vibe {
 
-/// Turns a URDF into the parts of a ToolModel, parent links first. Every check of ToolModel::fromUrdf that is not
-/// urdfdom's is here.
+/// Converts a URDF into the parts of a ToolModel, parent links first. Contains all checks of ToolModel::fromUrdf that
+/// urdfdom does not make.
 class ToolBuilder {
  public:
   /// @throws Error

@@ -36,17 +36,17 @@ void ToolCollision::place(const std::vector<Eigen::Isometry3d>& link_poses) {
   }
 }
 
-// the boxes of the shapes as placed, and the one around them all
+// the boxes of the shapes as placed, and the union of them all
 ToolCollision::Box ToolCollision::placeBoxes(double reach) {
   const double infinity = std::numeric_limits<double>::infinity();
   Box all = {Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
   for (std::size_t s = 0; s < placed_.size(); ++s) {
     PlacedShape& placed = placed_[s];
     btVector3 lower, upper;
-    // around the origin and moved in double precision: Bullet's scalar may be a float
+    // around the origin, then moved in double precision: Bullet's scalar may be a float
     const btTransform turned = toBullet(placed.rotation, Eigen::Vector3d::Zero());
     model_->shapes()[s].shape->getAabb(turned, lower, upper);
-    const double grown = reach + 1e-6 * (upper - lower).length();  // more than a float's rounding
+    const double grown = reach + 1e-6 * (upper - lower).length();  // more than the rounding error of a float
     placed.box.lower = placed.translation + Eigen::Vector3d(lower.x(), lower.y(), lower.z());
     placed.box.upper = placed.translation + Eigen::Vector3d(upper.x(), upper.y(), upper.z());
     placed.box.lower.array() -= grown;
@@ -74,7 +74,7 @@ void ToolCollision::findCandidates(const std::vector<Eigen::Isometry3d>& link_po
     for (int s = 0; s < shapes; ++s) {
       const Box& box = placed_[s].box;
       if (!isInside(box.lower, box.upper, x[i], y[i], z[i])) continue;
-      // the box of a long shape that lies askew is mostly empty
+      // the box of a long oblique shape is mostly empty
       if (distances_[s](toShape(s, {x[i], y[i], z[i]}), normal) < reach) candidates_.push_back({i, s});
     }
   }

@@ -7,24 +7,25 @@
 
 namespace vibe {
 
-/// A particle that is nearer than the asked distance to a tool shape.
+/// A particle within the requested distance of a tool shape.
 struct Contact {
   int particle = -1;
   int shape = -1;          ///< index into ToolModel::shapes()
-  double distance = 0;     ///< signed distance of the particle's centre from the shape's surface, negative inside [m]
+  double distance = 0;     ///< signed distance of the particle centre from the shape surface, negative inside [m]
   Eigen::Vector3d normal;  ///< unit, from the shape towards the particle, in the frame of the link poses
 };
 
-/// Signed distances between particles and the tool's Bullet shapes (see PointDistance).
-/// Deterministic: contacts come in order of particle, then shape. No allocation once the buffers have grown.
-/// A particle whose position is not finite has no contacts.
+/// Signed distances between particles and the Bullet shapes of the tool (see PointDistance). Deterministic: contacts
+/// are ordered by particle, then shape. No allocation once the buffers have grown. A particle whose position is not
+/// finite has no contacts.
 class ToolCollision {
  public:
-  /// @param model  must outlive this
+  /// @param model  must outlive this object
   explicit ToolCollision(const ToolModel& model);
 
-  /// Pairs of particle and shape that are nearer than `reach`: candidates for as long as no particle moves further
-  /// relative to a shape's surface than `reach` minus the contact distance. x, y, z: particle coordinates [m], (count).
+  /// Finds the pairs of particle and shape that are nearer than `reach`. These candidates are valid as long as no
+  /// particle moves farther relative to the surface of a shape than `reach` minus the contact distance. x, y, z:
+  /// particle coordinates [m], (count).
   /// @param link_poses  pose of every link in the frame of the particles
   void findCandidates(const std::vector<Eigen::Isometry3d>& link_poses, const double* x, const double* y,
                       const double* z, int count, double reach);

@@ -6,9 +6,9 @@ Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const
                                                     int link, const Eigen::Vector3d& point) {
   Eigen::Matrix<double, 3, kJointCount> jacobian = Eigen::Matrix<double, 3, kJointCount>::Zero();
   while (link > 0) {
-    const ToolJoint& joint = tool.joints()[link - 1];  // the one that carries the link
+    const ToolJoint& joint = tool.joints()[link - 1];  // the joint that carries the link
     if (joint.input >= 0) {
-      // a joint's own motion changes neither its axis nor, if it turns, its origin
+      // the motion of a joint changes neither its axis nor, if it is revolute, its origin
       const Eigen::Vector3d axis = poses[link].linear() * joint.axis;
       const bool turns = joint.type == ToolJoint::Type::Revolute;
       const Eigen::Vector3d moves = turns ? axis.cross(point - poses[link].translation()).eval() : axis;

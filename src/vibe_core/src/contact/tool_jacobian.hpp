@@ -7,7 +7,8 @@
 
 namespace vibe {
 
-/// How a point that moves with a link moves with the tool's inputs: columns in the order of vibe::Joint [m/m], [m/rad].
+/// Derivative of the position of a point on a link with respect to the tool inputs: columns in the order of vibe::Joint
+/// [m/m], [m/rad].
 /// @param poses  of the links in any one frame, as from ToolModel::forwardKinematics(); the result is in that frame
 /// @param point  in the same frame [m]
 Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,

@@ -7,7 +7,7 @@
 
 namespace vibe {
 
-/// Path of the tool during one step: every input moves at constant speed from its start to its end.
+/// Path of the tool during one step: every input moves at constant speed from its start to its end value.
 class ToolMotion {
  public:
   /// @param base  pose of the tool's root link in world
@@ -21,7 +21,7 @@ class ToolMotion {
   /// The inputs at a fraction [0, 1] of the step [m], [rad].
   std::array<double, kJointCount> inputs(double fraction) const;
 
-  /// An upper bound of how far any point of a collision shape moves between two sets of link poses [m].
+  /// An upper bound of the displacement of any point of a collision shape between two sets of link poses [m].
   double travel(const std::vector<Eigen::Isometry3d>& from, const std::vector<Eigen::Isometry3d>& to) const;
 
  private:
@@ -30,8 +30,8 @@ class ToolMotion {
   std::array<double, kJointCount> start_, end_;
 };
 
-/// Where the inputs are after `dt` when they are asked to go to `command`: within the limits of position and speed.
-/// Entries that are not finite keep their position.
+/// Positions of the inputs after `dt` on the way to `command`, within the limits of position and speed. Entries that
+/// are not finite keep their position.
 std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::array<double, kJointCount>& position,
                                               const std::array<double, kJointCount>& command, double dt);
 

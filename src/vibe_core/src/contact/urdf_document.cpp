@@ -12,7 +12,8 @@ namespace vibe {
 
 namespace {
 
-// urdfdom reports errors through the process-wide console_bridge: this keeps the first one instead of printing it
+// urdfdom reports errors through the process-wide console_bridge; this handler stores the first one instead of printing
+// it
 class LogCatcher : public console_bridge::OutputHandler {
  public:
   LogCatcher() : previous_(console_bridge::getOutputHandler()) { console_bridge::useOutputHandler(this); }
@@ -30,7 +31,7 @@ class LogCatcher : public console_bridge::OutputHandler {
   std::string first_error_;
 };
 
-// one line without a full stop at its end, to stand inside a sentence
+// one line without a full stop at its end, for use inside a sentence
 std::string asClause(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
@@ -39,7 +40,7 @@ std::string asClause(std::string text) {
 }
 
 urdf::ModelInterfaceSharedPtr parseQuietly(const std::string& text, std::string& reason) {
-  static std::mutex one_at_a_time;  // the log handler is shared by the whole process
+  static std::mutex one_at_a_time;  // the whole process shares the log handler
   const std::lock_guard<std::mutex> lock(one_at_a_time);
   LogCatcher catcher;
   urdf::ModelInterfaceSharedPtr model;
@@ -53,7 +54,8 @@ urdf::ModelInterfaceSharedPtr parseQuietly(const std::string& text, std::string&
   return model;
 }
 
-// the first element <tag name="..."> in or below the siblings that begin with `element`; null if there is none
+// the first element <tag name="..."> among `element`, its following siblings and their descendants; null if there is
+// none
 const tinyxml2::XMLElement* findNamed(const tinyxml2::XMLElement* element, const std::string& tag,
                                       const std::string& name) {
   for (; element != nullptr; element = element->NextSiblingElement()) {
@@ -92,7 +94,7 @@ std::string UrdfDocument::whereNamedIn(const std::string& message) const {
 }
 
 UrdfDocument::~UrdfDocument() {
-  // a ring of joints is a ring of shared pointers, which would never be freed
+  // a cycle of joints is a cycle of shared pointers, which would never be freed
   for (const auto& entry : model_->links_) {
     entry.second->child_links.clear();
     entry.second->child_joints.clear();

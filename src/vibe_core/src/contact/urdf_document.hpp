@@ -11,11 +11,11 @@ class XMLDocument;
 
 namespace vibe {
 
-/// A URDF as urdfdom reads it. tinyxml2 reads the same text for the numbers of the lines in errors.
+/// A URDF parsed by urdfdom. tinyxml2 parses the same text to provide line numbers for errors.
 class UrdfDocument {
  public:
   /// @param text   the URDF
-  /// @param place  what to call it in errors, e.g. the file name
+  /// @param place  name used in error messages, e.g. the file name
   /// @throws Error if urdfdom does not accept it; nothing is printed
   UrdfDocument(const std::string& text, const std::string& place);
   ~UrdfDocument();

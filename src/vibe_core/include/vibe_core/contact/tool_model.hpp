@@ -11,7 +11,7 @@ class btConvexShape;
 
 namespace vibe {
 
-/// One joint of the tool's tree as read from the URDF.
+/// One joint of the kinematic tree of the tool, as read from the URDF.
 struct ToolJoint {
   enum class Type { Fixed, Revolute, Prismatic };
   std::string name;
@@ -20,54 +20,54 @@ struct ToolJoint {
   int child_link = -1;
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< joint frame in the parent link
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();           ///< unit, in the joint frame
-  int input = -1;                                            ///< index into StepInput::joints that drives it; -1: fixed
-  double multiplier = 1;                                     ///< position = multiplier * input + offset (URDF mimic)
-  double offset = 0;                                         ///< [m], [rad]
+  int input = -1;         ///< index of the driving input in StepInput::joints; -1: fixed
+  double multiplier = 1;  ///< position = multiplier * input + offset (URDF mimic)
+  double offset = 0;      ///< [m], [rad]
 };
 
-/// A convex collision shape of a link; capsules, cylinders, spheres and boxes as Bullet shapes.
+/// A convex collision shape of a link: a capsule, cylinder, sphere or box, as a Bullet shape.
 struct ToolShape {
   int link = -1;
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< shape frame in the link
   std::shared_ptr<const btConvexShape> shape;
-  double margin = 0;  ///< the surface lies this far outside of the Bullet shape's core [m]
+  double margin = 0;  ///< distance of the surface from the core of the Bullet shape, outwards [m]
 };
 
-/// Range of one of the seven inputs, from the <limit> of the joint of that name.
+/// Range of one of the seven inputs, from the <limit> of the joint with that name.
 struct JointLimits {
   double lower = 0;     ///< [m], [rad]
   double upper = 0;     ///< [m], [rad]
   double velocity = 0;  ///< [m/s], [rad/s]
 };
 
-/// Endoscope with suturing device: kinematic tree and collision shapes from one URDF. Constant after loading.
-/// Links are numbered so that a parent comes before its children; link 0 is the root ("scope_base").
+/// Endoscope with suturing device: kinematic tree and collision shapes from one URDF. Constant after loading. Parents
+/// have lower link numbers than their children; link 0 is the root ("scope_base").
 class ToolModel {
  public:
-  /// @param urdf_xml  the URDF's text
-  /// @param place     what to call it in errors, e.g. the file name
-  /// @throws Error for XML that is no URDF, a joint type other than fixed / revolute / prismatic, a moving joint
-  ///         that neither is one of kJointNames nor mimics one, a missing one of kJointNames, missing limits,
-  ///         a mesh collision shape, or links helix, needle, scope_tip, scope_camera_optical missing.
+  /// @param urdf_xml  text of the URDF
+  /// @param place     name used in error messages, e.g. the file name
+  /// @throws Error for text that is not a valid URDF, a joint type other than fixed, revolute or prismatic, a moving
+  ///         joint that neither is one of kJointNames nor mimics one, a missing joint of kJointNames, missing limits, a
+  ///         mesh collision shape, or a missing link helix, needle, scope_tip or scope_camera_optical.
   static ToolModel fromUrdf(const std::string& urdf_xml, const std::string& place);
 
   int linkCount() const { return static_cast<int>(link_names_.size()); }
   const std::string& linkName(int link) const { return link_names_[link]; }
-  /// @throws Error if there is no link of that name
+  /// @throws Error if no link has that name
   int linkIndex(const std::string& name) const;
   const std::vector<ToolJoint>& joints() const { return joints_; }
   const std::vector<ToolShape>& shapes() const { return shapes_; }
   const std::array<JointLimits, kJointCount>& limits() const { return limits_; }
 
-  /// Pose of every link in the root link's frame, in link order.
-  /// @param inputs  positions of the seven inputs [m], [rad]; used as they are (clamp before)
+  /// Pose of every link in the frame of the root link, in link order.
+  /// @param inputs  positions of the seven inputs [m], [rad]. They are not clamped.
   void forwardKinematics(const std::array<double, kJointCount>& inputs,
                          std::vector<Eigen::Isometry3d>& link_poses) const;
 
-  /// Joint inputs that bring scope_tip to a target pose in the root frame, nearest to `start`, within the limits:
-  /// damped least squares over the first four inputs; position weighs 1 per metre and the direction of the tip's
-  /// x axis 0.02 per radian (the scope has four degrees of freedom, so a full pose is rarely reachable).
-  /// Returns the best inputs found, the rest copied from `start`.
+  /// Computes joint inputs within the limits that bring scope_tip to a target pose in the root frame, starting from
+  /// `start`. Uses damped least squares over the first four inputs. Position has weight 1 per metre, the direction of
+  /// the x axis of the tip 0.02 per radian. The scope has four degrees of freedom, so a full pose is rarely reachable.
+  /// Returns the best inputs found; the remaining inputs are copied from `start`.
   std::array<double, kJointCount> inverseKinematics(const Eigen::Isometry3d& target,
                                                     const std::array<double, kJointCount>& start) const;
 

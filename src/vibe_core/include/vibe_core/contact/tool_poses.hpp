@@ -5,7 +5,7 @@
 
 namespace vibe {
 
-/// Poses of the tool's links in world at the start and at the end of a step, in the order of the links of Model::tool.
+/// Poses of the tool links in world at the start and at the end of a step, in the link order of Model::tool.
 struct ToolPoses {
   std::vector<Eigen::Isometry3d> start, end;
 };
