@@ -22,7 +22,7 @@ void check(bool right, const char* what, const char* remedy) {
   if (!right) throw Error(std::string("A thread through eyelets was given ") + what + ": " + remedy + ".");
 }
 
-/// Segments first..last: between two eyelets that hold (or ends) thread moves freely or by friction.
+/// Segments first..last between two eyelets that hold (or ends), within which thread slides freely or with friction.
 struct Run {
   int first, last;
   int size() const { return last - first + 1; }
@@ -48,8 +48,8 @@ class SlideProblem {
     }
   }
 
-  /// Runs lean on each other through the tissue only: each is solved for given tensions of the others until what
-  /// sticks, slides and hangs slack is right; that solves all of them at once.
+  /// Runs are coupled only through the tissue. Each is solved for given tensions of the others until the sets of
+  /// sticking, sliding and slack parts are right; these sets then determine the joint solution of all runs.
   bool solve() {
     bool reached = false;
     for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
@@ -72,7 +72,7 @@ class SlideProblem {
  private:
   bool holds(int k) const { return factor_[k] >= kHoldingFactor; }
 
-  /// What segments lack beside the pull of the other runs.
+  /// Missing length of the segments without the pull of the other runs.
   SegmentVector residualOf(const Run& run) const {
     SegmentVector others = tension_;
     others.segment(run.first, run.size()).setZero();
@@ -103,12 +103,12 @@ class SlideProblem {
     residual.col(0) = residual_;
     residual.col(1).setZero();
     if (!solveLinked(compliance_, residual, factor_, eyelets_, tight_, tension, slide)) return;
-    if (tension.col(0).minCoeff() < 0) return;  // not yet the right ones: go on from the runs' own tensions
+    if (tension.col(0).minCoeff() < 0) return;  // not yet the right sets: continue from the tensions of the single runs
     tension_ = tension.col(0);
     slide_ = slide.col(0);
   }
 
-  /// Deals out the thread of slack runs, and finds what is left over.
+  /// Distributes the thread of slack runs, and computes the remainder.
   void takeUpSlack() {
     const int m = static_cast<int>(residual_.size());
     slack_ = compliance_ * tension_ - residual_;
@@ -121,13 +121,14 @@ class SlideProblem {
     }
   }
 
-  /// A slack run has thread enough: segments that lack some get it from the parts that the least friction keeps away.
+  /// A slack run has enough thread in total: segments that lack length take it from the parts with the least friction
+  /// in between.
   void dealOut(const Run& run) {
     slide_.segment(run.first, run.size() - 1).setZero();
     for (int k = run.first; k <= run.last; ++k) {
       while (slack_[k] < 0) {
         const int giver = nearestGiver(run, k);
-        if (giver < 0) break;  // rounding
+        if (giver < 0) break;  // rounding error
         const double amount = std::min(slack_[giver], -slack_[k]);
         slack_[giver] -= amount;
         slack_[k] += amount;

@@ -11,10 +11,10 @@ namespace vibe {
 
 namespace {
 
-/// Below this share of the length the ends count as one above the other.
+/// Below this fraction of the length the ends count as one above the other.
 constexpr double kVertical = 1e-14;
 
-/// ln(sinh(u) / u), exact to rounding from 0 (where it is u^2 / 6) to where sinh would overflow.
+/// ln(sinh(u) / u), accurate to rounding from 0 (where it is u^2 / 6) to where sinh would overflow.
 double logSinhRatio(double u) {
   if (u > 1) return u - std::log(2 * u) + std::log1p(-std::exp(-2 * u));
   const double z = u * u;
@@ -26,12 +26,12 @@ double logSinhRatioSlope(double u) {
   return u < 0.02 ? u / 3 - u * u * u / 45 : 1 / std::tanh(u) - 1 / u;
 }
 
-/// u with sinh(u) / u = 1 + excess. ln(sinh(u) / u) is convex and sinh(u) / u >= 1 + u^2 / 6: Newton's method from
-/// sqrt(6 excess) comes down to the root without overshooting; the bounds guard against rounding only.
+/// Solves sinh(u) / u = 1 + excess for u. ln(sinh(u) / u) is convex and sinh(u) / u >= 1 + u^2 / 6, so Newton's method
+/// converges from sqrt(6 excess) down to the root without overshooting. The bounds guard only against rounding.
 double solveSinhRatio(double excess) {
   const double target = std::log1p(excess);
   double u = std::sqrt(6 * excess);
-  const double min = std::min(u, std::sqrt(6 * target));  // as ln(sinh(u) / u) <= u^2 / 6
+  const double min = std::min(u, std::sqrt(6 * target));  // because ln(sinh(u) / u) <= u^2 / 6
   for (int i = 0; i < 60 && u > 0; ++i) {
     const double next = std::max(min, u - (logSinhRatio(u) - target) / logSinhRatioSlope(u));
     if (!(std::abs(next - u) > 1e-16 * u)) break;
@@ -40,7 +40,8 @@ double solveSinhRatio(double excess) {
   return u;
 }
 
-/// The coordinate axis that is most square to a vector, made square to it: a direction to sag along without gravity.
+/// The coordinate axis most nearly perpendicular to a vector, made exactly perpendicular: a sag direction without
+/// gravity.
 Eigen::Vector3d anyDirectionSquareTo(const Eigen::Vector3d& vector) {
   const double norm = vector.stableNorm();
   if (norm == 0) return -Eigen::Vector3d::UnitZ();
@@ -56,7 +57,7 @@ void check(bool right, const char* what, const char* remedy) {
 }
 
 /// Fills scale and lowest of a thread that is longer than the distance of its ends.
-/// @param level, rise  of the last end as seen from the first, as shares of the length
+/// @param level, rise  of the last end relative to the first, as fractions of the length
 /// @param spare        1 - (distance / length)^2
 void shape(double level, double rise, double spare, Catenary& thread) {
   if (level <= kVertical) {
@@ -64,7 +65,7 @@ void shape(double level, double rise, double spare, Catenary& thread) {
     thread.lowest = 0.5 * thread.length * (1 - rise);
     return;
   }
-  // sinh(u) / u = sqrt(1 - rise^2) / level = r and r^2 - 1 = spare / level^2, the way without cancellation.
+  // sinh(u) / u = sqrt(1 - rise^2) / level = r and r^2 - 1 = spare / level^2, written without cancellation.
   const double square_excess = spare / (level * level);
   const double u = solveSinhRatio(square_excess / (1 + std::sqrt(1 + square_excess)));
   thread.scale = thread.length * level / (2 * u);
@@ -80,12 +81,12 @@ double Catenary::tension(double arc_length) const {
 Eigen::Vector3d Catenary::point(double arc_length) const {
   const double s = std::clamp(arc_length, 0.0, length);
   if (taut) return length > 0 ? Eigen::Vector3d(first + (last - first) * (s / length)) : first;
-  const double from = -lowest, to = s - lowest;  // vertical force over weight, at the first end and here
+  const double from = -lowest, to = s - lowest;  // vertical force over weight, at the first end and at s
   const double first_pull = std::hypot(scale, from), pull = std::hypot(scale, to);
   const double height = s == 0 ? 0 : s * ((from + to) / (first_pull + pull));
   double way = 0;
   if (scale > 0) {
-    // asinh(to / scale) - asinh(from / scale) as one asinh, so that nothing cancels in a nearly straight thread.
+    // asinh(to / scale) - asinh(from / scale) as one asinh, to avoid cancellation in a nearly straight thread.
     const double p = to / scale, q = from / scale, hyp_p = pull / scale, hyp_q = first_pull / scale;
     const double sum = p * hyp_q + q * hyp_p;
     const double argument = p * q > 0 ? (p - q) * (p + q) / sum : p * hyp_q - q * hyp_p;

@@ -5,10 +5,10 @@ namespace vibe::detail {
 namespace {
 
 constexpr int kMaxPasses = 200;
-/// The end has been reached within this share of the thread's length.
+/// Tolerance of the end position as a fraction of the thread length.
 constexpr double kReached = 1e-5;
 
-/// Draws node `to` to within a link of node `from`.
+/// Moves node `to` to one link length from node `from`.
 void update(double link, int from, int to, Eigen::Matrix3Xd& position) {
   const Eigen::Vector3d way = position.col(to) - position.col(from);
   const double distance = way.norm();

@@ -3,9 +3,10 @@
 
 namespace vibe::detail {
 
-/// Gives every link its length again without forces, for when an end was moved so far in one sub-step that equilibrium
-/// is not found: nodes follow their neighbours, from one held end to the other and back (FABRIK: Aristidou & Lasenby,
-/// Graphical Models 2011;73:243). Held ends further apart than the thread make it straight and even.
+/// Restores the length of every link without forces, for an end that moved so far in one sub-step that no equilibrium
+/// is found. Nodes follow their neighbours, from one held end to the other and back (FABRIK: Aristidou & Lasenby,
+/// Graphical Models 2011;73:243). If the held ends are farther apart than the thread length, the chain becomes straight
+/// and uniformly stretched.
 void restoreLengths(const HangingThreadModel& model, const ThreadEnds& ends, Eigen::Matrix3Xd& position);
 
 }  // namespace vibe::detail

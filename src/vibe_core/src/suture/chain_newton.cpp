@@ -12,9 +12,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kMaxIterations = 20;
-/// Newton's method has converged once nodes move by less than this share of a link: the next step would be rounding.
+/// Newton's method has converged when nodes move by less than this fraction of a link; a further step would be
+/// rounding.
 constexpr double kConverged = 1e-9;
-/// Links are as long as their tension says within this share.
+/// Tolerance of the link lengths relative to those that follow from their tensions.
 constexpr double kNearEnough = 1e-4;
 
 class ChainNewton {
@@ -46,7 +47,7 @@ class ChainNewton {
  private:
   bool isFree(int node) const { return node >= first_ && node <= last_; }
 
-  /// Directions, errors of length, geometric stiffness, forces that are left over.
+  /// Evaluates directions, length errors, geometric stiffness and residual forces.
   void evaluate() {
     const double l = model_.linkLength();
     for (int j = 0; j <= model_.links; ++j)
@@ -58,7 +59,7 @@ class ChainNewton {
       if (now > 1e-6 * l)
         link.direction = r / now;
       else
-        link.direction = Vector3d::Unit(k % 3);  // two nodes in one place: any way apart is as good
+        link.direction = Vector3d::Unit(k % 3);  // two nodes coincide: any direction is valid
       link.error = now - l - compliance_ * state_.tension[k];
       const double pull = std::max(0.0, state_.tension[k]) / std::max(now, 1e-3 * l);
       link.across = pull * (Matrix3d::Identity() - link.direction * link.direction.transpose());
@@ -74,7 +75,7 @@ class ChainNewton {
     return own;
   }
 
-  /// Node after link after node, each leaves its Schur complement to the next.
+  /// Block elimination node by node; each node passes its Schur complement to the next.
   void eliminate() {
     Matrix3d schur = ownStiffness(0);
     Vector3d right = scratch_.force.col(0);
@@ -115,7 +116,7 @@ class ChainNewton {
   const HangingThreadModel& model_;
   HangingThread& state_;
   HangingThreadScratch& scratch_;
-  const int first_, last_;   ///< nodes that are not held
+  const int first_, last_;   ///< free nodes
   const double inertia_;     ///< [1/s^2]
   const double compliance_;  ///< of a link [m/N]
 };
@@ -135,7 +136,7 @@ bool settleChain(const HangingThreadModel& model, const ThreadEnds& ends, double
   ChainNewton newton(model, ends, h, state, scratch);
   for (int i = 0; i < kMaxIterations; ++i)
     if (newton.iterate() <= kConverged * model.linkLength()) return true;
-  // Links that push and fold converge slowly: near enough will do, the next step goes on from there.
+  // Links in compression and folds converge slowly: accept an approximate solution; the next step continues from it.
   return newton.largestError() <= kNearEnough * model.linkLength();
 }
 

@@ -42,16 +42,16 @@ void checkState(const HangingThreadModel& model, double dt, const HangingThread&
         "a state that is not finite", "start anew from threadAtRest()");
 }
 
-/// Where gravity and its own motion would bring each node.
+/// Target of each node: its position under gravity and inertia alone.
 void aim(const HangingThreadModel& model, double h, const HangingThread& state, HangingThreadScratch& scratch) {
   const double fade = 1 / (1 + h * model.drag);
   for (int j = 0; j <= model.links; ++j)
     scratch.target.col(j) = state.position.col(j) + h * fade * (state.velocity.col(j) + h * model.gravity);
 }
 
-/// There, with the held ends where they are held and the nodes between them taken along evenly: an end that moves by
-/// many links would else leave a link many times its length, from where Newton's method finds back slowly or not at
-/// all.
+/// Initial guess: the targets, with held ends at their positions and the nodes in between shifted linearly. Otherwise
+/// an end that moves by many links would stretch one link to many times its length, and Newton's method would converge
+/// slowly or not at all.
 void guess(const HangingThreadModel& model, const ThreadEnds& ends, HangingThread& state,
            const HangingThreadScratch& scratch) {
   const int last = model.links;

@@ -61,15 +61,16 @@ std::vector<Ray> raysOf(const std::vector<Eigen::Vector3d>& bites, const Techniq
   return rays;
 }
 
-/// Appends what a ray meets; bent onto the wall where it leaves it. On a flat wall the middle of a ray can lie in a gap
-/// among particles, so the whole ray must be farther away to be bent; a part of a bent ray is known to lie on a curve.
+/// Appends the particles that a ray hits. A ray that leaves the wall is bent onto it. On a flat wall the middle of a
+/// ray can lie in a gap between particles, so the threshold distance for the whole ray is larger; parts of a bent ray
+/// are known to lie on a curve.
 void collect(TechniqueRays& rays, const Ray& ray, int bends_left, std::vector<int>& group) {
   const Eigen::Vector3d middle = (ray.first + ray.second) / 2;
   double distance;
   const int nearest = rays.nearest(middle, distance);
   const Eigen::Vector3d over = rays.position(nearest);
   const double half = (ray.second - ray.first).norm() / 2;
-  // a bend that is no nearer to either end than the chord is long leads nowhere: there is no wall between the ends
+  // a bend at least one chord length away from an end is invalid: there is no wall between the ends
   const bool leads = std::max((over - ray.first).norm(), (over - ray.second).norm()) < 2 * half;
   if (bends_left > 0 && distance > (bends_left == kMaxBends ? 2 : 1) * rays.radius() && leads) {
     collect(rays, {ray.first, over}, bends_left - 1, group);

@@ -10,14 +10,15 @@
 namespace vibe {
 namespace {
 
-// What a hand may do to a drawing before it stops being one. Lengths are in mean distances of successive bites.
+// Tolerances for hand-placed patterns. Lengths are in mean distances of consecutive bites.
 constexpr double kScatter = 0.15;     // standard deviation of a bite per direction
 constexpr double kDistortion = 0.16;  // ... of (a - b) / (a + b), a and b the principal stretches of the drawing
 constexpr double kWrap = 0.9;         // ... of the angle around a cylindrical wall [rad]
-constexpr double kMaxMisfit = 2;      // misfit per free coordinate at which a set is no technique any more ...
-constexpr double kSpareMisfit = 10;   // ... and on top of it
-constexpr double kUsual = 1.386;      // taken off the misfit of a U, the commonest technique: it counts twice (2 log 2)
-constexpr double kHopeless = 30;      // a wall this much worse than the best is not looked at
+constexpr double kMaxMisfit = 2;      // misfit per free coordinate above which a set is no technique ...
+constexpr double kSpareMisfit = 10;   // ... plus this constant
+constexpr double kUsual =
+    1.386;  // subtracted from the misfit of a U, the most common technique: it counts twice (2 log 2)
+constexpr double kHopeless = 30;  // a wall that fits worse than the best by this much is skipped
 
 using Complex = std::complex<double>;
 
@@ -27,13 +28,14 @@ bool usable(const std::vector<Eigen::Vector3d>& bites) {
   return std::all_of(bites.begin(), bites.end(), [](const Eigen::Vector3d& b) { return b.allFinite(); });
 }
 
-/// Bites about their centre in mean distances of successive ones; empty: they coincide all.
+/// Bites relative to their centre in mean distances of consecutive bites; empty if they all coincide.
 std::vector<Eigen::Vector3d> normalised(const std::vector<Eigen::Vector3d>& bites) {
   double largest = 0;
   for (const auto& bite : bites) largest = std::max(largest, (bite - bites[0]).cwiseAbs().maxCoeff());
   if (!(largest > 0) || !std::isfinite(largest)) return {};
   std::vector<Eigen::Vector3d> result;
-  for (const auto& bite : bites) result.push_back((bite - bites[0]) / largest);  // so that squares stay in range
+  for (const auto& bite : bites)
+    result.push_back((bite - bites[0]) / largest);  // so that squares do not overflow or underflow
   double path = 0;
   for (std::size_t k = 1; k < result.size(); ++k) path += (result[k] - result[k - 1]).norm();
   const double mean = path / static_cast<double>(result.size() - 1);
@@ -41,13 +43,13 @@ std::vector<Eigen::Vector3d> normalised(const std::vector<Eigen::Vector3d>& bite
   return result;
 }
 
-/// How badly a drawing fits bites laid flat, least over position, size, orientation, reflection and distortion.
-/// In complex coordinates every affine map of the drawing z is a z + b conj(z) + c, and |b| / |a| is the distortion
-/// (a - b) / (a + b) of its principal stretches; so the least is the solution of two complex linear equations, with a
-/// penalty on b (or on a, of the reflected drawing).
-/// @param square  sum of squares of the bites; the drawing is brought to their size, so that |a| is near 1
+/// Misfit between a pattern and bites laid flat, minimised over position, size, orientation, reflection and distortion.
+/// In complex coordinates every affine map of the pattern z is a z + b conj(z) + c, and |b| / |a| is the distortion (a
+/// - b) / (a + b) of its principal stretches. The minimum is therefore the solution of two complex linear equations,
+/// with a penalty on b (or on a, for the reflected pattern).
+/// @param square  sum of squares of the bites; the pattern is scaled to their size, so that |a| is near 1
 double misfit(const TechniqueTemplate& drawing, const std::vector<Complex>& bites, double square) {
-  double rr = 0, ii = 0, ri = 0, ir = 0;  // products of real and imaginary parts, from which both sums are made
+  double rr = 0, ii = 0, ri = 0, ir = 0;  // products of real and imaginary parts, from which both sums are computed
   for (std::size_t k = 0; k < bites.size(); ++k) {
     rr += drawing.bites[k].real() * bites[k].real();
     ii += drawing.bites[k].imag() * bites[k].imag();
@@ -68,11 +70,11 @@ double misfit(const TechniqueTemplate& drawing, const std::vector<Complex>& bite
   return std::max(0.0, square - max) / (kScatter * kScatter);
 }
 
-/// Collects -2 log of the weighted mean of exp(-misfit / 2), which is the misfit of a technique with many drawings:
-/// their number then gives it no advantage over a technique with few.
+/// Accumulates -2 log of the weighted mean of exp(-misfit / 2), which is the misfit of a technique with many patterns.
+/// A technique then gains no advantage from its number of patterns.
 struct MeanMisfit {
   double min = std::numeric_limits<double>::infinity();
-  double sum = 0;  // of weight * exp((least - misfit) / 2), which does not vanish however large the misfits are
+  double sum = 0;  // of weight * exp((least - misfit) / 2), which does not underflow for large misfits
   const TechniqueTemplate* best = nullptr;
 
   void add(double misfit, double weight, const TechniqueTemplate& drawing) {
@@ -117,7 +119,8 @@ TechniqueResult nearestDrawing(const std::vector<Eigen::Vector3d>& scaled) {
   std::array<int, kTechniqueCount - 1> order{1, 2, 3, 4, 5, 6};
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return misfits[a].value() < misfits[b].value(); });
   const double min = misfits[order[0]].value();
-  const double limit = kSpareMisfit + kMaxMisfit * (3 * count - 6);  // what position and orientation leave
+  const double limit =
+      kSpareMisfit + kMaxMisfit * (3 * count - 6);  // degrees of freedom without position and orientation
   TechniqueResult result;
   if (min < limit) {
     result.technique = static_cast<Technique>(order[0]);
@@ -128,8 +131,8 @@ TechniqueResult nearestDrawing(const std::vector<Eigen::Vector3d>& scaled) {
   return result;
 }
 
-/// Equations 1 to 4. A vector without length has no direction: every comparison with it fails, as with the NaN that
-/// the division would give.
+/// Equations 1 to 4. A zero vector has no direction: every comparison with it fails, as with the NaN that the division
+/// would give.
 TechniqueResult printedRule(const std::vector<Eigen::Vector3d>& bites) {
   std::vector<Eigen::Vector3d> directions;
   for (std::size_t k = 1; k < bites.size(); ++k) directions.push_back((bites[k] - bites[k - 1]).stableNormalized());

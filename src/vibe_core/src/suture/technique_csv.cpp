@@ -31,7 +31,7 @@ Fields split(const std::string& row) {
 bool toNumber(const std::string& text, double& value) {
   const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
   const char* end = text.data() + text.size();
-  const auto [stop, fault] = std::from_chars(begin, end, value);  // unlike strtod() the same in every locale
+  const auto [stop, fault] = std::from_chars(begin, end, value);  // unlike strtod(), independent of the locale
   return fault == std::errc() && stop == end;
 }
 
@@ -76,7 +76,7 @@ class Reader {
     sets_.back().push_back({number(fields, 0), number(fields, 1), number(fields, 2)});
   }
 
-  /// "nan" and "infinity" begin with letters, but whoever writes them means a number.
+  /// "nan" and "infinity" begin with letters but are meant as numbers.
   static bool isSpecial(const std::string& field) {
     double value;
     return toNumber(field, value);

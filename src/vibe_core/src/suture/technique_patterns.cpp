@@ -35,13 +35,13 @@ class Random {
   std::uint64_t state_;
 };
 
-/// Walks like a turtle: bites a unit apart, `vectors` of them per leg, legs scaled to the lengths given.
+/// Turtle graphics: bites a unit apart, `vectors` of them per leg, legs scaled to the given lengths.
 void walk(Flat& bites, double direction, double length, int vectors) {
   const Eigen::Vector2d step = length / vectors * Eigen::Vector2d(std::cos(direction), std::sin(direction));
   for (int k = 0; k < vectors; ++k) bites.push_back(bites.back() + step);
 }
 
-/// Shares bite vectors among legs as evenly as can be; chance says which legs get what is left.
+/// Distributes bite vectors among legs as evenly as possible; random legs get the remainder.
 std::vector<int> share(Random& random, int vectors, int legs) {
   std::vector<int> shared(legs, vectors / legs);
   const int start = random.below(legs);
@@ -49,8 +49,8 @@ std::vector<int> share(Random& random, int vectors, int legs) {
   return shared;
 }
 
-/// Two legs of equal length and a bar of one to a third of all vectors. A vector that two legs cannot share goes to
-/// one of the three by chance.
+/// Two legs of equal length and a bar of one to a third of all vectors. A remaining odd vector goes to one of the three
+/// at random.
 Flat drawTwoCorners(Random& random, int vectors, double turn, double back, double bar_length) {
   int bar = 1 + random.below(std::max(1, vectors / 3));
   int first = (vectors - bar) / 2, last = first;
@@ -73,7 +73,7 @@ Flat drawZ(Random& random, int vectors) {
   return drawTwoCorners(random, vectors, turn, -turn, random.uniform(1.0, 1.4));
 }
 
-/// Two legs that meet in a corner, or (half of the time) all three sides.
+/// Two legs that form a corner, or (half of the time) all three sides.
 Flat drawTriangular(Random& random, int vectors) {
   Flat bites{Eigen::Vector2d::Zero()};
   const bool closed = random.below(2) == 0;
@@ -95,8 +95,8 @@ Flat drawSquare(Random& random, int vectors) {
   return bites;
 }
 
-/// An arc of half to three quarters of a circle; of four bites to at most 210 degrees, since three chords of three
-/// quarters of a circle are three sides of a square, a U.
+/// An arc of half to three quarters of a circle. With four bites it spans at most 210 degrees, because three chords of
+/// three quarters of a circle are three sides of a square, a U.
 Flat drawC(Random& random, int vectors) {
   const double sweep = random.uniform(180, vectors == 3 ? 210 : 270) * kDegree;
   Flat bites;
@@ -134,7 +134,7 @@ Flat draw(Random& random, Technique technique, int vectors) {
   }
 }
 
-/// Skews, stretches, turns (but for a running suture, which has a direction on the organ), reflects and centres.
+/// Skews, stretches, rotates (except a running suture, which has a direction on the organ), reflects and centres.
 void distort(Random& random, const PatternRanges& ranges, bool turn, Flat& bites) {
   Eigen::Matrix2d map;
   map << 1, std::tan(random.uniform(-ranges.skew, ranges.skew)), 0,

@@ -8,9 +8,9 @@
 namespace vibe {
 namespace {
 
-constexpr btScalar kBoxRadius = 1.001f;  // in radii: more than single precision loses within 10,000 radii
+constexpr btScalar kBoxRadius = 1.001f;  // in radii: covers the error of single precision within 10,000 radii
 
-/// Collects the particles of the leaves that Bullet comes upon.
+/// Collects the particles of the leaves that Bullet visits.
 struct Candidates : btDbvt::ICollide {
   std::vector<int> particles;
   void Process(const btDbvtNode* leaf) override {

@@ -6,15 +6,15 @@
 
 namespace vibe {
 
-/// Rays against spheres of one radius about particles. Bullet's tree of bounding boxes finds candidates; as it is in
-/// single precision (and its tolerances absolute), it sees positions in radii about the first particle, in boxes a
-/// little too large, and what it finds is tested again in double precision.
+/// Intersection of rays with spheres of one radius around particles. Bullet's tree of bounding boxes finds candidates.
+/// Because it uses single precision (and absolute tolerances), positions are scaled to radii relative to the first
+/// particle, boxes are slightly enlarged, and candidates are tested again in double precision.
 class TechniqueRays {
  public:
   TechniqueRays(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
                 double radius);
 
-  /// Particles whose sphere the straight line from one point to another touches, in order along it.
+  /// Particles whose sphere intersects the straight line between two points, ordered along it.
   std::vector<int> hits(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
   /// The particle whose centre is nearest, and its distance [m].

@@ -29,7 +29,7 @@ const char* ruleName(TechniqueRule rule) {
 std::string summary(const TechniqueTable& table, TechniqueRule rule, double noise) {
   std::string text;
   for (const bool three_way : {true, false}) {
-    if (!three_way && rule == TechniqueRule::Printed) continue;  // it knows no more than three answers
+    if (!three_way && rule == TechniqueRule::Printed) continue;  // this rule distinguishes only three answers
     text += std::string("| ") + ruleName(rule) + " | " + percent(noise) + " | " + (three_way ? "3" : "6") + " |";
     for (int n = kTableMinBites; n <= kTableMaxBites; ++n) text += " " + percent(table.right(three_way, n)) + " |";
     text += " **" + percent(table.right(three_way)) + "** |\n";

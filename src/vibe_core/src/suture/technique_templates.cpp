@@ -9,11 +9,11 @@ namespace {
 using Complex = std::complex<double>;
 using Points = std::vector<Complex>;
 
-constexpr int kMaxUneven = 6;         // most bite vectors of one side of a polygon for one of another
-constexpr double kAlongShare = 0.25;  // of drawings with bites spaced evenly, wherever the corners are
+constexpr int kMaxUneven = 6;         // largest ratio of the numbers of bite vectors on two sides of a polygon
+constexpr double kAlongShare = 0.25;  // share of drawings with evenly spaced bites and corners anywhere
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
-/// A leg of a drawing: where it points [rad], how long it is, how many bite vectors it is made of.
+/// A leg of a drawing: direction [rad], length, number of bite vectors.
 struct Leg {
   double direction;
   double length;
@@ -45,12 +45,13 @@ Points bitesAlong(const std::vector<Leg>& legs, int count, double used) {
   return points;
 }
 
-/// Collects drawings and brings them to unit size.
+/// Collects drawings and normalises them to unit size.
 class Album {
  public:
   explicit Album(int bite_count) : count_(bite_count) {}
 
-  /// What a drawing weighs if the `count` of its kind are to have this share of what the technique has so far.
+  /// Weight of a drawing such that the `count` drawings of its kind have this share of the current total of the
+  /// technique.
   double share(Technique technique, double part, int count) const {
     double sum = 0;
     for (const TechniqueTemplate& t : templates_) sum += t.technique == technique ? t.weight / 2 : 0;
@@ -86,7 +87,7 @@ class Album {
   std::vector<TechniqueTemplate> templates_;
 };
 
-/// How often hands share bites among sides so: evenly more often than not.
+/// Relative frequency of a distribution of bites among sides: even ones are more frequent.
 double evenness(int min, int max) {
   return static_cast<double>(min) / max;
 }
@@ -99,7 +100,7 @@ void addTwoCorners(Album& album, Technique technique, double turn, double back, 
       const int last = vectors - first - bar, max = std::max(first, last);
       const std::array<int, 2> corners{first, first + bar};
       const double even = evenness(std::min(first, last), max) * evenness(std::min(bar, max), bar) * weight;
-      // bites spaced equally everywhere, or legs of equal length whatever the number of their bites
+      // equal spacing of all bites, or legs of equal length for any number of bites
       if (max <= 2 * std::min(first, last) && bar <= 2 * max)
         album.add(technique,
                   bitesAtCorners({{0, 1.0 * first, first}, {turn, 1.0 * bar, bar}, {turn + back, 1.0 * last, last}}),
@@ -110,7 +111,7 @@ void addTwoCorners(Album& album, Technique technique, double turn, double back, 
     }
 }
 
-/// A U or Z whose corners no bite needs to hit, for those who space bites evenly along a line they see.
+/// A U or Z whose corners need not coincide with a bite, for operators who space bites evenly along a visible line.
 void addAlong(Album& album, Technique technique, double turn, double back, const std::vector<double>& bars) {
   const int last = album.count() - 1;
   const double weight = album.share(technique, kAlongShare, static_cast<int>(bars.size()));
@@ -146,7 +147,7 @@ void addCorner(Album& album) {
                 evenness(min, max));
     }
   }
-  if (vectors < 5) return;  // with four or five bites no more than a bend is left of a corner that no bite hits
+  if (vectors < 5) return;  // with four or five bites, a corner without a bite is reduced to a bend
   const double along = album.share(Technique::Triangular, kAlongShare, 2);
   for (const double turn : {110, 130})
     album.add(Technique::Triangular, bitesAlong({{0, 1, 1}, {turn * kDegree, 1, 1}}, album.count(), 1), {-1, -1},
@@ -167,7 +168,7 @@ void addPolygon(Album& album, Technique technique, int sides, double shortest, d
       album.add(technique, bitesAtCorners(legs), {-1, -1}, weight * evenness(*min, *max) * (last < 1 ? 0.5 : 1));
     }
   };
-  // every way to share the bite vectors among the sides
+  // all distributions of the bite vectors among the sides
   const auto fill = [&](auto&& self, int side, int left) -> void {
     if (side == sides - 1) {
       shared[side] = left;

@@ -13,7 +13,8 @@ constexpr double kMaxWrap = 1.1 * kPi;
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// Least-squares circle (Kasa 1976, IEEE Trans Instrum Meas 25:8) through the columns x, y; false: they are in line.
+/// Least-squares circle (Kasa 1976, IEEE Trans Instrum Meas 25:8) through the columns x, y; false if they are
+/// collinear.
 bool fitCircle(const Eigen::VectorXd& x, const Eigen::VectorXd& y, Eigen::Vector2d& centre, double& radius) {
   Eigen::Matrix<double, Eigen::Dynamic, 3> a(x.size(), 3);
   a << 2 * x, 2 * y, Eigen::VectorXd::Ones(x.size());
@@ -33,14 +34,15 @@ void centreBites(FlatBites& flat) {
   for (auto& p : flat.bites) p -= centre;
 }
 
-/// Cuts the cylinder with this axis (a unit vector) open; false: the bites do not lie on one side of one.
+/// Unrolls the cylinder with this axis (a unit vector); false if the bites do not lie on one side of a cylinder.
 bool unroll(const Rows& bites, const Eigen::Vector3d& axis, FlatBites& flat) {
   const Eigen::Vector3d e1 = axis.unitOrthogonal(), e2 = axis.cross(e1);
   const Eigen::VectorXd x = bites * e1, y = bites * e2, z = bites * axis;
   Eigen::Vector2d centre;
   double radius;
   if (!fitCircle(x, y, centre, radius)) return false;
-  const double middle = std::atan2(-centre.y(), -centre.x());  // bites are centred: seen from the axis they lie there
+  const double middle =
+      std::atan2(-centre.y(), -centre.x());  // direction of the bites from the axis; bites are centred
   flat = {};
   double min = 0, max = 0;
   for (int k = 0; k < bites.rows(); ++k) {
@@ -55,15 +57,15 @@ bool unroll(const Rows& bites, const Eigen::Vector3d& axis, FlatBites& flat) {
   return flat.wrap < kMaxWrap;
 }
 
-/// Directions over half a sphere, the same seen along and against each coordinate axis: a reflected set is laid flat
-/// on reflected cylinders.
+/// Directions over a hemisphere, symmetric with respect to each coordinate axis: a reflected set is laid flat on
+/// reflected cylinders.
 std::vector<Eigen::Vector3d> candidateAxes() {
   std::vector<Eigen::Vector3d> axes;
   for (int i = -kAxisSteps; i <= kAxisSteps; ++i)
     for (int j = -kAxisSteps; j <= kAxisSteps; ++j) {
       const int k = kAxisSteps - std::abs(i) - std::abs(j);
       if (k < 0) continue;
-      const bool on_rim = k == 0 && (j < 0 || (j == 0 && i < 0));  // the opposite direction is there already
+      const bool on_rim = k == 0 && (j < 0 || (j == 0 && i < 0));  // the opposite direction is already included
       if (!on_rim) axes.push_back(Eigen::Vector3d(i, j, k).normalized());
     }
   return axes;
@@ -76,7 +78,7 @@ std::vector<FlatBites> layFlat(const std::vector<Eigen::Vector3d>& bites) {
   for (std::size_t k = 0; k < bites.size(); ++k) rows.row(static_cast<Eigen::Index>(k)) = bites[k];
   rows.rowwise() -= rows.colwise().mean().eval();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(rows.transpose() * rows);
-  const Rows own = rows * spread.eigenvectors();  // least spread first
+  const Rows own = rows * spread.eigenvectors();  // smallest spread first
 
   FlatBites plane;
   plane.off_wall = own.col(0).squaredNorm();

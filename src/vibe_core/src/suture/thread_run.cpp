@@ -9,15 +9,15 @@ namespace vibe::detail {
 
 namespace {
 
-/// Rates of change below this share of what changes most are rounding.
+/// Rates of change below this fraction of the largest one are rounding errors.
 constexpr double kRounding = 1e-13;
 
 bool slides(Eyelet eyelet) {
   return eyelet != Eyelet::Sticks;
 }
 
-/// Numbers the groups of tight segments that slide into each other, and gives each segment its tension per tension of
-/// the first of its group. Group -1: not tight.
+/// Numbers the groups of tight segments that slide into each other, and computes the tension of each segment relative
+/// to that of the first of its group. Group -1: not tight.
 int groupSegments(const SegmentVector& factor, const Eyelets& eyelets, const Tight& tight,
                   std::array<int, kMaxThreadSegments>& group, SegmentVector& ratio) {
   int count = 0;
@@ -41,9 +41,9 @@ int groupSegments(const SegmentVector& factor, const Eyelets& eyelets, const Tig
 /// One condition that must stay 0 or more along the path.
 struct LinearConstraint {
   int eyelet = -1;
-  Eyelet change = Eyelet::Sticks;  ///< what the eyelet does once the condition is at 0
+  Eyelet change = Eyelet::Sticks;  ///< new state of the eyelet when the condition reaches 0
   double value = 0, rate = 0;      ///< here, and per t
-  double rounding = 0;             ///< rates closer to 0 say nothing
+  double rounding = 0;             ///< smaller rates are insignificant
 };
 
 class Path {
@@ -77,7 +77,7 @@ class Path {
       const Eyelet before = eyelets_[next.eyelet];
       eyelets_[next.eyelet] = next.change;
       changed = next;
-      changed.change = before;  // reaching that again at once would be rounding
+      changed.change = before;  // reaching that again at once would be a rounding error
     }
     return false;
   }
@@ -88,7 +88,7 @@ class Path {
   }
 
  private:
-  /// What limits a sticking eyelet as it starts to slide that way, or the slide that ends as it sticks.
+  /// Bound on a sticking eyelet before it starts to slide in that direction, or on a slide before it sticks.
   LinearConstraint condition(int k, Eyelet change) const {
     LinearConstraint c;
     c.eyelet = k;
@@ -109,7 +109,8 @@ class Path {
     return c;
   }
 
-  /// Where several solutions exist the path may turn: what was let go must not go the forbidden way.
+  /// If there are several solutions, the path may reverse: a released condition must not move in the forbidden
+  /// direction.
   void turnIfNeeded(const LinearConstraint& changed) {
     const LinearConstraint c = condition(changed.eyelet, changed.change);
     if (c.rate * direction_ < -c.rounding) direction_ = -direction_;

@@ -10,19 +10,20 @@ namespace vibe {
 constexpr int kTableMinBites = 4;
 constexpr int kTableMaxBites = 9;
 
-/// How often a rule called patterns of a technique by which name.
+/// Confusion table: how often a rule assigned each technique to the patterns of a technique.
 struct TechniqueTable {
-  /// [bites - kTableLeastBites][drawn][recognised], both as Technique
+  /// [bites - kTableMinBites][drawn][recognised], both as Technique
   std::array<std::array<std::array<int, kTechniqueCount>, kTechniqueCount>, kTableMaxBites - kTableMinBites + 1>
       count{};
 
-  /// Share of right answers [1]; three_way: Triangular, Square, Running, C and Other are one answer, as in the paper.
+  /// Share of correct answers [1]. three_way: Triangular, Square, Running, C and Other count as one answer, as in the
+  /// paper.
   double right(bool three_way) const;
   double right(bool three_way, int bite_count) const;
   int drawn(Technique technique) const;
 };
 
-/// Draws `per_cell` patterns of every technique and number of bites and has them recognised.
+/// Draws `per_cell` patterns of every technique and number of bites and recognises them.
 /// @param noise  see drawTechniquePattern()
 TechniqueTable measureTechnique(TechniqueRule rule, double noise, int per_cell, std::uint64_t seed);
 

@@ -2,7 +2,7 @@
 
 namespace vibe {
 
-/// What a suture thread is made of. SI units.
+/// Material of a suture thread. SI units.
 struct ThreadMaterial {
   double diameter;                               ///< [m]
   double density;                                ///< [kg/m^3]
@@ -16,14 +16,16 @@ struct ThreadMaterial {
 };
 
 /// The 2-0 polypropylene monofilament of endoscopic suturing devices.
-/// diameter: USP <861> allows 0.300 to 0.339 mm for size 2-0, the middle is taken.
-/// breaking_force: the least mean knot-pull strength that USP <881> accepts of a class I suture of size 2-0, 1.44 kgf;
-/// a given thread may hold more, and holds more where it is straight. density: polypropylene, the middle of 900 to 910
-/// kg/m^3 (usual range of the homopolymer). elastic_modulus: 4026 MPa, mean of five blue polypropylene sutures (Nindhia
-/// et al., Int J App Pharm 2021;13 Suppl 1, doi 10.22159/ijap.2021.v13s1.Y1025); makes and sizes differ, and the thread
-/// creeps under load, which is left out. tissue_friction: a design choice. On wet tissue monofilaments rub less than
-/// braids, and less the harder they press (Zhang et al., Tribology Letters 2017;65, doi 10.1007/s11249-017-0909-6);
-/// 0.15 is a usual value of lubricated polymer pairs. A right-angled turn then raises the tension by a quarter.
+/// diameter: USP <861> allows 0.300 to 0.339 mm for size 2-0; this is the middle.
+/// breaking_force: the smallest mean knot-pull strength that USP <881> accepts for a class I suture of size 2-0, 1.44
+/// kgf. A given thread may be stronger, and is stronger where it is straight.
+/// density: polypropylene, the middle of 900 to 910 kg/m^3 (usual range of the homopolymer).
+/// elastic_modulus: 4026 MPa, mean of five blue polypropylene sutures (Nindhia et al., Int J App Pharm 2021;13 Suppl 1,
+/// doi 10.22159/ijap.2021.v13s1.Y1025). Brands and sizes differ. Creep under load is neglected.
+/// tissue_friction: a design choice. On wet tissue, monofilaments have less friction than braids, and their friction
+/// coefficient decreases with the normal force (Zhang et al., Tribology Letters 2017;65, doi
+/// 10.1007/s11249-017-0909-6). 0.15 is a usual value for lubricated polymer pairs. With it, a right-angled turn raises
+/// the tension by a quarter.
 ThreadMaterial polypropylene20();
 
 }  // namespace vibe
