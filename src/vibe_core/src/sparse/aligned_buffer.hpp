@@ -9,8 +9,8 @@
 
 namespace vibe {
 
-/// Zeroed memory that starts at a cache line, with a line of room behind. Large ones ask for huge pages: a factor is
-/// streamed through, and the processor's prefetchers stop at the end of every page.
+/// Zero-initialised memory, aligned to cache lines and padded by one line at its end. Large buffers request huge pages:
+/// a factor is streamed through, and the hardware prefetchers stop at page boundaries.
 template <class Number>
 class AlignedBuffer {
  public:
@@ -20,7 +20,7 @@ class AlignedBuffer {
     memory_.reset(static_cast<Number*>(std::aligned_alloc(alignment, bytes)));
     if (memory_ == nullptr) throw std::bad_alloc();
     if (alignment == kHugePage)
-      madvise(memory_.get(), bytes, MADV_HUGEPAGE);  // a wish: what it returns does not matter
+      madvise(memory_.get(), bytes, MADV_HUGEPAGE);  // a hint; its return value does not matter
     size_ = count;
     std::uninitialized_fill_n(memory_.get(), bytes / sizeof(Number), Number());
   }

@@ -4,8 +4,8 @@
 
 namespace vibe {
 
-// Measured on the AVX2 path: the numbers of a panel stream at about kNumber cycles each (both passes), every row of a
-// supernode is gathered and scattered once, every tile of 8 columns and every supernode has its own beginning and end.
+// Measured on the AVX2 path: the entries of a panel stream at about kNumber cycles each (both passes). Every row of a
+// supernode is gathered and scattered once. Every tile of 8 columns and every supernode has a fixed overhead.
 double solveCost(int nodes, int rows) {
   constexpr double kNumber = 0.25, kRow = 2.5, kTile = 30, kSupernode = 120;
   const double columns = 3.0 * nodes, all_rows = columns + 3.0 * rows;

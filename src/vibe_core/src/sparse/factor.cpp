@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kLargeFactor = 16 << 20;  // bytes
 
-// several threads may solve with one factor
+// several threads may solve with one factor at the same time
 template <class Number>
 Number* workOfThread(std::int64_t count) {
   thread_local AlignedBuffer<Number> buffer;
@@ -63,7 +63,7 @@ struct Factor::Storage {
             column_scale.data(),   ahead()};
   }
 
-  // measured: panels that stay in the last cache want a shorter distance than those that come from memory
+  // measured: panels in the last-level cache need a shorter prefetch distance than those in memory
   std::ptrdiff_t ahead() const {
     const std::int64_t bytes = plan.panel_size * (kind == FactorStorage::Half    ? 2
                                                   : kind == FactorStorage::Float ? 4

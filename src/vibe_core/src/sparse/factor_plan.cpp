@@ -54,7 +54,7 @@ class Planner {
     plan_->largest_front = std::max(plan_->largest_front, static_cast<int>(rows));
   }
 
-  // where a row of the vector (the first of a node) is in the front of a supernode
+  // position of a row of the vector (the first of a node) in the front of a supernode
   int rowInFront(int s, int row) const {
     const PanelStep& step = plan_->steps[s];
     if (row < step.first_row + step.columns) return row - step.first_row;
@@ -101,7 +101,7 @@ class Planner {
         {block, rowInFront(s, 3 * std::max(row, column)), rowInFront(s, 3 * std::min(row, column)), row < column});
   }
 
-  // update matrices wait on a stack: a supernode takes those of its children off, then puts its own
+  // update matrices are kept on a stack: a supernode pops those of its children, then pushes its own
   void measureStack() {
     const auto size = [this](int s) {
       const std::int64_t rows = 3 * plan_->steps[s].below_nodes;

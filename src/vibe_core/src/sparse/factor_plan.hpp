@@ -9,11 +9,11 @@
 
 namespace vibe {
 
-/// The order of elimination, its supernodes, and where everything of a supernode comes from and goes to. Rows and
-/// columns are scalar (3 per node) and in elimination order unless said otherwise.
+/// The elimination order, its supernodes, and the source and destination of all data of a supernode. Rows and columns
+/// are scalar (3 per node) and in elimination order unless stated otherwise.
 class FactorPlan {
  public:
-  /// A block of the matrix in the front of a supernode; row and column count from the front's first.
+  /// A block of the matrix in the front of a supernode; row and column are relative to the first of the front.
   struct Entry {
     int block;  ///< index into BlockMatrix::lower(); -1 - node: the diagonal block of the node
     int row, column;
@@ -31,17 +31,17 @@ class FactorPlan {
   };
 
   BlockPattern pattern;
-  std::vector<int> order;     ///< nodes by place in the elimination
-  std::vector<int> position;  ///< the reverse
-  std::vector<int> holder;    ///< supernode by place in the elimination
+  std::vector<int> order;     ///< nodes by position in the elimination
+  std::vector<int> position;  ///< the inverse permutation
+  std::vector<int> holder;    ///< supernode by position in the elimination
   std::vector<PanelStep> steps;
   std::vector<std::int32_t> row_index;  ///< see PanelStep
   std::vector<Front> fronts;
   std::vector<Entry> entries;
   std::vector<Run> runs;
-  std::int64_t panel_size = 0;  ///< numbers, padding included
+  std::int64_t panel_size = 0;  ///< numbers in total, padding included
   std::int64_t nonzeros = 0;
-  std::int64_t stack_size = 0;  ///< numbers of update matrices that wait at the same time, at most
+  std::int64_t stack_size = 0;  ///< maximum size of all update matrices on the stack [numbers]
   int largest_front = 0;        ///< rows
 };
 

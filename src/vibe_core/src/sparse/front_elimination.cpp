@@ -6,7 +6,7 @@
 namespace vibe {
 namespace {
 
-// of a matrix with a unit diagonal: below it a pivot is nothing but rounding
+// for a matrix with a unit diagonal; smaller pivots are rounding errors
 constexpr double kSmallestPivot = 1e-14;
 
 constexpr int panels(int count, int size) {
@@ -38,14 +38,14 @@ bool FrontElimination::run(double* front, int rows, int columns) {
   return true;
 }
 
-// lower_ and its inverse; every inner loop runs down a column
+// lower_ and its inverse; every inner loop runs along a column
 bool FrontElimination::factorDiagonal(int first, int width) {
   double* l = lower_.data();
   double* t = inverse_.data();
   for (int j = 0; j < width; ++j) std::copy(at(first + j, first + j), at(first + width, first + j), l + j * kBlock + j);
   for (int j = 0; j < width; ++j) {
     double* column = l + j * kBlock;
-    if (!(column[j] > kSmallestPivot)) return false;  // written so that not-a-number fails
+    if (!(column[j] > kSmallestPivot)) return false;  // also fails for NaN
     const double root = std::sqrt(column[j]);
     for (int i = j; i < width; ++i) column[i] /= root;
     for (int k = j + 1; k < width; ++k)
@@ -63,7 +63,8 @@ bool FrontElimination::factorDiagonal(int first, int width) {
   return true;
 }
 
-// W of the block's own rows: the inverse of the diagonal block, and that times what the columns before have left
+// W for the rows of the block: the inverse of the diagonal block, and its product with the remainder of the previous
+// columns
 void FrontElimination::finishOwnRows(int first, int width) {
   double* a = negative_inverse_a_.data();
   double* b = negative_inverse_b_.data();
@@ -81,7 +82,7 @@ void FrontElimination::finishOwnRows(int first, int width) {
     update_(a, panels(width, kDenseRows), own_.data() + j * width, width, at(first, j), stride_);
 }
 
-// own_ for the columns before the block, from the block's rows
+// own_ for the columns before the block, from the rows of the block
 void FrontElimination::packOwn(int first, int width) {
   for (int j = 0; j < first; ++j) {
     const double* from = at(first, j);
@@ -90,7 +91,7 @@ void FrontElimination::packOwn(int first, int width) {
   }
 }
 
-// L below the block, in the place of the matrix
+// L below the block, overwriting the matrix
 void FrontElimination::eliminateBelow(int first, int width) {
   const int below = rows_ - first - width;
   packBelow(first, width);

@@ -6,21 +6,21 @@
 namespace vibe {
 
 /// Eliminates the first columns of a dense symmetric matrix ("front", lower triangle, column-major) in place. They
-/// become W of PanelStep, [ L11^-1 ; -L21 L11^-1 ], and the rest becomes the Schur complement. Blocks of kBlock columns
-/// at a time: the columns that are done hold W so far, so that one product updates W and the rest of the front alike.
+/// become W of PanelStep, [ L11^-1 ; -L21 L11^-1 ], and the rest becomes the Schur complement. Works on blocks of
+/// kBlock columns: finished columns hold W up to this point, so that one product updates both W and the rest of the
+/// front.
 class FrontElimination {
  public:
-  static constexpr int kBlock = 48;  // whole register tiles both ways
+  static constexpr int kBlock = 48;  // a multiple of the register tile in both directions
 
-  /// Numbers from column to column of a front of so many rows, and numbers in all: tiles reach beyond the last row and
-  /// column.
+  /// Column stride and total size of a front with this many rows. Tiles extend beyond the last row and column.
   static std::int64_t stride(std::int64_t rows) {
     return (rows + kDenseRows - 1) / kDenseRows * kDenseRows + kDenseRows;
   }
   static std::int64_t size(std::int64_t rows) { return stride(rows) * (rows + kDenseColumns); }
 
   explicit FrontElimination(int largest_front);
-  /// @returns false where a pivot is not positive (of a matrix with a unit diagonal: above rounding)
+  /// @returns false if a pivot is not positive (for a matrix with a unit diagonal: not above rounding)
   bool run(double* front, int rows, int columns);
 
  private:
@@ -34,7 +34,7 @@ class FrontElimination {
 
   DenseUpdate update_;
   AlignedBuffer<double> below_;  // rows under the block, as A of DenseUpdate
-  AlignedBuffer<double> own_;    // what multiplies them, for every column of the front, as B
+  AlignedBuffer<double> own_;    // their factors, for every column of the front, as B
   AlignedBuffer<double> negative_inverse_a_, negative_inverse_b_;
   AlignedBuffer<double> lower_, inverse_;  // of the diagonal block, kBlock numbers from column to column
   double* front_ = nullptr;

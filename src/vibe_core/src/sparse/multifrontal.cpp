@@ -5,7 +5,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kDiagonal = 16;  // numbers above the diagonal that register tiles still touch
+constexpr int kDiagonal = 16;  // numbers above the diagonal that register tiles still access
 
 }  // namespace
 Multifrontal::Multifrontal(const FactorPlan& plan) : plan_(plan), elimination_(plan.largest_front) {

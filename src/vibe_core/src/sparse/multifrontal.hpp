@@ -8,22 +8,22 @@
 
 namespace vibe {
 
-/// The numbers of one supernode as the factorisation leaves them: W of PanelStep in double, column-major, `stride`
-/// numbers from column to column, zero above the diagonal and below the last row.
+/// Panel of one supernode as produced by the factorisation: W of PanelStep in double precision, column-major with
+/// column stride `stride`, zero above the diagonal and below the last row.
 struct DoublePanel {
   const double* numbers;
   std::int64_t stride;
 };
 
-/// Multifrontal Cholesky factorisation (Duff and Reid, ACM Trans. Math. Softw. 9 (1983)) of one matrix after another
-/// over the same plan. Keeps its memory between them.
+/// Multifrontal Cholesky factorisation (Duff and Reid, ACM Trans. Math. Softw. 9 (1983)) of a sequence of matrices with
+/// the same plan. Keeps its memory between them.
 class Multifrontal {
  public:
   explicit Multifrontal(const FactorPlan& plan);
 
-  /// Factors D A D and hands the panel of every supernode to `take(supernode, panel)`, in ascending order.
+  /// Factors D A D and passes the panel of every supernode to `take(supernode, panel)`, in ascending order.
   /// @param scale  D, by row in elimination order
-  /// @returns false where a pivot is not positive: numerically, the matrix is not positive definite
+  /// @returns false if a pivot is not positive: the matrix is numerically not positive definite
   template <class Take>
   bool run(const BlockMatrix& matrix, const std::vector<double>& scale, const Take& take) {
     stack_top_ = 0;

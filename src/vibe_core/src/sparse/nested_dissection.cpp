@@ -10,8 +10,8 @@ namespace vibe {
 namespace {
 
 struct Graph {
-  std::vector<idx_t> node;   // of the pattern, by vertex: only nodes that couple with another one
-  std::vector<idx_t> start;  // both directions of every edge, as METIS wants it
+  std::vector<idx_t> node;   // node of the pattern by vertex; only nodes coupled with another one
+  std::vector<idx_t> start;  // both directions of every edge, as METIS requires
   std::vector<idx_t> neighbour;
 };
 
@@ -42,7 +42,7 @@ Graph coupledNodes(const BlockPattern& pattern) {
   return graph;
 }
 
-// METIS draws from the C library's rand(), one state for the whole program: two plans made at once would mix
+// METIS uses the C library's rand() with one state for the whole program; computing two plans at once would mix them
 std::mutex& metisMutex() {
   static std::mutex mutex;
   return mutex;
@@ -56,14 +56,14 @@ std::vector<int> nestedDissection(const BlockPattern& pattern, int seed) {
   std::vector<char> coupled(pattern.size, 0);
   for (const idx_t node : graph.node) coupled[node] = 1;
   for (int i = 0; i < pattern.size; ++i)
-    if (!coupled[i]) order.push_back(i);  // METIS gets no lonely nodes: there is nothing to decide about them
+    if (!coupled[i]) order.push_back(i);  // isolated nodes need no ordering and are not passed to METIS
   if (graph.node.empty()) return order;
 
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = seed;
   options[METIS_OPTION_UFACTOR] =
-      400;  // halves of 1 : 1.4 allow shorter separators: 4 % less numbers in a shell's factor
+      400;  // halves of up to 1 : 1.4 allow shorter separators: 4 % fewer numbers in the factor of a shell
   options[METIS_OPTION_NUMBERING] = 0;
   idx_t count = static_cast<idx_t>(graph.node.size());
   std::vector<idx_t> vertex_order(count), place(count);

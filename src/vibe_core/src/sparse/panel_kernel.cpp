@@ -10,7 +10,7 @@ PanelKernels floatKernelsSse2();
 PanelKernels floatKernelsAvx2();
 
 InstructionPath bestInstructionPath() {
-  // no processor has AVX2 without the conversions of F16C
+  // every processor with AVX2 also has the conversions of F16C
   return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 ? InstructionPath::Avx2
                                                                                    : InstructionPath::Sse2;
 }
@@ -25,7 +25,7 @@ PanelKernels floatKernels(InstructionPath path) {
 
 namespace {
 
-/// The panels in double, without vector instructions: for checks, not for speed.
+/// Kernels for panels in double without vector instructions; for checks, not for speed.
 struct PlainKernel {
   // calls visit(column, first row of a block, its 8 numbers) for the whole panel
   template <class Visit>

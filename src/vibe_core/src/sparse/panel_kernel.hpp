@@ -5,12 +5,13 @@
 
 namespace vibe {
 
-/// One supernode of c columns and n rows (its own c and those below) as the kernels see it. Its panel W holds
-/// [ L11^-1 ; -L21 L11^-1 ] with every column scaled to use the range of half precision, so that both substitutions are
-/// one product: forward  [y1; y2] = [0; y2] + W y1,  backward  y1 = Wt [y1; y2].
-/// Stored in tiles of 8 columns (the last may have less), ascending; in a tile blocks of 8 rows, ascending, from the
-/// block of the tile's first row on (above it W is zero); in a block the columns; in a column its 8 rows. The rows are
-/// padded with zeros to whole blocks. This is the order in which the kernels read it, forwards and backwards.
+/// One supernode of c columns and n rows (its own c and those below) in the layout of the kernels. Its panel W holds [
+/// L11^-1 ; -L21 L11^-1 ] with every column scaled to use the range of half precision, so that both substitutions are
+/// one product:
+///   forward  [y1; y2] = [0; y2] + W y1,  backward  y1 = Wt [y1; y2].
+/// Storage order: tiles of 8 columns (the last may have fewer), ascending; within a tile blocks of 8 rows, ascending,
+/// starting at the block of the tile's first row (above it W is zero); within a block the columns; within a column its
+/// 8 rows. The rows are padded with zeros to whole blocks. The kernels read in this order, forwards and backwards.
 struct PanelStep {
   std::int32_t first_row;    ///< scalar, of the whole vector
   std::int32_t columns;      ///< c
@@ -22,28 +23,28 @@ struct PanelStep {
 
 constexpr int kTile = 8;
 
-/// Numbers in a panel.
+/// Number of entries in a panel.
 constexpr std::int64_t panelSize(std::int64_t columns, std::int64_t row_blocks) {
   const std::int64_t tiles = columns / kTile, rest = columns % kTile;
   return kTile * (kTile * (tiles * row_blocks - tiles * (tiles - 1) / 2) + rest * (row_blocks - tiles));
 }
 
-/// A factor without what owns it, for kernels that must not instantiate code of shared containers.
+/// A non-owning view of a factor, for kernels that must not instantiate code of shared containers.
 struct PanelSet {
   const PanelStep* steps;
   int step_count;
   const std::int32_t* row_index;
   const void* numbers;
   const float* column_scale;  ///< W = panel * diag(column_scale), one per row of the vector
-  std::ptrdiff_t ahead;       ///< bytes between what is read and what is prefetched
+  std::ptrdiff_t ahead;       ///< prefetch distance [bytes]
 };
 
-/// What a kernel does to one vector, or to three interleaved ones (x0 y0 z0 x1 ...). `work` holds the rows of the
-/// largest supernode in whole blocks, three times for `path`.
+/// The operations of a kernel on one vector, or on three interleaved ones (x0 y0 z0 x1 ...). `work` holds the rows of
+/// the largest supernode in whole blocks, three times for `path`.
 struct PanelKernels {
   void (*forward)(const PanelSet& set, float* vector, float* work);
   void (*backward)(const PanelSet& set, float* vector, float* work);
-  /// One step of the forward substitution of three vectors, of which the rows before `from` are zero.
+  /// One step of the forward substitution of three vectors whose rows before `from` are zero.
   void (*stepOfThree)(const PanelSet& set, int step, int from, float* vectors, float* work);
 };
 
@@ -54,7 +55,7 @@ PanelKernels halfKernels(InstructionPath path);
 PanelKernels floatKernels(InstructionPath path);
 PanelKernels doubleKernels();  ///< panel in double, vectors in float
 
-/// Both passes in double.
+/// Both substitutions in double precision.
 void solveDouble(const PanelSet& set, double* vector, double* work);
 
 }  // namespace vibe

@@ -13,7 +13,7 @@
 namespace vibe {
 namespace {
 
-/// Eight floats in as many registers as the architecture needs.
+/// Eight floats in as many registers as the architecture requires.
 template <class Arch>
 struct Eight {
   using Pack = xsimd::batch<float, Arch>;
@@ -31,7 +31,8 @@ struct Eight {
     for (int i = 0; i < kParts; ++i) r.part[i] = Pack::load_aligned(from + i * kWidth);
     return r;
   }
-  // four halves at a time: the bits as those of a float of the wrong exponent, then the exponent by one exact product
+  // four halves at a time: interpret the bits as a float with a wrong exponent, then correct the exponent by one exact
+  // product
   static __m128 widen(__m128i half) {
     const __m128i magnitude = _mm_slli_epi32(_mm_and_si128(half, _mm_set1_epi32(0x7fff)), 13);
     const __m128 sign = _mm_castsi128_ps(_mm_slli_epi32(_mm_and_si128(half, _mm_set1_epi32(0x8000)), 16));
@@ -74,7 +75,7 @@ template <class Arch, class Number>
 struct PanelKernel {
   using Lane = Eight<Arch>;
 
-  // a block of rows, so many bytes from p: panels come from the outer caches, or from memory
+  // prefetches a block of rows, this many bytes ahead of p: panels come from the outer caches, or from memory
   template <int kColumns>
   static void prefetchBlock(const Number* p, std::ptrdiff_t ahead) {
     constexpr int kBytes = kTile * kColumns * static_cast<int>(sizeof(Number));
@@ -82,7 +83,7 @@ struct PanelKernel {
     for (int i = 0; i < kBytes; i += 64) _mm_prefetch(first + i, _MM_HINT_T0);
   }
 
-  // ---- forward: a tile times its columns' numbers, added to work (or written, where it is the first)
+  // ---- forward: a tile times the entries of its columns, added to work (or written, for the first tile)
   template <int kColumns, bool kFirst>
   static void forwardTile(const Number* p, int blocks, const float* x, const float* scale, float* work,
                           std::ptrdiff_t ahead) {
@@ -147,8 +148,8 @@ struct PanelKernel {
     for (int s = 0; s < set.step_count; ++s) forwardStep(set, set.steps[s], vector, work);
   }
 
-  // ---- backward: the columns of a tile times the rows; read from the end to the start, so that what the forward
-  // pass read last, and a cache still has, comes first
+  // ---- backward: the columns of a tile times the rows; reads from the end to the start, because the data that the
+  // forward pass read last is still in the cache
   template <int kColumns>
   static void backwardTile(const Number* end, int blocks, const float* work, const float* scale, float* x,
                            std::ptrdiff_t ahead) {
@@ -239,7 +240,7 @@ struct PanelKernel {
     }
   }
 
-  // four columns at a time: twelve factors, three sums and a number are what sixteen registers hold
+  // four columns at a time: twelve factors, three sums and one number fit into sixteen registers
   static void threeTile(int columns, const Number* p, int blocks, const float* x, const float* scale, float* work,
                         int plane) {
     const int stride = kTile * columns;

@@ -15,9 +15,9 @@ std::uint32_t bits(float value) {
 }
 
 constexpr std::uint32_t kSmallestNormalHalf = 113U << 23;  // 2^-14, as the bits of a float
-constexpr int kLargestExponent = 14;  // scaled columns reach at most 2^14: a quarter of what a half holds
+constexpr int kLargestExponent = 14;  // scaled columns reach at most 2^14: a quarter of the range of a half
 
-// to nearest even; below 2^15 and with subnormal results made zero, neither of which needs a branch
+// rounds to nearest even; for values below 2^15, with subnormal results flushed to zero, so that no branch is needed
 std::uint16_t toHalf(float value) {
   const std::uint32_t magnitude = bits(value) & 0x7fffffffU;
   const std::uint32_t rounded = magnitude + 0xfffU + (magnitude >> 13 & 1U);
@@ -25,7 +25,8 @@ std::uint16_t toHalf(float value) {
   return static_cast<std::uint16_t>(magnitude < kSmallestNormalHalf ? 0U : half);
 }
 
-/// One column of a panel on its way from double to what is stored. The loops are such that a compiler vectorises them.
+/// One column of a panel during the conversion from double to the storage format. The loops are written for
+/// auto-vectorisation.
 template <class Number>
 struct Column {
   std::vector<Number> numbers;
@@ -42,14 +43,14 @@ struct Column<std::uint16_t> {
   std::vector<std::uint16_t> numbers;
   std::vector<float> rounded;
 
-  // The scale is a power of two, so that scaling rounds nothing. With it no column overflows a half, and what is lost
-  // as subnormal is less than 2^-27 of the column's largest number.
+  // The scale is a power of two, so scaling is exact. It prevents overflow of the column, and the loss by flushing
+  // subnormals is less than 2^-27 of the largest number in the column.
   float take(const double* from, int count) {
     numbers.resize(count);
     rounded.resize(count);
     float* single = rounded.data();
     for (int i = 0; i < count; ++i) single[i] = static_cast<float>(from[i]);
-    std::int32_t largest = 0;  // positive floats order as their bits do
+    std::int32_t largest = 0;  // the bit patterns of positive floats are ordered like their values
     for (int i = 0; i < count; ++i)
       largest = std::max(largest, static_cast<std::int32_t>(bits(single[i]) & 0x7fffffffU));
     const int exponent = (largest >> 23) - 127 + 1 - kLargestExponent;

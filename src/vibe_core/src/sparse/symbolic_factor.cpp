@@ -12,7 +12,7 @@ std::vector<int> inverse(const std::vector<int>& order) {
   return place;
 }
 
-// of each node in elimination order the earlier nodes that it couples with
+// for each node in elimination order, the earlier nodes coupled with it
 std::vector<std::vector<int>> earlierNeighbours(const BlockPattern& pattern, const std::vector<int>& place) {
   std::vector<std::vector<int>> earlier(pattern.size);
   for (int i = 0; i < pattern.size; ++i)
@@ -47,7 +47,7 @@ std::vector<int> postorder(const std::vector<int>& parent) {
       stack.push_back(k);
     else
       children[parent[k]].push_back(k);
-  while (!stack.empty()) {  // parents before children, then the whole turned round
+  while (!stack.empty()) {  // parents before children, reversed afterwards
     const int k = stack.back();
     stack.pop_back();
     visited.push_back(k);
@@ -78,7 +78,7 @@ std::vector<std::vector<int>> factorColumns(const std::vector<std::vector<int>>&
 }  // namespace
 
 std::vector<Supernode> symbolicFactor(const BlockPattern& pattern, std::vector<int> order) {
-  // a postorder of the tree is an equivalent order, in which every supernode is a run of columns
+  // a postorder of the tree is an equivalent order in which every supernode is a contiguous run of columns
   const std::vector<int> turned = postorder(eliminationTree(earlierNeighbours(pattern, inverse(order))));
   std::vector<int> sorted(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = order[turned[k]];
