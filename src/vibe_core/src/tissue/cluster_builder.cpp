@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kLanes = ClusterSet::kLanes;
 
-// Neighbours of every vertex in counter-clockwise order seen from outside, starting at the smallest.
+// Neighbours of every vertex in counter-clockwise order seen from outside, starting at the smallest number.
 std::vector<std::vector<int>> orderedRings(const SurfaceMesh& mesh) {
   std::vector<std::map<int, int>> next(mesh.vertices.size());
   for (const auto& t : mesh.triangles)
@@ -34,7 +34,7 @@ std::vector<std::vector<int>> orderedRings(const SurfaceMesh& mesh) {
   return rings;
 }
 
-// Clusters ordered by ring size, so that the eight lanes of a group hardly need padding.
+// Clusters ordered by ring size, so that the eight lanes of a group need little padding.
 std::vector<int> clusterOrder(const std::vector<std::vector<int>>& rings) {
   std::vector<int> order(rings.size());
   std::iota(order.begin(), order.end(), 0);
@@ -82,7 +82,7 @@ class Builder {
 
   void fillLane(int lane, int centre, bool padding) {
     const std::vector<int>& ring = rings_[centre];
-    // relative to the centre, as the kernel sees it: far from the origin nothing is lost to round-off
+    // relative to the centre, as in the kernel: avoids round-off far from the origin
     const Eigen::Vector3d& origin = organ_.surface.vertices[centre];
     double mass = masses_[centre];
     Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();
@@ -117,7 +117,7 @@ class Builder {
     set_.cluster_mass[lane] = mass;
     set_.rest_spread[lane] = spread;
     set_.compliance[lane] = mass * spread / (2 * modulus * areas_[centre]);
-    // a plate's own moment about its mid-surface, t^2 / 12 per mass
+    // second moment of a plate about its mid-surface, t^2 / 12 per mass
     set_.orientation_weight[lane] = thickness * thickness / 12;
   }
 
@@ -148,7 +148,7 @@ ClusterSet buildClusters(const Organ& organ, const TissueScene& tissue, const st
 
 namespace {
 
-// How many clusters the member with most of them shares, for the cluster of a particle.
+// For the cluster of a particle: the largest number of clusters that one of its members belongs to.
 int maxClusters(const ClusterSet& set, int lane) {
   const int group = lane / kLanes;
   int max = 1;

@@ -20,11 +20,11 @@ using Eigen::Vector3d;
 
 constexpr int kMaxTurns = 100;
 constexpr int kExtractions = 6;     // Newton steps to a rotation; three are usual
-constexpr double kFarTurn = 0.5;    // [rad] of one of them
+constexpr double kFarTurn = 0.5;    // [rad], limit of one step
 constexpr double kSameTurn = 1e-7;  // [rad]
 
 /// The rotation r nearest to a matrix a, which maximises r : a, starting from a rotation near it. Newton's method on
-/// small turns w from the left: gradient sum_k r_k x a_k over the columns, minus Hessian tr(s) - s, s = sym(a r^T).
+/// small rotations w from the left: gradient sum_k r_k x a_k over the columns, minus Hessian tr(s) - s, s = sym(a r^T).
 /// Unlike a polar decomposition it also works for flat neighbourhoods of a surface, where a has rank two.
 Matrix3d rotationOf(const Matrix3d& a, Matrix3d r) {
   for (int i = 0; i < kExtractions; ++i) {
@@ -33,7 +33,7 @@ Matrix3d rotationOf(const Matrix3d& a, Matrix3d r) {
     const double trace = product.trace();
     const Matrix3d hessian = trace * Matrix3d::Identity() - 0.5 * (product + product.transpose());
     const double size = std::abs(trace) + 1e-300;
-    // far from the rotation the Hessian is not usable; its trace is a bound
+    // far from the rotation the Hessian is not usable; its trace is an upper bound
     const bool useful = hessian.determinant() > 1e-6 * size * size * size && trace > 0;
     Vector3d turn = useful ? Vector3d(hessian.inverse() * gradient) : Vector3d(gradient / (2 * size));
     const double angle = turn.norm();
@@ -44,7 +44,7 @@ Matrix3d rotationOf(const Matrix3d& a, Matrix3d r) {
   return r;
 }
 
-/// Rotation of the rigid motion that fits best: a is the sum of (after) (before)^T about the means (Kabsch 1976).
+/// Rotation of the best-fitting rigid motion: a is the sum of (after) (before)^T about the means (Kabsch 1976).
 Matrix3d fittedRotation(const Matrix3d& a) {
   const Eigen::JacobiSVD<Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Matrix3d sign = Matrix3d::Identity();
@@ -55,7 +55,7 @@ Matrix3d fittedRotation(const Matrix3d& a) {
 }  // namespace
 
 std::vector<int> patchAround(const SurfaceView& shape, const std::vector<int>& seeds, double radius) {
-  // neighbours along sides, each twice: those of node n from first[n] to first[n + 1]
+  // neighbours along edges, each twice: those of node n from first[n] to first[n + 1]
   std::vector<int> first(shape.x.size() + 2, 0), neighbours(6 * shape.triangles.size());
   for (const auto& t : shape.triangles)
     for (const int node : t) first[node + 2] += 2;
@@ -181,7 +181,7 @@ void GradientDeformation::factor() {
     throw Error("gradient deformation: a part of the patch is connected to no rim and no handle; give it a handle.");
 }
 
-/// Held nodes to their places; the rest and all rotations as if the whole patch moved rigidly.
+/// Moves held nodes to their targets, and the rest and all rotations as if the whole patch moved rigidly.
 void GradientDeformation::placeHeld(const std::vector<Vector3d>& targets, std::vector<Vector3d>& positions) {
   positions = start_;
   for (std::size_t h = 0; h < handles_.size(); ++h) positions[handles_[h]] = targets[h];
@@ -212,7 +212,7 @@ void GradientDeformation::solve(std::vector<Vector3d>& positions) {
     }
     right_.row(unknown_[i]) = sum;
   }
-  // same as factor_.solve(), but in existing memory
+  // the same as factor_.solve(), but without allocation
   permuted_.noalias() = factor_.permutationP() * right_;
   factor_.matrixL().solveInPlace(permuted_);
   permuted_.array().colwise() *= inverse_diagonal_.array();

@@ -6,11 +6,11 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRounds = 4;  // each may bring particles into the tool that were outside
+constexpr int kRounds = 4;  // each may bring further particles into the tool
 
 }  // namespace
 
-/// Holds what was found and is not held yet; whether there was any.
+/// Holds the touched particles that are not held yet; returns whether there were any.
 bool GradientTouch::takeNew() {
   const std::size_t before = handles_.size();
   for (const Touch& touch : found_) {

@@ -9,36 +9,37 @@
 
 namespace vibe {
 
-/// A particle inside a tool, and where the tool's surface has it instead.
+/// A particle inside a tool, and its target on the surface of the tool.
 struct Touch {
   int particle = -1;
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< [m]
 };
 
-/// A wall that gives way to a tool in the gradient domain, in place of a solver's step while the wall is marked: the
-/// shape is that of the wall before it was touched, with what is inside the tool moved out of it and the patch around
-/// deformed along (see GradientDeformation and its limits). Where nothing is touched it is the wall as before: it
-/// springs back at once and keeps nothing. Tools push and do not pull.
+/// A wall that yields to a tool by gradient-domain deformation, in place of a solver step while the wall is marked. The
+/// shape is that of the untouched wall, with particles inside the tool moved out of it and the surrounding patch
+/// deformed accordingly (see GradientDeformation and its limits). Without contact the wall is unchanged: it returns to
+/// its shape immediately and has no memory. Tools push and do not pull.
 ///
-/// Limits: what is inside the tool is found on the wall as it was before, so a tool whose middle goes beyond that wall
-/// comes through; push no deeper than its radius. Where a particle comes to be touched the shape jumps by up to 1 mm.
+/// Limits: particles inside the tool are searched on the untouched wall. A tool whose centre goes beyond that wall
+/// therefore passes through; push no deeper than its radius. When a particle comes into contact, the shape jumps by up
+/// to 1 mm.
 ///
-/// The result depends on the arguments of follow() alone. Allocates when what is touched changes. Not shared between
-/// threads of control.
+/// The result depends only on the arguments of update(). Allocates when the set of touched particles changes. Not
+/// thread-safe.
 class GradientTouch {
  public:
-  /// Appends the particles that are inside the tool at these positions [m], each once.
+  /// Appends the particles inside the tool at these positions [m], each once.
   using FindTouches = std::function<void(const std::vector<double>& x, const std::vector<double>& y,
                                          const std::vector<double>& z, std::vector<Touch>& touches)>;
 
-  /// @param radius  of the patch around what is touched [m]
+  /// @param radius  of the patch around the touched particles [m]
   /// @param turns   see GradientDeformation
   explicit GradientTouch(double radius = 0.05, int turns = 1) : radius_(radius), turns_(turns) {}
 
-  /// @param base  the wall before it was touched
-  /// @param find  called a few times, with better and better positions
+  /// @param base  the untouched wall
+  /// @param find  called a few times, with increasingly accurate positions
   /// @param x, y, z  out: of all particles [m]
-  /// @return particles that the tool holds away; 0: nothing is touched and x, y, z are those of the base
+  /// @return number of particles that the tool displaces; 0: no contact, and x, y, z are those of the base
   /// @throws Error for triangles of the base without area
   int update(const SurfaceView& base, const FindTouches& find, std::vector<double>& x, std::vector<double>& y,
              std::vector<double>& z);
@@ -54,7 +55,7 @@ class GradientTouch {
   std::vector<int> handles_;
   std::vector<Eigen::Vector3d> targets_, positions_;
 
-  // what the deformation was made for
+  // the configuration for which the deformation was built
   std::unique_ptr<GradientDeformation> deformation_;
   std::vector<int> made_for_;
   std::vector<double> base_x_, base_y_, base_z_;

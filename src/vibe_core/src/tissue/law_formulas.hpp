@@ -4,19 +4,19 @@
 
 #include "tissue/law_terms.hpp"
 
-// The elastic laws of the library, for one scalar or a pack of them; see law_terms.hpp for why everything is in an
-// unnamed namespace. A law is a specialisation of LawFormula here and a line in scene/material_law_list.hpp.
+// The built-in elastic laws, for a scalar or a pack of scalars; law_terms.hpp explains why everything is in an unnamed
+// namespace. A law is a specialisation of LawFormula here and a line in scene/material_law_list.hpp.
 
 namespace vibe {
 namespace {
 
-/// What every law states, here for W = mu/2 P(K) + lambda/2 (ln J)^2 with K = I - 3 - 2 ln J. Such a law adds
-/// kLimit and profile().
+/// Defaults for laws of the form W = mu/2 P(K) + lambda/2 (ln J)^2 with K = I - 3 - 2 ln J. Such a law adds kLimit and
+/// profile().
 struct LogVolumeLaw {
-  static constexpr bool kLogVolume = true;        ///< has the form above, which has a fast solution of plane stress
+  static constexpr bool kLogVolume = true;        ///< has the form above, for which plane stress has a fast solution
   static constexpr bool kConstantSlope = false;   ///< P(K) = K
   static constexpr LawLimits kLimits{};           ///< of the parameters
-  static constexpr int kThicknessSteps = 7;       ///< most steps of Newton's method for the stretch across a wall
+  static constexpr int kThicknessSteps = 7;       ///< maximum number of Newton steps for the stretch across a wall
   static constexpr double kLastStepOfLog = 0.05;  ///< a step in 2 ln J below this may be the last one
 
   /// @param b      stiffening
@@ -26,7 +26,7 @@ struct LogVolumeLaw {
   }
 };
 
-/// What every law states, here for any W(I, J). Such a law adds constants() and at(), which fills everything but by_j.
+/// Defaults for laws of a general form W(I, J). Such a law adds constants() and at(), which fills everything but by_j.
 struct GeneralLaw {
   static constexpr bool kLogVolume = false;
   static constexpr bool kConstantSlope = false;
@@ -35,8 +35,8 @@ struct GeneralLaw {
   static constexpr double kLimit = std::numeric_limits<double>::infinity();
 };
 
-/// P(K) and its derivatives for K below the limit; beyond it P is continued by its second order Taylor polynomial.
-/// @param inside  K, or the limit where K is beyond
+/// P(K) and its derivatives for K below the limit; above it P is extended by its second-order Taylor polynomial.
+/// @param inside  K, or the limit if K is above it
 /// @param x       stiffening * inside
 template <Law law>
 struct LawFormula;
@@ -87,7 +87,7 @@ struct LawFormula<Law::MacklinMueller> : GeneralLaw {
 template <>
 struct LawFormula<Law::Fung> : LogVolumeLaw {
   static constexpr LawLimits kLimits{false, true};
-  static constexpr double kLimit = 6;  ///< stiffens 400 times: a stretch of 3 for b = 1
+  static constexpr double kLimit = 6;  ///< stiffness increases by a factor of 400: a stretch of 3 for b = 1
 
   template <class B>
   [[gnu::always_inline]] static Profile<B> profile(const LawTerms<B>& c, const B&, const B& x) {
@@ -99,8 +99,8 @@ struct LawFormula<Law::Fung> : LogVolumeLaw {
 template <>
 struct LawFormula<Law::Gent> : LogVolumeLaw {
   static constexpr LawLimits kLimits{false, true};
-  static constexpr double kLimit = 0.95;           ///< stiffens 20 times
-  static constexpr double kLastStepOfLog = 0.004;  ///< its derivatives grow too fast for more
+  static constexpr double kLimit = 0.95;           ///< stiffness increases by a factor of 20
+  static constexpr double kLastStepOfLog = 0.004;  ///< its derivatives grow too fast for a larger value
 
   template <class B>
   [[gnu::always_inline]] static Profile<B> profile(const LawTerms<B>& c, const B& inside, const B& x) {
@@ -111,7 +111,7 @@ struct LawFormula<Law::Gent> : LogVolumeLaw {
 
 template <>
 struct LawFormula<Law::Yeoh> : LogVolumeLaw {
-  static constexpr double kLimit = 100;  ///< stiffens 5,000 times
+  static constexpr double kLimit = 100;  ///< stiffness increases by a factor of 5,000
 
   template <class B>
   [[gnu::always_inline]] static Profile<B> profile(const LawTerms<B>& c, const B& inside, const B& x) {
@@ -121,7 +121,7 @@ struct LawFormula<Law::Yeoh> : LogVolumeLaw {
   }
 };
 
-/// A law of another package: lane by lane in double precision.
+/// A law of another package, evaluated lane by lane in double precision.
 template <>
 struct LawFormula<kRegisteredLaw> : GeneralLaw {
   static constexpr int kThicknessSteps = 7;

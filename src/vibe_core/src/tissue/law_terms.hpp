@@ -6,25 +6,25 @@
 
 #include "vibe_core/tissue/material_registry.hpp"
 
-// What elastic laws are written with, for one scalar or a pack of them. Everything is a template or inline in an
-// unnamed namespace: this file is compiled for several instruction sets, and a function shared between them could run
-// on a machine that lacks the instructions.
+// Building blocks of elastic laws, for a scalar or a pack of scalars. Everything is a template or inline in an unnamed
+// namespace: this file is compiled for several instruction sets, and a function shared between them could run on a
+// machine that lacks the instructions.
 
 namespace vibe {
 
-/// Constants of a law, from E, nu and stiffening; what they mean depends on the law.
+/// Constants of a law, derived from E, nu and stiffening; their meaning depends on the law.
 struct LawConstants {
   double shear;       ///< mu, or the law's own modulus in its place [Pa]
   double bulk;        ///< lambda, or the law's own modulus in its place [Pa]
   double stiffening;  ///< b, or 1/Jm [1]
-  double limit;       ///< K from which the function of K is continued by its second order Taylor polynomial [1]
-  const MaterialLaw* registered = nullptr;  ///< of a law of another package, which lives as long as the program
+  double limit;       ///< above this K the function of K is extended by its second-order Taylor polynomial [1]
+  const MaterialLaw* registered = nullptr;  ///< for a law of another package; lives as long as the program
 };
 
 /// @throws Error for a material that checkMaterial rejects
 LawConstants lawConstants(const Material& material);
 
-/// Stands for every registered law where a law is known at compile time.
+/// Represents all registered laws where a law is needed at compile time.
 constexpr Law kRegisteredLaw = static_cast<Law>(kLawCount);
 /// A registered law by its number, or null if no law has it.
 const MaterialLaw* registeredLaw(Law law);
@@ -32,9 +32,9 @@ LawDerivatives registeredLawAt(const LawConstants& constants, const LawInvariant
 
 namespace {
 
-// ln J is replaced by a twice continuously differentiable function below this J: the curvature of ln J there, brought
-// linearly to zero over the width, then a straight line. Its slope stays positive, so the force pushes back, and the
-// energy grows with J^2 only: single precision does not overflow before a deformation of 1e5.
+// Below this J, ln J is replaced by a twice continuously differentiable function: the curvature of ln J decreases
+// linearly to zero over the width, and a straight line follows. The slope stays positive, so the force restores the
+// volume. The energy grows only with J^2: single precision does not overflow up to a deformation of 1e5.
 constexpr double kLogStart = 0.2;
 constexpr double kLogWidth = 1.2;
 
@@ -47,7 +47,7 @@ struct ScalarOf<xsimd::batch<T, A>> {
   using Type = T;
 };
 
-/// The constant in the precision of B, in all lanes.
+/// The constant in the precision of B, broadcast to all lanes.
 template <class B>
 inline B constant(double value) {
   return B(static_cast<typename ScalarOf<B>::Type>(value));
@@ -96,12 +96,12 @@ inline double expMinusOne(double x) {
 }
 
 /// In single precision: x = n ln 2 + r, and the Taylor series of exp(r) - 1 for |r| <= ln(2)/2 (relative error 2e-8).
-/// xsimd's own uses constants that are not compiled per instruction set.
+/// The version in xsimd uses constants that are not compiled per instruction set.
 template <class A>
 inline xsimd::batch<float, A> expMinusOne(const xsimd::batch<float, A>& x) {
   using F = xsimd::batch<float, A>;
   using N = xsimd::batch<std::int32_t, A>;
-  const F rounding(12582912.0f);  // 1.5 * 2^23: the sum has no bits for fractions left
+  const F rounding(12582912.0f);  // 1.5 * 2^23: at this magnitude a float has no fractional bits
   const F rounded = mulAdd(x, F(1.442695041f), rounding);
   const F n = rounded - rounding;
   const F r = mulAdd(n, F(2.12194440e-4f), mulAdd(n, F(-0.693359375f), x));  // ln 2 in two parts, the first exact
@@ -114,7 +114,7 @@ inline xsimd::batch<float, A> expMinusOne(const xsimd::batch<float, A>& x) {
   return mulAdd(scale, small, scale - F(1.0f));
 }
 
-/// x - ln(1 + x), x > -1, with a small relative error near 0 too: the energy of small strains is made of it.
+/// x - ln(1 + x), x > -1, with a small relative error also near 0, for the energy of small strains.
 inline double logGap(double x) {
   return x - std::log1p(x);
 }
@@ -130,7 +130,7 @@ inline xsimd::batch<float, A> logGap(const xsimd::batch<float, A>& x) {
   const F exponent = xsimd::to_float((bits >> 23) - N(127));
   const F mantissa = xsimd::bitwise_cast<F>((bits & N(0x007fffff)) + root_half);
   const F t = xsimd::select(exponent == F(0.0f), x, mantissa - F(1.0f));
-  // p in pairs of terms, so that the products do not wait for one another
+  // p in pairs of terms, to shorten the dependency chain
   const F t2 = t * t;
   const F p01 = mulAdd(F(-0.2500030642f), t, F(0.3333333073f)), p23 = mulAdd(F(-0.1664128146f), t, F(0.2000104509f));
   const F p45 = mulAdd(F(-0.1299818376f), t, F(0.1421449592f)), p67 = mulAdd(F(-0.07902743774f), t, F(0.1262231985f));
@@ -138,7 +138,7 @@ inline xsimd::batch<float, A> logGap(const xsimd::batch<float, A>& x) {
   return mulAdd(t2, F(0.5f) - t * p, (x - t) - exponent * F(0.6931471806f));
 }
 
-/// L = ln J, continued for small J.
+/// L = ln J, extended for small J.
 template <class B>
 struct LogVolume {
   B value;
@@ -189,8 +189,8 @@ struct Profile {
   B value, first, second, third;
 };
 
-/// Energy per volume at rest and its derivatives by I and J [Pa]. `balance` is W_J + 2 W_I, which is 0 at rest: with it
-/// the stress 2 W_I F + W_J cof F = 2 W_I (F - cof F) + balance cof F has no large terms that cancel.
+/// Energy per rest volume and its derivatives with respect to I and J [Pa]. `balance` is W_J + 2 W_I, which is 0 at
+/// rest: with it the stress 2 W_I F + W_J cof F = 2 W_I (F - cof F) + balance cof F has no large terms that cancel.
 template <class B>
 struct LawAt {
   B energy;

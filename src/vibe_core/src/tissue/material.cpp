@@ -14,7 +14,7 @@ LawLimits limitsOf(Law law) {
   return withLaw(law, [](auto tag) { return LawFormula<decltype(tag)::value>::kLimits; });
 }
 
-/// Names of the laws whose limits have a flag set, or do not.
+/// Names of the laws with the given value of a flag in their limits.
 std::string lawsWith(bool LawLimits::*flag, bool set) {
   std::string names;
   for (int k = 0; k < kLawCount; ++k) {

@@ -2,13 +2,13 @@
 
 #include "tissue/law_formulas.hpp"
 
-// A law of the list by its number, for one scalar or a pack of them; see law_terms.hpp for why everything is in an
-// unnamed namespace.
+// A law of the list, selected by number, for a scalar or a pack of scalars; law_terms.hpp explains why everything is in
+// an unnamed namespace.
 
 namespace vibe {
 namespace {
 
-/// The part of the energy that depends on K = I - 3 - 2 ln J alone.
+/// The part of the energy that depends only on K = I - 3 - 2 ln J.
 template <Law law, class B>
 inline Profile<B> profile(const LawTerms<B>& c, const B& k) {
   const B half_shear = constant<B>(0.5) * c.shear, zero = constant<B>(0);
@@ -25,10 +25,10 @@ inline Profile<B> profile(const LawTerms<B>& c, const B& k) {
 
 /// @param i     I - 3
 /// @param j     J - 1
-/// @param even  i - 2 j, of second order in the strain. Given separately because the energy near rest depends on it:
-///              the caller that has the displacement gradient H knows it without cancellation,
-///              i - 2 j = H:H - 2 m(H) - 2 det H with m the sum of the principal 2 x 2 minors. Otherwise pass i - 2 j.
-/// What the caller does not read is not computed once this is inlined.
+/// @param even  i - 2 j, of second order in the strain. It is a separate argument because the energy near rest depends
+///         on it: a caller that has the displacement gradient H computes it without cancellation as i - 2 j = H:H - 2
+///         m(H) - 2 det H, where m is the sum of the principal 2 x 2 minors. Otherwise pass i - 2 j.
+/// After inlining, results that the caller does not use are not computed.
 template <Law law, class B>
 [[gnu::always_inline]] inline LawAt<B> lawAt(const LawTerms<B>& c, const B& i, const B& j, const B& even) {
   const B half = constant<B>(0.5), two = constant<B>(2);
@@ -55,7 +55,7 @@ struct LawTag {
   static constexpr Law value = law;
 };
 
-/// visit(LawTag<law>()) for a law known at run time; every registered law has the tag kRegisteredLaw.
+/// Calls visit(LawTag<law>()) for a law known at run time; every registered law has the tag kRegisteredLaw.
 template <class Visitor>
 inline auto withLaw(Law law, const Visitor& visit) {
   switch (law) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kKey = "tissue.law";
 
-/// In the order of their numbers, from kLawCount. They are never removed: materials refer to them.
+/// In the order of their numbers, from kLawCount. Laws are never removed, because materials refer to them.
 struct RegisteredLaws {
   std::mutex mutex;
   std::deque<std::shared_ptr<const MaterialLaw>> laws;
@@ -26,7 +26,7 @@ RegisteredLaws& registeredLaws() {
   return laws;
 }
 
-/// A check of a law before it is registered, with made-up parameters.
+/// Checks a law before its registration, with test parameters.
 class LawCheck {
  public:
   LawCheck(const std::string& name, const MaterialLaw& law) : name_(name), law_(law) {}
@@ -110,7 +110,7 @@ LawDerivatives registeredLawAt(const LawConstants& constants, const LawInvariant
   return constants.registered->at({constants.shear, constants.bulk, constants.stiffening}, deformation);
 }
 
-// The words of tissue.law are in the order of the numbers: those of the list, then the registered ones.
+// The names in tissue.law are in the order of the numbers: those of the list, then the registered ones.
 Law lawByName(const std::string& name) {
   std::vector<std::string> words;
   for (const Choice& choice : choicesOf(kKey)) {

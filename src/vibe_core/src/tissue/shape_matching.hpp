@@ -8,30 +8,30 @@
 
 namespace vibe {
 
-/// Oriented-particle shape matching on the wall, the tissue model of Erden et al. (ViBE): every particle and its
-/// one-ring is a cluster that wants to keep its shape up to a rigid motion,
+/// Oriented-particle shape matching on the wall, the tissue model of Erden et al. (ViBE). Every particle and its
+/// one-ring form a cluster that preserves its shape up to a rigid motion,
 ///   E = sum over clusters of 1 / (2 alpha) * sum over members of m |x - goal|^2      [J]
-/// with alpha [s^2] an XPBD compliance (Macklin, Mueller & Chentanez 2016; with lambda reset every sub-step one
-/// projection moves a member towards its goal). Two things make the method obey a modulus:
-/// * alpha is chosen per cluster so that a uniform in-plane stretch costs the energy of an isotropic membrane,
+/// where alpha [s^2] is an XPBD compliance (Macklin, Mueller & Chentanez 2016; with lambda reset every sub-step, one
+/// projection moves a member towards its goal). Two properties make the method match a given modulus:
+/// * alpha is chosen per cluster such that a uniform in-plane stretch has the energy of an isotropic membrane,
 ///   E t / (1 - nu) strain^2 per area: alpha = sum m |r|^2 / (2 E t A / (1 - nu)).
-/// * the clusters of a sweep see the same positions (Jacobi), those at the start of the sub-step, and move their
+/// * the clusters of a sweep use the same positions (Jacobi), those at the start of the sub-step, and move their
 /// members
-///   by h^2 / alpha of the way: the equilibrium is that of E whatever the sub-step, and energy is conserved. (The usual
+///   by the fraction h^2 / alpha: the equilibrium is that of E for any sub-step, and energy is conserved. (The usual
 ///   order, projection after prediction, damps motion and is stable only for a third of the stiffness.) The fraction
-///   is limited where the sub-step would be too long to be stable; stiffnessRatio() then falls below 1.
-/// Conserves linear momentum exactly and angular momentum up to the exchange with the particles' own orientation.
+///   is limited where the sub-step is too long for stability; stiffnessRatio() then falls below 1.
+/// Conserves linear momentum exactly and angular momentum up to the exchange with the orientations of the particles.
 ///
 /// Limitations: the response to shear equals that to dilation (an in-plane Poisson ratio of 0 scaled to the dilation
-/// modulus); the stress is linear in stretch, so there is a pressure beyond which the organ bursts; bending stiffness
-/// follows from the ring's size, not from the thickness (right within a factor of 1.5 when the particle spacing is
-/// about 1.7 times the wall). Measured errors: docs/accuracy.md.
+/// modulus). The stress is linear in stretch, so there is a pressure above which the organ bursts. The bending
+/// stiffness follows from the size of the ring, not from the thickness (correct within a factor of 1.5 if the particle
+/// spacing is about 1.7 times the wall thickness). Measured errors: docs/accuracy.md.
 class ShapeMatching : public TissueModel {
  public:
   /// @param masses  of the particles [kg]
   /// @param areas   of wall per particle at rest [m^2]
-  /// @param step_period  divided into tissue.substeps, or, if that is 0, as few as carry the
-  ///                     stiffness, `at_least` or more [s]
+  /// @param step_period  divided into tissue.substeps or, if that is 0, into the fewest substeps that carry the
+  ///         stiffness, `at_least` or more [s]
   ShapeMatching(const Organ& organ, const TissueScene& tissue, const std::vector<double>& masses,
                 const std::vector<double>& areas, double step_period, int at_least = 1);
 
@@ -62,7 +62,8 @@ struct SweepBuffers {
 };
 SweepBuffers makeSweepBuffers(const ClusterSet& clusters);
 
-/// Orientations and angular velocities from the state's order (particles) to the sweep's (lanes), and back.
+/// Copies orientations and angular velocities from the order of the state (particles) to that of the sweep (lanes), and
+/// back.
 void loadOrientations(const ClusterSet& clusters, const State& state, SweepBuffers& buffers);
 void storeOrientations(const ClusterSet& clusters, const SweepBuffers& buffers, State& state);
 

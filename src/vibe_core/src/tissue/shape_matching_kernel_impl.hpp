@@ -9,7 +9,7 @@ namespace {
 template <class Arch>
 struct Kernel {
   static constexpr int kLanes = 8;
-  static constexpr int kNewtonSteps = 1;  // enough from the predicted orientation, which is near
+  static constexpr int kNewtonSteps = 1;  // sufficient because the predicted orientation is close
   using Pack = xsimd::batch<double, Arch>;
   static constexpr int kWidth = static_cast<int>(Pack::size);
 
@@ -84,9 +84,9 @@ struct Kernel {
     w.z.store_unaligned(s.wz + cluster);
   }
 
-  // One Newton step of max over w of trace(exp(-[w]) R^T A). The Hessian tr(B) I - sym(B) is positive definite near
-  // the maximum; far from it (inverted or collapsed cluster) the step falls back to the gradient, and never turns
-  // by more than about 50 degrees.
+  // One Newton step of max over w of trace(exp(-[w]) R^T A). The Hessian tr(B) I - sym(B) is positive definite near the
+  // maximum. Far from it (inverted or collapsed cluster) the step falls back to the gradient. A step never exceeds
+  // about 50 degrees.
   static Quat newtonStep(const Quat& q, const Mat& a) {
     const Mat r = rotation(q);
     const Pack b00 = dot(r.c0, a.c0), b01 = dot(r.c0, a.c1), b02 = dot(r.c0, a.c2);

@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kElementsPerPiece = 2000;  // a second thread does not pay off for fewer
+constexpr int kElementsPerPiece = 2000;  // with fewer, a second thread does not pay off
 constexpr int kPieces = 8;
 constexpr int kReferenceSteps = 12;  // of Newton's method for the stretch across the wall, in double precision
 
@@ -40,8 +40,8 @@ void ShellElements::makeBatches() {
   piece_count_ = static_cast<int>(mesh_.triangles.size()) > kElementsPerPiece ? kPieces : 1;
 }
 
-// Neighbours in the mesh are neighbours in its order. They go into the same lane of successive batches, not into the
-// lanes of one batch: adding to a node that the lane before has just written would wait for that.
+// Elements adjacent in the mesh are adjacent in its order. They are placed in the same lane of successive batches, not
+// in the lanes of one batch: adding to a node that the previous lane has just written would stall.
 void ShellElements::addRun(const std::vector<int>& triangles, int material, bool ghosts) {
   const int count = static_cast<int>(triangles.size()), batches = (count + kTetLanes - 1) / kTetLanes;
   runs_.push_back({batch_count_, batch_count_ + batches, material, ghosts, batch_rest_.size()});
@@ -69,7 +69,7 @@ void ShellElements::addBatch(const std::array<int, kTetLanes>& triangles, int ro
     const bool empty = triangles[lane] < 0;
     const std::size_t e = static_cast<std::size_t>(empty ? filler : triangles[lane]);
     for (int a = 0; a < 6; ++a) {
-      // a ghost adds 0 to node 1; an empty lane has all its nodes there
+      // a ghost adds 0 to node 1; in an empty lane all nodes are that one
       const int real = patchNode(e, a) >= 0 && !empty ? patchNode(e, a) : patchNode(e, 0);
       batch_node_[node + static_cast<std::size_t>(a)].lane[lane] = 4 * static_cast<std::uint32_t>(real);
     }
@@ -79,7 +79,7 @@ void ShellElements::addBatch(const std::array<int, kTetLanes>& triangles, int ro
       batch_fibre_[fibre + static_cast<std::size_t>(k)].lane[lane] =
           empty ? 0.0F : static_cast<float>(fibre_rest_[kFibreRows * e + static_cast<std::size_t>(k)]);
     if (!empty) continue;
-    // it has neither size nor energy
+    // an empty lane has neither size nor energy
     const auto clear = [&](int k) { batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = 0; };
     for (int k = 0; k < 15; ++k) clear(kShellPatch + k);
     for (int k = 0; k < 3; ++k) clear(kShellSide + 4 * k + 3);

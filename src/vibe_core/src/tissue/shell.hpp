@@ -12,17 +12,18 @@
 
 namespace vibe {
 
-/// Up to two families of fibres in the plane of a wall, which resist being stretched and nothing else. Each adds, per
-/// volume, modulus / (2 stiffening) (exp(stiffening (I - 1)^2) - 1) with the squared stretch I of the fibre, if that is
-/// above 1: Holzapfel, Gasser, Ogden 2000, "A new constitutive framework for arterial wall mechanics", without
-/// dispersion. Bending leaves them out.
+/// Up to two families of fibres in the plane of a wall, which resist only tension. Each adds, per volume, modulus / (2
+/// stiffening) (exp(stiffening (I - 1)^2) - 1) where the squared stretch I of the fibre is above 1: Holzapfel, Gasser,
+/// Ogden 2000, "A new constitutive framework for arterial wall mechanics", without dispersion. Fibres do not contribute
+/// to bending.
 struct ShellFibres {
-  double stiffening = 1;                                  ///< above 0 [1]
-  std::vector<double> modulus;                            ///< per triangle [Pa]; empty: no fibres
-  std::vector<std::array<Eigen::Vector3d, 2>> direction;  ///< per triangle, taken within its plane; 0: no such family
+  double stiffening = 1;        ///< above 0 [1]
+  std::vector<double> modulus;  ///< per triangle [Pa]; empty: no fibres
+  std::vector<std::array<Eigen::Vector3d, 2>>
+      direction;  ///< per triangle, projected onto its plane; 0: the family is absent
 };
 
-/// A thin wall at rest, by its middle surface.
+/// A thin wall at rest, described by its middle surface.
 struct ShellMesh {
   std::vector<Eigen::Vector3d> nodes;         ///< [m]
   std::vector<std::array<int, 3>> triangles;  ///< node numbers, counter-clockwise seen from outside
@@ -30,30 +31,29 @@ struct ShellMesh {
   std::vector<Material> materials;
   std::vector<int> material;  ///< per triangle, index into `materials`; empty: all of the first
   ShellFibres fibres;
-  std::vector<char> fixed;                 ///< per node, not 0: it is held; empty: none is
-  std::vector<std::array<int, 2>> hinged;  ///< sides that bend freely although they have two triangles, or are fixed
+  std::vector<char> fixed;                 ///< per node, nonzero: held; empty: none is held
+  std::vector<std::array<int, 2>> hinged;  ///< edges that bend freely although they have two triangles or are fixed
 };
 
-/// A thin wall that stretches and bends: the triangles without rotations of Flores & Onate 2005, "Improvements in the
-/// membrane behaviour of the three node rotation-free BST shell triangle using an assumed strain approach" (EBST).
-/// The surface over a triangle is the quadratic one through its nodes 1 2 3 and the apexes of its neighbours, 4 beyond
-/// the side 2 3, 5 beyond 3 1 and 6 beyond 1 2. It stretches by its metric at the middles of the three sides, in plane
-/// stress of any law, and bends by its curvature at the centroid: the energy, integrated across the wall, to second
-/// order in the distance from the middle. Its stiffness is the tangent of the neo-Hookean law (whatever the law is) at
-/// the metric of the centroid, E t^3 / (12 (1 - nu^2)) at rest, much more where the wall is pushed together along the
-/// bend. Distances across the wall are those at rest: with those of the thinned wall the reference pull of a plate
-/// comes out 7 % too soft.
+/// A thin wall with membrane and bending stiffness: the rotation-free triangles of Flores & Onate 2005, "Improvements
+/// in the membrane behaviour of the three node rotation-free BST shell triangle using an assumed strain approach"
+/// (EBST). The surface over a triangle is the quadratic one through its nodes 1 2 3 and the apexes of its neighbours: 4
+/// beyond the side 2 3, 5 beyond 3 1 and 6 beyond 1 2. The membrane strain follows from its metric at the midpoints of
+/// the three sides, in plane stress of any law. The bending strain follows from its curvature at the centroid: the
+/// energy, integrated across the wall, to second order in the distance from the middle. The bending stiffness is the
+/// tangent of the neo-Hookean law (for any law of the membrane) at the metric of the centroid: E t^3 / (12 (1 - nu^2))
+/// at rest, much larger where the wall is compressed along the bend. Distances across the wall are those at rest: with
+/// those of the thinned wall the reference pull of a plate is 7 % too soft.
 ///
-/// A side without a neighbour bends freely; one whose nodes are both fixed is clamped: its tangent plane is kept.
-/// The wall stretches to a line or a point, and folds over, with finite energy and force.
-/// Memory: the triangles of a material are cut into batches of kTetLanes, those with three neighbours first.
+/// A side without a neighbour bends freely. A side with two fixed nodes is clamped: its tangent plane is preserved.
+/// Energy and force stay finite if the wall degenerates to a line or a point, or folds over. Memory: the triangles of a
+/// material are cut into batches of kTetLanes, those with three neighbours first.
 class ShellElements : public ElasticElements {
  public:
-  /// @param origin  about which volumes are measured, near the middle of the organ for the sake of precision [m]
-  /// @throws Error with the number of a triangle that has no area or thickness, or fibres out of range, whose node or
-  /// material is out of range,
-  ///         that shares a side with two others or is turned the other way than its neighbour, or lies folded upon it;
-  ///         for a hinged side that is none; as checkMaterial for the materials
+  /// @param origin  reference point of volumes, near the centre of the organ for precision [m]
+  /// @throws Error with the number of a triangle that has no area or thickness, has fibres out of range, has a node or
+  ///         material out of range, shares a side with two others, is oriented opposite to its neighbour, or lies
+  ///         folded upon it; for a hinged side that does not exist; as checkMaterial for the materials
   explicit ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero(),
                          ShellKernel kernel = chooseShellKernel());
   ~ShellElements() override;
@@ -63,9 +63,9 @@ class ShellElements : public ElasticElements {
   double evaluate(int piece, const float* displacement4, float* gradient4) const override;
   double evaluate(const double* displacement, double* gradient) const override;
 
-  /// As evaluate, and adds the piece's share of the volume [m^3] that the surface encloses, and a third of each
-  /// triangle's area vector to its nodes [m^2]: the force of a pressure of 1 Pa, and for a closed surface the gradient
-  /// of the volume. Virtual so that a solver can be tested on other walls.
+  /// Like evaluate, and also adds the piece's share of the volume [m^3] enclosed by the surface, and a third of each
+  /// triangle's area vector to its nodes [m^2]. The latter is the force of a pressure of 1 Pa and, for a closed
+  /// surface, the gradient of the volume. Virtual so that a solver can be tested on other walls.
   virtual double evaluate(int piece, const float* displacement4, float* gradient4, float* volume_gradient4,
                           double& volume) const;
   /// The volume and its gradient, as above, in double precision; interleaved (3 * nodeCount), overwritten.
@@ -76,9 +76,9 @@ class ShellElements : public ElasticElements {
   /// Membrane: the tangent of plane stress without its negative eigenvalues, and the stress without its negative
   /// principal values; fibres exactly. Bending: Gauss-Newton, without the derivative of the moment arm.
   void addStiffness(const double* displacement, BlockMatrix& stiffness) const override;
-  /// A third of the triangle each.
+  /// A third of the mass of each triangle per node.
   std::vector<double> lumpedMass(double density) const override;
-  /// Root of the ratio of the areas around the node to those at rest, minus 1.
+  /// Square root of the ratio of the areas around the node to those at rest, minus 1.
   void strain(const double* displacement, float* out) const override;
 
   const ShellMesh& mesh() const { return mesh_; }
@@ -89,7 +89,7 @@ class ShellElements : public ElasticElements {
     bool ghosts;
     std::size_t row;  // of the first batch in batch_rest_
   };
-  static constexpr int kWindow = 16;  // batches that share out a contiguous piece of the mesh
+  static constexpr int kWindow = 16;  // batches that share a contiguous piece of the mesh
 
   void checkMesh() const;
   void findNeighbours();
@@ -111,7 +111,7 @@ class ShellElements : public ElasticElements {
   int patchNode(std::size_t triangle, int k) const { return patch_nodes_[6 * triangle + static_cast<std::size_t>(k)]; }
   const double* rest(std::size_t triangle) const { return rest_.data() + triangle * kShellGhostRows; }
   int materialOf(std::size_t triangle) const { return mesh_.material.empty() ? 0 : mesh_.material[triangle]; }
-  /// Displacements of the patch less that of node 1, ghosts included.
+  /// Displacements of the patch relative to node 1, ghosts included.
   void gather(std::size_t triangle, const double* displacement, double (&v)[5][3]) const;
 
   ShellMesh mesh_;
@@ -119,7 +119,7 @@ class ShellElements : public ElasticElements {
   ShellKernel kernel_;
   std::vector<LawConstants> constants_;  // per material
   std::vector<int> patch_nodes_;         // (triangles * 6), -1: ghost
-  std::vector<char> released_;           // (triangles * 3) sides that are hinged on demand
+  std::vector<char> released_;           // (triangles * 3) sides hinged by ShellMesh::hinged
   std::vector<double> rest_;             // (triangles * kShellGhostRows)
   int batch_count_ = 0, piece_count_ = 1;
   std::vector<Run> runs_;

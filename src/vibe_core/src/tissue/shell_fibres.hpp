@@ -2,27 +2,27 @@
 
 #include "tissue/shell_point.hpp"
 
-// The energy of the fibres of one triangle of a shell and its gradient, for one triangle or a pack of them; see
-// law_terms.hpp for why everything is in an unnamed namespace.
+// The fibre energy of one triangle of a shell and its gradient, for one triangle or a pack of them; law_terms.hpp
+// explains why everything is in an unnamed namespace.
 
 namespace vibe {
 namespace {
 
-// The exponent goes on to this, where the fibre is 490 times as stiff as at first, then the energy is continued by a
-// parabola: it stays finite in single precision.
+// Up to this exponent the law holds; the fibre is then 490 times as stiff as initially. Beyond it the energy is
+// extended by a parabola, so that it stays finite in single precision.
 constexpr double kFibreLimit = 4;
 
 inline double fibreReach(double stiffening) {
   return std::sqrt(kFibreLimit / stiffening);
 }
 
-/// Energy per volume of one family, and its derivatives by the squared stretch.
+/// Energy per volume of one family, and its derivatives with respect to the squared stretch.
 template <class B>
 struct FibreAt {
   B value, first, second;
 };
 
-/// @param strain  squared stretch less 1; fibres do not resist below 0
+/// @param strain  squared stretch minus 1; fibres do not resist below 0
 /// @param reach   fibreReach
 template <class B>
 [[gnu::always_inline]] inline FibreAt<B> fibreAt(const B& modulus, const B& stiffening, const B& reach,
@@ -38,7 +38,8 @@ template <class B>
   return out;
 }
 
-/// Twice the energy of the fibres at the middle of a side, and the derivatives by e and d; see sideEnergy.
+/// Twice the energy of the fibres at the midpoint of a side, and the derivatives with respect to e and d; see
+/// sideEnergy.
 template <class B, class Rest, class Fibre>
 [[gnu::always_inline]] inline B fibreSide(const B& stiffening, const B& reach, const Rest& rest, const Fibre& fibre,
                                           int side, const B (&e)[3], const B (&d)[3], const B (&ue)[3],

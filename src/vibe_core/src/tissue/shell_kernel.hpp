@@ -4,9 +4,9 @@
 
 namespace vibe {
 
-// Rows of numbers that a triangle of a shell has at rest, see ShellElements. A side is that opposite the node of the
-// same number; its apex is the node beyond it.
-constexpr int kShellPatch = 0;       ///< positions of the nodes 2, 3 and the three apexes less that of node 1 [m]
+// Rows of precomputed rest data per triangle of a shell, see ShellElements. A side is opposite the node of the same
+// number; its apex is the node beyond it.
+constexpr int kShellPatch = 0;       ///< positions of nodes 2, 3 and the three apexes relative to node 1 [m]
 constexpr int kShellSide = 15;       ///< per side: entries 11, 12, 22 of T [1/m], then twice the volume [m^3]
 constexpr int kShellNormal = 27;     ///< normal of the patch at the centroid, shortened by kShellSoftness [1]
 constexpr int kShellLength = 30;     ///< 36 times the area element at the centroid, lengthened by kShellSoftness [m^2]
@@ -16,16 +16,16 @@ constexpr int kShellRows = 35;       ///< of a triangle with three neighbours
 constexpr int kShellGhost = 35;      ///< per side: 1 if a triangle is beyond it, else 0; then sqrt(2) n if clamped
 constexpr int kShellGhostRows = 47;  ///< of the others
 
-// Rows of a triangle with fibres, beside those above.
+// Rows of a triangle with fibres, in addition to those above.
 constexpr int kFibreSide = 0;      ///< per side and family: the direction in the basis of the side's T, 0 0 for none
 constexpr int kFibreModulus = 12;  ///< [Pa]
 constexpr int kFibreRows = 13;
 
-/// What evaluating some batches of triangles of one material takes; see TetSweep.
+/// Arguments for evaluating some batches of triangles of one material; see TetSweep.
 struct ShellSweep {
   const TetOffsets* node;  ///< (batches * 6)
   const TetReals* rest;    ///< (batches * kShellRows or kShellGhostRows), from batch `first`
-  bool ghosts;             ///< the rows of ghosts are there
+  bool ghosts;             ///< whether the rows of ghosts are present
   int first, last;         ///< batches, for `node`
   Law law;
   double poisson_ratio;
@@ -34,8 +34,8 @@ struct ShellSweep {
   double fibre_stiffening;     ///< for fibres only
   const float* displacement4;  ///< [m]
   float* gradient4;            ///< added to [N]
-  float* volume_gradient4;     ///< added to [m^2]; null: not wanted
-  double volume;               ///< out, added to, if wanted [m^3]
+  float* volume_gradient4;     ///< added to [m^2]; null: not computed
+  double volume;               ///< out, added to, if requested [m^3]
 };
 
 /// Returns the energy [J] and adds its gradient.
@@ -45,12 +45,12 @@ using ShellSweepFunction = double (*)(ShellSweep& sweep);
 struct ShellKernel {
   const char* name;
   ShellSweepFunction sweep;
-  ShellSweepFunction fibres;  ///< what fibres add to the above, without the volume
+  ShellSweepFunction fibres;  ///< contribution of fibres to the above, without the volume
 };
 ShellKernel shellKernelSse2();
 ShellKernel shellKernelAvx2();  ///< AVX2, FMA; call its function only on a machine that has both
 
-/// The widest path that this machine can run.
+/// The widest path that this machine supports.
 ShellKernel chooseShellKernel();
 
 }  // namespace vibe

@@ -12,7 +12,7 @@ struct ShellKernelOf {
   using Pack = typename Lanes::Pack;
   static constexpr int kWidth = static_cast<int>(Pack::size);
 
-  /// The displacements of a patch less that of node 1, without ghosts.
+  /// The displacements of a patch relative to node 1, without ghosts.
   [[gnu::always_inline]] static void gather(const ShellSweep& s, const TetOffsets* offset, int lane, Pack (&u1)[3],
                                             Pack (&u)[5][3]) {
     Lanes::load(s.displacement4, offset[0].lane + lane, u1);

@@ -8,14 +8,14 @@
 #include "tissue/shell_point.hpp"
 #include "vibe_core/common/error.hpp"
 
-// Data of a shell at rest: the neighbours of each side, and the rows of shell_kernel.hpp.
+// Rest data of a shell: the neighbours of each side, and the rows of shell_kernel.hpp.
 
 namespace vibe {
 namespace {
 
 using PatchMatrix = Eigen::Matrix<double, 3, 6>;
 
-// Part of a direction within the plane, below which it has none.
+// Minimum in-plane fraction of a direction; below it the direction is undefined.
 constexpr double kFibreMin = 1e-3;
 
 std::string triangleName(std::size_t triangle) {

@@ -4,15 +4,16 @@
 
 #include "tissue/tetrahedra_point.hpp"
 
-// The laws of a solid in a wall without stress across it, for one wall or a pack of them; see law_terms.hpp for why
-// everything is in an unnamed namespace.
+// The laws of a solid applied to a wall with zero stress across it, for one wall or a pack of them; law_terms.hpp
+// explains why everything is in an unnamed namespace.
 
 namespace vibe {
 namespace {
 
-// Least derivative of the stress across the wall by its stretch, in shear moduli; it is 1 at rest or more.
+// Lower bound of the derivative of the stress across the wall with respect to its stretch, in shear moduli; it is 1 or
+// more at rest.
 constexpr double kMinSlope = 0.01;
-constexpr int kRareSteps = 7;  // of Newton's method in states that are too rare to be fast
+constexpr int kRareSteps = 7;  // of Newton's method in rare states, where speed does not matter
 
 inline double rootOf(double x) {
   return std::sqrt(x);
@@ -45,7 +46,7 @@ struct PlaneStress {
   B square;  ///< y^2 - 1 for the squared stretch D y^2 across the wall
 };
 
-/// One evaluation of Newton's method for eta, see planeStress.
+/// One evaluation for Newton's method for eta, see planeStress.
 template <class B>
 struct ThicknessStep {
   LawAt<B> w;
@@ -69,11 +70,11 @@ template <Law law, class B>
   return out;
 }
 
-/// The law with the stretch across the wall that leaves it without stress. With the metric C = 1 + S, D = det C, the
-/// squared stretch across is written D y^2, so J = D y: dW/dy = D (2 W_I y + W_J) has no singularity for D = 0, and the
-/// stress follows from dW/dC = W_I (1 - y^2 cof C) alone. All is formed from small differences to rest:
-/// I - 3 - 2 (J - 1) = D (y - 1)^2 - det S.
-/// The last step of Newton's method is not followed by an evaluation: energy and W_I come from their expansions.
+/// The law with the stretch across the wall for which the stress across it vanishes. With the metric C = 1 + S, D = det
+/// C, the squared stretch across is written D y^2, so J = D y. Then dW/dy = D (2 W_I y + W_J) has no singularity for D
+/// = 0, and the stress follows from dW/dC = W_I (1 - y^2 cof C) alone. Everything is computed from small differences
+/// from rest: I - 3 - 2 (J - 1) = D (y - 1)^2 - det S. The last Newton step is not followed by an evaluation: energy
+/// and W_I come from their expansions.
 template <Law law, int Steps, class B>
 [[gnu::noinline]] PlaneStress<B> planeStressOfAny(const WallTerms<B>& terms, const B& more, const B& minor_strain) {
   const B one = constant<B>(1), two = constant<B>(2), area = one + more;
@@ -104,11 +105,11 @@ inline bool allOf(const xsimd::batch_bool<float, A>& condition) {
   return xsimd::all(condition);
 }
 
-/// The laws P(K) + lambda/2 (ln J)^2 are solved for L = 2 ln J within these bounds of D and |L|; single precision does
-/// not overflow there, and J is above kLogStart.
+/// The laws P(K) + lambda/2 (ln J)^2 are solved for L = 2 ln J within these bounds of D and |L|. There single precision
+/// does not overflow, and J is above kLogStart.
 constexpr double kPlainAreaLow = 0.1, kPlainAreaHigh = 1e6, kPlainLog = 1.5;
-/// A step in L of fourth order may be the last one if it is below this: it leaves 1e-6 at most (measured 0.2 step^4),
-/// and in double precision nothing.
+/// A fourth-order step in L may be the last one if it is below this: the remaining error is at most 1e-6 (measured 0.2
+/// step^4), and negligible in double precision.
 template <Law law, class B>
 constexpr double lastStep() {
   return std::is_same_v<B, double> ? 1e-4 : LawFormula<law>::kLastStepOfLog;
@@ -129,13 +130,13 @@ inline xsimd::batch<float, A> expGap(const xsimd::batch<float, A>& x) {
   return x2 * mulAdd(mulAdd(mulAdd(p67, x2, p45), x2, p23), x2, p01);
 }
 
-/// A metric 1 + S by the change of its area, the minor and the trace of S.
+/// A metric 1 + S, given by the change of its area, the minor and the trace of S.
 template <class B>
 struct WallMetric {
   B more, minor_strain, trace, inverse_area;
 };
 
-/// The law at an L: energy and its derivative by L; c is the squared stretch across the wall.
+/// The law at a given L: energy and its derivative with respect to L; c is the squared stretch across the wall.
 template <class B>
 struct LogPoint {
   Profile<B> p;
@@ -160,7 +161,7 @@ template <Law law, class B>
   return out;
 }
 
-/// A start for L: two terms of the root's expansion about J = 1, where no exponential is needed.
+/// Initial guess of L: two terms of the expansion of the root about J = 1, which need no exponential.
 template <Law law, class B>
 [[gnu::always_inline]] inline B logGuess(const WallTerms<B>& terms, WallMetric<B>& m) {
   const B one = constant<B>(1), half = constant<B>(0.5), zero = constant<B>(0), area = one + m.more;
@@ -181,10 +182,10 @@ template <Law law, class B>
   return larger(smaller(B(mulAdd(B(mulAdd(y, y, B(-y))), linear, linear)), bound), B(-bound));
 }
 
-/// The same for the laws P(K) + lambda/2 (ln J)^2 while J is not far from 1, by L = 2 ln J: with c = exp(L) / D,
-/// K = tr S - 1 + c - L, and h = dW/dL = P' (c - 1) + lambda/4 L is nearly linear. One evaluation of fourth order is
-/// enough near rest; steps go on until those of all lanes are small.
-/// @param plain  out: where the result is good
+/// The same for the laws P(K) + lambda/2 (ln J)^2 if J is not far from 1, solved for L = 2 ln J. With c = exp(L) / D, K
+/// = tr S - 1 + c - L, the function h = dW/dL = P' (c - 1) + lambda/4 L is nearly linear. One evaluation of fourth
+/// order is sufficient near rest; iterations continue until the steps of all lanes are small.
+/// @param plain  out: where the result is accurate
 template <Law law, int Steps, class B, class Mask>
 [[gnu::always_inline]] inline PlaneStress<B> planeStressOfLog(const WallTerms<B>& terms, WallMetric<B> m, Mask& plain) {
   const B one = constant<B>(1), half = constant<B>(0.5), sixth = constant<B>(1.0 / 6);
@@ -224,7 +225,7 @@ template <Law law, int Steps, class B, class Mask>
   return out;
 }
 
-/// One evaluation of Newton's method for z = ln c, see planeStressOfNeoHookean.
+/// One evaluation for Newton's method for z = ln c, see planeStressOfNeoHookean.
 template <class B>
 struct LogStep {
   Profile<B> p;
@@ -245,8 +246,8 @@ template <Law law, class B>
   return out;
 }
 
-/// The same for the neo-Hookean law, where P' is constant, by z = ln c: one step of fourth order is always enough
-/// (relative error of the stress 4e-6 for nu = 0.3 and D = 4, less for a larger nu), and one division.
+/// The same for the neo-Hookean law, where P' is constant, solved for z = ln c. One step of fourth order is always
+/// sufficient (relative error of the stress 4e-6 for nu = 0.3 and D = 4, less for a larger nu), with one division.
 template <class B>
 [[gnu::always_inline]] inline PlaneStress<B> planeStressOfNeoHookean(const WallTerms<B>& terms, const B& more,
                                                                      const B& minor_strain) {

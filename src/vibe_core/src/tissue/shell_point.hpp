@@ -3,16 +3,18 @@
 #include "tissue/shell_kernel.hpp"
 #include "tissue/shell_plane_stress.hpp"
 
-// The energy of one triangle of a shell and its gradient, for one triangle or a pack of them; see law_terms.hpp for
+// The energy of one triangle of a shell and its gradient, for one triangle or a pack of them; law_terms.hpp explains
 // why everything is in an unnamed namespace.
 
 namespace vibe {
 namespace {
 
-// Square of the part of the area element at rest that is added to it, so that the normal n = c / sqrt(c.c + softness)
-// has a derivative where the area c vanishes. It makes a flat wall softer in bending by as much.
+// Square of the fraction of the rest area element that is added to the area element, so that the normal n = c /
+// sqrt(c.c + softness) has a derivative where the area c vanishes. It reduces the bending stiffness of a flat wall by
+// the same amount.
 constexpr double kShellSoftness = 1e-5;
-// 1 / (squared stretch of the area) is kept up to the first in the stiffness of bending, then bent to a limit of 6.
+// 1 / (squared stretch of the area) enters the bending stiffness unchanged up to the first value, and is then limited
+// smoothly to 6.
 constexpr double kThinningStart = 2, kThinningEnd = 6;
 
 template <class B>
@@ -42,7 +44,7 @@ template <class B>
   out[2] = t[2] * t[2] * g[2];
 }
 
-/// The strain S = C - 1 at the middle of a side.
+/// The strain S = C - 1 at the midpoint of a side.
 template <class B>
 [[gnu::always_inline]] inline void sideStrain(const B (&t)[3], const B (&e)[3], const B (&d)[3], const B (&ue)[3],
                                               const B (&ud)[3], B (&s)[3]) {
@@ -53,8 +55,8 @@ template <class B>
   pullBack(t, change, s);
 }
 
-/// Twice the energy of the membrane at the middle of a side, and the derivatives by e and d.
-/// @param e, d    the side, and the apex beyond it less the node opposite; at rest
+/// Twice the membrane energy at the midpoint of a side, and the derivatives with respect to e and d.
+/// @param e, d    the side, and the vector from the opposite node to the apex beyond it; at rest
 /// @param ue, ud  their displacements
 template <Law law, int Steps, class B, class Rest>
 [[gnu::always_inline]] inline B sideEnergy(const WallTerms<B>& terms, const Rest& rest, int side, const B (&e)[3],
@@ -78,11 +80,11 @@ template <Law law, int Steps, class B, class Rest>
   return volume * p.energy;
 }
 
-/// The nodes 2 and 3 and the apexes, each less node 1.
+/// Nodes 2 and 3 and the apexes, each relative to node 1.
 template <class B>
 using Patch = B[5][3];
 
-/// The sum of what a function as sideEnergy returns for the three sides; adds its gradients to f.
+/// The sum over the three sides of a function like sideEnergy; adds its gradients to f.
 template <class Side, class B>
 [[gnu::always_inline]] inline B overSides(const Side& side_energy, const Patch<B>& x, const Patch<B>& u, Patch<B>& f) {
   B energy = constant<B>(0), e[3], d[3], ue[3], ud[3], fe[3], fd[3];
@@ -101,7 +103,7 @@ template <class Side, class B>
   return energy;
 }
 
-/// Adds the membrane's gradient to f; returns twice its energy.
+/// Adds the membrane gradient to f; returns twice the energy.
 template <Law law, int Steps, class B, class Rest>
 [[gnu::always_inline]] inline B membraneEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
                                                const Patch<B>& u, Patch<B>& f) {
@@ -112,7 +114,7 @@ template <Law law, int Steps, class B, class Rest>
   return overSides(side, x, u, f);
 }
 
-/// Six times the tangents of the surface at the centroid, by the two coordinates.
+/// Six times the tangents of the surface at the centroid, with respect to the two coordinates.
 template <class B>
 [[gnu::always_inline]] inline void tangents(const Patch<B>& x, B (&first)[3], B (&second)[3]) {
   const B four = constant<B>(4);
@@ -122,7 +124,7 @@ template <class B>
   }
 }
 
-/// Second derivatives of the surface by the coordinates: 11, 12, 22.
+/// Second derivatives of the surface with respect to the coordinates: 11, 12, 22.
 template <class B>
 [[gnu::always_inline]] inline void secondDerivatives(const Patch<B>& x, B (&h)[3][3]) {
   const B two = constant<B>(2);
@@ -133,7 +135,7 @@ template <class B>
   }
 }
 
-/// The bent surface: b - B without cancellation, and what its derivative takes.
+/// The bent surface: b - B without cancellation, and the quantities for its derivative.
 template <class B>
 struct Bent {
   B g[2][3];       ///< tangents
@@ -180,18 +182,19 @@ template <class B, class Rest>
   return out;
 }
 
-/// How the energy of bending depends on the squared stretch of the area, D.
+/// Dependence of the bending energy on the squared stretch of the area, D.
 template <class B>
 struct BendingFactor {
-  B whole, by_thin;      ///< 1 / D^2 times c, the squared stretch across the wall; its derivative by thin = 1 / D
-  B mean, mean_by_thin;  ///< share of the mean curvature, 1 at rest
+  B whole,
+      by_thin;  ///< 1 / D^2 times c, the squared stretch across the wall; its derivative with respect to thin = 1 / D
+  B mean, mean_by_thin;  ///< weight of the mean curvature, 1 at rest
 };
 
-/// The second derivative of the neo-Hookean plane-stress energy mu/2 tr C + f(D) at the stretched metric: with
-/// f' = -mu/2 c/D and f'' = mu/2 c/D^2 R, R = (2 mu c + 2 lambda) / (2 mu c + lambda), a strain that is linear across
-/// the wall costs (R h^2 - 2 g) mu c, h and g being the sum and the product of the two curvatures. c(D) by the rational
-/// function, R(c) by the straight line that have the right value and slope at rest (for nu = 0.45 c is 1 % off at D =
-/// 4, 5 % at D = 1/4).
+/// The second derivative of the neo-Hookean plane-stress energy mu/2 tr C + f(D) at the stretched metric. With f' =
+/// -mu/2 c/D and f'' = mu/2 c/D^2 R, R = (2 mu c + 2 lambda) / (2 mu c + lambda), a strain that is linear across the
+/// wall has the energy (R h^2 - 2 g) mu c, where h and g are the sum and the product of the two curvatures. c(D) is
+/// approximated by the rational function and R(c) by the straight line with the correct value and slope at rest (for nu
+/// = 0.45 the error of c is 1 % at D = 4, 5 % at D = 1/4).
 template <class B>
 [[gnu::always_inline]] inline BendingFactor<B> bendingFactor(const WallTerms<B>& terms, const B& thin) {
   const B start = constant<B>(kThinningStart), end = constant<B>(kThinningEnd), one = constant<B>(1);
@@ -209,8 +212,8 @@ template <class B>
   return out;
 }
 
-/// Adds the gradient to f; returns the energy: with the metric a and the change k of the curvature at the centroid,
-/// (mean (cof a : k)^2 - 2 (1 - nu) det a det k) whole, a polynomial in a and k that is never negative.
+/// Adds the gradient to f; returns the energy. With the metric a and the change k of the curvature at the centroid it
+/// is (mean (cof a : k)^2 - 2 (1 - nu) det a det k) whole, a polynomial in a and k that is never negative.
 template <class B, class Rest>
 [[gnu::always_inline]] inline B bendingEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& x,
                                               const Patch<B>& u, Patch<B>& f) {
@@ -224,9 +227,9 @@ template <class B, class Rest>
   const B square = mean * mean, form = minusMul(s.square, gauss, B(factor.mean * square));
   const B pull = two * whole * factor.mean * mean, twist = whole * gauss_share * s.square;
   const B m0 = minusMul(twist, k[2], B(pull * a[2])), m2 = minusMul(twist, k[0], B(pull * a[0]));
-  const B m1 = two * minusMul(pull, a[1], B(twist * k[1]));  // of b_12 and b_21
+  const B m1 = two * minusMul(pull, a[1], B(twist * k[1]));  // from b_12 and b_21
   const B by_thin = mulAdd(rest(kShellBend) * factor.by_thin, form, B(whole * factor.mean_by_thin * square));
-  // half the derivative by c.c
+  // half the derivative with respect to c.c
   const B widen = -mulAdd(B(by_thin * s.thin), B(s.inverse * s.inverse), B(whole * gauss));
   B q[3], p[3], pull0[3], pull1[3];
   for (int r = 0; r < 3; ++r) {
@@ -253,7 +256,7 @@ template <class B, class Rest>
   return whole * form;
 }
 
-/// Energy of a triangle; its gradient by the nodes 2 to 6 is written to f, that by node 1 is minus their sum.
+/// Energy of a triangle. Its gradient with respect to nodes 2 to 6 is written to f; that of node 1 is minus their sum.
 template <Law law, int Steps, class B, class Rest>
 [[gnu::always_inline]] inline B shellEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& u,
                                             Patch<B>& f) {
@@ -264,11 +267,11 @@ template <Law law, int Steps, class B, class Rest>
   return mulAdd(constant<B>(0.5), membrane, bendingEnergy(terms, rest, x, u, f));
 }
 
-/// The nodes beside a side, and the one opposite it; 0 is node 1.
+/// The end nodes of a side, and the node opposite it; 0 is node 1.
 constexpr int kBeside[3][2] = {{1, 2}, {2, 0}, {0, 1}};
 
-/// Puts the ghosts of sides without a neighbour where they belong: the mirror image of the node opposite in the middle
-/// of the side; across a clamped side, moved along the normal as that node itself.
+/// Places the ghosts of sides without a neighbour: the opposite node is reflected at the midpoint of the side. Across a
+/// clamped side, the ghost moves along the normal like the opposite node.
 template <class B, class Rest>
 [[gnu::always_inline]] inline void placeGhosts(const Rest& rest, Patch<B>& u) {
   const B one = constant<B>(1), half = constant<B>(0.5), zero = constant<B>(0);
@@ -311,8 +314,8 @@ template <class B, class Rest>
   }
 }
 
-/// Sixth of the area vector of a triangle times 2, the third that each node gets; returns the volume of the cone to the
-/// origin.
+/// A third of the area vector of a triangle (a sixth of the cross product), the share of each node; returns the volume
+/// of the cone to the origin.
 template <class B, class Rest>
 [[gnu::always_inline]] inline B coneVolume(const Rest& rest, const Patch<B>& u, const B (&u1)[3], B (&share)[3]) {
   const B sixth = constant<B>(1.0 / 6);

@@ -9,11 +9,12 @@ namespace vibe {
 namespace {
 
 using Matrix18 = Eigen::Matrix<double, 18, 18>;
-using Rows18 = Eigen::Matrix<double, 3, 18>;  // derivatives of three numbers by the nodes 1 to 6
+using Rows18 = Eigen::Matrix<double, 3, 18>;  // derivatives of three numbers with respect to nodes 1 to 6
 
 constexpr int kSteps = 12;
 
-// Derivatives of the plane-stress energy by C, in the orthonormal basis 11, 22, sqrt(2) 12 of symmetric matrices.
+// Derivatives of the plane-stress energy with respect to C, in the orthonormal basis 11, 22, sqrt(2) 12 of symmetric
+// matrices.
 struct WallTangent {
   Eigen::Vector3d first;
   Eigen::Matrix3d second;
@@ -54,7 +55,7 @@ struct FibresOf {
   double stiffening;
 };
 
-// Their derivatives are positive, so nothing is left out.
+// Their derivatives are positive, so no part is removed.
 void addFibres(const FibresOf& fibres, int side, const double (&s)[3], Eigen::Matrix3d& second, double (&first)[3]) {
   for (int family = 0; family < 2; ++family) {
     const double* direction = fibres.row + kFibreSide + 4 * side + 2 * family;
@@ -68,7 +69,7 @@ void addFibres(const FibresOf& fibres, int side, const double (&s)[3], Eigen::Ma
   }
 }
 
-// Derivatives by e and d of a side: 3 x 3 blocks ee, ed, dd.
+// Derivatives with respect to e and d of a side: 3 x 3 blocks ee, ed, dd.
 struct SideBlocks {
   Eigen::Matrix3d ee, ed, dd;
 };
@@ -103,9 +104,9 @@ SideBlocks sideBlocks(const Material& material, const WallTerms<double>& terms, 
           k.bottomRightCorner<3, 3>() + a[2] * unit};
 }
 
-using Vectors = Eigen::Matrix<double, 3, 5>;  // the nodes 2 to 6 less node 1
+using Vectors = Eigen::Matrix<double, 3, 5>;  // nodes 2 to 6 relative to node 1
 
-// e = sum of kE times the nodes, d likewise
+// e = node e_to minus node e_from, d likewise; 0 is node 1
 struct SideNodes {
   int e_to, e_from, d_to, d_from;
 };
@@ -140,8 +141,8 @@ void addMembrane(const Material& material, const WallTerms<double>& terms, const
 constexpr double kTangent[2][5] = {{4, 0, 1, -1, 0}, {0, 4, 1, 0, -1}};
 constexpr double kSecond[3][5] = {{0, -2, 1, 1, 0}, {-1, -1, 1, 0, 0}, {-2, 0, 1, 0, 1}};
 
-// Derivatives of the covariant curvature, as far as the energy is of second order in it: with the thickness that
-// changes with the area.
+// Derivatives of the covariant curvature, as far as the energy is of second order in it, including the change of the
+// thickness with the area.
 Rows18 curvatureRows(const Bent<double>& s) {
   using Vector = Eigen::Map<const Eigen::Vector3d>;
   const Vector n(s.n), g0(s.g[0]), g1(s.g[1]);
@@ -175,7 +176,7 @@ void addBending(const WallTerms<double>& terms, const double* rest, const Patch<
   k.noalias() += b.transpose() * moment;
 }
 
-// What the ghosts take from the other nodes.
+// Folds the derivatives of the ghosts into those of the other nodes.
 void foldGhosts(const double* rest, Matrix18& k) {
   for (int side = 0; side < 3; ++side) {
     const double* row = rest + kShellGhost + 4 * side;

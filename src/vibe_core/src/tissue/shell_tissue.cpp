@@ -20,7 +20,7 @@ std::vector<double> stiffnessFactors(const TissueScene& tissue, const Organ& org
   return out;
 }
 
-// One material for each factor that occurs.
+// Creates one material for each distinct factor.
 void addMaterials(const Material& wall, const std::vector<double>& factors, ShellMesh& mesh) {
   std::map<double, int> known;
   for (const double factor : factors) {

@@ -11,10 +11,11 @@
 namespace vibe {
 namespace {
 
-constexpr int kElementsPerPiece = 2000;  // a second thread does not pay off for fewer
+constexpr int kElementsPerPiece = 2000;  // with fewer, a second thread does not pay off
 constexpr int kPieces = 8;
 
-// Positions by the barycentric coordinates 1, 2, 3, less that by coordinate 0, at an integration point; in columns.
+// Derivatives of the position with respect to barycentric coordinates 1, 2, 3, minus that of coordinate 0, at an
+// integration point; in columns.
 template <int Nodes>
 Eigen::Matrix3d restEdges(const std::vector<Eigen::Vector3d>& nodes, const std::array<int, Nodes>& element, int point) {
   const auto node = [&](int a) -> const Eigen::Vector3d& { return nodes[static_cast<std::size_t>(element[a])]; };
@@ -90,7 +91,7 @@ void TetElements<Nodes>::measure() {
     }
 }
 
-// To single precision, that is; the points of an element then share their rows.
+// Equal to single precision; the points of an element then share their rows.
 template <int Nodes>
 bool TetElements<Nodes>::straight() const {
   constexpr double kTolerance = 1e-7;
@@ -122,8 +123,8 @@ void TetElements<Nodes>::makeBatches() {
   piece_count_ = static_cast<int>(mesh_.elements.size()) > kElementsPerPiece ? kPieces : 1;
 }
 
-// Neighbours in the mesh are neighbours in its order. They go into the same lane of successive batches, not into the
-// lanes of one batch: adding to a node that the lane before has just written would wait for that.
+// Elements adjacent in the mesh are adjacent in its order. They are placed in the same lane of successive batches, not
+// in the lanes of one batch: adding to a node that the previous lane has just written would stall.
 template <int Nodes>
 void TetElements<Nodes>::addBatches(const std::vector<int>& elements) {
   const int count = static_cast<int>(elements.size());

@@ -13,8 +13,8 @@
 namespace vibe {
 
 /// A solid of tetrahedra at rest. Nodes 4: linear. Nodes 10: quadratic, straight or curved; the vertices first, then
-/// the nodes on the edges 01 12 20 03 13 23 (the order of VTK and of most finite element codes). Vertex 3 lies on the
-/// side of the triangle 0 1 2 from which it is seen counter-clockwise.
+/// the nodes on the edges 01 12 20 03 13 23 (the order of VTK and of most finite element codes). Seen from vertex 3,
+/// the triangle 0 1 2 is counter-clockwise.
 template <int Nodes>
 struct TetMesh {
   static_assert(Nodes == 4 || Nodes == 10, "tetrahedra have 4 or 10 nodes here");
@@ -24,7 +24,7 @@ struct TetMesh {
   std::vector<int> material;  ///< per element, index into `materials`; empty: all of the first
 };
 
-/// The same solid with a node in the middle of every edge, appended after the vertices.
+/// The same solid with an additional node at the midpoint of every edge, appended after the vertices.
 struct QuadraticMesh {
   TetMesh<10> mesh;
   std::vector<std::array<int, 2>> edges;  ///< the two vertices of node (vertices + k), ascending; by first use
@@ -32,11 +32,11 @@ struct QuadraticMesh {
 QuadraticMesh quadraticMesh(const TetMesh<4>& linear);
 
 /// Hyperelastic tetrahedra: linear with one integration point, quadratic with four (exact for polynomials of degree 2).
-/// Quadratic ones bend and are nearly incompressible without locking; linear ones lock in both.
+/// Quadratic elements bend and are nearly incompressible without locking; linear elements lock in both cases.
 ///
-/// The gradient of the displacements H = F - 1 is formed, never F: single precision then keeps 1e-7 of the strain.
-/// Memory: the elements of a material are cut into batches of kTetLanes. Per batch and point there are ten rows: the
-/// gradients by x, y, z of the barycentric coordinates 1, 2, 3 [1/m], then the volume of the point [m^3].
+/// The displacement gradient H = F - 1 is used, never F, so single precision resolves a strain of 1e-7. Memory: the
+/// elements of a material are cut into batches of kTetLanes. Per batch and point there are ten rows: the gradients with
+/// respect to x, y, z of the barycentric coordinates 1, 2, 3 [1/m], then the volume of the point [m^3].
 template <int Nodes>
 class TetElements : public ElasticElements {
  public:
@@ -53,10 +53,10 @@ class TetElements : public ElasticElements {
   double evaluate(int piece, const float* displacement4, float* gradient4) const override;
   double evaluate(const double* displacement, double* gradient) const override;
   std::vector<std::pair<const std::vector<int>*, int>> nodeGroups() const override;
-  /// Each integration point's tangent by the eigenvalues that laws of I and J have in closed form, negative ones
-  /// replaced by 0 (Smith, de Goes, Kim 2019, "Analytic eigensystems for isotropic distortion energies").
+  /// The tangent of each integration point from its eigenvalues, which laws of I and J have in closed form, with
+  /// negative ones replaced by 0 (Smith, de Goes, Kim 2019, "Analytic eigensystems for isotropic distortion energies").
   void addStiffness(const double* displacement, BlockMatrix& stiffness) const override;
-  /// Linear: a quarter of the element each. Quadratic: 1/36 for a vertex and 4/27 for an edge, the diagonal of the
+  /// Linear: a quarter of the element mass each. Quadratic: 1/36 for a vertex and 4/27 for an edge, the diagonal of the
   /// consistent mass of a straight element scaled to its mass (Hinton, Rock, Zienkiewicz 1976).
   std::vector<double> lumpedMass(double density) const override;
   /// Root mean square of the stretch over all directions, averaged over the volume around the node, minus 1.
@@ -70,7 +70,7 @@ class TetElements : public ElasticElements {
     int first, last, material;
   };
   static constexpr int kRows = 10;
-  static constexpr int kWindow = 16;  // batches that share out a contiguous piece of the mesh
+  static constexpr int kWindow = 16;  // batches that share a contiguous piece of the mesh
 
   void measure();
   void checkIndices() const;
@@ -88,7 +88,7 @@ class TetElements : public ElasticElements {
   TetKernel kernel_;
   std::vector<LawConstants> constants_;  // per material
   std::vector<double> rest_;             // (elements * points * rows), in double precision
-  std::vector<int> flat_nodes_;          // of the elements, one after another
+  std::vector<int> flat_nodes_;          // of the elements in sequence
   int batch_count_ = 0, point_stride_ = 0, batch_stride_ = 0, piece_count_ = 1;
   std::vector<Run> runs_;
   std::vector<TetOffsets> batch_node_;

@@ -14,18 +14,18 @@ constexpr int kTetLanes = 8;  ///< elements in a batch
 struct alignas(32) TetReals {
   float lane[kTetLanes];
 };
-/// Of each element of a batch, where a node's four numbers begin: 4 * node.
+/// For each element of a batch, the start of a node's four numbers: 4 * node.
 struct alignas(32) TetOffsets {
   std::uint32_t lane[kTetLanes];
 };
 
-/// What evaluating some batches of elements of one material takes. Plain pointers, so that the translation units of the
-/// kernel share no inline code that one of them could compile for the wrong machine.
+/// Arguments for evaluating some batches of elements of one material. Uses plain pointers, so that the translation
+/// units of the kernel share no inline code that one of them could compile for the wrong machine.
 struct TetSweep {
   const TetOffsets* node;  ///< (batches * nodes per element)
   const TetReals* rest;    ///< (batches * batch_stride), see TetElements
   int batch_stride;        ///< rows of `rest` per batch
-  int point_stride;        ///< rows of `rest` from one integration point to the next; 0: all have the same
+  int point_stride;        ///< rows of `rest` from one integration point to the next; 0: shared by all
   int first, last;         ///< batches
   Law law;
   const LawConstants* constants;
@@ -44,7 +44,7 @@ struct TetKernel {
 TetKernel tetKernelSse2();
 TetKernel tetKernelAvx2();  ///< AVX2, FMA; call its functions only on a machine that has both
 
-/// The widest path that this machine can run.
+/// The widest path that this machine supports.
 TetKernel chooseTetKernel();
 
 }  // namespace vibe

@@ -7,7 +7,7 @@
 namespace vibe {
 namespace {
 
-/// How a path fetches the nodes of the lanes, which are 4 floats each, and adds to them.
+/// Loads the nodes of the lanes, 4 floats each, and adds to them, per instruction path.
 template <class Arch>
 struct TetLanes;
 
@@ -24,7 +24,7 @@ struct TetLanes<xsimd::sse2> {
     out[2] = Pack(_mm_movelh_ps(_mm_unpackhi_ps(a, b), _mm_unpackhi_ps(c, d)));
   }
 
-  // Lane after lane: lanes may share a node.
+  // One lane after another, because lanes may share a node.
   static void add(float* base, const std::uint32_t* offset, const Pack (&in)[3]) {
     const __m128 zero = _mm_setzero_ps();
     const __m128 xy = _mm_unpacklo_ps(in[0], in[1]), xy2 = _mm_unpackhi_ps(in[0], in[1]);
@@ -72,7 +72,7 @@ struct TetLanes<xsimd::fma3<xsimd::avx2>> {
     out[2] = Pack(_mm256_shuffle_ps(_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d), _MM_SHUFFLE(1, 0, 1, 0)));
   }
 
-  // Lane after lane: lanes may share a node.
+  // One lane after another, because lanes may share a node.
   static void add(float* base, const std::uint32_t* offset, const Pack (&in)[3]) {
     const __m256 zero = _mm256_setzero_ps();
     const __m256 xy = _mm256_unpacklo_ps(in[0], in[1]), xy2 = _mm256_unpackhi_ps(in[0], in[1]);

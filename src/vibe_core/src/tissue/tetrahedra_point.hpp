@@ -2,13 +2,13 @@
 
 #include "tissue/material_law.hpp"
 
-// The energy of one tetrahedron and its gradient, for one element or a pack of them; see law_terms.hpp for why
+// The energy of one tetrahedron and its gradient, for one element or a pack of them; law_terms.hpp explains why
 // everything is in an unnamed namespace.
 
 namespace vibe {
 namespace {
 
-// Barycentric coordinates of the four integration points: one kGaussNear, the others kGaussFar.
+// Barycentric coordinates of the four integration points: one is kGaussNear, the others are kGaussFar.
 constexpr double kGaussNear = 0.58541019662496845446;
 constexpr double kGaussFar = 0.13819660112501051518;
 
@@ -29,7 +29,7 @@ inline B minor(const B& a, const B& b, const B& c, const B& d) {
   return minusMul(c, d, B(a * b));
 }
 
-/// Number of the node on the edge between two vertices of a quadratic tetrahedron; the vertex itself for a = b.
+/// Number of the node on the edge between two vertices of a quadratic tetrahedron; for a = b the vertex itself.
 constexpr int kEdgeNode[4][4] = {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}};
 
 /// Cofactors of h.
@@ -42,8 +42,8 @@ template <class B>
     }
 }
 
-/// Energy of a volume from the gradient h of the displacement, and its derivative by h:
-/// P = 2 W_I (F - cof F) + balance cof F with cof F = (1 + tr h) 1 - ht + cof h.
+/// Energy of a volume as a function of the displacement gradient h, and its derivative with respect to h: P = 2 W_I (F -
+/// cof F) + balance cof F with cof F = (1 + tr h) 1 - ht + cof h.
 template <Law law, class B>
 [[gnu::always_inline]] inline B strainEnergy(const LawTerms<B>& terms, const B (&h)[3][3], const B& volume,
                                              B (&p)[3][3]) {
@@ -67,8 +67,9 @@ template <Law law, class B>
   return w.energy * volume;
 }
 
-/// What an integration point adds to the energy, and the derivative of that by the edges.
-/// @param edge   derivatives of the displacement by the barycentric coordinates 1, 2, 3, less that by coordinate 0
+/// Energy contribution of an integration point, and its derivative with respect to the edges.
+/// @param edge   derivatives of the displacement with respect to barycentric coordinates 1, 2, 3, minus that of
+///         coordinate 0
 /// @param rest   (row) -> ten rows of TetElements
 /// @param force  of the three edges, overwritten
 template <Law law, class B, class Rest>
@@ -100,8 +101,9 @@ template <Law law, class B, class Rest>
   return energy;
 }
 
-// Quadratic displacements: the derivative by coordinate i at point k is base_i + kSteep u_(ik), where u_(ik) is on the
-// edge between the two vertices (u_k for i = k) and base_i = kCorner u_i + kMiddle (sum of the edges at i).
+// Quadratic displacements: the derivative with respect to coordinate i at point k is base_i + kSteep u_(ik), where
+// u_(ik) is on the edge between the two vertices (u_k for i = k) and base_i = kCorner u_i + kMiddle (sum of the edges
+// at i).
 constexpr double kCorner = 4 * kGaussFar - 1;
 constexpr double kMiddle = 4 * kGaussFar;
 constexpr double kSteep = 4 * (kGaussNear - kGaussFar);
@@ -115,7 +117,7 @@ template <class B>
   }
 }
 
-// The transpose of edgesAt: to the nodes directly, and to the sums that belong to base.
+// The transpose of edgesAt: adds to the nodes directly, and to the sums that belong to base.
 template <class B>
 [[gnu::always_inline]] inline void addPull(int point, const B (&pull)[3][3], B (&sum)[4][3], B (&force)[10][3]) {
   const B steep = constant<B>(kSteep);

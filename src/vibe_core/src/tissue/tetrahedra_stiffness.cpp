@@ -5,13 +5,13 @@
 #include "tissue/tetrahedra.hpp"
 #include "tissue/tetrahedra_point.hpp"
 
-// Derivatives of the energy of an integration point in the frame of its principal stretches, where the tangent of a law
-// of I and J falls apart into one 3 x 3 block and three 2 x 2 blocks: Smith, de Goes, Kim 2019.
+// Derivatives of the energy of an integration point in the frame of its principal stretches. There the tangent of a law
+// of I and J splits into one 3 x 3 block and three 2 x 2 blocks: Smith, de Goes, Kim 2019.
 
 namespace vibe {
 namespace {
 
-// F = u diag(stretch) vt with rotations u and v; the stretches' product has the sign of det F.
+// F = u diag(stretch) vt with rotations u and v; the product of the stretches has the sign of det F.
 struct Principal {
   Eigen::Matrix3d u, v;
   Eigen::Vector3d stretch;
@@ -65,8 +65,8 @@ LawAt<double> lawOf(const Material& material, const LawConstants& constants, con
   });
 }
 
-// Second derivative of the point's energy by the displacements of two nodes with shape gradients a and b, all in the
-// principal frame.
+// Second derivative of the energy of the point with respect to the displacements of two nodes with shape gradients a
+// and b, all in the principal frame.
 Eigen::Matrix3d blockOf(const Tangent& t, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   Eigen::Matrix3d k = a.asDiagonal() * t.scaling * b.asDiagonal();
   for (int axis = 0; axis < 3; ++axis) {

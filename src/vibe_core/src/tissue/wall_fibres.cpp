@@ -21,7 +21,7 @@ Eigen::Vector3d tangentAt(const StomachAxis& axis, double length) {
   return ((1 - part) * before->tangent + part * after->tangent).normalized();
 }
 
-// Direction of the long axis beside every vertex.
+// Direction of the long axis next to every vertex.
 std::vector<Eigen::Vector3d> axisDirections(const Organ& organ) {
   const std::size_t count = organ.surface.vertices.size();
   if (std::find(organ.end.begin(), organ.end.end(), End::Duodenum) == organ.end.end()) {

@@ -8,10 +8,10 @@
 
 namespace vibe {
 
-/// The fibres of an organ's wall. Its long axis is that of a stomach (see findAxis), and for an organ without an end at
-/// the duodenum the line from its fundus to its pylorus.
+/// Fibres of the wall of an organ. The long axis is that of a stomach (see findAxis); for an organ without an end at
+/// the duodenum it is the line from fundus to pylorus.
 /// @param factor  of the modulus, per triangle [1]
-/// @throws Error if the organ has no axis: fundus and pylorus are one point
+/// @throws Error if the organ has no axis: fundus and pylorus coincide
 ShellFibres wallFibres(const FibreScene& scene, const Organ& organ, const std::vector<double>& factor);
 
 }  // namespace vibe

@@ -12,7 +12,7 @@ class TissueModel {
  public:
   virtual ~TissueModel() = default;
 
-  /// Its name; that of the library's models is the word of tissue.model.
+  /// Name of the model; for built-in models the value of tissue.model.
   virtual std::string name() const = 0;
 
   /// Stored elastic energy at the positions and orientations of `state` [J].
@@ -21,11 +21,11 @@ class TissueModel {
   /// Adds the elastic force on every particle [N]; arrays of (particle count).
   virtual void addForces(const State& state, double* fx, double* fy, double* fz) const = 0;
 
-  /// Mean in-plane stretch around each particle against rest, minus 1 [1]; array of (particle count).
+  /// Mean in-plane stretch around each particle relative to rest, minus 1 [1]; array of (particle count).
   virtual void strain(const State& state, float* out) const = 0;
 
-  /// Simulated stiffness over requested stiffness, the minimum over the wall. Below 1, the substeps are too long for
-  /// the requested modulus, and the wall is softer than requested.
+  /// Ratio of simulated to requested stiffness, the minimum over the wall. Below 1, the substeps are too long for the
+  /// requested modulus, and the wall is softer than requested.
   virtual double stiffnessRatio() const = 0;
 };
 
