@@ -33,7 +33,7 @@ std::map<Edge, EdgeVertex> findEdges(const SurfaceMesh& mesh) {
       } else if (e.opposite[1] < 0) {
         e.opposite[1] = opposite;
       } else {
-        throw Error("makeLoopSkin: an edge at vertex " + std::to_string(t[k]) +
+        throw Error("makeLoopSubdivision: an edge at vertex " + std::to_string(t[k]) +
                     " has more than two triangles; check the surface with checkSurface() first");
       }
     }
@@ -41,8 +41,8 @@ std::map<Edge, EdgeVertex> findEdges(const SurfaceMesh& mesh) {
   int next = static_cast<int>(mesh.vertices.size());
   for (auto& [edge, e] : edges) {
     if (e.opposite[1] < 0) {
-      throw Error("makeLoopSkin: the surface is open at the edge from vertex " + std::to_string(edge.first) + " to " +
-                  std::to_string(edge.second) + "; close it first");
+      throw Error("makeLoopSubdivision: the surface is open at the edge from vertex " + std::to_string(edge.first) +
+                  " to " + std::to_string(edge.second) + "; close it first");
     }
     e.number = next++;
   }
