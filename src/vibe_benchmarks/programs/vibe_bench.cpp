@@ -1,4 +1,4 @@
-// Speed beside error: every method and setting on one scenario, and cases with reference solutions.
+// Measures speed and error of every method and setting on one scenario, and runs the cases with reference solutions.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

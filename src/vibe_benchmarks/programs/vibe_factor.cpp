@@ -1,4 +1,5 @@
-// Times of the sparse factor beside those of CHOLMOD (supernodal), on the stiffness of a stomach and of a block.
+// Compares the times of the sparse factor with those of CHOLMOD (supernodal), on the stiffness of a stomach and of a
+// block.
 #include <time.h>
 
 #include <Eigen/CholmodSupport>
@@ -24,7 +25,7 @@ const char kHelp[] =
     "analyse: order of elimination, once per mesh; factor: once per linearization point, in the background;\n"
     "solve: several times per step. CHOLMOD calls the BLAS of the system, which decides its times.\n";
 
-constexpr int kRepeats = 15;  // design choice: the median of so many is steady to a few percent
+constexpr int kRepeats = 15;  // design choice: the median of this many runs is reproducible to a few percent
 
 double threadTime() {  // [s]
   timespec now{};

@@ -1,4 +1,4 @@
-// Whole procedures of sutures: what each set costs, and what patterns do to the stomach.
+// Simulates complete suturing procedures: the cost of each set, and the effect of stitch patterns on the stomach.
 #include <fstream>
 #include <iostream>
 #include <string>

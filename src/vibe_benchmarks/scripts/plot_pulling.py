@@ -33,7 +33,7 @@ def profiles(path):
 
 
 def reference(path):
-    """Where the finite elements have the mid-line at the last level; the other half by symmetry."""
+    """Mid-line of the finite elements at the last level; the other half follows by symmetry."""
     with open(path, newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     last = max(float(row["level"]) for row in rows)

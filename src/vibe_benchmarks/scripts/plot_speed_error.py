@@ -25,7 +25,7 @@ FAMILIES = {  # method: name, colour, marker
     "bullet_softbody": ("Bullet's soft body", "tab:orange", "o"),
 }
 PROTOTYPE = (16, 18)  # ms per frame that Erden et al. report for 3,618 particles, without an error
-# column: (most CPU time of a frame [ms], most error); the third of the motion is 17 steps of 0.6 ms
+# column: (largest CPU time of a frame [ms], largest error); the third one of the motion is 17 steps of 0.6 ms
 GOALS = {
     "motion_error": [(1.0, 0.035), (3.0, 0.012), (10.2, 0.001)],
     "force_error": [(1.0, 0.03), (3.0, 0.025)],
@@ -53,7 +53,7 @@ def label(setting):
 
 
 def per_frame(row):
-    """Time of a 60 Hz frame: steps of the solver are timed one by one, frames of other methods whole."""
+    """Time of a 60 Hz frame: the solver is timed per step, other methods per frame."""
     timed_by_step = row["method"] in ("implicit", "linear_tet")
     return number(row["ms_p50"]) * (step_rate(row["setting"]) / 60 if timed_by_step else 1)
 
@@ -103,7 +103,7 @@ def lowest(points):
 
 
 def place_labels(axis, points):
-    """Each label at the first spot around its point where it covers neither a point nor another label."""
+    """Places each label at the first position around its point that covers neither a point nor another label."""
     renderer = axis.figure.canvas.get_renderer()
     taken = []
     for _, time, error, _ in points:

@@ -6,7 +6,7 @@
 
 namespace vibe {
 
-/// A case file in the test's folder, for as long as the object lives.
+/// A temporary case file in the folder of the test, removed with the object.
 class CaseFile {
  public:
   explicit CaseFile(const std::string& text) : path_(::testing::TempDir() + "vibe_case.yaml") {
@@ -21,7 +21,7 @@ class CaseFile {
   std::string path_;
 };
 
-/// A block of linear tetrahedra stretched along x with sliding ends and free sides; `lines` are added.
+/// A block of linear tetrahedra stretched along x with sliding ends and free sides; `lines` are appended.
 inline std::string blockCase(const std::string& loads, const std::string& rest) {
   return "name: block\n"
          "mesh:\n"

@@ -23,7 +23,7 @@ std::string stretch(const std::string& reference) {
                        reference + "}]\n");
 }
 
-// Nominal stress times section at rest; the closed form of uniaxial tension of W = mu/2 (I-3) - mu ln J + lambda/2 ln^2
+// Nominal stress times rest cross-section: closed form of uniaxial tension for W = mu/2 (I-3) - mu ln J + lambda/2 ln^2
 // J.
 double uniaxialForce(double stretch) {
   const double mu = 30e3 / (2 * 1.45), lambda = 30e3 * 0.45 / (1.45 * 0.1);
@@ -49,7 +49,7 @@ TEST(CaseRunner, stretchesABlockAsTheClosedFormSays) {
   EXPECT_LT(rows[0].reference_error, 1e-4) << log;
   EXPECT_EQ(log.find("NOT CONVERGED"), std::string::npos) << log;
   EXPECT_EQ(rows[0].method, "linear_tet");
-  // times of single steps: in order, and none longer than the whole run
+  // times of single steps: ordered, and none longer than the whole run
   EXPECT_GT(rows[0].ms_p50, 1e-3 * whole.count() / 8) << "8 steps share the run with its preparation";
   EXPECT_LE(rows[0].ms_p50, rows[0].ms_p99);
   EXPECT_LE(rows[0].ms_p99, rows[0].ms_max);
@@ -76,7 +76,7 @@ TEST(CaseRunner, findsTheBendingFrequencyOfABar) {
           std::to_string(wanted) + "}, {name: f2, kind: frequency, mode: 2, reference: " + std::to_string(2 * wanted) +
           "}]\n");
   EXPECT_LT(rows[0].reference_error, 0.01);
-  EXPECT_NEAR(rows[1].reference_error, 0.5, 0.02);  // a square bar bends both ways alike
+  EXPECT_NEAR(rows[1].reference_error, 0.5, 0.02);  // a square bar has the same stiffness in both directions
 }
 
 std::string releasedBar(const std::string& seconds, const std::string& amplitude) {

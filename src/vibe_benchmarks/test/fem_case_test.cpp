@@ -28,7 +28,7 @@ std::string good() {
   return blockCase(stretchLoads(), kRun);
 }
 
-// The words are those of scene files, in any order.
+// The names are those of scene files, in any order.
 TEST(FemCase, lawsAreThoseOfSceneFiles) {
   for (const Choice& choice : choicesOf("tissue.law")) {
     const std::string law = "law: " + choice.word + ", stiffening: 1";

@@ -12,7 +12,7 @@ namespace {
 constexpr int kNodes = 800;
 constexpr double kTolerance = 1e-6;  // [m]
 
-/// The inflated wall and what the shell does when the disc is pulled.
+/// The inflated wall and the response of the shell when the disc is pulled.
 struct PulledWall {
   BenchWall wall = makeWall(kNodes);
   BodyMotion start = inflate(wall, kTolerance);
@@ -33,7 +33,7 @@ const PulledWall& pulledWall() {
 }
 
 TEST(GradientWall, wholeWallIsNearTheShell) {
-  // not a bound of the method: what was measured on this wall, and a third more
+  // not a bound of the method: the value measured on this wall plus a third
   for (const double distance : {0.005, 0.010}) {
     EXPECT_LT(pulledWall().error(distance, {"", kWholeWall, 0}), 0.26) << distance;
     EXPECT_LT(pulledWall().error(distance, {"", kWholeWall, 1}), 0.20) << distance;

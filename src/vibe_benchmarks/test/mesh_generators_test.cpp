@@ -37,7 +37,7 @@ TEST(MeshGenerators, fillABoxWithPositiveTetrahedraThatMatch) {
       }
     }
     EXPECT_NEAR(volume, 0.006, 1e-12);
-    // two triangles per cell side on the outside, everything else shared by two
+    // boundary: two triangles per cell face; all other triangles are shared by two elements
     const auto outside = std::count_if(faces.begin(), faces.end(), [](const auto& f) { return f.second == 1; });
     EXPECT_EQ(outside, 2 * 2 * (3 * 2 + 3 * 2 + 2 * 2));
     EXPECT_EQ(mesh.sets.at("y_max").size(), 4U * 3U);

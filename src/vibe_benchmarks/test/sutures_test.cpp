@@ -18,7 +18,7 @@ namespace {
 Scene coarseStomach() {
   Scene scene = loadScene(VIBE_CORE_DIR "/scenes/stomach.yaml");
   scene.geometry.particles = 900;
-  scene.gas->flow_limit = 5e-4;  // is full in a second
+  scene.gas->flow_limit = 5e-4;  // full within a second
   scene.render_surface = false;
   return scene;
 }
@@ -59,7 +59,8 @@ TEST(Sutures, SetsTakeVolumeAtThePressureTheyDidNotHaveWithoutThem) {
   session.settle();
   const double before = session.state().volume;
   session.settle();
-  EXPECT_NEAR(session.state().volume, before, 1e-4 * before);  // negative control: nothing sewn, nothing less
+  EXPECT_NEAR(session.state().volume, before,
+              1e-4 * before);  // negative control: without sutures the volume does not change
   const WallPlan plan(model->organ, session.wall());
   for (const auto& set : planSets(plan, twoSmallSets())) session.sew(set);
   session.settle();
@@ -91,7 +92,7 @@ TEST(Sutures, APlanLiesWhereItSays) {
       EXPECT_NEAR(spot.weight.sum(), 1, 1e-12);
       EXPECT_GT(spot.weight.minCoeff(), -1e-9);
       const Eigen::Vector3d away = placeOf(spot, wall) - middle;
-      EXPECT_NEAR(away.norm(), 0.02, 2e-3);  // a chord of the wall
+      EXPECT_NEAR(away.norm(), 0.02, 2e-3);  // straight chord of an arc along the wall
       EXPECT_LT(away.x() * across, 0);       // negative: to the front
     }
   }
@@ -107,7 +108,7 @@ TEST(Sutures, APlanLiesWhereItSays) {
 TEST(Sutures, PatternsAreWhatTheyAreCalled) {
   for (const int bites : {4, 7, 10})
     for (const char* pattern : {"u", "z", "c"}) {
-      // of an arc the square is the box around it: a circle again
+      // for an arc the square is its bounding box: a circle again
       const Eigen::Vector2d size = pattern[0] == 'c' ? Eigen::Vector2d(0.0067, 0.02) : Eigen::Vector2d(0.018, 0.018);
       std::vector<Eigen::Vector3d> places;
       for (const Eigen::Vector2d& p : patternBites(pattern, bites))

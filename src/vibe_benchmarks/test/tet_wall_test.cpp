@@ -19,7 +19,7 @@ std::vector<double> positions4(const BenchWall& wall) {
 TEST(TetWall, fillsTheWallWithoutGapsAndOverlaps) {
   const BenchWall shell = makeWall(3618), tets = makeTetWall(shell);
   const auto& elements = dynamic_cast<const TetElements<4>&>(*tets.body.elements);
-  // between the two layers and nowhere else
+  // the volume is between the two layers
   SurfaceMesh inner = shell.mesh, outer = shell.mesh;
   for (std::size_t n = 0; n < inner.vertices.size(); ++n) {
     inner.vertices[n] = tets.body.rest[n];
@@ -27,7 +27,7 @@ TEST(TetWall, fillsTheWallWithoutGapsAndOverlaps) {
   }
   EXPECT_NEAR(elements.volume() / (enclosedVolume(outer) - enclosedVolume(inner)), 1, 1e-3);
   EXPECT_NEAR(elements.volume() / (surfaceArea(shell.mesh) * kWallThickness), 1,
-              0.005);  // normals of vertices lean by the curvature
+              0.005);  // vertex normals deviate with the curvature
   EXPECT_EQ(tets.tool.size(), 2 * shell.tool.size());
 }
 
@@ -46,7 +46,7 @@ TEST(TetWall, pushesWithTheSlopeOfItsPressureEnergy) {
     const double below = tets.layers->evaluate(positions.data(), ignored.data());
     positions[i] = here;
     EXPECT_NEAR(gradient[i], (above - below) / (2 * kStep), 1e-5);
-    EXPECT_GT(std::abs(gradient[i]), 1e-4);  // else the test shows nothing
+    EXPECT_GT(std::abs(gradient[i]), 1e-4);  // otherwise the test has no significance
   }
 }
 

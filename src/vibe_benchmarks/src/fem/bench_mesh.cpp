@@ -17,7 +17,7 @@ std::string placeOf(const std::string& file, int line) {
   return file + ":" + std::to_string(line) + ": ";
 }
 
-/// Calls `take(words, line)` for every line that is not empty and no comment.
+/// Calls `take(words, line)` for every line that is neither empty nor a comment.
 template <class Take>
 void readLines(const std::string& file, const Take& take) {
   std::ifstream stream(file);

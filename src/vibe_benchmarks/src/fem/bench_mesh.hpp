@@ -7,10 +7,10 @@
 
 namespace vibe {
 
-/// The mesh of a case: tetrahedra or triangles, not both, with named groups of nodes.
+/// The mesh of a case: either tetrahedra or triangles, with named groups of nodes.
 struct BenchMesh {
   std::vector<Eigen::Vector3d> nodes;            ///< [m]
-  std::vector<std::array<int, 4>> tets;          ///< node 3 sees 0 1 2 counter-clockwise
+  std::vector<std::array<int, 4>> tets;          ///< nodes 0 1 2 are counter-clockwise seen from node 3
   std::vector<std::array<int, 3>> triangles;     ///< counter-clockwise from outside
   std::map<std::string, std::vector<int>> sets;  ///< ascending node numbers
 };
@@ -27,13 +27,13 @@ std::vector<int> readElements(const std::string& file, int size, int node_count)
 /// @throws Error with file and line
 std::map<std::string, std::vector<int>> readSets(const std::string& file, int node_count);
 
-/// A comma separated table of numbers; its first line that does not begin with '#' names the columns. An empty entry is
-/// not a number (NaN).
+/// A comma-separated table of numbers. Its first line that does not begin with '#' names the columns. An empty entry is
+/// NaN.
 struct NumberTable {
   std::string file;
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;
-  int column(const std::string& name) const;  ///< @throws Error that names the nearest column
+  int column(const std::string& name) const;  ///< @throws Error that suggests the nearest column
 };
 NumberTable readTable(const std::string& file);
 

@@ -8,16 +8,16 @@
 
 namespace vibe {
 
-/// A weighted mean over nodes; the weights add up to 1.
+/// A weighted mean over nodes; the weights sum to 1.
 struct NodeMean {
   std::vector<int> node;
   std::vector<double> weight;
 };
 
-/// How a case prescribes the motion of whole nodes.
+/// How a case prescribes the motion of nodes.
 enum class Hold {
-  AsFixed,      ///< fixed nodes that the caller places: exact, for statics
-  AsConditions  ///< three conditions per node: for motion in time
+  AsFixed,      ///< fixed nodes that the caller moves: exact, for statics
+  AsConditions  ///< three conditions per node: for transient runs
 };
 
 /// The elastic body of a case on its refined mesh, and its loads at any level.
@@ -31,14 +31,14 @@ class CaseModel {
   const std::vector<int>& set(const std::string& name) const { return mesh_.sets.at(name); }
   const NodeMean& spot(const std::string& name) const { return spots_.at(name); }
 
-  /// Gravity and dead loads belong to the body, so it depends on the level.
+  /// Gravity and dead loads are part of the body, so it depends on the level.
   ElasticBody body(double level) const;
   bool bodyDependsOnLevel() const { return case_.gravity.norm() > 0 || !case_.forces.empty(); }
   /// Conditions (the cinch, then three per pull, then held directions of sets) and gas.
   BodyLoads loads(double level) const;
-  /// Where the prescribed fixed nodes are at a level; (node, position).
+  /// Positions of the prescribed fixed nodes at a level; (node, position).
   std::vector<std::pair<int, Eigen::Vector3d>> prescribed(double level) const;
-  /// Interpolates in the rest element that holds the point, or in the nearest one.
+  /// Interpolates in the rest element that contains the point, or in the nearest one.
   NodeMean at(const Eigen::Vector3d& point) const;
   double restVolume() const;  ///< enclosed by the triangles [m^3]
 
@@ -63,7 +63,7 @@ class CaseModel {
 /// Volume enclosed by triangles at the given positions [m^3].
 double enclosedVolume(const std::vector<std::array<int, 3>>& triangles, const MotionView& motion);
 
-/// Makes the shell of a case: elements, and masses and gas through them.
+/// Builds the shell of a case with its elements, masses and gas.
 void buildShell(const FemCase& bench_case, const BenchMesh& mesh, ElasticBody& body);
 
 }  // namespace vibe

@@ -59,7 +59,7 @@ double CaseProbe::tableDifference(std::size_t sample, const MotionView& motion, 
     const Eigen::Vector3d here = displacement(means_[sample][r], motion);
     for (int k = 0; k < 3; ++k) {
       const double wanted = table.rows[r][table.column(kMove[k])];
-      if (std::isnan(wanted)) continue;  // this direction has no reference
+      if (std::isnan(wanted)) continue;  // no reference for this direction
       difference += (here[k] - wanted) * (here[k] - wanted);
       size += wanted * wanted;
     }

@@ -5,18 +5,18 @@
 
 namespace vibe {
 
-/// Measures the samples of a case on a state.
+/// Evaluates the samples of a case on a state.
 class CaseProbe {
  public:
   explicit CaseProbe(const CaseModel& model);
 
-  /// The value of a sample; NaN for kinds that one state does not determine. For tables: the relative difference
+  /// The value of a sample; NaN for kinds that a single state does not determine. For tables: the relative difference
   /// sqrt(sum |u - u_ref|^2 / sum |u_ref|^2) over the rows of that level.
-  /// @param body, loads  as they were solved: with the level's dead load, and with the forces of the conditions
+  /// @param body, loads  as in the solution: with the dead load of the level and the forces of the conditions
   double measure(std::size_t sample, const MotionView& motion, const ElasticBody& body, const BodyLoads& loads,
                  double level) const;
 
-  /// Displacement of a mean against rest [m].
+  /// Displacement of a mean from rest [m].
   Eigen::Vector3d displacement(const NodeMean& mean, const MotionView& motion) const;
 
  private:

@@ -9,14 +9,15 @@
 
 namespace vibe {
 
-/// Typed access to the maps of a case file; every key must be among those that the reader of its map knows.
+/// Typed access to the maps of a case file. Every key must be known to the reader of its map.
 class CaseReader {
  public:
   using Readers = std::map<std::string, std::function<void(const YamlField&)>>;
 
   explicit CaseReader(const std::string& file);
 
-  /// Calls the reader of each key; an unknown key fails with the nearest known one, a missing one of `needed` too.
+  /// Calls the reader of each key. Fails for an unknown key, with the nearest known one, and for a missing key of
+  /// `needed`.
   void readMap(const YamlField& field, const std::vector<std::string>& needed, const Readers& readers) const;
   void readList(const YamlField& field, const std::function<void(const YamlField&)>& reader) const;
 

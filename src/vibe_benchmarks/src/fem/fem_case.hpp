@@ -17,10 +17,10 @@ enum class ElementKind { LinearTet, QuadraticTet, Shell };
 struct SpotRule {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< at rest [m]
   double radius = 0;                                 ///< a [m]
-  Eigen::Vector3d along = Eigen::Vector3d::Zero();   ///< r is measured across this direction; zero: in space
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();   ///< r is measured perpendicular to this direction; zero: in space
 };
 
-/// What moves a set of nodes: a rotation about an axis, then a translation, both times the level.
+/// Motion of a set of nodes: a rotation about an axis, then a translation, both scaled by the level.
 struct SetMotion {
   std::string set;
   std::array<bool, 3> held{{true, true, true}};           ///< which of x, y, z are prescribed
@@ -36,7 +36,7 @@ struct AttachmentPull {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< [m]
 };
 
-/// A dead load shared out over a spot by its weights.
+/// A dead load distributed over a spot by its weights.
 struct AttachmentForce {
   std::string spot;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< times the level [N]
@@ -46,32 +46,32 @@ struct AttachmentForce {
 struct Cinch {
   std::string first, second;
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
-  double distance = 0;  ///< at level 1; the one at rest at level 0 [m]
+  double distance = 0;  ///< at level 1; the distance at rest is that of level 0 [m]
 };
 
 struct GasRule {
   bool by_volume = false;
   double pressure = 0;      ///< times the level [Pa]
-  double volume_ratio = 1;  ///< volume over the one at rest at level 1
+  double volume_ratio = 1;  ///< ratio of the volume at level 1 to that at rest
 };
 
 enum class SampleKind {
   Reaction,         ///< force of the tool on a set along a direction [N]
   Torque,           ///< moment of the tool on a set about an axis [N m]
-  Displacement,     ///< mean over a set, or of the point nearest nodes, along a direction [m]
+  Displacement,     ///< mean over a set, or of the nodes nearest to a point, along a direction [m]
   AttachmentForce,  ///< force on a pulled spot along a direction [N]
   Tension,          ///< of the cinch [N]
   Volume,           ///< enclosed [m^3]
   Pressure,         ///< of the gas [Pa]
   LimitPressure,    ///< largest pressure over all levels [Pa]
-  Profile,          ///< displacements at points against a table
+  Profile,          ///< displacements at points compared with a table
   Frequency,        ///< of one vibration mode, or of the oscillation of a displacement [Hz]
-  Kept,             ///< amplitude after one period over the one before it [1]
-  Series,           ///< displacement over time against a table
-  StaticField,      ///< as Profile, at the end of a transient
+  Kept,             ///< ratio of the amplitude to that one period earlier [1]
+  Series,           ///< displacement over time compared with a table
+  StaticField,      ///< like Profile, at the end of a transient
 };
 
-/// One quantity to report, with the values it should have.
+/// One quantity to report, with its reference values.
 struct Sample {
   std::string name;
   SampleKind kind = SampleKind::Displacement;
@@ -79,17 +79,17 @@ struct Sample {
   std::vector<Eigen::Vector3d> points;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  int mode = 0;               ///< of Frequency in `modes`, from 1
-  double rest_volume = 0;     ///< of Volume: what the volume at rest counts as; 0: the mesh's own [m^3]
-  double until = 0;           ///< of Series: compare up to here; 0: to the end [s]
-  std::string table, column;  ///< of Profile and Series: a CSV file
+  int mode = 0;                                  ///< of Frequency in `modes`, from 1
+  double rest_volume = 0;                        ///< of Volume: the volume at rest; 0: that of the mesh [m^3]
+  double until = 0;                              ///< of Series: end of the comparison; 0: the end of the run [s]
+  std::string table, column;                     ///< of Profile and Series: a CSV file
   std::vector<std::optional<double>> reference;  ///< per level, or one
 };
 
 struct StaticRun {
   std::vector<double> levels;
   int substeps = 1;         ///< between two levels
-  double tolerance = 1e-9;  ///< farthest a node may still move [m]
+  double tolerance = 1e-9;  ///< largest remaining node displacement [m]
 };
 
 struct TransientRun {
@@ -98,8 +98,8 @@ struct TransientRun {
   bool backward_euler = false;
   int iterations = 3;
   double tolerance = 1e-9;                  ///< [m]
-  double refactor_interval = 1.0 / 6;       ///< age of the stiffness that the steps work with [s]
-  double start_level = 0;                   ///< begin at the equilibrium of this level ...
+  double refactor_interval = 1.0 / 6;       ///< maximum age of the stiffness used by the steps [s]
+  double start_level = 0;                   ///< start at the equilibrium of this level ...
   bool start_at_equilibrium = false;        ///< ... if true
   int start_mode = 0;                       ///< or in this mode (from 1) ...
   double start_amplitude = 0;               ///< ... with this largest displacement [m]
@@ -110,14 +110,15 @@ struct ModesRun {
   int count = 0;
 };
 
-/// A case as a file describes it.
+/// A case as described by a file.
 struct FemCase {
   std::string name, source, file;
-  bool slow = false;  ///< left out of a quick run
+  bool slow = false;  ///< omitted from a quick run
   BenchMesh mesh;
   ElementKind element = ElementKind::LinearTet;
   int refine = 0;
-  Eigen::Vector3d project = Eigen::Vector3d::Zero();  ///< refined nodes go to the ellipsoid of these semi-axes [m]
+  Eigen::Vector3d project =
+      Eigen::Vector3d::Zero();  ///< refined nodes are projected onto the ellipsoid with these semi-axes [m]
   Material material;
   double density = 1000, thickness = 0;
   double mass_damping = 0, stiffness_damping = 0, foundation = 0;

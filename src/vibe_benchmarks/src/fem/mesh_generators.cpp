@@ -13,7 +13,7 @@ constexpr int kFewest = 5;  // nodes of a ring
 
 using Corner = std::array<int, 3>;
 
-// corner paths 000 -> 111 of the six tetrahedra; odd permutations are reversed to be positive
+// corner paths 000 -> 111 of the six tetrahedra; odd permutations are reversed for positive orientation
 constexpr int kPaths[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}};
 
 std::vector<std::array<Corner, 4>> sixTets() {
@@ -60,7 +60,7 @@ void nameFaces(const std::array<int, 3>& cells, BenchMesh& mesh) {
   }
 }
 
-/// eta (from one pole to the other) at equal steps of the ellipse's length; the length comes last.
+/// eta (from one pole to the other) at equal steps of the arc length of the ellipse; the total length comes last.
 std::vector<double> equalSteps(double radius, double half_length, int rings) {
   constexpr int kFine = 20000;
   const double pi = std::acos(-1.0);
@@ -86,7 +86,7 @@ std::vector<int> ringCounts(const std::vector<double>& circumference, int nodes)
   for (const double c : circumference)
     count.push_back(std::max(kFewest, static_cast<int>(std::lround(c / total * nodes))));
   int missing = nodes - std::accumulate(count.begin(), count.end(), 0);
-  // the longest rings feel one node more or less the least
+  // the longest rings are the least sensitive to one node more or less
   std::vector<int> order(count.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return circumference[a] > circumference[b]; });
@@ -98,7 +98,7 @@ std::vector<int> ringCounts(const std::vector<double>& circumference, int nodes)
   return count;
 }
 
-/// Triangles between two rings of consecutive nodes, by the shorter of the two possible next sides.
+/// Triangles between two rings of consecutive nodes; each step takes the shorter of the two possible sides.
 void stitch(int first, int first_count, int second, int second_count, BenchMesh& mesh) {
   const auto a = [&](int i) { return first + i % first_count; };
   const auto b = [&](int i) { return second + i % second_count; };
@@ -167,7 +167,7 @@ BenchMesh makeEllipsoid(double radius, double half_length, int nodes) {
   if (!(radius > 0) || !(half_length > 0))
     throw Error("mesh.ellipsoid: a semi-axis is not positive; give both in metres.");
   const double pi = std::acos(-1.0);
-  // edge for equilateral triangles of the surface: area / nodes = edge^2 sqrt(3)/2
+  // edge length of equilateral triangles on the surface: area / nodes = edge^2 sqrt(3)/2
   double area = 0;
   for (int i = 0; i < 2000; ++i) {
     const double eta = pi * (i + 0.5) / 2000;

@@ -3,14 +3,15 @@
 
 namespace vibe {
 
-/// A box of equal cells, each cut into 6 tetrahedra around its diagonal (Kuhn) or into 5 (mirrored from cell to cell).
-/// Nodes in the order of x, then y, then z fastest. Sets: the faces x_min, x_max, y_min, y_max, z_min, z_max.
+/// A box of equal cells, each divided into 6 tetrahedra around its diagonal (Kuhn) or into 5 (mirrored from cell to
+/// cell). Nodes in the order of x, then y, then z fastest. Sets: the faces x_min, x_max, y_min, y_max, z_min, z_max.
 /// @throws Error for a size or number of cells that is not positive, or another number of tetrahedra
 BenchMesh makeBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& size, const std::array<int, 3>& cells,
                   int tets_per_cell);
 
-/// A closed surface of exactly `nodes` nodes and nearly equilateral triangles on an ellipsoid of revolution about z.
-/// Rings of nodes at equal steps of the meridian's length, stitched; first node one pole, last node the other.
+/// A closed surface of exactly `nodes` nodes and nearly equilateral triangles on an ellipsoid of revolution about z. It
+/// consists of rings of nodes at equal steps of the meridian's length. The first node is one pole, the last node the
+/// other.
 /// @param radius, half_length  semi-axes across and along z [m]
 /// @throws Error for fewer than 14 nodes or semi-axes that are not positive
 BenchMesh makeEllipsoid(double radius, double half_length, int nodes);

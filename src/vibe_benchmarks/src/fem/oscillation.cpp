@@ -14,7 +14,7 @@ Oscillation measureOscillation(const std::vector<double>& values, double step) {
   if (crossings.size() < 2) return found;
   const auto periods = static_cast<double>(crossings.size() - 1);
   found.frequency = periods / ((crossings.back() - crossings.front()) * step);
-  // half the span of each period, which an offset does not change
+  // half the range of each period, which is independent of an offset
   std::vector<double> amplitude;
   for (std::size_t p = 0; p + 1 < crossings.size(); ++p) {
     const auto first = values.begin() + static_cast<std::ptrdiff_t>(crossings[p]);

@@ -3,10 +3,12 @@
 
 namespace vibe {
 
-/// What a vibration about 0 does, from its values at equal steps.
+/// Properties of a vibration about 0, from its values at equal steps.
 struct Oscillation {
-  double frequency = 0;  ///< from the first to the last crossing of 0 in the same direction [Hz]; NaN: under one period
-  double kept = 0;       ///< amplitude over the one of a period before, mean over all periods; NaN: under one period
+  double frequency =
+      0;  ///< from the first to the last zero crossing in the same direction [Hz]; NaN: less than one period
+  double kept =
+      0;  ///< ratio of the amplitude to that one period earlier, mean over all periods; NaN: less than one period
 };
 
 Oscillation measureOscillation(const std::vector<double>& values, double step);

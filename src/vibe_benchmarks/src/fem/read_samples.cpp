@@ -56,7 +56,7 @@ void readReference(const CaseReader& reader, const YamlField& field, Sample& sam
 
 void readSamples(const CaseReader& reader, const YamlField& field, FemCase& out) {
   const YamlSource& source = reader.source();
-  // 'modes' may stand after 'sample' in the file
+  // 'modes' may follow 'sample' in the file
   bool modes = false;
   for (const YamlField& entry : source.map(source.root())) modes |= entry.key == "modes";
   reader.readList(field, [&](const YamlField& item) {

@@ -14,7 +14,7 @@ std::string levelName(double level) {
   return text;
 }
 
-/// The top of the parabola through the largest value and its neighbours; the levels are taken as equidistant.
+/// The vertex of the parabola through the largest value and its neighbours, for equidistant levels.
 double largest(const std::vector<double>& values) {
   const auto top = static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
   if (top == 0 || top + 1 >= values.size()) return values[top];

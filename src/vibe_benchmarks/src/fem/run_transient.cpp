@@ -34,7 +34,7 @@ void placeStart(const FemCase& bench_case, const CaseModel& model, MotionView mo
   }
 }
 
-/// Difference to a table of (time, value) up to a time: sqrt(sum d^2 / sum ref^2).
+/// Difference from a table of (time, value) up to a given time: sqrt(sum d^2 / sum ref^2).
 double seriesDifference(const Sample& sample, const std::vector<double>& values, double step) {
   const NumberTable table = readTable(sample.table);
   const int column = table.column(sample.column);
@@ -51,7 +51,7 @@ double seriesDifference(const Sample& sample, const std::vector<double>& values,
   return std::sqrt(difference / size);
 }
 
-/// Everything one run in time leaves behind.
+/// Results of one transient run.
 struct Record {
   std::vector<std::vector<double>> values;  // per sample, per step, the start first
   std::vector<double> times;                // [ms]
@@ -85,7 +85,7 @@ Record update(const FemCase& bench_case, const CaseModel& model) {
   settings.iterations = run.iterations;
   settings.tolerance = run.tolerance;
   settings.refactor_interval = run.refactor_interval;
-  // dead loads are constant in a stepper: those of the end of the path, the start has been placed before
+  // dead loads are constant during a transient run: use those at the end of the path; the start state is set before
   const double end_level = levelAt(run, run.duration);
   const ImplicitStepper stepper(model.body(end_level), settings);
   const auto scratch = stepper.makeScratch();
@@ -108,12 +108,12 @@ Record update(const FemCase& bench_case, const CaseModel& model) {
       record.unfinished += outcome.finite ? 0 : 1;
     }
     for (std::size_t s = 0; s < bench_case.samples.size(); ++s) {
-      // tables are compared at the end only
+      // tables are compared only at the end
       const bool wait = bench_case.samples[s].kind == SampleKind::StaticField && i < steps;
       if (!wait) record.values[s].push_back(probe.measure(s, motion.view(), stepper.body(), loads, end_level));
     }
   }
-  // a session makes the first factor while it loads
+  // a session computes the first factor while it loads
   if (record.times.size() > 1) record.times.erase(record.times.begin());
   if (released) record.energy_drift = energyOf(stepper.body(), motion.view()) / energy - 1;
   record.state_hash = 0xcbf29ce484222325ULL;

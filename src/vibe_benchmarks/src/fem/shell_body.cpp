@@ -4,7 +4,7 @@
 namespace vibe {
 namespace {
 
-/// The sides between two nodes that are hinged: the wall turns about them.
+/// The hinged sides between two nodes; the wall rotates freely about them.
 std::vector<std::array<int, 2>> hingedSides(const FemCase& bench_case, const BenchMesh& mesh) {
   std::vector<char> hinged(mesh.nodes.size(), 0);
   for (const std::string& name : bench_case.hinged)

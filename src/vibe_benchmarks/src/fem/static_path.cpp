@@ -48,8 +48,8 @@ bool StaticPath::advanceTo(double level, int substeps) {
   return converged;
 }
 
-// A body that only conditions hold in place has a singular stiffness; long damped steps reach the same equilibrium with
-// the inertia that makes it regular.
+// A body held only by conditions has a singular stiffness. Long damped steps reach the same equilibrium, and the
+// inertia makes the system regular.
 bool StaticPath::relax() {
   StepSettings settings;
   settings.step = kRelaxStep;

@@ -11,10 +11,10 @@ namespace vibe {
 /// Follows the equilibria of a case from level to level.
 class StaticPath {
  public:
-  /// @param tolerance  no node would move farther [m]
+  /// @param tolerance  bound on the remaining displacement of a node [m]
   StaticPath(const CaseModel& model, double tolerance);
 
-  /// @returns false where the solve did not converge; the state is then the last iterate
+  /// @returns false if the solve did not converge; the state is then the last iterate
   bool advanceTo(double level, int substeps);
 
   MotionView motion() { return motion_.view(); }

@@ -9,13 +9,13 @@
 
 namespace vibe {
 
-/// Moves prescribed fixed nodes to new places and everything else along by the tangent stiffness, so that a solve
-/// begins near the equilibrium and not with one layer of crushed elements.
+/// Moves prescribed fixed nodes to new positions and all other nodes according to the tangent stiffness, so that a
+/// solve starts near the equilibrium and not with one layer of crushed elements.
 class TangentGuess {
  public:
   explicit TangentGuess(const ElasticBody& body);
 
-  /// @param places  where fixed nodes go [m]
+  /// @param places  target positions of fixed nodes [m]
   void move(const ElasticBody& body, const std::vector<std::pair<int, Eigen::Vector3d>>& places, MotionView motion);
 
  private:

@@ -7,7 +7,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kSettling = 10;  // damping until the inflated start [1/s]
+constexpr double kSettling = 10;  // damping until the inflated start is reached [1/s]
 
 btVector3 toBullet(const Eigen::Vector3d& p) {
   return {static_cast<btScalar>(p.x()), static_cast<btScalar>(p.y()), static_cast<btScalar>(p.z())};
@@ -29,7 +29,7 @@ std::unique_ptr<btSoftBody> makeSoftBody(const BenchWall& wall, btSoftBodyWorldI
   body->generateBendingConstraints(2);
   body->m_cfg.piterations = iterations;
   body->m_cfg.kPR = static_cast<btScalar>(wall.pressure * wall.rest_volume);
-  body->updateConstants();  // rest lengths are those of now
+  body->updateConstants();  // the current lengths become rest lengths
   return body;
 }
 

@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kFoundation = 5e3;  // [Pa/m] of the default scene
 constexpr double kExact = 1e-7;      // [m]
-constexpr int kRepeats = 20;         // of what is timed
+constexpr int kRepeats = 20;         // of each timed operation
 constexpr double kFarthest = 1e3;    // [m] beyond any wall
 
-/// The disc first, then what the body holds inside the patch.
+/// The disc first, then the held nodes of the body inside the patch.
 std::vector<int> handlesOf(const BenchWall& wall, const std::vector<int>& patch) {
   std::vector<int> handles = wall.tool;
   for (const int node : patch)

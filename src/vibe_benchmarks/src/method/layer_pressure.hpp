@@ -6,8 +6,8 @@
 
 namespace vibe {
 
-/// A constant pressure on the surface halfway between an inner and an outer layer of nodes: energy -p V, V the volume
-/// inside that closed surface. For walls whose elements know no gas.
+/// A constant pressure on the surface halfway between an inner and an outer layer of nodes: energy -p V, where V is the
+/// volume inside that closed surface. For walls whose elements have no gas.
 class LayerPressure : public EnergyTerm {
  public:
   /// @param triangles   of the inner layer, outwards

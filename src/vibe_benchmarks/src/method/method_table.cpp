@@ -15,11 +15,11 @@
 namespace vibe {
 namespace {
 
-constexpr int kParticles = 3618;  // of the paper's stomach
+constexpr int kParticles = 3618;  // as in the stomach of the paper
 constexpr double kExact = 1e-8;   // [m]
-constexpr int kRepeats = 5;       // of what is timed; the quickest counts
+constexpr int kRepeats = 5;       // of each timed run; the fastest counts
 
-// two, three and four iterations first: what the goals are about
+// two, three and four iterations first: the goals refer to these
 constexpr StepChoice kChoices[] = {
     {"60 Hz, 2 iterations", 1, 2, 0.5, false, 1e-7},
     {"60 Hz, 3 iterations", 1, 3, 0.5, false, 1e-7},
@@ -38,7 +38,7 @@ constexpr StepChoice kReference{"reference", 16, 4, 0.5, false, 1e-8};
 constexpr StepChoice kFinerReference{"reference", 64, 6, 0.5, false, 1e-8};
 constexpr double kLetGo = 0.005;  // [m]
 
-/// The settings that the goals are about.
+/// The settings to which the goals refer.
 bool inQuick(const StepChoice& choice) {
   return choice.steps_per_frame == 17 || (choice.steps_per_frame == 1 && choice.iterations <= 4);
 }
@@ -58,7 +58,7 @@ std::string pullName(double distance, bool jerk) {
   return name.str();
 }
 
-/// What every method is compared with.
+/// The reference for every method.
 struct Truth {
   Pull pull;
   BodyMotion start, equilibrium, let_go;
@@ -94,12 +94,12 @@ double median(std::vector<double> times) {
   return *middle;
 }
 
-/// The same run again: what else the machine does only ever makes it slower.
+/// Repeats the run and keeps the smaller times: other load on the machine only makes it slower.
 void keepQuicker(const Trajectory& again, Trajectory& trajectory) {
   if (median(again.times) < median(trajectory.times)) trajectory.times = again.times;
 }
 
-/// The pull of 20 mm in 0.5 s with every setting of the shell, as it is by default.
+/// The pull of 20 mm in 0.5 s with every setting of the shell in its default configuration.
 void addSettings(const BenchWall& wall, const Truth& truth, bool quick, std::ostream& log,
                  std::vector<ResultRow>& rows) {
   for (const StepChoice& choice : kChoices) {
@@ -136,7 +136,7 @@ void addPeers(const BenchWall& wall, const Truth& truth, bool quick, std::ostrea
   }
 }
 
-/// One long pull with one setting: is the equilibrium the right one 1.5 s after the stop?
+/// One long pull with one setting, to check the equilibrium 1.5 s after the stop.
 void addLongPull(const BenchWall& wall, const BodyMotion& start, const BodyMotion& equilibrium, double force,
                  const Pull& pull, const StepChoice& choice, std::ostream& log, std::vector<ResultRow>& rows) {
   const std::string name = pullName(pull.distance, pull.duration == kFrame);
@@ -163,7 +163,7 @@ void addLongPulls(const BenchWall& wall, const BodyMotion& start, bool quick, st
   }
 }
 
-/// The first third of a second of the pull on finer and finer meshes, and what their first factor costs.
+/// The first third of a second of the pull on increasingly fine meshes, and the cost of their first factor.
 void addGrowth(bool quick, std::ostream& log, std::vector<ResultRow>& rows) {
   for (const int particles : {1000, 3618, 15000, 60000}) {
     if (quick && particles > 4000) continue;

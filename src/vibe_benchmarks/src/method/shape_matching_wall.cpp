@@ -10,7 +10,7 @@ namespace vibe {
 namespace {
 
 constexpr int kStepsPerFrame = 17;
-constexpr double kSettling = 2;  // until the inflated start [s]
+constexpr double kSettling = 2;  // time to reach the inflated start [s]
 
 std::shared_ptr<const Model> makeModel(const BenchWall& wall, bool tool_held) {
   auto model = std::make_shared<Model>();
@@ -37,7 +37,7 @@ std::shared_ptr<const Model> makeModel(const BenchWall& wall, bool tool_held) {
   return model;
 }
 
-/// A simulation of the wall. The gas is let in or out at every step, so that its pressure is constant.
+/// A simulation of the wall. Gas is added or removed at every step to keep its pressure constant.
 class MatchedWall {
  public:
   explicit MatchedWall(const BenchWall& wall)
@@ -53,7 +53,7 @@ class MatchedWall {
     simulation_.replaceState(std::move(state));
   }
 
-  /// @param distance  of the disc from where it was taken [m]
+  /// @param distance  of the disc from its initial position [m]
   void step(double distance) {
     State& state = simulation_.editState();
     for (std::size_t i = 0; i < held_.size(); ++i) {
@@ -73,7 +73,7 @@ class MatchedWall {
     return motion;
   }
 
-  /// Of the disc on the wall along the pull, against elasticity and pressure [N].
+  /// Force of the disc on the wall along the pull, against elasticity and pressure [N].
   double force() const {
     const State& state = simulation_.state();
     const std::size_t count = state.x.size();

@@ -9,8 +9,8 @@
 namespace vibe {
 namespace {
 
-/// A prism on a triangle as three tetrahedra. Every side is cut from its lower node inside to its higher node outside,
-/// so that neighbours agree.
+/// Divides a prism on a triangle into three tetrahedra. Every side is cut from its lower inner node to its higher outer
+/// node, so that neighbours match.
 void addPrism(std::array<int, 3> triangle, int inner_count, TetMesh<4>& mesh) {
   std::sort(triangle.begin(), triangle.end());
   const auto [a, b, c] = triangle;

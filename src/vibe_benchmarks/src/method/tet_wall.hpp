@@ -3,13 +3,14 @@
 
 namespace vibe {
 
-/// The same wall as one layer of linear tetrahedra: a node inside and one outside per node of the mesh, three
-/// tetrahedra per triangle, what is held held on both sides, the pressure on the surface halfway between them.
-/// Nodes 0 .. n-1 are the inner ones.
+/// The same wall as one layer of linear tetrahedra: an inner and an outer node per node of the mesh and three
+/// tetrahedra per triangle. Held nodes are held on both sides, and the pressure acts on the surface halfway between
+/// them. Nodes 0 .. n-1 are the inner ones.
 BenchWall makeTetWall(const BenchWall& wall);
 
-/// As follow(), of a tetrahedral wall, with its own inflated start. Frames hold the means of the inner and the outer
-/// nodes, so that they compare with those of the surface; its errors are those of the element and of the stepping.
+/// Like update(), for a wall of tetrahedra with its own inflated start. Frames hold the means of the inner and the
+/// outer nodes, so that they are comparable with those of the surface. Its errors are those of the element and of the
+/// time stepping.
 Trajectory runTets(const BenchWall& wall, const Pull& pull, const StepChoice& choice);
 
 }  // namespace vibe

@@ -7,7 +7,8 @@
 namespace vibe {
 namespace {
 
-constexpr int kFirstForceFrame = 5;  // before it the force is a shock wave's, which no step of a frame can follow
+constexpr int kFirstForceFrame =
+    5;  // earlier, the force is that of a shock wave, which steps of one frame cannot resolve
 
 StepSettings settingsOf(const StepChoice& choice) {
   StepSettings settings;
@@ -19,7 +20,7 @@ StepSettings settingsOf(const StepChoice& choice) {
   return settings;
 }
 
-/// Kinetic and elastic energy less the work of the pressure since rest [J].
+/// Kinetic and elastic energy minus the work of the pressure since rest [J].
 double totalEnergy(const BenchWall& wall, const BodyMotion& motion) {
   const std::size_t n = wall.body.rest.size();
   std::vector<double> displacement(3 * n), gradient(3 * n);
@@ -61,7 +62,7 @@ Trajectory update(const BenchWall& wall, const BodyMotion& start, const Pull& pu
     trajectory.force.push_back(force);
     trajectory.frames.push_back(motion);
   }
-  // a session makes the first factor while it loads
+  // a session computes the first factor while it loads
   if (!trajectory.times.empty()) {
     trajectory.first_time = trajectory.times.front();
     trajectory.times.erase(trajectory.times.begin());

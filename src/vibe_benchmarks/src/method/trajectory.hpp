@@ -9,13 +9,13 @@ namespace vibe {
 
 constexpr double kFrame = 1.0 / 60;  ///< [s]
 
-/// The wall at the end of each frame, the start first.
+/// The wall at the end of each frame, beginning with the initial state.
 struct Trajectory {
   std::vector<BodyMotion> frames;
   std::vector<double> force;  ///< of the disc, mean over each frame; force[0] belongs to the first frame [N]
   std::vector<double> times;  ///< thread CPU of each step but the first [ms]
-  double first_time = 0;      ///< of the first step, which also makes the first factor [ms]
-  int fallback = 0;           ///< steps that were taken again, more carefully
+  double first_time = 0;      ///< of the first step, which includes the first factor [ms]
+  int fallback = 0;           ///< number of steps repeated with more careful settings
   bool finite = true;
 };
 
@@ -29,19 +29,19 @@ struct StepChoice {
   double tolerance;  ///< [m]
 };
 
-/// @param frames  how many to run; 0: the whole pull and hold
+/// @param frames  number of frames to run; 0: the whole pull and hold
 Trajectory update(const BenchWall& wall, const BodyMotion& start, const Pull& pull, const StepChoice& choice,
                   int frames = 0);
 
-/// Errors of a trajectory against another, on displacements since their own starts: motion_error, force_error (after
-/// the fifth frame) and static_error (the last frame against `equilibrium`), over the distance from start to
-/// `equilibrium`.
+/// Errors of a trajectory relative to another, for displacements from their own starts: motion_error, force_error
+/// (after the fifth frame) and static_error (the last frame against `equilibrium`), divided by the distance from start
+/// to `equilibrium`.
 void compare(const Trajectory& trajectory, const Trajectory& reference, const BodyMotion& equilibrium, ResultRow& row);
 
-/// Distance of two displacements since their own starts [m].
+/// Distance between two displacements from their own starts [m].
 double driftApart(const BodyMotion& a, const BodyMotion& a_start, const BodyMotion& b, const BodyMotion& b_start);
 
-/// Change of the energy over one second after the disc lets go of `pulled`, without damping, over the energy let go.
+/// Relative change of the energy over one second after the disc releases `pulled`, without damping.
 double energyDrift(const BenchWall& wall, const BodyMotion& start, const BodyMotion& pulled, const StepChoice& choice);
 
 /// FNV-1a of positions and velocities.

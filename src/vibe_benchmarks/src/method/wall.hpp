@@ -14,8 +14,8 @@ constexpr double kWallDensity = 1050;      ///< [kg/m^3]
 constexpr Material kWallTissue{Law::NeoHookean, 50e3, 0.45, 0};
 
 /// The scenario of the method table: a closed ellipsoid of 0.25 m x 0.09 m, wall 3.5 mm, neo-Hookean 50 kPa, nu 0.45,
-/// 1050 kg/m^3, its ends held (60 nodes of 3,618), inflated to 500 Pa; a disc of 5 mm radius at the equator is pulled
-/// inwards at constant speed and held.
+/// 1050 kg/m^3, with held ends (60 nodes of 3,618), inflated to 500 Pa. A disc of 5 mm radius at the equator is pulled
+/// inwards at constant speed and then held.
 struct BenchWall {
   SurfaceMesh mesh;                       ///< middle surface at rest, long axis z
   ElasticBody body;                       ///< damped by 30 1/s
@@ -23,11 +23,11 @@ struct BenchWall {
   Eigen::Vector3d pull_direction;         ///< unit, inwards
   double pressure = 500;                  ///< [Pa]
   double rest_volume = 0;                 ///< [m^3]
-  std::shared_ptr<LayerPressure> layers;  ///< of a solid wall, in place of the shell's gas; null: a shell
+  std::shared_ptr<LayerPressure> layers;  ///< of a solid wall, in place of the gas of a shell; null: a shell
 };
 BenchWall makeWall(int nodes);
 
-/// How far the disc is pulled over time.
+/// Displacement of the disc over time.
 struct Pull {
   double distance = 0.02;  ///< [m]
   double duration = 0.5;   ///< of the motion, at constant speed [s]
@@ -35,18 +35,18 @@ struct Pull {
   double at(double time) const { return time >= duration ? distance : distance * time / duration; }
 };
 
-/// The pressure, and three conditions per node of the disc: where it starts, moved by a distance.
+/// The pressure, and three conditions per node of the disc: its start position, displaced by a distance.
 /// @param start  positions of the inflated wall
 BodyLoads wallLoads(const BenchWall& wall, const BodyMotion& start, double distance);
-/// The pressure alone. A solid wall has one pressure at a time: that of the loads made last.
+/// The pressure alone. A solid wall has one pressure at a time: that of the most recent loads.
 BodyLoads pressureLoads(const BenchWall& wall, double pressure);
 /// Force of the disc on the wall along the pull [N].
 double toolForce(const BenchWall& wall, const BodyLoads& loads);
 
-/// The inflated wall at rest, from rest in five stages of pressure.
+/// The inflated wall at equilibrium, computed from rest in five stages of pressure.
 /// @throws Error if it does not converge to `tolerance` [m]
 BodyMotion inflate(const BenchWall& wall, double tolerance);
-/// Pulled slowly: equilibria every 4 mm. `force` out [N].
+/// Quasi-static pull: equilibria every 4 mm. `force` out [N].
 BodyMotion pulledEquilibrium(const BenchWall& wall, const BodyMotion& start, double distance, double tolerance,
                              double& force);
 

@@ -12,7 +12,7 @@ namespace {
 
 std::string show(const char* format, double value) {
   if (std::isnan(value)) return "";
-  if (std::isinf(value)) return "inf";  // a method that left the numbers
+  if (std::isinf(value)) return "inf";  // the solution of the method diverged
   char text[40];
   std::snprintf(text, sizeof text, format, value);
   return text;
@@ -25,7 +25,7 @@ std::string showHash(std::uint64_t hash) {
   return text;
 }
 
-/// A comma or quote in a name would shift the columns.
+/// Quotes a field, because a comma or quote in a name would shift the columns.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";

@@ -10,9 +10,9 @@
 namespace vibe {
 namespace {
 
-constexpr double kDepth = 10e-3;  // of the box that closes the plate for shape matching [m]
+constexpr double kDepth = 10e-3;  // of the box that closes the plate, as shape matching requires [m]
 
-/// A held underside and sides: shape matching asks for a closed surface.
+/// Adds a held underside and sides, because shape matching requires a closed surface.
 void closeBelow(SurfaceMesh& mesh) {
   const int count = static_cast<int>(mesh.vertices.size());
   std::map<std::array<int, 2>, int> sides;

@@ -8,7 +8,7 @@
 
 namespace vibe {
 
-/// One way of pulling.
+/// One method of pulling.
 struct PullWay {
   const char* method;   ///< tissue.model
   const char* pulling;  ///< suture.cinch_model
@@ -16,17 +16,18 @@ struct PullWay {
   double strain_limit;  ///< suture.strain_limit [1]
 };
 
-/// The plate of a case in the simulator, with one set of two bites at the spots of the case's cinch.
+/// The plate of a case in the simulator, with one set of two bites at the spots of the cinch in the case.
 class PulledPlate {
  public:
   PulledPlate(const CaseModel& plate, const PullWay& way);
 
-  /// A frame in which the cinch draws, unless the wall's strain has reached the limit. @return  false: it has
+  /// Runs a frame in which the cinch draws, unless the strain of the wall has reached the limit.
+  /// @return  false if it has
   bool draw();
   void step();
   double milliseconds() const { return 1e3 * simulation_.timer().last_cpu; }  ///< CPU time of the last frame
 
-  double apart() const;    ///< the bites, from each other [m]
+  double apart() const;    ///< distance of the bites [m]
   double tension() const;  ///< [N]
   MotionView motion();
   const State& state() const { return simulation_.state(); }

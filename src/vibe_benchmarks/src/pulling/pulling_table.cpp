@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kAll = 1000;
 constexpr double kFrame = 1.0 / 60, kSpeed = 15e-3;  // of the cinch [s], [m/s]
-constexpr int kRest = 60;                            // frames of it before a level is measured
-constexpr int kMaxFrames = 600;                      // of drawing, before a way counts as ended
+constexpr int kRest = 60;                            // frames of rest before a level is measured
+constexpr int kMaxFrames = 600;                      // of drawing, before a method counts as ended
 constexpr double kLimit = 0.5, kWideLimit = 2;       // of strain [1]
 constexpr PullWay kWays[] = {{"shell", "thread", 5, kLimit},
                              {"shell", "groups", 5, kLimit},
@@ -32,7 +32,7 @@ std::string nameOf(const PullWay& way) {
   return way.strain_limit == kLimit ? "groups, all" : "groups, all, limit 2";
 }
 
-/// What the ways share: the case, its measures, the rows, and the file of the mid-lines.
+/// Data shared by the methods: the case, its probe, the rows, and the file of the mid-lines.
 struct Table {
   FemCase bench_case = readCase(resolveAddress("package://vibe_benchmarks/cases/case7_cinch.yaml"));
   CaseModel plate{bench_case, Hold::AsFixed};
@@ -77,7 +77,7 @@ void runWay(const PullWay& way, Table& table, std::ostream& log) {
   const auto& levels = table.bench_case.statics->levels;
   for (int frame = 0; frame < kMaxFrames && level < levels.size(); ++frame) {
     if (plate.apart() > table.distanceAt(levels[level])) {
-      if (!plate.draw()) break;  // as near as this way brings them
+      if (!plate.draw()) break;  // the smallest distance that this method reaches
       times.push_back(plate.milliseconds());
       continue;
     }
@@ -98,7 +98,7 @@ void runWay(const PullWay& way, Table& table, std::ostream& log) {
   table.addProfile(way.method, nameOf(way), plate.motion(), plate.tension());
 }
 
-/// The case's own condition, moved at the cinch's speed in the shell's steps.
+/// The condition of the case itself, moved at the speed of the cinch in the steps of the shell.
 void runConstraint(Table& table, std::ostream& log) {
   StepSettings settings;
   settings.iterations = TissueScene{}.iterations;

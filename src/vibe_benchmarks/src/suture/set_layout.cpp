@@ -18,7 +18,7 @@ std::vector<Eigen::Vector2d> throughCorners(const std::vector<Eigen::Vector2d>& 
   return bites;
 }
 
-/// As wide and as long as the others.
+/// Has the same width and length as the other patterns.
 std::vector<Eigen::Vector2d> arc(int bites) {
   std::vector<Eigen::Vector2d> points;
   const double lowest = std::cos(kArc);

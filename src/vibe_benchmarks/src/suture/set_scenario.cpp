@@ -15,7 +15,7 @@ double meanOf(const std::vector<double>& values) {
   return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Of each step the cheapest run, or that in the middle.
+/// For each step, the minimum or the median over the runs.
 std::vector<double> overRuns(const std::vector<const std::vector<double>*>& runs, bool cheapest) {
   std::vector<double> chosen(runs.front()->size());
   std::vector<double> step(runs.size());

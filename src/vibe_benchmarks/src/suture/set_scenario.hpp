@@ -9,20 +9,20 @@
 
 namespace vibe {
 
-/// Times of some steps [ms].
+/// Statistics of step times [ms].
 struct StepTimes {
   double mean = 0, p50 = 0, p99 = 0, max = 0;
 };
 StepTimes timesOf(std::vector<double> costs);
 
-/// A straight line through (0, y[0]), (1, y[1]), ... by least squares.
+/// A least-squares line through (0, y[0]), (1, y[1]), ....
 struct Slope {
   double per_step = 0, error = 0;  ///< standard error; 0 for fewer than 3 points
 };
 Slope slopeOf(const std::vector<double>& y);
 
-/// One set of a scenario. The runs differ in time only: what else the machine does makes a step dearer, never cheaper,
-/// so of each step the cheapest run counts. `median` is of the runs, step by step.
+/// One set of a scenario. The runs differ only in time. Other load on the machine makes a step slower, never faster, so
+/// the minimum over the runs counts for each step. `median` is that of the runs, step by step.
 struct ScenarioRow {
   SewnSet set;
   StepTimes pulling, after;   ///< CPU of the thread that steps
@@ -35,8 +35,8 @@ struct ScenarioResult {
   SetLayout layout;
   double reference = 0;  ///< solver ms per frame that the ViBE prototype reports
   std::vector<ScenarioRow> rows;
-  double real_time_factor = 0;  ///< simulated over wall time of the sets, whole steps of one thread after the other
-  bool crossed = false;         ///< walls went through one another by the end
+  double real_time_factor = 0;  ///< simulated time over the wall time of the sets, all steps of one thread in sequence
+  bool crossed = false;         ///< whether the walls intersect at the end
   std::uint64_t state_hash = 0;
 };
 
@@ -48,7 +48,7 @@ ScenarioResult runScenario(const std::shared_ptr<const Model>& model, const SetL
 void printScenario(const ScenarioResult& result, std::ostream& out);
 void writeScenarios(const std::vector<ScenarioResult>& results, std::ostream& out);  ///< CSV, a line per set
 
-/// Name of the processor as the system gives it.
+/// Name of the processor as reported by the system.
 std::string processorName();
 
 }  // namespace vibe

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kStill = 1e-4;        // [m/s]
 constexpr double kLongestSettle = 60;  // [s]
-constexpr double kLongestPull = 15;    // more than the thread of any set here takes [s]
-constexpr double kHold = 0.25;         // the cinch is held at its tension before it is let go [s]
+constexpr double kLongestPull = 15;    // longer than any set here needs [s]
+constexpr double kHold = 0.25;         // time at the target tension before the cinch is released [s]
 constexpr double kNothing = 1e-9;      // of thread [m]
 
 }  // namespace
@@ -88,7 +88,7 @@ void SutureSession::pull(SewnSet& set) {
     const double before = state().procedure.sutures.back().pulled;
     press(Cinch, true, set.pulling, set);
     const Suture& suture = state().procedure.sutures.back();
-    if (suture.permanent()) break;  // it broke
+    if (suture.permanent()) break;  // the thread broke
     const bool tight = cinchTension(suture) >= scene.cinch_tension, all_in = suture.pulled - before < kNothing;
     held = tight || all_in ? held + 1 : 0;
   }

@@ -8,43 +8,44 @@
 
 namespace vibe {
 
-/// What steps cost: one entry per step, in order [ms].
+/// Costs of steps: one entry per step, in order [ms].
 struct StepCosts {
   std::vector<double> cpu;   ///< of the thread that steps
-  std::vector<double> wall;  ///< what the user waits for
+  std::vector<double> wall;  ///< experienced by the user
 };
 
-/// How one set came to be.
+/// Record of one sewn set.
 struct SewnSet {
-  int bites = 0;           ///< when it was cinched
-  int technique = 0;       ///< Technique that the T-tag found
+  int bites = 0;           ///< at cinching
+  int technique = 0;       ///< Technique recognised at the T-tag
   StepCosts pulling;       ///< from the T-tag to the release of the cinch
   StepCosts after;         ///< the second after it
   double max_move = 0;     ///< fastest particle at the end of that second [m/s]
   double drawn = 0;        ///< thread [m]
-  double tension = 0;      ///< in the first segment when the cinch was let go [N]
-  double max_tension = 0;  ///< in any segment of any set meanwhile [N]
+  double tension = 0;      ///< in the first segment when the cinch was released [N]
+  double max_tension = 0;  ///< in any segment of any set during this time [N]
   double volume = 0;       ///< at the end [m^3]
-  double balance = 0;      ///< energyBalance() since the session's start [J]
-  int fallback_steps = 0;  ///< that the solver took again with small confidence
+  double balance = 0;      ///< energyBalance() since the start of the session [J]
+  int fallback_steps = 0;  ///< steps that the solver repeated because of low confidence
   int tear_outs = 0, breaks = 0, recoveries = 0, refusals = 0, loose = 0;  ///< events
 };
 
-/// Sews sets one after the other: bites go straight into the state as the needle would take them (biteAround(), through
-/// the whole wall), T-tag and cinch through their buttons. The scope waits outside of the stomach.
+/// Sews sets one after the other. Bites are inserted directly into the state as the needle would take them
+/// (biteAround(), through the whole wall); T-tag and cinch are operated through their buttons. The scope stays outside
+/// the stomach.
 class SutureSession {
  public:
   /// @param model  with gas, scope and suture
   explicit SutureSession(std::shared_ptr<const Model> model, std::uint64_t seed = 1);
 
-  /// Steps with the insufflator on until nothing moves.
-  /// @throws Error if it still does after a minute of simulated time
+  /// Steps with the insufflator on until the wall is at rest.
+  /// @throws Error if it still moves after a minute of simulated time
   void settle();
-  /// The same for at most this long [s].
+  /// The same for at most this time [s].
   /// @return false if something still moves
   bool calmDown(double longest);
 
-  /// @param after  how long to go on when the cinch is let go [s]
+  /// @param after  time to continue after the release of the cinch [s]
   SewnSet sew(const std::vector<WallSpot>& spots, double after = 1);
 
   const Model& model() const { return simulation_.model(); }
@@ -61,7 +62,7 @@ class SutureSession {
 
   Simulation simulation_;
   StepInput input_;
-  std::vector<Event> events_;  // since the beginning
+  std::vector<Event> events_;  // since the start
   double start_balance_ = 0;
 };
 

@@ -4,7 +4,7 @@
 
 namespace vibe {
 
-/// Whether the middle surface of the wall crosses itself somewhere.
+/// Whether the mid-surface of the wall intersects itself.
 bool wallsCross(const Model& model, const State& state);
 
 }  // namespace vibe

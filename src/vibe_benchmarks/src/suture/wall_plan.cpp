@@ -11,11 +11,11 @@ namespace vibe {
 namespace {
 
 constexpr double kGreater = 1.57079632679489662;  // angle of the greater curvature around the axis [rad]
-constexpr double kFarthest = 2.6;                 // from it; the lesser curvature is at pi [rad]
+constexpr double kFarthest = 2.6;                 // largest angle from it; the lesser curvature is at pi [rad]
 constexpr double kAngleStep = 0.02;               // [rad]
 constexpr int kCurveSamples = 200;
 
-/// The station between those on both sides of a place along the axis.
+/// The station interpolated between those on both sides of a position along the axis.
 StomachAxis::Station stationAt(const StomachAxis& axis, double length) {
   const auto& stations = axis.stations();
   const auto next = std::lower_bound(stations.begin() + 1, stations.end() - 1, length,

@@ -9,28 +9,28 @@
 
 namespace vibe {
 
-/// A place of the wall that stays with the tissue.
+/// A material point of the wall.
 struct WallSpot {
   int triangle = -1;
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< of its corners, sum 1
 };
-/// Where it is now [m].
+/// Its current position [m].
 Eigen::Vector3d placeOf(const WallSpot& spot, const SurfaceView& wall);
 
-/// Finds places on the body of a stomach by how far they lie from the greater curvature and from its distal end, along
-/// the wall as it is when the plan is made: what an endoscopist marks before the first bite.
+/// Finds points on the body of a stomach from their distances to the greater curvature and to its distal end, measured
+/// along the wall in its shape when the plan is made, like marks that an endoscopist sets before the first bite.
 class WallPlan {
  public:
-  /// @param wall  present positions of the organ's vertices; used only here and in at()
-  /// @throws Error if the organ has no greater curvature of a body
+  /// @param wall  current positions of the organ's vertices; used only here and in at()
+  /// @throws Error if the body of the organ has no greater curvature
   WallPlan(const Organ& organ, const SurfaceView& wall);
 
-  /// Of the body's greater curvature [m].
+  /// Length of the greater curvature of the body [m].
   double length() const { return curve_length_.back(); }
 
   /// @param along   from the distal end of the body, towards the fundus, in [0, length()] [m]
   /// @param across  from the greater curvature, negative: towards the anterior wall [m]
-  /// @throws Error if across leads round to the lesser curvature
+  /// @throws Error if across reaches the lesser curvature
   WallSpot at(double along, double across) const;
 
  private:

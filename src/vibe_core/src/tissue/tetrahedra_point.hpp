@@ -42,8 +42,8 @@ template <class B>
     }
 }
 
-/// Energy of a volume as a function of the displacement gradient h, and its derivative with respect to h: P = 2 W_I (F -
-/// cof F) + balance cof F with cof F = (1 + tr h) 1 - ht + cof h.
+/// Energy of a volume as a function of the displacement gradient h, and its derivative with respect to h:
+/// P = 2 W_I (F - cof F) + balance cof F with cof F = (1 + tr h) 1 - ht + cof h.
 template <Law law, class B>
 [[gnu::always_inline]] inline B strainEnergy(const LawTerms<B>& terms, const B (&h)[3][3], const B& volume,
                                              B (&p)[3][3]) {
