@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Compares blocks of code in a Markdown page with the files they were taken from.
 
-A line `<!-- file: PATH -->` before a block names the file that the block repeats. With `from: TEXT` and `to: TEXT` the
-block repeats the lines from the first one that contains TEXT to the next one that contains the other TEXT.
+A line `<!-- file: PATH -->` before a block names the file that the block repeats; where the file has the lines
+`// [recipe]` and `// [/recipe]`, what is between them. With `from: TEXT` and `to: TEXT` the block repeats the lines from
+the first one that contains TEXT to the next one that is the other TEXT, indentation aside.
 Prints one line for each block that differs; ends with status 1 if there is one, or no block at all.
 """
 
@@ -15,12 +16,15 @@ BLOCK = re.compile(r"^<!-- file: (?P<path>\S+)(?: from: (?P<first>.+?))?(?: to: 
 
 
 def region(text, first, last):
-    """The lines of a text between two marks, both included; the whole text without marks."""
+    """The lines of a text between two marks, both included; without marks its recipe, or else all of it."""
+    recipe = re.search(r"^// \[recipe\]\n(.*?)^// \[/recipe\]$", text, re.MULTILINE | re.DOTALL)
+    if recipe and not first and not last:
+        return recipe.group(1)
     lines = text.splitlines(keepends=True)
     begin = next((n for n, line in enumerate(lines) if first in line), None) if first else 0
     if begin is None:
         return None
-    end = next((n for n, line in enumerate(lines) if n >= begin and last in line), None) if last else len(lines) - 1
+    end = next((n for n, line in enumerate(lines) if n >= begin and last == line.strip()), None) if last else len(lines) - 1
     return None if end is None else "".join(lines[begin:end + 1])
 
 

@@ -4,8 +4,8 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 examples=$root/examples
 devel=$root/devel${VIBE_VARIANT:-}
 
-# contributing FILE: every block of code of CONTRIBUTING.md below a line `<!-- file: PATH -->` is that file, or what
-# `<!-- file: PATH from: TEXT to: TEXT -->` cuts out of it: from the first line with one text to the next with the other.
+# contributing FILE: every block of code of CONTRIBUTING.md below a line `<!-- file: PATH -->` is that file, its recipe or
+# what `<!-- file: PATH from: TEXT to: TEXT -->` cuts out of it; see check_code_blocks.py.
 contributing() {
   /usr/bin/python3 "$root/scripts/lib/check_code_blocks.py" "$1" "$root"
 }

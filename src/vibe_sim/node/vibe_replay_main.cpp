@@ -44,7 +44,7 @@ std::shared_ptr<const Model> buildRecorded(const Recording& recording, const std
     scene = parseScene(recording.scene, file + " (topic scene)");
   } catch (const Error& error) {
     throw Error("Recording '" + file + "' has a scene that this build cannot read: " + error.what() +
-                " If an older release recorded it, replay it with that release.");
+                " (If an older release recorded it, replay it with that release.)");
   }
   const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
   return buildModel(scene, urdf);
