@@ -20,8 +20,8 @@ constexpr double kSoftness = 0.1;       // modulus of the contact, relative to t
 constexpr double kOnset = 0.25;         // strain over which contact sets in
 constexpr double kStraightBelow = 0.2;  // fraction of the thickness below which the energy is extended linearly
 constexpr double kDrag = 2;             // relative to force over distance: more than the force turns as a vertex slides
-constexpr double kAhead = 1;            // thicknesses searched beyond the contact distance, so that most steps need no
-constexpr double kMinAhead = 0.1;       // search
+constexpr double kAhead = 1;            // thicknesses searched beyond contact, so that most steps need no new search
+constexpr double kMinAhead = 0.1;       // least value of the same
 constexpr double kFlatSight = 0.8;      // smallest straight distance on a flat wall, relative to that along edges
 constexpr double kFloor = 0.05;         // minimum distance of walls, in thicknesses
 constexpr double kLeg = 6e-3;           // a step with longer moves is split into parts, so that few walls are near [m]
@@ -58,8 +58,7 @@ void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double
 
 /// Square of the largest distance between two sets of points; not finite if one of them is not [m^2].
 double farthest(const std::array<std::vector<double>, 3>& from, const double* const* to, std::size_t count) {
-  double max[4] = {0, 0, 0, 0},
-         sum[4] = {0, 0, 0, 0};  // four independent accumulators: this is the only cost for walls that are far apart
+  double max[4] = {0, 0, 0, 0}, sum[4] = {0, 0, 0, 0};  // four independent sums: the only cost for walls far apart
   const double *a = from[0].data(), *b = from[1].data(), *c = from[2].data();
   const auto add = [&](std::size_t i, std::size_t k) {
     const double x = to[0][i] - a[i], y = to[1][i] - b[i], z = to[2][i] - c[i];

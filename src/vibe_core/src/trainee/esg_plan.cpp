@@ -13,10 +13,10 @@ namespace vibe {
 
 namespace {
 
-constexpr double kHelixOut = 26e-3;  // helix_advance while it is screwed in [m]
-constexpr double kHelixHome = 2e-3;  // [m]
-constexpr double kStandOff = 10e-3;  // gap between helix and wall before contact [m]
-constexpr double kNear = 3e-3;  // gap below which the wall is in reach of the helix, which reaches a little farther [m]
+constexpr double kHelixOut = 26e-3;   // helix_advance while it is screwed in [m]
+constexpr double kHelixHome = 2e-3;   // [m]
+constexpr double kStandOff = 10e-3;   // gap between helix and wall before contact [m]
+constexpr double kNear = 3e-3;        // gap within reach of the helix, with a margin [m]
 constexpr double kInto = 1.5e-3;      // depth into the wall, so that it is surely in reach [m]
 constexpr double kBeamGap = 3e-3;     // from the probe to the wall [m]
 constexpr double kFill = 9;           // time to insufflate [s]
