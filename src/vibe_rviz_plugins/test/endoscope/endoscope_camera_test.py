@@ -108,6 +108,9 @@ class Program:
             ]
 
     def __enter__(self):
+        # the program begins to listen with the first of them, and a picture is lost to one that comes later
+        ready = lambda: all(subscriber.get_num_connections() > 0 for subscriber in self.subscribers)
+        assert wait_until(ready), "the program does not publish"
         return self
 
     def __exit__(self, *_):
@@ -143,6 +146,9 @@ class EndoscopeCameraTest(unittest.TestCase):
         self.assertTrue(wait_until(ready), "the program does not listen")
 
     def setUp(self):
+        self.wait_until_alone()
+
+    def wait_until_alone(self):
         # the connections of the program before end a little after it, and would be taken for those of the next one
         gone = lambda: max(p.get_num_connections() for p in (self.topology, self.particles, self.tf)) == 0
         self.assertTrue(wait_until(gone), "the program before still listens")
@@ -245,6 +251,7 @@ class EndoscopeCameraTest(unittest.TestCase):
     def test_twice_the_pixels_show_the_same(self):
         shots = []
         for size in (1, 2):
+            self.wait_until_alone()
             with Program(rate=0, width=320 * size, height=240 * size) as camera:
                 shots.append(camera.last(self.show())[0])
         spots = [dark_spot(shot)[0] + 0.5 for shot in shots]  # from the corner
