@@ -18,7 +18,7 @@ std::string reachTip(const InputSample& sample, const Model& model, StepInput& i
   return "";
 }
 
-// A pull that the model cannot follow lets go: what was held before is not what is wanted now.
+// A pull that the model rejects ends the pull in force: the user has asked for another one.
 std::string applyPull(const InputSample& sample, const Model& model, StepInput& input) {
   const bool asks = sample.pull_particle >= 0 && sample.pull_particle != input.pull_particle;
   const std::string reason = asks ? pullRejection(model, sample.pull_particle) : "";

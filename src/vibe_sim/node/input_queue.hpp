@@ -15,9 +15,9 @@ namespace vibe {
 /// Where an input comes from. Each has its own queue, because each has its own rate.
 enum class InputChannel { Scope, Overstitch, Buttons, Pull };
 constexpr int kInputChannelCount = 4;
-constexpr int kLockstepChannelCount = 3;  ///< the first ones; nobody has to pull the tissue
+constexpr int kLockstepChannelCount = 3;  ///< the first ones; a pull is optional
 
-/// A hand of which nothing is heard for longer lets go: its program may be gone [ns of the simulator's time].
+/// A pull ends if no message arrives for this long: its publisher may be gone [ns of the simulator's time].
 constexpr std::int64_t kPullTimeout = 2'000'000'000;
 
 /// What a sample of the channel Scope says: joint positions, or the pose that scope_tip is to reach.
@@ -39,7 +39,7 @@ struct InputSample {
 /// be called from any thread.
 class InputQueue {
  public:
-  /// Samples that may wait in one channel; more means that somebody stamps far into the future.
+  /// Samples that may wait in one channel; more means that a publisher stamps far into the future.
   static constexpr std::size_t kCapacity = 4096;
 
   /// A sample with the stamp of one that still waits replaces it.
@@ -49,12 +49,12 @@ class InputQueue {
   /// Whether every channel of lock-step has delivered a sample stamped `stamp` or later: all that matters at that time
   /// is known.
   bool knownUntil(std::int64_t stamp) const;
-  /// Channels for which that is not so, for people.
+  /// Names of the channels for which that is not so, for a message.
   std::string missingAt(std::int64_t stamp) const;
 
   /// Applies to `input` everything that is due at `stamp`, in the order of stamps; samples from the past count as of
-  /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics; a hand that has
-  /// been silent for kPullTimeout lets go.
+  /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics; a pull
+  /// without a message for kPullTimeout ends.
   /// @return one sentence per sample that the model cannot use
   std::vector<std::string> apply(std::int64_t stamp, const Model& model, StepInput& input);
 
@@ -64,7 +64,7 @@ class InputQueue {
  private:
   struct Queue {
     std::deque<InputSample> waiting;  // ascending stamps
-    std::int64_t newest = 0;          // greatest stamp ever delivered
+    std::int64_t newest = 0;          // max stamp delivered so far
   };
   mutable std::mutex mutex_;
   std::array<Queue, kInputChannelCount> queues_;

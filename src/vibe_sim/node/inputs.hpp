@@ -16,8 +16,8 @@
 
 namespace vibe {
 
-/// Every topic that the simulator listens to. Valid messages go to the queue; of the others one clear sentence goes to
-/// the log and to procedure/events, at most once a second per topic, and nothing else happens.
+/// Every topic that the simulator listens to. Valid messages go to the queue; an invalid message is reported in one
+/// sentence in the log and on procedure/events, at most once a second per topic, and has no other effect.
 class Inputs {
  public:
   /// @param arrived  called after something has been put into the queue, from the thread of the inputs
@@ -25,7 +25,7 @@ class Inputs {
   ~Inputs();
 
  private:
-  /// A topic has one source at a time: two that disagree would make the scope jump to and fro.
+  /// A topic has one source at a time: two that disagree would make the scope jump between two positions.
   struct Topic {
     ros::Subscriber subscriber;
     std::string owner;             // name of the node that is obeyed

@@ -8,8 +8,8 @@
 
 namespace vibe {
 
-/// Notices when the ROS master is gone. Connections between nodes outlive it, so that the simulation goes on; only when
-/// nobody is connected either, going on has no purpose.
+/// Notices when the ROS master is gone. Connections between nodes outlive it, so the simulation continues until
+/// no listener is connected either.
 class MasterWatch {
  public:
   /// @param timeout  how long to go on without master and listeners [s]

@@ -49,7 +49,7 @@ void ParameterReader::read(const std::string& name, double& value, double low, d
   if (!fetch(name, given)) return;
   const std::string expected = "a number from " + showQuantity(low, unit) + " to " + showQuantity(high, unit);
   if (given.getType() != XmlRpcValue::TypeDouble && given.getType() != XmlRpcValue::TypeInt) failType(name, expected);
-  // rosparam stores "5" as an integer, which is a fine number of seconds
+  // rosparam stores "5" as an integer, which is valid as a number of seconds
   const double number = given.getType() == XmlRpcValue::TypeInt ? static_cast<int>(given) : static_cast<double>(given);
   if (!(number >= low && number <= high)) failType(name, expected);
   value = number;

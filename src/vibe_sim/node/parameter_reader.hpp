@@ -6,7 +6,7 @@
 
 namespace vibe {
 
-/// Reads the private parameters of a node one by one, and afterwards objects to those that nobody asked for: a
+/// Reads the private parameters of a node one by one, and then rejects the ones that were not read: a
 /// misspelt parameter must not silently leave a default in force.
 class ParameterReader {
  public:

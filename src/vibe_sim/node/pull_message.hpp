@@ -13,7 +13,7 @@ namespace vibe {
 /// @throws Error with one sentence if the message cannot be used
 InputSample readPull(const vibe_msgs::TissuePull& message);
 
-/// The hand after a step; of one that has let go all is 0 but the particle, which is -1.
+/// The pull spring after a step. Without a pull the particle is -1 and everything else is 0.
 vibe_msgs::TissuePullState makePullState(const State& state, std::int64_t stamp);
 
 }  // namespace vibe

@@ -14,7 +14,7 @@ namespace vibe {
 class RunStatistics {
  public:
   StepTimer publish;                   ///< filling and sending messages
-  StepTimer total;                     ///< both, and the latching of inputs
+  StepTimer total;                     ///< both, and the application of inputs
   std::int64_t steps = 0;              ///< since the start of the process
   std::uint32_t missed_deadlines = 0;  ///< in the window
 

@@ -8,11 +8,11 @@
 
 namespace vibe {
 
-/// All threads and what bleeds, in the frame world.
+/// All threads and bleeding bites, in the frame world.
 vibe_msgs::SutureArray makeSutures(const Model& model, const State& state, std::int64_t stamp);
 
-/// Differs from that of another procedure if listeners must hear of the change at once: bites, stages, techniques,
-/// tears, bleeding; not places and tensions.
+/// A string that changes when listeners must be told at once: bites, stages, techniques, tears, bleeding. It does not
+/// depend on positions and tensions.
 std::uint64_t kindOf(const ProcedureState& procedure);
 
 }  // namespace vibe

@@ -53,7 +53,7 @@ bool isFinite(const State& state) {
   return std::isfinite(sum);
 }
 
-// A state without finite numbers has no future; start the tissue again from rest and say so.
+// A state with numbers that are not finite cannot be continued: the tissue starts again from rest, with an event.
 void recover(const Model& model, State& state, std::vector<Event>& events) {
   const State fresh = initialState(model, state.seed);
   state.x = fresh.x, state.y = fresh.y, state.z = fresh.z;
