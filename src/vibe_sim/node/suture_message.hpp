@@ -11,7 +11,7 @@ namespace vibe {
 /// All threads and bleeding bites, in the frame world.
 vibe_msgs::SutureArray makeSutures(const Model& model, const State& state, std::int64_t stamp);
 
-/// A string that changes when listeners must be told at once: bites, stages, techniques, tears, bleeding. It does not
+/// A number that changes when listeners must be told at once: bites, stages, techniques, tears, bleeding. It does not
 /// depend on positions and tensions.
 std::uint64_t kindOf(const ProcedureState& procedure);
 
