@@ -1,0 +1,174 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "vibe_firmware/protocol/reports.hpp"
+
+// USB descriptors of both devices, the only place where they are written down: firmware, emulator and host use this
+// header. USB 2.0, chapter 9; HID 1.11, chapters 6 and 7.
+
+namespace vibe_firmware {
+
+/// pid.codes' ids for private tests. A device that is shipped needs ids of its own.
+constexpr std::uint16_t kVendorId = 0x1209;
+constexpr std::uint16_t kHapticProductId = 0x0001;
+constexpr std::uint16_t kInputProductId = 0x0002;
+
+namespace descriptor_detail {
+constexpr std::uint8_t low(std::size_t value) {
+  return static_cast<std::uint8_t>(value & 0xFF);
+}
+constexpr std::uint8_t high(std::size_t value) {
+  return static_cast<std::uint8_t>(value >> 8);
+}
+constexpr std::size_t kGamepadBytes = 6;  // two axes and sixteen buttons
+}  // namespace descriptor_detail
+
+/// A gamepad with two 16-bit axes and 16 buttons. The rest of the input report and the feature reports are
+/// vendor-defined bytes, which gamepad drivers ignore.
+constexpr std::uint8_t kHapticReportDescriptor[] = {
+    0x05, 0x01,            // usage page: generic desktop
+    0x09, 0x05,            // usage: game pad
+    0xA1, 0x01,            // collection: application
+    0x85, kInputReportId,  //   report id
+    0x09, 0x30,
+    0x09, 0x31,  //   usages: X, Y
+    0x16, 0x01,
+    0x80, 0x26,
+    0xFF, 0x7F,  //   logical -32767 to 32767
+    0x75, 0x10,
+    0x95, 0x02,
+    0x81, 0x02,  //   2 x 16 bit, input, variable
+    0x05, 0x09,
+    0x19, 0x01,
+    0x29, 0x10,  //   usage page: buttons 1 to 16
+    0x15, 0x00,
+    0x25, 0x01,  //   logical 0 to 1
+    0x75, 0x01,
+    0x95, 0x10,
+    0x81, 0x02,  //   16 x 1 bit, input, variable
+    0x06, 0x00,
+    0xFF, 0x15,
+    0x00, 0x26,
+    0xFF, 0x00,
+    0x75, 0x08,  //   vendor page, bytes
+    0x09, 0x01,
+    0x95, kInputReportSize - 1 - descriptor_detail::kGamepadBytes,
+    0x81, 0x02,  //   rest of the input report
+    0x85, kParameterReportId,
+    0x09, 0x02,
+    0x95, kParameterReportSize - 1,
+    0xB1, 0x02,  //   feature: parameters
+    0x85, kStatusReportId,
+    0x09, 0x03,
+    0x95, kStatusReportSize - 1,
+    0xB1, 0x02,  //   feature: status
+    0x85, kAxisReportId,
+    0x09, 0x04,
+    0x95, kAxisReportSize - 1,
+    0xB1, 0x02,  //   feature: axis 0
+    0x85, kAxisReportId + 1,
+    0x09, 0x05,
+    0x95, kAxisReportSize - 1,
+    0xB1, 0x02,  //   feature: axis 1
+    0xC0,        // end of the collection
+};
+
+/// The same without parameters: the input device has no motors.
+constexpr std::uint8_t kInputReportDescriptor[] = {
+    0x05, 0x01,
+    0x09, 0x05,
+    0xA1, 0x01,
+    0x85, kInputReportId,
+    0x09, 0x30,
+    0x09, 0x31,
+    0x16, 0x01,
+    0x80, 0x26,
+    0xFF, 0x7F,
+    0x75, 0x10,
+    0x95, 0x02,
+    0x81, 0x02,
+    0x05, 0x09,
+    0x19, 0x01,
+    0x29, 0x10,
+    0x15, 0x00,
+    0x25, 0x01,
+    0x75, 0x01,
+    0x95, 0x10,
+    0x81, 0x02,
+    0x06, 0x00,
+    0xFF, 0x15,
+    0x00, 0x26,
+    0xFF, 0x00,
+    0x75, 0x08,
+    0x09, 0x01,
+    0x95, kInputReportSize - 1 - descriptor_detail::kGamepadBytes,
+    0x81, 0x02,
+    0x85, kStatusReportId,
+    0x09, 0x03,
+    0x95, kStatusReportSize - 1,
+    0xB1, 0x02,
+    0x85, kAxisReportId,
+    0x09, 0x04,
+    0x95, kAxisReportSize - 1,
+    0xB1, 0x02,
+    0x85, kAxisReportId + 1,
+    0x09, 0x05,
+    0x95, kAxisReportSize - 1,
+    0xB1, 0x02,
+    0xC0,
+};
+
+/// Device descriptor: full speed, class in the interface, strings 1 to 3.
+constexpr std::array<std::uint8_t, 18> deviceDescriptor(std::uint16_t product) {
+  using descriptor_detail::high;
+  using descriptor_detail::low;
+  return {18,   1,    0x00, 0x02, 0, 0, 0, 64, low(kVendorId), high(kVendorId), low(product), high(product),
+          0x00, 0x01, 1,    2,    3, 1};
+}
+
+/// Configuration with one HID interface and one interrupt endpoint (0x81, 64 bytes, polled every 4 ms: the
+/// firmware sets the rate and answers NAK in between).
+constexpr std::size_t kConfigurationSize = 9 + 9 + 9 + 7;
+constexpr std::array<std::uint8_t, kConfigurationSize> configurationDescriptor(std::size_t report_descriptor_size) {
+  using descriptor_detail::high;
+  using descriptor_detail::low;
+  return {9,
+          2,
+          kConfigurationSize,
+          0,
+          1,
+          1,
+          0,
+          0x80,
+          50,  // bus-powered, 100 mA: the motors have a supply of their own
+          9,
+          4,
+          0,
+          0,
+          1,
+          3,
+          0,
+          0,
+          0,  // interface 0, HID, no boot protocol
+          9,
+          0x21,
+          0x11,
+          0x01,
+          0,
+          1,
+          0x22,
+          low(report_descriptor_size),
+          high(report_descriptor_size),
+          7,
+          5,
+          0x81,
+          3,
+          64,
+          0,
+          4};
+}
+
+static_assert(kInputReportSize <= 64 && kParameterReportSize <= 64, "one packet per report");
+
+}  // namespace vibe_firmware
