@@ -45,7 +45,7 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--duration", o.duration, "end after so many seconds (default: never)")
       ->type_name("S")
       ->check(CLI::NonNegativeNumber);
-  app.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.");
+  app.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.\n");
 }
 
 std::shared_ptr<const Hand> makeHand(const Options& o) {
@@ -189,11 +189,16 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Emulates the haptic device and the input device with the firmware in them, in wall time.",
                "vibe_emulator"};
+  app.set_help_flag("--help", "print this text and end");
   addOptions(app, options);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    std::printf("%s", app.help().c_str());
+    return 0;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    std::fprintf(stderr, "vibe_emulator: %s; see --help.\n", error.what());
+    return 2;
   }
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopped = 1; });
   std::signal(SIGUSR1, [](int) { toggled = 1; });
