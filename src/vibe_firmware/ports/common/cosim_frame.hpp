@@ -9,8 +9,8 @@
 
 namespace vibe_firmware {
 
-constexpr std::size_t kCosimData = 64;         ///< bytes of a control request's data stage, and of its answer
-constexpr std::int32_t kNoControl = -1000;     ///< CosimReply::control_result without a control request
+constexpr std::size_t kCosimData = 64;           ///< bytes of a control request's data stage, and of its answer
+constexpr std::int32_t kNoControl = -1000;       ///< CosimReply::control_result without a control request
 constexpr std::uint32_t kCosimPwmPeriod = 4320;  ///< as on STM32F767 [counts]
 
 /// From the plant, at the beginning of a tick.

@@ -4,8 +4,8 @@
 
 extern "C" {
 void resetHandler();
-void faultHandler();  ///< every exception and interrupt that nobody expects
-void tickHandler();   ///< entry of the 1 kHz interrupt; calls tick()
+void faultHandler();       ///< every exception and interrupt that nobody expects
+void tickHandler();        ///< entry of the 1 kHz interrupt; calls tick()
 extern char tickReturn[];  ///< its last instruction: tests count the instructions from tickHandler to here
 
 void tick();                 ///< of the image: what runs at 1 kHz

@@ -15,7 +15,8 @@ struct PlantConfig {
   std::int32_t counts_per_turn = 2048;  ///< between two index pulses
 };
 
-/// One axis: motor on a voltage, inertia, dry friction, encoder. The inductance is left out: 0.42 mH / 19.8 ohm = 21 us.
+/// One axis: motor on a voltage, inertia, dry friction, encoder. The inductance is left out: 0.42 mH / 19.8 ohm = 21
+/// us.
 ///
 ///   J w' = n k (U d - n k w) / R - f_c sign(w) + hand
 class AxisPlant {

@@ -73,8 +73,7 @@ void UartLink::handleFrame(ControlHandler& handler) {
 void UartLink::answer(ControlHandler& handler) {
   std::uint8_t response[ControlHandler::kMaxData];
   const bool fits = received_ <= sizeof frame_;
-  const int result =
-      fits ? handler.handleControl(setup(), frame_ + kSetupFrame, response) : ControlEndpoint::kStall;
+  const int result = fits ? handler.handleControl(setup(), frame_ + kSetupFrame, response) : ControlEndpoint::kStall;
   const std::uint8_t head[] = {'C', static_cast<std::uint8_t>(result), static_cast<std::uint8_t>(result >> 8)};
   send(head, sizeof head);
   if (result > 0) send(response, static_cast<std::size_t>(result));
