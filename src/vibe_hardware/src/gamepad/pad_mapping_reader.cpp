@@ -13,6 +13,7 @@ namespace {
 constexpr double kDefaultDeadZone = 0.12;  // of sticks that do not return to their middle exactly (design choice)
 constexpr double kDefaultExponent = 2;     // fine motion near the middle (design choice)
 constexpr double kLargestEffort = 100;     // [N], [N m]
+constexpr double kRounding = 1e-6;         // of a range: a URDF has the digits of 90 deg that its writer chose
 
 const YamlField* find(const std::vector<YamlField>& entries, const std::string& key) {
   for (const YamlField& entry : entries)
@@ -132,8 +133,9 @@ void PadMappingReader::readMotion(const YamlField& field, const std::vector<Yaml
     if (const YamlField* wrong = find(entries, key)) source_.fail(*wrong, "goes with 'mode: position' only; remove it");
   const YamlField* rate = find(entries, "rate");
   if (rate == nullptr) source_.fail(field, "has no rate, the speed at full deflection; write 'rate: ...'");
+  const double fastest = limits_[static_cast<std::size_t>(index)].velocity;
   const std::string unit = std::string(jointUnit(index)) + "/s";
-  joint.rate = source_.quantity(*rate, unit, 0, limits_[static_cast<std::size_t>(index)].velocity);
+  joint.rate = std::min(source_.quantity(*rate, unit, 0, fastest * (1 + kRounding)), fastest);
 }
 
 void PadMappingReader::readPosition(const YamlField& field, const std::vector<YamlField>& entries, int index,
@@ -145,11 +147,13 @@ void PadMappingReader::readPosition(const YamlField& field, const std::vector<Ya
   const YamlField* range = find(entries, "range");
   if (range == nullptr) source_.fail(field, "has no range; write 'range: [lowest, highest]'");
   const JointLimits& limits = limits_[static_cast<std::size_t>(index)];
-  const std::vector<double> ends = source_.quantities(*range, 2, jointUnit(index), limits.lower, limits.upper);
+  const double spare = kRounding * (limits.upper - limits.lower);
+  const std::vector<double> ends =
+      source_.quantities(*range, 2, jointUnit(index), limits.lower - spare, limits.upper + spare);
   if (!(ends[0] < ends[1]))
     source_.fail(*range, "has its ends in the wrong order; write [lowest, highest] and 'reversed: true' if needed");
-  joint.low = ends[0];
-  joint.high = ends[1];
+  joint.low = std::max(ends[0], limits.lower);
+  joint.high = std::min(ends[1], limits.upper);
   const std::string unit = jointUnit(index) == std::string("m") ? "N" : "N*m";
   if (const YamlField* effort = find(entries, "full_effort"))
     joint.full_effort = source_.quantity(*effort, unit, 0, kLargestEffort);

@@ -37,7 +37,7 @@ TEST(PadDrive, DeflectionIsZeroInTheDeadZoneMonotoneOddAndFull) {
     pad.axes[ABS_Y].value = value;
     const double deflection = controlDeflection(joint, pad);
     ASSERT_GE(deflection, last) << value;
-    if (std::abs(pad.axes[ABS_Y].deflection()) <= 0.1) ASSERT_EQ(deflection, 0) << value;
+    ASSERT_EQ(deflection == 0, std::abs(pad.axes[ABS_Y].deflection()) <= 0.1) << value;
     last = deflection;
     pad.axes[ABS_Y].value = -1 - value;  // the mirrored value of this range
     ASSERT_NEAR(controlDeflection(joint, pad), -deflection, 1e-12);

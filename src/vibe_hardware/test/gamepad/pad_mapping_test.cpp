@@ -104,8 +104,8 @@ TEST(PadMapping, NamesMistakesOutsideOfJoints) {
   EXPECT_EQ(errorOf("name: a\njoint: {}\n"), "my_pad.yaml:2: joint: is not a known key; did you mean 'joints'?");
   EXPECT_EQ(errorOf("name: a\n"), "my_pad.yaml:1: moves nothing; write at least one joint below 'joints:'");
   EXPECT_NE(errorOf("joints: {}\n").find("has no name"), std::string::npos);
-  EXPECT_EQ(errorOf("name: a\njoints: {insert: {}}\n"),
-            "my_pad.yaml:2: joints.insert: is not a joint; did you mean 'insertion'?");
+  EXPECT_EQ(errorOf("name: a\njoints: {insertoin: {}}\n"),
+            "my_pad.yaml:2: joints.insertoin: is not a joint; did you mean 'insertion'?");
   EXPECT_EQ(errorOf("name: a\nbuttons: {helix_grip: {button: BTN_A}}\n"),
             "my_pad.yaml:2: buttons.helix_grip: is not a button; did you mean 'helix_grab'?");
   EXPECT_NE(errorOf("name: a\nbuttons: {needle: {button: BTN_SUOTH}}\n").find("did you mean 'BTN_SOUTH'?"),
