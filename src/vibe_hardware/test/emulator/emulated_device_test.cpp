@@ -140,9 +140,9 @@ TEST(EmulatedHaptic, ReportsEvery10MillisecondsThroughTheWrapOfTheCounter) {
     EXPECT_EQ(report.flags & vibe_firmware::kEncoderFault, 0);
     most = std::max(most, report.counts[0]);
   }
-  EXPECT_NEAR(most, 30 / device.plant(0).encoder_step, 30);  // 97,700: beyond 16 bits
+  EXPECT_NEAR(most, 30 / device.plant(0).encoder_step, 60);  // 97,700: beyond 16 bits; friction may hold it
   EXPECT_NE(reports.back().flags & vibe_firmware::kIndexed0, 0);
-  EXPECT_LT(std::abs(reports.back().counts[0]), 60);  // friction may hold it
+  EXPECT_LT(std::abs(reports.back().counts[0]), 60);
   EXPECT_LT(std::abs(reports.back().counts[1]), 60);
 }
 
