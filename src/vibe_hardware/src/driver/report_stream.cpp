@@ -122,14 +122,9 @@ void ReportStream::accept(const InputReport& report, double arrival, DeviceSampl
 
 double ReportStream::rate(double now) const {
   const std::size_t count = std::min<std::uint64_t>(counts_.received, kRateWindow);
-  double oldest = now;
   int recent = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (arrivals_[i] < now - 1) continue;
-    oldest = std::min(oldest, arrivals_[i]);
-    ++recent;
-  }
-  return recent > 1 && now > oldest ? recent / (now - oldest) : 0;
+  for (std::size_t i = 0; i < count; ++i) recent += arrivals_[i] > now - 1 ? 1 : 0;
+  return recent;
 }
 
 }  // namespace vibe
