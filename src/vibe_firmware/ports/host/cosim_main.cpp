@@ -92,7 +92,9 @@ int main(int argc, char** argv) {
       throw std::runtime_error("name either a scenario or --compare; --help lists them");
     return options.compare.empty() ? run(options) : compare(options);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    std::cerr << "vibe_cosim: " << error.what() << " (--help lists what there is)\n";
+    return 2;
   } catch (const std::exception& error) {
     std::cerr << "vibe_cosim: " << error.what() << "\n";
     return 2;

@@ -18,7 +18,7 @@ def parse_arguments():
     parser.add_argument("image", help="firmware_mps2_haptic_cosim.elf")
     parser.add_argument("--cosim", required=True, help="the program vibe_cosim")
     parser.add_argument("--plugin", help="count_instructions.so: also counts the instructions of each interrupt")
-    parser.add_argument("--shift", type=int, default=6, help="an instruction takes 2^SHIFT ns of virtual time (6)")
+    parser.add_argument("--shift", default="6", help="an instruction takes 2^SHIFT ns of virtual time (6); none: real time")
     parser.add_argument("options", nargs="+", help="of vibe_cosim: scenario, --ticks, --trace, --delay")
     arguments, rest = parser.parse_known_args()
     arguments.options += rest
@@ -38,7 +38,9 @@ def qemu_command(arguments, replies, requests):
     semihosting = ",".join(f"arg={part}" for part in ("image", replies, requests))
     command = ["qemu-system-arm", "-M", "mps2-an500", "-display", "none", "-monitor", "none", "-serial", "null",
                "-semihosting-config", f"enable=on,target=native,{semihosting}",
-               "-icount", f"shift={arguments.shift},sleep=off", "-kernel", arguments.image]
+               "-kernel", arguments.image]
+    if arguments.shift != "none":
+        command += ["-icount", f"shift={arguments.shift},sleep=off"]
     if arguments.plugin:
         first, last = symbol(arguments.image, "tickHandler"), symbol(arguments.image, "tickReturn")
         command += ["-plugin", f"{os.path.abspath(arguments.plugin)},first=0x{first},last=0x{last}"]
