@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <ostream>
 #include <string>
 
 #include "vibe_core/common/error.hpp"
@@ -39,10 +40,14 @@ struct Mistake {
   const char* sentence;  // part of it, after file and line
 };
 
+void PrintTo(const Mistake& mistake, std::ostream* stream) {
+  *stream << mistake.other;
+}
+
 class CalibrationMistakes : public testing::TestWithParam<Mistake> {};
 
 TEST(Calibration, TheShippedOneIsRead) {
-  const Calibration c = Calibration::load("package://vibe_hardware/config/devices.yaml");
+  const Calibration c = Calibration::load("../config/devices.yaml");
   EXPECT_EQ(c.devices[0].vendor, 0x1209);
   EXPECT_EQ(c.devices[1].product, 2);
   EXPECT_DOUBLE_EQ(c.joints[Insertion].scale.scale, 0.01);
@@ -112,8 +117,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "homing.positions.insertion: is given a second time"},
         Mistake{"{insertion: 0 m", "{insertion: 0.4 m",
                 "homing.positions.insertion: is outside the limits of the joint, 0 m to 0.3 m"},
-        Mistake{"{insertion: 0 m", "{insert: 0 m",
-                "homing.positions.insert: is not a known key; did you mean 'insertion'?"},
+        Mistake{"{insertion: 0 m", "{insertoin: 0 m",
+                "homing.positions.insertoin: is not a known key; did you mean 'insertion'?"},
         Mistake{"bit: 6}", "bit: 16}", "homing.button.bit: '16' is out of range; write a whole number from 0 to 15"},
         Mistake{"  apc_pedal:", "  apc_petal:", "buttons.apc_petal: is not a known key; did you mean 'apc_pedal'?"},
         Mistake{"speed: 10 mm/s", "speed: 10 mm",
@@ -122,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"limits: [0 mm, 30 mm]", "limits: [5 mm, 30 mm]", "overstitch.helix_advance: has limits without 0"}));
 
 TEST(Calibration, FileAndLineAreThoseOfTheMistake) {
-  EXPECT_EQ(errorOf("devices:\n  haptic: {id: 1209:0001}\n  inptu: {id: 1209:0002}\n"),
+  EXPECT_EQ(errorOf("devices:\n  haptic: {id: 1209:0001}\n  inptu: {id: 1209:0002}\njoints: {}\n"),
             "devices.yaml:3: devices.inptu: is not a known key; did you mean 'input'?");
   EXPECT_NE(errorOf("[]").find("devices.yaml:1: is a list at the top"), std::string::npos);
   EXPECT_NE(errorOf("joints: {").find("devices.yaml:"), std::string::npos);
