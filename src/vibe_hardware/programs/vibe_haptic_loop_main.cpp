@@ -16,12 +16,14 @@ using namespace vibe;
 
 struct Options {
   std::string scene = "package://vibe_core/scenes/stomach.yaml", script, csv;
+  std::string config = "package://vibe_hardware/config/devices.yaml";
   double from = 0, latency = 5e-3;
 };
 
 void addOptions(CLI::App& app, Options& o) {
   app.add_option("--scene", o.scene, "scene to run (default: " + o.scene + ")")->type_name("FILE");
   app.add_option("--script", o.script, "trainee script that the hand plays")->type_name("FILE")->required();
+  app.add_option("--config", o.config, "calibration of the devices (default: " + o.config + ")")->type_name("FILE");
   app.add_option("--from", o.from, "measure from this time on; the hand should be still there (default: 0)")
       ->type_name("S")
       ->check(CLI::NonNegativeNumber);
@@ -58,12 +60,8 @@ void run(const Options& o) {
   const Scene scene = loadScene(resolveAddress(o.scene));
   const TraineeScript script = TraineeScript::load(resolveAddress(o.script));
   HapticLoopSettings settings;
+  settings.setup.calibration = Calibration::load(o.config);
   settings.hand = std::make_shared<ScriptedHand>(script);
-  settings.others = [&](double time, StepInput& input) {
-    const StepInput all = script.at(time);
-    std::copy(all.joints.begin() + kScopeJointCount, all.joints.end(), input.joints.begin() + kScopeJointCount);
-    input.buttons = all.buttons;
-  };
   settings.duration = script.duration();
   settings.measure_from = o.from;
   settings.latency = o.latency;

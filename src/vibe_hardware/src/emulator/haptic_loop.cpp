@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
+#include "emulator/loop_host.hpp"
+#include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
-#include "vibe_firmware/core/passivity.hpp"
 
 namespace vibe {
 namespace {
-
-using vibe_firmware::ParameterReport;
 
 std::shared_ptr<const Model> modelOf(Scene scene, double step_period) {
   scene.step_period = step_period;
@@ -33,117 +31,67 @@ class Loop {
   Loop(const Scene& scene, const HapticLoopSettings& settings)
       : settings_(settings),
         emulator_(settings.setup, settings.hand),
-        host_(emulator_.haptic().function()),
+        bus_(emulator_),
+        host_(bus_, settings.setup.calibration, [this] { return emulator_.time(); }),
         frames_(modelOf(scene, scene.step_period), SimulationSettings::study(scene.seed)),
-        reference_model_(modelOf(scene, kTick)) {}
+        reference_model_(modelOf(scene, kTick)) {
+    axis_ = axisOfInsertion(settings.setup.calibration);
+  }
 
   HapticLoopResult run() {
     const auto count = std::lround(settings_.duration / kTick);
     for (long i = 0; i < count; ++i) millisecond();
+    const HapticStatistics statistics = host_.statistics();
+    result_.parameter_sets = static_cast<int>(statistics.sent);
+    result_.clamped = static_cast<int>(statistics.clamped);
+    result_.refused = static_cast<int>(statistics.refused);
+    result_.mismatched = static_cast<int>(statistics.mismatched);
     return std::move(result_);
   }
 
  private:
+  static std::size_t axisOfInsertion(const Calibration& calibration) {
+    const JointCalibration& insertion = calibration.joints[Insertion];
+    if (insertion.device != DeviceKind::Haptic)
+      throw Error("The insertion is not on the haptic device; the loop needs a calibration that puts it there.");
+    return static_cast<std::size_t>(insertion.axis);
+  }
+
   void millisecond() {
     const double frame_end = static_cast<double>(frame_ + 1) * frames_.stepPeriod();
     if (emulator_.time() >= frame_end) computeFrame();
-    if (pending_ && emulator_.time() >= pending_time_) sendPending();
+    if (pending_ && emulator_.time() >= pending_time_) {
+      host_.render(frames_.toolImpedance(), settings_.rendering);
+      pending_ = false;
+    }
     emulator_.tick();
-    readReports();
-    const bool passivity = (emulator_.haptic().firmware().state().status.flags & vibe_firmware::kPassivityActs) != 0;
+    bus_.collect();
+    host_.poll();
+    const bool passivity = emulator_.haptic().firmware().state().axes[axis_].passivity_acts;
     result_.passivity_acts += passivity ? 1 : 0;
     result_.samples.push_back(sampleNow());
   }
 
-  // --- host
-
-  struct Reported {
-    double time;
-    std::array<double, kScopeJointCount> joints;
-  };
-
-  void readReports() {
-    std::uint8_t bytes[vibe_firmware::kInputReportSize];
-    const std::array<EmulatedDevice*, 2> devices{&emulator_.haptic(), &emulator_.input()};
-    for (std::size_t d = 0; d < devices.size(); ++d) {
-      vibe_firmware::InputReport report;
-      if (!devices[d]->nextReport(bytes) || !unpack(bytes, sizeof bytes, report)) continue;
-      const auto& axes = d == 0 ? settings_.setup.haptic.axes : settings_.setup.input.axes;
-      for (std::size_t a = 0; a < axes.size(); ++a)
-        joints_[2 * d + a] = jointPosition(settings_.setup.joints[2 * d + a],
-                                           report.counts[a] * static_cast<double>(axes[a].radians_per_count));
-      if (d == 1) reported_.push_back({emulator_.time(), joints_});
-    }
-  }
-
-  /// The frame that has just ended, with the joints that were known when it began.
+  /// The frame that has just ended, with the input that was known when it began.
   void computeFrame() {
-    const double begin = static_cast<double>(frame_) * frames_.stepPeriod();
-    while (reported_.size() > 1 && reported_[1].time <= begin) reported_.pop_front();
-    StepInput input;
-    if (!reported_.empty() && reported_[0].time <= begin)
-      std::copy(reported_[0].joints.begin(), reported_[0].joints.end(), input.joints.begin());
-    if (settings_.others) settings_.others(begin, input);
-    frames_.step(input);
+    frames_.step(host_.inputAt(static_cast<double>(frame_) * frames_.stepPeriod()));
     ++frame_;
-    prepareParameters();
-  }
-
-  void prepareParameters() {
-    const auto& impedance = frames_.toolImpedance();
-    if (!impedance && !touched_) return;
-    touched_ = impedance.has_value();
-    pending_ = ParameterReport();
-    pending_->number = static_cast<std::uint16_t>(++result_.parameter_sets);
+    pending_ = true;
     pending_time_ = emulator_.time() + settings_.latency;
-    if (!impedance) return;  // contact has ended: nothing is rendered
-    for (std::size_t axis = 0; axis < pending_->axes.size(); ++axis)
-      pending_->axes[axis] = parametersOf(impedance->joints[axis], axis);
+    const auto& impedance = frames_.toolImpedance();
+    if (!impedance) return;
     result_.max_stiffness = std::max(result_.max_stiffness, impedance->joints[Insertion].stiffness);
     result_.max_damping = std::max(result_.max_damping, impedance->joints[Insertion].damping);
   }
 
-  vibe_firmware::AxisParameters parametersOf(const JointResponse& joint, std::size_t axis) {
-    const vibe_firmware::AxisConfig& config = settings_.setup.haptic.axes[axis];
-    JointSpring spring{joint.position, joint.effort, 0, 0};
-    if (settings_.rendering == Rendering::Spring) {
-      spring.stiffness = joint.stiffness;
-      spring.damping = joint.damping;
-      spring.effort += joint.damping * joint.velocity;
-    }
-    vibe_firmware::AxisParameters parameters =
-        axisSpring(settings_.setup.joints[axis], spring, static_cast<double>(config.torque_limit));
-    const float stiffness = std::min(parameters.stiffness, vibe_firmware::maxStiffness(config, 0));
-    const float damping = std::min(parameters.damping, vibe_firmware::maxDamping(config, stiffness));
-    const float torque = std::clamp(parameters.torque, -config.torque_limit, config.torque_limit);
-    result_.clamped +=
-        stiffness != parameters.stiffness || damping != parameters.damping || torque != parameters.torque ? 1 : 0;
-    parameters.stiffness = stiffness;
-    parameters.damping = damping;
-    parameters.torque = torque;
-    return parameters;
-  }
-
-  void sendPending() {
-    std::uint8_t bytes[vibe_firmware::kParameterReportSize];
-    pack(*pending_, bytes);
-    host_.setFeature(bytes, sizeof bytes);
-    pending_.reset();
-    const std::vector<std::uint8_t> answer = host_.getFeature(vibe_firmware::kStatusReportId);
-    vibe_firmware::StatusReport status;
-    if (unpack(answer.data(), answer.size(), status)) result_.refused = static_cast<int>(status.refused);
-  }
-
-  // --- what is measured
-
   HapticLoopSample sampleNow() {
-    const AxisPlantState& axis = emulator_.haptic().axis(0);
-    const AxisPlant& plant = emulator_.haptic().plant(0);
-    const JointScale& joint = settings_.setup.joints[Insertion];
+    const AxisPlantState& axis = emulator_.haptic().axis(axis_);
+    const AxisPlant& plant = emulator_.haptic().plant(axis_);
+    const JointScale& joint = settings_.setup.calibration.joints[Insertion].scale;
     HapticLoopSample sample;
     sample.time = emulator_.time();
     sample.insertion = jointPosition(joint, axis.position);
-    sample.rendered = jointEffort(joint, static_cast<double>(emulator_.haptic().torques()[0]));
+    sample.rendered = jointEffort(joint, static_cast<double>(emulator_.haptic().torques()[axis_]));
     // the hand pulls with as much as the device pushes; its own mass counts as part of the device
     const double speed = (axis.intended - last_intended_) / kTick;
     last_intended_ = axis.intended;
@@ -160,11 +108,13 @@ class Loop {
       reference_ = std::make_unique<Simulation>(reference_model_, SimulationSettings::study(0));
       reference_->replaceState(frames_.state());
     }
-    StepInput input;
-    std::copy(joints_.begin(), joints_.end(), input.joints.begin());
-    for (std::size_t axis = 0; axis < 2; ++axis)
-      input.joints[axis] = jointPosition(settings_.setup.joints[axis], emulator_.haptic().axis(axis).position);
-    if (settings_.others) settings_.others(sample.time, input);
+    StepInput input = host_.input();
+    for (std::size_t joint = 0; joint < kScopeJointCount; ++joint) {  // without encoder and without delay
+      const JointCalibration& c = settings_.setup.calibration.joints[joint];
+      if (c.device != DeviceKind::Haptic) continue;
+      const double position = emulator_.haptic().axis(static_cast<std::size_t>(c.axis)).position;
+      input.joints[joint] = jointPosition(c.scale, position);
+    }
     reference_->step(input);
     sample.reference = insertionForce(*reference_);
     sample.measured = true;
@@ -172,17 +122,16 @@ class Loop {
 
   const HapticLoopSettings& settings_;
   Emulator emulator_;
-  UsbHost host_;
+  EmulatorBus bus_;
+  LoopHost host_;
   Simulation frames_;
   std::shared_ptr<const Model> reference_model_;
   std::unique_ptr<Simulation> reference_;
   HapticLoopResult result_;
+  std::size_t axis_ = 0;
   std::int64_t frame_ = 0;
-  std::array<double, kScopeJointCount> joints_{};
-  std::deque<Reported> reported_;
-  std::optional<ParameterReport> pending_;
+  bool pending_ = false;
   double pending_time_ = 0, last_intended_ = 0;
-  bool touched_ = false;
 };
 
 void removeMean(std::vector<double>& values) {

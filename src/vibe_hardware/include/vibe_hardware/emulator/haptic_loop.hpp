@@ -1,12 +1,10 @@
 #pragma once
-#include <functional>
 #include <memory>
 #include <vector>
 
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_hardware/emulator/emulator.hpp"
-#include "vibe_hardware/emulator/usb_host.hpp"
 
 namespace vibe {
 
@@ -45,8 +43,6 @@ RenderingError renderingError(const std::vector<HapticLoopSample>& samples);
 struct HapticLoopSettings {
   EmulatorSetup setup;
   std::shared_ptr<const Hand> hand;
-  /// Joints of the suturing device and buttons, which are not on these devices [s]; may be empty.
-  std::function<void(double time, StepInput& input)> others;
   Rendering rendering = Rendering::Spring;
   double latency = 5e-3;    ///< from the end of a frame to its parameters in the device: step, messages, USB [s]
   double measure_from = 0;  ///< the reference begins here with the state of the frames [s]
@@ -56,15 +52,16 @@ struct HapticLoopSettings {
 struct HapticLoopResult {
   std::vector<HapticLoopSample> samples;
   int parameter_sets = 0;                     ///< sent to the device
-  int clamped = 0;                            ///< of these, lowered to what is passive on the device
-  int refused = 0;                            ///< by the device
+  int clamped = 0;                            ///< frames whose spring was lowered to what is passive on the device
+  int refused = 0;                            ///< sets, by the device
+  int mismatched = 0;                         ///< sets that read back differently
   int passivity_acts = 0;                     ///< ticks in which the passivity controller acted
   double max_stiffness = 0, max_damping = 0;  ///< of the insertion, as the simulator asked for them [N/m], [N s/m]
 };
 
-/// The closed loop simulator -> parameters -> firmware -> hand -> simulator, in virtual time. As in a session in wall
-/// time, the simulator computes a frame when it has ended, from the joints that were reported before it began; the
-/// parameters reach the device `latency` later.
+/// The closed loop simulator -> parameters -> driver -> firmware -> hand -> driver -> simulator, in virtual time. As in
+/// a session in wall time, the simulator computes a frame when it has ended, from the joints that were reported before
+/// it began; the parameters reach the device `latency` later.
 /// @param scene  with a scope; its step period is that of the frames
 /// @throws Error if the scene cannot be built
 HapticLoopResult runHapticLoop(const Scene& scene, const HapticLoopSettings& settings);
