@@ -3,11 +3,13 @@
 
 import math
 import os
+import re
 import signal
 import sys
 import time
 import unittest
 
+import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
@@ -25,7 +27,14 @@ actions:
   - {hold: apc_pedal, for: 3600}
 """
 OK, WARN, ERROR = 0, 1, 2
+HERE = os.path.dirname(os.path.realpath(__file__))
 REPORT_PERIOD = 0.01
+
+
+def rows_of(text, section):
+    """The first two columns of the rows of a section's tables that begin with a name in backquotes."""
+    part = re.search(r"^## {}\n(.*?)(?=^##|\Z)".format(re.escape(section)), text, re.MULTILINE | re.DOTALL)
+    return dict(re.findall(r"^\| `([^`]+)` \| ([^|]*) \|", part.group(1), re.MULTILINE))
 
 
 def spring(stiffness, position, touching=True, damping=1.0):
@@ -206,6 +215,19 @@ class HardwareTest(unittest.TestCase):
         silent = len(self.overstitch.messages)
         self.assertTrue(wait_until(lambda: len(self.overstitch.messages) > silent + 10, 3))
         self.assertEqual(tuple(self.overstitch.messages[-1].position), (0.01, 2, 0.005))
+
+    def test_the_documentation_lists_topics_and_parameters(self):
+        self.assertTrue(wait_until(lambda: self.state.messages), self.node.output())
+        with open(os.path.join(HERE, "../../../../docs/interfaces.md"), encoding="utf-8") as file:
+            text = file.read()
+        published, _, _ = rosgraph.Master("/documentation").getSystemState()
+        types = dict(rosgraph.Master("/documentation").getTopicTypes())
+        topics = {topic for topic, nodes in published if "/hardware_node" in nodes} - {"/rosout"}
+        running = {topic if topic == "/diagnostics" else topic[1:]: types[topic] for topic in topics}
+        self.assertEqual(rows_of(text, "Topics of the devices"), running)
+        with open(os.path.join(HERE, "../../node/hardware_parameters.cpp"), encoding="utf-8") as code:
+            parameters = set(re.findall(r'reader\.read\("(\w+)"', code.read()))
+        self.assertEqual(set(rows_of(text, "hardware_node")), parameters)
 
     def test_waits_quietly_without_devices(self):
         self.assertTrue(self.node.says("There is no haptic device with id 1209:0001"))
