@@ -64,6 +64,7 @@ class DeviceDriver {
   /// The open device; null unless the state is Running or Silent.
   DeviceConnection* connection() { return connection_.get(); }
   DeviceStatistics statistics() const;
+  double sinceReport() const { return clock_() - last_good_; }  ///< the last good one, or since opening [s]
 
   /// Tells the driver that the device has gone while its connection was used outside poll().
   void drop(const std::string& reason);
