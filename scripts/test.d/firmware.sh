@@ -57,6 +57,21 @@ startsInFlash() {
 }
 check 'firmware: the images for STM32F767 begin with stack and reset vector at 0x08000000 (never run)' startsInFlash
 
+compilesTinyUsbLink() {
+  local ports=$root/src/vibe_firmware/ports
+  arm-none-eabi-g++ -mcpu=cortex-m7 -mthumb -mfloat-abi=hard -mfpu=fpv5-d16 -std=c++17 -O2 -Wall -Wextra -Wpedantic \
+    -Wshadow -Wconversion -Wno-sign-conversion -Werror -fno-exceptions -fno-rtti -I "$root/src/vibe_firmware/include" \
+    -I "$ports/stm32f767" -I "$ports/stm32f767/tinyusb" -I "$root/src/vibe_firmware/test/tinyusb" \
+    -c -o "$scratch/tinyusb_link.o" "$ports/stm32f767/tinyusb_link.cpp"
+}
+check 'firmware: the link to TinyUSB compiles against the declarations that it uses' compilesTinyUsbLink
+missingTinyUsb() {
+  cmake -S "$root/src/vibe_firmware/ports" -B "$scratch/tinyusb" -DTINYUSB_DIR="$scratch" \
+    -DCMAKE_TOOLCHAIN_FILE="$root/src/vibe_firmware/ports/arm-none-eabi.cmake" && return 1
+  cmake -S "$root/src/vibe_firmware/ports" -B "$scratch/tinyusb" 2>&1 | grep -q 'There is no src/tusb.h in TINYUSB_DIR'
+}
+check 'firmware: a TINYUSB_DIR without TinyUSB is refused' missingTinyUsb
+
 printSizes() {
   arm-none-eabi-size "$build"/arm/firmware_*.elf | sed "s#$build/arm/##"
 }
