@@ -33,7 +33,8 @@ set_target_properties(firmware_core_fused firmware_mps2_haptic_cosim_fused firmw
 set(TINYUSB_DIR "" CACHE PATH "TinyUSB")
 set(CMSIS_CORE_DIR "" CACHE PATH "folder with core_cm7.h")
 set(CMSIS_DEVICE_DIR "" CACHE PATH "folder with stm32f7xx.h")
-set(STM32_SOURCES clocks.cpp diagnostics.cpp encoders.cpp motor_pwm.cpp pins.cpp processor.cpp timing.cpp)
+set(STM32_SOURCES clocks.cpp diagnostics.cpp encoders.cpp motor_pwm.cpp pins.cpp processor.cpp serial_number.cpp
+    timing.cpp)
 if(NOT TINYUSB_DIR)
   list(APPEND STM32_SOURCES no_usb_handler.cpp)
 else()
