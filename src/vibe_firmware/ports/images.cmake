@@ -7,7 +7,7 @@ function(firmware_image name port core)
   add_executable(${name} ${ARGN} common/startup.cpp)
   target_include_directories(${name} PRIVATE ${port})
   target_compile_options(${name} PRIVATE -ffp-contract=off)
-  target_link_libraries(${name} PRIVATE ${core} device_options -lc_nano -lgcc)
+  target_link_libraries(${name} PRIVATE ${core} device_options -lm -lc_nano -lgcc)
   target_link_options(
     ${name} PRIVATE -nostdlib -nostartfiles -T${CMAKE_CURRENT_SOURCE_DIR}/common/cortex_m7.ld
     -L${CMAKE_CURRENT_SOURCE_DIR}/${port} -Wl,--gc-sections -Wl,--fatal-warnings -Wl,-Map=${name}.map)
