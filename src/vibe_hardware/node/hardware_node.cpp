@@ -14,7 +14,13 @@ constexpr double kComplaintPeriod = 1;     // [s]
 constexpr double kTimerPeriod = 0.1;       // [s]
 constexpr std::uint32_t kQueue = 100;
 
+/// The drivers of both devices say the same about a bus that does not work.
 void log(Severity severity, const std::string& sentence) {
+  static std::mutex mutex;
+  static std::string last;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (sentence == last) return;
+  last = sentence;
   if (severity == Severity::Info) {
     ROS_INFO_STREAM(sentence);
   } else {

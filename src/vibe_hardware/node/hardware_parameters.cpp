@@ -5,10 +5,7 @@
 #include "parameter_reader.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_hardware/hid/hidraw_bus.hpp"
-#if __has_include("vibe_hardware/hid/socket_bus.hpp")
 #include "vibe_hardware/hid/socket_bus.hpp"
-#define VIBE_HAS_SOCKETS
-#endif
 
 namespace vibe {
 namespace {
@@ -37,9 +34,7 @@ HardwareParameters readHardwareParameters(const ros::NodeHandle& private_handle)
 
 std::unique_ptr<HidBus> makeBus(const std::string& bus) {
   if (bus == kHidraw) return std::make_unique<HidrawBus>();
-#ifdef VIBE_HAS_SOCKETS
   if (bus.find('/') != std::string::npos) return std::make_unique<SocketBus>(bus);
-#endif
   throw Error("Parameter ~bus is '" + bus +
               "'; set it to hidraw or to the folder of an emulator's sockets, with a '/'.");
 }

@@ -7,8 +7,10 @@
 namespace vibe {
 namespace {
 
-constexpr double kBucket = 0.5;        // [s]
-constexpr std::size_t kBuckets = 40;   // 20 s
+constexpr double kBucket = 1;  // [s]
+// A device whose clock is not that of the bus samples at a phase of the polling that drifts through one period in 20 s
+// (100 ppm) to minutes (10 ppm); only where it passes through 0 is the delay small.
+constexpr std::size_t kBuckets = 120;
 constexpr double kDriftBase = 3;       // no drift is estimated from less [s]
 constexpr double kMaxDrift = 1e-3;     // a crystal has 1e-4, an internal oscillator at room temperature 1e-2 at most
 constexpr double kLate = 0.05;         // [s]

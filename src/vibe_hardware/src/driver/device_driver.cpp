@@ -59,8 +59,9 @@ void DeviceDriver::search() {
   if (!info) return;
   try {
     connect(*info);
-  } catch (const DeviceGone&) {
-    connection_.reset();  // it went while it was opened
+  } catch (const DeviceGone&) {  // while it was opened
+    connection_.reset();
+    state_ = LinkState::Absent;
   } catch (const std::exception& error) {
     setUnusable("The " + std::string(deviceName(kind_)) + " at " + identify(*info) + " cannot be used. " +
                 error.what());
@@ -78,6 +79,8 @@ std::optional<HidInfo> DeviceDriver::find() {
     messages_.forget("bus");
   } catch (const std::exception& error) {
     messages_.warnOnce("bus", error.what());
+    state_ = LinkState::Absent;
+    return std::nullopt;
   }
   if (matching.empty()) {
     state_ = LinkState::Absent;

@@ -10,7 +10,7 @@ using vibe_firmware::InputReport;
 
 constexpr double kMicrosecond = 1e-6;
 constexpr double kAhead = 0.1;       // of the arrival, that a sample cannot be [s]
-constexpr double kSameRun = 0.5;     // error of the clock after a replug [s]
+constexpr double kSameRun = 0.2;     // error of the clock after a replug [s]
 constexpr int kNewRun = 10;          // reports that continue each other are a device that has restarted
 constexpr double kMonotonic = 1e-6;  // between samples [s]
 
@@ -67,7 +67,9 @@ ReportStream::Result ReportStream::judge(const InputReport& report, double arriv
   const int step = sequenceStep(last_, report);
   const double elapsed = timeStep(last_, report);
   const double sampled = clock_.hostTime(device_time_ + elapsed);
-  if (reopened_) return std::abs(arrival - sampled) < kSameRun ? Result::Accepted : Result::Implausible;
+  if (reopened_) {
+    return elapsed > 0 && std::abs(arrival - sampled) < kSameRun ? Result::Accepted : Result::Implausible;
+  }
   const std::string number = "the report with sequence number " + std::to_string(report.sequence);
   const std::string last = std::to_string(last_.sequence);
   if (step == 0) return reject(Result::Duplicated, counts_.duplicated, number + " came a second time");
@@ -120,14 +122,9 @@ void ReportStream::accept(const InputReport& report, double arrival, DeviceSampl
 
 double ReportStream::rate(double now) const {
   const std::size_t count = std::min<std::uint64_t>(counts_.received, kRateWindow);
-  double oldest = now;
   int recent = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (arrivals_[i] < now - 1) continue;
-    oldest = std::min(oldest, arrivals_[i]);
-    ++recent;
-  }
-  return recent > 1 && now > oldest ? recent / (now - oldest) : 0;
+  for (std::size_t i = 0; i < count; ++i) recent += arrivals_[i] > now - 1 ? 1 : 0;
+  return recent;
 }
 
 }  // namespace vibe

@@ -5,9 +5,10 @@
 namespace vibe {
 
 /// Maps the time of a device to that of the host from pairs of both. A report arrives some time after its sample, never
-/// before, and sometimes with hardly any delay: the map is a line below all pairs of the last 20 s (Moon, Skelly,
-/// Towsley, "Estimation and removal of clock skew from network delay measurements", INFOCOM 1999), so that jitter of
-/// USB and scheduling disappears and drift is followed. What remains is the smallest delay of the link.
+/// before, and sometimes with hardly any delay: the map is a line below all pairs of the last two minutes (Moon,
+/// Skelly, Towsley, "Estimation and removal of clock skew from network delay measurements", INFOCOM 1999), so that
+/// jitter of USB and scheduling disappears and drift is followed. What remains is the smallest delay of the link, and
+/// in the first two minutes a part of the period at which the bus is polled.
 class DeviceClock {
  public:
   /// Adds a pair. @param device  unwrapped [s]  @param arrival  of the report, host [s]
@@ -24,7 +25,7 @@ class DeviceClock {
     double device, delay;  // delay: arrival - device
   };
 
-  std::deque<Pair> minima_;  // the smallest delay of each half second
+  std::deque<Pair> minima_;  // the smallest delay of each second
   double anchor_ = 0;        // device time at which the line is offset_
   double offset_ = 0;
   double slope_ = 0;

@@ -52,10 +52,10 @@ class ReportStream {
   const std::string& explanation() const { return explanation_; }  ///< one sentence on the last report not accepted
   const StreamCounts& counts() const { return counts_; }
   const DeviceClock& clock() const { return clock_; }
-  double rate(double now) const;  ///< accepted reports per second in the last second or so; 0 if none came [Hz]
+  double rate(double now) const;  ///< accepted reports in the last second, 256 at most [Hz]
 
  private:
-  static constexpr std::size_t kRateWindow = 100;
+  static constexpr std::size_t kRateWindow = 256;
 
   std::array<double, vibe_firmware::kAxisCount> radians_per_count_{1, 1};
   StreamCounts counts_;
