@@ -79,7 +79,7 @@ TEST(HapticLoop, RendersTheStomachThatIsPressed) {
 }
 
 TEST(HapticLoop, RendersTheStomachThatTheHelixPulls) {
-  checkStomach("../config/hands/pull.yaml", 16.4);
+  checkStomach("../config/hands/pull.yaml", 20.4);
 }
 
 TEST(HapticLoop, EqualRunsAreEqual) {
