@@ -54,8 +54,8 @@ TEST(EmulatorBus, ListsBothDevices) {
   EXPECT_EQ(port->read(report.data(), report.size(), 1), 0U);
 }
 
-// What the drivers tell the simulator is what the script says. A report is up to 10 ms old, friction bends the hand, and
-// buttons of the suturing device make steps.
+// What the drivers tell the simulator is what the script says. A report is up to 10 ms old, friction bends the hand,
+// and buttons of the suturing device make steps.
 TEST(EmulatorBus, TheSimulatorIsToldWhatTheScriptSays) {
   Bench bench;
   const Calibration calibration = Bench::setup().calibration;
