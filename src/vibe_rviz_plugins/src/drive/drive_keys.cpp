@@ -57,20 +57,20 @@ const KeyBinding* findBinding(int key) {
 
 const std::vector<KeyRow>& keyRows() {
   static const std::vector<KeyRow> rows = {
-      {{{Qt::Key_W, "W"}, {Qt::Key_S, "S"}}, "insert, withdraw (wheel)"},
+      {{{Qt::Key_W, "W"}, {Qt::Key_S, "S"}}, "in, out (wheel)"},
       {{{Qt::Key_A, "A"}, {Qt::Key_D, "D"}}, "rotate left, right"},
-      {{{Qt::Key_Up, "↑"}, {Qt::Key_Down, "↓"}, {Qt::Key_Left, "←"}, {Qt::Key_Right, "→"}}, "bend tip (drag)"},
+      {{{Qt::Key_Up, "↑"}, {Qt::Key_Down, "↓"}, {Qt::Key_Left, "←"}, {Qt::Key_Right, "→"}}, "bend tip (drag)", true},
       {{{Qt::Key_Space, "Space"}}, "argon beam (hold)"},
-      {{{Qt::Key_I, "I"}}, "gas on, off"},
+      {{{Qt::Key_I, "I"}}, "gas on, off", true},
       {{{Qt::Key_E, "E"}, {Qt::Key_Q, "Q"}}, "helix out, in"},
       {{{Qt::Key_G, "G"}}, "helix grab, release"},
-      {{{Qt::Key_X, "X"}, {Qt::Key_Z, "Z"}}, "turn helix in, back"},
+      {{{Qt::Key_X, "X"}, {Qt::Key_Z, "Z"}}, "turn helix in, back", true},
       {{{Qt::Key_R, "R"}, {Qt::Key_F, "F"}}, "close, open arm"},
       {{{Qt::Key_N, "N"}}, "pass the needle"},
       {{{Qt::Key_T, "T"}}, "drop the T-tag"},
-      {{{Qt::Key_C, "C"}}, "cinch (hold)"},
+      {{{Qt::Key_C, "C"}}, "cinch (hold)", true},
       {{{Qt::Key_Shift, "Shift"}}, "slow (hold)"},
-      {{{Qt::Key_1, "1"}, {Qt::Key_2, "2"}, {Qt::Key_3, "3"}}, "slow, normal, fast"},
+      {{{Qt::Key_1, "1"}, {Qt::Key_2, "2"}, {Qt::Key_3, "3"}}, "slow, normal, fast", true},
       {{{Qt::Key_V, "V"}}, "next view"},
       {{{Qt::Key_H, "H"}, {Qt::Key_Escape, "Esc"}}, "hide help, leave"},
   };

@@ -43,6 +43,7 @@ struct KeyRow {
   };
   std::vector<Cap> caps;
   std::string text;
+  bool ends_group = false;  ///< a gap follows
 };
 const std::vector<KeyRow>& keyRows();
 

@@ -13,9 +13,10 @@
 namespace vibe {
 namespace {
 
-constexpr double kPanelWidth = 196, kStateWidth = 168, kMargin = 8, kRow = 18, kCapSize = 15;  // [pixels at scale 1]
-constexpr double kText = 11, kBannerText = 14;                                                 // heights of fonts
-constexpr double kCapColumn = 68;  // where the texts of the keys begin
+constexpr double kPanelWidth = 196, kStateWidth = 186, kMargin = 8, kRow = 18, kCapSize = 15,
+                 kGap = 5;                      // [pixels at scale 1]
+constexpr double kText = 11, kBannerText = 14;  // heights of fonts
+constexpr double kCapColumn = 68;               // where the texts of the keys begin
 constexpr double kMillimetresOfMercury = 133.322;
 constexpr double kHighForce = 8;  // "almost 8 N at most" in the reference of kPullingForce [N]
 
@@ -114,7 +115,7 @@ constexpr std::array<JointRow, kJointCount> kJointRows = {{{"Insertion", 1e-3, "
                                                            {"Helix turns", kTurn, ""},
                                                            {"Arm closed", 1e-3, " mm"}}};
 
-constexpr double kNameWidth = 64, kBarLeft = kMargin + kNameWidth, kBarWidth = 44;
+constexpr double kNameWidth = 68, kBarLeft = kMargin + kNameWidth, kBarWidth = 40;
 
 void drawRow(const QString& name, const QString& value, double y, Plate& plate) {
   plate.text({kMargin, y, kNameWidth, kRow}, Qt::AlignVCenter, name, kFaint);
@@ -158,6 +159,12 @@ void drawPressure(double pressure, double y, Plate& plate) {
   if (std::isfinite(value)) drawBar(0, value / kBarEnd, y, kFill, plate);
 }
 
+void drawWords(const QString& name, const std::string& words, double y, Plate& plate) {
+  plate.text({kMargin, y, kNameWidth, kRow}, Qt::AlignVCenter, name, kFaint);
+  plate.text({kBarLeft, y, kStateWidth - kMargin - kBarLeft, kRow}, Qt::AlignVCenter | Qt::AlignRight, toQt(words),
+             kInk);
+}
+
 void drawButtons(const DriveHud& hud, double y, Plate& plate) {
   const std::array<const char*, 6> names = {"APC", "Grab", "Needle", "T-tag", "Cinch", "Gas"};
   const double width = (kStateWidth - 2 * kMargin) / 3;
@@ -173,23 +180,29 @@ void drawButtons(const DriveHud& hud, double y, Plate& plate) {
 
 QImage drawnKeys(const DriveHud& hud, double scale) {
   const auto& rows = keyRows();
-  Plate plate(kPanelWidth, 2 * kMargin - 4 + kRow * static_cast<double>(rows.size()), scale, kPlate);
+  const auto gaps = std::count_if(rows.begin(), rows.end(), [](const KeyRow& row) { return row.ends_group; });
+  const double height = kRow * static_cast<double>(rows.size()) + kGap * static_cast<double>(gaps);
+  Plate plate(kPanelWidth, 2 * kMargin - 4 + height, scale, kPlate);
   double y = kMargin - 2;
   for (const KeyRow& row : rows) {
     drawKeyRow(hud, row, y, plate);
-    y += kRow;
+    y += row.ends_group ? kRow + kGap : kRow;
   }
   return plate.finish();
 }
 
 QImage drawnState(const DriveHud& hud, double scale) {
-  constexpr double kRows = kJointCount + 4;  // force, gas, two of buttons
-  Plate plate(kStateWidth, 2 * kMargin + kRow * kRows, scale, kPlate);
+  constexpr double kRows = kJointCount + 7;  // two bars, three texts, two rows of buttons
+  Plate plate(kStateWidth, 2 * (kMargin + kGap) - 2 + kRow * kRows, scale, kPlate);
   double y = kMargin - 2;
   for (std::size_t joint = 0; joint < hud.joints.size(); ++joint, y += kRow) drawJoint(hud, joint, y, plate);
+  y += kGap;
   drawForce(hud.force, y, plate);
   drawPressure(hud.pressure, y + kRow, plate);
-  drawButtons(hud, y + 2 * kRow + 4, plate);
+  drawWords("Tissue", hud.tissue, y + 2 * kRow, plate);
+  drawWords("Needle", hud.needle, y + 3 * kRow, plate);
+  drawWords("Bites", hud.bites, y + 4 * kRow, plate);
+  drawButtons(hud, y + 5 * kRow + kGap, plate);
   return plate.finish();
 }
 

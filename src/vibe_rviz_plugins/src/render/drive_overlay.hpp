@@ -19,15 +19,16 @@ struct DriveHud {
   std::array<bool, 6> buttons{};                               ///< in the order of scope/buttons
   double force = std::numeric_limits<double>::quiet_NaN();     ///< of the tissue on the tool [N]; NaN: unknown
   double pressure = std::numeric_limits<double>::quiet_NaN();  ///< gauge [Pa]; NaN: unknown
-  std::string trouble;                                         ///< why nothing moves; empty if all is well
-  FirstStep step;                                              ///< shown if there is no trouble
+  std::string tissue, needle, bites;  ///< what the tool does, where the needle is, how many bites: a few words each
+  std::string trouble;                ///< why nothing moves; empty if all is well
+  FirstStep step;                     ///< shown if there is no trouble
 };
 
 // Images with transparent parts. `scale` 1 suits a view of 640 x 480 pixels.
 
 /// The table of keys.
 QImage drawnKeys(const DriveHud& hud, double scale);
-/// Joints, buttons, force and pressure.
+/// Joints, force, pressure, what the tool does, and buttons.
 QImage drawnState(const DriveHud& hud, double scale);
 /// One line: the trouble, or the next step. Not wider than `width` pixels; a longer sentence is broken.
 QImage drawnBanner(const DriveHud& hud, double scale, int width);

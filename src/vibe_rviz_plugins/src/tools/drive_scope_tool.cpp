@@ -25,7 +25,16 @@ namespace {
 constexpr double kOverlayPeriod = 0.1;                                                           // [s]
 constexpr int kButtonPeriod = 100;                                                               // [ms]
 constexpr double kDegree = 0.017453292519943295, kTurn = 6.283185307179586, kMillimetre = 1e-3;  // in SI units
+const char* const kHowTo =
+    "Keys and mouse drive the endoscope. H: help. Right and middle mouse button: move the view. Esc: leave.";
 constexpr double kNotch = 120;  // of a mouse wheel, in eighths of a degree
+
+void describe(const vibe_msgs::ProcedureState& state, DriveHud& hud) {
+  hud.pressure = state.pressure;
+  hud.tissue = state.held_particles > 0 ? "held" : hud.force > 0 ? "touched" : "not touched";
+  hud.needle = !state.needle_loaded ? "none" : state.needle_on_arm ? "on the arm" : "in the exchange";
+  hud.bites = std::to_string(state.bites);
+}
 
 rviz::RenderPanel* renderPanel(rviz::DisplayContext* context) {
   return context->getViewManager()->getRenderPanel();
@@ -106,7 +115,6 @@ void DriveScopeTool::activate() {
   }
   connectAgain();
   button_timer_->start(kButtonPeriod);
-  setStatus("Keys and mouse drive the endoscope. H: help. Right and middle mouse button: move the view. Esc: leave.");
 }
 
 void DriveScopeTool::deactivate() {
@@ -238,7 +246,9 @@ void DriveScopeTool::update(float, float) {
   const double now = steadySeconds();
   if (now - drawn_ < kOverlayPeriod) return;
   drawn_ = now;
-  draw(hudOf(sender_.view()));
+  const DriveHud hud = hudOf(sender_.view());
+  draw(hud);
+  setStatus(hud.trouble.empty() ? kHowTo : QString::fromStdString(hud.trouble));
 }
 
 DriveHud DriveScopeTool::hudOf(const ScopeSender::View& view) const {
@@ -251,11 +261,14 @@ DriveHud DriveScopeTool::hudOf(const ScopeSender::View& view) const {
   for (std::size_t i = 0; i < hud.buttons.size(); ++i) hud.buttons[i] = buttons_.down()[i] != 0;
   hud.trouble = name_space_trouble_.empty() ? view.trouble : name_space_trouble_;
   if (!view.state) return hud;
-  hud.pressure = view.state->pressure;
+  describe(*view.state, hud);
   if (hud.trouble.empty() && view.state->paused) hud.trouble = "The simulator is paused. Resume it to drive.";
   if (hud.trouble.empty() && view.driving && !buttons_.inControl() && !buttons_.isTakingControl())
     hud.trouble = "No buttons: " + buttons_.sentence(steadySeconds());
+  if (hud.trouble.empty() && !renderPanel(context_)->hasFocus())
+    hud.trouble = "The keyboard is elsewhere. Move the mouse over this view, or click into it.";
   DriveSituation situation = situationOf(*view.state);
+  situation.touches = situation.touches || hud.force > 0;  // the state tells of gas first
   situation.joints = hud.joints;
   situation.closed = hud.limits[NeedleDriver].upper;
   situation.gas_on = hud.buttons[5];

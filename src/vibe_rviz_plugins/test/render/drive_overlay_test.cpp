@@ -21,6 +21,9 @@ DriveHud exampleHud() {
   hud.joints = {0.125, -0.5, 0.6, -0.3, 0.012, 6.3, 0.004};
   hud.force = 1.2;
   hud.pressure = 1300;
+  hud.tissue = "not touched";
+  hud.needle = "in the exchange";
+  hud.bites = "42";
   hud.step = {2, "Hold W to insert the endoscope"};
   return hud;
 }
@@ -48,6 +51,27 @@ TEST_F(DriveOverlayTest, LeavesTheMiddleFree) {
     EXPECT_LT(banner.height() + keys.height() + 24, height) << height;
     EXPECT_LT(banner.height(), 0.12 * height);
     EXPECT_LE(banner.width(), width);
+  }
+}
+
+/// Whether anything but the plate is drawn in the outermost pixels at the right.
+bool reachesTheEdge(const QImage& image) {
+  const QRgb plate = image.pixel(image.width() - 2, image.height() / 2);
+  for (int y = 10; y < image.height() - 10; ++y)
+    for (int x = image.width() - 4; x < image.width() - 1; ++x)
+      if (image.pixel(x, y) != plate) return true;
+  return false;
+}
+
+TEST_F(DriveOverlayTest, NothingIsCut) {
+  DriveHud hud = exampleHud();
+  hud.joints = {0.3, -3.14, -1.57, -1.75, 0.03, -50.2, 0.018};
+  hud.pressure = 13000;
+  hud.force = 1000;
+  for (const double scale : {0.8, 1.0, 1.29, 1.4}) {
+    EXPECT_FALSE(reachesTheEdge(drawnKeys(hud, scale))) << scale;
+    EXPECT_FALSE(reachesTheEdge(drawnState(hud, scale))) << scale;
+    EXPECT_FALSE(reachesTheEdge(drawnBanner(hud, scale, 900))) << scale;
   }
 }
 

@@ -56,6 +56,7 @@ void RvizEvents::act(const QString& command, const QString& argument) {
   if (command == "drag") return drag({argument.section(' ', 0, 0).toInt(), argument.section(' ', 1, 1).toInt()});
   if (command == "wheel") return turnWheel(argument.toDouble());
   if (command == "tool") return chooseTool(argument);
+  if (command == "focus_in") return takeFocus();
   if (command != "focus_out") return fail("there is no command '" + command + "'");
   QFocusEvent event(QEvent::FocusOut, Qt::ActiveWindowFocusReason);
   QCoreApplication::sendEvent(manager_.getViewManager()->getRenderPanel(), &event);
@@ -89,6 +90,12 @@ void RvizEvents::turnWheel(double notches) {
   QWheelEvent event(place, panel->mapToGlobal(place), QPoint(), turn, Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase,
                     false);
   QCoreApplication::sendEvent(panel, &event);
+}
+
+void RvizEvents::takeFocus() {
+  rviz::RenderPanel* panel = manager_.getViewManager()->getRenderPanel();
+  panel->window()->activateWindow();  // a display without a window manager gives the keyboard to no window
+  panel->setFocus();
 }
 
 void RvizEvents::chooseTool(const QString& name) {

@@ -15,6 +15,7 @@ namespace vibe {
 ///   repeat KEY      the keyboard repeats it
 ///   up KEY          it comes up
 ///   click KEY       down and up
+///   focus_in        the window gets the keyboard
 ///   focus_out       the window loses the keyboard
 ///   drag DX DY      the left mouse button is pressed in the middle, moved by so many pixels and released
 ///   wheel NOTCHES   of the mouse; positive: away from the user
@@ -34,6 +35,7 @@ class RvizEvents {
   void sendKey(int type, const QString& name, bool repeated);
   void drag(const QPoint& by);
   void turnWheel(double notches);
+  void takeFocus();
   void chooseTool(const QString& name);
 };
 
