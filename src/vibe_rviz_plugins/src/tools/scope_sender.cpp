@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPeriod = 1.0 / 60;   // [s]
 constexpr double kLongestStep = 0.25;  // after a longer gap the joints do not catch up [s]
+constexpr double kClosing = 0.5;       // a topic that is left and taken again at once could lose its subscribers [s]
 constexpr double kPatience = 2;        // for joints of a simulator, or for it to listen [s]
 constexpr std::uint32_t kQueue = 10;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -96,7 +97,8 @@ ScopeSender::View ScopeSender::view() const {
 // In the thread of the spinner, which alone connects and disconnects: that waits for callbacks in progress.
 void ScopeSender::tick() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!active_ && (!driving_ || drive_.atRest())) {
+  if (active_ || (driving_ && !drive_.atRest())) wanted_ = steadySeconds();
+  if (steadySeconds() - wanted_ > kClosing) {
     disconnect();
     return timer_.stop();
   }
@@ -104,7 +106,7 @@ void ScopeSender::tick() {
   trouble_ = findTrouble();
   if (!trouble_.empty()) return endDriving();
   const ros::Time now = ros::Time::now();
-  if (!driving_ && !begin(now)) return;
+  if (!driving_ && (!active_ || !begin(now))) return;
   const bool heard = scope_.getNumSubscribers() > 1;  // this object is a subscriber too
   if (!heard && steadySeconds() - driving_since_ > kPatience)
     trouble_ = "No simulator listens to " + scope_.getTopic() + ". A recording cannot be driven.";
@@ -129,8 +131,6 @@ bool ScopeSender::moveTo(const ros::Time& now) {
 bool ScopeSender::begin(const ros::Time& now) {
   if (!present_ || now.isZero()) return false;
   drive_.begin(limits_, *present_);
-  scope_ = topics_.advertise<sensor_msgs::JointState>("scope/servo_jp", kQueue);
-  overstitch_ = topics_.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue);
   driving_ = true;
   driving_since_ = steadySeconds();
   last_ = now;
@@ -143,6 +143,8 @@ void ScopeSender::connect() {
   waiting_since_ = steadySeconds();
   topics_ = ros::NodeHandle(requested_);
   topics_.setCallbackQueue(&queue_);
+  scope_ = topics_.advertise<sensor_msgs::JointState>("scope/servo_jp", kQueue);
+  overstitch_ = topics_.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue);
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(topics_.subscribe("procedure/state", kQueue, &ScopeSender::takeState, this, hints));
   subscribers_.push_back(topics_.subscribe<sensor_msgs::JointState>(
@@ -168,6 +170,8 @@ void ScopeSender::connect() {
 
 void ScopeSender::disconnect() {
   endDriving();
+  scope_ = {};
+  overstitch_ = {};
   for (ros::Subscriber& subscriber : subscribers_) subscriber.shutdown();
   subscribers_.clear();
   connected_ = has_limits_ = false;
@@ -227,8 +231,6 @@ std::string ScopeSender::findLimits() {
 void ScopeSender::endDriving() {
   if (driving_) waiting_since_ = steadySeconds();
   driving_ = false;
-  scope_ = {};
-  overstitch_ = {};
   present_.reset();
 }
 

@@ -1,4 +1,5 @@
-"""What the tool 'Drive scope' needs of a simulator: time, a state, and joints that follow the commands."""
+"""What the tool 'Drive scope' needs of a simulator: time, a state, and joints that follow the commands as fast as they
+may."""
 
 import threading
 import time
@@ -10,6 +11,7 @@ from vibe_msgs.msg import ProcedureState
 
 SCOPE = ["insertion", "rotation", "tip_up_down", "tip_left_right"]
 OVERSTITCH = ["helix_advance", "helix_rotation", "needle_driver"]
+SPEEDS = dict(zip(SCOPE + OVERSTITCH, [0.15, 3.1, 3.1, 3.1, 0.1, 25.0, 0.1]))  # greatest ones, as in the URDF [1/s]
 START = dict(zip(SCOPE + OVERSTITCH, [0.1, 0.5, 0.3, -0.2, 0.01, 2.0, 0.005]))
 PERIOD = 1.0 / 60  # of a step [s]
 STATE_INTERVAL = 0.5  # of wall time [s]
@@ -19,7 +21,7 @@ class SmallSimulator:
     """Takes a step every PERIOD in a thread of its own."""
 
     def __init__(self):
-        self.joints = dict(START)
+        self.joints, self.command = dict(START), {}
         self.now, self.step = 1.0, 0
         self.runs = self.clock_runs = self.publishes = True
         self.clock = rospy.Publisher("/clock", Clock, queue_size=10)
@@ -42,7 +44,12 @@ class SmallSimulator:
 
     def take(self, message):
         if self.runs:
-            self.joints.update(zip(message.name, message.position))
+            self.command.update(zip(message.name, message.position))
+
+    def follow(self):
+        for name, goal in list(self.command.items()):
+            way = SPEEDS[name] * PERIOD
+            self.joints[name] += min(max(goal - self.joints[name], -way), way)
 
     def spin(self):
         while not self.ends.wait(PERIOD):
@@ -51,6 +58,7 @@ class SmallSimulator:
             stamp = rospy.Time.from_sec(self.now)
             if self.publishes and self.runs and self.clock_runs:
                 self.step += 1
+                self.follow()
                 message = JointState(name=list(self.joints), position=list(self.joints.values()))
                 message.header.stamp = stamp
                 self.positions.publish(message)
@@ -71,5 +79,5 @@ class SmallSimulator:
         self.tell_state()
 
     def reset(self):
-        self.joints, self.step = dict(START), 0
+        self.joints, self.command, self.step = dict(START), {}, 0
         self.tell_state()
