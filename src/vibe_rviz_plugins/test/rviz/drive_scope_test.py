@@ -182,7 +182,7 @@ class DriveScope(unittest.TestCase):
         self.wait(lambda: self.joint("tip_left_right") < START["tip_left_right"] - 0.15, "bending to the right")
 
     def test_nothing_is_published_while_time_stands_still(self):
-        for stop in ("clock_runs", "runs"):
+        for stop in ("clock_runs", "runs", "publishes"):
             self.simulator.tell_state()
             setattr(self.simulator, stop, False)
             self.simulator.tell_state()
