@@ -115,7 +115,7 @@ constexpr std::array<JointRow, kJointCount> kJointRows = {{{"Insertion", 1e-3, "
                                                            {"Helix turns", kTurn, ""},
                                                            {"Arm closed", 1e-3, " mm"}}};
 
-constexpr double kNameWidth = 68, kBarLeft = kMargin + kNameWidth, kBarWidth = 40;
+constexpr double kNameWidth = 68, kBarLeft = kMargin + kNameWidth, kBarWidth = 34;
 
 void drawRow(const QString& name, const QString& value, double y, Plate& plate) {
   plate.text({kMargin, y, kNameWidth, kRow}, Qt::AlignVCenter, name, kFaint);

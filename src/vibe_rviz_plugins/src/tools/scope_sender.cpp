@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPeriod = 1.0 / 60;   // [s]
 constexpr double kLongestStep = 0.25;  // after a longer gap the joints do not catch up [s]
+constexpr double kStall = 0.25;        // a simulator that is silent for longer takes no steps [s]
 constexpr double kClosing = 0.5;       // a topic that is left and taken again at once could lose its subscribers [s]
 constexpr double kPatience = 2;        // for joints of a simulator, or for it to listen [s]
 constexpr std::uint32_t kQueue = 10;
@@ -122,7 +123,9 @@ bool ScopeSender::moveTo(const ros::Time& now) {
     endDriving();
     return false;
   }
-  const double passed = state_ && state_->paused ? 0 : (now - last_).toSec();  // wall time passes during a pause too
+  // wall time passes too during a pause, and while a slow simulator takes no step: the joints must not run ahead
+  const bool stands = (state_ && state_->paused) || steadySeconds() - seen_at_ > kStall;
+  const double passed = stands ? 0 : (now - last_).toSec();
   if (passed > 0) drive_.advance(std::min(passed, kLongestStep));
   last_ = now;
   return passed > 0;
@@ -151,7 +154,9 @@ void ScopeSender::connect() {
       "joint_states", kQueue,
       [this](const sensor_msgs::JointState::ConstPtr& message) {
         const std::lock_guard<std::mutex> lock(mutex_);
-        if (readJoints(*message, seen_)) present_ = seen_;
+        if (!readJoints(*message, seen_)) return;
+        present_ = seen_;
+        seen_at_ = steadySeconds();
       },
       nullptr, hints));
   subscribers_.push_back(topics_.subscribe<geometry_msgs::WrenchStamped>(

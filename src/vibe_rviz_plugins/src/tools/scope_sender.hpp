@@ -61,8 +61,8 @@ class ScopeSender {
   std::optional<Joints> present_;  // the same, if they came since the joints were last driven
   vibe_msgs::ProcedureState::ConstPtr state_;
   double force_;
-  ros::Time last_;                                             // up to which the joints have moved
-  double waiting_since_ = 0, driving_since_ = 0, wanted_ = 0;  // steady clock [s]
+  ros::Time last_;                                                           // up to which the joints have moved
+  double waiting_since_ = 0, driving_since_ = 0, wanted_ = 0, seen_at_ = 0;  // steady clock [s]
   SimulatorWatch simulator_;
   ControlWatch same_topic_, other_topic_;
 

@@ -29,6 +29,7 @@ class SmallSimulator:
         self.positions = rospy.Publisher("/joint_states", JointState, queue_size=10)
         self.subscribers = [
             rospy.Subscriber("/scope/servo_jp", JointState, self.take, queue_size=100),
+            rospy.Subscriber("/scope/measured_js", JointState, self.take, queue_size=100),
             rospy.Subscriber("/overstitch/measured_js", JointState, self.take, queue_size=100),
         ]
         self.last_state = 0.0
