@@ -71,6 +71,7 @@ compilesTinyUsbLink() {
   local ports=$root/src/vibe_firmware/ports
   arm-none-eabi-g++ -mcpu=cortex-m7 -mthumb -mfloat-abi=hard -mfpu=fpv5-d16 -std=c++17 -O2 -Wall -Wextra -Wpedantic \
     -Wshadow -Wconversion -Wno-sign-conversion -Werror -fno-exceptions -fno-rtti -I "$root/src/vibe_firmware/include" \
+    -I "$ports/common" \
     -I "$ports/stm32f767" -I "$ports/stm32f767/tinyusb" -I "$root/src/vibe_firmware/test/tinyusb" \
     -c -o "$scratch/tinyusb_link.o" "$ports/stm32f767/tinyusb_link.cpp"
 }

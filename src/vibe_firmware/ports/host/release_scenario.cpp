@@ -10,6 +10,7 @@
 namespace vibe_firmware {
 namespace {
 
+constexpr std::uint16_t kParameterNumber = 1;
 constexpr std::uint32_t kArrival = 200;  // of the hand at the displacement [ticks]
 constexpr std::uint32_t kRelease = 400;
 constexpr double kPeriod = 1e-3;
@@ -83,7 +84,7 @@ std::array<PlantConfig, kAxisCount> ReleaseScenario::plants() const {
 }
 
 void ReleaseScenario::command(std::uint32_t tick, CosimRequest& request) {
-  if (tick % 100 == 1) setParameters({1, {kAxes[0].parameters, kAxes[1].parameters}}, request);
+  if (tick % 100 == 1) setParameters({kParameterNumber, {kAxes[0].parameters, kAxes[1].parameters}}, request);
 }
 
 HandAction ReleaseScenario::hand(std::uint32_t tick, int axis, const AxisPlant&) {
@@ -98,7 +99,8 @@ void ReleaseScenario::observe(const Period& period) {
 }
 
 bool ReleaseScenario::judge(std::ostream& out) const {
-  bool good = true;
+  bool good = reports_.parametersInForce(kParameterNumber);
+  if (!good) out << "the firmware has refused or cut the parameters\n";
   for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
     const AxisParameters& parameters = kAxes[axis].parameters;
     const std::vector<double> exact = sampled(parameters, positions_[axis].size());
