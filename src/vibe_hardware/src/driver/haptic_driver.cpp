@@ -78,7 +78,7 @@ void HapticDriver::poll(double wait) {
   device_.poll(wait);
   takeInbox();
   // A device that does not speak is not spoken to: its watchdog takes the torque away, and a request to it could block.
-  if (device_.state() != LinkState::Running || device_.sinceReport() > kQuiet) return;
+  if (device_.state() != LinkState::Running || device_.sinceReport() > DeviceDriver::kQuiet) return;
   try {
     sendDue();
     verify();

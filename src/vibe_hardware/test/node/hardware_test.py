@@ -115,17 +115,18 @@ class HardwareTest(unittest.TestCase):
         count = len(self.scope.messages)
         released = [m for m in self.buttons.messages if m.header.stamp.to_sec() > killed and m.buttons[0] == 0]
         self.assertEqual(len(released), 1)  # one message, no stream of zeros
-        held = self.scope.messages[-1].position
+        held = self.haptic.messages[-1].position
         self.scope.clear()
+        self.haptic.clear()
         time.sleep(0.5)
         self.assertFalse(self.scope.messages, "positions without a device; before: {}".format(count))
         back = self.emulator.start()
         first = self.scope.waits_for(lambda m: True, 5)
         self.assertIsNotNone(first, self.node.output())
-        self.assertLess(first.header.stamp.to_sec() - back, 1)
+        self.assertLess(first.header.stamp.to_sec() - back, 1, self.node.output())
         print("reconnected {:.0f} ms after the restart".format(1e3 * (first.header.stamp.to_sec() - back)))
-        for a, b in zip(first.position, held):  # a device that starts anew does not make the scope jump
-            self.assertAlmostEqual(a, b, delta=2e-3)
+        for a, b in zip(self.haptic.messages[0].position, held):  # a device that starts anew makes no jump
+            self.assertAlmostEqual(a, b, delta=1e-6)
         self.assertTrue(wait_until(lambda: self.state.messages[-1].state == "ENABLED", 2))
         time.sleep(2)
         now = time.time()
@@ -152,19 +153,19 @@ class HardwareTest(unittest.TestCase):
         self.assertAlmostEqual(first.position[0], 0.05, delta=0.01)
 
     def test_a_device_that_stops_is_silent(self):
+        """Silent or, if a request was under way that was not answered, gone: either way with a sentence, safely."""
         self.start()
         self.emulator.program.send(signal.SIGSTOP)
         try:
-            self.assertTrue(self.node.says("no valid report has come for", 3), self.node.output())
-            # FAULT, or DISABLED if a request was under way and came to nothing
+            self.assertTrue(wait_until(lambda: self.buttons.messages[-1].buttons[0] == 0, 5), self.node.output())
             self.assertTrue(wait_until(lambda: self.state.messages[-1].state in ("FAULT", "DISABLED"), 5))
-            self.assertEqual(self.buttons.messages[-1].buttons[0], 0)
-            level, text, _ = self.input_diagnostics.newest(time.time())
-            self.assertEqual(level, ERROR)
-            self.assertIn("check cable and firmware", text)
+            sentences = [line for line in self.node.lines if "no valid report has come" in line or "is gone" in line]
+            self.assertGreaterEqual(len(sentences), 1, self.node.output())
+            level, text, values = self.input_diagnostics.newest(time.time())
+            self.assertIn((level, values["state"]), ((ERROR, "silent"), (WARN, "absent")), text)
         finally:
             self.emulator.program.send(signal.SIGCONT)
-        self.assertTrue(wait_until(lambda: self.state.messages[-1].state == "ENABLED", 5), self.node.output())
+        self.assertTrue(wait_until(lambda: self.state.messages[-1].state == "ENABLED", 10), self.node.output())
 
     def test_the_spring_of_the_simulator_is_felt(self):
         self.start()
@@ -180,7 +181,7 @@ class HardwareTest(unittest.TestCase):
         time.sleep(0.5)  # no messages: the spring has faded
         self.assertAlmostEqual(self.haptic.messages[-1].effort[0], 0, delta=1e-3)
         _, text, values = self.haptic_diagnostics.newest(time.time())
-        self.assertGreater(float(values["sent parameters"]) - before, 100)
+        self.assertGreater(float(values["sent parameters"]) - before, 25)
         self.assertEqual(values["refused parameters"], "0", text)
         self.assertEqual(values["clamped parameters"], "0", text)
 
@@ -196,7 +197,7 @@ class HardwareTest(unittest.TestCase):
         self.assertEqual(self.node.count("A message on haptic/parameters is ignored:"), 3, self.node.output())
         self.assertEqual(self.node.count("joint_stiffness of insertion is not finite; send finite numbers."), 2)
         values = self.haptic_diagnostics.newest(time.time())[2]
-        self.assertGreater(float(values["clamped parameters"]), 20)
+        self.assertGreater(float(values["clamped parameters"]), 0)
         self.assertEqual(values["refused parameters"], "0")
         self.assertEqual(values["rejected messages on haptic/parameters"], "3")
 

@@ -131,10 +131,16 @@ class Emulator:
             file.write(script)
         self.program = None
 
+    def sockets(self):
+        """With their times: an emulator that was killed leaves its sockets behind."""
+        files = [os.path.join(self.folder, f) for f in os.listdir(self.folder) if f.endswith(".hid")]
+        return {(f, os.stat(f).st_ctime_ns) for f in files if os.path.exists(f)}
+
     def start(self):
         """Returns the time at which its devices are there."""
+        stale = self.sockets()
         self.program = Program("vibe_emulator", ["--folder", self.folder, "--hand", "script", self.script])
-        wait_until(lambda: len([f for f in os.listdir(self.folder) if f.endswith(".hid")]) == 2)
+        wait_until(lambda: len(self.sockets() - stale) == 2, 20)
         return time.time()
 
     def kill(self):

@@ -46,6 +46,8 @@ class DeviceDriver {
   static constexpr double kSearchPeriod = 0.2;  ///< between searches for a device that is not there [s]
   static constexpr double kSilence = 0.25;      ///< without a good report, after which the device has stopped [s]
 
+  static constexpr double kQuiet = 0.05;  ///< without a good report, after which nothing is asked of it [s]
+
   struct Callbacks {
     std::function<void(const DeviceSample&)> sample;
     std::function<void(const DeviceConnection&)> connected;

@@ -40,7 +40,6 @@ class HapticDriver {
   HapticStatistics statistics() const { return statistics_; }
 
  private:
-  static constexpr double kQuiet = 0.05;        // without reports, after which nothing is sent [s]
   static constexpr double kVerifyPeriod = 1;    // [s]
   static constexpr double kVerifyAgain = 0.03;  // after a first difference [s]
   static constexpr double kTakeOver = 0.1;      // from sending a set to its number in the reports [s]
