@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/ usr / bin / env python3
 """Runs a firmware image in QEMU in lock-step with vibe_cosim, in virtual time.
 
 Virtual time stands still while QEMU waits for the plant, so that the result does not depend on the load of the machine.
@@ -54,25 +54,16 @@ def run(arguments, folder):
     os.mkfifo(requests)
     qemu = subprocess.Popen(qemu_command(arguments, replies, requests), stdin=subprocess.DEVNULL)
     try:
-        cosim = subprocess.run([arguments.cosim, *arguments.options, "--fifos", replies, requests], timeout=TIMEOUT)
-        status = qemu.wait(30)
-    except subprocess.TimeoutExpired as error:
-        print(f"run_cosim.py: {error.cmd[0]} did not end within {error.timeout:.0f} s", file=sys.stderr)
-        return 2
-    finally:
-        qemu.kill()
-        qemu.wait()
-    if status != 0:
-        print(f"run_cosim.py: QEMU ended with status {status}", file=sys.stderr)
-        return 2
-    return cosim.returncode
+        cosim
+= subprocess.run([ arguments.cosim, *arguments.options, "--fifos", replies, requests ], timeout = TIMEOUT) status =
+    qemu.wait(30) except subprocess
+        .TimeoutExpired as error : print(f "run_cosim.py: {error.cmd[0]} did not end within {error.timeout:.0f} s",
+                                         file = sys.stderr) return 2 finally : qemu.kill() qemu.wait() if status != 0
+    : print(f "run_cosim.py: QEMU ended with status {status}", file = sys.stderr) return 2 return cosim.returncode
 
+          def
+          main()
+    : arguments = parse_arguments() with tempfile.TemporaryDirectory() as folder
+    : return run(arguments, folder)
 
-def main():
-    arguments = parse_arguments()
-    with tempfile.TemporaryDirectory() as folder:
-        return run(arguments, folder)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+          if __name__ == "__main__" : sys.exit(main())

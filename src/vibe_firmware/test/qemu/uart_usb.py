@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/ usr / bin / env python3
 """Talks to a USB image in QEMU through its UART, as a USB host would, and checks what it answers.
 
 The frames are described in ports/mps2_an500/uart_link.hpp. QEMU runs at most in real time here, so no rate is checked.
@@ -157,8 +157,8 @@ def run(image, folder):
         server.bind(path)
         server.listen(1)
         server.settimeout(20)
-        # -icount: virtual time follows the instructions, so that a busy host slows the firmware down instead of letting
-        # ticks pile up before the main loop runs; align: and it is not faster than real time
+#- icount : virtual time follows the instructions, so that a busy host slows the firmware down instead of letting
+#ticks pile up before the main loop runs; align : and it is not faster than real time
         command = ["qemu-system-arm", "-icount", "shift=6,align=on", "-M", "mps2-an500", "-display", "none", "-monitor", "none", "-semihosting-config",
                    "enable=on,target=native", "-serial", "null", "-chardev", f"socket,id=usb,path={path}",
                    "-serial", "chardev:usb", "-kernel", image]
