@@ -35,7 +35,7 @@ def drawTransmission(axes, name, kinds):
                                           (True, '#c23b22', 'x', 'search: a hand gains energy')):
         found = [p for p in kinds['search'] if (p[2] > 0) == active]
         axes.scatter([1e3 * p[0] for p in found], [1e3 * p[1] for p in found], s=16, c=colour, marker=marker,
-                     linewidths=1.1, label=label, zorder=3)
+                     linewidths=1.1, label=label, zorder=3, clip_on=False)
     axes.set_title(TITLES.get(name, name))
     axes.set_xlabel('damping B [mN m s/rad]')
     axes.set_ylabel('stiffness K [mN m/rad]')
