@@ -152,6 +152,27 @@ TEST_F(Axis, SpringReturnsAfterSilenceWithoutAJump) {
   for (int i = 1; i <= 9; ++i) EXPECT_NEAR(tick(0), 0.002 * i, 1e-7);
 }
 
+TEST_F(Axis, SeveralSetsBetweenTwoTicksDoNotJumpEither) {
+  set(spring(0.2F, 0, 0.1F));
+  settle(0);
+  tick(0, 0);  // the host has been silent
+  config_.slew_limit = 2;
+  set(spring(0.2F, 0, 0.1F));
+  set(spring(0.2F, 0, -0.1F));
+  for (int i = 1; i <= 9; ++i) EXPECT_NEAR(tick(0), -0.002 * i, 1e-7);
+}
+
+TEST_F(Axis, AccountLastsAtTheSpeedLimit) {
+  set(spring(0, 0, 0, 0.029F));
+  settle(0);
+  state_.energy = {0.008F, 0};
+  for (int i = 1; i <= 20; ++i) {  // 99.8 rad/s along the torque
+    tick(325 * i);
+    ASSERT_GT(state_.energy.balance, 0) << "tick " << i;
+  }
+  EXPECT_FALSE(state_.encoder.fault);
+}
+
 TEST_F(Axis, IndexCorrectionIsNoMotionOfTheHand) {
   config_.counts_per_turn = 100;
   set(spring(0.2F, 2e-3F));
