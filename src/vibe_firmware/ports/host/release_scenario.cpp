@@ -118,4 +118,19 @@ bool ReleaseScenario::judge(std::ostream& out) const {
   return good;
 }
 
+bool ReleaseScenario::writeTable(std::ostream& out) const {
+  out << "time,axis 0,second order 0,sampled 0,axis 1,second order 1,sampled 1\n";
+  const std::size_t count = positions_[0].size();
+  const std::vector<double> exact[] = {sampled(kAxes[0].parameters, count), sampled(kAxes[1].parameters, count)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double time = kPeriod * static_cast<double>(i);
+    out << time;
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+      out << "," << positions_[axis][i] / kAxes[axis].displacement << "," << secondOrder(kAxes[axis].parameters, time)
+          << "," << exact[axis][i];
+    out << "\n";
+  }
+  return true;
+}
+
 }  // namespace vibe_firmware

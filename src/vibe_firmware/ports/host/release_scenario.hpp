@@ -22,6 +22,7 @@ class ReleaseScenario : public Scenario {
   void observe(const Period& period) override;
   void receive(const CosimReply& reply) override { reports_.receive(reply); }
   bool judge(std::ostream& out) const override;
+  bool writeTable(std::ostream& out) const override;
 
  private:
   ReportWatch reports_;
