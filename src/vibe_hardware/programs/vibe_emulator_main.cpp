@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "option_checks.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_hardware/emulator/emulator.hpp"
@@ -46,7 +47,7 @@ void addOptions(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"voltage", "torque"}));
   app.add_option("--duration", o.duration, "end after so many seconds (default: never)")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   app.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.\n");
 }
 

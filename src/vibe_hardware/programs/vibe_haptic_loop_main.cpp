@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "option_checks.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_hardware/emulator/haptic_loop.hpp"
@@ -26,10 +27,10 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--config", o.config, "calibration of the devices (default: " + o.config + ")")->type_name("FILE");
   app.add_option("--from", o.from, "measure from this time on; the hand should be still there (default: 0)")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   app.add_option("--latency", o.latency, "from the end of a frame to its parameters in the device (default: 0.005)")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(notNegative());
   app.add_option("--csv", o.csv, "write one row per millisecond to FILE.spring.csv and FILE.held.csv")
       ->type_name("FILE");
 }
