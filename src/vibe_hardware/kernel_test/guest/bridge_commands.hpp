@@ -1,0 +1,10 @@
+#pragma once
+#include <string>
+
+namespace vibe {
+
+/// Sends a command to the bridge outside the virtual machine and waits for its answer; see usb_bridge_main.cpp.
+/// @throws std::runtime_error with the bridge's error, or if it does not answer within 20 s
+void tellBridge(const std::string& command);
+
+}  // namespace vibe
