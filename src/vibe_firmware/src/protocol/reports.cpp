@@ -103,6 +103,8 @@ void configFields(Visit& visit, Config& config) {
   visit(config.output_delay);
   visit(config.safety_factor);
   visit(config.energy_capacity);
+  visit(config.speed_limit);
+  visit(config.counts_per_turn);
 }
 
 bool isReport(const std::uint8_t* bytes, std::size_t size, std::uint8_t id, std::size_t expected) {

@@ -11,6 +11,9 @@ namespace vibe_firmware {
 
 constexpr int kAxisCount = 2;  ///< insertion and rotation, or tip up/down and left/right
 
+/// Counts that a float represents exactly. An axis that leaves this range has an encoder fault.
+constexpr std::int32_t kMaxCount = 1 << 24;
+
 /// What the hardware of an axis is. Compiled into the firmware of a device: nobody on the bus can change it.
 struct AxisConfig {
   float sample_period = 1e-3F;         ///< T, of the control loop [s]
@@ -19,13 +22,16 @@ struct AxisConfig {
   float viscous_friction = 6.7e-4F;    ///< b, motor back-EMF damping included [N m s/rad]
   float coulomb_friction = 8e-4F;      ///< f_c [N m]
   float torque_limit = 0.029F;         ///< that the motor can hold for ever [N m]
-  float slew_limit = 10.0F;            ///< of the torque [N m/s]
-  float velocity_pole = 0.9F;          ///< a, of the velocity filter v = a v + (1-a) dx/T; in [0, 1)
-  float output_delay = 0.05e-3F;       ///< t_d, from reading the encoder to the torque [s]
-  float safety_factor = 1.25F;         ///< of both passivity conditions, at least 1
-  float energy_capacity = 0.05F;       ///< that the passivity observer lets the axis give back at most [J]
+  float slew_limit = 10.0F;         ///< of torque changes that the hand does not cause: see step() of an axis [N m/s]
+  float velocity_pole = 0.9F;       ///< a, of the velocity filter v = a v + (1-a) dx/T; in [0, 1)
+  float output_delay = 0.05e-3F;    ///< t_d, from reading the encoder to the torque [s]
+  float safety_factor = 1.25F;      ///< of both passivity conditions, at least 1
+  float energy_capacity = 0.05F;    ///< that the passivity observer lets the axis give back at most [J]
+  float speed_limit = 100.0F;       ///< that the axis cannot exceed; beyond it: encoder fault [rad/s]
+  float counts_per_turn = 2048.0F;  ///< between two index pulses; 0: the encoder has no index
 };
-constexpr std::size_t kAxisConfigFields = 11;  ///< all float, in the order above
+constexpr std::size_t kAxisConfigFields = 13;  ///< all float, in the order above
+static_assert(sizeof(AxisConfig) == kAxisConfigFields * sizeof(float), "kAxisConfigFields");
 
 /// What the host asks of an axis: torque = torque_at_position - stiffness (x - position) - damping v. A spring about an
 /// equilibrium is torque 0 and position the equilibrium.
@@ -45,7 +51,7 @@ enum class Refusal : std::uint8_t {
   TorqueLimit,      ///< torque limit or torque above that of the axis
   ViscousFriction,  ///< b > K T (1/2 + t_d/T) + g B fails: stiffness or damping too high for the viscous friction
   CoulombFriction,  ///< f_c >= D (K/2 + g B/T) fails: too high for the Coulomb friction
-  Position,         ///< beyond what an encoder can count
+  Position,         ///< beyond kMaxCount encoder counts
 };
 
 /// Result of checking parameters: value and limit are those of the condition that failed.

@@ -1,19 +1,49 @@
 #pragma once
 #include "vibe_firmware/core/axis.hpp"
+#include "vibe_firmware/core/encoder.hpp"
+#include "vibe_firmware/core/energy_account.hpp"
 
 namespace vibe_firmware {
 
 /// Everything that changes in one axis.
 struct AxisState {
-  std::int32_t count = 0;     ///< unwrapped encoder count
-  std::uint32_t counter = 0;  ///< hardware counter that belongs to `count`
-  float position = 0;         ///< [rad]
-  float velocity = 0;         ///< filtered [rad/s]
-  float torque = 0;           ///< commanded in the last tick [N m]
-  float energy = 0;           ///< that the axis may still give to the hand: see PassivityController [J]
+  EncoderState encoder{};
+  float position = 0;      ///< [rad]
+  float velocity = 0;      ///< filtered [rad/s]
+  float torque = 0;        ///< commanded in the last tick [N m]
+  float spring_gain = 0;   ///< of the last tick, from 0 (host silent) to 1
+  float transition = 0;    ///< torque added to the spring so that new parameters do not jump; fades [N m]
+  float torque_limit = 0;  ///< in force; falls at the slew limit to that of the parameters [N m]
+  EnergyAccount energy{};  ///< that the axis may still give to the hand
+  bool limited = false;    ///< torque or slew limit acts
+  bool passivity_acts = false;
 };
 
-/// Torque of the spring-damper at the present position and velocity, limited to the parameters' torque limit [N m].
+AxisState initialAxisState(const AxisConfig& config);
+
+/// Torque of the spring alone, limited to the parameters' torque limit [N m].
+float springTorque(const AxisParameters& parameters, float position);
+
+/// Torque of the spring-damper at the present position and velocity, limited to the parameters' torque limit [N m]. The
+/// spring is limited first, then the sum.
 float springDamperTorque(const AxisParameters& parameters, float position, float velocity);
+
+/// One tick of an axis.
+///
+/// The torque limit acts on the velocity filter too: where it cuts the torque, the filter is set back to the velocity
+/// that gives the limited torque. A damper that is cut behind its filter would not be passive, because the filter would
+/// go on pushing after the hand has turned round. For the same reason the slew limit does not delay the response to the
+/// hand, only what the host and the watchdog change.
+///
+/// @param spring_gain  from the watchdog
+/// @return torque of the motor, until the next tick [N m]
+float step(const AxisConfig& config, const AxisParameters& parameters, float spring_gain, int counter_bits,
+           const EncoderSample& sample, AxisState& state);
+
+/// Replaces the parameters between two ticks without a jump of the torque.
+void takeOver(const AxisParameters& before, const AxisParameters& after, AxisState& state);
+
+/// Torque 0 at once, as after an encoder fault.
+void switchOff(AxisState& state);
 
 }  // namespace vibe_firmware

@@ -3,6 +3,9 @@
 #include <cstdint>
 
 #include "vibe_firmware/core/axis_control.hpp"
+#include "vibe_firmware/core/debouncer.hpp"
+#include "vibe_firmware/core/sample.hpp"
+#include "vibe_firmware/core/watchdog.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
 namespace vibe_firmware {
@@ -12,25 +15,21 @@ struct HapticConfig {
   std::array<AxisConfig, kAxisCount> axes{};
   std::uint32_t host_timeout_ticks = 200;  ///< without valid parameters: the torque ramps to zero
   std::uint32_t ramp_ticks = 50;           ///< of that ramp
+  std::uint32_t report_ticks = 10;         ///< between two input reports
   std::uint8_t counter_bits = 16;          ///< of the hardware counters, 1 to 32
-};
+  std::uint8_t debounce_ticks = 5;         ///< for which a button must be still
 
-/// What the board has read at the beginning of a tick.
-struct HapticSample {
-  std::array<std::uint32_t, kAxisCount> counter{};  ///< hardware counters; wrap at HapticConfig::counter_bits
-  std::array<bool, kAxisCount> index{};             ///< whether the index pulse came since the last tick
-  std::uint16_t buttons = 0;                        ///< raw, one bit each
-  std::uint32_t time_us = 0;                        ///< free-running
+  Watchdog watchdog() const { return {host_timeout_ticks, ramp_ticks}; }
 };
 
 /// Everything that changes. A copy is a snapshot; equal states with equal inputs give equal bits on every machine.
 struct HapticState {
   std::array<AxisState, kAxisCount> axes{};
-  ParameterReport parameters{};  ///< in force
-  StatusReport status{};
-  std::uint32_t ticks_since_host = 0;
-  std::uint16_t sequence = 0;
-  std::uint16_t buttons = 0;  ///< debounced
+  ParameterReport parameters{};        ///< in force
+  StatusReport status{};               ///< counters and verdicts of setParameters(); flags are those of the last tick
+  std::uint32_t ticks_since_host = 0;  ///< since the last valid parameters; stops at Watchdog::end()
+  std::uint16_t sequence = 0;          ///< of the next input report
+  DebouncerState buttons{};
   std::uint32_t time_us = 0;
 };
 
@@ -42,6 +41,11 @@ std::array<float, kAxisCount> step(const HapticConfig& config, const HapticSampl
 /// Takes over a set from the host if it is valid; otherwise keeps the old one and notes why. Either way nothing jumps:
 /// the slew limit and the energy account of the axes still hold. @return the verdict
 Verdict setParameters(const HapticConfig& config, const ParameterReport& parameters, HapticState& state);
+
+/// The two halves of setParameters(), for devices that check outside the control interrupt and apply in it.
+/// judge() touches nothing but `status`; takeOver() expects parameters that have passed it.
+Verdict judge(const HapticConfig& config, const ParameterReport& parameters, StatusReport& status);
+void takeOver(const ParameterReport& parameters, HapticState& state);
 
 /// The next input report; advances the sequence number.
 InputReport takeReport(const HapticConfig& config, HapticState& state);

@@ -14,7 +14,8 @@ struct UsbSetup {
 
 /// Answers control requests of the host: standard requests (USB 2.0, chapter 9) and those of the HID class (HID 1.11,
 /// chapter 7). Independent of any controller: a port feeds it with the setup packets of its hardware, an emulator with
-/// those of a socket.
+/// those of a socket. The port itself stores the address of SET_ADDRESS, which is only acknowledged here, and calls
+/// reset() after a bus reset.
 class ControlEndpoint {
  public:
   static constexpr int kStall = -1;
@@ -26,12 +27,27 @@ class ControlEndpoint {
   /// @return bytes of the response, never more than setup.length or capacity; kStall: the request is not understood
   int handle(const UsbSetup& setup, const std::uint8_t* data, std::uint8_t* response, std::size_t capacity);
 
+  /// Back to the state after power-up.
+  void reset();
+
+  /// Input reports may be sent.
   bool configured() const { return configuration_ != 0; }
 
+  /// The host has halted the interrupt endpoint: it must answer STALL.
+  bool halted() const { return halted_; }
+
  private:
+  int standardDevice(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity);
+  int standardInterface(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity) const;
+  int standardEndpoint(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity);
+  int classInterface(const UsbSetup& setup, const std::uint8_t* data, std::uint8_t* response, std::size_t capacity);
+  int descriptor(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity) const;
+  int string(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity) const;
+
   HidFunction& function_;
   std::uint8_t configuration_ = 0;
-  std::uint8_t idle_rate_ = 0;
+  std::uint8_t idle_rate_ = 0;  // unit 4 ms; 0: no repetition. Kept for the host only: reports come every 10 ms anyway
+  bool halted_ = false;
 };
 
 }  // namespace vibe_firmware

@@ -1,0 +1,28 @@
+#include "startup.hpp"
+#include "tick_timer.hpp"
+#include "uart_link.hpp"
+#include "usb_board.hpp"
+#include "vibe_firmware/hal/application.hpp"
+#include "vibe_firmware/protocol/haptic_function.hpp"
+
+// The haptic device with its USB traffic on UART 1; see UartLink.
+
+namespace {
+
+vibe_firmware::mps2::SimulatedEncoders encoders;
+vibe_firmware::mps2::UsbBoard board(encoders);
+vibe_firmware::mps2::UartLink link(encoders);
+vibe_firmware::HapticFunction device(vibe_firmware::HapticConfig{}, "QEMU");
+vibe_firmware::Application application(board, link, device);
+
+}  // namespace
+
+extern "C" void tick() {
+  application.tick();
+}
+
+extern "C" void run() {
+  vibe_firmware::mps2::startTicks();
+  // No WFI: QEMU 7.2 with -icount sleep=off then loses every second tick.
+  for (;;) application.poll();
+}

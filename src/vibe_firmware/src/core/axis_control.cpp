@@ -1,0 +1,92 @@
+#include "vibe_firmware/core/axis_control.hpp"
+
+#include <cmath>
+
+#include "vibe_firmware/core/passivity_controller.hpp"
+#include "vibe_firmware/core/slew.hpp"
+#include "vibe_firmware/core/velocity_filter.hpp"
+
+namespace vibe_firmware {
+namespace {
+
+/// Position and velocity, and the energy that the last torque has moved.
+void measure(const AxisConfig& config, int counter_bits, const EncoderSample& sample, AxisState& state) {
+  const std::int32_t moved = step(config, counter_bits, sample, state.encoder);
+  const float motion = static_cast<float>(moved) * config.radians_per_count;
+  observe(config, state.torque, motion, state.energy);
+  state.position = static_cast<float>(state.encoder.count) * config.radians_per_count;
+  state.velocity = filteredVelocity(config.velocity_pole, state.velocity, motion / config.sample_period);
+}
+
+/// Lets what the host and the watchdog have changed come into force at the slew limit.
+void fade(const AxisConfig& config, const AxisParameters& parameters, float spring_gain, AxisState& state) {
+  const float slew = config.slew_limit * config.sample_period;
+  const float transition = approach(state.transition, 0, slew);
+  const float fallen = state.torque_limit - slew;
+  const float torque_limit = parameters.torque_limit > fallen ? parameters.torque_limit : fallen;
+  const float change = std::fabs(transition - state.transition) + std::fabs(torque_limit - state.torque_limit) +
+                       std::fabs(spring_gain - state.spring_gain) * parameters.torque_limit;
+  if (change > 0) observeChange(config, change, state.energy);
+  state.transition = transition;
+  state.torque_limit = torque_limit;
+  state.spring_gain = spring_gain;
+  state.limited = transition != 0 || torque_limit > parameters.torque_limit;
+}
+
+/// Cuts the torque, and sets the velocity filter back to what gives the torque that is left.
+float limitedTorque(float spring, float damping, float limit, AxisState& state) {
+  const float wanted = spring - damping * state.velocity;
+  const float torque = clamp(wanted, limit);
+  if (torque == wanted) return torque;
+  state.limited = true;
+  const float velocity = damping > 0 ? (spring - torque) / damping : state.velocity;
+  if (std::fabs(velocity) < std::fabs(state.velocity)) state.velocity = velocity;
+  return torque;
+}
+
+}  // namespace
+
+AxisState initialAxisState(const AxisConfig& config) {
+  AxisState state;
+  state.energy.balance = config.energy_capacity;
+  return state;
+}
+
+float springTorque(const AxisParameters& parameters, float position) {
+  return clamp(parameters.torque - parameters.stiffness * (position - parameters.position), parameters.torque_limit);
+}
+
+float springDamperTorque(const AxisParameters& parameters, float position, float velocity) {
+  return clamp(springTorque(parameters, position) - parameters.damping * velocity, parameters.torque_limit);
+}
+
+float step(const AxisConfig& config, const AxisParameters& parameters, float spring_gain, int counter_bits,
+           const EncoderSample& sample, AxisState& state) {
+  measure(config, counter_bits, sample, state);
+  fade(config, parameters, spring_gain, state);
+  if (state.encoder.fault) {
+    switchOff(state);
+    return 0;
+  }
+  const float spring = spring_gain * springTorque(parameters, state.position) + state.transition;
+  const PassivityLimit allowed = limit(config, spring, parameters.damping, state.torque_limit, state.energy);
+  state.passivity_acts = allowed.acts;
+  state.torque = limitedTorque(allowed.spring, allowed.damping, allowed.torque, state);
+  return state.torque;
+}
+
+void takeOver(const AxisParameters& before, const AxisParameters& after, AxisState& state) {
+  const float spring = state.spring_gain * springTorque(before, state.position);
+  const float damping = before.damping * state.velocity;
+  state.transition += (spring - damping) - (springTorque(after, state.position) - after.damping * state.velocity);
+  state.spring_gain = 1;
+  if (after.torque_limit > state.torque_limit) state.torque_limit = after.torque_limit;
+}
+
+void switchOff(AxisState& state) {
+  state.torque = 0;
+  state.transition = 0;
+  state.passivity_acts = false;
+}
+
+}  // namespace vibe_firmware

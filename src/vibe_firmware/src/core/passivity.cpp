@@ -1,0 +1,99 @@
+#include "vibe_firmware/core/passivity.hpp"
+
+#include <cmath>
+
+namespace vibe_firmware {
+namespace {
+
+constexpr float kRoundingMargin = 1.0F - 1e-5F;  // so that validate() accepts what maxStiffness() returns
+
+float filterFactor(const AxisConfig& config) {
+  return (1.0F - config.velocity_pole) / (1.0F + config.velocity_pole);
+}
+
+float stepSize(const AxisConfig& config) {
+  return std::fabs(config.radians_per_count);
+}
+
+/// Viscous friction needed per stiffness [s], and per damping: filterFactor().
+float holdTime(const AxisConfig& config) {
+  return 0.5F * config.sample_period + config.output_delay;
+}
+
+float smaller(float a, float b) {
+  return a < b ? a : b;
+}
+float atLeastZero(float value) {
+  return value > 0 ? value : 0.0F;
+}
+
+bool finite(const AxisParameters& p) {
+  return std::isfinite(p.stiffness) && std::isfinite(p.damping) && std::isfinite(p.position) &&
+         std::isfinite(p.torque) && std::isfinite(p.torque_limit);
+}
+
+Verdict refuse(Refusal refusal, float value, float limit) {
+  return {refusal, 0, value, limit};
+}
+
+/// Signs and sizes of the single values.
+Verdict checkRanges(const AxisConfig& config, const AxisParameters& p) {
+  if (p.stiffness < 0) return refuse(Refusal::Negative, p.stiffness, 0);
+  if (p.damping < 0) return refuse(Refusal::Negative, p.damping, 0);
+  if (p.torque_limit < 0) return refuse(Refusal::Negative, p.torque_limit, 0);
+  if (p.torque_limit > config.torque_limit) return refuse(Refusal::TorqueLimit, p.torque_limit, config.torque_limit);
+  if (std::fabs(p.torque) > config.torque_limit) return refuse(Refusal::TorqueLimit, p.torque, config.torque_limit);
+  const float farthest = static_cast<float>(kMaxCount) * stepSize(config);
+  if (std::fabs(p.position) > farthest) return refuse(Refusal::Position, p.position, farthest);
+  return {};
+}
+
+}  // namespace
+
+float requiredViscousFriction(const AxisConfig& config, float stiffness, float damping) {
+  return config.safety_factor * (stiffness * holdTime(config) + filterFactor(config) * damping);
+}
+
+float requiredCoulombFriction(const AxisConfig& config, float stiffness, float damping) {
+  return config.safety_factor * stepSize(config) *
+         (0.5F * stiffness + filterFactor(config) * damping / config.sample_period);
+}
+
+float maxStiffness(const AxisConfig& config, float damping) {
+  const float margin = kRoundingMargin / config.safety_factor;
+  const float viscous = (config.viscous_friction * margin - filterFactor(config) * damping) / holdTime(config);
+  const float coulomb = 2.0F * (config.coulomb_friction * margin / stepSize(config) -
+                                filterFactor(config) * damping / config.sample_period);
+  return atLeastZero(smaller(viscous, coulomb));
+}
+
+float maxDamping(const AxisConfig& config, float stiffness) {
+  const float margin = kRoundingMargin / config.safety_factor;
+  const float viscous = config.viscous_friction * margin - stiffness * holdTime(config);
+  const float coulomb = (config.coulomb_friction * margin / stepSize(config) - 0.5F * stiffness) * config.sample_period;
+  return atLeastZero(smaller(viscous, coulomb)) / filterFactor(config);
+}
+
+Verdict validate(const AxisConfig& config, const AxisParameters& parameters) {
+  if (!finite(parameters)) return refuse(Refusal::NotFinite, 0, 0);
+  const Verdict ranges = checkRanges(config, parameters);
+  if (ranges.refusal != Refusal::None) return ranges;
+  const float viscous = requiredViscousFriction(config, parameters.stiffness, parameters.damping);
+  if (viscous > 0 && !(config.viscous_friction > viscous))
+    return refuse(Refusal::ViscousFriction, viscous, config.viscous_friction);
+  const float coulomb = requiredCoulombFriction(config, parameters.stiffness, parameters.damping);
+  if (!(config.coulomb_friction >= coulomb)) return refuse(Refusal::CoulombFriction, coulomb, config.coulomb_friction);
+  return {};
+}
+
+Verdict validate(const std::array<AxisConfig, kAxisCount>& configs,
+                 const std::array<AxisParameters, kAxisCount>& parameters) {
+  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+    Verdict verdict = validate(configs[axis], parameters[axis]);
+    verdict.axis = static_cast<std::uint8_t>(axis);
+    if (verdict.refusal != Refusal::None) return verdict;
+  }
+  return {};
+}
+
+}  // namespace vibe_firmware
