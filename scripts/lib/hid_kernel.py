@@ -20,6 +20,8 @@ import tempfile
 import time
 
 MODULES = ['hid-generic', 'evdev', 'joydev', 'uinput', 'xhci-pci', 'usbhid', 'virtio-pci', '9pnet-virtio', '9p', 'overlay']
+DEVICES = ['haptic', 'input', 'spare-haptic', 'spare-input', 'image']  # of usb_bridge
+PROGRAMS = ['hid_guest', 'hid_guest_replug']
 APPLETS = ['sh', 'mount', 'insmod', 'cat', 'mkdir', 'cp', 'ifconfig', 'chroot', 'uname', 'poweroff']
 
 
@@ -124,10 +126,11 @@ def qemuCommand(kernel, archive, sockets):
     command += ['-nodefaults', '-no-user-config', '-display', 'none', '-no-reboot', '-serial', 'stdio']
     command += ['-kernel', str(kernel), '-initrd', str(archive), '-append', 'console=ttyS0 quiet panic=-1']
     command += ['-virtfs', 'local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap']
-    command += ['-device', 'qemu-xhci,id=usb']
-    for device in ['haptic', 'input', 'image']:
+    for device in DEVICES:
+        # a controller for each: the kernel handles the ports of one controller one after the other
+        command += ['-device', f'qemu-xhci,id=usb-{device}']
         command += ['-chardev', f'socket,id={device},path={sockets}/{device}']
-        command += ['-device', f'usb-redir,chardev={device},bus=usb.0']
+        command += ['-device', f'usb-redir,chardev={device},bus=usb-{device}.0']
     command += ['-chardev', f'socket,id=commands,path={sockets}/commands', '-serial', 'chardev:commands']
     return command
 
@@ -143,7 +146,7 @@ class Guest:
 
     def start(self):
         programs = self.options.devel / 'lib/vibe_hardware'
-        self.expected = listTests(programs / 'hid_guest', self.options.filter)
+        self.expected = [test for program in PROGRAMS for test in listTests(programs / program, self.options.filter)]
         if not self.expected:
             raise SystemExit(f"hid_kernel: no test matches '{self.options.filter}'")
         bridge = [str(programs / 'usb_bridge'), '--folder', str(self.folder)]
@@ -181,8 +184,7 @@ class Guest:
         return process
 
     def _environment(self):
-        arguments = f'--gtest_filter={self.options.filter}'
-        return {'VIBE_DEVEL': str(self.options.devel), 'VIBE_GUEST_ARGUMENTS': arguments}
+        return {'VIBE_DEVEL': str(self.options.devel), 'VIBE_FILTER': self.options.filter}
 
 
 def listTests(program, pattern):

@@ -43,7 +43,8 @@ int ImageDevice::control(const vibe_firmware::UsbSetup& setup, const std::uint8_
                                   low(setup.length),
                                   high(setup.length)};
   if (!(setup.request_type & 0x80) && data) frame.insert(frame.end(), data, data + setup.length);
-  if (::send(connection_, frame.data(), frame.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(frame.size())) return kStall;
+  if (::send(connection_, frame.data(), frame.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(frame.size()))
+    return kStall;
   Frame answer;
   for (;;) {
     while (takeFrame(answer)) {

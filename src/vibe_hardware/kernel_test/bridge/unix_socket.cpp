@@ -62,7 +62,8 @@ int connectTo(const std::string& path, double timeout) {
 
 int acceptFrom(int listener) {
   const int descriptor = accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-  if (descriptor < 0 && errno != EAGAIN) throw std::runtime_error(std::string("cannot accept a connection: ") + std::strerror(errno));
+  if (descriptor < 0 && errno != EAGAIN)
+    throw std::runtime_error(std::string("cannot accept a connection: ") + std::strerror(errno));
   return descriptor;
 }
 

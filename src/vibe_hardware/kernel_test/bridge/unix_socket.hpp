@@ -3,7 +3,8 @@
 
 namespace vibe {
 
-/// Makes a unix stream socket that listens at this path, without blocking. @return its descriptor  @throws std::runtime_error
+/// Makes a unix stream socket that listens at this path, without blocking. @return its descriptor  @throws
+/// std::runtime_error
 int listenAt(const std::string& path);
 
 /// Connects to a unix stream socket, waiting until somebody listens there.

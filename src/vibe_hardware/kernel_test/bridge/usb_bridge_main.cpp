@@ -5,8 +5,8 @@
 //   lose DEVICE N | repeat DEVICE N       the next N input reports
 //   corrupt DEVICE N                      the next N answers to GET_REPORT
 //
-// DEVICE is haptic or input (the firmware library, powered by the bus: it starts afresh when it is plugged in) or image
-// (the firmware image on an emulated board; it is plugged in once).
+// DEVICE is haptic, input, spare-haptic or spare-input (the firmware library, powered by the bus: it starts afresh when
+// it is plugged in) or image (the firmware image on an emulated board; it is plugged in once).
 
 #include <poll.h>
 #include <sys/prctl.h>
@@ -33,7 +33,7 @@ struct Options {
 Options parse(int argc, char** argv) {
   Options options;
   CLI::App app{"Plugs the haptic device and the input device into a virtual machine of QEMU (usbredir)"};
-  app.add_option("--folder", options.folder, "where the sockets are made: haptic, input, image and commands")->required();
+  app.add_option("--folder", options.folder, "where the sockets are made: one of each device, commands")->required();
   app.add_option("--image-socket", options.image_socket, "serial port of the board that runs the firmware image");
   try {
     app.parse(argc, argv);
@@ -46,7 +46,7 @@ Options parse(int argc, char** argv) {
 class Bridge {
  public:
   explicit Bridge(const Options& options) : options_(options), commands_(options.folder + "/commands") {
-    for (const char* device : {"haptic", "input", "image"}) {
+    for (const char* device : {"haptic", "input", "spare-haptic", "spare-input", "image"}) {
       ports_.emplace(device, std::make_unique<vibe::RedirPort>(options.folder + "/" + device));
     }
   }
@@ -103,8 +103,9 @@ class Bridge {
   }
 
   std::unique_ptr<vibe::UsbDevice> make(const std::string& name) const {
-    if (name == "haptic") return vibe::makeHapticDevice();
-    if (name == "input") return vibe::makeInputDevice();
+    const std::string serial = "bridge-" + name;
+    if (name == "haptic" || name == "spare-haptic") return vibe::makeHapticDevice(serial);
+    if (name == "input" || name == "spare-input") return vibe::makeInputDevice(serial);
     if (options_.image_socket.empty()) throw std::runtime_error("there is no firmware image; see --image-socket");
     return std::make_unique<vibe::ImageDevice>(options_.image_socket);
   }

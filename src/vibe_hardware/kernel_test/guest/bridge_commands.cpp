@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <mutex>
 #include <stdexcept>
 
 namespace vibe {
@@ -40,10 +42,23 @@ std::string readLine(int file) {
   return line;
 }
 
+/// While it lives, no other thread and no other process uses the serial port.
+class Turn {
+ public:
+  explicit Turn(int file) : lock_(mutex_), file_(file) { flock(file_, LOCK_EX); }
+  ~Turn() { flock(file_, LOCK_UN); }
+
+ private:
+  inline static std::mutex mutex_;
+  std::lock_guard<std::mutex> lock_;
+  int file_;
+};
+
 }  // namespace
 
 void tellBridge(const std::string& command) {
   static const int file = openSerialPort();
+  const Turn turn(file);
   const std::string line = command + "\n";
   if (write(file, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
     throw std::runtime_error("cannot write to the bridge");

@@ -78,7 +78,7 @@ class File {
 
 TEST_P(Enumeration, TheKernelReadsTheDescriptorsOfTheFirmware) {
   const UsbNodes& nodes = device().plug();
-  const auto device_bytes = vibe_firmware::deviceDescriptor(device().product());
+  const auto device_bytes = vibe_firmware::deviceDescriptor(device().usb().product);
   const auto configuration = vibe_firmware::configurationDescriptor(GetParam().report_descriptor.size());
   std::string expected(device_bytes.begin(), device_bytes.end());
   expected.append(configuration.begin(), configuration.end());
@@ -117,7 +117,7 @@ TEST_P(Enumeration, TheAxesHaveTheirFullRange) {
     ASSERT_EQ(ioctl(file.get(), EVIOCGABS(axis), &info), 0);
     EXPECT_EQ(info.minimum, -32767);
     EXPECT_EQ(info.maximum, 32767);
-    if (axis == ABS_X && device().product() == vibe_firmware::kHapticProductId) {
+    if (axis == ABS_X && device().usb().product == vibe_firmware::kHapticProductId) {
       figure("fuzz that the kernel sets on an axis", info.fuzz, "of 32767");
       figure("dead zone that the kernel sets on an axis", info.flat, "of 32767");
     }

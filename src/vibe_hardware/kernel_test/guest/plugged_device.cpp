@@ -7,13 +7,31 @@
 
 namespace vibe {
 namespace {
+
+using vibe_firmware::kHapticProductId;
+using vibe_firmware::kInputProductId;
+
 constexpr double kTimeout = 20;  // [s]
+
+}  // namespace
+
+void PluggedDevice::beginPlug() {
+  if (plugged_) return;
+  tellBridge("plug " + name_);
+  plugged_ = true;
+}
+
+void PluggedDevice::beginUnplug() {
+  if (!plugged_) return;
+  tellBridge("unplug " + name_);
+  plugged_ = false;
+  keeps_polling_.reset();
 }
 
 const UsbNodes& PluggedDevice::plug() {
+  beginPlug();
   if (nodes_) return *nodes_;
-  tellBridge("plug " + name_);
-  const auto complete = [this] { return (nodes_ = findUsbNodes(product_)).has_value(); };
+  const auto complete = [this] { return (nodes_ = findUsbNodes(usb_)).has_value(); };
   if (!events_.waitUntil(complete, kTimeout)) {
     throw std::runtime_error("no hidraw, event and js node of the " + name_ + " device after 20 s");
   }
@@ -22,27 +40,35 @@ const UsbNodes& PluggedDevice::plug() {
 }
 
 void PluggedDevice::unplug() {
-  if (!nodes_) return;
-  tellBridge("unplug " + name_);
-  keeps_polling_.reset();
-  if (!events_.waitUntil([this] { return !isKnown(product_); }, kTimeout)) {
+  beginUnplug();
+  if (!events_.waitUntil([this] { return !isKnown(usb_); }, kTimeout)) {
     throw std::runtime_error("the kernel still has the " + name_ + " device 20 s after it was pulled out");
   }
   nodes_.reset();
 }
 
 PluggedDevice& hapticDevice() {
-  static PluggedDevice device("haptic", vibe_firmware::kHapticProductId);
+  static PluggedDevice device("haptic", {kHapticProductId, "bridge-haptic"});
   return device;
 }
 
 PluggedDevice& inputDevice() {
-  static PluggedDevice device("input", vibe_firmware::kInputProductId);
+  static PluggedDevice device("input", {kInputProductId, "bridge-input"});
   return device;
 }
 
 PluggedDevice& imageDevice() {
-  static PluggedDevice device("image", vibe_firmware::kHapticProductId);
+  static PluggedDevice device("image", {kHapticProductId, "QEMU"});
+  return device;
+}
+
+PluggedDevice& spareHapticDevice() {
+  static PluggedDevice device("spare-haptic", {kHapticProductId, "bridge-spare-haptic"});
+  return device;
+}
+
+PluggedDevice& spareInputDevice() {
+  static PluggedDevice device("spare-input", {kInputProductId, "bridge-spare-input"});
   return device;
 }
 

@@ -12,21 +12,28 @@ namespace vibe {
 /// A device of the bridge, as a test plugs it in and pulls it out.
 class PluggedDevice {
  public:
-  PluggedDevice(std::string name, std::uint16_t product) : name_(std::move(name)), product_(product) {}
+  /// @param name  of the bridge
+  PluggedDevice(std::string name, UsbName usb) : name_(std::move(name)), usb_(std::move(usb)) {}
 
   /// Plugs it in, if it is not, and waits for hidraw, event and js nodes. @throws std::runtime_error after 20 s
   const UsbNodes& plug();
 
-  /// Pulls it out, if it is plugged in, and waits until the kernel has dropped it. @throws std::runtime_error after 20 s
+  /// Pulls it out, if it is plugged in, and waits until the kernel has dropped it. @throws std::runtime_error after 20
+  /// s
   void unplug();
 
+  /// The same without waiting, so that several devices may come or go at once: plug() and unplug() then wait.
+  void beginPlug();
+  void beginUnplug();
+
   const std::string& name() const { return name_; }
-  std::uint16_t product() const { return product_; }
+  const UsbName& usb() const { return usb_; }
 
  private:
   std::string name_;
-  std::uint16_t product_;
+  UsbName usb_;
   KernelEvents events_;
+  bool plugged_ = false;  ///< as the bridge has been told
   std::optional<UsbNodes> nodes_;
   /// The kernel polls a device only while a file of it is open, and QEMU stores up what the guest does not fetch: a
   /// reader that opens the device later would first get old reports.
@@ -35,6 +42,8 @@ class PluggedDevice {
 
 PluggedDevice& hapticDevice();
 PluggedDevice& inputDevice();
-PluggedDevice& imageDevice();  ///< the firmware image; same product as the haptic device
+PluggedDevice& imageDevice();  ///< the firmware image of the haptic device
+PluggedDevice& spareHapticDevice();
+PluggedDevice& spareInputDevice();
 
 }  // namespace vibe

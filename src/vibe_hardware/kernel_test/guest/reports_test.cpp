@@ -103,6 +103,16 @@ TEST(Reports, ARepeatedReportIsNoticed) {
   EXPECT_EQ(found.repeated, 2);
 }
 
+TEST(Reports, AReaderOfAPulledDeviceGetsAnError) {
+  HidrawFile file(hapticDevice().plug().hidraw);
+  ASSERT_FALSE(file.read(5).empty());
+  hapticDevice().unplug();
+  while (!file.read(0).empty()) {
+  }
+  EXPECT_NE(file.setFeature({2, 0, 0}), 0);
+  hapticDevice().plug();
+}
+
 /// A file of events whose buffer nobody else empties.
 template <class Event>
 class EventFile {
@@ -167,7 +177,8 @@ TEST(Reports, TheEventNodeGivesTheSameAxisValues) {
   EXPECT_GE(values.size(), 90U);
   const std::vector<int> wanted = changes({from, expected.end()});
   const std::size_t both = std::min(wanted.size(), values.size());
-  EXPECT_EQ(std::vector<int>(values.begin(), values.begin() + both), std::vector<int>(wanted.begin(), wanted.begin() + both));
+  EXPECT_EQ(std::vector<int>(values.begin(), values.begin() + both),
+            std::vector<int>(wanted.begin(), wanted.begin() + both));
 }
 
 TEST(Reports, TheJoystickGivesTheSameButtons) {

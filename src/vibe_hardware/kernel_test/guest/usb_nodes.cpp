@@ -1,9 +1,10 @@
 #include "usb_nodes.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "vibe_firmware/protocol/descriptors.hpp"
 
@@ -12,11 +13,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As the kernel writes it into the uevent file of a HID device on USB.
-std::string hidId(std::uint16_t product) {
-  char text[64];
-  std::snprintf(text, sizeof text, "HID_ID=0003:%08X:%08X", vibe_firmware::kVendorId, product);
-  return text;
+/// Whether this uevent file is that of a HID device on USB with our vendor id, this product id and this serial number.
+bool matches(const fs::path& uevent, const UsbName& name) {
+  char id[64];
+  std::snprintf(id, sizeof id, "HID_ID=0003:%08X:%08X\n", vibe_firmware::kVendorId, name.product);
+  const std::string text = readAttribute(uevent) + "\n";
+  return text.find(id) != std::string::npos && text.find("HID_UNIQ=" + name.serial + "\n") != std::string::npos;
 }
 
 /// Folders inside `folder`; none if it vanishes meanwhile.
@@ -29,10 +31,9 @@ std::vector<fs::path> entries(const fs::path& folder) {
   return found;
 }
 
-/// Folder of the HID device behind a hidraw node, if it is one of this product.
-std::optional<fs::path> hidFolder(const fs::path& hidraw, std::uint16_t product) {
-  const std::string uevent = readAttribute(hidraw / "device/uevent");
-  if (uevent.find(hidId(product)) == std::string::npos) return std::nullopt;
+/// Folder of the HID device behind a hidraw node, if it has this name.
+std::optional<fs::path> hidFolder(const fs::path& hidraw, const UsbName& name) {
+  if (!matches(hidraw / "device/uevent", name)) return std::nullopt;
   std::error_code error;
   const fs::path folder = fs::canonical(hidraw / "device", error);
   if (error) return std::nullopt;
@@ -41,10 +42,10 @@ std::optional<fs::path> hidFolder(const fs::path& hidraw, std::uint16_t product)
 
 void findInputNodes(const fs::path& hid, UsbNodes& nodes) {
   for (const fs::path& input : entries(hid / "input")) {
-    for (const fs::path& node : entries(input)) {
-      const std::string name = node.filename();
-      if (name.rfind("event", 0) == 0) nodes.event = "/dev/input/" + name;
-      if (name.rfind("js", 0) == 0) nodes.joy = "/dev/input/" + name;
+    for (const fs::path& folder : entries(input)) {
+      const std::string node = folder.filename();
+      if (node.rfind("event", 0) == 0) nodes.event = "/dev/input/" + node;
+      if (node.rfind("js", 0) == 0) nodes.joy = "/dev/input/" + node;
     }
   }
 }
@@ -52,15 +53,19 @@ void findInputNodes(const fs::path& hid, UsbNodes& nodes) {
 }  // namespace
 
 std::string readAttribute(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  // not a stream: those throw when the device goes while they read
+  std::string text(4096, '\0');
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const ssize_t size = file < 0 ? 0 : read(file, text.data(), text.size());
+  if (file >= 0) close(file);
+  text.resize(size < 0 ? 0 : size);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text;
 }
 
-std::optional<UsbNodes> findUsbNodes(std::uint16_t product) {
+std::optional<UsbNodes> findUsbNodes(const UsbName& name) {
   for (const fs::path& hidraw : entries("/sys/class/hidraw")) {
-    const auto hid = hidFolder(hidraw, product);
+    const auto hid = hidFolder(hidraw, name);
     if (!hid) continue;
     UsbNodes nodes;
     nodes.hidraw = "/dev/" + hidraw.filename().string();
@@ -74,9 +79,9 @@ std::optional<UsbNodes> findUsbNodes(std::uint16_t product) {
   return std::nullopt;
 }
 
-bool isKnown(std::uint16_t product) {
+bool isKnown(const UsbName& name) {
   for (const fs::path& device : entries("/sys/bus/hid/devices")) {
-    if (readAttribute(device / "uevent").find(hidId(product)) != std::string::npos) return true;
+    if (matches(device / "uevent", name)) return true;
   }
   return false;
 }

@@ -6,6 +6,12 @@
 
 namespace vibe {
 
+/// What tells one device from another; the vendor id is always the project's.
+struct UsbName {
+  std::uint16_t product;
+  std::string serial;
+};
+
 /// The files that the kernel has made for one USB device.
 struct UsbNodes {
   std::string hidraw;      ///< "/dev/hidraw0"
@@ -13,11 +19,11 @@ struct UsbNodes {
   std::string usb;         ///< folder of the USB device in /sys
 };
 
-/// Looks for the device with this product id of the project's vendor id. Without a value until all nodes are there.
-std::optional<UsbNodes> findUsbNodes(std::uint16_t product);
+/// Looks for a device. Without a value until all nodes are there.
+std::optional<UsbNodes> findUsbNodes(const UsbName& name);
 
-/// Whether the kernel still knows a HID device with this product id.
-bool isKnown(std::uint16_t product);
+/// Whether the kernel still knows this HID device.
+bool isKnown(const UsbName& name);
 
 /// Text of a file in /sys without the line end; empty: there is none.
 std::string readAttribute(const std::string& path);
