@@ -1,0 +1,35 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "vibe_hardware/emulator/hand.hpp"
+
+namespace vibe {
+
+/// Plays a recorded motion from a CSV file. The first line names the columns, in any order: `time` [s] and the joints
+/// `insertion` [m], `rotation`, `tip_up_down`, `tip_left_right` [rad]; then, as far as they are wanted, the buttons
+/// (`apc_pedal`, `helix_grab`, `needle`, `t_tag`, `cinch`, `insufflate`), 0 or 1. Empty lines and lines that begin with
+/// # do not count. Times ascend. Positions are interpolated; a button has the value of the last row. Before the first
+/// row and after the last one nothing changes.
+class RecordedHand : public Hand {
+ public:
+  static constexpr std::size_t kMaxRows = 10'000'000;
+
+  /// @throws Error "file:line: what is wrong; remedy"
+  static RecordedHand load(const std::string& file);
+  /// @param place  of the text, for errors
+  static RecordedHand parse(const std::string& text, const std::string& place);
+
+  HandSample at(double time) const override;
+  double duration() const override { return rows_.back().time; }
+
+ private:
+  friend class RecordingReader;
+  struct Row {
+    double time = 0;
+    HandSample sample;
+  };
+  std::vector<Row> rows_;  // at least one
+};
+
+}  // namespace vibe

@@ -1,0 +1,47 @@
+#pragma once
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vibe_hardware/gamepad/pad_source.hpp"
+
+namespace vibe {
+
+/// A recorded pad session in the text format of evemu (evemu-record, evemu-play): lines N (name), I (bus, vendor,
+/// product, version), B (bits of buttons), A (axes: code, minimum, maximum, fuzz, flat), E (events: time, type, code,
+/// value).
+struct PadRecording {
+  PadInfo info;
+  PadState state;                ///< before the first event: axes in the middle of their range, buttons up
+  std::vector<PadEvent> events;  ///< times do not decrease
+};
+
+/// @throws Error "file:line: what is wrong; remedy"
+PadRecording loadPadRecording(const std::string& file);
+/// The same from text. @param place  name used in errors
+PadRecording parsePadRecording(const std::string& text, const std::string& place);
+
+/// Plays a recording as if the pad were there. Its time begins with the first call of update(); after the last event
+/// the pad is gone.
+std::unique_ptr<PadSource> playPadRecording(PadRecording recording);
+
+/// Writes a pad session, event by event.
+class PadRecorder {
+ public:
+  /// @throws Error if the file cannot be written
+  PadRecorder(const std::string& file, const PadInfo& info, const PadState& state);
+  ~PadRecorder();
+  PadRecorder(const PadRecorder&) = delete;
+  PadRecorder& operator=(const PadRecorder&) = delete;
+
+  void add(const PadEvent& event);
+
+ private:
+  std::FILE* file_;
+  double begin_ = -1;  // time of the first event [s]
+
+  void writeHeader(const PadInfo& info, const PadState& state);
+};
+
+}  // namespace vibe

@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace vibe {
+
+/// One event of an input device, as the kernel reports it.
+struct PadEvent {
+  double time = 0;  ///< [s], of any clock
+  int type = 0;     ///< EV_ABS, EV_KEY, ...
+  int code = 0;     ///< ABS_X, BTN_SOUTH, ...
+  int value = 0;
+};
+
+/// An absolute axis: its range and its present value, in units of the device.
+struct PadAxis {
+  int minimum = -32768;
+  int maximum = 32767;
+  int value = 0;
+
+  /// From -1 at the minimum to 1 at the maximum; values beyond are limited. 0 for an axis without a range.
+  double deflection() const;
+};
+
+/// A button. A button that was down when the pad was found counts as released until it is pressed again.
+struct PadButton {
+  bool down = false;
+  std::uint32_t presses = 0;  ///< since the pad was found; a press between two looks at the state is not lost
+
+  bool isPressed() const { return down && presses > 0; }
+};
+
+/// State of all axes and buttons of a pad, by event code.
+struct PadState {
+  std::map<int, PadAxis> axes;
+  std::map<int, PadButton> buttons;
+
+  /// Takes an event over. Events of axes and buttons that the pad does not have are ignored.
+  void apply(const PadEvent& event);
+};
+
+/// What a pad is: what the kernel says about it.
+struct PadInfo {
+  std::string name;  ///< "Microsoft X-Box 360 pad"
+  std::string phys;  ///< "usb-0000:00:14.0-1/input0"; may be empty
+  std::string path;  ///< "/dev/input/event5", or the file of a recording
+  int bus = 0;
+  int vendor = 0;
+  int product = 0;
+  int version = 0;
+  bool has_rumble = false;
+  bool has_spring = false;
+};
+
+/// "ABS_X" for (EV_ABS, 0); the number for a code without a name.
+std::string eventCodeName(int type, int code);
+/// The inverse. @return -1 for a word that is no name of this type
+int eventCodeFromName(int type, const std::string& name);
+
+}  // namespace vibe

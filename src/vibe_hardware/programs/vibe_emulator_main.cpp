@@ -1,0 +1,213 @@
+// vibe_emulator: both devices without hardware, in wall time. A scripted, recorded or random hand moves them.
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_hardware/emulator/emulator.hpp"
+#include "vibe_hardware/emulator/random_hand.hpp"
+#include "vibe_hardware/emulator/recorded_hand.hpp"
+#include "vibe_hardware/emulator/scripted_hand.hpp"
+#include "vibe_hardware/emulator/socket_server.hpp"
+#include "vibe_hardware/emulator/tick_schedule.hpp"
+#include "vibe_hardware/emulator/uhid_server.hpp"
+#include "vibe_hardware/hid/socket_bus.hpp"
+
+namespace {
+
+using namespace vibe;
+
+volatile std::sig_atomic_t stopped = 0, toggled = 0;
+
+struct Options {
+  std::vector<std::string> hand{"random"};
+  std::uint64_t seed = 1;
+  std::string folder = defaultSocketFolder(), serial = "EMULATOR", drive = "voltage";
+  double duration = 0;
+  bool uhid = false;
+};
+
+void addOptions(CLI::App& app, Options& o) {
+  app.add_option("--hand", o.hand, "who moves the devices: script FILE, recorded FILE or random (default: random)")
+      ->type_name("KIND [FILE]")
+      ->expected(1, 2);
+  app.add_option("--seed", o.seed, "of the random hand (default: 1)")->type_name("N");
+  app.add_option("--folder", o.folder, "of the sockets of the devices (default: " + o.folder + ")")->type_name("DIR");
+  app.add_flag("--uhid", o.uhid, "create the devices in the kernel, through /dev/uhid, instead of sockets");
+  app.add_option("--serial", o.serial, "serial number of both devices (default: EMULATOR)")->type_name("TEXT");
+  app.add_option("--drive", o.drive, "how the motors are driven: voltage or torque (default: voltage)")
+      ->check(CLI::IsMember({"voltage", "torque"}));
+  app.add_option("--duration", o.duration, "end after so many seconds (default: never)")
+      ->type_name("S")
+      ->check(CLI::NonNegativeNumber);
+  app.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.\n");
+}
+
+std::shared_ptr<const Hand> makeHand(const Options& o) {
+  const std::string& kind = o.hand[0];
+  if (kind == "random") {
+    if (o.hand.size() > 1) throw Error("--hand random takes no file; remove '" + o.hand[1] + "'.");
+    return std::make_shared<RandomHand>(o.seed);
+  }
+  if (kind != "script" && kind != "recorded")
+    throw Error("--hand '" + kind + "' is not known; write script FILE, recorded FILE or random.");
+  if (o.hand.size() < 2) throw Error("--hand " + kind + " needs a file; write --hand " + kind + " FILE.");
+  const std::string file = resolveAddress(o.hand[1]);
+  if (kind == "script") return std::make_shared<ScriptedHand>(TraineeScript::load(file));
+  return std::make_shared<RecordedHand>(RecordedHand::load(file));
+}
+
+/// One device while it is plugged in.
+struct Connection {
+  Connection(const Options& o, const std::string& name, EmulatedDevice& emulated)
+      : device(emulated), usb(emulated.function()) {
+    if (o.uhid)
+      server = std::make_unique<UhidServer>(usb);
+    else
+      server = std::make_unique<SocketServer>(o.folder, name, usb);
+  }
+
+  void serve() {
+    std::uint8_t report[vibe_firmware::kInputReportSize];
+    if (device.nextReport(report)) server->publish(report, sizeof report);
+    server->serve();
+  }
+
+  EmulatedDevice& device;
+  UsbHost usb;
+  std::unique_ptr<DeviceServer> server;
+};
+
+double monotonic() {
+  timespec time{};
+  ::clock_gettime(CLOCK_MONOTONIC, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+void sleepUntil(double when) {
+  timespec time{};
+  time.tv_sec = static_cast<time_t>(when);
+  time.tv_nsec = static_cast<long>(1e9 * (when - static_cast<double>(time.tv_sec)));
+  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr);
+}
+
+/// Runs both devices by the wall clock.
+class Session {
+ public:
+  explicit Session(const Options& options) : options_(options), emulator_(setupOf(options), makeHand(options)) {
+    plug();
+  }
+
+  void run() {
+    const double start = monotonic();
+    TickSchedule schedule(start);
+    while (stopped == 0 && (options_.duration == 0 || emulator_.time() < options_.duration)) {
+      const int due = schedule.due(monotonic());
+      for (int i = 0; i < due; ++i) {
+        emulator_.tick();
+        if (haptic_) haptic_->serve(), input_->serve();
+      }
+      if (toggled != 0) toggle();
+      report(schedule);
+      sleepUntil(schedule.next());
+    }
+    summarise(schedule);
+  }
+
+ private:
+  static EmulatorSetup setupOf(const Options& options) {
+    EmulatorSetup setup;
+    setup.serial = options.serial;
+    setup.drive = options.drive == "torque" ? Drive::Torque : Drive::Voltage;
+    return setup;
+  }
+
+  void plug() {
+    haptic_ = std::make_unique<Connection>(options_, "haptic", emulator_.haptic());
+    input_ = std::make_unique<Connection>(options_, "input", emulator_.input());
+    for (const Connection* c : {haptic_.get(), input_.get()})
+      std::printf("%s %04x:%04x, serial %s: %s\n", c->usb.name().c_str(), c->usb.vendor(), c->usb.product(),
+                  c->usb.serial().c_str(), options_.uhid ? "in the kernel" : options_.folder.c_str());
+    std::fflush(stdout);
+  }
+
+  void unplug() {
+    for (std::unique_ptr<Connection>* connection : {&haptic_, &input_}) {
+      dropped_ += (*connection)->server->droppedReports();
+      EmulatedDevice& device = (*connection)->device;
+      connection->reset();
+      device.restart();
+    }
+    std::printf("unplugged\n");
+    std::fflush(stdout);
+  }
+
+  void toggle() {
+    toggled = 0;
+    if (haptic_)
+      unplug();
+    else
+      plug();
+  }
+
+  /// Says once a second at most that the machine is too slow, and once that the hand has come to its end.
+  void report(const TickSchedule& schedule) {
+    if (schedule.behind() && emulator_.time() >= next_warning_) {
+      std::fprintf(stderr, "vibe_emulator: %.0f ms behind; the machine is too busy for 1,000 ticks per second.\n",
+                   1e3 * schedule.delay());
+      next_warning_ = emulator_.time() + 1;
+    }
+    if (!finished_ && emulator_.finished()) {
+      finished_ = true;
+      std::printf("the hand has come to its end after %.1f s and holds still\n", emulator_.time());
+      std::fflush(stdout);
+    }
+  }
+
+  void summarise(const TickSchedule& schedule) {
+    if (haptic_) dropped_ += haptic_->server->droppedReports() + input_->server->droppedReports();
+    std::printf("%.1f s, at most %.1f ms behind, %.1f s dropped, %llu reports not read\n", emulator_.time(),
+                1e3 * schedule.worstDelay(), schedule.dropped(), static_cast<unsigned long long>(dropped_));
+  }
+
+  const Options& options_;
+  Emulator emulator_;
+  std::unique_ptr<Connection> haptic_, input_;
+  std::uint64_t dropped_ = 0;
+  double next_warning_ = 0;
+  bool finished_ = false;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Emulates the haptic device and the input device with the firmware in them, in wall time.",
+               "vibe_emulator"};
+  app.set_help_flag("--help", "print this text and end");
+  addOptions(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    std::printf("%s", app.help().c_str());
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "vibe_emulator: %s; see --help.\n", error.what());
+    return 2;
+  }
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopped = 1; });
+  std::signal(SIGUSR1, [](int) { toggled = 1; });
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    Session(options).run();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vibe_emulator: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,151 @@
+#include "vibe_hardware/emulator/recorded_hand.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/scene/nearest_key.hpp"
+
+namespace vibe {
+namespace {
+
+// Numbers of columns: 0 is the time, then joints, then buttons.
+constexpr int kFirstButton = 1 + kScopeJointCount, kColumnKinds = kFirstButton + kButtonCount;
+
+std::vector<std::string> columnNames() {
+  std::vector<std::string> names{"time"};
+  names.insert(names.end(), kJointNames.begin(), kJointNames.begin() + kScopeJointCount);
+  names.insert(names.end(), kButtonNames.begin(), kButtonNames.end());
+  return names;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> cellsOf(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t comma = 0; comma != std::string_view::npos;) {
+    comma = line.find(',');
+    cells.push_back(trimmed(line.substr(0, comma)));
+    if (comma != std::string_view::npos) line.remove_prefix(comma + 1);
+  }
+  return cells;
+}
+
+}  // namespace
+
+/// Reads the text of a recording line by line.
+class RecordingReader {
+ public:
+  RecordingReader(std::string_view text, std::string place) : rest_(text), place_(std::move(place)) {}
+
+  RecordedHand read() {
+    std::string_view line;
+    if (!next(line)) throw Error(place_ + ": is empty; the first line has the names of the columns, then rows follow.");
+    readHeader(line);
+    while (next(line)) readRow(line);
+    if (hand_.rows_.empty()) fail("has no row below the names of the columns; add at least one");
+    return std::move(hand_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what_and_remedy) const {
+    const char* end = what_and_remedy.back() == '?' ? "" : ".";
+    throw Error(place_ + ":" + std::to_string(line_) + ": " + what_and_remedy + end);
+  }
+
+  /// The next line that counts.
+  bool next(std::string_view& line) {
+    while (!rest_.empty()) {
+      const std::size_t end = rest_.find('\n');
+      line = trimmed(rest_.substr(0, end));
+      rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+      ++line_;
+      if (!line.empty() && line.front() != '#') return true;
+    }
+    return false;
+  }
+
+  void readHeader(std::string_view line) {
+    const std::vector<std::string> names = columnNames();
+    std::vector<bool> seen(names.size(), false);
+    for (const std::string_view cell : cellsOf(line)) {
+      const auto found = std::find(names.begin(), names.end(), cell);
+      if (found == names.end())
+        fail("column '" + std::string(cell) + "' is not known; " + suggestKey(std::string(cell), names));
+      const auto column = found - names.begin();
+      if (seen[column]) fail("column '" + names[column] + "' is there twice; remove one");
+      seen[column] = true;
+      columns_.push_back(static_cast<int>(column));
+    }
+    for (int column = 0; column < kFirstButton; ++column)
+      if (!seen[column]) fail("column '" + names[column] + "' is missing; add it");
+  }
+
+  void readRow(std::string_view line) {
+    const std::vector<std::string_view> cells = cellsOf(line);
+    if (cells.size() != columns_.size())
+      fail("has " + std::to_string(cells.size()) + " values; write " + std::to_string(columns_.size()) +
+           ", one for each column");
+    RecordedHand::Row row;
+    for (std::size_t i = 0; i < cells.size(); ++i) readCell(cells[i], columns_[i], row);
+    if (!hand_.rows_.empty() && row.time <= hand_.rows_.back().time)
+      fail("time " + std::to_string(row.time) + " does not follow the time of the row before; sort the rows by time");
+    if (hand_.rows_.empty() && row.time < 0) fail("time is negative; begin at 0 or later");
+    if (hand_.rows_.size() == RecordedHand::kMaxRows) fail("is too long; shorten the recording");
+    hand_.rows_.push_back(row);
+  }
+
+  void readCell(std::string_view cell, int column, RecordedHand::Row& row) const {
+    const std::string name = columnNames()[column];
+    double value = 0;
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+      fail(name + ": '" + std::string(cell) + "' is not a finite number; write one, with a point");
+    if (column == 0) {
+      row.time = value;
+    } else if (column < kFirstButton) {
+      row.sample.joints[column - 1] = value;
+    } else {
+      if (value != 0 && value != 1)
+        fail(name + ": '" + std::string(cell) + "' is not 0 or 1; write 1 while it is pressed");
+      row.sample.buttons[column - kFirstButton] = value != 0 ? 1 : 0;
+    }
+  }
+
+  std::string_view rest_;
+  std::string place_;
+  int line_ = 0;
+  std::vector<int> columns_;
+  RecordedHand hand_;
+};
+
+RecordedHand RecordedHand::load(const std::string& file) {
+  return parse(readTextFile(file, "recorded hand"), file);
+}
+
+RecordedHand RecordedHand::parse(const std::string& text, const std::string& place) {
+  return RecordingReader(text, place).read();
+}
+
+HandSample RecordedHand::at(double time) const {
+  const auto after =
+      std::upper_bound(rows_.begin(), rows_.end(), time, [](double t, const Row& row) { return t < row.time; });
+  if (after == rows_.begin()) return rows_.front().sample;
+  const Row& from = *(after - 1);
+  if (after == rows_.end()) return from.sample;
+  HandSample sample = from.sample;
+  const double part = (time - from.time) / (after->time - from.time);
+  for (std::size_t i = 0; i < sample.joints.size(); ++i)
+    sample.joints[i] += part * (after->sample.joints[i] - from.sample.joints[i]);
+  return sample;
+}
+
+}  // namespace vibe

@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+
+#include "vibe_hardware/hid/file_descriptor.hpp"
+
+namespace vibe {
+
+/// Connects to a socket file without waiting. @return empty if nobody serves it; errno says why
+FileDescriptor connectTo(const std::string& path);
+
+/// Serves a new socket file. A file that is left over from an earlier server is replaced.
+/// @throws std::runtime_error with the remedy: the path is too long, in use, or cannot be made
+FileDescriptor listenAt(const std::string& path);
+
+/// Waits until something can be read or the other side has closed. @param seconds  negative: for ever
+/// @return whether it can
+bool waitReadable(int file, double seconds);
+
+}  // namespace vibe

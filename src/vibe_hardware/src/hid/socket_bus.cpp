@@ -1,0 +1,166 @@
+#include "vibe_hardware/hid/socket_bus.hpp"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+
+#include "hid/local_socket.hpp"
+#include "vibe_hardware/hid/socket_protocol.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kHelloTimeout = 0.1;  // [s]; a device answers within one tick
+constexpr double kReplyTimeout = 1;    // [s]
+constexpr std::size_t kMaxWaiting = 256;
+
+using Clock = std::chrono::steady_clock;
+
+double secondsUntil(Clock::time_point end) {
+  return std::max(0.0, std::chrono::duration<double>(end - Clock::now()).count());
+}
+
+Clock::time_point after(double seconds) {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+/// The next packet. @return empty: none came in time  @throws DeviceGone
+Packet receive(int file, const std::string& path, double timeout) {
+  if (!waitReadable(file, timeout)) return {};
+  Packet packet(kMaxPacket);
+  const ssize_t size = ::recv(file, packet.data(), packet.size(), MSG_DONTWAIT);
+  if (size < 0 && (errno == EAGAIN || errno == EINTR)) return {};
+  if (size <= 0) throw DeviceGone("Device " + path + " is gone: its emulator has closed the socket.");
+  packet.resize(static_cast<std::size_t>(size));
+  return packet;
+}
+
+/// @throws DeviceGone if what is there is not a device
+Hello greet(int file, const std::string& path) {
+  const Packet packet = receive(file, path, kHelloTimeout);
+  const std::optional<Hello> hello = unpackHello(packet.data(), packet.size());
+  if (!hello)
+    throw DeviceGone("Socket " + path + " does not answer as a device; start the emulator of the same release.");
+  return *hello;
+}
+
+class SocketPort : public HidPort {
+ public:
+  SocketPort(FileDescriptor file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
+
+  std::size_t read(std::uint8_t* bytes, std::size_t capacity, double timeout) override {
+    const auto end = after(timeout);
+    while (waiting_.empty()) {
+      const double left = secondsUntil(end);
+      handle(receive(file_.get(), path_, left));
+      if (waiting_.empty() && left == 0) return 0;
+    }
+    const Packet report = std::move(waiting_.front());
+    waiting_.pop_front();
+    return copy(report.data() + 1, report.size() - 1, bytes, capacity);
+  }
+
+  std::size_t getFeature(std::uint8_t id, std::uint8_t* bytes, std::size_t capacity) override {
+    const Packet reply = ask({kGet, ++number_, id}, id);
+    return copy(reply.data() + 3, reply.size() - 3, bytes, capacity);
+  }
+
+  void setFeature(const std::uint8_t* bytes, std::size_t size) override {
+    if (size == 0 || size > kMaxPacket - 2)
+      throw ReportRejected("A report of " + std::to_string(size) + " bytes is none.");
+    Packet packet{kSet, ++number_};
+    packet.insert(packet.end(), bytes, bytes + size);
+    ask(packet, bytes[0]);
+  }
+
+ private:
+  static std::size_t copy(const std::uint8_t* from, std::size_t size, std::uint8_t* to, std::size_t capacity) {
+    const std::size_t count = std::min(size, capacity);
+    if (count > 0) std::memcpy(to, from, count);
+    return count;
+  }
+
+  /// Keeps input reports. @return the packet if it replies to the request under way
+  std::optional<Packet> handle(Packet packet) {
+    if (packet.empty()) return {};
+    if (packet[0] == kReply && packet.size() >= 3) {
+      if (packet[1] == number_) return packet;
+      return {};  // to a request that was given up
+    }
+    if (packet[0] != kInput || packet.size() < 2)
+      throw DeviceGone("Device " + path_ +
+                       " sends packets of another protocol; start the emulator of the same release.");
+    if (waiting_.size() == kMaxWaiting) waiting_.pop_front();
+    waiting_.push_back(std::move(packet));
+    return {};
+  }
+
+  Packet ask(const Packet& request, std::uint8_t id) {
+    const ssize_t sent = ::send(file_.get(), request.data(), request.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent != static_cast<ssize_t>(request.size()))
+      throw DeviceGone("Device " + path_ + " takes no requests any more (" + std::strerror(errno) + ").");
+    const auto end = after(kReplyTimeout);
+    while (true) {
+      const double left = secondsUntil(end);
+      const std::optional<Packet> reply = handle(receive(file_.get(), path_, left));
+      if (reply && (*reply)[2] == 0) return *reply;
+      if (reply) throw ReportRejected("Device " + path_ + " rejects report " + std::to_string(id) + ".");
+      if (left == 0) throw DeviceGone("Device " + path_ + " does not answer within 1 s.");
+    }
+  }
+
+  FileDescriptor file_;
+  std::string path_;
+  std::uint8_t number_ = 0;
+  std::deque<Packet> waiting_;  // input packets
+};
+
+}  // namespace
+
+std::string defaultSocketFolder() {
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  if (runtime != nullptr && runtime[0] == '/') return std::string(runtime) + "/vibe_emulator";
+  return "/tmp/vibe_emulator-" + std::to_string(::getuid());
+}
+
+std::vector<HidInfo> SocketBus::list() {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::directory_iterator files(folder_, error);
+  if (error == std::errc::no_such_file_or_directory) return {};  // no emulator has been started yet
+  if (error)
+    throw std::runtime_error("Folder " + folder_ + " cannot be read (" + error.message() +
+                             "); choose the folder of the emulator.");
+  std::vector<HidInfo> found;
+  for (const fs::directory_entry& file : files) {
+    if (file.path().extension() != kSocketSuffix) continue;
+    const std::string path = file.path();
+    const FileDescriptor socket = connectTo(path);
+    if (!socket) continue;
+    try {
+      const Hello hello = greet(socket.get(), path);
+      found.push_back({path, hello.vendor, hello.product, hello.serial, hello.name});
+    } catch (const DeviceGone&) {  // not a device
+    }
+  }
+  std::sort(found.begin(), found.end(), [](const HidInfo& a, const HidInfo& b) { return a.path < b.path; });
+  return found;
+}
+
+std::unique_ptr<HidPort> SocketBus::open(const std::string& path) {
+  FileDescriptor file = connectTo(path);
+  if (!file && errno == EACCES)
+    throw std::runtime_error("Socket " + path + " may not be opened; start the emulator as the same user.");
+  if (!file) throw DeviceGone("Device " + path + " is gone: nobody serves its socket (" + std::strerror(errno) + ").");
+  greet(file.get(), path);
+  return std::make_unique<SocketPort>(std::move(file), path);
+}
+
+}  // namespace vibe
