@@ -53,7 +53,7 @@ def modulesInOrder(kernel_root):
     return list(ordered.values())
 
 
-def uncompressedKernel(kernel_root, folder):
+def uncompressedKernel(kernel_root):
     """The ELF file inside vmlinuz: QEMU starts it at once, while unpacking in the guest takes seconds."""
     image = next((kernel_root / 'boot').glob('vmlinuz-*'))
     data = image.read_bytes()
@@ -61,9 +61,9 @@ def uncompressedKernel(kernel_root, folder):
     payload = data[(data[0x1F1] + 1) * 512 + offset:][:length]
     if not payload.startswith(b'\xfd7zXZ'):
         return image
-    target = folder / 'vmlinux'
+    target = kernel_root / 'vmlinux'
     if not target.exists():
-        part = folder / 'vmlinux.part'
+        part = kernel_root / 'vmlinux.part'
         part.write_bytes(lzma.LZMADecompressor().decompress(payload))
         part.rename(target)
     return target
@@ -135,6 +135,15 @@ def qemuCommand(kernel, archive, sockets):
     return command
 
 
+def boardCommand(image, sockets):
+    """The board with the firmware image. It starts when the bridge connects to its second serial port. An instruction
+    takes 64 ns, so that the share of the processor that it gets does not depend on how busy the host is."""
+    return ['qemu-system-arm', '-M', 'mps2-an500', '-display', 'none', '-monitor', 'none', '-icount', 'shift=6,align=on',
+            '-semihosting-config', 'enable=on,target=native', '-serial', 'null',
+            '-chardev', f'socket,id=usb,path={sockets}/board,server=on,wait=on', '-serial', 'chardev:usb',
+            '-kernel', str(image)]
+
+
 class Guest:
     """The bridge, QEMU and the tests in it."""
 
@@ -150,10 +159,15 @@ class Guest:
         if not self.expected:
             raise SystemExit(f"hid_kernel: no test matches '{self.options.filter}'")
         bridge = [str(programs / 'usb_bridge'), '--folder', str(self.folder)]
+        if self.options.image:
+            bridge += ['--image-socket', f'{self.folder}/board']
+            # what it says of a guest that is late is no error
+            self._run(boardCommand(self.options.image, self.folder), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                      stderr=subprocess.DEVNULL)
         self.bridge = self._run(bridge, stdout=subprocess.PIPE)
         if self.bridge.stdout.readline() != b'ready\n':
             raise SystemExit('hid_kernel: usb_bridge did not start; see its message above')
-        kernel = uncompressedKernel(self.options.kernel, self.options.kernel.parent)
+        kernel = uncompressedKernel(self.options.kernel)
         archive = self.folder / 'initramfs.cpio'
         writeArchive(archive, self.options, self._environment())
         self.started = time.monotonic()
@@ -184,7 +198,8 @@ class Guest:
         return process
 
     def _environment(self):
-        return {'VIBE_DEVEL': str(self.options.devel), 'VIBE_FILTER': self.options.filter}
+        return {'VIBE_DEVEL': str(self.options.devel), 'VIBE_FILTER': self.options.filter,
+                'VIBE_IMAGE': str(self.options.image or '')}
 
 
 def listTests(program, pattern):
@@ -247,6 +262,7 @@ def parse():
     parser.add_argument('--kernel', type=pathlib.Path, required=True, help='where the kernel package is unpacked')
     parser.add_argument('--devel', type=pathlib.Path, required=True, help='devel folder of the workspace')
     parser.add_argument('--sources', type=pathlib.Path, required=True, help='the folder kernel_test')
+    parser.add_argument('--image', type=pathlib.Path, help='firmware image of the haptic device')
     parser.add_argument('--busybox', default='/bin/busybox')
     parser.add_argument('--filter', default='*', help='of gtest')
     parser.add_argument('--timeout', type=float, default=300, help='[s]')

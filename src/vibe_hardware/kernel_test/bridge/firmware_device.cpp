@@ -41,6 +41,8 @@ class FirmwareDevice : public UsbDevice {
     return control_.handle(setup, data, response, capacity);
   }
 
+  void reset() override { control_.reset(); }
+
   int descriptor() const override { return timer_; }
 
   void service(const ReportSink& sink) override {

@@ -64,6 +64,10 @@ int ImageDevice::control(const vibe_firmware::UsbSetup& setup, const std::uint8_
   }
 }
 
+void ImageDevice::reset() {
+  ::send(connection_, "R", 1, MSG_NOSIGNAL);
+}
+
 void ImageDevice::service(const ReportSink& sink) {
   while (readMore(0)) {
   }

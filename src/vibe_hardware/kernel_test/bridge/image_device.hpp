@@ -12,6 +12,7 @@ namespace vibe {
 /// | to the image | from the image |
 /// |---|---|
 /// | 'S', setup packet [8], data stage from the host | 'C', int16 size or -1 (stall), data stage to the host |
+/// | 'R': bus reset | |
 /// | | 'I', uint8 size, input report |
 class ImageDevice : public UsbDevice {
  public:
@@ -23,6 +24,7 @@ class ImageDevice : public UsbDevice {
 
   int control(const vibe_firmware::UsbSetup& setup, const std::uint8_t* data, std::uint8_t* response,
               std::size_t capacity) override;
+  void reset() override;
   int descriptor() const override { return connection_; }
   void service(const ReportSink& sink) override;
 

@@ -48,7 +48,11 @@ struct RedirPort::Callbacks {
     if (port(self).device_) port(self).announce();
   }
 
-  static void reset(void* self) { port(self).receiving_ = false; }
+  static void reset(void* self) {
+    port(self).receiving_ = false;
+    if (port(self).device_) port(self).device_->reset();
+  }
+
   static void cancel(void*, std::uint64_t) {}
 
   static void setConfiguration(void* self, std::uint64_t id, usb_redir_set_configuration_header* header) {

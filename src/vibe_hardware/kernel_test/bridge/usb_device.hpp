@@ -20,6 +20,9 @@ class UsbDevice {
   virtual int control(const vibe_firmware::UsbSetup& setup, const std::uint8_t* data, std::uint8_t* response,
                       std::size_t capacity) = 0;
 
+  /// The bus has been reset.
+  virtual void reset() = 0;
+
   /// Becomes readable when service() has something to do.
   virtual int descriptor() const = 0;
 

@@ -97,6 +97,11 @@ TEST(Parameters, HundredOfHundredWritesReadBack) {
   hundredOfHundred(hapticDevice(), "");
 }
 
+TEST(Parameters, HundredOfHundredWritesToTheImageReadBack) {
+  if (!imageRuns()) GTEST_SKIP() << "there is no firmware image; scripts/firmware builds it";
+  hundredOfHundred(imageDevice(), " of the firmware image");
+}
+
 TEST(Parameters, AWrongReadBackIsNoticed) {
   HidrawFile file(hapticDevice().plug().hidraw);
   Sets sets;

@@ -40,9 +40,12 @@ class PluggedDevice {
   std::unique_ptr<HidrawFile> keeps_polling_;
 };
 
+/// Whether scripts/hid_kernel has started the emulated board with the firmware image.
+bool imageRuns();
+
 PluggedDevice& hapticDevice();
 PluggedDevice& inputDevice();
-PluggedDevice& imageDevice();  ///< the firmware image of the haptic device
+PluggedDevice& imageDevice();  ///< the firmware image of the haptic device; only if imageRuns()
 PluggedDevice& spareHapticDevice();
 PluggedDevice& spareInputDevice();
 

@@ -1,5 +1,5 @@
 # Runs in the virtual machine, in the host's files. The variables come from scripts/lib/hid_kernel.py:
-# VIBE_DEVEL, the devel folder, and VIBE_FILTER, which tests to run (gtest).
+# VIBE_DEVEL, the devel folder; VIBE_FILTER, which tests to run (gtest); VIBE_IMAGE, not empty if there is an image.
 set -a
 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 HOME=/run/vibe_guest ROS_HOME=/run/vibe_guest ROS_LOG_DIR=/run/vibe_guest
