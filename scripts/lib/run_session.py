@@ -1,7 +1,7 @@
-"""One session: master, robot_state_publisher, simulator, scripted trainee, recorder and, with a display, rviz.
+"""One session: master, robot_state_publisher, simulator, who drives it, recorder and, with a display, rviz.
 
 scripts/run has checked the arguments, built the workspace and sourced its environment. The simulator ends by itself
-after the duration and decides how the session ended.
+after the duration, if there is one, and decides how the session ended. A person ends a session by closing rviz, too.
 """
 
 import argparse
@@ -11,6 +11,7 @@ import signal
 import sys
 import time
 
+from drivers import DRIVERS
 from graph import Graph, GraphError
 
 SETTLE = 1.0  # for the recorder to receive what the simulator sent last [s]
@@ -32,10 +33,15 @@ def parse_arguments():
     parser = argparse.ArgumentParser(allow_abbrev=False)
     parser.add_argument("--workspace", required=True)
     parser.add_argument("--scene", required=True)
-    parser.add_argument("--script", required=True)
+    parser.add_argument("--drive", choices=DRIVERS, default="trainee")
+    parser.add_argument("--script", default="")
+    parser.add_argument("--hand", default="")
+    parser.add_argument("--pad", default="")
+    parser.add_argument("--mapping", default="")
+    parser.add_argument("--replay-pad", default="")
     parser.add_argument("--mesh", default="")
     parser.add_argument("--output", required=True)
-    parser.add_argument("--duration", type=float, required=True)
+    parser.add_argument("--duration", type=float, required=True, help="0: no end")
     parser.add_argument("--fast", action="store_true")
     parser.add_argument("--headless", action="store_true")
     return parser.parse_args()
@@ -50,7 +56,9 @@ class Session:
         self.logs = os.path.join(self.output, "log")
         os.makedirs(self.logs, exist_ok=True)
         self.graph = Graph(self.logs)
-        self.sim = self.recorder = None
+        self.graph.env.setdefault("ROSCONSOLE_STDOUT_LINE_BUFFERED", "1")  # what nodes say must not come too late
+        self.driver = DRIVERS[arguments.drive](arguments)
+        self.sim = self.recorder = self.rviz = None
 
     def start(self):
         graph = self.graph
@@ -58,54 +66,74 @@ class Session:
         self.set_parameters()
         graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
         self.sim = graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"], visible=True, patience=30.0)
-        graph.start("vibe_trainee", ["rosrun", "vibe_sim", "vibe_trainee"])
+        if self.driver.first_words:
+            print(self.driver.first_words, flush=True)
+        self.driver.start(graph)
         # the simulator begins when somebody listens to applied_input: by then every other topic must be connected
         record = ["rosrun", "vibe_sim", "vibe_record", "--last", "applied_input", self.bag]
         self.recorder = graph.start("vibe_record", record, patience=RECORDER_PATIENCE)
         if not self.arguments.headless:
-            config = os.path.join(self.arguments.workspace, "src/vibe_description/rviz/vibe.rviz")
-            graph.start("rviz", ["rosrun", "rviz", "rviz", "-d", config], essential=False)
+            config = os.path.join(self.arguments.workspace, self.driver.rviz_config)
+            self.rviz = graph.start("rviz", ["rosrun", "rviz", "rviz", "-d", config], essential=False)
 
     def set_parameters(self):
         arguments, put = self.arguments, self.graph.set_parameter
-        put("/use_sim_time", True)  # before any node starts: each reads it once
+        simulated = self.driver.simulated_time
+        put("/use_sim_time", simulated)  # before any node starts: each reads it once
         with open(os.path.join(arguments.workspace, "src/vibe_description/urdf/scope.urdf"), encoding="utf-8") as urdf:
             put("/robot_description", urdf.read())
         put("/robot_state_publisher/publish_frequency", 200.0)  # else every second step of the simulator has no tf
-        put("/vibe_trainee/script", arguments.script)
-        put("/vibe_trainee/lockstep", True)
         put("/sim_node/scene", arguments.scene)
         if arguments.mesh:
             put("/sim_node/mesh", arguments.mesh)
-        put("/sim_node/time_source", "sim")
+        put("/sim_node/time_source", "sim" if simulated else "wall")
         put("/sim_node/fast", arguments.fast)
-        put("/sim_node/lockstep", True)
+        put("/sim_node/lockstep", simulated)
         put("/sim_node/await_recorder", True)
         put("/sim_node/duration", arguments.duration)
         put("/sim_node/summary_file", self.summary)
+        self.driver.set_parameters(put)
 
     def watch(self):
-        """Until the simulator has ended. Raises GraphError when anything else dies before it does."""
+        """Until the simulator has ended or a person has closed rviz. Raises GraphError when anything else dies."""
         while self.sim.status() is None:
             dead = self.graph.dead()
             if dead is not None and dead is not self.sim:
                 raise GraphError(
                     "{} died with status {}; the last it said (all of it: {}):\n{}".format(
-                        dead.name, dead.status(), dead.log, dead.last_words()
+                        dead.name, dead.status(), dead.log or "above", dead.last_words()
                     )
                 )
+            if self.is_closed():
+                print("rviz was closed: the session ends.", flush=True)
+                return
             time.sleep(0.1)
         if self.sim.status() != 0:
             raise GraphError("sim_node ended with status {}; what it said is above".format(self.sim.status()))
         if not os.path.exists(self.summary):
             raise GraphError("sim_node ended without writing {}".format(self.summary))
 
+    def is_closed(self):
+        """Whether the person who drives has closed rviz. Raises GraphError when it died and somebody drives with it."""
+        if self.rviz is None or self.driver.simulated_time or self.rviz.status() is None:
+            return False
+        if self.rviz.status() != 0 and self.driver.needs_rviz:
+            raise GraphError(
+                "rviz died with status {}; the last it said (all of it: {}):\n{}".format(
+                    self.rviz.status(), self.rviz.log, self.rviz.last_words()
+                )
+            )
+        return self.rviz.status() == 0
+
     def stop(self):
         """Ends everything in reverse order, the simulator before the recorder so that its last words are kept."""
+        forced = []
         if self.sim is not None:
             self.sim.stop()
+            forced = self.driver.stop()
             time.sleep(SETTLE)
-        forced = self.graph.stop_all()
+        forced += self.graph.stop_all()
+        self.driver.clean_up()
         if forced:
             raise GraphError("{} did not stop when asked and was killed; see {}".format(", ".join(forced), self.logs))
         if self.recorder is not None and (not os.path.exists(self.bag) or glob.glob(self.bag + "*.active")):

@@ -142,7 +142,7 @@ class LiveView {
         limits_(vibe::loadToolLimits(options.urdf)),
         mapping_(vibe::loadPadMapping(vibe::resolveAddress(options.mapping), limits_)),
         link_(makeLink(options)),
-        drive_(vibe::startDrive({})) {}
+        drive_(vibe::startDrive({}, mapping_, {})) {}
 
   int run() {
     const double begin = vibe::steadyTime();

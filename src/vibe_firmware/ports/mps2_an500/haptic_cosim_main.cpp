@@ -19,6 +19,7 @@ CosimTarget target(device.state());
 Application application(target, target, device);
 int replies = -1;
 int requests = -1;
+volatile bool tick_has_run = false;
 
 // Splits "IMAGE REPLIES REQUESTS" and opens both. (strtok() of newlib needs a heap.)
 bool openFifos() {
@@ -45,11 +46,17 @@ extern "C" void tick() {
   CosimReply reply = target.end();
   reply.entry_counts = entry_counts;
   if (!semihosting::write(replies, &reply, sizeof reply)) semihosting::exit(50);
+  tick_has_run = true;
 }
 
 extern "C" void run() {
   if (!openFifos()) semihosting::exit(40);
   mps2::startTicks();
-  // No WFI: QEMU 7.2 with -icount sleep=off then loses every second tick.
-  for (;;) application.poll();
+  // No WFI: QEMU 7.2 with -icount sleep=off then loses every second tick. One poll after each tick, as on the host.
+  for (;;) {
+    while (!tick_has_run) {
+    }
+    tick_has_run = false;
+    application.poll();
+  }
 }

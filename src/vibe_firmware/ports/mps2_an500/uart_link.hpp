@@ -7,7 +7,15 @@
 
 namespace vibe_firmware::mps2 {
 
-/// USB over UART 1, for a program on the host that plays the host controller. Frames, little-endian:
+/// USB over UART 1, for a program on the host that plays the host controller:
+///
+///   qemu-system-arm -M mps2-an500 -icount shift=6,align=on -display none -monitor none -semihosting-config
+///     enable=on,target=native -serial null -chardev socket,id=usb,path=SOCKET -serial chardev:usb -kernel IMAGE
+///
+/// With -icount, virtual time follows the instructions. Without it, ticks pile up on a busy host before the main loop
+/// runs, and reports are lost.
+///
+/// Frames, little-endian:
 ///
 /// | direction | frame |
 /// |---|---|

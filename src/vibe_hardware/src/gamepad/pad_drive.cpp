@@ -95,10 +95,14 @@ double controlDeflection(const JointMapping& joint, const PadState& pad) {
   return joint.reversed ? -result : result;
 }
 
-DriveState startDrive(const std::array<double, kJointCount>& joints) {
+DriveState startDrive(const std::array<double, kJointCount>& joints, const PadMapping& mapping, const PadState& pad) {
   DriveState state;
   state.joints = joints;
   state.targets.fill(std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < kButtonCount; ++i) {
+    const auto button = pad.buttons.find(mapping.buttons[i].code);
+    if (button != pad.buttons.end()) state.presses[i] = button->second.presses;
+  }
   return state;
 }
 
@@ -114,7 +118,7 @@ DriveState advance(const PadMapping& mapping, const ToolLimits& limits, const Pa
 }
 
 DriveState releaseDrive(DriveState state) {
-  return startDrive(state.joints);
+  return startDrive(state.joints, {}, {});
 }
 
 DriveState followJoints(const std::array<double, kJointCount>& measured, const ToolLimits& limits, DriveState state) {

@@ -10,12 +10,14 @@ constexpr double kRetryPeriod = 0.5;  // [s]
 std::string PadLink::poll(double now) {
   if (!pad_) return look(now);
   if (pad_->update(now)) return "";
-  const std::string name = pad_->info().name;
+  const PadInfo info = pad_->info();
   pad_.reset();
   told_ = true;
   last_try_ = now;
-  return "The gamepad '" + name +
-         "' is gone: its buttons are released and the joints stay where they are. Waiting for it.";
+  const std::string what = info.is_recording ? "The recording of the gamepad '" + info.name + "' has ended"
+                                             : "The gamepad '" + info.name + "' is gone";
+  return what + ": its buttons are released and the joints stay where they are." +
+         (info.is_recording ? "" : " Waiting for it.");
 }
 
 std::string PadLink::look(double now) {

@@ -111,7 +111,9 @@ class RecordingParser {
 /// The events of a recording, when they are due.
 class RecordedPad : public PadSource {
  public:
-  explicit RecordedPad(PadRecording recording) : recording_(std::move(recording)), state_(recording_.state) {}
+  explicit RecordedPad(PadRecording recording) : recording_(std::move(recording)), state_(recording_.state) {
+    recording_.info.is_recording = true;
+  }
 
   const PadInfo& info() const override { return recording_.info; }
   const PadState& state() const override { return state_; }

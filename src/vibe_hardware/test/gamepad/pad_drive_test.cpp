@@ -14,6 +14,10 @@ constexpr double kPeriod = 0.01;
 
 using Joints = std::array<double, kJointCount>;
 
+DriveState begin(const Joints& joints) {
+  return startDrive(joints, {}, {});
+}
+
 /// The joints in the middle of their ranges.
 Joints middle() {
   Joints joints{};
@@ -58,7 +62,7 @@ TEST(PadDrive, ReversedControlsDeflectTheOtherWay) {
 
 TEST(PadDrive, TriggersAtRestMoveNothing) {
   const PadMapping mapping = shippedMapping("two_stick");
-  const DriveState before = startDrive(middle());
+  const DriveState before = begin(middle());
   EXPECT_EQ(drive(mapping, twoStickPad(), before, 500).joints, before.joints);
 }
 
@@ -68,7 +72,7 @@ TEST(PadDrive, TriggersAndButtonPairsMoveBothWays) {
   PadState pad = twoStickPad();
   pad.axes[ABS_RZ].value = 255;
   press(pad, BTN_TL);
-  DriveState state = drive(mapping, pad, startDrive(start), 10);
+  DriveState state = drive(mapping, pad, begin(start), 10);
   EXPECT_NEAR(state.joints[HelixAdvance] - start[HelixAdvance], 0.02 * 0.1, 1e-12);
   EXPECT_NEAR(state.joints[NeedleDriver] - start[NeedleDriver], -0.03 * 0.1, 1e-12);
   pad.axes[ABS_RZ].value = 0;
@@ -88,7 +92,7 @@ TEST(PadDrive, RateIntegratesExactly) {
     const double speed = 0.04 * controlDeflection(mapping.joints[Insertion], pad);
     const Joints start = middle();
     for (const double period : {0.002, 0.01, 0.04}) {
-      DriveState state = startDrive(start);
+      DriveState state = begin(start);
       const int steps = static_cast<int>(1 / period);
       for (int k = 0; k < steps; ++k) state = advance(mapping, toolLimits(), pad, state, period);
       EXPECT_NEAR(state.joints[Insertion], start[Insertion] + speed * steps * period, 1e-13);
@@ -103,7 +107,7 @@ TEST(PadDrive, LimitsAndSpeedsHoldForAnyMotionOfThePad) {
        {std::make_pair("two_stick", twoStickPad()), std::make_pair("flight_stick", flightStick())}) {
     const PadMapping mapping = shippedMapping(name);
     PadState pad = pad_at_rest;
-    DriveState state = startDrive({});
+    DriveState state = begin({});
     for (int k = 0; k < 20000; ++k) {
       for (auto& [code, axis] : pad.axes)
         if (random() % 50 == 0) deflect(pad, code, deflection(random));
@@ -127,16 +131,16 @@ TEST(PadDrive, JointsReachTheirLimits) {
   const PadMapping mapping = mappingOf(kRate);
   PadState pad = twoStickPad();
   deflect(pad, ABS_Y, 1);
-  EXPECT_EQ(drive(mapping, pad, startDrive({}), 2000).joints[Insertion], toolLimits()[Insertion].upper);
+  EXPECT_EQ(drive(mapping, pad, begin({}), 2000).joints[Insertion], toolLimits()[Insertion].upper);
   deflect(pad, ABS_Y, -1);
-  EXPECT_EQ(drive(mapping, pad, startDrive({}), 2000).joints[Insertion], toolLimits()[Insertion].lower);
+  EXPECT_EQ(drive(mapping, pad, begin({}), 2000).joints[Insertion], toolLimits()[Insertion].lower);
 }
 
 TEST(PadDrive, PositionControlElsewhereThanItsJointMovesNothing) {
   const PadMapping mapping = mappingOf(kPosition);
   PadState pad = flightStick();
   deflect(pad, ABS_THROTTLE, 0.5);  // 15 cm
-  const DriveState state = drive(mapping, pad, startDrive({0.03}), 300);
+  const DriveState state = drive(mapping, pad, begin({0.03}), 300);
   EXPECT_EQ(state.joints[Insertion], 0.03);
   EXPECT_FALSE(state.engaged[Insertion]);
   EXPECT_NE(waitingControls(mapping, state).find("ABS_THROTTLE (now at 75 % of its way, insertion is at 15 %)"),
@@ -148,7 +152,7 @@ TEST(PadDrive, PositionControlPicksItsJointUpWhenItComesNear) {
   const PadMapping mapping = mappingOf(kPosition);
   PadState pad = flightStick();
   deflect(pad, ABS_THROTTLE, 0.5);
-  DriveState state = drive(mapping, pad, startDrive({0.03}), 3);
+  DriveState state = drive(mapping, pad, begin({0.03}), 3);
   deflect(pad, ABS_THROTTLE, -0.68);  // 3.2 cm: within 2 % of the range
   state = drive(mapping, pad, state, 100);
   EXPECT_TRUE(state.engaged[Insertion]);
@@ -163,7 +167,7 @@ TEST(PadDrive, PositionControlPicksItsJointUpWhenItPassesQuickly) {
   const PadMapping mapping = mappingOf(kPosition);
   PadState pad = flightStick();
   deflect(pad, ABS_THROTTLE, 0.5);
-  DriveState state = drive(mapping, pad, startDrive({0.03}), 1);
+  DriveState state = drive(mapping, pad, begin({0.03}), 1);
   deflect(pad, ABS_THROTTLE, -1);  // past 3 cm within one period
   state = drive(mapping, pad, state, 1);
   EXPECT_TRUE(state.engaged[Insertion]);
@@ -174,7 +178,7 @@ TEST(PadDrive, JointOutsideTheRangeOfItsControlIsPickedUpAtTheNearestEnd) {
   const PadMapping mapping = mappingOf(kPosition);
   PadState pad = flightStick();
   deflect(pad, ABS_THROTTLE, 0.9);
-  DriveState state = drive(mapping, pad, startDrive({0.28}), 10);
+  DriveState state = drive(mapping, pad, begin({0.28}), 10);
   EXPECT_FALSE(state.engaged[Insertion]);
   deflect(pad, ABS_THROTTLE, 1);
   state = drive(mapping, pad, state, 1);
@@ -188,7 +192,7 @@ TEST(PadDrive, HeldButtonsHoldAndTogglesSwitch) {
   PadState pad = twoStickPad();
   press(pad, BTN_EAST);
   press(pad, BTN_SOUTH);
-  DriveState state = drive(mapping, pad, startDrive({}), 5);
+  DriveState state = drive(mapping, pad, begin({}), 5);
   EXPECT_EQ(state.buttons[Needle], 1);
   EXPECT_EQ(state.buttons[HelixGrab], 1);
   letGo(pad, BTN_EAST);
@@ -208,7 +212,7 @@ TEST(PadDrive, TapBetweenTwoPeriodsIsNotLost) {
     press(pad, code);
     letGo(pad, code);
   }
-  DriveState state = drive(mapping, pad, startDrive({}), 1);
+  DriveState state = drive(mapping, pad, begin({}), 1);
   EXPECT_EQ(state.buttons[Needle], 1);
   EXPECT_EQ(state.buttons[HelixGrab], 1);
   state = drive(mapping, pad, state, 1);
@@ -220,10 +224,21 @@ TEST(PadDrive, ButtonThatIsDownWhenThePadIsFoundIsNotPressed) {
   const PadMapping mapping = mappingOf("buttons: {apc_pedal: {button: BTN_NORTH, mode: hold}}");
   PadState pad = twoStickPad();
   pad.buttons[BTN_NORTH].down = true;
-  EXPECT_EQ(drive(mapping, pad, startDrive({}), 5).buttons[ApcPedal], 0);
+  EXPECT_EQ(drive(mapping, pad, begin({}), 5).buttons[ApcPedal], 0);
   letGo(pad, BTN_NORTH);
   press(pad, BTN_NORTH);
-  EXPECT_EQ(drive(mapping, pad, startDrive({}), 5).buttons[ApcPedal], 1);
+  EXPECT_EQ(drive(mapping, pad, begin({}), 5).buttons[ApcPedal], 1);
+}
+
+TEST(PadDrive, PressesBeforeTheBeginningDoNotCount) {
+  const PadMapping mapping = mappingOf("buttons: {insufflate: {button: BTN_START, mode: toggle}}");
+  PadState pad = twoStickPad();
+  press(pad, BTN_START);
+  letGo(pad, BTN_START);
+  DriveState state = drive(mapping, pad, startDrive({}, mapping, pad), 5);
+  EXPECT_EQ(state.buttons[Insufflate], 0);
+  press(pad, BTN_START);
+  EXPECT_EQ(drive(mapping, pad, state, 5).buttons[Insufflate], 1);
 }
 
 TEST(PadDrive, UnplugReleasesButtonsAndHoldsJoints) {
@@ -231,7 +246,7 @@ TEST(PadDrive, UnplugReleasesButtonsAndHoldsJoints) {
   PadState pad = flightStick();
   press(pad, BTN_TRIGGER);
   press(pad, BTN_THUMB);
-  const DriveState driven = drive(mapping, pad, startDrive({}), 50);
+  const DriveState driven = drive(mapping, pad, begin({}), 50);
   ASSERT_EQ(driven.buttons[HelixGrab], 1);
   ASSERT_TRUE(driven.engaged[TipUpDown]);
   const DriveState released = releaseDrive(driven);
@@ -247,7 +262,7 @@ TEST(PadDrive, CommandStaysNearASimulatorThatStandsStill) {
   PadState pad = twoStickPad();
   deflect(pad, ABS_Y, 1);
   const Joints measured{0.05};
-  DriveState state = startDrive(measured);
+  DriveState state = begin(measured);
   for (int k = 0; k < 1000; ++k)
     state = followJoints(measured, toolLimits(), advance(mapping, toolLimits(), pad, state, kPeriod));
   const double lead = 0.25 * toolLimits()[Insertion].velocity;
@@ -258,7 +273,7 @@ TEST(PadDrive, CommandStaysNearASimulatorThatStandsStill) {
 TEST(PadDrive, JointThatTheSimulatorHasPutElsewhereIsTakenOver) {
   const PadMapping mapping = mappingOf(kPosition);
   PadState pad = flightStick();
-  DriveState state = drive(mapping, pad, startDrive({0.1}), 3);
+  DriveState state = drive(mapping, pad, begin({0.1}), 3);
   ASSERT_TRUE(state.engaged[Insertion]);
   state = followJoints({0}, toolLimits(), state);  // reset
   EXPECT_EQ(state.joints[Insertion], 0);
@@ -266,7 +281,7 @@ TEST(PadDrive, JointThatTheSimulatorHasPutElsewhereIsTakenOver) {
 }
 
 TEST(PadDrive, AxesThatThePadLacksMoveNothing) {
-  const DriveState start = startDrive(middle());
+  const DriveState start = begin(middle());
   EXPECT_EQ(drive(shippedMapping("two_stick"), PadState{}, start, 10).joints, start.joints);
   EXPECT_EQ(drive(shippedMapping("flight_stick"), PadState{}, start, 10).joints, start.joints);
 }

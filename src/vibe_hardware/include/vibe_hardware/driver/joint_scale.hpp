@@ -4,25 +4,32 @@
 namespace vibe {
 
 /// How a joint of the scope follows from an axis of a device: joint = offset + scale * axis.
-/// scale: [m/rad] for insertion (radius of the roller), [rad/rad] otherwise; its sign is the direction.
+/// scale: [m/rad] for insertion (radius of the roller), [rad/rad] otherwise; its sign is the direction; not 0.
 struct JointScale {
   double scale = 1;
   double offset = 0;
 };
 
-/// Spring-damper of a joint: effort = effort - stiffness (x - position) - damping v, in the units of the joint.
+/// Spring-damper: effort - stiffness (x - position) - damping (v - velocity). In the units of a joint ([m] or [rad],
+/// [N] or [N m]), or of an axis ([rad], [N m]).
 struct JointSpring {
-  double position = 0;   ///< [m], [rad]
-  double effort = 0;     ///< [N], [N m]
-  double stiffness = 0;  ///< [N/m], [N m/rad]
-  double damping = 0;    ///< [N s/m], [N m s/rad]
+  double position = 0;
+  double effort = 0;
+  double stiffness = 0;
+  double damping = 0;
+  double velocity = 0;
 };
 
 double jointPosition(const JointScale& joint, double axis_position);
 double axisPosition(const JointScale& joint, double joint_position);
 double jointEffort(const JointScale& joint, double axis_torque);
 
-/// The same spring on the axis: virtual work makes torque = scale * effort, stiffness and damping scale by scale^2.
+/// The same spring-damper on the axis. Virtual work makes torque = scale * effort, so that power is the same on both
+/// sides; stiffness and damping scale by scale^2.
+JointSpring springOnAxis(const JointScale& joint, const JointSpring& spring);
+
+/// The same as the device takes it, with the damping about velocity 0: torque += damping * velocity. Nothing is limited
+/// but the torque: see passiveSpring().
 /// @param torque_limit  of the axis [N m]
 vibe_firmware::AxisParameters axisSpring(const JointScale& joint, const JointSpring& spring, double torque_limit);
 

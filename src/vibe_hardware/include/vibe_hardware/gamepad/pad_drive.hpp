@@ -21,8 +21,8 @@ struct DriveState {
 /// Deflection of a joint's control after dead zone, exponent and direction, from -1 to 1; 0 if the pad lacks it.
 double controlDeflection(const JointMapping& joint, const PadState& pad);
 
-/// The beginning of driving, from where the joints are.
-DriveState startDrive(const std::array<double, kJointCount>& joints);
+/// The beginning of driving, from where the joints are. What the pad's buttons did before does not count.
+DriveState startDrive(const std::array<double, kJointCount>& joints, const PadMapping& mapping, const PadState& pad);
 
 /// One sampling period: pad and mapping move the joints and press the buttons. No input, no clock, no device: the same
 /// arguments give the same result.

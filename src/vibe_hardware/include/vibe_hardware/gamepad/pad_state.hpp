@@ -51,6 +51,7 @@ struct PadInfo {
   int version = 0;
   bool has_rumble = false;
   bool has_spring = false;
+  bool is_recording = false;
 };
 
 /// "ABS_X" for (EV_ABS, 0); the number for a code without a name.

@@ -43,6 +43,9 @@ class HidPort {
 
   /// Sets a feature report. @throws DeviceGone, ReportRejected
   virtual void setFeature(const std::uint8_t* bytes, std::size_t size) = 0;
+
+  /// HID report descriptor of the device; empty if the bus does not know it. @throws DeviceGone
+  virtual std::vector<std::uint8_t> reportDescriptor() { return {}; }
 };
 
 /// Where devices are found.

@@ -1,0 +1,122 @@
+"""Who drives a session: the nodes they need, their parameters, and what a person is told first."""
+
+import os
+import shutil
+import tempfile
+import time
+
+from graph import GraphError
+
+PATIENCE = 20.0  # for the emulator to offer its devices [s]
+TUTORIAL = "docs/tutorials/drive_by_hand.md"
+
+
+class Driver:
+    """Somebody who drives in wall time. The simulator publishes no /clock and waits for nobody."""
+
+    simulated_time = False
+    rviz_config = "src/vibe_description/rviz/vibe.rviz"
+    needs_rviz = False
+    first_words = ""
+
+    def __init__(self, arguments):
+        self.arguments = arguments
+        self.senders = []  # nodes that would go on sending after the simulator has ended
+
+    def set_parameters(self, put):
+        """Before any node starts: each reads its parameters once."""
+
+    def start(self, graph):
+        """Starts the nodes that drive."""
+
+    def stop(self):
+        """Ends the nodes that go on sending, so that the recorder comes to rest. Returns those that had to be forced."""
+        stopped = [(process.name, process.stop()) for process in reversed(self.senders)]
+        return [name for name, in_time in stopped if not in_time]
+
+    def clean_up(self):
+        """After all nodes have ended."""
+
+
+class Trainee(Driver):
+    """A script, in simulated time and in lock-step, so that the session repeats to the bit."""
+
+    simulated_time = True
+
+    def set_parameters(self, put):
+        put("/vibe_trainee/script", self.arguments.script)
+        put("/vibe_trainee/lockstep", True)
+
+    def start(self, graph):
+        graph.start("vibe_trainee", ["rosrun", "vibe_sim", "vibe_trainee"])
+
+
+class Device(Driver):
+    """The haptic device and the input device through /dev/hidraw. What the node says is for the person who drives."""
+
+    first_words = (
+        "Driving with the devices. First hold the scope at its origin and press the homing button of the input device;\n"
+        "then press insufflate, wait for the pressure, and insert the scope. More: " + TUTORIAL
+    )
+
+    def start(self, graph):
+        self.senders = [graph.start("hardware_node", ["rosrun", "vibe_hardware", "hardware_node"], visible=True)]
+
+
+class Emulator(Driver):
+    """The firmware of the devices with an emulated hand, behind local sockets."""
+
+    first_words = "Driving with emulated devices; the emulated hand moves by itself. Ctrl-C ends the session."
+
+    def __init__(self, arguments):
+        super().__init__(arguments)
+        # a path of a socket has 107 characters at most, so it cannot be in the folder of the session
+        self.sockets = tempfile.mkdtemp(prefix="vibe-emulator-")
+
+    def set_parameters(self, put):
+        put("/hardware_node/bus", self.sockets)
+
+    def start(self, graph):
+        emulator = ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets, "--hand"]
+        self.wait_for_devices(graph.start("vibe_emulator", emulator + self.arguments.hand.split(":", 1)))
+        self.senders = [graph.start("hardware_node", ["rosrun", "vibe_hardware", "hardware_node"], visible=True)]
+
+    def wait_for_devices(self, emulator):
+        """So that the node does not report devices as missing that are about to appear."""
+        deadline = time.monotonic() + PATIENCE
+        while len(os.listdir(self.sockets)) < 2:
+            if emulator.status() is not None or time.monotonic() > deadline:
+                raise GraphError("vibe_emulator offers no devices; what it said:\n" + emulator.last_words())
+            time.sleep(0.05)
+
+    def clean_up(self):
+        shutil.rmtree(self.sockets, ignore_errors=True)
+
+
+class Gamepad(Driver):
+    """A gamepad. The node says by itself what it looks for and what to press first."""
+
+    first_words = "Driving with a gamepad; its controls: " + TUTORIAL
+
+    def set_parameters(self, put):
+        put("/gamepad_node/mapping", self.arguments.mapping)
+        put("/gamepad_node/pad", self.arguments.pad)
+        put("/gamepad_node/replay", self.arguments.replay_pad)
+        put("/gamepad_node/record", os.path.join(self.arguments.output, "pad.evemu"))
+
+    def start(self, graph):
+        self.senders = [graph.start("gamepad_node", ["rosrun", "vibe_hardware", "gamepad_node"], visible=True)]
+
+
+class Keyboard(Driver):
+    """The tool 'Drive scope' of rviz, which is active from the start."""
+
+    rviz_config = "src/vibe_description/rviz/drive.rviz"
+    needs_rviz = True
+    first_words = (
+        "Driving with keys and mouse: click into the view of rviz. The view shows the keys and the next step;\n"
+        "H hides and shows them. More: " + TUTORIAL
+    )
+
+
+DRIVERS = {"trainee": Trainee, "device": Device, "emulator": Emulator, "gamepad": Gamepad, "keyboard": Keyboard}

@@ -1,0 +1,148 @@
+# The firmware images: what they contain, and how they run in QEMU against a simulated motor. docs/hardware.md states the
+# figures.
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+for tool in arm-none-eabi-g++ qemu-system-arm; do
+  if ! command -v $tool >/dev/null; then
+    echo "skipped firmware ($tool is missing; scripts/setup installs it)"
+    exit 0
+  fi
+done
+if [ -n "${VIBE_VARIANT:-}" ]; then
+  echo 'skipped firmware (there are no sanitizers for a Cortex-M7)'
+  exit 0
+fi
+
+build=$root/build-firmware
+cosim=$build/host/vibe_cosim
+haptic=$build/arm/firmware_mps2_haptic_cosim.elf
+tests=$root/src/vibe_firmware/test/qemu
+budget=2500  # instructions of a control interrupt
+
+check 'firmware: images and host programs build' "$root/scripts/firmware"
+[ -x "$cosim" ] && [ -f "$haptic" ] || exit 1
+
+# inQemu IMAGE SCENARIO [OPTION...]: output of the run, with errors
+inQemu() {
+  local image=$1
+  shift
+  /usr/bin/python3 "$tests/run_cosim.py" "$image" --cosim "$cosim" "$@" 2>&1
+}
+
+# --- what is in the images
+
+usesNoHeap() {
+  local image hits
+  for image in "$build"/arm/*.elf; do
+    hits=$(arm-none-eabi-nm "$image" | grep -E ' (_?(malloc|calloc|realloc|free|sbrk)(_r)?|_Zn[wa].*|_Zd[la].*|__cxa_throw|_Unwind_.*|_ZTI.*)$' || true)
+    [ -z "$hits" ] || { printf '%s:\n%s\n' "${image##*/}" "$hits"; return 1; }
+  done
+}
+check 'firmware: no heap, no exceptions, no run-time type information in any image' usesNoHeap
+
+heapDoesNotLink() {
+  ! cmake --build "$build/arm" --target firmware_mps2_heap >"$scratch/heap" 2>&1 || { echo 'it links'; return 1; }
+  grep -qE 'undefined reference to .(operator new|_sbrk)' "$scratch/heap" || { cat "$scratch/heap"; return 1; }
+}
+check 'control: an image that asks for memory does not link' heapDoesNotLink
+
+startsInFlash() {
+  local image start
+  for image in "$build"/arm/firmware_stm32f767_*.elf; do
+    # stack pointer at the end of DTCM, then the address of resetHandler with the Thumb bit
+    start=$(arm-none-eabi-objdump -s -j .vectors "$image" | sed -n 's/^ 8000000 \([0-9a-f]*\) \([0-9a-f]*\) .*/\1 \2/p')
+    [[ $start =~ ^00000220\ [0-9a-f]{2}[0-9a-f]{2}0[0-9a-f]08$ ]] || { echo "$image starts with '$start'"; return 1; }
+    (( 16#${start:9:2} & 1 )) || { echo "resetHandler of $image is no Thumb code"; return 1; }
+  done
+}
+check 'firmware: the images for STM32F767 begin with stack and reset vector at 0x08000000 (never run)' startsInFlash
+
+printSizes() {
+  arm-none-eabi-size "$build"/arm/firmware_*.elf | sed "s#$build/arm/##"
+}
+printSizes
+
+# --- QEMU
+
+runsEachScenario() {
+  local scenario
+  for scenario in hostile passive release; do
+    inQemu "$haptic" "$scenario" --trace "$scratch/$scenario.qemu" >"$scratch/$scenario.said" || true
+    "$cosim" "$scenario" --trace "$scratch/$scenario.host" >"$scratch/$scenario.host.said" || true
+    grep -q '^verdict: ' "$scratch/$scenario.said" || { cat "$scratch/$scenario.said"; return 1; }
+  done
+}
+check 'QEMU: the haptic device runs in lock-step with a motor' runsEachScenario
+cat "$scratch"/{release,passive,hostile}.said 2>/dev/null || true
+
+# periodIs COUNTS..COUNTS FILE
+periodIs() {
+  local found
+  found=$(sed -n 's/^period, shortest and longest \[40 ns\]: //p' "$2")
+  echo "period: $found"
+  [ "$found" = "$1 $1" ]
+}
+isExact() {
+  grep -qx 'ticks: 20000' "$scratch/hostile.said" && periodIs 25000 "$scratch/hostile.said"
+}
+check 'QEMU: the 1 kHz period is exact over 20 virtual seconds (25000 counts of 25 MHz)' isExact
+withoutVirtualTime() {
+  inQemu "$haptic" hostile --ticks 2000 --shift none >"$scratch/real_time" || true
+  grep -q '^period' "$scratch/real_time" && ! periodIs 25000 "$scratch/real_time"
+}
+check 'control: without virtual time the period is not exact' withoutVirtualTime
+
+sameTrace() {
+  local scenario
+  for scenario in hostile passive release; do
+    "$cosim" --compare "$scratch/$scenario.host" "$scratch/$scenario.qemu" || return 1
+  done
+  [ "$(sed -n 's/^trace: //p' "$scratch/hostile.said")" = "$(sed -n 's/^trace: //p' "$scratch/hostile.host.said")" ]
+}
+check 'QEMU and host give the same bits in 20,000 ticks of random parameters, 20,000 of a sweep, 2,400 of a release' sameTrace
+fusedDiffers() {
+  cmake --build "$build/arm" --target firmware_mps2_haptic_cosim_fused || return 1
+  inQemu "$build/arm/firmware_mps2_haptic_cosim_fused.elf" hostile --trace "$scratch/fused" || true
+  ! "$cosim" --compare "$scratch/hostile.host" "$scratch/fused"
+}
+check 'control: with fused multiplications the bits differ' fusedDiffers
+
+# instructions WHAT: a number of the counter's last run
+instructions() {
+  sed -n "s/^count_instructions: .*$1 \([0-9]*\).*/\1/p" "$scratch/counted"
+}
+withinBudget() {
+  inQemu "$haptic" hostile --plugin "$build/host/count_instructions.so" >"$scratch/counted" || true
+  grep '^count_instructions' "$scratch/counted" || { cat "$scratch/counted"; return 1; }
+  [ "$(instructions calls)" = 20000 ] && [ "$(instructions longest)" -le $budget ] && [ "$(instructions shortest)" -gt 100 ]
+}
+check "QEMU: a control interrupt takes at most $budget instructions" withinBudget
+grep '^count_instructions' "$scratch/counted" 2>/dev/null || true
+
+# withinBounds SCENARIO, in QEMU
+withinBounds() {
+  cat "$scratch/$1.said"
+  grep -qx 'verdict: within bounds' "$scratch/$1.said"
+}
+check 'QEMU: release of a spring-damper agrees with theory' withinBounds release
+check 'QEMU: a constant spring and damper give no energy to a hand that moves at 1 Hz to 100 Hz' withinBounds passive
+check 'QEMU: hostile parameters at 100 Hz give no more energy than the observer allows' withinBounds hostile
+findsEnergy() {
+  local status=0
+  "$cosim" passive --delay 3 || status=$?
+  [ "$status" -eq 1 ]
+}
+check 'control: torque that comes 3 ticks late gives energy, and the check finds it' findsEnergy
+findsResponse() {
+  local status=0
+  "$cosim" release --delay 3 || status=$?
+  [ "$status" -eq 1 ]
+}
+check 'control: torque that comes 3 ticks late does not agree with theory' findsResponse
+
+check 'QEMU: the haptic image answers a USB host over its UART' /usr/bin/python3 "$tests/uart_usb.py" "$build/arm/firmware_mps2_haptic_usb.elf"
+check 'QEMU: the input image answers a USB host over its UART' /usr/bin/python3 "$tests/uart_usb.py" "$build/arm/firmware_mps2_input_usb.elf"
+
+check 'vibe_cosim --help' "$cosim" --help
+check 'vibe_cosim: unknown scenario' refuses 2 'scenario: .*gentle' "$cosim" gentle
+check 'vibe_cosim: a FIFO that is missing' refuses 2 'no_such_fifo cannot be opened' "$cosim" release --fifos "$scratch/no_such_fifo" "$scratch/b"

@@ -1,0 +1,47 @@
+#include "passive_scenario.hpp"
+
+#include <cmath>
+#include <ostream>
+
+#include "control_requests.hpp"
+
+namespace vibe_firmware {
+namespace {
+
+constexpr AxisParameters kSpring{0.5F, 4e-3F, 0, 0, 0.029F};
+constexpr AxisParameters kDamper{0.0F, 9e-3F, 0, 0, 0.029F};
+constexpr double kAmplitude[kAxisCount] = {0.03, 0.02};  // [rad]
+constexpr double kFirst = 1, kLast = 100;                // [Hz]
+constexpr double kBound = 1e-9;                          // rounding of the sums [J]
+
+// Phase of a sine whose frequency rises exponentially from kFirst to kLast [rad].
+double chirp(double time, double duration) {
+  const double rate = std::log(kLast / kFirst) / duration;
+  return 2 * M_PI * kFirst * (std::exp(rate * time) - 1) / rate;
+}
+
+}  // namespace
+
+void PassiveScenario::command(std::uint32_t tick, CosimRequest& request) {
+  if (tick % 100 == 1) setParameters({1, {kSpring, kDamper}}, request);
+}
+
+HandAction PassiveScenario::hand(std::uint32_t tick, int axis, const AxisPlant&) {
+  HandAction action;
+  action.holds = true;
+  const double duration = 1e-3 * ticks();
+  action.position = kAmplitude[axis] * std::sin(chirp(1e-3 * (tick + 1), duration));
+  return action;
+}
+
+bool PassiveScenario::judge(std::ostream& out) const {
+  bool good = true;
+  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+    out << "axis " << axis << ", most energy given since the start, and at the end [J]: " << energy_[axis].fromStart()
+        << " " << energy_[axis].final() << "\n";
+    good = good && energy_[axis].fromStart() <= kBound;
+  }
+  return good;
+}
+
+}  // namespace vibe_firmware

@@ -1,0 +1,24 @@
+#pragma once
+#include "port_energy.hpp"
+#include "scenario.hpp"
+
+namespace vibe_firmware {
+
+/// A hand that is stronger than the motors moves both axes to and fro, from 1 Hz up to 100 Hz, against a stiff spring
+/// and a strong damper that the firmware accepts. The axes start at rest in the equilibrium: they must never have given
+/// more energy than they have received.
+class PassiveScenario : public Scenario {
+ public:
+  std::uint32_t ticks() const override { return 20000; }
+  void command(std::uint32_t tick, CosimRequest& request) override;
+  HandAction hand(std::uint32_t tick, int axis, const AxisPlant& plant) override;
+  void observe(const Period& period) override {
+    energy_[static_cast<std::size_t>(period.axis)].add(period.torque, period.after - period.before);
+  }
+  bool judge(std::ostream& out) const override;
+
+ private:
+  std::array<PortEnergy, kAxisCount> energy_{PortEnergy{AxisConfig{}}, PortEnergy{AxisConfig{}}};
+};
+
+}  // namespace vibe_firmware

@@ -1,0 +1,57 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+
+#include "vibe_core/input/step_input.hpp"
+#include "vibe_hardware/driver/device_driver.hpp"
+#include "vibe_hardware/driver/joint_scale.hpp"
+
+namespace vibe {
+
+constexpr int kDeviceButtons = 16;  ///< bits of a report
+
+/// A button of a device.
+struct DeviceButton {
+  DeviceKind device = DeviceKind::Input;
+  int bit = 0;  ///< 0 to 15
+};
+
+/// Where a joint of the scope is measured.
+struct JointCalibration {
+  DeviceKind device = DeviceKind::Haptic;
+  int axis = 0;
+  JointScale scale;             ///< direction included
+  double lower = 0, upper = 0;  ///< positions beyond are published as these [m], [rad]
+  std::optional<double> home;   ///< position when the homing button is pressed
+};
+
+/// One of the three joints of the suturing device, driven by two buttons.
+struct ButtonDrive {
+  DeviceButton forward, backward;
+  double speed = 0;             ///< [m/s], [rad/s]
+  double lower = 0, upper = 0;  ///< [m], [rad]
+};
+constexpr int kOverstitchJointCount = kJointCount - kScopeJointCount;
+
+/// What the user says about the devices and how they are held: docs/hardware.md, "Calibration".
+struct Calibration {
+  std::array<DeviceSelection, kDeviceKinds> devices;  ///< by DeviceKind
+  std::array<JointCalibration, kScopeJointCount> joints;
+  std::array<std::optional<DeviceButton>, kButtonCount> buttons;
+  std::optional<DeviceButton> homing;
+  /// helix_advance, helix_rotation, needle_driver; absent: these joints come from somewhere else
+  std::optional<std::array<ButtonDrive, kOverstitchJointCount>> overstitch;
+
+  /// @param address  file, or package:// address
+  /// @throws Error with file, line, key and remedy
+  static Calibration load(const std::string& address);
+  /// @param place  what to call the text in errors
+  static Calibration parse(const std::string& yaml, const std::string& place);
+
+  bool uses(DeviceKind device) const;  ///< for a joint
+  /// The joint that an axis measures; -1: none.
+  int jointOf(DeviceKind device, int axis) const;
+};
+
+}  // namespace vibe

@@ -1,0 +1,49 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+
+#include "vibe_firmware/protocol/reports.hpp"
+#include "vibe_hardware/hid/hid_port.hpp"
+#include "vibe_hardware/hid/report_descriptor.hpp"
+
+namespace vibe {
+
+/// An open device whose protocol has been checked, and its feature reports. Not thread-safe.
+class DeviceConnection {
+ public:
+  /// Reads and checks report descriptor, status and configuration.
+  /// @throws Error with the remedy if it is not a device of this release; DeviceGone
+  DeviceConnection(std::unique_ptr<HidPort> port, const HidInfo& info, DeviceKind kind);
+
+  const HidInfo& info() const { return info_; }
+  const std::array<vibe_firmware::AxisConfig, vibe_firmware::kAxisCount>& axes() const { return axes_; }
+  const vibe_firmware::StatusReport& status() const { return status_; }  ///< as read last
+  std::string firmwareVersion() const;                                   ///< "1.2.3"
+
+  /// Waits for an input report. @return its size; 0: none came in time  @throws DeviceGone
+  std::size_t read(std::uint8_t* bytes, std::size_t capacity, double timeout) {
+    return port_->read(bytes, capacity, timeout);
+  }
+
+  // @throws DeviceGone; Error if the device answers something else than the protocol says
+  void refreshStatus();
+  vibe_firmware::ParameterReport readParameters();
+  void sendParameters(const vibe_firmware::ParameterReport& parameters);
+
+ private:
+  std::unique_ptr<HidPort> port_;
+  HidInfo info_;
+  DeviceKind kind_;
+  vibe_firmware::StatusReport status_{};
+  std::array<vibe_firmware::AxisConfig, vibe_firmware::kAxisCount> axes_{};
+
+  template <class Report, std::size_t Size>
+  void get(std::uint8_t id, const char* name, Report& report);
+  void readAxis(int axis);
+};
+
+/// One sentence on why a set of parameters was refused, with the numbers that were compared.
+std::string describe(const vibe_firmware::Verdict& verdict);
+
+}  // namespace vibe

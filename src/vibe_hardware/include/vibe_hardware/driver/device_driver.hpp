@@ -1,0 +1,103 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vibe_hardware/driver/device_connection.hpp"
+#include "vibe_hardware/driver/message_limiter.hpp"
+#include "vibe_hardware/driver/report_stream.hpp"
+
+namespace vibe {
+
+/// Which device to use.
+struct DeviceSelection {
+  std::uint16_t vendor = 0, product = 0;
+  std::string serial;  ///< empty: any
+};
+
+enum class LinkState : unsigned char {
+  Absent,    ///< not there
+  Unusable,  ///< there, but it cannot be opened or is not of this release
+  Running,   ///< reports arrive
+  Silent,    ///< open, but its reports have stopped
+};
+const char* stateName(LinkState state);  ///< "absent", ...
+
+/// For diagnostics.
+struct DeviceStatistics {
+  LinkState state = LinkState::Absent;
+  std::string problem;  ///< one sentence while the state is Unusable or Silent
+  StreamCounts counts;
+  double rate = 0;                ///< of good reports [Hz]
+  double age = 0;                 ///< of the last sample [s]; infinite before the first one
+  double drift = 0;               ///< seconds per second
+  std::uint64_t connections = 0;  ///< times that the device was opened
+  std::string path, serial, name, firmware;
+  std::uint8_t flags = 0;
+  std::uint32_t late_ticks = 0;  ///< of the firmware
+};
+
+/// Looks for one device, opens it, reads its reports and looks again when it is gone. Not thread-safe: one thread calls
+/// poll() all the time.
+class DeviceDriver {
+ public:
+  static constexpr double kSearchPeriod = 0.2;  ///< between searches for a device that is not there [s]
+  static constexpr double kSilence = 0.25;      ///< without a good report, after which the device has stopped [s]
+
+  struct Callbacks {
+    std::function<void(const DeviceSample&)> sample;
+    std::function<void(const DeviceConnection&)> connected;
+    std::function<void(double now)> lost;  ///< unplugged or silent: its buttons count as released
+    MessageSink message;
+  };
+
+  /// @param clock  host time [s], never goes back; that of DeviceSample::time
+  DeviceDriver(HidBus& bus, DeviceKind kind, DeviceSelection selection, std::function<double()> clock,
+               Callbacks callbacks);
+
+  /// Searches if it is time to, or takes all reports that are there; waits for the first one. @param wait  [s]
+  void poll(double wait);
+
+  LinkState state() const { return state_; }
+  /// The open device; null unless the state is Running or Silent.
+  DeviceConnection* connection() { return connection_.get(); }
+  DeviceStatistics statistics() const;
+
+  /// Tells the driver that the device has gone while its connection was used outside poll().
+  void drop(const std::string& reason);
+  MessageLimiter& messages() { return messages_; }
+  double now() const { return clock_(); }
+  DeviceKind kind() const { return kind_; }
+
+ private:
+  HidBus& bus_;
+  DeviceKind kind_;
+  DeviceSelection selection_;
+  std::function<double()> clock_;
+  Callbacks callbacks_;
+  MessageLimiter messages_;
+  LinkState state_ = LinkState::Absent;
+  std::string problem_;
+  std::unique_ptr<DeviceConnection> connection_;
+  ReportStream stream_;
+  double next_search_ = 0;
+  double last_good_ = 0;  // arrival of the last good report, or when the device was opened
+  double last_sample_ = -1;
+  double next_status_ = 0;
+  std::uint64_t connections_ = 0;
+  std::uint8_t flags_ = 0;
+
+  void search();
+  std::optional<HidInfo> find();
+  void connect(const HidInfo& info);
+  void setUnusable(const std::string& what);
+  void readReports(double wait);
+  void takeReport(const std::uint8_t* bytes, std::size_t size);
+  void watchSilence();
+  void reportFlags(std::uint8_t flags);
+  void refreshStatus();
+};
+
+}  // namespace vibe

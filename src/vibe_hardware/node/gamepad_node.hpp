@@ -1,0 +1,70 @@
+#pragma once
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <vibe_msgs/HapticParameters.h>
+#include <vibe_msgs/ProcedureEvent.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gamepad_parameters.hpp"
+#include "hardware_messages.hpp"
+#include "vibe_hardware/gamepad/pad_drive.hpp"
+#include "vibe_hardware/gamepad/pad_feedback.hpp"
+#include "vibe_hardware/gamepad/pad_recording.hpp"
+
+namespace vibe {
+
+/// A gamepad as topics: docs/interfaces.md. All work is done in the callbacks of one thread.
+class GamepadNode {
+ public:
+  /// @throws Error for a wrong mapping, recording or URDF
+  GamepadNode(ros::NodeHandle handle, const GamepadParameters& parameters);
+
+ private:
+  GamepadParameters parameters_;
+  ToolLimits limits_;
+  PadMapping mapping_;
+  PadFeedback feedback_;
+  std::unique_ptr<PadRecorder> recorder_;  // outlives the pad that calls it
+  PadLink link_;
+
+  std::optional<std::array<double, kJointCount>> measured_;  // joints of the simulator
+  std::optional<DriveState> drive_;                          // from the first pad on
+  std::uint64_t drops_told_ = 0;
+  std::uint64_t published_ = 0;
+  double last_tick_ = 0;        // steady time [s]
+  double last_buttons_ = -1e9;  // published [s]
+  double last_hint_ = -1e9;     // [s]
+  std::string hint_;
+  std::array<std::uint8_t, kButtonCount> sent_buttons_{};
+  StampSource joint_stamps_, button_stamps_;
+
+  ros::Publisher scope_, overstitch_, buttons_;
+  std::vector<ros::Subscriber> subscribers_;
+  diagnostic_updater::Updater updater_;
+  std::uint64_t events_before_ = 0;  // at the last diagnostics
+  ros::WallTimer timer_;
+
+  void subscribe(ros::NodeHandle& handle);
+  void tick(const ros::WallTimerEvent& event);
+  bool followPad(double now);
+  void padFound();
+  void padGone();
+  void startRecording();
+  void drive(double now, double dt);
+  void hintAt(const std::string& sentence, double now);
+  void publish(double now);
+  void publishButtons(double now);
+  void fillDiagnostics(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  void onJoints(const sensor_msgs::JointState& message);
+  void onForce(const geometry_msgs::WrenchStamped& message);
+  void onEvent(const vibe_msgs::ProcedureEvent& message);
+  void onParameters(const vibe_msgs::HapticParameters& message);
+};
+
+}  // namespace vibe

@@ -1,0 +1,197 @@
+#include "hardware_node.hpp"
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/step_timer.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kWait = 0.004;            // for a report; parameters wait as long at most [s]
+constexpr double kButtonPeriod = 0.1;      // of buttons that do not change [s]
+constexpr double kStatisticsPeriod = 0.1;  // [s]
+constexpr double kCameraPatience = 1;      // a camera that is silent for longer tracks no more [s]
+constexpr double kComplaintPeriod = 1;     // [s]
+constexpr double kTimerPeriod = 0.1;       // [s]
+constexpr std::uint32_t kQueue = 100;
+
+/// The drivers of both devices say the same about a bus that does not work.
+void log(Severity severity, const std::string& sentence) {
+  static std::mutex mutex;
+  static std::string last;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (sentence == last) return;
+  last = sentence;
+  if (severity == Severity::Info) {
+    ROS_INFO_STREAM(sentence);
+  } else {
+    ROS_WARN_STREAM(sentence);
+  }
+}
+
+std::size_t indexOf(DeviceKind kind) {
+  return static_cast<std::size_t>(kind);
+}
+
+}  // namespace
+
+HardwareNode::HardwareNode(ros::NodeHandle handle, const HardwareParameters& parameters)
+    : joints_(Calibration::load(parameters.config)),
+      buttons_(joints_.calibration()),
+      haptic_bus_(makeBus(parameters.bus)),
+      input_bus_(makeBus(parameters.bus)),
+      haptic_(*haptic_bus_, joints_.calibration().devices[indexOf(DeviceKind::Haptic)], steadyTime,
+              callbacksOf(DeviceKind::Haptic)),
+      input_(*input_bus_, DeviceKind::Input, joints_.calibration().devices[indexOf(DeviceKind::Input)], steadyTime,
+             callbacksOf(DeviceKind::Input)) {
+  if (joints_.calibration().overstitch) overstitch_.emplace(*joints_.calibration().overstitch);
+  advertise(handle);
+  publishState();
+  startThreads();
+}
+
+HardwareNode::~HardwareNode() {
+  haptic_thread_.reset();
+  input_thread_.reset();
+  onLost(DeviceKind::Haptic, steadyTime());
+  onLost(DeviceKind::Input, steadyTime());
+}
+
+DeviceDriver::Callbacks HardwareNode::callbacksOf(DeviceKind kind) {
+  DeviceDriver::Callbacks callbacks;
+  callbacks.sample = [this, kind](const DeviceSample& sample) { onSample(kind, sample); };
+  callbacks.connected = [](const DeviceConnection&) {};
+  callbacks.lost = [this, kind](double now) { onLost(kind, now); };
+  callbacks.message = log;
+  return callbacks;
+}
+
+void HardwareNode::advertise(ros::NodeHandle& handle) {
+  using sensor_msgs::JointState;
+  scope_publisher_ = handle.advertise<JointState>("scope/measured_js", kQueue);
+  button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kQueue);
+  haptic_publisher_ = handle.advertise<JointState>("haptic/measured_js", kQueue);
+  state_publisher_ = handle.advertise<vibe_msgs::OperatingState>("haptic/operating_state", 1, true);
+  const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+  parameters_subscriber_ = handle.subscribe("haptic/parameters", 1, &HardwareNode::onParameters, this, no_delay);
+  if (overstitch_) {
+    overstitch_publisher_ = handle.advertise<JointState>("overstitch/measured_js", kQueue);
+    overstitch_subscriber_ = handle.subscribe("overstitch/measured_js", 1, &HardwareNode::onOverstitch, this);
+  }
+  updater_.setHardwareID("none");
+  for (const DeviceKind kind : {DeviceKind::Haptic, DeviceKind::Input}) {
+    updater_.add(deviceName(kind), [this, kind](diagnostic_updater::DiagnosticStatusWrapper& status) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const HapticStatistics* haptic = kind == DeviceKind::Haptic ? &haptic_statistics_ : nullptr;
+      fillDiagnostics(device_statistics_[indexOf(kind)], haptic, rejected_, memory_[indexOf(kind)], status);
+    });
+  }
+  timer_ = handle.createWallTimer(ros::WallDuration(kTimerPeriod), [this](const ros::WallTimerEvent&) {
+    updater_.update();
+    publishState();
+  });
+}
+
+void HardwareNode::startThreads() {
+  const auto failed = [](const std::string& what) { ROS_ERROR_STREAM("The driver of a device failed: " << what); };
+  haptic_thread_ = std::make_unique<PollingThread>(
+      [this] {
+        haptic_.poll(kWait);
+        noteStatistics(DeviceKind::Haptic, haptic_.device());
+        return haptic_.device().connection() != nullptr;
+      },
+      failed);
+  input_thread_ = std::make_unique<PollingThread>(
+      [this] {
+        input_.poll(kWait);
+        noteStatistics(DeviceKind::Input, input_);
+        return input_.connection() != nullptr;
+      },
+      failed);
+}
+
+void HardwareNode::noteStatistics(DeviceKind kind, const DeviceDriver& device) {
+  const double now = steadyTime();
+  if (now < next_statistics_[indexOf(kind)]) return;
+  next_statistics_[indexOf(kind)] = now + kStatisticsPeriod;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  device_statistics_[indexOf(kind)] = device.statistics();
+  if (kind == DeviceKind::Haptic) haptic_statistics_ = haptic_.statistics();
+}
+
+void HardwareNode::onSample(DeviceKind kind, const DeviceSample& sample) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (joints_.take(kind, sample)) {
+    haptic_.release();  // what it renders belongs to positions that no longer hold
+    ROS_INFO("The joints of the scope are homed.");
+  }
+  publishJoints(kind, sample.time);
+  publishButtons(sample.time, buttons_.take(kind, sample.buttons));
+  if (joints_.leads(kind)) publishOverstitch(sample.time);
+}
+
+void HardwareNode::onLost(DeviceKind kind, double now) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  joints_.lose(kind);
+  next_statistics_[indexOf(kind)] = 0;
+  if (buttons_.take(kind, 0)) publishButtons(now, true);
+}
+
+void HardwareNode::publishJoints(DeviceKind kind, double time) {
+  if (kind == DeviceKind::Haptic) haptic_publisher_.publish(makeHapticJoints(joints_, haptic_stamps_.at(time)));
+  if (!joints_.leads(kind) || !joints_.isKnown()) return;
+  scope_publisher_.publish(makeScopeJoints(joints_, scope_stamps_.at(time)));
+}
+
+void HardwareNode::publishButtons(double time, bool changed) {
+  if (!changed && time - last_buttons_ < kButtonPeriod) return;
+  last_buttons_ = time;
+  button_publisher_.publish(makeButtons(buttons_, button_stamps_.at(time)));
+}
+
+void HardwareNode::publishOverstitch(double time) {
+  if (!overstitch_) return;
+  const bool tracked = steadyTime() - camera_time_ < kCameraPatience;
+  if (!tracked) overstitch_->advance(buttons_, time - last_overstitch_);
+  last_overstitch_ = time;
+  if (tracked) return;
+  overstitch_publisher_.publish(makeOverstitchJoints(*overstitch_, overstitch_stamps_.at(time)));
+}
+
+void HardwareNode::publishState() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::string state = operatingState(device_statistics_[indexOf(DeviceKind::Haptic)], haptic_statistics_);
+  if (state == operating_state_ && joints_.isHomed() == was_homed_) return;
+  operating_state_ = state;
+  was_homed_ = joints_.isHomed();
+  vibe_msgs::OperatingState message;
+  message.header.stamp = ros::Time::now();
+  message.state = state;
+  message.is_homed = was_homed_;
+  message.is_busy = false;
+  state_publisher_.publish(message);
+}
+
+void HardwareNode::onParameters(const vibe_msgs::HapticParameters& message) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!message.touching) return haptic_.release();
+  try {
+    haptic_.setTarget(readHapticParameters(message, joints_));
+  } catch (const Error& error) {
+    ++rejected_;
+    ROS_WARN_STREAM_THROTTLE(kComplaintPeriod, "A message on haptic/parameters is ignored: " << error.what());
+  }
+}
+
+void HardwareNode::onOverstitch(const ros::MessageEvent<const sensor_msgs::JointState>& event) {
+  if (event.getPublisherName() == ros::this_node::getName()) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (event.getMessage()->header.stamp.isZero()) return;  // not valid
+  try {
+    overstitch_->setPositions(readOverstitchJoints(*event.getMessage()));
+    camera_time_ = steadyTime();
+  } catch (const Error& error) {
+    ROS_WARN_STREAM_THROTTLE(kComplaintPeriod, "A message on overstitch/measured_js is ignored: " << error.what());
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,65 @@
+#pragma once
+#include <ros/ros.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "hardware_diagnostics.hpp"
+#include "hardware_messages.hpp"
+#include "hardware_parameters.hpp"
+#include "vibe_hardware/driver/polling_thread.hpp"
+
+namespace vibe {
+
+/// Both devices as topics: docs/interfaces.md. One thread per device; callbacks of ROS come from ros::spin().
+class HardwareNode {
+ public:
+  /// @throws Error for a wrong calibration or bus
+  HardwareNode(ros::NodeHandle handle, const HardwareParameters& parameters);
+  ~HardwareNode();
+  HardwareNode(const HardwareNode&) = delete;
+  HardwareNode& operator=(const HardwareNode&) = delete;
+
+ private:
+  std::mutex mutex_;  // of everything that more than one thread uses, down to the buses
+  ScopeJoints joints_;
+  ScopeButtons buttons_;
+  std::optional<OverstitchDrive> overstitch_;
+  std::array<DeviceStatistics, kDeviceKinds> device_statistics_;
+  HapticStatistics haptic_statistics_;
+  std::uint64_t rejected_ = 0;
+  double last_buttons_ = -1;    // time of the last message [s]
+  double last_overstitch_ = 0;  // time of the last motion [s]
+  double camera_time_ = -1e9;   // arrival of the last message of another node on overstitch/measured_js [s]
+  std::string operating_state_;
+  bool was_homed_ = false;
+  StampSource scope_stamps_, haptic_stamps_, button_stamps_, overstitch_stamps_;
+
+  std::unique_ptr<HidBus> haptic_bus_, input_bus_;
+  HapticDriver haptic_;
+  DeviceDriver input_;
+  double next_statistics_[kDeviceKinds] = {};
+
+  ros::Publisher scope_publisher_, button_publisher_, haptic_publisher_, state_publisher_, overstitch_publisher_;
+  ros::Subscriber parameters_subscriber_, overstitch_subscriber_;
+  diagnostic_updater::Updater updater_;
+  std::array<DiagnosticMemory, kDeviceKinds> memory_;
+  ros::WallTimer timer_;
+  std::unique_ptr<PollingThread> haptic_thread_, input_thread_;
+
+  DeviceDriver::Callbacks callbacksOf(DeviceKind kind);
+  void advertise(ros::NodeHandle& handle);
+  void startThreads();
+  void noteStatistics(DeviceKind kind, const DeviceDriver& device);
+  void onSample(DeviceKind kind, const DeviceSample& sample);
+  void onLost(DeviceKind kind, double now);
+  void publishJoints(DeviceKind kind, double time);
+  void publishButtons(double time, bool changed);
+  void publishOverstitch(double time);
+  void publishState();
+  void onParameters(const vibe_msgs::HapticParameters& message);
+  void onOverstitch(const ros::MessageEvent<const sensor_msgs::JointState>& event);
+};
+
+}  // namespace vibe

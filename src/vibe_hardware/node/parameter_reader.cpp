@@ -1,0 +1,57 @@
+#include "parameter_reader.hpp"
+
+#include <vector>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/yaml_source.hpp"
+
+namespace vibe {
+
+using XmlRpc::XmlRpcValue;
+
+bool ParameterReader::fetch(const std::string& name, XmlRpcValue& value) {
+  known_.insert(name);
+  return handle_.getParam(name, value);
+}
+
+void ParameterReader::failType(const std::string& name, const std::string& expected) const {
+  throw Error("Parameter " + handle_.resolveName(name) + " is not " + expected + "; set it to one.");
+}
+
+void ParameterReader::read(const std::string& name, std::string& value) {
+  XmlRpcValue given;
+  if (!fetch(name, given)) return;
+  if (given.getType() != XmlRpcValue::TypeString) failType(name, "a text");
+  value = static_cast<std::string>(given);
+}
+
+void ParameterReader::read(const std::string& name, bool& value) {
+  XmlRpcValue given;
+  if (!fetch(name, given)) return;
+  if (given.getType() != XmlRpcValue::TypeBoolean) failType(name, "true or false");
+  value = static_cast<bool>(given);
+}
+
+void ParameterReader::read(const std::string& name, double& value, double low, double high, const std::string& unit) {
+  XmlRpcValue given;
+  if (!fetch(name, given)) return;
+  const std::string expected = "a number from " + showQuantity(low, unit) + " to " + showQuantity(high, unit);
+  if (given.getType() != XmlRpcValue::TypeDouble && given.getType() != XmlRpcValue::TypeInt) failType(name, expected);
+  // rosparam stores "5" as an integer, which is valid as a number of seconds
+  const double number = given.getType() == XmlRpcValue::TypeInt ? static_cast<int>(given) : static_cast<double>(given);
+  if (!(number >= low && number <= high)) failType(name, expected);
+  value = number;
+}
+
+void ParameterReader::finish() const {
+  XmlRpcValue all;
+  if (!handle_.getParam(handle_.getNamespace(), all) || all.getType() != XmlRpcValue::TypeStruct) return;
+  for (const auto& [name, value] : all) {
+    if (known_.count(name)) continue;
+    throw Error("There is no parameter " + handle_.resolveName(name) + "; " +
+                suggestKey(name, std::vector<std::string>(known_.begin(), known_.end())));
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,33 @@
+#pragma once
+#include <ros/node_handle.h>
+
+#include <set>
+#include <string>
+
+namespace vibe {
+
+/// Reads the private parameters of a node one by one, and then rejects those that were not read: a misspelt parameter
+/// must not silently leave a default in force.
+class ParameterReader {
+ public:
+  explicit ParameterReader(const ros::NodeHandle& handle) : handle_(handle) {}
+
+  // Each leaves `value` as it is if the parameter is not set.
+  // @throws Error for a parameter of another type or out of range
+  void read(const std::string& name, std::string& value);
+  void read(const std::string& name, bool& value);
+  /// @param unit  for the error only
+  void read(const std::string& name, double& value, double low, double high, const std::string& unit);
+
+  /// @throws Error if a private parameter is set that has not been read; call last
+  void finish() const;
+
+ private:
+  ros::NodeHandle handle_;
+  std::set<std::string> known_;
+
+  bool fetch(const std::string& name, XmlRpc::XmlRpcValue& value);
+  [[noreturn]] void failType(const std::string& name, const std::string& expected) const;
+};
+
+}  // namespace vibe

@@ -1,0 +1,37 @@
+#include "vibe_hardware/driver/polling_thread.hpp"
+
+#include <chrono>
+#include <exception>
+
+namespace vibe {
+namespace {
+
+constexpr std::chrono::milliseconds kIdle{5};
+constexpr int kAfterFailure = 200;  // idle periods
+
+}  // namespace
+
+PollingThread::PollingThread(std::function<bool()> poll, std::function<void(const std::string&)> failed)
+    : thread_([this, poll = std::move(poll), failed = std::move(failed)] {
+        int idle = 0;
+        while (!stop_) {
+          if (idle > 0) {
+            --idle;
+            std::this_thread::sleep_for(kIdle);
+            continue;
+          }
+          try {
+            if (!poll()) idle = 1;
+          } catch (const std::exception& error) {
+            failed(error.what());
+            idle = kAfterFailure;
+          }
+        }
+      }) {}
+
+PollingThread::~PollingThread() {
+  stop_ = true;
+  thread_.join();
+}
+
+}  // namespace vibe

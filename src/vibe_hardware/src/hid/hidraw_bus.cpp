@@ -1,0 +1,142 @@
+#include "vibe_hardware/hid/hidraw_bus.hpp"
+
+#include <hidapi/hidapi.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <cwchar>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+
+#include "vibe_hardware/hid/report_descriptor.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr const char* kKernelFolder = "/sys/class/hidraw";
+
+// hidapi's list of devices and its start and end are not thread-safe
+std::mutex& libraryMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+int bus_count = 0;
+
+std::string narrow(const wchar_t* text) {
+  std::string result;
+  for (; text != nullptr && *text != 0; ++text)
+    result += *text >= 0x20 && *text < 0x7F ? static_cast<char>(*text) : '?';
+  return result;
+}
+
+/// A device that was unplugged answers ENODEV or EIO; one that does not know a report stalls the request: EPIPE.
+[[noreturn]] void failTransfer(const std::string& path, int error, const std::string& what) {
+  const std::string sentence = path + ": " + what + ": " + std::strerror(error);
+  if (error == EPIPE || error == EINVAL || error == ETIMEDOUT || error == EOVERFLOW) throw ReportRejected(sentence);
+  throw DeviceGone(sentence);
+}
+
+class HidrawPort : public HidPort {
+ public:
+  HidrawPort(hid_device* device, std::string path) : device_(device), path_(std::move(path)) {}
+  ~HidrawPort() override { hid_close(device_); }
+  HidrawPort(const HidrawPort&) = delete;
+  HidrawPort& operator=(const HidrawPort&) = delete;
+
+  std::size_t read(std::uint8_t* bytes, std::size_t capacity, double timeout) override {
+    const int milliseconds = static_cast<int>(std::ceil(1e3 * timeout));
+    const int size = hid_read_timeout(device_, bytes, capacity, milliseconds);
+    if (size < 0) throw DeviceGone(path_ + " was unplugged");
+    return static_cast<std::size_t>(size);
+  }
+
+  std::size_t getFeature(std::uint8_t id, std::uint8_t* bytes, std::size_t capacity) override {
+    bytes[0] = id;
+    errno = 0;
+    const int size = hid_get_feature_report(device_, bytes, capacity);
+    if (size < 0) failTransfer(path_, errno, "feature report " + std::to_string(id) + " cannot be read");
+    return static_cast<std::size_t>(size);
+  }
+
+  void setFeature(const std::uint8_t* bytes, std::size_t size) override {
+    errno = 0;
+    if (hid_send_feature_report(device_, bytes, size) < 0) {
+      failTransfer(path_, errno, "feature report " + std::to_string(bytes[0]) + " cannot be set");
+    }
+  }
+
+  // hidapi 0.13 has no call for it; the kernel shows it
+  std::vector<std::uint8_t> reportDescriptor() override {
+    const std::string node = path_.substr(path_.find_last_of('/') + 1);
+    std::ifstream file(std::string(kKernelFolder) + "/" + node + "/device/report_descriptor", std::ios::binary);
+    std::vector<std::uint8_t> bytes;
+    for (std::istreambuf_iterator<char> at(file), end; at != end && bytes.size() <= kMaxReportDescriptor; ++at) {
+      bytes.push_back(static_cast<std::uint8_t>(*at));
+    }
+    return bytes;
+  }
+
+ private:
+  hid_device* device_;
+  std::string path_;
+};
+
+/// Why a node of the kernel cannot be opened, and what to do.
+[[noreturn]] void failOpen(const std::string& path) {
+  errno = 0;
+  if (access(path.c_str(), R_OK | W_OK) == 0) throw DeviceGone(path + " cannot be opened");
+  if (errno == EACCES || errno == EPERM) {
+    throw std::runtime_error("This user may not open " + path +
+                             ": install the udev rule 60-vibe.rules, plug the device in again and, without a local "
+                             "login, join the group plugdev (docs/hardware.md, udev rule).");
+  }
+  if (errno == ENOENT &&
+      access((std::string(kKernelFolder) + path.substr(path.find_last_of('/'))).c_str(), F_OK) == 0) {
+    throw std::runtime_error("The kernel knows the device " + path +
+                             ", but the file is not here: pass it into this container or start udev.");
+  }
+  throw DeviceGone(path + " cannot be opened: " + std::strerror(errno));
+}
+
+}  // namespace
+
+HidrawBus::HidrawBus(std::uint16_t vendor) : vendor_(vendor) {
+  const std::lock_guard<std::mutex> lock(libraryMutex());
+  if (bus_count++ == 0) hid_init();
+}
+
+HidrawBus::~HidrawBus() {
+  const std::lock_guard<std::mutex> lock(libraryMutex());
+  if (--bus_count == 0) hid_exit();
+}
+
+std::vector<HidInfo> HidrawBus::list() {
+  if (access(kKernelFolder, F_OK) != 0) {
+    throw std::runtime_error(
+        "There are no HID devices on this machine: the kernel has no /sys/class/hidraw. Load the module hid or, in a "
+        "container or virtual machine, pass the device in; devices are used as soon as they appear.");
+  }
+  const std::lock_guard<std::mutex> lock(libraryMutex());
+  std::vector<HidInfo> found;
+  hid_device_info* const first = hid_enumerate(vendor_, 0);
+  for (const hid_device_info* info = first; info != nullptr; info = info->next) {
+    // a device with several application collections is listed once for each of them
+    if (!found.empty() && found.back().path == info->path) continue;
+    found.push_back(
+        {info->path, info->vendor_id, info->product_id, narrow(info->serial_number), narrow(info->product_string)});
+  }
+  hid_free_enumeration(first);
+  return found;
+}
+
+std::unique_ptr<HidPort> HidrawBus::open(const std::string& path) {
+  const std::lock_guard<std::mutex> lock(libraryMutex());
+  hid_device* const device = hid_open_path(path.c_str());
+  if (device == nullptr) failOpen(path);
+  return std::make_unique<HidrawPort>(device, path);
+}
+
+}  // namespace vibe
