@@ -21,7 +21,7 @@ import time
 
 MODULES = ['hid-generic', 'evdev', 'joydev', 'uinput', 'xhci-pci', 'usbhid', 'virtio-pci', '9pnet-virtio', '9p', 'overlay']
 DEVICES = ['haptic', 'input', 'spare-haptic', 'spare-input', 'image']  # of usb_bridge
-PROGRAMS = ['hid_guest', 'hid_guest_replug']
+PROGRAMS = ['hid_guest', 'hid_guest_replug']  # of the guest
 APPLETS = ['sh', 'mount', 'insmod', 'cat', 'mkdir', 'cp', 'ifconfig', 'chroot', 'uname', 'poweroff']
 
 
@@ -198,7 +198,8 @@ class Guest:
         return process
 
     def _environment(self):
-        return {'VIBE_DEVEL': str(self.options.devel), 'VIBE_FILTER': self.options.filter,
+        return {'VIBE_DEVEL': str(self.options.devel), 'VIBE_PACKAGES': str(self.options.sources.parents[1]),
+                'VIBE_FILTER': self.options.filter,
                 'VIBE_IMAGE': str(self.options.image or '')}
 
 

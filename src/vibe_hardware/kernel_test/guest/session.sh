@@ -1,10 +1,12 @@
 # Runs in the virtual machine, in the host's files. The variables come from scripts/lib/hid_kernel.py:
-# VIBE_DEVEL, the devel folder; VIBE_FILTER, which tests to run (gtest); VIBE_IMAGE, not empty if there is an image.
+# VIBE_DEVEL, the devel folder; VIBE_PACKAGES, the folder of the packages; VIBE_FILTER, which tests to run (gtest);
+# VIBE_IMAGE, not empty if the firmware image runs.
 set -a
 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 HOME=/run/vibe_guest ROS_HOME=/run/vibe_guest ROS_LOG_DIR=/run/vibe_guest
 ROS_HOSTNAME=localhost ROS_MASTER_URI=http://localhost:11311
 source /run/vibe_guest/session.env
+ROS_PACKAGE_PATH=$VIBE_PACKAGES:/usr/share
 set +a
 cd /run/vibe_guest || exit 1
 

@@ -1,0 +1,218 @@
+// hardware_node with the kernel's hidraw: every report becomes a message, parameters arrive in the device, replugging.
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <gtest/gtest.h>
+#include <sensor_msgs/JointState.h>
+#include <vibe_msgs/HapticParameters.h>
+#include <vibe_msgs/OperatingState.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numeric>
+
+#include "bridge_commands.hpp"
+#include "plugged_device.hpp"
+#include "ros_graph.hpp"
+#include "statistics.hpp"
+#include "vibe_firmware/protocol/reports.hpp"
+
+namespace vibe {
+namespace {
+
+using namespace vibe_firmware;
+
+constexpr const char* kConfig = "/run/vibe_guest/devices.yaml";
+constexpr double kRoller = 0.01;             // radius: insertion per angle [m/rad]
+constexpr double kAxisStiffness = 0.05;      // asked of both axes [N m/rad]
+constexpr double kAxisDamping = 2e-4;        // [N m s/rad]
+constexpr double kPosition = 1;              // of the springs [rad]
+constexpr std::size_t kDiagnosticPeriods = 3;  // after which the counts of a moment ago are in the diagnostics
+
+void writeConfig() {
+  std::ofstream(kConfig) << R"(
+devices:
+  haptic: {id: 1209:0001, serial: bridge-haptic}
+  input: {id: 1209:0002, serial: bridge-input}
+joints:
+  insertion: {device: haptic, axis: 0, scale: 10 mm/rad, limits: [-1 m, 1 m]}
+  rotation: {device: haptic, axis: 1, scale: 1, limits: [-50 rad, 50 rad]}
+  tip_up_down: {device: input, axis: 0, scale: 1, limits: [-50 rad, 50 rad]}
+  tip_left_right: {device: input, axis: 1, scale: 1, limits: [-50 rad, 50 rad]}
+)";
+}
+
+/// A spring about kPosition on both axes of the haptic device, in units of the joints.
+vibe_msgs::HapticParameters spring() {
+  vibe_msgs::HapticParameters message;
+  message.touching = true;
+  message.joint_name = {"insertion", "rotation", "tip_up_down", "tip_left_right"};
+  message.joint_position[0] = kRoller * kPosition;
+  message.joint_position[1] = kPosition;
+  message.joint_stiffness[0] = kAxisStiffness / (kRoller * kRoller);
+  message.joint_stiffness[1] = kAxisStiffness;
+  message.joint_damping[0] = kAxisDamping / (kRoller * kRoller);
+  message.joint_damping[1] = kAxisDamping;
+  return message;
+}
+
+class HardwareNode : public testing::Test {
+ protected:
+  HardwareNode() {
+    using JointState = sensor_msgs::JointStateConstPtr;
+    ros::NodeHandle& handle = graph_.handle();
+    const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
+    joints_ = handle.subscribe<sensor_msgs::JointState>(
+        "haptic/measured_js", 5000, [this](const JointState& message) { takeJoints(*message); }, {}, no_delay);
+    diagnostics_ = handle.subscribe<diagnostic_msgs::DiagnosticArray>(
+        "/diagnostics", 100, [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { takeStatus(*message); });
+    states_ = handle.subscribe<vibe_msgs::OperatingState>(
+        "haptic/operating_state", 10,
+        [this](const vibe_msgs::OperatingStateConstPtr& message) { state_ = message->state; });
+    parameters_ = handle.advertise<vibe_msgs::HapticParameters>("haptic/parameters", 1);
+  }
+
+  void SetUp() override {
+    writeConfig();
+    hapticDevice().plug();
+    inputDevice().plug();
+    node_ = RosGraph::start("hardware_node", {std::string("_config:=") + kConfig, "_diagnostic_period:=0.2"});
+    ASSERT_TRUE(RosGraph::waitUntil([this] { return !node_->running() || !counts_.empty(); })) << "no message";
+    ASSERT_TRUE(node_->running()) << "hardware_node has ended; see its message above";
+  }
+
+  void takeJoints(const sensor_msgs::JointState& message) {
+    const auto name = std::find(message.name.begin(), message.name.end(), "insertion");
+    ASSERT_NE(name, message.name.end());
+    const auto i = static_cast<std::size_t>(name - message.name.begin());
+    const double angle = message.position.at(i) / kRoller;
+    counts_.push_back(static_cast<int>(std::lround(angle / static_cast<double>(AxisConfig{}.radians_per_count))));
+    torques_.push_back(message.effort.at(i) * kRoller);
+  }
+
+  void takeStatus(const diagnostic_msgs::DiagnosticArray& message) {
+    for (const auto& status : message.status) {
+      if (status.name.find("haptic") == std::string::npos) continue;
+      ++statuses_;
+      for (const auto& value : status.values) status_[value.key] = value.value;
+    }
+  }
+
+  /// The diagnostics as they are after everything that has happened up to now.
+  std::map<std::string, std::string> freshStatus() {
+    const std::size_t before = statuses_;
+    EXPECT_TRUE(RosGraph::waitUntil([&] { return statuses_ >= before + kDiagnosticPeriods; })) << "no diagnostics";
+    return status_;
+  }
+
+  /// Counts of axis 0 in the reports that the kernel gives a second reader, while the node has them too.
+  std::vector<int> readReports(int count) {
+    HidrawFile file(hapticDevice().plug().hidraw);
+    std::vector<int> counts;
+    for (int i = 0; i < count; ++i) {
+      InputReport report;
+      const auto bytes = file.read(5);
+      EXPECT_TRUE(unpack(bytes.data(), bytes.size(), report)) << bytes.size() << " bytes";
+      counts.push_back(report.counts[0]);
+      ros::spinOnce();
+    }
+    RosGraph::waitUntil([&] { return !counts_.empty() && contains({counts.back()}); });
+    return counts;
+  }
+
+  /// Whether the topic had these counts one after the other.
+  bool contains(const std::vector<int>& counts) const {
+    return std::search(counts_.begin(), counts_.end(), counts.begin(), counts.end()) != counts_.end();
+  }
+
+  /// Sends the spring at 100 Hz until the condition holds.
+  bool sendSpringUntil(const std::function<bool()>& condition) {
+    double next = 0;
+    return RosGraph::waitUntil([&] {
+      if (now() >= next) {
+        parameters_.publish(spring());
+        next = now() + 0.01;
+      }
+      return condition();
+    });
+  }
+
+  RosGraph graph_;
+  std::unique_ptr<ChildProcess> node_;
+  ros::Subscriber joints_, diagnostics_, states_;
+  ros::Publisher parameters_;
+  std::vector<int> counts_;      // of axis 0, in the order of the messages
+  std::vector<double> torques_;  // of axis 0 [N m]
+  std::map<std::string, std::string> status_;
+  std::size_t statuses_ = 0;
+  std::string state_;
+};
+
+/// The parameters that the device has in force, if they are the spring.
+bool hasSpring(HidrawFile& device) {
+  ParameterReport report;
+  const auto bytes = device.getFeature(kParameterReportId);
+  if (!unpack(bytes.data(), bytes.size(), report)) return false;
+  const auto near = [](double value, double expected) { return std::abs(value - expected) < 1e-5 * expected; };
+  return std::all_of(report.axes.begin(), report.axes.end(), [&](const AxisParameters& axis) {
+    return near(axis.stiffness, kAxisStiffness) && near(axis.damping, kAxisDamping) && near(axis.position, kPosition);
+  });
+}
+
+TEST_F(HardwareNode, EverySequenceNumberBecomesAMessage) {
+  constexpr int kCount = 500;
+  const std::vector<int> counts = readReports(kCount);
+  EXPECT_TRUE(contains(counts));
+  const auto status = freshStatus();
+  EXPECT_EQ(status.at("lost reports"), "0");
+  EXPECT_EQ(status.at("duplicated reports"), "0");
+  EXPECT_EQ(status.at("malformed reports"), "0");
+  EXPECT_GE(std::stoi(status.at("received reports")), kCount);
+  figure("messages of hardware_node in a row without a gap", kCount, "of 500");
+}
+
+TEST_F(HardwareNode, ALostReportIsCountedAndMissing) {
+  readReports(1);
+  tellBridge("lose haptic 1");
+  readReports(20);
+  std::vector<int> steps(counts_.size());
+  std::adjacent_difference(counts_.begin(), counts_.end(), steps.begin());
+  const auto is_gap = [](int step) { return std::abs(step) != 10; };  // the hand makes 10 counts per report
+  EXPECT_EQ(std::count_if(steps.begin() + 1, steps.end(), is_gap), 1);
+  EXPECT_EQ(freshStatus().at("lost reports"), "1");
+}
+
+TEST_F(HardwareNode, HapticParametersReachTheDeviceAndItsTorqueComesBack) {
+  HidrawFile device(hapticDevice().plug().hidraw);
+  EXPECT_FALSE(hasSpring(device));
+  EXPECT_TRUE(sendSpringUntil([&] { return hasSpring(device); }));
+  EXPECT_TRUE(sendSpringUntil([&] { return state_ == "ENABLED"; })) << state_;
+  EXPECT_TRUE(sendSpringUntil([&] { return std::abs(torques_.back()) > 1e-3; })) << "no torque";
+  const auto status = freshStatus();
+  EXPECT_EQ(status.at("parameters that read back differently"), "0");
+  EXPECT_EQ(status.at("refused parameters"), "0");
+  EXPECT_GT(std::stoi(status.at("sent parameters")), 0);
+}
+
+TEST_F(HardwareNode, AReplugIsFollowedByMessagesAndTheSameParameters) {
+  {
+    HidrawFile device(hapticDevice().plug().hidraw);
+    ASSERT_TRUE(sendSpringUntil([&] { return hasSpring(device); }));
+  }
+  hapticDevice().unplug();
+  EXPECT_TRUE(sendSpringUntil([&] { return state_ == "DISABLED"; })) << state_;
+  HidrawFile device(hapticDevice().plug().hidraw);  // it has lost its power: parameters are 0 again
+  const double plugged = now();
+  const std::size_t before = counts_.size();
+  EXPECT_TRUE(sendSpringUntil([&] { return counts_.size() > before; })) << "no message";
+  figure("from the node of the kernel to the first message of hardware_node", 1000 * (now() - plugged), "ms");
+  EXPECT_TRUE(sendSpringUntil([&] { return hasSpring(device); }));
+  figure("from the node of the kernel to the parameters in the device", 1000 * (now() - plugged), "ms");
+  const auto status = freshStatus();
+  EXPECT_EQ(status.at("reconnects"), "1");
+  EXPECT_EQ(status.at("parameters that read back differently"), "0");
+}
+
+}  // namespace
+}  // namespace vibe
