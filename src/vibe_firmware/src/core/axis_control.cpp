@@ -19,18 +19,19 @@ void measure(const AxisConfig& config, int counter_bits, const EncoderSample& sa
 }
 
 /// Lets what the host and the watchdog have changed come into force at the slew limit.
-void fade(const AxisConfig& config, const AxisParameters& parameters, float spring_gain, AxisState& state) {
+/// @return most that this changes the torque in this tick [N m]
+float fade(const AxisConfig& config, const AxisParameters& parameters, float spring_gain, AxisState& state) {
   const float slew = config.slew_limit * config.sample_period;
   const float transition = approach(state.transition, 0, slew);
   const float fallen = state.torque_limit - slew;
   const float torque_limit = parameters.torque_limit > fallen ? parameters.torque_limit : fallen;
   const float change = std::fabs(transition - state.transition) + std::fabs(torque_limit - state.torque_limit) +
                        std::fabs(spring_gain - state.spring_gain) * parameters.torque_limit;
-  if (change > 0) observeChange(config, change, state.energy);
   state.transition = transition;
   state.torque_limit = torque_limit;
   state.spring_gain = spring_gain;
   state.limited = transition != 0 || torque_limit > parameters.torque_limit;
+  return change;
 }
 
 /// Cuts the torque, and sets the velocity filter back to what gives the torque that is left.
@@ -63,16 +64,20 @@ float springDamperTorque(const AxisParameters& parameters, float position, float
 float step(const AxisConfig& config, const AxisParameters& parameters, float spring_gain, int counter_bits,
            const EncoderSample& sample, AxisState& state) {
   measure(config, counter_bits, sample, state);
-  fade(config, parameters, spring_gain, state);
+  const float faded = fade(config, parameters, spring_gain, state);
   if (state.encoder.fault) {
     switchOff(state);
     return 0;
   }
   const float spring = spring_gain * springTorque(parameters, state.position) + state.transition;
   const PassivityLimit allowed = limit(config, spring, parameters.damping, state.torque_limit, state.energy);
+  const float torque = limitedTorque(allowed.spring, allowed.damping, allowed.torque, state);
+  const float change = std::fabs(torque - state.torque);
+  const bool law_only = !allowed.acts && !state.passivity_acts;
+  observeChange(config, law_only && faded < change ? faded : change, state.energy);
   state.passivity_acts = allowed.acts;
-  state.torque = limitedTorque(allowed.spring, allowed.damping, allowed.torque, state);
-  return state.torque;
+  state.torque = torque;
+  return torque;
 }
 
 void takeOver(const AxisParameters& before, const AxisParameters& after, AxisState& state) {

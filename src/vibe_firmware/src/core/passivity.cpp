@@ -15,9 +15,15 @@ float stepSize(const AxisConfig& config) {
   return std::fabs(config.radians_per_count);
 }
 
-/// Viscous friction needed per stiffness [s], and per damping: filterFactor().
+/// h: how much more viscous friction the delay of the torque needs.
+float delayFactor(const AxisConfig& config) {
+  const float delay = config.output_delay / config.sample_period;
+  return 0.5F + delay + std::sqrt(0.25F + 2.0F * delay);
+}
+
+/// Viscous friction needed per stiffness [s].
 float holdTime(const AxisConfig& config) {
-  return 0.5F * config.sample_period + config.output_delay;
+  return 0.5F * config.sample_period;
 }
 
 float smaller(float a, float b) {
@@ -51,7 +57,7 @@ Verdict checkRanges(const AxisConfig& config, const AxisParameters& p) {
 }  // namespace
 
 float requiredViscousFriction(const AxisConfig& config, float stiffness, float damping) {
-  return config.safety_factor * (stiffness * holdTime(config) + filterFactor(config) * damping);
+  return config.safety_factor * delayFactor(config) * (stiffness * holdTime(config) + filterFactor(config) * damping);
 }
 
 float requiredCoulombFriction(const AxisConfig& config, float stiffness, float damping) {
@@ -61,7 +67,8 @@ float requiredCoulombFriction(const AxisConfig& config, float stiffness, float d
 
 float maxStiffness(const AxisConfig& config, float damping) {
   const float margin = kRoundingMargin / config.safety_factor;
-  const float viscous = (config.viscous_friction * margin - filterFactor(config) * damping) / holdTime(config);
+  const float viscous =
+      (config.viscous_friction * margin / delayFactor(config) - filterFactor(config) * damping) / holdTime(config);
   const float coulomb = 2.0F * (config.coulomb_friction * margin / stepSize(config) -
                                 filterFactor(config) * damping / config.sample_period);
   return atLeastZero(smaller(viscous, coulomb));
@@ -69,7 +76,7 @@ float maxStiffness(const AxisConfig& config, float damping) {
 
 float maxDamping(const AxisConfig& config, float stiffness) {
   const float margin = kRoundingMargin / config.safety_factor;
-  const float viscous = config.viscous_friction * margin - stiffness * holdTime(config);
+  const float viscous = config.viscous_friction * margin / delayFactor(config) - stiffness * holdTime(config);
   const float coulomb = (config.coulomb_friction * margin / stepSize(config) - 0.5F * stiffness) * config.sample_period;
   return atLeastZero(smaller(viscous, coulomb)) / filterFactor(config);
 }

@@ -10,9 +10,11 @@ namespace {
 
 constexpr float kReservedShare = 0.1F;  // of the capacity, for damping; design choice
 
-/// Torque that gives at most this energy within one period.
+/// Torque that gives at most this energy within one period. One count more than the axis can move leaves something for
+/// observeChange(), so that the balance never becomes negative.
 float affordableTorque(const AxisConfig& config, float energy) {
-  return energy > 0 ? energy / (config.speed_limit * config.sample_period) : 0.0F;
+  const float motion = config.speed_limit * config.sample_period + std::fabs(config.radians_per_count);
+  return energy > 0 ? energy / motion : 0.0F;
 }
 
 /// `damping` where the whole spring is allowed, the largest passive one where none is.

@@ -23,7 +23,8 @@ TEST(PassivityConditions, AreTheFormulas) {
   AxisConfig config;  // T = 1 ms, t_d = 0.05 ms, a = 0.9, D = 3.07e-4
   config.safety_factor = 2;
   const double g = 0.1 / 1.9;
-  EXPECT_NEAR(requiredViscousFriction(config, 0.3F, 2e-3F), 2 * (0.3 * 1e-3 * (0.5 + 0.05) + g * 2e-3), 1e-9);
+  const double h = 0.5 + 0.05 + std::sqrt(0.25 + 2 * 0.05);
+  EXPECT_NEAR(requiredViscousFriction(config, 0.3F, 2e-3F), 2 * h * (0.3 * 1e-3 / 2 + g * 2e-3), 1e-9);
   EXPECT_NEAR(requiredCoulombFriction(config, 0.3F, 2e-3F), 2 * 3.07e-4 * (0.15 + g * 2), 1e-9);
   config.radians_per_count = -config.radians_per_count;
   EXPECT_NEAR(requiredCoulombFriction(config, 0.3F, 2e-3F), 2 * 3.07e-4 * (0.15 + g * 2), 1e-9);

@@ -10,7 +10,24 @@ ROS_PACKAGE_PATH=$VIBE_PACKAGES:/usr/share
 set +a
 cd /run/vibe_guest || exit 1
 
-# the tests of the node come last; until then the master has started
+# the usual configuration loads rospy and numpy: half a minute in an emulated processor
+cat >logging.conf <<'END'
+[loggers]
+keys=root
+[handlers]
+keys=errors
+[formatters]
+keys=
+[logger_root]
+level=WARNING
+handlers=errors
+[handler_errors]
+class=StreamHandler
+args=(sys.stderr,)
+END
+export ROS_PYTHON_LOG_CONFIG_FILE=$PWD/logging.conf
+
+# the tests of the nodes come last; until then the master has started
 /usr/bin/rosmaster --core -p 11311 >rosmaster.log 2>&1 &
 
 tests=$VIBE_DEVEL/lib/vibe_hardware/hid_guest

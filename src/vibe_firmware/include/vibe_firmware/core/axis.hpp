@@ -24,7 +24,7 @@ struct AxisConfig {
   float torque_limit = 0.029F;         ///< that the motor can hold for ever [N m]
   float slew_limit = 10.0F;         ///< of torque changes that the hand does not cause: see step() of an axis [N m/s]
   float velocity_pole = 0.9F;       ///< a, of the velocity filter v = a v + (1-a) dx/T; in [0, 1)
-  float output_delay = 0.05e-3F;    ///< t_d, from reading the encoder to the torque [s]
+  float output_delay = 0.05e-3F;    ///< t_d, from reading the encoder to the torque; at most T [s]
   float safety_factor = 1.25F;      ///< of both passivity conditions, at least 1
   float energy_capacity = 0.05F;    ///< that the passivity observer lets the axis give back at most [J]
   float speed_limit = 100.0F;       ///< that the axis cannot exceed; beyond it: encoder fault [rad/s]
@@ -49,7 +49,7 @@ enum class Refusal : std::uint8_t {
   NotFinite,        ///< a value is NaN or infinite
   Negative,         ///< stiffness, damping or torque limit below 0
   TorqueLimit,      ///< torque limit or torque above that of the axis
-  ViscousFriction,  ///< b > K T (1/2 + t_d/T) + g B fails: stiffness or damping too high for the viscous friction
+  ViscousFriction,  ///< b > h (K T/2 + g B) fails: stiffness or damping too high for the viscous friction
   CoulombFriction,  ///< f_c >= D (K/2 + g B/T) fails: too high for the Coulomb friction
   Position,         ///< beyond kMaxCount encoder counts
 };

@@ -31,9 +31,9 @@ float springDamperTorque(const AxisParameters& parameters, float position, float
 /// One tick of an axis.
 ///
 /// The torque limit acts on the velocity filter too: where it cuts the torque, the filter is set back to the velocity
-/// that gives the limited torque. A damper that is cut behind its filter would not be passive, because the filter would
-/// go on pushing after the hand has turned round. For the same reason the slew limit does not delay the response to the
-/// hand, only what the host and the watchdog change.
+/// that gives the limited torque. So the filter never stores more than the linear law that the passivity conditions are
+/// about. The slew limit does not delay the response to the hand, which would need more friction, only what the host
+/// and the watchdog change.
 ///
 /// @param spring_gain  from the watchdog
 /// @return torque of the motor, until the next tick [N m]

@@ -4,12 +4,16 @@
 // Conditions under which a sampled spring-damper with a quantised encoder cannot give energy to the hand.
 //
 // With the period T, the encoder step D, the viscous and Coulomb friction b and f_c of the hardware, the delay t_d from
-// reading the encoder to the torque, and the pole a of the velocity filter, g = (1 - a) / (1 + a):
+// reading the encoder to the torque (t_d <= T), and the pole a of the velocity filter:
 //
-//   b   > s (K T (1/2 + t_d/T) + g B)     sampling; Colgate and Schenkel, J. Robotic Systems 14(1), 1997, for K, B, g
-//   f_c >= s D (K/2 + g B/T)              quantisation; Abbott and Okamura, T-RO 21(5), 2005, for B = 0
+//   b   > s h (K T/2 + g B)      sampling; Colgate and Schenkel, J. Robotic Systems 14(1), 1997, without delay
+//   f_c >= s D (K/2 + g B/T)     quantisation; Abbott and Okamura, T-RO 21(5), 2005, for B = 0
 //
-// s is the safety factor. Both are sufficient, not necessary. The g terms are derived in docs/hardware.md.
+//   g = (1 - a) / (1 + a),  h = 1/2 + t_d/T + sqrt(1/4 + 2 t_d/T)
+//
+// s is the safety factor. h is 1 without delay and at least 1 + 2 t_d/T, so that b > K T (1/2 + t_d/T) + g B holds too;
+// that alone is too little for a delay shorter than the period. Both conditions are sufficient, not necessary; g and h
+// are derived in docs/hardware.md.
 
 namespace vibe_firmware {
 
