@@ -10,7 +10,8 @@
 
 namespace vibe {
 
-/// The test's place in the guest's ROS graph, whose master scripts/hid_kernel has started. Callbacks come in waitUntil().
+/// The test's place in the guest's ROS graph, whose master scripts/hid_kernel has started. Callbacks come in
+/// waitUntil().
 class RosGraph {
  public:
   RosGraph();  ///< waits for the master. @throws std::runtime_error after two minutes
