@@ -7,7 +7,7 @@ function(firmware_image name port core)
   add_executable(${name} ${ARGN} common/startup.cpp)
   target_include_directories(${name} PRIVATE ${port})
   target_compile_options(${name} PRIVATE -ffp-contract=off)
-  target_link_libraries(${name} PRIVATE ${core} device_options -lc_nano -lgcc)
+  target_link_libraries(${name} PRIVATE ${core} device_options -lm -lc_nano -lgcc)
   target_link_options(
     ${name} PRIVATE -nostdlib -nostartfiles -T${CMAKE_CURRENT_SOURCE_DIR}/common/cortex_m7.ld
     -L${CMAKE_CURRENT_SOURCE_DIR}/${port} -Wl,--gc-sections -Wl,--fatal-warnings -Wl,-Map=${name}.map)
@@ -33,7 +33,8 @@ set_target_properties(firmware_core_fused firmware_mps2_haptic_cosim_fused firmw
 set(TINYUSB_DIR "" CACHE PATH "TinyUSB")
 set(CMSIS_CORE_DIR "" CACHE PATH "folder with core_cm7.h")
 set(CMSIS_DEVICE_DIR "" CACHE PATH "folder with stm32f7xx.h")
-set(STM32_SOURCES clocks.cpp diagnostics.cpp encoders.cpp motor_pwm.cpp pins.cpp processor.cpp timing.cpp)
+set(STM32_SOURCES clocks.cpp diagnostics.cpp encoders.cpp motor_pwm.cpp pins.cpp processor.cpp serial_number.cpp
+    timing.cpp)
 if(NOT TINYUSB_DIR)
   list(APPEND STM32_SOURCES no_usb_handler.cpp)
 else()

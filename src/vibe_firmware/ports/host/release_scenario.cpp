@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint32_t kArrival = 200;  // of the hand at the displacement [ticks]
 constexpr std::uint32_t kRelease = 400;
 constexpr double kPeriod = 1e-3;
-constexpr double kInertia = 1e-3;           // of a handle with a heavy instrument [kg m^2]
-constexpr double kSecondOrderBound = 0.06;  // of the displacement, rms
-constexpr double kSampledBound = 0.01;
+constexpr double kInertia = 1e-3;            // of a handle with a heavy instrument [kg m^2]
+constexpr double kSecondOrderBound = 0.025;  // of the displacement, rms
+constexpr double kSampledBound = 0.002;
 
 struct Axis {
   AxisParameters parameters;

@@ -1,18 +1,12 @@
 #include "uart_link.hpp"
 
+#include <cstring>
+
 #include "registers.hpp"
 #include "semihosting.hpp"
 
 namespace vibe_firmware::mps2 {
 namespace {
-
-void send(const std::uint8_t* bytes, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) {
-    while (uart1().state & kTransmitterFull) {
-    }
-    uart1().data = bytes[i];
-  }
-}
 
 std::uint32_t integer(const std::uint8_t* bytes, int size) {
   std::uint32_t value = 0;
@@ -29,13 +23,19 @@ UartLink::UartLink(SimulatedEncoders& encoders) : encoders_(encoders) {
 
 void UartLink::poll(ControlHandler& handler) {
   while (uart1().state & kReceiverFull) take(static_cast<std::uint8_t>(uart1().data), handler);
+  transmit();
+}
+
+void UartLink::transmit() {
+  while (!queue_.empty() && !(uart1().state & kTransmitterFull)) uart1().data = queue_.take();
 }
 
 bool UartLink::sendReport(const std::uint8_t* bytes, std::size_t size) {
-  const std::uint8_t head[] = {'I', static_cast<std::uint8_t>(size)};
-  send(head, sizeof head);
-  send(bytes, size);
-  return true;
+  constexpr std::size_t kPacket = 64;  // of a full-speed interrupt endpoint
+  if (size > kPacket) return false;
+  std::uint8_t frame[2 + kPacket] = {'I', static_cast<std::uint8_t>(size)};
+  std::memcpy(frame + 2, bytes, size);
+  return queue_.put(frame, 2 + size);
 }
 
 void UartLink::take(std::uint8_t byte, ControlHandler& handler) {
@@ -71,12 +71,13 @@ void UartLink::handleFrame(ControlHandler& handler) {
 }
 
 void UartLink::answer(ControlHandler& handler) {
-  std::uint8_t response[ControlHandler::kMaxData];
+  std::uint8_t frame[3 + ControlHandler::kMaxData] = {'C'};
   const bool fits = received_ <= sizeof frame_;
-  const int result = fits ? handler.handleControl(setup(), frame_ + kSetupFrame, response) : ControlEndpoint::kStall;
-  const std::uint8_t head[] = {'C', static_cast<std::uint8_t>(result), static_cast<std::uint8_t>(result >> 8)};
-  send(head, sizeof head);
-  if (result > 0) send(response, static_cast<std::size_t>(result));
+  const int result = fits ? handler.handleControl(setup(), frame_ + kSetupFrame, frame + 3) : ControlEndpoint::kStall;
+  frame[1] = static_cast<std::uint8_t>(result);
+  frame[2] = static_cast<std::uint8_t>(result >> 8);
+  const std::size_t size = 3 + (result > 0 ? static_cast<std::size_t>(result) : 0);
+  while (!queue_.put(frame, size)) transmit();  // an answer is never dropped
 }
 
 UsbSetup UartLink::setup() const {

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "byte_queue.hpp"
 #include "simulated_encoders.hpp"
 #include "vibe_firmware/hal/usb_link.hpp"
 
@@ -26,7 +27,8 @@ namespace vibe_firmware::mps2 {
 /// | from the firmware | 'C', int16 result (-1: stall), data stage: answer to 'S' |
 /// | from the firmware | 'I', uint8 size, input report |
 ///
-/// A byte that begins no frame is skipped. A data stage longer than ControlHandler::kMaxData is read and stalled.
+/// Up to 500 reports wait until the host takes them; further ones are dropped. A byte that begins no frame is skipped.
+/// A data stage longer than ControlHandler::kMaxData is read and stalled.
 class UartLink : public UsbLink {
  public:
   explicit UartLink(SimulatedEncoders& encoders);
@@ -37,6 +39,7 @@ class UartLink : public UsbLink {
   static constexpr std::size_t kSetupFrame = 9;
   static constexpr std::size_t kEncoderFrame = 11;
 
+  void transmit();
   void take(std::uint8_t byte, ControlHandler& handler);
   std::size_t frameSize() const;
   void handleFrame(ControlHandler& handler);
@@ -45,6 +48,7 @@ class UartLink : public UsbLink {
 
   SimulatedEncoders& encoders_;
   std::uint8_t frame_[kSetupFrame + ControlHandler::kMaxData];
+  ByteQueue<16384> queue_;
   std::size_t received_ = 0;  // of the present frame, bytes beyond frame_ included
 };
 

@@ -1,5 +1,7 @@
 #include "diagnostics.hpp"
 
+#include <cstring>
+
 #include "clocks.hpp"
 #include "registers.hpp"
 
@@ -11,31 +13,12 @@ Diagnostics::Diagnostics() {
 }
 
 void Diagnostics::write(const char* text) {
-  while (*text != 0) put(*text++);
-}
-
-void Diagnostics::write(std::uint32_t number) {
-  char digits[11];
-  char* first = digits + sizeof digits - 1;
-  *first = 0;
-  do {
-    *--first = static_cast<char>('0' + number % 10);
-    number /= 10;
-  } while (number > 0);
-  write(first);
-}
-
-void Diagnostics::put(char character) {
-  if (size_ == kCapacity) return;
-  queue_[(first_ + size_++) % kCapacity] = character;
+  queue_.put(text, std::strlen(text));
 }
 
 void Diagnostics::poll() {
   constexpr std::uint32_t kTransmitterEmpty = bit(7);
-  if (size_ == 0 || !(usart3().isr & kTransmitterEmpty)) return;
-  usart3().tdr = static_cast<std::uint8_t>(queue_[first_]);
-  first_ = (first_ + 1) % kCapacity;
-  --size_;
+  if (!queue_.empty() && (usart3().isr & kTransmitterEmpty)) usart3().tdr = queue_.take();
 }
 
 const char* resetReason() {

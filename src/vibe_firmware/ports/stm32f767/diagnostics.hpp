@@ -1,6 +1,7 @@
 #pragma once
-#include <cstddef>
 #include <cstdint>
+
+#include "byte_queue.hpp"
 
 // This port has never run on hardware.
 
@@ -11,21 +12,14 @@ class Diagnostics {
  public:
   Diagnostics();
 
-  /// Queues a text; what does not fit is dropped.
+  /// Queues a text; one that does not fit is dropped.
   void write(const char* text);
-  void write(std::uint32_t number);
 
   /// Sends a character if the transmitter is free.
   void poll();
 
  private:
-  static constexpr std::size_t kCapacity = 128;
-
-  void put(char character);
-
-  char queue_[kCapacity];
-  std::size_t first_ = 0;
-  std::size_t size_ = 0;
+  ByteQueue<128> queue_;
 };
 
 /// Why the board has started, in words; RM0410, RCC_CSR. Clears the reason.

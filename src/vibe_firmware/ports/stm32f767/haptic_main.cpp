@@ -1,4 +1,5 @@
 #include "image.hpp"
+#include "serial_number.hpp"
 #include "startup.hpp"
 #include "vibe_firmware/protocol/haptic_function.hpp"
 
@@ -6,7 +7,7 @@
 
 namespace {
 
-vibe_firmware::HapticFunction device(vibe_firmware::HapticConfig{}, "0");
+vibe_firmware::HapticFunction device(vibe_firmware::HapticConfig{}, vibe_firmware::stm32::serialNumber());
 vibe_firmware::stm32::Image image(device);
 
 }  // namespace

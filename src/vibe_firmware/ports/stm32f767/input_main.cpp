@@ -1,4 +1,5 @@
 #include "image.hpp"
+#include "serial_number.hpp"
 #include "startup.hpp"
 #include "vibe_firmware/protocol/input_function.hpp"
 
@@ -6,7 +7,7 @@
 
 namespace {
 
-vibe_firmware::InputFunction device(vibe_firmware::InputConfig{}, "0");
+vibe_firmware::InputFunction device(vibe_firmware::InputConfig{}, vibe_firmware::stm32::serialNumber());
 vibe_firmware::stm32::Image image(device);
 
 }  // namespace

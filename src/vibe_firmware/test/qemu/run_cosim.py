@@ -5,10 +5,11 @@ Virtual time stands still while QEMU waits for the plant, so that the result doe
 """
 import argparse
 import os
-import re
 import subprocess
 import sys
 import tempfile
+
+import instruction_counter
 
 TIMEOUT = 300  # of the whole run [s]
 
@@ -18,20 +19,12 @@ def parse_arguments():
     parser.add_argument("image", help="firmware_mps2_haptic_cosim.elf")
     parser.add_argument("--cosim", required=True, help="the program vibe_cosim")
     parser.add_argument("--plugin", help="count_instructions.so: also counts the instructions of each interrupt")
-    parser.add_argument("--shift", default="6", help="an instruction takes 2^SHIFT ns of virtual time (6); none: real time")
+    parser.add_argument("--shift", default="6",
+                        help="an instruction takes 2^SHIFT ns of virtual time (6); none: real time")
     parser.add_argument("options", nargs="+", help="of vibe_cosim: scenario, --ticks, --trace, --delay")
     arguments, rest = parser.parse_known_args()
     arguments.options += rest
     return arguments
-
-
-def symbol(image, name):
-    """Address of a symbol, in hexadecimal."""
-    names = subprocess.run(["arm-none-eabi-nm", image], check=True, capture_output=True, text=True).stdout
-    found = re.search(rf"^([0-9a-f]+) \w {re.escape(name)}$", names, re.MULTILINE)
-    if not found:
-        sys.exit(f"run_cosim.py: {image} has no symbol {name}")
-    return found.group(1)
 
 
 def qemu_command(arguments, replies, requests):
@@ -41,10 +34,7 @@ def qemu_command(arguments, replies, requests):
                "-kernel", arguments.image]
     if arguments.shift != "none":
         command += ["-icount", f"shift={arguments.shift},sleep=off"]
-    if arguments.plugin:
-        first, last = symbol(arguments.image, "tickHandler"), symbol(arguments.image, "tickReturn")
-        command += ["-plugin", f"{os.path.abspath(arguments.plugin)},first=0x{first},last=0x{last}"]
-    return command
+    return command + instruction_counter.options(arguments.plugin, arguments.image)
 
 
 def run(arguments, folder):

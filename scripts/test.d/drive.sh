@@ -1,0 +1,118 @@
+# scripts/run --drive: who drives in wall time, what goes with whom, and that such a session is recorded and repeats.
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+unset DISPLAY
+run=$root/scripts/run
+scene=$root/src/vibe_sim/test/node/scenes/light.yaml
+recording=$root/src/vibe_hardware/test/node/pad_session.evemu
+hand=script:$root/src/vibe_core/trainees/demo/smoke.yaml
+
+check 'run names who may drive' refuses 2 "nobody is called 'walk'; choose one of trainee device emulator gamepad keyboard" \
+  "$run" --drive walk
+check 'run asks who drives' refuses 2 '^run: --drive needs a value' "$run" --drive
+for driver in device emulator gamepad keyboard; do
+  check "--fast does not go with $driver" refuses 2 "'$driver' drives in wall time" "$run" --drive "$driver" --fast
+  check "--script does not go with $driver" refuses 2 "--script goes with --drive trainee, not with --drive $driver" \
+    "$run" --drive "$driver" --script "$scene"
+done
+check 'a hand goes with the emulator' refuses 2 '--hand goes with --drive emulator' "$run" --hand random
+check 'a hand is one of three kinds' refuses 2 "'left' is not known; write script:FILE" "$run" --drive emulator --hand left
+check 'a hand names a file that is there' refuses 2 "no file 'nowhere.yaml'" "$run" --drive emulator --hand script:nowhere.yaml
+check 'a pad goes with the gamepad' refuses 2 '--pad goes with --drive gamepad' "$run" --drive device --pad Xbox
+check 'a mapping goes with the gamepad' refuses 2 '--mapping goes with --drive gamepad' "$run" --mapping "$scene"
+check 'a mapping is there' refuses 2 "no file 'nowhere.yaml'" "$run" --drive gamepad --mapping nowhere.yaml
+check 'a recorded pad is there' refuses 2 "no file 'nowhere.evemu'" "$run" --drive gamepad --replay-pad nowhere.evemu
+check 'one pad at a time' refuses 2 'exclude each other' "$run" --drive gamepad --pad Xbox --replay-pad "$recording"
+check 'the keyboard needs a display' refuses 2 'DISPLAY is not set' "$run" --drive keyboard
+check 'the keyboard needs rviz' refuses 2 'remove --headless' "$run" --drive keyboard --headless
+
+if [ -n "${VIBE_VARIANT:-}" ]; then
+  echo 'skipped sessions (scripts/run uses the ordinary build, not this one)'
+  exit 0
+fi
+
+# drives NAME OPTION...: a session on the light scene ends well, is complete, and repeats to the same state.
+drives() {
+  local name=$1 status=0
+  shift
+  "$run" --scene "$scene" --headless --output "$scratch/$name" "$@" >"$scratch/$name.txt" 2>&1 || status=$?
+  cat "$scratch/$name.txt"
+  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/$name/summary.txt" || return 1
+  [ "$(grep -c 'x real time' "$scratch/$name.txt")" -ge 3 ] || { echo 'not a line a second'; return 1; }
+  "$root/scripts/replay" "$scratch/$name/session.bag" >"$scratch/$name.replay" 2>&1 || status=$?
+  tail -n 2 "$scratch/$name.replay"
+  [ "$status" -eq 0 ] && grep -q 'recorded hash: .*, the same' "$scratch/$name.replay"
+}
+
+# reaches NAME DEPTH SPREAD: the deepest insertion that a step has used [m], and by how much it may differ.
+reaches() {
+  /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 - "$scratch/$1/session.bag" "$2" "$3" <<'PYTHON'
+import sys
+import rosbag
+inputs = [message for _, message, _ in rosbag.Bag(sys.argv[1]).read_messages(topics=["/applied_input"])]
+depth, wanted, spread = max(message.joints[0] for message in inputs), float(sys.argv[2]), float(sys.argv[3])
+assert abs(depth - wanted) < spread, "{:.4f} m deep, not {}".format(depth, wanted)
+assert any(any(message.buttons) for message in inputs), "no button was pressed"
+assert inputs[0].header.stamp.to_sec() > 1e9, "not the wall clock"
+PYTHON
+}
+
+emulatorDrives() {
+  drives emulator --drive emulator --hand "$hand" --duration 6 && reaches emulator 0.08 0.02
+}
+check 'emulated devices drive a session that repeats' emulatorDrives
+
+gamepadDrives() {
+  drives gamepad --drive gamepad --replay-pad "$recording" --duration 5 && reaches gamepad 0.08 0.004 &&
+    grep -q 'press BTN_START to insufflate' "$scratch/gamepad.txt"
+}
+check 'a recorded gamepad drives a session that repeats' gamepadDrives
+
+padIsRecorded() {
+  drives again --drive gamepad --replay-pad "$scratch/gamepad/pad.evemu" --duration 5 && reaches again 0.08 0.004
+}
+check 'a session leaves a recording of its gamepad' padIsRecorded
+
+waitsForPad() {
+  drives nobody --drive gamepad --pad 'no such gamepad' --duration 4 || return 1
+  [ "$(grep -c "No device found with 'no such gamepad'.*Waiting for it" "$scratch/nobody.txt")" -eq 1 ]
+}
+check 'a session without its gamepad says what it looked for and goes on' waitsForPad
+
+namesBadMapping() {
+  printf 'name: wrong\njoints:\n  insertion: {axis: ABS_Y, mode: rate, rte: 1 cm/s}\n' >"$scratch/wrong.yaml"
+  local status=0
+  "$run" --drive gamepad --scene "$scene" --headless --mapping "$scratch/wrong.yaml" --duration 3 \
+    --output "$scratch/wrong" >"$scratch/wrong.txt" 2>&1 || status=$?
+  cat "$scratch/wrong.txt"
+  [ "$status" -eq 1 ] && grep -q "wrong.yaml:3: joints.insertion.rte: .*did you mean 'rate'" "$scratch/wrong.txt" &&
+    grep -q '^run: gamepad_node died' "$scratch/wrong.txt"
+}
+check 'a wrong mapping is one clear error' namesBadMapping
+
+# startSession NAME OPTION...: in the background, without an end; returns once it takes steps. Sets session_pid.
+startSession() {
+  local name=$1
+  shift
+  # bash starts background jobs deaf to SIGINT; the user's terminal does not
+  VIBE_TEST_MARK=$name-$$ /usr/bin/python3 -c 'import os, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+os.execv(sys.argv[1], sys.argv[1:])' "$run" --scene "$scene" --output "$scratch/$name" "$@" >"$scratch/$name.txt" 2>&1 &
+  session_pid=$!
+  local deadline=$((SECONDS + 120))
+  until grep -qs ' 1\.0[0-9] x real time\| 0\.9[0-9] x real time' "$scratch/$name.txt"; do
+    kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$name.txt"; return 1; }
+    sleep 0.2
+  done
+}
+
+endsOnInterrupt() {
+  local status=0
+  startSession endless --drive emulator --hand "$hand" --headless || return 1
+  kill -INT "$session_pid"
+  wait "$session_pid" || status=$?
+  cat "$scratch/endless.txt"
+  [ "$status" -eq 0 ] && grep -q '^state hash: ' "$scratch/endless.txt" && [ -s "$scratch/endless/session.bag" ] &&
+    [ -z "$(processesWith "VIBE_TEST_MARK=endless-$$")" ]
+}
+check 'a session without an end is summed up when it is interrupted' endsOnInterrupt
