@@ -56,21 +56,33 @@ heapDoesNotLink() {
 }
 check 'control: an image that asks for memory does not link' heapDoesNotLink
 
-startsInFlash() {
-  local image start
+# vector IMAGE NUMBER: entry of the vector table at 0x08000000, in hexadecimal
+vector() {
+  local address=$((16#08000000 + 4 * $2)) word
+  word=$(arm-none-eabi-objdump -s -j .vectors --start-address $address --stop-address $((address + 4)) "$1" |
+    sed -nE 's/^ 8[0-9a-f]+ (..)(..)(..)(..) .*/\4\3\2\1/p')
+  echo "$word"
+}
+# address IMAGE FUNCTION: with the bit that marks Thumb code
+address() {
+  printf '%08x' $((16#$(arm-none-eabi-nm "$1" | sed -n "s/ T $2\$//p") | 1))
+}
+vectorsAreRight() {
+  local image
   for image in "$build"/arm/firmware_stm32f767_*.elf; do
-    # stack pointer at the end of DTCM, then the address of resetHandler with the Thumb bit
-    start=$(arm-none-eabi-objdump -s -j .vectors "$image" | sed -n 's/^ 8000000 \([0-9a-f]*\) \([0-9a-f]*\) .*/\1 \2/p')
-    [[ $start =~ ^00000220\ [0-9a-f]{2}[0-9a-f]{2}0[0-9a-f]08$ ]] || { echo "$image starts with '$start'"; return 1; }
-    (( 16#${start:9:2} & 1 )) || { echo "resetHandler of $image is no Thumb code"; return 1; }
+    echo "$image: $(vector "$image" 0) $(vector "$image" 1) $(vector "$image" 70)"
+    [ "$(vector "$image" 0)" = 20020000 ] && [ "$(vector "$image" 1)" = "$(address "$image" resetHandler)" ] &&
+      [ "$(vector "$image" $((16 + 54)))" = "$(address "$image" tickHandler)" ] &&
+      [ "$(vector "$image" $((16 + 67)))" = "$(address "$image" usbHandler)" ] || return 1
   done
 }
-check 'firmware: the images for STM32F767 begin with stack and reset vector at 0x08000000 (never run)' startsInFlash
+check 'firmware: vectors of the images for STM32F767: end of DTCM, reset, TIM6, OTG_FS (never run)' vectorsAreRight
 
 compilesTinyUsbLink() {
   local ports=$root/src/vibe_firmware/ports
   arm-none-eabi-g++ -mcpu=cortex-m7 -mthumb -mfloat-abi=hard -mfpu=fpv5-d16 -std=c++17 -O2 -Wall -Wextra -Wpedantic \
     -Wshadow -Wconversion -Wno-sign-conversion -Werror -fno-exceptions -fno-rtti -I "$root/src/vibe_firmware/include" \
+    -I "$ports/common" \
     -I "$ports/stm32f767" -I "$ports/stm32f767/tinyusb" -I "$root/src/vibe_firmware/test/tinyusb" \
     -c -o "$scratch/tinyusb_link.o" "$ports/stm32f767/tinyusb_link.cpp"
 }

@@ -40,6 +40,7 @@ void addParameters(const HapticStatistics& haptic, std::uint64_t rejected, Diagn
   status.add("refused parameters", haptic.refused);
   status.add("last refusal", haptic.last_refusal);
   status.add("parameters that read back differently", haptic.mismatched);
+  status.add("reports of the device without valid parameters for 200 ms", haptic.starved);
   status.add("rejected messages on haptic/parameters", rejected);
 }
 
@@ -77,6 +78,7 @@ void fillDiagnostics(const DeviceStatistics& device, const HapticStatistics* hap
   if (haptic == nullptr) return;
   warnIf(haptic->refused > memory.haptic.refused, "parameters were refused", status);
   warnIf(haptic->mismatched > memory.haptic.mismatched, "parameters read back differently", status);
+  warnIf(haptic->starved > memory.haptic.starved, "the device has missed parameters", status);
   memory.haptic = *haptic;
   addParameters(*haptic, rejected, status);
 }

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <fstream>
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -32,6 +33,7 @@ struct Options {
   std::vector<std::string> fifos;
   std::vector<std::string> compare;
   std::string trace;
+  std::string table;
   std::uint32_t ticks = 0;
   std::uint32_t delay = 0;
 };
@@ -48,6 +50,7 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("--ticks", options.ticks, "number of ticks; without: that of the scenario");
   app.add_option("--delay", options.delay, "ticks by which the torque comes late, to see a bound violated");
   app.add_option("--trace", options.trace, "file for what the firmware has answered");
+  app.add_option("--table", options.table, "file for the motion after the release, relative to the displacement (CSV)");
   app.add_option("--compare", options.compare, "compare two such files instead; status 1 if they differ")->expected(2);
 }
 
@@ -62,12 +65,19 @@ std::unique_ptr<FirmwarePeer> makePeer(const Options& options) {
   return std::make_unique<FifoPeer>(options.fifos[0], options.fifos[1]);
 }
 
+void writeTable(const Scenario& scenario, const std::string& file) {
+  std::ofstream out(file);
+  if (!scenario.writeTable(out)) throw std::runtime_error("--table: only the scenario release has a table");
+  if (!out.flush()) throw std::runtime_error(file + " cannot be written");
+}
+
 int run(const Options& options) {
   const std::unique_ptr<Scenario> scenario = kScenarios.at(options.scenario)();
   const std::unique_ptr<FirmwarePeer> firmware = makePeer(options);
   Lockstep lockstep(*firmware, *scenario, options.delay);
   lockstep.run(options.ticks > 0 ? options.ticks : scenario->ticks());
   if (!options.trace.empty()) writeTrace(options.trace, lockstep.trace());
+  if (!options.table.empty()) writeTable(*scenario, options.table);
   std::cout << "ticks: " << lockstep.trace().size() << "\n"
             << "trace: " << std::hex << std::setfill('0') << std::setw(16) << lockstep.hash() << std::dec << "\n";
   if (!options.fifos.empty())

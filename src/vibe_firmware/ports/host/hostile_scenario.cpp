@@ -58,15 +58,13 @@ HandAction HostileScenario::hand(std::uint32_t, int axis, const AxisPlant& plant
 
 void HostileScenario::receive(const CosimReply& reply) {
   for (std::size_t axis = 0; axis < kAxisCount; ++axis) velocity_[axis] = reply.velocity[axis];
-  InputReport report;
-  if (reply.has_report != 0 && unpack(reply.report, sizeof reply.report, report))
-    flags_ = static_cast<std::uint8_t>(flags_ | report.flags);
+  reports_.receive(reply);
 }
 
 bool HostileScenario::judge(std::ostream& out) const {
   constexpr int kExpected = kHostSilent | kLimited | kPassivityActs | kRefused | kIndexed0 | kIndexed1;
-  out << "flags seen, and those expected: " << int{flags_} << " " << kExpected << "\n";
-  bool good = flags_ == kExpected;
+  out << "flags seen, and those expected: " << int{reports_.flagsSeen()} << " " << kExpected << "\n";
+  bool good = reports_.flagsSeen() == kExpected;
   for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
     out << "axis " << axis << ", most energy given since any moment, and its bound [J]: " << energy_[axis].fromLowest()
         << " " << AxisConfig{}.energy_capacity << "\n";

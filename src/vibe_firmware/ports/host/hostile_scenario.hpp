@@ -2,6 +2,7 @@
 #include <random>
 
 #include "port_energy.hpp"
+#include "report_watch.hpp"
 #include "scenario.hpp"
 
 namespace vibe_firmware {
@@ -32,8 +33,8 @@ class HostileScenario : public Scenario {
   std::uint16_t number_ = 0;
   std::uint32_t silent_until_ = 0;
   std::array<float, kAxisCount> velocity_{};  // as the firmware has it [rad/s]
-  std::uint8_t flags_ = 0;                    // seen in any report
-  std::array<double, kAxisCount> target_{};   // of the hand [rad]
+  ReportWatch reports_;
+  std::array<double, kAxisCount> target_{};  // of the hand [rad]
   std::array<PortEnergy, kAxisCount> energy_{PortEnergy{AxisConfig{}}, PortEnergy{AxisConfig{}}};
 };
 

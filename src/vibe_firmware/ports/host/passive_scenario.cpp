@@ -4,13 +4,15 @@
 #include <ostream>
 
 #include "control_requests.hpp"
+#include "vibe_firmware/core/passivity.hpp"
 
 namespace vibe_firmware {
 namespace {
 
-constexpr AxisParameters kSpring{0.5F, 4e-3F, 0, 0, 0.029F};
-constexpr AxisParameters kDamper{0.0F, 9e-3F, 0, 0, 0.029F};
-constexpr double kAmplitude[kAxisCount] = {0.03, 0.02};  // [rad]
+constexpr std::uint16_t kParameterNumber = 1;
+constexpr float kStiffness = 0.5F;  // of axis 0 [N m/rad]; axis 1 has none
+constexpr float kShare = 0.98F;     // of the damping that the firmware accepts beside this stiffness
+constexpr double kAmplitude[kAxisCount] = {0.01, 0.02};  // [rad]
 constexpr double kFirst = 1, kLast = 100;                // [Hz]
 constexpr double kBound = 1e-9;                          // rounding of the sums [J]
 
@@ -20,10 +22,15 @@ double chirp(double time, double duration) {
   return 2 * M_PI * kFirst * (std::exp(rate * time) - 1) / rate;
 }
 
+AxisParameters strongest(float stiffness) {
+  const AxisConfig config;
+  return {stiffness, kShare * maxDamping(config, stiffness), 0, 0, config.torque_limit};
+}
+
 }  // namespace
 
 void PassiveScenario::command(std::uint32_t tick, CosimRequest& request) {
-  if (tick % 100 == 1) setParameters({1, {kSpring, kDamper}}, request);
+  if (tick % 100 == 1) setParameters({kParameterNumber, {strongest(kStiffness), strongest(0)}}, request);
 }
 
 HandAction PassiveScenario::hand(std::uint32_t tick, int axis, const AxisPlant&) {
@@ -35,7 +42,8 @@ HandAction PassiveScenario::hand(std::uint32_t tick, int axis, const AxisPlant&)
 }
 
 bool PassiveScenario::judge(std::ostream& out) const {
-  bool good = true;
+  bool good = reports_.parametersInForce(kParameterNumber);
+  if (!good) out << "the firmware has refused or cut the parameters\n";
   for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
     out << "axis " << axis << ", most energy given since the start, and at the end [J]: " << energy_[axis].fromStart()
         << " " << energy_[axis].final() << "\n";

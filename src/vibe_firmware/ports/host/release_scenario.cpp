@@ -10,6 +10,7 @@
 namespace vibe_firmware {
 namespace {
 
+constexpr std::uint16_t kParameterNumber = 1;
 constexpr std::uint32_t kArrival = 200;  // of the hand at the displacement [ticks]
 constexpr std::uint32_t kRelease = 400;
 constexpr double kPeriod = 1e-3;
@@ -83,7 +84,7 @@ std::array<PlantConfig, kAxisCount> ReleaseScenario::plants() const {
 }
 
 void ReleaseScenario::command(std::uint32_t tick, CosimRequest& request) {
-  if (tick % 100 == 1) setParameters({1, {kAxes[0].parameters, kAxes[1].parameters}}, request);
+  if (tick % 100 == 1) setParameters({kParameterNumber, {kAxes[0].parameters, kAxes[1].parameters}}, request);
 }
 
 HandAction ReleaseScenario::hand(std::uint32_t tick, int axis, const AxisPlant&) {
@@ -98,7 +99,8 @@ void ReleaseScenario::observe(const Period& period) {
 }
 
 bool ReleaseScenario::judge(std::ostream& out) const {
-  bool good = true;
+  bool good = reports_.parametersInForce(kParameterNumber);
+  if (!good) out << "the firmware has refused or cut the parameters\n";
   for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
     const AxisParameters& parameters = kAxes[axis].parameters;
     const std::vector<double> exact = sampled(parameters, positions_[axis].size());
@@ -114,6 +116,21 @@ bool ReleaseScenario::judge(std::ostream& out) const {
     good = good && order.rms < kSecondOrderBound && samples.rms < kSampledBound;
   }
   return good;
+}
+
+bool ReleaseScenario::writeTable(std::ostream& out) const {
+  out << "time,axis 0,second order 0,sampled 0,axis 1,second order 1,sampled 1\n";
+  const std::size_t count = positions_[0].size();
+  const std::vector<double> exact[] = {sampled(kAxes[0].parameters, count), sampled(kAxes[1].parameters, count)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double time = kPeriod * static_cast<double>(i);
+    out << time;
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+      out << "," << positions_[axis][i] / kAxes[axis].displacement << "," << secondOrder(kAxes[axis].parameters, time)
+          << "," << exact[axis][i];
+    out << "\n";
+  }
+  return true;
 }
 
 }  // namespace vibe_firmware

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "report_watch.hpp"
 #include "scenario.hpp"
 
 namespace vibe_firmware {
@@ -19,9 +20,12 @@ class ReleaseScenario : public Scenario {
   void command(std::uint32_t tick, CosimRequest& request) override;
   HandAction hand(std::uint32_t tick, int axis, const AxisPlant& plant) override;
   void observe(const Period& period) override;
+  void receive(const CosimReply& reply) override { reports_.receive(reply); }
   bool judge(std::ostream& out) const override;
+  bool writeTable(std::ostream& out) const override;
 
  private:
+  ReportWatch reports_;
   std::array<std::vector<double>, kAxisCount> positions_;  // after the release, one per tick
 };
 

@@ -44,6 +44,10 @@ class Scenario {
 
   /// Writes what was measured, a `name: value` line each. @return whether every bound holds
   virtual bool judge(std::ostream& out) const = 0;
+
+  /// Writes what was measured over time, as comma-separated values with a heading. @return false: there is no such
+  /// table
+  virtual bool writeTable(std::ostream&) const { return false; }
 };
 
 }  // namespace vibe_firmware

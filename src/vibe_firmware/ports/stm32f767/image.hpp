@@ -42,12 +42,20 @@ class Image {
     startTiming();
     for (;;) {
       application_.poll();
+      reportFault();
       diagnostics_.poll();
       asm volatile("wfi");  // until the next tick or USB event
     }
   }
 
  private:
+  void reportFault() {
+    if (fault_reported_ || !bridgeFault()) return;
+    fault_reported_ = true;
+    diagnostics_.write("fault of the bridge: motors off until the next reset\r\n");
+  }
+
+  bool fault_reported_ = false;
   Diagnostics diagnostics_;
   NucleoBoard board_{{}};
   Link link_{diagnostics_};

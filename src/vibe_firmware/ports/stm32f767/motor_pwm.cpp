@@ -25,6 +25,10 @@ void writeBridge(std::size_t axis, const BridgeInputs& inputs) {
   (axis == 0 ? tim1().ccr2 : tim1().ccr4) = inputs.second;
 }
 
+bool bridgeFault() {
+  return tim1().sr & bit(7);  // BIF
+}
+
 void stopPwm() {
   tim1().bdtr = tim1().bdtr & ~bit(15);
 }

@@ -16,6 +16,9 @@ void startPwm();
 
 void writeBridge(std::size_t axis, const BridgeInputs& inputs);
 
+/// The bridges have reported a fault; both motors coast.
+bool bridgeFault();
+
 /// All inputs low: both motors coast.
 void stopPwm();
 

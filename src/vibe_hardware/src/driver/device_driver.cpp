@@ -194,7 +194,7 @@ void DeviceDriver::reportFlags(std::uint8_t flags) {
 
 // Not from a device that is silent: a request that is not answered takes seconds.
 void DeviceDriver::refreshStatus() {
-  if (state_ != LinkState::Running || clock_() < next_status_) return;
+  if (state_ != LinkState::Running || sinceReport() > kQuiet || clock_() < next_status_) return;
   next_status_ = clock_() + kStatusPeriod;
   try {
     connection_->refreshStatus();

@@ -49,7 +49,7 @@ DeviceDriver::Callbacks HapticDriver::wrap() {
     user_.connected(connection);
     link_.resend();
     refused_before_ = connection.status().refused;
-    confirmed_ = device_.now();
+    confirmed_ = opened_ = device_.now();
     next_verify_ = 0;
     differed_ = false;
     refused_flag_ = ask_status_ = false;
@@ -78,7 +78,7 @@ void HapticDriver::poll(double wait) {
   device_.poll(wait);
   takeInbox();
   // A device that does not speak is not spoken to: its watchdog takes the torque away, and a request to it could block.
-  if (device_.state() != LinkState::Running) return;
+  if (device_.state() != LinkState::Running || device_.sinceReport() > DeviceDriver::kQuiet) return;
   try {
     sendDue();
     verify();
@@ -125,6 +125,8 @@ void HapticDriver::onSample(const DeviceSample& sample) {
   // reports were packed before the last sets were sent
   if (behind <= kTakeOver / HapticLink::kMinPeriod && link_.last().number != 0) confirmed_ = now;
   statistics_.in_force = now - confirmed_ <= kTakeOver && (sample.flags & vibe_firmware::kHostSilent) == 0;
+  // the first report after opening the device may be older than the first parameters
+  if (now - opened_ > kTakeOver && (sample.flags & vibe_firmware::kHostSilent) != 0) ++statistics_.starved;
   const bool refused = (sample.flags & vibe_firmware::kRefused) != 0;
   ask_status_ |= refused && !refused_flag_;
   refused_flag_ = refused;

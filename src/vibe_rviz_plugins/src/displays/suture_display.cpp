@@ -177,7 +177,7 @@ void SutureDisplay::changeLegend() {
     if (legend_) legend_->hide();
     return;
   }
-  if (!legend_) legend_ = std::make_unique<Legend>(Legend::Corner::BottomRight);
+  if (!legend_) legend_ = std::make_unique<Legend>(Legend::Place::BottomRight);
   legend_->show(drawnLegend("Thread tension [N]", style_.tension_map));
 }
 

@@ -319,7 +319,7 @@ void TissueDisplay::changeLegend() {
     if (legend_) legend_->hide();
     return;
   }
-  if (!legend_) legend_ = std::make_unique<Legend>(Legend::Corner::BottomLeft);
+  if (!legend_) legend_ = std::make_unique<Legend>(Legend::Place::BottomLeft);
   const ColourMap map(map_->getStdString(), static_cast<double>(min_->getFloat()),
                       static_cast<double>(max_->getFloat()));
   legend_->show(legendOf(colouring, map));

@@ -11,8 +11,6 @@ namespace {
 constexpr std::uint32_t kQueue = 100;
 constexpr double kTaking = 1;     // a paused simulator publishes no input [s]
 constexpr double kClosing = 0.5;  // [s]
-// identifies messages of this panel, because other parts of the same program may press buttons too
-const char* const kFrame = "procedure_panel";
 
 }  // namespace
 
@@ -33,8 +31,9 @@ void ButtonSender::listen(const std::string& name_space) {
 void ButtonSender::hear(const ros::MessageEvent<const sensor_msgs::Joy>& event) {
   const bool own_program = event.getPublisherName() == ros::this_node::getName();
   const sensor_msgs::Joy& message = *event.getMessage();
-  if (own_program && message.header.frame_id == kFrame) return;
-  watch_.heard(event.getPublisherName(), steadySeconds());
+  if (own_program && message.header.frame_id == frame_) return;
+  const std::string part = own_program && !message.header.frame_id.empty() ? message.header.frame_id + " of " : "";
+  watch_.heard(part + event.getPublisherName(), steadySeconds());
   // Buttons pressed by another part of this program are obeyed too; contradicting them would release the helix.
   if (!in_control_ || own_program) bank_.adopt(message.buttons);
 }
@@ -91,7 +90,7 @@ void ButtonSender::publish() {
   if (!publisher_) return;
   sensor_msgs::Joy message;
   message.header.stamp = ros::Time::now();
-  message.header.frame_id = kFrame;
+  message.header.frame_id = frame_;
   message.buttons.assign(bank_.down().begin(), bank_.down().end());
   publisher_.publish(message);
 }

@@ -13,6 +13,9 @@ namespace vibe {
 /// times a second. Without control nothing is advertised, so that the simulator has no second publisher to ignore.
 class ButtonSender {
  public:
+  /// @param frame  frame_id of its messages: tells apart the parts of one program that press buttons
+  explicit ButtonSender(std::string frame) : frame_(std::move(frame)) {}
+
   /// Starts again in this (valid) namespace, without control.
   void listen(const std::string& name_space);
 
@@ -22,6 +25,9 @@ class ButtonSender {
   void setControl(bool on, double now);
   bool inControl() const { return in_control_; }
   bool isTakingControl() const { return static_cast<bool>(last_input_); }
+
+  /// Control was given back, and the publisher is about to shut down.
+  bool closing() const { return !in_control_ && static_cast<bool>(publisher_); }
 
   // These have no effect without control.
   void press(int button, const Moment& now);
@@ -35,6 +41,7 @@ class ButtonSender {
   std::string sentence(double now) const;
 
  private:
+  std::string frame_;
   ros::NodeHandle handle_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;

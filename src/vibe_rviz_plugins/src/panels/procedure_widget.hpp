@@ -57,7 +57,7 @@ class ProcedureWidget : public QWidget {
   bool gives_up_ = false;
   std::string wrong_namespace_;
   ProcedureSubscriptions subscriptions_;
-  ButtonSender sender_;
+  ButtonSender sender_{"procedure_panel"};
   ServiceCaller caller_;  // last: its thread ends before anything else goes
 
   QWidget* makeContent();

@@ -12,6 +12,7 @@
 #include <QPainter>
 #include <QPainterPath>
 #include <algorithm>
+#include <cmath>
 
 #include "render/resources.hpp"
 
@@ -35,6 +36,28 @@ QImage plate(int height, const std::string& title) {
   painter.setPen(Qt::white);
   painter.drawText(kMargin, 0, kWidth - 2 * kMargin, kTitle, Qt::AlignVCenter, QString::fromStdString(title));
   return image;
+}
+
+bool isAtBottom(Legend::Place place) {
+  return place == Legend::Place::BottomLeft || place == Legend::Place::BottomRight;
+}
+
+Ogre::GuiHorizontalAlignment sideOf(Legend::Place place) {
+  if (place == Legend::Place::TopCentre) return Ogre::GHA_CENTER;
+  return place == Legend::Place::BottomLeft || place == Legend::Place::TopLeft ? Ogre::GHA_LEFT : Ogre::GHA_RIGHT;
+}
+
+/// Of an image of this width, from where its side is [pixels].
+float leftEdge(Legend::Place place, float width) {
+  switch (sideOf(place)) {
+    case Ogre::GHA_LEFT:
+      return kMargin;
+    case Ogre::GHA_CENTER:
+      return -std::floor(0.5F * width);
+    case Ogre::GHA_RIGHT:
+      break;
+  }
+  return -width - kMargin;
 }
 
 }  // namespace
@@ -73,7 +96,7 @@ QImage drawnLegend(const std::string& title, const std::vector<LegendEntry>& ent
   return image;
 }
 
-Legend::Legend(Corner corner) : corner_(corner) {}
+Legend::Legend(Place place) : place_(place) {}
 
 Legend::~Legend() {
   if (overlay_ == nullptr) return;
@@ -98,8 +121,8 @@ void Legend::make() {
   overlay_ = overlays.create(uniqueName("Legend"));
   panel_ = static_cast<Ogre::OverlayContainer*>(overlays.createOverlayElement("Panel", uniqueName("Legend")));
   panel_->setMetricsMode(Ogre::GMM_PIXELS);
-  panel_->setVerticalAlignment(Ogre::GVA_BOTTOM);
-  panel_->setHorizontalAlignment(corner_ == Corner::BottomLeft ? Ogre::GHA_LEFT : Ogre::GHA_RIGHT);
+  panel_->setVerticalAlignment(isAtBottom(place_) ? Ogre::GVA_BOTTOM : Ogre::GVA_TOP);
+  panel_->setHorizontalAlignment(sideOf(place_));
   panel_->setMaterial(material_);
   overlay_->add2D(panel_);
 }
@@ -114,7 +137,7 @@ void Legend::fit(const QImage& image) {
   material_->getTechnique(0)->getPass(0)->getTextureUnitState(0)->setTexture(texture_);
 }
 
-void Legend::show(const QImage& image) {
+void Legend::show(const QImage& image, int shift) {
   if (overlay_ == nullptr) make();
   const QImage pixels = image.convertToFormat(QImage::Format_ARGB32);
   fit(pixels);
@@ -123,7 +146,8 @@ void Legend::show(const QImage& image) {
   texture_->getBuffer()->blitFromMemory(box);
   const auto width = static_cast<float>(pixels.width()), height = static_cast<float>(pixels.height());
   panel_->setDimensions(width, height);
-  panel_->setPosition(corner_ == Corner::BottomLeft ? kMargin : -width - kMargin, -height - kMargin);
+  const auto away = static_cast<float>(kMargin + shift);
+  panel_->setPosition(leftEdge(place_, width), isAtBottom(place_) ? -height - away : away);
   overlay_->show();
 }
 

@@ -26,23 +26,24 @@ QImage drawnLegend(const std::string& title, const ColourMap& map);
 /// The legend of a list of colours.
 QImage drawnLegend(const std::string& title, const std::vector<LegendEntry>& entries);
 
-/// An image in a corner of the views of rviz. To be used from the thread that renders.
+/// An image at the edge of the views of rviz. To be used from the thread that renders.
 class Legend {
  public:
-  enum class Corner { BottomLeft, BottomRight };
-  explicit Legend(Corner corner);
+  enum class Place { BottomLeft, BottomRight, TopLeft, TopCentre, TopRight };
+  explicit Legend(Place place);
   ~Legend();
   Legend(const Legend&) = delete;
   Legend& operator=(const Legend&) = delete;
 
-  void show(const QImage& image);
+  /// @param shift  how much further from the upper or lower edge [pixels]
+  void show(const QImage& image, int shift = 0);
   void hide();
 
  private:
   void make();
   void fit(const QImage& image);
 
-  Corner corner_;
+  Place place_;
   Ogre::Overlay* overlay_ = nullptr;
   Ogre::OverlayContainer* panel_ = nullptr;
   Ogre::MaterialPtr material_;

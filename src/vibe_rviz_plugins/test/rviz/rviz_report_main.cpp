@@ -1,9 +1,10 @@
 // rviz as it is, which also writes down, twice a second, what it thinks of its displays: for tests that cannot look.
 //
 // usage: rviz_report FILE [options of rviz]
-// FILE holds one JSON object: frames (drawn so far), memory (resident [B]) and
+// FILE holds one JSON object: frames (drawn so far), memory (resident [B]), tool (the current one) and
 // statuses, a list of {of, what, level, text} with the level "Ok", "Warn" or "Error", and in help the number of
 // properties of this package's displays, tools and view, and the names of those without a help sentence.
+// Standard input takes keys and motions of the mouse, see rviz_events.hpp.
 #include <rviz/display_group.h>
 #include <rviz/failed_display.h>
 #include <rviz/failed_panel.h>
@@ -30,6 +31,7 @@
 #include <utility>
 #include <vector>
 
+#include "rviz_events.hpp"
 #include "vibe_rviz_plugins/display_base/property_help.hpp"
 
 namespace {
@@ -126,6 +128,7 @@ void report(const QString& file_name) {
   addFailedPlugins(*frame, statuses);
   const QJsonObject told{{"frames", static_cast<double>(frame->getManager()->getFrameCount())},
                          {"memory", residentMemory()},
+                         {"tool", frame->getManager()->getToolManager()->getCurrentTool()->getName()},
                          {"help", helpOf(*frame->getManager())},
                          {"statuses", statuses}};
   QSaveFile file(file_name);  // readers see the old report or the new one
@@ -149,6 +152,7 @@ int main(int argc, char** argv) {
   rviz::VisualizerApp rviz_application;
   rviz_application.setApp(&application);
   if (!rviz_application.init(argc, argv)) return 1;
+  vibe::RvizEvents events(*findFrame()->getManager());
   QTimer timer;
   QObject::connect(&timer, &QTimer::timeout, [&file_name] { report(file_name); });
   timer.start(kInterval);

@@ -27,7 +27,7 @@ class RvizUnderTest:
         self.env.setdefault("ROS_HOME", os.path.join(self.folder, "ros"))
         self.start_display()
         program = ["rosrun", "vibe_rviz_plugins", "rviz_report", self.report_file]
-        self.rviz = self.start([*program, "--splash-screen", "", "-d", config])
+        self.rviz = self.start([*program, "--splash-screen", "", "-d", config], stdin=subprocess.PIPE)
 
     def start_display(self):
         number = os.path.join(self.folder, "display")
@@ -37,9 +37,9 @@ class RvizUnderTest:
         with open(number, encoding="ascii") as text:
             self.env["DISPLAY"] = ":" + text.read().strip()
 
-    def start(self, command):
+    def start(self, command, stdin=subprocess.DEVNULL):
         with open(self.log, "ab") as output:
-            process = subprocess.Popen(command, env=self.env, stdout=output, stderr=subprocess.STDOUT)
+            process = subprocess.Popen(command, env=self.env, stdin=stdin, stdout=output, stderr=subprocess.STDOUT)
         self.processes.append(process)
         return process
 
@@ -55,12 +55,23 @@ class RvizUnderTest:
                 process.wait()
         shutil.rmtree(self.folder, ignore_errors=True)
 
+    def tell(self, *lines):
+        """Keys and motions of the mouse, see rviz_events.hpp."""
+        self.rviz.stdin.write("".join(line + "\n" for line in lines).encode())
+        self.rviz.stdin.flush()
+
+    def picture(self, name):
+        """A file with what the display shows."""
+        file = os.path.join(self.folder, name)
+        subprocess.run(["import", "-window", "root", file], env=self.env, check=True)
+        return file
+
     def last_words(self):
         with open(self.log, encoding="utf-8", errors="replace") as text:
             return "".join(text.readlines()[-15:])
 
     def report(self):
-        """The last one: {"frames", "memory", "statuses"}."""
+        """The last one: {"frames", "memory", "tool", "statuses"}."""
         for process in self.processes:
             assert process.poll() is None, "{} ended with {}:\n{}".format(
                 process.args[0], process.returncode, self.last_words()
@@ -69,7 +80,7 @@ class RvizUnderTest:
             with open(self.report_file, encoding="utf-8") as text:
                 return json.load(text)
         except FileNotFoundError:
-            return {"frames": 0, "memory": 0, "statuses": []}
+            return {"frames": 0, "memory": 0, "tool": "", "statuses": []}
 
     def wait_for(self, condition, what, patience=PATIENCE):
         deadline = time.monotonic() + patience

@@ -19,7 +19,8 @@ class Board {
   /// tick, from the tick interrupt; not called for the input device, which has no motors.
   virtual void writeTorque(const std::array<float, kAxisCount>& torque) = 0;
 
-  /// Restarts the hardware watchdog. Without a call for about 50 ms the board resets; the motors are off during a reset.
+  /// Restarts the hardware watchdog. Without a call for about 50 ms the board resets; the motors are off during a
+  /// reset.
   virtual void feedWatchdog() = 0;
 
  protected:

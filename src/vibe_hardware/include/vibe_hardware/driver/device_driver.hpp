@@ -46,6 +46,8 @@ class DeviceDriver {
   static constexpr double kSearchPeriod = 0.2;  ///< between searches for a device that is not there [s]
   static constexpr double kSilence = 0.25;      ///< without a good report, after which the device has stopped [s]
 
+  static constexpr double kQuiet = 0.05;  ///< without a good report, after which nothing is asked of it [s]
+
   struct Callbacks {
     std::function<void(const DeviceSample&)> sample;
     std::function<void(const DeviceConnection&)> connected;
@@ -64,6 +66,7 @@ class DeviceDriver {
   /// The open device; null unless the state is Running or Silent.
   DeviceConnection* connection() { return connection_.get(); }
   DeviceStatistics statistics() const;
+  double sinceReport() const { return clock_() - last_good_; }  ///< the last good one, or since opening [s]
 
   /// Tells the driver that the device has gone while its connection was used outside poll().
   void drop(const std::string& reason);

@@ -15,6 +15,7 @@ struct HapticStatistics {
   std::uint64_t clamped = 0;     ///< targets that were lowered to what is passive on the device
   std::uint64_t refused = 0;     ///< sets that the device refused
   std::uint64_t mismatched = 0;  ///< sets that read back differently
+  std::uint64_t starved = 0;     ///< reports in which the device missed parameters: a heartbeat was lost
   std::string last_refusal;      ///< one sentence; empty: none
   bool in_force = false;         ///< the device holds the set sent last, or the one before
 };
@@ -51,6 +52,7 @@ class HapticDriver {
   HapticStatistics statistics_;
   std::uint32_t refused_before_ = 0;  // in StatusReport
   double confirmed_ = 0;              // when a report has last shown a recent set [s]
+  double opened_ = 0;                 // [s]
   double next_verify_ = 0;
   bool differed_ = false;
   bool refused_flag_ = false;  // of the last report

@@ -1,0 +1,68 @@
+#pragma once
+#include <functional>
+#include <set>
+
+#include "drive/drive_keys.hpp"
+#include "drive/smooth_axis.hpp"
+
+namespace vibe {
+
+/// Position limits and greatest speed of the joints, as the URDF gives them.
+struct JointLimit {
+  double lower = 0, upper = 0, velocity = 0;
+};
+using JointLimits = std::array<JointLimit, kJointCount>;
+
+/// How fast keys and mouse move the joints. The limits of the joints apply on top.
+struct DriveSpeeds {
+  /// While a key is held, at normal speed [1/s]. Design choice: about the pace of the scripted trainees.
+  Joints keys = {0.03, 0.8, 0.6, 0.6, 0.015, 12.0, 0.03};
+  double slow = 0.25, fast = 2.5;  ///< factors of the other two gears; slow applies to mouse and wheel too
+};
+
+/// Keys and mouse of a player, and the joints and buttons that follow from them. Knows no clock: advance() says how
+/// much time passes, during which the keys stay as they are.
+class ScopeDrive {
+ public:
+  /// Called when a key of a button goes down or comes up.
+  using ButtonChange = std::function<void(int button, bool down)>;
+  explicit ScopeDrive(ButtonChange button_changed) : button_changed_(std::move(button_changed)) {}
+
+  /// Begins at rest at the present position of the joints, which need not be those of before. Keys stay as they are.
+  void begin(const JointLimits& limits, const Joints& present);
+  void setSpeeds(const DriveSpeeds& speeds) { speeds_ = speeds; }
+
+  // A key that is down already, or up already, changes nothing, nor does one that does not drive.
+  void keyDown(int key);
+  void keyUp(int key);
+  /// All keys come up; moving joints brake. Motion that the mouse has asked for ends too.
+  void releaseAll();
+
+  /// The mouse asks for a displacement of a joint, before the factor of slow motion; ignored while a key moves it.
+  void displace(int joint, double by);
+
+  void advance(double seconds);
+
+  Joints joints() const;
+  bool atRest() const;
+  DriveGear gear() const;
+  const std::set<int>& keysDown() const { return down_; }
+  const JointLimits& limits() const { return limits_; }
+
+ private:
+  ButtonChange button_changed_;
+  DriveSpeeds speeds_;
+  JointLimits limits_{};
+  std::array<SmoothAxis, kJointCount> axes_;
+  Joints goals_{};
+  std::array<bool, kJointCount> by_key_{};
+  std::set<int> down_;
+  DriveGear chosen_ = DriveGear::Normal;
+
+  int direction(int joint) const;
+  double factor() const;
+  void change(const KeyBinding& binding, bool down);
+  void advanceJoint(int joint, double seconds);
+};
+
+}  // namespace vibe

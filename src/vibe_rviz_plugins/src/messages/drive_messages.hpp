@@ -1,0 +1,29 @@
+#pragma once
+#include <sensor_msgs/JointState.h>
+#include <vibe_msgs/ProcedureState.h>
+
+#include <string>
+
+#include "drive/first_steps.hpp"
+#include "drive/scope_drive.hpp"
+
+namespace vibe {
+
+/// Limits of the seven joints from a URDF. @return empty, or one sentence that says what is wrong with it
+std::string readJointLimits(const std::string& urdf, JointLimits& limits);
+
+/// The seven joints of joint_states, matched by name. @return false if one is missing or not finite
+bool readJoints(const sensor_msgs::JointState& message, Joints& joints);
+
+/// For scope/servo_jp: the first four joints.
+sensor_msgs::JointState scopeMessage(const Joints& joints, const ros::Time& stamp);
+/// For overstitch/measured_js: the other three.
+sensor_msgs::JointState overstitchMessage(const Joints& joints, const ros::Time& stamp);
+
+/// Whether the state did not follow from the one before by steps: a reset, a snapshot or another scene was loaded.
+bool isOtherSession(const vibe_msgs::ProcedureState& before, const vibe_msgs::ProcedureState& now);
+
+/// What the state tells about the first steps; joints and buttons are not in it.
+DriveSituation situationOf(const vibe_msgs::ProcedureState& state);
+
+}  // namespace vibe
