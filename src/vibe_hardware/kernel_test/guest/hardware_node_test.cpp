@@ -217,9 +217,10 @@ TEST_F(HardwareNode, AWrongReadBackIsReported) {
   const SpringSender sender(parameters_);
   ASSERT_TRUE(RosGraph::waitUntil([&] { return state_ == "ENABLED"; })) << state_;
   EXPECT_EQ(freshStatus().at("parameters that read back differently"), "0");
-  tellBridge("corrupt haptic 3");
+  tellBridge("corrupt haptic 10");  // the driver reads more than parameters, and believes only the second difference
   const auto is_reported = [this] { return status_.at("parameters that read back differently") != "0"; };
-  EXPECT_TRUE(RosGraph::waitUntil(is_reported));
+  EXPECT_TRUE(RosGraph::waitUntil(is_reported)) << testing::PrintToString(status_);
+  tellBridge("corrupt haptic 0");
 }
 
 TEST_F(HardwareNode, AReplugIsFollowedByMessagesAndTheSameParameters) {
