@@ -116,3 +116,45 @@ endsOnInterrupt() {
     [ -z "$(processesWith "VIBE_TEST_MARK=endless-$$")" ]
 }
 check 'a session without an end is summed up when it is interrupted' endsOnInterrupt
+
+if ! command -v Xvfb >/dev/null; then
+  echo 'skipped driving with the keyboard (there is no Xvfb; scripts/setup installs it)'
+  exit 0
+fi
+
+# startDisplay: a virtual display of this test, in DISPLAY; ends with this shell.
+startDisplay() {
+  exec {display_pipe}<> <(:)
+  Xvfb -displayfd "$display_pipe" -screen 0 1280x800x24 >/dev/null 2>&1 &
+  trap 'kill '"$!" EXIT
+  local number
+  read -r -t 60 -u "$display_pipe" number || { echo 'no virtual display'; return 1; }
+  export DISPLAY=:$number
+}
+
+# commands NAME: how many commands of rviz the recording of a session holds.
+commands() {
+  /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 - "$scratch/$1/session.bag" <<'PYTHON'
+import sys
+import rosbag
+topics = rosbag.Bag(sys.argv[1]).read_messages(topics=["/scope/servo_jp"], return_connection_header=True)
+print(sum(header["callerid"].startswith(b"/rviz") for _, _, _, header in topics))
+PYTHON
+}
+
+keyboardDrives() {
+  startDisplay && startSession keyboard --drive keyboard || return 1
+  local deadline=$((SECONDS + 180)) status=0
+  # rviz asks the tool to drive when it has drawn its first pictures
+  until grep -qs '^t =   1[0-9]\.' "$scratch/keyboard.txt" || ! kill -0 "$session_pid" 2>/dev/null; do sleep 0.5; done
+  while kill -0 "$session_pid" 2>/dev/null; do
+    [ "$SECONDS" -lt "$deadline" ] || { kill -INT "$session_pid"; echo 'the session goes on without rviz'; return 1; }
+    /usr/bin/python3 "$root/scripts/lib/close_window.py" || true
+    sleep 2
+  done
+  wait "$session_pid" || status=$?
+  cat "$scratch/keyboard.txt"
+  [ "$status" -eq 0 ] && grep -q '^rviz was closed: the session ends.' "$scratch/keyboard.txt" &&
+    grep -q '^state hash: ' "$scratch/keyboard.txt" && [ "$(commands keyboard)" -gt 0 ]
+}
+check 'rviz drives with the keyboard from its start, and closing it ends the session' keyboardDrives

@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "byte_queue.hpp"
 #include "simulated_encoders.hpp"
+#include "vibe_firmware/hal/byte_queue.hpp"
 #include "vibe_firmware/hal/usb_link.hpp"
 
 namespace vibe_firmware::mps2 {

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "byte_queue.hpp"
+#include "vibe_firmware/hal/byte_queue.hpp"
 
 // This port has never run on hardware.
 

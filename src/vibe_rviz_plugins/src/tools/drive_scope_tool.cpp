@@ -109,9 +109,10 @@ void DriveScopeTool::changeSpeeds() {
 
 void DriveScopeTool::activate() {
   active_ = true;
-  if (rviz::RenderPanel* panel = renderPanel(context_)) {
-    panel->installEventFilter(this);
-    panel->setFocus(Qt::OtherFocusReason);
+  window_ = renderPanel(context_);
+  if (window_) {
+    window_->installEventFilter(this);
+    window_->setFocus(Qt::OtherFocusReason);
   }
   connectAgain();
   button_timer_->start(kButtonPeriod);
@@ -120,7 +121,7 @@ void DriveScopeTool::activate() {
 void DriveScopeTool::deactivate() {
   releaseAll();
   active_ = false;
-  if (rviz::RenderPanel* panel = renderPanel(context_)) panel->removeEventFilter(this);
+  if (window_) window_->removeEventFilter(this);  // rviz destroys the window before the tools
   sender_.stop();
   buttons_.setControl(false, steadySeconds());
   hideOverlay();

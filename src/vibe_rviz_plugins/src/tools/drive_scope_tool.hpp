@@ -2,6 +2,8 @@
 #ifndef Q_MOC_RUN
 #include <rviz/tool.h>
 
+#include <QPointer>
+#include <QWidget>
 #include <memory>
 #include <string>
 #include <utility>
@@ -72,8 +74,9 @@ class DriveScopeTool : public rviz::Tool {
   QTimer* button_timer_;
   std::unique_ptr<Legend> banner_, keys_, state_;
   std::string name_space_trouble_;
-  int view_ = 0;      // the saved view that was chosen last
-  double drawn_ = 0;  // time of the last overlay, steady clock [s]
+  int view_ = 0;              // the saved view that was chosen last
+  QPointer<QWidget> window_;  // whose keys it hears while it is active
+  double drawn_ = 0;          // time of the last overlay, steady clock [s]
   bool active_ = false;
 };
 
