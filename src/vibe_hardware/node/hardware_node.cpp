@@ -50,10 +50,17 @@ HardwareNode::HardwareNode(ros::NodeHandle handle, const HardwareParameters& par
 }
 
 HardwareNode::~HardwareNode() {
+  stop();
+}
+
+bool HardwareNode::stop() {
   haptic_thread_.reset();
   input_thread_.reset();
-  onLost(DeviceKind::Haptic, steadyTime());
-  onLost(DeviceKind::Input, steadyTime());
+  const auto pressed = buttons_.pressed();
+  const double now = steadyTime();
+  onLost(DeviceKind::Haptic, now);
+  onLost(DeviceKind::Input, now);
+  return buttons_.pressed() != pressed;
 }
 
 DeviceDriver::Callbacks HardwareNode::callbacksOf(DeviceKind kind) {

@@ -12,7 +12,8 @@
 
 namespace vibe {
 
-/// Both devices as topics: docs/interfaces.md. One thread per device; callbacks of ROS come from ros::spin().
+/// Both devices as topics: docs/interfaces.md. One thread per device; callbacks of ROS come from one thread of a
+/// spinner, which must have been stopped before stop() or the end.
 class HardwareNode {
  public:
   /// @throws Error for a wrong calibration or bus
@@ -20,6 +21,9 @@ class HardwareNode {
   ~HardwareNode();
   HardwareNode(const HardwareNode&) = delete;
   HardwareNode& operator=(const HardwareNode&) = delete;
+
+  /// Lets go of the devices and releases the buttons. @return whether any was pressed
+  bool stop();
 
  private:
   std::mutex mutex_;  // of everything that more than one thread uses, down to the buses

@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <csignal>
 #include <cstdio>
 
 #include "hardware_node.hpp"
@@ -9,16 +10,35 @@
 namespace {
 
 constexpr int kUsage = 2;
+constexpr double kDelivery = 0.2;  // for listeners to receive that the buttons are released [s]
+
+volatile sig_atomic_t stop_signal = 0;
+
+void onSignal(int number) {
+  stop_signal = number;
+}
+
+void run() {
+  ros::NodeHandle handle;
+  const vibe::HardwareParameters parameters = vibe::readHardwareParameters(ros::NodeHandle("~"));
+  vibe::HardwareNode node(handle, parameters);
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  while (ros::ok() && !stop_signal) ros::WallDuration(0.02).sleep();
+  spinner.stop();
+  if (node.stop()) ros::WallDuration(kDelivery).sleep();
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    ros::init(argc, argv, "hardware_node");
-    ros::NodeHandle handle;
-    const vibe::HardwareParameters parameters = vibe::readHardwareParameters(ros::NodeHandle("~"));
-    const vibe::HardwareNode node(handle, parameters);
-    ros::spin();
+    // roscpp's own handler would close the topics before the buttons are released
+    ros::init(argc, argv, "hardware_node", ros::init_options::NoSigintHandler);
+    signal(SIGINT, onSignal);
+    signal(SIGTERM, onSignal);
+    run();
+    ros::shutdown();
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "hardware_node: %s\n", error.what());

@@ -71,11 +71,7 @@ void DeviceDriver::search() {
 std::optional<HidInfo> DeviceDriver::find() {
   std::vector<HidInfo> matching;
   try {
-    for (const HidInfo& info : bus_.list()) {
-      const bool matches = info.vendor == selection_.vendor && info.product == selection_.product &&
-                           (selection_.serial.empty() || info.serial == selection_.serial);
-      if (matches) matching.push_back(info);
-    }
+    matching = listMatching();
     messages_.forget("bus");
   } catch (const std::exception& error) {
     messages_.warnOnce("bus", error.what());
@@ -83,24 +79,37 @@ std::optional<HidInfo> DeviceDriver::find() {
     return std::nullopt;
   }
   if (matching.empty()) {
-    state_ = LinkState::Absent;
-    problem_.clear();
-    const std::string serial = selection_.serial.empty() ? "" : " and serial number " + selection_.serial;
-    if (connections_ == 0) {
-      messages_.warnOnce("absent", std::string("There is no ") + deviceName(kind_) + " with id " +
-                                       hexadecimal(selection_.vendor) + ":" + hexadecimal(selection_.product) + serial +
-                                       "; plug it in, it is used as soon as it appears.");
-    }
+    noteAbsence();
     return std::nullopt;
   }
-  const auto by_path = [](const HidInfo& a, const HidInfo& b) { return a.path < b.path; };
-  std::sort(matching.begin(), matching.end(), by_path);
   if (matching.size() > 1) {
     messages_.warnOnce("several", std::to_string(matching.size()) + " devices could be the " + deviceName(kind_) +
                                       "; " + identify(matching.front()) +
                                       " is used. Write the serial number of the right one into the calibration.");
   }
   return matching.front();
+}
+
+std::vector<HidInfo> DeviceDriver::listMatching() {
+  std::vector<HidInfo> matching;
+  for (const HidInfo& info : bus_.list()) {
+    const bool matches = info.vendor == selection_.vendor && info.product == selection_.product &&
+                         (selection_.serial.empty() || info.serial == selection_.serial);
+    if (matches) matching.push_back(info);
+  }
+  const auto by_path = [](const HidInfo& a, const HidInfo& b) { return a.path < b.path; };
+  std::sort(matching.begin(), matching.end(), by_path);
+  return matching;
+}
+
+void DeviceDriver::noteAbsence() {
+  state_ = LinkState::Absent;
+  problem_.clear();
+  if (connections_ > 0) return;  // that it is gone has been said
+  const std::string serial = selection_.serial.empty() ? "" : " and serial number " + selection_.serial;
+  messages_.warnOnce("absent", std::string("There is no ") + deviceName(kind_) + " with id " +
+                                   hexadecimal(selection_.vendor) + ":" + hexadecimal(selection_.product) + serial +
+                                   "; plug it in, it is used as soon as it appears.");
 }
 
 void DeviceDriver::connect(const HidInfo& info) {

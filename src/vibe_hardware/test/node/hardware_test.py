@@ -217,6 +217,11 @@ class HardwareTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: len(self.overstitch.messages) > silent + 10, 3))
         self.assertEqual(tuple(self.overstitch.messages[-1].position), (0.01, 2, 0.005))
 
+    def test_a_node_that_ends_releases_the_buttons(self):
+        self.start()
+        self.assertEqual(self.node.stop(), 0, self.node.output())
+        self.assertTrue(wait_until(lambda: self.buttons.messages[-1].buttons[0] == 0, 2), "the pedal is stuck")
+
     def test_the_documentation_lists_topics_and_parameters(self):
         self.assertTrue(wait_until(lambda: self.state.messages), self.node.output())
         with open(os.path.join(HERE, "../../../../docs/interfaces.md"), encoding="utf-8") as file:

@@ -94,6 +94,8 @@ class DeviceDriver {
 
   void search();
   std::optional<HidInfo> find();
+  std::vector<HidInfo> listMatching();
+  void noteAbsence();
   void connect(const HidInfo& info);
   void setUnusable(const std::string& what);
   void readReports(double wait);
