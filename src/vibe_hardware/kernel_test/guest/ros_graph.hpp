@@ -1,0 +1,36 @@
+#pragma once
+#include <ros/ros.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "child_process.hpp"
+
+namespace vibe {
+
+/// The test's place in the guest's ROS graph, whose master scripts/hid_kernel has started. Callbacks come in
+/// waitUntil().
+class RosGraph {
+ public:
+  RosGraph();  ///< waits for the master. @throws std::runtime_error after two minutes
+
+  ros::NodeHandle& handle() { return handle_; }
+
+  /// Starts a node of vibe_hardware with private parameters such as "_config:=FILE".
+  static std::unique_ptr<ChildProcess> start(const std::string& node, const std::vector<std::string>& parameters);
+
+  /// Handles messages until the condition holds. @param timeout [s]  @return whether it came to hold
+  static bool waitUntil(const std::function<bool()>& condition, double timeout = 30);
+
+ private:
+  struct Connection {
+    Connection();
+  };
+
+  Connection connection_;
+  ros::NodeHandle handle_;
+};
+
+}  // namespace vibe
