@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "option_checks.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_hardware/emulator/emulator.hpp"
@@ -27,6 +28,7 @@ volatile std::sig_atomic_t stopped = 0, toggled = 0;
 struct Options {
   std::vector<std::string> hand{"random"};
   std::uint64_t seed = 1;
+  std::string config = "package://vibe_hardware/config/devices.yaml";
   std::string folder = defaultSocketFolder(), serial = "EMULATOR", drive = "voltage";
   double duration = 0;
   bool uhid = false;
@@ -37,6 +39,7 @@ void addOptions(CLI::App& app, Options& o) {
       ->type_name("KIND [FILE]")
       ->expected(1, 2);
   app.add_option("--seed", o.seed, "of the random hand (default: 1)")->type_name("N");
+  app.add_option("--config", o.config, "calibration of the devices (default: " + o.config + ")")->type_name("FILE");
   app.add_option("--folder", o.folder, "of the sockets of the devices (default: " + o.folder + ")")->type_name("DIR");
   app.add_flag("--uhid", o.uhid, "create the devices in the kernel, through /dev/uhid, instead of sockets");
   app.add_option("--serial", o.serial, "serial number of both devices (default: EMULATOR)")->type_name("TEXT");
@@ -44,7 +47,7 @@ void addOptions(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"voltage", "torque"}));
   app.add_option("--duration", o.duration, "end after so many seconds (default: never)")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   app.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.\n");
 }
 
@@ -122,6 +125,7 @@ class Session {
  private:
   static EmulatorSetup setupOf(const Options& options) {
     EmulatorSetup setup;
+    setup.calibration = Calibration::load(options.config);
     setup.serial = options.serial;
     setup.drive = options.drive == "torque" ? Drive::Torque : Drive::Voltage;
     return setup;

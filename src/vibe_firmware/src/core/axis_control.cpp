@@ -69,7 +69,9 @@ float step(const AxisConfig& config, const AxisParameters& parameters, float spr
     switchOff(state);
     return 0;
   }
-  const float spring = spring_gain * springTorque(parameters, state.position) + state.transition;
+  const float law = springTorque(parameters, state.position);
+  if (parameters.torque_limit > 0 && std::fabs(law) >= parameters.torque_limit) state.limited = true;
+  const float spring = spring_gain * law + state.transition;
   const PassivityLimit allowed = limit(config, spring, parameters.damping, state.torque_limit, state.energy);
   const float torque = limitedTorque(allowed.spring, allowed.damping, allowed.torque, state);
   const float change = std::fabs(torque - state.torque);

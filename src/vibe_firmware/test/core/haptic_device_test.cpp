@@ -93,6 +93,7 @@ TEST_F(HapticDevice, EncoderFaultSwitchesBothMotorsOffAtOnce) {
   EXPECT_EQ(torque[0], 0);
   EXPECT_EQ(torque[1], 0);
   EXPECT_TRUE(state_.status.flags & kEncoderFault);
+  EXPECT_EQ(takeReport(config_, state_).torque[0], 0);
 }
 
 TEST_F(HapticDevice, ReportShowsSampleAndState) {

@@ -219,7 +219,7 @@ TEST(HostileHost, RandomSetsNeverGiveMoreThanTheCapacity) {
   EXPECT_GT(session.state().status.accepted, 50000U);
   EXPECT_GT(session.state().status.refused, 20000U);
   EXPECT_FALSE(session.state().status.flags & kEncoderFault);
-  RecordProperty("measured_J", std::to_string(session.measured()));
+  RecordProperty("most_given_J", std::to_string(session.measured()));
 }
 
 TEST(HostileHost, ConspiracyOfHostAndHandGetsNoMoreThanTheCapacity) {
@@ -231,6 +231,7 @@ TEST(HostileHost, ConspiracyOfHostAndHandGetsNoMoreThanTheCapacity) {
     EXPECT_LE(session.measured(), kCapacity * kRounding) << "damping " << damping;
     EXPECT_LE(session.net(), kCapacity * kRounding + hidden(config)) << "damping " << damping;
     EXPECT_GT(session.measured(), 0.5 * kCapacity) << "the test must come near the bound; damping " << damping;
+    RecordProperty("most_given_J", std::to_string(session.measured()));
   }
 }
 
@@ -241,6 +242,7 @@ TEST(HostileHost, MotionWithinOneCountGetsNoMoreThanTheCapacity) {
   EXPECT_TRUE(session.sane());
   EXPECT_LE(session.net(), 0.002 * kRounding + hidden(config));
   EXPECT_GT(session.net(), 0.5 * 0.002) << "the test must come near the bound";
+  RecordProperty("most_given_J", std::to_string(session.net()));
 }
 
 // Negative controls: the same without the observer.
@@ -254,6 +256,9 @@ TEST(HostileHost, WithoutObserverEveryoneGetsMore) {
   HiddenMotionSession hidden_motion(withCapacity(kNoObserver), 3);
   hidden_motion.run(kTicks);
   EXPECT_GT(hidden_motion.net(), 10 * 0.002);
+  RecordProperty("random_J", std::to_string(random.measured()));
+  RecordProperty("conspiracy_J", std::to_string(conspiracy.measured()));
+  RecordProperty("hidden_motion_J", std::to_string(hidden_motion.net()));
 }
 
 }  // namespace

@@ -59,14 +59,18 @@ AxisConfig mirrored() {
 }
 
 std::vector<Hardware> hardware() {
-  return {{"capstan, 17 Hz filter", bare(0.9F)},
-          {"capstan, no filter", bare(0)},
-          {"capstan, encoder reversed", mirrored()},
-          {"direct drive", directDrive()},
-          {"little Coulomb friction, 17 Hz filter", littleCoulomb(0.9F)},
-          {"little Coulomb friction, 110 Hz filter", littleCoulomb(0.5F)},
-          {"little Coulomb friction, no filter", littleCoulomb(0)},
-          {"both limits", bothLimits()}};
+  std::vector<Hardware> all = {{"capstan, 17 Hz filter", bare(0.9F)},
+                               {"both limits", bothLimits()},
+                               {"capstan, no filter", bare(0)},
+                               {"capstan, encoder reversed", mirrored()},
+                               {"direct drive", directDrive()},
+                               {"little Coulomb friction, 17 Hz filter", littleCoulomb(0.9F)},
+                               {"little Coulomb friction, 110 Hz filter", littleCoulomb(0.5F)},
+                               {"little Coulomb friction, no filter", littleCoulomb(0)}};
+#ifdef __SANITIZE_ADDRESS__
+  all.resize(2);  // ten times slower
+#endif
+  return all;
 }
 
 bool slow() {
@@ -111,7 +115,7 @@ std::vector<PumpResult> searchAt(const AxisConfig& config, float share, float sc
 TEST(PumpSearch, NoHandGainsEnergyFromAcceptedParameters) {
   for (const Hardware& axis : hardware())
     for (const float share : shares())
-      for (const float inside : {1.0F, 0.7F, 0.3F})
+      for (const float inside : {1.0F, 0.5F})
         EXPECT_EQ(largestGain(searchAt(axis.config, share, inside)), 0)
             << axis.name << ", B " << share << " of the largest, times " << inside;
 }

@@ -91,6 +91,7 @@ TEST_F(Endpoint, InterruptEndpointIsHaltedAndReleased) {
   EXPECT_TRUE(set(0x02, 1, 0, {}, 0x81));
   EXPECT_FALSE(endpoint_.halted());
   EXPECT_EQ(get(0x82, 0, 0, 2, 0x81), (ByteVector{0, 0}));
+  EXPECT_FALSE(set(0x02, 3, 1, {}, 0x81));  // there is no such feature
   EXPECT_FALSE(set(0x02, 3, 0, {}, 0x82));  // there is no such endpoint
 }
 
@@ -130,6 +131,11 @@ TEST_F(Endpoint, RefusedParametersAreTakenAndExplained) {
   EXPECT_TRUE(status.flags & kRefused);
   function_.tick({});
   EXPECT_EQ(function_.state().parameters.number, 0);
+  std::uint8_t sent[kInputReportSize];
+  ASSERT_TRUE(function_.nextReport(sent));
+  InputReport report;
+  ASSERT_TRUE(unpack(sent, sizeof sent, report));
+  EXPECT_TRUE(report.flags & kRefused);
 }
 
 TEST_F(Endpoint, IdleRateIsKept) {

@@ -15,9 +15,12 @@ EmulatedHaptic::Plants plantsOf(const EmulatorSetup& setup) {
   for (std::size_t i = 0; i < plants.size(); ++i) {
     plants[i].drive = setup.drive;
     plants[i].encoder_step = std::abs(static_cast<double>(setup.haptic.axes[i].radians_per_count));
+    const int joint = setup.calibration.jointOf(DeviceKind::Haptic, static_cast<int>(i));
+    plants[i].hand = kHandOnKnob;
+    if (joint == Insertion)
+      plants[i].hand =
+          handOnSlide(kHandMass, kHandDamping, kHandStiffness, setup.calibration.joints[Insertion].scale.scale);
   }
-  plants[0].hand = handOnSlide(kHandMass, kHandDamping, kHandStiffness, setup.joints[Insertion].scale);
-  plants[1].hand = kHandOnKnob;
   return plants;
 }
 
@@ -26,9 +29,16 @@ Emulator::Emulator(const EmulatorSetup& setup, std::shared_ptr<const Hand> hand)
       hand_(std::move(hand)),
       haptic_(setup.haptic, plantsOf(setup), setup.serial),
       input_(setup.input, setup.serial) {
+  if (setup.calibration.overstitch) fingers_.emplace(*setup.calibration.overstitch);
   const HandSample first = hand_->at(0);
-  for (int joint = 0; joint < kScopeJointCount; ++joint)
-    if (std::abs(axisPosition(setup_.joints[joint], first.joints[joint])) > 1e-6) approach_ = kApproach;
+  for (std::size_t joint = 0; joint < kScopeJointCount; ++joint)
+    if (std::abs(axisPosition(setup_.calibration.joints[joint].scale, first.joints[joint])) > 1e-6)
+      approach_ = kApproach;
+}
+
+EmulatedDevice& Emulator::device(DeviceKind kind) {
+  if (kind == DeviceKind::Haptic) return haptic_;
+  return input_;
 }
 
 HandSample Emulator::intention() const {
@@ -41,17 +51,35 @@ HandSample Emulator::intention() const {
   return sample;
 }
 
+DeviceMotion Emulator::motionOf(DeviceKind device, const HandSample& sample) const {
+  DeviceMotion motion;
+  for (std::size_t axis = 0; axis < motion.intended.size(); ++axis) {
+    const int joint = setup_.calibration.jointOf(device, static_cast<int>(axis));
+    if (joint < 0) continue;
+    const auto j = static_cast<std::size_t>(joint);
+    motion.intended[axis] = axisPosition(setup_.calibration.joints[j].scale, sample.joints[j]);
+  }
+  for (int bit = 0; bit < kDeviceButtons; ++bit) {
+    bool pressed = fingers_ && fingers_->isPressed({device, bit});
+    for (std::size_t b = 0; b < setup_.calibration.buttons.size(); ++b) {
+      const std::optional<DeviceButton>& button = setup_.calibration.buttons[b];
+      pressed |= button && button->device == device && button->bit == bit && sample.buttons[b] != 0;
+    }
+    if (pressed) motion.buttons = static_cast<std::uint16_t>(motion.buttons | 1U << bit);
+  }
+  return motion;
+}
+
 void Emulator::tick() {
   const HandSample sample = intention();
-  DeviceMotion haptic, input;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    haptic.intended[axis] = axisPosition(setup_.joints[axis], sample.joints[axis]);
-    input.intended[axis] = axisPosition(setup_.joints[2 + axis], sample.joints[2 + axis]);
+  const auto report_ticks = static_cast<std::int64_t>(setup_.input.report_ticks);
+  if (fingers_ && ticks_ % report_ticks == 0) {
+    OverstitchFingers::Positions intended;
+    std::copy(sample.joints.begin() + kScopeJointCount, sample.joints.end(), intended.begin());
+    fingers_->decide(intended, kTick * static_cast<double>(report_ticks));
   }
-  for (int button = 0; button < kButtonCount; ++button)
-    if (sample.buttons[button] != 0) input.buttons = static_cast<std::uint16_t>(input.buttons | 1U << button);
-  haptic_.tick(haptic);
-  input_.tick(input);
+  haptic_.tick(motionOf(DeviceKind::Haptic, sample));
+  input_.tick(motionOf(DeviceKind::Input, sample));
   ++ticks_;
 }
 

@@ -13,11 +13,11 @@ namespace vibe {
 namespace {
 
 // Numbers of columns: 0 is the time, then joints, then buttons.
-constexpr int kFirstButton = 1 + kScopeJointCount, kColumnKinds = kFirstButton + kButtonCount;
+constexpr int kFirstOptional = 1 + kScopeJointCount, kFirstButton = 1 + kJointCount;
 
 std::vector<std::string> columnNames() {
   std::vector<std::string> names{"time"};
-  names.insert(names.end(), kJointNames.begin(), kJointNames.begin() + kScopeJointCount);
+  names.insert(names.end(), kJointNames.begin(), kJointNames.end());
   names.insert(names.end(), kButtonNames.begin(), kButtonNames.end());
   return names;
 }
@@ -85,7 +85,7 @@ class RecordingReader {
       seen[column] = true;
       columns_.push_back(static_cast<int>(column));
     }
-    for (int column = 0; column < kFirstButton; ++column)
+    for (int column = 0; column < kFirstOptional; ++column)
       if (!seen[column]) fail("column '" + names[column] + "' is missing; add it");
   }
 

@@ -53,7 +53,8 @@ Hello greet(int file, const std::string& path) {
 
 class SocketPort : public HidPort {
  public:
-  SocketPort(FileDescriptor file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
+  SocketPort(FileDescriptor file, std::string path, Hello hello)
+      : file_(std::move(file)), path_(std::move(path)), hello_(std::move(hello)) {}
 
   std::size_t read(std::uint8_t* bytes, std::size_t capacity, double timeout) override {
     const auto end = after(timeout);
@@ -79,6 +80,8 @@ class SocketPort : public HidPort {
     packet.insert(packet.end(), bytes, bytes + size);
     ask(packet, bytes[0]);
   }
+
+  std::vector<std::uint8_t> reportDescriptor() override { return hello_.report_descriptor; }
 
  private:
   static std::size_t copy(const std::uint8_t* from, std::size_t size, std::uint8_t* to, std::size_t capacity) {
@@ -118,6 +121,7 @@ class SocketPort : public HidPort {
 
   FileDescriptor file_;
   std::string path_;
+  Hello hello_;
   std::uint8_t number_ = 0;
   std::deque<Packet> waiting_;  // input packets
 };
@@ -159,8 +163,8 @@ std::unique_ptr<HidPort> SocketBus::open(const std::string& path) {
   if (!file && errno == EACCES)
     throw std::runtime_error("Socket " + path + " may not be opened; start the emulator as the same user.");
   if (!file) throw DeviceGone("Device " + path + " is gone: nobody serves its socket (" + std::strerror(errno) + ").");
-  greet(file.get(), path);
-  return std::make_unique<SocketPort>(std::move(file), path);
+  Hello hello = greet(file.get(), path);
+  return std::make_unique<SocketPort>(std::move(file), path, std::move(hello));
 }
 
 }  // namespace vibe

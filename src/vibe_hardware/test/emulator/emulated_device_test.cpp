@@ -17,7 +17,13 @@ namespace {
 using vibe_firmware::InputReport;
 using vibe_firmware::ParameterReport;
 
-EmulatedHaptic makeHaptic(const EmulatorSetup& setup = {}) {
+EmulatorSetup makeSetup() {
+  EmulatorSetup setup;
+  setup.calibration = Calibration::load("../config/devices.yaml");
+  return setup;
+}
+
+EmulatedHaptic makeHaptic(const EmulatorSetup& setup = makeSetup()) {
   return EmulatedHaptic(setup.haptic, plantsOf(setup), "T-1");
 }
 
@@ -147,7 +153,7 @@ TEST(EmulatedHaptic, ReportsEvery10MillisecondsThroughTheWrapOfTheCounter) {
 }
 
 TEST(EmulatedHaptic, AnEncoderThatCountsBackwardsIsConfiguredByTheSign) {
-  EmulatorSetup setup;
+  EmulatorSetup setup = makeSetup();
   for (auto& axis : setup.haptic.axes) axis.radians_per_count *= -1;
   EmulatedHaptic device = makeHaptic(setup);
   UsbHost host(device.function());
@@ -204,7 +210,7 @@ class StillHand : public Hand {
 };
 
 TEST(Emulator, TheHandFirstGoesToWhereItBegins) {
-  Emulator emulator({}, std::make_shared<StillHand>());
+  Emulator emulator(makeSetup(), std::make_shared<StillHand>());
   EXPECT_LT(emulator.handTime(), 0);
   double fastest = 0, last = 0;
   while (emulator.handTime() < 0) {
@@ -222,7 +228,7 @@ TEST(Emulator, TheHandFirstGoesToWhereItBegins) {
 
 TEST(Emulator, EqualRunsGiveEqualReports) {
   const auto reports = [] {
-    Emulator emulator({}, std::make_shared<StillHand>());
+    Emulator emulator(makeSetup(), std::make_shared<StillHand>());
     std::vector<std::uint8_t> all;
     for (int i = 0; i < 3000; ++i) {
       emulator.tick();

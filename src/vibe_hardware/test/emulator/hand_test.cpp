@@ -27,7 +27,7 @@ TEST(ScriptedHand, MovesAsTheScriptOfTheTrainee) {
   for (double t = 0; t < 3.5; t += 0.013) {
     const HandSample sample = hand.at(t);
     const StepInput input = script.at(t);
-    for (int joint = 0; joint < kScopeJointCount; ++joint) ASSERT_EQ(sample.joints[joint], input.joints[joint]);
+    for (int joint = 0; joint < kJointCount; ++joint) ASSERT_EQ(sample.joints[joint], input.joints[joint]);
     ASSERT_EQ(sample.buttons, input.buttons);
   }
   EXPECT_EQ(hand.at(2.5).buttons[Needle], 1);

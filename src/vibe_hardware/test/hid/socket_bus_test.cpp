@@ -61,6 +61,7 @@ TEST(SocketBus, SendsTheReportDescriptorOfTheFirmware) {
   packet.resize(static_cast<std::size_t>(::recv(file.get(), packet.data(), packet.size(), 0)));
   const auto hello = unpackHello(packet.data(), packet.size());
   ASSERT_TRUE(hello);
+  EXPECT_EQ(bench.bus.open(bench.path)->reportDescriptor(), hello->report_descriptor);
   EXPECT_EQ(hello->report_descriptor, Bytes(std::begin(vibe_firmware::kHapticReportDescriptor),
                                             std::end(vibe_firmware::kHapticReportDescriptor)));
 }

@@ -137,9 +137,11 @@ void drawJoint(const DriveHud& hud, std::size_t joint, double y, Plate& plate) {
   const double range = limit.upper - limit.lower;
   const auto share = [&](double value) { return range > 0 ? (value - limit.lower) / range : 0; };
   const int decimals = static_cast<int>(joint) == HelixRotation || static_cast<int>(joint) == NeedleDriver ? 1 : 0;
-  drawRow(row.name, toQt(numberText(hud.joints[joint] / row.unit, decimals)) + row.suffix, y, plate);
+  const std::string number = numberText(hud.joints[joint] / row.unit, decimals);
+  drawRow(row.name, toQt(number) + (number == kNoValue ? "" : row.suffix), y, plate);
   const double zero = std::clamp(0.0, limit.lower, limit.upper);
-  drawBar(share(zero), share(hud.joints[joint]), y, kFill, plate);
+  const bool known = std::isfinite(hud.joints[joint]);
+  drawBar(share(zero), share(known ? hud.joints[joint] : zero), y, known ? kFill : kTrack, plate);
 }
 
 QColor colourOfForce(double force) {
@@ -227,6 +229,11 @@ QImage drawnBanner(const DriveHud& hud, double scale, int width) {
 
 double overlayScale(int width, int height) {
   return std::clamp(std::min(width / 640.0, height / 480.0), 0.8, 1.4);
+}
+
+bool sitBeside(const QImage& keys, const QImage& state, int width) {
+  constexpr int kGaps = 48;  // to the edges and between the panels [pixels]
+  return keys.width() + state.width() + kGaps <= width;
 }
 
 }  // namespace vibe

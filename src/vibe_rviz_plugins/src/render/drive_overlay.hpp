@@ -14,7 +14,7 @@ namespace vibe {
 struct DriveHud {
   std::set<int> keys_down;  ///< Qt::Key; their caps light up
   DriveGear gear = DriveGear::Normal;
-  Joints joints{};
+  Joints joints{};  ///< NaN: unknown
   JointLimits limits{};
   std::array<bool, 6> buttons{};                               ///< in the order of scope/buttons
   double force = std::numeric_limits<double>::quiet_NaN();     ///< of the tissue on the tool [N]; NaN: unknown
@@ -35,5 +35,8 @@ QImage drawnBanner(const DriveHud& hud, double scale, int width);
 
 /// Scale of the overlay in a view of this size [pixels]: the panels at the sides leave the middle free.
 double overlayScale(int width, int height);
+
+/// Whether both panels fit into a view of this width [pixels] with a gap between them. If not, the keys are shown.
+bool sitBeside(const QImage& keys, const QImage& state, int width);
 
 }  // namespace vibe

@@ -294,8 +294,12 @@ void DriveScopeTool::draw(const DriveHud& hud) {
   banner_->show(banner);
   if (!help) return keys_->hide(), state_->hide();
   const int below = banner.height() + static_cast<int>(6 * scale);
-  keys_->show(drawnKeys(hud, scale), below);
-  state_->show(drawnState(hud, scale), below);
+  const QImage keys = drawnKeys(hud, scale), state = drawnState(hud, scale);
+  keys_->show(keys, below);
+  if (sitBeside(keys, state, width))
+    state_->show(state, below);
+  else
+    state_->hide();
 }
 
 void DriveScopeTool::changeHelp() {

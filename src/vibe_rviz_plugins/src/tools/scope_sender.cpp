@@ -23,6 +23,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 ScopeSender::ScopeSender(ScopeDrive::ButtonChange button_changed)
     : drive_(std::move(button_changed)), force_(kUnknown), spinner_(1, &queue_) {
+  seen_.fill(kUnknown);
   handle_.setCallbackQueue(&queue_);
   timer_ = handle_.createWallTimer(
       ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { tick(); }, false, false);

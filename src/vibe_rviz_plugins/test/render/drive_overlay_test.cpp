@@ -51,7 +51,9 @@ TEST_F(DriveOverlayTest, LeavesTheMiddleFree) {
     EXPECT_LT(banner.height() + keys.height() + 24, height) << height;
     EXPECT_LT(banner.height(), 0.12 * height);
     EXPECT_LE(banner.width(), width);
+    EXPECT_TRUE(sitBeside(keys, state, width));
   }
+  EXPECT_FALSE(sitBeside(drawnKeys(exampleHud(), 0.8), drawnState(exampleHud(), 0.8), 280)) << "a narrow view";
 }
 
 /// Whether anything but the plate is drawn in the outermost pixels at the right.

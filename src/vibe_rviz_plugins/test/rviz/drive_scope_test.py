@@ -70,6 +70,7 @@ class DriveScope(unittest.TestCase):
         """The tool drives, and everything is at its start."""
         self.rviz.tell("focus_out", "tool Move Camera")
         self.wait(lambda: not self.scope.is_published() and not self.buttons.is_published(), "silence")
+        self.simulator.clock_runs = self.simulator.runs = self.simulator.publishes = True
         self.simulator.reset()
         time.sleep(0.2)
         self.scope.clear(), self.overstitch.clear(), self.buttons.clear()

@@ -18,8 +18,8 @@ struct Watchdog {
 
   /// Factor of the spring: 1 up to `timeout_ticks`, then linearly to 0 within `ramp_ticks`.
   constexpr float springGain(std::uint32_t ticks) const {
-    if (ticks <= timeout_ticks) return ticks >= end() ? 0.0F : 1.0F;
     if (ticks >= end()) return 0.0F;
+    if (ticks <= timeout_ticks) return 1.0F;
     return static_cast<float>(end() - ticks) / static_cast<float>(ramp_ticks);
   }
 };

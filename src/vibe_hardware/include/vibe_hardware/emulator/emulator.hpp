@@ -1,25 +1,28 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 
-#include "vibe_hardware/driver/joint_scale.hpp"
+#include "vibe_hardware/driver/calibration.hpp"
 #include "vibe_hardware/emulator/emulated_haptic.hpp"
 #include "vibe_hardware/emulator/emulated_input.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
+#include "vibe_hardware/emulator/overstitch_fingers.hpp"
 
 namespace vibe {
 
-/// Hand and arm at the two axes of the haptic device. Form: see HandImpedance; the values are a design choice: a
-/// natural frequency of 8 Hz (insertion) and 17 Hz (rotation), damping ratios of one half.
+/// Hand and arm at the axes of the haptic device. Form: see HandImpedance; the values are a design choice: a natural
+/// frequency of 8 Hz (insertion) and 17 Hz (rotation), damping ratios of one half.
 constexpr double kHandMass = 0.2, kHandDamping = 10, kHandStiffness = 500;  // insertion [kg], [N s/m], [N/m]
-constexpr HandImpedance kHandOnKnob{3e-5, 5e-3, 0.5};                       // rotation
+constexpr HandImpedance kHandOnKnob{3e-5, 5e-3, 0.5};                       // other axes
 
-/// How the emulated devices are built and wired. The defaults belong to config/devices.yaml.
+/// How the emulated devices are built and wired.
 struct EmulatorSetup {
-  /// In the order of vibe::Joint; the first two are axes of the haptic device, the others of the input device.
-  std::array<JointScale, kScopeJointCount> joints{{{0.01, 0}, {1, 0}, {1, 0}, {1, 0}}};
-  vibe_firmware::HapticConfig haptic;
-  vibe_firmware::InputConfig input;
+  /// Which joint is on which axis, and which button on which bit: that of the host, so that the joints of the scope
+  /// move as the hand intends.
+  Calibration calibration;
+  vibe_firmware::HapticConfig haptic{};
+  vibe_firmware::InputConfig input{};
   Drive drive = Drive::Voltage;
   std::string serial = "EMULATOR";  ///< of both devices
 };
@@ -27,8 +30,7 @@ struct EmulatorSetup {
 /// Mechanics that belong to the setup, with the hand.
 EmulatedHaptic::Plants plantsOf(const EmulatorSetup& setup);
 
-/// Both devices and the hand that moves them, in virtual time. Buttons are bits of the input device, in the order of
-/// vibe::Button.
+/// Both devices and the hand that moves them, in virtual time.
 class Emulator {
  public:
   Emulator(const EmulatorSetup& setup, std::shared_ptr<const Hand> hand);
@@ -47,14 +49,18 @@ class Emulator {
 
   EmulatedHaptic& haptic() { return haptic_; }
   EmulatedInput& input() { return input_; }
+  EmulatedDevice& device(DeviceKind kind);
+  const EmulatorSetup& setup() const { return setup_; }
 
  private:
   HandSample intention() const;
+  DeviceMotion motionOf(DeviceKind device, const HandSample& sample) const;
 
   EmulatorSetup setup_;
   std::shared_ptr<const Hand> hand_;
   EmulatedHaptic haptic_;
   EmulatedInput input_;
+  std::optional<OverstitchFingers> fingers_;
   std::int64_t ticks_ = 0;
   double approach_ = 0;
 };

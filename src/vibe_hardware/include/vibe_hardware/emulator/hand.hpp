@@ -8,7 +8,7 @@ namespace vibe {
 
 /// What a hand intends at one time. The device follows as far as its mechanics and the forces allow.
 struct HandSample {
-  std::array<double, kScopeJointCount> joints{};     ///< in the order of vibe::Joint [m], [rad]
+  std::array<double, kJointCount> joints{};          ///< in the order of vibe::Joint [m], [rad]
   std::array<std::uint8_t, kButtonCount> buttons{};  ///< in the order of vibe::Button; 1 while pressed
 };
 

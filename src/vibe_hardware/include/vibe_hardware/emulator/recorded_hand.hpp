@@ -7,10 +7,11 @@
 namespace vibe {
 
 /// Plays a recorded motion from a CSV file. The first line names the columns, in any order: `time` [s] and the joints
-/// `insertion` [m], `rotation`, `tip_up_down`, `tip_left_right` [rad]; then, as far as they are wanted, the buttons
-/// (`apc_pedal`, `helix_grab`, `needle`, `t_tag`, `cinch`, `insufflate`), 0 or 1. Empty lines and lines that begin with
-/// # do not count. Times ascend. Positions are interpolated; a button has the value of the last row. Before the first
-/// row and after the last one nothing changes.
+/// `insertion` [m], `rotation`, `tip_up_down`, `tip_left_right` [rad]; then, as far as they are wanted,
+/// `helix_advance` [m], `helix_rotation` [rad], `needle_driver` [m] and the buttons (`apc_pedal`, `helix_grab`,
+/// `needle`, `t_tag`, `cinch`, `insufflate`), 0 or 1. Empty lines and lines that begin with # do not count. Times
+/// ascend. Positions are interpolated; a button has the value of the last row. Before the first row and after the last
+/// one nothing changes.
 class RecordedHand : public Hand {
  public:
   static constexpr std::size_t kMaxRows = 10'000'000;

@@ -6,8 +6,7 @@
 
 namespace vibe {
 
-/// Plays a trainee script: the motions of the four joints of the endoscope, with their tremor, and the buttons. The
-/// joints of the suturing device are not on these devices and are left out.
+/// Plays a trainee script: the motions of all joints, with their tremor, and the buttons, as vibe_trainee does.
 class ScriptedHand : public Hand {
  public:
   explicit ScriptedHand(TraineeScript script) : script_(std::move(script)) {}

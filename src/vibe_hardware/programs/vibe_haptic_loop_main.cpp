@@ -1,0 +1,99 @@
+// vibe_haptic_loop: how well the haptic device renders the tissue. Runs simulator, firmware, mechanics and hand in one
+// closed loop in virtual time, and compares the force with that of a simulation of a thousand steps per second.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "option_checks.hpp"
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_hardware/emulator/haptic_loop.hpp"
+#include "vibe_hardware/emulator/scripted_hand.hpp"
+
+namespace {
+
+using namespace vibe;
+
+struct Options {
+  std::string scene = "package://vibe_core/scenes/stomach.yaml", script, csv;
+  std::string config = "package://vibe_hardware/config/devices.yaml";
+  double from = 0, latency = 5e-3;
+};
+
+void addOptions(CLI::App& app, Options& o) {
+  app.add_option("--scene", o.scene, "scene to run (default: " + o.scene + ")")->type_name("FILE");
+  app.add_option("--script", o.script, "trainee script that the hand plays")->type_name("FILE")->required();
+  app.add_option("--config", o.config, "calibration of the devices (default: " + o.config + ")")->type_name("FILE");
+  app.add_option("--from", o.from, "measure from this time on; the hand should be still there (default: 0)")
+      ->type_name("S")
+      ->check(notNegative());
+  app.add_option("--latency", o.latency, "from the end of a frame to its parameters in the device (default: 0.005)")
+      ->type_name("S")
+      ->check(notNegative());
+  app.add_option("--csv", o.csv, "write one row per millisecond to FILE.spring.csv and FILE.held.csv")
+      ->type_name("FILE");
+}
+
+void writeCsv(const std::string& file, const HapticLoopResult& result) {
+  std::FILE* out = std::fopen(file.c_str(), "w");
+  if (out == nullptr) throw std::runtime_error(file + " cannot be written; choose another file.");
+  std::fprintf(out, "time,insertion,rendered,felt,frame,reference,motor\n");
+  for (const HapticLoopSample& s : result.samples)
+    if (s.measured)
+      std::fprintf(out, "%.3f,%.6f,%.5f,%.5f,%.5f,%.5f,%.3e\n", s.time, s.insertion, s.rendered, s.felt, s.frame,
+                   s.reference, s.motor);
+  std::fclose(out);
+}
+
+void print(const char* name, const HapticLoopResult& result) {
+  const RenderingError error = renderingError(result.samples);
+  std::printf("%-8s error %.1f mN of %.0f mN, delay %.1f ms; on the hand %.1f mN\n", name, 1e3 * error.rendered,
+              1e3 * error.change, 1e3 * error.delay, 1e3 * error.felt);
+  std::printf("         energy of the motor %.2f mJ, at most %.2f mJ; of the tissue %.2f mJ\n",
+              1e3 * error.motor_energy, 1e3 * error.most_energy, 1e3 * error.tissue_energy);
+  std::printf("         %d sets, %d clamped, %d refused, passivity controller in %d ms; at most %.0f N/m, %.2f N s/m\n",
+              result.parameter_sets, result.clamped, result.refused, result.passivity_acts, result.max_stiffness,
+              result.max_damping);
+}
+
+void run(const Options& o) {
+  const Scene scene = loadScene(resolveAddress(o.scene));
+  const TraineeScript script = TraineeScript::load(resolveAddress(o.script));
+  HapticLoopSettings settings;
+  settings.setup.calibration = Calibration::load(o.config);
+  settings.hand = std::make_shared<ScriptedHand>(script);
+  settings.duration = script.duration();
+  settings.measure_from = o.from;
+  settings.latency = o.latency;
+  for (const Rendering rendering : {Rendering::Spring, Rendering::Held}) {
+    settings.rendering = rendering;
+    const HapticLoopResult result = runHapticLoop(scene, settings);
+    const std::string name = rendering == Rendering::Spring ? "spring" : "held";
+    print(name.c_str(), result);
+    if (!o.csv.empty()) writeCsv(o.csv + "." + name + ".csv", result);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Compares the force of the haptic device with that of a simulation of a thousand steps per second.",
+               "vibe_haptic_loop"};
+  app.set_help_flag("--help", "print this text and end");
+  addOptions(app, options);
+  try {
+    app.parse(argc, argv);
+    run(options);
+    return 0;
+  } catch (const CLI::CallForHelp&) {
+    std::printf("%s", app.help().c_str());
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "vibe_haptic_loop: %s; see --help.\n", error.what());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vibe_haptic_loop: %s\n", error.what());
+  }
+  return 2;
+}
