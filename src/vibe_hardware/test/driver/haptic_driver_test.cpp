@@ -195,6 +195,30 @@ TEST_F(HapticDriverTest, AHundredSetsReadBackBitByBit) {
   }
 }
 
+TEST_F(HapticDriverTest, ADeviceThatIsOpenedAgainGetsParametersAtOnce) {
+  run(1);
+  for (const std::uint64_t sent = driver.statistics().sent; driver.statistics().sent == sent;) step();
+  const double last_sent = bus.now;
+  device.plugged = false;
+  step();
+  device.start();
+  device.plugged = true;
+  while (driver.device().connection() == nullptr) step();
+  run(0.01);
+  ASSERT_LT(bus.now - last_sent, HapticLink::kHeartbeat) << "a heartbeat was due anyway";
+  EXPECT_NE(accepted(), 0U);
+}
+
+TEST_F(HapticDriverTest, NothingIsAskedOfADeviceWhoseReportsAreLate) {
+  runTouching(0.5, spring(0.1));
+  device.stopped = true;
+  runTouching(0.07, spring(0.1));
+  const std::uint64_t sent = driver.statistics().sent;
+  runTouching(0.1, spring(0.1));
+  EXPECT_EQ(driver.device().state(), LinkState::Running) << "not silent yet";
+  EXPECT_EQ(driver.statistics().sent, sent);
+}
+
 TEST_F(HapticDriverTest, ADeviceThatStopsIsNotSpokenTo) {
   runTouching(0.5, spring(0.1));
   device.stopped = true;
