@@ -14,6 +14,7 @@ constexpr std::size_t kBuckets = 120;
 constexpr double kDriftBase = 3;       // no drift is estimated from less [s]
 constexpr double kMaxDrift = 1e-3;     // a crystal has 1e-4, an internal oscillator at room temperature 1e-2 at most
 constexpr double kLate = 0.05;         // [s]
+constexpr double kCatchUp = 0.005;     // by which the delay falls if the host reads a backlog [s]
 constexpr double kLateDuration = 0.5;  // of arrivals, after which the device's clock must have stood still [s]
 
 }  // namespace
@@ -37,14 +38,17 @@ void DeviceClock::add(double device, double arrival) {
   fit();
 }
 
-// If the device was stopped and goes on, its clock is behind for good. A burst of old reports is late as well, but
-// arrives at once.
+// If the device was stopped and goes on, its clock is behind for good and by a constant time. Old reports that a busy
+// host reads after a stall are late as well, but each is less late than the one before.
 bool DeviceClock::hasStepped(const Pair& pair, double arrival) {
   if (minima_.empty() || arrival - hostTime(pair.device) < kLate) {
     late_since_ = -1;
     return false;
   }
-  if (late_since_ < 0) late_since_ = arrival;
+  if (late_since_ < 0 || pair.delay < late_delay_ - kCatchUp) {
+    late_since_ = arrival;
+    late_delay_ = pair.delay;
+  }
   if (arrival - late_since_ < kLateDuration) return false;
   late_since_ = -1;
   return true;

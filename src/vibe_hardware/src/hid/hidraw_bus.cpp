@@ -72,10 +72,10 @@ class HidrawPort : public HidPort {
   std::vector<std::uint8_t> reportDescriptor() override {
     const std::string node = path_.substr(path_.find_last_of('/') + 1);
     std::ifstream file(std::string(kKernelFolder) + "/" + node + "/device/report_descriptor", std::ios::binary);
-    std::vector<std::uint8_t> bytes;
-    for (std::istreambuf_iterator<char> at(file), end; at != end && bytes.size() <= kMaxReportDescriptor; ++at) {
-      bytes.push_back(static_cast<std::uint8_t>(*at));
-    }
+    std::vector<std::uint8_t> bytes(kMaxReportDescriptor + 1);
+    file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (file.bad()) throw DeviceGone(path_ + " was unplugged while its report descriptor was read");
+    bytes.resize(static_cast<std::size_t>(file.gcount()));
     return bytes;
   }
 

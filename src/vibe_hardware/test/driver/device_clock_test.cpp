@@ -133,5 +133,15 @@ TEST(DeviceClock, ABurstOfOldReportsIsNoStep) {
   EXPECT_NEAR(clock.hostTime(1064 * kPeriod), 1000 + 1064 * kPeriod, 1e-3);
 }
 
+TEST(DeviceClock, ABacklogThatIsReadSlowlyIsNoStep) {
+  DeviceClock clock;
+  for (int k = 0; k < 1000; ++k) clock.add(k * kPeriod, 1000 + k * kPeriod);
+  for (int k = 1000; k < 1400; ++k) {  // the host stalled for 2 s and then reads twice as fast as the device sends
+    const double arrival = 1000 + (1200 + 0.5 * (k - 1000)) * kPeriod;
+    clock.add(k * kPeriod, arrival);
+    ASSERT_NEAR(clock.hostTime(k * kPeriod), 1000 + k * kPeriod, 1e-3) << k;
+  }
+}
+
 }  // namespace
 }  // namespace vibe

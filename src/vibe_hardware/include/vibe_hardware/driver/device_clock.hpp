@@ -29,7 +29,8 @@ class DeviceClock {
   double anchor_ = 0;        // device time at which the line is offset_
   double offset_ = 0;
   double slope_ = 0;
-  double late_since_ = -1;  // arrival since which every report is late; -1: none is
+  double late_since_ = -1;  // arrival since which every report is late by the same; -1: none is
+  double late_delay_ = 0;   // of the report at late_since_
 
   void keep(const Pair& pair);
   void fit();
