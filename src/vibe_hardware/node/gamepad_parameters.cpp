@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "parameter_reader.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_hardware/gamepad/pad_finder.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
+#include "vibe_node/parameter_reader.hpp"
 
 namespace vibe {
 

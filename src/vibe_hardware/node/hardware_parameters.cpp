@@ -2,10 +2,10 @@
 
 #include <ros/param.h>
 
-#include "parameter_reader.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_hardware/hid/hidraw_bus.hpp"
 #include "vibe_hardware/hid/socket_bus.hpp"
+#include "vibe_node/parameter_reader.hpp"
 
 namespace vibe {
 namespace {

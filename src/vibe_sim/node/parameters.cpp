@@ -2,8 +2,8 @@
 
 #include <ros/param.h>
 
-#include "parameter_reader.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_node/parameter_reader.hpp"
 
 namespace vibe {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "parameter_reader.hpp"
 #include "trainee_player.hpp"
 #include "vibe_core/common/package_path.hpp"
+#include "vibe_node/parameter_reader.hpp"
 
 namespace {
 

@@ -1,5 +1,6 @@
-#include "parameter_reader.hpp"
+#include "vibe_node/parameter_reader.hpp"
 
+#include <cmath>
 #include <vector>
 
 #include "vibe_core/common/error.hpp"
@@ -33,6 +34,16 @@ void ParameterReader::read(const std::string& name, bool& value) {
   value = static_cast<bool>(given);
 }
 
+void ParameterReader::read(const std::string& name, int& value, int low, int high) {
+  XmlRpcValue given;
+  if (!fetch(name, given)) return;
+  const std::string expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+  if (given.getType() != XmlRpcValue::TypeInt) failType(name, expected);
+  const int number = given;
+  if (number < low || number > high) failType(name, expected);
+  value = number;
+}
+
 void ParameterReader::read(const std::string& name, double& value, double low, double high, const std::string& unit) {
   XmlRpcValue given;
   if (!fetch(name, given)) return;
@@ -42,6 +53,13 @@ void ParameterReader::read(const std::string& name, double& value, double low, d
   const double number = given.getType() == XmlRpcValue::TypeInt ? static_cast<int>(given) : static_cast<double>(given);
   if (!(number >= low && number <= high)) failType(name, expected);
   value = number;
+}
+
+std::string ParameterReader::required(const std::string& name, const std::string& meaning) {
+  std::string value;
+  read(name, value);
+  if (value.empty()) throw Error("Parameter " + handle_.resolveName(name) + " is not set; set it to " + meaning + ".");
+  return value;
 }
 
 void ParameterReader::finish() const {
