@@ -100,7 +100,7 @@ signal.signal(signal.SIGINT, signal.SIG_DFL)
 os.execv(sys.argv[1], sys.argv[1:])' "$run" --scene "$scene" --output "$scratch/$name" "$@" >"$scratch/$name.txt" 2>&1 &
   session_pid=$!
   local deadline=$((SECONDS + 120))
-  until grep -qs ' 1\.0[0-9] x real time\| 0\.9[0-9] x real time' "$scratch/$name.txt"; do
+  until grep -qsE ' ([1-9][0-9]*\.[0-9]+|0\.0?[1-9][0-9]*) x real time' "$scratch/$name.txt"; do
     kill -0 "$session_pid" && [ "$SECONDS" -lt "$deadline" ] || { cat "$scratch/$name.txt"; return 1; }
     sleep 0.2
   done
