@@ -55,15 +55,19 @@ class Device(Driver):
     """The haptic device and the input device through /dev/hidraw. What the node says is for the person who drives."""
 
     first_words = (
-        "Driving with the devices. First hold the scope at its origin and press the homing button of the input device;\n"
-        "then press insufflate, wait for the pressure, and insert the scope. More: " + TUTORIAL
+        "Driving with the devices. First hold the scope at its homing position and press the homing button; then press\n"
+        "insufflate, wait for the pressure, and insert the scope. More: docs/hardware.md"
     )
+
+    def set_parameters(self, put):
+        if self.arguments.config:
+            put("/hardware_node/config", self.arguments.config)
 
     def start(self, graph):
         self.senders = [graph.start("hardware_node", ["rosrun", "vibe_hardware", "hardware_node"], visible=True)]
 
 
-class Emulator(Driver):
+class Emulator(Device):
     """The firmware of the devices with an emulated hand, behind local sockets."""
 
     first_words = "Driving with emulated devices; the emulated hand moves by itself. Ctrl-C ends the session."
@@ -74,12 +78,15 @@ class Emulator(Driver):
         self.sockets = tempfile.mkdtemp(prefix="vibe-emulator-")
 
     def set_parameters(self, put):
+        super().set_parameters(put)
         put("/hardware_node/bus", self.sockets)
 
     def start(self, graph):
-        emulator = ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets, "--hand"]
-        self.wait_for_devices(graph.start("vibe_emulator", emulator + self.arguments.hand.split(":", 1)))
-        self.senders = [graph.start("hardware_node", ["rosrun", "vibe_hardware", "hardware_node"], visible=True)]
+        emulator = ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets]
+        emulator += ["--config", self.arguments.config] if self.arguments.config else []
+        emulator += ["--hand"] + self.arguments.hand.split(":", 1)
+        self.wait_for_devices(graph.start("vibe_emulator", emulator))
+        super().start(graph)
 
     def wait_for_devices(self, emulator):
         """So that the node does not report devices as missing that are about to appear."""

@@ -35,6 +35,7 @@ def parse_arguments():
     parser.add_argument("--scene", required=True)
     parser.add_argument("--drive", choices=DRIVERS, default="trainee")
     parser.add_argument("--script", default="")
+    parser.add_argument("--config", default="")
     parser.add_argument("--hand", default="")
     parser.add_argument("--pad", default="")
     parser.add_argument("--mapping", default="")

@@ -17,7 +17,7 @@ bool ParameterReader::fetch(const std::string& name, XmlRpcValue& value) {
 }
 
 void ParameterReader::failType(const std::string& name, const std::string& expected) const {
-  throw Error("Parameter " + handle_.resolveName(name) + " is not " + expected + "; set it to one.");
+  throw Error("Parameter " + handle_.resolveName(name) + " must be " + expected + ".");
 }
 
 void ParameterReader::read(const std::string& name, std::string& value) {
@@ -68,7 +68,8 @@ void ParameterReader::finish() const {
   for (const auto& [name, value] : all) {
     if (known_.count(name)) continue;
     throw Error("There is no parameter " + handle_.resolveName(name) + "; " +
-                suggestKey(name, std::vector<std::string>(known_.begin(), known_.end())));
+                suggestKey(name, std::vector<std::string>(known_.begin(), known_.end())) +
+                " Remove it with `rosparam delete " + handle_.resolveName(name) + "`.");
   }
 }
 

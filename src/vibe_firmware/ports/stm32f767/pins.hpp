@@ -12,7 +12,7 @@ enum class Pull : std::uint8_t { None = 0, Up = 1, Down = 2 };
 void configurePin(Gpio& port, unsigned pin, Mode mode, Pull pull, unsigned function = 0);
 
 constexpr unsigned kBridgeSleepPin = 10;  ///< of port E: low, the bridges are off
-constexpr unsigned kButtons = 6;          ///< pins 0 to 5 of port F, to ground
+constexpr unsigned kButtons = 14;         ///< pins 0 to 13 of port F, to ground; an open pin is not pressed
 
 /// Configures all pins; the bridges sleep.
 void configurePins();
@@ -22,7 +22,7 @@ inline void wakeBridges() {
   gpioE().bsrr = bit(kBridgeSleepPin);
 }
 
-/// Bit 0 to 5: pressed.
+/// Bits 0 to 13: pressed.
 inline std::uint16_t pressedButtons() {
   return static_cast<std::uint16_t>(~gpioF().idr & (bit(kButtons) - 1));
 }
