@@ -36,8 +36,8 @@ class Image {
     diagnostics_.write(resetReason());
     diagnostics_.write("\r\n");
     startEncoders();
+    if (has_motors) wakeBridges();  // before the break input is armed: the bridge may signal a fault until it is awake
     startPwm();
-    if (has_motors) wakeBridges();
     startWatchdog();
     startTiming();
     for (;;) {

@@ -18,6 +18,7 @@ class NucleoBoard : public Board {
     HapticSample sample;
     readEncoders(sample);
     sample.buttons = pressedButtons();
+    sample.drive_fault = bridgeFault();
     sample.time_us = microseconds();
     return sample;
   }

@@ -17,9 +17,10 @@ constexpr unsigned kButtons = 14;         ///< pins 0 to 13 of port F, to ground
 /// Configures all pins; the bridges sleep.
 void configurePins();
 
-/// Wakes the bridges.
+/// Wakes the bridges and waits until they are awake: 1 ms (DRV8833); here 2 ms or more at 216 MHz.
 inline void wakeBridges() {
   gpioE().bsrr = bit(kBridgeSleepPin);
+  for (unsigned i = 0; i < 432'000; ++i) asm volatile("nop");
 }
 
 /// Bits 0 to 13: pressed.

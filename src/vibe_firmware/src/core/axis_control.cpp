@@ -10,12 +10,21 @@ namespace vibe_firmware {
 namespace {
 
 /// Position and velocity, and the energy that the last torque has moved.
-void measure(const AxisConfig& config, int counter_bits, const EncoderSample& sample, AxisState& state) {
+/// @return what the index pulse has corrected in the position [rad]
+float measure(const AxisConfig& config, int counter_bits, const EncoderSample& sample, AxisState& state) {
+  const std::int32_t before = state.encoder.count;
   const std::int32_t moved = step(config, counter_bits, sample, state.encoder);
   const float motion = static_cast<float>(moved) * config.radians_per_count;
   observe(config, state.torque, motion, state.energy);
   state.position = static_cast<float>(state.encoder.count) * config.radians_per_count;
   state.velocity = filteredVelocity(config.velocity_pole, state.velocity, motion / config.sample_period);
+  return static_cast<float>(state.encoder.count - before - moved) * config.radians_per_count;
+}
+
+/// The hand has not caused this change of the position: the spring torque fades over to it.
+void takeOverCorrection(const AxisParameters& parameters, float correction, float spring_gain, AxisState& state) {
+  const float before = springTorque(parameters, state.position - correction);
+  state.transition += spring_gain * (before - springTorque(parameters, state.position));
 }
 
 /// Lets what the host and the watchdog have changed come into force at the slew limit.
@@ -63,7 +72,8 @@ float springDamperTorque(const AxisParameters& parameters, float position, float
 
 float step(const AxisConfig& config, const AxisParameters& parameters, float spring_gain, int counter_bits,
            const EncoderSample& sample, AxisState& state) {
-  measure(config, counter_bits, sample, state);
+  const float correction = measure(config, counter_bits, sample, state);
+  if (correction != 0) takeOverCorrection(parameters, correction, spring_gain, state);
   const float faded = fade(config, parameters, spring_gain, state);
   if (state.encoder.fault) {
     switchOff(state);

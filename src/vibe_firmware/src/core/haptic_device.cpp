@@ -13,8 +13,9 @@ bool anyFault(const HapticState& state) {
   return fault;
 }
 
-std::uint8_t flagsOf(const HapticConfig& config, const HapticState& state) {
+std::uint8_t flagsOf(const HapticConfig& config, bool drive_fault, const HapticState& state) {
   int flags = state.status.flags & kRefused;
+  if (drive_fault) flags |= kDriveFault;
   if (config.watchdog().silent(state.ticks_since_host)) flags |= kHostSilent;
   for (std::size_t i = 0; i < kAxisCount; ++i) {
     const AxisState& axis = state.axes[i];
@@ -32,25 +33,27 @@ HapticState initialState(const HapticConfig& config) {
   for (std::size_t i = 0; i < kAxisCount; ++i) state.axes[i] = initialAxisState(config.axes[i]);
   state.ticks_since_host = config.watchdog().end();
   state.status.version = kFirmwareVersion;
-  state.status.flags = flagsOf(config, state);
+  state.status.flags = flagsOf(config, false, state);
   return state;
 }
 
 std::array<float, kAxisCount> step(const HapticConfig& config, const HapticSample& sample, HapticState& state) {
   const Watchdog watchdog = config.watchdog();
-  state.ticks_since_host = watchdog.next(state.ticks_since_host);
+  // after a fault of the power stage the spring comes back as after silence: with the next parameters, at the slew
+  // limit
+  state.ticks_since_host = sample.drive_fault ? watchdog.end() : watchdog.next(state.ticks_since_host);
   const float gain = watchdog.springGain(state.ticks_since_host);
   std::array<float, kAxisCount> torque{};
   for (std::size_t i = 0; i < kAxisCount; ++i)
     torque[i] =
         step(config.axes[i], state.parameters.axes[i], gain, config.counter_bits, sample.encoder(i), state.axes[i]);
-  if (anyFault(state)) {
+  if (sample.drive_fault || anyFault(state)) {
     for (AxisState& axis : state.axes) switchOff(axis);
     torque = {};
   }
   step(config.debounce_ticks, sample.buttons, state.buttons);
   state.time_us = sample.time_us;
-  state.status.flags = flagsOf(config, state);
+  state.status.flags = flagsOf(config, sample.drive_fault, state);
   return torque;
 }
 

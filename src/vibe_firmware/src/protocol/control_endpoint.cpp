@@ -87,7 +87,7 @@ int ControlEndpoint::standardDevice(const UsbSetup& setup, std::uint8_t* respons
   }
 }
 
-int ControlEndpoint::standardInterface(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity) const {
+int ControlEndpoint::standardInterface(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity) {
   const int request = setup.request_type << 8 | setup.request;
   if (request == ((kToHost | kInterface) << 8 | kGetDescriptor)) return descriptor(setup, response, capacity);
   if (!configured()) return kStall;
@@ -97,7 +97,9 @@ int ControlEndpoint::standardInterface(const UsbSetup& setup, std::uint8_t* resp
     case (kToHost | kInterface) << 8 | kGetInterface:
       return respondByte(0, setup, response, capacity);
     case kInterface << 8 | kSetInterface:
-      return setup.value == 0 ? 0 : kStall;
+      if (setup.value != 0) return kStall;
+      halted_ = false;  // as with a new configuration (USB 2.0, 9.4.5)
+      return 0;
     default:
       return kStall;
   }

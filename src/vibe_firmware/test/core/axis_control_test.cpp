@@ -186,7 +186,27 @@ TEST_F(Axis, IndexCorrectionIsNoMotionOfTheHand) {
   step(config_, parameters_, 1, 32, {1, true, 6}, state_);  // the pulse says: 6 counts too many
   EXPECT_EQ(state_.encoder.count, -5);
   EXPECT_NEAR(state_.velocity, 0.9F * velocity, 1e-9);
-  EXPECT_NEAR(state_.energy.balance, energy, 1e-9);
+  const float step_size = config_.radians_per_count;
+  EXPECT_NEAR(state_.energy.balance, energy - 0.5F * step_size * 0.2F * 6 * step_size, 1e-8)
+      << "only the torque change";
+}
+
+TEST_F(Axis, IndexCorrectionChangesTheTorqueAtTheSlewLimit) {
+  config_.counts_per_turn = 1000;
+  config_.slew_limit = 1;  // 1 mN m per tick
+  set(spring(0.5F, 0));
+  settle(0);
+  step(config_, parameters_, 1, 32, {1, true, 0}, state_);
+  settle(1);
+  const float before = state_.torque;
+  const float energy = state_.energy.balance;
+  const float change = 0.5F * 60 * config_.radians_per_count;  // 60 counts too many: 9.2 mN m
+  EXPECT_NEAR(step(config_, parameters_, 1, 32, {1, true, 60}, state_), before + 1e-3F, 1e-7);
+  EXPECT_EQ(state_.encoder.count, -59);
+  EXPECT_NEAR(tick(1), before + 2e-3F, 1e-7);
+  settle(1);
+  EXPECT_NEAR(state_.torque, before + change, 1e-7);
+  EXPECT_LT(state_.energy.balance, energy) << "a change that the hand has not caused costs energy";
 }
 
 TEST_F(Axis, EmptyAccountDampsAndFillsAgain) {

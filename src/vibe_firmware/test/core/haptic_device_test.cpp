@@ -96,6 +96,33 @@ TEST_F(HapticDevice, EncoderFaultSwitchesBothMotorsOffAtOnce) {
   EXPECT_EQ(takeReport(config_, state_).torque[0], 0);
 }
 
+TEST_F(HapticDevice, FaultOfThePowerStageTakesTheTorqueUntilTheNextParameters) {
+  config_.axes[0].slew_limit = 1;  // 1 mN m per tick
+  tick(0);
+  setParameters(config_, springs(0.2F, 0, 0.05F), state_);
+  for (int i = 0; i < 50; ++i) tick(0);
+  ASSERT_NEAR(state_.axes[0].torque, 0.01, 1e-6);
+  sample_.drive_fault = true;
+  EXPECT_EQ(step(config_, sample_, state_)[0], 0);
+  EXPECT_TRUE(takeReport(config_, state_).flags & kDriveFault);
+  EXPECT_EQ(takeReport(config_, state_).torque[0], 0) << "the report must not show a torque that does not act";
+  setParameters(config_, springs(0.2F, 0, 0.05F), state_);
+  EXPECT_EQ(step(config_, sample_, state_)[0], 0);
+  sample_.drive_fault = false;
+  EXPECT_EQ(step(config_, sample_, state_)[0], 0);
+  EXPECT_FALSE(state_.status.flags & kDriveFault);
+  EXPECT_FALSE(state_.status.flags & kEncoderFault);
+  setParameters(config_, springs(0.2F, 0, 0.05F), state_);
+  const float slew = config_.axes[0].slew_limit * config_.axes[0].sample_period;
+  float last = 0;
+  for (int i = 0; i < 50; ++i) {
+    const float torque = step(config_, sample_, state_)[0];
+    EXPECT_LE(torque - last, slew + 1e-7F);
+    last = torque;
+  }
+  EXPECT_NEAR(last, 0.01, 1e-6);
+}
+
 TEST_F(HapticDevice, ReportShowsSampleAndState) {
   for (int i = 0; i <= 10; ++i) {
     sample_.buttons = 0x8001;

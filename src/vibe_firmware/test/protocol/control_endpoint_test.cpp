@@ -91,6 +91,9 @@ TEST_F(Endpoint, InterruptEndpointIsHaltedAndReleased) {
   EXPECT_TRUE(set(0x02, 1, 0, {}, 0x81));
   EXPECT_FALSE(endpoint_.halted());
   EXPECT_EQ(get(0x82, 0, 0, 2, 0x81), (ByteVector{0, 0}));
+  set(0x02, 3, 0, {}, 0x81);
+  EXPECT_TRUE(set(0x01, 11, 0));  // selecting the interface releases it too
+  EXPECT_FALSE(endpoint_.halted());
   EXPECT_FALSE(set(0x02, 3, 1, {}, 0x81));  // there is no such feature
   EXPECT_FALSE(set(0x02, 3, 0, {}, 0x82));  // there is no such endpoint
 }

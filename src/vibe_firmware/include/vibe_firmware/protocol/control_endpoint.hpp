@@ -38,7 +38,7 @@ class ControlEndpoint {
 
  private:
   int standardDevice(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity);
-  int standardInterface(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity) const;
+  int standardInterface(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity);
   int standardEndpoint(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity);
   int classInterface(const UsbSetup& setup, const std::uint8_t* data, std::uint8_t* response, std::size_t capacity);
   int descriptor(const UsbSetup& setup, std::uint8_t* response, std::size_t capacity) const;

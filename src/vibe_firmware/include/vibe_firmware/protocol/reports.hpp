@@ -56,6 +56,7 @@ enum DeviceFlag : std::uint8_t {
   kRefused = 8,        ///< the last parameters were refused; StatusReport says why
   kIndexed0 = 16,      ///< the encoder index of axis 0 has been seen
   kIndexed1 = 32,      ///< the same of axis 1
+  kDriveFault = 128,   ///< the power stage of the motors has switched off (overcurrent, heat, supply)
   kEncoderFault = 64,  ///< an encoder jumped by more than is physically possible: torque is off
 };
 
