@@ -38,7 +38,7 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--hand", o.hand, "who moves the devices: script FILE, recorded FILE or random (default: random)")
       ->type_name("KIND [FILE]")
       ->expected(1, 2);
-  app.add_option("--seed", o.seed, "of the random hand (default: 1)")->type_name("N");
+  app.add_option("--seed", o.seed, "of the random hand (default: 1)")->type_name("N")->check(wholeNumber());
   app.add_option("--config", o.config, "calibration of the devices (default: " + o.config + ")")->type_name("FILE");
   app.add_option("--folder", o.folder, "of the sockets of the devices (default: " + o.folder + ")")->type_name("DIR");
   app.add_flag("--uhid", o.uhid, "create the devices in the kernel, through /dev/uhid, instead of sockets");
