@@ -51,7 +51,7 @@ void addOptions(CLI::App& app, Options& o) {
   app.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.\n");
 }
 
-std::shared_ptr<const Hand> makeHand(const Options& o) {
+std::shared_ptr<const Hand> makeHand(const Options& o, const Calibration& calibration) {
   const std::string& kind = o.hand[0];
   if (kind == "random") {
     if (o.hand.size() > 1) throw Error("--hand random takes no file; remove '" + o.hand[1] + "'.");
@@ -62,7 +62,7 @@ std::shared_ptr<const Hand> makeHand(const Options& o) {
   if (o.hand.size() < 2) throw Error("--hand " + kind + " needs a file; write --hand " + kind + " FILE.");
   const std::string file = resolveAddress(o.hand[1]);
   if (kind == "script") return std::make_shared<ScriptedHand>(TraineeScript::load(file));
-  return std::make_shared<RecordedHand>(RecordedHand::load(file));
+  return std::make_shared<RecordedHand>(RecordedHand::load(file, handLimits(calibration)));
 }
 
 /// One device while it is plugged in.
@@ -102,9 +102,7 @@ void sleepUntil(double when) {
 /// Runs both devices by the wall clock.
 class Session {
  public:
-  explicit Session(const Options& options) : options_(options), emulator_(setupOf(options), makeHand(options)) {
-    plug();
-  }
+  explicit Session(const Options& options) : Session(options, setupOf(options)) {}
 
   void run() {
     const double start = monotonic();
@@ -123,6 +121,11 @@ class Session {
   }
 
  private:
+  Session(const Options& options, const EmulatorSetup& setup)
+      : options_(options), emulator_(setup, makeHand(options, setup.calibration)) {
+    plug();
+  }
+
   static EmulatorSetup setupOf(const Options& options) {
     EmulatorSetup setup;
     setup.calibration = Calibration::load(options.config);
