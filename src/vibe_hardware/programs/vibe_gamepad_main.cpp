@@ -143,7 +143,9 @@ class LiveView {
         limits_(vibe::loadToolLimits(options.urdf)),
         mapping_(vibe::loadPadMapping(vibe::resolveAddress(options.mapping), limits_)),
         link_(makeLink(options)),
-        drive_(vibe::startDrive({}, mapping_, {})) {}
+        drive_(vibe::startDrive({}, mapping_, {})) {
+    if (!options.record.empty()) vibe::PadRecorder::checkFile(options.record);
+  }
 
   int run() {
     const double begin = vibe::steadyTime();
