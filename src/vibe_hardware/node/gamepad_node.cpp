@@ -42,6 +42,7 @@ GamepadNode::GamepadNode(ros::NodeHandle handle, const GamepadParameters& parame
       overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue)),
       buttons_(handle.advertise<sensor_msgs::Joy>("scope/buttons", kQueue)),
       updater_(handle) {
+  if (!parameters_.record.empty()) PadRecorder::checkFile(parameters_.record);
   updater_.setHardwareID("none");
   updater_.add("gamepad", this, &GamepadNode::fillDiagnostics);
   subscribe(handle);

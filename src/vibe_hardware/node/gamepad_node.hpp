@@ -21,7 +21,7 @@ namespace vibe {
 /// A gamepad as topics: docs/interfaces.md. All work is done in the callbacks of one thread.
 class GamepadNode {
  public:
-  /// @throws Error for a wrong mapping, recording or URDF
+  /// @throws Error for a wrong mapping, recording or URDF, and if the pad cannot be recorded where the parameters say
   GamepadNode(ros::NodeHandle handle, const GamepadParameters& parameters);
 
  private:

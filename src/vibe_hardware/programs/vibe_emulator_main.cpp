@@ -38,7 +38,7 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--hand", o.hand, "who moves the devices: script FILE, recorded FILE or random (default: random)")
       ->type_name("KIND [FILE]")
       ->expected(1, 2);
-  app.add_option("--seed", o.seed, "of the random hand (default: 1)")->type_name("N");
+  app.add_option("--seed", o.seed, "of the random hand (default: 1)")->type_name("N")->check(wholeNumber());
   app.add_option("--config", o.config, "calibration of the devices (default: " + o.config + ")")->type_name("FILE");
   app.add_option("--folder", o.folder, "of the sockets of the devices (default: " + o.folder + ")")->type_name("DIR");
   app.add_flag("--uhid", o.uhid, "create the devices in the kernel, through /dev/uhid, instead of sockets");
@@ -51,7 +51,7 @@ void addOptions(CLI::App& app, Options& o) {
   app.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.\n");
 }
 
-std::shared_ptr<const Hand> makeHand(const Options& o) {
+std::shared_ptr<const Hand> makeHand(const Options& o, const Calibration& calibration) {
   const std::string& kind = o.hand[0];
   if (kind == "random") {
     if (o.hand.size() > 1) throw Error("--hand random takes no file; remove '" + o.hand[1] + "'.");
@@ -62,7 +62,7 @@ std::shared_ptr<const Hand> makeHand(const Options& o) {
   if (o.hand.size() < 2) throw Error("--hand " + kind + " needs a file; write --hand " + kind + " FILE.");
   const std::string file = resolveAddress(o.hand[1]);
   if (kind == "script") return std::make_shared<ScriptedHand>(TraineeScript::load(file));
-  return std::make_shared<RecordedHand>(RecordedHand::load(file));
+  return std::make_shared<RecordedHand>(RecordedHand::load(file, handLimits(calibration)));
 }
 
 /// One device while it is plugged in.
@@ -102,9 +102,7 @@ void sleepUntil(double when) {
 /// Runs both devices by the wall clock.
 class Session {
  public:
-  explicit Session(const Options& options) : options_(options), emulator_(setupOf(options), makeHand(options)) {
-    plug();
-  }
+  explicit Session(const Options& options) : Session(options, setupOf(options)) {}
 
   void run() {
     const double start = monotonic();
@@ -123,6 +121,11 @@ class Session {
   }
 
  private:
+  Session(const Options& options, const EmulatorSetup& setup)
+      : options_(options), emulator_(setup, makeHand(options, setup.calibration)) {
+    plug();
+  }
+
   static EmulatorSetup setupOf(const Options& options) {
     EmulatorSetup setup;
     setup.calibration = Calibration::load(options.config);

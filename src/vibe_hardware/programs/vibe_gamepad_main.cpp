@@ -9,6 +9,7 @@
 #include <memory>
 #include <thread>
 
+#include "option_checks.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/gamepad/pad_drive.hpp"
@@ -46,7 +47,7 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("--replay", options.replay, "Play such a file instead of a gamepad");
   app.add_option("--folder", options.folder, "Folder of the event devices");
   app.add_option("--duration", options.duration, "End after these seconds (default: at Ctrl-C)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(vibe::notNegative());
 }
 
 void pause(double seconds) {
@@ -142,7 +143,9 @@ class LiveView {
         limits_(vibe::loadToolLimits(options.urdf)),
         mapping_(vibe::loadPadMapping(vibe::resolveAddress(options.mapping), limits_)),
         link_(makeLink(options)),
-        drive_(vibe::startDrive({}, mapping_, {})) {}
+        drive_(vibe::startDrive({}, mapping_, {})) {
+    if (!options.record.empty()) vibe::PadRecorder::checkFile(options.record);
+  }
 
   int run() {
     const double begin = vibe::steadyTime();

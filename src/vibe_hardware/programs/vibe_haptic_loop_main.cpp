@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "option_checks.hpp"
 #include "vibe_core/common/package_path.hpp"
@@ -35,15 +36,20 @@ void addOptions(CLI::App& app, Options& o) {
       ->type_name("FILE");
 }
 
-void writeCsv(const std::string& file, const HapticLoopResult& result) {
-  std::FILE* out = std::fopen(file.c_str(), "w");
-  if (out == nullptr) throw std::runtime_error(file + " cannot be written; choose another file.");
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File openCsv(const std::string& file) {
+  File out(std::fopen(file.c_str(), "w"), std::fclose);
+  if (!out) throw std::runtime_error(file + " cannot be written; choose another file.");
+  return out;
+}
+
+void writeCsv(std::FILE* out, const HapticLoopResult& result) {
   std::fprintf(out, "time,insertion,rendered,felt,frame,reference,motor\n");
   for (const HapticLoopSample& s : result.samples)
     if (s.measured)
       std::fprintf(out, "%.3f,%.6f,%.5f,%.5f,%.5f,%.5f,%.3e\n", s.time, s.insertion, s.rendered, s.felt, s.frame,
                    s.reference, s.motor);
-  std::fclose(out);
 }
 
 void print(const char* name, const HapticLoopResult& result) {
@@ -66,12 +72,21 @@ void run(const Options& o) {
   settings.duration = script.duration();
   settings.measure_from = o.from;
   settings.latency = o.latency;
-  for (const Rendering rendering : {Rendering::Spring, Rendering::Held}) {
-    settings.rendering = rendering;
+  struct Part {
+    Rendering rendering;
+    const char* name;
+    File csv;
+  };
+  std::vector<Part> parts;
+  parts.push_back({Rendering::Spring, "spring", File(nullptr, std::fclose)});
+  parts.push_back({Rendering::Held, "held", File(nullptr, std::fclose)});
+  if (!o.csv.empty())  // before the loop runs, which takes minutes
+    for (Part& part : parts) part.csv = openCsv(o.csv + "." + part.name + ".csv");
+  for (const Part& part : parts) {
+    settings.rendering = part.rendering;
     const HapticLoopResult result = runHapticLoop(scene, settings);
-    const std::string name = rendering == Rendering::Spring ? "spring" : "held";
-    print(name.c_str(), result);
-    if (!o.csv.empty()) writeCsv(o.csv + "." + name + ".csv", result);
+    print(part.name, result);
+    if (part.csv) writeCsv(part.csv.get(), result);
   }
 }
 

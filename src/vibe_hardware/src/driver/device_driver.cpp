@@ -109,7 +109,7 @@ void DeviceDriver::noteAbsence() {
   const std::string serial = selection_.serial.empty() ? "" : " and serial number " + selection_.serial;
   messages_.warnOnce("absent", std::string("There is no ") + deviceName(kind_) + " with id " +
                                    hexadecimal(selection_.vendor) + ":" + hexadecimal(selection_.product) + serial +
-                                   "; plug it in, it is used as soon as it appears.");
+                                   bus_.remedyOfAbsence());
 }
 
 void DeviceDriver::connect(const HidInfo& info) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <string_view>
 
 #include "vibe_core/common/error.hpp"
@@ -39,12 +41,41 @@ std::vector<std::string_view> cellsOf(std::string_view line) {
   return cells;
 }
 
+/// The whole cell as a number; NaN if it is none. std::from_chars takes no leading plus.
+double numberOf(std::string_view cell) {
+  if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') cell.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc() && end == cell.data() + cell.size() ? value : std::nan("");
+}
+
+std::string show(double value, int joint) {
+  const bool is_length = joint == Insertion || joint == HelixAdvance || joint == NeedleDriver;
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g %s", value, is_length ? "m" : "rad");
+  return text;
+}
+
 }  // namespace
+
+HandLimits handLimits(const Calibration& calibration) {
+  HandLimits limits;
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    if (joint < kScopeJointCount) {
+      limits[joint] = {calibration.joints[joint].lower, calibration.joints[joint].upper};
+    } else if (calibration.overstitch) {
+      const ButtonDrive& drive = (*calibration.overstitch)[joint - kScopeJointCount];
+      limits[joint] = {drive.lower, drive.upper};
+    }
+  }
+  return limits;
+}
 
 /// Reads the text of a recording line by line.
 class RecordingReader {
  public:
-  RecordingReader(std::string_view text, std::string place) : rest_(text), place_(std::move(place)) {}
+  RecordingReader(std::string_view text, std::string place, const HandLimits& limits)
+      : rest_(text), place_(std::move(place)), limits_(limits) {}
 
   RecordedHand read() {
     std::string_view line;
@@ -105,13 +136,13 @@ class RecordingReader {
 
   void readCell(std::string_view cell, int column, RecordedHand::Row& row) const {
     const std::string name = columnNames()[column];
-    double value = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+    const double value = numberOf(cell);
+    if (!std::isfinite(value))
       fail(name + ": '" + std::string(cell) + "' is not a finite number; write one, with a point");
     if (column == 0) {
       row.time = value;
     } else if (column < kFirstButton) {
+      checkRange(value, column - 1);
       row.sample.joints[column - 1] = value;
     } else {
       if (value != 0 && value != 1)
@@ -120,19 +151,32 @@ class RecordingReader {
     }
   }
 
+  /// A hand pushes a little beyond a limit; values in other units are far beyond.
+  void checkRange(double value, int joint) const {
+    const JointRange& range = limits_[joint];
+    const double width = range.upper - range.lower;
+    if (value >= range.lower - width && value <= range.upper + width) return;
+    fail(std::string(kJointNames[joint]) + ": " + show(value, joint) +
+         " is far beyond the limits of the calibration, " + show(range.lower, joint) + " to " +
+         show(range.upper, joint) + "; write positions in m and rad");
+  }
+
   std::string_view rest_;
   std::string place_;
+  const HandLimits& limits_;
   int line_ = 0;
   std::vector<int> columns_;
   RecordedHand hand_;
 };
 
-RecordedHand RecordedHand::load(const std::string& file) {
-  return parse(readTextFile(file, "recorded hand"), file);
+RecordedHand RecordedHand::load(const std::string& file, const HandLimits& limits) {
+  if (std::filesystem::is_directory(file))
+    throw Error("'" + file + "' is a folder; name the CSV file of a hand in it.");
+  return parse(readTextFile(file, "recorded hand"), file, limits);
 }
 
-RecordedHand RecordedHand::parse(const std::string& text, const std::string& place) {
-  return RecordingReader(text, place).read();
+RecordedHand RecordedHand::parse(const std::string& text, const std::string& place, const HandLimits& limits) {
+  return RecordingReader(text, place, limits).read();
 }
 
 HandSample RecordedHand::at(double time) const {

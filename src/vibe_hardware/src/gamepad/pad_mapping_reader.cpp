@@ -3,6 +3,8 @@
 #include <linux/input-event-codes.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <limits>
 
 #include "vibe_core/scene/nearest_key.hpp"
 #include "vibe_hardware/gamepad/pad_state.hpp"
@@ -30,6 +32,13 @@ std::vector<std::string> codeNames(int type) {
     if (eventCodeFromName(type, name) == code) names.push_back(name);
   }
   return names;
+}
+
+/// So many digits that a limit which is copied from a message is within kRounding of it.
+std::string show(double value, const std::string& unit) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.7g ", value);
+  return text + unit;
 }
 
 template <std::size_t N>
@@ -124,6 +133,18 @@ int PadMappingReader::code(const YamlField& field, int type) {
   return code;
 }
 
+/// A quantity within limits of the URDF, to kRounding; what is beyond by less becomes the limit.
+double PadMappingReader::within(const YamlField& field, const std::string& unit, double low, double high) const {
+  constexpr double kAny = std::numeric_limits<double>::max();
+  const double value = source_.quantity(field, unit, -kAny, kAny);
+  const double spare = kRounding * (high - low);
+  if (value < low - spare || value > high + spare) {
+    source_.fail(field, "'" + field.value.Scalar() + "' is out of range; write a value from " + show(low, unit) +
+                            " to " + show(high, unit));
+  }
+  return std::clamp(value, low, high);
+}
+
 void PadMappingReader::readMotion(const YamlField& field, const std::vector<YamlField>& entries, int index,
                                   JointMapping& joint) {
   const YamlField* mode = find(entries, "mode");
@@ -135,7 +156,7 @@ void PadMappingReader::readMotion(const YamlField& field, const std::vector<Yaml
   if (rate == nullptr) source_.fail(field, "has no rate, the speed at full deflection; write 'rate: ...'");
   const double fastest = limits_[static_cast<std::size_t>(index)].velocity;
   const std::string unit = std::string(jointUnit(index)) + "/s";
-  joint.rate = std::min(source_.quantity(*rate, unit, 0, fastest * (1 + kRounding)), fastest);
+  joint.rate = within(*rate, unit, 0, fastest);
 }
 
 void PadMappingReader::readPosition(const YamlField& field, const std::vector<YamlField>& entries, int index,
@@ -147,13 +168,12 @@ void PadMappingReader::readPosition(const YamlField& field, const std::vector<Ya
   const YamlField* range = find(entries, "range");
   if (range == nullptr) source_.fail(field, "has no range; write 'range: [lowest, highest]'");
   const JointLimits& limits = limits_[static_cast<std::size_t>(index)];
-  const double spare = kRounding * (limits.upper - limits.lower);
-  const std::vector<double> ends =
-      source_.quantities(*range, 2, jointUnit(index), limits.lower - spare, limits.upper + spare);
-  if (!(ends[0] < ends[1]))
+  const std::vector<YamlField> ends = source_.list(*range);
+  if (ends.size() != 2) source_.fail(*range, "needs two values; write [lowest, highest]");
+  joint.low = within(ends[0], jointUnit(index), limits.lower, limits.upper);
+  joint.high = within(ends[1], jointUnit(index), limits.lower, limits.upper);
+  if (!(joint.low < joint.high))
     source_.fail(*range, "has its ends in the wrong order; write [lowest, highest] and 'reversed: true' if needed");
-  joint.low = std::max(ends[0], limits.lower);
-  joint.high = std::min(ends[1], limits.upper);
   const std::string unit = jointUnit(index) == std::string("m") ? "N" : "N*m";
   if (const YamlField* effort = find(entries, "full_effort"))
     joint.full_effort = source_.quantity(*effort, unit, 0, kLargestEffort);

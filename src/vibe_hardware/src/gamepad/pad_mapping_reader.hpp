@@ -28,6 +28,7 @@ class PadMappingReader {
   void readButtons(const YamlField& field);
   void readFeedback(const YamlField& field);
 
+  double within(const YamlField& field, const std::string& unit, double low, double high) const;
   int code(const YamlField& field, int type);
   void readPair(const YamlField& field, int type, JointMapping& joint);
   void checkKeys(const std::vector<YamlField>& entries, const std::vector<std::string>& known) const;

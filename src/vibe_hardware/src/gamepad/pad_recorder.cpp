@@ -1,17 +1,32 @@
 #include <linux/input-event-codes.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <vector>
 
 #include "vibe_core/common/error.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 
 namespace vibe {
+namespace {
 
-PadRecorder::PadRecorder(const std::string& file, const PadInfo& info, const PadState& state)
-    : file_(std::fopen(file.c_str(), "w")) {
-  if (file_ == nullptr) throw Error("Cannot write the pad recording '" + file + "'; check its folder.");
+std::FILE* open(const std::string& file, const char* mode) {
+  std::FILE* result = std::fopen(file.c_str(), mode);
+  if (result == nullptr) throw Error("Cannot write the pad recording '" + file + "'; check its folder.");
+  return result;
+}
+
+}  // namespace
+
+PadRecorder::PadRecorder(const std::string& file, const PadInfo& info, const PadState& state) : file_(open(file, "w")) {
   writeHeader(info, state);
+}
+
+void PadRecorder::checkFile(const std::string& file) {
+  std::error_code unknown;
+  const bool is_new = !std::filesystem::exists(file, unknown);
+  std::fclose(open(file, "a"));
+  if (is_new) std::filesystem::remove(file, unknown);
 }
 
 PadRecorder::~PadRecorder() {

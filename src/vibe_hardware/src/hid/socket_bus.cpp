@@ -138,6 +138,8 @@ std::vector<HidInfo> SocketBus::list() {
   namespace fs = std::filesystem;
   std::error_code error;
   fs::directory_iterator files(folder_, error);
+  exists_ = !error;
+  serves_ = false;
   if (error == std::errc::no_such_file_or_directory) return {};  // no emulator has been started yet
   if (error)
     throw std::runtime_error("Folder " + folder_ + " cannot be read (" + error.message() +
@@ -154,8 +156,17 @@ std::vector<HidInfo> SocketBus::list() {
     } catch (const DeviceGone&) {  // not a device
     }
   }
+  serves_ = !found.empty();
   std::sort(found.begin(), found.end(), [](const HidInfo& a, const HidInfo& b) { return a.path < b.path; });
   return found;
+}
+
+std::string SocketBus::remedyOfAbsence() const {
+  const std::string start =
+      "; start 'vibe_emulator --folder " + folder_ + "', its devices are used as soon as they appear.";
+  if (!exists_) return ": the folder " + folder_ + " does not exist" + start;
+  if (!serves_) return ": no emulator serves the folder " + folder_ + start;
+  return " in the folder " + folder_ + "; compare the id and the serial number with those that its emulator prints.";
 }
 
 std::unique_ptr<HidPort> SocketBus::open(const std::string& path) {

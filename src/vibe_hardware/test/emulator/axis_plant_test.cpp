@@ -56,7 +56,8 @@ TEST(AxisPlant, TheSupplyLimitsTheTorqueOfAVoltageDrive) {
   AxisPlant plant;
   AxisPlantState state;
   step(plant, 1, 0, kTick, state);
-  EXPECT_NEAR(state.torque, 10 * 11.5e-3 * 12 / 19.8, 1e-9);
+  EXPECT_NEAR(state.torque, 10 * 11.5e-3 * 9 / 19.8, 1e-9);
+  EXPECT_NEAR(state.torque, 0.052, 5e-4);
   plant.drive = Drive::Torque;
   step(plant, 1, 0, kTick, state);
   EXPECT_EQ(state.torque, 1);

@@ -54,9 +54,16 @@ TEST(RecordedHand, InterpolatesPositionsAndHoldsButtons) {
   EXPECT_EQ(hand.at(9).joints[TipUpDown], -0.2);
 }
 
-std::string errorOf(const std::string& text) {
+TEST(RecordedHand, TakesALeadingPlus) {
+  const std::string head = "time,insertion,rotation,tip_up_down,tip_left_right\n";
+  const RecordedHand hand = RecordedHand::parse(head + "+0,+0.5,-1,+1e-1,0\n", "hand.csv");
+  EXPECT_EQ(hand.at(0).joints[Insertion], 0.5);
+  EXPECT_EQ(hand.at(0).joints[TipUpDown], 0.1);
+}
+
+std::string errorOf(const std::string& text, const HandLimits& limits = {}) {
   try {
-    RecordedHand::parse(text, "hand.csv");
+    RecordedHand::parse(text, "hand.csv", limits);
   } catch (const Error& error) {
     return error.what();
   }
@@ -83,7 +90,39 @@ TEST(RecordedHand, NamesTheLineAndTheRemedyOfEveryMistake) {
        "hand.csv:2: needle: '2' is not 0 or 1; write 1 while it is pressed."},
   };
   for (const auto& [text, message] : mistakes) EXPECT_EQ(errorOf(text), message);
-  EXPECT_THROW(RecordedHand::load("no such file.csv"), Error);
+  for (const std::string cell : {"+", "++1", "+-1", "-+1", "+nan", "+ 1"})
+    EXPECT_EQ(errorOf(head + "0,0,0,0," + cell + "\n"),
+              "hand.csv:2: tip_left_right: '" + cell + "' is not a finite number; write one, with a point.");
+}
+
+TEST(RecordedHand, RefusesPositionsFarBeyondTheLimitsOfTheCalibration) {
+  const HandLimits limits = handLimits(Calibration::load("../config/devices.yaml"));
+  const std::string head = "time,insertion,rotation,tip_up_down,tip_left_right,needle_driver\n";
+  EXPECT_EQ(errorOf(head + "0,0.08,1,2,-1,0.01\n1,0.31,3.2,3,-2,0.02\n", limits), "");  // pushes a little too far
+  EXPECT_EQ(
+      errorOf(head + "0,0,0,0,0,0\n1,80,0,0,0,0\n", limits),
+      "hand.csv:3: insertion: 80 m is far beyond the limits of the calibration, 0 m to 0.3 m; write positions in m "
+      "and rad.");
+  EXPECT_EQ(errorOf(head + "0,0,0,-30,0,0\n", limits),
+            "hand.csv:2: tip_up_down: -30 rad is far beyond the limits of the calibration, -1.571 rad to 2.862 rad; "
+            "write positions in m and rad.");
+  EXPECT_EQ(errorOf(head + "0,0,0,0,0,12\n", limits),
+            "hand.csv:2: needle_driver: 12 m is far beyond the limits of the calibration, 0 m to 0.018 m; write "
+            "positions in m and rad.");
+}
+
+TEST(RecordedHand, SaysWhenItsFileIsMissingOrAFolder) {
+  const auto problem = [](const std::string& file) -> std::string {
+    try {
+      RecordedHand::load(file, {});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(problem("no such file.csv"),
+            "Cannot read the recorded hand 'no such file.csv'; check path and permissions.");
+  EXPECT_EQ(problem("emulator"), "'emulator' is a folder; name the CSV file of a hand in it.");
 }
 
 TEST(RandomHand, StaysWithinItsLimitsAndItsSpeeds) {

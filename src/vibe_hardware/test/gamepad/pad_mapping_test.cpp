@@ -100,6 +100,17 @@ TEST(PadMapping, NamesTheMistakeItsPlaceAndTheRemedy) {
   EXPECT_EQ(errorOfInsertion("axis: ABS_Y, mode: rate, rate: 1 cm/s"), "no error");
 }
 
+TEST(PadMapping, ShowsTheLimitsOfTheUrdfWithAFewDigitsThatMayBeCopied) {
+  const std::string start = "my_pad.yaml:3: joints.";
+  EXPECT_EQ(errorOfInsertion("axis: ABS_Y, mode: rate, rate: 1 m/s"),
+            start + "insertion.rate: '1 m/s' is out of range; write a value from 0 m/s to 0.15 m/s");
+  const std::string joint = "name: test\njoints:\n  rotation: {axis: ABS_Y, mode: position, range: ";
+  EXPECT_EQ(errorOf(joint + "[-200 deg, 0]}\n"),
+            start + "rotation.range[0]: '-200 deg' is out of range; write a value from -3.141593 rad to 3.141593 rad");
+  EXPECT_EQ(errorOf(joint + "[-3.141593, 3.141593]}\n"), "no error");
+  EXPECT_EQ(errorOf(joint + "[0, 1, 2]}\n"), start + "rotation.range: needs two values; write [lowest, highest]");
+}
+
 TEST(PadMapping, NamesMistakesOutsideOfJoints) {
   EXPECT_EQ(errorOf("name: a\njoint: {}\n"), "my_pad.yaml:2: joint: is not a known key; did you mean 'joints'?");
   EXPECT_EQ(errorOf("name: a\n"), "my_pad.yaml:1: moves nothing; write at least one joint below 'joints:'");

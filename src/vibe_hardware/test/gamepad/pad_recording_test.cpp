@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "gamepad/pads.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -94,6 +97,25 @@ TEST(PadRecording, WhatIsWrittenIsReadAgain) {
   EXPECT_TRUE(played->update(2));
   EXPECT_TRUE(played->state().buttons.at(BTN_START).isPressed());
   std::remove(file.c_str());
+}
+
+TEST(PadRecording, AFileIsCheckedBeforeThereIsAPadAndStaysAsItIs) {
+  const std::string file = testing::TempDir() + "/pad_recording_check.evemu";
+  std::filesystem::remove(file);
+  PadRecorder::checkFile(file);
+  EXPECT_FALSE(std::filesystem::exists(file));
+  std::ofstream(file) << "an older recording";
+  PadRecorder::checkFile(file);
+  EXPECT_EQ(std::filesystem::file_size(file), 18U);
+  std::filesystem::remove(file);
+  for (const std::string& place : {std::string("/nowhere/pad.evemu"), testing::TempDir()}) {
+    try {
+      PadRecorder::checkFile(place);
+      ADD_FAILURE() << place;
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()), "Cannot write the pad recording '" + place + "'; check its folder.");
+    }
+  }
 }
 
 TEST(PadRecording, NamesTheLineOfAMistake) {

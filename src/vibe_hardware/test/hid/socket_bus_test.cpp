@@ -210,6 +210,24 @@ TEST(SocketBus, AnUnpluggedDeviceIsGoneAndComesBack) {
   }
 }
 
+TEST(SocketBus, SaysWhereADeviceIsMissingAndWhatToStart) {
+  SocketFolder folder;
+  const std::string place = folder.path() + "/not_there";
+  const std::string start =
+      "; start 'vibe_emulator --folder " + place + "', its devices are used as soon as they appear.";
+  SocketBus bus(place);
+  EXPECT_TRUE(bus.list().empty());
+  EXPECT_EQ(bus.remedyOfAbsence(), ": the folder " + place + " does not exist" + start);
+  std::filesystem::create_directory(place);
+  EXPECT_TRUE(bus.list().empty());
+  EXPECT_EQ(bus.remedyOfAbsence(), ": no emulator serves the folder " + place + start);
+  FakeFunction function;
+  const ServedDevice device(place, "haptic", function);
+  EXPECT_EQ(bus.list().size(), 1U);
+  EXPECT_EQ(bus.remedyOfAbsence(),
+            " in the folder " + place + "; compare the id and the serial number with those that its emulator prints.");
+}
+
 // A device that says nothing sensible: truncated and random greetings, and random packets after a good one.
 TEST(SocketBus, NoPacketOfADeviceHarmsTheHost) {
   SocketFolder folder;

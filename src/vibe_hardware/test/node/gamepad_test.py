@@ -197,6 +197,7 @@ class GamepadTest(unittest.TestCase):
                 ({"mapping": mapping.name}, mapping.name + ":3: joints.insertion.rate: '1 m/s' is out of range"),
                 ({"mapping": "/nowhere.yaml"}, "/nowhere.yaml: cannot be opened"),
                 ({"replay": "/nowhere.evemu"}, "nowhere.evemu"),
+                ({"record": "/nowhere/pad.evemu"}, "Cannot write the pad recording '/nowhere/pad.evemu'"),
                 ({"mappping": "x"}, "did you mean 'mapping'?"),
                 ({"rate": 1000}, "Parameter /gamepad_node/rate is not a number from 60 Hz to 100 Hz"),
             ]:

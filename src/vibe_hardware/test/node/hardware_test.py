@@ -237,6 +237,7 @@ class HardwareTest(unittest.TestCase):
 
     def test_waits_quietly_without_devices(self):
         self.assertTrue(self.node.says("There is no haptic device with id 1209:0001"))
+        self.assertTrue(self.node.says("vibe_emulator --folder " + self.emulator.folder), self.node.output())
         time.sleep(2)
         self.assertEqual(len(self.node.lines), 2, self.node.output())
         self.assertEqual(self.state.messages[-1].state, "DISABLED")

@@ -13,7 +13,7 @@ struct Motor {
   double resistance = 19.8;          ///< [ohm]
   double inertia = 5.6e-8;           ///< of the rotor [kg m^2]
   double friction = 0.08e-3;         ///< of brushes and bearings [N m]
-  double supply = 12;                ///< of the bridge [V]
+  double supply = 9;                 ///< of the bridge, a DRV8833 [V]; stall torque at the shaft: 0.052 N m
 };
 
 /// How the bridge drives the motor.

@@ -37,6 +37,9 @@ class PadRecorder {
 
   void add(const PadEvent& event);
 
+  /// To be called before a pad is there. Leaves the file as it is. @throws Error if it cannot be written
+  static void checkFile(const std::string& file);
+
  private:
   std::FILE* file_;
   double begin_ = -1;  // time of the first event [s]

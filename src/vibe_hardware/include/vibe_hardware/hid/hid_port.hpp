@@ -57,6 +57,9 @@ class HidBus {
   /// the bus as such cannot be used, for example because the kernel has no hidraw.
   virtual std::vector<HidInfo> list() = 0;
 
+  /// How a sentence ends that says that a device is not in the last list(): where it was looked for, and the remedy.
+  virtual std::string remedyOfAbsence() const { return "; plug it in, it is used as soon as it appears."; }
+
   /// @throws DeviceGone if it is not there any more; std::runtime_error with the remedy if it may not be opened
   virtual std::unique_ptr<HidPort> open(const std::string& path) = 0;
 };

@@ -16,10 +16,12 @@ class SocketBus : public HidBus {
   explicit SocketBus(std::string folder) : folder_(std::move(folder)) {}
 
   std::vector<HidInfo> list() override;
+  std::string remedyOfAbsence() const override;
   std::unique_ptr<HidPort> open(const std::string& path) override;
 
  private:
   std::string folder_;
+  bool exists_ = false, serves_ = false;  // at the last list(): the folder, a device in it
 };
 
 }  // namespace vibe
