@@ -36,7 +36,8 @@ def parse_arguments():
     parser.add_argument("--colours", type=int, default=FEWEST_COLOURS)
     parser.add_argument("pictures", nargs="+", type=picture_of)
     arguments = parser.parse_args()
-    arguments.mesh, arguments.fast, arguments.duration, arguments.headless = "", True, 0.0, False
+    arguments.drive, arguments.mesh, arguments.fast, arguments.duration = "trainee", "", True, 0.0
+    arguments.headless = False
     pictures = [picture._replace(view=picture.view or arguments.view) for picture in arguments.pictures]
     arguments.pictures = sorted(pictures, key=lambda picture: picture.seconds)
     arguments.pictures_folder = arguments.output
