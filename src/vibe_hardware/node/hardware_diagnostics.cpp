@@ -70,6 +70,7 @@ void fillDiagnostics(const DeviceStatistics& device, const HapticStatistics* hap
     status.summary(DiagnosticStatus::OK, "running");
     warnIf(device.rate < kLowestRate, "the rate is low", status);
     warnIf((device.flags & vibe_firmware::kEncoderFault) != 0, "an encoder has jumped, motors are off", status);
+    warnIf((device.flags & vibe_firmware::kDriveFault) != 0, "the power stage has switched the motors off", status);
   }
   compare(device.counts, memory.counts, status);
   memory.counts = device.counts;

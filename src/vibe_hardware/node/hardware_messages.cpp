@@ -115,7 +115,8 @@ OverstitchDrive::Positions readOverstitchJoints(const sensor_msgs::JointState& m
 
 std::string operatingState(const DeviceStatistics& device, const HapticStatistics& haptic) {
   if (device.state == LinkState::Absent) return "DISABLED";
-  if (device.state != LinkState::Running || (device.flags & vibe_firmware::kEncoderFault) != 0) return "FAULT";
+  constexpr int kFaults = vibe_firmware::kEncoderFault | vibe_firmware::kDriveFault;
+  if (device.state != LinkState::Running || (device.flags & kFaults) != 0) return "FAULT";
   return haptic.in_force ? "ENABLED" : "PAUSED";
 }
 

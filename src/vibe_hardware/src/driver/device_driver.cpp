@@ -191,8 +191,14 @@ void DeviceDriver::watchSilence() {
 }
 
 void DeviceDriver::reportFlags(std::uint8_t flags) {
-  const bool fault = (flags & vibe_firmware::kEncoderFault) != 0;
-  if (fault && (flags_ & vibe_firmware::kEncoderFault) == 0) {
+  const int risen = flags & ~flags_;
+  if ((risen & vibe_firmware::kDriveFault) != 0) {
+    messages_.warn("drive",
+                   "The power stage of the " + std::string(deviceName(kind_)) +
+                       " has switched the motors off; check their supply and wiring, then restart the device.",
+                   clock_());
+  }
+  if ((risen & vibe_firmware::kEncoderFault) != 0) {
     messages_.warn("encoder",
                    "An encoder of the " + std::string(deviceName(kind_)) +
                        " has jumped: the device has switched its motors off; check the encoder's cable.",

@@ -97,7 +97,10 @@ TEST_F(HardwareMessagesTest, StatesAreThoseOfCrtk) {
   EXPECT_EQ(operatingState(device, haptic), "ENABLED");
   device.flags = vibe_firmware::kEncoderFault;
   EXPECT_EQ(operatingState(device, haptic), "FAULT");
+  device.flags = vibe_firmware::kDriveFault;
+  EXPECT_EQ(operatingState(device, haptic), "FAULT");
   device.flags = 0;
+  EXPECT_EQ(operatingState(device, haptic), "ENABLED");
   device.state = LinkState::Silent;
   EXPECT_EQ(operatingState(device, haptic), "FAULT");
 }
