@@ -11,6 +11,7 @@
 #include <iterator>
 #include <mutex>
 
+#include "hid/transfer_error.hpp"
 #include "vibe_hardware/hid/report_descriptor.hpp"
 
 namespace vibe {
@@ -30,13 +31,6 @@ std::string narrow(const wchar_t* text) {
   for (; text != nullptr && *text != 0; ++text)
     result += *text >= 0x20 && *text < 0x7F ? static_cast<char>(*text) : '?';
   return result;
-}
-
-/// A device that was unplugged answers ENODEV or EIO; one that does not know a report stalls the request: EPIPE.
-[[noreturn]] void failTransfer(const std::string& path, int error, const std::string& what) {
-  const std::string sentence = path + ": " + what + ": " + std::strerror(error);
-  if (error == EPIPE || error == EINVAL || error == ETIMEDOUT || error == EOVERFLOW) throw ReportRejected(sentence);
-  throw DeviceGone(sentence);
 }
 
 class HidrawPort : public HidPort {

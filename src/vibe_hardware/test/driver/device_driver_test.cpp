@@ -290,6 +290,19 @@ TEST_F(DeviceDriverTest, RefusesAnswersOfTheWrongSize) {
   EXPECT_EQ(said.count("Its status has 3 bytes and id 3 instead of 32 and 3"), 1);
 }
 
+TEST_F(DeviceDriverTest, ADeviceThatDoesNotAnswerHasABadCableAndNoOldFirmware) {
+  device.request = [] { throw NoAnswer("Connection timed out"); };
+  run(1);
+  EXPECT_EQ(driver.statistics().state, LinkState::Unusable);
+  EXPECT_EQ(said.count("It does not answer the request for status in time (Connection timed out); check the cable and "
+                       "plug the device in again."),
+            1);
+  EXPECT_EQ(said.count("install firmware"), 0);
+  device.request = [] { throw ReportRejected("stall"); };
+  run(1);
+  EXPECT_EQ(said.count("It rejects the request for status (stall); install firmware of this release."), 1);
+}
+
 TEST_F(DeviceDriverTest, ChoosesByTheSerialNumber) {
   FakeDevice other(DeviceKind::Input, "A0");
   bus.devices = {&device, &other};

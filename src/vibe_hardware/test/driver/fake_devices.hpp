@@ -61,6 +61,7 @@ class FakeDevice {
   std::function<double()> delay = [] { return 0.0; };            ///< of the next report [s]
   std::function<Packets(const Packet&)> tamper;                  ///< what becomes of a report
   std::function<void(std::uint8_t id, Packet&)> tamper_feature;  ///< what becomes of an answer
+  std::function<void()> request;                                 ///< called at each request for a feature report
   vibe_firmware::HapticSample sample;                            ///< what the board reads
   std::deque<std::pair<double, Packet>> waiting;                 ///< reports with their times of arrival
   std::vector<double> sample_times;                              ///< of the bus, of all reports [s]
@@ -149,6 +150,7 @@ class FakeBus : public HidBus {
 
     std::size_t getFeature(std::uint8_t id, std::uint8_t* bytes, std::size_t capacity) override {
       check();
+      if (device_.request) device_.request();
       const std::size_t size = device_.function().getReport(vibe_firmware::ReportType::Feature, id, bytes, capacity);
       if (size == 0) throw ReportRejected("stall");
       Packet packet(bytes, bytes + size);
@@ -159,6 +161,7 @@ class FakeBus : public HidBus {
 
     void setFeature(const std::uint8_t* bytes, std::size_t size) override {
       check();
+      if (device_.request) device_.request();
       if (!device_.function().setReport(vibe_firmware::ReportType::Feature, bytes[0], bytes, size)) {
         throw ReportRejected("stall");
       }

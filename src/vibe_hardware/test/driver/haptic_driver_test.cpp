@@ -154,6 +154,14 @@ TEST_F(HapticDriverTest, ARefusalIsReportedWithItsReason) {
   EXPECT_FALSE(driver.statistics().in_force);
 }
 
+TEST_F(HapticDriverTest, ParametersThatAreNotAnsweredAreNoFaultOfTheirForm) {
+  run(0.3);
+  device.request = [] { throw NoAnswer("Connection timed out"); };
+  runTouching(0.5, spring(0.1));
+  EXPECT_EQ(said.count("does not take parameters. It does not answer the parameters in time"), 1);
+  EXPECT_EQ(said.count("rejects the form"), 0);
+}
+
 TEST_F(HapticDriverTest, AfterAReplugTheParametersAreSentAgainAndReadBack) {
   runTouching(1, spring(0.1, 0, 0.2));
   device.plugged = false;
