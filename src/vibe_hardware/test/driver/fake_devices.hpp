@@ -31,7 +31,7 @@ class FakeDevice {
 
   /// Power on: counts, sequence number and time begin at 0.
   void start() {
-    haptic_ = std::make_unique<vibe_firmware::HapticFunction>(vibe_firmware::HapticConfig{}, serial_.c_str());
+    haptic_ = std::make_unique<vibe_firmware::HapticFunction>(haptic_config, serial_.c_str());
     input_ = std::make_unique<vibe_firmware::InputFunction>(vibe_firmware::InputConfig{}, serial_.c_str());
     sample = {};
     waiting.clear();
@@ -55,6 +55,7 @@ class FakeDevice {
     waiting.emplace_back(arrival, packet);
   }
 
+  vibe_firmware::HapticConfig haptic_config;  ///< at the next start()
   bool plugged = true;
   bool stopped = false;  ///< the firmware hangs: no reports, no answers
   double clock_rate = 1;
@@ -65,6 +66,7 @@ class FakeDevice {
   vibe_firmware::HapticSample sample;                            ///< what the board reads
   std::deque<std::pair<double, Packet>> waiting;                 ///< reports with their times of arrival
   std::vector<double> sample_times;                              ///< of the bus, of all reports [s]
+  int gone = 0;                                                  ///< times that opening it fails as if it were gone
   std::string open_error;                                        ///< sentence if it may not be opened
 
  private:
@@ -121,6 +123,7 @@ class FakeBus : public HidBus {
   std::unique_ptr<HidPort> open(const std::string& path) override {
     for (FakeDevice* device : devices) {
       if (!device->plugged || device->info().path != path) continue;
+      if (device->gone > 0 && device->gone-- > 0) throw DeviceGone(path + ": Device or resource busy");
       if (!device->open_error.empty()) throw std::runtime_error(device->open_error);
       device->waiting.clear();
       return std::make_unique<Port>(*this, *device);
