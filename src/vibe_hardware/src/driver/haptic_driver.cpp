@@ -47,7 +47,7 @@ DeviceDriver::Callbacks HapticDriver::wrap() {
   callbacks.sample = [this](const DeviceSample& sample) { onSample(sample); };
   callbacks.connected = [this](const DeviceConnection& connection) {
     user_.connected(connection);
-    link_.resend();
+    link_.restart();
     refused_before_ = connection.status().refused;
     confirmed_ = opened_ = device_.now();
     next_verify_ = 0;

@@ -179,6 +179,24 @@ TEST_F(HapticDriverTest, AfterAReplugTheParametersAreSentAgainAndReadBack) {
   EXPECT_EQ(driver.statistics().mismatched, 0U);
 }
 
+TEST_F(HapticDriverTest, AWeakerDeviceDoesNotGetTheSpringOfTheOneBefore) {
+  runTouching(1, spring(0.1, 0, 0.2));
+  device.plugged = false;
+  run(1);
+  for (vibe_firmware::AxisConfig& axis : device.haptic_config.axes) axis.torque_limit *= 0.5F;
+  device.start();
+  device.plugged = true;
+  samples.clear();
+  run(2);
+  EXPECT_NE(accepted(), 0U);
+  EXPECT_EQ(driver.statistics().refused, 0U);
+  EXPECT_EQ(said.count("refused"), 0);
+  EXPECT_TRUE(driver.statistics().in_force);
+  EXPECT_EQ(samples.back().flags & vibe_firmware::kHostSilent, 0);
+  runTouching(0.2, spring(0.1, 0, 0.2));
+  EXPECT_FLOAT_EQ(state().parameters.axes[0].stiffness, 0.1F);
+}
+
 TEST_F(HapticDriverTest, ParametersThatReadBackDifferentlyAreReported) {
   device.tamper_feature = [](std::uint8_t id, Packet& packet) {
     if (id == vibe_firmware::kParameterReportId) packet[6] ^= 1;  // a bit of the stiffness of axis 0
