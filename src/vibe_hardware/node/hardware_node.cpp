@@ -12,6 +12,7 @@ constexpr double kStatisticsPeriod = 0.1;  // [s]
 constexpr double kCameraPatience = 1;      // a camera that is silent for longer tracks no more [s]
 constexpr double kComplaintPeriod = 1;     // [s]
 constexpr double kTimerPeriod = 0.1;       // [s]
+constexpr double kAfterHoming = 0.1;       // in which parameters belong to the positions before [s]
 constexpr std::uint32_t kQueue = 100;
 
 /// The drivers of both devices say the same about a bus that does not work.
@@ -128,7 +129,7 @@ void HardwareNode::noteStatistics(DeviceKind kind, const DeviceDriver& device) {
 void HardwareNode::onSample(DeviceKind kind, const DeviceSample& sample) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (joints_.take(kind, sample)) {
-    haptic_.release();  // what it renders belongs to positions that no longer hold
+    haptic_.release(kAfterHoming);  // what it renders belongs to positions that no longer hold
     ROS_INFO("The joints of the scope are homed.");
   }
   publishJoints(kind, sample.time);

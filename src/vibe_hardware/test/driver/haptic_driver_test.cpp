@@ -107,6 +107,18 @@ TEST_F(HapticDriverTest, TheEndOfAContactFadesTheSpring) {
   EXPECT_EQ(state().parameters.axes[0].stiffness, 0);
 }
 
+TEST_F(HapticDriverTest, ForAPauseAfterAReleaseNoTargetIsTaken) {
+  runTouching(0.5, spring(0.1, 0, 0.2));
+  driver.release(0.1);
+  driver.release();  // does not shorten the pause
+  runTouching(0.099, spring(0.1, 0, 0.5));
+  EXPECT_EQ(state().parameters.axes[0].stiffness, 0);
+  EXPECT_NE(state().parameters.axes[0].position, 0.5F);
+  runTouching(0.1, spring(0.1, 0, 0.5));
+  EXPECT_FLOAT_EQ(state().parameters.axes[0].stiffness, 0.1F);
+  EXPECT_FLOAT_EQ(state().parameters.axes[0].position, 0.5F);
+}
+
 TEST_F(HapticDriverTest, ClampsToWhatIsPassiveAndTheDeviceAccepts) {
   runTouching(0.5, spring(100, 1, 0));
   const vibe_firmware::AxisConfig axis;
