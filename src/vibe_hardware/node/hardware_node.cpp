@@ -11,7 +11,8 @@ constexpr double kButtonPeriod = 0.1;      // of buttons that do not change [s]
 constexpr double kStatisticsPeriod = 0.1;  // [s]
 constexpr double kCameraPatience = 1;      // a camera that is silent for longer tracks no more [s]
 constexpr double kComplaintPeriod = 1;     // [s]
-constexpr double kTimerPeriod = 0.1;       // [s]
+constexpr double kTimerPeriod = 0.02;      // [s]
+constexpr double kAfterHoming = 0.1;       // in which parameters belong to the positions before [s]
 constexpr std::uint32_t kQueue = 100;
 
 /// The drivers of both devices say the same about a bus that does not work.
@@ -93,6 +94,7 @@ void HardwareNode::advertise(ros::NodeHandle& handle) {
     });
   }
   timer_ = handle.createWallTimer(ros::WallDuration(kTimerPeriod), [this](const ros::WallTimerEvent&) {
+    for (const DeviceKind kind : {DeviceKind::Haptic, DeviceKind::Input}) watchSilence(kind);
     updater_.update();
     publishState();
   });
@@ -127,8 +129,10 @@ void HardwareNode::noteStatistics(DeviceKind kind, const DeviceDriver& device) {
 
 void HardwareNode::onSample(DeviceKind kind, const DeviceSample& sample) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (silence_[indexOf(kind)].arrived(steadyTime()))
+    log(Severity::Info, "The " + std::string(deviceName(kind)) + " sends reports again.");
   if (joints_.take(kind, sample)) {
-    haptic_.release();  // what it renders belongs to positions that no longer hold
+    haptic_.release(kAfterHoming);  // what it renders belongs to positions that no longer hold
     ROS_INFO("The joints of the scope are homed.");
   }
   publishJoints(kind, sample.time);
@@ -138,8 +142,24 @@ void HardwareNode::onSample(DeviceKind kind, const DeviceSample& sample) {
 
 void HardwareNode::onLost(DeviceKind kind, double now) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  silence_[indexOf(kind)].stop();
   joints_.lose(kind);
   next_statistics_[indexOf(kind)] = 0;
+  if (buttons_.take(kind, 0)) publishButtons(now, true);
+}
+
+/// A request that a device does not answer keeps its thread for seconds, so its silence is noticed here.
+void HardwareNode::watchSilence(DeviceKind kind) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const double now = steadyTime();
+  if (!silence_[indexOf(kind)].expired(now)) return;
+  DeviceStatistics& statistics = device_statistics_[indexOf(kind)];
+  statistics.state = LinkState::Silent;
+  statistics.problem = "The " + std::string(deviceName(kind)) +
+                       " does not answer: its buttons count as released and the scope stays where it is; check cable "
+                       "and firmware.";
+  log(Severity::Warning, statistics.problem);
+  joints_.lose(kind);
   if (buttons_.take(kind, 0)) publishButtons(now, true);
 }
 

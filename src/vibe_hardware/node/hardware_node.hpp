@@ -9,6 +9,7 @@
 #include "hardware_messages.hpp"
 #include "hardware_parameters.hpp"
 #include "vibe_hardware/driver/polling_thread.hpp"
+#include "vibe_hardware/driver/silence_watch.hpp"
 
 namespace vibe {
 
@@ -32,6 +33,7 @@ class HardwareNode {
   std::optional<OverstitchDrive> overstitch_;
   std::array<DeviceStatistics, kDeviceKinds> device_statistics_;
   HapticStatistics haptic_statistics_;
+  std::array<SilenceWatch, kDeviceKinds> silence_;
   std::uint64_t rejected_ = 0;
   double last_buttons_ = -1;    // time of the last message [s]
   double last_overstitch_ = 0;  // time of the last motion [s]
@@ -58,6 +60,7 @@ class HardwareNode {
   void noteStatistics(DeviceKind kind, const DeviceDriver& device);
   void onSample(DeviceKind kind, const DeviceSample& sample);
   void onLost(DeviceKind kind, double now);
+  void watchSilence(DeviceKind kind);
   void publishJoints(DeviceKind kind, double time);
   void publishButtons(double time, bool changed);
   void publishOverstitch(double time);

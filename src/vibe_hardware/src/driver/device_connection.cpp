@@ -19,6 +19,11 @@ std::string number(double value) {
   return text;
 }
 
+[[noreturn]] void failUnanswered(const std::string& request, const NoAnswer& silence) {
+  throw Error("It does not answer " + request + " in time (" + silence.what() +
+              "); check the cable and plug the device in again.");
+}
+
 /// What the host computes with. The firmware was built with it, but the answer came over a cable.
 bool isSane(const AxisConfig& axis) {
   const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
@@ -56,8 +61,10 @@ void DeviceConnection::get(std::uint8_t id, const char* name, Report& report) {
   try {
     size = port_->getFeature(id, bytes, sizeof bytes);
   } catch (const ReportRejected& rejection) {
-    throw Error(std::string("It does not answer the request for ") + name + " (" + rejection.what() +
+    throw Error(std::string("It rejects the request for ") + name + " (" + rejection.what() +
                 "); install firmware of this release.");
+  } catch (const NoAnswer& silence) {
+    failUnanswered(std::string("the request for ") + name, silence);
   }
   if (size <= sizeof bytes && vibe_firmware::unpack(bytes, size, report)) return;
   throw Error(std::string("Its ") + name + " has " + std::to_string(size) + " bytes and id " +
@@ -95,6 +102,8 @@ void DeviceConnection::sendParameters(const vibe_firmware::ParameterReport& para
   } catch (const ReportRejected& rejection) {
     throw Error(std::string("It rejects the form of the parameters (") + rejection.what() +
                 "); install firmware of this release.");
+  } catch (const NoAnswer& silence) {
+    failUnanswered("the parameters", silence);
   }
 }
 

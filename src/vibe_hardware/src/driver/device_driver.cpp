@@ -59,9 +59,8 @@ void DeviceDriver::search() {
   if (!info) return;
   try {
     connect(*info);
-  } catch (const DeviceGone&) {  // while it was opened
-    connection_.reset();
-    state_ = LinkState::Absent;
+  } catch (const DeviceGone& gone) {  // while it was opened
+    noteFailure(*info, gone.what());
   } catch (const std::exception& error) {
     setUnusable("The " + std::string(deviceName(kind_)) + " at " + identify(*info) + " cannot be used. " +
                 error.what());
@@ -105,6 +104,7 @@ std::vector<HidInfo> DeviceDriver::listMatching() {
 void DeviceDriver::noteAbsence() {
   state_ = LinkState::Absent;
   problem_.clear();
+  failures_ = 0;
   if (connections_ > 0) return;  // that it is gone has been said
   const std::string serial = selection_.serial.empty() ? "" : " and serial number " + selection_.serial;
   messages_.warnOnce("absent", std::string("There is no ") + deviceName(kind_) + " with id " +
@@ -120,6 +120,7 @@ void DeviceDriver::connect(const HidInfo& info) {
   state_ = LinkState::Running;
   problem_.clear();
   ++connections_;
+  failures_ = 0;
   flags_ = 0;
   last_good_ = clock_();
   next_status_ = last_good_ + kStatusPeriod;
@@ -127,6 +128,19 @@ void DeviceDriver::connect(const HidInfo& info) {
   messages_.info("The " + std::string(deviceName(kind_)) + " is connected: " + identify(info) + ", firmware " +
                  connection_->firmwareVersion() + ".");
   callbacks_.connected(*connection_);
+}
+
+void DeviceDriver::noteFailure(const HidInfo& info, const std::string& reason) {
+  connection_.reset();
+  failures_ = info.path == failed_path_ ? failures_ + 1 : 1;
+  failed_path_ = info.path;
+  if (failures_ < kMostFailures) {
+    state_ = LinkState::Absent;
+  } else if (failures_ == kMostFailures || state_ != LinkState::Unusable) {
+    setUnusable("The " + std::string(deviceName(kind_)) + " at " + identify(info) +
+                " is there, but opening it fails again and again (" + reason +
+                "); end other programs that use it, check the cable and plug the device in again.");
+  }
 }
 
 void DeviceDriver::setUnusable(const std::string& what) {

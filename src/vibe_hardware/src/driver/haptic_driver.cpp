@@ -1,5 +1,6 @@
 #include "vibe_hardware/driver/haptic_driver.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "vibe_core/common/error.hpp"
@@ -47,7 +48,7 @@ DeviceDriver::Callbacks HapticDriver::wrap() {
   callbacks.sample = [this](const DeviceSample& sample) { onSample(sample); };
   callbacks.connected = [this](const DeviceConnection& connection) {
     user_.connected(connection);
-    link_.resend();
+    link_.restart();
     refused_before_ = connection.status().refused;
     confirmed_ = opened_ = device_.now();
     next_verify_ = 0;
@@ -64,14 +65,16 @@ DeviceDriver::Callbacks HapticDriver::wrap() {
 
 void HapticDriver::setTarget(const Targets& targets) {
   const std::lock_guard<std::mutex> lock(inbox_mutex_);
+  if (device_.now() < ignored_until_) return;
   inbox_ = targets;
   inbox_release_ = false;
 }
 
-void HapticDriver::release() {
+void HapticDriver::release(double pause) {
   const std::lock_guard<std::mutex> lock(inbox_mutex_);
   inbox_.reset();
   inbox_release_ = true;
+  ignored_until_ = std::max(ignored_until_, device_.now() + pause);
 }
 
 void HapticDriver::poll(double wait) {

@@ -31,6 +31,12 @@ void HapticLink::release(double now) {
   changed_ = true;
 }
 
+void HapticLink::restart() {
+  target_ = {};
+  touching_ = changed_ = false;
+  target_time_ = release_time_ = last_sent_ = kNever;
+}
+
 double HapticLink::gain(double now) const {
   return touching_ ? 1 : std::clamp(1 - (now - release_time_) / kFade, 0.0, 1.0);
 }

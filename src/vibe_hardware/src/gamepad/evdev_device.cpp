@@ -8,6 +8,8 @@
 #include <ctime>
 #include <utility>
 
+#include "vibe_firmware/protocol/descriptors.hpp"
+
 namespace vibe {
 namespace {
 
@@ -84,6 +86,18 @@ bool isPad(const libevdev& device) {
   for (unsigned code = BTN_JOYSTICK; code < BTN_DIGI; ++code)
     if (libevdev_has_event_code(&device, EV_KEY, code) == 1) return true;
   return false;
+}
+
+bool isScopeDevice(const libevdev& device) {
+  const int product = libevdev_get_id_product(&device);
+  return libevdev_get_id_vendor(&device) == vibe_firmware::kVendorId &&
+         (product == vibe_firmware::kHapticProductId || product == vibe_firmware::kInputProductId);
+}
+
+bool isWanted(const std::string& wanted, const libevdev& device, const std::string& path) {
+  if (wanted.empty()) return isPad(device) && !isScopeDevice(device);
+  const PadInfo info = infoOf(device, path);
+  return info.name.find(wanted) != std::string::npos || info.phys.find(wanted) != std::string::npos;
 }
 
 }  // namespace vibe

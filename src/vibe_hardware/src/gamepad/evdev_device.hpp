@@ -34,5 +34,9 @@ PadInfo infoOf(const libevdev& device, const std::string& path);
 PadState stateOf(const libevdev& device);
 /// Whether it has two axes of a stick and a button of a gamepad or joystick.
 bool isPad(const libevdev& device);
+/// Whether it is the haptic or the input device, which are gamepads to the kernel and are read by hardware_node.
+bool isScopeDevice(const libevdev& device);
+/// Whether it is a pad to be opened. @param wanted  part of its name or phys; empty: any pad but a scope device
+bool isWanted(const std::string& wanted, const libevdev& device, const std::string& path);
 
 }  // namespace vibe

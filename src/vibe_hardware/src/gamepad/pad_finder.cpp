@@ -27,12 +27,6 @@ std::vector<std::string> eventPaths(const std::string& folder) {
   return paths;
 }
 
-bool isWanted(const std::string& wanted, const libevdev& device, const std::string& path) {
-  if (wanted.empty()) return isPad(device);
-  const PadInfo info = infoOf(device, path);
-  return info.name.find(wanted) != std::string::npos || info.phys.find(wanted) != std::string::npos;
-}
-
 std::unique_ptr<PadSource> openPath(const std::string& path, std::string& why) {
   EvdevDevice device = openEvdev(path);
   if (device.isOpen()) return std::make_unique<EvdevPad>(std::move(device), path);
@@ -40,14 +34,29 @@ std::unique_ptr<PadSource> openPath(const std::string& path, std::string& why) {
   return nullptr;
 }
 
-std::string explain(const std::string& wanted, const std::string& folder, std::size_t seen, std::size_t closed,
-                    const std::string& problem) {
+/// Why devices were not taken.
+struct Skipped {
+  std::size_t seen = 0;    // all of them
+  std::size_t scope = 0;   // devices of the scope
+  std::size_t closed = 0;  // could not be opened
+  std::string problem;     // of the last one that could not
+};
+
+std::string explain(const std::string& wanted, const std::string& folder, const Skipped& skipped) {
   std::string why =
       wanted.empty() ? "No gamepad found: " : "No device found with '" + wanted + "' in its name or phys: ";
-  if (seen == 0) return why + "there is no input device in " + folder + ". Plug one in.";
-  why += std::to_string(seen) + " input device" + (seen == 1 ? " in " : "s in ") + folder;
-  why += wanted.empty() ? ", none of them with two axes and a button of a gamepad or joystick" : "";
-  if (closed > 0) why += "; " + std::to_string(closed) + " of them " + problem;
+  if (skipped.seen == 0) return why + "there is no input device in " + folder + ". Plug one in.";
+  why += std::to_string(skipped.seen) + " input device" + (skipped.seen == 1 ? " in " : "s in ") + folder;
+  const bool has_scope = skipped.scope > 0;
+  if (wanted.empty() && has_scope) {
+    why += ", " + std::to_string(skipped.scope) +
+           " of them from the scope itself (hardware_node reads it; name it to drive with it as a gamepad)";
+  }
+  if (wanted.empty()) {
+    why += std::string(", none of ") + (has_scope ? "the others" : "them") +
+           " with two axes and a button of a gamepad or joystick";
+  }
+  if (skipped.closed > 0) why += "; " + std::to_string(skipped.closed) + " of them " + skipped.problem;
   return why + ". Plug one in.";
 }
 
@@ -73,17 +82,20 @@ std::vector<PadListing> listInputDevices(const std::string& folder) {
 std::unique_ptr<PadSource> openPad(const std::string& wanted, std::string& why, const std::string& folder) {
   if (!wanted.empty() && wanted.front() == '/') return openPath(wanted, why);
   const std::vector<std::string> paths = eventPaths(folder);
-  std::size_t closed = 0;
-  std::string problem;
+  Skipped skipped;
+  skipped.seen = paths.size();
   for (const std::string& path : paths) {
     EvdevDevice device = openEvdev(path);
     if (device.isOpen() && isWanted(wanted, *device.handle, path))
       return std::make_unique<EvdevPad>(std::move(device), path);
-    if (device.isOpen()) continue;
-    ++closed;
-    problem = device.problem;
+    if (device.isOpen()) {
+      skipped.scope += isScopeDevice(*device.handle) ? 1 : 0;
+      continue;
+    }
+    ++skipped.closed;
+    skipped.problem = device.problem;
   }
-  why = explain(wanted, folder, paths.size(), closed, problem);
+  why = explain(wanted, folder, skipped);
   return nullptr;
 }
 

@@ -1,6 +1,9 @@
 #include "vibe_hardware/hid/hidraw_bus.hpp"
 
+#include <fcntl.h>
 #include <hidapi/hidapi.h>
+#include <linux/hidraw.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,6 +14,8 @@
 #include <iterator>
 #include <mutex>
 
+#include "hid/transfer_error.hpp"
+#include "vibe_hardware/hid/file_descriptor.hpp"
 #include "vibe_hardware/hid/report_descriptor.hpp"
 
 namespace vibe {
@@ -30,13 +35,6 @@ std::string narrow(const wchar_t* text) {
   for (; text != nullptr && *text != 0; ++text)
     result += *text >= 0x20 && *text < 0x7F ? static_cast<char>(*text) : '?';
   return result;
-}
-
-/// A device that was unplugged answers ENODEV or EIO; one that does not know a report stalls the request: EPIPE.
-[[noreturn]] void failTransfer(const std::string& path, int error, const std::string& what) {
-  const std::string sentence = path + ": " + what + ": " + std::strerror(error);
-  if (error == EPIPE || error == EINVAL || error == ETIMEDOUT || error == EOVERFLOW) throw ReportRejected(sentence);
-  throw DeviceGone(sentence);
 }
 
 class HidrawPort : public HidPort {
@@ -85,20 +83,26 @@ class HidrawPort : public HidPort {
 };
 
 /// Why a node of the kernel cannot be opened, and what to do.
-[[noreturn]] void failOpen(const std::string& path) {
-  errno = 0;
-  if (access(path.c_str(), R_OK | W_OK) == 0) throw DeviceGone(path + " cannot be opened");
-  if (errno == EACCES || errno == EPERM) {
+[[noreturn]] void failOpen(const std::string& path, int error) {
+  if (error == EACCES || error == EPERM) {
     throw std::runtime_error("This user may not open " + path +
                              ": install the udev rule 60-vibe.rules, plug the device in again and, without a local "
                              "login, join the group plugdev (docs/hardware.md, udev rule).");
   }
-  if (errno == ENOENT &&
+  if (error == ENOENT &&
       access((std::string(kKernelFolder) + path.substr(path.find_last_of('/'))).c_str(), F_OK) == 0) {
     throw std::runtime_error("The kernel knows the device " + path +
                              ", but the file is not here: pass it into this container or start udev.");
   }
-  throw DeviceGone(path + " cannot be opened: " + std::strerror(errno));
+  throw DeviceGone(path + " cannot be opened: " + std::strerror(error));
+}
+
+/// hidapi 0.13 does not say why it cannot open a node, and crashes on one that answers no request.
+void checkNode(const std::string& path) {
+  const FileDescriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK));
+  if (!file) failOpen(path, errno);
+  int size = 0;
+  if (::ioctl(file.get(), HIDIOCGRDESCSIZE, &size) < 0) failOpen(path, errno);
 }
 
 }  // namespace
@@ -134,8 +138,9 @@ std::vector<HidInfo> HidrawBus::list() {
 
 std::unique_ptr<HidPort> HidrawBus::open(const std::string& path) {
   const std::lock_guard<std::mutex> lock(libraryMutex());
+  checkNode(path);
   hid_device* const device = hid_open_path(path.c_str());
-  if (device == nullptr) failOpen(path);
+  if (device == nullptr) throw DeviceGone(narrow(hid_error(nullptr)));
   return std::make_unique<HidrawPort>(device, path);
 }
 

@@ -42,12 +42,18 @@ Packet receive(int file, const std::string& path, double timeout) {
   return packet;
 }
 
-/// @throws DeviceGone if what is there is not a device
+/// What answers is no device of this release.
+struct OtherProtocol : DeviceGone {
+  using DeviceGone::DeviceGone;
+};
+
+/// @throws OtherProtocol; DeviceGone if nothing answers
 Hello greet(int file, const std::string& path) {
   const Packet packet = receive(file, path, kHelloTimeout);
+  if (packet.empty()) throw DeviceGone("Socket " + path + " does not answer as a device: nothing comes from it.");
   const std::optional<Hello> hello = unpackHello(packet.data(), packet.size());
   if (!hello)
-    throw DeviceGone("Socket " + path + " does not answer as a device; start the emulator of the same release.");
+    throw OtherProtocol("Socket " + path + " does not answer as a device; start the emulator of the same release.");
   return *hello;
 }
 
@@ -145,6 +151,7 @@ std::vector<HidInfo> SocketBus::list() {
     throw std::runtime_error("Folder " + folder_ + " cannot be read (" + error.message() +
                              "); choose the folder of the emulator.");
   std::vector<HidInfo> found;
+  std::string problem;
   for (const fs::directory_entry& file : files) {
     if (file.path().extension() != kSocketSuffix) continue;
     const std::string path = file.path();
@@ -153,10 +160,13 @@ std::vector<HidInfo> SocketBus::list() {
     try {
       const Hello hello = greet(socket.get(), path);
       found.push_back({path, hello.vendor, hello.product, hello.serial, hello.name});
+    } catch (const OtherProtocol& other) {
+      problem = other.what();
     } catch (const DeviceGone&) {  // not a device
     }
   }
   serves_ = !found.empty();
+  if (found.empty() && !problem.empty()) throw std::runtime_error(problem);
   std::sort(found.begin(), found.end(), [](const HidInfo& a, const HidInfo& b) { return a.path < b.path; });
   return found;
 }

@@ -87,6 +87,36 @@ TEST_F(DeviceDriverTest, ADeviceThatMayNotBeOpenedIsReportedOnceAndUsedWhenItMay
   EXPECT_EQ(driver.state(), LinkState::Running);
 }
 
+TEST_F(DeviceDriverTest, ADeviceThatIsListedButNeverOpensIsReportedOnceAndUsedWhenItOpens) {
+  device.gone = 1000;
+  run(10);
+  EXPECT_EQ(said.all.size(), 1U);
+  EXPECT_EQ(said.count("The input device at /fake/A1, serial number A1 is there, but opening it fails again and again "
+                       "(/fake/A1: Device or resource busy); end other programs that use it, check the cable"),
+            1);
+  EXPECT_EQ(driver.statistics().state, LinkState::Unusable);
+  EXPECT_NE(driver.statistics().problem, "");
+  device.gone = 0;
+  run(0.5);
+  EXPECT_EQ(driver.state(), LinkState::Running);
+  EXPECT_EQ(driver.statistics().problem, "");
+}
+
+TEST_F(DeviceDriverTest, ADeviceThatIsGoneWhileItIsOpenedIsNoFault) {
+  device.gone = DeviceDriver::kMostFailures - 1;
+  run(2);
+  EXPECT_EQ(driver.state(), LinkState::Running);
+  for (int i = 0; i < 10; ++i) {  // each time it is unplugged it is listed for a moment longer
+    device.plugged = false;
+    run(0.5);
+    device.gone = 1;
+    device.plugged = true;
+    run(0.5);
+  }
+  EXPECT_EQ(driver.state(), LinkState::Running);
+  EXPECT_EQ(said.count("opening it fails"), 0);
+}
+
 TEST_F(DeviceDriverTest, ReconnectsWithinASecond) {
   run(1);
   const std::size_t before = samples.size();
@@ -288,6 +318,19 @@ TEST_F(DeviceDriverTest, RefusesAnswersOfTheWrongSize) {
   device.tamper_feature = [](std::uint8_t, Packet& packet) { packet.resize(3); };
   run(1);
   EXPECT_EQ(said.count("Its status has 3 bytes and id 3 instead of 32 and 3"), 1);
+}
+
+TEST_F(DeviceDriverTest, ADeviceThatDoesNotAnswerHasABadCableAndNoOldFirmware) {
+  device.request = [] { throw NoAnswer("Connection timed out"); };
+  run(1);
+  EXPECT_EQ(driver.statistics().state, LinkState::Unusable);
+  EXPECT_EQ(said.count("It does not answer the request for status in time (Connection timed out); check the cable and "
+                       "plug the device in again."),
+            1);
+  EXPECT_EQ(said.count("install firmware"), 0);
+  device.request = [] { throw ReportRejected("stall"); };
+  run(1);
+  EXPECT_EQ(said.count("It rejects the request for status (stall); install firmware of this release."), 1);
 }
 
 TEST_F(DeviceDriverTest, ChoosesByTheSerialNumber) {

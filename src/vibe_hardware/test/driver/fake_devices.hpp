@@ -31,7 +31,7 @@ class FakeDevice {
 
   /// Power on: counts, sequence number and time begin at 0.
   void start() {
-    haptic_ = std::make_unique<vibe_firmware::HapticFunction>(vibe_firmware::HapticConfig{}, serial_.c_str());
+    haptic_ = std::make_unique<vibe_firmware::HapticFunction>(haptic_config, serial_.c_str());
     input_ = std::make_unique<vibe_firmware::InputFunction>(vibe_firmware::InputConfig{}, serial_.c_str());
     sample = {};
     waiting.clear();
@@ -55,15 +55,18 @@ class FakeDevice {
     waiting.emplace_back(arrival, packet);
   }
 
+  vibe_firmware::HapticConfig haptic_config;  ///< at the next start()
   bool plugged = true;
   bool stopped = false;  ///< the firmware hangs: no reports, no answers
   double clock_rate = 1;
   std::function<double()> delay = [] { return 0.0; };            ///< of the next report [s]
   std::function<Packets(const Packet&)> tamper;                  ///< what becomes of a report
   std::function<void(std::uint8_t id, Packet&)> tamper_feature;  ///< what becomes of an answer
+  std::function<void()> request;                                 ///< called at each request for a feature report
   vibe_firmware::HapticSample sample;                            ///< what the board reads
   std::deque<std::pair<double, Packet>> waiting;                 ///< reports with their times of arrival
   std::vector<double> sample_times;                              ///< of the bus, of all reports [s]
+  int gone = 0;                                                  ///< times that opening it fails as if it were gone
   std::string open_error;                                        ///< sentence if it may not be opened
 
  private:
@@ -120,6 +123,7 @@ class FakeBus : public HidBus {
   std::unique_ptr<HidPort> open(const std::string& path) override {
     for (FakeDevice* device : devices) {
       if (!device->plugged || device->info().path != path) continue;
+      if (device->gone > 0 && device->gone-- > 0) throw DeviceGone(path + ": Device or resource busy");
       if (!device->open_error.empty()) throw std::runtime_error(device->open_error);
       device->waiting.clear();
       return std::make_unique<Port>(*this, *device);
@@ -149,6 +153,7 @@ class FakeBus : public HidBus {
 
     std::size_t getFeature(std::uint8_t id, std::uint8_t* bytes, std::size_t capacity) override {
       check();
+      if (device_.request) device_.request();
       const std::size_t size = device_.function().getReport(vibe_firmware::ReportType::Feature, id, bytes, capacity);
       if (size == 0) throw ReportRejected("stall");
       Packet packet(bytes, bytes + size);
@@ -159,6 +164,7 @@ class FakeBus : public HidBus {
 
     void setFeature(const std::uint8_t* bytes, std::size_t size) override {
       check();
+      if (device_.request) device_.request();
       if (!device_.function().setReport(vibe_firmware::ReportType::Feature, bytes[0], bytes, size)) {
         throw ReportRejected("stall");
       }

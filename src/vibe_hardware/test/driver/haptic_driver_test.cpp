@@ -107,6 +107,18 @@ TEST_F(HapticDriverTest, TheEndOfAContactFadesTheSpring) {
   EXPECT_EQ(state().parameters.axes[0].stiffness, 0);
 }
 
+TEST_F(HapticDriverTest, ForAPauseAfterAReleaseNoTargetIsTaken) {
+  runTouching(0.5, spring(0.1, 0, 0.2));
+  driver.release(0.1);
+  driver.release();  // does not shorten the pause
+  runTouching(0.099, spring(0.1, 0, 0.5));
+  EXPECT_EQ(state().parameters.axes[0].stiffness, 0);
+  EXPECT_NE(state().parameters.axes[0].position, 0.5F);
+  runTouching(0.1, spring(0.1, 0, 0.5));
+  EXPECT_FLOAT_EQ(state().parameters.axes[0].stiffness, 0.1F);
+  EXPECT_FLOAT_EQ(state().parameters.axes[0].position, 0.5F);
+}
+
 TEST_F(HapticDriverTest, ClampsToWhatIsPassiveAndTheDeviceAccepts) {
   runTouching(0.5, spring(100, 1, 0));
   const vibe_firmware::AxisConfig axis;
@@ -154,6 +166,14 @@ TEST_F(HapticDriverTest, ARefusalIsReportedWithItsReason) {
   EXPECT_FALSE(driver.statistics().in_force);
 }
 
+TEST_F(HapticDriverTest, ParametersThatAreNotAnsweredAreNoFaultOfTheirForm) {
+  run(0.3);
+  device.request = [] { throw NoAnswer("Connection timed out"); };
+  runTouching(0.5, spring(0.1));
+  EXPECT_EQ(said.count("does not take parameters. It does not answer the parameters in time"), 1);
+  EXPECT_EQ(said.count("rejects the form"), 0);
+}
+
 TEST_F(HapticDriverTest, AfterAReplugTheParametersAreSentAgainAndReadBack) {
   runTouching(1, spring(0.1, 0, 0.2));
   device.plugged = false;
@@ -169,6 +189,24 @@ TEST_F(HapticDriverTest, AfterAReplugTheParametersAreSentAgainAndReadBack) {
   EXPECT_FLOAT_EQ(state().parameters.axes[0].stiffness, 0.1F);
   EXPECT_GE(reads, 1);
   EXPECT_EQ(driver.statistics().mismatched, 0U);
+}
+
+TEST_F(HapticDriverTest, AWeakerDeviceDoesNotGetTheSpringOfTheOneBefore) {
+  runTouching(1, spring(0.1, 0, 0.2));
+  device.plugged = false;
+  run(1);
+  for (vibe_firmware::AxisConfig& axis : device.haptic_config.axes) axis.torque_limit *= 0.5F;
+  device.start();
+  device.plugged = true;
+  samples.clear();
+  run(2);
+  EXPECT_NE(accepted(), 0U);
+  EXPECT_EQ(driver.statistics().refused, 0U);
+  EXPECT_EQ(said.count("refused"), 0);
+  EXPECT_TRUE(driver.statistics().in_force);
+  EXPECT_EQ(samples.back().flags & vibe_firmware::kHostSilent, 0);
+  runTouching(0.2, spring(0.1, 0, 0.2));
+  EXPECT_FLOAT_EQ(state().parameters.axes[0].stiffness, 0.1F);
 }
 
 TEST_F(HapticDriverTest, ParametersThatReadBackDifferentlyAreReported) {

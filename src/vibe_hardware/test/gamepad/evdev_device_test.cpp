@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "vibe_firmware/protocol/descriptors.hpp"
 #include "vibe_hardware/gamepad/pad_finder.hpp"
 
 namespace vibe {
@@ -22,6 +23,10 @@ class Description {
     libevdev_enable_event_code(device_.get(), EV_ABS, code, &info);
   }
   void button(unsigned code) { libevdev_enable_event_code(device_.get(), EV_KEY, code, nullptr); }
+  void id(int vendor, int product) {
+    libevdev_set_id_vendor(device_.get(), vendor);
+    libevdev_set_id_product(device_.get(), product);
+  }
   libevdev& get() { return *device_; }
 
  private:
@@ -58,6 +63,21 @@ TEST(EvdevDevice, KeyboardsTouchpadsAndAccelerometersAreNot) {
   Description sensor = gamepad();
   libevdev_enable_property(&sensor.get(), INPUT_PROP_ACCELEROMETER);
   EXPECT_FALSE(isPad(sensor.get()));
+}
+
+TEST(EvdevDevice, DevicesOfTheScopeAreTakenOnlyByName) {
+  for (const int product : {vibe_firmware::kHapticProductId, vibe_firmware::kInputProductId}) {
+    Description device = gamepad();
+    device.id(vibe_firmware::kVendorId, product);
+    EXPECT_TRUE(isPad(device.get()));
+    EXPECT_FALSE(isWanted("", device.get(), "/dev/input/event3"));
+    EXPECT_TRUE(isWanted("Test", device.get(), "/dev/input/event3"));
+  }
+  Description other = gamepad();
+  for (const auto& [vendor, product] : {std::pair(0x045E, 0x0001), std::pair(0x1209, 0x0003)}) {
+    other.id(vendor, product);  // another vendor, or another device of this shared vendor id
+    EXPECT_TRUE(isWanted("", other.get(), "/dev/input/event3"));
+  }
 }
 
 TEST(EvdevDevice, StateHasRangesAndPresentValues) {

@@ -27,6 +27,16 @@ TEST(HidrawBus, ADeviceThatIsNotThereIsGone) {
   EXPECT_THROW(bus.open("/dev/hidraw_none"), DeviceGone);
 }
 
+TEST(HidrawBus, WhatCannotBeOpenedIsNamed) {
+  HidrawBus bus;
+  try {
+    bus.open("/dev/null");
+    ADD_FAILURE() << "it was opened";
+  } catch (const DeviceGone& gone) {
+    EXPECT_STREQ(gone.what(), "/dev/null cannot be opened: Inappropriate ioctl for device");
+  }
+}
+
 TEST(HidrawBus, WhatMayNotBeOpenedNamesTheUdevRule) {
   if (geteuid() == 0) GTEST_SKIP() << "root may open everything";
   char file[] = "/tmp/vibe_hidrawXXXXXX";

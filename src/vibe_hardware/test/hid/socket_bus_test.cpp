@@ -86,6 +86,36 @@ TEST(SocketBus, DoesNotListWhatIsNoDevice) {
   EXPECT_THROW(bench.bus.open(bench.folder.path() + "/none.hid"), DeviceGone);
 }
 
+TEST(SocketBus, ADeviceOfAnotherReleaseIsReportedIfItIsTheOnlyOne) {
+  SocketFolder folder;
+  const FileDescriptor listener = listenAt(folder.path() + "/old.hid");
+  Bytes hello = packHello({1, 2, "serial", "name", Bytes(100, 7)});
+  const auto listGreetedWith = [&](const Bytes& greeting) {
+    std::thread device([&] {
+      waitReadable(listener.get(), 5);
+      const FileDescriptor file(::accept(listener.get(), nullptr, nullptr));
+      sendRaw(file.get(), greeting);
+    });
+    std::string said;
+    try {
+      said = std::to_string(SocketBus(folder.path()).list().size()) + " listed";
+    } catch (const std::runtime_error& error) {
+      said = error.what();
+    }
+    device.join();
+    return said;
+  };
+  EXPECT_EQ(listGreetedWith(hello), "1 listed");
+  ++hello[1];  // version of the protocol
+  const std::string sentence =
+      "Socket " + folder.path() + "/old.hid does not answer as a device; start the emulator of the same release.";
+  EXPECT_EQ(listGreetedWith(hello), sentence);
+  EXPECT_EQ(listGreetedWith({}), "0 listed") << "it may be about to end";
+  FakeFunction function;
+  const ServedDevice good(folder.path(), "haptic", function);
+  EXPECT_EQ(listGreetedWith(hello), "1 listed");
+}
+
 TEST(SocketBus, ExchangesFeatureReports) {
   Bench bench;
   const auto port = bench.bus.open(bench.path);

@@ -46,6 +46,9 @@ class DeviceDriver {
   static constexpr double kSearchPeriod = 0.2;  ///< between searches for a device that is not there [s]
   static constexpr double kSilence = 0.25;      ///< without a good report, after which the device has stopped [s]
 
+  /// Times in a row that a listed device may be gone when it is opened, as while it is unplugged; then it is unusable.
+  static constexpr int kMostFailures = 5;
+
   static constexpr double kQuiet = 0.05;  ///< without a good report, after which nothing is asked of it [s]
 
   struct Callbacks {
@@ -90,6 +93,8 @@ class DeviceDriver {
   double last_sample_ = -1;
   double next_status_ = 0;
   std::uint64_t connections_ = 0;
+  std::string failed_path_;  // of the listed device that was gone when it was opened
+  int failures_ = 0;         // times in a row
   std::uint8_t flags_ = 0;
 
   void search();
@@ -97,6 +102,7 @@ class DeviceDriver {
   std::vector<HidInfo> listMatching();
   void noteAbsence();
   void connect(const HidInfo& info);
+  void noteFailure(const HidInfo& info, const std::string& reason);
   void setUnusable(const std::string& what);
   void readReports(double wait);
   void takeReport(const std::uint8_t* bytes, std::size_t size);

@@ -34,7 +34,8 @@ class HapticDriver {
 
   /// Spring-dampers to render from now on, in units of the axes; finite, stiffness and damping at least 0.
   void setTarget(const Targets& targets);
-  void release();
+  /// @param pause  for which targets are ignored, because they may have been computed before [s]
+  void release(double pause = 0);
 
   DeviceDriver& device() { return device_; }
   HapticStatistics statistics() const { return statistics_; }
@@ -47,6 +48,7 @@ class HapticDriver {
   std::mutex inbox_mutex_;
   std::optional<Targets> inbox_;
   bool inbox_release_ = false;
+  double ignored_until_ = 0;  // targets [s]
   DeviceDriver::Callbacks user_;
   HapticLink link_;
   HapticStatistics statistics_;

@@ -21,8 +21,9 @@ class HapticLink {
   void setTarget(const Springs& springs, double now);
   /// The contact has ended: fades out what is left.
   void release(double now);
-  /// The device has been opened: sends the present parameters again, at once.
-  void resend() { last_sent_ = kNever; }
+  /// A device has been opened, perhaps another one with other limits: forgets the target, and sends parameters without
+  /// a spring at once.
+  void restart();
 
   /// Parameters that are due now, if any. Counts as sent.
   std::optional<vibe_firmware::ParameterReport> next(double now);

@@ -20,7 +20,8 @@ struct PadListing {
 std::vector<PadListing> listInputDevices(const std::string& folder = "/dev/input");
 
 /// Opens a pad.
-/// @param wanted  a path, or a part of the name or of the phys of a device; empty: the first pad
+/// @param wanted  a path, or a part of the name or of the phys of a device; empty: the first pad that is not a
+///                device of the scope
 /// @param why     if none is opened: one sentence that says what was looked for, what was seen and what to do
 /// @return null if there is none
 std::unique_ptr<PadSource> openPad(const std::string& wanted, std::string& why,

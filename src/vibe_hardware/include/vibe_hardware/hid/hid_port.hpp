@@ -20,6 +20,11 @@ struct ReportRejected : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The device is there but does not answer a request in time: its firmware hangs, or the cable is bad.
+struct NoAnswer : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// One device that can be opened.
 struct HidInfo {
   std::string path;  ///< to open it: "/dev/hidraw0", or that of a socket
@@ -38,10 +43,10 @@ class HidPort {
   /// @throws DeviceGone
   virtual std::size_t read(std::uint8_t* bytes, std::size_t capacity, double timeout) = 0;
 
-  /// Gets a feature report. @return its size  @throws DeviceGone, ReportRejected
+  /// Gets a feature report. @return its size  @throws DeviceGone, ReportRejected, NoAnswer
   virtual std::size_t getFeature(std::uint8_t id, std::uint8_t* bytes, std::size_t capacity) = 0;
 
-  /// Sets a feature report. @throws DeviceGone, ReportRejected
+  /// Sets a feature report. @throws DeviceGone, ReportRejected, NoAnswer
   virtual void setFeature(const std::uint8_t* bytes, std::size_t size) = 0;
 
   /// HID report descriptor of the device; empty if the bus does not know it. @throws DeviceGone

@@ -9,7 +9,8 @@ namespace vibe {
 std::string defaultSocketFolder();
 
 /// Devices behind local sockets, as the emulator offers them: see socket_protocol.hpp. Sockets that nobody serves any
-/// more, and those that do not answer as a device does, are not listed.
+/// more, and those that do not answer as a device does, are not listed; list() throws if there are only devices of
+/// another release.
 class SocketBus : public HidBus {
  public:
   /// @param folder  of the sockets; need not exist yet
