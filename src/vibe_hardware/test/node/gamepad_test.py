@@ -199,7 +199,7 @@ class GamepadTest(unittest.TestCase):
                 ({"replay": "/nowhere.evemu"}, "nowhere.evemu"),
                 ({"record": "/nowhere/pad.evemu"}, "Cannot write the pad recording '/nowhere/pad.evemu'"),
                 ({"mappping": "x"}, "did you mean 'mapping'?"),
-                ({"rate": 1000}, "Parameter /gamepad_node/rate is not a number from 60 Hz to 100 Hz"),
+                ({"rate": 1000}, "Parameter /gamepad_node/rate must be a number from 60 Hz to 100 Hz"),
             ]:
                 node = self.start(**parameters)
                 self.assertEqual(node.ends(), 2, node.lines)
