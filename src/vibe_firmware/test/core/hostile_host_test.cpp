@@ -61,7 +61,14 @@ class Session {
     }
   }
 
+  /// Index pulses at random ticks, up to an eighth of a turn from where they should be.
+  void addWrongPulses() { wrong_pulses_ = true; }
+
   double measured() const { return std::max(shafts_[0].measured.value(), shafts_[1].measured.value()); }
+  /// Whether a pulse has corrected the count of axis 0, which is then no longer that of the shaft.
+  bool isCorrected() const {
+    return shafts_[0].count(axis()) != (static_cast<std::uint32_t>(state_.axes[0].encoder.count) & 0xFFFF);
+  }
   double net() const { return std::max(shafts_[0].net.value(), shafts_[1].net.value()); }
   const HapticState& state() const { return state_; }
   bool sane() const { return sane_; }
@@ -91,7 +98,10 @@ class Session {
 
   void control() {
     HapticSample sample;
-    for (std::size_t i = 0; i < kAxisCount; ++i) sample.counter[i] = shafts_[i].count(config_.axes[i]);
+    for (std::size_t i = 0; i < kAxisCount; ++i) {
+      sample.counter[i] = shafts_[i].count(config_.axes[i]);
+      if (wrong_pulses_ && uniform(0, 1) < 0.02F) addWrongPulse(i, sample);
+    }
     const std::array<float, kAxisCount> torque = step(config_, sample, state_);
     for (std::size_t i = 0; i < kAxisCount; ++i) {
       sane_ = sane_ && std::fabs(torque[i]) <= config_.axes[i].torque_limit && state_.axes[i].energy.balance >= 0;
@@ -99,8 +109,20 @@ class Session {
     }
   }
 
+  void addWrongPulse(std::size_t i, HapticSample& sample) {
+    const EncoderState& encoder = state_.axes[i].encoder;
+    const auto turn = static_cast<int>(config_.axes[i].counts_per_turn);
+    const int count = encoder.count + static_cast<std::int16_t>(sample.counter[i] - encoder.counter);
+    const int right = encoder.index_count +
+                      turn * static_cast<int>(std::floor(static_cast<double>(count - encoder.index_count) / turn));
+    const int pulse = right + static_cast<int>(uniform(-0.124F, 0.124F) * static_cast<float>(turn));
+    sample.index[i] = true;
+    sample.index_counter[i] = static_cast<std::uint32_t>(static_cast<int>(sample.counter[i]) + pulse - count) & 0xFFFF;
+  }
+
   std::mt19937 random_;
   bool sane_ = true;
+  bool wrong_pulses_ = false;
 };
 
 /// Valid, invalid and senseless sets; the hand wanders.
@@ -218,6 +240,7 @@ TEST(HostileHost, RandomSetsNeverGiveMoreThanTheCapacity) {
   EXPECT_LE(session.net(), kCapacity * kRounding + hidden(config));
   EXPECT_GT(session.state().status.accepted, 50000U);
   EXPECT_GT(session.state().status.refused, 20000U);
+  EXPECT_FALSE(session.isCorrected());
   EXPECT_FALSE(session.state().status.flags & kEncoderFault);
   RecordProperty("most_given_J", std::to_string(session.measured()));
 }
@@ -233,6 +256,19 @@ TEST(HostileHost, ConspiracyOfHostAndHandGetsNoMoreThanTheCapacity) {
     EXPECT_GT(session.measured(), 0.5 * kCapacity) << "the test must come near the bound; damping " << damping;
     RecordProperty("most_given_J", std::to_string(session.measured()));
   }
+}
+
+TEST(HostileHost, WrongIndexPulsesGiveNoMoreThanTheCapacity) {
+  const HapticConfig config = withCapacity(kCapacity);
+  ConspiringSession session(config, 4, 0.5F);
+  session.addWrongPulses();
+  session.run(kTicks);
+  EXPECT_TRUE(session.sane());
+  EXPECT_FALSE(session.state().status.flags & kEncoderFault);
+  EXPECT_TRUE(session.isCorrected());
+  EXPECT_LE(session.measured(), kCapacity * kRounding);
+  EXPECT_LE(session.net(), kCapacity * kRounding + hidden(config));
+  EXPECT_GT(session.measured(), 0.5 * kCapacity) << "the test must come near the bound";
 }
 
 TEST(HostileHost, MotionWithinOneCountGetsNoMoreThanTheCapacity) {
