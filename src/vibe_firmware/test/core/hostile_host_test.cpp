@@ -67,7 +67,8 @@ class Session {
   double measured() const { return std::max(shafts_[0].measured.value(), shafts_[1].measured.value()); }
   /// Whether a pulse has corrected the count of axis 0, which is then no longer that of the shaft.
   bool isCorrected() const {
-    return shafts_[0].count(axis()) != (static_cast<std::uint32_t>(state_.axes[0].encoder.count) & 0xFFFF);
+    const EncoderState& encoder = state_.axes[0].encoder;
+    return ((encoder.counter - first_counter_) & 0xFFFF) != (static_cast<std::uint32_t>(encoder.count) & 0xFFFF);
   }
   double net() const { return std::max(shafts_[0].net.value(), shafts_[1].net.value()); }
   const HapticState& state() const { return state_; }
@@ -102,6 +103,7 @@ class Session {
       sample.counter[i] = shafts_[i].count(config_.axes[i]);
       if (wrong_pulses_ && uniform(0, 1) < 0.02F) addWrongPulse(i, sample);
     }
+    if (!state_.axes[0].encoder.started) first_counter_ = sample.counter[0];
     const std::array<float, kAxisCount> torque = step(config_, sample, state_);
     for (std::size_t i = 0; i < kAxisCount; ++i) {
       sane_ = sane_ && std::fabs(torque[i]) <= config_.axes[i].torque_limit && state_.axes[i].energy.balance >= 0;
@@ -123,6 +125,7 @@ class Session {
   std::mt19937 random_;
   bool sane_ = true;
   bool wrong_pulses_ = false;
+  std::uint32_t first_counter_ = 0;  // of axis 0, where its count is 0
 };
 
 /// Valid, invalid and senseless sets; the hand wanders.
