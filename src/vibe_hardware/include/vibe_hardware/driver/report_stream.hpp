@@ -5,7 +5,7 @@
 #include <string>
 
 #include "vibe_firmware/protocol/reports.hpp"
-#include "vibe_hardware/driver/device_clock.hpp"
+#include "vibe_core/common/device_clock.hpp"
 
 namespace vibe {
 

@@ -1,4 +1,4 @@
-#include "vibe_hardware/driver/device_clock.hpp"
+#include "vibe_core/common/device_clock.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "vibe_vision/image/frame.hpp"
+
+namespace vibe {
+
+/// What went wrong so far; all counts only grow.
+struct SourceStatistics {
+  std::uint64_t frames = 0;      ///< delivered
+  std::uint64_t lost = 0;        ///< gaps of the camera's sequence
+  std::uint64_t incomplete = 0;  ///< packets missing: thrown away
+  std::uint64_t reconnects = 0;
+};
+
+enum class ReadResult {
+  Frame,    ///< a new one
+  Timeout,  ///< none yet; call again
+  Gone,     ///< the camera does not answer; read() tries to open it again, at most once per second
+  End,      ///< of a recording
+};
+
+/// Where frames come from. One thread reads.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  /// Waits for the next frame. @param timeout [s]
+  virtual ReadResult read(Frame& frame, double timeout) = 0;
+  virtual SourceStatistics statistics() const = 0;
+  /// One line for people: what it is, or what is wrong with it and the remedy.
+  virtual std::string status() const = 0;
+};
+
+/// Opens one by its address:
+///   "v4l2:/dev/video0"    a V4L2 camera, through OpenCV
+///   "gige:NAME" or "gige:ADDRESS" or "gige:"   a GigE Vision or USB3 Vision camera, through Aravis; the first found
+///   "video:FILE"          a recording; with FILE.csv beside it (sequence, stamp, exposure) its stamps are kept
+///   "images:GLOB"         single images in the order of their names; stamps as for a recording, from DIR/frames.csv
+struct SourceOptions {
+  double exposure = 1e-3;  ///< [s]; asked of a camera, taken as given for a recording
+  double rate = 147;       ///< [Hz]; asked of a camera, taken as given for a recording without stamps
+  int roi_x = 0, roi_y = 0, roi_width = 0, roi_height = 0;  ///< asked of a GigE camera; 0: full sensor
+  double gain = -1;                                         ///< [dB]; -1: leave as it is
+  bool paced = false;  ///< recordings only: deliver in real time instead of as fast as they are read
+  bool loop = false;   ///< recordings only
+};
+/// @throws Error with remedy for an address that cannot be understood or a file that cannot be read; a camera that is
+///         not there is no error: read() keeps trying
+std::unique_ptr<FrameSource> openSource(const std::string& address, const SourceOptions& options);
+
+}  // namespace vibe

@@ -1,0 +1,64 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "vibe_vision/config/slide_axis.hpp"
+#include "vibe_vision/image/camera_model.hpp"
+#include "vibe_vision/marker/marker_design.hpp"
+
+namespace vibe {
+
+/// Noise of a pixel, in grey values (DN): variance = gain * value + read^2 (photon transfer, EMVA 1288).
+struct PixelNoise {
+  double gain = 0.096;  ///< [DN]; 10.6 ke- full well and 12 dB of analogue gain
+  double read = 0.6;    ///< standard deviation in the dark, rounding included [DN]
+};
+
+/// How fast an instrument may move; what moves faster is not the instrument.
+struct MotionLimits {
+  double max_speed = 0.8;         ///< [m/s]
+  double max_acceleration = 30;   ///< [m/s^2]
+  double max_angular_speed = 40;  ///< of the rod [rad/s]
+};
+
+/// One instrument: a marker that slides along an axis.
+struct InstrumentConfig {
+  std::string name;  ///< e.g. "helix", "needle_driver"
+  MarkerDesign marker;
+  SlideAxis axis;
+  double lower = 0, upper = 0;      ///< slide beyond which nothing is looked for [m]
+  double lateral_tolerance = 5e-4;  ///< by which the marker's centre may leave the axis [m]
+  MotionLimits motion;
+  std::string slide_joint;                        ///< name in JointState, e.g. "helix_advance"
+  std::string rotation_joint;                     ///< empty for a ring
+  double slide_sign = 1, slide_offset = 0;        ///< joint = sign * slide + offset [m]
+  double rotation_sign = 1, rotation_offset = 0;  ///< [rad]
+};
+
+/// What counts as seen. Everything else is reported as lost, with the reason.
+struct GateConfig {
+  double min_contrast = 20;       ///< white - black [DN]
+  double min_visible = 0.4;       ///< share of the marker's information that must be seen, 0 to 1
+  double max_scale_error = 0.15;  ///< of the marker's size relative to the calibrated one
+  double max_tilt = 0.35;         ///< of the marker in the image [rad]
+};
+
+/// Everything the tracker needs to know about a rig. docs/vision.md, "Configuration".
+struct VisionConfig {
+  CameraModel camera;
+  PixelNoise noise;
+  double blur = 0.6;  ///< standard deviation of the point spread function in focus [px]
+  GateConfig gates;
+  std::vector<InstrumentConfig> instruments;
+
+  /// @param address  file, or package:// address
+  /// @throws Error with file, line, key and remedy
+  static VisionConfig load(const std::string& address);
+  /// @param place  what to call the text in errors
+  static VisionConfig parse(const std::string& yaml, const std::string& place);
+};
+
+/// YAML that parse() reads back to the same values, with residuals of calibrations.
+std::string toYaml(const VisionConfig& config);
+
+}  // namespace vibe

@@ -1,0 +1,44 @@
+#pragma once
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace vibe {
+
+/// A black ring on a white square: slide only. It is printed flat and looks at the camera.
+struct RingDesign {
+  double outer_diameter = 4e-3;  ///< [m]
+  double inner_diameter = 2e-3;  ///< [m]
+  double side = 7e-3;            ///< of the white square around it [m]
+};
+
+/// Black from `begin` to `end`, distances from the sleeve's centre along its axis [m].
+struct Bar {
+  double begin = 0, end = 0;
+};
+
+/// A printed sleeve around a rod: bars around the whole rod give the slide, a helical stripe the rotation. u is the
+/// distance along the axis from the sleeve's centre, phi the angle around it by the right-hand rule about +u; phi = 0
+/// looks at the camera when the rotation is 0. White wherever neither is black.
+struct SleeveDesign {
+  double diameter = 3e-3;                 ///< [m]
+  double length = 10e-3;                  ///< with its white ends [m]
+  std::vector<Bar> bars;                  ///< ascending, not periodic: no shift matches two of them except 0
+  double helix_begin = 0, helix_end = 0;  ///< where the stripe is [m]
+  double helix_pitch = 0;                 ///< advance of the stripe in one turn [m]; positive: u grows with phi
+  double helix_duty = 0.5;                ///< black part of a pitch, (0, 1)
+  // black where fract(u / helix_pitch - (phi + rotation) / (2 pi) + helix_duty / 2) < helix_duty
+};
+
+using MarkerDesign = std::variant<RingDesign, SleeveDesign>;
+
+/// The sleeve that ships: 3 mm rod.
+SleeveDesign defaultSleeve();
+/// Everything a printed marker must fulfil. @throws Error with one sentence that names `place`
+void checkMarker(const MarkerDesign& design, const std::string& place);
+/// 1: white, 0: black, at a point of the ring's plane [m] from its centre.
+double reflectance(const RingDesign& design, double x, double y);
+/// At u [m] and phi [rad] on the sleeve, for rod rotation 0.
+double reflectance(const SleeveDesign& design, double u, double phi);
+
+}  // namespace vibe

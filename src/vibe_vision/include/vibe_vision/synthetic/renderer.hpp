@@ -1,0 +1,40 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "vibe_vision/image/frame.hpp"
+#include "vibe_vision/synthetic/synthetic_scene.hpp"
+
+namespace vibe {
+
+struct RenderedFrame {
+  Frame frame;
+  std::vector<SyntheticTruth> truth;  ///< by instrument
+};
+
+/// Draws what the camera of a scene sees: surfaces are sampled finely in space and over the exposure, then blurred by
+/// the optics, lit, and read out with noise. It shares no code with the tracker except the marker designs and the
+/// camera model. Frame k is the same whenever it is drawn.
+class Renderer {
+ public:
+  explicit Renderer(const SyntheticScene& scene);
+  ~Renderer();
+  /// @param index  frame number; the middle of its exposure is at start + index / rate
+  RenderedFrame render(std::uint64_t index, double start = 0) const;
+  /// Expected grey values before noise and rounding, row by row.
+  std::vector<float> renderExpected(std::uint64_t index) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Smallest standard deviation that any unbiased estimator can have (Cramer-Rao bound), from the rendered picture and
+/// its noise; position along and across, gain, offset, and the rotation if the marker shows it, are unknown.
+struct MarkerBound {
+  double along = 0;     ///< [px]
+  double rotation = 0;  ///< [rad]; 0 if the marker does not show it
+};
+MarkerBound cramerRaoBound(const SyntheticScene& scene, std::size_t instrument, std::uint64_t index);
+
+}  // namespace vibe

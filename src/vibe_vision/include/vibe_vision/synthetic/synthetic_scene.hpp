@@ -1,0 +1,78 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "vibe_vision/config/vision_config.hpp"
+
+namespace vibe {
+
+/// Motion of one instrument in a synthetic scene.
+struct SyntheticMotion {
+  std::function<double(double)> slide;     ///< time [s] -> [m]
+  std::function<double(double)> rotation;  ///< time [s] -> [rad]
+};
+
+/// A square tag of another library, to be compared with: its cells row by row, border included, 1: white.
+struct SyntheticTag {
+  int cells = 0;  ///< per side; 0: no tag
+  std::vector<std::uint8_t> white;
+  double side = 4e-3;  ///< of the cells together; one cell of white is around them [m]
+};
+
+/// An instrument as it truly is, in the camera frame (x right, y down, z forward) [m].
+struct SyntheticInstrument {
+  InstrumentConfig nominal;  ///< as calibrated; marker and axis
+  SyntheticTag tag;          ///< drawn instead of nominal.marker if it has cells
+  SyntheticMotion motion;
+  double tilt = 0;     ///< of marker and axis about the view direction [rad]
+  double slant = 0;    ///< of the marker about the direction across the axis, out of the image plane [rad]
+  double scale = 1;    ///< of the picture of the marker
+  double lateral = 0;  ///< offset of the marker across the axis [m]
+};
+
+/// What spoils a picture. The default spoils nothing but noise and focus blur.
+struct Degradation {
+  double exposure = 1e-3;  ///< [s]
+  double blur = 0.6;       ///< standard deviation of the point spread function [px]
+  PixelNoise noise;
+  double flicker = 0;                  ///< relative amplitude at 100 Hz
+  double drift = 0;                    ///< relative change of the light per second
+  double vignetting = 0;               ///< share of the light lost in the corners
+  std::array<double, 5> distortion{};  ///< the config's camera has the same: a calibrated lens
+  int highlights = 0;                  ///< saturated spots per marker that do not move with it
+  bool occluder = false;               ///< a bar that sweeps across the axes
+  bool look_alike = false;             ///< the same marker, 0.75 times as large, that passes beside
+};
+
+struct SyntheticScene {
+  CameraModel camera;  ///< with Degradation::distortion
+  double rate = 147;   ///< [Hz]
+  std::vector<SyntheticInstrument> instruments;
+  Degradation degradation;
+  double white = 170, black = 25, background = 90;  ///< [DN] at full light; the background is textured
+  std::uint64_t seed = 1;
+};
+
+/// Where an instrument truly is in one frame, at the middle of the exposure.
+struct SyntheticTruth {
+  double slide = 0, rotation = 0;  ///< [m], [rad]
+  double along = 0, lateral = 0;   ///< of the marker's centre relative to the nominal axis, undistorted [px]
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< distorted [px]
+  double velocity = 0;                              ///< along [px/s]
+  double visible = 1;  ///< share of the marker's area that is neither covered nor out of view
+};
+
+/// The rig as a calibration would describe it.
+VisionConfig nominalConfig(const SyntheticScene& scene);
+
+/// Two instruments, helix sleeve and needle-driver ring, at 0.1 mm/px in 728 x 544; they move with a peak of 0.5 m/s.
+SyntheticScene standardScene();
+/// The degradations of the benchmark by name: "static", "moving" (1 ms), "long_exposure" (4 ms), "defocus", "light",
+/// "highlights", "occluder", "look_alike", "all", "tilt", "scale". @throws Error for another name, with those there are
+SyntheticScene namedScene(const std::string& name);
+std::vector<std::string> sceneNames();
+
+}  // namespace vibe
