@@ -22,11 +22,14 @@ struct MarkerPose {
   double log_aspect = 0;  ///< log of (size along / size across); a slanted marker has less than 0
   double blur = 0;        ///< standard deviation of the point spread function [px], without the pixel's own area
   double keystone = 0;    ///< relative growth of the picture along the axis: one end is nearer to the camera [1/px]
+  /// Of a rod, out of the image plane; positive: its positive end is further from the camera [rad]. It bends the bars,
+  /// which shows the sign too. A flat marker has log_aspect and keystone instead.
+  double slant = 0;
 };
-constexpr int kPoseParameters = 8;
+constexpr int kPoseParameters = 9;
 using PoseVector = Eigen::Matrix<double, kPoseParameters, 1>;  ///< in the order of MarkerPose
 /// Places in PoseVector and in the arrays below.
-enum PoseIndex { kAlong, kLateral, kRotation, kLogScale, kTilt, kLogAspect, kBlur, kKeystone };
+enum PoseIndex { kAlong, kLateral, kRotation, kLogScale, kTilt, kLogAspect, kBlur, kKeystone, kSlant };
 
 /// Vectors of floats are filled up to a multiple of this.
 constexpr std::size_t kLanes = 8;
