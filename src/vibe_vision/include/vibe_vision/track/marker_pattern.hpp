@@ -17,8 +17,11 @@ struct MarkerPose {
   double tilt = 0;        ///< in the image [rad]
   double log_aspect = 0;  ///< log of (size along / size across) relative to a marker that looks at the camera
   double blur = 0;        ///< standard deviation of the point spread function [px]
+  /// Of a rod, out of the image plane; positive: its positive end is further from the camera [rad]. It bends the bars,
+  /// which shows the sign too. A flat marker has log_aspect instead.
+  double slant = 0;
 };
-constexpr int kPoseParameters = 7;
+constexpr int kPoseParameters = 8;
 using PoseVector = Eigen::Matrix<double, kPoseParameters, 1>;  ///< in the order of MarkerPose
 
 /// Pixels to compare with, as structure of arrays: undistorted position along and across the axis, relative to
