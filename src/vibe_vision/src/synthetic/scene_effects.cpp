@@ -1,5 +1,6 @@
 #include "synthetic/scene_effects.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -27,6 +28,14 @@ double meanScale(const SyntheticScene& scene) {
   double sum = 0;
   for (const SyntheticInstrument& i : scene.instruments) sum += i.nominal.axis.pixels_per_metre;
   return scene.instruments.empty() ? 0 : sum / static_cast<double>(scene.instruments.size());
+}
+
+/// Half extents of what is printed on a marker, without the white around it [m].
+Eigen::Vector2d patternExtents(const SyntheticInstrument& instrument) {
+  if (instrument.tag.cells > 0) return Eigen::Vector2d::Constant(instrument.tag.side / 2 * instrument.scale);
+  if (const auto* ring = std::get_if<RingDesign>(&instrument.nominal.marker))
+    return Eigen::Vector2d::Constant(ring->outer_diameter / 2 * instrument.scale);
+  return halfExtents(instrument);
 }
 
 /// Passes beside the instrument on a parallel line, against its direction of motion.
@@ -72,13 +81,13 @@ Highlights::Highlights(const SyntheticScene& scene, std::size_t instrument) {
   const InstrumentConfig& nominal = object.nominal;
   const AxisLine line = axisLine(scene.camera, nominal.axis);
   const Eigen::Vector3d across = Eigen::Vector3d::UnitZ().cross(line.direction).normalized();
-  const Eigen::Vector2d half = halfExtents(object);
+  const Eigen::Vector2d half = patternExtents(object);
   const double spacing = 2 * half.x() / wanted;
   const RandomStream random(scene.seed, 0x5907 + instrument);
   std::uint32_t k = 0;
   for (double s = nominal.lower - half.x(); s < nominal.upper + half.x(); s += spacing, ++k) {
     const double along = s + spacing * (random.uniform(2 * k) - 0.5) * 0.6;
-    const double lateral = object.lateral + half.y() * (2 * random.uniform(2 * k + 1) - 1) * 0.6;
+    const double lateral = object.lateral + half.y() * (2 * random.uniform(2 * k + 1) - 1) * 0.75;
     places_.push_back(project(scene.camera, line.origin + along * line.direction + lateral * across).cast<float>());
   }
 }
