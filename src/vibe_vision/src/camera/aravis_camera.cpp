@@ -47,7 +47,6 @@ AravisCamera::~AravisCamera() {
   if (loan_) loan_->detach();
   g_signal_handlers_disconnect_by_data(arv_camera_get_device(camera_.get()), &is_lost_);
   if (!is_lost_) arv_camera_stop_acquisition(camera_.get(), AravisError().slot());
-  if (stream_) arv_stream_stop_thread(stream_.get(), TRUE);
 }
 
 void AravisCamera::connect(const std::string& name) {

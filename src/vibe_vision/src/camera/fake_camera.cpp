@@ -55,8 +55,7 @@ struct FakeCamera::Impl {
   FakeCameraOptions options;
   std::ofstream truth;
   std::atomic<std::uint64_t> sent{0};
-  std::atomic<std::uint32_t> format{0};  // announced; 0: as asked
-  std::mutex mutex;                      // of the clock
+  std::mutex mutex;  // of the clock
   double clock_start = 0, clock_at_start = 0;
   AravisPointer<ArvGvFakeCamera> server;  // last: its thread ends before the rest goes
   ArvFakeCamera* camera = nullptr;
@@ -114,7 +113,6 @@ struct FakeCamera::Impl {
     const std::size_t index = ring->indexOf(k);
     copy(ring->frames[index], buffer);
     if (truth.is_open()) write(end - exposure / 2, exposure, index);
-    if (format != 0) arv_fake_camera_write_register(camera, ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, format);
     ++sent;
   }
 
@@ -158,7 +156,7 @@ void FakeCamera::resetClock() {
 }
 
 void FakeCamera::announceFormat(std::uint32_t code) {
-  impl_->format = code;
+  arv_fake_camera_write_register(impl_->camera, ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, code);
 }
 
 }  // namespace vibe

@@ -42,7 +42,8 @@ class FakeCamera {
   std::uint64_t sent() const;  ///< frames
   /// The clock begins at 0, as after a reset of the camera.
   void resetClock();
-  /// Announces another format without being asked; the bytes stay grey values. @param code  of the PFNC
+  /// Changes the format without being asked; the bytes stay grey values. @param code  of the PFNC, with 8 bits per
+  /// pixel
   void announceFormat(std::uint32_t code);
 
  private:
