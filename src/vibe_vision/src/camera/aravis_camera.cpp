@@ -35,6 +35,7 @@ bool isAddress(const std::string& name) {
 AravisCamera::AravisCamera(const std::string& name, const SourceOptions& options)
     : priority_(options.realtime_priority) {
   connect(name);
+  arv_camera_stop_acquisition(camera_.get(), AravisError().slot());  // it may still run for somebody who went
   setFormat(options);
   setRegion(options);
   setTimes(options);
