@@ -149,4 +149,33 @@ void AxisMap::gatherRow(const Frame& frame, const PixelRect& rect, int y, int pa
   pixels.count = n;
 }
 
+void AxisMap::readBand(const Frame& frame, double begin, double end, double half_width, AxisProfile& profile) const {
+  std::fill(profile.sum.begin(), profile.sum.end(), 0.F);
+  std::fill(profile.count.begin(), profile.count.end(), 0.F);
+  profile.pixels = profile.saturated = 0;
+  const PixelRect rect = boundsOf({(begin + end) / 2, 0}, {(end - begin) / 2, half_width});
+  const auto low = static_cast<float>(begin), high = static_cast<float>(end), width = static_cast<float>(half_width);
+  const auto first = static_cast<float>(profile.first - 0.5), bins = static_cast<float>(profile.sum.size());
+  const int top = std::max({rect.y, first_row_, frame.offset_y});
+  const int bottom = std::min(
+      {rect.y + rect.height, first_row_ + static_cast<int>(rows_.size()), frame.offset_y + frame.image.height});
+  for (int y = top; y < bottom; ++y) {
+    const Row& row = rows_[y - first_row_];
+    const std::uint8_t* values = frame.image.row(y - frame.offset_y);
+    const int from = std::max({rect.x, row.begin, frame.offset_x});
+    const int to = std::min({rect.x + rect.width, row.end, frame.offset_x + frame.image.width});
+    for (int x = from; x < to; ++x) {
+      const float a = along_[row.first + (x - row.begin)], b = lateral_[row.first + (x - row.begin)];
+      const float bin = a - first;
+      if (!(a >= low && a <= high && std::abs(b) <= width && bin >= 0 && bin < bins)) continue;
+      const std::uint8_t value = values[x - frame.offset_x];
+      const auto i = static_cast<std::size_t>(bin);
+      profile.sum[i] += static_cast<float>(value);
+      profile.count[i] += 1;
+      ++profile.pixels;
+      profile.saturated += value >= kSaturated ? 1 : 0;
+    }
+  }
+}
+
 }  // namespace vibe

@@ -15,6 +15,13 @@ struct PixelRect {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
+/// Sums of grey values over the width of a band, by bins of 1 px along the axis.
+struct AxisProfile {
+  double first = 0;               ///< middle of the first bin [px]
+  std::vector<float> sum, count;  ///< of the pixels in each bin
+  int pixels = 0, saturated = 0;
+};
+
 /// Where the pixels near an instrument's axis are, without the lens' distortion: along and across the axis. Made once;
 /// its size is that of the band around the axis, whatever the size of the sensor.
 class AxisMap {
@@ -33,6 +40,9 @@ class AxisMap {
   /// block has no room for are left out.
   PixelRect gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
                    PixelBlock& pixels);
+
+  /// Sums the frame over a part of the band around the axis; bins outside of it are empty. No allocation.
+  void readBand(const Frame& frame, double begin, double end, double half_width, AxisProfile& profile) const;
 
  private:
   struct Row {

@@ -10,13 +10,12 @@ namespace {
 constexpr double kOutlier = 6;  // standard deviations beyond which a pixel counts nothing
 constexpr double kCut = kOutlier * kOutlier;
 
-// Moments of the biweight for normal residuals t: E[w], E[w t^2], E[w^2 t^2], E[d(w t)/dt]; tails beyond the cut are
-// 2e-9. (Huber, Ronchetti, "Robust Statistics", 2009, section 3.2: variance of an M-estimator.)
+// Moments of the biweight for normal residuals t: E[w], E[w t^2] (also E[d(w t)/dt]), E[w^2 t^2]; tails beyond the cut
+// are 2e-9. (Huber, Ronchetti, "Robust Statistics", 2009, section 3.2: variance of an M-estimator.)
 constexpr double kMeanWeight = 1 - 2 / kCut + 3 / (kCut * kCut);
 constexpr double kMeanSquare = 1 - 6 / kCut + 15 / (kCut * kCut);
 constexpr double kScoreSquare = 1 - 12 / kCut + 90 / (kCut * kCut) - 420 / (kCut * kCut * kCut);
-constexpr double kScoreSlope = 1 - 18 / (3 * kCut) + 15 / (kCut * kCut);
-constexpr double kVarianceFactor = kScoreSquare * kMeanWeight / (kScoreSlope * kScoreSlope);
+constexpr double kVarianceFactor = kScoreSquare * kMeanWeight / (kMeanSquare * kMeanSquare);
 
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitParameters, kFitParameters>;
 using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kFitParameters, 1>;
@@ -109,9 +108,15 @@ FitStep PatternFit::step(const FitVector& x, const FitPrior& prior, const PixelB
   equations_.sum(pixels.padded());
   solve(x, prior, result);
   result.visible = full_ > 0 ? used_ / full_ : 0;
+  result.loss = valid_ > 0 ? loss_ / valid_ : 1;
   const double freedom = weights_ / kMeanWeight - columns_;
   result.misfit = freedom > 0 ? squares_ / kMeanSquare / freedom : 0;
   return result;
+}
+
+double PatternFit::loss(const FitVector& x, const PixelBlock& pixels, const FitOptions& options) {
+  weigh(x, pixels, options);
+  return valid_ > 0 ? loss_ / valid_ : 1;
 }
 
 void PatternFit::chooseColumns(const FitOptions& options) {
@@ -134,7 +139,7 @@ void PatternFit::weigh(const FitVector& x, const PixelBlock& pixels, const FitOp
   const float *px = pixels.along.data(), *py = pixels.lateral.data(), *seen = pixels.value.data();
   const float* valid = pixels.weight.data();
   float *factor = factor_.data(), *residual = equations_.residual();
-  LaneSum squares, weights, used, full;
+  LaneSum squares, weights, loss, valid_pixels, used, full;
   for (std::size_t begin = 0; begin < pixels.padded(); begin += kLanes)
     for (std::size_t k = 0; k < kLanes; ++k) {
       const std::size_t i = begin + k;
@@ -149,10 +154,13 @@ void PatternFit::weigh(const FitVector& x, const PixelBlock& pixels, const FitOp
       residual[i] = factor[i] * r;
       squares.lane[k] += weight * square;
       weights.lane[k] += weight;
+      loss.lane[k] += valid[i] * (1 - rest * rest * rest);
+      valid_pixels.lane[k] += valid[i];
       used.lane[k] += weight * inverse * information;
       full.lane[k] += inverse * information;
     }
-  squares_ = squares.total(), weights_ = weights.total(), used_ = used.total(), full_ = full.total();
+  squares_ = squares.total(), weights_ = weights.total(), loss_ = loss.total(), valid_ = valid_pixels.total();
+  used_ = used.total(), full_ = full.total();
 }
 
 void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pixels) {

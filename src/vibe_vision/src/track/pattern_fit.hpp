@@ -32,6 +32,7 @@ struct FitStep {
   FitVector change = FitVector::Zero();
   FitMatrix covariance = FitMatrix::Zero();
   double misfit = 0;   ///< robust chi^2 per degree of freedom
+  double loss = 0;     ///< mean of the biweight's loss of a pixel, 1: all are outliers
   double visible = 0;  ///< share of the information about the position along the axis that is used
   bool valid = false;  ///< the equations could be solved
 };
@@ -48,6 +49,8 @@ class PatternFit {
   void startLevels(const PixelBlock& pixels, FitVector& x) const;
   /// One step from x. No allocation.
   FitStep step(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels, const FitOptions& options);
+  /// FitStep::loss alone.
+  double loss(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   const PatternValues& values() const { return values_; }
 
  private:
@@ -64,7 +67,7 @@ class PatternFit {
   NormalEquations equations_;
   std::array<int, kFitParameters> parameter_{};  ///< of each column
   int columns_ = 0;
-  double squares_ = 0, weights_ = 0, used_ = 0, full_ = 0;
+  double squares_ = 0, weights_ = 0, loss_ = 0, valid_ = 0, used_ = 0, full_ = 0;
 };
 
 }  // namespace vibe
