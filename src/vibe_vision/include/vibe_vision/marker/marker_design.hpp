@@ -18,8 +18,11 @@ struct Bar {
 };
 
 /// A printed sleeve around a rod: bars around the whole rod give the slide, a helical stripe the rotation. u is the
-/// distance along the axis from the sleeve's centre, phi the angle around it by the right-hand rule about +u; phi = 0
-/// looks at the camera when the rotation is 0. White wherever neither is black.
+/// distance along the rod's axis, in the direction of positive slide; the sleeve's centre is on that axis, at u = 0.
+/// phi is the angle around the axis on the print, by the right-hand rule about +u. The rotation of the rod is positive
+/// by the same rule; at rotation r the camera looks at phi = -r. In the image, with y down, phi grows to the right of
+/// the direction of +u: a point of the print is seen at lateral = radius * sin(phi + r). White wherever neither is
+/// black.
 struct SleeveDesign {
   double diameter = 3e-3;                 ///< [m]
   double length = 10e-3;                  ///< with its white ends [m]
@@ -27,7 +30,9 @@ struct SleeveDesign {
   double helix_begin = 0, helix_end = 0;  ///< where the stripe is [m]
   double helix_pitch = 0;                 ///< advance of the stripe in one turn [m]; positive: u grows with phi
   double helix_duty = 0.5;                ///< black part of a pitch, (0, 1)
-  // black where fract(u / helix_pitch - (phi + rotation) / (2 pi) + helix_duty / 2) < helix_duty
+  // black where helix_begin < u < helix_end and fract(u / helix_pitch - phi / (2 pi) + helix_duty / 2) < helix_duty:
+  // the stripe's centre line passes u = 0, phi = 0. Turning by r moves the picture of the stripe by -helix_pitch r / 2
+  // pi
 };
 
 using MarkerDesign = std::variant<RingDesign, SleeveDesign>;
@@ -38,7 +43,8 @@ SleeveDesign defaultSleeve();
 void checkMarker(const MarkerDesign& design, const std::string& place);
 /// 1: white, 0: black, at a point of the ring's plane [m] from its centre.
 double reflectance(const RingDesign& design, double x, double y);
-/// At u [m] and phi [rad] on the sleeve, for rod rotation 0.
+/// At u [m] and phi [rad] on the print. What a camera sees at angle phi of a rod turned by r is reflectance(u, phi -
+/// r).
 double reflectance(const SleeveDesign& design, double u, double phi);
 
 }  // namespace vibe
