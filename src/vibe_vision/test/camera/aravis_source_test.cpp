@@ -26,7 +26,7 @@ SourceOptions wide() {
 }
 
 struct TruthRow {
-  double stamp = 0, exposure = 0;
+  double stamp = 0;
   std::size_t picture = 0;
 };
 
@@ -35,13 +35,15 @@ std::map<std::uint64_t, TruthRow> readTruth(const std::string& file) {
   std::ifstream stream(file);
   std::string line;
   std::getline(stream, line);
-  EXPECT_EQ(line, "sequence,stamp,exposure,picture");
+  EXPECT_EQ(line, "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible");
   while (std::getline(stream, line)) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream text(line);
     std::uint64_t sequence = 0;
     TruthRow row;
-    text >> sequence >> row.stamp >> row.exposure >> row.picture;
+    std::string name;
+    text >> sequence >> row.stamp >> name >> row.picture;
+    EXPECT_EQ(name, "picture");
     rows[sequence] = row;
   }
   return rows;

@@ -25,9 +25,10 @@ inline std::shared_ptr<const FrameRing> gradientRing(int width = 320, int height
       picture[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(k + i % width + 3 * (i / width));
     }
     ring->frames.push_back(std::move(picture));
-    ring->truth.push_back(std::to_string(k));
+    ring->truth.emplace_back(1);
+    ring->truth.back()[0].slide = k;
   }
-  ring->truth_columns = "picture";
+  ring->instruments = {"picture"};
   return ring;
 }
 
