@@ -6,11 +6,12 @@
 namespace vibe {
 namespace {
 
-constexpr float kReach = 3.8F;  // standard deviations
+constexpr float kReach = 3.4F;  // standard deviations
 
 // Midpoint rule over the blur across the axis, in standard deviations: the integrand has kinks.
-constexpr std::size_t kNodes = 11;
-constexpr float kSpacing = 0.55F;
+constexpr std::size_t kNodes = 9;
+constexpr float kSpacing = 0.62F;
+constexpr float kSpread = kSpacing * (kNodes / 2);
 struct Node {
   float place, weight;
 };
@@ -34,6 +35,12 @@ CutStripe::CutStripe(double period, double black, const BlurredLine& line)
       period_(static_cast<float>(period)),
       half_black_(static_cast<float>(black / 2)),
       mean_(static_cast<float>(black / period)) {}
+
+/// Of a cut at this phase, within half a period of a black part's centre, the last edge of the stripe before it.
+float CutStripe::edgeBefore(float phase, bool black) const {
+  if (black) return -half_black_ - phase;
+  return (phase < 0 ? half_black_ - period_ : half_black_) - phase;
+}
 
 CutStripe::Entry CutStripe::at(float y, float phase, float variance, float cut_variance, float full_variance) const {
   const float deviation = std::sqrt(variance), reach = kReach * deviation;
@@ -60,13 +67,20 @@ CutStripe::Entry CutStripe::nearCut(float y, float phase, float deviation, float
   const float inverse = 1 / deviation;
   const NormalTable::Entry cut = normal.at(-y * inverse);
   const float wrapped = phase - period_ * std::floor(phase / period_ + 0.5F);
+  const float spread = kSpread * cut_deviation;
+  const bool is_black = std::abs(wrapped) < half_black_;
+  const float last = edgeBefore(wrapped, is_black);
+  if (last + spread < y - kReach * deviation && std::abs(std::abs(wrapped) - half_black_) > spread) {
+    if (!is_black) return {0, 0, 0, 0};
+    return {deviation * cut.integral, cut.value, -inverse * cut.density, 0};
+  }
   Entry sum{};
   for (const Node& node : nodes) {
     float p = wrapped + node.place * cut_deviation;
     if (p > period_ / 2) p -= period_;
     if (p < -period_ / 2) p += period_;
     const bool black = std::abs(p) < half_black_;
-    const float z = (black || p < 0 ? (black ? -half_black_ : half_black_ - period_) : half_black_) - p;
+    const float z = edgeBefore(p, black);
     const NormalTable::Entry edge = normal.at((z - y) * inverse);
     const float b = black ? 1.0F : 0.0F, c = node.weight * (1 - 2 * b);
     sum.integral += deviation * (node.weight * b * cut.integral + c * edge.integral);

@@ -23,6 +23,7 @@ class CutStripe {
   Entry at(float y, float phase, float variance, float cut_variance, float full_variance) const;
 
  private:
+  float edgeBefore(float phase, bool black) const;
   Entry nearCut(float y, float phase, float deviation, float cut_deviation) const;
 
   const BlurredLine& line_;

@@ -1,5 +1,6 @@
 #include "track/sleeve_pattern.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +11,7 @@ constexpr double kPixelVariance = 1.0 / 12;        // of the area of a pixel [px
 constexpr double kMinBlur = 0.25, kMaxBlur = 3.5;  // of the optics [px]
 constexpr double kMinMotion = 0.5;  // shorter ones are replaced by this, and their variance taken off the blur [px]
 constexpr double kRim = 0.88;       // of the radius: beyond, the print is seen too obliquely
-constexpr float kReach = 3.8F;      // standard deviations after which an edge is over
+constexpr float kReach = 3.4F;      // standard deviations after which an edge is over
 constexpr float kMaxSine = 0.97F;   // of the angle around the rod: keeps derivatives finite
 constexpr float kTurn = 6.28318530718F;
 
@@ -45,8 +46,10 @@ struct SleevePattern::View {
   float along, lateral, rotation;
   float tilt_cosine, tilt_sine, inverse_scale;
   float slant_cosine, slant_sine;
-  float bend;         ///< of the line of sight per pixel along the axis: 1 / focal length
-  float depth;        ///< 1 / distance to the camera [1/px], in pixels of the print
+  float bend;         ///< of the line of sight per pixel: 1 / focal length; also 1 / distance to the camera [1/px]
+  float principal_x;  ///< of the camera, along the tilted marker from its centre [px]
+  float across;       ///< slope of the line of sight to the centre, across the tilted marker
+  float turn;         ///< of the direction to the camera around the rod against the normal of the image [rad]
   float half_motion;  ///< in pixels of the print, where the camera looks at it at a right angle
   float variance;     ///< of optics and pixel in pixels of the print, less what a lengthened motion has
   float by_blur;      ///< relative change of `variance` with the blur [1/px]
@@ -99,8 +102,10 @@ std::array<bool, kPoseParameters> SleevePattern::observes() const {
 
 Eigen::Vector2d SleevePattern::window(const MarkerPose& pose, double motion) const {
   const double scale = std::exp(pose.log_scale), blur = std::sqrt(pose.blur * pose.blur + kPixelVariance);
-  const double end = half_length_ * scale * std::cos(pose.slant) - kReach * blur - std::abs(motion) / 2;
   const double side = radius_ * scale;
+  const double lean = pose.slant + (pose.along - view_.principal_along) / view_.focal_length;  // bends the ends
+  const double end = half_length_ * scale * std::cos(pose.slant) - side * std::abs(std::sin(lean)) - kReach * blur -
+                     std::abs(motion) / 2;
   return {std::max(end, 0.3 * half_length_), std::max(std::min(kRim * side, side - 2.9 * blur), 0.4 * side)};
 }
 
@@ -123,8 +128,15 @@ SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose) const {
   view.inverse_scale = static_cast<float>(1 / scale);
   view.slant_cosine = static_cast<float>(std::cos(pose.slant));
   view.slant_sine = static_cast<float>(std::sin(pose.slant));
-  view.bend = static_cast<float>(1 / view_.focal_length);
-  view.depth = static_cast<float>(scale / view_.focal_length);
+  view.bend = static_cast<float>(scale / view_.focal_length);
+  const Eigen::Vector2d principal =
+      Eigen::Rotation2Dd(-pose.tilt) *
+      Eigen::Vector2d(view_.principal_along - pose.along, view_.principal_lateral - pose.lateral);
+  const Eigen::Vector2d slope = -principal / view_.focal_length;
+  const double sine = std::sin(pose.slant), cosine = std::cos(pose.slant);
+  view.principal_x = static_cast<float>(principal.x() / scale);
+  view.across = static_cast<float>(slope.y() * cosine);
+  view.turn = static_cast<float>(std::atan(slope.y() / (cosine - slope.x() * sine)) - std::atan(slope.y() * cosine));
   const double motion = std::max(motion_, kMinMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
   const double variance = blur * blur + kPixelVariance - (motion * motion - motion_ * motion_) / 12;
   view.half_motion = static_cast<float>(motion / 2 / scale);
@@ -149,20 +161,20 @@ void SleevePattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, P
 /// line of sight; and likewise across.
 void SleevePattern::place(const View& view, const PixelBlock& pixels, std::size_t begin, Part& part) const {
   const auto radius = static_cast<float>(radius_), inverse_radius = 1 / radius, advance = pitch_ / kTurn;
-  const auto principal = static_cast<float>(view_.principal_along);
+  const float lift = view.across * view.slant_sine / (view.slant_cosine * view.slant_cosine);
   for (std::size_t i = 0; i < part.size; ++i) {
     const float da = pixels.along[begin + i] - view.along, dl = pixels.lateral[begin + i] - view.lateral;
     const float x = (da * view.tilt_cosine + dl * view.tilt_sine) * view.inverse_scale;
     const float v = (dl * view.tilt_cosine - da * view.tilt_sine) * view.inverse_scale;
-    const float slope = view.bend * (pixels.along[begin + i] - principal);
+    const float slope = view.bend * (x - view.principal_x);
     const float across = view.slant_sine + view.slant_cosine * slope;
     const float stretch = 1 / (view.slant_cosine - view.slant_sine * slope);
 
-    float sine = v * inverse_radius;
+    float sine = (v + lift * x) * inverse_radius;
     float square = sine * sine;
     square = square > kMaxSine * kMaxSine ? kMaxSine * kMaxSine : square;
     const float height = radius * view.slant_cosine * std::sqrt(1 - square);
-    sine *= 1 + view.depth * (x * view.slant_sine - height);
+    sine *= 1 + view.bend * (x * view.slant_sine - height);
     float size = std::abs(sine);
     size = size > kMaxSine ? kMaxSine : size;
     sine = sine < 0 ? -size : size;
@@ -171,16 +183,17 @@ void SleevePattern::place(const View& view, const PixelBlock& pixels, std::size_
 
     const float per_cosine = 1 / cosine, bow = across * stretch;
     const float curve = 0.5F * view.variance * inverse_radius * per_cosine * per_cosine * per_cosine;
-    const float lean = bow * sine * per_cosine, turn = advance * inverse_radius * per_cosine;
-    const float u = (x - radius * cosine * across) * stretch + curve * bow;
+    const float lean = bow * (sine * per_cosine - view.across), turn = advance * inverse_radius * per_cosine;
+    const float top = radius * (cosine + view.across * sine);  // of the rod above its axis, towards the camera
+    const float u = (x - top * across) * stretch + curve * bow;
     part.x[i] = x;
     part.v[i] = v;
     part.u[i] = u;
-    part.w[i] = u - advance * (phi - view.rotation + curve * sine * inverse_radius);
+    part.w[i] = u - advance * (phi + view.turn - view.rotation + curve * sine * inverse_radius);
     part.stretch[i] = stretch;
     part.lean[i] = lean;
     part.swing[i] = lean - turn;
-    part.by_slant[i] = u * bow - radius * cosine;
+    part.by_slant[i] = u * bow - top;
     part.half_motion[i] = view.half_motion * (view.tilt_cosine * stretch - view.tilt_sine * lean);
     part.stripe_half_motion[i] = view.half_motion * (view.tilt_cosine * stretch - view.tilt_sine * (lean - turn));
     part.bar_variance[i] = view.variance * (stretch * stretch + lean * lean);
@@ -189,18 +202,21 @@ void SleevePattern::place(const View& view, const PixelBlock& pixels, std::size_
   }
 }
 
+void SleevePattern::add(const Blackness& other, float sign, Blackness& sum) {
+  sum.value += sign * other.value;
+  sum.by_u += sign * other.by_u;
+  sum.by_w += sign * other.by_w;
+  sum.by_blur += sign * other.by_blur;
+}
+
 void SleevePattern::look(Part& part) const {
   for (std::size_t i = 0; i < part.size; ++i) {
     const float reach = kReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i], u = part.u[i];
     Blackness black;
     if (u - reach < bars_left_ || u + reach > bars_right_) black = barsAt(part, i);
     if (u + reach > helix_begin_ && u - reach < helix_end_) {
-      const bool inside = u - reach > helix_begin_ && u + reach < helix_end_;
-      const Blackness stripe = inside ? stripeAt(part, i) : cutStripeAt(part, i);
-      black.value += stripe.value;
-      black.by_u += stripe.by_u;
-      black.by_w = stripe.by_w;
-      black.by_blur += stripe.by_blur;
+      add(u + reach < helix_end_ ? stripeAt(part, i) : cutStripeAt(part, i, helix_end_), 1, black);
+      if (u - reach < helix_begin_) add(cutStripeAt(part, i, helix_begin_), -1, black);
     }
     part.value[i] = black.value;
     part.by_u[i] = black.by_u;
@@ -224,22 +240,14 @@ SleevePattern::Blackness SleevePattern::stripeAt(const Part& part, std::size_t i
           0.5F * variance * (b.slope - a.slope) * inverse};
 }
 
-/// The stripe up to its end less the stripe up to its beginning.
-SleevePattern::Blackness SleevePattern::cutStripeAt(const Part& part, std::size_t i) const {
-  const float half = part.half_motion[i], inverse = 0.5F / half;
-  Blackness sum;
-  for (const float cut : {helix_begin_, helix_end_}) {
-    const float y = part.u[i] - cut, phase = part.w[i] - y, factor = cut == helix_end_ ? inverse : -inverse;
-    const CutStripe::Entry a =
-        cut_.at(y - half, phase, part.bar_variance[i], part.cut_variance[i], part.stripe_variance[i]);
-    const CutStripe::Entry b =
-        cut_.at(y + half, phase, part.bar_variance[i], part.cut_variance[i], part.stripe_variance[i]);
-    sum.value += factor * (b.integral - a.integral);
-    sum.by_u += factor * (b.value - a.value);
-    sum.by_w += factor * (b.by_shift - a.by_shift);
-    sum.by_blur += factor * 0.5F * part.bar_variance[i] * (b.slope - a.slope);
-  }
-  return sum;
+/// The stripe up to a cut.
+SleevePattern::Blackness SleevePattern::cutStripeAt(const Part& part, std::size_t i, float cut) const {
+  const float half = part.half_motion[i], inverse = 0.5F / half, along = part.bar_variance[i];
+  const float y = part.u[i] - cut, phase = part.w[i] - y;
+  const CutStripe::Entry a = cut_.at(y - half, phase, along, part.cut_variance[i], part.stripe_variance[i]);
+  const CutStripe::Entry b = cut_.at(y + half, phase, along, part.cut_variance[i], part.stripe_variance[i]);
+  return {(b.integral - a.integral) * inverse, (b.value - a.value) * inverse, (b.by_shift - a.by_shift) * inverse,
+          0.5F * along * (b.slope - a.slope) * inverse};
 }
 
 void SleevePattern::chain(const View& view, std::size_t begin, const Part& part, PatternValues& values) const {

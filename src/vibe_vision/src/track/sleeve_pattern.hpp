@@ -32,7 +32,8 @@ class SleevePattern : public MarkerPattern {
   void chain(const View& view, std::size_t begin, const Part& part, PatternValues& values) const;
   Blackness barsAt(const Part& part, std::size_t i) const;
   Blackness stripeAt(const Part& part, std::size_t i) const;
-  Blackness cutStripeAt(const Part& part, std::size_t i) const;
+  Blackness cutStripeAt(const Part& part, std::size_t i, float cut) const;
+  static void add(const Blackness& other, float sign, Blackness& sum);
 
   MarkerView view_;
   double radius_, half_length_;  ///< [px]

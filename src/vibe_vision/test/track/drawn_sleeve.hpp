@@ -21,8 +21,8 @@ class DrawnSleeve {
     const Eigen::Rotation2Dd turn(pose.tilt);
     const Eigen::Vector2d u = turn * Eigen::Vector2d(std::cos(pose.slant), 0);
     along_ = {u.x(), u.y(), std::sin(pose.slant)};
-    principal_ = view.principal_along;
-    centre_ = {pose.along - principal_, pose.lateral, focal_};
+    principal_ = {view.principal_along, view.principal_lateral};
+    centre_ = {pose.along - principal_.x(), pose.lateral - principal_.y(), focal_};
     facing_ = -(centre_ - centre_.dot(along_) * along_).normalized();
     across_ = along_.cross(facing_);
     makeWeights(motion);
@@ -45,7 +45,7 @@ class DrawnSleeve {
  private:
   /// Reflectance of what a ray sees.
   double point(double x, double y) const {
-    const Eigen::Vector3d ray = Eigen::Vector3d(x - principal_, y, focal_).normalized();
+    const Eigen::Vector3d ray = Eigen::Vector3d(x - principal_.x(), y - principal_.y(), focal_).normalized();
     const double radius = design_.diameter / 2 * pixels_per_metre_ * std::exp(pose_.log_scale);
     const Eigen::Vector3d r = ray - ray.dot(along_) * along_, c = centre_ - centre_.dot(along_) * along_;
     const double a = r.dot(r), b = r.dot(c), q = b * b - a * (c.dot(c) - radius * radius);
@@ -84,7 +84,8 @@ class DrawnSleeve {
   }
 
   SleeveDesign design_;
-  double pixels_per_metre_, focal_, principal_ = 0;
+  double pixels_per_metre_, focal_;
+  Eigen::Vector2d principal_;
   MarkerPose pose_;
   Eigen::Vector3d along_, centre_, facing_, across_;
   double across_reach_ = 0, along_reach_ = 0;
