@@ -8,51 +8,86 @@
 
 namespace vibe {
 
-/// Where and how a marker is seen, around its calibrated place. All in undistorted pixels and along the axis.
+/// Where and how a marker is seen. All in undistorted pixels, along the slide axis and across it.
+///
+/// A point of the marker that is X along and Y across its centre [px at the pattern's pixels_per_metre] is seen at
+///   x = exp(log_scale + log_aspect) * X, y = exp(log_scale) * Y, turned by `tilt`,
+///   along + x * (1 + keystone * x), lateral + y * (1 + keystone * x)
 struct MarkerPose {
-  double along = 0;       ///< centre [px]
+  double along = 0;       ///< centre, at the middle of the exposure [px]
   double lateral = 0;     ///< centre, to the right of the direction (y down) [px]
   double rotation = 0;    ///< of the rod [rad]
-  double log_scale = 0;   ///< log of the size relative to pixelsPerMetre at `along`
-  double tilt = 0;        ///< in the image [rad]
-  double log_aspect = 0;  ///< log of (size along / size across) relative to a marker that looks at the camera
-  double blur = 0;        ///< standard deviation of the point spread function [px]
+  double log_scale = 0;   ///< log of the size across, relative to the pattern's pixels_per_metre
+  double tilt = 0;        ///< in the image, from the direction to the right [rad]
+  double log_aspect = 0;  ///< log of (size along / size across); a slanted marker has less than 0
+  double blur = 0;        ///< standard deviation of the point spread function [px], without the pixel's own area
+  double keystone = 0;    ///< relative growth of the picture along the axis: one end is nearer to the camera [1/px]
   /// Of a rod, out of the image plane; positive: its positive end is further from the camera [rad]. It bends the bars,
-  /// which shows the sign too. A flat marker has log_aspect instead.
+  /// which shows the sign too. A flat marker has log_aspect and keystone instead.
   double slant = 0;
 };
-constexpr int kPoseParameters = 8;
+constexpr int kPoseParameters = 9;
 using PoseVector = Eigen::Matrix<double, kPoseParameters, 1>;  ///< in the order of MarkerPose
+/// Places in PoseVector and in the arrays below.
+enum PoseIndex { kAlong, kLateral, kRotation, kLogScale, kTilt, kLogAspect, kBlur, kKeystone, kSlant };
+
+/// Vectors of floats are filled up to a multiple of this.
+constexpr std::size_t kLanes = 8;
 
 /// Pixels to compare with, as structure of arrays: undistorted position along and across the axis, relative to
-/// SlideAxis::origin [px].
+/// SlideAxis::origin [px]. The arrays have room for any window and are filled up from `count` to a multiple of kLanes
+/// with copies of the last pixel, with weight 0.
 struct PixelBlock {
   std::vector<float> along, lateral, value;
-  std::size_t size() const { return value.size(); }
+  std::vector<float> weight;  ///< 0: nothing can be said about this pixel (saturated, outside of the image), else 1
+  std::size_t count = 0;
+
+  std::size_t padded() const { return (count + kLanes - 1) / kLanes * kLanes; }
+  void allocate(std::size_t capacity);
+  std::size_t capacity() const { return value.size(); }
 };
 
-/// Reflectance that the camera should see at each pixel (0: black, 1: white), with the derivatives by the pose.
+/// Reflectance that the camera should see at each pixel (0: black, 1: white), with the derivatives by the pose. Arrays
+/// have the capacity of the PixelBlock; those of parameters that the marker does not show are empty.
 struct PatternValues {
   std::vector<float> value;
-  std::array<std::vector<float>, kPoseParameters> derivative;  ///< empty where the marker does not show a parameter
+  std::array<std::vector<float>, kPoseParameters> derivative;
+
+  void allocate(std::size_t capacity, const std::array<bool, kPoseParameters>& observed);
 };
 
-/// The picture of a marker as a function of its pose: blurred by optics and by the motion during the exposure.
+/// The picture of a marker as a function of its pose: blurred by optics, the area of a pixel (1 px) and the motion
+/// during the exposure.
 class MarkerPattern {
  public:
   virtual ~MarkerPattern() = default;
 
   /// True for parameters that the picture depends on.
   virtual std::array<bool, kPoseParameters> observes() const = 0;
-  /// Half extents of the printed surface along and across the axis [px] at log_scale 0; the model holds no further out
-  /// than this less blur and half the motion.
-  virtual Eigen::Vector2d halfExtents() const = 0;
-  /// @param motion  by which the marker moves along the axis during the exposure [px], signed
-  virtual void evaluate(const MarkerPose& pose, double motion, const PixelBlock& pixels,
-                        PatternValues& values) const = 0;
+  /// Half extents along and across the axis [px] of the pixels that are worth reading: they hold what the marker tells
+  /// and nothing of what is around it.
+  virtual Eigen::Vector2d window(const MarkerPose& pose, double motion) const = 0;
+  /// The largest window() that there can be.
+  virtual Eigen::Vector2d maxWindow() const = 0;
+
+  /// Makes ready for evaluations near a pose; once per frame. No allocation.
+  /// @param motion  by which the marker moves along the axis during the exposure [px]
+  virtual void prepare(const MarkerPose& pose, double motion) = 0;
+  /// The pattern near the prepared pose: exact in position, rotation, size and tilt, to first order in the change of
+  /// the blur. Fills values up to pixels.padded(). No allocation.
+  virtual void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) = 0;
+  /// Takes pixels out of the block that tell nothing (deep in a white or black area). The order of the others stays.
+  virtual void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const;
+
+  /// For the search along the axis: mean reflectance over |lateral| <= searchHalfWidth() at steps of 1 px along the
+  /// axis, the middle one at the marker's centre, for any rotation; of odd length. No allocation.
+  virtual double searchHalfWidth() const = 0;  ///< [px]
+  virtual void searchProfile(double motion, std::vector<float>& profile) const = 0;
+  /// Rotations to try when nothing predicts it [rad].
+  virtual std::vector<double> rotationGuesses() const { return {0}; }
 };
 
-/// @param pixels_per_metre  scale at which the marker is seen
+/// @param pixels_per_metre  scale at which the marker is seen at log_scale 0
 std::unique_ptr<MarkerPattern> makePattern(const MarkerDesign& design, double pixels_per_metre);
 
 }  // namespace vibe

@@ -1,0 +1,22 @@
+#include "vibe_vision/track/marker_pattern.hpp"
+
+namespace vibe {
+
+void PixelBlock::allocate(std::size_t capacity) {
+  const std::size_t size = (capacity + kLanes - 1) / kLanes * kLanes;
+  along.assign(size, 0);
+  lateral.assign(size, 0);
+  value.assign(size, 0);
+  weight.assign(size, 0);
+  count = 0;
+}
+
+void PatternValues::allocate(std::size_t capacity, const std::array<bool, kPoseParameters>& observed) {
+  const std::size_t size = (capacity + kLanes - 1) / kLanes * kLanes;
+  value.assign(size, 0);
+  for (std::size_t k = 0; k < observed.size(); ++k) derivative[k].assign(observed[k] ? size : 0, 0);
+}
+
+void MarkerPattern::select(const MarkerPose&, double, PixelBlock&) const {}
+
+}  // namespace vibe
