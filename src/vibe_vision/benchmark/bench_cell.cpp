@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "harder_scenes.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
 namespace vibe {
@@ -9,11 +10,14 @@ namespace {
 
 using Frames = std::vector<RenderedFrame>;
 
-Frames renderFrames(const BenchScene& scene, int count) {
+Frames renderFrames(const BenchScene& scene, const HarderScene* harder, int count) {
   const Renderer renderer(scene.scene);
   Frames frames;
   frames.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) frames.push_back(renderer.render(static_cast<std::uint64_t>(i)));
+  for (int i = 0; i < count; ++i) {
+    frames.push_back(renderer.render(static_cast<std::uint64_t>(i)));
+    if (harder && harder->retouch) harder->retouch(scene.scene, frames.back());
+  }
   return frames;
 }
 
@@ -53,7 +57,7 @@ CellResult runCell(const Cell& cell, const BenchOptions& options) {
   std::vector<double> track, search;
   for (const std::uint64_t seed : options.seeds) {
     const BenchScene scene = makeBenchScene(cell, seed);
-    const Frames frames = renderFrames(scene, options.frames);
+    const Frames frames = renderFrames(scene, findHarderScene(cell.scene), options.frames);
     std::map<std::size_t, std::vector<MarkerBound>> bounds;
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const std::size_t instrument = methods[m]->instrument(scene);

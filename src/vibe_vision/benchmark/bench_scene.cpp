@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "harder_scenes.hpp"
+
 namespace vibe {
 namespace {
 
@@ -85,7 +87,8 @@ std::string Cell::name() const {
 
 BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed) {
   BenchScene bench;
-  bench.scene = namedScene(cell.scene);
+  const HarderScene* harder = findHarderScene(cell.scene);
+  bench.scene = namedScene(harder ? harder->base : cell.scene);
   bench.scene.seed = seed;
   if (cell.exposure) bench.scene.degradation.exposure = *cell.exposure;
   if (cell.width > 0) enlarge(bench.scene, cell.width, cell.height);
@@ -96,8 +99,11 @@ BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed) {
     instrument.nominal.axis.origin += static_cast<double>(seed - 1) * Eigen::Vector2d(0.37, 0.21);
   }
   indexMarkers(bench);
-  bench.config = nominalConfig(bench.scene);
   addTags(bench, factor);
+  if (harder) harder->change(bench.scene, seed);
+  bench.config = nominalConfig(bench.scene);
+  bench.config.instruments = {bench.scene.instruments[bench.sleeve].nominal,
+                              bench.scene.instruments[bench.ring].nominal};
   return bench;
 }
 
