@@ -11,7 +11,7 @@ namespace {
 constexpr double kNominalMarker = 40;   // [px]
 constexpr double kNominalSpeed = 0.5;   // [m/s]
 constexpr double kTagSide = 4e-3;       // [m]
-constexpr double kLaneFromBorder = 52;  // of the tags [px]
+constexpr double kArucoBelow = 132, kAprilTagBelow = 232;  // the ring; look-alikes pass between them [px]
 
 void resize(RingDesign& ring, double factor) {
   ring.outer_diameter *= factor;
@@ -33,8 +33,11 @@ void changeMotion(SyntheticMotion& motion, double speed, std::uint64_t seed) {
   const double factor = speed / kNominalSpeed, later = 0.613 * static_cast<double>(seed - 1);
   const auto slide = motion.slide, rotation = motion.rotation;
   motion.slide = [=](double time) { return slide(factor * time + later); };
+  if (!rotation) return;
   motion.rotation = [=](double time) { return rotation(factor * time + later); };
 }
+
+}  // namespace
 
 void enlarge(SyntheticScene& scene, int width, int height) {
   const Eigen::Vector2d shift(0.5 * (width - scene.camera.width), 0.5 * (height - scene.camera.height));
@@ -45,12 +48,14 @@ void enlarge(SyntheticScene& scene, int width, int height) {
   for (SyntheticInstrument& instrument : scene.instruments) instrument.nominal.axis.origin += shift;
 }
 
-/// A tag that moves as the ring does, on an axis of its own.
+namespace {
+
+/// A tag that moves as the ring does, on an axis of its own below it.
 SyntheticInstrument tagBeside(const SyntheticInstrument& ring, const std::string& name, const SyntheticTag& tag,
-                              double y) {
+                              double below) {
   SyntheticInstrument instrument = ring;
   instrument.nominal.name = name;
-  instrument.nominal.axis.origin.y() = y;
+  instrument.nominal.axis.origin.y() += below;
   instrument.tag = tag;
   return instrument;
 }
@@ -62,11 +67,10 @@ void indexMarkers(BenchScene& bench) {
 
 void addTags(BenchScene& bench, double factor) {
   const SyntheticInstrument ring = bench.scene.instruments[bench.ring];
-  const double middle = 0.5 * bench.scene.camera.height, half = 0.5 * 544 - kLaneFromBorder;
   bench.aruco = bench.scene.instruments.size();
-  bench.scene.instruments.push_back(tagBeside(ring, "aruco", arucoTag(kTagSide * factor), middle - half));
+  bench.scene.instruments.push_back(tagBeside(ring, "aruco", arucoTag(kTagSide * factor), kArucoBelow));
   bench.apriltag = bench.scene.instruments.size();
-  bench.scene.instruments.push_back(tagBeside(ring, "apriltag", aprilTag(kTagSide * factor), middle + half));
+  bench.scene.instruments.push_back(tagBeside(ring, "apriltag", aprilTag(kTagSide * factor), kAprilTagBelow));
 }
 
 }  // namespace

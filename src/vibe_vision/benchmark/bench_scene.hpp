@@ -28,6 +28,8 @@ constexpr int kArucoId = 7, kAprilTagId = 7;
 
 /// @throws Error for an unknown scene
 BenchScene makeBenchScene(const Cell& cell, std::uint64_t seed);
+/// A larger sensor around the same picture.
+void enlarge(SyntheticScene& scene, int width, int height);
 /// Scenes beyond the standard ones: conditions that no parameter was chosen for.
 std::vector<std::string> harderSceneNames();
 /// Sizes, exposures and sensors of the whole table.

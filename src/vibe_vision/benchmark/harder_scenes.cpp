@@ -9,7 +9,9 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+/// On a square sensor, where the axes fit in every direction.
 void turnAxes(SyntheticScene& scene, double angle) {
+  enlarge(scene, std::max(scene.camera.width, scene.camera.height), std::max(scene.camera.width, scene.camera.height));
   const Eigen::Vector2d centre(0.5 * (scene.camera.width - 1), 0.5 * (scene.camera.height - 1));
   const Eigen::Rotation2Dd turn(angle);
   for (SyntheticInstrument& instrument : scene.instruments) {

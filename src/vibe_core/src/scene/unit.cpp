@@ -22,6 +22,8 @@ constexpr Dimension kPressure{-1, 1, -2, 0};
 constexpr Dimension kEnergy{2, 1, -2, 0};
 constexpr Dimension kPower{2, 1, -3, 0};
 constexpr Dimension kAngle{0, 0, 0, 1};
+constexpr Dimension kPixel{0, 0, 0, 0, 1};
+constexpr Dimension kGrey{0, 0, 0, 0, 0, 1};
 
 struct Symbol {
   const char* name;
@@ -74,6 +76,8 @@ constexpr Symbol kSymbols[] = {
     {"turn", 2 * kPi, kAngle},
     {"turns", 2 * kPi, kAngle},
     {"cmH2O", 98.0665, kPressure},
+    {"px", 1, kPixel},
+    {"DN", 1, kGrey},
 };
 
 /// What the SI units of this project measure, for error messages.
@@ -101,6 +105,10 @@ constexpr Measure kMeasures[] = {
     {"W", "a power", "40 (W) or 40 W"},
     {"rad", "an angle", "1.57 (rad), 90 deg or 3 turns"},
     {"rad/s", "an angular speed", "0.5 (rad/s) or 30 deg/s"},
+    {"1/m", "an inverse length", "0.5 (1/m) or 0.5 1/m"},
+    {"px", "a length in the image", "364 (px) or 363.5 px"},
+    {"px/m", "a scale of an image", "10000 (px/m) or 10 px/mm"},
+    {"DN", "a grey value", "20 (DN) or 20 DN"},
 };
 
 const Symbol* findSymbol(std::string_view name) {
@@ -137,6 +145,8 @@ bool multiplyFactor(std::string_view factor, int sign, Unit& unit) {
   unit.dimension.mass += exponent * symbol->dimension.mass;
   unit.dimension.time += exponent * symbol->dimension.time;
   unit.dimension.angle += exponent * symbol->dimension.angle;
+  unit.dimension.pixel += exponent * symbol->dimension.pixel;
+  unit.dimension.grey += exponent * symbol->dimension.grey;
   return true;
 }
 
@@ -167,7 +177,8 @@ bool isNotFinite(std::string_view text) {
 }  // namespace
 
 bool operator==(const Dimension& a, const Dimension& b) {
-  return a.length == b.length && a.mass == b.mass && a.time == b.time && a.angle == b.angle;
+  return a.length == b.length && a.mass == b.mass && a.time == b.time && a.angle == b.angle && a.pixel == b.pixel &&
+         a.grey == b.grey;
 }
 
 std::optional<Unit> parseUnit(const std::string& text) {

@@ -10,6 +10,8 @@ struct Dimension {
   int mass = 0;
   int time = 0;
   int angle = 0;
+  int pixel = 0;
+  int grey = 0;  ///< grey value of an image
 };
 bool operator==(const Dimension& a, const Dimension& b);
 inline bool operator!=(const Dimension& a, const Dimension& b) {

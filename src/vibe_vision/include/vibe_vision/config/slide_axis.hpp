@@ -11,7 +11,12 @@ struct SlideAxis {
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  ///< unit vector, to positive slide
   double pixels_per_metre = 0;                           ///< at slide 0 [px/m]
   double perspective = 0;                                ///< [1/m]
-  double residual_rms = 0;                               ///< of the calibration [m]; 0: not calibrated
+  double residual_rms = 0;                               ///< of the calibration, along the axis [m]; 0: not known
+  /// Of origin along and across the axis [px], angle of the direction [rad], pixels_per_metre and perspective; SI, and
+  /// zero where it is not known.
+  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
+
+  bool isCalibrated() const { return pixels_per_metre > 0; }
 };
 
 double alongOf(const SlideAxis& axis, double slide);         ///< [m] -> [px]

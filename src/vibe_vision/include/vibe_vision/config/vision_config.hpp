@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,9 @@ struct GateConfig {
   double max_tilt = 0.35;         ///< of the marker in the image [rad]
 };
 
+/// Whether a configuration may lack the axes of its instruments: before a calibration it does.
+enum class AxisRule { Required, Optional };
+
 /// Everything the tracker needs to know about a rig. docs/vision.md, "Configuration".
 struct VisionConfig {
   CameraModel camera;
@@ -53,12 +57,16 @@ struct VisionConfig {
 
   /// @param address  file, or package:// address
   /// @throws Error with file, line, key and remedy
-  static VisionConfig load(const std::string& address);
+  static VisionConfig load(const std::string& address, AxisRule rule = AxisRule::Required);
   /// @param place  what to call the text in errors
-  static VisionConfig parse(const std::string& yaml, const std::string& place);
+  static VisionConfig parse(const std::string& yaml, const std::string& place, AxisRule rule = AxisRule::Required);
+
+  /// @return index in `instruments`. @throws Error for an unknown name, with those there are
+  std::size_t indexOf(const std::string& instrument) const;
 };
 
-/// YAML that parse() reads back to the same values, with residuals of calibrations.
+/// YAML that parse() reads back to the same values, bit by bit, with residuals of calibrations: every key with its SI
+/// unit, without axes that are not calibrated. What parse() refuses is written all the same.
 std::string toYaml(const VisionConfig& config);
 
 }  // namespace vibe

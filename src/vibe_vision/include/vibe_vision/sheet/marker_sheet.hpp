@@ -1,0 +1,77 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vibe_vision/config/vision_config.hpp"
+
+namespace vibe {
+
+enum class Paper { A4, Letter };
+
+/// Chessboard for the calibration of the lens, counted by its inner corners as OpenCV does.
+struct BoardSpec {
+  int columns = 9, rows = 6;
+  double square = 5e-3;  ///< side of a square [m]
+};
+
+struct SheetOptions {
+  Paper paper = Paper::A4;
+  int copies = 3;                 ///< of each marker
+  double paper_thickness = 1e-4;  ///< [m]; 80 g/m^2 office paper. Sleeves are shorter by pi times it
+  double overlap = 2.5e-3;        ///< of a sleeve, glued under its other end [m]
+  bool markers = true;            ///< the pages with the markers of the configuration
+  bool board = true;              ///< the page with the chessboard
+  BoardSpec board_spec;
+};
+
+/// A piece of a page, in metres from the page's upper left corner, x to the right and y down.
+struct SheetItem {
+  std::string name;     ///< of the instrument; empty for the chessboard
+  MarkerDesign marker;  ///< of a chessboard: not used
+  /// What is cut out: of a ring its square; of a sleeve `length` along x, u to the right, and one turn and the overlap
+  /// along y, phi growing downwards from -pi; of a chessboard its black and white squares.
+  double x = 0, y = 0, width = 0, height = 0;
+};
+
+struct SheetPage {
+  std::vector<SheetItem> items;
+};
+
+/// A page as grey values, row by row: 0 black, 255 white.
+struct SheetRaster {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> value;
+};
+
+/// Pages with all markers of a configuration at their true size, to be printed at 100 %: cut lines, names, the
+/// direction of positive slide, and rulers of 100 mm along both sides that show a printer that scales.
+class MarkerSheet {
+ public:
+  /// @throws Error if something does not fit on the paper
+  MarkerSheet(const VisionConfig& config, const SheetOptions& options);
+
+  const std::vector<SheetPage>& pages() const { return pages_; }
+  double width() const;   ///< of the paper [m]
+  double height() const;  ///< [m]
+
+  /// One file with all pages. @throws Error if it cannot be written
+  void writePdf(const std::string& file) const;
+  /// One file per page: FILE-1.svg, FILE-2.svg, ... beside `file`, which ends in ".svg"; `file` itself if there is one
+  /// page only. @return the files. @throws Error
+  std::vector<std::string> writeSvg(const std::string& file) const;
+  /// A page as a printer of that resolution would print it.
+  SheetRaster raster(std::size_t page, double pixels_per_metre) const;
+
+ private:
+  SheetOptions options_;
+  std::vector<SheetPage> pages_;
+};
+
+/// Length of one turn of a sleeve on flat paper. Its printed side is at the design's diameter; the middle of the paper,
+/// which does not stretch, is half the thickness further in. [m]
+double flatTurn(const SleeveDesign& sleeve, double paper_thickness);
+/// Diameter of the rod that the sleeve is made for: the design's diameter less the paper on both sides [m].
+double rodDiameter(const SleeveDesign& sleeve, double paper_thickness);
+
+}  // namespace vibe
