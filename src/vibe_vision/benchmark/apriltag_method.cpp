@@ -33,20 +33,20 @@ class AprilTagMethod : public Method {
   }
 
  private:
-  std::optional<Corners> detect(const ImageView& view) {
+  std::vector<Corners> detect(const ImageView& view) {
     image_u8_t image = {view.width, view.height, view.stride, const_cast<std::uint8_t*>(view.data)};
     zarray_t* detections = apriltag_detector_detect(detector_, &image);
-    std::optional<Corners> result;
-    for (int i = 0; i < zarray_size(detections) && !result; ++i) {
+    std::vector<Corners> tags;
+    for (int i = 0; i < zarray_size(detections); ++i) {
       apriltag_detection_t* detection = nullptr;
       zarray_get(detections, i, &detection);
       if (detection->id != kAprilTagId) continue;
       // the library's pixel centres are at +0.5
-      result.emplace();
-      for (std::size_t k = 0; k < 4; ++k) (*result)[k] = {detection->p[k][0] - 0.5, detection->p[k][1] - 0.5};
+      tags.emplace_back();
+      for (std::size_t k = 0; k < 4; ++k) tags.back()[k] = {detection->p[k][0] - 0.5, detection->p[k][1] - 0.5};
     }
     apriltag_detections_destroy(detections);
-    return result;
+    return tags;
   }
 
   bool refine_edges_;
@@ -58,15 +58,14 @@ class AprilTagMethod : public Method {
 
 SyntheticTag aprilTag(double side) {
   const Family family;
-  image_u8_t* picture = apriltag_to_image(family.family, kAprilTagId);
-  const int border = (picture->width - family.family->width_at_border) / 2;
+  const apriltag_family_t& f = *family.family;
+  const auto cells = static_cast<std::size_t>(f.width_at_border);
   SyntheticTag tag;
-  tag.cells = family.family->width_at_border;
+  tag.cells = f.width_at_border;
   tag.side = side;
-  for (int y = 0; y < tag.cells; ++y)
-    for (int x = 0; x < tag.cells; ++x)
-      tag.white.push_back(picture->buf[(y + border) * picture->stride + x + border] > 127 ? 1 : 0);
-  image_u8_destroy(picture);
+  tag.white.assign(cells * cells, 0);
+  for (std::uint32_t i = 0; i < f.nbits; ++i)  // as apriltag_to_image() does
+    if ((f.codes[kAprilTagId] >> (f.nbits - 1 - i)) & 1) tag.white[f.bit_y[i] * cells + f.bit_x[i]] = 1;
   return tag;
 }
 

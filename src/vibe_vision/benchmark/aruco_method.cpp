@@ -29,19 +29,19 @@ class ArucoMethod : public Method {
   }
 
  private:
-  std::optional<Corners> detect(const ImageView& view) {
+  std::vector<Corners> detect(const ImageView& view) {
     const cv::Mat image(view.height, view.width, CV_8UC1, const_cast<std::uint8_t*>(view.data),
                         static_cast<std::size_t>(view.stride));
     std::vector<std::vector<cv::Point2f>> corners;
     std::vector<int> ids;
     cv::aruco::detectMarkers(image, dictionary_, corners, ids, parameters_);
+    std::vector<Corners> tags;
     for (std::size_t i = 0; i < ids.size(); ++i) {
       if (ids[i] != kArucoId) continue;
-      Corners result;
-      for (std::size_t k = 0; k < 4; ++k) result[k] = {corners[i][k].x, corners[i][k].y};
-      return result;
+      tags.emplace_back();
+      for (std::size_t k = 0; k < 4; ++k) tags.back()[k] = {corners[i][k].x, corners[i][k].y};
     }
-    return std::nullopt;
+    return tags;
   }
 
   cv::Ptr<cv::aruco::Dictionary> dictionary_ = dictionary();

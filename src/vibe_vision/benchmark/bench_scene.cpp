@@ -8,9 +8,9 @@
 namespace vibe {
 namespace {
 
-constexpr double kNominalMarker = 40;   // [px]
-constexpr double kNominalSpeed = 0.5;   // [m/s]
-constexpr double kTagSide = 4e-3;       // [m]
+constexpr double kNominalMarker = 40;                      // [px]
+constexpr double kNominalSpeed = 0.5;                      // [m/s]
+constexpr double kTagSide = 4e-3;                          // [m]
 constexpr double kArucoBelow = 132, kAprilTagBelow = 232;  // the ring; look-alikes pass between them [px]
 
 void resize(RingDesign& ring, double factor) {
@@ -125,10 +125,6 @@ std::vector<Cell> furtherCells() {
   large.width = 1936;
   large.height = 1216;
   return cells;
-}
-
-std::vector<std::string> harderSceneNames() {
-  return {};
 }
 
 }  // namespace vibe

@@ -9,6 +9,9 @@
 
 namespace vibe {
 
+/// By how much the consumer's picture is later than the frame [s].
+constexpr double kLead = 14e-3;
+
 /// What a method says about its marker in one frame.
 struct Estimate {
   bool found = false;
@@ -22,6 +25,7 @@ struct MethodRun {
   std::vector<Estimate> estimates;  ///< while tracking, one per frame
   std::vector<Estimate> searches;   ///< without knowledge of earlier frames; of every search_stride-th frame
   std::size_t search_stride = 1;
+  std::vector<double> lead_errors;   ///< of the slide, extrapolated by kLead [m]; for methods with covariance
   std::vector<double> track_times;   ///< per frame, near the last or true position
   std::vector<double> search_times;  ///< per frame, along the axis or in the whole frame
 };

@@ -2,6 +2,7 @@
 
 #include "cpu_clock.hpp"
 #include "method.hpp"
+#include "vibe_vision/predict/predictor.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
 namespace vibe {
@@ -19,6 +20,27 @@ Estimate toEstimate(const SlideAxis& axis, const Measurement& measurement) {
   return estimate;
 }
 
+/// What the predictor makes of the measurements, from 0.2 s after the start and while the marker is tracked.
+class LeadError {
+ public:
+  LeadError(const SyntheticScene& scene, std::size_t instrument) : scene_(scene), instrument_(instrument) {}
+
+  void add(const Frame& frame, const Measurement& measurement, std::vector<double>& errors) {
+    if (!measurement.tracked()) return;
+    predictor_.update(frame.stamp, measurement.slide, measurement.covariance(0, 0));
+    const double time = static_cast<double>(frame.sequence) / scene_.rate;
+    if (time < kSettled) return;
+    const double predicted = predictor_.predict(frame.stamp + kLead).mean[0];
+    errors.push_back(predicted - truthAt(scene_, instrument_, time + kLead).slide);
+  }
+
+ private:
+  static constexpr double kSettled = 0.2;  // [s]
+  const SyntheticScene& scene_;
+  std::size_t instrument_;
+  Predictor predictor_{kSlidePrior};
+};
+
 /// The tracker of this package, with a configuration of one instrument.
 class OwnMethod : public Method {
  public:
@@ -34,11 +56,13 @@ class OwnMethod : public Method {
     const SlideAxis axis = config.instruments.front().axis;
     MethodRun run;
     Tracker tracker(config), searcher(config);
+    LeadError lead(scene.scene, instrument(scene));
     for (const RenderedFrame& frame : frames) {
-      double begin = threadCpuTime();
+      const double begin = threadCpuTime();
       const Measurement tracked = tracker.track(frame.frame).front();
       run.track_times.push_back(threadCpuTime() - begin);
       run.estimates.push_back(toEstimate(axis, tracked));
+      lead.add(frame.frame, tracked, run.lead_errors);
     }
     for (const RenderedFrame& frame : frames) {
       searcher.reset();

@@ -32,6 +32,8 @@ void Scorer::add(const BenchScene& scene, const std::vector<RenderedFrame>& fram
     rotation_bound_squares_ += bound.rotation * bound.rotation;
     ++bound_count_;
   }
+  for (const double error : run.lead_errors) lead_squares_ += error * error;
+  lead_count_ += static_cast<double>(run.lead_errors.size());
   track_times_.insert(track_times_.end(), run.track_times.begin(), run.track_times.end());
   search_times_.insert(search_times_.end(), run.search_times.begin(), run.search_times.end());
 }
@@ -97,6 +99,7 @@ Score Scorer::score() const {
   score.nees_low = degrees > 0 ? chiSquaredQuantile(degrees, -1.96) / degrees : nan;
   score.nees_high = degrees > 0 ? chiSquaredQuantile(degrees, 1.96) / degrees : nan;
   score.nees_inside = ratio(nees_inside_, nees_count_);
+  score.lead_rms = std::sqrt(ratio(lead_squares_, lead_count_));
   score.track = summarise(track_times_);
   score.search = summarise(search_times_);
   return score;

@@ -27,6 +27,7 @@ struct Score {
   double bound = 0, rotation_bound = 0;          ///< Cramer-Rao, RMS of the frames where it was computed [px], [rad]
   double nees = 0, nees_low = 0, nees_high = 0;  ///< mean over the degrees of freedom, and its 95 % band around 1
   double nees_inside = 0;                        ///< share of frames within their own 95 % ellipse
+  double lead_rms = 0;                           ///< of the slide, extrapolated by kLead [m]
   TimeSummary track, search;                     ///< [s]
 
   double boundRatio() const { return rms / bound; }
@@ -57,6 +58,7 @@ class Scorer {
   double turn_squares_ = 0;
   double nees_sum_ = 0, nees_count_ = 0, nees_inside_ = 0;
   double bound_squares_ = 0, rotation_bound_squares_ = 0, bound_count_ = 0;
+  double lead_squares_ = 0, lead_count_ = 0;
   std::vector<double> track_times_, search_times_;
 };
 

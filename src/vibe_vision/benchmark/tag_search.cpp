@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cpu_clock.hpp"
 #include "vibe_vision/image/camera_model.hpp"
@@ -32,14 +33,24 @@ Window windowAround(const Frame& frame, const Eigen::Vector2d& centre, double ha
   return window;
 }
 
-Estimate toEstimate(const BenchScene& scene, const SlideAxis& axis, const Eigen::Vector2d& corner,
-                    const std::optional<Corners>& corners) {
-  Estimate estimate;
-  if (!corners) return estimate;
+Eigen::Vector2d centreOf(const CameraModel& camera, const Corners& corners, const Eigen::Vector2d& shift) {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& point : *corners) centre += undistort(scene.scene.camera, point + corner) / 4;
-  estimate.found = true;
-  estimate.along = axis.direction.dot(centre - axis.origin);
+  for (const Eigen::Vector2d& point : corners) centre += undistort(camera, point + shift) / 4;
+  return centre;
+}
+
+Estimate toEstimate(const CameraModel& camera, const SlideAxis& axis, const Eigen::Vector2d& shift,
+                    const std::vector<Corners>& tags) {
+  Estimate estimate;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Corners& corners : tags) {
+    const Eigen::Vector2d offset = centreOf(camera, corners, shift) - axis.origin;
+    const double along = axis.direction.dot(offset), distance = (offset - along * axis.direction).norm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    estimate.found = true;
+    estimate.along = along;
+  }
   return estimate;
 }
 
@@ -55,10 +66,10 @@ MethodRun runTagDetector(const BenchScene& scene, std::size_t instrument, const 
   run.search_stride = kFramesPerSearch;
   const auto detect = [&](const Window& window, std::vector<Estimate>& estimates, std::vector<double>& times) {
     const double begin = threadCpuTime();
-    const std::optional<Corners> corners =
-        window.view.width > 8 && window.view.height > 8 ? detector(window.view) : std::nullopt;
+    const std::vector<Corners> tags =
+        window.view.width > 8 && window.view.height > 8 ? detector(window.view) : std::vector<Corners>();
     times.push_back(threadCpuTime() - begin);
-    estimates.push_back(toEstimate(scene, axis, window.corner, corners));
+    estimates.push_back(toEstimate(scene.scene.camera, axis, window.corner, tags));
   };
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const Frame& frame = frames[i].frame;
