@@ -1,5 +1,7 @@
 #include "bench_cell.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "harder_scenes.hpp"
@@ -42,13 +44,42 @@ void timeBoth(const BenchScene& scene, const Frames& frames, std::vector<double>
   }
 }
 
+bool chosen(const BenchOptions& options, const std::string& method) {
+  return options.methods.empty() ||
+         std::find(options.methods.begin(), options.methods.end(), method) != options.methods.end();
+}
+
 std::vector<std::unique_ptr<Method>> methodsOf(const BenchOptions& options) {
   std::vector<std::unique_ptr<Method>> methods = allMethods();
-  if (!options.tags) methods.resize(3);
+  const auto unwanted = [&](const std::unique_ptr<Method>& method) { return !chosen(options, method->name()); };
+  methods.erase(std::remove_if(methods.begin(), methods.end(), unwanted), methods.end());
   return methods;
 }
 
+void writeTrace(std::ostream& out, const Cell& cell, std::uint64_t seed, const Method& method, const BenchScene& scene,
+                const Frames& frames, const MethodRun& run) {
+  const std::size_t instrument = method.instrument(scene);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Estimate& e = run.estimates[i];
+    const SyntheticTruth& truth = frames[i].truth[instrument];
+    out << cell.scene << ',' << cell.marker << ',' << seed << ',' << method.name() << ',' << i << ',' << truth.visible
+        << ',' << truth.along << ',' << truth.velocity << ',' << e.found << ','
+        << (e.found ? "tracked" : toText(e.reason));
+    if (e.found)
+      out << ',' << e.along - truth.along << ',' << std::remainder(e.rotation - truth.rotation, 2 * M_PI) << ','
+          << std::sqrt(e.covariance(0, 0)) << ',' << std::sqrt(e.covariance(1, 1));
+    else
+      out << ",,,,";
+    out << ',' << run.track_times[i] << '\n';
+  }
+}
+
 }  // namespace
+
+void writeTraceHeader(std::ostream& out) {
+  out << "scene,marker_px,seed,method,frame,visible,along_px,velocity_px_s,found,reason,error_px,rotation_error_rad,"
+         "deviation_px,rotation_deviation_rad,time_s\n";
+}
 
 CellResult runCell(const Cell& cell, const BenchOptions& options) {
   const std::vector<std::unique_ptr<Method>> methods = methodsOf(options);
@@ -62,9 +93,11 @@ CellResult runCell(const Cell& cell, const BenchOptions& options) {
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const std::size_t instrument = methods[m]->instrument(scene);
       if (bounds.count(instrument) == 0) bounds[instrument] = boundsOf(scene, instrument, frames, options.bound_stride);
-      scorers[m].add(scene, frames, methods[m]->run(scene, frames), bounds[instrument]);
+      const MethodRun run = methods[m]->run(scene, frames);
+      scorers[m].add(scene, frames, run, bounds[instrument]);
+      if (options.trace) writeTrace(*options.trace, cell, seed, *methods[m], scene, frames, run);
     }
-    timeBoth(scene, frames, track, search);
+    if (chosen(options, "ring") && chosen(options, "sleeve")) timeBoth(scene, frames, track, search);
   }
   CellResult result{cell, {}, summarise(track), summarise(search)};
   for (const Scorer& scorer : scorers) result.scores.push_back(scorer.score());

@@ -14,7 +14,7 @@ struct Options {
   std::vector<double> markers, exposures;
   double speed = 0.5;
   std::vector<int> sensor;
-  std::string csv;
+  std::string csv, trace;
   bool quick = false, list = false;
 };
 
@@ -28,10 +28,12 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("--seed", options.bench.seeds, "seeds of motion, noise and background; default: 1 2 3");
   app.add_option("--visible", options.bench.limits.visible, "share of a marker from which on it should be found")
       ->check(CLI::Range(0.25, 1.0));
-  app.add_flag("!--no-tags", options.bench.tags, "leave ArUco and AprilTag out");
+  app.add_option("--method", options.bench.methods, "only these methods")
+      ->check(CLI::IsMember({"ring", "sleeve", "centroid", "aruco", "apriltag", "apriltag_unrefined"}));
   app.add_flag("--quick", options.quick, "60 frames of one seed of every scene; no sizes, exposures and sensors");
   app.add_flag("--list", options.list, "print the names of the scenes and end");
   app.add_option("--csv", options.csv, "write all numbers to this file");
+  app.add_option("--trace", options.trace, "write every frame of every method to this file");
 }
 
 /// What the options name, or without any everything that docs/vision.md shows.
@@ -58,22 +60,31 @@ std::vector<vibe::Cell> cellsOf(const Options& options) {
   return cells;
 }
 
+std::ofstream openOutput(const std::string& option, const std::string& path) {
+  std::ofstream file;
+  if (path.empty()) return file;
+  file.open(path);
+  if (!file) throw vibe::Error(option + ": cannot write to '" + path + "'; name a file in a folder that exists");
+  return file;
+}
+
 int run(const Options& options) {
   if (options.list) {
     for (const std::string& name : vibe::sceneNames()) std::cout << name << "\n";
     for (const std::string& name : vibe::harderSceneNames()) std::cout << name << "\n";
     return 0;
   }
-  std::ofstream csv;
-  if (!options.csv.empty()) {
-    csv.open(options.csv);
-    if (!csv) throw vibe::Error("--csv: cannot write to '" + options.csv + "'; name a file in a folder that exists");
+  std::ofstream csv = openOutput("--csv", options.csv), trace = openOutput("--trace", options.trace);
+  vibe::BenchOptions bench = options.bench;
+  if (trace.is_open()) {
+    bench.trace = &trace;
+    vibe::writeTraceHeader(trace);
   }
   if (!vibe::pinThread()) std::cerr << "The thread cannot be pinned to one processor: times may vary more.\n";
   vibe::printHeader(std::cout, options.bench.limits);
   std::vector<vibe::CellResult> results;
   for (const vibe::Cell& cell : cellsOf(options)) {
-    results.push_back(vibe::runCell(cell, options.bench));
+    results.push_back(vibe::runCell(cell, bench));
     vibe::printCell(std::cout, results.back());
   }
   if (csv.is_open()) vibe::writeCsv(csv, results);

@@ -6,6 +6,7 @@
 
 #include "bench_scene.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
+#include "vibe_vision/track/measurement.hpp"
 
 namespace vibe {
 
@@ -15,6 +16,7 @@ constexpr double kLead = 14e-3;
 /// What a method says about its marker in one frame.
 struct Estimate {
   bool found = false;
+  LostReason reason = LostReason::NotFound;              ///< if not found; of the own trackers
   double along = 0;                                      ///< undistorted [px]
   double rotation = 0;                                   ///< [rad]
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of along [px] and rotation [rad]; zero: not stated

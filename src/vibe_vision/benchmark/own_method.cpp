@@ -11,6 +11,7 @@ namespace {
 Estimate toEstimate(const SlideAxis& axis, const Measurement& measurement) {
   Estimate estimate;
   estimate.found = measurement.tracked();
+  estimate.reason = measurement.reason;
   if (!estimate.found) return estimate;
   estimate.along = measurement.along;
   estimate.rotation = measurement.rotation;

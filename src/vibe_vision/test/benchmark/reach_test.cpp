@@ -26,7 +26,7 @@ CellResult measure(const std::string& scene, int frames) {
   BenchOptions options;
   options.frames = frames;
   options.seeds = {41, 42};
-  options.tags = false;
+  options.methods = {"ring", "sleeve", "centroid"};
   Cell cell;
   cell.scene = scene;
   return runCell(cell, options);
