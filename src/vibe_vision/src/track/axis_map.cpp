@@ -65,7 +65,7 @@ void AxisMap::addRow(int y, const std::vector<Eigen::Vector2d>& border) {
   rows_.push_back(row);
 }
 
-PixelRect AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const {
+PixelWindow AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
   for (double a : {-1.0, 0.0, 1.0})
     for (double b : {-1.0, 0.0, 1.0}) {
@@ -80,9 +80,9 @@ PixelRect AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d
   return {x, y, limit(std::ceil(high.x())) - x + 1, limit(std::ceil(high.y())) - y + 1};
 }
 
-PixelRect AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
-                          PixelBlock& pixels) {
-  PixelRect rect = boundsOf(centre, half_extents);
+PixelWindow AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
+                            PixelBlock& pixels) {
+  PixelWindow rect = boundsOf(centre, half_extents);
   const int last_row = first_row_ + static_cast<int>(rows_.size());
   const int top = std::max(rect.y, first_row_), bottom = std::min(rect.y + rect.height, last_row);
   rect.y = top, rect.height = std::max(bottom - top, 0);
@@ -90,15 +90,12 @@ PixelRect AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, con
   markSaturated(frame, rect);
   for (int parity : {0, 1})
     for (int y = rect.y; y < rect.y + rect.height; ++y) gatherRow(frame, rect, y, parity, centre, half_extents, pixels);
-  for (std::size_t i = pixels.count; i < pixels.padded(); ++i) {
-    pixels.along[i] = pixels.along[pixels.count - 1], pixels.lateral[i] = pixels.lateral[pixels.count - 1];
-    pixels.value[i] = pixels.weight[i] = 0;
-  }
+  pixels.pad();
   return rect;
 }
 
 /// Marks what is near saturated pixels in saturated_; nearly always there is none.
-void AxisMap::markSaturated(const Frame& frame, const PixelRect& rect) {
+void AxisMap::markSaturated(const Frame& frame, const PixelWindow& rect) {
   any_saturated_ = false;
   const int left = std::max(rect.x - frame.offset_x, 0), top = std::max(rect.y - frame.offset_y, 0);
   const int right = std::min(rect.x - frame.offset_x + rect.width, frame.image.width);
@@ -123,7 +120,7 @@ void AxisMap::markSaturated(const Frame& frame, const PixelRect& rect) {
   }
 }
 
-void AxisMap::gatherRow(const Frame& frame, const PixelRect& rect, int y, int parity, const Eigen::Vector2d& centre,
+void AxisMap::gatherRow(const Frame& frame, const PixelWindow& rect, int y, int parity, const Eigen::Vector2d& centre,
                         const Eigen::Vector2d& half_extents, PixelBlock& pixels) const {
   const Row& row = rows_[y - first_row_];
   int begin = std::max(rect.x, row.begin);
@@ -153,7 +150,7 @@ void AxisMap::readBand(const Frame& frame, double begin, double end, double half
   std::fill(profile.sum.begin(), profile.sum.end(), 0.F);
   std::fill(profile.count.begin(), profile.count.end(), 0.F);
   profile.pixels = profile.saturated = 0;
-  const PixelRect rect = boundsOf({(begin + end) / 2, 0}, {(end - begin) / 2, half_width});
+  const PixelWindow rect = boundsOf({(begin + end) / 2, 0}, {(end - begin) / 2, half_width});
   const auto low = static_cast<float>(begin), high = static_cast<float>(end), width = static_cast<float>(half_width);
   const auto first = static_cast<float>(profile.first - 0.5), bins = static_cast<float>(profile.sum.size());
   const int top = std::max({rect.y, first_row_, frame.offset_y});

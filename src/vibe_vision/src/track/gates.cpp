@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kMaxMisfit = 4;    // chi^2 per degree of freedom of the pixels that are no outliers
 constexpr double kDeviations = 6;   // of the prediction
+constexpr double kSureTilt = 3;     // standard deviations: a ring shows its tilt only if it is slanted
 constexpr double kSlack = 1;        // beyond the range and across the axis [px]
 constexpr double kMaxBlack = 0.75;  // of white: paper and ink differ more
 
@@ -30,7 +31,8 @@ LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal) const {
   const double scale = std::exp(x[kLogScale] - nominal[kLogScale]);
   const double length = scale * std::exp(x[kLogAspect] - nominal[kLogAspect]);
   const double wrong_size = std::max(std::abs(scale - 1), std::abs(length - 1));
-  if (wrong_size > limits_.max_scale_error || std::abs(x[kTilt]) > limits_.max_tilt) return LostReason::Mismatch;
+  const double tilt = std::abs(x[kTilt]) - kSureTilt * std::sqrt(fit.covariance(kTilt, kTilt));
+  if (wrong_size > limits_.max_scale_error || tilt > limits_.max_tilt) return LostReason::Mismatch;
   if (fit.visible < limits_.min_visible) return LostReason::Occluded;
   return fit.misfit > kMaxMisfit ? LostReason::Mismatch : LostReason::None;
 }

@@ -15,6 +15,7 @@ constexpr int kJumpsToBelieve = 3;     // frames that agree on a place that cann
 constexpr double kGoodLook = 0.6;      // share of the marker that must be seen to learn size, tilt and blur from it
 constexpr double kMargin = 3;          // around the range of the search [px]
 constexpr double kFilterFloor = 1e-6;  // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
+constexpr double kGoodLoss = 0.25;     // of a pixel: no other candidate needs to be looked at
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) {
@@ -146,9 +147,16 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
   for (int i = 0; i < found.count; ++i) {
     const MarkerFit fit = tryCandidate(frame, prediction, found.candidates[i]);
     const LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])));
+    if (getenv("DBG"))
+      fprintf(stderr,
+              "cand %.1f m %.0f s %.3f -> %.2f lat %.2f m %.1f scale %.3f asp %.3f blur %.2f misfit %.2f vis %.2f loss "
+              "%.3f valid %d: %s\n",
+              found.candidates[i].along, found.candidates[i].motion, found.candidates[i].score, fit.x[kAlong],
+              fit.x[kLateral], fit.motion, exp(fit.x[kLogScale]), exp(fit.x[kLogAspect]), fit.x[kBlur], fit.misfit,
+              fit.visible, fit.loss, fit.valid, toText(reason));
     if (reason == LostReason::None && fit.loss < best.loss) best = fit;
     if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
-    if (best.valid && best.misfit < 1.5 && best.visible > 0.9) break;
+    if (best.valid && best.loss < kGoodLoss) break;
   }
   if (!best.valid) return false;
   if (!isExpected(best, prediction, frame.stamp)) {

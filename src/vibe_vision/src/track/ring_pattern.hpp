@@ -14,6 +14,7 @@ class RingPattern : public MarkerPattern {
   Eigen::Vector2d maxWindow() const override;
   void prepare(const MarkerPose& pose, double motion) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
+  void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
   double searchHalfWidth() const override;
   void searchProfile(double motion, std::vector<float>& profile) const override;
 
