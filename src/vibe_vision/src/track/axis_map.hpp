@@ -53,6 +53,7 @@ class AxisMap {
   void addRow(int y, const std::vector<Eigen::Vector2d>& border);
   PixelWindow boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const;
   void markSaturated(const Frame& frame, const PixelWindow& rect);
+  void markHalo(const PixelWindow& rect, int x, int y);
   void gatherRow(const Frame& frame, const PixelWindow& rect, int y, int parity, const Eigen::Vector2d& centre,
                  const Eigen::Vector2d& half_extents, PixelBlock& pixels) const;
 

@@ -15,7 +15,7 @@ constexpr int kMinDistance = 4;          // between candidates [px]
 }  // namespace
 
 AxisSearch::AxisSearch(const MarkerPattern& pattern, double begin, double end)
-    : half_width_(pattern.searchHalfWidth()), profiles_(kMotions) {
+    : begin_(begin), end_(end), half_width_(pattern.searchHalfWidth()), profiles_(kMotions) {
   for (int i = 0; i < kMotions; ++i) {
     pattern.searchProfile(i * kMotionStep, profiles_[i]);
     reach_ = std::max(reach_, static_cast<int>(profiles_[i].size() / 2));

@@ -27,6 +27,8 @@ class AxisSearch {
 
   /// @param begin, end  of the range along the axis [px]
   AxisSearch(const MarkerPattern& pattern, double begin, double end);
+  double begin() const { return begin_; }
+  double end() const { return end_; }
 
   /// @param begin, end      where to look, along the axis [px]
   /// @param max_motion      motion during the exposure of the fastest marker [px]
@@ -43,6 +45,7 @@ class AxisSearch {
   double correlate(const std::vector<float>& profile, int place, double min_contrast) const;
   void keep(int place, const Score& score);
 
+  double begin_, end_;
   double first_ = 0;  ///< place of bin 0 along the axis [px]
   int reach_ = 0;     ///< half length of a profile
   double half_width_ = 0;
