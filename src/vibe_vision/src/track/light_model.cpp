@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::array<double, 2> kFlicker{100, 120};  // of lamps on 50 and 60 Hz mains [Hz]
 // Standard deviations at the beginning and of the random walk from one frame to the next. Design choices.
-constexpr double kLevel = 1, kLevelWalk = 5e-3;
-constexpr double kPlace = 0.3, kPlaceWalk = 2e-3;
-constexpr double kAmplitude = 0.04, kAmplitudeWalk = 1e-3;
-constexpr double kModel = 2e-3;  // what the model leaves unexplained, relative
+constexpr double kLevel = 1, kLevelWalk = 1.5e-3;
+constexpr double kPlace = 0.3, kPlaceWalk = 1e-3;
+constexpr double kAmplitude = 0.03, kAmplitudeWalk = 2e-4;
+constexpr double kModel = 1e-3;  // what the model leaves unexplained, relative
 constexpr double kLongest = 60;  // after which phases are counted anew [s]
 
 double square(double x) {
