@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstddef>
 
 #include "vibe_vision/track/marker_pattern.hpp"
@@ -13,6 +14,18 @@ inline Four loadFour(const float* p) {
   Four v;
   __builtin_memcpy(&v, p, sizeof v);
   return v;
+}
+
+inline void store(float* p, Four v) {
+  __builtin_memcpy(p, &v, sizeof v);
+}
+inline Four greater(Four a, Four b) {
+  return a > b ? a : b;
+}
+inline Four squareRoot(Four v) {
+  Four root;
+  for (int k = 0; k < 4; ++k) root[k] = std::sqrt(v[k]);  // one instruction
+  return root;
 }
 
 inline double total(Four a, Four b) {

@@ -140,17 +140,20 @@ void PatternFit::weigh(const FitVector& x, const PixelBlock& pixels, const FitOp
   float* __restrict factor = factor_.data(), * __restrict residual = equations_.residual();
   float* __restrict weight = weight_.data(), * __restrict rest = rest_.data(), * __restrict information = information_.data();
   const std::size_t count = pixels.padded();
-  for (std::size_t i = 0; i < count; ++i) {
-    const float light = 1 + slope_x * (px[i] - centre_x) + slope_y * (py[i] - centre_y);
-    const float grey = (black + contrast * m[i]) * light;
-    const float steep = by_along[i] * by_along[i], steep_across = by_lateral[i] * by_lateral[i];
-    const float inverse = 1 / (floor + gain * std::max(grey, 0.F) + slack * (steep + steep_across));
-    const float r = seen[i] - grey, kept = std::max(1 - r * r * inverse * kInverseCut, 0.F);
-    weight[i] = valid[i] * kept * kept;
-    factor[i] = std::sqrt(weight[i] * inverse);
-    residual[i] = factor[i] * r;
-    rest[i] = valid[i] * kept * kept * kept;
-    information[i] = inverse * steep;
+  const Four zero{}, one = zero + 1;
+  for (std::size_t i = 0; i < count; i += 4) {
+    const Four light = one + slope_x * (loadFour(px + i) - centre_x) + slope_y * (loadFour(py + i) - centre_y);
+    const Four grey = (black + contrast * loadFour(m + i)) * light, usable = loadFour(valid + i);
+    const Four along = loadFour(by_along + i), lateral = loadFour(by_lateral + i);
+    const Four steep = along * along, slope = steep + lateral * lateral;
+    const Four inverse = one / (floor + gain * greater(grey, zero) + slack * slope);
+    const Four r = loadFour(seen + i) - grey, kept = greater(one - r * r * inverse * kInverseCut, zero);
+    const Four share = usable * kept * kept, root = usable * kept * squareRoot(inverse);
+    store(weight + i, share);
+    store(factor + i, root);
+    store(residual + i, root * r);
+    store(rest + i, share * kept);
+    store(information + i, inverse * steep);
   }
   squares_ = dot(residual, residual, count);
   weights_ = total(weight, count);

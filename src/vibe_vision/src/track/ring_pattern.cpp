@@ -70,7 +70,8 @@ struct RingPattern::Part {
   alignas(16) float row[kPart], column[kPart];  // in steps of the table, not below 0
   alignas(16) float sign_u[kPart], sign_v[kPart];
   alignas(16) float u[kPart], v[kPart];
-  Four table[kPart];  ///< value, by u, by v, Laplacian
+  alignas(16) float value[kPart], by_u[kPart], by_v[kPart], laplacian[kPart];
+  std::size_t count;  ///< of pixels, a multiple of kLanes
 };
 
 RingPattern::RingPattern(const RingDesign& design, double pixels_per_metre)
@@ -138,7 +139,7 @@ void RingPattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, Pat
 }
 
 void RingPattern::place(const MarkerPose& pose, const PixelBlock& pixels, std::size_t begin, Part& part) const {
-  const std::size_t count = std::min(kPart, pixels.padded() - begin);
+  const std::size_t count = part.count = std::min(kPart, pixels.padded() - begin);
   const TableFrame frame(pose);
   const auto along = static_cast<float>(pose.along), lateral = static_cast<float>(pose.lateral);
   const auto keystone = static_cast<float>(pose.keystone);
@@ -160,30 +161,39 @@ void RingPattern::place(const MarkerPose& pose, const PixelBlock& pixels, std::s
     part.row[i] = std::min(std::abs(u) * kPerPixel + RingTable::kMargin, last_row);
     part.column[i] = std::min(std::abs(v) * kPerPixel + RingTable::kMargin, last_column);
   }
-  for (std::size_t i = count; i < kPart; ++i) {
-    part.x[i] = part.y[i] = part.u[i] = part.v[i] = part.sign_u[i] = part.sign_v[i] = 0;
-    part.row[i] = part.column[i] = RingTable::kMargin;
-  }
 }
 
 void RingPattern::readTable(Part& part) const {
-  for (std::size_t i = 0; i < kPart; ++i) {
-    const int r = static_cast<int>(part.row[i]), c = static_cast<int>(part.column[i]);
-    const Spline u(part.row[i] - static_cast<float>(r)), v(part.column[i] - static_cast<float>(c));
-    const float* p = table_.row(r - 1) + (c - 1);
-    const Four a = loadFour(p), b = loadFour(p + table_.columns()), d = loadFour(p + 2 * table_.columns()),
-               e = loadFour(p + 3 * table_.columns());
-    const Four mean = u.weight[0] * a + u.weight[1] * b + u.weight[2] * d + u.weight[3] * e;
-    const Four slope = u.first[0] * a + u.first[1] * b + u.first[2] * d + u.first[3] * e;
-    const Four bend = u.second[0] * a + u.second[1] * b + u.second[2] * d + u.second[3] * e;
-    part.table[i] = sums(mean * v.weight, mean * v.first, slope * v.weight, bend * v.weight + mean * v.second);
+  using Place [[gnu::vector_size(16)]] = int;
+  const Place low{0, 4, 1, 5}, high{2, 6, 3, 7}, front{0, 1, 4, 5}, back{2, 3, 6, 7};
+  for (std::size_t i = 0; i < part.count; i += 4) {
+    Four all[4];
+    for (std::size_t k = 0; k < 4; ++k) all[k] = readAt(part.row[i + k], part.column[i + k]);
+    const Four a = __builtin_shuffle(all[0], all[1], low), b = __builtin_shuffle(all[2], all[3], low);
+    const Four c = __builtin_shuffle(all[0], all[1], high), d = __builtin_shuffle(all[2], all[3], high);
+    store(part.value + i, __builtin_shuffle(a, b, front));
+    store(part.by_u + i, __builtin_shuffle(a, b, back));
+    store(part.by_v + i, __builtin_shuffle(c, d, front));
+    store(part.laplacian + i, __builtin_shuffle(c, d, back));
   }
+}
+
+/// Value, derivatives by u and v, and Laplacian, per step of the table.
+inline Four RingPattern::readAt(float row, float column) const {
+  const int r = static_cast<int>(row), c = static_cast<int>(column), stride = table_.columns();
+  const Spline u(row - static_cast<float>(r)), v(column - static_cast<float>(c));
+  const float* p = table_.row(r - 1) + (c - 1);
+  const Four a = loadFour(p), b = loadFour(p + stride), d = loadFour(p + 2 * stride), e = loadFour(p + 3 * stride);
+  const Four mean = u.weight[0] * a + u.weight[1] * b + u.weight[2] * d + u.weight[3] * e;
+  const Four slope = u.first[0] * a + u.first[1] * b + u.first[2] * d + u.first[3] * e;
+  const Four bend = u.second[0] * a + u.second[1] * b + u.second[2] * d + u.second[3] * e;
+  return sums(mean * v.weight, mean * v.first, slope * v.weight, bend * v.weight + mean * v.second);
 }
 
 /// From the table's derivatives to those by the pose. A change of the variance of the blur adds half the Laplacian; one
 /// of tilt or aspect also turns the motion on the marker.
 void RingPattern::chain(const MarkerPose& pose, std::size_t begin, const Part& part, PatternValues& values) const {
-  const std::size_t count = std::min(kPart, values.value.size() - begin);
+  const std::size_t count = part.count;
   const TableFrame frame(pose);
   const auto ct = static_cast<float>(frame.cos_tilt), st = static_cast<float>(frame.sin_tilt);
   const auto cm = static_cast<float>(frame.cos_motion), sm = static_cast<float>(frame.sin_motion);
@@ -196,25 +206,25 @@ void RingPattern::chain(const MarkerPose& pose, std::size_t begin, const Part& p
   const auto variance = static_cast<float>(blur * blur);
   constexpr auto kPerArea = static_cast<float>(1 / (RingTable::kStep * RingTable::kStep));
   const auto out = [&](PoseIndex k) { return values.derivative[k].data() + begin; };
-  float* __restrict value = values.value.data() + begin, * __restrict along = out(kAlong);
-  float* __restrict lateral = out(kLateral), * __restrict scale = out(kLogScale), * __restrict aspect = out(kLogAspect);
-  float* __restrict tilt = out(kTilt), * __restrict by_width = out(kBlur), * __restrict trapeze = out(kKeystone);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float x = part.x[i], y = part.y[i], laplacian = kPerArea * part.table[i][3];
-    const float by_u = part.sign_u[i] * part.table[i][1], by_v = part.sign_v[i] * part.table[i][2];
-    const float turn = part.v[i] * by_u - part.u[i] * by_v;
-    const float by_p = (cm * by_u - sm * by_v) * inverse_u, by_q = (sm * by_u + cm * by_v) * inverse_v;
-    const float shrink = 1 - keystone * x;
-    const float by_x = (shrink - keystone * x) * by_p - keystone * y * by_q, by_y = shrink * by_q;
-    const float grow_x = x * shrink * by_p, grow_y = y * shrink * by_q;
-    value[i] = part.table[i][0] + spread * laplacian;
-    along[i] = st * by_y - ct * by_x;
-    lateral[i] = -st * by_x - ct * by_y;
-    scale[i] = -grow_x - grow_y - variance * laplacian;
-    aspect[i] = -grow_x - 0.5F * variance * laplacian + turn_aspect * turn;
-    tilt[i] = by_x * y - by_y * x + turn_tilt * turn;
-    by_width[i] = by_blur * laplacian;
-    trapeze[i] = -x * (x * by_p + y * by_q);
+  float *value = values.value.data() + begin, *along = out(kAlong), *lateral = out(kLateral), *scale = out(kLogScale);
+  float *aspect = out(kLogAspect), *tilt = out(kTilt), *by_width = out(kBlur), *trapeze = out(kKeystone);
+  for (std::size_t i = 0; i < count; i += 4) {
+    const Four x = loadFour(part.x + i), y = loadFour(part.y + i), laplacian = kPerArea * loadFour(part.laplacian + i);
+    const Four by_u = loadFour(part.sign_u + i) * loadFour(part.by_u + i);
+    const Four by_v = loadFour(part.sign_v + i) * loadFour(part.by_v + i);
+    const Four turn = loadFour(part.v + i) * by_u - loadFour(part.u + i) * by_v;
+    const Four by_p = (cm * by_u - sm * by_v) * inverse_u, by_q = (sm * by_u + cm * by_v) * inverse_v;
+    const Four bend = keystone * x, shrink = 1 - bend;
+    const Four by_x = (shrink - bend) * by_p - keystone * y * by_q, by_y = shrink * by_q;
+    const Four grow_x = x * shrink * by_p, grow_y = y * shrink * by_q, spread_out = variance * laplacian;
+    store(value + i, loadFour(part.value + i) + spread * laplacian);
+    store(along + i, st * by_y - ct * by_x);
+    store(lateral + i, -st * by_x - ct * by_y);
+    store(scale + i, -grow_x - grow_y - spread_out);
+    store(aspect + i, turn_aspect * turn - grow_x - 0.5F * spread_out);
+    store(tilt + i, by_x * y - by_y * x + turn_tilt * turn);
+    store(by_width + i, by_blur * laplacian);
+    store(trapeze + i, -x * (x * by_p + y * by_q));
   }
 }
 
