@@ -13,6 +13,7 @@ constexpr double kMaxGap = 0.5;        // after which the motion is forgotten [s
 constexpr int kForget = 60;            // lost frames after which size, tilt and blur are forgotten
 constexpr int kJumpsToBelieve = 3;     // frames that agree on a place that cannot be reached
 constexpr double kGoodLook = 0.6;      // share of the marker that must be seen to learn size, tilt and blur from it
+constexpr double kSearchDoubt = 0.1;   // about size, tilt and blur that a search found
 constexpr double kScaleStep = 0.05;    // the search knows the size no better
 constexpr double kMargin = 3;          // around the range of the search [px]
 constexpr double kFilterFloor = 1e-6;  // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
@@ -220,7 +221,7 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   describe(fit);
   const bool jumped = jumps_ >= kJumpsToBelieve;
   updateFilters(frame.stamp, jumped || !prediction.known);
-  if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide);
+  if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide, reacquired ? kSearchDoubt : 0);
   jumps_ = lost_frames_ = 0;
 }
 

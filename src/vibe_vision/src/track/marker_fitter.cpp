@@ -60,7 +60,8 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   fit.x = start;
   fit.motion = motion;
   const double blur = fit.x[kBlur];
-  fit.x[kBlur] = blur + kCoarseBlur;
+  // The search knows the place of a sleeve well, and its bars would vanish.
+  fit.x[kBlur] = blur + (observed_[kRotation] ? kMiddleBlur : kCoarseBlur);
   if (!read(map, frame, fit)) return fit;
   useHalf();
   if (!align(fit, prior, FitScope::Position)) return fit;
