@@ -70,7 +70,8 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   if (!read(map, frame, fit)) return fit;
   useHalf();
   if (!align(fit, prior, FitScope::Shape) || fit.loss > kHopeless) return fit;
-  fit.x[kBlur] = blur;
+  // The blur of the picture is not that of the prior if the camera is out of focus.
+  if (!align(fit, prior, FitScope::All)) return fit;
   if (max_motion > 1) chooseMotion(fit, prior, max_motion);
   if (!read(map, frame, fit)) return fit;
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);
