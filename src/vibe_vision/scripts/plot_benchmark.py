@@ -5,15 +5,18 @@ Reads what `rosrun vibe_vision vibe_vision_bench --csv FILE` writes; makes visio
 vision_error_blur.png.
 """
 import argparse
-import csv
 import math
 import os
+import sys
 
 import matplotlib
 
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FuncFormatter
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from benchmark_rows import isStandard, readRows
 
 METHODS = {  # name: (label, colour, marker)
     'ring': ('ring (vibe_vision)', '#1b6ca8', 'o'),
@@ -25,21 +28,6 @@ METHODS = {  # name: (label, colour, marker)
 SCENES = {'static': 'at rest', 'moving': '0.5 m/s, 1 ms exposure', 'all': 'all degradations at once'}
 LIMIT = {'static': None, 'moving': 0.01, 'all': 0.1}  # to reach [px]
 PIXELS_PER_METRE = 1e4
-
-
-def readRows(path):
-    """Rows of the standard speed as dictionaries of numbers; missing ones are NaN."""
-    rows = []
-    with open(path, newline='') as file:
-        for row in csv.DictReader(file):
-            values = {}
-            for key, text in row.items():
-                try:
-                    values[key] = float(text)
-                except ValueError:
-                    values[key] = text if key in ('scene', 'method') else math.nan
-            rows.append(values)
-    return rows
 
 
 PLAIN = FuncFormatter(lambda value, _: f'{value:g}')
@@ -54,10 +42,6 @@ def legendOf(panels):
     order = [label for label, _, _ in METHODS.values() if label in found]
     order += [label for label in found if label not in order]
     return [found[label] for label in order], order
-
-
-def isStandard(row):
-    return row['marker_px'] == 40 and row['exposure_s'] == 0 and row['width'] == 0
 
 
 def drawTimes(axes, rows, scene, name):
