@@ -8,7 +8,7 @@ namespace vibe {
 namespace {
 
 const cv::Scalar kTracked(80, 220, 80), kLost(60, 60, 255), kAxis(255, 200, 80);  // blue, green, red
-constexpr int kFraction = 4;                                                       // bits of drawing below a pixel
+constexpr int kFraction = 4;                                                      // bits of drawing below a pixel
 constexpr int kAxisPieces = 32;
 constexpr int kCross = 12;     // half size [px]
 constexpr int kLineStep = 20;  // of the text [px]

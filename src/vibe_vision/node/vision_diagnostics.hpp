@@ -14,11 +14,11 @@ namespace vibe {
 /// What the entry of the camera on /diagnostics reports. The owner adds times and counts; the window begins with the
 /// last entry.
 struct CameraDiagnostics {
-  double expected_rate = 0;                  ///< [Hz]
-  bool recorded = false;                     ///< no age and transport: stamps are not of today
-  ReadResult last = ReadResult::Timeout;     ///< of the last attempt to get a frame
-  double last_frame = -1e9;                  ///< when the last frame was tracked, steady clock [s]
-  std::uint64_t frames = 0, disordered = 0;  ///< tracked; thrown away since their stamps do not grow
+  double expected_rate = 0;                                ///< [Hz]
+  bool recorded = false;                                   ///< no age and transport: stamps are not of today
+  ReadResult last = ReadResult::Timeout;                   ///< of the last attempt to get a frame
+  double last_frame = -1e9;                                ///< when the last frame was tracked, steady clock [s]
+  std::uint64_t frames = 0, disordered = 0;                ///< tracked; thrown away since their stamps do not grow
   DurationHistogram transport, wait, track, publish, age;  ///< of the window [s]
 
   // as they are now

@@ -1,6 +1,5 @@
 #include "vision_messages.hpp"
 
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -109,8 +109,7 @@ void VisionNode::reportSilence(ReadResult read) {
   const FrameResult& result = pipeline_.reportSilence();
   publisher_.publishSilence(result);
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (std::size_t i = 0; i < instruments_.size(); ++i)
-    instruments_[i].add(result.measurements[i], result.samples[i]);
+  for (std::size_t i = 0; i < instruments_.size(); ++i) instruments_[i].add(result.measurements[i], result.samples[i]);
 }
 
 void VisionNode::note(const FrameResult& result, double publish_time) {
@@ -128,8 +127,7 @@ void VisionNode::note(const FrameResult& result, double publish_time) {
     camera_.sent = sender->sent();
     camera_.failed = sender->failed();
   }
-  for (std::size_t i = 0; i < instruments_.size(); ++i)
-    instruments_[i].add(result.measurements[i], result.samples[i]);
+  for (std::size_t i = 0; i < instruments_.size(); ++i) instruments_[i].add(result.measurements[i], result.samples[i]);
 }
 
 /// Says once what the camera is, and what is wrong with it.

@@ -35,7 +35,8 @@ void checkTime(const VisionParameters& parameters) {
   ros::param::get("/use_sim_time", use_sim_time);
   if (!use_sim_time || parameters.fromTopic()) return;
   throw Error(
-      "A camera is stamped in wall time, but /use_sim_time is true; run 'rosparam delete /use_sim_time' before any node "
+      "A camera is stamped in wall time, but /use_sim_time is true; run 'rosparam delete /use_sim_time' before any "
+      "node "
       "starts, or use images of a topic.");
 }
 
@@ -49,7 +50,8 @@ VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
   ParameterReader reader(private_handle);
   VisionParameters parameters;
   parameters.config = reader.required("config", "the configuration of the rig, a file or package:// address");
-  parameters.source = reader.required("source", "the address of a camera, for example gige: or video:FILE, or to topic");
+  parameters.source =
+      reader.required("source", "the address of a camera, for example gige: or video:FILE, or to topic");
   readCamera(reader, parameters.options);
   parameters.start_stamped = readChoice(reader, "image_stamp", "middle_of_exposure", "start_of_exposure");
   reader.read("udp", parameters.udp);

@@ -9,9 +9,9 @@ namespace vibe {
 struct JointSample {
   LostReason reason = LostReason::NoFrame;
   bool has_rotation = false;
-  double slide = 0, rotation = 0;            ///< measured [m], [rad]; NaN if lost or not shown
-  double variance[2] = {0, 0};               ///< of slide and rotation [m^2], [rad^2]
-  double covariance = 0;                     ///< of slide with rotation [m rad]
+  double slide = 0, rotation = 0;                ///< measured [m], [rad]; NaN if lost or not shown
+  double variance[2] = {0, 0};                   ///< of slide and rotation [m^2], [rad^2]
+  double covariance = 0;                         ///< of slide with rotation [m rad]
   MotionEstimate slide_motion, rotation_motion;  ///< at the stamp of the frame; only if tracked
 
   bool tracked() const { return reason == LostReason::None; }
