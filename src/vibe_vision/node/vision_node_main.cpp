@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <csignal>
 #include <cstdio>
 
 #include "vision_node.hpp"
@@ -10,6 +11,11 @@ namespace {
 
 constexpr int kUsage = 2;
 
+/// As roscpp does on SIGINT, so that the camera is let go.
+void onSignal(int) {
+  ros::requestShutdown();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -17,6 +23,7 @@ int main(int argc, char** argv) {
     ros::init(argc, argv, "vision_node");
     ros::NodeHandle handle, private_handle("~");
     const vibe::VisionParameters parameters = vibe::readVisionParameters(private_handle);
+    signal(SIGTERM, onSignal);
     vibe::VisionNode node(handle, private_handle, ros::this_node::getName(), parameters);
     ros::spin();
     return 0;

@@ -1,0 +1,317 @@
+#!/usr/bin/env python3
+"""vision_node on rendered videos with known truth."""
+
+import math
+import os
+import socket
+import time
+import unittest
+
+import rospy
+import rostest
+import udp_receiver
+from diagnostic_msgs.msg import DiagnosticArray
+from sensor_msgs.msg import CameraInfo, Image, JointState
+from std_srvs.srv import Trigger
+from vibe_msgs.msg import InstrumentTrack, InstrumentTrackArray
+from vision_test_support import JOINTS, RATE, Diagnostics, Program, Recorder, Scene
+from vision_test_support import errors_of, rms, wait_until
+
+FRAMES = 294
+OK, WARN, ERROR = 0, 1, 2
+LEAD = 0.014  # [s]
+
+
+class Receiver:
+    """A UDP port of this test."""
+
+    def __init__(self):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", 0))
+        self.socket.settimeout(0.2)
+        self.target = "127.0.0.1:{}".format(self.socket.getsockname()[1])
+
+    def take_all(self):
+        datagrams = []
+        try:
+            while True:
+                stamp, t, rows = udp_receiver.decode(self.socket.recv(2048))
+                datagrams.append((stamp, t, list(rows)))
+        except socket.timeout:
+            return datagrams
+
+
+class VisionTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scene = Scene("moving", FRAMES, "video")
+        cls.tracking = Recorder("overstitch/tracking", InstrumentTrackArray)
+        cls.measured = Recorder("overstitch/measured_js", JointState)
+        cls.predicted = Recorder("overstitch/predicted_js", JointState)
+        cls.camera_info = Recorder("camera_info", CameraInfo)
+        cls.diagnostics = Recorder("/diagnostics", DiagnosticArray)
+        cls.camera = Diagnostics(cls.diagnostics, "camera")
+        cls.helix = Diagnostics(cls.diagnostics, "helix")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scene.remove()
+
+    def setUp(self):
+        self.programs = []
+
+    def tearDown(self):
+        for program in self.programs:
+            program.stop()
+        for recorder in (self.tracking, self.measured, self.predicted, self.camera_info, self.diagnostics):
+            recorder.clear()
+
+    def start(self, name="vision_node", **parameters):
+        given = dict(config=self.scene.config, source=self.scene.source)
+        given.update(parameters)
+        self.programs.append(Program("vision_node", name=name, **given))
+        return self.programs[-1]
+
+    def tracks(self):
+        """Messages of frames, not of silence."""
+        return [m for m in self.tracking.messages if m.exposure > 0]
+
+    def waits_for_the_end(self, node):
+        last = max(self.scene.stamps)
+        self.assertIsNotNone(self.tracking.waits_for(lambda m: m.frame_sequence == last, 60), node.output())
+
+    def assert_accurate(self, tracks):
+        slides, rotations = errors_of(self.scene, tracks, "helix")
+        self.assertLess(rms(slides), 5e-6)
+        self.assertLess(max(map(abs, slides)), 3e-5)
+        self.assertLess(rms(rotations), math.radians(0.5))
+        slides, _ = errors_of(self.scene, tracks, "needle_driver")
+        self.assertLess(rms(slides), 2e-6)
+        self.assertLess(max(map(abs, slides)), 2e-5)
+
+    def test_rendered_video(self):
+        receiver = Receiver()
+        node = self.start(udp=receiver.target, lead=LEAD)
+        begin = self.tracking.waits_for(lambda m: m.exposure > 0) and time.time()
+        self.waits_for_the_end(node)
+        seconds = time.time() - begin
+        tracks = self.tracks()
+        # connections take a moment, so the first frames may be missing; later none, as this node is fast enough
+        sequences = [m.frame_sequence for m in tracks]
+        self.assertEqual(sequences, sorted(set(sequences)))
+        self.assertGreater(len(sequences), 0.8 * FRAMES)
+        self.assertGreater(len(sequences) / seconds, 0.7 * RATE)  # other programs run on this machine
+        self.assertLess(len(sequences) / seconds, 1.1 * RATE)
+        for message in tracks:
+            self.assertLess(abs(message.header.stamp.to_sec() - self.scene.stamps[message.frame_sequence]), 1e-6)
+            self.assertEqual(message.exposure, 0.001)
+            self.assertEqual([track.name for track in message.instruments], ["helix", "needle_driver"])
+        tracked = sum(track.tracked for m in tracks for track in m.instruments)
+        self.assertGreater(tracked, 0.99 * 2 * len(tracks))
+        self.assert_accurate(tracks)
+        self.check_joints(tracks)
+        self.check_prediction()
+        self.check_camera_info(tracks)
+        self.check_datagrams(receiver)
+
+    def check_joints(self, tracks):
+        by_stamp = {m.header.stamp.to_nsec(): m for m in tracks}
+        found = 0
+        for message in self.measured.messages:
+            self.assertEqual(message.name, JOINTS)
+            track = by_stamp.get(message.header.stamp.to_nsec())
+            if track is None:
+                continue
+            found += 1
+            helix, driver = track.instruments
+            self.assertTrue(helix.tracked and driver.tracked)
+            self.assertEqual(list(message.position), [helix.slide, helix.rotation, driver.slide])
+        self.assertGreater(found, 0.9 * len(tracks))
+
+    def check_prediction(self):
+        """Against the truth at the frame that is nearest in time."""
+        sequence_of = {round((stamp - self.scene.stamps[0]) * RATE): k for k, stamp in self.scene.stamps.items()}
+        errors = []
+        for message in self.predicted.messages[20:]:
+            frames = (message.header.stamp.to_sec() - self.scene.stamps[0]) * RATE
+            sequence = sequence_of.get(round(frames))
+            if sequence is not None:
+                truth = self.scene.truth["needle_driver"][sequence][0]
+                dt = (frames - round(frames)) / RATE
+                errors.append(message.position[2] - message.velocity[2] * dt - truth)
+        self.assertGreater(len(errors), 0.8 * FRAMES)
+        self.assertLess(rms(errors), 3e-4)  # the scene moves faster than hands do: 0.5 m/s at 4 Hz
+
+    def check_camera_info(self, tracks):
+        stamps = {m.header.stamp.to_nsec() for m in tracks}
+        infos = self.camera_info.messages
+        self.assertGreater(len(infos), 0.8 * FRAMES)
+        self.assertGreater(len([m for m in infos if m.header.stamp.to_nsec() in stamps]), 0.95 * len(infos))
+        self.assertEqual((infos[0].width, infos[0].height, infos[0].header.frame_id), (728, 544, "camera_optical"))
+        self.assertEqual(infos[0].K[0], 4600)
+        self.assertEqual((infos[0].roi.width, infos[0].roi.height), (0, 0))
+
+    def check_datagrams(self, receiver):
+        stamps = {round(stamp * 1e6): k for k, stamp in self.scene.stamps.items()}
+        found = 0
+        for stamp, t, rows in receiver.take_all():
+            sequence = stamps.get(round(stamp * 1e6))
+            if sequence is None or sequence < 20 or not rows[1][0]:
+                continue
+            found += 1
+            slide, _ = self.scene.truth["needle_driver"][sequence]
+            self.assertAlmostEqual(udp_receiver.extrapolate(rows[1][4:8], 0, t), slide, delta=3e-5)
+            if sequence + 1 in self.scene.stamps:
+                later = self.scene.truth["needle_driver"][sequence + 1][0]
+                self.assertAlmostEqual(udp_receiver.extrapolate(rows[1][4:8], 1 / RATE, t), later, delta=1.5e-3)
+        self.assertGreater(found, 0.9 * (FRAMES - 20))
+
+    def test_images_of_a_topic(self):
+        camera = self.start("camera", source=self.scene.source, loop="true")
+        tracking = Recorder("second/overstitch/tracking", InstrumentTrackArray)
+        arguments = ["image:=/image_raw", "__ns:=second"]
+        given = dict(config=self.scene.config, source="topic", exposure=0.001)
+        self.programs.append(Program("vision_node", *arguments, name="vision_node", **given))
+        enough = wait_until(lambda: sum(m.exposure > 0 for m in tracking.messages) > 200, 30)
+        self.assertTrue(enough, self.programs[-1].output() + camera.output())
+        by_stamp = {round((stamp - self.scene.stamps[0]) * 1e6): k for k, stamp in self.scene.stamps.items()}
+        wrong = 0
+        for message in tracking.messages:
+            if message.exposure > 0:
+                key = round((message.header.stamp.to_sec() - self.scene.stamps[0]) * 1e6)
+                sequence = by_stamp.get(key)  # None: a repetition
+                if sequence is not None:
+                    track = message.instruments[1]
+                    wrong += abs(track.slide - self.scene.truth["needle_driver"][sequence][0]) > 1e-5
+        self.assertLessEqual(wrong, 1)
+        tracking.disconnect()
+
+    def test_black_images_lose_everything(self):
+        node = self.start(source=self.scene.grey_images(0), loop="true")
+        message = self.tracking.waits_for(lambda m: m.exposure > 0)
+        self.assertIsNotNone(message, node.output())
+        for track in message.instruments:
+            self.assertFalse(track.tracked)
+            self.assertEqual(track.reason, InstrumentTrack.DARK)
+            self.assertTrue(math.isnan(track.slide))
+        entry = self.helix.waits_for(lambda level, text, _: level == ERROR and "too dark" in text)
+        self.assertIsNotNone(entry, self.helix.newest())
+        self.assertEqual(self.measured.messages, [])
+
+    def test_calibration_for_another_resolution(self):
+        config = self.scene.changed_config("other.yaml", "size: [728, 544]", "size: [1936, 1216]")
+        node = self.start(config=config, loop="true")
+        message = self.tracking.waits_for(lambda m: m.exposure > 0)
+        self.assertIsNotNone(message, node.output())
+        self.assertEqual([t.reason for t in message.instruments], [InstrumentTrack.WRONG_IMAGE] * 2)
+        entry = self.helix.waits_for(lambda level, text, _: level == ERROR and "size of the calibration" in text)
+        self.assertIsNotNone(entry, self.helix.newest())
+        self.assertEqual(self.measured.messages, [])
+
+    def test_end_of_a_recording(self):
+        node = self.start()
+        self.waits_for_the_end(node)
+        silent = self.tracking.waits_for(lambda m: m.exposure == 0 and m.frame_sequence == FRAMES - 1)
+        self.assertIsNotNone(silent)
+        self.assertEqual([t.reason for t in silent.instruments], [InstrumentTrack.NO_FRAME] * 2)
+        entry = self.camera.waits_for(lambda level, text, _: level == WARN and "the recording has ended" in text)
+        self.assertIsNotNone(entry, self.camera.newest())
+        stamps = [m.header.stamp.to_nsec() for m in self.tracking.messages]
+        self.assertEqual(stamps, sorted(set(stamps)))
+        self.assertEqual(node.process.poll(), None)
+
+    def test_diagnostics_of_a_good_camera(self):
+        self.start(loop="true")
+        self.assertIsNotNone(self.helix.waits_for(lambda level, _, values: level in (OK, WARN)), self.helix.newest())
+        entry = self.camera.waits_for(lambda level, _, values: level is not None and float(values["rate [Hz]"]) > 50)
+        self.assertIsNotNone(entry, self.camera.newest())
+        self.assertIn("video", entry[2]["source"])
+        self.assertEqual(entry[2]["reconnects"], "0")
+        self.assertGreater(float(entry[2]["track [ms]"]), 0)
+        self.assertNotIn("transport [ms]", entry[2])  # a recording was not taken now
+
+    def test_reset_searches_anew(self):
+        self.start(loop="true")
+        self.assertTrue(wait_until(lambda: len(self.tracks()) > 30))
+        begin = len(self.tracks())
+        reply = rospy.ServiceProxy("vision_node/reset", Trigger)()
+        self.assertTrue(reply.success)
+        found = wait_until(lambda: any(m.instruments[1].reacquired for m in self.tracks()[begin:]), 3)
+        self.assertTrue(found)
+
+    def test_debug_image_is_drawn_for_listeners_only(self):
+        self.start(loop="true")
+        self.assertTrue(wait_until(lambda: len(self.tracks()) > 30))
+        images, raw = Recorder("debug_image", Image), Recorder("image_raw", Image)
+        image = images.waits_for(lambda m: True)
+        self.assertIsNotNone(image)
+        self.assertEqual((image.width, image.height, image.encoding), (728, 544, "bgr8"))
+        plain = raw.waits_for(lambda m: True)
+        self.assertEqual((plain.width, plain.height, plain.encoding), (728, 544, "mono8"))
+        coloured = sum(image.data[i] != image.data[i + 1] for i in range(0, len(image.data), 3))
+        self.assertGreater(coloured, 500)
+        time.sleep(1)
+        begin, count = time.time(), len(images.messages)
+        time.sleep(2)
+        self.assertLess((len(images.messages) - count) / (time.time() - begin), 20)
+        folder = os.environ.get("VIBE_PICTURES")
+        if folder:
+            with open(os.path.join(folder, "debug_image.ppm"), "wb") as file:
+                pixels = bytearray(image.data)
+                pixels[0::3], pixels[2::3] = image.data[2::3], image.data[0::3]
+                file.write(b"P6\n728 544\n255\n" + bytes(pixels))
+        images.disconnect()
+        raw.disconnect()
+
+    def test_a_listener_that_does_not_read_delays_nobody(self):
+        node = self.start(loop="true")
+        self.assertTrue(wait_until(lambda: len(self.tracks()) > 30))
+        listener = Program("rostopic", "echo", "/image_raw", package="../../bin")
+        self.programs.append(listener)
+        self.assertTrue(wait_until(lambda: len(listener.lines) > 5))
+        listener.process.send_signal(19)  # SIGSTOP
+        time.sleep(1)
+        before, count, begin = node.memory(), len(self.tracks()), time.time()
+        time.sleep(4)
+        rate = (len(self.tracks()) - count) / (time.time() - begin)
+        grown = node.memory() - before
+        listener.process.send_signal(18)  # SIGCONT
+        listener.process.kill()
+        self.assertGreater(rate, 0.5 * RATE)
+        self.assertLess(grown, 20e6)
+
+    def assert_refuses(self, text, **parameters):
+        given = dict(config=self.scene.config, source=self.scene.source)
+        given.update(parameters)
+        node = Program("vision_node", name="vision_node", **{k: v for k, v in given.items() if v is not None})
+        status = node.ends(10)
+        node.stop()
+        self.assertEqual(status, 2, node.output())
+        lines = [line for line in node.lines if line.startswith("vision_node: ")]
+        self.assertEqual(len(lines), 1, node.output())
+        self.assertIn(text, lines[0])
+
+    def test_wrong_parameters_are_one_sentence(self):
+        self.assert_refuses("Parameter /vision_node/config is not set", config=None)
+        self.assert_refuses("Parameter /vision_node/source is not set", source=None)
+        self.assert_refuses("nowhere.yaml", config="/nowhere.yaml")
+        self.assert_refuses("did you mean 'exposure'", exposre=0.001)
+        self.assert_refuses("must be a number from", exposure="long")
+        self.assert_refuses("carrier", source="carrier:pigeon")
+        self.assert_refuses("/nowhere.mkv", source="video:/nowhere.mkv")
+        self.assert_refuses("write host:port", udp="nobody")
+        self.assert_refuses("set it to middle_of_exposure or start_of_exposure", image_stamp="end")
+        bad = self.scene.changed_config("bad.yaml", "min_contrast: 20 DN", "min_contrst: 20 DN")
+        self.assert_refuses("bad.yaml", config=bad)
+
+    def test_refuses_simulated_time_for_a_camera(self):
+        rospy.set_param("/use_sim_time", True)
+        try:
+            self.assert_refuses("/use_sim_time is true")
+        finally:
+            rospy.delete_param("/use_sim_time")
+
+
+if __name__ == "__main__":
+    rospy.init_node("vision_test")
+    rostest.rosrun("vibe_vision", "vision", VisionTest)
