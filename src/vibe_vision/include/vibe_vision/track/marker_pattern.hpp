@@ -92,6 +92,7 @@ class MarkerPattern {
 struct MarkerView {
   double focal_length = 1e9;   ///< CameraModel::fx [px]; large: without perspective
   double principal_along = 0;  ///< of the camera's principal point, relative to SlideAxis::origin [px]
+  double principal_lateral = 0;
 };
 MarkerView markerView(const CameraModel& camera, const SlideAxis& axis);
 
