@@ -9,15 +9,14 @@ import unittest
 
 import rospy
 import rostest
-import udp_receiver
 from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import CameraInfo, Image, JointState
 from std_srvs.srv import Trigger
 from vibe_msgs.msg import InstrumentTrack, InstrumentTrackArray
 from vision_test_support import JOINTS, RATE, Diagnostics, Program, Recorder, Scene
-from vision_test_support import errors_of, rms, wait_until
+from vision_test_support import errors_of, rms, udp_receiver, wait_until
 
-FRAMES = 294
+FRAMES = 147
 OK, WARN, ERROR = 0, 1, 2
 LEAD = 0.014  # [s]
 
@@ -44,7 +43,7 @@ class Receiver:
 class VisionTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scene = Scene("moving", FRAMES, "video")
+        cls.scene = Scene("moving", FRAMES)
         cls.tracking = Recorder("overstitch/tracking", InstrumentTrackArray)
         cls.measured = Recorder("overstitch/measured_js", JointState)
         cls.predicted = Recorder("overstitch/predicted_js", JointState)
@@ -80,16 +79,28 @@ class VisionTest(unittest.TestCase):
         last = max(self.scene.stamps)
         self.assertIsNotNone(self.tracking.waits_for(lambda m: m.frame_sequence == last, 60), node.output())
 
-    def assert_accurate(self, tracks):
-        slides, rotations = errors_of(self.scene, tracks, "helix")
+    def assert_accurate(self, scene, tracks):
+        slides, rotations = errors_of(scene, tracks, "helix")
         self.assertLess(rms(slides), 5e-6)
         self.assertLess(max(map(abs, slides)), 3e-5)
         self.assertLess(rms(rotations), math.radians(0.5))
-        slides, _ = errors_of(self.scene, tracks, "needle_driver")
+        slides, _ = errors_of(scene, tracks, "needle_driver")
         self.assertLess(rms(slides), 2e-6)
         self.assertLess(max(map(abs, slides)), 2e-5)
 
     def test_rendered_video(self):
+        scene = Scene("moving", 60, "video")
+        node = self.start(source=scene.source, config=scene.config)
+        last = max(scene.stamps)
+        self.assertIsNotNone(self.tracking.waits_for(lambda m: m.frame_sequence == last, 60), node.output())
+        tracks = self.tracks()
+        scene.remove()
+        self.assertGreater(len(tracks), 30)
+        for message in tracks:
+            self.assertLess(abs(message.header.stamp.to_sec() - scene.stamps[message.frame_sequence]), 1e-6)
+        self.assert_accurate(scene, tracks)
+
+    def test_rendered_images_in_real_time(self):
         receiver = Receiver()
         node = self.start(udp=receiver.target, lead=LEAD)
         begin = self.tracking.waits_for(lambda m: m.exposure > 0) and time.time()
@@ -108,10 +119,11 @@ class VisionTest(unittest.TestCase):
             self.assertEqual([track.name for track in message.instruments], ["helix", "needle_driver"])
         tracked = sum(track.tracked for m in tracks for track in m.instruments)
         self.assertGreater(tracked, 0.99 * 2 * len(tracks))
-        self.assert_accurate(tracks)
+        self.assert_accurate(self.scene, tracks)
         self.check_joints(tracks)
         self.check_prediction()
         self.check_camera_info(tracks)
+        node.stop()  # it also sends while there are no frames
         self.check_datagrams(receiver)
 
     def check_joints(self, tracks):
@@ -139,7 +151,7 @@ class VisionTest(unittest.TestCase):
                 truth = self.scene.truth["needle_driver"][sequence][0]
                 dt = (frames - round(frames)) / RATE
                 errors.append(message.position[2] - message.velocity[2] * dt - truth)
-        self.assertGreater(len(errors), 0.8 * FRAMES)
+        self.assertGreater(len(errors), 0.6 * FRAMES)
         self.assertLess(rms(errors), 3e-4)  # the scene moves faster than hands do: 0.5 m/s at 4 Hz
 
     def check_camera_info(self, tracks):
@@ -164,7 +176,7 @@ class VisionTest(unittest.TestCase):
             if sequence + 1 in self.scene.stamps:
                 later = self.scene.truth["needle_driver"][sequence + 1][0]
                 self.assertAlmostEqual(udp_receiver.extrapolate(rows[1][4:8], 1 / RATE, t), later, delta=1.5e-3)
-        self.assertGreater(found, 0.9 * (FRAMES - 20))
+        self.assertGreater(found, 0.7 * FRAMES)
 
     def test_images_of_a_topic(self):
         camera = self.start("camera", source=self.scene.source, loop="true")
@@ -225,7 +237,7 @@ class VisionTest(unittest.TestCase):
         self.assertIsNotNone(self.helix.waits_for(lambda level, _, values: level in (OK, WARN)), self.helix.newest())
         entry = self.camera.waits_for(lambda level, _, values: level is not None and float(values["rate [Hz]"]) > 50)
         self.assertIsNotNone(entry, self.camera.newest())
-        self.assertIn("video", entry[2]["source"])
+        self.assertIn(".pgm", entry[2]["source"])
         self.assertEqual(entry[2]["reconnects"], "0")
         self.assertGreater(float(entry[2]["track [ms]"]), 0)
         self.assertNotIn("transport [ms]", entry[2])  # a recording was not taken now
@@ -266,7 +278,7 @@ class VisionTest(unittest.TestCase):
     def test_a_listener_that_does_not_read_delays_nobody(self):
         node = self.start(loop="true")
         self.assertTrue(wait_until(lambda: len(self.tracks()) > 30))
-        listener = Program("rostopic", "echo", "/image_raw", package="../../bin")
+        listener = Program("rostopic", "echo", "/image_raw")
         self.programs.append(listener)
         self.assertTrue(wait_until(lambda: len(listener.lines) > 5))
         listener.process.send_signal(19)  # SIGSTOP

@@ -13,6 +13,7 @@ import time
 
 import rospkg
 import rospy
+from PIL import Image
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 PACKAGE = os.path.join(HERE, "..", "..")
@@ -22,6 +23,7 @@ RATE = 147.0  # of rendered scenes [Hz]
 START = 1_700_000_000.0  # stamp of their first frame [s]
 
 sys.path.insert(0, os.path.join(PACKAGE, "examples"))
+import udp_receiver  # noqa: E402,F401  for the tests
 
 
 def wait_until(condition, seconds=15.0):
@@ -39,6 +41,8 @@ def find_program(program, package="vibe_vision"):
         path = os.path.join(folder, "lib", package, program)
         if os.path.exists(path):
             return path
+    if shutil.which(program):
+        return shutil.which(program)
     raise rospkg.ResourceNotFound(program)
 
 
@@ -164,7 +168,7 @@ class Scene:
         subprocess.run(command + ["--out", self.folder, "--format", format], check=True, stdout=subprocess.DEVNULL)
         self.config = os.path.join(self.folder, "config.yaml")
         table = "video.mkv.csv" if format == "video" else "frames.csv"
-        self.source = "video:" + self.path("video.mkv") if format == "video" else "images:" + self.path("frame_*.png")
+        self.source = "video:" + self.path("video.mkv") if format == "video" else self._plain_images()
         with open(self.path(table)) as file:
             self.stamps = {int(row["sequence"]): float(row["stamp"]) for row in csv.DictReader(file)}
         self.truth = {name: {} for name in INSTRUMENTS}
@@ -172,6 +176,14 @@ class Scene:
             for row in csv.DictReader(file):
                 values = float(row["slide"]), float(row["rotation"])
                 self.truth[row["instrument"]][int(row["sequence"])] = values
+
+    def _plain_images(self):
+        """Source of the rendered images without compression, which are read in real time on a slow machine, too."""
+        for name in sorted(os.listdir(self.folder)):
+            if name.endswith(".png"):
+                Image.open(self.path(name)).save(self.path(name[:-4] + ".pgm"))
+                os.remove(self.path(name))
+        return "images:" + self.path("frame_*.pgm")
 
     def path(self, name):
         return os.path.join(self.folder, name)
