@@ -35,6 +35,7 @@ bool isAddress(const std::string& name) {
 AravisCamera::AravisCamera(const std::string& name, const SourceOptions& options)
     : priority_(options.realtime_priority) {
   connect(name);
+  arv_camera_stop_acquisition(camera_.get(), AravisError().slot());  // it may still run for somebody who went
   setFormat(options);
   setRegion(options);
   setTimes(options);
@@ -47,7 +48,6 @@ AravisCamera::~AravisCamera() {
   if (loan_) loan_->detach();
   g_signal_handlers_disconnect_by_data(arv_camera_get_device(camera_.get()), &is_lost_);
   if (!is_lost_) arv_camera_stop_acquisition(camera_.get(), AravisError().slot());
-  if (stream_) arv_stream_stop_thread(stream_.get(), TRUE);
 }
 
 void AravisCamera::connect(const std::string& name) {

@@ -30,6 +30,7 @@ class AravisCamera {
   const Facts& facts() const { return facts_; }
   bool isLost() const { return is_lost_; }                ///< the control channel has gone
   bool lacksPriority() const { return lacks_priority_; }  ///< real-time priority was asked for and is not permitted
+  void abandon() { is_lost_ = true; }                     ///< do not wait for its answer when it is destroyed
   /// The next buffer, also an incomplete one; give it to giveBack() or to loan(). @param timeout [s]
   ArvBuffer* pop(double timeout);
   void giveBack(ArvBuffer* buffer) { arv_stream_push_buffer(stream_.get(), buffer); }

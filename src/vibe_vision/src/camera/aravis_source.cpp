@@ -37,6 +37,10 @@ static_assert(isCode(PixelFormat::BayerGR8, ARV_PIXEL_FORMAT_BAYER_GR_8) &&
 AravisSource::AravisSource(const std::string& name, const SourceOptions& options)
     : name_(name), options_(options), status_("gige:" + name + ": not opened yet") {}
 
+AravisSource::~AravisSource() {
+  if (burial_.joinable()) burial_.join();
+}
+
 ReadResult AravisSource::read(Frame& frame, double timeout) {
   if (!camera_) return connect(timeout);
   const double deadline = steadyTime() + timeout;
@@ -77,7 +81,10 @@ ReadResult AravisSource::connect(double timeout) {
 ReadResult AravisSource::disconnect(const std::string& reason) {
   say("gige:" + name_ + ": " + camera_->facts().name + " " + reason +
       "; check power and cable; it is opened again as soon as it answers");
-  camera_.reset();
+  camera_->abandon();
+  // Aravis tries for 7 s to say goodbye to a camera that does not answer
+  if (burial_.joinable()) burial_.join();
+  burial_ = std::thread([camera = std::shared_ptr<AravisCamera>(std::move(camera_))]() mutable { camera.reset(); });
   return ReadResult::Gone;
 }
 

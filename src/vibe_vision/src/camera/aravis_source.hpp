@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <mutex>
+#include <thread>
 
 #include "camera/aravis_camera.hpp"
 #include "camera/pixel_pool.hpp"
@@ -16,6 +17,7 @@ namespace vibe {
 class AravisSource : public FrameSource {
  public:
   AravisSource(const std::string& name, const SourceOptions& options);
+  ~AravisSource() override;
   ReadResult read(Frame& frame, double timeout) override;
   SourceStatistics statistics() const override;
   std::string status() const override;
@@ -24,6 +26,7 @@ class AravisSource : public FrameSource {
   std::string name_;
   SourceOptions options_;
   std::unique_ptr<AravisCamera> camera_;
+  std::thread burial_;  // takes apart the last camera that went
   RetryTimer retry_;
   StampClock clock_;
   SequenceCounter sequence_;

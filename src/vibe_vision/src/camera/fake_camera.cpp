@@ -6,10 +6,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iomanip>
 #include <mutex>
 
 #include "camera/aravis_pointer.hpp"
@@ -43,20 +42,12 @@ void requireFree(const std::string& address) {
 
 }  // namespace
 
-std::size_t FrameRing::indexOf(std::uint64_t k) const {
-  const std::size_t count = frames.size();
-  if (count < 2) return 0;
-  const std::size_t i = k % (2 * count - 2);
-  return i < count ? i : 2 * count - 2 - i;
-}
-
 struct FakeCamera::Impl {
   std::shared_ptr<const FrameRing> ring;
   FakeCameraOptions options;
   std::ofstream truth;
   std::atomic<std::uint64_t> sent{0};
-  std::atomic<std::uint32_t> format{0};  // announced; 0: as asked
-  std::mutex mutex;                      // of the clock
+  std::mutex mutex;  // of the clock
   double clock_start = 0, clock_at_start = 0;
   AravisPointer<ArvGvFakeCamera> server;  // last: its thread ends before the rest goes
   ArvFakeCamera* camera = nullptr;
@@ -87,7 +78,7 @@ struct FakeCamera::Impl {
   void openTruth() {
     truth.open(options.truth_file);
     if (!truth) throw Error(options.truth_file + ": cannot be written; check the folder and its permissions");
-    truth << "sequence,stamp,exposure" << (ring->truth_columns.empty() ? "" : ",") << ring->truth_columns << "\n";
+    truth << "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible\n" << std::setprecision(17);
   }
 
   guint32 value(guint64 address) const {
@@ -111,10 +102,9 @@ struct FakeCamera::Impl {
     const double end = static_cast<double>(k * period) * 1e-6;
     const double start = deviceTime(end) - exposure * (1 + options.clock_drift);
     arv_buffer_set_timestamp(buffer, static_cast<guint64>(std::max(0.0, start) * 1e9));
-    const std::size_t index = ring->indexOf(k);
-    copy(ring->frames[index], buffer);
-    if (truth.is_open()) write(end - exposure / 2, exposure, index);
-    if (format != 0) arv_fake_camera_write_register(camera, ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, format);
+    const FrameRing::Turn turn = ring->turnOf(k);
+    copy(ring->frames[turn.index], buffer);
+    if (truth.is_open()) write(end - exposure / 2, turn);
     ++sent;
   }
 
@@ -132,13 +122,14 @@ struct FakeCamera::Impl {
     }
   }
 
-  void write(double stamp, double exposure, std::size_t index) {
-    char text[80];
-    std::snprintf(text, sizeof text, "%llu,%.6f,%.6f", static_cast<unsigned long long>(kFirstFrame + sent), stamp,
-                  exposure);
-    truth << text;
-    if (!ring->truth.empty()) truth << "," << ring->truth[index];
-    truth << std::endl;  // complete whenever somebody looks
+  void write(double stamp, const FrameRing::Turn& turn) {
+    for (std::size_t i = 0; i < ring->instruments.size(); ++i) {
+      const SyntheticTruth& t = ring->truth[turn.index][i];
+      truth << kFirstFrame + sent << ',' << stamp << ',' << ring->instruments[i] << ',' << t.slide << ',' << t.rotation
+            << ',' << t.along << ',' << t.lateral << ',' << t.pixel.x() << ',' << t.pixel.y() << ','
+            << (turn.is_backward ? -t.velocity : t.velocity) << ',' << t.visible << '\n';
+    }
+    truth.flush();  // complete whenever somebody looks
   }
 };
 
@@ -158,7 +149,7 @@ void FakeCamera::resetClock() {
 }
 
 void FakeCamera::announceFormat(std::uint32_t code) {
-  impl_->format = code;
+  arv_fake_camera_write_register(impl_->camera, ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, code);
 }
 
 }  // namespace vibe

@@ -19,7 +19,8 @@ class SleevePattern : public MarkerPattern {
   void prepare(const MarkerPose& pose, double motion) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
   double searchHalfWidth() const override;
-  void searchProfile(double motion, std::vector<float>& profile) const override;
+  void searchProfile(double motion, double scale, std::vector<float>& profile) const override;
+  void searchTurns(double motion, double scale, std::vector<float>& cosine, std::vector<float>& sine) const override;
   std::vector<double> rotationGuesses() const override;
 
  private:
