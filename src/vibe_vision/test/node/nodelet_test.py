@@ -25,11 +25,11 @@ class NodeletTest(unittest.TestCase):
         second = Recorder("second/overstitch/tracking", InstrumentTrackArray)
         manager = Program("nodelet", "manager", name="manager", package="nodelet")
         follower = Program(
-            "nodelet", "load", "vibe_vision/VisionNodelet", "manager", "image:=/image_raw", "__ns:=second",
+            "nodelet", "load", "vibe_vision/VisionNodelet", "/manager", "image:=/image_raw", "__ns:=second",
             name="vision", package="nodelet", config=self.scene.config, source="topic",
         )  # fmt: skip
         camera = Program(
-            "nodelet", "load", "vibe_vision/VisionNodelet", "manager",
+            "nodelet", "load", "vibe_vision/VisionNodelet", "/manager",
             name="camera", package="nodelet", config=self.scene.config, source=self.scene.source, loop="true",
         )  # fmt: skip
         try:
@@ -43,8 +43,6 @@ class NodeletTest(unittest.TestCase):
                     if m.exposure > 0 and m.header.stamp.to_nsec() in stamps]  # fmt: skip
             self.assertGreater(len(same), 50)
             self.assertLess(max(abs(a.slide - b.slide) for a, b in same[10:]), 2e-6)
-            waits = sorted(m.transport + m.wait for m in second.messages if m.exposure > 0)
-            self.assertGreater(len(waits), 0)
         finally:
             for program in (follower, camera, manager):
                 program.stop()

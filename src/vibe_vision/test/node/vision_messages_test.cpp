@@ -141,7 +141,7 @@ TEST_F(VisionMessages, DatagramHasTheEstimatesOfTheJoints) {
   EXPECT_EQ(datagram.stamp, kTime);
   EXPECT_EQ(datagram.frame_sequence, 17u);
   EXPECT_FLOAT_EQ(datagram.exposure, 0.002F);
-  EXPECT_FLOAT_EQ(datagram.jerk_time, 0.02F);
+  EXPECT_FLOAT_EQ(datagram.jerk_time, 0.1F);
   ASSERT_EQ(datagram.instruments.size(), 2u);
   const InstrumentSample& helix = datagram.instruments[0];
   EXPECT_TRUE(helix.tracked && helix.has_rotation);

@@ -188,6 +188,14 @@ class Scene:
     def path(self, name):
         return os.path.join(self.folder, name)
 
+    def stamp_of(self, sequence):
+        """Of a frame of a recording that is repeated."""
+        repetition, frame = divmod(sequence, len(self.stamps))
+        return self.stamps[frame] + repetition * len(self.stamps) / RATE
+
+    def truth_of(self, instrument, sequence):
+        return self.truth[instrument][sequence % len(self.stamps)]
+
     def changed_config(self, name, old, new):
         """A copy of the configuration with another text in one place."""
         with open(self.config) as file:
@@ -224,7 +232,7 @@ def errors_of(scene, tracks, instrument):
     for message in tracks:
         track = message.instruments[index]
         if track.tracked:
-            slide, rotation = scene.truth[instrument][message.frame_sequence]
+            slide, rotation = scene.truth_of(instrument, message.frame_sequence)
             slides.append(track.slide - slide)
             rotations.append(math.remainder(track.rotation - rotation, 2 * math.pi) if index == 0 else 0)
     return slides, rotations
