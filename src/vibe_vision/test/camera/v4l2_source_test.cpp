@@ -48,9 +48,9 @@ TEST(V4l2SourceDeathTest, MissingPermissionIsTold) {
   std::ofstream(file) << "secret";
   ASSERT_EQ(::chmod(file.c_str(), 0), 0);
   const auto look = [&file] {
-    if (::geteuid() == 0 && ::seteuid(65534) != 0) std::exit(2);
+    if (::geteuid() == 0 && ::seteuid(65534) != 0) ::_exit(2);
     std::fprintf(stderr, "%s", v4l2Obstacle(file).c_str());
-    std::exit(0);
+    ::_exit(0);
   };
   EXPECT_EXIT(look(), ::testing::ExitedWithCode(0), "permission denied; add the user to the group video");
   std::remove(file.c_str());
