@@ -17,6 +17,11 @@ void PatternValues::allocate(std::size_t capacity, const std::array<bool, kPoseP
   for (std::size_t k = 0; k < observed.size(); ++k) derivative[k].assign(observed[k] ? size : 0, 0);
 }
 
+MarkerView markerView(const CameraModel& camera, const SlideAxis& axis) {
+  const Eigen::Vector2d principal(camera.cx, camera.cy);
+  return {camera.fx, (principal - axis.origin).dot(axis.direction)};
+}
+
 void MarkerPattern::select(const MarkerPose&, double, PixelBlock&) const {}
 
 }  // namespace vibe

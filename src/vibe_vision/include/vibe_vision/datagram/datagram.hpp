@@ -8,33 +8,42 @@
 
 namespace vibe {
 
+/// One coordinate of an instrument as the predictor knows it at the stamp of its datagram [m] or [rad], and seconds.
+struct CoordinateSample {
+  double position = 0, velocity = 0, acceleration = 0, jerk = 0;
+  /// Upper triangle of their covariance, row by row: pp, pv, pa, pj, vv, va, vj, aa, aj, jj.
+  std::array<float, 10> covariance{};
+};
+
 /// One instrument in a datagram.
 struct InstrumentSample {
-  std::uint8_t tracked = 0;  ///< 1: all numbers below are valid
-  std::uint8_t reason = 0;   ///< LostReason
-  std::uint8_t has_rotation = 0;
-  double position = 0, velocity = 0, acceleration = 0;  ///< of the joint at `stamp` [m], [m/s], [m/s^2]
-  double rotation = 0, angular_velocity = 0;            ///< [rad], [rad/s]
-  float position_variance = 0, cross_covariance = 0, rotation_variance = 0;  ///< [m^2], [m rad], [rad^2]
+  bool tracked = false;       ///< if not, all numbers below are NaN, score is 0 and `reason` says why
+  std::uint8_t reason = 0;    ///< LostReason
+  bool has_rotation = false;  ///< if not, `rotation` is NaN
   float score = 0;
+  CoordinateSample slide, rotation;  ///< of the joints
 };
 
 /// One frame's result for programs that are not ROS nodes. docs/vision.md, "Datagram".
 struct TrackDatagram {
   std::uint32_t sequence = 0;                 ///< of the datagram
+  float exposure = 0;                         ///< [s]; 0: unknown
   std::uint64_t frame_sequence = 0;           ///< of the camera
   double stamp = 0;                           ///< middle of the exposure, Unix time [s]
-  float exposure = 0;                         ///< [s]
   float age = 0;                              ///< from stamp to sending [s]
-  std::vector<InstrumentSample> instruments;  ///< at most kMaxInstruments
+  float jerk_time = 0;                        ///< correlation time of the jerk, for extrapolation [s]
+  std::vector<InstrumentSample> instruments;  ///< in the order of the configuration, at most kMaxInstruments
 };
 
 constexpr std::uint16_t kDatagramVersion = 1;
 constexpr std::size_t kMaxInstruments = 8;
+constexpr std::size_t kDatagramHeader = 40;       ///< [bytes]
+constexpr std::size_t kDatagramInstrument = 152;  ///< [bytes]
 
-/// Little-endian, fixed layout for a number of instruments. @throws Error for too many
+/// Little-endian, fixed layout for a number of instruments. @throws Error for more than kMaxInstruments
 std::vector<std::uint8_t> encode(const TrackDatagram& datagram);
-/// @return nothing for bytes that are not a datagram of this version
+/// @return nothing for bytes that are not a datagram of this version: another magic, version or length, more than
+///         kMaxInstruments, a flag that is neither 0 nor 1, padding that is not 0
 std::optional<TrackDatagram> decode(const std::uint8_t* bytes, std::size_t size);
 
 }  // namespace vibe

@@ -1,36 +1,61 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "vibe_vision/predict/jerk_model.hpp"
+
 namespace vibe {
 
-/// Position, velocity and acceleration of one coordinate at a time, with their covariance. Units: those of the
+/// Position, velocity, acceleration and jerk of one coordinate at a time, with their covariance. Units: those of the
 /// coordinate ([m] or [rad]) and seconds.
 struct MotionEstimate {
   double time = 0;  ///< [s]
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Vector4d mean = Eigen::Vector4d::Zero();
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 };
 
-/// Kalman filter with constant acceleration, driven by white jerk (Bar-Shalom, Li, Kirubarajan, "Estimation with
-/// Applications to Tracking and Navigation", 2001, section 6.2.3). Measurements may be missing and unevenly spaced.
+/// What the filter believes about a motion that it has not seen.
+struct MotionPrior {
+  JerkModel jerk;
+  double speed;         ///< standard deviation of the first velocity [unit/s], > 0
+  double acceleration;  ///< standard deviation of the first acceleration [unit/s^2], > 0
+  double max_gap;       ///< without a measurement after which the filter starts anew [s], > 0
+};
+// Design choices: docs/vision.md, "Prediction".
+constexpr MotionPrior kSlidePrior{{40, 0.02}, 0.3, 10, 0.25};       ///< an instrument moved by hand [m]
+constexpr MotionPrior kRotationPrior{{3000, 0.02}, 20, 800, 0.25};  ///< a rod turned by hand [rad]
+
+/// Kalman filter with constant acceleration, disturbed by jerk (Bar-Shalom, Li, Kirubarajan, "Estimation with
+/// Applications to Tracking and Navigation", 2001, section 6.2.3). The jerk of a hand lasts for some hundredths of a
+/// second, so it is a state as well: a first-order Gauss-Markov process, as the acceleration in Singer's model (section
+/// 8.2.2 there). Measurements may be missing and unevenly spaced: the process noise is that of the true interval. No
+/// memory is allocated.
 class Predictor {
  public:
-  /// @param jerk_density  spectral density of the jerk [(unit/s^3)^2 s]
-  explicit Predictor(double jerk_density);
+  /// @throws Error if a number of the prior is not finite or not above 0
+  explicit Predictor(const MotionPrior& prior);
 
-  /// @param time  of the measurement [s]; one that is not later than the last is ignored
-  /// @param variance  of the measured value, > 0
-  void update(double time, double value, double variance);
-  /// No measurement at that time: the covariance grows. After `max_gap` [s] without one the filter starts anew.
-  void reset();
+  /// Takes a measurement. One that is not later than the last is ignored, and so is one that is not finite. After a gap
+  /// of more than max_gap the filter starts anew.
+  /// @param time      of the measurement [s]
+  /// @param variance  of the value [unit^2], > 0
+  /// @return whether it was used
+  bool update(double time, double value, double variance);
+  /// Forgets everything.
+  void reset() { started_ = false; }
+  /// True before the first measurement.
   bool empty() const { return !started_; }
-  /// At any time at or after the last measurement. @return the last estimate, extrapolated
+  /// Call only if not empty(). @param time  [s]; before the last measurement, the estimate at that is returned
   MotionEstimate predict(double time) const;
 
  private:
+  MotionPrior prior_;
   MotionEstimate state_;
-  double jerk_density_;
   bool started_ = false;
+
+  void start(double time, double value, double variance);
 };
+
+/// Extrapolates an estimate by dt >= 0 [s].
+MotionEstimate extrapolate(const MotionEstimate& estimate, double dt, const JerkModel& jerk);
 
 }  // namespace vibe

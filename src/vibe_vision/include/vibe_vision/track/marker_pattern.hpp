@@ -87,7 +87,16 @@ class MarkerPattern {
   virtual std::vector<double> rotationGuesses() const { return {0}; }
 };
 
+/// From where a camera looks at the slide axis. The picture of a rod is that of a pinhole camera: away from the middle
+/// of the image its bars bend although the rod is parallel to the sensor. MarkerPose::slant is against the sensor.
+struct MarkerView {
+  double focal_length = 1e9;   ///< CameraModel::fx [px]; large: without perspective
+  double principal_along = 0;  ///< of the camera's principal point, relative to SlideAxis::origin [px]
+};
+MarkerView markerView(const CameraModel& camera, const SlideAxis& axis);
+
 /// @param pixels_per_metre  scale at which the marker is seen at log_scale 0
-std::unique_ptr<MarkerPattern> makePattern(const MarkerDesign& design, double pixels_per_metre);
+std::unique_ptr<MarkerPattern> makePattern(const MarkerDesign& design, double pixels_per_metre,
+                                           const MarkerView& view = {});
 
 }  // namespace vibe
