@@ -17,7 +17,7 @@ struct CameraModel {
 };
 
 /// Pixel of the image as a camera without distortion, with the same matrix, would see it.
-/// Fixed-point and Newton iterations to 1e-9 px. @return NaN outside of where the model can be inverted
+/// Newton iterations to 1e-9 px. @return NaN outside of where the model can be inverted
 Eigen::Vector2d undistort(const CameraModel& camera, const Eigen::Vector2d& pixel);
 /// Inverse of undistort().
 Eigen::Vector2d distort(const CameraModel& camera, const Eigen::Vector2d& undistorted);

@@ -19,6 +19,8 @@ class Renderer {
  public:
   explicit Renderer(const SyntheticScene& scene);
   ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
   /// @param index  frame number; the middle of its exposure is at start + index / rate
   RenderedFrame render(std::uint64_t index, double start = 0) const;
   /// Expected grey values before noise and rounding, row by row.

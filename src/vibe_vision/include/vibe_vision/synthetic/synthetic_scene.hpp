@@ -22,15 +22,18 @@ struct SyntheticTag {
   double side = 4e-3;  ///< of the cells together; one cell of white is around them [m]
 };
 
-/// An instrument as it truly is, in the camera frame (x right, y down, z forward) [m].
+/// An instrument as it truly is, in the camera frame (x right, y down, z forward) [m]. The marker's centre slides along
+/// the one straight line in space whose picture is nominal.axis; the centre of a sleeve is on the axis of its rod. A
+/// flat marker is parallel to the sensor if the line is. Tilt and slant turn a marker about its centre, on top of that:
+/// they leave slide and axis as they are. The rotation of a sleeve is counted from the direction to the camera.
 struct SyntheticInstrument {
   InstrumentConfig nominal;  ///< as calibrated; marker and axis
   SyntheticTag tag;          ///< drawn instead of nominal.marker if it has cells
   SyntheticMotion motion;
-  double tilt = 0;     ///< of marker and axis about the view direction [rad]
-  double slant = 0;    ///< of the marker about the direction across the axis, out of the image plane [rad]
-  double scale = 1;    ///< of the picture of the marker
-  double lateral = 0;  ///< offset of the marker across the axis [m]
+  double tilt = 0;     ///< of the marker about the view direction, from the axis to its right (y down) [rad]
+  double slant = 0;    ///< of the marker out of the image plane; positive: its positive end is further away [rad]
+  double scale = 1;    ///< of the marker: it is printed larger by this factor
+  double lateral = 0;  ///< offset of the marker across the axis, to the right of the direction [m]
 };
 
 /// What spoils a picture. The default spoils nothing but noise and focus blur.
@@ -39,11 +42,11 @@ struct Degradation {
   double blur = 0.6;       ///< standard deviation of the point spread function [px]
   PixelNoise noise;
   double flicker = 0;                  ///< relative amplitude at 100 Hz
-  double drift = 0;                    ///< relative change of the light per second
+  double drift = 0;                    ///< relative change of the light per second, down and up again in 2 s
   double vignetting = 0;               ///< share of the light lost in the corners
   std::array<double, 5> distortion{};  ///< the config's camera has the same: a calibrated lens
-  int highlights = 0;                  ///< saturated spots per marker that do not move with it
-  bool occluder = false;               ///< a bar that sweeps across the axes
+  int highlights = 0;                  ///< saturated spots on each marker; they are fixed in space, it moves through
+  bool occluder = false;               ///< a bar, 6 mm wide, that sweeps across the axes
   bool look_alike = false;             ///< the same marker, 0.75 times as large, that passes beside
 };
 
@@ -62,11 +65,15 @@ struct SyntheticTruth {
   double along = 0, lateral = 0;   ///< of the marker's centre relative to the nominal axis, undistorted [px]
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< distorted [px]
   double velocity = 0;                              ///< along [px/s]
-  double visible = 1;  ///< share of the marker's area that is neither covered nor out of view
+  /// Share of the marker that is neither covered nor out of view. Counted is the disc of a ring, the lit half of a
+  /// sleeve as it is seen, the cells of a tag.
+  double visible = 1;
 };
 
 /// The rig as a calibration would describe it.
 VisionConfig nominalConfig(const SyntheticScene& scene);
+/// At time [s]; the middle of the exposure of frame k is at k / rate.
+SyntheticTruth truthAt(const SyntheticScene& scene, std::size_t instrument, double time);
 
 /// Two instruments, helix sleeve and needle-driver ring, at 0.1 mm/px in 728 x 544; they move with a peak of 0.5 m/s.
 SyntheticScene standardScene();

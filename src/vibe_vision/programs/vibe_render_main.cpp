@@ -1,0 +1,117 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_vision/synthetic/renderer.hpp"
+
+namespace {
+
+struct Options {
+  std::string scene = "moving", out, format = "images";
+  std::uint64_t first = 0, frames = 147;
+  double start = 0;
+};
+
+/// Where the pixels go.
+class Recording {
+ public:
+  Recording(const Options& options, const vibe::SyntheticScene& scene) : folder_(options.out) {
+    if (options.format != "video") return;
+    const std::string file = folder_ / "video.mkv";
+    const cv::Size size(scene.camera.width, scene.camera.height);
+    const int codec = cv::VideoWriter::fourcc('F', 'F', 'V', '1');
+    video_.open(file, cv::CAP_FFMPEG, codec, scene.rate, size, false);
+    if (!video_.isOpened())
+      throw vibe::Error(file + ": cannot be written as FFV1 video; check the folder, or use --format images.");
+  }
+
+  void add(const vibe::Frame& frame) {
+    const vibe::ImageView& view = frame.image;
+    const cv::Mat image(view.height, view.width, CV_8U, const_cast<std::uint8_t*>(view.data),
+                        static_cast<std::size_t>(view.stride));
+    if (video_.isOpened()) return video_.write(image);
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%06llu.png", static_cast<unsigned long long>(frame.sequence));
+    const std::string file = folder_ / name;
+    if (!cv::imwrite(file, image, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+      throw vibe::Error(file + ": cannot be written; check the folder and the space on the disk.");
+  }
+
+ private:
+  std::filesystem::path folder_;
+  cv::VideoWriter video_;
+};
+
+std::ofstream openTable(const std::filesystem::path& file) {
+  std::ofstream table(file);
+  if (!table) throw vibe::Error(file.string() + ": cannot be written; check the folder.");
+  table << std::setprecision(17);
+  return table;
+}
+
+void writeTruth(std::ostream& table, const vibe::RenderedFrame& rendered, const vibe::SyntheticScene& scene) {
+  for (std::size_t i = 0; i < rendered.truth.size(); ++i) {
+    const vibe::SyntheticTruth& t = rendered.truth[i];
+    table << rendered.frame.sequence << ',' << rendered.frame.stamp << ',' << scene.instruments[i].nominal.name << ','
+          << t.slide << ',' << t.rotation << ',' << t.along << ',' << t.lateral << ',' << t.pixel.x() << ','
+          << t.pixel.y() << ',' << t.velocity << ',' << t.visible << '\n';
+  }
+}
+
+void render(const Options& options) {
+  const vibe::SyntheticScene scene = vibe::namedScene(options.scene);
+  std::error_code failed;
+  std::filesystem::create_directories(options.out, failed);
+  if (failed) throw vibe::Error(options.out + ": the folder cannot be made: " + failed.message() + ".");
+  const std::filesystem::path folder(options.out);
+  std::ofstream stamps = openTable(options.format == "video" ? folder / "video.mkv.csv" : folder / "frames.csv");
+  std::ofstream truth = openTable(folder / "truth.csv");
+  openTable(folder / "config.yaml") << vibe::toYaml(vibe::nominalConfig(scene));
+  stamps << "sequence,stamp,exposure\n";
+  truth << "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible\n";
+
+  const vibe::Renderer renderer(scene);
+  Recording recording(options, scene);
+  for (std::uint64_t k = options.first; k < options.first + options.frames; ++k) {
+    const vibe::RenderedFrame rendered = renderer.render(k, options.start);
+    recording.add(rendered.frame);
+    stamps << rendered.frame.sequence << ',' << rendered.frame.stamp << ',' << rendered.frame.exposure << '\n';
+    writeTruth(truth, rendered, scene);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Draws what the camera of a synthetic scene sees, with the truth: images frame_NNNNNN.png and frames.csv, or\n"
+      "video.mkv (lossless) and video.mkv.csv, with sequence, stamp [s] and exposure [s] of each frame; truth.csv "
+      "with\n"
+      "slide [m], rotation [rad] and places [px] of each instrument; config.yaml for vibe_track.");
+  Options options;
+  std::string names;
+  for (const std::string& name : vibe::sceneNames()) names += (names.empty() ? "" : ", ") + name;
+  app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
+  app.add_option("--frames", options.frames, "number of frames; 147 are one second")->capture_default_str();
+  app.add_option("--first", options.first, "number of the first frame")->capture_default_str();
+  app.add_option("--start", options.start, "stamp of frame 0, Unix time [s]")->capture_default_str();
+  app.add_option("--out", options.out, "folder, made if it is not there")->required();
+  app.add_option("--format", options.format, "images or video")
+      ->check(CLI::IsMember({"images", "video"}))
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+    render(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << "vibe_render: " << error.what() << '\n';
+    return 2;
+  }
+}

@@ -1,0 +1,29 @@
+#pragma once
+#include <vector>
+
+namespace vibe {
+
+/// Optics and pixel aperture in one dimension: Gaussian point spread function, integrated over the pixel's width. Works
+/// on samples that are means over 1 / kSamples of a pixel each.
+class PixelKernel {
+ public:
+  static constexpr int kSamples = 4;  ///< per pixel and direction
+
+  /// @param sigma  of the point spread function [px]
+  explicit PixelKernel(double sigma);
+  int margin() const { return margin_; }  ///< pixels needed on both sides of the first and last one
+
+  /// Weights of the samples from the first of pixel -margin to the last of pixel +margin; they add up to 1.
+  const std::vector<float>& weights() const { return weights_; }
+  /// Weights on values at pixel centres with bilinear interpolation in between, from -margin - 1 to margin + 1.
+  const std::vector<float>& latticeWeights() const { return lattice_; }
+
+  /// Pixels from samples in a row. @param samples  (count + 2 margin) kSamples of them
+  void alongRow(const float* samples, int count, float* pixels) const;
+
+ private:
+  int margin_;
+  std::vector<float> weights_, lattice_;
+};
+
+}  // namespace vibe

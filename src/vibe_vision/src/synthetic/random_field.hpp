@@ -1,0 +1,42 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+namespace vibe {
+
+/// Random numbers by counter: number i of a stream is a function of its seed and i alone, with integer arithmetic and
+/// single-precision operations that IEEE 754 rounds exactly. The same on every machine, in any order.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, std::uint64_t stream) {
+    const std::uint64_t key = mix64(mix64(seed) ^ (stream * 0x9E3779B97F4A7C15ULL));
+    first_ = static_cast<std::uint32_t>(key);
+    second_ = static_cast<std::uint32_t>(key >> 32);
+  }
+
+  std::uint32_t bits(std::uint32_t i) const { return mix32(mix32(i + first_) ^ second_); }
+  /// In (0, 1).
+  float uniform(std::uint32_t i) const { return (static_cast<float>(bits(i) >> 9) + 0.5F) * (1.0F / 8388608.0F); }
+
+ private:
+  static std::uint64_t mix64(std::uint64_t z) {  // splitmix64 (Steele, Lea, Flood, OOPSLA 2014)
+    z += 0x9E3779B97F4A7C15ULL;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    return z ^ (z >> 31);
+  }
+  static std::uint32_t mix32(std::uint32_t x) {  // two multiplications, full avalanche
+    x = (x ^ (x >> 16)) * 0x7FEB352DU;
+    x = (x ^ (x >> 15)) * 0x846CA68BU;
+    return x ^ (x >> 16);
+  }
+
+  std::uint32_t first_ = 0, second_ = 0;
+};
+
+/// Adds photon and read noise, rounds and clips. @param counter  of the first pixel
+/// @param expected  grey values without noise; @param gain, variance  of the noise: gain * value + variance [DN, DN^2]
+void addNoise(const RandomStream& random, std::uint32_t counter, const float* expected, int count, float gain,
+              float variance, std::uint8_t* pixels);
+
+}  // namespace vibe

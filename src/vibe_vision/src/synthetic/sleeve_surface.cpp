@@ -1,0 +1,111 @@
+#include "synthetic/sleeve_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+constexpr float kTurn = 6.28318530718F;
+
+/// To 2e-8, the same on every machine. Abramowitz and Stegun, "Handbook of Mathematical Functions", 4.4.46.
+inline float arcSine(float s) {
+  const float a = std::abs(s);
+  float p = -0.0012624911F;
+  p = p * a + 0.0066700901F;
+  p = p * a - 0.0170881256F;
+  p = p * a + 0.0308918810F;
+  p = p * a - 0.0501743046F;
+  p = p * a + 0.0889789874F;
+  p = p * a - 0.2145988016F;
+  p = p * a + 1.5707963050F;
+  const float angle = 1.5707963268F - std::sqrt(1 - a) * p;
+  return s < 0 ? -angle : angle;
+}
+
+/// Integral from 0 of the periodic function that is 1 where fract(t) < duty.
+inline float dutyIntegral(float t, float duty) {
+  constexpr float kAboveZero = 1024;  // conversion to int rounds towards 0: keep it positive
+  const auto turns = static_cast<float>(static_cast<int>(t + kAboveZero)) - kAboveZero;
+  const float rest = t - turns;
+  return turns * duty + (rest < duty ? rest : duty);
+}
+
+/// Part of the aperture [u - width / 2, u + width / 2] in [begin, end].
+inline float overlap(float u, float half_width, float inverse_width, float begin, float end) {
+  const float low = u - half_width < begin ? begin : u - half_width;
+  const float high = u + half_width > end ? end : u + half_width;
+  return high > low ? (high - low) * inverse_width : 0.0F;
+}
+
+}  // namespace
+
+SleeveSurface::SleeveSurface(const SleeveDesign& design, const CameraModel& camera, const MarkerFrame& frame,
+                             const Eigen::Vector2d& reference, double aperture)
+    : design_(design) {
+  const ViewRay ray(camera, reference);
+  // The camera in coordinates of the rod: along it, and at a distance in the direction that faces the camera.
+  const Eigen::Vector3d camera_place = -frame.centre / frame.scale;
+  const double start = camera_place.dot(frame.along);
+  const Eigen::Vector3d facing = (camera_place - start * frame.along).normalized();
+  const double distance = camera_place.dot(facing);
+  along_ = ray.part(frame.along);
+  across_ = ray.part(frame.along.cross(facing));
+  depth_ = ray.part(-facing);
+  start_ = ray.part(-start * facing + distance * frame.along);
+  distance_ = static_cast<float>(distance);
+  rotation_ = static_cast<float>(std::remainder(frame.rotation, 2 * M_PI));
+  radius_ = static_cast<float>(design.diameter / 2);
+  half_length_ = static_cast<float>(design.length / 2);
+  inverse_pitch_ = static_cast<float>(1 / design.helix_pitch);
+  duty_ = static_cast<float>(design.helix_duty);
+  for (const Bar& bar : design.bars) bars_.push_back({static_cast<float>(bar.begin), static_cast<float>(bar.end)});
+
+  const double per_pixel = std::sqrt(ray.perPixel().x() * ray.perPixel().y()) * distance / -facing.dot(ray.centre());
+  const double obliquity = std::abs(frame.away.z());  // cosine of the slant against the image plane
+  aperture_.across = static_cast<float>(aperture * per_pixel * frame.away.dot(-facing));
+  aperture_.along = static_cast<float>(aperture * per_pixel / obliquity);
+}
+
+float SleeveSurface::helixBlack(float u, float phi, float along, float phase_width) const {
+  const auto begin = static_cast<float>(design_.helix_begin), end = static_cast<float>(design_.helix_end);
+  const float zone = overlap(u, along / 2, 1 / along, begin, end);
+  const float phase = u * inverse_pitch_ - (phi - rotation_) / kTurn + duty_ / 2;
+  const float high = dutyIntegral(phase + phase_width / 2, duty_), low = dutyIntegral(phase - phase_width / 2, duty_);
+  return zone * (high - low) / phase_width;
+}
+
+void SleeveSurface::row(const float* x, const float* y, int count, float* coverage, float* white) const {
+  const float inverse_radius = 1 / radius_;
+  for (int i = 0; i < count; ++i) {
+    // The ray leaves the camera at the slope k across; it meets the cylinder at the angle phi from the direction to
+    // the camera, where sin(phi + atan k) = k distance / (radius sqrt(1 + k^2)).
+    const float inverse_depth = 1 / depth_.at(x[i], y[i]);
+    const float k = across_.at(x[i], y[i]) * inverse_depth, q = along_.at(x[i], y[i]) * inverse_depth;
+    const float length = 1 / std::sqrt(1 + k * k);
+    const float offset = k * distance_ * length;
+    float sine = offset * inverse_radius;
+    sine = sine < -1 ? -1.0F : (sine > 1 ? 1.0F : sine);
+    const float cosine = std::sqrt(1 - sine * sine);
+    const float phi = arcSine(sine) - k * (1 - k * k / 3);
+    const float height = radius_ * (cosine + sine * k) * length;  // above the rod's axis, towards the camera
+    const float u = start_.at(x[i], y[i]) * inverse_depth - q * height;
+
+    // Derivatives across the rod grow towards its outline; there an aperture sees much of the print.
+    const float steep = cosine < 0.05F ? 0.05F : cosine;
+    const float bend = q * sine / steep * aperture_.across;  // change of u from one side of the aperture to the other
+    const float along = std::sqrt(aperture_.along * aperture_.along + bend * bend);
+    const float along_phase = aperture_.along * inverse_pitch_;
+    const float across_phase = bend * inverse_pitch_ - aperture_.across * inverse_radius / (steep * kTurn);
+    const float phase_width = std::sqrt(along_phase * along_phase + across_phase * across_phase);
+
+    float black = helixBlack(u, phi, along, phase_width);
+    for (const Edges& bar : bars_) black += overlap(u, along / 2, 1 / along, bar.begin, bar.end);
+    white[i] = 1 - black;
+    coverage[i] = edgeShare((radius_ - std::abs(offset)) / aperture_.across, 1) *
+                  overlap(u, along / 2, 1 / along, -half_length_, half_length_);
+  }
+}
+
+}  // namespace vibe

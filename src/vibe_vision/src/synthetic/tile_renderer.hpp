@@ -1,0 +1,69 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "synthetic/background.hpp"
+#include "synthetic/pixel_kernel.hpp"
+#include "synthetic/scene_effects.hpp"
+#include "synthetic/sensor_map.hpp"
+#include "synthetic/surface.hpp"
+
+namespace vibe {
+
+/// Pixels from (x0, y0) up to, without, (x1, y1).
+struct PixelRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  bool empty() const { return x1 <= x0 || y1 <= y0; }
+};
+PixelRect intersection(const PixelRect& a, const PixelRect& b);
+PixelRect grown(const PixelRect& rect, int by);
+
+/// An exposure: from `begin` to `end` [s].
+struct Exposure {
+  double begin = 0, end = 0;
+  double middle() const { return (begin + end) / 2; }
+};
+
+/// Draws a rectangle of the image: all that is in it, layer by layer, at kSamples^2 points per pixel and several
+/// moments of the exposure; then the optics.
+class TileRenderer {
+ public:
+  explicit TileRenderer(const SyntheticScene& scene);
+  ~TileRenderer();
+
+  /// Where object `i` is seen during the exposure, without the blur of the optics.
+  PixelRect boundsOf(std::size_t object, const Exposure& exposure) const;
+  std::size_t objectCount() const { return objects_.size(); }
+  const PixelKernel& kernel() const { return kernel_; }
+  const Background& background() const { return background_; }
+  const Occluder& occluder() const { return occluder_; }
+  const SyntheticInstrument& object(std::size_t i) const { return objects_[i]; }
+
+  /// Mean grey values over the exposure, without vignetting, into image (rows of camera.width).
+  void render(const PixelRect& rect, const Exposure& exposure, float* image) const;
+
+ private:
+  struct Layer;   // an object at one moment
+  struct Moment;  // all layers at one moment
+  struct Grid;    // the sample points of a tile
+
+  double pathLength(std::size_t object, const Exposure& exposure) const;
+  PixelRect boundsAt(std::size_t object, double time) const;
+  std::vector<Moment> moments(const PixelRect& rect, const Exposure& exposure, const Grid& grid) const;
+  Grid makeGrid(const PixelRect& rect) const;
+  void backgroundRow(const PixelRect& rect, int sample_row, float* values) const;
+  void layerRow(const Layer& layer, const Grid& grid, int sample_row, float* values, float* scratch) const;
+  void occluderRow(double time, const PixelRect& rect, double y, float* values) const;
+
+  SyntheticScene scene_;
+  std::vector<SyntheticInstrument> objects_;
+  std::vector<Highlights> highlights_;  // of instruments; look-alikes have none
+  SensorMap map_;
+  Background background_;
+  PixelKernel kernel_;
+  Occluder occluder_;
+};
+
+}  // namespace vibe
