@@ -13,7 +13,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kShortestPath = 20;      // [px]
+constexpr double kShortestPath = 20;  // [px]
 constexpr double kSignificance = 0.01;
 constexpr double kDistinctSlides = 1e-6;  // [m]
 constexpr double kNoisyStop = 0.5;        // residual that deserves a warning [px]
@@ -214,8 +214,8 @@ class Fitter {
       highest = std::max(highest, stops_[i].slide);
       if (used_[i]) continue;
       const double error = result.stops[i].along / pixelsPerMetre(axis_, stops_[i].slide);
-      result.warnings.push_back(stops_[i].name + " deviates by " + withDecimals(1e3 * error, 3) +
-                                " mm along and " + withDecimals(result.stops[i].across, 2) +
+      result.warnings.push_back(stops_[i].name + " deviates by " + withDecimals(1e3 * error, 3) + " mm along and " +
+                                withDecimals(result.stops[i].across, 2) +
                                 " px across the axis from the other stops and is left out; check its slide of " +
                                 showQuantity(stops_[i].slide, "m"));
     }

@@ -22,8 +22,8 @@ LinearFit solveLinear(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   // columns of one size: slides are small in metres, their images large in pixels
   const Eigen::VectorXd scale = a.colwise().norm().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = a * scale.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd inverse = (scaled.transpose() * scaled).ldlt().solve(
-      Eigen::MatrixXd::Identity(a.cols(), a.cols()));
+  const Eigen::MatrixXd inverse =
+      (scaled.transpose() * scaled).ldlt().solve(Eigen::MatrixXd::Identity(a.cols(), a.cols()));
   fit.solution = scale.cwiseInverse().asDiagonal() * (inverse * (scaled.transpose() * b));
   fit.residual = b - a * fit.solution;
   fit.leverage = (scaled * inverse).cwiseProduct(scaled).rowwise().sum();

@@ -17,9 +17,9 @@ constexpr int kGridColumns = 8, kGridRows = 6;
 constexpr std::size_t kEnoughViews = 8;
 constexpr double kEnoughTilt = 15 * M_PI / 180;
 constexpr double kEnoughCoverage = 0.6;
-constexpr double kLargeResidual = 0.5;    // [px]
+constexpr double kLargeResidual = 0.5;  // [px]
 constexpr double kFocalUncertainty = 0.01;
-constexpr double kBadView = 3;            // times the median residual
+constexpr double kBadView = 3;  // times the median residual
 
 std::string withDecimals(double value, int decimals) {
   char text[40];
@@ -55,8 +55,8 @@ Fit fit(const std::vector<std::vector<cv::Point3f>>& objects, const std::vector<
   Fit result;
   const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 200, 1e-12);
   result.rms = cv::calibrateCamera(objects, images, size, result.matrix, result.distortion, result.rotations,
-                                   result.translations, result.deviations, result.extrinsic_deviations,
-                                   result.view_rms, flags, until);
+                                   result.translations, result.deviations, result.extrinsic_deviations, result.view_rms,
+                                   flags, until);
   return result;
 }
 
@@ -199,8 +199,7 @@ LensCalibration calibrateLens(const std::vector<BoardView>& views, const BoardSp
   result.camera = cameraOf(best, width, height);
   for (int i = 0; i < 4; ++i) result.deviation[static_cast<std::size_t>(i)] = best.deviation(i);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    result.views.push_back(
-        {views[i].name, best.view_rms.at<double>(static_cast<int>(i)), tiltOf(best.rotations[i])});
+    result.views.push_back({views[i].name, best.view_rms.at<double>(static_cast<int>(i)), tiltOf(best.rotations[i])});
   }
   result.coverage = coverageOf(views, width, height);
   warnAboutViews(result, result.warnings);

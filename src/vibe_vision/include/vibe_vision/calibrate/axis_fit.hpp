@@ -9,8 +9,8 @@ namespace vibe {
 
 /// The marker seen while the instrument stands at a known slide.
 struct AxisStop {
-  std::string name;  ///< of the image, for messages
-  double slide = 0;  ///< [m]
+  std::string name;                                 ///< of the image, for messages
+  double slide = 0;                                 ///< [m]
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< centre of the marker, undistorted [px]
 };
 
@@ -20,12 +20,12 @@ struct StopResidual {
 };
 
 struct AxisFit {
-  SlideAxis axis;                       ///< with residual_rms and covariance
-  std::vector<StopResidual> stops;      ///< in the order given
-  double rms_along = 0, rms_across = 0; ///< of those that were used [px]
-  bool perspective_observed = false;    ///< false: perspective is 0
-  double perspective_deviation = 0;     ///< standard deviation of the perspective if it is fitted [1/m]
-  std::vector<std::string> warnings;    ///< sentences with their remedies
+  SlideAxis axis;                        ///< with residual_rms and covariance
+  std::vector<StopResidual> stops;       ///< in the order given
+  double rms_along = 0, rms_across = 0;  ///< of those that were used [px]
+  bool perspective_observed = false;     ///< false: perspective is 0
+  double perspective_deviation = 0;      ///< standard deviation of the perspective if it is fitted [1/m]
+  std::vector<std::string> warnings;     ///< sentences with their remedies
 };
 
 constexpr std::size_t kFewestStops = 5;
@@ -45,15 +45,15 @@ struct MotionSample {
 
 /// What is known about the print and the rig when no slide is known; standard deviations.
 struct ScaleTrust {
-  double print = 0.005;        ///< relative error of the printed size
-  double slant = 0.0873;       ///< angle between axis and sensor [rad]; it shortens the picture by its cosine
+  double print = 0.005;   ///< relative error of the printed size
+  double slant = 0.0873;  ///< angle between axis and sensor [rad]; it shortens the picture by its cosine
 };
 
 struct MotionFit {
-  SlideAxis axis;               ///< slide 0 is at the first sample; perspective 0
-  double rms_across = 0;        ///< [px]
-  double scale_uncertainty = 0; ///< relative standard deviation of pixels_per_metre, trust included
-  double size_change = 0;       ///< relative change of the marker's size from one end to the other
+  SlideAxis axis;                ///< slide 0 is at the first sample; perspective 0
+  double rms_across = 0;         ///< [px]
+  double scale_uncertainty = 0;  ///< relative standard deviation of pixels_per_metre, trust included
+  double size_change = 0;        ///< relative change of the marker's size from one end to the other
   std::vector<std::string> warnings;
 };
 

@@ -28,12 +28,12 @@ struct BoardFit {
 };
 
 struct LensCalibration {
-  CameraModel camera;                   ///< with reprojection_rms, over all corners
-  std::array<double, 4> deviation{};    ///< standard deviations of fx, fy, cx, cy [px]
-  std::array<bool, 5> estimated{};      ///< of the distortion; coefficients that the images do not show are 0
+  CameraModel camera;                 ///< with reprojection_rms, over all corners
+  std::array<double, 4> deviation{};  ///< standard deviations of fx, fy, cx, cy [px]
+  std::array<bool, 5> estimated{};    ///< of the distortion; coefficients that the images do not show are 0
   std::vector<BoardFit> views;
-  double coverage = 0;                  ///< share of the image in which corners were seen
-  std::vector<std::string> warnings;    ///< sentences with their remedies
+  double coverage = 0;                ///< share of the image in which corners were seen
+  std::vector<std::string> warnings;  ///< sentences with their remedies
 };
 
 /// Fits pinhole and distortion (Zhang 2000; OpenCV's calibrateCamera). Of the distortion only what is significant at
