@@ -7,7 +7,7 @@ namespace vibe {
 // With t = sqrt(n) tan(a) the density becomes cos^(n - 1)(a), up to a constant.
 double studentTail(double t, int freedom) {
   const auto integral = [freedom](double from, double to) {
-    constexpr int kSteps = 2000;  // even: Simpson
+    constexpr int kSteps = 400;  // even: Simpson
     const double h = (to - from) / kSteps;
     double sum = 0;
     for (int i = 0; i <= kSteps; ++i) {

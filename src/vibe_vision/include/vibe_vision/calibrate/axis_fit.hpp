@@ -51,7 +51,7 @@ struct ScaleTrust {
 
 struct MotionFit {
   SlideAxis axis;                ///< slide 0 is at the first sample; perspective 0
-  double rms_across = 0;         ///< [px]
+  double rms_across = 0;         ///< 1.48 times the median distance from the line [px]
   double scale_uncertainty = 0;  ///< relative standard deviation of pixels_per_metre, trust included
   double size_change = 0;        ///< relative change of the marker's size from one end to the other
   std::vector<std::string> warnings;
