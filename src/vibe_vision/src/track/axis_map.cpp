@@ -1,0 +1,181 @@
+#include "track/axis_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace vibe {
+namespace {
+
+constexpr std::uint8_t kSaturated = 253;  // grey values from which a pixel may have lost light [DN]
+constexpr int kHalo = 2;                  // pixels around a saturated one that are not used either
+
+}  // namespace
+
+AxisMap::AxisMap(const CameraModel& camera, const SlideAxis& axis, double begin, double end, double half_width)
+    : camera_(camera), axis_(axis), across_(-axis.direction.y(), axis.direction.x()) {
+  const std::vector<Eigen::Vector2d> outline = border(begin, end, half_width);
+  double top = 1e9, bottom = -1e9;
+  for (const Eigen::Vector2d& p : outline) top = std::min(top, p.y()), bottom = std::max(bottom, p.y());
+  first_row_ = static_cast<int>(std::floor(top));
+  for (int y = first_row_; y <= static_cast<int>(std::ceil(bottom)); ++y) addRow(y, outline);
+  const auto side = static_cast<std::size_t>(3 * half_width);
+  saturated_.assign(side * side, 0);
+}
+
+Eigen::Vector2d AxisMap::undistorted(double along, double lateral) const {
+  return axis_.origin + along * axis_.direction + lateral * across_;
+}
+
+Eigen::Vector2d AxisMap::pixel(double along, double lateral) const {
+  return distort(camera_, undistorted(along, lateral));
+}
+
+/// Points around the band, less than 1 px apart; what is far outside of the sensor is drawn to its edge.
+std::vector<Eigen::Vector2d> AxisMap::border(double begin, double end, double half_width) const {
+  std::vector<Eigen::Vector2d> points;
+  const double room = half_width + 8;
+  const auto add = [&](double along, double lateral) {
+    const Eigen::Vector2d p = pixel(along, lateral);
+    if (p.allFinite())
+      points.emplace_back(std::clamp(p.x(), -room, camera_.width + room),
+                          std::clamp(p.y(), -room, camera_.height + room));
+  };
+  const int along_steps = static_cast<int>(std::ceil((end - begin) * 2)) + 1;
+  const int lateral_steps = static_cast<int>(std::ceil(half_width * 4)) + 1;
+  for (int i = 0; i <= along_steps; ++i)
+    for (double side : {-half_width, half_width}) add(begin + (end - begin) * i / along_steps, side);
+  for (int i = 0; i <= lateral_steps; ++i)
+    for (double place : {begin, end}) add(place, half_width * (2.0 * i / lateral_steps - 1));
+  return points;
+}
+
+void AxisMap::addRow(int y, const std::vector<Eigen::Vector2d>& border) {
+  double left = 1e9, right = -1e9;
+  for (const Eigen::Vector2d& p : border)
+    if (std::abs(p.y() - y) <= 1) left = std::min(left, p.x()), right = std::max(right, p.x());
+  Row row;
+  row.first = along_.size();
+  if (left <= right) row.begin = static_cast<int>(std::floor(left)), row.end = static_cast<int>(std::ceil(right)) + 1;
+  for (int x = row.begin; x < row.end; ++x) {
+    const Eigen::Vector2d p = undistort(camera_, Eigen::Vector2d(x, y)) - axis_.origin;
+    along_.push_back(static_cast<float>(p.dot(axis_.direction)));
+    lateral_.push_back(static_cast<float>(p.dot(across_)));
+  }
+  rows_.push_back(row);
+}
+
+PixelRect AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
+  for (double a : {-1.0, 0.0, 1.0})
+    for (double b : {-1.0, 0.0, 1.0}) {
+      const Eigen::Vector2d p = pixel(centre.x() + a * half_extents.x(), centre.y() + b * half_extents.y());
+      if (!p.allFinite()) continue;
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  if (!(low.array() <= high.array()).all()) return {};
+  const auto limit = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
+  const int x = limit(std::floor(low.x())), y = limit(std::floor(low.y()));
+  return {x, y, limit(std::ceil(high.x())) - x + 1, limit(std::ceil(high.y())) - y + 1};
+}
+
+PixelRect AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
+                          PixelBlock& pixels) {
+  PixelRect rect = boundsOf(centre, half_extents);
+  const int last_row = first_row_ + static_cast<int>(rows_.size());
+  const int top = std::max(rect.y, first_row_), bottom = std::min(rect.y + rect.height, last_row);
+  rect.y = top, rect.height = std::max(bottom - top, 0);
+  pixels.count = 0;
+  markSaturated(frame, rect);
+  for (int parity : {0, 1})
+    for (int y = rect.y; y < rect.y + rect.height; ++y) gatherRow(frame, rect, y, parity, centre, half_extents, pixels);
+  for (std::size_t i = pixels.count; i < pixels.padded(); ++i) {
+    pixels.along[i] = pixels.along[pixels.count - 1], pixels.lateral[i] = pixels.lateral[pixels.count - 1];
+    pixels.value[i] = pixels.weight[i] = 0;
+  }
+  return rect;
+}
+
+/// Marks what is near saturated pixels in saturated_; nearly always there is none.
+void AxisMap::markSaturated(const Frame& frame, const PixelRect& rect) {
+  any_saturated_ = false;
+  const int left = std::max(rect.x - frame.offset_x, 0), top = std::max(rect.y - frame.offset_y, 0);
+  const int right = std::min(rect.x - frame.offset_x + rect.width, frame.image.width);
+  const int bottom = std::min(rect.y - frame.offset_y + rect.height, frame.image.height);
+  for (int y = top; y < bottom; ++y) {
+    const std::uint8_t* row = frame.image.row(y);
+    std::uint8_t highest = 0;
+    for (int x = left; x < right; ++x) highest = std::max(highest, row[x]);
+    if (highest < kSaturated) continue;
+    const auto size = static_cast<std::size_t>(rect.width) * rect.height;
+    if (!any_saturated_) saturated_.assign(std::max(size, saturated_.size()), 0);
+    any_saturated_ = true;
+    const int row_begin = std::max(top, y - kHalo), row_end = std::min(bottom, y + kHalo + 1);
+    for (int x = left; x < right; ++x) {
+      if (row[x] < kSaturated) continue;
+      const int from = std::max(left, x - kHalo), to = std::min(right, x + kHalo + 1);
+      for (int j = row_begin; j < row_end; ++j)
+        std::memset(saturated_.data() + static_cast<std::ptrdiff_t>(j + frame.offset_y - rect.y) * rect.width +
+                        (from + frame.offset_x - rect.x),
+                    1, static_cast<std::size_t>(to - from));
+    }
+  }
+}
+
+void AxisMap::gatherRow(const Frame& frame, const PixelRect& rect, int y, int parity, const Eigen::Vector2d& centre,
+                        const Eigen::Vector2d& half_extents, PixelBlock& pixels) const {
+  const Row& row = rows_[y - first_row_];
+  int begin = std::max(rect.x, row.begin);
+  const int end = std::min(rect.x + rect.width, row.end);
+  begin += (begin + y + parity) & 1;
+  const auto centre_x = static_cast<float>(centre.x()), centre_y = static_cast<float>(centre.y());
+  const auto reach_x = static_cast<float>(half_extents.x()), reach_y = static_cast<float>(half_extents.y());
+  const int v = y - frame.offset_y;
+  const bool in_frame = v >= 0 && v < frame.image.height;
+  const std::uint8_t* values = in_frame ? frame.image.row(v) : nullptr;
+  const std::uint8_t* dead =
+      any_saturated_ ? saturated_.data() + static_cast<std::ptrdiff_t>(y - rect.y) * rect.width : nullptr;
+  std::size_t n = pixels.count;
+  for (int x = begin; x < end && n < pixels.capacity(); x += 2) {
+    const float a = along_[row.first + (x - row.begin)], b = lateral_[row.first + (x - row.begin)];
+    const int u = x - frame.offset_x;
+    const bool seen = in_frame && u >= 0 && u < frame.image.width;
+    pixels.along[n] = a, pixels.lateral[n] = b;
+    pixels.value[n] = seen ? static_cast<float>(values[u]) : 0.F;
+    pixels.weight[n] = seen && (dead == nullptr || dead[x - rect.x] == 0) ? 1.F : 0.F;
+    n += std::abs(a - centre_x) <= reach_x && std::abs(b - centre_y) <= reach_y ? 1 : 0;
+  }
+  pixels.count = n;
+}
+
+void AxisMap::readBand(const Frame& frame, double begin, double end, double half_width, AxisProfile& profile) const {
+  std::fill(profile.sum.begin(), profile.sum.end(), 0.F);
+  std::fill(profile.count.begin(), profile.count.end(), 0.F);
+  profile.pixels = profile.saturated = 0;
+  const PixelRect rect = boundsOf({(begin + end) / 2, 0}, {(end - begin) / 2, half_width});
+  const auto low = static_cast<float>(begin), high = static_cast<float>(end), width = static_cast<float>(half_width);
+  const auto first = static_cast<float>(profile.first - 0.5), bins = static_cast<float>(profile.sum.size());
+  const int top = std::max({rect.y, first_row_, frame.offset_y});
+  const int bottom = std::min(
+      {rect.y + rect.height, first_row_ + static_cast<int>(rows_.size()), frame.offset_y + frame.image.height});
+  for (int y = top; y < bottom; ++y) {
+    const Row& row = rows_[y - first_row_];
+    const std::uint8_t* values = frame.image.row(y - frame.offset_y);
+    const int from = std::max({rect.x, row.begin, frame.offset_x});
+    const int to = std::min({rect.x + rect.width, row.end, frame.offset_x + frame.image.width});
+    for (int x = from; x < to; ++x) {
+      const float a = along_[row.first + (x - row.begin)], b = lateral_[row.first + (x - row.begin)];
+      const float bin = a - first;
+      if (!(a >= low && a <= high && std::abs(b) <= width && bin >= 0 && bin < bins)) continue;
+      const std::uint8_t value = values[x - frame.offset_x];
+      const auto i = static_cast<std::size_t>(bin);
+      profile.sum[i] += static_cast<float>(value);
+      profile.count[i] += 1;
+      ++profile.pixels;
+      profile.saturated += value >= kSaturated ? 1 : 0;
+    }
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,44 @@
+#include "track/gates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+constexpr double kMaxMisfit = 4;    // chi^2 per degree of freedom of the pixels that are no outliers
+constexpr double kDeviations = 6;   // of the prediction
+constexpr double kSlack = 1;        // beyond the range and across the axis [px]
+constexpr double kMaxBlack = 0.75;  // of white: paper and ink differ more
+
+}  // namespace
+
+Gates::Gates(const VisionConfig& config, const InstrumentConfig& instrument)
+    : limits_(config.gates),
+      motion_(instrument.motion),
+      begin_(alongOf(instrument.axis, instrument.lower)),
+      end_(alongOf(instrument.axis, instrument.upper)),
+      lateral_tolerance_(instrument.lateral_tolerance * instrument.axis.pixels_per_metre) {}
+
+LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal) const {
+  const FitVector& x = fit.x;
+  if (!fit.valid) return LostReason::NotFound;
+  if (x[kContrast] < limits_.min_contrast || x[kBlack] > kMaxBlack * (x[kBlack] + x[kContrast]))
+    return LostReason::NotFound;
+  if (x[kAlong] < begin_ - kSlack || x[kAlong] > end_ + kSlack) return LostReason::NotFound;
+  if (std::abs(x[kLateral]) > lateral_tolerance_ + kSlack) return LostReason::NotFound;
+  const double scale = std::exp(x[kLogScale] - nominal[kLogScale]);
+  const double length = scale * std::exp(x[kLogAspect] - nominal[kLogAspect]);
+  const double wrong_size = std::max(std::abs(scale - 1), std::abs(length - 1));
+  if (wrong_size > limits_.max_scale_error || std::abs(x[kTilt]) > limits_.max_tilt) return LostReason::Mismatch;
+  if (fit.visible < limits_.min_visible) return LostReason::Occluded;
+  return fit.misfit > kMaxMisfit ? LostReason::Mismatch : LostReason::None;
+}
+
+bool Gates::isReachable(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const {
+  if (std::abs(slide - last_slide) > motion_.max_speed * dt + kDeviations * 1e-5) return false;
+  const double reach = motion_.max_acceleration * dt * dt + kDeviations * predicted.deviation();
+  return std::abs(slide - predicted.mean[0]) <= reach;
+}
+
+}  // namespace vibe

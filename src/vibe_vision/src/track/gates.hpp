@@ -1,0 +1,25 @@
+#pragma once
+#include "track/marker_fitter.hpp"
+#include "track/motion_filter.hpp"
+#include "vibe_vision/track/measurement.hpp"
+
+namespace vibe {
+
+/// Decides whether a fit is the marker.
+class Gates {
+ public:
+  Gates(const VisionConfig& config, const InstrumentConfig& instrument);
+
+  /// Everything that one picture tells. @param nominal  what the calibration says about size and tilt there
+  LostReason judge(const MarkerFit& fit, const FitVector& nominal) const;
+  /// Whether an instrument that was seen some time ago can be there. @param dt  since then [s]
+  bool isReachable(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const;
+
+ private:
+  GateConfig limits_;
+  MotionLimits motion_;
+  double begin_, end_;        ///< along the axis [px]
+  double lateral_tolerance_;  ///< [px]
+};
+
+}  // namespace vibe

@@ -1,0 +1,246 @@
+#include "track/instrument_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace vibe {
+namespace {
+
+constexpr double kCloseEnough = 1.2;   // deviation of a prediction from which a fit converges [px]
+constexpr double kMaxGap = 0.5;        // after which the motion is forgotten [s]
+constexpr int kForget = 60;            // lost frames after which size, tilt and blur are forgotten
+constexpr int kJumpsToBelieve = 3;     // frames that agree on a place that cannot be reached
+constexpr double kGoodLook = 0.6;      // share of the marker that must be seen to learn size, tilt and blur from it
+constexpr double kMargin = 3;          // around the range of the search [px]
+constexpr double kFilterFloor = 1e-6;  // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+double square(double x) {
+  return x * x;
+}
+
+double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& config) {
+  return 1.1 * pattern.maxWindow().norm() + config.lateral_tolerance * config.axis.pixels_per_metre + 4;
+}
+
+/// The shift of a blurred marker's middle against its place at the middle of the exposure, per unit of acceleration:
+/// the mean of t^2 / 2 over the exposure.
+double exposureShift(double exposure) {
+  return exposure * exposure / 24;
+}
+
+}  // namespace
+
+InstrumentTracker::InstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument,
+                                     std::unique_ptr<MarkerPattern> pattern)
+    : config_(instrument),
+      min_contrast_(config.gates.min_contrast),
+      fitter_(std::move(pattern), config.noise),
+      map_(config.camera, instrument.axis,
+           alongOf(instrument.axis, instrument.lower) - 1.1 * fitter_.pattern().maxWindow().norm(),
+           alongOf(instrument.axis, instrument.upper) + 1.1 * fitter_.pattern().maxWindow().norm(),
+           bandHalfWidth(fitter_.pattern(), instrument)),
+      search_(fitter_.pattern(), alongOf(instrument.axis, instrument.lower),
+              alongOf(instrument.axis, instrument.upper)),
+      gates_(config, instrument),
+      slow_(config, instrument, fitter_.pattern().observes()),
+      slide_(instrument.motion.max_speed, instrument.motion.max_acceleration),
+      rotation_(instrument.motion.max_angular_speed, 30 * instrument.motion.max_angular_speed) {
+  lose(LostReason::NoFrame);
+}
+
+void InstrumentTracker::reset() {
+  slide_.reset();
+  rotation_.reset();
+  slow_.reset();
+  jumps_ = 0;
+  lose(LostReason::NoFrame);
+}
+
+const Measurement& InstrumentTracker::lose(LostReason reason) {
+  const Measurement before = measurement_;
+  measurement_ = {};
+  measurement_.reason = reason;
+  measurement_.slide = measurement_.rotation = measurement_.along = measurement_.lateral = kNaN;
+  measurement_.pixel.setConstant(kNaN);
+  measurement_.roi_x = before.roi_x, measurement_.roi_y = before.roi_y;
+  measurement_.roi_width = before.roi_width, measurement_.roi_height = before.roi_height;
+  if (++lost_frames_ == kForget) slow_.reset();
+  return measurement_;
+}
+
+const Measurement& InstrumentTracker::track(const Frame& frame) {
+  const Prediction prediction = predict(frame.stamp);
+  reason_ = LostReason::NotFound;
+  if (prediction.close && follow(frame, prediction)) return measurement_;
+  if (search(frame, prediction)) return measurement_;
+  return lose(reason_);
+}
+
+/// A stamp that goes back, or one much later, says nothing about where the marker may be now.
+InstrumentTracker::Prediction InstrumentTracker::predict(double stamp) {
+  Prediction p;
+  if (slide_.started() && (stamp <= slide_.time() || stamp - slide_.time() > kMaxGap)) {
+    slide_.reset();
+    rotation_.reset();
+  }
+  if (!slide_.started()) return p;
+  p.known = true;
+  p.dt = stamp - slide_.time();
+  p.slide = slide_.predict(stamp);
+  if (rotation_.started()) p.rotation = rotation_.predict(stamp);
+  p.close = p.slide.deviation() * pixelsPerMetre(config_.axis, p.slide.mean[0]) < kCloseEnough;
+  return p;
+}
+
+double InstrumentTracker::motionAt(const MotionFilter::State& slide, double exposure) const {
+  return slide.mean[1] * exposure * pixelsPerMetre(config_.axis, slide.mean[0]);
+}
+
+FitVector InstrumentTracker::startAt(double slide, const Prediction& prediction) const {
+  FitVector x = slow_.prior(slide).mean;
+  x[kAlong] = alongOf(config_.axis, slide);
+  x[kRotation] = prediction.known && rotation_.started() ? prediction.rotation.mean[0] : last_rotation_;
+  return x;
+}
+
+bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction) {
+  const double slide = std::clamp(prediction.slide.mean[0], config_.lower, config_.upper);
+  const double scale = pixelsPerMetre(config_.axis, slide);
+  slow_.predict(prediction.slide.mean[1] * prediction.dt * scale);
+  const double shift = prediction.slide.mean[2] * exposureShift(frame.exposure);
+  FitVector start = startAt(slide + shift, prediction);
+  start[kLateral] = measurement_.tracked() ? measurement_.lateral : 0;
+  const MarkerFit fit =
+      fitter_.follow(map_, frame, start, slow_.prior(slide), motionAt(prediction.slide, frame.exposure),
+                     prediction.slide.deviation() * scale);
+  reason_ = gates_.judge(fit, slow_.nominal(slide));
+  if (reason_ == LostReason::None && !isExpected(fit, prediction, frame.stamp)) reason_ = LostReason::Jump;
+  if (reason_ != LostReason::None) return false;
+  accept(frame, fit, prediction, false);
+  return true;
+}
+
+bool InstrumentTracker::search(const Frame& frame, const Prediction& prediction) {
+  const LostReason before = reason_;
+  if (prediction.known) {
+    const double reach = config_.motion.max_speed * prediction.dt;
+    if (searchRange(frame, prediction, last_slide_ - reach, last_slide_ + reach)) return true;
+    if (reach > config_.upper - config_.lower) return false;
+  }
+  if (searchRange(frame, prediction, config_.lower, config_.upper)) return true;
+  if (reason_ == LostReason::NotFound && before != LostReason::None) reason_ = before;
+  return false;
+}
+
+bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& prediction, double begin, double end) {
+  const double from = alongOf(config_.axis, std::max(begin, config_.lower));
+  const double to = alongOf(config_.axis, std::min(end, config_.upper));
+  const double fastest = config_.motion.max_speed * frame.exposure * config_.axis.pixels_per_metre;
+  const AxisSearch::Result& found = search_.run(map_, frame, from - kMargin, to + kMargin, fastest, min_contrast_);
+  MarkerFit best;
+  best.loss = 1e9;
+  reason_ = whyNothing(found);
+  for (int i = 0; i < found.count; ++i) {
+    const MarkerFit fit = tryCandidate(frame, prediction, found.candidates[i]);
+    const LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])));
+    if (reason == LostReason::None && fit.loss < best.loss) best = fit;
+    if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
+    if (best.valid && best.misfit < 1.5 && best.visible > 0.9) break;
+  }
+  if (!best.valid) return false;
+  if (!isExpected(best, prediction, frame.stamp)) {
+    reason_ = LostReason::Jump;
+    return false;
+  }
+  accept(frame, best, prediction, true);
+  return true;
+}
+
+MarkerFit InstrumentTracker::tryCandidate(const Frame& frame, const Prediction& prediction,
+                                          const AxisSearch::Candidate& candidate) {
+  const double slide = slideOf(config_.axis, candidate.along);
+  const double fastest = config_.motion.max_speed * frame.exposure * config_.axis.pixels_per_metre;
+  const bool known_rotation =
+      prediction.known && rotation_.started() && rotation_.predict(slide_.time() + prediction.dt).deviation() < 0.2;
+  return fitter_.acquire(map_, frame, startAt(slide, prediction), slow_.prior(slide), candidate.motion, fastest,
+                         known_rotation);
+}
+
+/// The instrument cannot be faster than it is; but if several frames agree on where it is now, somebody moved it.
+bool InstrumentTracker::isExpected(const MarkerFit& fit, const Prediction& prediction, double stamp) {
+  const double slide = slideOf(config_.axis, fit.x[kAlong]);
+  if (!prediction.known || gates_.isReachable(slide, prediction.slide, last_slide_, prediction.dt)) return true;
+  const double step = config_.motion.max_speed * std::abs(stamp - jump_stamp_) + 1e-4;
+  jumps_ = jumps_ > 0 && std::abs(slide - jump_slide_) < step ? jumps_ + 1 : 1;
+  jump_slide_ = slide, jump_stamp_ = stamp;
+  return jumps_ >= kJumpsToBelieve;
+}
+
+LostReason InstrumentTracker::whyNothing(const AxisSearch::Result& found) const {
+  if (!found.in_view) return LostReason::OutOfView;
+  if (found.saturated > 0.5) return LostReason::Saturated;
+  if (found.brightest < 2 * min_contrast_) return LostReason::Dark;
+  return LostReason::NotFound;
+}
+
+void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const Prediction& prediction,
+                               bool reacquired) {
+  measurement_ = {};
+  measurement_.reason = LostReason::None;
+  measurement_.reacquired = reacquired;
+  const double shift = exposureShift(frame.exposure);
+  const MotionFilter::State& state = prediction.slide;
+  const double acceleration = reacquired ? 0 : state.mean[2];
+  const double doubt = reacquired ? square(config_.motion.max_acceleration / 2) : state.covariance(2, 2);
+  const double scale = pixelsPerMetre(config_.axis, slideOf(config_.axis, fit.x[kAlong]));
+  measurement_.along = fit.x[kAlong] - acceleration * shift * scale;
+  measurement_.along_variance = fit.covariance(kAlong, kAlong) + doubt * square(shift * scale);
+  measurement_.slide = slideOf(config_.axis, measurement_.along);
+  measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
+  measurement_.rotation = kNaN;
+  if (fitter_.shows(kRotation)) {
+    const double expected = prediction.known && rotation_.started() ? prediction.rotation.mean[0] : last_rotation_;
+    measurement_.rotation = fit.x[kRotation] - 2 * M_PI * std::round((fit.x[kRotation] - expected) / (2 * M_PI));
+    measurement_.covariance(1, 1) = fit.covariance(kRotation, kRotation);
+    measurement_.covariance(0, 1) = measurement_.covariance(1, 0) = fit.covariance(kAlong, kRotation) / scale;
+  }
+  describe(fit);
+  const bool jumped = jumps_ >= kJumpsToBelieve;
+  updateFilters(frame.stamp, jumped || !prediction.known);
+  if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide);
+  jumps_ = lost_frames_ = 0;
+}
+
+void InstrumentTracker::describe(const MarkerFit& fit) {
+  const FitVector nominal = slow_.nominal(measurement_.slide);
+  measurement_.lateral = fit.x[kLateral];
+  measurement_.pixel = map_.pixel(measurement_.along, measurement_.lateral);
+  measurement_.visible = std::min(fit.visible, 1.0);
+  measurement_.score = measurement_.visible / std::max(1.0, fit.misfit);
+  measurement_.scale = std::exp(fit.x[kLogScale] - nominal[kLogScale]);
+  measurement_.tilt = fit.x[kTilt];
+  measurement_.contrast = fit.x[kContrast];
+  measurement_.roi_x = fit.roi.x, measurement_.roi_y = fit.roi.y;
+  measurement_.roi_width = fit.roi.width, measurement_.roi_height = fit.roi.height;
+}
+
+void InstrumentTracker::updateFilters(double stamp, bool restart) {
+  const double variance = measurement_.covariance(0, 0) + square(kFilterFloor);
+  const double turn_variance = measurement_.covariance(1, 1) + square(1e3 * kFilterFloor);
+  last_slide_ = measurement_.slide;
+  if (restart)
+    slide_.start(stamp, measurement_.slide, variance);
+  else
+    slide_.update(stamp, measurement_.slide, variance);
+  if (!fitter_.shows(kRotation)) return;
+  last_rotation_ = measurement_.rotation;
+  if (restart || !rotation_.started())
+    rotation_.start(stamp, measurement_.rotation, turn_variance);
+  else
+    rotation_.update(stamp, measurement_.rotation, turn_variance);
+}
+
+}  // namespace vibe

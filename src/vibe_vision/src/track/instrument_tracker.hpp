@@ -1,0 +1,57 @@
+#pragma once
+#include "track/axis_search.hpp"
+#include "track/gates.hpp"
+#include "track/slow_state.hpp"
+
+namespace vibe {
+
+/// Follows one instrument. Each frame: predict, fit, gate; if that fails, search the axis, fit and gate again.
+class InstrumentTracker {
+ public:
+  InstrumentTracker(const VisionConfig& config, const InstrumentConfig& instrument,
+                    std::unique_ptr<MarkerPattern> pattern);
+
+  /// @param frame  an image of the calibration's sensor
+  const Measurement& track(const Frame& frame);
+  /// There is no usable frame.
+  const Measurement& lose(LostReason reason);
+  const Measurement& measurement() const { return measurement_; }
+  void reset();
+
+ private:
+  struct Prediction {
+    MotionFilter::State slide, rotation;
+    double dt = 0;       ///< since the last measurement [s]
+    bool known = false;  ///< something was seen before
+    bool close = false;  ///< well enough to fit right away
+  };
+  Prediction predict(double stamp);
+  double motionAt(const MotionFilter::State& slide, double exposure) const;
+  FitVector startAt(double slide, const Prediction& prediction) const;
+  bool follow(const Frame& frame, const Prediction& prediction);
+  bool search(const Frame& frame, const Prediction& prediction);
+  bool searchRange(const Frame& frame, const Prediction& prediction, double begin, double end);
+  MarkerFit tryCandidate(const Frame& frame, const Prediction& prediction, const AxisSearch::Candidate& candidate);
+  bool isExpected(const MarkerFit& fit, const Prediction& prediction, double stamp);
+  LostReason whyNothing(const AxisSearch::Result& found) const;
+  void accept(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, bool reacquired);
+  void describe(const MarkerFit& fit);
+  void updateFilters(double stamp, bool restart);
+
+  InstrumentConfig config_;
+  double min_contrast_;
+  MarkerFitter fitter_;
+  AxisMap map_;
+  AxisSearch search_;
+  Gates gates_;
+  SlowState slow_;
+  MotionFilter slide_, rotation_;
+  double last_slide_ = 0, last_rotation_ = 0;
+  int lost_frames_ = 0;
+  int jumps_ = 0;  ///< frames in a row that show the marker where it cannot be
+  double jump_slide_ = 0, jump_stamp_ = 0;
+  LostReason reason_ = LostReason::NotFound;
+  Measurement measurement_;
+};
+
+}  // namespace vibe

@@ -1,0 +1,53 @@
+#pragma once
+#include <memory>
+
+#include "track/axis_map.hpp"
+#include "track/pattern_fit.hpp"
+
+namespace vibe {
+
+/// A marker as it was fitted to one frame.
+struct MarkerFit {
+  FitVector x = FitVector::Zero();
+  FitMatrix covariance = FitMatrix::Zero();
+  double misfit = 0;   ///< robust chi^2 per degree of freedom
+  double loss = 0;     ///< mean of the robust loss of a pixel
+  double visible = 0;  ///< share of the information about the position that was used
+  double motion = 0;   ///< along the axis during the exposure, as assumed [px]
+  bool valid = false;  ///< the fit converged
+  PixelRect roi;
+};
+
+/// Reads the pixels around a place and fits a marker's pattern to them.
+class MarkerFitter {
+ public:
+  MarkerFitter(std::unique_ptr<MarkerPattern> pattern, const PixelNoise& noise);
+
+  const MarkerPattern& pattern() const { return *pattern_; }
+  bool shows(PoseIndex k) const { return observed_[k]; }
+
+  /// From a good prediction. @param uncertainty  of its position, standard deviation [px]
+  MarkerFit follow(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
+                   double uncertainty);
+  /// From a candidate of the search: from coarse to fine, with any rotation.
+  /// @param known_rotation  start.rotation is a prediction
+  MarkerFit acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
+                    double max_motion, bool known_rotation);
+
+ private:
+  bool read(AxisMap& map, const Frame& frame, MarkerFit& fit);
+  bool alignCoarsely(MarkerFit& fit, const FitPrior& prior, double blur, int steps);
+  void chooseRotation(MarkerFit& fit, double blur);
+  void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
+  void refine(MarkerFit& fit, const FitPrior& prior, int max_steps);
+  void take(const FitStep& step, MarkerFit& fit) const;
+
+  std::unique_ptr<MarkerPattern> pattern_;
+  std::array<bool, kPoseParameters> observed_;
+  std::vector<double> rotations_;
+  double radius_;  ///< of the marker, about [px]
+  PixelBlock pixels_;
+  PatternFit fit_;
+};
+
+}  // namespace vibe

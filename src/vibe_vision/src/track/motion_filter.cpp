@@ -1,0 +1,56 @@
+#include "track/motion_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+// The acceleration may change from one limit to the other at about 12 Hz; the jerk keeps its sign for 1 ms.
+constexpr double kJerkRate = 25;    // standard deviation of the jerk relative to the greatest acceleration [1/s]
+constexpr double kJerkTime = 1e-3;  // [s]
+
+double square(double x) {
+  return x * x;
+}
+
+}  // namespace
+
+MotionFilter::MotionFilter(double max_speed, double max_acceleration)
+    : max_speed_(max_speed), max_acceleration_(max_acceleration) {}
+
+void MotionFilter::start(double time, double value, double variance) {
+  started_ = true;
+  time_ = time;
+  state_.mean << value, 0, 0;
+  state_.covariance.setZero();
+  state_.covariance.diagonal() << variance, square(max_speed_ / 2), square(max_acceleration_ / 2);
+}
+
+MotionFilter::State MotionFilter::predict(double time) const {
+  const double dt = std::max(time - time_, 0.0), dt2 = dt * dt, dt3 = dt2 * dt;
+  Eigen::Matrix3d f;
+  f << 1, dt, dt2 / 2, 0, 1, dt, 0, 0, 1;
+  Eigen::Matrix3d q;
+  q << dt3 * dt2 / 20, dt2 * dt2 / 8, dt3 / 6, dt2 * dt2 / 8, dt3 / 3, dt2 / 2, dt3 / 6, dt2 / 2, dt;
+  State later;
+  later.mean = f * state_.mean;
+  later.covariance = f * state_.covariance * f.transpose() + square(kJerkRate * max_acceleration_) * kJerkTime * q;
+  const double travel = max_speed_ * dt;
+  later.mean[0] = std::clamp(later.mean[0], state_.mean[0] - travel, state_.mean[0] + travel);
+  later.mean[1] = std::clamp(later.mean[1], -max_speed_, max_speed_);
+  later.mean[2] = std::clamp(later.mean[2], -max_acceleration_, max_acceleration_);
+  return later;
+}
+
+void MotionFilter::update(double time, double value, double variance) {
+  const State predicted = predict(time);
+  const Eigen::Vector3d gain = predicted.covariance.col(0) / (predicted.covariance(0, 0) + variance);
+  Eigen::Matrix3d keep = Eigen::Matrix3d::Identity();
+  keep.col(0) -= gain;  // Joseph form: stays symmetric and positive
+  time_ = time;
+  state_.mean = predicted.mean + gain * (value - predicted.mean[0]);
+  state_.covariance = keep * predicted.covariance * keep.transpose() + variance * gain * gain.transpose();
+}
+
+}  // namespace vibe

@@ -1,0 +1,73 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "track/normal_equations.hpp"
+#include "vibe_vision/track/marker_pattern.hpp"
+
+namespace vibe {
+
+/// What a fit looks for: the pose, then grey values of the marker and how the light changes over it. A pixel shows
+///   (black + contrast * reflectance) * (1 + slope_along * (along - pose.along) + slope_lateral * (lateral - ...)).
+constexpr int kFitParameters = kPoseParameters + 4;
+enum FitIndex { kBlack = kPoseParameters, kContrast, kSlopeAlong, kSlopeLateral };
+using FitVector = Eigen::Matrix<double, kFitParameters, 1>;
+using FitMatrix = Eigen::Matrix<double, kFitParameters, kFitParameters>;
+
+MarkerPose poseOf(const FitVector& x);
+void setPose(const MarkerPose& pose, FitVector& x);
+
+/// What is known before the picture is looked at.
+struct FitPrior {
+  FitVector mean = FitVector::Zero();
+  FitMatrix information = FitMatrix::Zero();  ///< inverse covariance
+};
+
+struct FitOptions {
+  double uncertainty = 0;      ///< of the position the fit starts from, standard deviation [px]
+  bool position_only = false;  ///< the other pose parameters and the light stay as they are
+};
+
+/// The result of one step, at the parameters before the step.
+struct FitStep {
+  FitVector change = FitVector::Zero();
+  FitMatrix covariance = FitMatrix::Zero();
+  double misfit = 0;   ///< robust chi^2 per degree of freedom
+  double loss = 0;     ///< mean of the biweight's loss of a pixel, 1: all are outliers
+  double visible = 0;  ///< share of the information about the position along the axis that is used
+  bool valid = false;  ///< the equations could be solved
+};
+
+/// Robust Gauss-Newton steps that fit a marker's pattern to pixels. A pixel's weight is the inverse of its variance
+/// times Tukey's biweight.
+class PatternFit {
+ public:
+  PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::size_t capacity);
+
+  /// The pattern at x; before the functions below. pattern.prepare() must have been called nearby. No allocation.
+  void evaluate(const FitVector& x, const PixelBlock& pixels);
+  /// Sets black and contrast to what fits best: medians of the white and the black pixels.
+  void startLevels(const PixelBlock& pixels, FitVector& x) const;
+  /// One step from x. No allocation.
+  FitStep step(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels, const FitOptions& options);
+  /// FitStep::loss alone.
+  double loss(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
+  const PatternValues& values() const { return values_; }
+
+ private:
+  void chooseColumns(const FitOptions& options);
+  void weigh(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
+  void fillColumns(const FitVector& x, const PixelBlock& pixels);
+  void solve(const FitVector& x, const FitPrior& prior, FitStep& result) const;
+
+  MarkerPattern& pattern_;
+  PixelNoise noise_;
+  std::array<bool, kPoseParameters> observed_;
+  PatternValues values_;
+  std::vector<float> factor_;  ///< square root of a pixel's weight
+  NormalEquations equations_;
+  std::array<int, kFitParameters> parameter_{};  ///< of each column
+  int columns_ = 0;
+  double squares_ = 0, weights_ = 0, loss_ = 0, valid_ = 0, used_ = 0, full_ = 0;
+};
+
+}  // namespace vibe

@@ -1,0 +1,185 @@
+#include "track/ring_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace vibe {
+namespace {
+
+constexpr double kLevelRatio = 1.25;       // of the blur from one level to the next
+constexpr double kProfileStep = 1.0 / 32;  // of the radial profile [px]
+constexpr double kTail = 6.5;              // standard deviations of a Gaussian that count
+constexpr double kMinMotion = 0.05;        // below it the picture is that of 0.05 px [px]
+constexpr float kPole = -0.26794919F;      // of the cubic B-spline: sqrt(3) - 2
+
+double gauss(double x) {
+  return std::exp(-0.5 * x * x) / std::sqrt(2 * M_PI);
+}
+double cumulative(double x) {
+  return 0.5 * std::erfc(-x / M_SQRT2);
+}
+
+/// Gaussian blur of a disc at distance r from its centre: sum over its chords v = radius sin(angle).
+double blurredDisc(double r, double radius, double blur) {
+  if (r < radius - kTail * blur) return 1;
+  if (r > radius + kTail * blur) return 0;
+  constexpr int kIntervals = 96;  // of Simpson's rule
+  const double limit = std::asin(std::min(1.0, kTail * blur / radius));
+  double sum = 0;
+  for (int i = 0; i <= kIntervals; ++i) {
+    const double angle = limit * i / kIntervals;
+    const double v = radius * std::sin(angle), half = radius * std::cos(angle);
+    const double weight = i == 0 || i == kIntervals ? 1 : (i % 2 == 1 ? 4 : 2);
+    sum += weight * half * gauss(v / blur) / blur * (cumulative((r + half) / blur) - cumulative((r - half) / blur));
+  }
+  return 2 * sum * limit / (3 * kIntervals);
+}
+
+/// Cubic Lagrange interpolation in a table that begins at 0 and is even there.
+double lookUp(const std::vector<double>& table, double place) {
+  const auto i =
+      std::clamp(static_cast<std::ptrdiff_t>(place), std::ptrdiff_t{1}, static_cast<std::ptrdiff_t>(table.size()) - 3);
+  const double f = place - static_cast<double>(i);
+  const double* p = table.data() + i;
+  return p[0] * (f + 1) * (f - 1) * (f - 2) / 2 - p[1] * (f + 1) * f * (f - 2) / 2 - p[-1] * f * (f - 1) * (f - 2) / 6 +
+         p[2] * (f + 1) * f * (f - 1) / 6;
+}
+
+/// Samples -> coefficients of a cubic B-spline along one dimension, `width` series side by side. Before the first
+/// sample the series continues as its mirror image times `parity`; after the last it stays as it is.
+template <class Row>
+void prefilter(const Row& row, int count, int width, float parity) {
+  constexpr int kTerms = 14;  // of the geometric series: 1e-8
+  for (int j = 0; j < width; ++j) {
+    float sum = row(0)[j], power = 1;
+    for (int k = 1; k < std::min(kTerms, count); ++k) {
+      power *= kPole;
+      sum += parity * power * row(k)[j];
+    }
+    row(0)[j] = 6 * sum;
+  }
+  for (int i = 1; i < count; ++i) {
+    const float* before = row(i - 1);
+    float* here = row(i);
+    for (int j = 0; j < width; ++j) here[j] = 6 * here[j] + kPole * before[j];
+  }
+  for (int j = 0; j < width; ++j) row(count - 1)[j] *= -kPole / (1 - kPole);
+  for (int i = count - 2; i >= 0; --i) {
+    const float* after = row(i + 1);
+    float* here = row(i);
+    for (int j = 0; j < width; ++j) here[j] = kPole * (after[j] - here[j]);
+  }
+}
+
+/// Weights of the cubic B-spline at a fraction f between the second and the third of four coefficients.
+std::array<float, 4> splineWeights(double f) {
+  const double g = 1 - f;
+  return {static_cast<float>(g * g * g / 6), static_cast<float>(2.0 / 3 - f * f * (2 - f) / 2),
+          static_cast<float>(2.0 / 3 - g * g * (2 - g) / 2), static_cast<float>(f * f * f / 6)};
+}
+
+}  // namespace
+
+RingTable::RingTable(double inner, double outer, double reach_u, double reach_v, double max_motion)
+    : inner_(inner), outer_(outer), max_motion_(max_motion) {
+  const auto steps = [](double reach) { return static_cast<int>(std::ceil(reach / kStep)) + 4; };
+  rows_ = steps(reach_u) + kMargin;
+  columns_ = (steps(reach_v) + kMargin + 3) / 4 * 4;
+  integral_rows_ = rows_ + steps(max_motion / 2) + 10;  // the filter needs some to settle
+  for (double blur = kMinBlur; blur < kMaxBlur * kLevelRatio; blur *= kLevelRatio) levels_.push_back({blur, {}});
+  for (Level& level : levels_) buildLevel(level);
+  mixed_.resize(static_cast<std::size_t>(integral_rows_) * columns_);
+  table_.resize(static_cast<std::size_t>(rows_) * columns_);
+}
+
+std::vector<double> RingTable::radialProfile(double blur) const {
+  const double reach = std::hypot(integral_rows_, columns_) * kStep;
+  std::vector<double> profile(static_cast<std::size_t>(reach / kProfileStep) + 4);
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    const double r = static_cast<double>(i) * kProfileStep;
+    profile[i] = 1 - blurredDisc(r, outer_, blur) + blurredDisc(r, inner_, blur);
+  }
+  return profile;
+}
+
+void RingTable::buildLevel(Level& level) const {
+  constexpr int kParts = 4;  // of a step, for Simpson's rule
+  const std::vector<double> profile = radialProfile(level.blur);
+  level.integral.resize(static_cast<std::size_t>(integral_rows_) * columns_);
+  for (int j = 0; j < columns_; ++j) {
+    const double v = (j - kMargin) * kStep;
+    const auto value = [&](double u) { return lookUp(profile, std::hypot(u, v) / kProfileStep); };
+    double sum = 0;
+    for (int i = 0; i < integral_rows_; ++i) {
+      level.integral[static_cast<std::size_t>(i) * columns_ + j] = static_cast<float>(sum);
+      const double h = kStep / kParts, u = i * kStep;
+      for (int k = 0; k < kParts; ++k)
+        sum += h / 6 * (value(u + k * h) + 4 * value(u + (k + 0.5) * h) + value(u + (k + 1) * h));
+    }
+  }
+  prefilterIntegral(level.integral);
+}
+
+void RingTable::prefilterIntegral(std::vector<float>& integral) const {
+  prefilter([&](int i) { return integral.data() + static_cast<std::ptrdiff_t>(i) * columns_; }, integral_rows_,
+            columns_, -1);
+  for (int i = 0; i < integral_rows_; ++i) {
+    float* row = integral.data() + static_cast<std::ptrdiff_t>(i) * columns_ + kMargin;
+    prefilter([&](int j) { return row + j; }, columns_ - kMargin, 1, 1);
+    for (int j = 1; j <= kMargin; ++j) row[-j] = row[j];
+  }
+}
+
+void RingTable::compose(double blur, double motion) {
+  blur_ = std::clamp(blur, kMinBlur, kMaxBlur);
+  motion_ = std::clamp(std::abs(motion), kMinMotion, max_motion_);
+  mixLevels();
+  spreadMotion();
+  prefilter([&](int i) { return table_.data() + static_cast<std::ptrdiff_t>(i + kMargin) * columns_; }, rows_ - kMargin,
+            columns_, 1);
+  for (int i = 1; i <= kMargin; ++i)
+    std::copy_n(row(kMargin + i), columns_, table_.data() + static_cast<std::ptrdiff_t>(kMargin - i) * columns_);
+}
+
+/// Quadratic interpolation in the logarithm of the blur.
+void RingTable::mixLevels() {
+  const double place = std::log(blur_ / kMinBlur) / std::log(kLevelRatio);
+  const auto last = static_cast<std::ptrdiff_t>(levels_.size()) - 2;
+  const auto middle = std::clamp(static_cast<std::ptrdiff_t>(std::lround(place)), std::ptrdiff_t{1}, last);
+  const double f = place - static_cast<double>(middle);
+  const auto a = static_cast<float>(f * (f - 1) / 2), b = static_cast<float>(1 - f * f),
+             c = static_cast<float>(f * (f + 1) / 2);
+  const float* p = levels_[middle - 1].integral.data();
+  const float* q = levels_[middle].integral.data();
+  const float* r = levels_[middle + 1].integral.data();
+  for (std::size_t i = 0; i < mixed_.size(); ++i) mixed_[i] = a * p[i] + b * q[i] + c * r[i];
+}
+
+/// Samples of the mean over the motion at the rows' places: difference of the integral at its two ends.
+void RingTable::spreadMotion() {
+  const double shift = motion_ / 2 / kStep;
+  const int whole = static_cast<int>(shift);
+  const std::array<float, 4> w = splineWeights(shift - whole);
+  const auto scale = static_cast<float>(1 / motion_);
+  const auto term = [&](int k, float weight) {
+    return std::make_pair(mixed_.data() + static_cast<std::ptrdiff_t>(std::abs(k)) * columns_,
+                          k < 0 ? -weight : weight);  // the integral is odd
+  };
+  for (int i = 0; i < rows_ - kMargin; ++i) {
+    float* out = table_.data() + static_cast<std::ptrdiff_t>(i + kMargin) * columns_;
+    std::pair<const float*, float> t[8];
+    for (int k = 0; k < 4; ++k) {
+      t[k] = term(i + whole + k - 1, scale * w[k]);
+      t[4 + k] = term(i - whole - k + 1, -scale * w[k]);
+    }
+    for (int j = 0; j < columns_; ++j) {
+      float sum = 0;
+      for (int k = 0; k < 8; ++k) sum += t[k].first[j] * t[k].second;
+      out[j] = sum;
+    }
+  }
+}
+
+}  // namespace vibe

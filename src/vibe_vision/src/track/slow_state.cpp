@@ -1,0 +1,97 @@
+#include "track/slow_state.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+// Standard deviations at the beginning, and random walk from one frame to the next. Design choices.
+constexpr double kScalePrior = 0.08, kScaleDrift = 2e-4;
+constexpr double kTiltPrior = 0.15, kTiltDrift = 5e-4;  // [rad]
+constexpr double kAspectPrior = 0.04, kAspectDrift = 2e-4;
+constexpr double kBlurPrior = 0.5, kBlurDrift = 2e-3;     // [px]
+constexpr double kSlantPrior = 0.2, kSlantDrift = 5e-4;   // [rad]
+constexpr double kSlopePrior = 2e-3, kSlopeDrift = 4e-6;  // of the light [1/px], and per pixel of travel
+
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitParameters, kFitParameters>;
+
+}  // namespace
+
+SlowState::SlowState(const VisionConfig& config, const InstrumentConfig& instrument,
+                     const std::array<bool, kPoseParameters>& shown)
+    : axis_(instrument.axis), blur_(config.blur) {
+  const double focal = (config.camera.fx + config.camera.fy) / 2;
+  slant_ = std::atan(axis_.perspective * focal / axis_.pixels_per_metre);
+  lateral_tolerance_ = instrument.lateral_tolerance * axis_.pixels_per_metre;
+  initial_deviation_.setZero();
+  drift_.setZero();
+  const auto add = [&](int k, double deviation, double drift) {
+    if (k < kPoseParameters && !shown[k]) return;
+    index_[count_++] = k;
+    initial_deviation_[k] = deviation;
+    drift_[k] = drift;
+  };
+  add(kLogScale, kScalePrior, kScaleDrift);
+  add(kTilt, kTiltPrior, kTiltDrift);
+  add(kLogAspect, kAspectPrior, kAspectDrift);
+  add(kBlur, kBlurPrior, kBlurDrift);
+  add(kKeystone, kSlantPrior / focal, kSlantDrift / focal);
+  add(kSlant, kSlantPrior, kSlantDrift);
+  add(kSlopeAlong, kSlopePrior, kSlopeDrift);
+  add(kSlopeLateral, kSlopePrior, kSlopeDrift);
+  reset();
+}
+
+void SlowState::reset() {
+  mean_.setZero();
+  covariance_.setZero();
+  covariance_.diagonal() = initial_deviation_.cwiseAbs2();
+}
+
+/// Random walk, but never less certain than at the beginning.
+void SlowState::predict(double travel) {
+  for (int i = 0; i < count_; ++i) {
+    const int k = index_[i];
+    const double step = k >= kSlopeAlong ? drift_[k] * (1 + std::abs(travel)) : drift_[k];
+    const double room = initial_deviation_[k] * initial_deviation_[k] - covariance_(k, k);
+    covariance_(k, k) += std::max(0.0, std::min(step * step, room));
+  }
+}
+
+void SlowState::update(const FitVector& x, const FitMatrix& covariance, double slide) {
+  const FitVector base = nominal(slide);
+  for (int i = 0; i < count_; ++i) {
+    mean_[index_[i]] = x[index_[i]] - base[index_[i]];
+    for (int j = 0; j < count_; ++j) covariance_(index_[i], index_[j]) = covariance(index_[i], index_[j]);
+  }
+}
+
+FitPrior SlowState::prior(double slide) const {
+  FitPrior prior;
+  prior.mean = nominal(slide) + mean_;
+  Square covariance(count_, count_);
+  for (int i = 0; i < count_; ++i)
+    for (int j = 0; j < count_; ++j) covariance(i, j) = covariance_(index_[i], index_[j]);
+  const Square inverse = covariance.llt().solve(Square::Identity(count_, count_));
+  for (int i = 0; i < count_; ++i)
+    for (int j = 0; j < count_; ++j) prior.information(index_[i], index_[j]) = inverse(i, j);
+  prior.information(kLateral, kLateral) = 1 / (lateral_tolerance_ * lateral_tolerance_);
+  return prior;
+}
+
+/// A straight axis that leaves the image plane by the angle `slant_` makes the marker smaller with the distance, and
+/// shorter along than across.
+FitVector SlowState::nominal(double slide) const {
+  const double w = 1 + axis_.perspective * slide;
+  FitVector x = FitVector::Zero();
+  x[kLogScale] = -std::log(w) - std::log(std::cos(slant_));
+  x[kLogAspect] = -std::log(w) + std::log(std::cos(slant_));
+  x[kBlur] = blur_;
+  x[kKeystone] = -axis_.perspective * w / axis_.pixels_per_metre;
+  x[kSlant] = slant_;
+  return x;
+}
+
+}  // namespace vibe

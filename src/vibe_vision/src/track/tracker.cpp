@@ -1,0 +1,54 @@
+#include "vibe_vision/track/tracker.hpp"
+
+#include "track/instrument_tracker.hpp"
+
+namespace vibe {
+
+struct Tracker::Impl {
+  VisionConfig config;
+  std::vector<InstrumentTracker> instruments;
+  Measurements measurements;
+
+  bool fits(const Frame& frame) const {
+    const ImageView& image = frame.image;
+    return frame.sensor_width == config.camera.width && frame.sensor_height == config.camera.height &&
+           frame.offset_x >= 0 && frame.offset_y >= 0 && frame.offset_x + image.width <= frame.sensor_width &&
+           frame.offset_y + image.height <= frame.sensor_height && image.stride >= image.width;
+  }
+};
+
+Tracker::Tracker(const VisionConfig& config) : impl_(std::make_unique<Impl>()) {
+  impl_->config = config;
+  for (const InstrumentConfig& instrument : config.instruments) {
+    checkMarker(instrument.marker, "The marker of instrument '" + instrument.name + "'");
+    impl_->instruments.emplace_back(
+        config, instrument,
+        makePattern(instrument.marker, instrument.axis.pixels_per_metre, markerView(config.camera, instrument.axis)));
+    impl_->measurements.push_back(impl_->instruments.back().measurement());
+  }
+}
+
+Tracker::~Tracker() = default;
+Tracker::Tracker(Tracker&&) noexcept = default;
+Tracker& Tracker::operator=(Tracker&&) noexcept = default;
+
+const Measurements& Tracker::track(const Frame& frame) {
+  const bool none = frame.image.empty() || frame.image.data == nullptr;
+  for (std::size_t i = 0; i < impl_->instruments.size(); ++i) {
+    InstrumentTracker& instrument = impl_->instruments[i];
+    impl_->measurements[i] = none                 ? instrument.lose(LostReason::NoFrame)
+                             : impl_->fits(frame) ? instrument.track(frame)
+                                                  : instrument.lose(LostReason::WrongImage);
+  }
+  return impl_->measurements;
+}
+
+void Tracker::reset() {
+  for (InstrumentTracker& instrument : impl_->instruments) instrument.reset();
+}
+
+const VisionConfig& Tracker::config() const {
+  return impl_->config;
+}
+
+}  // namespace vibe
