@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "vibe_vision/camera/frame_ring.hpp"
+
+namespace vibe {
+
+struct FakeCameraOptions {
+  std::string address = "127.0.0.1";  ///< of a network interface of this computer; one camera per address
+  std::string serial = "ViBE1";
+  double lost_ratio = 0;       ///< share of the packets that are not sent
+  double clock_ahead = -1000;  ///< camera's clock less Unix time [s]
+  double clock_drift = 0;      ///< by which it is fast
+  std::string truth_file;      ///< what each frame that was sent truly shows, as truth.csv of vibe_render; empty: none
+};
+
+/// A GigE Vision camera in this process: Aravis' simulated camera sends the pictures of a ring over the network, with
+/// stamps of its own clock. Exposures end at whole multiples of the period of Unix time; the frame follows at once. Its
+/// sequence begins at 65401 and wraps from 65535 to 1, as GigE Vision 1.x does; the truth file counts on.
+class FakeCamera {
+ public:
+  /// @throws Error if the address is none of this computer, or another camera serves there
+  FakeCamera(std::shared_ptr<const FrameRing> ring, const FakeCameraOptions& options);
+  ~FakeCamera();  ///< as if unplugged
+
+  std::uint64_t sent() const;  ///< frames
+  /// The clock begins at 0, as after a reset of the camera.
+  void resetClock();
+  /// Changes the format without being asked; the bytes stay grey values. @param code  of the PFNC, with 8 bits per
+  /// pixel
+  void announceFormat(std::uint32_t code);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vibe

@@ -1,0 +1,87 @@
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_vision/camera/fake_camera.hpp"
+
+namespace {
+
+std::atomic<bool> shall_stop{false};
+
+struct Options {
+  std::string scene = "moving", config;
+  int frames = 300;
+  double duration = 0;
+  vibe::FakeCameraOptions camera;
+};
+
+void writeConfig(const std::string& file, const vibe::SyntheticScene& scene) {
+  std::ofstream stream(file);
+  stream << vibe::toYaml(vibe::nominalConfig(scene));
+  if (!stream.flush()) throw vibe::Error(file + ": cannot be written; check the folder.");
+}
+
+void serve(const Options& options) {
+  const vibe::SyntheticScene scene = vibe::namedScene(options.scene);
+  if (!options.config.empty()) writeConfig(options.config, scene);
+  std::cout << "vibe_fake_camera: draws " << options.scene << " ..." << std::endl;
+  const vibe::FakeCamera camera(vibe::renderRing(scene, options.frames), options.camera);
+  std::cout << "vibe_fake_camera: gige:" << options.camera.address << " serves " << options.scene << ", "
+            << scene.camera.width << " x " << scene.camera.height << " at " << scene.rate << " Hz; end with Ctrl-C"
+            << std::endl;
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  const auto isOver = [&] {
+    return options.duration > 0 && Clock::now() - begin > std::chrono::duration<double>(options.duration);
+  };
+  while (!shall_stop && !isOver()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  std::cout << "vibe_fake_camera: " << camera.sent() << " frames sent" << std::endl;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "A GigE Vision camera in software: it draws a synthetic scene once and serves it over the network, so that the\n"
+      "whole way from packets to positions runs without a camera. Consumers open it as gige:ADDRESS. It shows the\n"
+      "drawn frames forward and backward in turn.");
+  Options options;
+  std::string names;
+  for (const std::string& name : vibe::sceneNames()) names += (names.empty() ? "" : ", ") + name;
+  app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
+  app.add_option("--address", options.camera.address, "of a network interface of this computer")->capture_default_str();
+  app.add_option("--serial", options.camera.serial, "serial number")->capture_default_str();
+  app.add_option("--frames", options.frames, "drawn at most; 0.4 MB of memory each")
+      ->check(CLI::Range(2, 5000))
+      ->capture_default_str();
+  app.add_option("--truth", options.camera.truth_file,
+                 "file for slide [m], rotation [rad] and places [px] of each frame sent, as truth.csv of vibe_render");
+  app.add_option("--config", options.config, "file for the configuration of the scene, for the tracker");
+  app.add_option("--lost-ratio", options.camera.lost_ratio, "share of the packets that are not sent")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_option("--clock-ahead", options.camera.clock_ahead, "camera's clock less Unix time [s]")
+      ->check(CLI::Range(-1e9, 1e9))
+      ->capture_default_str();
+  app.add_option("--clock-drift", options.camera.clock_drift, "by which the camera's clock is fast, such as 2e-5")
+      ->check(CLI::Range(-1e-2, 1e-2))
+      ->capture_default_str();
+  app.add_option("--duration", options.duration, "time after which it ends [s]; 0: runs until it is stopped")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { shall_stop = true; });
+    serve(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << "vibe_fake_camera: " << error.what() << '\n';
+    return 2;
+  }
+}

@@ -1,0 +1,155 @@
+#include "vibe_vision/camera/fake_camera.hpp"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <fstream>
+#include <iomanip>
+#include <mutex>
+
+#include "camera/aravis_pointer.hpp"
+#include "camera/host_time.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr std::uint16_t kControlPort = 3956;  // GVCP
+constexpr guint32 kFirstFrame = 65401;        // of Aravis' simulated camera
+
+/// Aravis' simulated camera runs without a control port if it cannot have it, and nobody would notice.
+void requireFree(const std::string& address) {
+  sockaddr_in where{};
+  where.sin_family = AF_INET;
+  where.sin_port = htons(kControlPort);
+  const bool is_address = ::inet_pton(AF_INET, address.c_str(), &where.sin_addr) == 1;
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool is_free =
+      is_address && socket >= 0 && ::bind(socket, reinterpret_cast<const sockaddr*>(&where), sizeof where) == 0;
+  const int error = errno;
+  if (socket >= 0) ::close(socket);
+  if (is_free) return;
+  if (is_address && error == EADDRINUSE) {
+    throw Error("fake camera: another camera already serves at " + address + "; stop it, or choose another address");
+  }
+  throw Error("fake camera: " + address + " is no IPv4 address of this computer; choose one of ip address, such as " +
+              "127.0.0.1");
+}
+
+}  // namespace
+
+struct FakeCamera::Impl {
+  std::shared_ptr<const FrameRing> ring;
+  FakeCameraOptions options;
+  std::ofstream truth;
+  std::atomic<std::uint64_t> sent{0};
+  std::mutex mutex;  // of the clock
+  double clock_start = 0, clock_at_start = 0;
+  AravisPointer<ArvGvFakeCamera> server;  // last: its thread ends before the rest goes
+  ArvFakeCamera* camera = nullptr;
+
+  Impl(std::shared_ptr<const FrameRing> r, const FakeCameraOptions& o) : ring(std::move(r)), options(o) {
+    if (ring->frames.empty()) throw Error("fake camera: has no pictures to show");
+    requireFree(options.address);
+    if (!options.truth_file.empty()) openTruth();
+    clock_start = hostTime();
+    clock_at_start = clock_start + options.clock_ahead;
+    server.reset(arv_gv_fake_camera_new(options.address.c_str(), options.serial.c_str()));
+    if (!arv_gv_fake_camera_is_running(server.get())) {
+      throw Error("fake camera: no network interface has the address " + options.address);
+    }
+    g_object_set(server.get(), "gvsp-lost-ratio", options.lost_ratio, nullptr);
+    camera = arv_gv_fake_camera_get_fake_camera(server.get());
+    arv_fake_camera_write_register(camera, ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, static_cast<guint32>(ring->width));
+    arv_fake_camera_write_register(camera, ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, static_cast<guint32>(ring->height));
+    arv_fake_camera_write_register(camera, ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
+                                   static_cast<guint32>(1e6 / ring->rate));
+    arv_fake_camera_set_fill_pattern(camera, &Impl::onFill, this);
+  }
+
+  ~Impl() {
+    if (camera) arv_fake_camera_set_fill_pattern(camera, nullptr, nullptr);
+  }
+
+  void openTruth() {
+    truth.open(options.truth_file);
+    if (!truth) throw Error(options.truth_file + ": cannot be written; check the folder and its permissions");
+    truth << "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible\n" << std::setprecision(17);
+  }
+
+  guint32 value(guint64 address) const {
+    guint32 content = 0;
+    arv_fake_camera_read_register(camera, static_cast<guint32>(address), &content);
+    return content;
+  }
+
+  double deviceTime(double host) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return clock_at_start + (host - clock_start) * (1 + options.clock_drift);
+  }
+
+  static void onFill(ArvBuffer* buffer, void* self, guint32 exposure_us, guint32, ArvPixelFormat) {
+    static_cast<Impl*>(self)->fill(buffer, exposure_us * 1e-6);
+  }
+
+  void fill(ArvBuffer* buffer, double exposure) {
+    const std::uint64_t period = std::max<guint32>(value(ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US), 1);
+    const std::uint64_t k = static_cast<std::uint64_t>(hostTime() * 1e6) / period;
+    const double end = static_cast<double>(k * period) * 1e-6;
+    const double start = deviceTime(end) - exposure * (1 + options.clock_drift);
+    arv_buffer_set_timestamp(buffer, static_cast<guint64>(std::max(0.0, start) * 1e9));
+    const FrameRing::Turn turn = ring->turnOf(k);
+    copy(ring->frames[turn.index], buffer);
+    if (truth.is_open()) write(end - exposure / 2, turn);
+    ++sent;
+  }
+
+  void copy(const std::vector<std::uint8_t>& picture, ArvBuffer* buffer) const {
+    const auto width = static_cast<std::size_t>(arv_buffer_get_image_width(buffer));
+    const auto height = static_cast<std::size_t>(arv_buffer_get_image_height(buffer));
+    auto* to = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(buffer, nullptr)));
+    const std::size_t x = value(ARV_FAKE_CAMERA_REGISTER_X_OFFSET), y = value(ARV_FAKE_CAMERA_REGISTER_Y_OFFSET);
+    const auto sensor_width = static_cast<std::size_t>(ring->width),
+               sensor_height = static_cast<std::size_t>(ring->height);
+    for (std::size_t row = 0; row < height; ++row) {
+      const std::size_t count = x < sensor_width && y + row < sensor_height ? std::min(width, sensor_width - x) : 0;
+      if (count > 0) std::memcpy(to + row * width, &picture[(y + row) * sensor_width + x], count);
+      std::memset(to + row * width + count, 0, width - count);
+    }
+  }
+
+  void write(double stamp, const FrameRing::Turn& turn) {
+    for (std::size_t i = 0; i < ring->instruments.size(); ++i) {
+      const SyntheticTruth& t = ring->truth[turn.index][i];
+      truth << kFirstFrame + sent << ',' << stamp << ',' << ring->instruments[i] << ',' << t.slide << ',' << t.rotation
+            << ',' << t.along << ',' << t.lateral << ',' << t.pixel.x() << ',' << t.pixel.y() << ','
+            << (turn.is_backward ? -t.velocity : t.velocity) << ',' << t.visible << '\n';
+    }
+    truth.flush();  // complete whenever somebody looks
+  }
+};
+
+FakeCamera::FakeCamera(std::shared_ptr<const FrameRing> ring, const FakeCameraOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(ring), options)) {}
+
+FakeCamera::~FakeCamera() = default;
+
+std::uint64_t FakeCamera::sent() const {
+  return impl_->sent;
+}
+
+void FakeCamera::resetClock() {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  impl_->clock_start = hostTime();
+  impl_->clock_at_start = 0;
+}
+
+void FakeCamera::announceFormat(std::uint32_t code) {
+  arv_fake_camera_write_register(impl_->camera, ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, code);
+}
+
+}  // namespace vibe

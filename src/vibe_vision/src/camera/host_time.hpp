@@ -1,0 +1,21 @@
+#pragma once
+#include <chrono>
+#include <thread>
+
+namespace vibe {
+
+/// Unix time [s].
+inline double hostTime() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// Time that never jumps, from an arbitrary start [s].
+inline double steadyTime() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+inline void sleepFor(double duration) {
+  if (duration > 0) std::this_thread::sleep_for(std::chrono::duration<double>(duration));
+}
+
+}  // namespace vibe

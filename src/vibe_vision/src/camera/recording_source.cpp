@@ -1,0 +1,158 @@
+#include "camera/recording_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "camera/host_time.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kCountTolerance = 0.02;  // of the number of frames that a container of video tells
+
+void checkCount(const std::string& name, const FrameTable& table, std::size_t count) {
+  const auto rows = static_cast<double>(table.rows.size()), frames = static_cast<double>(count);
+  if (rows > 0 && (frames == 0 || std::abs(rows - frames) <= 1 + kCountTolerance * frames)) return;
+  throw Error(table.file + ": has " + std::to_string(table.rows.size()) + " rows, but " + name + " has " +
+              std::to_string(count) + " frames; it needs one row per frame, or remove it");
+}
+
+cv::Mat toGrey(const cv::Mat& picture) {
+  cv::Mat bytes = picture, grey;
+  if (picture.depth() == CV_16U) picture.convertTo(bytes, CV_8U, 1.0 / 256, -0.498);  // the upper 8 bits
+  if (bytes.channels() == 1) return bytes;
+  cv::cvtColor(bytes, grey, bytes.channels() == 4 ? cv::COLOR_BGRA2GRAY : cv::COLOR_BGR2GRAY);
+  return grey;
+}
+
+}  // namespace
+
+RecordingSource::RecordingSource(const std::string& name, std::unique_ptr<PictureReader> reader,
+                                 std::optional<FrameTable> table, const SourceOptions& options)
+    : name_(name), reader_(std::move(reader)), table_(std::move(table)), options_(options) {
+  if (table_) checkCount(name_, *table_, reader_->count());
+}
+
+ReadResult RecordingSource::read(Frame& frame, double timeout) {
+  if (started_ == 0) started_ = hostTime();
+  const double deadline = steadyTime() + timeout;
+  while (!has_pending_) {
+    const ReadResult result = prepare();
+    if (result != ReadResult::Frame) return result;
+  }
+  if (options_.paced) {
+    const double first = table_ ? table_->rows.front().stamp : started_;
+    const double due = started_ + (pending_.stamp - first) + pending_.exposure / 2;
+    sleepFor(std::min(due - hostTime(), deadline - steadyTime()));
+    if (hostTime() < due) return ReadResult::Timeout;
+  }
+  frame = pending_;
+  frame.arrival = hostTime();
+  pending_ = Frame();
+  has_pending_ = false;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++statistics_.frames;
+  return ReadResult::Frame;
+}
+
+/// Reads one picture. @return Frame if the recording goes on, even if this picture was of no use
+ReadResult RecordingSource::prepare() {
+  cv::Mat picture;
+  const PictureReader::Result result = reader_->next(picture);
+  if (result == PictureReader::Result::Unreadable) {
+    complain(reader_->complaint(), 1);
+    ++index_;
+    return ReadResult::Frame;
+  }
+  if (result == PictureReader::Result::End) {
+    if (!reader_->complaint().empty()) complain(name_ + " " + reader_->complaint(), 0);
+    return options_.loop && index_ > 0 && repeat() ? ReadResult::Frame : ReadResult::End;
+  }
+  if (table_ && index_ >= table_->rows.size()) {
+    complain(table_->file + ": has fewer rows than " + name_ + " has frames; it needs one row per frame", 1);
+    return ReadResult::End;
+  }
+  const FrameTable::Row row = rowOf(index_++);
+  if (accept(picture)) fill(picture, row);
+  return ReadResult::Frame;
+}
+
+bool RecordingSource::repeat() {
+  if (statistics().frames == 0) return false;
+  const double duration = rowOf(index_ - 1).stamp - rowOf(0).stamp;
+  const double period = index_ > 1 ? duration / static_cast<double>(index_ - 1) : 1 / options_.rate;
+  stamp_shift_ += duration + period;
+  sequence_shift_ = last_ + 1 - rowOf(0).sequence;
+  index_ = 0;
+  reader_->rewind();
+  return true;
+}
+
+FrameTable::Row RecordingSource::rowOf(std::size_t index) const {
+  if (table_) return table_->rows[std::min(index, table_->rows.size() - 1)];
+  const double start = options_.paced ? started_ : 0;
+  return {index, start + static_cast<double>(index) / options_.rate, options_.exposure};
+}
+
+bool RecordingSource::accept(const cv::Mat& picture) {
+  const bool has_depth = picture.depth() == CV_8U || picture.depth() == CV_16U;
+  if (!has_depth || (picture.channels() != 1 && picture.channels() != 3 && picture.channels() != 4)) {
+    complain(name_ + ": frame " + std::to_string(index_ - 1) + " is neither grey nor colour of 8 or 16 bits", 1);
+    return false;
+  }
+  if (width_ == 0) {
+    width_ = picture.cols;
+    height_ = picture.rows;
+  }
+  if (picture.cols == width_ && picture.rows == height_) return true;
+  complain(name_ + ": frame " + std::to_string(index_ - 1) + " has " + std::to_string(picture.cols) + " x " +
+               std::to_string(picture.rows) + " pixels, but the first has " + std::to_string(width_) + " x " +
+               std::to_string(height_) + "; it is left out",
+           1);
+  return false;
+}
+
+void RecordingSource::fill(const cv::Mat& picture, const FrameTable::Row& row) {
+  const std::shared_ptr<std::uint8_t> pixels =
+      pool_.acquire(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  toGrey(picture).copyTo(cv::Mat(height_, width_, CV_8U, pixels.get()));
+  Frame& frame = pending_;
+  frame.image = {pixels.get(), width_, height_, width_};
+  frame.owner = pixels;
+  frame.offset_x = options_.roi_x;
+  frame.offset_y = options_.roi_y;
+  frame.sensor_width = options_.roi_x + width_;
+  frame.sensor_height = options_.roi_y + height_;
+  frame.sequence = row.sequence + sequence_shift_;
+  frame.stamp = row.stamp + stamp_shift_;
+  frame.exposure = row.exposure;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (has_last_ && frame.sequence > last_ + 1 + thrown_away_) {
+    statistics_.lost += frame.sequence - last_ - 1 - thrown_away_;
+  }
+  thrown_away_ = 0;
+  has_last_ = true;
+  last_ = frame.sequence;
+  has_pending_ = true;
+}
+
+void RecordingSource::complain(const std::string& text, std::uint64_t unreadable) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  complaint_ = text;
+  statistics_.unreadable += unreadable;
+  thrown_away_ += unreadable;
+}
+
+SourceStatistics RecordingSource::statistics() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return statistics_;
+}
+
+std::string RecordingSource::status() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return complaint_.empty() ? name_ : complaint_;
+}
+
+}  // namespace vibe

@@ -1,0 +1,171 @@
+#include "camera/v4l2_source.hpp"
+
+#include <time.h>
+
+#include <cmath>
+
+#include "camera/host_time.hpp"
+#include "camera/v4l2_device.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kPlausible = 10;  // between a kernel stamp and its arrival [s]
+constexpr double kTooLate = 1e-3;  // by which the two clocks may be read at different moments [s]
+
+double clockTime(clockid_t clock) {
+  timespec now{};
+  ::clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::string lettersOf(int fourcc) {
+  std::string text;
+  for (int shift = 0; shift < 32; shift += 8) text += static_cast<char>(fourcc >> shift & 0x7f);
+  return text;
+}
+
+}  // namespace
+
+double unixFromMonotonic(double monotonic) {
+  return monotonic + clockTime(CLOCK_REALTIME) - clockTime(CLOCK_MONOTONIC);
+}
+
+PixelFormat v4l2Format(int fourcc) {
+  const std::string letters = lettersOf(fourcc);
+  if (letters == "GREY" || letters == "Y800") return PixelFormat::Mono8;
+  if (letters == "Y10 ") return PixelFormat::Mono10;
+  if (letters == "Y12 ") return PixelFormat::Mono12;
+  if (letters == "Y16 ") return PixelFormat::Mono16;
+  if (letters == "YUYV") return PixelFormat::YUYV;
+  if (letters == "UYVY") return PixelFormat::UYVY;
+  if (letters == "BGR3") return PixelFormat::BGR8;
+  if (letters == "RGB3") return PixelFormat::RGB8;
+  return PixelFormat{};
+}
+
+std::uint64_t V4l2Source::missedBetween(double before, double after, double period) {
+  if (before <= 0 || period <= 0 || after - before < 1.5 * period) return 0;
+  return static_cast<std::uint64_t>(std::lround((after - before) / period)) - 1;
+}
+
+V4l2Source::V4l2Source(const std::string& device, const SourceOptions& options)
+    : device_(device), options_(options), status_(device + ": not opened yet") {}
+
+ReadResult V4l2Source::read(Frame& frame, double timeout) {
+  if (!capture_.isOpened()) return connect(timeout);
+  cv::Mat picture;
+  if (!capture_.read(picture) || picture.empty()) {
+    const std::string obstacle = v4l2Obstacle(device_);
+    say(obstacle.empty() ? device_ + ": sends no frames; plug it out and in again" : obstacle);
+    capture_.release();
+    return ReadResult::Gone;
+  }
+  frame.arrival = hostTime();
+  if (!stamp(frame) || !convert(picture, frame)) return ReadResult::Timeout;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++statistics_.frames;
+  return ReadResult::Frame;
+}
+
+ReadResult V4l2Source::connect(double timeout) {
+  if (!retry_.wait(timeout)) return ReadResult::Gone;
+  const std::string obstacle = v4l2Obstacle(device_);
+  if (!obstacle.empty()) {
+    say(obstacle);
+    return ReadResult::Gone;
+  }
+  if (!capture_.open(device_, cv::CAP_V4L2)) {
+    say(device_ + ": cannot be opened by OpenCV; see which formats v4l2-ctl --list-formats tells");
+    return ReadResult::Gone;
+  }
+  configure();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (has_connected_) ++statistics_.reconnects;
+  has_connected_ = true;
+  last_stamp_ = 0;
+  return ReadResult::Timeout;
+}
+
+void V4l2Source::configure() {
+  for (const char* letters : {"GREY", "YUYV"}) {
+    const int fourcc = cv::VideoWriter::fourcc(letters[0], letters[1], letters[2], letters[3]);
+    if (capture_.set(cv::CAP_PROP_FOURCC, fourcc) && capture_.get(cv::CAP_PROP_FOURCC) == fourcc) break;
+  }
+  if (options_.roi_width > 0) capture_.set(cv::CAP_PROP_FRAME_WIDTH, options_.roi_width);
+  if (options_.roi_height > 0) capture_.set(cv::CAP_PROP_FRAME_HEIGHT, options_.roi_height);
+  capture_.set(cv::CAP_PROP_FPS, options_.rate);
+  capture_.set(cv::CAP_PROP_AUTO_EXPOSURE, 1);                   // V4L2_EXPOSURE_MANUAL
+  capture_.set(cv::CAP_PROP_EXPOSURE, options_.exposure * 1e4);  // V4L2_CID_EXPOSURE_ABSOLUTE has units of 100 us
+  if (options_.gain >= 0) capture_.set(cv::CAP_PROP_GAIN, options_.gain);
+  capture_.set(cv::CAP_PROP_BUFFERSIZE, 2);
+  const int fourcc = static_cast<int>(capture_.get(cv::CAP_PROP_FOURCC));
+  format_ = v4l2Format(fourcc);
+  capture_.set(cv::CAP_PROP_CONVERT_RGB, isReadable(format_) ? 0 : 1);  // OpenCV decodes the others, e.g. MJPG
+  const double rate = capture_.get(cv::CAP_PROP_FPS);
+  period_ = 1 / (rate > 0 ? rate : options_.rate);
+  say(device_ + ": " + lettersOf(fourcc) + " at " + std::to_string(static_cast<int>(std::lround(rate))) + " Hz");
+}
+
+bool V4l2Source::convert(const cv::Mat& picture, Frame& frame) {
+  const PixelFormat format = isReadable(format_) ? format_ : PixelFormat::BGR8;
+  // raw pictures of some formats come as one row of bytes
+  const bool is_flat = picture.rows == 1;
+  const int width = is_flat ? static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH)) : picture.cols;
+  const int height = is_flat ? static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT)) : picture.rows;
+  const std::size_t size = sizeOf(format, width, height);
+  if (size == 0 || !picture.isContinuous() || picture.total() * picture.elemSize() < size) {
+    throwAway(device_ + ": sends pictures that are smaller than " + nameOf(format) + " needs; choose another format");
+    return false;
+  }
+  const std::shared_ptr<std::uint8_t> grey =
+      pool_.acquire(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  toMono8(format, picture.data, width, height, grey.get());
+  frame.image = {grey.get(), width, height, width};
+  frame.owner = grey;
+  frame.offset_x = frame.offset_y = 0;
+  frame.sensor_width = width;
+  frame.sensor_height = height;
+  return true;
+}
+
+bool V4l2Source::stamp(Frame& frame) {
+  const double kernel = unixFromMonotonic(capture_.get(cv::CAP_PROP_POS_MSEC) * 1e-3);
+  if (kernel > frame.arrival + kTooLate || kernel < frame.arrival - kPlausible) {
+    throwAway(device_ + ": the driver gives no stamps; use another camera, since arrival tells nothing about exposure");
+    return false;
+  }
+  const bool is_start = options_.stamp_point == StampPoint::ExposureStart;
+  frame.stamp = kernel + (is_start ? 0.5 : -0.5) * options_.exposure;
+  frame.exposure = options_.exposure;
+  const std::uint64_t missed = missedBetween(last_stamp_, frame.stamp, period_);
+  sequence_ += 1 + missed;
+  frame.sequence = sequence_;
+  last_stamp_ = frame.stamp;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  statistics_.lost += missed;
+  return true;
+}
+
+void V4l2Source::throwAway(const std::string& reason) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status_ = reason;
+  ++statistics_.unreadable;
+}
+
+void V4l2Source::say(const std::string& text) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status_ = text;
+}
+
+SourceStatistics V4l2Source::statistics() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return statistics_;
+}
+
+std::string V4l2Source::status() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return status_;
+}
+
+}  // namespace vibe
