@@ -11,7 +11,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kSignificant = 2.576;  // standard deviations: 99 %
+constexpr double kSignificant = 4;  // standard deviations; errors of neighbouring corners are not independent
 constexpr int kGridColumns = 8, kGridRows = 6;
 // Below these a calibration is doubtful: experience with chessboards, design choice.
 constexpr std::size_t kEnoughViews = 8;
@@ -53,7 +53,7 @@ struct Fit {
 Fit fit(const std::vector<std::vector<cv::Point3f>>& objects, const std::vector<std::vector<cv::Point2f>>& images,
         cv::Size size, int flags) {
   Fit result;
-  const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 200, 1e-12);
+  const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 60, 1e-9);
   result.rms = cv::calibrateCamera(objects, images, size, result.matrix, result.distortion, result.rotations,
                                    result.translations, result.deviations, result.extrinsic_deviations, result.view_rms,
                                    flags, until);
@@ -93,6 +93,7 @@ double coverageOf(const std::vector<BoardView>& views, int width, int height) {
     for (const Eigen::Vector2d& corner : view.corners) {
       const int column = static_cast<int>((corner.x() + 0.5) / width * kGridColumns);
       const int row = static_cast<int>((corner.y() + 0.5) / height * kGridRows);
+      if (column < 0 || row < 0 || column >= kGridColumns || row >= kGridRows) continue;
       seen.insert(row * kGridColumns + column);
     }
   }
@@ -166,18 +167,6 @@ void check(const std::vector<BoardView>& views, const BoardSpec& board) {
 }
 
 }  // namespace
-
-std::optional<std::vector<Eigen::Vector2d>> findBoard(const ImageView& image, const BoardSpec& board) {
-  // OpenCV does not write to it
-  const cv::Mat grey(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
-                     static_cast<std::size_t>(image.stride));
-  std::vector<cv::Point2f> found;
-  const int flags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY;
-  if (!cv::findChessboardCornersSB(grey, cv::Size(board.columns, board.rows), found, flags)) return std::nullopt;
-  std::vector<Eigen::Vector2d> corners;
-  for (const cv::Point2f& point : found) corners.emplace_back(point.x, point.y);
-  return corners;
-}
 
 LensCalibration calibrateLens(const std::vector<BoardView>& views, const BoardSpec& board, int width, int height) {
   check(views, board);

@@ -139,15 +139,41 @@ struct MarkerFinder::Impl {
     best.pixels_per_metre = scale;
   }
 
-  MarkerSighting refine(const cv::Mat& image, MarkerSighting best) const {
-    for (double step = 1; step > 0.3; step /= 2) {
+  /// The whole image at half the resolution.
+  MarkerSighting searchRoughly(const cv::Mat& image) const {
+    cv::Mat half;
+    cv::resize(image, half, {}, 0.5, 0.5, cv::INTER_AREA);
+    std::vector<double> half_scales = scales();
+    for (double& scale : half_scales) scale /= 2;
+    MarkerSighting best = searchAt(half, angles(), half_scales);
+    best.pixel = 2 * best.pixel + Eigen::Vector2d::Constant(0.5);  // of pixel centres
+    best.pixels_per_metre *= 2;
+    return best;
+  }
+
+  cv::Rect neighbourhood(const MarkerSighting& sighting, const cv::Mat& image) const {
+    const cv::Mat shape = picture(sighting.pixels_per_metre);
+    const int reach = static_cast<int>(0.55 * std::hypot(shape.cols, shape.rows)) + 8;
+    const int x = static_cast<int>(std::lround(sighting.pixel.x())),
+              y = static_cast<int>(std::lround(sighting.pixel.y()));
+    return cv::Rect(x - reach, y - reach, 2 * reach + 1, 2 * reach + 1) & cv::Rect(0, 0, image.cols, image.rows);
+  }
+
+  MarkerSighting refine(const cv::Mat& whole, const MarkerSighting& rough) const {
+    const cv::Rect region = neighbourhood(rough, whole);
+    MarkerSighting best = rough;
+    best.score = 0;
+    if (region.empty()) return best;
+    const cv::Mat image = whole(region);
+    for (double step = 1; step > 0.2; step /= 2) {
       const double angle = std::atan2(best.direction.y(), best.direction.x());
-      const double scale = best.pixels_per_metre, by = 1 + 0.03 * step, turn_by = turns() ? 0.07 * step : 0;
+      const double scale = best.pixels_per_metre, by = 1 + 0.03 * step, turn_by = 0.07 * step;
       std::vector<double> near{angle};
       if (turns()) near = {angle - turn_by, angle, angle + turn_by};
       const MarkerSighting better = searchAt(image, near, {scale / by, scale, scale * by});
       if (better.score > best.score) best = better;
     }
+    best.pixel += Eigen::Vector2d(region.x, region.y);
     return best;
   }
 };
@@ -165,7 +191,7 @@ std::optional<MarkerSighting> MarkerFinder::find(const ImageView& image) {
   // OpenCV does not write to it
   const cv::Mat grey(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
                      static_cast<std::size_t>(image.stride));
-  MarkerSighting best = impl_->searchAt(grey, impl_->angles(), impl_->scales());
+  MarkerSighting best = impl_->searchRoughly(grey);
   if (best.score < 0.5 * kMinScore) return std::nullopt;
   best = impl_->refine(grey, best);
   if (best.score < kMinScore) return std::nullopt;

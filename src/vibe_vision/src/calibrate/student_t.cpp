@@ -1,11 +1,13 @@
 #include "calibrate/student_t.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vibe {
 
 // With t = sqrt(n) tan(a) the density becomes cos^(n - 1)(a), up to a constant.
 double studentTail(double t, int freedom) {
+  const double reach = std::min(M_PI / 2, 9 / std::sqrt(freedom));  // beyond, nothing is left
   const auto integral = [freedom](double from, double to) {
     constexpr int kSteps = 400;  // even: Simpson
     const double h = (to - from) / kSteps;
@@ -17,7 +19,7 @@ double studentTail(double t, int freedom) {
     return sum * h / 3;
   };
   const double angle = std::atan(std::abs(t) / std::sqrt(freedom));
-  return integral(angle, M_PI / 2) / integral(0, M_PI / 2);
+  return angle < reach ? integral(angle, reach) / integral(0, reach) : 0;
 }
 
 }  // namespace vibe
