@@ -46,8 +46,6 @@ struct Fit {
 
   double deviation(int parameter) const { return deviations.at<double>(parameter); }
   double coefficient(int i) const { return distortion.at<double>(i); }
-  /// @param i  of k1, k2, p1, p2, k3; in `deviations` they follow fx, fy, cx, cy
-  bool isSignificant(int i) const { return std::abs(coefficient(i)) > kSignificant * deviation(4 + i); }
 };
 
 Fit fit(const std::vector<std::vector<cv::Point3f>>& objects, const std::vector<std::vector<cv::Point2f>>& images,
@@ -60,24 +58,26 @@ Fit fit(const std::vector<std::vector<cv::Point3f>>& objects, const std::vector<
   return result;
 }
 
-/// Leaves out coefficients that the images do not show.
+/// Adds coefficients one after the other as long as they make the residual smaller than chance would (F test).
 Fit fitSignificant(const std::vector<std::vector<cv::Point3f>>& objects,
                    const std::vector<std::vector<cv::Point2f>>& images, cv::Size size, std::array<bool, 5>& estimated) {
-  int flags = 0;
-  estimated = {true, true, true, true, true};
+  int flags = cv::CALIB_FIX_K1 | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST;
+  const auto measurements = static_cast<double>(2 * objects.size() * objects[0].size());
+  const double freedom = measurements - 9 - 6 * static_cast<double>(objects.size());
+  estimated = {};
   Fit result = fit(objects, images, size, flags);
-  const auto leaveOut = [&](std::initializer_list<int> coefficients, int flag) {
-    for (const int i : coefficients) {
-      if (result.isSignificant(i)) return;
-    }
-    flags |= flag;
-    for (const int i : coefficients) estimated[static_cast<std::size_t>(i)] = false;
-    result = fit(objects, images, size, flags);
+  const auto tryToAdd = [&](std::initializer_list<int> coefficients, int flag) {
+    Fit other = fit(objects, images, size, flags & ~flag);
+    const double gain = (result.rms * result.rms - other.rms * other.rms) / (other.rms * other.rms) * freedom;
+    if (gain < kSignificant * kSignificant * static_cast<double>(coefficients.size())) return;
+    flags &= ~flag;
+    for (const int i : coefficients) estimated[static_cast<std::size_t>(i)] = true;
+    result = std::move(other);
   };
-  leaveOut({4}, cv::CALIB_FIX_K3);
-  if (!estimated[4]) leaveOut({1}, cv::CALIB_FIX_K2);
-  leaveOut({2, 3}, cv::CALIB_ZERO_TANGENT_DIST);
-  if (!estimated[1]) leaveOut({0}, cv::CALIB_FIX_K1);
+  tryToAdd({0}, cv::CALIB_FIX_K1);
+  tryToAdd({2, 3}, cv::CALIB_ZERO_TANGENT_DIST);
+  tryToAdd({1}, cv::CALIB_FIX_K2);
+  if (estimated[1]) tryToAdd({4}, cv::CALIB_FIX_K3);
   return result;
 }
 

@@ -38,8 +38,8 @@ struct LensCalibration {
   std::vector<std::string> warnings;  ///< sentences with their remedies
 };
 
-/// Fits pinhole and distortion (Zhang 2000; OpenCV's calibrateCamera). Of the distortion only coefficients
-/// of at least 4 standard deviations are kept: k3, k2, the tangential part and k1 are left out in this order.
+/// Fits pinhole and distortion (Zhang 2000; OpenCV's calibrateCamera). Of the distortion only what makes the residual
+/// clearly smaller is estimated (F test at 4 standard deviations): k1, the tangential part, k2, k3 in this order.
 /// @throws Error for fewer than 3 views, or a view with another number of corners
 LensCalibration calibrateLens(const std::vector<BoardView>& views, const BoardSpec& board, int width, int height);
 
