@@ -35,7 +35,8 @@ void PixelKernel::alongRow(const float* samples, int count, float* pixels) const
     float sums[kSamples] = {};
     for (int k = 0; k < taps; k += kSamples)
       for (int s = 0; s < kSamples; ++s) sums[s] += weights_[static_cast<std::size_t>(k + s)] * from[k + s];
-    pixels[i] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    pixels[i] = 0;
+    for (const float sum : sums) pixels[i] += sum;
   }
 }
 

@@ -7,7 +7,7 @@ namespace vibe {
 /// on samples that are means over 1 / kSamples of a pixel each.
 class PixelKernel {
  public:
-  static constexpr int kSamples = 4;  ///< per pixel and direction
+  static constexpr int kSamples = 2;  ///< per pixel and direction
 
   /// @param sigma  of the point spread function [px]
   explicit PixelKernel(double sigma);

@@ -4,19 +4,6 @@
 #include <cmath>
 
 namespace vibe {
-namespace {
-
-/// Side of an aperture on the plane, from the area that one pixel sees of it.
-double apertureOnPlane(const ViewRay& ray, const MarkerFrame& frame, double aperture) {
-  // Area per solid pixel: depth^2 / (fx fy) / cos of the angle to the normal, with lengths of rays of z = 1.
-  const double distance = frame.away.dot(frame.centre) / frame.away.dot(ray.centre());
-  const double tilted = std::abs(frame.away.dot(ray.centre()));
-  const double area = distance * distance * ray.perPixel().x() * ray.perPixel().y() / tilted;
-  return aperture * std::sqrt(area) / frame.scale;
-}
-
-}  // namespace
-
 PlaneMap::PlaneMap(const CameraModel& camera, const MarkerFrame& frame, const Eigen::Vector2d& reference,
                    double aperture) {
   const ViewRay ray(camera, reference);
@@ -24,7 +11,12 @@ PlaneMap::PlaneMap(const CameraModel& camera, const MarkerFrame& frame, const Ei
   along_ = ray.part(frame.along * depth - frame.away * (frame.along.dot(frame.centre) / frame.scale));
   across_ = ray.part(frame.across * depth - frame.away * (frame.across.dot(frame.centre) / frame.scale));
   depth_ = ray.part(frame.away);
-  aperture_ = static_cast<float>(apertureOnPlane(ray, frame, aperture));
+  const float half = static_cast<float>(aperture) / 2;
+  step_x_[0] = along(half, 0) - along(-half, 0);
+  step_x_[1] = across(half, 0) - across(-half, 0);
+  step_y_[0] = along(0, half) - along(0, -half);
+  step_y_[1] = across(0, half) - across(0, -half);
+  aperture_ = std::sqrt(std::abs(step_x_[0] * step_y_[1] - step_x_[1] * step_y_[0]));
 }
 
 void RingSurface::row(const float* x, const float* y, int count, float* coverage, float* white) const {
@@ -35,8 +27,9 @@ void RingSurface::row(const float* x, const float* y, int count, float* coverage
   for (int i = 0; i < count; ++i) {
     const float u = map_.along(x[i], y[i]), v = map_.across(x[i], y[i]);
     coverage[i] = edgeShare(half - std::abs(u), inverse) * edgeShare(half - std::abs(v), inverse);
-    const float radius = std::sqrt(u * u + v * v);
-    white[i] = 1 - edgeShare(outer - radius, inverse) + edgeShare(inner - radius, inverse);
+    const float radius = std::sqrt(u * u + v * v), outward = 1 / (radius + 1e-9F);
+    const ApertureSpread spread = map_.spread(u * outward, v * outward);
+    white[i] = 1 - positiveShare(outer - radius, spread) + positiveShare(inner - radius, spread);
   }
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include "synthetic/edge_share.hpp"
 #include "synthetic/surface.hpp"
 #include "synthetic/view_ray.hpp"
 
@@ -12,10 +13,15 @@ class PlaneMap {
   float along(float x, float y) const { return along_.at(x, y) / depth_.at(x, y); }
   float across(float x, float y) const { return across_.at(x, y) / depth_.at(x, y); }
   float aperture() const { return aperture_; }  ///< side on the print, mean of both directions [m]
+  /// Change of a function over an aperture, from its derivatives along and across.
+  ApertureSpread spread(float along, float across) const {
+    return apertureSpread(along * step_x_[0] + across * step_x_[1], along * step_y_[0] + across * step_y_[1]);
+  }
 
  private:
   RayPart along_, across_, depth_;
   float aperture_;
+  float step_x_[2], step_y_[2];  // along and across, from side to side of an aperture [m]
 };
 
 /// A black ring on a white square.

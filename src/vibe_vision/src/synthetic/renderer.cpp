@@ -41,7 +41,10 @@ std::vector<float> blurBackground(const Background& background, const PixelKerne
 
 struct Renderer::Impl {
   explicit Impl(const SyntheticScene& scene_in)
-      : scene(scene_in), tiles(scene_in), background(blurBackground(tiles.background(), tiles.kernel())) {}
+      : scene(scene_in), tiles(scene_in), background(blurBackground(tiles.background(), tiles.kernel())) {
+    for (int y = 0; scene.degradation.vignetting != 0 && y < scene.camera.height; ++y)
+      for (int x = 0; x < scene.camera.width; ++x) light.push_back(static_cast<float>(vignetteAt(scene, x, y)));
+  }
 
   std::vector<PixelRect> piecesOf(const Exposure& exposure) const;
   std::vector<float> expected(std::uint64_t index) const;
@@ -50,6 +53,7 @@ struct Renderer::Impl {
   SyntheticScene scene;
   TileRenderer tiles;
   std::vector<float> background;  // blurred, at full light
+  std::vector<float> light;       // share that the lens lets through; empty: all
 };
 
 /// Where the image is not just background.
@@ -71,26 +75,16 @@ std::vector<PixelRect> Renderer::Impl::piecesOf(const Exposure& exposure) const 
 }
 
 void Renderer::Impl::vignette(std::vector<float>& image) const {
-  const double share = scene.degradation.vignetting;
-  if (share == 0) return;
-  const double x0 = (scene.camera.width - 1) / 2.0, y0 = (scene.camera.height - 1) / 2.0;
-  const auto fall = static_cast<float>(share / (x0 * x0 + y0 * y0));
-  for (int y = 0; y < scene.camera.height; ++y) {
-    float* row = image.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.camera.width);
-    const auto dy = static_cast<float>(y - y0);
-    for (int x = 0; x < scene.camera.width; ++x) {
-      const float dx = static_cast<float>(x) - static_cast<float>(x0);
-      row[x] *= 1 - fall * (dx * dx + dy * dy);
-    }
-  }
+  if (scene.degradation.vignetting == 0) return;
+  for (std::size_t i = 0; i < image.size(); ++i) image[i] *= light[i];
 }
 
 std::vector<float> Renderer::Impl::expected(std::uint64_t index) const {
   const double middle = static_cast<double>(index) / scene.rate, half = scene.degradation.exposure / 2;
   const Exposure exposure{middle - half, middle + half};
-  const auto light = static_cast<float>(meanLight(scene.degradation, exposure.begin, exposure.end));
+  const auto mean = static_cast<float>(meanLight(scene.degradation, exposure.begin, exposure.end));
   std::vector<float> image(background.size());
-  std::transform(background.begin(), background.end(), image.begin(), [&](float v) { return v * light; });
+  std::transform(background.begin(), background.end(), image.begin(), [&](float v) { return v * mean; });
   for (const PixelRect& piece : piecesOf(exposure)) tiles.render(piece, exposure, image.data());
   vignette(image);
   return image;

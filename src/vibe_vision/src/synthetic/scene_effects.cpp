@@ -60,6 +60,12 @@ double meanLight(const Degradation& degradation, double begin, double end) {
   return (1 + flicker) * (1 - degradation.drift * kDriftTime * triangle(middle, kDriftTime));
 }
 
+double vignetteAt(const SyntheticScene& scene, double x, double y) {
+  const double x0 = (scene.camera.width - 1) / 2.0, y0 = (scene.camera.height - 1) / 2.0;
+  const double dx = x - x0, dy = y - y0;
+  return 1 - scene.degradation.vignetting * (dx * dx + dy * dy) / (x0 * x0 + y0 * y0);
+}
+
 Occluder::Occluder(const SyntheticScene& scene)
     : present_(scene.degradation.occluder),
       width_(scene.camera.width),

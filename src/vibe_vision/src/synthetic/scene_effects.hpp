@@ -8,6 +8,9 @@ namespace vibe {
 /// Mean light from `begin` to `end` [s], relative to full light.
 double meanLight(const Degradation& degradation, double begin, double end);
 
+/// Share of the light that the lens lets through to a pixel.
+double vignetteAt(const SyntheticScene& scene, double x, double y);
+
 /// A bar that sweeps to and fro across the image, in front of everything.
 class Occluder {
  public:

@@ -24,12 +24,24 @@ inline float arcSine(float s) {
   return s < 0 ? -angle : angle;
 }
 
-/// Integral from 0 of the periodic function that is 1 where fract(t) < duty.
+/// Twice integrated from 0: the periodic function that is 1 where fract(t) < duty.
 inline float dutyIntegral(float t, float duty) {
-  constexpr float kAboveZero = 1024;  // conversion to int rounds towards 0: keep it positive
+  constexpr float kAboveZero = 64;  // conversion to int rounds towards 0: keep it positive
   const auto turns = static_cast<float>(static_cast<int>(t + kAboveZero)) - kAboveZero;
-  const float rest = t - turns;
-  return turns * duty + (rest < duty ? rest : duty);
+  const float rest = t - turns, whole = turns * duty;
+  const float within = rest < duty ? rest * rest / 2 : duty * (rest - duty / 2);
+  return whole * (turns - 1) / 2 + whole * (1 - duty / 2) + whole * rest + within;
+}
+
+/// Mean of that function over a square aperture.
+inline float dutyMean(float phase, const ApertureSpread& spread, float duty) {
+  constexpr float kAboveZero = 64;
+  const float t = phase - (static_cast<float>(static_cast<int>(phase + kAboveZero)) - kAboveZero);
+  const float outer = (spread.wide + spread.narrow) / 2, inner = (spread.wide - spread.narrow) / 2;
+  const float sum = dutyIntegral(t + outer, duty) - dutyIntegral(t + inner, duty) - dutyIntegral(t - inner, duty) +
+                    dutyIntegral(t - outer, duty);
+  const float mean = sum / (spread.wide * spread.narrow);
+  return mean < 0 ? 0.0F : (mean > 1 ? 1.0F : mean);  // rounding
 }
 
 /// Part of the aperture [u - width / 2, u + width / 2] in [begin, end].
@@ -63,17 +75,19 @@ SleeveSurface::SleeveSurface(const SleeveDesign& design, const CameraModel& came
   for (const Bar& bar : design.bars) bars_.push_back({static_cast<float>(bar.begin), static_cast<float>(bar.end)});
 
   const double per_pixel = std::sqrt(ray.perPixel().x() * ray.perPixel().y()) * distance / -facing.dot(ray.centre());
+  const Eigen::Vector2d picture =
+      projectIdeal(camera, frame.centre + 1e-3 * frame.along) - projectIdeal(camera, frame.centre - 1e-3 * frame.along);
+  direction_x_ = static_cast<float>(picture.x() / picture.norm());
+  direction_y_ = static_cast<float>(picture.y() / picture.norm());
   const double obliquity = std::abs(frame.away.z());  // cosine of the slant against the image plane
   aperture_.across = static_cast<float>(aperture * per_pixel * frame.away.dot(-facing));
   aperture_.along = static_cast<float>(aperture * per_pixel / obliquity);
 }
 
-float SleeveSurface::helixBlack(float u, float phi, float along, float phase_width) const {
+float SleeveSurface::helixBlack(float u, float phi, float along, const ApertureSpread& phase) const {
   const auto begin = static_cast<float>(design_.helix_begin), end = static_cast<float>(design_.helix_end);
   const float zone = overlap(u, along / 2, 1 / along, begin, end);
-  const float phase = u * inverse_pitch_ - (phi - rotation_) / kTurn + duty_ / 2;
-  const float high = dutyIntegral(phase + phase_width / 2, duty_), low = dutyIntegral(phase - phase_width / 2, duty_);
-  return zone * (high - low) / phase_width;
+  return zone * dutyMean(u * inverse_pitch_ - (phi - rotation_) / kTurn + duty_ / 2, phase, duty_);
 }
 
 void SleeveSurface::row(const float* x, const float* y, int count, float* coverage, float* white) const {
@@ -96,11 +110,10 @@ void SleeveSurface::row(const float* x, const float* y, int count, float* covera
     const float steep = cosine < 0.05F ? 0.05F : cosine;
     const float bend = q * sine / steep * aperture_.across;  // change of u from one side of the aperture to the other
     const float along = std::sqrt(aperture_.along * aperture_.along + bend * bend);
-    const float along_phase = aperture_.along * inverse_pitch_;
-    const float across_phase = bend * inverse_pitch_ - aperture_.across * inverse_radius / (steep * kTurn);
-    const float phase_width = std::sqrt(along_phase * along_phase + across_phase * across_phase);
+    const ApertureSpread phase = spread(aperture_.along * inverse_pitch_,
+                                        bend * inverse_pitch_ - aperture_.across * inverse_radius / (steep * kTurn));
 
-    float black = helixBlack(u, phi, along, phase_width);
+    float black = helixBlack(u, phi, along, phase);
     for (const Edges& bar : bars_) black += overlap(u, along / 2, 1 / along, bar.begin, bar.end);
     white[i] = 1 - black;
     coverage[i] = edgeShare((radius_ - std::abs(offset)) / aperture_.across, 1) *

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "synthetic/edge_share.hpp"
 #include "synthetic/surface.hpp"
 #include "synthetic/view_ray.hpp"
 
@@ -21,7 +22,11 @@ class SleeveSurface : public Surface {
     float begin, end;  // of a bar [m]
   };
 
-  float helixBlack(float u, float phi, float along, float phase_width) const;
+  /// Change of a function over an aperture, from the changes along and across the rod's picture.
+  ApertureSpread spread(float along, float across) const {
+    return apertureSpread(along * direction_x_ - across * direction_y_, along * direction_y_ + across * direction_x_);
+  }
+  float helixBlack(float u, float phi, float along, const ApertureSpread& phase) const;
 
   SleeveDesign design_;
   RayPart along_, across_, depth_, start_;
@@ -29,6 +34,7 @@ class SleeveSurface : public Surface {
   std::vector<Edges> bars_;
   float radius_, half_length_, distance_, rotation_;
   float inverse_pitch_, duty_;
+  float direction_x_, direction_y_;  // of the rod in the image
 };
 
 }  // namespace vibe

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synthetic/view_ray.hpp"
+#include "synthetic/edge_share.hpp"
 
 namespace vibe {
 namespace {

@@ -40,6 +40,12 @@ class TileRenderer {
   const Background& background() const { return background_; }
   const Occluder& occluder() const { return occluder_; }
   const SyntheticInstrument& object(std::size_t i) const { return objects_[i]; }
+  void setObject(std::size_t i, const SyntheticInstrument& object) { objects_[i] = object; }
+  /// Of all markers, at full light [DN].
+  void setInk(double black, double white) {
+    scene_.black = black;
+    scene_.white = white;
+  }
 
   /// Mean grey values over the exposure, without vignetting, into image (rows of camera.width).
   void render(const PixelRect& rect, const Exposure& exposure, float* image) const;

@@ -31,10 +31,4 @@ class ViewRay {
   Eigen::Vector3d centre_;
 };
 
-/// Share of an aperture of width `width` that lies on the positive side of an edge at distance `distance`.
-inline float edgeShare(float distance, float inverse_width) {
-  const float share = 0.5F + distance * inverse_width;
-  return share < 0.0F ? 0.0F : (share > 1.0F ? 1.0F : share);
-}
-
 }  // namespace vibe
