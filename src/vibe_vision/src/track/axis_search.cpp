@@ -6,47 +6,53 @@
 namespace vibe {
 namespace {
 
-constexpr double kMotionStep = 4;        // between profiles [px]
-constexpr int kMotions = 13;             // profiles
+constexpr double kMotionStep = 4;  // between templates [px]
+constexpr int kMotions = 9;
+constexpr double kFirstMotion = 1;  // [px]
+constexpr double kScales[] = {0.93, 1, 1.075};
 constexpr double kMinCorrelation = 0.4;  // of a candidate
-constexpr double kMinSeen = 0.5;         // share of a profile's bins that must be seen
+constexpr double kMaxTurn = 1.7;         // what the rotation adds, relative to what it can add: noise and other things
 constexpr int kMinDistance = 4;          // between candidates [px]
+
+std::vector<SearchTemplate> makeTemplates(const MarkerPattern& pattern) {
+  std::vector<SearchTemplate> templates;
+  for (int i = 0; i < kMotions; ++i)
+    for (double scale : kScales) templates.emplace_back(pattern, kFirstMotion + i * kMotionStep, scale);
+  return templates;
+}
+
+int reachOf(const std::vector<SearchTemplate>& templates) {
+  int reach = 0;
+  for (const SearchTemplate& t : templates) reach = std::max(reach, t.half());
+  return reach;
+}
 
 }  // namespace
 
 AxisSearch::AxisSearch(const MarkerPattern& pattern, double begin, double end)
-    : half_width_(pattern.searchHalfWidth()), profiles_(kMotions) {
-  for (int i = 0; i < kMotions; ++i) {
-    pattern.searchProfile(i * kMotionStep, profiles_[i]);
-    reach_ = std::max(reach_, static_cast<int>(profiles_[i].size() / 2));
-  }
-  first_ = std::floor(begin) - reach_;
-  const auto bins = static_cast<std::size_t>(std::ceil(end - first_) + reach_ + 2);
-  band_.sum.resize(bins);
-  band_.count.resize(bins);
-  mean_.resize(bins);
-  scores_.resize(bins);
+    : half_width_(pattern.searchHalfWidth()),
+      templates_(makeTemplates(pattern)),
+      samples_(static_cast<std::size_t>(std::ceil(end - begin)) + 2 * static_cast<std::size_t>(reachOf(templates_)) +
+               8) {
+  reach_ = reachOf(templates_);
+  first_ = std::floor(begin) - reach_ - 1;
+  band_.sum.resize(samples_.size());
+  band_.count.resize(samples_.size());
+  best_.resize(samples_.size());
 }
 
 const AxisSearch::Result& AxisSearch::run(const AxisMap& map, const Frame& frame, double begin, double end,
                                           double max_motion, double min_contrast) {
   result_ = {};
   readBand(map, frame, begin - reach_, end + reach_);
-  const int bins = static_cast<int>(mean_.size());
-  const int from = std::clamp(static_cast<int>(std::floor(begin - first_)), 0, bins);
-  const int to = std::clamp(static_cast<int>(std::ceil(end - first_)) + 1, from, bins);
-  const int motions = std::clamp(static_cast<int>(std::ceil(max_motion / kMotionStep)) + 1, 1, kMotions);
+  const auto bins = static_cast<int>(samples_.size());
+  const int from = std::clamp(static_cast<int>(std::floor(begin - first_)), reach_, bins - reach_);
+  const int to = std::clamp(static_cast<int>(std::ceil(end - first_)) + 1, from, bins - reach_);
+  for (int i = from; i < to; ++i) best_[i] = bestAt(static_cast<std::size_t>(i), max_motion, min_contrast);
   for (int i = from; i < to; ++i) {
-    scores_[i] = {};
-    for (int k = 0; k < motions; ++k) {
-      const double c = correlate(profiles_[k], i, min_contrast);
-      if (c > scores_[i].correlation) scores_[i] = {c, k};
-    }
-  }
-  for (int i = from; i < to; ++i) {
-    const bool peak = (i == from || scores_[i].correlation > scores_[i - 1].correlation) &&
-                      (i + 1 == to || scores_[i].correlation >= scores_[i + 1].correlation);
-    if (peak && scores_[i].correlation >= kMinCorrelation) keep(i, scores_[i]);
+    const bool peak =
+        (i == from || best_[i].score > best_[i - 1].score) && (i + 1 == to || best_[i].score >= best_[i + 1].score);
+    if (peak && best_[i].score >= kMinCorrelation) keep(best_[i]);
   }
   return result_;
 }
@@ -54,35 +60,32 @@ const AxisSearch::Result& AxisSearch::run(const AxisMap& map, const Frame& frame
 void AxisSearch::readBand(const AxisMap& map, const Frame& frame, double begin, double end) {
   band_.first = first_;
   map.readBand(frame, begin, end, half_width_, band_);
-  for (std::size_t i = 0; i < mean_.size(); ++i) {
-    mean_[i] = band_.count[i] > 0 ? band_.sum[i] / band_.count[i] : -1;
-    if (band_.count[i] <= 0) continue;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const float mean = band_.count[i] > 0 ? band_.sum[i] / band_.count[i] : -1;
+    samples_.set(i, mean);
+    if (mean < 0) continue;
     result_.in_view = true;
-    result_.darkest = std::min<double>(result_.darkest, mean_[i]);
-    result_.brightest = std::max<double>(result_.brightest, mean_[i]);
+    result_.darkest = std::min<double>(result_.darkest, mean);
+    result_.brightest = std::max<double>(result_.brightest, mean);
   }
   result_.saturated = band_.pixels > 0 ? static_cast<double>(band_.saturated) / band_.pixels : 0;
 }
 
-/// Correlation coefficient of the seen bins; 0 if there is too little contrast or it has the wrong sign.
-double AxisSearch::correlate(const std::vector<float>& profile, int place, double min_contrast) const {
-  const int half = static_cast<int>(profile.size() / 2), bins = static_cast<int>(mean_.size());
-  float n = 0, f = 0, t = 0, ff = 0, tt = 0, ft = 0;
-  for (int i = std::max(-half, -place); i <= std::min(half, bins - 1 - place); ++i) {
-    const float a = mean_[place + i], b = profile[static_cast<std::size_t>(i + half)];
-    if (a < 0) continue;
-    n += 1, f += a, t += b, ff += a * a, tt += b * b, ft += a * b;
+AxisSearch::Candidate AxisSearch::bestAt(std::size_t place, double max_motion, double min_contrast) const {
+  Candidate best;
+  best.along = first_ + static_cast<double>(place);
+  for (const SearchTemplate& t : templates_) {
+    if (t.motion() > max_motion + kMotionStep) break;
+    const SearchTemplate::Match match = t.match(samples_, place);
+    if (match.correlation <= best.score || match.contrast < 0.4 * min_contrast || match.turn > kMaxTurn) continue;
+    best.score = match.correlation, best.motion = t.motion(), best.scale = t.scale();
+    best.rotation = match.rotation, best.shows_rotation = match.turn > 0;
   }
-  if (n < kMinSeen * static_cast<double>(profile.size())) return 0;
-  const double spread = static_cast<double>(ff) - static_cast<double>(f) * f / n;
-  const double shape = static_cast<double>(tt) - static_cast<double>(t) * t / n;
-  const double common = static_cast<double>(ft) - static_cast<double>(f) * t / n;
-  if (spread <= 0 || shape <= 0 || common < 0.4 * min_contrast * shape) return 0;
-  return common / std::sqrt(spread * shape);
+  return best;
 }
 
-void AxisSearch::keep(int place, const Score& score) {
-  Candidate next{first_ + place, score.motion * kMotionStep, score.correlation};
+void AxisSearch::keep(const Candidate& candidate) {
+  Candidate next = candidate;
   for (int i = 0; i < result_.count; ++i) {  // one of two neighbours stays
     Candidate& other = result_.candidates[i];
     if (std::abs(other.along - next.along) >= kMinDistance) continue;

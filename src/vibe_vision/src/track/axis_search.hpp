@@ -3,19 +3,22 @@
 #include <vector>
 
 #include "track/axis_map.hpp"
-#include "vibe_vision/track/marker_pattern.hpp"
+#include "track/search_template.hpp"
 
 namespace vibe {
 
 /// Finds places along an axis that look like a marker: correlation of the mean grey value across a narrow band with the
-/// marker's own, at the calibrated scale, for several speeds.
+/// marker's own, for several speeds and sizes and any rotation.
 class AxisSearch {
  public:
   static constexpr int kCandidates = 4;
   struct Candidate {
-    double along = 0;   ///< [px]
-    double motion = 0;  ///< during the exposure [px]
-    double score = 0;   ///< correlation coefficient
+    double along = 0;     ///< [px]
+    double motion = 0;    ///< during the exposure [px]
+    double scale = 1;     ///< relative to the calibrated one
+    double rotation = 0;  ///< [rad]
+    bool shows_rotation = false;
+    double score = 0;  ///< correlation coefficient
   };
   struct Result {
     std::array<Candidate, kCandidates> candidates;  ///< best first
@@ -35,21 +38,17 @@ class AxisSearch {
                     double min_contrast);
 
  private:
-  struct Score {
-    double correlation = 0;
-    int motion = 0;
-  };
   void readBand(const AxisMap& map, const Frame& frame, double begin, double end);
-  double correlate(const std::vector<float>& profile, int place, double min_contrast) const;
-  void keep(int place, const Score& score);
+  Candidate bestAt(std::size_t place, double max_motion, double min_contrast) const;
+  void keep(const Candidate& candidate);
 
   double first_ = 0;  ///< place of bin 0 along the axis [px]
   int reach_ = 0;     ///< half length of a profile
   double half_width_ = 0;
-  std::vector<std::vector<float>> profiles_;  ///< by motion, kMotionStep apart
+  std::vector<SearchTemplate> templates_;
   AxisProfile band_;
-  std::vector<float> mean_;  ///< of a bin; negative: not seen
-  std::vector<Score> scores_;
+  AxisSamples samples_;
+  std::vector<Candidate> best_;  ///< by place
   Result result_;
 };
 

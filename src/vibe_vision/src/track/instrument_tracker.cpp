@@ -13,6 +13,7 @@ constexpr double kMaxGap = 0.5;        // after which the motion is forgotten [s
 constexpr int kForget = 60;            // lost frames after which size, tilt and blur are forgotten
 constexpr int kJumpsToBelieve = 3;     // frames that agree on a place that cannot be reached
 constexpr double kGoodLook = 0.6;      // share of the marker that must be seen to learn size, tilt and blur from it
+constexpr double kScaleStep = 0.05;    // the search knows the size no better
 constexpr double kMargin = 3;          // around the range of the search [px]
 constexpr double kFilterFloor = 1e-6;  // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -165,8 +166,12 @@ MarkerFit InstrumentTracker::tryCandidate(const Frame& frame, const Prediction& 
   const double fastest = config_.motion.max_speed * frame.exposure * config_.axis.pixels_per_metre;
   const bool known_rotation =
       prediction.known && rotation_.started() && rotation_.predict(slide_.time() + prediction.dt).deviation() < 0.2;
-  return fitter_.acquire(map_, frame, startAt(slide, prediction), slow_.prior(slide), candidate.motion, fastest,
-                         known_rotation);
+  FitVector start = startAt(slide, prediction);
+  const double size = std::log(candidate.scale);
+  if (std::abs(size - start[kLogScale]) > kScaleStep) start[kLogScale] = size;
+  if (candidate.shows_rotation && !known_rotation) start[kRotation] = candidate.rotation;
+  return fitter_.acquire(map_, frame, start, slow_.prior(slide), candidate.motion, fastest,
+                         known_rotation || candidate.shows_rotation);
 }
 
 /// The instrument cannot be faster than it is; but if several frames agree on where it is now, somebody moved it.

@@ -165,8 +165,9 @@ double RingPattern::searchHalfWidth() const {
 }
 
 /// Chords of the two discs at the middle of the band; the blur of the optics does not matter here.
-void RingPattern::searchProfile(double motion, std::vector<float>& profile) const {
-  const auto half = static_cast<int>(std::ceil(std::min(half_side_ - 2, outer_ + 4)));
+void RingPattern::searchProfile(double motion, double scale, std::vector<float>& profile) const {
+  const double inner = inner_ * scale, outer = outer_ * scale;
+  const auto half = static_cast<int>(std::ceil(std::min(half_side_ * scale - 2, outer + 4)));
   constexpr int kRows = 8, kShifts = 9;
   const double travel = std::min(std::abs(motion), half_side_ / 2);
   profile.assign(static_cast<std::size_t>(2 * half + 1), 0);
@@ -176,7 +177,7 @@ void RingPattern::searchProfile(double motion, std::vector<float>& profile) cons
       const double v = (row + 0.5) / kRows * searchHalfWidth();
       for (int k = 0; k < kShifts; ++k) {
         const double u = i + (travel + 1) * ((k + 0.5) / kShifts - 0.5), r = std::hypot(u, v);
-        white += r < inner_ || r > outer_ ? 1 : 0;
+        white += r < inner || r > outer ? 1 : 0;
       }
     }
     profile[static_cast<std::size_t>(i + half)] = static_cast<float>(white / (kRows * kShifts));

@@ -15,7 +15,7 @@ class RingPattern : public MarkerPattern {
   void prepare(const MarkerPose& pose, double motion) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
   double searchHalfWidth() const override;
-  void searchProfile(double motion, std::vector<float>& profile) const override;
+  void searchProfile(double motion, double scale, std::vector<float>& profile) const override;
 
  private:
   /// The table's place and its value and derivatives there, for each pixel of a part of the block.

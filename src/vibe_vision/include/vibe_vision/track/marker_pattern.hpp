@@ -80,9 +80,16 @@ class MarkerPattern {
   virtual void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const;
 
   /// For the search along the axis: mean reflectance over |lateral| <= searchHalfWidth() at steps of 1 px along the
-  /// axis, the middle one at the marker's centre, for any rotation; of odd length. No allocation.
+  /// axis, the middle one at the marker's centre, for a mean rotation; of odd length.
   virtual double searchHalfWidth() const = 0;  ///< [px]
-  virtual void searchProfile(double motion, std::vector<float>& profile) const = 0;
+  virtual void searchProfile(double motion, double scale, std::vector<float>& profile) const = 0;
+  /// What the rotation adds to that: cos(rotation) * cosine + sin(rotation) * sine, as long as the profile; empty for a
+  /// marker that does not show it.
+  virtual void searchTurns(double /*motion*/, double /*scale*/, std::vector<float>& cosine,
+                           std::vector<float>& sine) const {
+    cosine.clear();
+    sine.clear();
+  }
   /// Rotations to try when nothing predicts it [rad].
   virtual std::vector<double> rotationGuesses() const { return {0}; }
 };
@@ -92,6 +99,7 @@ class MarkerPattern {
 struct MarkerView {
   double focal_length = 1e9;   ///< CameraModel::fx [px]; large: without perspective
   double principal_along = 0;  ///< of the camera's principal point, relative to SlideAxis::origin [px]
+  double principal_lateral = 0;
 };
 MarkerView markerView(const CameraModel& camera, const SlideAxis& axis);
 

@@ -1,0 +1,84 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace vibe {
+
+/// Black from `begin` to `end` [px].
+struct Interval {
+  double begin = 0, end = 0;
+};
+
+/// Black intervals on a line, or once in every period of it, blurred by Gaussians of many variances: tables of the
+/// blackness, its integral along the line and its derivatives. The mean of the blackness over a motion is a difference
+/// of two integrals, so that tables serve every motion.
+class BlurredLine {
+ public:
+  /// At one place: integral of the blackness from the left end (of a periodic line: less its mean), blackness, slope,
+  /// second derivative.
+  struct Entry {
+    float integral, value, slope, bend;
+  };
+  static constexpr float kMaxVariance = 25;  ///< [px^2]
+
+  /// @param period  0: none
+  /// @param min_variance  the smallest one that is asked for [px^2]
+  /// @param pixel_variance  part of the variance that is the area of a pixel, uniform and not Gaussian [px^2]
+  BlurredLine(const std::vector<Interval>& black, double period, double min_variance, double pixel_variance);
+
+  float mean() const { return mean_; }  ///< blackness of a periodic line
+
+  Entry at(float x, float variance) const {
+    const Level level = levelOf(variance);
+    const float place = placeOf(x);
+    const int i = static_cast<int>(place + 0.5F);
+    const Entry& e = entries_[level.first + static_cast<std::size_t>(i)];
+    const float d = (place - static_cast<float>(i)) / kPerPixel, dv = variance - level.variance;
+    const float s = 0.5F * (dv + d * d);  // heat equation: the derivative by the variance is half the second by x
+    return {e.integral + d * (e.value - mean_) + s * e.slope + d * (s + dv) * e.bend / 3, e.value + d * e.slope + s * e.bend,
+            e.slope + d * e.bend, e.bend};
+  }
+
+ private:
+  struct Level {
+    std::size_t first;  ///< entry
+    float variance;
+  };
+  static constexpr float kPerPixel = 8;
+  static constexpr float kAboveZero = 4096;  // conversion to int rounds towards 0: keep it positive
+  static constexpr int kShift = 20;  // bits of a float below the three highest of the mantissa: 8 levels per octave
+
+  static std::int32_t stepOf(float variance) {
+    std::int32_t bits;
+    std::memcpy(&bits, &variance, sizeof bits);
+    return (bits + (1 << (kShift - 1))) >> kShift;
+  }
+  static float varianceOf(std::int32_t step) {
+    const std::int32_t bits = step << kShift;
+    float variance;
+    std::memcpy(&variance, &bits, sizeof bits);
+    return variance;
+  }
+  Level levelOf(float variance) const {
+    std::int32_t step = stepOf(variance);
+    step = step < first_step_ ? first_step_ : (step > last_step_ ? last_step_ : step);
+    return {static_cast<std::size_t>(step - first_step_) * size_, varianceOf(step)};
+  }
+  float placeOf(float x) const {
+    float place = x - begin_;
+    if (period_ > 0)
+      place -= period_ * (static_cast<float>(static_cast<int>(place * inverse_period_ + kAboveZero)) - kAboveZero);
+    place *= kPerPixel;
+    return place < 0 ? 0 : (place > last_ ? last_ : place);
+  }
+  Entry entryAt(const std::vector<Interval>& black, double x, double variance, double pixel_variance) const;
+
+  float begin_ = 0, period_ = 0, inverse_period_ = 0, last_ = 0, mean_ = 0;
+  std::size_t size_ = 0;  ///< entries of a level
+  std::int32_t first_step_ = 0, last_step_ = 0;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace vibe

@@ -1,0 +1,94 @@
+#include "track/cut_stripe.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+constexpr float kReach = 3.4F;  // standard deviations
+
+// Midpoint rule over the blur across the axis, in standard deviations: the integrand has kinks.
+constexpr std::size_t kNodes = 9;
+constexpr float kSpacing = 0.62F;
+constexpr float kSpread = kSpacing * (kNodes / 2);
+struct Node {
+  float place, weight;
+};
+
+std::array<Node, kNodes> makeNodes() {
+  std::array<Node, kNodes> nodes{};
+  double sum = 0;
+  for (std::size_t i = 0; i < kNodes; ++i) {
+    nodes[i].place = (static_cast<float>(i) - (kNodes - 1) / 2) * kSpacing;
+    nodes[i].weight = std::exp(-nodes[i].place * nodes[i].place / 2);
+    sum += nodes[i].weight;
+  }
+  for (Node& node : nodes) node.weight /= static_cast<float>(sum);
+  return nodes;
+}
+
+}  // namespace
+
+CutStripe::CutStripe(double period, double black, const BlurredLine& line)
+    : line_(line),
+      period_(static_cast<float>(period)),
+      half_black_(static_cast<float>(black / 2)),
+      mean_(static_cast<float>(black / period)) {}
+
+/// Of a cut at this phase, within half a period of a black part's centre, the last edge of the stripe before it.
+float CutStripe::edgeBefore(float phase, bool black) const {
+  if (black) return -half_black_ - phase;
+  return (phase < 0 ? half_black_ - period_ : half_black_) - phase;
+}
+
+CutStripe::Entry CutStripe::at(float y, float phase, float variance, float cut_variance, float full_variance) const {
+  const float deviation = std::sqrt(variance), reach = kReach * deviation;
+  if (y < -reach) {
+    const BlurredLine::Entry e = line_.at(phase + y, full_variance);
+    return {e.integral + mean_ * y, e.value, e.slope, e.value - mean_};
+  }
+  const BlurredLine::Entry whole = line_.at(phase, cut_variance);  // up to the cut
+  Entry result{whole.integral, 0, 0, whole.value - mean_};
+  if (y > reach) return result;
+  const Entry rest = nearCut(y, phase, deviation, std::sqrt(cut_variance));
+  result.integral -= rest.integral;
+  result.value = rest.value;
+  result.slope = rest.slope;
+  result.by_shift -= rest.by_shift;
+  return result;
+}
+
+/// What the blur along the axis takes away from the integral up to the cut. With B black at the cut and an edge of the
+/// stripe at z < 0, that is B I(-y) + (1 - 2 B) I(z - y), where I is the integral of a blurred step.
+CutStripe::Entry CutStripe::nearCut(float y, float phase, float deviation, float cut_deviation) const {
+  static const std::array<Node, kNodes> nodes = makeNodes();
+  const NormalTable& normal = NormalTable::instance();
+  const float inverse = 1 / deviation;
+  const NormalTable::Entry cut = normal.at(-y * inverse);
+  const float wrapped = phase - period_ * std::floor(phase / period_ + 0.5F);
+  const float spread = kSpread * cut_deviation;
+  const bool is_black = std::abs(wrapped) < half_black_;
+  const float last = edgeBefore(wrapped, is_black);
+  if (last + spread < y - kReach * deviation && std::abs(std::abs(wrapped) - half_black_) > spread) {
+    if (!is_black) return {0, 0, 0, 0};
+    return {deviation * cut.integral, cut.value, -inverse * cut.density, 0};
+  }
+  Entry sum{};
+  for (const Node& node : nodes) {
+    float p = wrapped + node.place * cut_deviation;
+    if (p > period_ / 2) p -= period_;
+    if (p < -period_ / 2) p += period_;
+    const bool black = std::abs(p) < half_black_;
+    const float z = edgeBefore(p, black);
+    const NormalTable::Entry edge = normal.at((z - y) * inverse);
+    const float b = black ? 1.0F : 0.0F, c = node.weight * (1 - 2 * b);
+    sum.integral += deviation * (node.weight * b * cut.integral + c * edge.integral);
+    sum.value += node.weight * b * cut.value + c * edge.value;
+    sum.slope -= inverse * (node.weight * b * cut.density + c * edge.density);
+    sum.by_shift -= c * edge.value;
+  }
+  return sum;
+}
+
+}  // namespace vibe

@@ -1,0 +1,33 @@
+#pragma once
+#include "track/blurred_line.hpp"
+#include "track/normal_table.hpp"
+
+namespace vibe {
+
+/// A periodic stripe that stops at a straight cut across the axis, seen along one line parallel to the axis and blurred
+/// in both directions. The two kinds of edges are not at right angles; where they meet, the picture is the mean over
+/// the blur across the axis of pictures along it.
+class CutStripe {
+ public:
+  /// @param period, black  of the stripe along the axis; one black part is centred on 0 [px]
+  CutStripe(double period, double black, const BlurredLine& line);
+
+  /// Integral of the blackness along the axis, blackness, its slope along the axis and the integral's derivative by a
+  /// shift of the stripe against the cut.
+  struct Entry {
+    float integral, value, slope, by_shift;
+  };
+  /// @param y  place relative to the cut: the stripe is where y < 0 [px]
+  /// @param phase  place of the cut in the stripe, from the centre of a black part [px]
+  /// @param variance  of the blur along the axis, cut_variance: of phase, full_variance: of phase + y [px^2]
+  Entry at(float y, float phase, float variance, float cut_variance, float full_variance) const;
+
+ private:
+  float edgeBefore(float phase, bool black) const;
+  Entry nearCut(float y, float phase, float deviation, float cut_deviation) const;
+
+  const BlurredLine& line_;
+  float period_, half_black_, mean_;
+};
+
+}  // namespace vibe

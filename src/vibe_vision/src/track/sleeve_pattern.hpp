@@ -1,0 +1,48 @@
+#pragma once
+#include "track/blurred_line.hpp"
+#include "track/cut_stripe.hpp"
+#include "vibe_vision/track/marker_pattern.hpp"
+
+namespace vibe {
+
+/// A printed cylinder seen by a pinhole camera. A pixel looks at one place of the print, (u, phi); around it, the print
+/// is a picture of straight edges whose slope against the axis depends on the row, so that the blur in both directions
+/// is a blur along the axis with a variance that grows with the slope. What is left are two tables along a line: bars,
+/// and one period of the stripe, which rotation shifts. Only the ends of the stripe need more; see CutStripe.
+class SleevePattern : public MarkerPattern {
+ public:
+  SleevePattern(const SleeveDesign& design, double pixels_per_metre, const MarkerView& view);
+
+  std::array<bool, kPoseParameters> observes() const override;
+  Eigen::Vector2d window(const MarkerPose& pose, double motion) const override;
+  Eigen::Vector2d maxWindow() const override;
+  void prepare(const MarkerPose& pose, double motion) override;
+  void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
+  double searchHalfWidth() const override;
+  void searchProfile(double motion, double scale, std::vector<float>& profile) const override;
+  void searchTurns(double motion, double scale, std::vector<float>& cosine, std::vector<float>& sine) const override;
+  std::vector<double> rotationGuesses() const override;
+
+ private:
+  struct View;
+  struct Part;
+  struct Blackness;
+  View viewOf(const MarkerPose& pose) const;
+  void place(const View& view, const PixelBlock& pixels, std::size_t begin, Part& part) const;
+  void look(Part& part) const;
+  void chain(const View& view, std::size_t begin, const Part& part, PatternValues& values) const;
+  Blackness barsAt(const Part& part, std::size_t i) const;
+  Blackness stripeAt(const Part& part, std::size_t i) const;
+  Blackness cutStripeAt(const Part& part, std::size_t i, float cut) const;
+  static void add(const Blackness& other, float sign, Blackness& sum);
+
+  MarkerView view_;
+  double radius_, half_length_;  ///< [px]
+  float helix_begin_, helix_end_, pitch_;
+  float bars_left_, bars_right_;  ///< no bar between them: the helix is there [px]
+  BlurredLine bars_, stripe_;
+  CutStripe cut_;
+  double motion_ = 0;  ///< of prepare() [px]
+};
+
+}  // namespace vibe
