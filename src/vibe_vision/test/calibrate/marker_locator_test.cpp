@@ -39,7 +39,7 @@ std::vector<Frame> imagesOf(const SyntheticScene& scene, std::uint64_t count) {
 }
 
 AxisFit calibrate(const SyntheticScene& scene, std::uint64_t count) {
-  const LocatedMarkers located = locateMarkers(nominalConfig(scene), 0, imagesOf(scene, count), {6e3, 14e3});
+  const LocatedMarkers located = locateMarkers(nominalConfig(scene), 0, imagesOf(scene, count), {8e3, 11e3});
   std::vector<AxisStop> stops;
   for (std::size_t i = 0; i < located.markers.size(); ++i) {
     EXPECT_TRUE(located.markers[i].found) << i << " " << located.markers[i].problem;
@@ -83,14 +83,14 @@ INSTANTIATE_TEST_SUITE_P(Axis, LocatedStops,
 
 TEST(MarkerLocator, ASleeveSaysWherePositiveSlideIs) {
   const SyntheticScene scene = stoppedScene(0, 2.5, 0, false);
-  const LocatedMarkers located = locateMarkers(nominalConfig(scene), 0, imagesOf(scene, 5), {8e3, 11e3});
+  const LocatedMarkers located = locateMarkers(nominalConfig(scene), 0, imagesOf(scene, 3), {9e3, 10e3});
   EXPECT_GT(located.direction.normalized().dot(scene.instruments[0].nominal.axis.direction), 0.99);
 }
 
 TEST(MarkerLocator, TheSizeOfTheMarkerGivesTheScale) {
   for (const std::size_t instrument : {0U, 1U}) {
     const SyntheticScene scene = stoppedScene(instrument, 0.2, 0, false);
-    const LocatedMarkers located = locateMarkers(nominalConfig(scene), 0, imagesOf(scene, 6), {6e3, 14e3});
+    const LocatedMarkers located = locateMarkers(nominalConfig(scene), 0, imagesOf(scene, 6), {8e3, 11e3});
     std::vector<MotionSample> samples;
     for (const LocatedMarker& marker : located.markers) samples.push_back({marker.pixel, marker.pixels_per_metre});
     const MotionFit fit = fitMotion(samples, {0.002, 0.05}, located.direction);
