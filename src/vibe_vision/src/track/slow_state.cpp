@@ -11,8 +11,11 @@ namespace {
 constexpr double kScalePrior = 0.08, kScaleDrift = 2e-4;
 constexpr double kTiltPrior = 0.15, kTiltDrift = 5e-4;  // [rad]
 constexpr double kAspectPrior = 0.04, kAspectDrift = 2e-4;
-constexpr double kBlurPrior = 0.5, kBlurDrift = 2e-3;     // [px]
-constexpr double kSlantPrior = 0.2, kSlantDrift = 5e-4;   // [rad]
+constexpr double kBlurPrior = 0.5, kBlurDrift = 2e-3;  // [px]
+// Of a rod, slant and slide, and lateral and rotation, look nearly the same in one picture; guides hold the rod, so
+// that all pictures together tell them apart.
+constexpr double kSlantPrior = 0.2, kSlantDrift = 2e-5;   // [rad]
+constexpr double kLateralDrift = 3e-3;                    // [px]
 constexpr double kSlopePrior = 2e-3, kSlopeDrift = 4e-6;  // of the light [1/px], and per pixel of travel
 
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitParameters, kFitParameters>;
@@ -33,6 +36,7 @@ SlowState::SlowState(const VisionConfig& config, const InstrumentConfig& instrum
     initial_deviation_[k] = deviation;
     drift_[k] = drift;
   };
+  if (shown[kRotation]) add(kLateral, lateral_tolerance_, kLateralDrift);
   add(kLogScale, kScalePrior, kScaleDrift);
   add(kTilt, kTiltPrior, kTiltDrift);
   add(kLogAspect, kAspectPrior, kAspectDrift);
@@ -77,7 +81,8 @@ FitPrior SlowState::prior(double slide) const {
   const Square inverse = covariance.llt().solve(Square::Identity(count_, count_));
   for (int i = 0; i < count_; ++i)
     for (int j = 0; j < count_; ++j) prior.information(index_[i], index_[j]) = inverse(i, j);
-  prior.information(kLateral, kLateral) = 1 / (lateral_tolerance_ * lateral_tolerance_);
+  if (initial_deviation_[kLateral] == 0)
+    prior.information(kLateral, kLateral) = 1 / (lateral_tolerance_ * lateral_tolerance_);
   return prior;
 }
 

@@ -21,7 +21,7 @@ struct MotionPrior {
   double max_gap;       ///< without a measurement after which the filter starts anew [s], > 0
 };
 // Design choices: docs/vision.md, "Prediction".
-constexpr MotionPrior kSlidePrior{{40, 0.02}, 0.3, 10, 0.25};       ///< an instrument moved by hand [m]
+constexpr MotionPrior kSlidePrior{{80, 0.1}, 0.3, 10, 0.25};       ///< an instrument moved by hand [m]
 constexpr MotionPrior kRotationPrior{{3000, 0.02}, 20, 800, 0.25};  ///< a rod turned by hand [rad]
 
 /// Kalman filter with constant acceleration, disturbed by jerk (Bar-Shalom, Li, Kirubarajan, "Estimation with

@@ -1,0 +1,112 @@
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <opencv2/core/utility.hpp>
+
+#include "bench_cell.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace {
+
+struct Options {
+  vibe::BenchOptions bench;
+  std::vector<std::string> scenes;
+  std::vector<double> markers, exposures;
+  double speed = 0.5;
+  std::vector<int> sensor;
+  std::string csv, trace;
+  bool quick = false, list = false;
+};
+
+void addOptions(CLI::App& app, Options& options) {
+  app.add_option("--scene", options.scenes, "only these scenes; --list shows them");
+  app.add_option("--marker", options.markers, "sizes of the markers [px] instead of 40")->check(CLI::Range(12, 80));
+  app.add_option("--exposure", options.exposures, "instead of the scene's [ms]")->check(CLI::Range(0.01, 6.5));
+  app.add_option("--speed", options.speed, "peak speed [m/s]")->check(CLI::Range(0.01, 0.75));
+  app.add_option("--sensor", options.sensor, "width and height [px]")->expected(2);
+  app.add_option("--frames", options.bench.frames, "frames per seed")->check(CLI::Range(2, 100000));
+  app.add_option("--seed", options.bench.seeds, "seeds of motion, noise and background; default: 1 2 3");
+  app.add_option("--visible", options.bench.limits.visible, "share of a marker from which on it should be found")
+      ->check(CLI::Range(0.25, 1.0));
+  app.add_option("--method", options.bench.methods, "only these methods")
+      ->check(CLI::IsMember({"ring", "sleeve", "centroid", "aruco", "apriltag", "apriltag_unrefined"}));
+  app.add_flag("--quick", options.quick, "60 frames of one seed of every scene; no sizes, exposures and sensors");
+  app.add_flag("--list", options.list, "print the names of the scenes and end");
+  app.add_option("--csv", options.csv, "write all numbers to this file");
+  app.add_option("--trace", options.trace, "write every frame of every method to this file");
+}
+
+/// What the options name, or without any everything that docs/vision.md shows.
+std::vector<vibe::Cell> cellsOf(const Options& options) {
+  std::vector<vibe::Cell> cells;
+  vibe::Cell cell;
+  cell.speed = options.speed;
+  if (!options.sensor.empty()) cell.width = options.sensor[0], cell.height = options.sensor[1];
+  const bool chosen = !options.scenes.empty() || !options.markers.empty() || !options.exposures.empty();
+  std::vector<std::string> scenes = options.scenes;
+  if (scenes.empty() && chosen) scenes = {"moving"};
+  if (scenes.empty()) scenes = vibe::sceneNames();
+  for (const std::string& scene : scenes)
+    for (const double marker : options.markers.empty() ? std::vector<double>{40} : options.markers)
+      for (const double exposure : options.exposures.empty() ? std::vector<double>{0} : options.exposures) {
+        cell.scene = scene;
+        cell.marker = marker;
+        cell.exposure = exposure > 0 ? std::optional<double>(1e-3 * exposure) : std::nullopt;
+        cells.push_back(cell);
+      }
+  if (chosen || options.quick) return cells;
+  const std::vector<vibe::Cell> more = vibe::furtherCells();
+  cells.insert(cells.end(), more.begin(), more.end());
+  return cells;
+}
+
+std::ofstream openOutput(const std::string& option, const std::string& path) {
+  std::ofstream file;
+  if (path.empty()) return file;
+  file.open(path);
+  if (!file) throw vibe::Error(option + ": cannot write to '" + path + "'; name a file in a folder that exists");
+  return file;
+}
+
+int run(const Options& options) {
+  if (options.list) {
+    for (const std::string& name : vibe::sceneNames()) std::cout << name << "\n";
+    for (const std::string& name : vibe::harderSceneNames()) std::cout << name << "\n";
+    return 0;
+  }
+  std::ofstream csv = openOutput("--csv", options.csv), trace = openOutput("--trace", options.trace);
+  vibe::BenchOptions bench = options.bench;
+  if (trace.is_open()) {
+    bench.trace = &trace;
+    vibe::writeTraceHeader(trace);
+  }
+  if (!vibe::pinThread()) std::cerr << "The thread cannot be pinned to one processor: times may vary more.\n";
+  vibe::printHeader(std::cout, options.bench.limits);
+  std::vector<vibe::CellResult> results;
+  for (const vibe::Cell& cell : cellsOf(options)) {
+    results.push_back(vibe::runCell(cell, bench));
+    vibe::printCell(std::cout, results.back());
+  }
+  if (csv.is_open()) vibe::writeCsv(csv, results);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(0);
+  CLI::App app{
+      "Accuracy, robustness and processor time of the trackers beside ArUco, AprilTag and a centroid, on the "
+      "same rendered frames with known truth."};
+  Options options;
+  addOptions(app, options);
+  CLI11_PARSE(app, argc, argv);
+  if (options.quick && app.count("--frames") == 0) options.bench.frames = 60;
+  if (options.quick && app.count("--seed") == 0) options.bench.seeds = {1};
+  try {
+    return run(options);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 2;
+  }
+}
