@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kMinScore = 0.6;  // correlation of what is taken for the marker
+constexpr double kMinScore = 0.6;        // correlation of what is taken for the marker
+constexpr double kSureScore = 0.8;       // nothing else needs to be tried
+constexpr std::size_t kCandidates = 12;  // places that are looked at closely
+constexpr double kSamePlace = 10;        // [px]
 constexpr double kScaleStep = 1.06;
 constexpr double kAngleStep = 10 * M_PI / 180;
 constexpr double kSeenWidth = 0.7;  // share of a sleeve's width that is seen without much foreshortening
@@ -61,7 +65,7 @@ double parabolaTop(double left, double middle, double right) {
 
 struct MarkerFinder::Impl {
   MarkerDesign design;
-  MarkerSearch search;
+  MarkerSearch range;
   std::optional<double> last_scale, last_angle;
 
   bool turns() const { return std::holds_alternative<SleeveDesign>(design); }
@@ -73,7 +77,7 @@ struct MarkerFinder::Impl {
   std::vector<double> scales() const {
     if (last_scale) return {*last_scale / 1.03, *last_scale, *last_scale * 1.03};
     std::vector<double> scales;
-    for (double scale = search.lowest_scale; scale < search.highest_scale * kScaleStep; scale *= kScaleStep)
+    for (double scale = range.lowest_scale; scale < range.highest_scale * kScaleStep; scale *= kScaleStep)
       scales.push_back(scale);
     return scales;
   }
@@ -87,20 +91,23 @@ struct MarkerFinder::Impl {
     return angles;
   }
 
-  MarkerSighting searchAt(const cv::Mat& image, const std::vector<double>& some_angles,
-                          const std::vector<double>& some_scales) const {
+  /// The best place for each angle and scale, the best of all first.
+  std::vector<MarkerSighting> searchAt(const cv::Mat& image, const std::vector<double>& some_angles,
+                                       const std::vector<double>& some_scales) const {
     std::vector<cv::Mat> pictures;
     for (const double scale : some_scales) pictures.push_back(picture(scale));
-    MarkerSighting best;
+    std::vector<MarkerSighting> places;
     for (const double angle : some_angles) {
       cv::Matx23d to_turned;
       const cv::Mat turned = turn(image, angle, to_turned);
       for (std::size_t i = 0; i < pictures.size(); ++i) {
         if (pictures[i].cols > turned.cols || pictures[i].rows > turned.rows) continue;
-        correlate(turned, pictures[i], to_turned, angle, some_scales[i], best);
+        places.push_back(correlate(turned, pictures[i], to_turned, angle, some_scales[i]));
       }
     }
-    return best;
+    std::sort(places.begin(), places.end(),
+              [](const MarkerSighting& a, const MarkerSighting& b) { return a.score > b.score; });
+    return places;
   }
 
   /// The image turned about its centre by -angle, so that u lies to the right.
@@ -118,14 +125,15 @@ struct MarkerFinder::Impl {
     return turned;
   }
 
-  static void correlate(const cv::Mat& turned, const cv::Mat& picture, const cv::Matx23d& to_turned, double angle,
-                        double scale, MarkerSighting& best) {
+  static MarkerSighting correlate(const cv::Mat& turned, const cv::Mat& picture, const cv::Matx23d& to_turned,
+                                  double angle, double scale) {
     cv::Mat map;
     cv::matchTemplate(turned, picture, map, cv::TM_CCOEFF_NORMED);
     cv::Point at;
     double score = 0;
     cv::minMaxLoc(map, nullptr, &score, nullptr, &at);
-    if (!(score > best.score) || score > 1.001) return;
+    MarkerSighting best;
+    if (!(score > 0) || score > 1.001) return best;
     double x = at.x, y = at.y;
     if (at.x > 0 && at.x < map.cols - 1)
       x += parabolaTop(map.at<float>(at.y, at.x - 1), score, map.at<float>(at.y, at.x + 1));
@@ -137,17 +145,36 @@ struct MarkerFinder::Impl {
     best.pixel = {to_turned(0, 0) * x + to_turned(1, 0) * y, to_turned(0, 1) * x + to_turned(1, 1) * y};
     best.direction = {std::cos(angle), std::sin(angle)};
     best.pixels_per_metre = scale;
+    return best;
   }
 
-  /// The whole image at half the resolution.
-  MarkerSighting searchRoughly(const cv::Mat& image) const {
+  /// The whole image at half the resolution: places that may be the marker, the best first.
+  std::vector<MarkerSighting> searchRoughly(const cv::Mat& image) const {
     cv::Mat half;
     cv::resize(image, half, {}, 0.5, 0.5, cv::INTER_AREA);
     std::vector<double> half_scales = scales();
     for (double& scale : half_scales) scale /= 2;
-    MarkerSighting best = searchAt(half, angles(), half_scales);
-    best.pixel = 2 * best.pixel + Eigen::Vector2d::Constant(0.5);  // of pixel centres
-    best.pixels_per_metre *= 2;
+    std::vector<MarkerSighting> distinct;
+    for (MarkerSighting& place : searchAt(half, angles(), half_scales)) {
+      place.pixel = 2 * place.pixel + Eigen::Vector2d::Constant(0.5);  // of pixel centres
+      place.pixels_per_metre *= 2;
+      const auto same = [&place](const MarkerSighting& other) {
+        return (other.pixel - place.pixel).norm() < kSamePlace && other.direction.dot(place.direction) > 0;
+      };
+      if (distinct.size() < kCandidates && std::none_of(distinct.begin(), distinct.end(), same))
+        distinct.push_back(place);
+    }
+    return distinct;
+  }
+
+  std::optional<MarkerSighting> search(const cv::Mat& image) const {
+    MarkerSighting best;
+    for (const MarkerSighting& place : searchRoughly(image)) {
+      const MarkerSighting refined = refine(image, place);
+      if (refined.score > best.score) best = refined;
+      if (best.score > kSureScore) break;
+    }
+    if (best.score < kMinScore) return std::nullopt;
     return best;
   }
 
@@ -170,8 +197,8 @@ struct MarkerFinder::Impl {
       const double scale = best.pixels_per_metre, by = 1 + 0.03 * step, turn_by = 0.07 * step;
       std::vector<double> near{angle};
       if (turns()) near = {angle - turn_by, angle, angle + turn_by};
-      const MarkerSighting better = searchAt(image, near, {scale / by, scale, scale * by});
-      if (better.score > best.score) best = better;
+      const std::vector<MarkerSighting> places = searchAt(image, near, {scale / by, scale, scale * by});
+      if (!places.empty() && places.front().score > best.score) best = places.front();
     }
     best.pixel += Eigen::Vector2d(region.x, region.y);
     return best;
@@ -191,12 +218,15 @@ std::optional<MarkerSighting> MarkerFinder::find(const ImageView& image) {
   // OpenCV does not write to it
   const cv::Mat grey(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.data),
                      static_cast<std::size_t>(image.stride));
-  MarkerSighting best = impl_->searchRoughly(grey);
-  if (best.score < 0.5 * kMinScore) return std::nullopt;
-  best = impl_->refine(grey, best);
-  if (best.score < kMinScore) return std::nullopt;
-  impl_->last_scale = best.pixels_per_metre;
-  impl_->last_angle = std::atan2(best.direction.y(), best.direction.x());
+  std::optional<MarkerSighting> best = impl_->search(grey);
+  if (!best && impl_->last_scale) {  // perhaps it turned or came nearer
+    impl_->last_scale.reset();
+    impl_->last_angle.reset();
+    best = impl_->search(grey);
+  }
+  if (!best) return std::nullopt;
+  impl_->last_scale = best->pixels_per_metre;
+  impl_->last_angle = std::atan2(best->direction.y(), best->direction.x());
   return best;
 }
 

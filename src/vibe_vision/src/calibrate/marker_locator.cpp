@@ -10,8 +10,8 @@
 namespace vibe {
 namespace {
 
-constexpr double kMargin = 3e-3;        // beyond the images, for the search along the rough axis [m]
-constexpr double kRoughLateral = 2e-3;  // [m]
+constexpr double kMargins[] = {1.5e-3, 3e-3, 0.8e-3};  // around the rough place, one after the other [m]
+constexpr double kRoughLateral = 2e-3;                 // [m]
 constexpr double kRoughScaleError = 0.3;
 constexpr int kPasses = 3;  // each with the axis of the one before
 
@@ -43,6 +43,7 @@ RoughResult searchImages(const VisionConfig& config, const MarkerDesign& design,
   RoughResult result;
   for (const Frame& image : images) {
     LocatedMarker marker;
+    marker.problem = "nothing in the image looks like the marker";
     if (const auto sighting = finder.find(image.image)) {
       marker.found = true;
       marker.pixel = undistort(config.camera, sighting->pixel);
@@ -72,21 +73,13 @@ VisionConfig roughConfig(const VisionConfig& config, std::size_t instrument, con
   object.axis.origin = line.point;
   object.axis.direction = line.direction;
   object.axis.pixels_per_metre = median(scales);
-  object.lower = object.upper = 0;
-  for (const Eigen::Vector2d& point : points) {
-    const double slide = line.along(point) / object.axis.pixels_per_metre;
-    object.lower = std::min(object.lower, slide - kMargin);
-    object.upper = std::max(object.upper, slide + kMargin);
-  }
   if (pass > 0) return rough;
   object.lateral_tolerance = std::max(object.lateral_tolerance, kRoughLateral);
   rough.gates.max_scale_error = std::max(rough.gates.max_scale_error, kRoughScaleError);
   return rough;
 }
 
-LocatedMarker measure(Tracker& tracker, const Frame& image, const SlideAxis& axis) {
-  tracker.reset();
-  const Measurement& m = tracker.track(image).front();
+LocatedMarker toLocated(const Measurement& m, const SlideAxis& axis) {
   LocatedMarker marker;
   marker.found = m.tracked();
   if (!marker.found) {
@@ -97,6 +90,20 @@ LocatedMarker measure(Tracker& tracker, const Frame& image, const SlideAxis& axi
   marker.pixel = axis.origin + m.along * d + m.lateral * Eigen::Vector2d(-d.y(), d.x());
   marker.pixels_per_metre = m.scale * pixelsPerMetre(axis, m.slide);
   marker.rotation = m.rotation;
+  return marker;
+}
+
+/// Tracks one image on a piece of the axis around the rough place.
+LocatedMarker measure(VisionConfig config, const Frame& image, const Eigen::Vector2d& rough) {
+  InstrumentConfig& object = config.instruments.front();
+  const double slide = slideOf(object.axis, (rough - object.axis.origin).dot(object.axis.direction));
+  LocatedMarker marker;
+  for (const double margin : kMargins) {
+    object.lower = slide - margin;
+    object.upper = slide + margin;
+    marker = toLocated(Tracker(config).track(image).front(), object.axis);
+    if (marker.found) break;
+  }
   return marker;
 }
 
@@ -123,9 +130,9 @@ LocatedMarkers locateMarkers(const VisionConfig& config, std::size_t instrument,
   for (int pass = 0; pass < kPasses; ++pass) {
     requireTwo(located, object.name);
     const VisionConfig line = roughConfig(config, instrument, located, pass);
-    Tracker tracker(line);
-    for (std::size_t i = 0; i < images.size(); ++i)
-      located.markers[i] = measure(tracker, images[i], line.instruments.front().axis);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      if (rough.markers[i].found) located.markers[i] = measure(line, images[i], rough.markers[i].pixel);
+    }
   }
   requireTwo(located, object.name);
   return located;
