@@ -26,8 +26,10 @@ class SlowState {
   const FitMatrix& covariance() const { return covariance_; }
 
  private:
+  void limitKeystone();
+
   SlideAxis axis_;
-  double slant_, blur_, lateral_tolerance_;
+  double focal_ = 0, slant_ = 0, blur_ = 0, lateral_tolerance_;
   std::array<int, kFitParameters> index_{};  ///< the slow parameters
   int count_ = 0;
   FitVector initial_deviation_, drift_, mean_;
