@@ -61,6 +61,16 @@ double parabolaTop(double left, double middle, double right) {
   return curvature < 0 ? std::clamp(0.5 * (left - right) / curvature, -0.5, 0.5) : 0;
 }
 
+/// Bars look the same wherever they are cut: across a sleeve the correlation has a plateau, and its middle is that of
+/// the rod.
+double plateauMiddle(const cv::Mat& map, const cv::Point& top, double score) {
+  constexpr double kEdge = 0.93;
+  int first = top.y, last = top.y;
+  while (first > 0 && map.at<float>(first - 1, top.x) > kEdge * score) --first;
+  while (last < map.rows - 1 && map.at<float>(last + 1, top.x) > kEdge * score) ++last;
+  return 0.5 * (first + last);
+}
+
 }  // namespace
 
 struct MarkerFinder::Impl {
@@ -102,7 +112,7 @@ struct MarkerFinder::Impl {
       const cv::Mat turned = turn(image, angle, to_turned);
       for (std::size_t i = 0; i < pictures.size(); ++i) {
         if (pictures[i].cols > turned.cols || pictures[i].rows > turned.rows) continue;
-        places.push_back(correlate(turned, pictures[i], to_turned, angle, some_scales[i]));
+        places.push_back(correlate(turned, pictures[i], to_turned, angle, some_scales[i], turns()));
       }
     }
     std::sort(places.begin(), places.end(),
@@ -126,7 +136,7 @@ struct MarkerFinder::Impl {
   }
 
   static MarkerSighting correlate(const cv::Mat& turned, const cv::Mat& picture, const cv::Matx23d& to_turned,
-                                  double angle, double scale) {
+                                  double angle, double scale, bool plateau) {
     cv::Mat map;
     cv::matchTemplate(turned, picture, map, cv::TM_CCOEFF_NORMED);
     cv::Point at;
@@ -139,6 +149,7 @@ struct MarkerFinder::Impl {
       x += parabolaTop(map.at<float>(at.y, at.x - 1), score, map.at<float>(at.y, at.x + 1));
     if (at.y > 0 && at.y < map.rows - 1)
       y += parabolaTop(map.at<float>(at.y - 1, at.x), score, map.at<float>(at.y + 1, at.x));
+    if (plateau) y = plateauMiddle(map, at, score);
     x += picture.cols / 2 - to_turned(0, 2);
     y += picture.rows / 2 - to_turned(1, 2);
     best.score = score;
