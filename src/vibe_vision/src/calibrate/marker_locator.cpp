@@ -10,8 +10,9 @@
 namespace vibe {
 namespace {
 
-constexpr double kMargins[] = {1.5e-3, 3e-3, 0.8e-3};  // around the rough place, one after the other [m]
-constexpr double kRoughLateral = 2e-3;                 // [m]
+constexpr double kMargin = 1.5e-3;                          // around the rough place [m]
+constexpr double kShifts[] = {0, 1, -1, 2, -2, 0.5, -0.5};  // of the rough axis to the side, until it is found [px]
+constexpr double kRoughLateral = 2e-3;                      // [m]
 constexpr double kRoughScaleError = 0.3;
 constexpr int kPasses = 3;  // each with the axis of the one before
 
@@ -96,11 +97,13 @@ LocatedMarker toLocated(const Measurement& m, const SlideAxis& axis) {
 /// Tracks one image on a piece of the axis around the rough place.
 LocatedMarker measure(VisionConfig config, const Frame& image, const Eigen::Vector2d& rough) {
   InstrumentConfig& object = config.instruments.front();
-  const double slide = slideOf(object.axis, (rough - object.axis.origin).dot(object.axis.direction));
+  const Eigen::Vector2d d = object.axis.direction, n(-d.y(), d.x()), origin = object.axis.origin;
+  const double slide = slideOf(object.axis, (rough - origin).dot(d));
+  object.lower = slide - kMargin;
+  object.upper = slide + kMargin;
   LocatedMarker marker;
-  for (const double margin : kMargins) {
-    object.lower = slide - margin;
-    object.upper = slide + margin;
+  for (const double shift : kShifts) {
+    object.axis.origin = origin + shift * n;
     marker = toLocated(Tracker(config).track(image).front(), object.axis);
     if (marker.found) break;
   }
