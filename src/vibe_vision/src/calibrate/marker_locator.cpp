@@ -14,7 +14,9 @@ constexpr double kMargin = 1.5e-3;                          // around the rough 
 constexpr double kShifts[] = {0, 1, -1, 2, -2, 0.5, -0.5};  // of the rough axis to the side, until it is found [px]
 constexpr double kRoughLateral = 2e-3;                      // [m]
 constexpr double kRoughScaleError = 0.3;
-constexpr int kPasses = 3;  // each with the axis of the one before
+constexpr int kRepeats = 8;           // of each image
+constexpr double kRepeatTime = 0.01;  // [s]
+constexpr int kPasses = 3;            // each with the axis of the one before
 
 void checkSizes(const VisionConfig& config, const std::vector<Frame>& images) {
   for (const Frame& image : images) {
@@ -94,6 +96,20 @@ LocatedMarker toLocated(const Measurement& m, const SlideAxis& axis) {
   return marker;
 }
 
+/// The same image a few times, as if the instrument stood still: what the tracker learns slowly, such as the place
+/// across the axis, settles.
+LocatedMarker settle(Tracker& tracker, Frame image, const SlideAxis& axis) {
+  LocatedMarker marker;
+  for (int i = 0; i < kRepeats; ++i) {
+    const LocatedMarker next = toLocated(tracker.track(image).front(), axis);
+    if (!next.found && !marker.found) return next;
+    if (next.found) marker = next;
+    image.stamp += kRepeatTime;
+    ++image.sequence;
+  }
+  return marker;
+}
+
 /// Tracks one image on a piece of the axis around the rough place.
 LocatedMarker measure(VisionConfig config, const Frame& image, const Eigen::Vector2d& rough) {
   InstrumentConfig& object = config.instruments.front();
@@ -104,7 +120,8 @@ LocatedMarker measure(VisionConfig config, const Frame& image, const Eigen::Vect
   LocatedMarker marker;
   for (const double shift : kShifts) {
     object.axis.origin = origin + shift * n;
-    marker = toLocated(Tracker(config).track(image).front(), object.axis);
+    Tracker tracker(config);
+    marker = settle(tracker, image, object.axis);
     if (marker.found) break;
   }
   return marker;
