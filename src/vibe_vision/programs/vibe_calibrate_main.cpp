@@ -135,8 +135,9 @@ void printAxis(const vibe::SlideAxis& axis) {
               deviation(1));
   std::printf("direction %.4f +- %.4f deg (0: to the right, 90: down)\n",
               std::atan2(axis.direction.y(), axis.direction.x()) / kDegree, deviation(2) / kDegree);
-  std::printf("scale %.4f +- %.4f px/mm; perspective %.4f +- %.4f 1/m\n", 1e-3 * axis.pixels_per_metre,
-              1e-3 * deviation(3), axis.perspective, deviation(4));
+  std::printf("scale %.4f +- %.4f px/mm", 1e-3 * axis.pixels_per_metre, 1e-3 * deviation(3));
+  if (axis.perspective != 0) std::printf("; perspective %.4f +- %.4f 1/m", axis.perspective, deviation(4));
+  std::printf("\n");
 }
 
 vibe::MarkerSearch searchOf(const Options& options) {

@@ -81,6 +81,8 @@ class Fitter {
     leaveOutliersOut();
     const double deviation = std::sqrt(along_.covariance(2, 2));
     result.perspective_deviation = deviation;
+    if (along_.freedom > 0)
+      perspective_bound_ = std::abs(axis_.perspective) + studentQuantile(0.05, along_.freedom) * deviation;
     const double t = axis_.perspective / std::max(deviation, 1e-300);
     if (along_.freedom < 1 || studentTail(t, along_.freedom) > kSignificance) {
       result.perspective_observed = false;
@@ -99,6 +101,7 @@ class Fitter {
   SlideAxis axis_;
   LinearFit along_, across_;
   bool with_perspective_ = true;
+  double perspective_bound_ = 0;  // 95 %; 0: not known [1/m]
 
   std::size_t usedCount() const { return static_cast<std::size_t>(std::count(used_.begin(), used_.end(), true)); }
 
@@ -217,14 +220,14 @@ class Fitter {
       result.warnings.push_back(stops_[i].name + " deviates by " + withDecimals(1e3 * error, 3) + " mm along and " +
                                 withDecimals(result.stops[i].across, 2) +
                                 " px across the axis from the other stops and is left out; check its slide of " +
-                                showQuantity(stops_[i].slide, "m"));
+                                withDecimals(1e3 * stops_[i].slide, 3) + " mm");
     }
     if (!result.perspective_observed) {
       const double reach = (highest - lowest) / 2;
       result.warnings.push_back(
           "the perspective is not observable with these stops and is set to 0; if it is there, it moves the ends of "
           "the range by " +
-          withDecimals(1e3 * 2 * result.perspective_deviation * reach * reach, 3) +
+          withDecimals(1e3 * perspective_bound_ * reach * reach, 3) +
           " mm at most (95 %); use more stops or better gauges if that is too much");
     }
     if (result.rms_along > kNoisyStop) {

@@ -22,4 +22,14 @@ double studentTail(double t, int freedom) {
   return angle < reach ? integral(angle, reach) / integral(0, reach) : 0;
 }
 
+double studentQuantile(double tail, int freedom) {
+  double low = 0, high = 1;
+  while (studentTail(high, freedom) > tail && high < 1e9) high *= 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (studentTail(middle, freedom) > tail ? low : high) = middle;
+  }
+  return high;
+}
+
 }  // namespace vibe

@@ -60,6 +60,11 @@ TEST(StudentT, TailsAreThoseOfTables) {
   EXPECT_NEAR(studentTail(1.96, 100000), 0.05, 1e-4);
 }
 
+TEST(StudentT, TheQuantileIsTheInverseOfTheTail) {
+  EXPECT_NEAR(studentQuantile(0.05, 2), 4.3027, 1e-4);
+  EXPECT_NEAR(studentQuantile(0.01, 30), 2.75, 1e-3);
+}
+
 TEST(AxisFit, ExactStopsGiveTheAxis) {
   const SlideAxis truth = slantedAxis();
   const AxisFit fit = fitAxis(stopsOf(truth, 7, 0, 0, 1));
