@@ -30,6 +30,25 @@ bool readChoice(ParameterReader& reader, const std::string& name, const std::str
   throw Error("Parameter ~" + name + " is '" + word + "'; set it to " + first + " or " + second + ".");
 }
 
+CameraClock readClock(ParameterReader& reader) {
+  std::string word = "auto";
+  reader.read("camera_clock", word);
+  if (word == "auto") return CameraClock::Auto;
+  if (word == "free") return CameraClock::Free;
+  if (word == "host") return CameraClock::Host;
+  throw Error("Parameter ~camera_clock is '" + word + "'; set it to auto, free or host.");
+}
+
+/// What only few cameras need.
+void readCameraDetails(ParameterReader& reader, SourceOptions& options) {
+  const bool is_end = readChoice(reader, "camera_stamp", "exposure_start", "exposure_end");
+  options.stamp_point = is_end ? StampPoint::ExposureEnd : StampPoint::ExposureStart;
+  options.clock = readClock(reader);
+  reader.read("pixel_format", options.pixel_format);
+  reader.read("packet_size", options.packet_size, 0, 65000);
+  reader.read("realtime_priority", options.realtime_priority, 0, 99);
+}
+
 void checkTime(const VisionParameters& parameters) {
   bool use_sim_time = false;
   ros::param::get("/use_sim_time", use_sim_time);
@@ -53,6 +72,7 @@ VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
   parameters.source =
       reader.required("source", "the address of a camera, for example gige: or video:FILE, or to topic");
   readCamera(reader, parameters.options);
+  readCameraDetails(reader, parameters.options);
   parameters.start_stamped = readChoice(reader, "image_stamp", "middle_of_exposure", "start_of_exposure");
   reader.read("udp", parameters.udp);
   reader.read("lead", parameters.lead, 0, 0.2, "s");

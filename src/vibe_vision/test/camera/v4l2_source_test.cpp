@@ -82,10 +82,3 @@ TEST(V4l2Source, FormatsOfTheDriverAreKnown) {
   EXPECT_EQ(v4l2Format(codeOf("Y12 ")), PixelFormat::Mono12);
   EXPECT_FALSE(isReadable(v4l2Format(codeOf("MJPG"))));  // OpenCV decodes it
 }
-
-TEST(V4l2Source, GapsBetweenStampsAreLostFrames) {
-  EXPECT_EQ(V4l2Source::missedBetween(0, 10, 0.01), 0U);  // the first frame
-  EXPECT_EQ(V4l2Source::missedBetween(10, 10.011, 0.01), 0U);
-  EXPECT_EQ(V4l2Source::missedBetween(10, 10.02, 0.01), 1U);
-  EXPECT_EQ(V4l2Source::missedBetween(10, 10.05, 0.01), 4U);
-}
