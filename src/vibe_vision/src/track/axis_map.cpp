@@ -8,7 +8,7 @@ namespace vibe {
 namespace {
 
 constexpr std::uint8_t kSaturated = 253;  // grey values from which a pixel may have lost light [DN]
-constexpr int kHalo = 2;                  // pixels around a saturated one that are not used either
+constexpr int kHalo = 5;                  // pixels around the middle of a highlight that show its light too
 
 }  // namespace
 
@@ -65,7 +65,7 @@ void AxisMap::addRow(int y, const std::vector<Eigen::Vector2d>& border) {
   rows_.push_back(row);
 }
 
-PixelRect AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const {
+PixelWindow AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
   for (double a : {-1.0, 0.0, 1.0})
     for (double b : {-1.0, 0.0, 1.0}) {
@@ -80,9 +80,9 @@ PixelRect AxisMap::boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d
   return {x, y, limit(std::ceil(high.x())) - x + 1, limit(std::ceil(high.y())) - y + 1};
 }
 
-PixelRect AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
-                          PixelBlock& pixels) {
-  PixelRect rect = boundsOf(centre, half_extents);
+PixelWindow AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
+                            PixelBlock& pixels) {
+  PixelWindow rect = boundsOf(centre, half_extents);
   const int last_row = first_row_ + static_cast<int>(rows_.size());
   const int top = std::max(rect.y, first_row_), bottom = std::min(rect.y + rect.height, last_row);
   rect.y = top, rect.height = std::max(bottom - top, 0);
@@ -90,40 +90,44 @@ PixelRect AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, con
   markSaturated(frame, rect);
   for (int parity : {0, 1})
     for (int y = rect.y; y < rect.y + rect.height; ++y) gatherRow(frame, rect, y, parity, centre, half_extents, pixels);
-  for (std::size_t i = pixels.count; i < pixels.padded(); ++i) {
-    pixels.along[i] = pixels.along[pixels.count - 1], pixels.lateral[i] = pixels.lateral[pixels.count - 1];
-    pixels.value[i] = pixels.weight[i] = 0;
-  }
+  pixels.pad();
   return rect;
 }
 
-/// Marks what is near saturated pixels in saturated_; nearly always there is none.
-void AxisMap::markSaturated(const Frame& frame, const PixelRect& rect) {
+/// Marks what is near highlights in saturated_; nearly always there is none. Single saturated pixels are noise of a
+/// bright picture: a highlight saturates a pixel and its four neighbours.
+void AxisMap::markSaturated(const Frame& frame, const PixelWindow& rect) {
   any_saturated_ = false;
-  const int left = std::max(rect.x - frame.offset_x, 0), top = std::max(rect.y - frame.offset_y, 0);
-  const int right = std::min(rect.x - frame.offset_x + rect.width, frame.image.width);
-  const int bottom = std::min(rect.y - frame.offset_y + rect.height, frame.image.height);
+  const ImageView& image = frame.image;
+  const int left = std::max(rect.x - frame.offset_x, 1), top = std::max(rect.y - frame.offset_y, 1);
+  const int right = std::min(rect.x - frame.offset_x + rect.width, image.width - 1);
+  const int bottom = std::min(rect.y - frame.offset_y + rect.height, image.height - 1);
   for (int y = top; y < bottom; ++y) {
-    const std::uint8_t* row = frame.image.row(y);
+    const std::uint8_t *above = image.row(y - 1), *row = image.row(y), *below = image.row(y + 1);
     std::uint8_t highest = 0;
     for (int x = left; x < right; ++x) highest = std::max(highest, row[x]);
     if (highest < kSaturated) continue;
-    const auto size = static_cast<std::size_t>(rect.width) * rect.height;
-    if (!any_saturated_) saturated_.assign(std::max(size, saturated_.size()), 0);
-    any_saturated_ = true;
-    const int row_begin = std::max(top, y - kHalo), row_end = std::min(bottom, y + kHalo + 1);
     for (int x = left; x < right; ++x) {
-      if (row[x] < kSaturated) continue;
-      const int from = std::max(left, x - kHalo), to = std::min(right, x + kHalo + 1);
-      for (int j = row_begin; j < row_end; ++j)
-        std::memset(saturated_.data() + static_cast<std::ptrdiff_t>(j + frame.offset_y - rect.y) * rect.width +
-                        (from + frame.offset_x - rect.x),
-                    1, static_cast<std::size_t>(to - from));
+      const std::uint8_t least = std::min({row[x], row[x - 1], row[x + 1], above[x], below[x]});
+      if (least >= kSaturated) markHalo(rect, x + frame.offset_x, y + frame.offset_y);
     }
   }
 }
 
-void AxisMap::gatherRow(const Frame& frame, const PixelRect& rect, int y, int parity, const Eigen::Vector2d& centre,
+void AxisMap::markHalo(const PixelWindow& rect, int x, int y) {
+  const auto size = static_cast<std::size_t>(rect.width) * rect.height;
+  if (!any_saturated_) saturated_.assign(std::max(size, saturated_.size()), 0);
+  any_saturated_ = true;
+  for (int j = std::max(rect.y, y - kHalo); j < std::min(rect.y + rect.height, y + kHalo + 1); ++j) {
+    const int reach = static_cast<int>(std::sqrt(static_cast<double>(kHalo * kHalo - (j - y) * (j - y))));
+    const int from = std::max(rect.x, x - reach), to = std::min(rect.x + rect.width, x + reach + 1);
+    if (from < to)
+      std::memset(saturated_.data() + static_cast<std::ptrdiff_t>(j - rect.y) * rect.width + (from - rect.x), 1,
+                  static_cast<std::size_t>(to - from));
+  }
+}
+
+void AxisMap::gatherRow(const Frame& frame, const PixelWindow& rect, int y, int parity, const Eigen::Vector2d& centre,
                         const Eigen::Vector2d& half_extents, PixelBlock& pixels) const {
   const Row& row = rows_[y - first_row_];
   int begin = std::max(rect.x, row.begin);
@@ -153,7 +157,7 @@ void AxisMap::readBand(const Frame& frame, double begin, double end, double half
   std::fill(profile.sum.begin(), profile.sum.end(), 0.F);
   std::fill(profile.count.begin(), profile.count.end(), 0.F);
   profile.pixels = profile.saturated = 0;
-  const PixelRect rect = boundsOf({(begin + end) / 2, 0}, {(end - begin) / 2, half_width});
+  const PixelWindow rect = boundsOf({(begin + end) / 2, 0}, {(end - begin) / 2, half_width});
   const auto low = static_cast<float>(begin), high = static_cast<float>(end), width = static_cast<float>(half_width);
   const auto first = static_cast<float>(profile.first - 0.5), bins = static_cast<float>(profile.sum.size());
   const int top = std::max({rect.y, first_row_, frame.offset_y});

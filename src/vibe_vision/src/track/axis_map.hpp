@@ -11,7 +11,7 @@
 namespace vibe {
 
 /// Pixels of the full sensor, [x, x + width) x [y, y + height).
-struct PixelRect {
+struct PixelWindow {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
@@ -38,8 +38,8 @@ class AxisMap {
   /// The pixels within half extents of a place, every second one first, in a checkered pattern. Those outside of the
   /// frame and those near saturated ones get weight 0. No allocation once the block is large enough; pixels that the
   /// block has no room for are left out.
-  PixelRect gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
-                   PixelBlock& pixels);
+  PixelWindow gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,
+                     PixelBlock& pixels);
 
   /// Sums the frame over a part of the band around the axis; bins outside of it are empty. No allocation.
   void readBand(const Frame& frame, double begin, double end, double half_width, AxisProfile& profile) const;
@@ -51,9 +51,10 @@ class AxisMap {
   };
   std::vector<Eigen::Vector2d> border(double begin, double end, double half_width) const;
   void addRow(int y, const std::vector<Eigen::Vector2d>& border);
-  PixelRect boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const;
-  void markSaturated(const Frame& frame, const PixelRect& rect);
-  void gatherRow(const Frame& frame, const PixelRect& rect, int y, int parity, const Eigen::Vector2d& centre,
+  PixelWindow boundsOf(const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents) const;
+  void markSaturated(const Frame& frame, const PixelWindow& rect);
+  void markHalo(const PixelWindow& rect, int x, int y);
+  void gatherRow(const Frame& frame, const PixelWindow& rect, int y, int parity, const Eigen::Vector2d& centre,
                  const Eigen::Vector2d& half_extents, PixelBlock& pixels) const;
 
   CameraModel camera_;

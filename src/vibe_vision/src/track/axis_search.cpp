@@ -30,7 +30,9 @@ int reachOf(const std::vector<SearchTemplate>& templates) {
 }  // namespace
 
 AxisSearch::AxisSearch(const MarkerPattern& pattern, double begin, double end)
-    : half_width_(pattern.searchHalfWidth()),
+    : begin_(begin),
+      end_(end),
+      half_width_(pattern.searchHalfWidth()),
       templates_(makeTemplates(pattern)),
       samples_(static_cast<std::size_t>(std::ceil(end - begin)) + 2 * static_cast<std::size_t>(reachOf(templates_)) +
                8) {

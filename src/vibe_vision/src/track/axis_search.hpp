@@ -30,6 +30,8 @@ class AxisSearch {
 
   /// @param begin, end  of the range along the axis [px]
   AxisSearch(const MarkerPattern& pattern, double begin, double end);
+  double begin() const { return begin_; }
+  double end() const { return end_; }
 
   /// @param begin, end      where to look, along the axis [px]
   /// @param max_motion      motion during the exposure of the fastest marker [px]
@@ -42,6 +44,7 @@ class AxisSearch {
   Candidate bestAt(std::size_t place, double max_motion, double min_contrast) const;
   void keep(const Candidate& candidate);
 
+  double begin_, end_;
   double first_ = 0;  ///< place of bin 0 along the axis [px]
   int reach_ = 0;     ///< half length of a profile
   double half_width_ = 0;

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kMaxMisfit = 4;    // chi^2 per degree of freedom of the pixels that are no outliers
 constexpr double kDeviations = 6;   // of the prediction
+constexpr double kSureTilt = 3;     // standard deviations: a ring shows its tilt only if it is slanted
+constexpr double kRest = 1e-4;      // by which anything may have moved [m]
 constexpr double kSlack = 1;        // beyond the range and across the axis [px]
 constexpr double kMaxBlack = 0.75;  // of white: paper and ink differ more
 
@@ -30,15 +32,17 @@ LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal) const {
   const double scale = std::exp(x[kLogScale] - nominal[kLogScale]);
   const double length = scale * std::exp(x[kLogAspect] - nominal[kLogAspect]);
   const double wrong_size = std::max(std::abs(scale - 1), std::abs(length - 1));
-  if (wrong_size > limits_.max_scale_error || std::abs(x[kTilt]) > limits_.max_tilt) return LostReason::Mismatch;
+  const double tilt = std::abs(x[kTilt]) - kSureTilt * std::sqrt(fit.covariance(kTilt, kTilt));
+  if (wrong_size > limits_.max_scale_error || tilt > limits_.max_tilt) return LostReason::Mismatch;
   if (fit.visible < limits_.min_visible) return LostReason::Occluded;
   return fit.misfit > kMaxMisfit ? LostReason::Mismatch : LostReason::None;
 }
 
+/// A stop ends a motion at once: from where it was, only the speed is limited.
 bool Gates::isReachable(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const {
-  if (std::abs(slide - last_slide) > motion_.max_speed * dt + kDeviations * 1e-5) return false;
-  const double reach = motion_.max_acceleration * dt * dt + kDeviations * predicted.deviation();
-  return std::abs(slide - predicted.mean[0]) <= reach;
+  const double travel = motion_.max_speed * dt + kRest;
+  return std::abs(slide - last_slide) <= travel ||
+         std::abs(slide - predicted.mean[0]) <= kDeviations * predicted.deviation();
 }
 
 }  // namespace vibe

@@ -8,14 +8,18 @@
 namespace vibe {
 namespace {
 
-constexpr double kCloseEnough = 1.2;   // deviation of a prediction from which a fit converges [px]
-constexpr double kMaxGap = 0.5;        // after which the motion is forgotten [s]
-constexpr int kForget = 60;            // lost frames after which size, tilt and blur are forgotten
-constexpr int kJumpsToBelieve = 3;     // frames that agree on a place that cannot be reached
-constexpr double kGoodLook = 0.6;      // share of the marker that must be seen to learn size, tilt and blur from it
-constexpr double kScaleStep = 0.05;    // the search knows the size no better
-constexpr double kMargin = 3;          // around the range of the search [px]
-constexpr double kFilterFloor = 1e-6;  // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
+constexpr double kCloseEnough = 1.2;    // deviation of a prediction from which a fit converges [px]
+constexpr double kMaxGap = 0.5;         // after which the motion is forgotten [s]
+constexpr int kForget = 60;             // lost frames after which size, tilt and blur are forgotten
+constexpr int kJumpsToBelieve = 3;      // frames that agree on a place that cannot be reached
+constexpr double kGoodLook = 0.6;       // share of the marker that must be seen to learn size, tilt and blur from it
+constexpr double kSearchVisible = 0.7;  // of a sleeve: part of its bars also fits at other places
+constexpr double kSearchDoubt = 0.1;    // about size, tilt and blur that a search found
+constexpr double kScaleStep = 0.05;     // the search knows the size no better
+constexpr double kMargin = 3;           // around the range of the search [px]
+constexpr double kFilterFloor = 1e-6;   // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
+constexpr double kGoodLoss = 0.25;      // of a pixel: no other candidate needs to be looked at
+constexpr double kKnownMotion = 5;      // deviation of a prediction whose speed is worth something [px]
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) {
@@ -56,6 +60,7 @@ void InstrumentTracker::reset() {
   slide_.reset();
   rotation_.reset();
   slow_.reset();
+  light_.reset();
   jumps_ = 0;
   lose(LostReason::NoFrame);
 }
@@ -146,10 +151,19 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
   reason_ = whyNothing(found);
   for (int i = 0; i < found.count; ++i) {
     const MarkerFit fit = tryCandidate(frame, prediction, found.candidates[i]);
-    const LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])));
+    LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])));
+    if (reason == LostReason::None && fitter_.shows(kRotation) && fit.visible < kSearchVisible)
+      reason = LostReason::Occluded;
+    if (getenv("DBG"))
+      fprintf(stderr,
+              "cand %.1f m %.0f s %.3f -> %.2f lat %.2f m %.1f scale %.3f asp %.3f blur %.2f misfit %.2f vis %.2f loss "
+              "%.3f valid %d: %s\n",
+              found.candidates[i].along, found.candidates[i].motion, found.candidates[i].score, fit.x[kAlong],
+              fit.x[kLateral], fit.motion, exp(fit.x[kLogScale]), exp(fit.x[kLogAspect]), fit.x[kBlur], fit.misfit,
+              fit.visible, fit.loss, fit.valid, toText(reason));
     if (reason == LostReason::None && fit.loss < best.loss) best = fit;
     if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
-    if (best.valid && best.misfit < 1.5 && best.visible > 0.9) break;
+    if (best.valid && best.loss < kGoodLoss) break;
   }
   if (!best.valid) return false;
   if (!isExpected(best, prediction, frame.stamp)) {
@@ -196,13 +210,8 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   measurement_ = {};
   measurement_.reason = LostReason::None;
   measurement_.reacquired = reacquired;
-  const double shift = exposureShift(frame.exposure);
-  const MotionFilter::State& state = prediction.slide;
-  const double acceleration = reacquired ? 0 : state.mean[2];
-  const double doubt = reacquired ? square(config_.motion.max_acceleration / 2) : state.covariance(2, 2);
   const double scale = pixelsPerMetre(config_.axis, slideOf(config_.axis, fit.x[kAlong]));
-  measurement_.along = fit.x[kAlong] - acceleration * shift * scale;
-  measurement_.along_variance = fit.covariance(kAlong, kAlong) + doubt * square(shift * scale);
+  toMiddle(frame, fit, prediction, scale);
   measurement_.slide = slideOf(config_.axis, measurement_.along);
   measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
   measurement_.rotation = kNaN;
@@ -215,8 +224,29 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   describe(fit);
   const bool jumped = jumps_ >= kJumpsToBelieve;
   updateFilters(frame.stamp, jumped || !prediction.known);
-  if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide);
+  if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide, reacquired ? kSearchDoubt : 0);
   jumps_ = lost_frames_ = 0;
+}
+
+/// The picture shows where the marker was on average over the exposure, weighted by the light. From there to the middle
+/// of the exposure.
+void InstrumentTracker::toMiddle(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, double scale) {
+  const double grey = fit.x[kBlack] + fit.x[kContrast] / 2;
+  const double place = 2 * (fit.x[kAlong] - search_.begin()) / (search_.end() - search_.begin()) - 1;
+  light_.update(frame.stamp, place, grey, std::sqrt(fit.covariance(kContrast, kContrast)) / fit.x[kContrast]);
+  MotionFilter::State state = prediction.slide;
+  const bool known = prediction.known && state.deviation() * scale < kKnownMotion;
+  if (!known) {
+    state.mean.tail<2>().setZero();
+    state.covariance(1, 1) = square(config_.motion.max_speed / 2);
+    state.covariance(2, 2) = square(config_.motion.max_acceleration / 2);
+  }
+  const LightModel::Delay delay = light_.delay(frame.stamp, frame.exposure);
+  const double shift = exposureShift(frame.exposure);
+  measurement_.along = fit.x[kAlong] - scale * (state.mean[2] * shift + state.mean[1] * delay.mean);
+  const double doubt = state.covariance(2, 2) * square(shift) + square(state.mean[1]) * delay.variance +
+                       state.covariance(1, 1) * (square(delay.mean) + delay.variance);
+  measurement_.along_variance = fit.covariance(kAlong, kAlong) + square(scale) * doubt;
 }
 
 void InstrumentTracker::describe(const MarkerFit& fit) {

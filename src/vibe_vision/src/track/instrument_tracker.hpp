@@ -1,6 +1,7 @@
 #pragma once
 #include "track/axis_search.hpp"
 #include "track/gates.hpp"
+#include "track/light_model.hpp"
 #include "track/slow_state.hpp"
 
 namespace vibe {
@@ -35,6 +36,7 @@ class InstrumentTracker {
   bool isExpected(const MarkerFit& fit, const Prediction& prediction, double stamp);
   LostReason whyNothing(const AxisSearch::Result& found) const;
   void accept(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, bool reacquired);
+  void toMiddle(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, double scale);
   void describe(const MarkerFit& fit);
   void updateFilters(double stamp, bool restart);
 
@@ -45,6 +47,7 @@ class InstrumentTracker {
   AxisSearch search_;
   Gates gates_;
   SlowState slow_;
+  LightModel light_;
   MotionFilter slide_, rotation_;
   double last_slide_ = 0, last_rotation_ = 0;
   int lost_frames_ = 0;

@@ -1,6 +1,7 @@
 #include "track/marker_fitter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -8,9 +9,14 @@ namespace vibe {
 namespace {
 
 constexpr std::size_t kMinPixels = 48;
-constexpr double kConverged = 0.03;  // a step after which the next would change nothing that matters [px]
-constexpr double kMaxStep = 3;       // [px]
-constexpr double kMotionTrial = 2;   // [px]
+constexpr double kConverged = 0.03;         // a step after which the next would change nothing that matters [px]
+constexpr double kMaxStep = 3;              // [px]
+constexpr double kMotionTrial = 2;          // [px]
+constexpr double kMotionUncertainty = 0.3;  // of the edges while it is tried [px]
+constexpr double kMinUncertainty = 0.3;     // of a prediction [px]
+constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
+constexpr double kHopeless = 0.8;                       // loss of a pixel after the coarse alignment
+constexpr int kAlignSteps = 3;
 constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after which the picture is made anew [px], 1
 constexpr int kFollowSteps = 5, kAcquireSteps = 9;
 
@@ -37,15 +43,14 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   fit.motion = motion;
   if (!read(map, frame, fit)) return fit;
   pattern_->prepare(poseOf(fit.x), motion);
-  const std::size_t all = pixels_.count;
-  pixels_.count = std::max(all / 2 / kLanes * kLanes, std::min(all, kMinPixels));
+  useHalf();
   fit_.evaluate(fit.x, pixels_);
   fit_.startLevels(pixels_, fit.x);
-  const FitStep step = fit_.step(fit.x, prior, pixels_, {std::max(uncertainty, 0.3), true});
-  pixels_.count = all;
+  const FitStep step = fit_.step(fit.x, prior, pixels_, {std::max(uncertainty, kMinUncertainty), FitScope::Position});
+  useAll();
   if (!step.valid) return fit;
   take(step, fit);
-  refine(fit, prior, kFollowSteps);
+  refine(fit, prior, 0, kFollowSteps);
   return fit;
 }
 
@@ -54,15 +59,22 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   MarkerFit fit;
   fit.x = start;
   fit.motion = motion;
-  if (!read(map, frame, fit)) return fit;
   const double blur = fit.x[kBlur];
-  if (!alignCoarsely(fit, prior, blur + 2.4, 3)) return fit;
-  if (!known_rotation && observed_[kRotation]) chooseRotation(fit, blur + 0.9);
-  if (!read(map, frame, fit) || !alignCoarsely(fit, prior, blur + 0.9, 3)) return fit;
-  if (max_motion > 1) chooseMotion(fit, prior, max_motion);
-  fit.x[kBlur] = blur;
+  // The search knows the place of a sleeve well, and its bars would vanish.
+  fit.x[kBlur] = blur + (observed_[kRotation] ? kMiddleBlur : kCoarseBlur);
   if (!read(map, frame, fit)) return fit;
-  refine(fit, prior, kAcquireSteps);
+  useHalf();
+  if (!align(fit, prior, FitScope::Position)) return fit;
+  fit.x[kBlur] = blur + kMiddleBlur;
+  if (!known_rotation && observed_[kRotation]) chooseRotation(fit);
+  if (!read(map, frame, fit)) return fit;
+  useHalf();
+  if (!align(fit, prior, FitScope::Shape) || fit.loss > kHopeless) return fit;
+  // The blur of the picture is not that of the prior if the camera is out of focus.
+  if (!align(fit, prior, FitScope::All)) return fit;
+  if (max_motion > 1) chooseMotion(fit, prior, max_motion);
+  if (!read(map, frame, fit)) return fit;
+  refine(fit, prior, kMotionUncertainty, kAcquireSteps);
   return fit;
 }
 
@@ -70,72 +82,86 @@ bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit) {
   const MarkerPose pose = poseOf(fit.x);
   fit.roi = map.gather(frame, {pose.along, pose.lateral}, pattern_->window(pose, fit.motion), pixels_);
   pattern_->select(pose, fit.motion, pixels_);
-  return pixels_.count >= kMinPixels;
+  all_ = pixels_.count;
+  return all_ >= kMinPixels;
 }
 
-/// Position alone, with a picture that is more blurred than the camera's: its edges reach further.
-bool MarkerFitter::alignCoarsely(MarkerFit& fit, const FitPrior& prior, double blur, int steps) {
-  fit.x[kBlur] = blur;
+void MarkerFitter::useHalf() {
+  pixels_.count = std::max(all_ / 2 / kLanes * kLanes, kMinPixels);
+}
+
+void MarkerFitter::useAll() {
+  pixels_.count = all_;
+}
+
+/// A few steps with a picture that is more blurred than the camera's: its edges reach further.
+bool MarkerFitter::align(MarkerFit& fit, const FitPrior& prior, FitScope scope) {
   pattern_->prepare(poseOf(fit.x), fit.motion);
-  for (int i = 0; i < steps; ++i) {
+  for (int i = 0; i < kAlignSteps; ++i) {
     fit_.evaluate(fit.x, pixels_);
     if (i == 0) fit_.startLevels(pixels_, fit.x);
-    const FitStep step = fit_.step(fit.x, prior, pixels_, {blur, true});
+    const FitStep step = fit_.step(fit.x, prior, pixels_, {fit.x[kBlur], scope});
     if (!step.valid) return false;
+    fit.loss = step.loss;
     take(step, fit);
   }
   return true;
 }
 
-void MarkerFitter::chooseRotation(MarkerFit& fit, double blur) {
+void MarkerFitter::chooseRotation(MarkerFit& fit) {
   FitVector best = fit.x;
-  double least = 1e9;
-  fit.x[kBlur] = blur;
+  double least = 2;
   pattern_->prepare(poseOf(fit.x), fit.motion);
   for (double rotation : rotations_) {
     fit.x[kRotation] = rotation;
     fit_.evaluate(fit.x, pixels_);
     fit_.startLevels(pixels_, fit.x);
-    const double loss = fit_.loss(fit.x, pixels_, {blur, true});
+    const double loss = fit_.loss(fit.x, pixels_, {fit.x[kBlur], FitScope::Position});
     if (loss < least) least = loss, best = fit.x;
   }
   fit.x = best;
 }
 
+/// Loss of a pixel against the motion that is assumed: a parabola through three places.
 void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion) {
-  MarkerFit best = fit;
-  best.loss = 1e9;
-  for (double change : {-kMotionTrial, 0.0, kMotionTrial}) {
+  const double middle = std::clamp(fit.motion, kMotionTrial, std::max(max_motion - kMotionTrial, kMotionTrial));
+  std::array<double, 3> loss{};
+  for (int k = 0; k < 3; ++k) {
     MarkerFit trial = fit;
-    trial.motion = std::clamp(fit.motion + change, 0.0, max_motion);
-    trial.x[kBlur] = prior.mean[kBlur];
+    trial.motion = middle + (k - 1) * kMotionTrial;
     pattern_->prepare(poseOf(trial.x), trial.motion);
     for (int i = 0; i < 2; ++i) {
       fit_.evaluate(trial.x, pixels_);
-      const FitStep step = fit_.step(trial.x, prior, pixels_, {0.3, true});
-      if (!step.valid) break;
-      trial.loss = step.loss;
+      const FitStep step = fit_.step(trial.x, prior, pixels_, {kMotionUncertainty, FitScope::Shape});
+      if (!step.valid) return;
+      loss[k] = step.loss;
       take(step, trial);
     }
-    if (trial.loss > 0 && trial.loss < best.loss) best = trial;
+    if (k == 0 || loss[k] < *std::min_element(loss.begin(), loss.begin() + k)) best_ = trial;
   }
-  if (best.loss < 1e9) fit = best;
+  fit = best_;
+  const double bend = loss[0] - 2 * loss[1] + loss[2];
+  if (bend <= 0) return;
+  const double vertex = middle + kMotionTrial * std::clamp((loss[0] - loss[2]) / (2 * bend), -1.5, 1.5);
+  fit.motion = std::clamp(vertex, 0.0, max_motion);
 }
 
 /// Steps with all parameters until they change no more.
-void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, int max_steps) {
+void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps) {
   pattern_->prepare(poseOf(fit.x), fit.motion);
   for (int i = 0; i < max_steps; ++i) {
     fit_.evaluate(fit.x, pixels_);
-    const FitStep step = fit_.step(fit.x, prior, pixels_, {});
+    const FitStep step = fit_.step(fit.x, prior, pixels_, {uncertainty, FitScope::All});
     if (!step.valid) return;
+    const double last = uncertainty;
+    uncertainty = uncertainty > kConverged ? uncertainty / 3 : 0;
     take(step, fit);
     fit.covariance = step.covariance * std::max(1.0, step.misfit);
     fit.misfit = step.misfit, fit.loss = step.loss, fit.visible = step.visible;
     const double moved = std::max({std::abs(step.change[kAlong]), std::abs(step.change[kLateral]),
                                    radius_ * std::abs(step.change[kRotation]), std::abs(step.change[kBlur]) / 2,
                                    radius_ * std::abs(step.change[kLogScale]) / 2});
-    fit.valid = moved < kConverged;
+    fit.valid = moved < kConverged && last == 0;
     if (fit.valid) return;
     if (std::abs(step.change[kBlur]) > kPrepareBlur || std::abs(step.change[kLogScale]) > kPrepareScale)
       pattern_->prepare(poseOf(fit.x), fit.motion);

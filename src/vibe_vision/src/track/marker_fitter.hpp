@@ -15,7 +15,7 @@ struct MarkerFit {
   double visible = 0;  ///< share of the information about the position that was used
   double motion = 0;   ///< along the axis during the exposure, as assumed [px]
   bool valid = false;  ///< the fit converged
-  PixelRect roi;
+  PixelWindow roi;
 };
 
 /// Reads the pixels around a place and fits a marker's pattern to them.
@@ -36,10 +36,12 @@ class MarkerFitter {
 
  private:
   bool read(AxisMap& map, const Frame& frame, MarkerFit& fit);
-  bool alignCoarsely(MarkerFit& fit, const FitPrior& prior, double blur, int steps);
-  void chooseRotation(MarkerFit& fit, double blur);
+  void useHalf();
+  void useAll();
+  bool align(MarkerFit& fit, const FitPrior& prior, FitScope scope);
+  void chooseRotation(MarkerFit& fit);
   void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
-  void refine(MarkerFit& fit, const FitPrior& prior, int max_steps);
+  void refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps);
   void take(const FitStep& step, MarkerFit& fit) const;
 
   std::unique_ptr<MarkerPattern> pattern_;
@@ -47,6 +49,8 @@ class MarkerFitter {
   std::vector<double> rotations_;
   double radius_;  ///< of the marker, about [px]
   PixelBlock pixels_;
+  std::size_t all_ = 0;  ///< pixels read
+  MarkerFit best_;
   PatternFit fit_;
 };
 

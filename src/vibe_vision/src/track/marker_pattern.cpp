@@ -11,6 +11,14 @@ void PixelBlock::allocate(std::size_t capacity) {
   count = 0;
 }
 
+void PixelBlock::pad() {
+  for (std::size_t i = count; i < padded(); ++i) {
+    along[i] = along[count - 1];
+    lateral[i] = lateral[count - 1];
+    value[i] = weight[i] = 0;
+  }
+}
+
 void PatternValues::allocate(std::size_t capacity, const std::array<bool, kPoseParameters>& observed) {
   const std::size_t size = (capacity + kLanes - 1) / kLanes * kLanes;
   value.assign(size, 0);

@@ -10,6 +10,11 @@ namespace {
 constexpr double kJerkRate = 25;    // standard deviation of the jerk relative to the greatest acceleration [1/s]
 constexpr double kJerkTime = 1e-3;  // [s]
 
+// The density of the jerk follows what is seen: the mean of the squared normalised innovation is to be 1.
+constexpr double kLearning = 0.05, kLeast = 0.02, kMost = 4;
+constexpr double kSurprise = 9;  // of this, at most, is learnt from one innovation
+constexpr double kBreak = 100;   // squared normalised innovation of another motion
+
 double square(double x) {
   return x * x;
 }
@@ -35,7 +40,8 @@ MotionFilter::State MotionFilter::predict(double time) const {
   q << dt3 * dt2 / 20, dt2 * dt2 / 8, dt3 / 6, dt2 * dt2 / 8, dt3 / 3, dt2 / 2, dt3 / 6, dt2 / 2, dt;
   State later;
   later.mean = f * state_.mean;
-  later.covariance = f * state_.covariance * f.transpose() + square(kJerkRate * max_acceleration_) * kJerkTime * q;
+  later.covariance =
+      f * state_.covariance * f.transpose() + activity_ * square(kJerkRate * max_acceleration_) * kJerkTime * q;
   const double travel = max_speed_ * dt;
   later.mean[0] = std::clamp(later.mean[0], state_.mean[0] - travel, state_.mean[0] + travel);
   later.mean[1] = std::clamp(later.mean[1], -max_speed_, max_speed_);
@@ -45,6 +51,15 @@ MotionFilter::State MotionFilter::predict(double time) const {
 
 void MotionFilter::update(double time, double value, double variance) {
   const State predicted = predict(time);
+  const double surprise = square(value - predicted.mean[0]) / (predicted.covariance(0, 0) + variance);
+  if (surprise > kBreak) {  // a stop or a push: what was known about the motion does not hold any more
+    const double dt = time - time_, last = state_.mean[0];
+    start(time, value, variance);
+    state_.mean[1] = (value - last) / dt;
+    state_.covariance(1, 1) = square(max_acceleration_ * dt / 2);
+    return;
+  }
+  activity_ = std::clamp(activity_ * std::exp(kLearning * (std::min(surprise, kSurprise) - 1)), kLeast, kMost);
   const Eigen::Vector3d gain = predicted.covariance.col(0) / (predicted.covariance(0, 0) + variance);
   Eigen::Matrix3d keep = Eigen::Matrix3d::Identity();
   keep.col(0) -= gain;  // Joseph form: stays symmetric and positive

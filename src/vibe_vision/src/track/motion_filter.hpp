@@ -28,6 +28,7 @@ class MotionFilter {
 
  private:
   double max_speed_, max_acceleration_;
+  double activity_ = 1;  ///< density of the jerk relative to the greatest
   bool started_ = false;
   double time_ = 0;
   State state_;

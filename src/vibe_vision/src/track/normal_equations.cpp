@@ -2,31 +2,20 @@
 
 #include <algorithm>
 
+#include "track/float_sums.hpp"
+
 namespace vibe {
 namespace {
 
 constexpr std::size_t kPart = 256;  // rows summed in single precision before they are added in double precision
 
-using Lanes [[gnu::vector_size(16)]] = float;
-
-Lanes load(const float* p) {
-  Lanes v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-
-double total(Lanes a, Lanes b) {
-  const Lanes s = a + b;
-  return (static_cast<double>(s[0]) + s[1]) + (static_cast<double>(s[2]) + s[3]);
-}
-
 /// Products of one column with two others.
 void dotTwo(const float* a, const float* b, const float* c, std::size_t count, double& ab, double& ac) {
-  Lanes b0{}, b1{}, c0{}, c1{};
+  Four b0{}, b1{}, c0{}, c1{};
   for (std::size_t i = 0; i < count; i += kLanes) {
-    const Lanes p = load(a + i), q = load(a + i + 4);
-    b0 += p * load(b + i), b1 += q * load(b + i + 4);
-    c0 += p * load(c + i), c1 += q * load(c + i + 4);
+    const Four p = loadFour(a + i), q = loadFour(a + i + 4);
+    b0 += p * loadFour(b + i), b1 += q * loadFour(b + i + 4);
+    c0 += p * loadFour(c + i), c1 += q * loadFour(c + i + 4);
   }
   ab += total(b0, b1);
   ac += total(c0, c1);

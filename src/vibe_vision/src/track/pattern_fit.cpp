@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "track/float_sums.hpp"
+
 namespace vibe {
 namespace {
 
@@ -19,16 +21,6 @@ constexpr double kVarianceFactor = kScoreSquare * kMeanWeight / (kMeanSquare * k
 
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitParameters, kFitParameters>;
 using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kFitParameters, 1>;
-
-/// Sums of floats, kLanes at a time, in an order that does not depend on the machine.
-struct LaneSum {
-  float lane[kLanes] = {};
-  double total() const {
-    double sum = 0;
-    for (float x : lane) sum += x;
-    return sum;
-  }
-};
 
 /// Median of the pixels that have at least, or at most, this reflectance.
 class LevelHistogram {
@@ -72,6 +64,9 @@ PatternFit::PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::siz
       noise_(noise),
       observed_(pattern.observes()),
       factor_(capacity + kLanes),
+      weight_(factor_),
+      rest_(factor_),
+      information_(factor_),
       equations_(capacity) {
   values_.allocate(capacity, observed_);
 }
@@ -102,7 +97,7 @@ void PatternFit::startLevels(const PixelBlock& pixels, FitVector& x) const {
 FitStep PatternFit::step(const FitVector& x, const FitPrior& prior, const PixelBlock& pixels,
                          const FitOptions& options) {
   FitStep result;
-  chooseColumns(options);
+  chooseColumns(options.scope);
   weigh(x, pixels, options);
   fillColumns(x, pixels);
   equations_.sum(pixels.padded());
@@ -119,11 +114,14 @@ double PatternFit::loss(const FitVector& x, const PixelBlock& pixels, const FitO
   return valid_ > 0 ? loss_ / valid_ : 1;
 }
 
-void PatternFit::chooseColumns(const FitOptions& options) {
+void PatternFit::chooseColumns(FitScope scope) {
   columns_ = 0;
-  for (int k = 0; k < kPoseParameters; ++k)
-    if (observed_[k] && (!options.position_only || k <= kRotation)) parameter_[columns_++] = k;
-  for (int k = kBlack; k < (options.position_only ? kSlopeAlong : kFitParameters); ++k) parameter_[columns_++] = k;
+  const auto wanted = [scope](int k) {
+    if (scope == FitScope::Position) return k <= kRotation || k == kBlack || k == kContrast;
+    return scope == FitScope::All || (k != kBlur && k < kSlopeAlong);
+  };
+  for (int k = 0; k < kFitParameters; ++k)
+    if ((k >= kPoseParameters || observed_[k]) && wanted(k)) parameter_[columns_++] = k;
   equations_.start(columns_);
 }
 
@@ -136,31 +134,33 @@ void PatternFit::weigh(const FitVector& x, const PixelBlock& pixels, const FitOp
   const auto slack = static_cast<float>(options.uncertainty * options.uncertainty) * contrast * contrast;
   constexpr auto kInverseCut = static_cast<float>(1 / kCut);
   const float *m = values_.value.data(), *by_along = values_.derivative[kAlong].data();
+  const float* by_lateral = values_.derivative[kLateral].data();
   const float *px = pixels.along.data(), *py = pixels.lateral.data(), *seen = pixels.value.data();
   const float* valid = pixels.weight.data();
-  float *factor = factor_.data(), *residual = equations_.residual();
-  LaneSum squares, weights, loss, valid_pixels, used, full;
-  for (std::size_t begin = 0; begin < pixels.padded(); begin += kLanes)
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      const std::size_t i = begin + k;
-      const float light = 1 + slope_x * (px[i] - centre_x) + slope_y * (py[i] - centre_y);
-      const float grey = (black + contrast * m[i]) * light;
-      const float information = by_along[i] * by_along[i];
-      const float inverse = 1 / (floor + gain * std::max(grey, 0.F) + slack * information);
-      const float r = seen[i] - grey, square = r * r * inverse;
-      const float rest = std::max(1 - square * kInverseCut, 0.F);
-      const float weight = valid[i] * rest * rest;
-      factor[i] = std::sqrt(weight * inverse);
-      residual[i] = factor[i] * r;
-      squares.lane[k] += weight * square;
-      weights.lane[k] += weight;
-      loss.lane[k] += valid[i] * (1 - rest * rest * rest);
-      valid_pixels.lane[k] += valid[i];
-      used.lane[k] += weight * inverse * information;
-      full.lane[k] += inverse * information;
-    }
-  squares_ = squares.total(), weights_ = weights.total(), loss_ = loss.total(), valid_ = valid_pixels.total();
-  used_ = used.total(), full_ = full.total();
+  float* __restrict factor = factor_.data(), * __restrict residual = equations_.residual();
+  float* __restrict weight = weight_.data(), * __restrict rest = rest_.data(), * __restrict information = information_.data();
+  const std::size_t count = pixels.padded();
+  const Four zero{}, one = zero + 1;
+  for (std::size_t i = 0; i < count; i += 4) {
+    const Four light = one + slope_x * (loadFour(px + i) - centre_x) + slope_y * (loadFour(py + i) - centre_y);
+    const Four grey = (black + contrast * loadFour(m + i)) * light, usable = loadFour(valid + i);
+    const Four along = loadFour(by_along + i), lateral = loadFour(by_lateral + i);
+    const Four steep = along * along, slope = steep + lateral * lateral;
+    const Four inverse = one / (floor + gain * greater(grey, zero) + slack * slope);
+    const Four r = loadFour(seen + i) - grey, kept = greater(one - r * r * inverse * kInverseCut, zero);
+    const Four share = usable * kept * kept, root = usable * kept * squareRoot(inverse);
+    store(weight + i, share);
+    store(factor + i, root);
+    store(residual + i, root * r);
+    store(rest + i, share * kept);
+    store(information + i, inverse * steep);
+  }
+  squares_ = dot(residual, residual, count);
+  weights_ = total(weight, count);
+  valid_ = total(valid, count);
+  loss_ = valid_ - total(rest, count);
+  used_ = dot(weight, information, count);
+  full_ = total(information, count);
 }
 
 void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pixels) {

@@ -22,9 +22,15 @@ struct FitPrior {
   FitMatrix information = FitMatrix::Zero();  ///< inverse covariance
 };
 
+enum class FitScope {
+  Position,  ///< along, lateral, rotation, black and contrast
+  Shape,     ///< and the rest of the pose, except the blur
+  All
+};
+
 struct FitOptions {
-  double uncertainty = 0;      ///< of the position the fit starts from, standard deviation [px]
-  bool position_only = false;  ///< the other pose parameters and the light stay as they are
+  double uncertainty = 0;  ///< of the edges' places that the fit starts from, standard deviation [px]
+  FitScope scope = FitScope::All;
 };
 
 /// The result of one step, at the parameters before the step.
@@ -54,7 +60,7 @@ class PatternFit {
   const PatternValues& values() const { return values_; }
 
  private:
-  void chooseColumns(const FitOptions& options);
+  void chooseColumns(FitScope scope);
   void weigh(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   void fillColumns(const FitVector& x, const PixelBlock& pixels);
   void solve(const FitVector& x, const FitPrior& prior, FitStep& result) const;
@@ -63,7 +69,8 @@ class PatternFit {
   PixelNoise noise_;
   std::array<bool, kPoseParameters> observed_;
   PatternValues values_;
-  std::vector<float> factor_;  ///< square root of a pixel's weight
+  std::vector<float> factor_;                       ///< square root of a pixel's weight
+  std::vector<float> weight_, rest_, information_;  ///< see weigh()
   NormalEquations equations_;
   std::array<int, kFitParameters> parameter_{};  ///< of each column
   int columns_ = 0;

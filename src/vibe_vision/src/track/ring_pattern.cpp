@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "track/float_sums.hpp"
+
 namespace vibe {
 namespace {
 
@@ -12,16 +14,14 @@ constexpr double kTail = 3;                  // standard deviations of the blur 
 constexpr double kMaxScale = 1.3;            // of the marker's size
 constexpr std::size_t kPart = 64;            // pixels at a time: all of it stays in the first cache
 
-using Four [[gnu::vector_size(16)]] = float;
-
-Four load(const float* p) {
-  Four v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-
-float sum(Four v) {
-  return (v[0] + v[1]) + (v[2] + v[3]);
+/// The sums over the elements of a, c, b and d.
+Four sums(Four a, Four b, Four c, Four d) {
+  using Place [[gnu::vector_size(16)]] = int;
+  const Place low{0, 4, 1, 5}, high{2, 6, 3, 7}, front{0, 1, 4, 5}, back{2, 3, 6, 7};
+  const Four ac = __builtin_shuffle(a, c, low) + __builtin_shuffle(a, c, high);  // a02 c02 a13 c13
+  const Four bd = __builtin_shuffle(b, d, low) + __builtin_shuffle(b, d, high);
+  const Four even = __builtin_shuffle(ac, bd, front), odd = __builtin_shuffle(ac, bd, back);  // a c b d
+  return even + odd;
 }
 
 /// Weights of the cubic B-spline and their derivatives at a fraction f.
@@ -40,6 +40,24 @@ double tableBlur(const MarkerPose& pose) {
   return std::sqrt(pose.blur * pose.blur + kPixelVariance) * std::exp(-pose.log_scale - pose.log_aspect / 2);
 }
 
+/// From the image to the table: turned to the marker, stretched to its true shape, then turned so that the motion is
+/// along u. A ring looks the same from all sides.
+struct TableFrame {
+  double cos_tilt, sin_tilt, inverse_u, inverse_v;  ///< marker
+  double cos_motion, sin_motion;                    ///< direction of the motion on the marker
+  double motion;                                    ///< on the marker, per pixel in the image
+
+  explicit TableFrame(const MarkerPose& pose)
+      : cos_tilt(std::cos(pose.tilt)),
+        sin_tilt(std::sin(pose.tilt)),
+        inverse_u(std::exp(-pose.log_scale - pose.log_aspect)),
+        inverse_v(std::exp(-pose.log_scale)) {
+    const double u = cos_tilt * inverse_u, v = -sin_tilt * inverse_v;
+    motion = std::hypot(u, v);
+    cos_motion = u / motion, sin_motion = v / motion;
+  }
+};
+
 double reach(double outer, double half_side) {
   return std::min(half_side, outer + kTail * RingTable::kMaxBlur);
 }
@@ -53,6 +71,7 @@ struct RingPattern::Part {
   alignas(16) float sign_u[kPart], sign_v[kPart];
   alignas(16) float u[kPart], v[kPart];
   alignas(16) float value[kPart], by_u[kPart], by_v[kPart], laplacian[kPart];
+  std::size_t count;  ///< of pixels, a multiple of kLanes
 };
 
 RingPattern::RingPattern(const RingDesign& design, double pixels_per_metre)
@@ -64,7 +83,7 @@ RingPattern::RingPattern(const RingDesign& design, double pixels_per_metre)
 
 std::array<bool, kPoseParameters> RingPattern::observes() const {
   std::array<bool, kPoseParameters> shown{};
-  for (int k : {kAlong, kLateral, kLogScale, kLogAspect, kBlur, kKeystone}) shown[k] = true;
+  for (int k : {kAlong, kLateral, kLogScale, kTilt, kLogAspect, kBlur, kKeystone}) shown[k] = true;
   return shown;
 }
 
@@ -81,8 +100,33 @@ Eigen::Vector2d RingPattern::maxWindow() const {
   return Eigen::Vector2d::Constant(half_side_ * kMaxScale);
 }
 
+/// Keeps what lies near one of the two edges at some time during the exposure.
+void RingPattern::select(const MarkerPose& pose, double motion, PixelBlock& pixels) const {
+  const double size_v = std::exp(pose.log_scale), size_u = size_v * std::exp(pose.log_aspect);
+  const double width = kTail * std::sqrt(pose.blur * pose.blur + kPixelVariance) / size_v;
+  const auto square = [](double x) { return static_cast<float>(x * std::abs(x)); };
+  const float inner_begin = square(inner_ - width), inner_end = square(inner_ + width);
+  const float outer_begin = square(outer_ - width), outer_end = square(outer_ + width);
+  const auto along = static_cast<float>(pose.along), lateral = static_cast<float>(pose.lateral);
+  const auto inverse_u = static_cast<float>(1 / size_u), inverse_v = static_cast<float>(1 / size_v);
+  const auto travel = static_cast<float>(std::min(std::abs(motion), kMaxMotion) / 2 / size_u);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < pixels.count; ++i) {
+    const float u = std::abs(pixels.along[i] - along) * inverse_u, v = (pixels.lateral[i] - lateral) * inverse_v;
+    const float near_u = std::max(u - travel, 0.F), far_u = u + travel;
+    const float nearest = near_u * near_u + v * v, farthest = far_u * far_u + v * v;
+    pixels.along[n] = pixels.along[i], pixels.lateral[n] = pixels.lateral[i];
+    pixels.value[n] = pixels.value[i], pixels.weight[n] = pixels.weight[i];
+    const bool at_inner = nearest < inner_end && farthest > inner_begin;
+    const bool at_outer = nearest < outer_end && farthest > outer_begin;
+    n += at_inner || at_outer ? 1 : 0;
+  }
+  pixels.count = n;
+  pixels.pad();
+}
+
 void RingPattern::prepare(const MarkerPose& pose, double motion) {
-  table_.compose(tableBlur(pose), motion * std::exp(-pose.log_scale - pose.log_aspect));
+  table_.compose(tableBlur(pose), motion * TableFrame(pose).motion);
 }
 
 void RingPattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) {
@@ -95,68 +139,92 @@ void RingPattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, Pat
 }
 
 void RingPattern::place(const MarkerPose& pose, const PixelBlock& pixels, std::size_t begin, Part& part) const {
-  const std::size_t count = std::min(kPart, pixels.padded() - begin);
+  const std::size_t count = part.count = std::min(kPart, pixels.padded() - begin);
+  const TableFrame frame(pose);
   const auto along = static_cast<float>(pose.along), lateral = static_cast<float>(pose.lateral);
   const auto keystone = static_cast<float>(pose.keystone);
-  const auto inverse_u = static_cast<float>(std::exp(-pose.log_scale - pose.log_aspect));
-  const auto inverse_v = static_cast<float>(std::exp(-pose.log_scale));
+  const auto ct = static_cast<float>(frame.cos_tilt), st = static_cast<float>(frame.sin_tilt);
+  const auto cm = static_cast<float>(frame.cos_motion), sm = static_cast<float>(frame.sin_motion);
+  const auto inverse_u = static_cast<float>(frame.inverse_u), inverse_v = static_cast<float>(frame.inverse_v);
   constexpr auto kPerPixel = static_cast<float>(1 / RingTable::kStep);
   const auto last_row = static_cast<float>(table_.rows() - 3) - 0.01F;
   const auto last_column = static_cast<float>(table_.columns() - 3) - 0.01F;
+  const float *px = pixels.along.data() + begin, *py = pixels.lateral.data() + begin;
   for (std::size_t i = 0; i < count; ++i) {
-    const float x = pixels.along[begin + i] - along, y = pixels.lateral[begin + i] - lateral;
+    const float a = px[i] - along, b = py[i] - lateral;
+    const float x = ct * a + st * b, y = ct * b - st * a;
     const float shrink = 1 - keystone * x;
-    const float u = x * shrink * inverse_u, v = y * shrink * inverse_v;
+    const float p = x * shrink * inverse_u, q = y * shrink * inverse_v;
+    const float u = cm * p + sm * q, v = cm * q - sm * p;
     part.x[i] = x, part.y[i] = y, part.u[i] = u, part.v[i] = v;
     part.sign_u[i] = std::copysign(kPerPixel, u), part.sign_v[i] = std::copysign(kPerPixel, v);
     part.row[i] = std::min(std::abs(u) * kPerPixel + RingTable::kMargin, last_row);
     part.column[i] = std::min(std::abs(v) * kPerPixel + RingTable::kMargin, last_column);
   }
-  for (std::size_t i = count; i < kPart; ++i) part.row[i] = part.column[i] = RingTable::kMargin;
 }
 
 void RingPattern::readTable(Part& part) const {
-  for (std::size_t i = 0; i < kPart; ++i) {
-    const int r = static_cast<int>(part.row[i]), c = static_cast<int>(part.column[i]);
-    const Spline u(part.row[i] - static_cast<float>(r)), v(part.column[i] - static_cast<float>(c));
-    const float* p = table_.row(r - 1) + (c - 1);
-    const Four a = load(p), b = load(p + table_.columns()), d = load(p + 2 * table_.columns()),
-               e = load(p + 3 * table_.columns());
-    const Four mean = u.weight[0] * a + u.weight[1] * b + u.weight[2] * d + u.weight[3] * e;
-    const Four slope = u.first[0] * a + u.first[1] * b + u.first[2] * d + u.first[3] * e;
-    const Four bend = u.second[0] * a + u.second[1] * b + u.second[2] * d + u.second[3] * e;
-    part.value[i] = sum(mean * v.weight);
-    part.by_u[i] = sum(slope * v.weight);
-    part.by_v[i] = sum(mean * v.first);
-    part.laplacian[i] = sum(bend * v.weight + mean * v.second);
+  using Place [[gnu::vector_size(16)]] = int;
+  const Place low{0, 4, 1, 5}, high{2, 6, 3, 7}, front{0, 1, 4, 5}, back{2, 3, 6, 7};
+  for (std::size_t i = 0; i < part.count; i += 4) {
+    Four all[4];
+    for (std::size_t k = 0; k < 4; ++k) all[k] = readAt(part.row[i + k], part.column[i + k]);
+    const Four a = __builtin_shuffle(all[0], all[1], low), b = __builtin_shuffle(all[2], all[3], low);
+    const Four c = __builtin_shuffle(all[0], all[1], high), d = __builtin_shuffle(all[2], all[3], high);
+    store(part.value + i, __builtin_shuffle(a, b, front));
+    store(part.by_u + i, __builtin_shuffle(a, b, back));
+    store(part.by_v + i, __builtin_shuffle(c, d, front));
+    store(part.laplacian + i, __builtin_shuffle(c, d, back));
   }
 }
 
-/// From the table's derivatives to those by the pose. A change of the variance of the blur adds half the Laplacian.
+/// Value, derivatives by u and v, and Laplacian, per step of the table.
+inline Four RingPattern::readAt(float row, float column) const {
+  const int r = static_cast<int>(row), c = static_cast<int>(column), stride = table_.columns();
+  const Spline u(row - static_cast<float>(r)), v(column - static_cast<float>(c));
+  const float* p = table_.row(r - 1) + (c - 1);
+  const Four a = loadFour(p), b = loadFour(p + stride), d = loadFour(p + 2 * stride), e = loadFour(p + 3 * stride);
+  const Four mean = u.weight[0] * a + u.weight[1] * b + u.weight[2] * d + u.weight[3] * e;
+  const Four slope = u.first[0] * a + u.first[1] * b + u.first[2] * d + u.first[3] * e;
+  const Four bend = u.second[0] * a + u.second[1] * b + u.second[2] * d + u.second[3] * e;
+  return sums(mean * v.weight, mean * v.first, slope * v.weight, bend * v.weight + mean * v.second);
+}
+
+/// From the table's derivatives to those by the pose. A change of the variance of the blur adds half the Laplacian; one
+/// of tilt or aspect also turns the motion on the marker.
 void RingPattern::chain(const MarkerPose& pose, std::size_t begin, const Part& part, PatternValues& values) const {
-  const std::size_t count = std::min(kPart, values.value.size() - begin);
-  const auto keystone = static_cast<float>(pose.keystone);
-  const auto inverse_u = static_cast<float>(std::exp(-pose.log_scale - pose.log_aspect));
-  const auto inverse_v = static_cast<float>(std::exp(-pose.log_scale));
+  const std::size_t count = part.count;
+  const TableFrame frame(pose);
+  const auto ct = static_cast<float>(frame.cos_tilt), st = static_cast<float>(frame.sin_tilt);
+  const auto cm = static_cast<float>(frame.cos_motion), sm = static_cast<float>(frame.sin_motion);
+  const auto inverse_u = static_cast<float>(frame.inverse_u), inverse_v = static_cast<float>(frame.inverse_v);
+  const auto turn_tilt = static_cast<float>(-frame.inverse_u * frame.inverse_v / (frame.motion * frame.motion));
+  const auto keystone = static_cast<float>(pose.keystone), turn_aspect = cm * sm;
   const double blur = tableBlur(pose);
   const auto spread = static_cast<float>((blur * blur - table_.blur() * table_.blur()) / 2);
-  const auto by_blur = static_cast<float>(pose.blur) * inverse_u * inverse_v,
-             variance = static_cast<float>(blur * blur);
+  const auto by_blur = static_cast<float>(pose.blur) * inverse_u * inverse_v;
+  const auto variance = static_cast<float>(blur * blur);
   constexpr auto kPerArea = static_cast<float>(1 / (RingTable::kStep * RingTable::kStep));
-  std::array<float*, kPoseParameters> out;
-  for (std::size_t k = 0; k < out.size(); ++k)
-    out[k] = values.derivative[k].empty() ? nullptr : values.derivative[k].data() + begin;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float x = part.x[i], y = part.y[i], laplacian = kPerArea * part.laplacian[i];
-    const float by_u = part.sign_u[i] * part.by_u[i], by_v = part.sign_v[i] * part.by_v[i];
-    const float along_u = part.u[i] * by_u, along_v = part.v[i] * by_v;
-    values.value[begin + i] = part.value[i] + spread * laplacian;
-    out[kAlong][i] = -(1 - 2 * keystone * x) * inverse_u * by_u + keystone * y * inverse_v * by_v;
-    out[kLateral][i] = -(1 - keystone * x) * inverse_v * by_v;
-    out[kLogScale][i] = -along_u - along_v - variance * laplacian;
-    out[kLogAspect][i] = -along_u - 0.5F * variance * laplacian;
-    out[kBlur][i] = by_blur * laplacian;
-    out[kKeystone][i] = -x * (x * inverse_u * by_u + y * inverse_v * by_v);
+  const auto out = [&](PoseIndex k) { return values.derivative[k].data() + begin; };
+  float *value = values.value.data() + begin, *along = out(kAlong), *lateral = out(kLateral), *scale = out(kLogScale);
+  float *aspect = out(kLogAspect), *tilt = out(kTilt), *by_width = out(kBlur), *trapeze = out(kKeystone);
+  for (std::size_t i = 0; i < count; i += 4) {
+    const Four x = loadFour(part.x + i), y = loadFour(part.y + i), laplacian = kPerArea * loadFour(part.laplacian + i);
+    const Four by_u = loadFour(part.sign_u + i) * loadFour(part.by_u + i);
+    const Four by_v = loadFour(part.sign_v + i) * loadFour(part.by_v + i);
+    const Four turn = loadFour(part.v + i) * by_u - loadFour(part.u + i) * by_v;
+    const Four by_p = (cm * by_u - sm * by_v) * inverse_u, by_q = (sm * by_u + cm * by_v) * inverse_v;
+    const Four bend = keystone * x, shrink = 1 - bend;
+    const Four by_x = (shrink - bend) * by_p - keystone * y * by_q, by_y = shrink * by_q;
+    const Four grow_x = x * shrink * by_p, grow_y = y * shrink * by_q, spread_out = variance * laplacian;
+    store(value + i, loadFour(part.value + i) + spread * laplacian);
+    store(along + i, st * by_y - ct * by_x);
+    store(lateral + i, -st * by_x - ct * by_y);
+    store(scale + i, -grow_x - grow_y - spread_out);
+    store(aspect + i, turn_aspect * turn - grow_x - 0.5F * spread_out);
+    store(tilt + i, by_x * y - by_y * x + turn_tilt * turn);
+    store(by_width + i, by_blur * laplacian);
+    store(trapeze + i, -x * (x * by_p + y * by_q));
   }
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include "track/float_sums.hpp"
 #include "track/ring_table.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
@@ -14,6 +15,7 @@ class RingPattern : public MarkerPattern {
   Eigen::Vector2d maxWindow() const override;
   void prepare(const MarkerPose& pose, double motion) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
+  void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
   double searchHalfWidth() const override;
   void searchProfile(double motion, double scale, std::vector<float>& profile) const override;
 
@@ -22,6 +24,7 @@ class RingPattern : public MarkerPattern {
   struct Part;
   void place(const MarkerPose& pose, const PixelBlock& pixels, std::size_t begin, Part& part) const;
   void readTable(Part& part) const;
+  Four readAt(float row, float column) const;
   void chain(const MarkerPose& pose, std::size_t begin, const Part& part, PatternValues& values) const;
 
   double inner_, outer_, half_side_;  ///< [px]

@@ -25,8 +25,8 @@ using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitPara
 SlowState::SlowState(const VisionConfig& config, const InstrumentConfig& instrument,
                      const std::array<bool, kPoseParameters>& shown)
     : axis_(instrument.axis), blur_(config.blur) {
-  const double focal = (config.camera.fx + config.camera.fy) / 2;
-  slant_ = std::atan(axis_.perspective * focal / axis_.pixels_per_metre);
+  focal_ = (config.camera.fx + config.camera.fy) / 2;
+  slant_ = std::atan(axis_.perspective * focal_ / axis_.pixels_per_metre);
   lateral_tolerance_ = instrument.lateral_tolerance * axis_.pixels_per_metre;
   initial_deviation_.setZero();
   drift_.setZero();
@@ -41,7 +41,7 @@ SlowState::SlowState(const VisionConfig& config, const InstrumentConfig& instrum
   add(kTilt, kTiltPrior, kTiltDrift);
   add(kLogAspect, kAspectPrior, kAspectDrift);
   add(kBlur, kBlurPrior, kBlurDrift);
-  add(kKeystone, kSlantPrior / focal, kSlantDrift / focal);
+  add(kKeystone, kSlantPrior / focal_, kSlantDrift / focal_);
   add(kSlant, kSlantPrior, kSlantDrift);
   add(kSlopeAlong, kSlopePrior, kSlopeDrift);
   add(kSlopeLateral, kSlopePrior, kSlopeDrift);
@@ -62,14 +62,32 @@ void SlowState::predict(double travel) {
     const double room = initial_deviation_[k] * initial_deviation_[k] - covariance_(k, k);
     covariance_(k, k) += std::max(0.0, std::min(step * step, room));
   }
+  limitKeystone();
 }
 
-void SlowState::update(const FitVector& x, const FitMatrix& covariance, double slide) {
+/// A marker that is as long as wide is not slanted: no picture of it grows along the axis by more than its shape
+/// allows.
+void SlowState::limitKeystone() {
+  const double variance = covariance_(kKeystone, kKeystone);
+  if (variance <= 0) return;
+  const double aspect =
+      mean_[kLogAspect] + std::log(std::cos(slant_)) - 2 * std::sqrt(covariance_(kLogAspect, kLogAspect));
+  const double slant = std::acos(std::exp(std::min(aspect, 0.0))) + std::abs(slant_);
+  const double limit = slant / focal_;
+  if (variance <= limit * limit) return;
+  const double factor = limit / std::sqrt(variance);
+  covariance_.row(kKeystone) *= factor;
+  covariance_.col(kKeystone) *= factor;
+}
+
+void SlowState::update(const FitVector& x, const FitMatrix& covariance, double slide, double doubt) {
   const FitVector base = nominal(slide);
   for (int i = 0; i < count_; ++i) {
     mean_[index_[i]] = x[index_[i]] - base[index_[i]];
     for (int j = 0; j < count_; ++j) covariance_(index_[i], index_[j]) = covariance(index_[i], index_[j]);
   }
+  for (int i = 0; i < count_; ++i)
+    covariance_(index_[i], index_[i]) += doubt * initial_deviation_[index_[i]] * initial_deviation_[index_[i]];
 }
 
 FitPrior SlowState::prior(double slide) const {

@@ -17,7 +17,8 @@ class SlowState {
   /// @param travel  since the last frame [px]
   void predict(double travel);
   /// Takes over what a fit found. @param slide  of the marker in that frame [m]
-  void update(const FitVector& x, const FitMatrix& covariance, double slide);
+  /// @param doubt  share of the first uncertainty that remains, since the fit may be a neighbour of the best one
+  void update(const FitVector& x, const FitMatrix& covariance, double slide, double doubt);
 
   /// For a fit near this slide [m].
   FitPrior prior(double slide) const;
@@ -26,8 +27,10 @@ class SlowState {
   const FitMatrix& covariance() const { return covariance_; }
 
  private:
+  void limitKeystone();
+
   SlideAxis axis_;
-  double slant_, blur_, lateral_tolerance_;
+  double focal_ = 0, slant_ = 0, blur_ = 0, lateral_tolerance_;
   std::array<int, kFitParameters> index_{};  ///< the slow parameters
   int count_ = 0;
   FitVector initial_deviation_, drift_, mean_;

@@ -11,8 +11,8 @@ namespace vibe {
 /// Where and how a marker is seen. All in undistorted pixels, along the slide axis and across it.
 ///
 /// A point of the marker that is X along and Y across its centre [px at the pattern's pixels_per_metre] is seen at
-///   x = exp(log_scale + log_aspect) * X, y = exp(log_scale) * Y, turned by `tilt`,
-///   along + x * (1 + keystone * x), lateral + y * (1 + keystone * x)
+///   x = exp(log_scale + log_aspect) * X, y = exp(log_scale) * Y, then (x, y) * (1 + keystone * x),
+/// turned by `tilt`, from (along, lateral)
 struct MarkerPose {
   double along = 0;       ///< centre, at the middle of the exposure [px]
   double lateral = 0;     ///< centre, to the right of the direction (y down) [px]
@@ -21,7 +21,7 @@ struct MarkerPose {
   double tilt = 0;        ///< in the image, from the direction to the right [rad]
   double log_aspect = 0;  ///< log of (size along / size across); a slanted marker has less than 0
   double blur = 0;        ///< standard deviation of the point spread function [px], without the pixel's own area
-  double keystone = 0;    ///< relative growth of the picture along the axis: one end is nearer to the camera [1/px]
+  double keystone = 0;    ///< relative growth of the picture along the marker: one end is nearer to the camera [1/px]
   /// Of a rod, out of the image plane; positive: its positive end is further from the camera [rad]. It bends the bars,
   /// which shows the sign too. A flat marker has log_aspect and keystone instead.
   double slant = 0;
@@ -44,6 +44,7 @@ struct PixelBlock {
 
   std::size_t padded() const { return (count + kLanes - 1) / kLanes * kLanes; }
   void allocate(std::size_t capacity);
+  void pad();  ///< fills up behind `count`
   std::size_t capacity() const { return value.size(); }
 };
 

@@ -1,0 +1,52 @@
+#pragma once
+#include <cmath>
+#include <cstddef>
+
+#include "vibe_vision/track/marker_pattern.hpp"
+
+namespace vibe {
+
+/// Four floats of a vector register; compilers without the instructions take several. Sums below are always taken in
+/// the same order, and nothing is fused: the same bits on every machine.
+using Four [[gnu::vector_size(16)]] = float;
+
+inline Four loadFour(const float* p) {
+  Four v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+
+inline void store(float* p, Four v) {
+  __builtin_memcpy(p, &v, sizeof v);
+}
+inline Four greater(Four a, Four b) {
+  return a > b ? a : b;
+}
+inline Four squareRoot(Four v) {
+  Four root;
+  for (int k = 0; k < 4; ++k) root[k] = std::sqrt(v[k]);  // one instruction
+  return root;
+}
+
+inline double total(Four a, Four b) {
+  const Four s = a + b;
+  return (static_cast<double>(s[0]) + s[1]) + (static_cast<double>(s[2]) + s[3]);
+}
+
+/// @param count  a multiple of kLanes
+inline double total(const float* p, std::size_t count) {
+  Four a{}, b{};
+  for (std::size_t i = 0; i < count; i += kLanes) a += loadFour(p + i), b += loadFour(p + i + 4);
+  return total(a, b);
+}
+
+inline double dot(const float* p, const float* q, std::size_t count) {
+  Four a{}, b{};
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    a += loadFour(p + i) * loadFour(q + i);
+    b += loadFour(p + i + 4) * loadFour(q + i + 4);
+  }
+  return total(a, b);
+}
+
+}  // namespace vibe
