@@ -59,8 +59,8 @@ BlurredLine::Entry BlurredLine::entryAt(const std::vector<Interval>& black, doub
       addStep(x - interval.begin - copy * period_, 1, deviation, cumulant, sum);
       addStep(x - interval.end - copy * period_, -1, deviation, cumulant, sum);
     }
-  return {static_cast<float>(sum[0] - static_cast<double>(mean_) * x), static_cast<float>(sum[1]), static_cast<float>(sum[2]),
-          static_cast<float>(sum[3])};
+  return {static_cast<float>(sum[0] - static_cast<double>(mean_) * x), static_cast<float>(sum[1]),
+          static_cast<float>(sum[2]), static_cast<float>(sum[3])};
 }
 
 }  // namespace vibe

@@ -37,8 +37,8 @@ class BlurredLine {
     const Entry& e = entries_[level.first + static_cast<std::size_t>(i)];
     const float d = (place - static_cast<float>(i)) / kPerPixel, dv = variance - level.variance;
     const float s = 0.5F * (dv + d * d);  // heat equation: the derivative by the variance is half the second by x
-    return {e.integral + d * (e.value - mean_) + s * e.slope + d * (s + dv) * e.bend / 3, e.value + d * e.slope + s * e.bend,
-            e.slope + d * e.bend, e.bend};
+    return {e.integral + d * (e.value - mean_) + s * e.slope + d * (s + dv) * e.bend / 3,
+            e.value + d * e.slope + s * e.bend, e.slope + d * e.bend, e.bend};
   }
 
  private:

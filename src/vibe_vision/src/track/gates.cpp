@@ -6,13 +6,14 @@
 namespace vibe {
 namespace {
 
-constexpr double kMaxMisfit = 4;    // chi^2 per degree of freedom of the pixels that are no outliers
-constexpr double kDeviations = 6;   // of the prediction
-constexpr double kSureTilt = 3;     // standard deviations
-constexpr double kShear = 0.004;    // of a slanted ring away from the middle of the image
-constexpr double kRest = 1e-4;      // by which anything may have moved [m]
-constexpr double kSlack = 1;        // beyond the range and across the axis [px]
-constexpr double kMaxBlack = 0.75;  // of white: paper and ink differ more
+constexpr double kMaxMisfit = 2;      // chi^2 per degree of freedom of the pixels that are no outliers
+constexpr double kDeviations = 6;     // of the prediction
+constexpr double kSureTilt = 3;       // standard deviations
+constexpr double kShear = 0.004;      // of a slanted ring away from the middle of the image
+constexpr double kRest = 1e-4;        // by which anything may have moved [m]
+constexpr double kWeakerEdges = 0.4;  // of the share of all edges
+constexpr double kSlack = 1;          // beyond the range and across the axis [px]
+constexpr double kMaxBlack = 0.75;    // of white: paper and ink differ more
 
 /// A ring shows its tilt only by the direction of its slant, which perspective turns a little.
 double sureTilt(const MarkerFit& fit) {
@@ -42,7 +43,8 @@ LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal) const {
   const double wrong_size = std::max(std::abs(scale - 1), std::abs(length - 1));
   if (wrong_size > limits_.max_scale_error || sureTilt(fit) > limits_.max_tilt) return LostReason::Mismatch;
   if (fit.visible < limits_.min_visible) return LostReason::Occluded;
-  return fit.misfit > kMaxMisfit ? LostReason::Mismatch : LostReason::None;
+  const bool other = fit.weaker_edges < kWeakerEdges * fit.visible;
+  return other || fit.misfit > kMaxMisfit ? LostReason::Mismatch : LostReason::None;
 }
 
 /// A stop ends a motion at once: from where it was, only the speed is limited.

@@ -79,13 +79,14 @@ void SlowState::predict(double travel) {
   limitKeystone();
 }
 
-/// Only a slanted marker grows along its picture.
+/// Only a slanted marker grows along its picture: taken as a measurement of 0 that leaves the variance of the limit.
 void SlowState::limitKeystone() {
   const double variance = covariance_(kKeystone, kKeystone), limit = greatestSlant() / focal_;
   if (variance <= limit * limit) return;
-  const double factor = limit / std::sqrt(variance);
-  covariance_.row(kKeystone) *= factor;
-  covariance_.col(kKeystone) *= factor;
+  const FitVector common = covariance_.col(kKeystone);
+  const double gain = (1 - limit * limit / variance) / variance;
+  mean_ -= common * gain * mean_[kKeystone];
+  covariance_ -= gain * common * common.transpose();
 }
 
 void SlowState::update(const FitVector& x, const FitMatrix& covariance, double slide) {

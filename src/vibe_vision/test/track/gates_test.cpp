@@ -26,9 +26,9 @@ Measurement first(const SyntheticScene& scene) {
 
 TEST(Gates, Contrast) {
   SyntheticScene scene = ringScene("static");
-  scene.white = 120, scene.black = 90;  // 30 DN
+  scene.white = 120, scene.black = 80;
   EXPECT_TRUE(first(scene).tracked());
-  EXPECT_FALSE(first(scene, [](VisionConfig& config) { config.gates.min_contrast = 40; }).tracked());
+  EXPECT_FALSE(first(scene, [](VisionConfig& config) { config.gates.min_contrast = 50; }).tracked());
 }
 
 TEST(Gates, ContrastOfTheWrongSign) {
@@ -69,9 +69,24 @@ TEST(Gates, Range) {
   EXPECT_FALSE(first(scene, [](VisionConfig& config) { config.instruments[0].upper = 0.009; }).tracked());
 }
 
+TEST(Gates, AnotherRing) {
+  SyntheticScene scene = ringScene("static");
+  VisionConfig config = nominalConfig(scene);
+  Tracker same(config);
+  EXPECT_TRUE(same.track(Renderer(scene).render(0).frame)[0].tracked());
+  std::get<RingDesign>(scene.instruments[0].nominal.marker).inner_diameter = 3.2e-3;  // instead of 2 mm
+  const Renderer renderer(scene);
+  Tracker other(config);
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    const Measurement& m = other.track(renderer.render(i).frame)[0];
+    EXPECT_FALSE(m.tracked()) << "frame " << i;
+  }
+}
+
 TEST(Gates, ShareThatIsSeen) {
   SyntheticScene scene = ringScene("static");
-  RenderedFrame rendered = Renderer(scene).render(0);
+  const Renderer renderer(scene);
+  RenderedFrame rendered = renderer.render(10);
   const Eigen::Vector2d centre = rendered.truth[0].pixel;
   std::vector<std::uint8_t> pixels(
       rendered.frame.image.data, rendered.frame.image.data + rendered.frame.image.width * rendered.frame.image.height);
@@ -82,6 +97,7 @@ TEST(Gates, ShareThatIsSeen) {
     Frame frame = rendered.frame;
     frame.image.data = pixels.data();
     Tracker tracker(nominalConfig(scene));
+    for (std::uint64_t i = 0; i < 10; ++i) tracker.track(renderer.render(i).frame);
     return tracker.track(frame)[0];
   };
   const Measurement most = cover(13);

@@ -49,7 +49,7 @@ TEST(Tracker, FollowsWithoutASearchOnceItKnowsTheMotion) {
 // The speed of 0.4 m/s is lost at once: no filter predicts this.
 TEST(Tracker, AStopIsReportedInTheSameFrame) {
   SyntheticScene scene = ringScene("moving");
-  moveAs(scene, [](double t) { return std::min(-0.02 + 0.4 * t, 0.018); });
+  moveAs(scene, [](double t) { return std::min(-0.02 + 0.4 * t, 0.017); });
   const Renderer renderer(scene);
   Tracker tracker(nominalConfig(scene));
   for (std::uint64_t i = 0; i < 25; ++i) {
