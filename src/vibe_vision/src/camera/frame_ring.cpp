@@ -11,6 +11,7 @@ namespace vibe {
 namespace {
 
 constexpr int kMaxFrames = 5000;
+constexpr int kSearched = 3000;  // frames from the beginning of the scene, of which one is the first
 constexpr double kSpeedScale = 0.5, kAngularScale = 30;  // of the standard scene [m/s], [rad/s]
 
 /// How fast anything moves at a frame, relative to the speeds of the standard scene.
@@ -25,14 +26,15 @@ double restlessness(const SyntheticScene& scene, int frame) {
   return most;
 }
 
-/// First and last frame: at least three quarters of the frames that are allowed, within twice as many.
+/// First and last frame, at least half as many as are allowed.
 std::pair<int, int> calmEnds(const SyntheticScene& scene, int frames) {
   std::vector<double> cost;
-  for (int k = 0; k < 2 * frames; ++k) cost.push_back(restlessness(scene, k));
+  for (int k = 0; k < kSearched + frames; ++k) cost.push_back(restlessness(scene, k));
   std::pair<int, int> best{0, frames - 1};
   double least = 1e9;
-  for (int a = 0; a <= frames; ++a) {
-    for (int b = a + 3 * frames / 4; b < a + frames && b < 2 * frames; ++b) {
+  for (int a = 0; a < kSearched; ++a) {
+    if (cost[static_cast<std::size_t>(a)] >= least) continue;
+    for (int b = a + frames / 2; b < a + frames; ++b) {
       const double worst = std::max(cost[static_cast<std::size_t>(a)], cost[static_cast<std::size_t>(b)]);
       if (worst >= least) continue;
       least = worst;
@@ -53,7 +55,7 @@ FrameRing::Turn FrameRing::turnOf(std::uint64_t k) const {
 
 std::shared_ptr<const FrameRing> renderRing(const SyntheticScene& scene, int frames) {
   if (frames < 1 || frames > kMaxFrames) {
-    throw Error("fake camera: " + std::to_string(frames) + " frames; draw 1 to " + std::to_string(kMaxFrames));
+    throw Error("fake camera: " + std::to_string(frames) + " frames; draw 1 to " + std::to_string(kMaxFrames) + ".");
   }
   auto ring = std::make_shared<FrameRing>();
   ring->width = scene.camera.width;

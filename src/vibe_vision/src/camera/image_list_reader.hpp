@@ -15,6 +15,7 @@ class ImageListReader : public PictureReader {
   Result next(cv::Mat& picture) override;
   void rewind() override { index_ = 0; }
   std::size_t count() const override { return files_.size(); }
+  bool isCountExact() const override { return true; }
   std::string complaint() const override { return complaint_; }
   std::string folder() const;  ///< of the first image
 

@@ -12,11 +12,12 @@ namespace {
 
 constexpr double kCountTolerance = 0.02;  // of the number of frames that a container of video tells
 
-void checkCount(const std::string& name, const FrameTable& table, std::size_t count) {
-  const auto rows = static_cast<double>(table.rows.size()), frames = static_cast<double>(count);
-  if (rows > 0 && (frames == 0 || std::abs(rows - frames) <= 1 + kCountTolerance * frames)) return;
+void checkCount(const std::string& name, const FrameTable& table, const PictureReader& reader) {
+  const auto rows = static_cast<double>(table.rows.size()), frames = static_cast<double>(reader.count());
+  const double tolerance = reader.isCountExact() ? 0 : 1 + kCountTolerance * frames;
+  if (rows > 0 && (frames == 0 || std::abs(rows - frames) <= tolerance)) return;
   throw Error(table.file + ": has " + std::to_string(table.rows.size()) + " rows, but " + name + " has " +
-              std::to_string(count) + " frames; it needs one row per frame, or remove it");
+              std::to_string(reader.count()) + " frames; it needs one row per frame, or remove it.");
 }
 
 cv::Mat toGrey(const cv::Mat& picture) {
@@ -32,7 +33,7 @@ cv::Mat toGrey(const cv::Mat& picture) {
 RecordingSource::RecordingSource(const std::string& name, std::unique_ptr<PictureReader> reader,
                                  std::optional<FrameTable> table, const SourceOptions& options)
     : name_(name), reader_(std::move(reader)), table_(std::move(table)), options_(options) {
-  if (table_) checkCount(name_, *table_, reader_->count());
+  if (table_) checkCount(name_, *table_, *reader_);
 }
 
 ReadResult RecordingSource::read(Frame& frame, double timeout) {

@@ -12,6 +12,7 @@ class VideoReader : public PictureReader {
   Result next(cv::Mat& picture) override;
   void rewind() override;
   std::size_t count() const override { return count_; }
+  bool isCountExact() const override { return false; }
   std::string complaint() const override { return complaint_; }
 
  private:

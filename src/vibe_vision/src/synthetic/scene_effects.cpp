@@ -73,7 +73,7 @@ Occluder::Occluder(const SyntheticScene& scene)
       half_width_(kBarWidth * meanScale(scene) / 2),
       speed_(kBarSpeed * meanScale(scene)),
       slope_(0.08),
-      value_(static_cast<float>(0.4 * scene.background + 0.6 * scene.black)) {}
+      value_(static_cast<float>(0.55 * scene.background)) {}
 
 double Occluder::middle(double time, double y) const {
   const double reach = width_ + 2 * half_width_;

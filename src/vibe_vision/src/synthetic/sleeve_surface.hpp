@@ -26,11 +26,16 @@ class SleeveSurface : public Surface {
   ApertureSpread spread(float along, float across) const {
     return apertureSpread(along * direction_x_ - across * direction_y_, along * direction_y_ + across * direction_x_);
   }
+  /// Strips are as long as the apertures, but `share` times as wide; they lie `offset` apertures beside them.
+  void strips(const float* x, const float* y, int count, float offset, float share, float* coverage,
+              float* white) const;
+  bool nearOutline(const float* x, const float* y, int count) const;
   float helixBlack(float u, float phi, float along, const ApertureSpread& phase) const;
 
   SleeveDesign design_;
   RayPart along_, across_, depth_, start_;
   Aperture aperture_{};
+  float side_ = 0;  // of an aperture, undistorted [px]
   std::vector<Edges> bars_;
   float radius_, half_length_, distance_, rotation_;
   float inverse_pitch_, duty_;

@@ -38,21 +38,24 @@ BlurredLine::BlurredLine(const std::vector<Interval>& black, double period, doub
   const double begin = period > 0 ? 0 : std::floor(black.front().begin - reach);
   const double end = period > 0 ? period : std::ceil(black.back().end + reach);
   begin_ = static_cast<float>(begin);
-  size_ = static_cast<std::size_t>(std::ceil((end - begin) * kPerPixel)) + 2;
-  last_ = static_cast<float>(size_ - 1);
+  length_ = static_cast<float>(end - begin);
+  margin_ = period > 0 ? kMargin * static_cast<int>(kPerPixel) : 0;
+  size_ = static_cast<std::size_t>(std::ceil((end - begin) * kPerPixel)) + 2 + 2 * static_cast<std::size_t>(margin_);
+  last_ = static_cast<int>(size_) - 1;
   if (period > 0)
     for (const Interval& interval : black) mean_ += static_cast<float>((interval.end - interval.begin) / period);
   entries_.reserve(size_ * static_cast<std::size_t>(last_step_ - first_step_ + 1));
   for (std::int32_t step = first_step_; step <= last_step_; ++step)
-    for (std::size_t i = 0; i < size_; ++i)
-      entries_.push_back(entryAt(black, begin + static_cast<double>(i) / kPerPixel, varianceOf(step), pixel_variance));
+    for (int i = 0; i <= last_; ++i)
+      entries_.push_back(
+          entryAt(black, begin + static_cast<double>(i - margin_) / kPerPixel, varianceOf(step), pixel_variance));
 }
 
 BlurredLine::Entry BlurredLine::entryAt(const std::vector<Interval>& black, double x, double variance,
                                         double pixel_variance) const {
   const double deviation = std::sqrt(variance);
   const double cumulant = variance > 1.5 * pixel_variance ? -1.2 * pixel_variance * pixel_variance : 0;
-  const double copies = period_ > 0 ? std::ceil(kReach * deviation / period_) + 1 : 0;
+  const double copies = period_ > 0 ? std::ceil((kReach * deviation + kMargin) / period_) + 1 : 0;
   std::array<double, 4> sum{};
   for (double copy = -copies; copy <= copies; ++copy)
     for (const Interval& interval : black) {

@@ -28,11 +28,42 @@ class BlurredLine {
   /// @param pixel_variance  part of the variance that is the area of a pixel, uniform and not Gaussian [px^2]
   BlurredLine(const std::vector<Interval>& black, double period, double min_variance, double pixel_variance);
 
-  float mean() const { return mean_; }  ///< blackness of a periodic line
+  float mean() const { return mean_; }      ///< blackness of a periodic line
+  float length() const { return length_; }  ///< of a period, or of what has tables [px]
 
-  Entry at(float x, float variance) const {
-    const Level level = levelOf(variance);
-    const float place = placeOf(x);
+  struct Level {
+    std::size_t first;  ///< entry
+    float variance;
+  };
+  /// The tables for the variance nearest to one.
+  Level levelOf(float variance) const {
+    std::int32_t step = stepOf(variance);
+    step = step < first_step_ ? first_step_ : (step > last_step_ ? last_step_ : step);
+    return {static_cast<std::size_t>(step - first_step_) * size_, varianceOf(step)};
+  }
+  static constexpr float kPerPixel = 8;
+  /// Entry at a place, counted from the beginning of the line or period, kPerPixel of them per pixel; to
+  /// kMargin before and behind a period.
+  const float* entry(const Level& level, int place) const {
+    place += margin_;
+    place = place < 0 ? 0 : (place > last_ ? last_ : place);
+    return &entries_[level.first + static_cast<std::size_t>(place)].integral;
+  }
+  static constexpr int kMargin = 26;  ///< [px]
+  /// Distance from the beginning of the line or period.
+  struct Wrap {
+    float begin, period, inverse_period;
+    float at(float x) const {
+      const float place = x - begin;
+      return place - period * (static_cast<float>(static_cast<int>(place * inverse_period + kAboveZero)) - kAboveZero);
+    }
+  };
+  Wrap wrap() const { return {begin_, period_, inverse_period_}; }
+
+  Entry at(float x, float variance) const { return at(levelOf(variance), x, variance); }
+  Entry at(const Level& level, float x, float variance) const {
+    float place = wrap().at(x) * kPerPixel + static_cast<float>(margin_);
+    place = place < 0 ? 0 : (place > static_cast<float>(last_) ? static_cast<float>(last_) : place);
     const int i = static_cast<int>(place + 0.5F);
     const Entry& e = entries_[level.first + static_cast<std::size_t>(i)];
     const float d = (place - static_cast<float>(i)) / kPerPixel, dv = variance - level.variance;
@@ -42,11 +73,6 @@ class BlurredLine {
   }
 
  private:
-  struct Level {
-    std::size_t first;  ///< entry
-    float variance;
-  };
-  static constexpr float kPerPixel = 8;
   static constexpr float kAboveZero = 4096;  // conversion to int rounds towards 0: keep it positive
   static constexpr int kShift = 20;  // bits of a float below the three highest of the mantissa: 8 levels per octave
 
@@ -61,22 +87,11 @@ class BlurredLine {
     std::memcpy(&variance, &bits, sizeof bits);
     return variance;
   }
-  Level levelOf(float variance) const {
-    std::int32_t step = stepOf(variance);
-    step = step < first_step_ ? first_step_ : (step > last_step_ ? last_step_ : step);
-    return {static_cast<std::size_t>(step - first_step_) * size_, varianceOf(step)};
-  }
-  float placeOf(float x) const {
-    float place = x - begin_;
-    if (period_ > 0)
-      place -= period_ * (static_cast<float>(static_cast<int>(place * inverse_period_ + kAboveZero)) - kAboveZero);
-    place *= kPerPixel;
-    return place < 0 ? 0 : (place > last_ ? last_ : place);
-  }
   Entry entryAt(const std::vector<Interval>& black, double x, double variance, double pixel_variance) const;
 
-  float begin_ = 0, period_ = 0, inverse_period_ = 0, last_ = 0, mean_ = 0;
-  std::size_t size_ = 0;  ///< entries of a level
+  float begin_ = 0, period_ = 0, inverse_period_ = 0, length_ = 0, mean_ = 0;
+  int margin_ = 0, last_ = 0;  ///< entries before the period; the last entry of a level
+  std::size_t size_ = 0;       ///< entries of a level
   std::int32_t first_step_ = 0, last_step_ = 0;
   std::vector<Entry> entries_;
 };

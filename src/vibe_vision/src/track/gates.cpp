@@ -6,7 +6,9 @@
 namespace vibe {
 namespace {
 
-constexpr double kMaxMisfit = 2;      // chi^2 per degree of freedom of the pixels that are no outliers
+// chi^2 per degree of freedom of the pixels that are no outliers: of a marker that is seen as a whole, of half of one.
+// What is left of a covered marker fits other poses nearly as well.
+constexpr double kMaxMisfit = 4, kMaxMisfitOfHalf = 1.5;
 constexpr double kDeviations = 6;     // of the prediction
 constexpr double kSureTilt = 3;       // standard deviations
 constexpr double kShear = 0.004;      // of a slanted ring away from the middle of the image
@@ -44,7 +46,9 @@ LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal) const {
   if (wrong_size > limits_.max_scale_error || sureTilt(fit) > limits_.max_tilt) return LostReason::Mismatch;
   if (fit.visible < limits_.min_visible) return LostReason::Occluded;
   const bool other = fit.weaker_edges < kWeakerEdges * fit.visible;
-  return other || fit.misfit > kMaxMisfit ? LostReason::Mismatch : LostReason::None;
+  const double part = std::clamp((fit.visible - 0.5) / 0.35, 0.0, 1.0);
+  return other || fit.misfit > kMaxMisfitOfHalf + part * (kMaxMisfit - kMaxMisfitOfHalf) ? LostReason::Mismatch
+                                                                                         : LostReason::None;
 }
 
 /// A stop ends a motion at once: from where it was, only the speed is limited.

@@ -1,5 +1,7 @@
 #include "track/sleeve_pattern.hpp"
 
+#include "track/lanes.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -12,7 +14,10 @@ constexpr double kMinBlur = 0.25, kMaxBlur = 3.5;  // of the optics [px]
 constexpr double kMinMotion = 0.5;  // shorter ones are replaced by this, and their variance taken off the blur [px]
 constexpr double kRim = 0.88;       // of the radius: beyond, the print is seen too obliquely
 constexpr float kReach = 3.4F;      // standard deviations after which an edge is over
-constexpr float kMaxSine = 0.97F;   // of the angle around the rod: keeps derivatives finite
+constexpr float kTellReach = 2.7F;  // standard deviations from an edge within which a pixel tells something
+constexpr float kCornerReach = 3.1F;
+constexpr float kMaxSine = 0.97F;                 // of the angle around the rod: keeps derivatives finite
+constexpr int kBarLevels = 2, kStripeLevels = 4;  // variances from the middle of the rod to the rim
 constexpr float kTurn = 6.28318530718F;
 
 /// To 2e-8, for 0 <= s < 1. Abramowitz and Stegun, "Handbook of Mathematical Functions", 4.4.46.
@@ -59,13 +64,16 @@ struct SleevePattern::View {
 struct SleevePattern::Part {
   static constexpr std::size_t kSize = 64;
   std::size_t size = kSize;
-  alignas(64) float x[kSize], v[kSize];           ///< along and across in the picture
-  alignas(64) float u[kSize], w[kSize];           ///< along the print, from its centre and from a black part's centre
-  alignas(64) float stretch[kSize], lean[kSize];  ///< of u against x; change of u across: lean, of the stripe: swing
-  alignas(64) float swing[kSize];
-  alignas(64) float by_slant[kSize];  ///< change of u
+  alignas(64) float x[kSize], v[kSize];  ///< along and across in the picture
+  alignas(64) float u[kSize], w[kSize];  ///< along the print, from its centre and from a black part's centre
+  alignas(64) float sine[kSize], cosine[kSize], phi[kSize];    ///< around the rod
+  alignas(64) float stretch[kSize], lean[kSize], turn[kSize];  ///< change of u along and across, of phi pitch / 2 pi
+  alignas(64) float by_slant[kSize];                           ///< change of u
   alignas(64) float half_motion[kSize], stripe_half_motion[kSize];
   alignas(64) float bar_variance[kSize], stripe_variance[kSize], cut_variance[kSize];
+  alignas(64) float inside[kSize], outside[kSize];  ///< of the helix, and of its ends: 1 or 0
+  alignas(64) float bars[kSize], bars_slope[kSize], bars_bend[kSize];
+  alignas(64) float stripe[kSize], stripe_slope[kSize], stripe_bend[kSize];
   alignas(64) float value[kSize], by_u[kSize], by_w[kSize], by_blur[kSize];
 };
 
@@ -82,15 +90,20 @@ SleevePattern::SleevePattern(const SleeveDesign& design, double pixels_per_metre
       helix_begin_(static_cast<float>(design.helix_begin * pixels_per_metre)),
       helix_end_(static_cast<float>(design.helix_end * pixels_per_metre)),
       pitch_(static_cast<float>(design.helix_pitch * pixels_per_metre)),
-      bars_left_(static_cast<float>(-half_length_)),
-      bars_right_(static_cast<float>(half_length_)),
       bars_(barsOf(design, pixels_per_metre), 0, 0.08, kPixelVariance),
       stripe_({stripeOf(design, pixels_per_metre)}, std::abs(design.helix_pitch) * pixels_per_metre, 0.002,
               kPixelVariance),
+      moving_bars_(bars_, kBarLevels),
+      moving_stripe_(stripe_, kStripeLevels),
       cut_(std::abs(pitch_), std::abs(pitch_) * design.helix_duty, stripe_) {
-  for (const Interval& bar : barsOf(design, pixels_per_metre)) {
-    if (bar.end <= helix_begin_) bars_left_ = std::max(bars_left_, static_cast<float>(bar.end));
-    if (bar.begin >= helix_end_) bars_right_ = std::min(bars_right_, static_cast<float>(bar.begin));
+  measureEdges(barsOf(design, pixels_per_metre));
+}
+void SleevePattern::measureEdges(const std::vector<Interval>& bars) {
+  for (int i = 0; i <= static_cast<int>(2 * half_length_) + 1; ++i) {
+    double nearest = 2 * half_length_;
+    for (const Interval& bar : bars)
+      for (const double edge : {bar.begin, bar.end}) nearest = std::min(nearest, std::abs(i - half_length_ - edge));
+    edge_distance_.push_back(static_cast<float>(nearest));
   }
 }
 
@@ -113,11 +126,22 @@ Eigen::Vector2d SleevePattern::maxWindow() const {
   return Eigen::Vector2d(half_length_, radius_) * 1.2;
 }
 
-void SleevePattern::prepare(const MarkerPose&, double motion) {
-  motion_ = std::abs(motion);
+/// Tables for the middle of the rod and for its rim. Slopes are those of a line of sight that is not oblique.
+void SleevePattern::prepare(const MarkerPose& pose, double motion) {
+  motion_ = std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion);
+  const View view = viewOf(pose, motion_);
+  const double lean = std::tan(pose.slant + (pose.along - view_.principal_along) / view_.focal_length);
+  const double rim = kRim / std::sqrt(1 - kRim * kRim), turn = pitch_ / kTurn / radius_;
+  const double stretch = 1 + lean * lean, bow = std::abs(lean) * rim,
+               swing = bow + std::abs(turn) / std::sqrt(1 - kRim * kRim);
+  const auto half = static_cast<float>(view.half_motion * view.tilt_cosine * std::sqrt(stretch));
+  moving_bars_.compose(view.variance * static_cast<float>(stretch),
+                       view.variance * static_cast<float>(stretch + bow * bow), half);
+  moving_stripe_.compose(view.variance * static_cast<float>(stretch + turn * turn),
+                         view.variance * static_cast<float>(stretch + swing * swing), half);
 }
 
-SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose) const {
+SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose, double motion_length) const {
   View view{};
   const double scale = std::exp(pose.log_scale);
   view.along = static_cast<float>(pose.along);
@@ -137,8 +161,8 @@ SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose) const {
   view.principal_x = static_cast<float>(principal.x() / scale);
   view.across = static_cast<float>(slope.y() * cosine);
   view.turn = static_cast<float>(std::atan(slope.y() / (cosine - slope.x() * sine)) - std::atan(slope.y() * cosine));
-  const double motion = std::max(motion_, kMinMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
-  const double variance = blur * blur + kPixelVariance - (motion * motion - motion_ * motion_) / 12;
+  const double motion = std::max(motion_length, kMinMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
+  const double variance = blur * blur + kPixelVariance - (motion * motion - motion_length * motion_length) / 12;
   view.half_motion = static_cast<float>(motion / 2 / scale);
   view.variance = static_cast<float>(variance / (scale * scale));
   view.by_blur = static_cast<float>(2 * blur / variance);
@@ -146,90 +170,159 @@ SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose) const {
 }
 
 void SleevePattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) {
-  const View view = viewOf(pose);
+  const View view = viewOf(pose, motion_);
   Part part;
   for (std::size_t begin = 0; begin < pixels.padded(); begin += Part::kSize) {
     part.size = std::min(Part::kSize, pixels.padded() - begin);
-    place(view, pixels, begin, part);
+    placePixels(view, pixels, begin, part);
     look(part);
     chain(view, begin, part, values);
   }
 }
 
+/// The last part may have fewer pixels: its last one is repeated.
+void SleevePattern::placePixels(const View& view, const PixelBlock& pixels, std::size_t begin, Part& part) const {
+  const float *along = pixels.along.data() + begin, *lateral = pixels.lateral.data() + begin;
+  float last_along[Part::kSize], last_lateral[Part::kSize];
+  if (part.size < Part::kSize) {
+    for (std::size_t i = 0; i < Part::kSize; ++i) {
+      last_along[i] = along[std::min(i, part.size - 1)];
+      last_lateral[i] = lateral[std::min(i, part.size - 1)];
+    }
+    along = last_along, lateral = last_lateral;
+  }
+  place(view, along, lateral, part);
+  unroll(view, part);
+  spread(view, part);
+}
+
 /// Where the line of sight of each pixel meets the rod. Of the angle phi around the rod and the place u along it, the
 /// picture shows x + t X = u cos(slant) + R cos(phi) sin(slant), where X is the depth of the place, t the slope of the
 /// line of sight; and likewise across.
-void SleevePattern::place(const View& view, const PixelBlock& pixels, std::size_t begin, Part& part) const {
-  const auto radius = static_cast<float>(radius_), inverse_radius = 1 / radius, advance = pitch_ / kTurn;
+VIBE_LANES void SleevePattern::place(const View& pose, const float* __restrict along, const float* __restrict lateral,
+                                     Part& __restrict part) const {
+  const View view = pose;
+  const auto radius = static_cast<float>(radius_), inverse_radius = 1 / radius;
   const float lift = view.across * view.slant_sine / (view.slant_cosine * view.slant_cosine);
-  for (std::size_t i = 0; i < part.size; ++i) {
-    const float da = pixels.along[begin + i] - view.along, dl = pixels.lateral[begin + i] - view.lateral;
+  for (std::size_t i = 0; i < Part::kSize; ++i) {
+    const float da = along[i] - view.along, dl = lateral[i] - view.lateral;
     const float x = (da * view.tilt_cosine + dl * view.tilt_sine) * view.inverse_scale;
     const float v = (dl * view.tilt_cosine - da * view.tilt_sine) * view.inverse_scale;
-    const float slope = view.bend * (x - view.principal_x);
-    const float across = view.slant_sine + view.slant_cosine * slope;
-    const float stretch = 1 / (view.slant_cosine - view.slant_sine * slope);
-
     float sine = (v + lift * x) * inverse_radius;
     float square = sine * sine;
     square = square > kMaxSine * kMaxSine ? kMaxSine * kMaxSine : square;
     const float height = radius * view.slant_cosine * std::sqrt(1 - square);
     sine *= 1 + view.bend * (x * view.slant_sine - height);
-    float size = std::abs(sine);
-    size = size > kMaxSine ? kMaxSine : size;
-    sine = sine < 0 ? -size : size;
-    const float cosine = std::sqrt(1 - size * size), angle = arcSine(size, std::sqrt(1 - size));
-    const float phi = sine < 0 ? -angle : angle;
-
-    const float per_cosine = 1 / cosine, bow = across * stretch;
-    const float curve = 0.5F * view.variance * inverse_radius * per_cosine * per_cosine * per_cosine;
-    const float lean = bow * (sine * per_cosine - view.across), turn = advance * inverse_radius * per_cosine;
-    const float top = radius * (cosine + view.across * sine);  // of the rod above its axis, towards the camera
-    const float u = (x - top * across) * stretch + curve * bow;
+    sine = sine > kMaxSine ? kMaxSine : sine;
+    sine = sine < -kMaxSine ? -kMaxSine : sine;
+    const float size = std::abs(sine);
     part.x[i] = x;
     part.v[i] = v;
-    part.u[i] = u;
-    part.w[i] = u - advance * (phi + view.turn - view.rotation + curve * sine * inverse_radius);
-    part.stretch[i] = stretch;
-    part.lean[i] = lean;
-    part.swing[i] = lean - turn;
-    part.by_slant[i] = u * bow - top;
-    part.half_motion[i] = view.half_motion * (view.tilt_cosine * stretch - view.tilt_sine * lean);
-    part.stripe_half_motion[i] = view.half_motion * (view.tilt_cosine * stretch - view.tilt_sine * (lean - turn));
-    part.bar_variance[i] = view.variance * (stretch * stretch + lean * lean);
-    part.stripe_variance[i] = view.variance * (stretch * stretch + (lean - turn) * (lean - turn));
-    part.cut_variance[i] = view.variance * turn * turn;
+    part.sine[i] = sine;
+    part.cosine[i] = std::sqrt(1 - size * size);
+    part.phi[i] = std::copysign(arcSine(size, std::sqrt(1 - size)), sine) + view.turn - view.rotation;
   }
 }
 
-void SleevePattern::add(const Blackness& other, float sign, Blackness& sum) {
-  sum.value += sign * other.value;
-  sum.by_u += sign * other.by_u;
-  sum.by_w += sign * other.by_w;
-  sum.by_blur += sign * other.by_blur;
+/// Places on the print, and how fast they change in the picture.
+VIBE_LANES void SleevePattern::unroll(const View& pose, Part& __restrict part) const {
+  const View view = pose;
+  const auto radius = static_cast<float>(radius_), inverse_radius = 1 / radius;
+  const float advance = pitch_ / kTurn, half_variance = 0.5F * view.variance;
+  for (std::size_t i = 0; i < Part::kSize; ++i) {
+    const float x = part.x[i], sine = part.sine[i], cosine = part.cosine[i];
+    const float slope = view.bend * (x - view.principal_x);
+    const float across = view.slant_sine + view.slant_cosine * slope;
+    const float stretch = 1 / (view.slant_cosine - view.slant_sine * slope);
+    const float per_cosine = 1 / cosine, bow = across * stretch;
+    const float curve = half_variance * inverse_radius * per_cosine * per_cosine * per_cosine;
+    const float top = radius * (cosine + view.across * sine);  // of the rod above its axis, towards the camera
+    const float u = (x - top * across) * stretch + curve * bow;
+    part.u[i] = u;
+    part.w[i] = u - advance * (part.phi[i] + curve * sine * inverse_radius);
+    part.stretch[i] = stretch;
+    part.lean[i] = bow * (sine * per_cosine - view.across);
+    part.turn[i] = advance * inverse_radius * per_cosine;
+    part.by_slant[i] = u * bow - top;
+  }
+}
+
+VIBE_LANES void SleevePattern::spread(const View& pose, Part& __restrict part) const {
+  const View view = pose;
+  const float begin = helix_begin_, end = helix_end_;
+  for (std::size_t i = 0; i < Part::kSize; ++i) {
+    const float stretch = part.stretch[i], lean = part.lean[i], turn = part.turn[i], swing = lean - turn;
+    const float half_motion = view.half_motion * (view.tilt_cosine * stretch - view.tilt_sine * lean);
+    const float variance = view.variance * (stretch * stretch + lean * lean);
+    const float reach = kReach * std::sqrt(variance) + half_motion, low = part.u[i] - reach, high = part.u[i] + reach;
+    part.half_motion[i] = half_motion;
+    part.stripe_half_motion[i] = half_motion + view.half_motion * view.tilt_sine * turn;
+    part.bar_variance[i] = variance;
+    part.stripe_variance[i] = view.variance * (stretch * stretch + swing * swing);
+    part.cut_variance[i] = view.variance * turn * turn;
+    part.inside[i] = (low > begin ? 1.0F : 0.0F) * (high < end ? 1.0F : 0.0F);
+    part.outside[i] = (high < begin ? 1.0F : 0.0F) + (low > end ? 1.0F : 0.0F);
+  }
 }
 
 void SleevePattern::look(Part& part) const {
-  for (std::size_t i = 0; i < part.size; ++i) {
-    const float reach = kReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i], u = part.u[i];
-    Blackness black;
-    if (u - reach < bars_left_ || u + reach > bars_right_) black = barsAt(part, i);
-    if (u + reach > helix_begin_ && u - reach < helix_end_) {
-      add(u + reach < helix_end_ ? stripeAt(part, i) : cutStripeAt(part, i, helix_end_), 1, black);
-      if (u - reach < helix_begin_) add(cutStripeAt(part, i, helix_begin_), -1, black);
-    }
-    part.value[i] = black.value;
-    part.by_u[i] = black.by_u;
-    part.by_w[i] = black.by_w;
-    part.by_blur[i] = black.by_blur;
+  moving_bars_.look({part.u, part.bar_variance, part.half_motion}, Part::kSize,
+                    {part.bars, part.bars_slope, part.bars_bend});
+  moving_stripe_.look({part.w, part.stripe_variance, part.stripe_half_motion}, Part::kSize,
+                      {part.stripe, part.stripe_slope, part.stripe_bend});
+  for (std::size_t i = 0; i < Part::kSize; ++i) {
+    const float inside = part.inside[i];
+    part.value[i] = part.bars[i] + inside * part.stripe[i];
+    part.by_w[i] = inside * part.stripe_slope[i];
+    part.by_u[i] = part.bars_slope[i] + part.by_w[i];
+    part.by_blur[i] =
+        0.5F * (part.bar_variance[i] * part.bars_bend[i] + inside * part.stripe_variance[i] * part.stripe_bend[i]);
   }
+  for (std::size_t i = 0; i < part.size; ++i)
+    if (part.inside[i] + part.outside[i] == 0) cutAt(i, part);
 }
 
-SleevePattern::Blackness SleevePattern::barsAt(const Part& part, std::size_t i) const {
-  const float half = part.half_motion[i], variance = part.bar_variance[i], inverse = 0.5F / half;
-  const BlurredLine::Entry a = bars_.at(part.u[i] - half, variance), b = bars_.at(part.u[i] + half, variance);
-  return {(b.integral - a.integral) * inverse, (b.value - a.value) * inverse, 0,
-          0.5F * variance * (b.slope - a.slope) * inverse};
+/// Pixels near an edge. Those where the helix ends at an edge of the stripe are few and costly.
+void SleevePattern::select(const MarkerPose& pose, double motion, PixelBlock& pixels) const {
+  const View view = viewOf(pose, std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion));
+  Part part;
+  std::size_t n = 0;
+  for (std::size_t begin = 0; begin < pixels.count; begin += Part::kSize) {
+    part.size = std::min(Part::kSize, pixels.count - begin);
+    placePixels(view, pixels, begin, part);
+    for (std::size_t i = 0; i < part.size; ++i) {
+      pixels.along[n] = pixels.along[begin + i], pixels.lateral[n] = pixels.lateral[begin + i];
+      pixels.value[n] = pixels.value[begin + i], pixels.weight[n] = pixels.weight[begin + i];
+      n += tells(part, i) ? 1 : 0;
+    }
+  }
+  pixels.count = n;
+  pixels.pad();
+}
+
+bool SleevePattern::tells(const Part& part, std::size_t i) const {
+  const float u = part.u[i], last = static_cast<float>(edge_distance_.size() - 1);
+  const float place = std::clamp(u + static_cast<float>(half_length_) + 0.5F, 0.0F, last);
+  const float reach = kTellReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i] + 0.5F;
+  const bool bar = edge_distance_[static_cast<std::size_t>(place)] < reach;
+  if (part.outside[i] > 0) return bar;
+  const float deviation = std::sqrt(part.stripe_variance[i]);
+  const bool stripe = cut_.edgeDistance(part.w[i]) < kTellReach * deviation + part.stripe_half_motion[i];
+  if (part.inside[i] > 0) return stripe;
+  const float cut = std::abs(u - helix_begin_) < std::abs(u - helix_end_) ? helix_begin_ : helix_end_;
+  const float phase = part.w[i] - u + cut;
+  return bar || ((stripe || cut_.isBlack(phase)) && cut_.edgeDistance(phase) > kCornerReach * deviation);
+}
+
+/// Near an end of the helix.
+void SleevePattern::cutAt(std::size_t i, Part& part) const {
+  const float reach = kReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i], u = part.u[i];
+  const Blackness upper = u + reach < helix_end_ ? stripeAt(part, i) : cutStripeAt(part, i, helix_end_);
+  const Blackness lower = u - reach < helix_begin_ ? cutStripeAt(part, i, helix_begin_) : Blackness();
+  part.value[i] += upper.value - lower.value;
+  part.by_u[i] += upper.by_u - lower.by_u;
+  part.by_w[i] += upper.by_w - lower.by_w;
+  part.by_blur[i] += upper.by_blur - lower.by_blur;
 }
 
 SleevePattern::Blackness SleevePattern::stripeAt(const Part& part, std::size_t i) const {
@@ -250,16 +343,19 @@ SleevePattern::Blackness SleevePattern::cutStripeAt(const Part& part, std::size_
           0.5F * along * (b.slope - a.slope) * inverse};
 }
 
-void SleevePattern::chain(const View& view, std::size_t begin, const Part& part, PatternValues& values) const {
+VIBE_LANES void SleevePattern::chain(const View& pose, std::size_t begin, const Part& part,
+                                     PatternValues& values) const {
+  const View view = pose;
   const float c = view.tilt_cosine * view.inverse_scale, s = view.tilt_sine * view.inverse_scale;
   const float advance = pitch_ / kTurn;
   const auto out = [&](PoseIndex k) { return values.derivative[k].data() + begin; };
-  float *along = out(kAlong), *lateral = out(kLateral), *rotation = out(kRotation), *scale = out(kLogScale);
-  float *tilt = out(kTilt), *blur = out(kBlur), *slant = out(kSlant), *value = values.value.data() + begin;
+  float* __restrict along = out(kAlong), * __restrict lateral = out(kLateral), * __restrict rotation = out(kRotation);
+  float* __restrict scale = out(kLogScale), * __restrict tilt = out(kTilt), * __restrict blur = out(kBlur);
+  float* __restrict slant = out(kSlant), * __restrict value = values.value.data() + begin;
   for (std::size_t i = 0; i < part.size; ++i) {
     const float x = part.x[i], v = part.v[i], black_u = part.by_u[i], black_w = part.by_w[i];
     const float by_x = black_u * part.stretch[i];
-    const float by_v = black_u * part.lean[i] + black_w * (part.swing[i] - part.lean[i]);
+    const float by_v = black_u * part.lean[i] - black_w * part.turn[i];
     value[i] = 1 - part.value[i];
     along[i] = c * by_x - s * by_v;
     lateral[i] = s * by_x + c * by_v;

@@ -1,6 +1,7 @@
 #pragma once
 #include "track/blurred_line.hpp"
 #include "track/cut_stripe.hpp"
+#include "track/moving_line.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
 namespace vibe {
@@ -18,6 +19,7 @@ class SleevePattern : public MarkerPattern {
   Eigen::Vector2d maxWindow() const override;
   void prepare(const MarkerPose& pose, double motion) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
+  void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
   double searchHalfWidth() const override;
   void searchProfile(double motion, double scale, std::vector<float>& profile) const override;
   void searchTurns(double motion, double scale, std::vector<float>& cosine, std::vector<float>& sine) const override;
@@ -27,11 +29,16 @@ class SleevePattern : public MarkerPattern {
   struct View;
   struct Part;
   struct Blackness;
-  View viewOf(const MarkerPose& pose) const;
-  void place(const View& view, const PixelBlock& pixels, std::size_t begin, Part& part) const;
+  View viewOf(const MarkerPose& pose, double motion) const;
+  void measureEdges(const std::vector<Interval>& bars);
+  bool tells(const Part& part, std::size_t i) const;
+  void placePixels(const View& view, const PixelBlock& pixels, std::size_t begin, Part& part) const;
+  void place(const View& pose, const float* along, const float* lateral, Part& part) const;
+  void unroll(const View& pose, Part& part) const;
+  void spread(const View& pose, Part& part) const;
   void look(Part& part) const;
+  void cutAt(std::size_t i, Part& part) const;
   void chain(const View& view, std::size_t begin, const Part& part, PatternValues& values) const;
-  Blackness barsAt(const Part& part, std::size_t i) const;
   Blackness stripeAt(const Part& part, std::size_t i) const;
   Blackness cutStripeAt(const Part& part, std::size_t i, float cut) const;
   static void add(const Blackness& other, float sign, Blackness& sum);
@@ -39,8 +46,9 @@ class SleevePattern : public MarkerPattern {
   MarkerView view_;
   double radius_, half_length_;  ///< [px]
   float helix_begin_, helix_end_, pitch_;
-  float bars_left_, bars_right_;  ///< no bar between them: the helix is there [px]
+  std::vector<float> edge_distance_;  ///< from an edge of a bar, at every pixel from -half_length_ on [px]
   BlurredLine bars_, stripe_;
+  MovingLine moving_bars_, moving_stripe_;
   CutStripe cut_;
   double motion_ = 0;  ///< of prepare() [px]
 };

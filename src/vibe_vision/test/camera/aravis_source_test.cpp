@@ -201,6 +201,7 @@ TEST(AravisSource, LostPacketsAreToldCountedAndForgotten) {
   ASSERT_TRUE(readUntil(*source, [&] { return source->statistics().incomplete > 400; }));
   ASSERT_TRUE(readFrame(*source, frame));  // some are complete
   EXPECT_LT(residentMemory() - memory, 4 << 20);
+  EXPECT_EQ(source->statistics().reconnects, 0U) << "the stream ran out of buffers";
   camera.reset();
   camera = plugIn();
   const std::uint64_t before = source->statistics().frames;
@@ -281,6 +282,7 @@ TEST(AravisSource, FramesThatAreHeldStayAsTheyAre) {
     Frame frame;
     ASSERT_TRUE(readFrame(*source, frame)) << source->status();
   }
+  EXPECT_EQ(source->statistics().reconnects, 0U) << "the stream ran out of buffers";
   source.reset();  // frames may outlive their source
   for (std::size_t i = 0; i < held.size(); ++i) EXPECT_EQ(held[i].image.row(0)[0], grey[i]);
 }

@@ -71,6 +71,15 @@ TEST(StampClock, AClockThatIsSetForwardIsNoticedAtOnce) {
   EXPECT_LT(camera.run(clock, kUnix + 10, 10, 0), 0.05);
 }
 
+TEST(StampClock, ASmallStepForwardIsNotTakenForDrift) {
+  Camera camera;
+  StampClock clock;
+  camera.run(clock, kUnix, 110, 0);
+  camera.zero -= 0.08;
+  camera.run(clock, kUnix + 110, 5, 0);
+  EXPECT_LT(camera.run(clock, kUnix + 115, 10, 0), 5e-4);
+}
+
 TEST(StampClock, AStallOfTheHostDoesNotShiftTheStamps) {
   Camera camera;
   StampClock clock;

@@ -22,7 +22,7 @@ struct MotionPrior {
 };
 // Design choices: docs/vision.md, "Prediction".
 constexpr MotionPrior kSlidePrior{{80, 0.1}, 0.3, 10, 0.25};       ///< an instrument moved by hand [m]
-constexpr MotionPrior kRotationPrior{{3000, 0.02}, 20, 800, 0.25};  ///< a rod turned by hand [rad]
+constexpr MotionPrior kRotationPrior{{6000, 0.1}, 20, 800, 0.25};  ///< a rod turned by hand [rad]
 
 /// Kalman filter with constant acceleration, disturbed by jerk (Bar-Shalom, Li, Kirubarajan, "Estimation with
 /// Applications to Tracking and Navigation", 2001, section 6.2.3). The jerk of a hand lasts for some hundredths of a

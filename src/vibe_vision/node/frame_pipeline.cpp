@@ -1,0 +1,77 @@
+#include "frame_pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+constexpr double kSetBack = 1;  // more than this is a clock that was set, or a recording that begins again [s]
+
+}  // namespace
+
+FramePipeline::FramePipeline(const VisionConfig& config, const Options& options) : options_(options), tracker_(config) {
+  for (const InstrumentConfig& instrument : config.instruments) predictors_.emplace_back(instrument);
+  if (!options.udp.empty()) sender_ = std::make_unique<UdpSender>(options.udp);
+}
+
+bool FramePipeline::isInOrder(double stamp) {
+  if (std::isfinite(stamp) && stamp > last_stamp_) return true;
+  if (std::isfinite(stamp) && stamp > 0 && stamp < last_stamp_ - kSetBack) {
+    reset();
+    return true;
+  }
+  ++disordered_;
+  return false;
+}
+
+const FrameResult* FramePipeline::process(const Frame& frame) {
+  if (!isInOrder(frame.stamp)) return nullptr;
+  const double begin = options_.host_time();
+  result_.frame = frame;
+  result_.measurements = tracker_.track(frame);
+  result_.tracked_at = options_.host_time();
+  result_.samples.clear();
+  for (std::size_t i = 0; i < predictors_.size(); ++i)
+    result_.samples.push_back(predictors_[i].update(frame.stamp, result_.measurements[i]));
+  result_.times = StageTimes();
+  if (!options_.recorded) result_.times.transport = frame.arrival - frame.stamp;
+  result_.times.wait = begin - frame.arrival;
+  result_.times.track = result_.tracked_at - begin;
+  last_stamp_ = last_frame_ = frame.stamp;
+  last_frame_at_ = result_.tracked_at;
+  send();
+  return &result_;
+}
+
+const FrameResult& FramePipeline::reportSilence() {
+  const double now = options_.host_time();
+  // so far back that the next frame, whenever it comes, is later
+  const double stamp = (last_frame_ > 0 ? last_frame_ + now - last_frame_at_ : now) - options_.silence / 2;
+  const std::uint64_t sequence = result_.frame.sequence;
+  result_ = FrameResult();
+  result_.frame.sequence = sequence;
+  result_.frame.stamp = std::max(stamp, last_stamp_ + 1e-6);
+  result_.tracked_at = now;
+  result_.measurements.resize(predictors_.size());  // NoFrame
+  for (std::size_t i = 0; i < predictors_.size(); ++i)
+    result_.samples.push_back(predictors_[i].update(result_.frame.stamp, result_.measurements[i]));
+  last_stamp_ = result_.frame.stamp;
+  send();
+  return result_;
+}
+
+void FramePipeline::reset() {
+  tracker_.reset();
+  for (InstrumentPredictor& predictor : predictors_) predictor.reset();
+}
+
+void FramePipeline::send() {
+  if (!sender_) return;
+  TrackDatagram datagram = makeDatagram(result_.frame, result_.measurements, result_.samples);
+  datagram.sequence = sequence_++;
+  if (!options_.recorded) datagram.age = static_cast<float>(options_.host_time() - result_.frame.stamp);
+  sender_->send(encode(datagram));
+}
+
+}  // namespace vibe

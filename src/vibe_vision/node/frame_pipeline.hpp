@@ -1,0 +1,62 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vibe_vision/datagram/udp_sender.hpp"
+#include "vibe_vision/predict/instrument_predictor.hpp"
+#include "vibe_vision/track/tracker.hpp"
+#include "vision_messages.hpp"
+
+namespace vibe {
+
+/// Everything about one frame.
+struct FrameResult {
+  Frame frame;
+  Measurements measurements;
+  std::vector<JointSample> samples;
+  StageTimes times;       ///< publish is filled by the publisher
+  double tracked_at = 0;  ///< end of tracking [s]
+};
+
+/// From a frame to the datagram: tracks, updates the predictors, sends. Not thread-safe.
+class FramePipeline {
+ public:
+  struct Options {
+    std::string udp;                    ///< host:port; empty: no datagrams
+    bool recorded = false;              ///< no age and transport: stamps are not of today
+    double silence = 0.1;               ///< without a frame after which instruments are lost [s]
+    std::function<double()> host_time;  ///< [s]
+  };
+  /// @throws Error for a configuration that cannot be tracked, or an address that cannot be resolved
+  FramePipeline(const VisionConfig& config, const Options& options);
+
+  /// @return nullptr if the frame's stamp is not later than the last: its result must not be published. A clock set
+  ///         back by more than a second begins anew. Valid until the next call
+  const FrameResult* process(const Frame& frame);
+  /// All instruments lost: no frame. Stamps continue those of the frames.
+  const FrameResult& reportSilence();
+  void reset();
+
+  const VisionConfig& config() const { return tracker_.config(); }
+  const UdpSender* sender() const { return sender_.get(); }
+  std::uint64_t disordered() const { return disordered_; }
+
+ private:
+  Options options_;
+  Tracker tracker_;
+  std::vector<InstrumentPredictor> predictors_;
+  std::unique_ptr<UdpSender> sender_;
+  FrameResult result_;
+  double last_stamp_ = 0;     // published [s]; 0: none
+  double last_frame_ = 0;     // stamp of the last frame [s]; 0: none
+  double last_frame_at_ = 0;  // when it was tracked [s]
+  std::uint32_t sequence_ = 0;
+  std::uint64_t disordered_ = 0;
+
+  bool isInOrder(double stamp);
+  void send();
+};
+
+}  // namespace vibe

@@ -1,0 +1,91 @@
+#include "vision_parameters.hpp"
+
+#include <ros/param.h>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_node/parameter_reader.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr int kMaxPixels = 20000;  // per side of a sensor
+
+void readCamera(ParameterReader& reader, SourceOptions& options) {
+  reader.read("exposure", options.exposure, 1e-6, 1, "s");
+  reader.read("rate", options.rate, 0.1, 10000, "Hz");
+  reader.read("gain", options.gain, -1, 100, "dB");
+  reader.read("roi_x", options.roi_x, 0, kMaxPixels);
+  reader.read("roi_y", options.roi_y, 0, kMaxPixels);
+  reader.read("roi_width", options.roi_width, 0, kMaxPixels);
+  reader.read("roi_height", options.roi_height, 0, kMaxPixels);
+  reader.read("loop", options.loop);
+  options.paced = true;  // nobody waits for the node: frames that come faster than real time are dropped
+}
+
+/// One of two words. @return whether it is the second
+bool readChoice(ParameterReader& reader, const std::string& name, const std::string& first, const std::string& second) {
+  std::string word = first;
+  reader.read(name, word);
+  if (word == first || word == second) return word == second;
+  throw Error("Parameter ~" + name + " is '" + word + "'; set it to " + first + " or " + second + ".");
+}
+
+CameraClock readClock(ParameterReader& reader) {
+  std::string word = "auto";
+  reader.read("camera_clock", word);
+  if (word == "auto") return CameraClock::Auto;
+  if (word == "free") return CameraClock::Free;
+  if (word == "host") return CameraClock::Host;
+  throw Error("Parameter ~camera_clock is '" + word + "'; set it to auto, free or host.");
+}
+
+/// What only few cameras need.
+void readCameraDetails(ParameterReader& reader, SourceOptions& options) {
+  const bool is_end = readChoice(reader, "camera_stamp", "exposure_start", "exposure_end");
+  options.stamp_point = is_end ? StampPoint::ExposureEnd : StampPoint::ExposureStart;
+  options.clock = readClock(reader);
+  reader.read("pixel_format", options.pixel_format);
+  reader.read("packet_size", options.packet_size, 0, 65000);
+  reader.read("realtime_priority", options.realtime_priority, 0, 99);
+}
+
+void checkTime(const VisionParameters& parameters) {
+  bool use_sim_time = false;
+  ros::param::get("/use_sim_time", use_sim_time);
+  if (!use_sim_time || parameters.fromTopic()) return;
+  throw Error(
+      "A camera is stamped in wall time, but /use_sim_time is true; run 'rosparam delete /use_sim_time' before any "
+      "node "
+      "starts, or use images of a topic.");
+}
+
+}  // namespace
+
+bool VisionParameters::recorded() const {
+  return source.rfind("video:", 0) == 0 || source.rfind("images:", 0) == 0;
+}
+
+VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
+  ParameterReader reader(private_handle);
+  VisionParameters parameters;
+  parameters.config = reader.required("config", "the configuration of the rig, a file or package:// address");
+  parameters.source =
+      reader.required("source", "the address of a camera, for example gige: or video:FILE, or to topic");
+  readCamera(reader, parameters.options);
+  readCameraDetails(reader, parameters.options);
+  parameters.start_stamped = readChoice(reader, "image_stamp", "middle_of_exposure", "start_of_exposure");
+  reader.read("udp", parameters.udp);
+  reader.read("lead", parameters.lead, 0, 0.2, "s");
+  reader.read("frame_id", parameters.frame_id);
+  reader.read("hold_lost", parameters.hold_lost);
+  reader.read("debug_rate", parameters.debug_rate, 0.1, 1000, "Hz");
+  std::string transport;  // image_transport reads it itself
+  reader.read("image_transport", transport);
+  double diagnostic_period = 1;  // diagnostic_updater reads it itself
+  reader.read("diagnostic_period", diagnostic_period, 0.1, 60, "s");
+  reader.finish();
+  checkTime(parameters);
+  return parameters;
+}
+
+}  // namespace vibe

@@ -1,0 +1,74 @@
+#include "vision_publisher.hpp"
+
+#include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/image_encodings.h>
+
+#include "debug_image.hpp"
+#include "vibe_core/common/step_timer.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr std::uint32_t kQueue = 10;
+
+}  // namespace
+
+VisionPublisher::VisionPublisher(ros::NodeHandle handle, const VisionConfig& config, const VisionParameters& parameters)
+    : config_(config), parameters_(parameters), transport_(handle) {
+  measured_ = handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue);
+  if (parameters.lead > 0) predicted_ = handle.advertise<sensor_msgs::JointState>("overstitch/predicted_js", kQueue);
+  tracking_ = handle.advertise<vibe_msgs::InstrumentTrackArray>("overstitch/tracking", kQueue);
+  debug_ = transport_.advertise("debug_image", 1);
+  if (parameters.fromTopic()) return;  // the camera's node publishes the other two
+  camera_info_ = handle.advertise<sensor_msgs::CameraInfo>("camera_info", kQueue);
+  image_ = transport_.advertise("image_raw", 1);
+}
+
+double VisionPublisher::publish(const FrameResult& result) {
+  publishJoints(result);
+  const double time = publishTracks(result);
+  publishCamera(result);
+  publishDebug(result);
+  return time;
+}
+
+void VisionPublisher::publishSilence(const FrameResult& result) {
+  publishTracks(result);
+}
+
+void VisionPublisher::publishJoints(const FrameResult& result) {
+  const double stamp = result.frame.stamp;
+  const auto measured = parameters_.hold_lost ? makeHeldJoints(config_, stamp, result.samples, held_)
+                                              : makeMeasuredJoints(config_, stamp, result.samples);
+  if (measured) measured_.publish(*measured);
+  if (!predicted_) return;
+  const auto predicted = makePredictedJoints(config_, stamp, parameters_.lead, result.samples);
+  if (predicted) predicted_.publish(*predicted);
+}
+
+double VisionPublisher::publishTracks(const FrameResult& result) {
+  StageTimes times = result.times;
+  times.publish = ros::Time::now().toSec() - result.tracked_at;
+  tracking_.publish(
+      makeTracks(config_, result.frame, result.measurements, result.samples, parameters_.frame_id, times));
+  return times.publish;
+}
+
+void VisionPublisher::publishCamera(const FrameResult& result) {
+  if (!camera_info_) return;
+  camera_info_.publish(makeCameraInfo(config_.camera, result.frame, parameters_.frame_id));
+  if (image_.getNumSubscribers() > 0) image_.publish(makeImage(result.frame, parameters_.frame_id));
+}
+
+void VisionPublisher::publishDebug(const FrameResult& result) {
+  if (debug_.getNumSubscribers() == 0 || steadyTime() < next_debug_) return;
+  next_debug_ = steadyTime() + 1 / parameters_.debug_rate;
+  cv_bridge::CvImage picture;
+  picture.header.stamp = toStamp(result.frame.stamp);
+  picture.header.frame_id = parameters_.frame_id;
+  picture.encoding = sensor_msgs::image_encodings::BGR8;
+  picture.image = drawDebugImage(config_, result.frame, result.measurements, result.samples);
+  debug_.publish(picture.toImageMsg());
+}
+
+}  // namespace vibe

@@ -1,0 +1,36 @@
+#pragma once
+#include <image_transport/image_transport.h>
+#include <ros/ros.h>
+
+#include "frame_pipeline.hpp"
+#include "vision_parameters.hpp"
+
+namespace vibe {
+
+/// Publishes what is known about a frame: docs/interfaces.md, "Topics of the camera". Images only if somebody listens.
+class VisionPublisher {
+ public:
+  VisionPublisher(ros::NodeHandle handle, const VisionConfig& config, const VisionParameters& parameters);
+
+  /// @param times  times of the frame; `publish` is filled. @return that time [s]
+  double publish(const FrameResult& result);
+  /// Without an image: only overstitch/tracking.
+  void publishSilence(const FrameResult& result);
+  void reset() { held_.clear(); }
+
+ private:
+  VisionConfig config_;
+  VisionParameters parameters_;
+  image_transport::ImageTransport transport_;
+  ros::Publisher measured_, predicted_, tracking_, camera_info_;
+  image_transport::Publisher image_, debug_;
+  std::vector<double> held_;  // positions of all joints as published last, for hold_lost
+  double next_debug_ = 0;     // when the next debug image is due, steady clock [s]
+
+  double publishTracks(const FrameResult& result);
+  void publishJoints(const FrameResult& result);
+  void publishCamera(const FrameResult& result);
+  void publishDebug(const FrameResult& result);
+};
+
+}  // namespace vibe

@@ -1,0 +1,118 @@
+#include <time.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <vector>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_vision/camera/capture.hpp"
+
+namespace {
+
+struct Options {
+  std::string source, csv;
+  double duration = 5;
+  vibe::SourceOptions camera;
+};
+
+struct Times {
+  std::uint64_t sequence = 0;
+  double stamp = 0, arrival = 0, taken = 0;
+};
+
+double clockTime(clockid_t clock) {
+  timespec now{};
+  ::clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+void printStage(const char* name, std::vector<double> delays) {
+  std::sort(delays.begin(), delays.end());
+  const auto at = [&](double share) {
+    return 1e3 * delays[static_cast<std::size_t>(share * static_cast<double>(delays.size() - 1))];
+  };
+  std::printf("%-34s min %7.3f  median %7.3f  p99 %7.3f  max %7.3f ms\n", name, at(0), at(0.5), at(0.99), at(1));
+}
+
+void printReport(const std::vector<Times>& times, const vibe::Capture& capture, double cpu) {
+  const vibe::SourceStatistics s = capture.statistics();
+  std::printf("frames %zu, lost %llu, incomplete %llu, unreadable %llu, dropped %llu, reconnections %llu\n",
+              times.size(), static_cast<unsigned long long>(s.lost), static_cast<unsigned long long>(s.incomplete),
+              static_cast<unsigned long long>(s.unreadable), static_cast<unsigned long long>(capture.dropped()),
+              static_cast<unsigned long long>(s.reconnects));
+  if (times.size() < 2) return;
+  std::vector<double> arrival, take, total;
+  for (const Times& t : times) {
+    arrival.push_back(t.arrival - t.stamp);
+    take.push_back(t.taken - t.arrival);
+    total.push_back(t.taken - t.stamp);
+  }
+  const double span = times.back().stamp - times.front().stamp;
+  std::printf("rate %.2f Hz, processor time %.3f ms per frame\n", static_cast<double>(times.size() - 1) / span,
+              1e3 * cpu / static_cast<double>(times.size()));
+  printStage("middle of exposure -> last packet", arrival);
+  printStage("last packet -> consumer", take);
+  printStage("middle of exposure -> consumer", total);
+}
+
+void writeTable(const std::string& file, const std::vector<Times>& times) {
+  std::ofstream table(file);
+  table << std::setprecision(17) << "sequence,stamp,arrival,taken\n";
+  for (const Times& t : times) table << t.sequence << ',' << t.stamp << ',' << t.arrival << ',' << t.taken << '\n';
+  if (!table.flush()) throw vibe::Error(file + ": cannot be written; check the folder.");
+}
+
+bool check(const Options& options) {
+  vibe::Capture capture(vibe::openSource(options.source, options.camera));
+  std::vector<Times> times;
+  std::string status;
+  vibe::Frame frame;
+  const double end = clockTime(CLOCK_REALTIME) + options.duration;
+  const double cpu = clockTime(CLOCK_PROCESS_CPUTIME_ID);
+  vibe::ReadResult result = vibe::ReadResult::Timeout;
+  while (result != vibe::ReadResult::End && clockTime(CLOCK_REALTIME) < end) {
+    result = capture.take(frame, 0.1);
+    if (result == vibe::ReadResult::Frame) {
+      times.push_back({frame.sequence, frame.stamp, frame.arrival, clockTime(CLOCK_REALTIME)});
+    }
+    if (capture.status() == status) continue;
+    status = capture.status();
+    std::cout << status << std::endl;
+  }
+  printReport(times, capture, clockTime(CLOCK_PROCESS_CPUTIME_ID) - cpu);
+  if (!options.csv.empty()) writeTable(options.csv, times);
+  return !times.empty();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Opens a camera or a recording as the node does, and tells rate, lost frames and delays. Ends with status 1 if "
+      "no\n"
+      "frame came.");
+  Options options;
+  app.add_option("source", options.source, "gige:ADDRESS, v4l2:/dev/video0, video:FILE or images:GLOB")->required();
+  app.add_option("--duration", options.duration, "[s]")->check(CLI::Range(0.1, 1e5))->capture_default_str();
+  app.add_option("--rate", options.camera.rate, "frames per second to ask for")->capture_default_str();
+  app.add_option("--exposure", options.camera.exposure, "exposure to ask for [s]")->capture_default_str();
+  app.add_option("--packet-size", options.camera.packet_size, "of GigE Vision [bytes]; 0: the largest that passes")
+      ->capture_default_str();
+  app.add_option("--priority", options.camera.realtime_priority, "of the receiving thread, 1 to 99; 0: ordinary")
+      ->capture_default_str();
+  app.add_flag("--paced", options.camera.paced, "recordings: in real time");
+  app.add_option("--csv", options.csv, "file for sequence, stamp, arrival and taken [s] of each frame");
+  try {
+    app.parse(argc, argv);
+    return check(options) ? 0 : 1;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << "vibe_camera_check: " << error.what() << '\n';
+    return 2;
+  }
+}
