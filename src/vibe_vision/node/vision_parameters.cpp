@@ -72,6 +72,7 @@ VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
   reader.read("frame_id", parameters.frame_id);
   reader.read("hold_lost", parameters.hold_lost);
   reader.read("debug_rate", parameters.debug_rate, 0.1, 1000, "Hz");
+  reader.read("publish_images", parameters.publish_images);
   std::string transport;  // image_transport reads it itself
   reader.read("image_transport", transport);
   double diagnostic_period = 1;  // diagnostic_updater reads it itself
