@@ -31,6 +31,7 @@ void serve(const Options& options) {
   if (!options.config.empty()) writeConfig(options.config, scene);
   std::cout << "vibe_fake_camera: draws " << options.scene << " ..." << std::endl;
   const vibe::FakeCamera camera(vibe::renderRing(scene, options.frames), options.camera);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { shall_stop = true; });
   std::cout << "vibe_fake_camera: gige:" << options.camera.address << " serves " << options.scene << ", "
             << scene.camera.width << " x " << scene.camera.height << " at " << scene.rate << " Hz; end with Ctrl-C"
             << std::endl;
@@ -43,14 +44,7 @@ void serve(const Options& options) {
   std::cout << "vibe_fake_camera: " << camera.sent() << " frames sent" << std::endl;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app(
-      "A GigE Vision camera in software: it draws a synthetic scene once and serves it over the network, so that the\n"
-      "whole way from packets to positions runs without a camera. Consumers open it as gige:ADDRESS. It shows the\n"
-      "drawn frames forward and backward in turn.");
-  Options options;
+void addOptions(CLI::App& app, Options& options) {
   std::string names;
   for (const std::string& name : vibe::sceneNames()) names += (names.empty() ? "" : ", ") + name;
   app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
@@ -74,9 +68,19 @@ int main(int argc, char** argv) {
   app.add_option("--duration", options.duration, "time after which it ends [s]; 0: runs until it is stopped")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "A GigE Vision camera in software: it draws a synthetic scene once and serves it over the network, so that the\n"
+      "whole way from packets to positions runs without a camera. Consumers open it as gige:ADDRESS. It shows the\n"
+      "drawn frames forward and backward in turn.");
+  Options options;
+  addOptions(app, options);
   try {
     app.parse(argc, argv);
-    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { shall_stop = true; });
     serve(options);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;

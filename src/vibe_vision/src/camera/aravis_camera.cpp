@@ -73,6 +73,9 @@ void AravisCamera::note(const AravisError& error, const std::string& wish) {
 
 void AravisCamera::setFormat(const SourceOptions& options) {
   AravisError error;
+  if (arv_camera_are_chunks_available(camera_.get(), error.slot())) {
+    arv_camera_set_chunk_mode(camera_.get(), FALSE, error.slot());
+  }
   if (!options.pixel_format.empty()) {
     arv_camera_set_pixel_format_from_string(camera_.get(), options.pixel_format.c_str(), error.slot());
     note(error, "pixel format " + options.pixel_format);

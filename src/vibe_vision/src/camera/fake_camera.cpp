@@ -34,10 +34,10 @@ void requireFree(const std::string& address) {
   if (socket >= 0) ::close(socket);
   if (is_free) return;
   if (is_address && error == EADDRINUSE) {
-    throw Error("fake camera: another camera already serves at " + address + "; stop it, or choose another address");
+    throw Error("fake camera: another camera already serves at " + address + "; stop it, or choose another address.");
   }
   throw Error("fake camera: " + address + " is no IPv4 address of this computer; choose one of ip address, such as " +
-              "127.0.0.1");
+              "127.0.0.1.");
 }
 
 }  // namespace
@@ -53,14 +53,14 @@ struct FakeCamera::Impl {
   ArvFakeCamera* camera = nullptr;
 
   Impl(std::shared_ptr<const FrameRing> r, const FakeCameraOptions& o) : ring(std::move(r)), options(o) {
-    if (ring->frames.empty()) throw Error("fake camera: has no pictures to show");
+    if (ring->frames.empty()) throw Error("fake camera: has no pictures to show.");
     requireFree(options.address);
     if (!options.truth_file.empty()) openTruth();
     clock_start = hostTime();
     clock_at_start = clock_start + options.clock_ahead;
     server.reset(arv_gv_fake_camera_new(options.address.c_str(), options.serial.c_str()));
     if (!arv_gv_fake_camera_is_running(server.get())) {
-      throw Error("fake camera: no network interface has the address " + options.address);
+      throw Error("fake camera: no network interface has the address " + options.address + ".");
     }
     g_object_set(server.get(), "gvsp-lost-ratio", options.lost_ratio, nullptr);
     camera = arv_gv_fake_camera_get_fake_camera(server.get());
@@ -77,7 +77,7 @@ struct FakeCamera::Impl {
 
   void openTruth() {
     truth.open(options.truth_file);
-    if (!truth) throw Error(options.truth_file + ": cannot be written; check the folder and its permissions");
+    if (!truth) throw Error(options.truth_file + ": cannot be written; check the folder and its permissions.");
     truth << "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible\n" << std::setprecision(17);
   }
 
@@ -104,7 +104,7 @@ struct FakeCamera::Impl {
     arv_buffer_set_timestamp(buffer, static_cast<guint64>(std::max(0.0, start) * 1e9));
     const FrameRing::Turn turn = ring->turnOf(k);
     copy(ring->frames[turn.index], buffer);
-    if (truth.is_open()) write(end - exposure / 2, turn);
+    if (truth.is_open()) write(end - exposure / 2, turn, 1e6 / static_cast<double>(period));
     ++sent;
   }
 
@@ -122,12 +122,14 @@ struct FakeCamera::Impl {
     }
   }
 
-  void write(double stamp, const FrameRing::Turn& turn) {
+  /// @param rate  at which the pictures are shown: the scene moves more slowly if it was drawn for a higher one
+  void write(double stamp, const FrameRing::Turn& turn, double rate) {
+    const double pace = (turn.is_backward ? -1 : 1) * rate / ring->rate;
     for (std::size_t i = 0; i < ring->instruments.size(); ++i) {
       const SyntheticTruth& t = ring->truth[turn.index][i];
       truth << kFirstFrame + sent << ',' << stamp << ',' << ring->instruments[i] << ',' << t.slide << ',' << t.rotation
             << ',' << t.along << ',' << t.lateral << ',' << t.pixel.x() << ',' << t.pixel.y() << ','
-            << (turn.is_backward ? -t.velocity : t.velocity) << ',' << t.visible << '\n';
+            << pace * t.velocity << ',' << t.visible << '\n';
     }
     truth.flush();  // complete whenever somebody looks
   }

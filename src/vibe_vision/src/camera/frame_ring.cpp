@@ -55,7 +55,7 @@ FrameRing::Turn FrameRing::turnOf(std::uint64_t k) const {
 
 std::shared_ptr<const FrameRing> renderRing(const SyntheticScene& scene, int frames) {
   if (frames < 1 || frames > kMaxFrames) {
-    throw Error("fake camera: " + std::to_string(frames) + " frames; draw 1 to " + std::to_string(kMaxFrames));
+    throw Error("fake camera: " + std::to_string(frames) + " frames; draw 1 to " + std::to_string(kMaxFrames) + ".");
   }
   auto ring = std::make_shared<FrameRing>();
   ring->width = scene.camera.width;

@@ -23,7 +23,7 @@ std::vector<std::string> cells(const std::string& line) {
 class Reader {
  public:
   Reader(const std::string& file, double exposure) : file_(file), exposure_(exposure), stream_(file) {
-    if (!stream_) throw Error(file + ": cannot be read; check that it exists and its permissions");
+    if (!stream_) throw Error(file + ": cannot be read; check that it exists and its permissions.");
   }
 
   FrameTable read() {
@@ -62,14 +62,14 @@ class Reader {
     }
     if (stamp_ < 0) {
       throw Error(place() + "no column is called stamp; the first line must name the columns, such as " +
-                  "\"sequence,stamp,exposure\"");
+                  "\"sequence,stamp,exposure\".");
     }
   }
 
   FrameTable::Row row(const std::vector<std::string>& values, std::size_t index) const {
     if (values.size() != columns_) {
       throw Error(place() + std::to_string(values.size()) + " values, but the first line names " +
-                  std::to_string(columns_) + " columns; complete or remove this line");
+                  std::to_string(columns_) + " columns; complete or remove this line.");
     }
     FrameTable::Row row;
     row.stamp = number(values[stamp_], "stamp");
@@ -82,18 +82,18 @@ class Reader {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
     if (!text.empty() && *end == '\0' && std::isfinite(value) && value >= 0) return value;
-    throw Error(place() + name + " is \"" + text + "\"; it must be a number of seconds, 0 or more");
+    throw Error(place() + name + " is \"" + text + "\"; it must be a number of seconds, 0 or more.");
   }
 
   std::uint64_t sequence(const std::string& text) const {
     const double value = number(text, "sequence");
     if (value == std::floor(value) && value < kMaxSequence) return static_cast<std::uint64_t>(value);
-    throw Error(place() + "sequence is \"" + text + "\"; it must be a whole number");
+    throw Error(place() + "sequence is \"" + text + "\"; it must be a whole number.");
   }
 
   void checkOrder(const FrameTable::Row& before, const FrameTable::Row& after) const {
-    if (after.stamp <= before.stamp) throw Error(place() + "stamp does not increase; sort the lines by time");
-    if (after.sequence <= before.sequence) throw Error(place() + "sequence does not increase; sort the lines by time");
+    if (after.stamp <= before.stamp) throw Error(place() + "stamp does not increase; sort the lines by time.");
+    if (after.sequence <= before.sequence) throw Error(place() + "sequence does not increase; sort the lines by time.");
   }
 };
 

@@ -50,7 +50,7 @@ ImageListReader::ImageListReader(const std::string& pattern) {
   ::globfree(&found);
   if (files_.empty()) {
     throw Error(pattern +
-                ": no file matches; put the pattern in quotes and check it with ls, such as images:DIR/*.png");
+                ": no file matches; put the pattern in quotes and check it with ls, such as images:DIR/*.png.");
   }
   std::sort(files_.begin(), files_.end(), isBefore);
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kForms = "v4l2:/dev/video0, gige:ADDRESS, video:FILE or images:GLOB";
 
 void require(bool condition, const std::string& problem) {
-  if (!condition) throw Error("camera: " + problem);
+  if (!condition) throw Error("camera: " + problem + ".");
 }
 
 void check(const SourceOptions& options) {
@@ -58,7 +58,7 @@ std::unique_ptr<FrameSource> openSource(const std::string& address, const Source
     if (kind == "video") return openVideo(rest, options);
     if (kind == "images") return openImages(rest, options);
   }
-  throw Error("camera address \"" + address + "\" is not understood; write " + kForms);
+  throw Error("camera address \"" + address + "\" is not understood; write " + kForms + ".");
 }
 
 }  // namespace vibe

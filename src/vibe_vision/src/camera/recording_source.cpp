@@ -17,7 +17,7 @@ void checkCount(const std::string& name, const FrameTable& table, const PictureR
   const double tolerance = reader.isCountExact() ? 0 : 1 + kCountTolerance * frames;
   if (rows > 0 && (frames == 0 || std::abs(rows - frames) <= tolerance)) return;
   throw Error(table.file + ": has " + std::to_string(table.rows.size()) + " rows, but " + name + " has " +
-              std::to_string(reader.count()) + " frames; it needs one row per frame, or remove it");
+              std::to_string(reader.count()) + " frames; it needs one row per frame, or remove it.");
 }
 
 cv::Mat toGrey(const cv::Mat& picture) {

@@ -44,11 +44,6 @@ PixelFormat v4l2Format(int fourcc) {
   return PixelFormat{};
 }
 
-std::uint64_t V4l2Source::missedBetween(double before, double after, double period) {
-  if (before <= 0 || period <= 0 || after - before < 1.5 * period) return 0;
-  return static_cast<std::uint64_t>(std::lround((after - before) / period)) - 1;
-}
-
 V4l2Source::V4l2Source(const std::string& device, const SourceOptions& options)
     : device_(device), options_(options), status_(device + ": not opened yet") {}
 
@@ -65,6 +60,7 @@ ReadResult V4l2Source::read(Frame& frame, double timeout) {
   if (!stamp(frame) || !convert(picture, frame)) return ReadResult::Timeout;
   const std::lock_guard<std::mutex> lock(mutex_);
   ++statistics_.frames;
+  status_ = good_status_;
   return ReadResult::Frame;
 }
 
@@ -83,7 +79,6 @@ ReadResult V4l2Source::connect(double timeout) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (has_connected_) ++statistics_.reconnects;
   has_connected_ = true;
-  last_stamp_ = 0;
   return ReadResult::Timeout;
 }
 
@@ -103,8 +98,11 @@ void V4l2Source::configure() {
   format_ = v4l2Format(fourcc);
   capture_.set(cv::CAP_PROP_CONVERT_RGB, isReadable(format_) ? 0 : 1);  // OpenCV decodes the others, e.g. MJPG
   const double rate = capture_.get(cv::CAP_PROP_FPS);
-  period_ = 1 / (rate > 0 ? rate : options_.rate);
-  say(device_ + ": " + lettersOf(fourcc) + " at " + std::to_string(static_cast<int>(std::lround(rate))) + " Hz");
+  gaps_ = IntervalGaps(1 / (rate > 0 ? rate : options_.rate));
+  const double exposure = capture_.get(cv::CAP_PROP_EXPOSURE) * 1e-4;
+  exposure_ = exposure > 0 ? exposure : options_.exposure;
+  good_status_ = device_ + ": " + lettersOf(fourcc) + " at " + std::to_string(std::lround(rate)) + " Hz";
+  say(good_status_);
 }
 
 bool V4l2Source::convert(const cv::Mat& picture, Frame& frame) {
@@ -136,12 +134,11 @@ bool V4l2Source::stamp(Frame& frame) {
     return false;
   }
   const bool is_start = options_.stamp_point == StampPoint::ExposureStart;
-  frame.stamp = kernel + (is_start ? 0.5 : -0.5) * options_.exposure;
-  frame.exposure = options_.exposure;
-  const std::uint64_t missed = missedBetween(last_stamp_, frame.stamp, period_);
+  frame.stamp = kernel + (is_start ? 0.5 : -0.5) * exposure_;
+  frame.exposure = exposure_;
+  const std::uint64_t missed = gaps_.advance(frame.stamp);
   sequence_ += 1 + missed;
   frame.sequence = sequence_;
-  last_stamp_ = frame.stamp;
   const std::lock_guard<std::mutex> lock(mutex_);
   statistics_.lost += missed;
   return true;

@@ -2,6 +2,7 @@
 #include <mutex>
 #include <opencv2/videoio.hpp>
 
+#include "camera/interval_gaps.hpp"
 #include "camera/pixel_format.hpp"
 #include "camera/pixel_pool.hpp"
 #include "camera/retry_timer.hpp"
@@ -23,9 +24,6 @@ class V4l2Source : public FrameSource {
   SourceStatistics statistics() const override;
   std::string status() const override;
 
-  /// How many frames were left out between two stamps, for a driver that tells no numbers.
-  static std::uint64_t missedBetween(double before, double after, double period);
-
  private:
   std::string device_;
   SourceOptions options_;
@@ -34,7 +32,9 @@ class V4l2Source : public FrameSource {
   bool has_connected_ = false;
   RetryTimer retry_;
   PixelPool pool_;
-  double last_stamp_ = 0, period_ = 0;
+  IntervalGaps gaps_{1};
+  double exposure_ = 0;  // that the driver tells [s]
+  std::string good_status_;
   std::uint64_t sequence_ = 0;
 
   mutable std::mutex mutex_;  // of what follows

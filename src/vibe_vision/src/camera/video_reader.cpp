@@ -9,9 +9,10 @@ namespace vibe {
 
 VideoReader::VideoReader(const std::string& file) : file_(file) {
   struct stat facts {};
-  if (::stat(file.c_str(), &facts) != 0) throw Error(file + ": there is no such file; check the address video:" + file);
-  if (!S_ISREG(facts.st_mode)) throw Error(file + ": is not a file; the address of a video is video:FILE");
-  if (::access(file.c_str(), R_OK) != 0) throw Error(file + ": may not be read; check its permissions");
+  if (::stat(file.c_str(), &facts) != 0)
+    throw Error(file + ": there is no such file; check the address video:" + file + ".");
+  if (!S_ISREG(facts.st_mode)) throw Error(file + ": is not a file; the address of a video is video:FILE.");
+  if (::access(file.c_str(), R_OK) != 0) throw Error(file + ": may not be read; check its permissions.");
   open();
   const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
   if (count > 0 && count < 1e9) count_ = static_cast<std::size_t>(count);
@@ -20,7 +21,7 @@ VideoReader::VideoReader(const std::string& file) : file_(file) {
 void VideoReader::open() {
   read_ = 0;
   if (capture_.open(file_, cv::CAP_FFMPEG)) return;
-  throw Error(file_ + ": cannot be read as a video; it is damaged, or of a format that FFmpeg does not know");
+  throw Error(file_ + ": cannot be read as a video; it is damaged, or of a format that FFmpeg does not know.");
 }
 
 PictureReader::Result VideoReader::next(cv::Mat& picture) {

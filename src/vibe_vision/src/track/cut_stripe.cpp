@@ -6,7 +6,8 @@
 namespace vibe {
 namespace {
 
-constexpr float kReach = 3.4F;  // standard deviations
+constexpr float kReach = 3.4F;   // standard deviations
+constexpr float kCorner = 3.1F;  // standard deviations between cut and edge from which they do not disturb each other
 
 // Midpoint rule over the blur across the axis, in standard deviations: the integrand has kinks.
 constexpr std::size_t kNodes = 9;
@@ -33,6 +34,7 @@ std::array<Node, kNodes> makeNodes() {
 CutStripe::CutStripe(double period, double black, const BlurredLine& line)
     : line_(line),
       period_(static_cast<float>(period)),
+      inverse_period_(1 / period_),
       half_black_(static_cast<float>(black / 2)),
       mean_(static_cast<float>(black / period)) {}
 
@@ -44,6 +46,7 @@ float CutStripe::edgeBefore(float phase, bool black) const {
 
 CutStripe::Entry CutStripe::at(float y, float phase, float variance, float cut_variance, float full_variance) const {
   const float deviation = std::sqrt(variance), reach = kReach * deviation;
+  if (edgeDistance(phase) > kCorner * std::sqrt(full_variance)) return farFromEdges(y, phase, deviation, full_variance);
   if (y < -reach) {
     const BlurredLine::Entry e = line_.at(phase + y, full_variance);
     return {e.integral + mean_ * y, e.value, e.slope, e.value - mean_};
@@ -59,6 +62,18 @@ CutStripe::Entry CutStripe::at(float y, float phase, float variance, float cut_v
   return result;
 }
 
+/// The stripe as if it went on, and a blurred step at the cut if it is black there.
+CutStripe::Entry CutStripe::farFromEdges(float y, float phase, float deviation, float full_variance) const {
+  const float before = y < 0 ? y : 0.0F, sign = y < 0 ? -1.0F : 1.0F;
+  const float black = std::abs(wrapped(phase)) < half_black_ ? 1.0F : 0.0F;
+  const BlurredLine::Entry whole = line_.at(phase + before, full_variance);
+  const NormalTable::Entry step = NormalTable::instance().at(-sign * y / deviation);
+  const float seen = y < 0 ? 1.0F : 0.0F;
+  return {whole.integral + mean_ * before - black * deviation * step.integral,
+          seen * whole.value + sign * black * step.value, seen * whole.slope - black * step.density / deviation,
+          whole.value - mean_};
+}
+
 /// What the blur along the axis takes away from the integral up to the cut. With B black at the cut and an edge of the
 /// stripe at z < 0, that is B I(-y) + (1 - 2 B) I(z - y), where I is the integral of a blurred step.
 CutStripe::Entry CutStripe::nearCut(float y, float phase, float deviation, float cut_deviation) const {
@@ -66,17 +81,17 @@ CutStripe::Entry CutStripe::nearCut(float y, float phase, float deviation, float
   const NormalTable& normal = NormalTable::instance();
   const float inverse = 1 / deviation;
   const NormalTable::Entry cut = normal.at(-y * inverse);
-  const float wrapped = phase - period_ * std::floor(phase / period_ + 0.5F);
+  const float place = wrapped(phase);
   const float spread = kSpread * cut_deviation;
-  const bool is_black = std::abs(wrapped) < half_black_;
-  const float last = edgeBefore(wrapped, is_black);
-  if (last + spread < y - kReach * deviation && std::abs(std::abs(wrapped) - half_black_) > spread) {
+  const bool is_black = std::abs(place) < half_black_;
+  const float last = edgeBefore(place, is_black);
+  if (last + spread < y - kReach * deviation && edgeDistance(phase) > spread) {
     if (!is_black) return {0, 0, 0, 0};
     return {deviation * cut.integral, cut.value, -inverse * cut.density, 0};
   }
   Entry sum{};
   for (const Node& node : nodes) {
-    float p = wrapped + node.place * cut_deviation;
+    float p = place + node.place * cut_deviation;
     if (p > period_ / 2) p -= period_;
     if (p < -period_ / 2) p += period_;
     const bool black = std::abs(p) < half_black_;

@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "track/blurred_line.hpp"
 #include "track/normal_table.hpp"
 
@@ -21,13 +23,22 @@ class CutStripe {
   /// @param phase  place of the cut in the stripe, from the centre of a black part [px]
   /// @param variance  of the blur along the axis, cut_variance: of phase, full_variance: of phase + y [px^2]
   Entry at(float y, float phase, float variance, float cut_variance, float full_variance) const;
+  /// Distance along the axis from an edge of the stripe.
+  float edgeDistance(float phase) const { return std::abs(std::abs(wrapped(phase)) - half_black_); }
+  bool isBlack(float phase) const { return std::abs(wrapped(phase)) < half_black_; }
 
  private:
+  /// Between -period / 2 and period / 2.
+  float wrapped(float phase) const {
+    const auto turns = static_cast<float>(static_cast<int>(phase * inverse_period_ + 1024.5F)) - 1024;
+    return phase - period_ * turns;
+  }
   float edgeBefore(float phase, bool black) const;
+  Entry farFromEdges(float y, float phase, float deviation, float full_variance) const;
   Entry nearCut(float y, float phase, float deviation, float cut_deviation) const;
 
   const BlurredLine& line_;
-  float period_, half_black_, mean_;
+  float period_, inverse_period_, half_black_, mean_;
 };
 
 }  // namespace vibe

@@ -1,5 +1,7 @@
 #include "track/moving_line.hpp"
 
+#include "track/lanes.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -80,7 +82,7 @@ void MovingLine::composeLevel(float variance, float* table) const {
   }
 }
 
-void MovingLine::look(const Places& places, std::size_t count, const Result& result) const {
+VIBE_LANES void MovingLine::look(const Places& places, std::size_t count, const Result& result) const {
   const float last = static_cast<float>(size_ - 1), per_step = 1 / step_, top = static_cast<float>(levels_ - 1);
   const float square = half_motion_ * half_motion_, low = low_, step = step_, stride = static_cast<float>(size_);
   const BlurredLine::Wrap wrap = line_.wrap();

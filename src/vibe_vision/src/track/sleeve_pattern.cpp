@@ -1,5 +1,7 @@
 #include "track/sleeve_pattern.hpp"
 
+#include "track/lanes.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -12,7 +14,9 @@ constexpr double kMinBlur = 0.25, kMaxBlur = 3.5;  // of the optics [px]
 constexpr double kMinMotion = 0.5;  // shorter ones are replaced by this, and their variance taken off the blur [px]
 constexpr double kRim = 0.88;       // of the radius: beyond, the print is seen too obliquely
 constexpr float kReach = 3.4F;      // standard deviations after which an edge is over
-constexpr float kMaxSine = 0.97F;   // of the angle around the rod: keeps derivatives finite
+constexpr float kTellReach = 2.7F;  // standard deviations from an edge within which a pixel tells something
+constexpr float kCornerReach = 3.1F;
+constexpr float kMaxSine = 0.97F;                 // of the angle around the rod: keeps derivatives finite
 constexpr int kBarLevels = 2, kStripeLevels = 4;  // variances from the middle of the rod to the rim
 constexpr float kTurn = 6.28318530718F;
 
@@ -91,7 +95,18 @@ SleevePattern::SleevePattern(const SleeveDesign& design, double pixels_per_metre
               kPixelVariance),
       moving_bars_(bars_, kBarLevels),
       moving_stripe_(stripe_, kStripeLevels),
-      cut_(std::abs(pitch_), std::abs(pitch_) * design.helix_duty, stripe_) {}
+      cut_(std::abs(pitch_), std::abs(pitch_) * design.helix_duty, stripe_) {
+  measureEdges(barsOf(design, pixels_per_metre));
+}
+void SleevePattern::measureEdges(const std::vector<Interval>& bars) {
+  for (int i = 0; i <= static_cast<int>(2 * half_length_) + 1; ++i) {
+    double nearest = 2 * half_length_;
+    for (const Interval& bar : bars)
+      for (const double edge : {bar.begin, bar.end}) nearest = std::min(nearest, std::abs(i - half_length_ - edge));
+    edge_distance_.push_back(static_cast<float>(nearest));
+  }
+}
+
 std::array<bool, kPoseParameters> SleevePattern::observes() const {
   std::array<bool, kPoseParameters> observed{};
   for (const PoseIndex k : {kAlong, kLateral, kRotation, kLogScale, kTilt, kBlur, kSlant}) observed[k] = true;
@@ -114,7 +129,7 @@ Eigen::Vector2d SleevePattern::maxWindow() const {
 /// Tables for the middle of the rod and for its rim. Slopes are those of a line of sight that is not oblique.
 void SleevePattern::prepare(const MarkerPose& pose, double motion) {
   motion_ = std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion);
-  const View view = viewOf(pose);
+  const View view = viewOf(pose, motion_);
   const double lean = std::tan(pose.slant + (pose.along - view_.principal_along) / view_.focal_length);
   const double rim = kRim / std::sqrt(1 - kRim * kRim), turn = pitch_ / kTurn / radius_;
   const double stretch = 1 + lean * lean, bow = std::abs(lean) * rim,
@@ -126,7 +141,7 @@ void SleevePattern::prepare(const MarkerPose& pose, double motion) {
                          view.variance * static_cast<float>(stretch + swing * swing), half);
 }
 
-SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose) const {
+SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose, double motion_length) const {
   View view{};
   const double scale = std::exp(pose.log_scale);
   view.along = static_cast<float>(pose.along);
@@ -146,8 +161,8 @@ SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose) const {
   view.principal_x = static_cast<float>(principal.x() / scale);
   view.across = static_cast<float>(slope.y() * cosine);
   view.turn = static_cast<float>(std::atan(slope.y() / (cosine - slope.x() * sine)) - std::atan(slope.y() * cosine));
-  const double motion = std::max(motion_, kMinMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
-  const double variance = blur * blur + kPixelVariance - (motion * motion - motion_ * motion_) / 12;
+  const double motion = std::max(motion_length, kMinMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
+  const double variance = blur * blur + kPixelVariance - (motion * motion - motion_length * motion_length) / 12;
   view.half_motion = static_cast<float>(motion / 2 / scale);
   view.variance = static_cast<float>(variance / (scale * scale));
   view.by_blur = static_cast<float>(2 * blur / variance);
@@ -155,7 +170,7 @@ SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose) const {
 }
 
 void SleevePattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) {
-  const View view = viewOf(pose);
+  const View view = viewOf(pose, motion_);
   Part part;
   for (std::size_t begin = 0; begin < pixels.padded(); begin += Part::kSize) {
     part.size = std::min(Part::kSize, pixels.padded() - begin);
@@ -184,8 +199,8 @@ void SleevePattern::placePixels(const View& view, const PixelBlock& pixels, std:
 /// Where the line of sight of each pixel meets the rod. Of the angle phi around the rod and the place u along it, the
 /// picture shows x + t X = u cos(slant) + R cos(phi) sin(slant), where X is the depth of the place, t the slope of the
 /// line of sight; and likewise across.
-void SleevePattern::place(const View& pose, const float* __restrict along, const float* __restrict lateral,
-                          Part& __restrict part) const {
+VIBE_LANES void SleevePattern::place(const View& pose, const float* __restrict along, const float* __restrict lateral,
+                                     Part& __restrict part) const {
   const View view = pose;
   const auto radius = static_cast<float>(radius_), inverse_radius = 1 / radius;
   const float lift = view.across * view.slant_sine / (view.slant_cosine * view.slant_cosine);
@@ -210,7 +225,7 @@ void SleevePattern::place(const View& pose, const float* __restrict along, const
 }
 
 /// Places on the print, and how fast they change in the picture.
-void SleevePattern::unroll(const View& pose, Part& __restrict part) const {
+VIBE_LANES void SleevePattern::unroll(const View& pose, Part& __restrict part) const {
   const View view = pose;
   const auto radius = static_cast<float>(radius_), inverse_radius = 1 / radius;
   const float advance = pitch_ / kTurn, half_variance = 0.5F * view.variance;
@@ -232,7 +247,7 @@ void SleevePattern::unroll(const View& pose, Part& __restrict part) const {
   }
 }
 
-void SleevePattern::spread(const View& pose, Part& __restrict part) const {
+VIBE_LANES void SleevePattern::spread(const View& pose, Part& __restrict part) const {
   const View view = pose;
   const float begin = helix_begin_, end = helix_end_;
   for (std::size_t i = 0; i < Part::kSize; ++i) {
@@ -267,6 +282,38 @@ void SleevePattern::look(Part& part) const {
     if (part.inside[i] + part.outside[i] == 0) cutAt(i, part);
 }
 
+/// Pixels near an edge. Those where the helix ends at an edge of the stripe are few and costly.
+void SleevePattern::select(const MarkerPose& pose, double motion, PixelBlock& pixels) const {
+  const View view = viewOf(pose, std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion));
+  Part part;
+  std::size_t n = 0;
+  for (std::size_t begin = 0; begin < pixels.count; begin += Part::kSize) {
+    part.size = std::min(Part::kSize, pixels.count - begin);
+    placePixels(view, pixels, begin, part);
+    for (std::size_t i = 0; i < part.size; ++i) {
+      pixels.along[n] = pixels.along[begin + i], pixels.lateral[n] = pixels.lateral[begin + i];
+      pixels.value[n] = pixels.value[begin + i], pixels.weight[n] = pixels.weight[begin + i];
+      n += tells(part, i) ? 1 : 0;
+    }
+  }
+  pixels.count = n;
+  pixels.pad();
+}
+
+bool SleevePattern::tells(const Part& part, std::size_t i) const {
+  const float u = part.u[i], last = static_cast<float>(edge_distance_.size() - 1);
+  const float place = std::clamp(u + static_cast<float>(half_length_) + 0.5F, 0.0F, last);
+  const float reach = kTellReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i] + 0.5F;
+  const bool bar = edge_distance_[static_cast<std::size_t>(place)] < reach;
+  if (part.outside[i] > 0) return bar;
+  const float deviation = std::sqrt(part.stripe_variance[i]);
+  const bool stripe = cut_.edgeDistance(part.w[i]) < kTellReach * deviation + part.stripe_half_motion[i];
+  if (part.inside[i] > 0) return stripe;
+  const float cut = std::abs(u - helix_begin_) < std::abs(u - helix_end_) ? helix_begin_ : helix_end_;
+  const float phase = part.w[i] - u + cut;
+  return bar || ((stripe || cut_.isBlack(phase)) && cut_.edgeDistance(phase) > kCornerReach * deviation);
+}
+
 /// Near an end of the helix.
 void SleevePattern::cutAt(std::size_t i, Part& part) const {
   const float reach = kReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i], u = part.u[i];
@@ -296,7 +343,8 @@ SleevePattern::Blackness SleevePattern::cutStripeAt(const Part& part, std::size_
           0.5F * along * (b.slope - a.slope) * inverse};
 }
 
-void SleevePattern::chain(const View& pose, std::size_t begin, const Part& part, PatternValues& values) const {
+VIBE_LANES void SleevePattern::chain(const View& pose, std::size_t begin, const Part& part,
+                                     PatternValues& values) const {
   const View view = pose;
   const float c = view.tilt_cosine * view.inverse_scale, s = view.tilt_sine * view.inverse_scale;
   const float advance = pitch_ / kTurn;

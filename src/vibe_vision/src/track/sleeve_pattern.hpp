@@ -19,6 +19,7 @@ class SleevePattern : public MarkerPattern {
   Eigen::Vector2d maxWindow() const override;
   void prepare(const MarkerPose& pose, double motion) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
+  void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
   double searchHalfWidth() const override;
   void searchProfile(double motion, double scale, std::vector<float>& profile) const override;
   void searchTurns(double motion, double scale, std::vector<float>& cosine, std::vector<float>& sine) const override;
@@ -28,7 +29,9 @@ class SleevePattern : public MarkerPattern {
   struct View;
   struct Part;
   struct Blackness;
-  View viewOf(const MarkerPose& pose) const;
+  View viewOf(const MarkerPose& pose, double motion) const;
+  void measureEdges(const std::vector<Interval>& bars);
+  bool tells(const Part& part, std::size_t i) const;
   void placePixels(const View& view, const PixelBlock& pixels, std::size_t begin, Part& part) const;
   void place(const View& pose, const float* along, const float* lateral, Part& part) const;
   void unroll(const View& pose, Part& part) const;
@@ -43,6 +46,7 @@ class SleevePattern : public MarkerPattern {
   MarkerView view_;
   double radius_, half_length_;  ///< [px]
   float helix_begin_, helix_end_, pitch_;
+  std::vector<float> edge_distance_;  ///< from an edge of a bar, at every pixel from -half_length_ on [px]
   BlurredLine bars_, stripe_;
   MovingLine moving_bars_, moving_stripe_;
   CutStripe cut_;

@@ -57,8 +57,7 @@ std::vector<Seen> trackFor(Capture& capture, const VisionConfig& config, std::si
 }  // namespace
 
 TEST(GigeTracking, PositionsFromPacketsAreThoseOfTheScene) {
-  SyntheticScene scene = namedScene("moving");
-  scene.instruments.erase(scene.instruments.begin());
+  const SyntheticScene scene = namedScene("moving");
   const VisionConfig config = nominalConfig(scene);
   FakeCameraOptions rig;
   rig.truth_file = "/tmp/vibe_gige_tracking_" + std::to_string(::getpid()) + ".csv";
