@@ -9,6 +9,11 @@ PATIENCE = 120.0  # for the simulated camera to draw its scene [s]
 FAKE_ADDRESS = "127.0.0.1"
 
 
+def serves(log):
+    with open(log, encoding="utf-8", errors="replace") as text:
+        return " serves " in text.read()
+
+
 class Vision:
     """vision_node, whose joints take the place of those that buttons move."""
 
@@ -28,11 +33,11 @@ class Vision:
         driver.senders.append(graph.start("vision_node", ["rosrun", "vibe_vision", "vision_node"], visible=True))
 
     def start_fake(self, graph):
-        """The node reads the configuration that the camera writes when its scene is drawn."""
+        """Waits until it serves frames: it draws them first."""
         command = ["rosrun", "vibe_vision", "vibe_fake_camera", "--address", FAKE_ADDRESS, "--config", self.config]
         camera = graph.start("vibe_fake_camera", command)
         deadline = time.monotonic() + PATIENCE
-        while not os.path.exists(self.config):
+        while not serves(camera.log):
             if camera.status() is not None or time.monotonic() > deadline:
                 raise GraphError("vibe_fake_camera offers no camera; what it said:\n" + camera.last_words())
             time.sleep(0.1)
