@@ -3,6 +3,7 @@
 #
 # A program consists of its file, the sources of vibe_firmware that need no board, and what the file names itself:
 #   // sources: src/driver/report_reader.cpp ...   relative to its package, patterns allowed
+#   // includes: ../vibe_core/src ...               folders for headers, relative to its package
 #   // packages: yaml-cpp ...                      of pkg-config
 # It may include public headers of all packages, and those of the src and fuzz folders of its own.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
@@ -33,6 +34,7 @@ builds() {
     sources+=("$package"/$pattern)
   done
   for pattern in "$root"/src/*/include; do includes+=("-I$pattern"); done
+  for pattern in $(named "$file" includes); do includes+=("-I$package/$pattern"); done
   modules=$(named "$file" packages)
   # shellcheck disable=SC2046,SC2086
   clang++ "${flags[@]}" "${includes[@]}" -I"$root/src/vibe_firmware/src" -I"$package/src" -I"$package/fuzz" \

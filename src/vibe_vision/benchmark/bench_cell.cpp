@@ -63,8 +63,8 @@ void writeTrace(std::ostream& out, const Cell& cell, std::uint64_t seed, const M
     const Estimate& e = run.estimates[i];
     const SyntheticTruth& truth = frames[i].truth[instrument];
     out << cell.scene << ',' << cell.marker << ',' << seed << ',' << method.name() << ',' << i << ',' << truth.visible
-        << ',' << truth.along << ',' << truth.velocity << ',' << e.found << ','
-        << (e.found ? "tracked" : toText(e.reason));
+        << ',' << truth.along << ',' << truth.velocity << ',' << e.found << ',' << '"'
+        << (e.found ? "tracked" : toText(e.reason)) << '"';
     if (e.found)
       out << ',' << e.along - truth.along << ',' << std::remainder(e.rotation - truth.rotation, 2 * M_PI) << ','
           << std::sqrt(e.covariance(0, 0)) << ',' << std::sqrt(e.covariance(1, 1));

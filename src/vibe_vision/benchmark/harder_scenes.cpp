@@ -56,6 +56,39 @@ void addTwins(SyntheticScene& scene) {
   }
 }
 
+/// The bars the other way round; a thinner ring.
+MarkerDesign otherPattern(const MarkerDesign& design) {
+  if (const RingDesign* ring = std::get_if<RingDesign>(&design)) {
+    RingDesign other = *ring;
+    other.inner_diameter = 0.8 * ring->outer_diameter;
+    return other;
+  }
+  SleeveDesign other = std::get<SleeveDesign>(design);
+  std::reverse(other.bars.begin(), other.bars.end());
+  for (Bar& bar : other.bars) bar = {-bar.end, -bar.begin};
+  std::swap(other.helix_begin, other.helix_end);
+  other.helix_begin *= -1;
+  other.helix_end *= -1;
+  return other;
+}
+
+/// Another print of the same size at rest on each axis, behind the instruments.
+void addDecoys(SyntheticScene& scene) {
+  const std::size_t count = scene.instruments.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (scene.instruments[i].tag.cells > 0) continue;
+    SyntheticInstrument decoy = scene.instruments[i];
+    decoy.nominal.marker = otherPattern(decoy.nominal.marker);
+    decoy.motion.slide = [](double) { return 0.012; };
+    scene.instruments.push_back(decoy);
+  }
+}
+
+/// The instruments are not there.
+void takeAway(SyntheticScene& scene) {
+  for (SyntheticInstrument& instrument : scene.instruments) instrument.lateral = 0.2;
+}
+
 /// Copies the pixels, which frames share.
 std::uint8_t* ownPixels(Frame& frame) {
   const ImageView old = frame.image;
@@ -91,6 +124,17 @@ void parkBar(const SyntheticScene& scene, RenderedFrame& frame) {
   }
 }
 
+/// Ten frames of darkness, ten of glare, again and again, with twenty good ones before each.
+void spoilFrames(const SyntheticScene&, RenderedFrame& frame) {
+  const auto phase = frame.frame.sequence % 60;
+  if (phase < 20 || (phase >= 30 && phase < 50)) return;
+  std::uint8_t* pixels = ownPixels(frame.frame);
+  const std::size_t count =
+      static_cast<std::size_t>(frame.frame.image.stride) * static_cast<std::size_t>(frame.frame.image.height);
+  std::fill(pixels, pixels + count, static_cast<std::uint8_t>(phase < 30 ? 1 : 255));
+  for (SyntheticTruth& truth : frame.truth) truth.visible = 0;
+}
+
 /// A camera that sends a part of its sensor.
 void cutOut(const SyntheticScene&, RenderedFrame& frame) {
   constexpr int kLeft = 17, kTop = 5;
@@ -123,6 +167,17 @@ std::vector<HarderScene> makeScenes() {
        },
        {}},
       {"sharp", "moving", [](Scene& s, Seed) { s.degradation.blur = 0.4; }, {}},
+      {"decoys", "moving", [](Scene& s, Seed) { addDecoys(s); }, {}},
+      {"only_decoys",
+       "moving",
+       [](Scene& s, Seed) {
+         takeAway(s);
+         addDecoys(s);
+         for (std::size_t i = 4; i < s.instruments.size(); ++i) s.instruments[i].lateral = 0;
+       },
+       {}},
+      {"absent", "moving", [](Scene& s, Seed) { takeAway(s); }, {}},
+      {"spoilt_frames", "moving", [](Scene&, Seed) {}, spoilFrames},
       {"parked_bar", "moving", [](Scene&, Seed) {}, parkBar},
       {"cut_out", "moving", [](Scene&, Seed) {}, cutOut},
   };

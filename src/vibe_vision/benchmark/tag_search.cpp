@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-constexpr std::size_t kFramesPerSearch = 8;
+constexpr std::size_t kFramesPerSearch = 20;
 
 struct Window {
   ImageView view;

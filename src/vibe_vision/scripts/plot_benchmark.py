@@ -5,14 +5,18 @@ Reads what `rosrun vibe_vision vibe_vision_bench --csv FILE` writes; makes visio
 vision_error_blur.png.
 """
 import argparse
-import csv
 import math
 import os
+import sys
 
 import matplotlib
 
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from benchmark_rows import isStandard, readRows
 
 METHODS = {  # name: (label, colour, marker)
     'ring': ('ring (vibe_vision)', '#1b6ca8', 'o'),
@@ -26,23 +30,18 @@ LIMIT = {'static': None, 'moving': 0.01, 'all': 0.1}  # to reach [px]
 PIXELS_PER_METRE = 1e4
 
 
-def readRows(path):
-    """Rows of the standard speed as dictionaries of numbers; missing ones are NaN."""
-    rows = []
-    with open(path, newline='') as file:
-        for row in csv.DictReader(file):
-            values = {}
-            for key, text in row.items():
-                try:
-                    values[key] = float(text)
-                except ValueError:
-                    values[key] = text if key in ('scene', 'method') else math.nan
-            rows.append(values)
-    return rows
+PLAIN = FuncFormatter(lambda value, _: f'{value:g}')
 
 
-def isStandard(row):
-    return row['marker_px'] == 40 and row['exposure_s'] == 0 and row['width'] == 0
+def legendOf(panels):
+    """Each label once, in the order of METHODS."""
+    found = {}
+    for panel in panels:
+        for handle, label in zip(*panel.get_legend_handles_labels()):
+            found.setdefault(label, handle)
+    order = [label for label, _, _ in METHODS.values() if label in found]
+    order += [label for label in found if label not in order]
+    return [found[label] for label in order], order
 
 
 def drawTimes(axes, rows, scene, name):
@@ -63,6 +62,9 @@ def drawTimes(axes, rows, scene, name):
     axes.set_xlabel('processor time per marker and frame [ms]')
     axes.set_xscale('log')
     axes.set_yscale('log')
+    axes.xaxis.set_major_formatter(PLAIN)
+    axes.yaxis.set_major_formatter(PLAIN)
+    axes.margins(x=0.1, y=0.12)
     axes.grid(alpha=0.3, which='both')
 
 
@@ -70,9 +72,8 @@ def plotTimes(rows, path):
     figure, panels = plt.subplots(1, len(SCENES), figsize=(13, 4.8), sharey=True)
     for axes, (scene, name) in zip(panels, SCENES.items()):
         drawTimes(axes, rows, scene, name)
-        axes.margins(y=0.12)
     panels[0].set_ylabel('RMS error along the axis [px]')
-    handles, labels = panels[0].get_legend_handles_labels()
+    handles, labels = legendOf(panels)
     figure.legend(handles, labels, loc='lower center', ncol=len(labels), frameon=False, fontsize=9)
     figure.suptitle('full symbols: tracking; hollow: search without knowledge of the place; per cent: visible markers '
                     'found; dotted: to reach', fontsize=9, y=0.97)
@@ -101,16 +102,19 @@ def plotBlur(rows, path):
     peak = drawBlur(axes, found, sweep)
     axes.set_ylabel('RMS error along the axis [px]')
     axes.set_yscale('log')
+    axes.yaxis.set_major_formatter(PLAIN)
     found.set_ylabel('visible markers found [%]')
     found.set_ylim(-3, 103)
     for panel in (axes, found):
         panel.set_xscale('log')
         panel.set_xlabel('exposure [ms]')
+        panel.xaxis.set_major_formatter(PLAIN)
         panel.grid(alpha=0.3, which='both')
         pixels = panel.secondary_xaxis('top', functions=(lambda ms: ms * 1e-3 * peak * PIXELS_PER_METRE,
                                                          lambda px: px / (1e-3 * peak * PIXELS_PER_METRE)))
+        pixels.xaxis.set_major_formatter(PLAIN)
         pixels.set_xlabel(f'blur at the peak speed of {peak:g} m/s [px]')
-    handles, labels = axes.get_legend_handles_labels()
+    handles, labels = legendOf([axes])
     figure.legend(handles, labels, loc='lower center', ncol=4, frameon=False, fontsize=9)
     figure.tight_layout(rect=(0, 0.11, 1, 1))
     figure.savefig(path, dpi=120)

@@ -42,6 +42,10 @@ TEST(Unit, ConvertsToSi) {
       {"2 h", "s", 7200},
       {"1 N*s/m^2", "Pa*s", 1},
       {"30 deg/s", "rad/s", M_PI / 6},
+      {"10 px/mm", "px/m", 1e4},
+      {"363.5 px", "px", 363.5},
+      {"20 DN", "DN", 20},
+      {"2 1/m", "1/m", 2},
   };
   for (const Example& example : examples) {
     const Quantity result = parseQuantity(example.text, example.unit);
@@ -78,7 +82,8 @@ TEST(Unit, RefusesWhatIsNoFiniteNumber) {
 
 TEST(Unit, EveryMeasuredSiUnitIsItselfAUnitOfFactorOne) {
   for (const char* unit :
-       {"1", "m", "m^3", "s", "1/s", "kg", "kg/m^3", "N", "Pa", "Pa/m", "m^3/s", "m/s", "m/s^2", "rad", "rad/s"}) {
+       {"1", "m", "m^3", "s", "1/s", "kg", "kg/m^3", "N", "Pa", "Pa/m", "m^3/s", "m/s", "m/s^2", "rad", "rad/s", "1/m", "px", "px/m",
+        "DN"}) {
     ASSERT_TRUE(parseUnit(unit)) << unit;
     EXPECT_EQ(parseUnit(unit)->factor, 1) << unit;
   }

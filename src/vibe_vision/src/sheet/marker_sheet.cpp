@@ -89,6 +89,7 @@ SheetRaster MarkerSheet::raster(std::size_t page, double pixels_per_metre) const
   cairo_surface_flush(surface.get());
   const unsigned char* data = cairo_image_surface_get_data(surface.get());
   const int stride = cairo_image_surface_get_stride(surface.get());
+  raster.value.reserve(static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height));
   for (int y = 0; y < raster.height; ++y) {
     for (int x = 0; x < raster.width; ++x)
       raster.value.push_back(data[static_cast<std::ptrdiff_t>(y) * stride + 4 * x]);

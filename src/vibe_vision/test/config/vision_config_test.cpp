@@ -9,6 +9,7 @@
 #include <string>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_vision/synthetic/synthetic_scene.hpp"
 
 namespace vibe {
 namespace {
@@ -89,6 +90,11 @@ TEST(VisionConfig, TheAxisMayBeMissingBeforeTheCalibrationOnly) {
   const std::string text = with("    axis: {origin: [100 px, 160 px], direction: [1, 0], scale: 10 px/mm}\n", "");
   EXPECT_EQ(errorOf(text), "rig.yaml:6: instruments[0]: lacks the key 'axis'; add it below");
   EXPECT_FALSE(VisionConfig::parse(text, "rig.yaml", AxisRule::Optional).instruments[0].axis.isCalibrated());
+}
+
+TEST(VisionConfig, TheShippedRigIsTheStandardSyntheticOne) {
+  const VisionConfig shipped = VisionConfig::load("../config/rig.yaml");
+  EXPECT_EQ(toYaml(shipped), toYaml(nominalConfig(standardScene())));
 }
 
 TEST(VisionConfig, AMissingFileIsNamed) {

@@ -3,17 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "vibe_vision/calibrate/board_spec.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
 namespace vibe {
 
 enum class Paper { A4, Letter };
-
-/// Chessboard for the calibration of the lens, counted by its inner corners as OpenCV does.
-struct BoardSpec {
-  int columns = 9, rows = 6;
-  double square = 5e-3;  ///< side of a square [m]
-};
 
 struct SheetOptions {
   Paper paper = Paper::A4;

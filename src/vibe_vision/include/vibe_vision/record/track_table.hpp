@@ -1,0 +1,52 @@
+#pragma once
+#include <cstdint>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "vibe_vision/config/vision_config.hpp"
+#include "vibe_vision/image/frame.hpp"
+#include "vibe_vision/track/measurement.hpp"
+
+namespace vibe {
+
+/// "not_found", "occluded", ...: the reason as one word for tables; "" if tracked.
+const char* toWord(LostReason reason);
+
+/// Results as CSV: one row per frame and instrument. Columns: docs/vision.md, "Tracking recorded material".
+class TrackTable {
+ public:
+  /// Opens the file and writes the first line. @throws Error if it cannot be written
+  TrackTable(const std::string& file, const VisionConfig& config);
+  void add(const Frame& frame, const Measurements& measurements);
+  /// Writes what is left. @throws Error if the disk is full
+  void close();
+
+ private:
+  std::string file_;
+  std::vector<std::string> names_;
+  std::ofstream out_;
+};
+
+/// What became of the frames.
+class TrackSummary {
+ public:
+  explicit TrackSummary(const VisionConfig& config);
+  /// @param seconds  of processor time that tracking this frame took
+  void add(const Measurements& measurements, double seconds);
+  std::uint64_t frames() const { return seconds_.size(); }
+  /// Lines for people: per instrument the share that was tracked and why the rest was not; time per frame.
+  std::string text() const;
+
+ private:
+  struct Instrument {
+    std::string name;
+    std::uint64_t tracked = 0, reacquired = 0;
+    std::map<LostReason, std::uint64_t> lost;
+  };
+  std::vector<Instrument> instruments_;
+  std::vector<double> seconds_;
+};
+
+}  // namespace vibe

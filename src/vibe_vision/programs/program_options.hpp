@@ -1,0 +1,50 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <string>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/scene/yaml_source.hpp"
+#include "vibe_vision/sheet/marker_sheet.hpp"
+
+namespace vibe {
+
+/// "5 mm" or "0.005" as metres. @throws Error that names the option
+inline double lengthOption(const std::string& option, const std::string& text) {
+  const YamlSource source = YamlSource::parse("value: 0\n", option, {});
+  try {
+    return source.quantity({"", "", 1, YAML::Node(text)}, "m", 0, 10);
+  } catch (const Error& error) {
+    throw Error(option + std::string(error.what()).substr(option.size() + 2));  // an option has no lines
+  }
+}
+
+/// "9x6" and "5 mm". @throws Error
+inline BoardSpec boardOption(const std::string& corners, const std::string& square) {
+  BoardSpec board;
+  char rest = 0;
+  if (std::sscanf(corners.c_str(), "%dx%d%c", &board.columns, &board.rows, &rest) != 2) {
+    throw Error("--board: '" + corners + "' is not a chessboard; give its inner corners, for example 9x6");
+  }
+  board.square = lengthOption("--square", square);
+  return board;
+}
+
+/// Parses the command line and runs. Wrong options and errors end with status 2 and one sentence.
+inline int runProgram(const char* name, CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    return run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return 2;
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,234 @@
+// vibe_calibrate: lens and axes of a rig from images. No ROS.
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "image_files.hpp"
+#include "program_options.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_vision/calibrate/axis_fit.hpp"
+#include "vibe_vision/calibrate/lens_calibration.hpp"
+#include "vibe_vision/calibrate/marker_locator.hpp"
+#include "vibe_vision/calibrate/stop_list.hpp"
+
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr std::size_t kMostImages = 60;  // of a free motion; more are left out evenly
+
+struct Options {
+  std::string config, output, images, stops, instrument;
+  std::string board = "9x6", square = "5 mm";
+  double lowest_scale = 4, highest_scale = 25;        // [px/mm]
+  double print_tolerance = 0.5, slant_tolerance = 5;  // [%], [deg]
+};
+
+void addCommon(CLI::App& app, Options& options) {
+  app.add_option("--config", options.config, "YAML file of the rig; everything but the result is kept")->required();
+  app.add_option("--output", options.output, "Write the rig with the result to this YAML file")->required();
+}
+
+void addOptions(CLI::App& lens, CLI::App& axis, Options& options) {
+  addCommon(lens, options);
+  lens.add_option("--images", options.images, "Images of the chessboard, 'folder/*.png' in quotes")->required();
+  lens.add_option("--board", options.board, "Inner corners of the chessboard")->capture_default_str();
+  lens.add_option("--square", options.square, "Measured side of a square")->capture_default_str();
+  addCommon(axis, options);
+  axis.add_option("--instrument", options.instrument, "Name of the instrument")->required();
+  auto* input = axis.add_option_group("motion")->require_option(1);
+  input->add_option("--stops", options.stops, "CSV file: image,slide; the instrument stands at known slides");
+  input->add_option("--images", options.images,
+                    "Images of a free motion in order, 'folder/*.png' in quotes; slide 0 is in the first");
+  axis.add_option("--lowest-scale", options.lowest_scale, "Smallest scale to look for [px/mm]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.5, 1000.0));
+  axis.add_option("--highest-scale", options.highest_scale, "Largest scale to look for [px/mm]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.5, 1000.0));
+  axis.add_option("--print-tolerance", options.print_tolerance,
+                  "Free motion: standard deviation of the printed marker's size [%]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 20.0));
+  axis.add_option("--slant-tolerance", options.slant_tolerance,
+                  "Free motion: by how much the axis may be slanted against the sensor [deg]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 45.0));
+}
+
+void printWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::printf("Warning: %s.\n", warning.c_str());
+}
+
+void save(const vibe::VisionConfig& config, const std::string& file) {
+  std::ofstream out(file);
+  out << vibe::toYaml(config);
+  out.close();
+  if (!out) throw vibe::Error(file + ": cannot be written; give a file in an existing folder that you may write to");
+  std::printf("Written to %s.\n", file.c_str());
+}
+
+void requireOneSize(const std::string& name, const vibe::Frame& frame, const vibe::Frame& first) {
+  if (frame.image.width == first.image.width && frame.image.height == first.image.height) return;
+  throw vibe::Error(name + ": has " + std::to_string(frame.image.width) + " x " + std::to_string(frame.image.height) +
+                    " px, the first image has " + std::to_string(first.image.width) + " x " +
+                    std::to_string(first.image.height) + "; take all with the same camera and region");
+}
+
+std::vector<vibe::BoardView> findBoards(const std::vector<std::string>& files, const vibe::BoardSpec& board,
+                                        vibe::Frame& first) {
+  std::vector<vibe::BoardView> views;
+  for (const std::string& file : files) {
+    const vibe::Frame frame = vibe::readGrey(file);
+    if (first.image.empty()) first = frame;
+    requireOneSize(file, frame, first);
+    if (const auto corners = vibe::findBoard(frame.image, board)) {
+      views.push_back({file, *corners});
+    } else {
+      std::printf("%s: no whole chessboard of %dx%d inner corners; left out\n", file.c_str(), board.columns,
+                  board.rows);
+    }
+  }
+  return views;
+}
+
+void printLens(const vibe::LensCalibration& lens) {
+  for (const vibe::BoardFit& view : lens.views) {
+    std::printf("%s: residual %.3f px, tilt %.0f deg\n", view.name.c_str(), view.rms, view.tilt / kDegree);
+  }
+  const vibe::CameraModel& c = lens.camera;
+  std::printf("focal length %.2f +- %.2f, %.2f +- %.2f px\n", c.fx, lens.deviation[0], c.fy, lens.deviation[1]);
+  std::printf("centre %.2f +- %.2f, %.2f +- %.2f px\n", c.cx, lens.deviation[2], c.cy, lens.deviation[3]);
+  const char* const kNames[] = {"k1", "k2", "p1", "p2", "k3"};
+  std::printf("distortion");
+  for (std::size_t i = 0; i < 5; ++i) {
+    if (lens.estimated[i]) std::printf(" %s %.5g", kNames[i], c.distortion[i]);
+  }
+  std::printf("; other coefficients are not significant and 0\n");
+  std::printf("residual %.3f px over all corners; the corners cover %.0f %% of the image\n", c.reprojection_rms,
+              100 * lens.coverage);
+}
+
+int calibrateLens(const Options& options) {
+  vibe::VisionConfig config = vibe::VisionConfig::load(options.config, vibe::AxisRule::Optional);
+  const vibe::BoardSpec board = vibe::boardOption(options.board, options.square);
+  vibe::Frame first;
+  const std::vector<vibe::BoardView> views = findBoards(vibe::filesOf(options.images), board, first);
+  const vibe::LensCalibration lens = vibe::calibrateLens(views, board, first.image.width, first.image.height);
+  printLens(lens);
+  printWarnings(lens.warnings);
+  config.camera = lens.camera;
+  bool had_axes = false;
+  for (vibe::InstrumentConfig& instrument : config.instruments) {
+    had_axes = had_axes || instrument.axis.isCalibrated();
+    instrument.axis = {};
+  }
+  if (had_axes) std::printf("The axes belong to the old camera and are left out; run vibe_calibrate axis.\n");
+  save(config, options.output);
+  return 0;
+}
+
+void printAxis(const vibe::SlideAxis& axis) {
+  const auto deviation = [&axis](int i) { return std::sqrt(axis.covariance(i, i)); };
+  std::printf("origin %.3f, %.3f px; +- %.3f along, %.3f across\n", axis.origin.x(), axis.origin.y(), deviation(0),
+              deviation(1));
+  std::printf("direction %.4f +- %.4f deg (0: to the right, 90: down)\n",
+              std::atan2(axis.direction.y(), axis.direction.x()) / kDegree, deviation(2) / kDegree);
+  std::printf("scale %.4f +- %.4f px/mm", 1e-3 * axis.pixels_per_metre, 1e-3 * deviation(3));
+  if (axis.perspective != 0) std::printf("; perspective %.4f +- %.4f 1/m", axis.perspective, deviation(4));
+  std::printf("\n");
+}
+
+vibe::MarkerSearch searchOf(const Options& options) {
+  return {1e3 * options.lowest_scale, 1e3 * options.highest_scale};
+}
+
+/// A sleeve that is glued the other way round would be tracked nowhere.
+void requireSleeveForwards(const vibe::LocatedMarkers& located, const vibe::SlideAxis& axis) {
+  if (located.direction.dot(axis.direction) >= 0) return;
+  throw vibe::Error(
+      "the sleeve points to negative slide; glue it the other way round, or give the slides with the other sign and "
+      "write 'sign: -1' at slide_joint");
+}
+
+vibe::SlideAxis axisFromStops(const Options& options, const vibe::VisionConfig& config, std::size_t instrument) {
+  const std::vector<vibe::StopImage> list = vibe::loadStopList(options.stops);
+  std::vector<vibe::Frame> images;
+  for (const vibe::StopImage& stop : list) images.push_back(vibe::readGrey(stop.image));
+  const vibe::LocatedMarkers located = vibe::locateMarkers(config, instrument, images, searchOf(options));
+  std::vector<vibe::AxisStop> stops;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (located.markers[i].found) {
+      stops.push_back({list[i].image, list[i].slide, located.markers[i].pixel});
+    } else {
+      std::printf("%s: left out, %s\n", list[i].image.c_str(), located.markers[i].problem.c_str());
+    }
+  }
+  const vibe::AxisFit fit = vibe::fitAxis(stops);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    std::printf("%s: slide %.3f mm, residual %.3f px along (%.4f mm), %.3f px across%s\n", stops[i].name.c_str(),
+                1e3 * stops[i].slide, fit.stops[i].along,
+                1e3 * fit.stops[i].along / vibe::pixelsPerMetre(fit.axis, stops[i].slide), fit.stops[i].across,
+                fit.stops[i].left_out ? ", left out" : "");
+  }
+  printAxis(fit.axis);
+  std::printf("residual %.3f px along (%.4f mm), %.3f px across\n", fit.rms_along, 1e3 * fit.axis.residual_rms,
+              fit.rms_across);
+  printWarnings(fit.warnings);
+  requireSleeveForwards(located, fit.axis);
+  return fit.axis;
+}
+
+std::vector<std::string> thinnedOut(const std::vector<std::string>& files) {
+  if (files.size() <= kMostImages) return files;
+  std::vector<std::string> some;
+  for (std::size_t i = 0; i < kMostImages; ++i) some.push_back(files[i * (files.size() - 1) / (kMostImages - 1)]);
+  return some;
+}
+
+vibe::SlideAxis axisFromMotion(const Options& options, const vibe::VisionConfig& config, std::size_t instrument) {
+  std::vector<vibe::Frame> images;
+  for (const std::string& file : thinnedOut(vibe::filesOf(options.images))) images.push_back(vibe::readGrey(file));
+  const vibe::LocatedMarkers located = vibe::locateMarkers(config, instrument, images, searchOf(options));
+  if (!located.markers.front().found) {
+    throw vibe::Error("the marker was not found in the first image, where slide 0 is (" +
+                      located.markers.front().problem + "); begin with an image that shows it");
+  }
+  std::vector<vibe::MotionSample> samples;
+  for (const vibe::LocatedMarker& marker : located.markers)
+    if (marker.found) samples.push_back({marker.pixel, marker.pixels_per_metre});
+  const vibe::ScaleTrust trust{options.print_tolerance / 100, options.slant_tolerance * kDegree};
+  const vibe::MotionFit fit = vibe::fitMotion(samples, trust, located.direction);
+  std::printf("marker found in %zu of %zu images\n", samples.size(), images.size());
+  printAxis(fit.axis);
+  std::printf("residual %.3f px across; scale from the size of the print, uncertain by %.2f %%\n", fit.rms_across,
+              100 * fit.scale_uncertainty);
+  std::printf("The perspective is not observable without known slides and is set to 0.\n");
+  printWarnings(fit.warnings);
+  return fit.axis;
+}
+
+int calibrateAxis(const Options& options) {
+  vibe::VisionConfig config = vibe::VisionConfig::load(options.config, vibe::AxisRule::Optional);
+  const std::size_t instrument = config.indexOf(options.instrument);
+  if (options.highest_scale < options.lowest_scale)
+    throw vibe::Error("--highest-scale is below --lowest-scale; exchange them");
+  config.instruments[instrument].axis =
+      options.stops.empty() ? axisFromMotion(options, config, instrument) : axisFromStops(options, config, instrument);
+  save(config, options.output);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Calibrates a rig: 'intrinsics' the lens from a chessboard, 'axis' where an instrument slides.");
+  Options options;
+  CLI::App* lens = app.add_subcommand("intrinsics", "Lens from images of a chessboard (vibe_marker_sheet prints it)");
+  CLI::App* axis = app.add_subcommand("axis", "Axis, direction and scale of an instrument from images of its motion");
+  app.require_subcommand(1);
+  addOptions(*lens, *axis, options);
+  return vibe::runProgram("vibe_calibrate", app, argc, argv,
+                          [&] { return lens->parsed() ? calibrateLens(options) : calibrateAxis(options); });
+}

@@ -1,0 +1,96 @@
+// vibe_marker_sheet: the markers of a configuration and a chessboard, to be printed. No ROS.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+
+#include "program_options.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_vision/sheet/marker_sheet.hpp"
+
+namespace {
+
+constexpr double kPreview = 300 / 25.4e-3;  // pixels per metre
+
+struct Options {
+  std::string config = "package://vibe_vision/config/rig.yaml";
+  std::string pdf, svg, png;
+  std::string paper = "a4";
+  std::string board = "9x6";
+  std::string square = "5 mm", thickness = "0.1 mm", overlap = "2.5 mm";
+  int copies = 3;
+  bool no_board = false, no_markers = false;
+};
+
+void addOptions(CLI::App& app, Options& options) {
+  app.add_option("--config", options.config, "YAML file or package:// address")->capture_default_str();
+  app.add_option("--pdf", options.pdf, "Write all pages to this PDF file");
+  app.add_option("--svg", options.svg, "Write SVG files, one per page: NAME-1.svg, NAME-2.svg, ...");
+  app.add_option("--png", options.png, "Write previews of 300 dpi, one per page: NAME-1.png, NAME-2.png, ...");
+  app.add_option("--paper", options.paper, "a4 or letter")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"a4", "letter"}));
+  app.add_option("--copies", options.copies, "Of each marker")->capture_default_str()->check(CLI::Range(1, 50));
+  app.add_option("--thickness", options.thickness, "Of the paper; sleeves are shorter by pi times it")
+      ->capture_default_str();
+  app.add_option("--overlap", options.overlap, "Of a sleeve, glued under its other end")->capture_default_str();
+  app.add_option("--board", options.board, "Inner corners of the chessboard")->capture_default_str();
+  app.add_option("--square", options.square, "Side of a square of the chessboard")->capture_default_str();
+  app.add_flag("--no-board", options.no_board, "No page with the chessboard");
+  app.add_flag("--no-markers", options.no_markers, "No pages with markers");
+}
+
+vibe::SheetOptions sheetOptions(const Options& options) {
+  vibe::SheetOptions sheet;
+  sheet.paper = options.paper == "a4" ? vibe::Paper::A4 : vibe::Paper::Letter;
+  sheet.copies = options.copies;
+  sheet.paper_thickness = vibe::lengthOption("--thickness", options.thickness);
+  sheet.overlap = vibe::lengthOption("--overlap", options.overlap);
+  sheet.markers = !options.no_markers;
+  sheet.board = !options.no_board;
+  sheet.board_spec = vibe::boardOption(options.board, options.square);
+  return sheet;
+}
+
+void writePng(const vibe::MarkerSheet& sheet, const std::string& file) {
+  const std::string stem = file.size() > 4 ? file.substr(0, file.size() - 4) : "";
+  if (stem + ".png" != file) throw vibe::Error(file + ": does not end in .png; give a file name that does");
+  for (std::size_t i = 0; i < sheet.pages().size(); ++i) {
+    vibe::SheetRaster raster = sheet.raster(i, kPreview);
+    const cv::Mat image(raster.height, raster.width, CV_8U, raster.value.data());
+    const std::string name = stem + "-" + std::to_string(i + 1) + ".png";
+    if (!cv::imwrite(name, image)) {
+      throw vibe::Error(name + ": cannot be written; give a file in an existing folder that you may write to");
+    }
+    std::printf("%s\n", name.c_str());
+  }
+}
+
+int run(const Options& options) {
+  if (options.pdf.empty() && options.svg.empty() && options.png.empty()) {
+    throw vibe::Error("nothing is written; give --pdf FILE, --svg FILE or --png FILE");
+  }
+  vibe::VisionConfig config;
+  if (!options.no_markers) config = vibe::VisionConfig::load(options.config, vibe::AxisRule::Optional);
+  const vibe::MarkerSheet sheet(config, sheetOptions(options));
+  if (!options.pdf.empty()) {
+    sheet.writePdf(options.pdf);
+    std::printf("%s\n", options.pdf.c_str());
+  }
+  if (!options.svg.empty()) {
+    for (const std::string& file : sheet.writeSvg(options.svg)) std::printf("%s\n", file.c_str());
+  }
+  if (!options.png.empty()) writePng(sheet, options.png);
+  std::printf("Print at 100 %% and measure the rulers: both must be 100.0 mm.\n");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Writes the markers of a configuration and a chessboard at their true size, to be printed.");
+  Options options;
+  addOptions(app, options);
+  return vibe::runProgram("vibe_marker_sheet", app, argc, argv, [&options] { return run(options); });
+}

@@ -1,0 +1,166 @@
+// vibe_track: tracks recorded images or a video. No ROS.
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "program_options.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_vision/camera/frame_source.hpp"
+#include "vibe_vision/record/annotation.hpp"
+#include "vibe_vision/record/track_table.hpp"
+#include "vibe_vision/track/tracker.hpp"
+
+namespace {
+
+constexpr double kTimeout = 5;         // [s]; a recording answers at once
+constexpr double kProgressPeriod = 1;  // [s]
+
+struct Options {
+  std::string video, images, config, csv, annotate;
+  vibe::SourceOptions source;
+  std::uint64_t frames = 0;
+};
+
+void addOptions(CLI::App& app, Options& options) {
+  auto* input = app.add_option_group("recording")->require_option(1);
+  input->add_option("--video", options.video, "Video file; stamps from FILE.csv if it is there");
+  input->add_option("--images", options.images,
+                    "Images in the order of their names, 'folder/*.png' in quotes; stamps "
+                    "from frames.csv in the folder if it is there");
+  app.add_option("--config", options.config, "YAML file or package:// address of the rig")->required();
+  app.add_option("--csv", options.csv, "Write the results to this file")->required();
+  app.add_option("--annotate", options.annotate,
+                 "Draw the results: into FILE.avi or FILE.mkv, or as images into a folder");
+  app.add_option("--frames", options.frames, "End after so many frames (default: all)");
+  app.add_option("--rate", options.source.rate, "Of a recording without stamps [Hz]")->capture_default_str();
+  app.add_option("--exposure", options.source.exposure, "Of a recording that does not tell it [s]")
+      ->capture_default_str();
+  app.add_option("--roi-x", options.source.roi_x, "Where the recording was cut from the sensor [px]");
+  app.add_option("--roi-y", options.source.roi_y, "The same, rows [px]");
+}
+
+double threadTime() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Draws the results into a video or a folder.
+class Annotator {
+ public:
+  Annotator(std::string target, double rate) : target_(std::move(target)), rate_(rate) {
+    const std::string end = std::filesystem::path(target_).extension();
+    is_video_ = end == ".avi" || end == ".mkv";
+    std::error_code failed;
+    if (!is_video_ && !target_.empty()) std::filesystem::create_directories(target_, failed);
+    if (failed) fail();
+  }
+
+  void add(const vibe::VisionConfig& config, const vibe::Frame& frame, const vibe::Measurements& measurements) {
+    if (target_.empty()) return;
+    const cv::Mat picture = vibe::annotate(config, frame, measurements);
+    if (is_video_) return addToVideo(picture);
+    char name[40];
+    std::snprintf(name, sizeof name, "/frame_%06llu.png", static_cast<unsigned long long>(count_++));
+    if (!cv::imwrite(target_ + name, picture)) fail();
+  }
+
+ private:
+  std::string target_;
+  double rate_;
+  bool is_video_ = false;
+  unsigned long long count_ = 0;
+  cv::VideoWriter video_;
+
+  [[noreturn]] void fail() const {
+    throw vibe::Error(target_ + ": cannot be written; give a folder, or a file that ends in .avi or .mkv");
+  }
+  void addToVideo(const cv::Mat& picture) {
+    if (count_++ == 0) video_.open(target_, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), rate_, picture.size());
+    if (!video_.isOpened()) fail();
+    video_.write(picture);
+  }
+};
+
+/// A recording that was cut from the sensor does not tell how large that was.
+void completeSize(const vibe::VisionConfig& config, const Options& options, vibe::Frame& frame) {
+  if (options.source.roi_x == 0 && options.source.roi_y == 0) return;
+  if (frame.sensor_width <= config.camera.width) frame.sensor_width = config.camera.width;
+  if (frame.sensor_height <= config.camera.height) frame.sensor_height = config.camera.height;
+}
+
+void requireSize(const vibe::VisionConfig& config, const vibe::Frame& frame) {
+  if (frame.sensor_width == config.camera.width && frame.sensor_height == config.camera.height) return;
+  throw vibe::Error("the recording has " + std::to_string(frame.sensor_width) + " x " +
+                    std::to_string(frame.sensor_height) + " px, the configuration is for " +
+                    std::to_string(config.camera.width) + " x " + std::to_string(config.camera.height) +
+                    "; use the configuration of the camera that took it, or give --roi-x and --roi-y");
+}
+
+/// One line that is overwritten, on a terminal only.
+class Progress {
+ public:
+  void show(std::uint64_t frames) {
+    if (!isatty(STDERR_FILENO)) return;
+    const std::time_t now = std::time(nullptr);
+    if (static_cast<double>(now - last_) < kProgressPeriod) return;
+    last_ = now;
+    std::fprintf(stderr, "\r%llu frames", static_cast<unsigned long long>(frames));
+  }
+  ~Progress() {
+    if (last_ != 0) std::fprintf(stderr, "\r                              \r");
+  }
+
+ private:
+  std::time_t last_ = 0;
+};
+
+int run(Options options) {
+  const vibe::VisionConfig config = vibe::VisionConfig::load(options.config);
+  vibe::Tracker tracker(config);
+  options.source.roi_width = options.source.roi_height = 0;
+  const std::unique_ptr<vibe::FrameSource> source =
+      vibe::openSource(options.video.empty() ? "images:" + options.images : "video:" + options.video, options.source);
+  vibe::TrackTable table(options.csv, config);
+  vibe::TrackSummary summary(config);
+  Annotator annotator(options.annotate, options.source.rate);
+  {
+    Progress progress;
+    vibe::Frame frame;
+    vibe::ReadResult result = vibe::ReadResult::Frame;
+    while ((result = source->read(frame, kTimeout)) == vibe::ReadResult::Frame) {
+      completeSize(config, options, frame);
+      if (summary.frames() == 0) requireSize(config, frame);
+      const double begin = threadTime();
+      const vibe::Measurements& measurements = tracker.track(frame);
+      summary.add(measurements, threadTime() - begin);
+      table.add(frame, measurements);
+      annotator.add(config, frame, measurements);
+      progress.show(summary.frames());
+      if (summary.frames() == options.frames) break;
+    }
+    if (result != vibe::ReadResult::End && result != vibe::ReadResult::Frame) throw vibe::Error(source->status());
+  }
+  table.close();
+  if (summary.frames() == 0) throw vibe::Error(source->status() + "; it has no frame, give another recording");
+  std::printf("%s%llu frames, %llu missing in the recording; results in %s\n", summary.text().c_str(),
+              static_cast<unsigned long long>(summary.frames()),
+              static_cast<unsigned long long>(source->statistics().lost), options.csv.c_str());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Tracks the instruments in a video or in images and writes their slides and rotations.");
+  Options options;
+  addOptions(app, options);
+  return vibe::runProgram("vibe_track", app, argc, argv, [&options] { return run(options); });
+}

@@ -1,0 +1,161 @@
+#include "vibe_vision/calibrate/marker_locator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/straight_line.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_vision/track/tracker.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kMargin = 1.5e-3;                          // around the rough place [m]
+constexpr double kShifts[] = {0, 1, -1, 2, -2, 0.5, -0.5};  // of the rough axis to the side, until it is found [px]
+constexpr double kRoughLateral = 2e-3;                      // [m]
+constexpr double kRoughScaleError = 0.3;
+constexpr int kRepeats = 8;           // of each image
+constexpr double kRepeatTime = 0.01;  // [s]
+constexpr int kPasses = 3;            // each with the axis of the one before
+
+void checkSizes(const VisionConfig& config, const std::vector<Frame>& images) {
+  for (const Frame& image : images) {
+    if (image.image.width == config.camera.width && image.image.height == config.camera.height) continue;
+    throw Error("an image has " + std::to_string(image.image.width) + " x " + std::to_string(image.image.height) +
+                " px, the configuration is for " + std::to_string(config.camera.width) + " x " +
+                std::to_string(config.camera.height) +
+                "; take the images with the calibrated camera and the same region");
+  }
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The search of whole images.
+struct RoughResult {
+  std::vector<LocatedMarker> markers;
+  Eigen::Vector2d sleeve_direction = Eigen::Vector2d::Zero();
+};
+
+RoughResult searchImages(const VisionConfig& config, const MarkerDesign& design, const std::vector<Frame>& images,
+                         const MarkerSearch& search) {
+  MarkerFinder finder(design, search);
+  RoughResult result;
+  for (const Frame& image : images) {
+    LocatedMarker marker;
+    marker.problem = "nothing in the image looks like the marker";
+    if (const auto sighting = finder.find(image.image)) {
+      marker.found = true;
+      marker.pixel = undistort(config.camera, sighting->pixel);
+      marker.pixels_per_metre = sighting->pixels_per_metre;
+      if (std::holds_alternative<SleeveDesign>(design)) result.sleeve_direction += sighting->direction;
+    }
+    result.markers.push_back(marker);
+  }
+  return result;
+}
+
+/// A configuration with this instrument alone, on the line through the markers found so far.
+VisionConfig roughConfig(const VisionConfig& config, std::size_t instrument, const LocatedMarkers& located, int pass) {
+  VisionConfig rough = config;
+  rough.instruments = {config.instruments[instrument]};
+  InstrumentConfig& object = rough.instruments.front();
+  std::vector<Eigen::Vector2d> points;
+  std::vector<double> scales;
+  for (const LocatedMarker& marker : located.markers) {
+    if (!marker.found) continue;
+    points.push_back(marker.pixel);
+    scales.push_back(marker.pixels_per_metre);
+  }
+  StraightLine line = StraightLine::fit(points);
+  if (line.direction.dot(located.direction) < 0) line.direction = -line.direction;
+  object.axis = {};
+  object.axis.origin = line.point;
+  object.axis.direction = line.direction;
+  object.axis.pixels_per_metre = median(scales);
+  if (pass > 0) return rough;
+  object.lateral_tolerance = std::max(object.lateral_tolerance, kRoughLateral);
+  rough.gates.max_scale_error = std::max(rough.gates.max_scale_error, kRoughScaleError);
+  return rough;
+}
+
+LocatedMarker toLocated(const Measurement& m, const SlideAxis& axis) {
+  LocatedMarker marker;
+  marker.found = m.tracked();
+  if (!marker.found) {
+    marker.problem = toText(m.reason);
+    return marker;
+  }
+  const Eigen::Vector2d d = axis.direction;
+  marker.pixel = axis.origin + m.along * d + m.lateral * Eigen::Vector2d(-d.y(), d.x());
+  marker.pixels_per_metre = m.scale * pixelsPerMetre(axis, m.slide);
+  marker.rotation = m.rotation;
+  return marker;
+}
+
+/// The same image a few times, as if the instrument stood still: what the tracker learns slowly, such as the place
+/// across the axis, settles.
+LocatedMarker settle(Tracker& tracker, Frame image, const SlideAxis& axis) {
+  LocatedMarker marker;
+  for (int i = 0; i < kRepeats; ++i) {
+    const LocatedMarker next = toLocated(tracker.track(image).front(), axis);
+    if (!next.found && !marker.found) return next;
+    if (next.found) marker = next;
+    image.stamp += kRepeatTime;
+    ++image.sequence;
+  }
+  return marker;
+}
+
+/// Tracks one image on a piece of the axis around the rough place.
+LocatedMarker measure(VisionConfig config, const Frame& image, const Eigen::Vector2d& rough) {
+  InstrumentConfig& object = config.instruments.front();
+  const Eigen::Vector2d d = object.axis.direction, n(-d.y(), d.x()), origin = object.axis.origin;
+  const double slide = slideOf(object.axis, (rough - origin).dot(d));
+  object.lower = slide - kMargin;
+  object.upper = slide + kMargin;
+  LocatedMarker marker;
+  for (const double shift : kShifts) {
+    object.axis.origin = origin + shift * n;
+    Tracker tracker(config);
+    marker = settle(tracker, image, object.axis);
+    if (marker.found) break;
+  }
+  return marker;
+}
+
+void requireTwo(const LocatedMarkers& located, const std::string& name) {
+  const auto found = std::count_if(located.markers.begin(), located.markers.end(),
+                                   [](const LocatedMarker& marker) { return marker.found; });
+  if (found >= 2) return;
+  const std::string why = found == 0 && !located.markers.empty() && !located.markers[0].problem.empty()
+                              ? " (" + located.markers[0].problem + ")"
+                              : "";
+  throw Error("the marker of '" + name + "' was found in " + std::to_string(found) + " of " +
+              std::to_string(located.markers.size()) + " images" + why +
+              "; check that it is the one of the configuration, sharp, lit, and within the scale to look for");
+}
+
+}  // namespace
+
+LocatedMarkers locateMarkers(const VisionConfig& config, std::size_t instrument, const std::vector<Frame>& images,
+                             const MarkerSearch& search) {
+  checkSizes(config, images);
+  const InstrumentConfig& object = config.instruments.at(instrument);
+  const RoughResult rough = searchImages(config, object.marker, images, search);
+  LocatedMarkers located{rough.markers, rough.sleeve_direction};
+  for (int pass = 0; pass < kPasses; ++pass) {
+    requireTwo(located, object.name);
+    const VisionConfig line = roughConfig(config, instrument, located, pass);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      if (rough.markers[i].found) located.markers[i] = measure(line, images[i], rough.markers[i].pixel);
+    }
+  }
+  requireTwo(located, object.name);
+  return located;
+}
+
+}  // namespace vibe

@@ -1,0 +1,56 @@
+#include "vibe_vision/calibrate/stop_list.hpp"
+
+#include <filesystem>
+#include <sstream>
+
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/scene/yaml_source.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kLargestSlide = 1;  // [m]
+
+std::string trimmed(const std::string& text) {
+  const char* const kSpaces = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(kSpaces);
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find_last_not_of(kSpaces) - begin + 1);
+}
+
+}  // namespace
+
+std::vector<StopImage> parseStopList(const std::string& text, const std::string& place) {
+  const YamlSource quantities = YamlSource::parse("slide: 0\n", place, {});
+  std::istringstream stream(text);
+  std::vector<StopImage> stops;
+  std::string line;
+  bool header = false;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    line = trimmed(line);
+    if (line.empty() || line[0] == '#') continue;
+    const std::size_t comma = line.rfind(',');
+    const YamlField field{"slide", "slide", number,
+                          YAML::Node(comma == std::string::npos ? "" : line.substr(comma + 1))};
+    if (!header) {
+      if (comma == std::string::npos || trimmed(line.substr(0, comma)) != "image" ||
+          trimmed(line.substr(comma + 1)) != "slide")
+        quantities.fail(field, "the list does not begin with the line 'image,slide'; write it above the first stop");
+      header = true;
+      continue;
+    }
+    const std::string image = comma == std::string::npos ? "" : trimmed(line.substr(0, comma));
+    if (image.empty()) quantities.fail(field, "is not an image and a slide; write for example stop_05.png,5 mm");
+    const double slide = quantities.quantity(field, "m", -kLargestSlide, kLargestSlide);
+    stops.push_back({(std::filesystem::path(place).parent_path() / image).string(), slide, number});
+  }
+  if (stops.empty()) throw Error(place + ": has no stops; write 'image,slide' and a line for each stop");
+  return stops;
+}
+
+std::vector<StopImage> loadStopList(const std::string& file) {
+  return parseStopList(readTextFile(file, "list of stops"), file);
+}
+
+}  // namespace vibe

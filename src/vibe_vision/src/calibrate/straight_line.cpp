@@ -1,0 +1,77 @@
+#include "calibrate/straight_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "calibrate/least_squares.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kShortestPath = 20;     // [px]
+constexpr double kFar = 5 * 1.4826;      // times the median distance: 5 standard deviations
+constexpr double kSmallestLimit = 0.02;  // nearer points always count [px]
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double medianDistance(const StraightLine& line, const std::vector<Eigen::Vector2d>& points) {
+  std::vector<double> distances;
+  for (const Eigen::Vector2d& point : points) distances.push_back(std::abs(line.across(point)));
+  return median(distances);
+}
+
+/// Of the lines through two points the one that is nearest to most: it does not mind a few points elsewhere.
+StraightLine roughLine(const std::vector<Eigen::Vector2d>& points) {
+  StraightLine best;
+  double longest = 0, nearest = 1e300;
+  const std::size_t step = 1 + points.size() / 40;  // pairs enough
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    for (std::size_t j = i + 1; j < points.size(); j += step) {
+      const double length = (points[j] - points[i]).norm();
+      longest = std::max(longest, length);
+      if (length < kShortestPath) continue;
+      const StraightLine line{points[i], (points[j] - points[i]) / length};
+      const double distance = medianDistance(line, points) + 1e-3 / length;  // of equal ones the longest
+      if (distance < nearest) nearest = distance, best = line;
+    }
+  }
+  if (longest >= kShortestPath) return best;
+  char text[40];
+  std::snprintf(text, sizeof text, "%.1f", longest);
+  throw Error(std::string("the marker moved by ") + text + " px only; move the instrument over its whole range");
+}
+
+}  // namespace
+
+StraightLine StraightLine::fit(const std::vector<Eigen::Vector2d>& points, Eigen::Matrix2d* covariance) {
+  constexpr int kIterations = 10;
+  StraightLine line = roughLine(points);
+  LinearFit fit;
+  for (int i = 0; i < kIterations; ++i) {
+    const double limit = std::max(kFar * medianDistance(line, points), kSmallestLimit);
+    std::vector<Eigen::Vector2d> near;
+    for (const Eigen::Vector2d& point : points)
+      if (std::abs(line.across(point)) <= limit) near.push_back(point);
+    Eigen::MatrixXd a(static_cast<Eigen::Index>(near.size()), 2);
+    Eigen::VectorXd b(a.rows());
+    line.point += line.along(points.front()) * line.direction;
+    for (Eigen::Index row = 0; row < a.rows(); ++row) {
+      a.row(row) << 1, line.along(near[static_cast<std::size_t>(row)]);
+      b(row) = line.across(near[static_cast<std::size_t>(row)]);
+    }
+    fit = solveLinear(a, b);
+    const Eigen::Vector2d n(-line.direction.y(), line.direction.x());
+    line.point += fit.solution(0) * n;
+    line.direction = (line.direction + fit.solution(1) * n).normalized();
+  }
+  if (covariance != nullptr) *covariance = fit.covariance;
+  return line;
+}
+
+}  // namespace vibe
