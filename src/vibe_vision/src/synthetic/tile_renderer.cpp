@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kFewSamples = 2;   // per pixel and direction, where motion smooths the picture
 constexpr int kManySamples = 4;  // elsewhere
+constexpr double kWideBlur = 1;  // standard deviation that does, too [px]
 constexpr double kSmooth = 1;    // motion that does [px]
 constexpr double kStep = 0.5;    // between two moments, largest [px]
 constexpr double kStill = 0.02;  // motion that needs no second moment [px]
@@ -222,8 +223,9 @@ void TileRenderer::occluderRow(double time, const Grid& grid, double y, float* v
   }
 }
 
-/// True if everything in the rectangle moves enough to blur what the samples leave of its edges.
+/// True if few samples do: the optics or the motion of everything in the rectangle blurs what they leave of its edges.
 bool TileRenderer::isSmoothed(const PixelRect& rect, const Exposure& exposure) const {
+  if (scene_.degradation.blur >= kWideBlur) return true;
   for (std::size_t i = 0; i < objects_.size(); ++i)
     if (!intersection(rect, boundsOf(i, exposure)).empty() && pathLength(i, exposure) < kSmooth) return false;
   return true;
