@@ -32,6 +32,7 @@ std::vector<Case> cases() {
           {"1 ms", poseWith(1.3), 5},
           {"4 ms", poseWith(4.1), 20},
           {"tilt and slant", poseWith(0.9, 0.26, -0.26), 0},
+          {"tilt, slant and 1 ms", poseWith(3.5, -0.26, 0.26), 5},
           {"large", poseWith(5.2, 0, 0, 0.095), 3},
           {"small", poseWith(-0.6, 0, 0, -0.105), 3},
           {"out of focus", poseWith(2.2, 0, 0, 0, 2), 4}};
@@ -65,7 +66,8 @@ struct Error4 {
 Error4 errorAgainstDrawing(const Case& c) {
   SleevePattern pattern(defaultSleeve(), kPixelsPerMetre, kView);
   const DrawnSleeve drawn(defaultSleeve(), kPixelsPerMetre, kView, c.pose, c.motion);
-  const PixelBlock pixels = pixelsOf(pattern, c.pose, c.motion, 7);
+  PixelBlock pixels = pixelsOf(pattern, c.pose, c.motion, 7);
+  pattern.select(c.pose, c.motion, pixels);
   PatternValues values;
   values.allocate(pixels.capacity(), pattern.observes());
   pattern.prepare(c.pose, c.motion);
@@ -89,7 +91,8 @@ TEST(SleevePattern, IsThePictureOfACylinder) {
     const Error4 error = errorAgainstDrawing(c);
     // An oblique or much blurred sleeve tells its place less well: three times the error is less than its noise.
     const bool hard = c.pose.tilt != 0 || c.pose.blur > 1 || c.motion > 10;
-    EXPECT_LT(error.rms, hard ? 0.004 : 0.002) << c.name;
+    const bool hardest = c.pose.tilt != 0 && c.motion > 0;  // the motion is not along the rod
+    EXPECT_LT(error.rms, hardest ? 0.008 : hard ? 0.004 : 0.002) << c.name;
     EXPECT_LT(std::abs(error.along), hard ? 0.003 : 0.001) << c.name;
     EXPECT_LT(std::abs(error.rotation), (hard ? 0.15 : 0.05) * M_PI / 180) << c.name;
   }
@@ -137,7 +140,7 @@ TEST(SleevePattern, DerivativesAreThoseOfThePicture) {
   for (const Case& c : cases())
     for (const PoseIndex k : {kAlong, kLateral, kRotation, kLogScale, kTilt, kBlur, kSlant}) {
       if (c.motion > 6 && (k == kLogScale || k == kTilt || k == kBlur)) continue;  // change the motion on the print too
-      EXPECT_LT(derivativeError(c, k), k == kBlur ? 0.2 : 0.12) << c.name << ", parameter " << k;
+      EXPECT_LT(derivativeError(c, k), k == kBlur ? 0.25 : 0.12) << c.name << ", parameter " << k;
     }
 }
 
