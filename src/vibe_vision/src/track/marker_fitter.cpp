@@ -72,7 +72,7 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   if (!read(map, frame, fit)) return fit;
   useHalf();
   if (!align(fit, prior, FitScope::Shape) || fit.loss > kHopeless) return fit;
-  // The blur of the picture is not that of the prior if the camera is out of focus; a ring is found all the same.
+  // The blur is not that of the prior if the camera is out of focus: thin bars tell it before the motion is known.
   fit.x[kBlur] = observed_[kRotation] ? fit.x[kBlur] : blur;
   if (observed_[kRotation] && !align(fit, prior, FitScope::All)) return fit;
   if (max_motion > 1) chooseMotion(fit, prior, max_motion);
