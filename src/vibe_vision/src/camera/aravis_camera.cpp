@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "camera/host_time.hpp"
 #include "vibe_core/common/error.hpp"
@@ -9,7 +10,9 @@
 namespace vibe {
 namespace {
 
-constexpr int kLoopbackPacket = 8000;          // [bytes]; test packets of a simulated camera are not answered
+// On the loopback interface test packets of a simulated camera are not answered. With its management data this size
+// fills 16 kB of the kernel's memory, so that a frame of 728 x 544 fits in a socket buffer of the default size. [bytes]
+constexpr int kLoopbackPacket = 15900;
 constexpr guint kInitialPacketTimeout = 2000;  // until a missing packet is asked for [us]
 constexpr guint kPacketTimeout = 3000;         // until it is asked for again [us]
 constexpr guint kFrameRetention = 10000;       // until an incomplete frame is given up: the next ones wait for it [us]
@@ -24,6 +27,13 @@ bool isLoopback(ArvCamera* camera) {
   GSocketAddress* address = arv_gv_device_get_device_address(ARV_GV_DEVICE(arv_camera_get_device(camera)));
   if (!G_IS_INET_SOCKET_ADDRESS(address)) return false;
   return g_inet_address_get_is_loopback(g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address))) != 0;
+}
+
+/// Of a socket buffer, that the kernel grants [bytes]; 0: unknown.
+long grantedBuffer() {
+  long most = 0;
+  std::ifstream("/proc/sys/net/core/rmem_max") >> most;
+  return most;
 }
 
 bool isAddress(const std::string& name) {
@@ -172,6 +182,12 @@ void AravisCamera::start() {
   if (error || payload == 0) throw Error(facts_.name + ": the size of its frames cannot be read: " + error.text());
   for (int i = 0; i < BufferLoan::kBuffers; ++i) {
     arv_stream_push_buffer(stream_.get(), arv_buffer_new(payload, nullptr));
+  }
+  const long granted = grantedBuffer();
+  if (ARV_IS_GV_STREAM(stream_.get()) && granted > 0 && granted < 2L * payload) {
+    facts_.notes += "; net.core.rmem_max is " + std::to_string(granted) +
+                    " bytes, less than two frames, so that packets may be lost: set it to " +
+                    std::to_string(kSocketBuffer) + " (sysctl -w)";
   }
   loan_ = std::make_shared<BufferLoan>(stream_.get());
   arv_camera_start_acquisition(camera_.get(), error.slot());
