@@ -6,12 +6,23 @@
 namespace vibe {
 namespace {
 
-constexpr double kMaxMisfit = 4;    // chi^2 per degree of freedom of the pixels that are no outliers
-constexpr double kDeviations = 6;   // of the prediction
-constexpr double kSureTilt = 3;     // standard deviations: a ring shows its tilt only if it is slanted
-constexpr double kRest = 1e-4;      // by which anything may have moved [m]
-constexpr double kSlack = 1;        // beyond the range and across the axis [px]
-constexpr double kMaxBlack = 0.75;  // of white: paper and ink differ more
+// chi^2 per degree of freedom of the pixels that are no outliers: of a marker that is seen as a whole, of half of one.
+// What is left of a covered marker fits other poses nearly as well.
+constexpr double kMaxMisfit = 4, kMaxMisfitOfHalf = 1.5;
+constexpr double kDeviations = 6;     // of the prediction
+constexpr double kSureTilt = 3;       // standard deviations
+constexpr double kShear = 0.004;      // of a slanted ring away from the middle of the image
+constexpr double kRest = 1e-4;        // by which anything may have moved [m]
+constexpr double kWeakerEdges = 0.4;  // of the share of all edges
+constexpr double kSlack = 1;          // beyond the range and across the axis [px]
+constexpr double kMaxBlack = 0.75;    // of white: paper and ink differ more
+
+/// A ring shows its tilt only by the direction of its slant, which perspective turns a little.
+double sureTilt(const MarkerFit& fit) {
+  double doubt = kSureTilt * std::sqrt(fit.covariance(kTilt, kTilt));
+  if (fit.covariance(kLogAspect, kLogAspect) > 0) doubt += kShear / std::max(std::abs(fit.x[kLogAspect]), kShear);
+  return std::abs(fit.x[kTilt]) - doubt;
+}
 
 }  // namespace
 
@@ -32,10 +43,12 @@ LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal) const {
   const double scale = std::exp(x[kLogScale] - nominal[kLogScale]);
   const double length = scale * std::exp(x[kLogAspect] - nominal[kLogAspect]);
   const double wrong_size = std::max(std::abs(scale - 1), std::abs(length - 1));
-  const double tilt = std::abs(x[kTilt]) - kSureTilt * std::sqrt(fit.covariance(kTilt, kTilt));
-  if (wrong_size > limits_.max_scale_error || tilt > limits_.max_tilt) return LostReason::Mismatch;
+  if (wrong_size > limits_.max_scale_error || sureTilt(fit) > limits_.max_tilt) return LostReason::Mismatch;
   if (fit.visible < limits_.min_visible) return LostReason::Occluded;
-  return fit.misfit > kMaxMisfit ? LostReason::Mismatch : LostReason::None;
+  const bool other = fit.weaker_edges < kWeakerEdges * fit.visible;
+  const double part = std::clamp((fit.visible - 0.5) / 0.35, 0.0, 1.0);
+  return other || fit.misfit > kMaxMisfitOfHalf + part * (kMaxMisfit - kMaxMisfitOfHalf) ? LostReason::Mismatch
+                                                                                         : LostReason::None;
 }
 
 /// A stop ends a motion at once: from where it was, only the speed is limited.

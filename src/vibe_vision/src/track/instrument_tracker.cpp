@@ -10,14 +10,14 @@ namespace {
 
 constexpr double kCloseEnough = 1.2;   // deviation of a prediction from which a fit converges [px]
 constexpr double kMaxGap = 0.5;        // after which the motion is forgotten [s]
-constexpr int kForget = 60;            // lost frames after which size, tilt and blur are forgotten
+constexpr int kForget = 3;             // lost frames after which size, tilt and blur are forgotten
 constexpr int kJumpsToBelieve = 3;     // frames that agree on a place that cannot be reached
 constexpr double kGoodLook = 0.6;      // share of the marker that must be seen to learn size, tilt and blur from it
 constexpr double kScaleStep = 0.05;    // the search knows the size no better
 constexpr double kMargin = 3;          // around the range of the search [px]
 constexpr double kFilterFloor = 1e-6;  // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
 constexpr double kGoodLoss = 0.25;     // of a pixel: no other candidate needs to be looked at
-constexpr double kKnownMotion = 5;     // deviation of a prediction whose speed is worth something [px]
+constexpr int kTries = 3;              // candidates that a frame may cost
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) {
@@ -78,6 +78,7 @@ const Measurement& InstrumentTracker::lose(LostReason reason) {
 const Measurement& InstrumentTracker::track(const Frame& frame) {
   const Prediction prediction = predict(frame.stamp);
   reason_ = LostReason::NotFound;
+  tries_ = 0;
   if (prediction.close && follow(frame, prediction)) return measurement_;
   if (search(frame, prediction)) return measurement_;
   return lose(reason_);
@@ -114,8 +115,7 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   const double slide = std::clamp(prediction.slide.mean[0], config_.lower, config_.upper);
   const double scale = pixelsPerMetre(config_.axis, slide);
   slow_.predict(prediction.slide.mean[1] * prediction.dt * scale);
-  const double shift = prediction.slide.mean[2] * exposureShift(frame.exposure);
-  FitVector start = startAt(slide + shift, prediction);
+  FitVector start = startAt(slide, prediction);
   start[kLateral] = measurement_.tracked() ? measurement_.lateral : 0;
   const MarkerFit fit =
       fitter_.follow(map_, frame, start, slow_.prior(slide), motionAt(prediction.slide, frame.exposure),
@@ -147,16 +147,9 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
   MarkerFit best;
   best.loss = 1e9;
   reason_ = whyNothing(found);
-  for (int i = 0; i < found.count; ++i) {
+  for (int i = 0; i < found.count && tries_ < kTries; ++i, ++tries_) {
     const MarkerFit fit = tryCandidate(frame, prediction, found.candidates[i]);
     const LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])));
-    if (getenv("DBG"))
-      fprintf(stderr,
-              "cand %.1f m %.0f s %.3f -> %.2f lat %.2f m %.1f scale %.3f asp %.3f blur %.2f misfit %.2f vis %.2f loss "
-              "%.3f valid %d: %s\n",
-              found.candidates[i].along, found.candidates[i].motion, found.candidates[i].score, fit.x[kAlong],
-              fit.x[kLateral], fit.motion, exp(fit.x[kLogScale]), exp(fit.x[kLogAspect]), fit.x[kBlur], fit.misfit,
-              fit.visible, fit.loss, fit.valid, toText(reason));
     if (reason == LostReason::None && fit.loss < best.loss) best = fit;
     if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
     if (best.valid && best.loss < kGoodLoss) break;
@@ -207,9 +200,6 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   measurement_.reason = LostReason::None;
   measurement_.reacquired = reacquired;
   const double scale = pixelsPerMetre(config_.axis, slideOf(config_.axis, fit.x[kAlong]));
-  toMiddle(frame, fit, prediction, scale);
-  measurement_.slide = slideOf(config_.axis, measurement_.along);
-  measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
   measurement_.rotation = kNaN;
   if (fitter_.shows(kRotation)) {
     const double expected = prediction.known && rotation_.started() ? prediction.rotation.mean[0] : last_rotation_;
@@ -217,26 +207,22 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
     measurement_.covariance(1, 1) = fit.covariance(kRotation, kRotation);
     measurement_.covariance(0, 1) = measurement_.covariance(1, 0) = fit.covariance(kAlong, kRotation) / scale;
   }
+  updateFilters(frame.stamp, fit, scale, jumps_ >= kJumpsToBelieve || !prediction.known);
+  toMiddle(frame, fit, scale);
+  measurement_.slide = slideOf(config_.axis, measurement_.along);
+  measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
   describe(fit);
-  const bool jumped = jumps_ >= kJumpsToBelieve;
-  updateFilters(frame.stamp, jumped || !prediction.known);
   if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide);
   jumps_ = lost_frames_ = 0;
 }
 
 /// The picture shows where the marker was on average over the exposure, weighted by the light. From there to the middle
 /// of the exposure.
-void InstrumentTracker::toMiddle(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, double scale) {
+void InstrumentTracker::toMiddle(const Frame& frame, const MarkerFit& fit, double scale) {
   const double grey = fit.x[kBlack] + fit.x[kContrast] / 2;
   const double place = 2 * (fit.x[kAlong] - search_.begin()) / (search_.end() - search_.begin()) - 1;
   light_.update(frame.stamp, place, grey, std::sqrt(fit.covariance(kContrast, kContrast)) / fit.x[kContrast]);
-  MotionFilter::State state = prediction.slide;
-  const bool known = prediction.known && state.deviation() * scale < kKnownMotion;
-  if (!known) {
-    state.mean.tail<2>().setZero();
-    state.covariance(1, 1) = square(config_.motion.max_speed / 2);
-    state.covariance(2, 2) = square(config_.motion.max_acceleration / 2);
-  }
+  const MotionFilter::State state = slide_.predict(frame.stamp);
   const LightModel::Delay delay = light_.delay(frame.stamp, frame.exposure);
   const double shift = exposureShift(frame.exposure);
   measurement_.along = fit.x[kAlong] - scale * (state.mean[2] * shift + state.mean[1] * delay.mean);
@@ -258,20 +244,21 @@ void InstrumentTracker::describe(const MarkerFit& fit) {
   measurement_.roi_width = fit.roi.width, measurement_.roi_height = fit.roi.height;
 }
 
-void InstrumentTracker::updateFilters(double stamp, bool restart) {
-  const double variance = measurement_.covariance(0, 0) + square(kFilterFloor);
-  const double turn_variance = measurement_.covariance(1, 1) + square(1e3 * kFilterFloor);
-  last_slide_ = measurement_.slide;
+/// The filters see what the picture shows: the mean over the exposure.
+void InstrumentTracker::updateFilters(double stamp, const MarkerFit& fit, double scale, bool restart) {
+  const double variance = fit.covariance(kAlong, kAlong) / square(scale) + square(kFilterFloor);
+  last_slide_ = slideOf(config_.axis, fit.x[kAlong]);
   if (restart)
-    slide_.start(stamp, measurement_.slide, variance);
+    slide_.start(stamp, last_slide_, variance);
   else
-    slide_.update(stamp, measurement_.slide, variance);
+    slide_.update(stamp, last_slide_, variance);
   if (!fitter_.shows(kRotation)) return;
+  const double turn_variance = fit.covariance(kRotation, kRotation) + square(1e3 * kFilterFloor);
   last_rotation_ = measurement_.rotation;
   if (restart || !rotation_.started())
-    rotation_.start(stamp, measurement_.rotation, turn_variance);
+    rotation_.start(stamp, last_rotation_, turn_variance);
   else
-    rotation_.update(stamp, measurement_.rotation, turn_variance);
+    rotation_.update(stamp, last_rotation_, turn_variance);
 }
 
 }  // namespace vibe

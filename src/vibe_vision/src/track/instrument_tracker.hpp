@@ -36,9 +36,9 @@ class InstrumentTracker {
   bool isExpected(const MarkerFit& fit, const Prediction& prediction, double stamp);
   LostReason whyNothing(const AxisSearch::Result& found) const;
   void accept(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, bool reacquired);
-  void toMiddle(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, double scale);
+  void toMiddle(const Frame& frame, const MarkerFit& fit, double scale);
   void describe(const MarkerFit& fit);
-  void updateFilters(double stamp, bool restart);
+  void updateFilters(double stamp, const MarkerFit& fit, double scale, bool restart);
 
   InstrumentConfig config_;
   double min_contrast_;
@@ -50,6 +50,7 @@ class InstrumentTracker {
   LightModel light_;
   MotionFilter slide_, rotation_;
   double last_slide_ = 0, last_rotation_ = 0;
+  int tries_ = 0;  ///< candidates of this frame
   int lost_frames_ = 0;
   int jumps_ = 0;  ///< frames in a row that show the marker where it cannot be
   double jump_slide_ = 0, jump_stamp_ = 0;

@@ -10,11 +10,12 @@ namespace vibe {
 struct MarkerFit {
   FitVector x = FitVector::Zero();
   FitMatrix covariance = FitMatrix::Zero();
-  double misfit = 0;   ///< robust chi^2 per degree of freedom
-  double loss = 0;     ///< mean of the robust loss of a pixel
-  double visible = 0;  ///< share of the information about the position that was used
-  double motion = 0;   ///< along the axis during the exposure, as assumed [px]
-  bool valid = false;  ///< the fit converged
+  double misfit = 0;        ///< robust chi^2 per degree of freedom
+  double loss = 0;          ///< mean of the robust loss of a pixel
+  double visible = 0;       ///< share of the information about the position that was used
+  double weaker_edges = 0;  ///< see FitStep
+  double motion = 0;        ///< along the axis during the exposure, as assumed [px]
+  bool valid = false;       ///< the fit converged
   PixelWindow roi;
 };
 

@@ -67,6 +67,7 @@ PatternFit::PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::siz
       weight_(factor_),
       rest_(factor_),
       information_(factor_),
+      white_(factor_),
       equations_(capacity) {
   values_.allocate(capacity, observed_);
 }
@@ -103,6 +104,9 @@ FitStep PatternFit::step(const FitVector& x, const FitPrior& prior, const PixelB
   equations_.sum(pixels.padded());
   solve(x, prior, result);
   result.visible = full_ > 0 ? used_ / full_ : 0;
+  const double white = used_white_ / std::max(full_white_, 1e-9);
+  const double black = (used_ - used_white_) / std::max(full_ - full_white_, 1e-9);
+  result.weaker_edges = std::min(white, black);
   result.loss = valid_ > 0 ? loss_ / valid_ : 1;
   const double freedom = weights_ / kMeanWeight - columns_;
   result.misfit = freedom > 0 ? squares_ / kMeanSquare / freedom : 0;
@@ -139,6 +143,8 @@ void PatternFit::weigh(const FitVector& x, const PixelBlock& pixels, const FitOp
   const float* valid = pixels.weight.data();
   float* __restrict factor = factor_.data(), * __restrict residual = equations_.residual();
   float* __restrict weight = weight_.data(), * __restrict rest = rest_.data(), * __restrict information = information_.data();
+  float* white = white_.data();
+  const float* by_scale = values_.derivative[kLogScale].data();
   const std::size_t count = pixels.padded();
   const Four zero{}, one = zero + 1;
   for (std::size_t i = 0; i < count; i += 4) {
@@ -154,6 +160,7 @@ void PatternFit::weigh(const FitVector& x, const PixelBlock& pixels, const FitOp
     store(residual + i, root * r);
     store(rest + i, share * kept);
     store(information + i, inverse * steep);
+    store(white + i, loadFour(by_scale + i) > zero ? inverse * steep : zero);
   }
   squares_ = dot(residual, residual, count);
   weights_ = total(weight, count);
@@ -161,6 +168,8 @@ void PatternFit::weigh(const FitVector& x, const PixelBlock& pixels, const FitOp
   loss_ = valid_ - total(rest, count);
   used_ = dot(weight, information, count);
   full_ = total(information, count);
+  used_white_ = dot(weight, white, count);
+  full_white_ = total(white, count);
 }
 
 void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pixels) {

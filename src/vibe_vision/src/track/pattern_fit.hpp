@@ -40,6 +40,9 @@ struct FitStep {
   double misfit = 0;   ///< robust chi^2 per degree of freedom
   double loss = 0;     ///< mean of the biweight's loss of a pixel, 1: all are outliers
   double visible = 0;  ///< share of the information about the position along the axis that is used
+  /// The same for edges that are white inside and for those that are black inside, whichever is less: what hides a
+  /// marker hides both alike, another pattern has one of them elsewhere.
+  double weaker_edges = 0;
   bool valid = false;  ///< the equations could be solved
 };
 
@@ -69,12 +72,12 @@ class PatternFit {
   PixelNoise noise_;
   std::array<bool, kPoseParameters> observed_;
   PatternValues values_;
-  std::vector<float> factor_;                       ///< square root of a pixel's weight
-  std::vector<float> weight_, rest_, information_;  ///< see weigh()
+  std::vector<float> factor_;                               ///< square root of a pixel's weight
+  std::vector<float> weight_, rest_, information_, white_;  ///< see weigh()
   NormalEquations equations_;
   std::array<int, kFitParameters> parameter_{};  ///< of each column
   int columns_ = 0;
-  double squares_ = 0, weights_ = 0, loss_ = 0, valid_ = 0, used_ = 0, full_ = 0;
+  double squares_ = 0, weights_ = 0, loss_ = 0, valid_ = 0, used_ = 0, full_ = 0, used_white_ = 0, full_white_ = 0;
 };
 
 }  // namespace vibe

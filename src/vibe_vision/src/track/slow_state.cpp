@@ -8,14 +8,15 @@ namespace vibe {
 namespace {
 
 // Standard deviations at the beginning, and random walk from one frame to the next. Design choices.
-constexpr double kScalePrior = 0.08, kScaleDrift = 2e-4;
+constexpr double kScalePrior = 0.08, kScaleDrift = 5e-5;
 constexpr double kTiltPrior = 0.15, kTiltDrift = 5e-4;  // [rad]
-constexpr double kAspectPrior = 0.04, kAspectDrift = 2e-4;
+constexpr double kAspectPrior = 0.04, kAspectDrift = 3e-5;
 constexpr double kBlurPrior = 0.5, kBlurDrift = 2e-3;  // [px]
 // Of a rod, slant and slide, and lateral and rotation, look nearly the same in one picture; guides hold the rod, so
 // that all pictures together tell them apart.
 constexpr double kSlantPrior = 0.2, kSlantDrift = 2e-5;   // [rad]
 constexpr double kLateralDrift = 3e-3;                    // [px]
+constexpr double kLeastAspect = 0.01;                     // from which the direction of the slant can be told
 constexpr double kSlopePrior = 2e-3, kSlopeDrift = 4e-6;  // of the light [1/px], and per pixel of travel
 
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitParameters, kFitParameters>;
@@ -54,30 +55,38 @@ void SlowState::reset() {
   covariance_.diagonal() = initial_deviation_.cwiseAbs2();
 }
 
-/// Random walk, but never less certain than at the beginning.
+/// How much the marker may be slanted against the sensor, from its shape: one that is as long as wide is not.
+double SlowState::greatestSlant() const {
+  const double deviation = std::sqrt(covariance_(kLogAspect, kLogAspect));
+  const double aspect = mean_[kLogAspect] + std::log(std::cos(slant_)) - 2 * deviation;
+  return std::acos(std::exp(std::min(aspect, 0.0))) + std::abs(slant_);
+}
+
+/// Random walk, but never less certain than at the beginning. The camera sees a slanted marker from another side after
+/// it has moved, which changes its shape.
 void SlowState::predict(double travel) {
+  const double turn = std::abs(travel) / focal_ * std::sin(greatestSlant());
   for (int i = 0; i < count_; ++i) {
     const int k = index_[i];
-    const double step = k >= kSlopeAlong ? drift_[k] * (1 + std::abs(travel)) : drift_[k];
+    double step = drift_[k];
+    if (k >= kSlopeAlong) step *= 1 + std::abs(travel);
+    if (k == kLogAspect || k == kLogScale) step += turn;
+    if (k == kTilt && initial_deviation_[kLogAspect] > 0)
+      step += turn / (2 * std::max(std::abs(mean_[kLogAspect]), kLeastAspect));
     const double room = initial_deviation_[k] * initial_deviation_[k] - covariance_(k, k);
     covariance_(k, k) += std::max(0.0, std::min(step * step, room));
   }
   limitKeystone();
 }
 
-/// A marker that is as long as wide is not slanted: no picture of it grows along the axis by more than its shape
-/// allows.
+/// Only a slanted marker grows along its picture: taken as a measurement of 0 that leaves the variance of the limit.
 void SlowState::limitKeystone() {
-  const double variance = covariance_(kKeystone, kKeystone);
-  if (variance <= 0) return;
-  const double aspect =
-      mean_[kLogAspect] + std::log(std::cos(slant_)) - 2 * std::sqrt(covariance_(kLogAspect, kLogAspect));
-  const double slant = std::acos(std::exp(std::min(aspect, 0.0))) + std::abs(slant_);
-  const double limit = slant / focal_;
+  const double variance = covariance_(kKeystone, kKeystone), limit = greatestSlant() / focal_;
   if (variance <= limit * limit) return;
-  const double factor = limit / std::sqrt(variance);
-  covariance_.row(kKeystone) *= factor;
-  covariance_.col(kKeystone) *= factor;
+  const FitVector common = covariance_.col(kKeystone);
+  const double gain = (1 - limit * limit / variance) / variance;
+  mean_ -= common * gain * mean_[kKeystone];
+  covariance_ -= gain * common * common.transpose();
 }
 
 void SlowState::update(const FitVector& x, const FitMatrix& covariance, double slide) {

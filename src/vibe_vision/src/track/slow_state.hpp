@@ -26,6 +26,7 @@ class SlowState {
   const FitMatrix& covariance() const { return covariance_; }
 
  private:
+  double greatestSlant() const;
   void limitKeystone();
 
   SlideAxis axis_;
