@@ -15,7 +15,7 @@ constexpr double kMotionTrial = 2;          // [px]
 constexpr double kMotionUncertainty = 0.3;  // of the edges while it is tried [px]
 constexpr double kMinUncertainty = 0.3;     // of a prediction [px]
 constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
-constexpr double kHopeless = 0.7;                       // loss of a pixel after the coarse alignment
+constexpr double kHopeless = 0.8;                       // loss of a pixel after the coarse alignment
 constexpr double kVeryHopeless = 0.8;                   // before size and tilt are known
 constexpr int kAlignSteps = 3;
 constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after which the picture is made anew [px], 1
@@ -64,7 +64,8 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   fit.x[kBlur] = blur + kCoarseBlur;
   if (!read(map, frame, fit)) return fit;
   useHalf();
-  if (!align(fit, prior, FitScope::Position) || fit.loss > kVeryHopeless) return fit;
+  if (!align(fit, prior, FitScope::Position)) return fit;
+  if (!observed_[kRotation] && fit.loss > kVeryHopeless) return fit;  // else the rotation may be wrong
   fit.x[kBlur] = blur + kMiddleBlur;
   if (!known_rotation && observed_[kRotation]) chooseRotation(fit);
   if (!read(map, frame, fit)) return fit;
