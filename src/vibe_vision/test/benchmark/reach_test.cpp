@@ -65,13 +65,19 @@ TEST_P(Reach, IsKept) {
   EXPECT_GE(score.tracked, limit.found * score.visible);
   EXPECT_EQ(score.wrong, 0);
   EXPECT_EQ(score.phantom, 0);
-  if (limit.rotation < kNone) EXPECT_LE(kDegrees * score.rotation_rms, limit.rotation);
-  if (limit.bound_ratio < kNone) EXPECT_LE(score.boundRatio(), limit.bound_ratio);
+  if (limit.rotation < kNone) {
+    EXPECT_LE(kDegrees * score.rotation_rms, limit.rotation);
+  }
+  if (limit.bound_ratio < kNone) {
+    EXPECT_LE(score.boundRatio(), limit.bound_ratio);
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Reach, testing::ValuesIn(kLimits), [](const testing::TestParamInfo<Limit>& info) {
-  return std::string(info.param.scene) + "_" + info.param.method;
-});
+std::string nameOf(const testing::TestParamInfo<Limit>& limit) {
+  return std::string(limit.param.scene) + "_" + limit.param.method;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Reach, testing::ValuesIn(kLimits), nameOf);
 
 /// A control: a plain centroid does not keep the limits of the ring.
 TEST(ReachControl, ACentroidExceedsTheLimits) {
