@@ -64,7 +64,10 @@ class Device(Driver):
             put("/hardware_node/config", self.arguments.config)
 
     def start(self, graph):
-        self.senders = [graph.start("hardware_node", ["rosrun", "vibe_hardware", "hardware_node"], visible=True)]
+        command = ["rosrun", "vibe_hardware", "hardware_node"]
+        if self.arguments.camera:  # the simulator obeys one node only: the camera's, also while an instrument is lost
+            command.append("overstitch/measured_js:=overstitch/buttons_js")
+        self.senders = [graph.start("hardware_node", command, visible=True)]
 
 
 class Emulator(Device):

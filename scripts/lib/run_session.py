@@ -13,6 +13,7 @@ import time
 
 from drivers import DRIVERS
 from graph import Graph, GraphError
+from vision import Vision
 
 SETTLE = 1.0  # for the recorder to receive what the simulator sent last [s]
 RECORDER_PATIENCE = 600.0  # for the recorder to write what it holds in memory [s]
@@ -40,6 +41,8 @@ def parse_arguments():
     parser.add_argument("--pad", default="")
     parser.add_argument("--mapping", default="")
     parser.add_argument("--replay-pad", default="")
+    parser.add_argument("--camera", default="", help="that watches the instruments; empty: none")
+    parser.add_argument("--vision-config", default="")
     parser.add_argument("--mesh", default="")
     parser.add_argument("--output", required=True)
     parser.add_argument("--duration", type=float, required=True, help="0: no end")
@@ -59,6 +62,7 @@ class Session:
         self.graph = Graph(self.logs)
         self.graph.env.setdefault("ROSCONSOLE_STDOUT_LINE_BUFFERED", "1")  # what nodes say must not come too late
         self.driver = DRIVERS[arguments.drive](arguments)
+        self.vision = Vision(arguments) if arguments.camera else None
         self.sim = self.recorder = self.rviz = None
 
     def start(self):
@@ -70,6 +74,8 @@ class Session:
         if self.driver.first_words:
             print(self.driver.first_words, flush=True)
         self.driver.start(graph)
+        if self.vision:
+            self.vision.start(graph, self.driver)
         # the simulator begins when somebody listens to applied_input: by then every other topic must be connected
         record = ["rosrun", "vibe_sim", "vibe_record", "--last", "applied_input", self.bag]
         self.recorder = graph.start("vibe_record", record, patience=RECORDER_PATIENCE)

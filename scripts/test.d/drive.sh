@@ -23,6 +23,18 @@ check 'a mapping goes with the gamepad' refuses 2 '--mapping goes with --drive g
 check 'a mapping is there' refuses 2 "no file 'nowhere.yaml'" "$run" --drive gamepad --mapping nowhere.yaml
 check 'a recorded pad is there' refuses 2 "no file 'nowhere.evemu'" "$run" --drive gamepad --replay-pad nowhere.evemu
 check 'one pad at a time' refuses 2 'exclude each other' "$run" --drive gamepad --pad Xbox --replay-pad "$recording"
+check 'instruments are seen by a camera' refuses 2 "--instruments: 'eyes' is not known; write camera" \
+  "$run" --drive emulator --instruments eyes
+check 'a camera goes with devices' refuses 2 "goes with --drive device or emulator: 'gamepad' moves" \
+  "$run" --drive gamepad --instruments camera --camera fake
+check 'a camera goes not with a trainee' refuses 2 "goes with --drive device or emulator: 'trainee' moves" \
+  "$run" --instruments camera --camera fake
+check 'a camera is for instruments' refuses 2 'go with --instruments camera; add it' "$run" --drive emulator --camera gige:
+check 'a camera needs a calibration' refuses 2 'add --vision-config FILE' "$run" --drive emulator --instruments camera
+check 'a calibration is there' refuses 2 "no file 'nowhere.yaml'" \
+  "$run" --drive emulator --instruments camera --vision-config nowhere.yaml
+check 'a simulated camera has its own calibration' refuses 2 'remove one of them' \
+  "$run" --drive emulator --instruments camera --camera fake --vision-config "$scene"
 check 'the keyboard needs a display' refuses 2 'DISPLAY is not set' "$run" --drive keyboard
 check 'the keyboard needs rviz' refuses 2 'remove --headless' "$run" --drive keyboard --headless
 
@@ -72,6 +84,27 @@ padIsRecorded() {
   drives again --drive gamepad --replay-pad "$scratch/gamepad/pad.evemu" --duration 5 && reaches again 0.08 0.004
 }
 check 'a session leaves a recording of its gamepad' padIsRecorded
+
+# instrumentsMove NAME: the camera, and nobody else, has moved helix and needle driver by centimetres.
+instrumentsMove() {
+  /usr/bin/env PYTHONPATH="$root/devel/lib/python3/dist-packages" /usr/bin/python3 - "$scratch/$1/session.bag" <<'PYTHON'
+import sys
+import rosbag
+bag = rosbag.Bag(sys.argv[1])
+measured = [m for _, m, _ in bag.read_messages(topics=["/overstitch/measured_js"])]
+assert len(measured) > 50, "{} messages of the camera".format(len(measured))
+assert all(len(m.velocity) == 3 for m in measured), "buttons move the instruments, too"
+inputs = [message for _, message, _ in bag.read_messages(topics=["/applied_input"])]
+for joint in (4, 6):
+    used = [message.joints[joint] for message in inputs]
+    assert max(used) - min(used) > 0.012, "joint {} moved by {} m".format(joint, max(used) - min(used))
+PYTHON
+}
+
+cameraMoves() {
+  drives camera --drive emulator --hand "$hand" --duration 12 --instruments camera --camera fake && instrumentsMove camera
+}
+check 'a camera moves the instruments of a session' cameraMoves
 
 waitsForPad() {
   drives nobody --drive gamepad --pad 'no such gamepad' --duration 4 || return 1

@@ -44,6 +44,11 @@ check 'lint sees a message in a public header' findsRosIn vibe_core/include/vibe
 check 'lint sees ROS in a program of the core' findsRosIn vibe_core/programs/a.cpp '#  include <tf2_ros/buffer.h>'
 check 'lint sees ROS in a test of the core' findsRosIn vibe_core/test/common/a_test.cpp '#include <rosbag/bag.h>'
 check 'lint sees ROS in the benchmarks' findsRosIn vibe_benchmarks/src/fem/a.cpp '#include "vibe_msgs/TissueState.h"'
+for header in cv_bridge/cv_bridge image_transport/image_transport camera_info_manager/camera_info_manager \
+  diagnostic_updater/diagnostic_updater; do
+  check "lint sees ${header%%/*} in the library of the cameras" findsRosIn vibe_vision/src/camera/a.cpp \
+    "#include <$header.h>"
+done
 check 'lint sees ROS in a library of the displays' findsRosIn vibe_rviz_plugins/src/geometry/a.hpp \
   '#include <rviz/display.h>'
 

@@ -2,6 +2,8 @@
 
 #include <ros/param.h>
 
+#include <vector>
+
 #include "vibe_core/common/error.hpp"
 #include "vibe_node/parameter_reader.hpp"
 
@@ -9,6 +11,20 @@ namespace vibe {
 namespace {
 
 constexpr int kMaxPixels = 20000;  // per side of a sensor
+constexpr StampPoint kPoints[] = {StampPoint::ExposureStart, StampPoint::ExposureEnd};
+constexpr CameraClock kClocks[] = {CameraClock::Auto, CameraClock::Free, CameraClock::Host};
+
+/// One of some words. @return its index; the first is the default
+std::size_t readChoice(ParameterReader& reader, const std::string& name, const std::vector<std::string>& words) {
+  std::string word = words.front();
+  reader.read(name, word);
+  std::string all;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == word) return i;
+    all += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
+  }
+  throw Error("Parameter ~" + name + " is '" + word + "'; set it to " + all + ".");
+}
 
 void readCamera(ParameterReader& reader, SourceOptions& options) {
   reader.read("exposure", options.exposure, 1e-6, 1, "s");
@@ -19,34 +35,12 @@ void readCamera(ParameterReader& reader, SourceOptions& options) {
   reader.read("roi_width", options.roi_width, 0, kMaxPixels);
   reader.read("roi_height", options.roi_height, 0, kMaxPixels);
   reader.read("loop", options.loop);
-  options.paced = true;  // nobody waits for the node: frames that come faster than real time are dropped
-}
-
-/// One of two words. @return whether it is the second
-bool readChoice(ParameterReader& reader, const std::string& name, const std::string& first, const std::string& second) {
-  std::string word = first;
-  reader.read(name, word);
-  if (word == first || word == second) return word == second;
-  throw Error("Parameter ~" + name + " is '" + word + "'; set it to " + first + " or " + second + ".");
-}
-
-CameraClock readClock(ParameterReader& reader) {
-  std::string word = "auto";
-  reader.read("camera_clock", word);
-  if (word == "auto") return CameraClock::Auto;
-  if (word == "free") return CameraClock::Free;
-  if (word == "host") return CameraClock::Host;
-  throw Error("Parameter ~camera_clock is '" + word + "'; set it to auto, free or host.");
-}
-
-/// What only few cameras need.
-void readCameraDetails(ParameterReader& reader, SourceOptions& options) {
-  const bool is_end = readChoice(reader, "camera_stamp", "exposure_start", "exposure_end");
-  options.stamp_point = is_end ? StampPoint::ExposureEnd : StampPoint::ExposureStart;
-  options.clock = readClock(reader);
+  options.stamp_point = kPoints[readChoice(reader, "camera_stamp", {"start_of_exposure", "end_of_exposure"})];
+  options.clock = kClocks[readChoice(reader, "camera_clock", {"auto", "free", "host"})];
   reader.read("pixel_format", options.pixel_format);
-  reader.read("packet_size", options.packet_size, 0, 65000);
+  reader.read("packet_size", options.packet_size, 0, 65535);
   reader.read("realtime_priority", options.realtime_priority, 0, 99);
+  options.paced = true;  // nobody waits for the node: frames that come faster than real time are dropped
 }
 
 void checkTime(const VisionParameters& parameters) {
@@ -72,13 +66,13 @@ VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
   parameters.source =
       reader.required("source", "the address of a camera, for example gige: or video:FILE, or to topic");
   readCamera(reader, parameters.options);
-  readCameraDetails(reader, parameters.options);
-  parameters.start_stamped = readChoice(reader, "image_stamp", "middle_of_exposure", "start_of_exposure");
+  parameters.start_stamped = readChoice(reader, "image_stamp", {"middle_of_exposure", "start_of_exposure"}) == 1;
   reader.read("udp", parameters.udp);
   reader.read("lead", parameters.lead, 0, 0.2, "s");
   reader.read("frame_id", parameters.frame_id);
   reader.read("hold_lost", parameters.hold_lost);
   reader.read("debug_rate", parameters.debug_rate, 0.1, 1000, "Hz");
+  reader.read("publish_images", parameters.publish_images);
   std::string transport;  // image_transport reads it itself
   reader.read("image_transport", transport);
   double diagnostic_period = 1;  // diagnostic_updater reads it itself

@@ -18,6 +18,7 @@ struct VisionParameters {
   std::string frame_id = "camera_optical";
   bool hold_lost = false;  ///< publish the last position of a lost instrument as long as another one is tracked
   double debug_rate = 15;  ///< of the debug image at most [Hz]
+  bool publish_images = true;
 
   bool fromTopic() const { return source == "topic"; }
   bool recorded() const;  ///< stamps of the source are not of today

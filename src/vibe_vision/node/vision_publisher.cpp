@@ -18,10 +18,10 @@ VisionPublisher::VisionPublisher(ros::NodeHandle handle, const VisionConfig& con
   measured_ = handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue);
   if (parameters.lead > 0) predicted_ = handle.advertise<sensor_msgs::JointState>("overstitch/predicted_js", kQueue);
   tracking_ = handle.advertise<vibe_msgs::InstrumentTrackArray>("overstitch/tracking", kQueue);
-  debug_ = transport_.advertise("debug_image", 1);
+  if (parameters.publish_images) debug_ = transport_.advertise("debug_image", 1);
   if (parameters.fromTopic()) return;  // the camera's node publishes the other two
   camera_info_ = handle.advertise<sensor_msgs::CameraInfo>("camera_info", kQueue);
-  image_ = transport_.advertise("image_raw", 1);
+  if (parameters.publish_images) image_ = transport_.advertise("image_raw", 1);
 }
 
 double VisionPublisher::publish(const FrameResult& result) {

@@ -14,7 +14,11 @@ namespace vibe {
 /// "5 mm" or "0.005" as metres. @throws Error that names the option
 inline double lengthOption(const std::string& option, const std::string& text) {
   const YamlSource source = YamlSource::parse("value: 0\n", option, {});
-  return source.quantity({"", "", 1, YAML::Node(text)}, "m", 0, 10);
+  try {
+    return source.quantity({"", "", 1, YAML::Node(text)}, "m", 0, 10);
+  } catch (const Error& error) {
+    throw Error(option + std::string(error.what()).substr(option.size() + 2));  // an option has no lines
+  }
 }
 
 /// "9x6" and "5 mm". @throws Error

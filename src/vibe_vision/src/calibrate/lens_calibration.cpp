@@ -155,8 +155,10 @@ CameraModel cameraOf(const Fit& fit, int width, int height) {
 
 void check(const std::vector<BoardView>& views, const BoardSpec& board) {
   if (views.size() < 3) {
-    throw Error("the chessboard was found in " + std::to_string(views.size()) +
-                " images, 3 are needed at the least; take 8 or more, with the whole board in view");
+    throw Error("a chessboard of " + std::to_string(board.columns) + "x" + std::to_string(board.rows) +
+                " inner corners was found in " + std::to_string(views.size()) +
+                " images, 3 are needed at the least; take 8 or more with the whole board in view, and count its inner "
+                "corners");
   }
   for (const BoardView& view : views) {
     if (view.corners.size() != static_cast<std::size_t>(board.columns) * static_cast<std::size_t>(board.rows)) {

@@ -4,13 +4,13 @@
 namespace vibe {
 
 /// Optics and pixel aperture in one dimension: Gaussian point spread function, integrated over the pixel's width. Works
-/// on samples that are means over 1 / kSamples of a pixel each.
+/// on samples that are means over 1 / samples of a pixel each.
 class PixelKernel {
  public:
-  static constexpr int kSamples = 2;  ///< per pixel and direction
-
-  /// @param sigma  of the point spread function [px]
-  explicit PixelKernel(double sigma);
+  /// @param sigma    of the point spread function [px]
+  /// @param samples  per pixel and direction: 2 or 4
+  PixelKernel(double sigma, int samples);
+  int samples() const { return samples_; }
   int margin() const { return margin_; }  ///< pixels needed on both sides of the first and last one
 
   /// Weights of the samples from the first of pixel -margin to the last of pixel +margin; they add up to 1.
@@ -18,11 +18,14 @@ class PixelKernel {
   /// Weights on values at pixel centres with bilinear interpolation in between, from -margin - 1 to margin + 1.
   const std::vector<float>& latticeWeights() const { return lattice_; }
 
-  /// Pixels from samples in a row. @param samples  (count + 2 margin) kSamples of them
+  /// Pixels from samples in a row. @param samples  (count + 2 margin) samples of them
   void alongRow(const float* samples, int count, float* pixels) const;
 
  private:
-  int margin_;
+  template <int kSamples>
+  void sumAlongRow(const float* samples, int count, float* pixels) const;
+
+  int samples_, margin_;
   std::vector<float> weights_, lattice_;
 };
 

@@ -9,15 +9,17 @@
 namespace vibe {
 namespace {
 
-constexpr int kS = PixelKernel::kSamples;
-constexpr float kSide = 1.0F / kS;  // of a sample [px]
-constexpr double kStep = 0.5;       // between two moments, largest [px]
-constexpr double kStill = 0.02;     // motion that needs no second moment [px]
+constexpr int kFewSamples = 2;   // per pixel and direction, where motion smooths the picture
+constexpr int kManySamples = 4;  // elsewhere
+constexpr double kWideBlur = 1;  // standard deviation that does, too [px]
+constexpr double kSmooth = 1;    // motion that does [px]
+constexpr double kStep = 0.5;    // between two moments, largest [px]
+constexpr double kStill = 0.02;  // motion that needs no second moment [px]
 constexpr int kMaxMoments = 256;
 
 /// Middle of a sample. [px]
-double sampleCentre(int first_pixel, int sample) {
-  return first_pixel - 0.5 + (sample + 0.5) * kSide;
+double sampleCentre(int first_pixel, int sample, float side) {
+  return first_pixel - 0.5 + (sample + 0.5) * side;
 }
 
 }  // namespace
@@ -44,6 +46,8 @@ struct TileRenderer::Moment {
 
 struct TileRenderer::Grid {
   PixelRect rect;
+  int samples = 0;            // per pixel and direction
+  float side = 0;             // of a sample [px]
   int columns = 0, rows = 0;  // of samples
   Eigen::Vector2d reference;  // undistorted [px]
   double aperture = 0;        // side of a sample, undistorted [px]
@@ -55,7 +59,8 @@ TileRenderer::TileRenderer(const SyntheticScene& scene)
       objects_(objectsOf(scene)),
       map_(scene.camera),
       background_(scene.camera.width, scene.camera.height, scene.background, scene.seed),
-      kernel_(scene.degradation.blur),
+      kernel_(scene.degradation.blur, kFewSamples),
+      fine_kernel_(scene.degradation.blur, kManySamples),
       occluder_(scene) {
   for (std::size_t i = 0; i < scene.instruments.size(); ++i) highlights_.emplace_back(scene, i);
 }
@@ -136,27 +141,30 @@ std::vector<TileRenderer::Moment> TileRenderer::moments(const PixelRect& rect, c
   return all;
 }
 
-TileRenderer::Grid TileRenderer::makeGrid(const PixelRect& rect) const {
+TileRenderer::Grid TileRenderer::makeGrid(const PixelRect& rect, int samples) const {
   Grid grid;
+  grid.samples = samples;
+  grid.side = 1.0F / static_cast<float>(samples);
   grid.rect = rect;
-  grid.columns = rect.width() * kS;
-  grid.rows = rect.height() * kS;
+  grid.columns = rect.width() * samples;
+  grid.rows = rect.height() * samples;
   const SensorMap::Entry middle = map_.at((rect.x0 + rect.x1) / 2, (rect.y0 + rect.y1) / 2);
   grid.reference = middle.place;
-  grid.aperture = kSide * std::sqrt(std::abs(static_cast<double>(middle.jacobian.determinant())));
+  grid.aperture = grid.side * std::sqrt(std::abs(static_cast<double>(middle.jacobian.determinant())));
   grid.x.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
   grid.y.resize(grid.x.size());
   for (int py = rect.y0; py < rect.y1; ++py)
     for (int px = rect.x0; px < rect.x1; ++px) {
       const SensorMap::Entry entry = map_.at(px, py);
       const Eigen::Vector2f place = (entry.place - grid.reference).cast<float>();
-      for (int j = 0; j < kS; ++j)
-        for (int i = 0; i < kS; ++i) {
-          const Eigen::Vector2f within((static_cast<float>(i) + 0.5F) * kSide - 0.5F,
-                                       (static_cast<float>(j) + 0.5F) * kSide - 0.5F);
+      for (int j = 0; j < samples; ++j)
+        for (int i = 0; i < samples; ++i) {
+          const Eigen::Vector2f within((static_cast<float>(i) + 0.5F) * grid.side - 0.5F,
+                                       (static_cast<float>(j) + 0.5F) * grid.side - 0.5F);
           const Eigen::Vector2f point = place + entry.jacobian * within;
-          const auto at = static_cast<std::size_t>((py - rect.y0) * kS + j) * static_cast<std::size_t>(grid.columns) +
-                          static_cast<std::size_t>((px - rect.x0) * kS + i);
+          const auto at =
+              static_cast<std::size_t>((py - rect.y0) * samples + j) * static_cast<std::size_t>(grid.columns) +
+              static_cast<std::size_t>((px - rect.x0) * samples + i);
           grid.x[at] = point.x();
           grid.y[at] = point.y();
         }
@@ -164,9 +172,10 @@ TileRenderer::Grid TileRenderer::makeGrid(const PixelRect& rect) const {
   return grid;
 }
 
-void TileRenderer::backgroundRow(const PixelRect& rect, int sample_row, float* values) const {
+void TileRenderer::backgroundRow(const Grid& grid, int sample_row, float* values) const {
+  const PixelRect& rect = grid.rect;
   const int limit = Background::kPadding - 1;
-  const double y = std::clamp(sampleCentre(rect.y0, sample_row), -static_cast<double>(limit),
+  const double y = std::clamp(sampleCentre(rect.y0, sample_row, grid.side), -static_cast<double>(limit),
                               static_cast<double>(background_.height() + limit - 1));
   const int row = static_cast<int>(std::floor(y));
   const auto down = static_cast<float>(y - row);
@@ -178,18 +187,18 @@ void TileRenderer::backgroundRow(const PixelRect& rect, int sample_row, float* v
   };
   for (int px = rect.x0; px < rect.x1; ++px) {
     const float left = at(px - 1), middle = at(px), right = at(px + 1);
-    for (int s = 0; s < kS; ++s) {
-      const float t = (static_cast<float>(s) + 0.5F) * kSide - 0.5F;
+    for (int s = 0; s < grid.samples; ++s) {
+      const float t = (static_cast<float>(s) + 0.5F) * grid.side - 0.5F;
       *values++ = middle + (t < 0 ? t * (middle - left) : t * (right - middle));
     }
   }
 }
 
 void TileRenderer::layerRow(const Layer& layer, const Grid& grid, int sample_row, float* values, float* scratch) const {
-  const int y = grid.rect.y0 + sample_row / kS;
+  const int y = grid.rect.y0 + sample_row / grid.samples;
   if (y < layer.bounds.y0 || y >= layer.bounds.y1) return;
-  const int first = std::max(0, layer.bounds.x0 - grid.rect.x0) * kS;
-  const int count = std::min(grid.rect.width(), layer.bounds.x1 - grid.rect.x0) * kS - first;
+  const int first = std::max(0, layer.bounds.x0 - grid.rect.x0) * grid.samples;
+  const int count = std::min(grid.rect.width(), layer.bounds.x1 - grid.rect.x0) * grid.samples - first;
   if (count <= 0) return;
   const auto from =
       static_cast<std::size_t>(sample_row) * static_cast<std::size_t>(grid.columns) + static_cast<std::size_t>(first);
@@ -199,45 +208,55 @@ void TileRenderer::layerRow(const Layer& layer, const Grid& grid, int sample_row
   float* to = values + first;
   for (int i = 0; i < count; ++i) to[i] += coverage[i] * (black + contrast * white[i] - to[i]);
   if (layer.highlights)
-    layer.highlights->addTo(to, coverage, count, static_cast<float>(sampleCentre(grid.rect.x0, first)), kSide,
-                            static_cast<float>(sampleCentre(grid.rect.y0, sample_row)));
+    layer.highlights->addTo(to, coverage, count, static_cast<float>(sampleCentre(grid.rect.x0, first, grid.side)),
+                            grid.side, static_cast<float>(sampleCentre(grid.rect.y0, sample_row, grid.side)));
 }
 
-void TileRenderer::occluderRow(double time, const PixelRect& rect, double y, float* values) const {
+void TileRenderer::occluderRow(double time, const Grid& grid, double y, float* values) const {
   const double middle = occluder_.middle(time, y);
   const auto half = static_cast<float>(occluder_.halfWidth());
-  const auto start = static_cast<float>(sampleCentre(rect.x0, 0) - middle);
-  for (int i = 0; i < rect.width() * kS; ++i) {
-    const float share = edgeShare(half - std::abs(start + static_cast<float>(i) * kSide), kS);
+  const auto start = static_cast<float>(sampleCentre(grid.rect.x0, 0, grid.side) - middle);
+  for (int i = 0; i < grid.columns; ++i) {
+    const float share =
+        edgeShare(half - std::abs(start + static_cast<float>(i) * grid.side), static_cast<float>(grid.samples));
     values[i] += share * (occluder_.value() - values[i]);
   }
+}
+
+/// True if few samples do: the optics or the motion of everything in the rectangle blurs what they leave of its edges.
+bool TileRenderer::isSmoothed(const PixelRect& rect, const Exposure& exposure) const {
+  if (scene_.degradation.blur >= kWideBlur) return true;
+  for (std::size_t i = 0; i < objects_.size(); ++i)
+    if (!intersection(rect, boundsOf(i, exposure)).empty() && pathLength(i, exposure) < kSmooth) return false;
+  return true;
 }
 
 void TileRenderer::render(const PixelRect& rect, const Exposure& exposure, float* image) const {
   if (rect.empty()) return;
   const PixelRect wide = grown(rect, kernel_.margin());
-  const Grid grid = makeGrid(wide);
+  const PixelKernel& kernel = isSmoothed(wide, exposure) ? kernel_ : fine_kernel_;
+  const Grid grid = makeGrid(wide, kernel.samples());
   const std::vector<Moment> all = moments(wide, exposure, grid);
   const auto columns = static_cast<std::size_t>(grid.columns), width = static_cast<std::size_t>(rect.width());
   std::vector<float> behind(columns), values(columns), sum(columns), scratch(2 * columns);
   std::vector<float> blurred(width * static_cast<std::size_t>(grid.rows));
   for (int r = 0; r < grid.rows; ++r) {
-    backgroundRow(wide, r, behind.data());
+    backgroundRow(grid, r, behind.data());
     std::fill(sum.begin(), sum.end(), 0.0F);
     for (const Moment& moment : all) {
       values = behind;
       for (const Layer& layer : moment.layers) layerRow(layer, grid, r, values.data(), scratch.data());
-      if (occluder_.present()) occluderRow(moment.time, wide, sampleCentre(wide.y0, r), values.data());
+      if (occluder_.present()) occluderRow(moment.time, grid, sampleCentre(wide.y0, r, grid.side), values.data());
       for (std::size_t i = 0; i < columns; ++i) sum[i] += moment.light * values[i];
     }
-    kernel_.alongRow(sum.data(), rect.width(), blurred.data() + static_cast<std::size_t>(r) * width);
+    kernel.alongRow(sum.data(), rect.width(), blurred.data() + static_cast<std::size_t>(r) * width);
   }
-  const std::vector<float>& weights = kernel_.weights();
+  const std::vector<float>& weights = kernel.weights();
   for (int y = 0; y < rect.height(); ++y) {
     float* to = image + static_cast<std::size_t>(rect.y0 + y) * static_cast<std::size_t>(scene_.camera.width) + rect.x0;
     std::fill(to, to + width, 0.0F);
     for (std::size_t k = 0; k < weights.size(); ++k) {
-      const float* from = blurred.data() + (static_cast<std::size_t>(y * kS) + k) * width;
+      const float* from = blurred.data() + (static_cast<std::size_t>(y * grid.samples) + k) * width;
       for (std::size_t i = 0; i < width; ++i) to[i] += weights[k] * from[i];
     }
   }

@@ -26,7 +26,7 @@ struct Exposure {
   double middle() const { return (begin + end) / 2; }
 };
 
-/// Draws a rectangle of the image: all that is in it, layer by layer, at kSamples^2 points per pixel and several
+/// Draws a rectangle of the image: all that is in it, layer by layer, at 2 x 2 or 4 x 4 points per pixel and several
 /// moments of the exposure; then the optics.
 class TileRenderer {
  public:
@@ -58,17 +58,18 @@ class TileRenderer {
   double pathLength(std::size_t object, const Exposure& exposure) const;
   PixelRect boundsAt(std::size_t object, double time) const;
   std::vector<Moment> moments(const PixelRect& rect, const Exposure& exposure, const Grid& grid) const;
-  Grid makeGrid(const PixelRect& rect) const;
-  void backgroundRow(const PixelRect& rect, int sample_row, float* values) const;
+  Grid makeGrid(const PixelRect& rect, int samples) const;
+  bool isSmoothed(const PixelRect& rect, const Exposure& exposure) const;
+  void backgroundRow(const Grid& grid, int sample_row, float* values) const;
   void layerRow(const Layer& layer, const Grid& grid, int sample_row, float* values, float* scratch) const;
-  void occluderRow(double time, const PixelRect& rect, double y, float* values) const;
+  void occluderRow(double time, const Grid& grid, double y, float* values) const;
 
   SyntheticScene scene_;
   std::vector<SyntheticInstrument> objects_;
   std::vector<Highlights> highlights_;  // of instruments; look-alikes have none
   SensorMap map_;
   Background background_;
-  PixelKernel kernel_;
+  PixelKernel kernel_, fine_kernel_;
   Occluder occluder_;
 };
 

@@ -55,7 +55,8 @@ BlurredLine::Entry BlurredLine::entryAt(const std::vector<Interval>& black, doub
                                         double pixel_variance) const {
   const double deviation = std::sqrt(variance);
   const double cumulant = variance > 1.5 * pixel_variance ? -1.2 * pixel_variance * pixel_variance : 0;
-  const double copies = period_ > 0 ? std::ceil((kReach * deviation + kMargin) / period_) + 1 : 0;
+  // the same for all variances: integrals of different tables must go together
+  const double copies = period_ > 0 ? std::ceil((kReach * std::sqrt(kMaxVariance) + kMargin) / period_) + 1 : 0;
   std::array<double, 4> sum{};
   for (double copy = -copies; copy <= copies; ++copy)
     for (const Interval& interval : black) {

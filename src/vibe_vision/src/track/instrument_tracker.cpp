@@ -8,16 +8,18 @@
 namespace vibe {
 namespace {
 
-constexpr double kCloseEnough = 1.2;   // deviation of a prediction from which a fit converges [px]
-constexpr double kMaxGap = 0.5;        // after which the motion is forgotten [s]
-constexpr int kForget = 3;             // lost frames after which size, tilt and blur are forgotten
-constexpr int kJumpsToBelieve = 3;     // frames that agree on a place that cannot be reached
-constexpr double kGoodLook = 0.6;      // share of the marker that must be seen to learn size, tilt and blur from it
-constexpr double kScaleStep = 0.05;    // the search knows the size no better
-constexpr double kMargin = 3;          // around the range of the search [px]
-constexpr double kFilterFloor = 1e-6;  // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
-constexpr double kGoodLoss = 0.25;     // of a pixel: no other candidate needs to be looked at
-constexpr int kTries = 3;              // candidates that a frame may cost
+constexpr double kCloseEnough = 1.2;    // deviation of a prediction from which a fit converges [px]
+constexpr double kMaxGap = 0.5;         // after which the motion is forgotten [s]
+constexpr int kForget = 3;              // lost frames after which size, tilt and blur are forgotten
+constexpr int kJumpsToBelieve = 3;      // frames that agree on a place that cannot be reached
+constexpr double kGoodLook = 0.6;       // share of the marker that must be seen to learn size, tilt and blur from it
+constexpr double kScaleStep = 0.05;     // the search knows the size no better
+constexpr double kMargin = 3;           // around the range of the search [px]
+constexpr double kFilterFloor = 1e-6;   // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
+constexpr double kGoodLoss = 0.25;      // of a pixel: no other candidate needs to be looked at
+constexpr int kTries = 3;               // candidates that a frame may cost
+constexpr double kSearchVisible = 0.7;  // of a sleeve: part of its bars also fits at other places
+constexpr double kSearchDoubt = 0.1;    // about size, tilt and blur that a search found
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) {
@@ -149,7 +151,9 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
   reason_ = whyNothing(found);
   for (int i = 0; i < found.count && tries_ < kTries; ++i, ++tries_) {
     const MarkerFit fit = tryCandidate(frame, prediction, found.candidates[i]);
-    const LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])));
+    LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])));
+    if (reason == LostReason::None && fitter_.shows(kRotation) && fit.visible < kSearchVisible)
+      reason = LostReason::Occluded;
     if (reason == LostReason::None && fit.loss < best.loss) best = fit;
     if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
     if (best.valid && best.loss < kGoodLoss) break;
@@ -212,7 +216,7 @@ void InstrumentTracker::accept(const Frame& frame, const MarkerFit& fit, const P
   measurement_.slide = slideOf(config_.axis, measurement_.along);
   measurement_.covariance(0, 0) = measurement_.along_variance / square(scale);
   describe(fit);
-  if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide);
+  if (fit.visible > kGoodLook) slow_.update(fit.x, fit.covariance, measurement_.slide, reacquired ? kSearchDoubt : 0);
   jumps_ = lost_frames_ = 0;
 }
 

@@ -61,7 +61,8 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   fit.x = start;
   fit.motion = motion;
   const double blur = fit.x[kBlur];
-  fit.x[kBlur] = blur + kCoarseBlur;
+  // The search knows the place of a sleeve well, and its bars would vanish.
+  fit.x[kBlur] = blur + (observed_[kRotation] ? kMiddleBlur : kCoarseBlur);
   if (!read(map, frame, fit)) return fit;
   useHalf();
   if (!align(fit, prior, FitScope::Position)) return fit;
@@ -71,7 +72,9 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   if (!read(map, frame, fit)) return fit;
   useHalf();
   if (!align(fit, prior, FitScope::Shape) || fit.loss > kHopeless) return fit;
-  fit.x[kBlur] = blur;
+  // The blur is not that of the prior if the camera is out of focus: thin bars tell it before the motion is known.
+  fit.x[kBlur] = observed_[kRotation] ? fit.x[kBlur] : blur;
+  if (observed_[kRotation] && !align(fit, prior, FitScope::All)) return fit;
   if (max_motion > 1) chooseMotion(fit, prior, max_motion);
   if (!read(map, frame, fit)) return fit;
   refine(fit, prior, kMotionUncertainty, kAcquireSteps);

@@ -93,15 +93,15 @@ VIBE_LANES void MovingLine::look(const Places& places, std::size_t count, const 
     float place = wrap.at(x[i]) * kPerPixel;
     place = place < 0 ? 0 : place;
     place = place > last ? last : place;
-    float level = (variance[i] - low) * per_step + 0.5F;
+    // A longer motion is a blur with more variance.
+    const float all = variance[i] + (half[i] * half[i] - square) * (1.0F / 3);
+    float level = (all - low) * per_step + 0.5F;
     level = level < 0 ? 0 : level;
     level = level > top ? top : level;
     const auto l = static_cast<float>(static_cast<int>(level)), p = static_cast<float>(static_cast<int>(place + 0.5F));
     index[i] = static_cast<int>(l * stride + p);
     d[i] = (place - p) / kPerPixel;
-    // A longer motion is a blur with more variance.
-    const float more = (half[i] * half[i] - square) * (1.0F / 3);
-    s[i] = 0.5F * (variance[i] - low - l * step + more + d[i] * d[i]);
+    s[i] = 0.5F * (all - low - l * step + d[i] * d[i]);
   }
   for (std::size_t i = 0; i < count; i += kWidth) {
     Four e[kWidth];

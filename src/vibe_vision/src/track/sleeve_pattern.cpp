@@ -16,8 +16,9 @@ constexpr double kRim = 0.88;       // of the radius: beyond, the print is seen 
 constexpr float kReach = 3.4F;      // standard deviations after which an edge is over
 constexpr float kTellReach = 2.7F;  // standard deviations from an edge within which a pixel tells something
 constexpr float kCornerReach = 3.1F;
+constexpr float kMaxUneven = 0.15F;               // of the motions of bars and stripe at an end of the helix [px]
 constexpr float kMaxSine = 0.97F;                 // of the angle around the rod: keeps derivatives finite
-constexpr int kBarLevels = 2, kStripeLevels = 4;  // variances from the middle of the rod to the rim
+constexpr int kBarLevels = 4, kStripeLevels = 5;  // variances from the middle of the rod to the rim
 constexpr float kTurn = 6.28318530718F;
 
 /// To 2e-8, for 0 <= s < 1. Abramowitz and Stegun, "Handbook of Mathematical Functions", 4.4.46.
@@ -126,19 +127,25 @@ Eigen::Vector2d SleevePattern::maxWindow() const {
   return Eigen::Vector2d(half_length_, radius_) * 1.2;
 }
 
+void SleevePattern::compose(MovingLine& line, double low, double high, double half_motion) {
+  low = std::max(low, 0.3 * high);
+  line.compose(static_cast<float>(low), static_cast<float>(high), static_cast<float>(std::max(half_motion, 0.1)));
+}
+
 /// Tables for the middle of the rod and for its rim. Slopes are those of a line of sight that is not oblique.
 void SleevePattern::prepare(const MarkerPose& pose, double motion) {
   motion_ = std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion);
   const View view = viewOf(pose, motion_);
   const double lean = std::tan(pose.slant + (pose.along - view_.principal_along) / view_.focal_length);
-  const double rim = kRim / std::sqrt(1 - kRim * kRim), turn = pitch_ / kTurn / radius_;
-  const double stretch = 1 + lean * lean, bow = std::abs(lean) * rim,
-               swing = bow + std::abs(turn) / std::sqrt(1 - kRim * kRim);
-  const auto half = static_cast<float>(view.half_motion * view.tilt_cosine * std::sqrt(stretch));
-  moving_bars_.compose(view.variance * static_cast<float>(stretch),
-                       view.variance * static_cast<float>(stretch + bow * bow), half);
-  moving_stripe_.compose(view.variance * static_cast<float>(stretch + turn * turn),
-                         view.variance * static_cast<float>(stretch + swing * swing), half);
+  const double rim = 1 / std::sqrt(1 - kRim * kRim), turn = pitch_ / kTurn / radius_, bow = std::abs(lean) * kRim * rim;
+  const double stretch = 1 + lean * lean, swing = bow + std::abs(turn) * rim, variance = view.variance;
+  const double half = view.half_motion * view.tilt_cosine * std::sqrt(stretch), tilt = std::abs(view.tilt_sine);
+  // On a tilted rod the motion is longer in some rows and shorter in others.
+  const double bars_more = 2.0 / 3 * half * half * tilt * bow;
+  const double stripe_more = 2.0 / 3 * half * half * tilt * (bow + std::abs(turn) * (rim - 1) / 2);
+  compose(moving_bars_, variance * stretch - bars_more, variance * (stretch + bow * bow) + bars_more, half);
+  compose(moving_stripe_, variance * (stretch + turn * turn) - stripe_more,
+          variance * (stretch + swing * swing) + stripe_more, half + half * view.tilt_sine * turn * (1 + rim) / 2);
 }
 
 SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose, double motion_length) const {
@@ -309,6 +316,8 @@ bool SleevePattern::tells(const Part& part, std::size_t i) const {
   const float deviation = std::sqrt(part.stripe_variance[i]);
   const bool stripe = cut_.edgeDistance(part.w[i]) < kTellReach * deviation + part.stripe_half_motion[i];
   if (part.inside[i] > 0) return stripe;
+  const float uneven = part.stripe_half_motion[i] - part.half_motion[i];  // on a tilted rod; not exact here
+  if (std::abs(uneven) > kMaxUneven) return false;
   const float cut = std::abs(u - helix_begin_) < std::abs(u - helix_end_) ? helix_begin_ : helix_end_;
   const float phase = part.w[i] - u + cut;
   return bar || ((stripe || cut_.isBlack(phase)) && cut_.edgeDistance(phase) > kCornerReach * deviation);

@@ -89,12 +89,14 @@ void SlowState::limitKeystone() {
   covariance_ -= gain * common * common.transpose();
 }
 
-void SlowState::update(const FitVector& x, const FitMatrix& covariance, double slide) {
+void SlowState::update(const FitVector& x, const FitMatrix& covariance, double slide, double doubt) {
   const FitVector base = nominal(slide);
   for (int i = 0; i < count_; ++i) {
     mean_[index_[i]] = x[index_[i]] - base[index_[i]];
     for (int j = 0; j < count_; ++j) covariance_(index_[i], index_[j]) = covariance(index_[i], index_[j]);
   }
+  for (int i = 0; i < count_; ++i)
+    covariance_(index_[i], index_[i]) += doubt * initial_deviation_[index_[i]] * initial_deviation_[index_[i]];
 }
 
 FitPrior SlowState::prior(double slide) const {

@@ -17,7 +17,8 @@ class SlowState {
   /// @param travel  since the last frame [px]
   void predict(double travel);
   /// Takes over what a fit found. @param slide  of the marker in that frame [m]
-  void update(const FitVector& x, const FitMatrix& covariance, double slide);
+  /// @param doubt  share of the first uncertainty that remains, since the fit may be a neighbour of the best one
+  void update(const FitVector& x, const FitMatrix& covariance, double slide, double doubt);
 
   /// For a fit near this slide [m].
   FitPrior prior(double slide) const;

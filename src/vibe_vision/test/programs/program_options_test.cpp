@@ -1,0 +1,44 @@
+#include "program_options.hpp"
+
+#include <gtest/gtest.h>
+
+namespace vibe {
+namespace {
+
+template <class Function>
+std::string errorOf(const Function& function) {
+  try {
+    function();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ProgramOptions, LengthsHaveUnitsOrAreInMetres) {
+  EXPECT_DOUBLE_EQ(lengthOption("--square", "5mm"), 5e-3);
+  EXPECT_DOUBLE_EQ(lengthOption("--square", "0.004"), 4e-3);
+  EXPECT_EQ(errorOf([] { lengthOption("--square", "5 deg"); }).rfind("--square: '5 deg' is an angle", 0), 0U);
+  EXPECT_NE(errorOf([] { lengthOption("--square", "-1 mm"); }).find("is out of range"), std::string::npos);
+}
+
+TEST(ProgramOptions, BoardsAreTwoWholeNumbers) {
+  const BoardSpec board = boardOption("7x5", "8 mm");
+  EXPECT_EQ(board.columns, 7);
+  EXPECT_EQ(board.rows, 5);
+  EXPECT_DOUBLE_EQ(board.square, 8e-3);
+  for (const char* const wrong : {"7", "7x", "7x5x3", "a", "7by5"})
+    EXPECT_NE(errorOf([wrong] { boardOption(wrong, "5 mm"); }).find("is not a chessboard"), std::string::npos) << wrong;
+}
+
+TEST(ProgramOptions, ErrorsAndWrongOptionsEndWithStatusTwo) {
+  char name[] = "program", wrong[] = "--wrong";
+  char* arguments[] = {name, wrong};
+  CLI::App app("a program");
+  EXPECT_EQ(runProgram("program", app, 1, arguments, [] { return 0; }), 0);
+  EXPECT_EQ(runProgram("program", app, 1, arguments, []() -> int { throw Error("x: is wrong; mend it"); }), 2);
+  EXPECT_EQ(runProgram("program", app, 2, arguments, [] { return 0; }), 2);
+}
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "vibe_vision/synthetic/renderer.hpp"
+#include "vibe_vision/track/tracker.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr int kSettle = 25;  // frames until slant and lateral place are known
+
+struct Result {
+  int lost = 0;              ///< after kSettle
+  double slide = 0;          ///< root mean square error [px]
+  double rotation = 0;       ///< [rad], turns included
+  double largest_slide = 0;  ///< of all reports [px]
+};
+
+Result follow(SyntheticScene scene, int frames) {
+  scene.instruments.resize(1);  // the helix
+  const Renderer renderer(scene);
+  Tracker tracker(nominalConfig(scene));
+  Result result;
+  double turns = NAN;
+  int count = 0;
+  for (int k = 0; k < frames; ++k) {
+    const RenderedFrame rendered = renderer.render(static_cast<std::uint64_t>(k));
+    const Measurement& m = tracker.track(rendered.frame)[0];
+    const SyntheticTruth& truth = rendered.truth[0];
+    if (!m.tracked()) {
+      result.lost += k >= kSettle && truth.visible > 0.99 ? 1 : 0;
+      continue;
+    }
+    const double error = (m.slide - truth.slide) * 1e4;
+    result.largest_slide = std::max(result.largest_slide, std::abs(error));
+    if (std::isnan(turns)) turns = std::round((m.rotation - truth.rotation) / (2 * M_PI));
+    if (k < kSettle) continue;
+    result.slide += error * error;
+    result.rotation += std::pow(m.rotation - truth.rotation - 2 * M_PI * turns, 2);
+    ++count;
+  }
+  result.slide = std::sqrt(result.slide / count);
+  result.rotation = std::sqrt(result.rotation / count);
+  return result;
+}
+
+void expectGood(const Result& result, double slide, double degrees) {
+  EXPECT_EQ(result.lost, 0);
+  EXPECT_LE(result.slide, slide);
+  EXPECT_LE(result.rotation, degrees * M_PI / 180);
+  EXPECT_LT(result.largest_slide, 5);
+}
+
+TEST(SleeveTracking, SlidesAtHalfAMetrePerSecond) {
+  expectGood(follow(namedScene("moving"), 80), 0.01, 0.3);
+}
+
+TEST(SleeveTracking, RestsNearTheCramerRaoBound) {
+  SyntheticScene scene = namedScene("static");
+  scene.instruments.resize(1);
+  const double bound = cramerRaoBound(scene, 0, 0).along;
+  expectGood(follow(scene, 120), 1.5 * bound, 0.2);
+}
+
+TEST(SleeveTracking, CountsTurnsWhileItSlides) {
+  SyntheticScene scene = namedScene("moving");
+  scene.instruments[0].motion.rotation = [](double time) { return 25 * time; };
+  expectGood(follow(scene, 110), 0.01, 0.3);  // 3 turns
+}
+
+TEST(SleeveTracking, TurnsWhileTheSlideStandsStill) {
+  SyntheticScene scene = namedScene("static");
+  scene.instruments[0].motion.rotation = [](double time) { return -25 * time; };
+  expectGood(follow(scene, 110), 0.01, 0.3);
+}
+
+TEST(SleeveTracking, FollowsADefocusedPicture) {
+  expectGood(follow(namedScene("defocus"), 60), 0.03, 0.6);
+}
+
+TEST(SleeveTracking, ReportsNoOtherPlaceWhenItIsPartlyCovered) {
+  EXPECT_LT(follow(namedScene("occluder"), 100).largest_slide, 5);
+}
+
+}  // namespace
+}  // namespace vibe
