@@ -3,17 +3,19 @@
 
 import math
 import os
+import re
 import socket
 import time
 import unittest
 
+import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import CameraInfo, Image, JointState
 from std_srvs.srv import Trigger
 from vibe_msgs.msg import InstrumentTrack, InstrumentTrackArray
-from vision_test_support import JOINTS, RATE, Diagnostics, Program, Recorder, Scene
+from vision_test_support import JOINTS, PACKAGE, RATE, Diagnostics, Program, Recorder, Scene
 from vision_test_support import errors_of, rms, udp_receiver, wait_until
 
 FRAMES = 147
@@ -310,6 +312,18 @@ class VisionTest(unittest.TestCase):
         listener.process.kill()
         self.assertGreater(rate, 0.1 * RATE)
         self.assertLess(grown, 20e6)
+
+    def test_topics_are_those_of_the_documentation(self):
+        self.start(loop="true", lead=LEAD)
+        self.assertTrue(wait_until(lambda: len(self.tracks()) > 5))
+        with open(os.path.join(PACKAGE, "../../docs/interfaces.md"), encoding="utf-8") as file:
+            section = file.read().split("## Topics of the camera\n")[1].split("\n## ")[0]
+        documented = set(re.findall(r"^\| `([^`]+)` \|", section, re.MULTILINE))
+        publishers = rosgraph.Master("/test").getSystemState()[0]
+        topics = {topic for topic, nodes in publishers if "/vision_node" in nodes}
+        ours = {topic.lstrip("/") for topic in topics if topic != "/rosout" and "/image_raw/" not in topic}
+        ours = {topic for topic in ours if not topic.startswith("debug_image/")}  # of plugins of image_transport
+        self.assertEqual(ours, {topic.lstrip("/") for topic in documented})
 
     def assert_refuses(self, text, **parameters):
         given = dict(config=self.scene.config, source=self.scene.source)
