@@ -2,6 +2,9 @@
 
 namespace vibe {
 
+/// Bars: of random layouts with at least ten edges, improved edge by edge, the one with the smallest side lobes of the
+/// multiple correlation that the search uses, over motion blurs of 0 to 20 px, sizes of 0.75 to 1.1 and all rotations.
+/// Stripe: one pitch long, so that every rotation shows as many edges. docs/vision.md, "Markers".
 SleeveDesign defaultSleeve() {
   SleeveDesign design;
   design.diameter = 3e-3;
