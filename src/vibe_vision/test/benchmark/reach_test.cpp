@@ -27,7 +27,7 @@ const Limit kLimits[] = {
     {"static", "sleeve", 0.01, 0.9, 0.3},
     {"moving", "ring", 0.01, 1},
     {"moving", "sleeve", 0.01, 0.95, 0.3},
-    {"long_exposure", "ring", 0.03, 1},
+    {"long_exposure", "ring", 0.03, 0.99},
     {"defocus", "ring", 0.012, 1},
     {"light", "ring", 0.01, 1},
     {"light", "sleeve", 0.02, 0.95, 0.3},
