@@ -7,7 +7,7 @@ namespace vibe {
 namespace {
 
 // chi^2 per degree of freedom of the pixels that are no outliers: of a marker that is seen as a whole, of half of one.
-// What is left of a covered marker fits other poses nearly as well.
+// What is left of a covered marker fits other poses nearly as well, unless the place is known.
 constexpr double kMaxMisfit = 4, kMaxMisfitOfHalf = 1.5;
 constexpr double kDeviations = 6;     // of the prediction
 constexpr double kSureTilt = 3;       // standard deviations
@@ -33,7 +33,7 @@ Gates::Gates(const VisionConfig& config, const InstrumentConfig& instrument)
       end_(alongOf(instrument.axis, instrument.upper)),
       lateral_tolerance_(instrument.lateral_tolerance * instrument.axis.pixels_per_metre) {}
 
-LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal) const {
+LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal, bool expected) const {
   const FitVector& x = fit.x;
   if (!fit.valid) return LostReason::NotFound;
   if (x[kContrast] < limits_.min_contrast || x[kBlack] > kMaxBlack * (x[kBlack] + x[kContrast]))
@@ -46,9 +46,9 @@ LostReason Gates::judge(const MarkerFit& fit, const FitVector& nominal) const {
   if (wrong_size > limits_.max_scale_error || sureTilt(fit) > limits_.max_tilt) return LostReason::Mismatch;
   if (fit.visible < limits_.min_visible) return LostReason::Occluded;
   const bool other = fit.weaker_edges < kWeakerEdges * fit.visible;
-  const double part = std::clamp((fit.visible - 0.5) / 0.35, 0.0, 1.0);
-  return other || fit.misfit > kMaxMisfitOfHalf + part * (kMaxMisfit - kMaxMisfitOfHalf) ? LostReason::Mismatch
-                                                                                         : LostReason::None;
+  const double part = expected ? 1 : std::clamp((fit.visible - 0.5) / 0.35, 0.0, 1.0);
+  const double most = kMaxMisfitOfHalf + part * (kMaxMisfit - kMaxMisfitOfHalf);
+  return other || fit.misfit > most ? LostReason::Mismatch : LostReason::None;
 }
 
 /// A stop ends a motion at once: from where it was, only the speed is limited.

@@ -11,7 +11,8 @@ class Gates {
   Gates(const VisionConfig& config, const InstrumentConfig& instrument);
 
   /// Everything that one picture tells. @param nominal  what the calibration says about size and tilt there
-  LostReason judge(const MarkerFit& fit, const FitVector& nominal) const;
+  /// @param expected  the place agrees with a good prediction
+  LostReason judge(const MarkerFit& fit, const FitVector& nominal, bool expected = false) const;
   /// Whether an instrument that was seen some time ago can be there. @param dt  since then [s]
   bool isReachable(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const;
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kCloseEnough = 1.2;    // deviation of a prediction from which a fit converges [px]
 constexpr double kMaxGap = 0.5;         // after which the motion is forgotten [s]
-constexpr int kForget = 3;              // lost frames after which size, tilt and blur are forgotten
+constexpr int kForget = 60;             // lost frames after which size, tilt and blur are forgotten
+constexpr int kDoubt = 3;               // lost frames after which every other one is searched as if they were
 constexpr int kJumpsToBelieve = 3;      // frames that agree on a place that cannot be reached
 constexpr double kGoodLook = 0.6;       // share of the marker that must be seen to learn size, tilt and blur from it
 constexpr double kScaleStep = 0.05;     // the search knows the size no better
@@ -18,7 +19,14 @@ constexpr double kMargin = 3;           // around the range of the search [px]
 constexpr double kFilterFloor = 1e-6;   // deviation that a measurement has at least for the prediction [m], [rad] * 1e3
 constexpr double kGoodLoss = 0.25;      // of a pixel: no other candidate needs to be looked at
 constexpr int kTries = 3;               // candidates that a frame may cost
-constexpr double kSearchVisible = 0.7;  // of a sleeve: part of its bars also fits at other places
+constexpr double kSearchVisible = 0.7;  // of a sleeve
+constexpr double kWholeFrom = 0.85, kWhole = 0.92;     // visible share of a sleeve that is seen as a whole
+constexpr double kPartMisfit = 1.5, kWholeMisfit = 4;  // that a search accepts of a part, of a whole sleeve
+constexpr double kNearbyVisible = 0.5;                 // where the place is known well
+constexpr double kKnownPlace = 3;                      // greatest deviation of a prediction that tells them apart [px]
+constexpr double kKnownRotation = 0.3;  // greatest deviation of a prediction that a fit may start from [rad]
+constexpr double kNear = 3;             // deviations of a prediction
+constexpr double kReach = 2.5;          // the same
 constexpr double kSearchDoubt = 0.1;    // about size, tilt and blur that a search found
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -51,6 +59,7 @@ InstrumentTracker::InstrumentTracker(const VisionConfig& config, const Instrumen
               alongOf(instrument.axis, instrument.upper)),
       gates_(config, instrument),
       slow_(config, instrument, fitter_.pattern().observes()),
+      unknown_(slow_),
       slide_(instrument.motion.max_speed, instrument.motion.max_acceleration),
       rotation_(instrument.motion.max_angular_speed, 30 * instrument.motion.max_angular_speed) {
   lose(LostReason::NoFrame);
@@ -106,8 +115,18 @@ double InstrumentTracker::motionAt(const MotionFilter::State& slide, double expo
   return slide.mean[1] * exposure * pixelsPerMetre(config_.axis, slide.mean[0]);
 }
 
-FitVector InstrumentTracker::startAt(double slide, const Prediction& prediction) const {
-  FitVector x = slow_.prior(slide).mean;
+double InstrumentTracker::fastestMotion(const Frame& frame) const {
+  return config_.motion.max_speed * frame.exposure * config_.axis.pixels_per_metre;
+}
+
+/// What was learnt may be wrong if it finds nothing.
+FitPrior InstrumentTracker::searchPrior(double slide) const {
+  const bool doubted = lost_frames_ >= kDoubt && lost_frames_ % 2 == 1;
+  return doubted ? unknown_.prior(slide) : slow_.prior(slide);
+}
+
+FitVector InstrumentTracker::startAt(double slide, const FitPrior& prior, const Prediction& prediction) const {
+  FitVector x = prior.mean;
   x[kAlong] = alongOf(config_.axis, slide);
   x[kRotation] = prediction.known && rotation_.started() ? prediction.rotation.mean[0] : last_rotation_;
   return x;
@@ -117,12 +136,12 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
   const double slide = std::clamp(prediction.slide.mean[0], config_.lower, config_.upper);
   const double scale = pixelsPerMetre(config_.axis, slide);
   slow_.predict(prediction.slide.mean[1] * prediction.dt * scale);
-  FitVector start = startAt(slide, prediction);
+  const FitPrior prior = slow_.prior(slide);
+  FitVector start = startAt(slide, prior, prediction);
   start[kLateral] = measurement_.tracked() ? measurement_.lateral : 0;
-  const MarkerFit fit =
-      fitter_.follow(map_, frame, start, slow_.prior(slide), motionAt(prediction.slide, frame.exposure),
-                     prediction.slide.deviation() * scale);
-  reason_ = gates_.judge(fit, slow_.nominal(slide));
+  const MarkerFit fit = fitter_.follow(map_, frame, start, prior, motionAt(prediction.slide, frame.exposure),
+                                       prediction.slide.deviation() * scale);
+  reason_ = gates_.judge(fit, slow_.nominal(slide), isNear(fit, prediction));
   if (reason_ == LostReason::None && !isExpected(fit, prediction, frame.stamp)) reason_ = LostReason::Jump;
   if (reason_ != LostReason::None) return false;
   accept(frame, fit, prediction, false);
@@ -131,6 +150,7 @@ bool InstrumentTracker::follow(const Frame& frame, const Prediction& prediction)
 
 bool InstrumentTracker::search(const Frame& frame, const Prediction& prediction) {
   const LostReason before = reason_;
+  if (searchNearby(frame, prediction)) return true;
   if (prediction.known) {
     const double reach = config_.motion.max_speed * prediction.dt;
     if (searchRange(frame, prediction, last_slide_ - reach, last_slide_ + reach)) return true;
@@ -141,18 +161,35 @@ bool InstrumentTracker::search(const Frame& frame, const Prediction& prediction)
   return false;
 }
 
+/// Around a prediction that is too vague to be followed. This finds a partly covered marker, too.
+bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& prediction) {
+  if (!prediction.known || prediction.close || !fitter_.shows(kRotation)) return false;
+  const double slide = std::clamp(prediction.slide.mean[0], config_.lower, config_.upper);
+  const double scale = pixelsPerMetre(config_.axis, slide), deviation = prediction.slide.deviation() * scale;
+  if (deviation > kKnownPlace) return false;
+  const FitPrior prior = slow_.prior(slide);
+  const double motion = std::abs(motionAt(prediction.slide, frame.exposure));
+  const bool known_rotation = prediction.rotation.deviation() < kKnownRotation;
+  const MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, motion,
+                                        fastestMotion(frame), known_rotation, kReach * deviation);
+  if (gates_.judge(fit, slow_.nominal(slide)) != LostReason::None || fit.visible < kNearbyVisible) return false;
+  if (!isNear(fit, prediction)) return false;
+  accept(frame, fit, prediction, true);
+  return true;
+}
+
 bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& prediction, double begin, double end) {
   const double from = alongOf(config_.axis, std::max(begin, config_.lower));
   const double to = alongOf(config_.axis, std::min(end, config_.upper));
-  const double fastest = config_.motion.max_speed * frame.exposure * config_.axis.pixels_per_metre;
+  const double fastest = fastestMotion(frame);
   const AxisSearch::Result& found = search_.run(map_, frame, from - kMargin, to + kMargin, fastest, min_contrast_);
   MarkerFit best;
   best.loss = 1e9;
   reason_ = whyNothing(found);
   for (int i = 0; i < found.count && tries_ < kTries; ++i, ++tries_) {
     const MarkerFit fit = tryCandidate(frame, prediction, found.candidates[i]);
-    LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])));
-    if (reason == LostReason::None && fitter_.shows(kRotation) && fit.visible < kSearchVisible)
+    LostReason reason = gates_.judge(fit, slow_.nominal(slideOf(config_.axis, fit.x[kAlong])), false);
+    if (reason == LostReason::None && fitter_.shows(kRotation) && isPart(fit) && !isNear(fit, prediction))
       reason = LostReason::Occluded;
     if (reason == LostReason::None && fit.loss < best.loss) best = fit;
     if (reason != LostReason::None && reason_ == LostReason::NotFound) reason_ = reason;
@@ -170,15 +207,30 @@ bool InstrumentTracker::searchRange(const Frame& frame, const Prediction& predic
 MarkerFit InstrumentTracker::tryCandidate(const Frame& frame, const Prediction& prediction,
                                           const AxisSearch::Candidate& candidate) {
   const double slide = slideOf(config_.axis, candidate.along);
-  const double fastest = config_.motion.max_speed * frame.exposure * config_.axis.pixels_per_metre;
+  const double fastest = fastestMotion(frame);
   const bool known_rotation =
-      prediction.known && rotation_.started() && rotation_.predict(slide_.time() + prediction.dt).deviation() < 0.2;
-  FitVector start = startAt(slide, prediction);
+      prediction.known && rotation_.started() && prediction.rotation.deviation() < kKnownRotation;
+  const FitPrior prior = searchPrior(slide);
+  FitVector start = startAt(slide, prior, prediction);
   const double size = std::log(candidate.scale);
   if (std::abs(size - start[kLogScale]) > kScaleStep) start[kLogScale] = size;
   if (candidate.shows_rotation && !known_rotation) start[kRotation] = candidate.rotation;
-  return fitter_.acquire(map_, frame, start, slow_.prior(slide), candidate.motion, fastest,
+  return fitter_.acquire(map_, frame, start, prior, candidate.motion, fastest,
                          known_rotation || candidate.shows_rotation);
+}
+
+/// Part of the bars also fits at other places, but not as well.
+bool InstrumentTracker::isPart(const MarkerFit& fit) {
+  const double whole = std::clamp((fit.visible - kWholeFrom) / (kWhole - kWholeFrom), 0.0, 1.0);
+  return fit.visible < kSearchVisible || fit.misfit > kPartMisfit + whole * (kWholeMisfit - kPartMisfit);
+}
+
+/// Where else the bars would fit is further away.
+bool InstrumentTracker::isNear(const MarkerFit& fit, const Prediction& prediction) const {
+  if (!prediction.known) return false;
+  const double deviation = prediction.slide.deviation() * pixelsPerMetre(config_.axis, prediction.slide.mean[0]);
+  const double distance = std::abs(fit.x[kAlong] - alongOf(config_.axis, prediction.slide.mean[0]));
+  return deviation < kKnownPlace && distance < kNear * deviation;
 }
 
 /// The instrument cannot be faster than it is; but if several frames agree on where it is now, somebody moved it.

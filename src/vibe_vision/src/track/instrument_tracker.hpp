@@ -28,11 +28,16 @@ class InstrumentTracker {
   };
   Prediction predict(double stamp);
   double motionAt(const MotionFilter::State& slide, double exposure) const;
-  FitVector startAt(double slide, const Prediction& prediction) const;
+  FitVector startAt(double slide, const FitPrior& prior, const Prediction& prediction) const;
   bool follow(const Frame& frame, const Prediction& prediction);
   bool search(const Frame& frame, const Prediction& prediction);
+  bool searchNearby(const Frame& frame, const Prediction& prediction);
+  double fastestMotion(const Frame& frame) const;  ///< [px]
   bool searchRange(const Frame& frame, const Prediction& prediction, double begin, double end);
   MarkerFit tryCandidate(const Frame& frame, const Prediction& prediction, const AxisSearch::Candidate& candidate);
+  FitPrior searchPrior(double slide) const;
+  static bool isPart(const MarkerFit& fit);
+  bool isNear(const MarkerFit& fit, const Prediction& prediction) const;
   bool isExpected(const MarkerFit& fit, const Prediction& prediction, double stamp);
   LostReason whyNothing(const AxisSearch::Result& found) const;
   void accept(const Frame& frame, const MarkerFit& fit, const Prediction& prediction, bool reacquired);
@@ -47,6 +52,7 @@ class InstrumentTracker {
   AxisSearch search_;
   Gates gates_;
   SlowState slow_;
+  const SlowState unknown_;  ///< at the beginning, always
   LightModel light_;
   MotionFilter slide_, rotation_;
   double last_slide_ = 0, last_rotation_ = 0;

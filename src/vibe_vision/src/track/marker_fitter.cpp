@@ -17,9 +17,13 @@ constexpr double kMinUncertainty = 0.3;     // of a prediction [px]
 constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
 constexpr double kHopeless = 0.8;                       // loss of a pixel after the coarse alignment
 constexpr double kVeryHopeless = 0.8;                   // before size and tilt are known
+constexpr double kPoor = 0.25;                          // loss of a pixel from which the rotation may be wrong
 constexpr int kAlignSteps = 3;
 constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after which the picture is made anew [px], 1
-constexpr int kFollowSteps = 5, kAcquireSteps = 9;
+constexpr double kPlaceTrial = 1.5;                          // [px]
+constexpr double kSeenAsWhole = 0.9;                         // visible share of a marker that nothing covers
+constexpr double kCoverShift = 0.12, kCoverTurn = 0.02;      // by what covers a sleeve [px], [rad]
+constexpr int kFollowSteps = 12, kAcquireSteps = 14;         // a covered marker needs many
 
 std::size_t capacityOf(const MarkerPattern& pattern) {
   const Eigen::Vector2d window = pattern.maxWindow();
@@ -57,7 +61,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
 }
 
 MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior,
-                                double motion, double max_motion, bool known_rotation) {
+                                double motion, double max_motion, bool known_rotation, double reach) {
   MarkerFit fit;
   fit.x = start;
   fit.motion = motion;
@@ -66,10 +70,11 @@ MarkerFit MarkerFitter::acquire(AxisMap& map, const Frame& frame, const FitVecto
   fit.x[kBlur] = blur + (observed_[kRotation] ? kMiddleBlur : kCoarseBlur);
   if (!read(map, frame, fit)) return fit;
   useHalf();
+  if (reach > 0) choosePlace(fit, reach);
   if (!align(fit, prior, FitScope::Position)) return fit;
   if (!observed_[kRotation] && fit.loss > kVeryHopeless) return fit;  // else the rotation may be wrong
   fit.x[kBlur] = blur + kMiddleBlur;
-  if (!known_rotation && observed_[kRotation]) chooseRotation(fit);
+  if (observed_[kRotation] && (!known_rotation || fit.loss > kPoor)) chooseRotation(fit);
   if (!read(map, frame, fit)) return fit;
   useHalf();
   if (!align(fit, prior, FitScope::Shape) || fit.loss > kHopeless) return fit;
@@ -112,10 +117,26 @@ bool MarkerFitter::align(MarkerFit& fit, const FitPrior& prior, FitScope scope) 
   return true;
 }
 
-void MarkerFitter::chooseRotation(MarkerFit& fit) {
-  FitVector best = fit.x;
+void MarkerFitter::choosePlace(MarkerFit& fit, double reach) {
+  const FitVector start = fit.x;
+  FitVector best = start;
+  const int steps = static_cast<int>(std::ceil(reach / kPlaceTrial));
   double least = 2;
   pattern_->prepare(poseOf(fit.x), fit.motion);
+  for (int k = -steps; k <= steps; ++k) {
+    fit.x[kAlong] = start[kAlong] + k * kPlaceTrial;
+    fit_.evaluate(fit.x, pixels_);
+    fit_.startLevels(pixels_, fit.x);
+    const double loss = fit_.loss(fit.x, pixels_, {fit.x[kBlur], FitScope::Position});
+    if (loss < least) least = loss, best = fit.x;
+  }
+  fit.x = best;
+}
+
+void MarkerFitter::chooseRotation(MarkerFit& fit) {
+  FitVector best = fit.x;
+  pattern_->prepare(poseOf(fit.x), fit.motion);
+  double least = fit.loss;
   for (double rotation : rotations_) {
     fit.x[kRotation] = rotation;
     fit_.evaluate(fit.x, pixels_);
@@ -163,6 +184,7 @@ void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertai
     fit.covariance = step.covariance * std::max(1.0, step.misfit);
     fit.misfit = step.misfit, fit.loss = step.loss, fit.visible = step.visible;
     fit.weaker_edges = step.weaker_edges;
+    if (observed_[kRotation]) doubtCovered(fit);
     const double moved = std::max({std::abs(step.change[kAlong]), std::abs(step.change[kLateral]),
                                    radius_ * std::abs(step.change[kRotation]), std::abs(step.change[kBlur]) / 2,
                                    radius_ * std::abs(step.change[kLogScale]) / 2});
@@ -171,6 +193,13 @@ void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertai
     if (std::abs(step.change[kBlur]) > kPrepareBlur || std::abs(step.change[kLogScale]) > kPrepareScale)
       pattern_->prepare(poseOf(fit.x), fit.motion);
   }
+}
+
+/// The picture of what covers a part of a sleeve draws the fit aside, which the noise does not tell.
+void MarkerFitter::doubtCovered(MarkerFit& fit) {
+  const double covered = std::max(kSeenAsWhole - fit.visible, 0.0);
+  fit.covariance(kAlong, kAlong) += std::pow(kCoverShift * covered, 2);
+  fit.covariance(kRotation, kRotation) += std::pow(kCoverTurn * covered, 2);
 }
 
 /// Goes the step, at most a few pixels at once.

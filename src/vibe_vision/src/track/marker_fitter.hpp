@@ -32,17 +32,20 @@ class MarkerFitter {
                    double uncertainty);
   /// From a candidate of the search: from coarse to fine, with any rotation.
   /// @param known_rotation  start.rotation is a prediction
+  /// @param reach  from the start, within which the marker is [px]; 0: the search knows it well
   MarkerFit acquire(AxisMap& map, const Frame& frame, const FitVector& start, const FitPrior& prior, double motion,
-                    double max_motion, bool known_rotation);
+                    double max_motion, bool known_rotation, double reach = 0);
 
  private:
   bool read(AxisMap& map, const Frame& frame, MarkerFit& fit);
   void useHalf();
   void useAll();
   bool align(MarkerFit& fit, const FitPrior& prior, FitScope scope);
+  void choosePlace(MarkerFit& fit, double reach);
   void chooseRotation(MarkerFit& fit);
   void chooseMotion(MarkerFit& fit, const FitPrior& prior, double max_motion);
   void refine(MarkerFit& fit, const FitPrior& prior, double uncertainty, int max_steps);
+  static void doubtCovered(MarkerFit& fit);
   void take(const FitStep& step, MarkerFit& fit) const;
 
   std::unique_ptr<MarkerPattern> pattern_;
