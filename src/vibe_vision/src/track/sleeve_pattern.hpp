@@ -42,7 +42,9 @@ class SleevePattern : public MarkerPattern {
   void chain(const View& view, std::size_t begin, const Part& part, PatternValues& values) const;
   Blackness stripeAt(const Part& part, std::size_t i) const;
   Blackness cutStripeAt(const Part& part, std::size_t i, float cut) const;
-  static void add(const Blackness& other, float sign, Blackness& sum);
+  Blackness plainCutAt(const Part& part, std::size_t i, float phase, float sign, float out) const;
+  Blackness stripeWithin(const Part& part, std::size_t i, float phase, float sign, float out, float black) const;
+  static void subtract(const Blackness& other, Blackness& sum);
 
   MarkerView view_;
   double radius_, half_length_;  ///< [px]
