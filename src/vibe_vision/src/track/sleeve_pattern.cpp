@@ -16,7 +16,7 @@ constexpr double kRim = 0.88;       // of the radius: beyond, the print is seen 
 constexpr float kReach = 3.4F;      // standard deviations after which an edge is over
 constexpr float kTellReach = 2.7F;  // standard deviations from an edge within which a pixel tells something
 constexpr float kCornerReach = 3.1F;
-constexpr float kLongMotion = 4;  // half of one that leaves few pixels that are not near a corner [px]
+constexpr float kLongMotion = 4;                  // half of one that leaves few pixels that are not near a corner [px]
 constexpr float kMaxUneven = 0.15F;               // of the motions of bars and stripe at an end of the helix [px]
 constexpr float kMaxSine = 0.97F;                 // of the angle around the rod: keeps derivatives finite
 constexpr int kBarLevels = 4, kStripeLevels = 5;  // variances from the middle of the rod to the rim
@@ -134,7 +134,8 @@ void SleevePattern::compose(MovingLine& line, double low, double high, double ha
 }
 
 /// Tables for the middle of the rod and for its rim. Slopes are those of a line of sight that is not oblique.
-void SleevePattern::prepare(const MarkerPose& pose, double motion) {
+void SleevePattern::prepare(const MarkerPose& pose, double motion, bool rough) {
+  rough_ = rough;
   motion_ = std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion);
   const View view = viewOf(pose, motion_);
   const double lean = std::tan(pose.slant + (pose.along - view_.principal_along) / view_.focal_length);
@@ -333,6 +334,8 @@ void SleevePattern::cutAt(std::size_t i, Part& part) const {
   Blackness black;
   if (near_begin != near_end && cut_.edgeDistance(phase) > kCornerReach * std::sqrt(part.stripe_variance[i])) {
     black = plainCutAt(part, i, phase, near_end ? 1.0F : -1.0F, near_end ? u - cut : cut - u);
+  } else if (rough_ && near_begin != near_end) {
+    black = roughCutAt(part, i, near_end ? 1.0F : -1.0F, near_end ? u - cut : cut - u);
   } else {
     black = near_end ? cutStripeAt(part, i, helix_end_) : stripeAt(part, i);
     if (near_begin) subtract(cutStripeAt(part, i, helix_begin_), black);
@@ -363,6 +366,18 @@ SleevePattern::Blackness SleevePattern::plainCutAt(const Part& part, std::size_t
   sum.by_u -= sign * per_motion * (b.value - a.value);
   sum.by_blur += 0.5F * deviation * per_motion * (b.density - a.density);
   return sum;
+}
+
+/// The stripe times a step: not exact where the end of the helix meets an edge of the stripe.
+SleevePattern::Blackness SleevePattern::roughCutAt(const Part& part, std::size_t i, float sign, float out) const {
+  const NormalTable& normal = NormalTable::instance();
+  const float half = part.half_motion[i], deviation = std::sqrt(part.bar_variance[i]), inverse = 1 / deviation;
+  const float per_motion = 0.5F / half, slope = part.stripe_slope[i];
+  const NormalTable::Entry a = normal.at((-out - half) * inverse), b = normal.at((-out + half) * inverse);
+  const float seen = deviation * per_motion * (b.integral - a.integral);
+  return {seen * part.stripe[i], seen * slope - sign * per_motion * (b.value - a.value) * part.stripe[i], seen * slope,
+          0.5F * (seen * part.stripe_variance[i] * part.stripe_bend[i] +
+                  deviation * per_motion * (b.density - a.density) * part.stripe[i])};
 }
 
 /// Of the stripe less what it is at the end of the helix, the part of the motion that is within the helix.
