@@ -26,7 +26,8 @@ constexpr std::array<double, 4> kWandering = {1e9, 4, 1.5, 0.8};
 
 std::size_t capacityOf(const MarkerPattern& pattern) {
   const Eigen::Vector2d window = pattern.maxWindow();
-  return static_cast<std::size_t>((2.3 * window.x() + 8) * (2.3 * window.y() + 8));  // distortion enlarges a little
+  // Distortion enlarges a little, a tilt the rectangle around it.
+  return static_cast<std::size_t>(1.4 * (2.3 * window.x() + 8) * (2.3 * window.y() + 8));
 }
 
 }  // namespace

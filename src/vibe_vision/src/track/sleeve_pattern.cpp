@@ -115,7 +115,15 @@ std::array<bool, kPoseParameters> SleevePattern::observes() const {
   return observed;
 }
 
+/// Around a tilted sleeve there is more; see select().
 Eigen::Vector2d SleevePattern::window(const MarkerPose& pose, double motion) const {
+  const Eigen::Vector2d half = printWindow(pose, motion);
+  const double cosine = std::abs(std::cos(pose.tilt)), sine = std::abs(std::sin(pose.tilt));
+  return {cosine * half.x() + sine * half.y(), sine * half.x() + cosine * half.y()};
+}
+
+/// Along the rod and across it.
+Eigen::Vector2d SleevePattern::printWindow(const MarkerPose& pose, double motion) const {
   const double scale = std::exp(pose.log_scale), blur = std::sqrt(pose.blur * pose.blur + kPixelVariance);
   const double side = radius_ * scale;
   const double lean = pose.slant + (pose.along - view_.principal_along) / view_.focal_length;  // bends the ends
@@ -291,9 +299,10 @@ void SleevePattern::look(Part& part) const {
     if (part.inside[i] + part.outside[i] == 0) cutAt(i, part);
 }
 
-/// Pixels near an edge. Those where the helix ends at an edge of the stripe are few and costly.
+/// Pixels of the sleeve near an edge. Those where the helix ends at an edge of the stripe are few and costly.
 void SleevePattern::select(const MarkerPose& pose, double motion, PixelBlock& pixels) const {
   const View view = viewOf(pose, std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion));
+  const Eigen::Vector2f half = (printWindow(pose, motion) * view.inverse_scale).cast<float>();
   Part part;
   std::size_t n = 0;
   for (std::size_t begin = 0; begin < pixels.count; begin += Part::kSize) {
@@ -302,7 +311,7 @@ void SleevePattern::select(const MarkerPose& pose, double motion, PixelBlock& pi
     for (std::size_t i = 0; i < part.size; ++i) {
       pixels.along[n] = pixels.along[begin + i], pixels.lateral[n] = pixels.lateral[begin + i];
       pixels.value[n] = pixels.value[begin + i], pixels.weight[n] = pixels.weight[begin + i];
-      n += tells(part, i) ? 1 : 0;
+      n += std::abs(part.x[i]) <= half.x() && std::abs(part.v[i]) <= half.y() && tells(part, i) ? 1 : 0;
     }
   }
   pixels.count = n;

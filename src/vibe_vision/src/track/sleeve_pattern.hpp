@@ -30,6 +30,7 @@ class SleevePattern : public MarkerPattern {
   struct Part;
   struct Blackness;
   View viewOf(const MarkerPose& pose, double motion) const;
+  Eigen::Vector2d printWindow(const MarkerPose& pose, double motion) const;
   static void compose(MovingLine& line, double low, double high, double half_motion);
   void measureEdges(const std::vector<Interval>& bars);
   bool tells(const Part& part, std::size_t i) const;
