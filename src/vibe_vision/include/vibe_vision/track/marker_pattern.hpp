@@ -73,7 +73,8 @@ class MarkerPattern {
 
   /// Makes ready for evaluations near a pose; once per frame. No allocation.
   /// @param motion  by which the marker moves along the axis during the exposure [px]
-  virtual void prepare(const MarkerPose& pose, double motion) = 0;
+  /// @param rough  the picture may be wrong by a few percent in a few places: enough to find the marker
+  virtual void prepare(const MarkerPose& pose, double motion, bool rough = false) = 0;
   /// The pattern near the prepared pose: exact in position, rotation, size and tilt, to first order in the change of
   /// the blur. Fills values up to pixels.padded(). No allocation.
   virtual void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) = 0;
