@@ -48,7 +48,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   fit.motion = motion;
   if (!read(map, frame, fit)) return fit;
   pattern_->prepare(poseOf(fit.x), motion);
-  useHalf();
+  useQuarter();
   fit_.evaluate(fit.x, pixels_);
   fit_.startLevels(pixels_, fit.x);
   const FitStep step = fit_.step(fit.x, prior, pixels_, {std::max(uncertainty, kMinUncertainty), FitScope::Position});
@@ -95,6 +95,10 @@ bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit) {
 
 void MarkerFitter::useHalf() {
   pixels_.count = std::max(all_ / 2 / kLanes * kLanes, kMinPixels);
+}
+
+void MarkerFitter::useQuarter() {
+  pixels_.count = std::max(all_ / 4 / kLanes * kLanes, kMinPixels);
 }
 
 void MarkerFitter::useAll() {

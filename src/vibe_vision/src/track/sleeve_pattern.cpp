@@ -76,6 +76,7 @@ struct SleevePattern::Part {
   alignas(64) float inside[kSize], outside[kSize];  ///< of the helix, and of its ends: 1 or 0
   alignas(64) float bars[kSize], bars_slope[kSize], bars_bend[kSize];
   alignas(64) float stripe[kSize], stripe_slope[kSize], stripe_bend[kSize];
+  alignas(64) int tells[kSize];  ///< 1: the pixel is near an edge
   alignas(64) float value[kSize], by_u[kSize], by_w[kSize], by_blur[kSize];
 };
 
@@ -308,31 +309,42 @@ void SleevePattern::select(const MarkerPose& pose, double motion, PixelBlock& pi
   for (std::size_t begin = 0; begin < pixels.count; begin += Part::kSize) {
     part.size = std::min(Part::kSize, pixels.count - begin);
     placePixels(view, pixels, begin, part);
+    mark(part);
     for (std::size_t i = 0; i < part.size; ++i) {
       pixels.along[n] = pixels.along[begin + i], pixels.lateral[n] = pixels.lateral[begin + i];
       pixels.value[n] = pixels.value[begin + i], pixels.weight[n] = pixels.weight[begin + i];
-      n += std::abs(part.x[i]) <= half.x() && std::abs(part.v[i]) <= half.y() && tells(part, i) ? 1 : 0;
+      n += std::abs(part.x[i]) <= half.x() && std::abs(part.v[i]) <= half.y() ? static_cast<std::size_t>(part.tells[i]) : 0;
     }
   }
   pixels.count = n;
   pixels.pad();
 }
 
-bool SleevePattern::tells(const Part& part, std::size_t i) const {
-  const float u = part.u[i], last = static_cast<float>(edge_distance_.size() - 1);
-  const float place = std::clamp(u + static_cast<float>(half_length_) + 0.5F, 0.0F, last);
-  const float reach = kTellReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i] + 0.5F;
-  const bool bar = edge_distance_[static_cast<std::size_t>(place)] < reach;
-  if (part.outside[i] > 0) return bar;
-  const float deviation = std::sqrt(part.stripe_variance[i]);
-  const bool stripe = cut_.edgeDistance(part.w[i]) < kTellReach * deviation + part.stripe_half_motion[i];
-  if (part.inside[i] > 0) return stripe;
-  const float cut = std::abs(u - helix_begin_) < std::abs(u - helix_end_) ? helix_begin_ : helix_end_;
-  const float phase = part.w[i] - u + cut;
-  const bool corner = cut_.edgeDistance(phase) < kCornerReach * deviation;
-  if (corner) return bar && part.half_motion[i] > kLongMotion;
-  const float uneven = part.stripe_half_motion[i] - part.half_motion[i];  // on a tilted rod; not exact here
-  return std::abs(uneven) < kMaxUneven && (bar || stripe || cut_.isBlack(phase));
+VIBE_LANES void SleevePattern::mark(Part& __restrict part) const {
+  const float last = static_cast<float>(edge_distance_.size() - 1), first = static_cast<float>(half_length_) + 0.5F;
+  const float begin = helix_begin_, end = helix_end_;
+  const CutStripe stripe_edges = cut_;
+  alignas(64) int place[Part::kSize];
+  alignas(64) float edge[Part::kSize];
+  for (std::size_t i = 0; i < Part::kSize; ++i) {
+    float at = part.u[i] + first;
+    at = at < 0 ? 0 : at;
+    place[i] = static_cast<int>(at > last ? last : at);
+  }
+  for (std::size_t i = 0; i < Part::kSize; ++i) edge[i] = edge_distance_[static_cast<std::size_t>(place[i])];
+  for (std::size_t i = 0; i < Part::kSize; ++i) {
+    const float u = part.u[i], w = part.w[i], deviation = std::sqrt(part.stripe_variance[i]);
+    const float half = part.half_motion[i], stripe_half = part.stripe_half_motion[i];
+    const float phase = w - u + (std::abs(u - begin) < std::abs(u - end) ? begin : end);
+    const int bar = edge[i] < kTellReach * std::sqrt(part.bar_variance[i]) + half + 0.5F ? 1 : 0;
+    const int stripe = stripe_edges.edgeDistance(w) < kTellReach * deviation + stripe_half ? 1 : 0;
+    const int corner = stripe_edges.edgeDistance(phase) < kCornerReach * deviation ? 1 : 0;
+    const int black = stripe_edges.isBlack(phase) ? 1 : 0, is_long = half > kLongMotion ? 1 : 0;
+    const int even = std::abs(stripe_half - half) < kMaxUneven ? 1 : 0;  // on a tilted rod; not exact here
+    const int inside = part.inside[i] > 0 ? 1 : 0, outside = part.outside[i] > 0 ? 1 : 0;
+    const int mixed = (corner & bar & is_long) | ((1 - corner) & even & (bar | stripe | black));
+    part.tells[i] = (outside & bar) | (inside & stripe) | ((1 - outside) & (1 - inside) & mixed);
+  }
 }
 
 /// Near an end of the helix.
