@@ -171,7 +171,7 @@ void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertai
     fit.misfit = step.misfit, fit.loss = step.loss, fit.visible = step.visible;
     fit.weaker_edges = step.weaker_edges;
     const double moved = std::max({std::abs(step.change[kAlong]), std::abs(step.change[kLateral]),
-                                   radius_ * std::abs(step.change[kRotation]), std::abs(step.change[kBlur]) / 2,
+                                   radius_ * std::abs(step.change[kRotation]) / 2, std::abs(step.change[kBlur]) / 2,
                                    radius_ * std::abs(step.change[kLogScale]) / 2});
     fit.valid = moved < kConverged && last == 0;
     if (fit.valid || moved > kWandering[std::min<std::size_t>(i, kWandering.size() - 1)]) return;
