@@ -156,7 +156,8 @@ void AxisMap::gatherRow(const Frame& frame, const PixelWindow& rect, int y, int 
     for (int x = begin; x < stop; x += 2) {
       const int u = x - frame.offset_x;
       const bool seen = in_frame && u >= 0 && u < frame.image.width;
-      add(x, seen ? static_cast<float>(values[u]) : 0.F, seen && (dead == nullptr || dead[x - rect.x] == 0) ? 1.F : 0.F);
+      add(x, seen ? static_cast<float>(values[u]) : 0.F,
+          seen && (dead == nullptr || dead[x - rect.x] == 0) ? 1.F : 0.F);
     }
   }
   pixels.count = n;

@@ -12,7 +12,7 @@ using Four [[gnu::vector_size(16)]] = float;
 using Order [[gnu::vector_size(16)]] = int;
 constexpr std::size_t kWidth = 4;
 constexpr float kLevelRatio = 0.12F;  // of the variances' step to the variance that needs no more levels
-constexpr int kStride = 2;  // of the table against that of the line
+constexpr int kStride = 2;            // of the table against that of the line
 constexpr float kPerPixel = BlurredLine::kPerPixel / kStride;
 
 Four load(const float* p) {

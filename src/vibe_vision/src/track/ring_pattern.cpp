@@ -134,7 +134,8 @@ void RingPattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, Pat
   }
 }
 
-VIBE_LANES void RingPattern::place(const MarkerPose& pose, const PixelBlock& pixels, std::size_t begin, Part& part) const {
+VIBE_LANES void RingPattern::place(const MarkerPose& pose, const PixelBlock& pixels, std::size_t begin,
+                                   Part& part) const {
   const std::size_t count = part.count = std::min(kPart, pixels.padded() - begin);
   const TableFrame frame(pose);
   const auto along = static_cast<float>(pose.along), lateral = static_cast<float>(pose.lateral);
@@ -185,13 +186,15 @@ VIBE_LANES void RingPattern::readTable(Part& part) const {
     const Eight y = __builtin_shuffle(by_u, laplacian, low) + __builtin_shuffle(by_u, laplacian, high);
     const Eight sums = __builtin_shuffle(x, y, front) + __builtin_shuffle(x, y, back);  // value, by_v, by_u, Laplacian
     part.value[i] = sums[0], part.by_v[i] = sums[1], part.by_u[i] = sums[2], part.laplacian[i] = sums[3];
-    part.value[i + 1] = sums[4], part.by_v[i + 1] = sums[5], part.by_u[i + 1] = sums[6], part.laplacian[i + 1] = sums[7];
+    part.value[i + 1] = sums[4], part.by_v[i + 1] = sums[5], part.by_u[i + 1] = sums[6],
+                   part.laplacian[i + 1] = sums[7];
   }
 }
 
 /// From the table's derivatives to those by the pose. A change of the variance of the blur adds half the Laplacian; one
 /// of tilt or aspect also turns the motion on the marker.
-VIBE_LANES void RingPattern::chain(const MarkerPose& pose, std::size_t begin, const Part& part, PatternValues& values) const {
+VIBE_LANES void RingPattern::chain(const MarkerPose& pose, std::size_t begin, const Part& part,
+                                   PatternValues& values) const {
   const std::size_t count = part.count;
   const TableFrame frame(pose);
   const auto ct = static_cast<float>(frame.cos_tilt), st = static_cast<float>(frame.sin_tilt);
