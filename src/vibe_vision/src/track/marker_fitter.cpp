@@ -24,7 +24,8 @@ constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after wh
 constexpr double kPlaceTrial = 1.5;                          // [px]
 constexpr double kSeenAsWhole = 0.9;                         // visible share of a marker that nothing covers
 constexpr double kCoverShift = 0.12, kCoverTurn = 0.02;      // by what covers a sleeve [px], [rad]
-constexpr int kFollowSteps = 12, kAcquireSteps = 14;         // a covered marker needs many
+constexpr double kWhole = 0.9;  // share of a marker that is seen, from which a quarter of the pixels show where it is
+constexpr int kFollowSteps = 12, kAcquireSteps = 14;  // a covered marker needs many
 // A fit that still moves that far [px] with step 1, 2, ... is on something else: markers are well below half of it.
 constexpr std::array<double, 4> kWandering = {1e9, 4, 1.5, 0.8};
 
@@ -52,7 +53,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   fit.motion = motion;
   if (!read(map, frame, fit)) return fit;
   pattern_->prepare(poseOf(fit.x), motion);
-  useQuarter();
+  seen_ > kWhole ? useQuarter() : useHalf();
   fit_.evaluate(fit.x, pixels_);
   fit_.startLevels(pixels_, fit.x);
   const FitStep step = fit_.step(fit.x, prior, pixels_, {std::max(uncertainty, kMinUncertainty), FitScope::Position});
@@ -60,6 +61,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   if (!step.valid) return fit;
   take(step, fit);
   refine(fit, prior, 0, kFollowSteps);
+  seen_ = fit.visible;
   return fit;
 }
 
@@ -195,7 +197,7 @@ void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertai
     fit.weaker_edges = step.weaker_edges;
     if (observed_[kRotation]) doubtCovered(fit);
     const double moved = std::max({std::abs(step.change[kAlong]), std::abs(step.change[kLateral]),
-                                   radius_ * std::abs(step.change[kRotation]) / 2, std::abs(step.change[kBlur]) / 2,
+                                   radius_ * std::abs(step.change[kRotation]), std::abs(step.change[kBlur]) / 2,
                                    radius_ * std::abs(step.change[kLogScale]) / 2});
     fit.valid = moved < kConverged && last == 0;
     if (fit.valid || moved > kWandering[std::min<std::size_t>(i, kWandering.size() - 1)]) return;

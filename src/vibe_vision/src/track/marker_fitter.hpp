@@ -55,6 +55,7 @@ class MarkerFitter {
   double radius_;  ///< of the marker, about [px]
   PixelBlock pixels_;
   std::size_t all_ = 0;  ///< pixels read
+  double seen_ = 0;      ///< share of the marker that follow() saw the last time
   MarkerFit best_;
   PatternFit fit_;
 };
