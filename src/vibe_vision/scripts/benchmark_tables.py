@@ -115,6 +115,8 @@ def sizeTable(table):
     for scene in ('static', 'moving'):
         for marker in (16, 24, 32, 40, 64):
             found = [table.find(method, scene, marker=marker) for method in METHODS]
+            if not any(found):
+                continue
             rows.append([f'{SCENES[scene]}, {marker} px'] + [text(row) if row else '–' for row in found])
     return markdown(['size'] + list(METHODS.values()), rows)
 
@@ -149,7 +151,10 @@ def goalTable(table):
         ('slide predicted 14 ms ahead, moving', '≤ 0.05 mm', 1e3 * worst(own['moving'], 'lead_rms_m'), 0.05, '{:.3f} mm'),
         ('NEES within its 95 % band', 'all scenes', -inside, -len(every), f'{{:.0f}} of {len(every)}'),
     ]
-    rows = [[name, goal, text.format(abs(value)), 'yes' if value <= limit else 'no'] for name, goal, value, limit, text in goals]
+    rows = []
+    for name, goal, value, limit, text in goals:
+        measured = ['not measured', '–'] if math.isnan(value) else [text.format(abs(value)), 'yes' if value <= limit else 'no']
+        rows.append([name, goal] + measured)
     return markdown(['', 'goal', 'measured', 'reached'], rows)
 
 

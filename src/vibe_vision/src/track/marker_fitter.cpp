@@ -12,6 +12,7 @@ constexpr std::size_t kMinPixels = 48;
 constexpr double kConverged = 0.03;         // a step after which the next would change nothing that matters [px]
 constexpr double kMaxStep = 3;              // [px]
 constexpr double kMotionTrial = 2;          // [px]
+constexpr double kLongMotion = 6;           // from which what is seen where edges meet tells the motion [px]
 constexpr double kMotionUncertainty = 0.3;  // of the edges while it is tried [px]
 constexpr double kMinUncertainty = 0.3;     // of a prediction [px]
 constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
@@ -20,10 +21,13 @@ constexpr double kVeryHopeless = 0.8;                   // before size and tilt 
 constexpr int kAlignSteps = 3;
 constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after which the picture is made anew [px], 1
 constexpr int kFollowSteps = 5, kAcquireSteps = 9;
+// A fit that still moves that far [px] with step 1, 2, ... is on something else: markers are well below half of it.
+constexpr std::array<double, 4> kWandering = {1e9, 4, 1.5, 0.8};
 
 std::size_t capacityOf(const MarkerPattern& pattern) {
   const Eigen::Vector2d window = pattern.maxWindow();
-  return static_cast<std::size_t>((2.3 * window.x() + 8) * (2.3 * window.y() + 8));  // distortion enlarges a little
+  // Distortion enlarges a little, a tilt the rectangle around it.
+  return static_cast<std::size_t>(1.4 * (2.3 * window.x() + 8) * (2.3 * window.y() + 8));
 }
 
 }  // namespace
@@ -99,7 +103,7 @@ void MarkerFitter::useAll() {
 
 /// A few steps with a picture that is more blurred than the camera's: its edges reach further.
 bool MarkerFitter::align(MarkerFit& fit, const FitPrior& prior, FitScope scope) {
-  pattern_->prepare(poseOf(fit.x), fit.motion);
+  pattern_->prepare(poseOf(fit.x), fit.motion, true);
   for (int i = 0; i < kAlignSteps; ++i) {
     fit_.evaluate(fit.x, pixels_);
     if (i == 0) fit_.startLevels(pixels_, fit.x);
@@ -114,7 +118,7 @@ bool MarkerFitter::align(MarkerFit& fit, const FitPrior& prior, FitScope scope) 
 void MarkerFitter::chooseRotation(MarkerFit& fit) {
   FitVector best = fit.x;
   double least = 2;
-  pattern_->prepare(poseOf(fit.x), fit.motion);
+  pattern_->prepare(poseOf(fit.x), fit.motion, true);
   for (double rotation : rotations_) {
     fit.x[kRotation] = rotation;
     fit_.evaluate(fit.x, pixels_);
@@ -132,7 +136,7 @@ void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double ma
   for (int k = 0; k < 3; ++k) {
     MarkerFit trial = fit;
     trial.motion = middle + (k - 1) * kMotionTrial;
-    pattern_->prepare(poseOf(trial.x), trial.motion);
+    pattern_->prepare(poseOf(trial.x), trial.motion, middle < kLongMotion);
     for (int i = 0; i < 2; ++i) {
       fit_.evaluate(trial.x, pixels_);
       const FitStep step = fit_.step(trial.x, prior, pixels_, {kMotionUncertainty, FitScope::Shape});
@@ -166,7 +170,7 @@ void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertai
                                    radius_ * std::abs(step.change[kRotation]), std::abs(step.change[kBlur]) / 2,
                                    radius_ * std::abs(step.change[kLogScale]) / 2});
     fit.valid = moved < kConverged && last == 0;
-    if (fit.valid) return;
+    if (fit.valid || moved > kWandering[std::min<std::size_t>(i, kWandering.size() - 1)]) return;
     if (std::abs(step.change[kBlur]) > kPrepareBlur || std::abs(step.change[kLogScale]) > kPrepareScale)
       pattern_->prepare(poseOf(fit.x), fit.motion);
   }

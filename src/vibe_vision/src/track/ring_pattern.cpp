@@ -125,7 +125,7 @@ void RingPattern::select(const MarkerPose& pose, double motion, PixelBlock& pixe
   pixels.pad();
 }
 
-void RingPattern::prepare(const MarkerPose& pose, double motion) {
+void RingPattern::prepare(const MarkerPose& pose, double motion, bool /*rough*/) {
   table_.compose(tableBlur(pose), motion * TableFrame(pose).motion);
 }
 

@@ -13,7 +13,7 @@ class RingPattern : public MarkerPattern {
   std::array<bool, kPoseParameters> observes() const override;
   Eigen::Vector2d window(const MarkerPose& pose, double motion) const override;
   Eigen::Vector2d maxWindow() const override;
-  void prepare(const MarkerPose& pose, double motion) override;
+  void prepare(const MarkerPose& pose, double motion, bool rough = false) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
   void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
   double searchHalfWidth() const override;

@@ -16,6 +16,7 @@ constexpr double kRim = 0.88;       // of the radius: beyond, the print is seen 
 constexpr float kReach = 3.4F;      // standard deviations after which an edge is over
 constexpr float kTellReach = 2.7F;  // standard deviations from an edge within which a pixel tells something
 constexpr float kCornerReach = 3.1F;
+constexpr float kLongMotion = 4;                  // half of one that leaves few pixels that are not near a corner [px]
 constexpr float kMaxUneven = 0.15F;               // of the motions of bars and stripe at an end of the helix [px]
 constexpr float kMaxSine = 0.97F;                 // of the angle around the rod: keeps derivatives finite
 constexpr int kBarLevels = 4, kStripeLevels = 5;  // variances from the middle of the rod to the rim
@@ -114,7 +115,15 @@ std::array<bool, kPoseParameters> SleevePattern::observes() const {
   return observed;
 }
 
+/// Around a tilted sleeve there is more; see select().
 Eigen::Vector2d SleevePattern::window(const MarkerPose& pose, double motion) const {
+  const Eigen::Vector2d half = printWindow(pose, motion);
+  const double cosine = std::abs(std::cos(pose.tilt)), sine = std::abs(std::sin(pose.tilt));
+  return {cosine * half.x() + sine * half.y(), sine * half.x() + cosine * half.y()};
+}
+
+/// Along the rod and across it.
+Eigen::Vector2d SleevePattern::printWindow(const MarkerPose& pose, double motion) const {
   const double scale = std::exp(pose.log_scale), blur = std::sqrt(pose.blur * pose.blur + kPixelVariance);
   const double side = radius_ * scale;
   const double lean = pose.slant + (pose.along - view_.principal_along) / view_.focal_length;  // bends the ends
@@ -133,7 +142,8 @@ void SleevePattern::compose(MovingLine& line, double low, double high, double ha
 }
 
 /// Tables for the middle of the rod and for its rim. Slopes are those of a line of sight that is not oblique.
-void SleevePattern::prepare(const MarkerPose& pose, double motion) {
+void SleevePattern::prepare(const MarkerPose& pose, double motion, bool rough) {
+  rough_ = rough;
   motion_ = std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion);
   const View view = viewOf(pose, motion_);
   const double lean = std::tan(pose.slant + (pose.along - view_.principal_along) / view_.focal_length);
@@ -289,9 +299,10 @@ void SleevePattern::look(Part& part) const {
     if (part.inside[i] + part.outside[i] == 0) cutAt(i, part);
 }
 
-/// Pixels near an edge. Those where the helix ends at an edge of the stripe are few and costly.
+/// Pixels of the sleeve near an edge. Those where the helix ends at an edge of the stripe are few and costly.
 void SleevePattern::select(const MarkerPose& pose, double motion, PixelBlock& pixels) const {
   const View view = viewOf(pose, std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion));
+  const Eigen::Vector2f half = (printWindow(pose, motion) * view.inverse_scale).cast<float>();
   Part part;
   std::size_t n = 0;
   for (std::size_t begin = 0; begin < pixels.count; begin += Part::kSize) {
@@ -300,7 +311,7 @@ void SleevePattern::select(const MarkerPose& pose, double motion, PixelBlock& pi
     for (std::size_t i = 0; i < part.size; ++i) {
       pixels.along[n] = pixels.along[begin + i], pixels.lateral[n] = pixels.lateral[begin + i];
       pixels.value[n] = pixels.value[begin + i], pixels.weight[n] = pixels.weight[begin + i];
-      n += tells(part, i) ? 1 : 0;
+      n += std::abs(part.x[i]) <= half.x() && std::abs(part.v[i]) <= half.y() && tells(part, i) ? 1 : 0;
     }
   }
   pixels.count = n;
@@ -316,22 +327,83 @@ bool SleevePattern::tells(const Part& part, std::size_t i) const {
   const float deviation = std::sqrt(part.stripe_variance[i]);
   const bool stripe = cut_.edgeDistance(part.w[i]) < kTellReach * deviation + part.stripe_half_motion[i];
   if (part.inside[i] > 0) return stripe;
-  const float uneven = part.stripe_half_motion[i] - part.half_motion[i];  // on a tilted rod; not exact here
-  if (std::abs(uneven) > kMaxUneven) return false;
   const float cut = std::abs(u - helix_begin_) < std::abs(u - helix_end_) ? helix_begin_ : helix_end_;
   const float phase = part.w[i] - u + cut;
-  return bar || ((stripe || cut_.isBlack(phase)) && cut_.edgeDistance(phase) > kCornerReach * deviation);
+  const bool corner = cut_.edgeDistance(phase) < kCornerReach * deviation;
+  if (corner) return bar && part.half_motion[i] > kLongMotion;
+  const float uneven = part.stripe_half_motion[i] - part.half_motion[i];  // on a tilted rod; not exact here
+  return std::abs(uneven) < kMaxUneven && (bar || stripe || cut_.isBlack(phase));
 }
 
 /// Near an end of the helix.
 void SleevePattern::cutAt(std::size_t i, Part& part) const {
   const float reach = kReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i], u = part.u[i];
-  const Blackness upper = u + reach < helix_end_ ? stripeAt(part, i) : cutStripeAt(part, i, helix_end_);
-  const Blackness lower = u - reach < helix_begin_ ? cutStripeAt(part, i, helix_begin_) : Blackness();
-  part.value[i] += upper.value - lower.value;
-  part.by_u[i] += upper.by_u - lower.by_u;
-  part.by_w[i] += upper.by_w - lower.by_w;
-  part.by_blur[i] += upper.by_blur - lower.by_blur;
+  const bool near_begin = u - reach <= helix_begin_, near_end = u + reach >= helix_end_;
+  const float cut = near_end ? helix_end_ : helix_begin_, phase = part.w[i] - u + cut;
+  Blackness black;
+  if (near_begin != near_end && cut_.edgeDistance(phase) > kCornerReach * std::sqrt(part.stripe_variance[i])) {
+    black = plainCutAt(part, i, phase, near_end ? 1.0F : -1.0F, near_end ? u - cut : cut - u);
+  } else if (rough_ && near_begin != near_end) {
+    black = roughCutAt(part, i, near_end ? 1.0F : -1.0F, near_end ? u - cut : cut - u);
+  } else {
+    black = near_end ? cutStripeAt(part, i, helix_end_) : stripeAt(part, i);
+    if (near_begin) subtract(cutStripeAt(part, i, helix_begin_), black);
+  }
+  part.value[i] += black.value;
+  part.by_u[i] += black.by_u;
+  part.by_w[i] += black.by_w;
+  part.by_blur[i] += black.by_blur;
+}
+
+/// Far from the edges of the stripe, the end of the helix is a step; the rest is the stripe, less what the step has.
+/// @param out  distance from the end, outside of the helix; sign: of the direction to the outside along u
+SleevePattern::Blackness SleevePattern::plainCutAt(const Part& part, std::size_t i, float phase, float sign,
+                                                   float out) const {
+  const float half = part.half_motion[i], variance = part.bar_variance[i], black = cut_.isBlack(phase) ? 1.0F : 0.0F;
+  Blackness sum;
+  if (out <= -half) {
+    const float slope = part.stripe_slope[i];
+    sum = {part.stripe[i] - black, slope, slope, 0.5F * part.stripe_variance[i] * part.stripe_bend[i]};
+  } else if (out < half) {
+    sum = stripeWithin(part, i, phase, sign, out, black);
+  }
+  if (black == 0) return sum;
+  const NormalTable& normal = NormalTable::instance();
+  const float deviation = std::sqrt(variance), inverse = 1 / deviation, per_motion = 0.5F / half;
+  const NormalTable::Entry a = normal.at((-out - half) * inverse), b = normal.at((-out + half) * inverse);
+  sum.value += deviation * per_motion * (b.integral - a.integral);
+  sum.by_u -= sign * per_motion * (b.value - a.value);
+  sum.by_blur += 0.5F * deviation * per_motion * (b.density - a.density);
+  return sum;
+}
+
+/// The stripe times a step: not exact where the end of the helix meets an edge of the stripe.
+SleevePattern::Blackness SleevePattern::roughCutAt(const Part& part, std::size_t i, float sign, float out) const {
+  const NormalTable& normal = NormalTable::instance();
+  const float half = part.half_motion[i], deviation = std::sqrt(part.bar_variance[i]), inverse = 1 / deviation;
+  const float per_motion = 0.5F / half, slope = part.stripe_slope[i];
+  const NormalTable::Entry a = normal.at((-out - half) * inverse), b = normal.at((-out + half) * inverse);
+  const float seen = deviation * per_motion * (b.integral - a.integral);
+  return {seen * part.stripe[i], seen * slope - sign * per_motion * (b.value - a.value) * part.stripe[i], seen * slope,
+          0.5F * (seen * part.stripe_variance[i] * part.stripe_bend[i] +
+                  deviation * per_motion * (b.density - a.density) * part.stripe[i])};
+}
+
+/// Of the stripe less what it is at the end of the helix, the part of the motion that is within the helix.
+SleevePattern::Blackness SleevePattern::stripeWithin(const Part& part, std::size_t i, float phase, float sign,
+                                                     float out, float black) const {
+  const float half = part.half_motion[i], per_motion = 0.5F / half, variance = part.stripe_variance[i];
+  const BlurredLine::Entry end = stripe_.at(phase, variance), begin = stripe_.at(part.w[i] - sign * half, variance);
+  const float by_w = sign * per_motion * (black - begin.value), length = half - out;
+  return {per_motion * (sign * (end.integral - begin.integral) + (stripe_.mean() - black) * length), by_w, by_w,
+          -0.5F * variance * sign * per_motion * begin.slope};
+}
+
+void SleevePattern::subtract(const Blackness& other, Blackness& sum) {
+  sum.value -= other.value;
+  sum.by_u -= other.by_u;
+  sum.by_w -= other.by_w;
+  sum.by_blur -= other.by_blur;
 }
 
 SleevePattern::Blackness SleevePattern::stripeAt(const Part& part, std::size_t i) const {

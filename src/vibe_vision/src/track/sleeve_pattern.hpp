@@ -17,7 +17,7 @@ class SleevePattern : public MarkerPattern {
   std::array<bool, kPoseParameters> observes() const override;
   Eigen::Vector2d window(const MarkerPose& pose, double motion) const override;
   Eigen::Vector2d maxWindow() const override;
-  void prepare(const MarkerPose& pose, double motion) override;
+  void prepare(const MarkerPose& pose, double motion, bool rough = false) override;
   void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) override;
   void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const override;
   double searchHalfWidth() const override;
@@ -30,6 +30,7 @@ class SleevePattern : public MarkerPattern {
   struct Part;
   struct Blackness;
   View viewOf(const MarkerPose& pose, double motion) const;
+  Eigen::Vector2d printWindow(const MarkerPose& pose, double motion) const;
   static void compose(MovingLine& line, double low, double high, double half_motion);
   void measureEdges(const std::vector<Interval>& bars);
   bool tells(const Part& part, std::size_t i) const;
@@ -42,7 +43,10 @@ class SleevePattern : public MarkerPattern {
   void chain(const View& view, std::size_t begin, const Part& part, PatternValues& values) const;
   Blackness stripeAt(const Part& part, std::size_t i) const;
   Blackness cutStripeAt(const Part& part, std::size_t i, float cut) const;
-  static void add(const Blackness& other, float sign, Blackness& sum);
+  Blackness plainCutAt(const Part& part, std::size_t i, float phase, float sign, float out) const;
+  Blackness roughCutAt(const Part& part, std::size_t i, float sign, float out) const;
+  Blackness stripeWithin(const Part& part, std::size_t i, float phase, float sign, float out, float black) const;
+  static void subtract(const Blackness& other, Blackness& sum);
 
   MarkerView view_;
   double radius_, half_length_;  ///< [px]
@@ -52,6 +56,7 @@ class SleevePattern : public MarkerPattern {
   MovingLine moving_bars_, moving_stripe_;
   CutStripe cut_;
   double motion_ = 0;  ///< of prepare() [px]
+  bool rough_ = false;
 };
 
 }  // namespace vibe

@@ -40,7 +40,9 @@ std::vector<Case> cases() {
 
 /// Every `step`-th pixel of the window of a pose.
 PixelBlock pixelsOf(const SleevePattern& pattern, const MarkerPose& pose, double motion, int step) {
-  const Eigen::Vector2d window = pattern.window(pose, motion);
+  MarkerPose straight = pose;
+  straight.tilt = 0;
+  const Eigen::Vector2d window = pattern.window(straight, motion);
   PixelBlock pixels;
   pixels.allocate(6000);
   int count = 0;

@@ -79,6 +79,10 @@ TEST(SleeveTracking, FollowsADefocusedPicture) {
   expectGood(follow(namedScene("defocus"), 60), 0.03, 0.6);
 }
 
+TEST(SleeveTracking, FollowsATiltedRod) {
+  expectGood(follow(namedScene("tilt"), 100), 0.015, 0.3);
+}
+
 TEST(SleeveTracking, ReportsNoOtherPlaceWhenItIsPartlyCovered) {
   EXPECT_LT(follow(namedScene("occluder"), 100).largest_slide, 5);
 }

@@ -65,19 +65,21 @@ class MarkerPattern {
 
   /// True for parameters that the picture depends on.
   virtual std::array<bool, kPoseParameters> observes() const = 0;
-  /// Half extents along and across the axis [px] of the pixels that are worth reading: they hold what the marker tells
-  /// and nothing of what is around it.
+  /// Half extents along and across the axis [px] of the pixels that are worth reading: they hold what the marker
+  /// tells. What they show of the surroundings of a tilted marker, select() takes out.
   virtual Eigen::Vector2d window(const MarkerPose& pose, double motion) const = 0;
   /// The largest window() that there can be.
   virtual Eigen::Vector2d maxWindow() const = 0;
 
   /// Makes ready for evaluations near a pose; once per frame. No allocation.
   /// @param motion  by which the marker moves along the axis during the exposure [px]
-  virtual void prepare(const MarkerPose& pose, double motion) = 0;
+  /// @param rough  the picture may be wrong by a few percent in a few places: enough to find the marker
+  virtual void prepare(const MarkerPose& pose, double motion, bool rough = false) = 0;
   /// The pattern near the prepared pose: exact in position, rotation, size and tilt, to first order in the change of
   /// the blur. Fills values up to pixels.padded(). No allocation.
   virtual void evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) = 0;
-  /// Takes pixels out of the block that tell nothing (deep in a white or black area). The order of the others stays.
+  /// Takes pixels out of the block that tell nothing (deep in a white or black area) or that do not show the marker.
+  /// The order of the others stays.
   virtual void select(const MarkerPose& pose, double motion, PixelBlock& pixels) const;
 
   /// For the search along the axis: mean reflectance over |lateral| <= searchHalfWidth() at steps of 1 px along the
