@@ -38,7 +38,8 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("--csv", options.csv, "Write the results to this file")->required();
   app.add_option("--annotate", options.annotate,
                  "Draw the results: into FILE.avi or FILE.mkv, or as images into a folder");
-  app.add_option("--frames", options.frames, "End after so many frames (default: all)");
+  app.add_option("--frames", options.frames, "End after so many frames (default: all)")
+      ->check(CLI::Range(1, 1000000000));
   app.add_option("--rate", options.source.rate, "Of a recording without stamps [Hz]")->capture_default_str();
   app.add_option("--exposure", options.source.exposure, "Of a recording that does not tell it [s]")
       ->capture_default_str();
