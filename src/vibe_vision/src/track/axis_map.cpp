@@ -88,8 +88,9 @@ PixelWindow AxisMap::gather(const Frame& frame, const Eigen::Vector2d& centre, c
   rect.y = top, rect.height = std::max(bottom - top, 0);
   pixels.count = 0;
   markSaturated(frame, rect);
-  for (int parity : {0, 1})
-    for (int y = rect.y; y < rect.y + rect.height; ++y) gatherRow(frame, rect, y, parity, centre, half_extents, pixels);
+  for (int part = 0; part < 4; ++part)
+    for (int y = rect.y + ((rect.y + part) & 1); y < rect.y + rect.height; y += 2)
+      gatherRow(frame, rect, y, part / 2, centre, half_extents, pixels);
   pixels.pad();
   return rect;
 }
@@ -141,14 +142,23 @@ void AxisMap::gatherRow(const Frame& frame, const PixelWindow& rect, int y, int 
   const std::uint8_t* dead =
       any_saturated_ ? saturated_.data() + static_cast<std::ptrdiff_t>(y - rect.y) * rect.width : nullptr;
   std::size_t n = pixels.count;
-  for (int x = begin; x < end && n < pixels.capacity(); x += 2) {
-    const float a = along_[row.first + (x - row.begin)], b = lateral_[row.first + (x - row.begin)];
-    const int u = x - frame.offset_x;
-    const bool seen = in_frame && u >= 0 && u < frame.image.width;
-    pixels.along[n] = a, pixels.lateral[n] = b;
-    pixels.value[n] = seen ? static_cast<float>(values[u]) : 0.F;
-    pixels.weight[n] = seen && (dead == nullptr || dead[x - rect.x] == 0) ? 1.F : 0.F;
+  const float *along = along_.data() + row.first - row.begin, *lateral = lateral_.data() + row.first - row.begin;
+  const auto add = [&](int x, float value, float weight) {
+    const float a = along[x], b = lateral[x];
+    pixels.along[n] = a, pixels.lateral[n] = b, pixels.value[n] = value, pixels.weight[n] = weight;
     n += std::abs(a - centre_x) <= reach_x && std::abs(b - centre_y) <= reach_y ? 1 : 0;
+  };
+  const int room = static_cast<int>((pixels.capacity() - n) * 2);
+  const int stop = std::min(end, begin + room);
+  if (in_frame && dead == nullptr && begin >= frame.offset_x && end <= frame.offset_x + frame.image.width) {
+    for (int x = begin; x < stop; x += 2) add(x, static_cast<float>(values[x - frame.offset_x]), 1.F);
+  } else {
+    for (int x = begin; x < stop; x += 2) {
+      const int u = x - frame.offset_x;
+      const bool seen = in_frame && u >= 0 && u < frame.image.width;
+      add(x, seen ? static_cast<float>(values[u]) : 0.F,
+          seen && (dead == nullptr || dead[x - rect.x] == 0) ? 1.F : 0.F);
+    }
   }
   pixels.count = n;
 }

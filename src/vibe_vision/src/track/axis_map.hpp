@@ -35,7 +35,8 @@ class AxisMap {
   /// The same as seen through the lens; NaN where the lens cannot show it.
   Eigen::Vector2d pixel(double along, double lateral) const;
 
-  /// The pixels within half extents of a place, every second one first, in a checkered pattern. Those outside of the
+  /// The pixels within half extents of a place, a quarter and then the second quarter of a checkered pattern first, so
+  /// that the beginning of the block samples all of the window. Those outside of the
   /// frame and those near saturated ones get weight 0. No allocation once the block is large enough; pixels that the
   /// block has no room for are left out.
   PixelWindow gather(const Frame& frame, const Eigen::Vector2d& centre, const Eigen::Vector2d& half_extents,

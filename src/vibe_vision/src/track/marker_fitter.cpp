@@ -48,7 +48,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   fit.motion = motion;
   if (!read(map, frame, fit)) return fit;
   pattern_->prepare(poseOf(fit.x), motion);
-  useHalf();
+  useQuarter();
   fit_.evaluate(fit.x, pixels_);
   fit_.startLevels(pixels_, fit.x);
   const FitStep step = fit_.step(fit.x, prior, pixels_, {std::max(uncertainty, kMinUncertainty), FitScope::Position});
@@ -95,6 +95,10 @@ bool MarkerFitter::read(AxisMap& map, const Frame& frame, MarkerFit& fit) {
 
 void MarkerFitter::useHalf() {
   pixels_.count = std::max(all_ / 2 / kLanes * kLanes, kMinPixels);
+}
+
+void MarkerFitter::useQuarter() {
+  pixels_.count = std::max(all_ / 4 / kLanes * kLanes, kMinPixels);
 }
 
 void MarkerFitter::useAll() {
@@ -167,7 +171,7 @@ void MarkerFitter::refine(MarkerFit& fit, const FitPrior& prior, double uncertai
     fit.misfit = step.misfit, fit.loss = step.loss, fit.visible = step.visible;
     fit.weaker_edges = step.weaker_edges;
     const double moved = std::max({std::abs(step.change[kAlong]), std::abs(step.change[kLateral]),
-                                   radius_ * std::abs(step.change[kRotation]), std::abs(step.change[kBlur]) / 2,
+                                   radius_ * std::abs(step.change[kRotation]) / 2, std::abs(step.change[kBlur]) / 2,
                                    radius_ * std::abs(step.change[kLogScale]) / 2});
     fit.valid = moved < kConverged && last == 0;
     if (fit.valid || moved > kWandering[std::min<std::size_t>(i, kWandering.size() - 1)]) return;

@@ -38,6 +38,7 @@ class MarkerFitter {
  private:
   bool read(AxisMap& map, const Frame& frame, MarkerFit& fit);
   void useHalf();
+  void useQuarter();
   void useAll();
   bool align(MarkerFit& fit, const FitPrior& prior, FitScope scope);
   void chooseRotation(MarkerFit& fit);

@@ -11,7 +11,8 @@ namespace {
 using Four [[gnu::vector_size(16)]] = float;
 using Order [[gnu::vector_size(16)]] = int;
 constexpr std::size_t kWidth = 4;
-constexpr int kStride = 2;  // of the table against that of the line
+constexpr float kLevelRatio = 0.12F;  // of the variances' step to the variance that needs no more levels
+constexpr int kStride = 2;            // of the table against that of the line
 constexpr float kPerPixel = BlurredLine::kPerPixel / kStride;
 
 Four load(const float* p) {
@@ -55,13 +56,15 @@ struct Shift {
 
 MovingLine::MovingLine(const BlurredLine& line, int levels)
     : line_(line),
-      levels_(levels),
+      max_levels_(levels),
       size_(static_cast<std::size_t>(line.length() * kPerPixel) + 2),
       table_(size_ * static_cast<std::size_t>(levels) * kWidth) {}
 
 void MovingLine::compose(float low, float high, float half_motion) {
   low_ = low;
-  step_ = std::max(high - low, 1e-3F) / static_cast<float>(levels_ - 1);
+  const float range = std::max(high - low, 1e-3F);
+  levels_ = std::clamp(1 + static_cast<int>(std::ceil(range / (kLevelRatio * low))), 2, max_levels_);
+  step_ = range / static_cast<float>(levels_ - 1);
   half_motion_ = std::min(half_motion, kMaxHalfMotion);
   for (int level = 0; level < levels_; ++level)
     composeLevel(low_ + static_cast<float>(level) * step_,

@@ -11,7 +11,7 @@ class MovingLine {
   static constexpr float kMaxHalfMotion = 24;  ///< [px]
   static constexpr std::size_t kPart = 64;
 
-  /// @param levels  tables, >= 2
+  /// @param levels  tables at most, >= 2
   MovingLine(const BlurredLine& line, int levels);
 
   /// Makes the tables: variances evenly from `low` to `high` [px^2], for a motion of 2 half_motion [px]. No allocation.
@@ -32,7 +32,7 @@ class MovingLine {
   void composeLevel(float variance, float* table) const;
 
   const BlurredLine& line_;
-  int levels_;
+  int max_levels_, levels_ = 2;
   std::size_t size_;  ///< entries of a level
   float low_ = 0, step_ = 1, half_motion_ = 0;
   std::vector<float> table_;  ///< value, slope, second derivative, 0

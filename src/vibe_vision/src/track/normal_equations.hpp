@@ -25,6 +25,8 @@ class NormalEquations {
   double gradient(int a) const { return products_(a, kMaxColumns); }
 
  private:
+  void sumGroup(int a, int b, std::size_t begin, std::size_t rows);
+
   std::size_t capacity_;
   int count_ = 0;
   std::vector<float> columns_;

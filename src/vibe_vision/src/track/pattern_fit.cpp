@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "track/float_sums.hpp"
+#include "track/lanes.hpp"
 
 namespace vibe {
 namespace {
@@ -68,6 +69,7 @@ PatternFit::PatternFit(MarkerPattern& pattern, const PixelNoise& noise, std::siz
       rest_(factor_),
       information_(factor_),
       white_(factor_),
+      lit_(factor_),
       equations_(capacity) {
   values_.allocate(capacity, observed_);
 }
@@ -131,68 +133,71 @@ void PatternFit::chooseColumns(FitScope scope) {
 
 /// Fills factor_ and the residuals, and sums what tells how well the pattern explains the pixels.
 void PatternFit::weigh(const FitVector& x, const PixelBlock& pixels, const FitOptions& options) {
+  weighPixels(x, pixels, options);
+  const std::size_t count = pixels.padded();
+  squares_ = dot(equations_.residual(), equations_.residual(), count);
+  weights_ = total(weight_.data(), count);
+  valid_ = total(pixels.weight.data(), count);
+  loss_ = valid_ - total(rest_.data(), count);
+  used_ = dot(weight_.data(), information_.data(), count);
+  full_ = total(information_.data(), count);
+  used_white_ = dot(weight_.data(), white_.data(), count);
+  full_white_ = total(white_.data(), count);
+}
+
+VIBE_LANES void PatternFit::weighPixels(const FitVector& x, const PixelBlock& pixels, const FitOptions& options) {
   const auto black = static_cast<float>(x[kBlack]), contrast = static_cast<float>(x[kContrast]);
   const auto slope_x = static_cast<float>(x[kSlopeAlong]), slope_y = static_cast<float>(x[kSlopeLateral]);
   const auto centre_x = static_cast<float>(x[kAlong]), centre_y = static_cast<float>(x[kLateral]);
   const auto gain = static_cast<float>(noise_.gain), floor = static_cast<float>(noise_.read * noise_.read + 1e-3);
   const auto slack = static_cast<float>(options.uncertainty * options.uncertainty) * contrast * contrast;
   constexpr auto kInverseCut = static_cast<float>(1 / kCut);
-  const float *m = values_.value.data(), *by_along = values_.derivative[kAlong].data();
-  const float* by_lateral = values_.derivative[kLateral].data();
-  const float *px = pixels.along.data(), *py = pixels.lateral.data(), *seen = pixels.value.data();
-  const float* valid = pixels.weight.data();
+  const float* __restrict m = values_.value.data(), * __restrict by_along = values_.derivative[kAlong].data();
+  const float* __restrict by_lateral = values_.derivative[kLateral].data();
+  const float* __restrict by_scale = values_.derivative[kLogScale].data();
+  const float* __restrict px = pixels.along.data(), * __restrict py = pixels.lateral.data();
+  const float* __restrict seen = pixels.value.data(), * __restrict valid = pixels.weight.data();
   float* __restrict factor = factor_.data(), * __restrict residual = equations_.residual();
-  float* __restrict weight = weight_.data(), * __restrict rest = rest_.data(), * __restrict information = information_.data();
-  float* white = white_.data();
-  const float* by_scale = values_.derivative[kLogScale].data();
-  const std::size_t count = pixels.padded();
-  const Four zero{}, one = zero + 1;
-  for (std::size_t i = 0; i < count; i += 4) {
-    const Four light = one + slope_x * (loadFour(px + i) - centre_x) + slope_y * (loadFour(py + i) - centre_y);
-    const Four grey = (black + contrast * loadFour(m + i)) * light, usable = loadFour(valid + i);
-    const Four along = loadFour(by_along + i), lateral = loadFour(by_lateral + i);
-    const Four steep = along * along, slope = steep + lateral * lateral;
-    const Four inverse = one / (floor + gain * greater(grey, zero) + slack * slope);
-    const Four r = loadFour(seen + i) - grey, kept = greater(one - r * r * inverse * kInverseCut, zero);
-    const Four share = usable * kept * kept, root = usable * kept * squareRoot(inverse);
-    store(weight + i, share);
-    store(factor + i, root);
-    store(residual + i, root * r);
-    store(rest + i, share * kept);
-    store(information + i, inverse * steep);
-    store(white + i, loadFour(by_scale + i) > zero ? inverse * steep : zero);
+  float* __restrict weight = weight_.data(), * __restrict rest = rest_.data();
+  float* __restrict information = information_.data(), * __restrict white = white_.data();
+  float* __restrict lit = lit_.data();
+  const std::size_t count = pixels.padded() / kLanes * kLanes;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const float light = 1 + slope_x * (px[i] - centre_x) + slope_y * (py[i] - centre_y);
+    const float grey = (black + contrast * m[i]) * light, steep = by_along[i] * by_along[i];
+    const float slope = steep + by_lateral[i] * by_lateral[i];
+    const float inverse = 1 / (floor + gain * (grey > 0 ? grey : 0) + slack * slope);
+    const float r = seen[i] - grey, left = 1 - r * r * inverse * kInverseCut, kept = left > 0 ? left : 0;
+    const float share = valid[i] * kept * kept, root = valid[i] * kept * std::sqrt(inverse);
+    weight[i] = share;
+    factor[i] = root;
+    lit[i] = root * light;
+    residual[i] = root * r;
+    rest[i] = share * kept;
+    information[i] = inverse * steep;
+    white[i] = by_scale[i] > 0 ? inverse * steep : 0;
   }
-  squares_ = dot(residual, residual, count);
-  weights_ = total(weight, count);
-  valid_ = total(valid, count);
-  loss_ = valid_ - total(rest, count);
-  used_ = dot(weight, information, count);
-  full_ = total(information, count);
-  used_white_ = dot(weight, white, count);
-  full_white_ = total(white, count);
 }
 
-void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pixels) {
+VIBE_LANES void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pixels) {
   const auto black = static_cast<float>(x[kBlack]), contrast = static_cast<float>(x[kContrast]);
-  const auto slope_x = static_cast<float>(x[kSlopeAlong]), slope_y = static_cast<float>(x[kSlopeLateral]);
-  const auto centre_x = static_cast<float>(x[kAlong]), centre_y = static_cast<float>(x[kLateral]);
-  const float *px = pixels.along.data(), *py = pixels.lateral.data(), *m = values_.value.data();
-  const float* factor = factor_.data();
-  const std::size_t count = pixels.padded();
-  const auto light = [&](std::size_t i) { return 1 + slope_x * (px[i] - centre_x) + slope_y * (py[i] - centre_y); };
+  const float* __restrict m = values_.value.data(), * __restrict factor = factor_.data();
+  const float* __restrict lit = lit_.data();
+  const std::size_t count = pixels.padded() / kLanes * kLanes;
   for (int c = 0; c < columns_; ++c) {
-    float* out = equations_.column(c);
+    float* __restrict out = equations_.column(c);
     const int k = parameter_[c];
     if (k < kPoseParameters) {
-      const float* d = values_.derivative[k].data();
-      for (std::size_t i = 0; i < count; ++i) out[i] = factor[i] * contrast * light(i) * d[i];
+      const float* __restrict d = values_.derivative[k].data();
+      for (std::size_t i = 0; i < count; ++i) out[i] = lit[i] * contrast * d[i];
     } else if (k == kBlack) {
-      for (std::size_t i = 0; i < count; ++i) out[i] = factor[i] * light(i);
+      std::copy_n(lit, count, out);
     } else if (k == kContrast) {
-      for (std::size_t i = 0; i < count; ++i) out[i] = factor[i] * light(i) * m[i];
+      for (std::size_t i = 0; i < count; ++i) out[i] = lit[i] * m[i];
     } else {
-      const float* p = k == kSlopeAlong ? px : py;
-      const float centre = k == kSlopeAlong ? centre_x : centre_y;
+      const float* __restrict p = k == kSlopeAlong ? pixels.along.data() : pixels.lateral.data();
+      const auto centre = static_cast<float>(x[k == kSlopeAlong ? kAlong : kLateral]);
       for (std::size_t i = 0; i < count; ++i) out[i] = factor[i] * (black + contrast * m[i]) * (p[i] - centre);
     }
   }

@@ -65,6 +65,7 @@ class PatternFit {
  private:
   void chooseColumns(FitScope scope);
   void weigh(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
+  void weighPixels(const FitVector& x, const PixelBlock& pixels, const FitOptions& options);
   void fillColumns(const FitVector& x, const PixelBlock& pixels);
   void solve(const FitVector& x, const FitPrior& prior, FitStep& result) const;
 
@@ -74,6 +75,7 @@ class PatternFit {
   PatternValues values_;
   std::vector<float> factor_;                               ///< square root of a pixel's weight
   std::vector<float> weight_, rest_, information_, white_;  ///< see weigh()
+  std::vector<float> lit_;                                  ///< factor_ times the light
   NormalEquations equations_;
   std::array<int, kFitParameters> parameter_{};  ///< of each column
   int columns_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "track/float_sums.hpp"
+#include "track/lanes.hpp"
 
 namespace vibe {
 namespace {
@@ -14,25 +15,20 @@ constexpr double kTail = 3;                  // standard deviations of the blur 
 constexpr double kMaxScale = 1.3;            // of the marker's size
 constexpr std::size_t kPart = 64;            // pixels at a time: all of it stays in the first cache
 
-/// The sums over the elements of a, c, b and d.
-Four sums(Four a, Four b, Four c, Four d) {
-  using Place [[gnu::vector_size(16)]] = int;
-  const Place low{0, 4, 1, 5}, high{2, 6, 3, 7}, front{0, 1, 4, 5}, back{2, 3, 6, 7};
-  const Four ac = __builtin_shuffle(a, c, low) + __builtin_shuffle(a, c, high);  // a02 c02 a13 c13
-  const Four bd = __builtin_shuffle(b, d, low) + __builtin_shuffle(b, d, high);
-  const Four even = __builtin_shuffle(ac, bd, front), odd = __builtin_shuffle(ac, bd, back);  // a c b d
-  return even + odd;
-}
+/// Four values of one pixel and four of the next.
+using Eight [[gnu::vector_size(32)]] = float;
+using Places [[gnu::vector_size(32)]] = int;
 
-/// Weights of the cubic B-spline and their derivatives at a fraction f.
+/// Weights of the cubic B-spline and their derivatives at a fraction f of one pixel, g of the next.
 struct Spline {
-  Four weight, first, second;
-  explicit Spline(float f) {
-    const Four c0{1.F / 6, 2.F / 3, 1.F / 6, 0}, c1{-0.5F, 0, 0.5F, 0}, c2{0.5F, -1, 0.5F, 0},
-        c3{-1.F / 6, 0.5F, -0.5F, 1.F / 6};
-    weight = c0 + f * (c1 + f * (c2 + f * c3));
-    first = c1 + f * (2 * c2 + (3 * f) * c3);
-    second = 2 * c2 + (6 * f) * c3;
+  Eight weight, first, second;
+  [[gnu::always_inline]] Spline(float f, float g) {
+    const Eight c0{1.F / 6, 2.F / 3, 1.F / 6, 0, 1.F / 6, 2.F / 3, 1.F / 6, 0};
+    const Eight c1{-0.5F, 0, 0.5F, 0, -0.5F, 0, 0.5F, 0}, c2{0.5F, -1, 0.5F, 0, 0.5F, -1, 0.5F, 0};
+    const Eight c3{-1.F / 6, 0.5F, -0.5F, 1.F / 6, -1.F / 6, 0.5F, -0.5F, 1.F / 6}, h{f, f, f, f, g, g, g, g};
+    weight = c0 + h * (c1 + h * (c2 + h * c3));
+    first = c1 + h * (2 * c2 + (3 * h) * c3);
+    second = 2 * c2 + (6 * h) * c3;
   }
 };
 
@@ -138,7 +134,8 @@ void RingPattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, Pat
   }
 }
 
-void RingPattern::place(const MarkerPose& pose, const PixelBlock& pixels, std::size_t begin, Part& part) const {
+VIBE_LANES void RingPattern::place(const MarkerPose& pose, const PixelBlock& pixels, std::size_t begin,
+                                   Part& part) const {
   const std::size_t count = part.count = std::min(kPart, pixels.padded() - begin);
   const TableFrame frame(pose);
   const auto along = static_cast<float>(pose.along), lateral = static_cast<float>(pose.lateral);
@@ -163,36 +160,41 @@ void RingPattern::place(const MarkerPose& pose, const PixelBlock& pixels, std::s
   }
 }
 
-void RingPattern::readTable(Part& part) const {
-  using Place [[gnu::vector_size(16)]] = int;
-  const Place low{0, 4, 1, 5}, high{2, 6, 3, 7}, front{0, 1, 4, 5}, back{2, 3, 6, 7};
-  for (std::size_t i = 0; i < part.count; i += 4) {
-    Four all[4];
-    for (std::size_t k = 0; k < 4; ++k) all[k] = readAt(part.row[i + k], part.column[i + k]);
-    const Four a = __builtin_shuffle(all[0], all[1], low), b = __builtin_shuffle(all[2], all[3], low);
-    const Four c = __builtin_shuffle(all[0], all[1], high), d = __builtin_shuffle(all[2], all[3], high);
-    store(part.value + i, __builtin_shuffle(a, b, front));
-    store(part.by_u + i, __builtin_shuffle(a, b, back));
-    store(part.by_v + i, __builtin_shuffle(c, d, front));
-    store(part.laplacian + i, __builtin_shuffle(c, d, back));
-  }
-}
-
 /// Value, derivatives by u and v, and Laplacian, per step of the table.
-inline Four RingPattern::readAt(float row, float column) const {
-  const int r = static_cast<int>(row), c = static_cast<int>(column), stride = table_.columns();
-  const Spline u(row - static_cast<float>(r)), v(column - static_cast<float>(c));
-  const float* p = table_.row(r - 1) + (c - 1);
-  const Four a = loadFour(p), b = loadFour(p + stride), d = loadFour(p + 2 * stride), e = loadFour(p + 3 * stride);
-  const Four mean = u.weight[0] * a + u.weight[1] * b + u.weight[2] * d + u.weight[3] * e;
-  const Four slope = u.first[0] * a + u.first[1] * b + u.first[2] * d + u.first[3] * e;
-  const Four bend = u.second[0] * a + u.second[1] * b + u.second[2] * d + u.second[3] * e;
-  return sums(mean * v.weight, mean * v.first, slope * v.weight, bend * v.weight + mean * v.second);
+VIBE_LANES void RingPattern::readTable(Part& part) const {
+  const int stride = table_.columns();
+  const float* table = table_.row(0);
+  for (std::size_t i = 0; i < part.count; i += 2) {
+    const int r = static_cast<int>(part.row[i]), c = static_cast<int>(part.column[i]);
+    const int s = static_cast<int>(part.row[i + 1]), d = static_cast<int>(part.column[i + 1]);
+    const Spline u(part.row[i] - static_cast<float>(r), part.row[i + 1] - static_cast<float>(s));
+    const Spline v(part.column[i] - static_cast<float>(c), part.column[i + 1] - static_cast<float>(d));
+    const float *p = table + (r - 1) * stride + (c - 1), *q = table + (s - 1) * stride + (d - 1);
+    Eight mean{}, slope{}, bend{};
+    for (int k = 0; k < 4; ++k, p += stride, q += stride) {
+      const Eight row{p[0], p[1], p[2], p[3], q[0], q[1], q[2], q[3]};
+      const Places all{k, k, k, k, k + 4, k + 4, k + 4, k + 4};
+      mean += __builtin_shuffle(u.weight, all) * row;
+      slope += __builtin_shuffle(u.first, all) * row;
+      bend += __builtin_shuffle(u.second, all) * row;
+    }
+    const Places low{0, 8, 1, 9, 4, 12, 5, 13}, high{2, 10, 3, 11, 6, 14, 7, 15};
+    const Places front{0, 1, 8, 9, 4, 5, 12, 13}, back{2, 3, 10, 11, 6, 7, 14, 15};
+    const Eight value = mean * v.weight, by_v = mean * v.first, by_u = slope * v.weight;
+    const Eight laplacian = bend * v.weight + mean * v.second;
+    const Eight x = __builtin_shuffle(value, by_v, low) + __builtin_shuffle(value, by_v, high);
+    const Eight y = __builtin_shuffle(by_u, laplacian, low) + __builtin_shuffle(by_u, laplacian, high);
+    const Eight sums = __builtin_shuffle(x, y, front) + __builtin_shuffle(x, y, back);  // value, by_v, by_u, Laplacian
+    part.value[i] = sums[0], part.by_v[i] = sums[1], part.by_u[i] = sums[2], part.laplacian[i] = sums[3];
+    part.value[i + 1] = sums[4], part.by_v[i + 1] = sums[5], part.by_u[i + 1] = sums[6],
+                   part.laplacian[i + 1] = sums[7];
+  }
 }
 
 /// From the table's derivatives to those by the pose. A change of the variance of the blur adds half the Laplacian; one
 /// of tilt or aspect also turns the motion on the marker.
-void RingPattern::chain(const MarkerPose& pose, std::size_t begin, const Part& part, PatternValues& values) const {
+VIBE_LANES void RingPattern::chain(const MarkerPose& pose, std::size_t begin, const Part& part,
+                                   PatternValues& values) const {
   const std::size_t count = part.count;
   const TableFrame frame(pose);
   const auto ct = static_cast<float>(frame.cos_tilt), st = static_cast<float>(frame.sin_tilt);

@@ -24,7 +24,6 @@ class RingPattern : public MarkerPattern {
   struct Part;
   void place(const MarkerPose& pose, const PixelBlock& pixels, std::size_t begin, Part& part) const;
   void readTable(Part& part) const;
-  Four readAt(float row, float column) const;
   void chain(const MarkerPose& pose, std::size_t begin, const Part& part, PatternValues& values) const;
 
   double inner_, outer_, half_side_;  ///< [px]

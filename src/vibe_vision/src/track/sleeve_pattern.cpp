@@ -1,4 +1,4 @@
-#include "track/sleeve_pattern.hpp"
+#include "track/sleeve_part.hpp"
 
 #include "track/lanes.hpp"
 
@@ -14,11 +14,7 @@ constexpr double kMinBlur = 0.25, kMaxBlur = 3.5;  // of the optics [px]
 constexpr double kMinMotion = 0.5;  // shorter ones are replaced by this, and their variance taken off the blur [px]
 constexpr double kRim = 0.88;       // of the radius: beyond, the print is seen too obliquely
 constexpr float kReach = 3.4F;      // standard deviations after which an edge is over
-constexpr float kTellReach = 2.7F;  // standard deviations from an edge within which a pixel tells something
-constexpr float kCornerReach = 3.1F;
-constexpr float kLongMotion = 4;                  // half of one that leaves few pixels that are not near a corner [px]
-constexpr float kMaxUneven = 0.15F;               // of the motions of bars and stripe at an end of the helix [px]
-constexpr float kMaxSine = 0.97F;                 // of the angle around the rod: keeps derivatives finite
+constexpr float kMaxSine = 0.97F;   // of the angle around the rod: keeps derivatives finite
 constexpr int kBarLevels = 4, kStripeLevels = 5;  // variances from the middle of the rod to the rim
 constexpr float kTurn = 6.28318530718F;
 
@@ -47,43 +43,6 @@ Interval stripeOf(const SleeveDesign& design, double pixels_per_metre) {
 }
 
 }  // namespace
-
-/// A pose, ready for use.
-struct SleevePattern::View {
-  float along, lateral, rotation;
-  float tilt_cosine, tilt_sine, inverse_scale;
-  float slant_cosine, slant_sine;
-  float bend;         ///< of the line of sight per pixel: 1 / focal length; also 1 / distance to the camera [1/px]
-  float principal_x;  ///< of the camera, along the tilted marker from its centre [px]
-  float across;       ///< slope of the line of sight to the centre, across the tilted marker
-  float turn;         ///< of the direction to the camera around the rod against the normal of the image [rad]
-  float half_motion;  ///< in pixels of the print, where the camera looks at it at a right angle
-  float variance;     ///< of optics and pixel in pixels of the print, less what a lengthened motion has
-  float by_blur;      ///< relative change of `variance` with the blur [1/px]
-};
-
-/// Some pixels. Lengths are in pixels of the print.
-struct SleevePattern::Part {
-  static constexpr std::size_t kSize = 64;
-  std::size_t size = kSize;
-  alignas(64) float x[kSize], v[kSize];  ///< along and across in the picture
-  alignas(64) float u[kSize], w[kSize];  ///< along the print, from its centre and from a black part's centre
-  alignas(64) float sine[kSize], cosine[kSize], phi[kSize];    ///< around the rod
-  alignas(64) float stretch[kSize], lean[kSize], turn[kSize];  ///< change of u along and across, of phi pitch / 2 pi
-  alignas(64) float by_slant[kSize];                           ///< change of u
-  alignas(64) float half_motion[kSize], stripe_half_motion[kSize];
-  alignas(64) float bar_variance[kSize], stripe_variance[kSize], cut_variance[kSize];
-  alignas(64) float inside[kSize], outside[kSize];  ///< of the helix, and of its ends: 1 or 0
-  alignas(64) float bars[kSize], bars_slope[kSize], bars_bend[kSize];
-  alignas(64) float stripe[kSize], stripe_slope[kSize], stripe_bend[kSize];
-  alignas(64) float value[kSize], by_u[kSize], by_w[kSize], by_blur[kSize];
-};
-
-/// Blackness and its derivatives: by a shift of all, by a shift of the stripe alone, and by the relative change of the
-/// blur's variance.
-struct SleevePattern::Blackness {
-  float value = 0, by_u = 0, by_w = 0, by_blur = 0;
-};
 
 SleevePattern::SleevePattern(const SleeveDesign& design, double pixels_per_metre, const MarkerView& view)
     : view_(view),
@@ -297,131 +256,6 @@ void SleevePattern::look(Part& part) const {
   }
   for (std::size_t i = 0; i < part.size; ++i)
     if (part.inside[i] + part.outside[i] == 0) cutAt(i, part);
-}
-
-/// Pixels of the sleeve near an edge. Those where the helix ends at an edge of the stripe are few and costly.
-void SleevePattern::select(const MarkerPose& pose, double motion, PixelBlock& pixels) const {
-  const View view = viewOf(pose, std::min(std::abs(motion), 2.0 * MovingLine::kMaxHalfMotion));
-  const Eigen::Vector2f half = (printWindow(pose, motion) * view.inverse_scale).cast<float>();
-  Part part;
-  std::size_t n = 0;
-  for (std::size_t begin = 0; begin < pixels.count; begin += Part::kSize) {
-    part.size = std::min(Part::kSize, pixels.count - begin);
-    placePixels(view, pixels, begin, part);
-    for (std::size_t i = 0; i < part.size; ++i) {
-      pixels.along[n] = pixels.along[begin + i], pixels.lateral[n] = pixels.lateral[begin + i];
-      pixels.value[n] = pixels.value[begin + i], pixels.weight[n] = pixels.weight[begin + i];
-      n += std::abs(part.x[i]) <= half.x() && std::abs(part.v[i]) <= half.y() && tells(part, i) ? 1 : 0;
-    }
-  }
-  pixels.count = n;
-  pixels.pad();
-}
-
-bool SleevePattern::tells(const Part& part, std::size_t i) const {
-  const float u = part.u[i], last = static_cast<float>(edge_distance_.size() - 1);
-  const float place = std::clamp(u + static_cast<float>(half_length_) + 0.5F, 0.0F, last);
-  const float reach = kTellReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i] + 0.5F;
-  const bool bar = edge_distance_[static_cast<std::size_t>(place)] < reach;
-  if (part.outside[i] > 0) return bar;
-  const float deviation = std::sqrt(part.stripe_variance[i]);
-  const bool stripe = cut_.edgeDistance(part.w[i]) < kTellReach * deviation + part.stripe_half_motion[i];
-  if (part.inside[i] > 0) return stripe;
-  const float cut = std::abs(u - helix_begin_) < std::abs(u - helix_end_) ? helix_begin_ : helix_end_;
-  const float phase = part.w[i] - u + cut;
-  const bool corner = cut_.edgeDistance(phase) < kCornerReach * deviation;
-  if (corner) return bar && part.half_motion[i] > kLongMotion;
-  const float uneven = part.stripe_half_motion[i] - part.half_motion[i];  // on a tilted rod; not exact here
-  return std::abs(uneven) < kMaxUneven && (bar || stripe || cut_.isBlack(phase));
-}
-
-/// Near an end of the helix.
-void SleevePattern::cutAt(std::size_t i, Part& part) const {
-  const float reach = kReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i], u = part.u[i];
-  const bool near_begin = u - reach <= helix_begin_, near_end = u + reach >= helix_end_;
-  const float cut = near_end ? helix_end_ : helix_begin_, phase = part.w[i] - u + cut;
-  Blackness black;
-  if (near_begin != near_end && cut_.edgeDistance(phase) > kCornerReach * std::sqrt(part.stripe_variance[i])) {
-    black = plainCutAt(part, i, phase, near_end ? 1.0F : -1.0F, near_end ? u - cut : cut - u);
-  } else if (rough_ && near_begin != near_end) {
-    black = roughCutAt(part, i, near_end ? 1.0F : -1.0F, near_end ? u - cut : cut - u);
-  } else {
-    black = near_end ? cutStripeAt(part, i, helix_end_) : stripeAt(part, i);
-    if (near_begin) subtract(cutStripeAt(part, i, helix_begin_), black);
-  }
-  part.value[i] += black.value;
-  part.by_u[i] += black.by_u;
-  part.by_w[i] += black.by_w;
-  part.by_blur[i] += black.by_blur;
-}
-
-/// Far from the edges of the stripe, the end of the helix is a step; the rest is the stripe, less what the step has.
-/// @param out  distance from the end, outside of the helix; sign: of the direction to the outside along u
-SleevePattern::Blackness SleevePattern::plainCutAt(const Part& part, std::size_t i, float phase, float sign,
-                                                   float out) const {
-  const float half = part.half_motion[i], variance = part.bar_variance[i], black = cut_.isBlack(phase) ? 1.0F : 0.0F;
-  Blackness sum;
-  if (out <= -half) {
-    const float slope = part.stripe_slope[i];
-    sum = {part.stripe[i] - black, slope, slope, 0.5F * part.stripe_variance[i] * part.stripe_bend[i]};
-  } else if (out < half) {
-    sum = stripeWithin(part, i, phase, sign, out, black);
-  }
-  if (black == 0) return sum;
-  const NormalTable& normal = NormalTable::instance();
-  const float deviation = std::sqrt(variance), inverse = 1 / deviation, per_motion = 0.5F / half;
-  const NormalTable::Entry a = normal.at((-out - half) * inverse), b = normal.at((-out + half) * inverse);
-  sum.value += deviation * per_motion * (b.integral - a.integral);
-  sum.by_u -= sign * per_motion * (b.value - a.value);
-  sum.by_blur += 0.5F * deviation * per_motion * (b.density - a.density);
-  return sum;
-}
-
-/// The stripe times a step: not exact where the end of the helix meets an edge of the stripe.
-SleevePattern::Blackness SleevePattern::roughCutAt(const Part& part, std::size_t i, float sign, float out) const {
-  const NormalTable& normal = NormalTable::instance();
-  const float half = part.half_motion[i], deviation = std::sqrt(part.bar_variance[i]), inverse = 1 / deviation;
-  const float per_motion = 0.5F / half, slope = part.stripe_slope[i];
-  const NormalTable::Entry a = normal.at((-out - half) * inverse), b = normal.at((-out + half) * inverse);
-  const float seen = deviation * per_motion * (b.integral - a.integral);
-  return {seen * part.stripe[i], seen * slope - sign * per_motion * (b.value - a.value) * part.stripe[i], seen * slope,
-          0.5F * (seen * part.stripe_variance[i] * part.stripe_bend[i] +
-                  deviation * per_motion * (b.density - a.density) * part.stripe[i])};
-}
-
-/// Of the stripe less what it is at the end of the helix, the part of the motion that is within the helix.
-SleevePattern::Blackness SleevePattern::stripeWithin(const Part& part, std::size_t i, float phase, float sign,
-                                                     float out, float black) const {
-  const float half = part.half_motion[i], per_motion = 0.5F / half, variance = part.stripe_variance[i];
-  const BlurredLine::Entry end = stripe_.at(phase, variance), begin = stripe_.at(part.w[i] - sign * half, variance);
-  const float by_w = sign * per_motion * (black - begin.value), length = half - out;
-  return {per_motion * (sign * (end.integral - begin.integral) + (stripe_.mean() - black) * length), by_w, by_w,
-          -0.5F * variance * sign * per_motion * begin.slope};
-}
-
-void SleevePattern::subtract(const Blackness& other, Blackness& sum) {
-  sum.value -= other.value;
-  sum.by_u -= other.by_u;
-  sum.by_w -= other.by_w;
-  sum.by_blur -= other.by_blur;
-}
-
-SleevePattern::Blackness SleevePattern::stripeAt(const Part& part, std::size_t i) const {
-  const float half = part.stripe_half_motion[i], variance = part.stripe_variance[i], inverse = 0.5F / half;
-  const BlurredLine::Entry a = stripe_.at(part.w[i] - half, variance), b = stripe_.at(part.w[i] + half, variance);
-  const float by_w = (b.value - a.value) * inverse;
-  return {(b.integral - a.integral) * inverse + stripe_.mean(), by_w, by_w,
-          0.5F * variance * (b.slope - a.slope) * inverse};
-}
-
-/// The stripe up to a cut.
-SleevePattern::Blackness SleevePattern::cutStripeAt(const Part& part, std::size_t i, float cut) const {
-  const float half = part.half_motion[i], inverse = 0.5F / half, along = part.bar_variance[i];
-  const float y = part.u[i] - cut, phase = part.w[i] - y;
-  const CutStripe::Entry a = cut_.at(y - half, phase, along, part.cut_variance[i], part.stripe_variance[i]);
-  const CutStripe::Entry b = cut_.at(y + half, phase, along, part.cut_variance[i], part.stripe_variance[i]);
-  return {(b.integral - a.integral) * inverse, (b.value - a.value) * inverse, (b.by_shift - a.by_shift) * inverse,
-          0.5F * along * (b.slope - a.slope) * inverse};
 }
 
 VIBE_LANES void SleevePattern::chain(const View& pose, std::size_t begin, const Part& part,

@@ -33,7 +33,7 @@ class SleevePattern : public MarkerPattern {
   Eigen::Vector2d printWindow(const MarkerPose& pose, double motion) const;
   static void compose(MovingLine& line, double low, double high, double half_motion);
   void measureEdges(const std::vector<Interval>& bars);
-  bool tells(const Part& part, std::size_t i) const;
+  void mark(Part& part) const;
   void placePixels(const View& view, const PixelBlock& pixels, std::size_t begin, Part& part) const;
   void place(const View& pose, const float* along, const float* lateral, Part& part) const;
   void unroll(const View& pose, Part& part) const;
