@@ -67,9 +67,10 @@ void ParameterReader::finish() const {
   if (!handle_.getParam(handle_.getNamespace(), all) || all.getType() != XmlRpcValue::TypeStruct) return;
   for (const auto& [name, value] : all) {
     if (known_.count(name)) continue;
-    throw Error("There is no parameter " + handle_.resolveName(name) + "; " +
-                suggestKey(name, std::vector<std::string>(known_.begin(), known_.end())) +
-                " Remove it with `rosparam delete " + handle_.resolveName(name) + "`.");
+    const std::string remedy = suggestKey(name, std::vector<std::string>(known_.begin(), known_.end()));
+    throw Error("There is no parameter " + handle_.resolveName(name) + "; " + remedy +
+                (remedy.back() == '?' ? "" : ".") + " Remove it with `rosparam delete " + handle_.resolveName(name) +
+                "`.");
   }
 }
 

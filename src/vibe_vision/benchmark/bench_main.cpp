@@ -100,7 +100,14 @@ int main(int argc, char** argv) {
       "same rendered frames with known truth."};
   Options options;
   addOptions(app, options);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << "vibe_vision_bench: " << error.what() << "; see --help.\n";
+    return 2;
+  }
   if (options.quick && app.count("--frames") == 0) options.bench.frames = 60;
   if (options.quick && app.count("--seed") == 0) options.bench.seeds = {1};
   try {

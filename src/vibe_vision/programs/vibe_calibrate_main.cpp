@@ -152,10 +152,16 @@ void requireSleeveForwards(const vibe::LocatedMarkers& located, const vibe::Slid
       "write 'sign: -1' at slide_joint");
 }
 
+void sayWhatTakesTime(std::size_t images) {
+  std::printf("Looks for the marker in %zu images; this takes seconds for each.\n", images);
+  std::fflush(stdout);
+}
+
 vibe::SlideAxis axisFromStops(const Options& options, const vibe::VisionConfig& config, std::size_t instrument) {
   const std::vector<vibe::StopImage> list = vibe::loadStopList(options.stops);
   std::vector<vibe::Frame> images;
   for (const vibe::StopImage& stop : list) images.push_back(vibe::readGrey(stop.image));
+  sayWhatTakesTime(images.size());
   const vibe::LocatedMarkers located = vibe::locateMarkers(config, instrument, images, searchOf(options));
   std::vector<vibe::AxisStop> stops;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -190,6 +196,7 @@ std::vector<std::string> thinnedOut(const std::vector<std::string>& files) {
 vibe::SlideAxis axisFromMotion(const Options& options, const vibe::VisionConfig& config, std::size_t instrument) {
   std::vector<vibe::Frame> images;
   for (const std::string& file : thinnedOut(vibe::filesOf(options.images))) images.push_back(vibe::readGrey(file));
+  sayWhatTakesTime(images.size());
   const vibe::LocatedMarkers located = vibe::locateMarkers(config, instrument, images, searchOf(options));
   if (!located.markers.front().found) {
     throw vibe::Error("the marker was not found in the first image, where slide 0 is (" +

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <thread>
 
+#include "program_options.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/camera/fake_camera.hpp"
 
@@ -57,16 +58,16 @@ void addOptions(CLI::App& app, Options& options) {
                  "file for slide [m], rotation [rad] and places [px] of each frame sent, as truth.csv of vibe_render");
   app.add_option("--config", options.config, "file for the configuration of the scene, for the tracker");
   app.add_option("--lost-ratio", options.camera.lost_ratio, "share of the packets that are not sent")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(vibe::finiteIn(0, 1))
       ->capture_default_str();
   app.add_option("--clock-ahead", options.camera.clock_ahead, "camera's clock less Unix time [s]")
-      ->check(CLI::Range(-1e9, 1e9))
+      ->check(vibe::finiteIn(-1e9, 1e9))
       ->capture_default_str();
   app.add_option("--clock-drift", options.camera.clock_drift, "by which the camera's clock is fast, such as 2e-5")
-      ->check(CLI::Range(-1e-2, 1e-2))
+      ->check(vibe::finiteIn(-1e-2, 1e-2))
       ->capture_default_str();
   app.add_option("--duration", options.duration, "time after which it ends [s]; 0: runs until it is stopped")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(vibe::finiteIn(0, 1e6))
       ->capture_default_str();
 }
 
@@ -79,13 +80,8 @@ int main(int argc, char** argv) {
       "drawn frames forward and backward in turn.");
   Options options;
   addOptions(app, options);
-  try {
-    app.parse(argc, argv);
+  return vibe::runProgram("vibe_fake_camera", app, argc, argv, [&options] {
     serve(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::cerr << "vibe_fake_camera: " << error.what() << '\n';
-    return 2;
-  }
+    return 0;
+  });
 }

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "program_options.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
@@ -91,27 +92,25 @@ void render(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Draws what the camera of a synthetic scene sees, with the truth: images frame_NNNNNN.png and frames.csv, or\n"
-      "video.mkv (lossless) and video.mkv.csv, with sequence, stamp [s] and exposure [s] of each frame; truth.csv "
-      "with\n"
-      "slide [m], rotation [rad] and places [px] of each instrument; config.yaml for vibe_track.");
+      "video.mkv (lossless) and video.mkv.csv, with sequence, stamp [s] and exposure [s] of each frame; truth.csv\n"
+      "with slide [m], rotation [rad] and places [px] of each instrument; config.yaml for vibe_track.");
   Options options;
   std::string names;
   for (const std::string& name : vibe::sceneNames()) names += (names.empty() ? "" : ", ") + name;
   app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
-  app.add_option("--frames", options.frames, "number of frames; 147 are one second")->capture_default_str();
+  app.add_option("--frames", options.frames, "number of frames; 147 are one second")
+      ->check(CLI::Range(1, 10000000))
+      ->capture_default_str();
   app.add_option("--first", options.first, "number of the first frame")->capture_default_str();
-  app.add_option("--start", options.start, "stamp of frame 0, Unix time [s]")->capture_default_str();
+  app.add_option("--start", options.start, "stamp of frame 0, Unix time [s]")
+      ->check(vibe::finiteIn(0, 1e10))
+      ->capture_default_str();
   app.add_option("--out", options.out, "folder, made if it is not there")->required();
   app.add_option("--format", options.format, "images or video")
       ->check(CLI::IsMember({"images", "video"}))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
+  return vibe::runProgram("vibe_render", app, argc, argv, [&options] {
     render(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::cerr << "vibe_render: " << error.what() << '\n';
-    return 2;
-  }
+    return 0;
+  });
 }

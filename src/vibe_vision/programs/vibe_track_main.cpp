@@ -38,7 +38,8 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("--csv", options.csv, "Write the results to this file")->required();
   app.add_option("--annotate", options.annotate,
                  "Draw the results: into FILE.avi or FILE.mkv, or as images into a folder");
-  app.add_option("--frames", options.frames, "End after so many frames (default: all)");
+  app.add_option("--frames", options.frames, "End after so many frames (default: all)")
+      ->check(CLI::Range(1, 1000000000));
   app.add_option("--rate", options.source.rate, "Of a recording without stamps [Hz]")->capture_default_str();
   app.add_option("--exposure", options.source.exposure, "Of a recording that does not tell it [s]")
       ->capture_default_str();
@@ -59,6 +60,7 @@ class Annotator {
     const std::string end = std::filesystem::path(target_).extension();
     is_video_ = end == ".avi" || end == ".mkv";
     std::error_code failed;
+    if (!is_video_ && !end.empty() && !std::filesystem::is_directory(target_, failed)) fail();  // another kind of video
     if (!is_video_ && !target_.empty()) std::filesystem::create_directories(target_, failed);
     if (failed) fail();
   }
@@ -122,7 +124,20 @@ class Progress {
   std::time_t last_ = 0;
 };
 
+/// Results must not overwrite what they are made from.
+void requireOtherFile(const Options& options) {
+  const std::filesystem::path images(options.images);
+  const std::filesystem::path table =
+      options.video.empty() ? images.parent_path() / "frames.csv" : std::filesystem::path(options.video + ".csv");
+  for (const std::filesystem::path& input : {std::filesystem::path(options.config), table}) {
+    std::error_code missing;
+    if (!std::filesystem::equivalent(options.csv, input, missing)) continue;
+    throw vibe::Error("--csv: " + options.csv + " belongs to the recording; give another file");
+  }
+}
+
 int run(Options options) {
+  requireOtherFile(options);
   const vibe::VisionConfig config = vibe::VisionConfig::load(options.config);
   vibe::Tracker tracker(config);
   options.source.roi_width = options.source.roi_height = 0;

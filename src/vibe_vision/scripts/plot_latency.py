@@ -51,8 +51,7 @@ def drawTotal(axes, stages):
     axes.plot(totals, [100 * (i + 1) / len(totals) for i in range(len(totals))], color='#1b6ca8')
     median = quantile(totals, 0.5)
     axes.axvline(median, color='black', linestyle=':', linewidth=1)
-    axes.annotate(f'median {median:.2f} ms', (median, 50), xytext=(-8, 0), textcoords='offset points',
-                  ha='right', va='center')
+    axes.annotate(f'median {median:.2f} ms', (median, 30), xytext=(8, 0), textcoords='offset points', va='center')
     axes.set_xlim(0, 1.1 * quantile(totals, 0.99))
     axes.set_xlabel('middle of the exposure to datagram [ms]')
     axes.set_ylabel('frames within this time [%]')

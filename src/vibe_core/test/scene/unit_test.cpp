@@ -81,9 +81,8 @@ TEST(Unit, RefusesWhatIsNoFiniteNumber) {
 }
 
 TEST(Unit, EveryMeasuredSiUnitIsItselfAUnitOfFactorOne) {
-  for (const char* unit :
-       {"1", "m", "m^3", "s", "1/s", "kg", "kg/m^3", "N", "Pa", "Pa/m", "m^3/s", "m/s", "m/s^2", "rad", "rad/s", "1/m", "px", "px/m",
-        "DN"}) {
+  for (const char* unit : {"1", "m", "m^3", "s", "1/s", "kg", "kg/m^3", "N", "Pa", "Pa/m", "m^3/s", "m/s", "m/s^2",
+                           "rad", "rad/s", "1/m", "px", "px/m", "DN"}) {
     ASSERT_TRUE(parseUnit(unit)) << unit;
     EXPECT_EQ(parseUnit(unit)->factor, 1) << unit;
   }

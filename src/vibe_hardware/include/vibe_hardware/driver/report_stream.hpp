@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "vibe_firmware/protocol/reports.hpp"
 #include "vibe_core/common/device_clock.hpp"
+#include "vibe_firmware/protocol/reports.hpp"
 
 namespace vibe {
 
