@@ -21,7 +21,7 @@ constexpr double kGoodLoss = 0.25;      // of a pixel: no other candidate needs 
 constexpr int kTries = 3;               // candidates that a frame may cost
 constexpr int kPatience = 15;           // lost frames after which it may cost one less: the best and one of the others
 constexpr double kSearchVisible = 0.7;  // of a sleeve
-constexpr double kWholeFrom = 0.85, kWhole = 0.92;     // visible share of a sleeve that is seen as a whole
+constexpr double kWholeFrom = 0.88, kWhole = 0.94;     // visible share of a sleeve that is seen as a whole
 constexpr double kPartMisfit = 1.5, kWholeMisfit = 4;  // that a search accepts of a part, of a whole sleeve
 constexpr double kNearbyVisible = 0.5;                 // where the place is known well
 constexpr double kKnownPlace = 3;                      // greatest deviation of a prediction that tells them apart [px]
