@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 from graph import GraphError
-from run_session import Interrupted, Session, attempt, interrupt
+from run_session import Interrupted, Session, session_defaults, attempt, interrupt
 from rviz_window import FEWEST_COLOURS, RvizWindow, wait_for
 
 Picture = collections.namedtuple("Picture", "name seconds view")
