@@ -30,7 +30,7 @@ def interrupt(number, _frame):
     raise Interrupted(signal.Signals(number).name)
 
 
-def parse_arguments():
+def session_parser():
     parser = argparse.ArgumentParser(allow_abbrev=False)
     parser.add_argument("--workspace", required=True)
     parser.add_argument("--scene", required=True)
@@ -48,7 +48,13 @@ def parse_arguments():
     parser.add_argument("--duration", type=float, required=True, help="0: no end")
     parser.add_argument("--fast", action="store_true")
     parser.add_argument("--headless", action="store_true")
-    return parser.parse_args()
+    return parser
+
+
+def session_defaults(**values):
+    """All arguments of a session with their defaults, for programs that begin one with arguments of their own."""
+    required = ["--workspace", "", "--scene", "", "--output", "", "--duration", "0"]
+    return argparse.Namespace(**{**vars(session_parser().parse_args(required)), **values})
 
 
 class Session:
@@ -163,7 +169,7 @@ def attempt(action, failures):
 
 
 def main():
-    session = Session(parse_arguments())
+    session = Session(session_parser().parse_args())
     failures = []
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, interrupt)

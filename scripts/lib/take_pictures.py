@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 from graph import GraphError
-from run_session import Interrupted, Session, session_defaults, attempt, interrupt
+from run_session import Interrupted, Session, attempt, interrupt, session_defaults
 from rviz_window import FEWEST_COLOURS, RvizWindow, wait_for
 
 Picture = collections.namedtuple("Picture", "name seconds view")
@@ -35,9 +35,7 @@ def parse_arguments():
     parser.add_argument("--program", default="rosrun rviz rviz")
     parser.add_argument("--colours", type=int, default=FEWEST_COLOURS)
     parser.add_argument("pictures", nargs="+", type=picture_of)
-    arguments = parser.parse_args()
-    arguments.drive, arguments.mesh, arguments.fast, arguments.duration = "trainee", "", True, 0.0
-    arguments.headless = False
+    arguments = parser.parse_args(namespace=session_defaults(fast=True))
     pictures = [picture._replace(view=picture.view or arguments.view) for picture in arguments.pictures]
     arguments.pictures = sorted(pictures, key=lambda picture: picture.seconds)
     arguments.pictures_folder = arguments.output
