@@ -54,8 +54,9 @@ def drawTimes(axes, rows, scene, name):
             axes.plot([track, search], [row['rms_px']] * 2, color=colour, linewidth=0.8, alpha=0.6)
             axes.plot(track, row['rms_px'], marker, color=colour, markersize=8, label=label)
             axes.plot(search, row['rms_px'], marker, color=colour, markersize=8, markerfacecolor='white')
-            axes.annotate(f"{100 * row['tracked'] / row['visible']:.0f} %", (track, row['rms_px']), xytext=(0, 8),
-                          textcoords='offset points', ha='center', fontsize=8, color=colour)
+            if row['tracked'] < row['visible']:
+                axes.annotate(f"{100 * row['tracked'] / row['visible']:.0f} %", (track, row['rms_px']), xytext=(0, 8),
+                              textcoords='offset points', ha='center', fontsize=8, color=colour)
     if LIMIT[scene]:
         axes.axhline(LIMIT[scene], color='black', linestyle=':', linewidth=1)
     axes.set_title(name, fontsize=11)
@@ -76,7 +77,7 @@ def plotTimes(rows, path):
     handles, labels = legendOf(panels)
     figure.legend(handles, labels, loc='lower center', ncol=len(labels), frameon=False, fontsize=9)
     figure.suptitle('full symbols: tracking; hollow: search without knowledge of the place; per cent: visible markers '
-                    'found; dotted: to reach', fontsize=9, y=0.97)
+                    'found where not all; dotted: to reach', fontsize=9, y=0.97)
     figure.tight_layout(rect=(0, 0.07, 1, 0.99))
     figure.savefig(path, dpi=120)
 
