@@ -77,8 +77,8 @@ class ToolContactBlock : public ConstraintBlock {
     const Eigen::Vector3d p(state.x[i], state.y[i], state.z[i]), ahead(ahead_x_[i], ahead_y_[i], ahead_z_[i]);
     const Eigen::Vector3d anchor = context.tool->end[link] * (context.tool->start[link].inverse() * p);
     ContactConstraint& constraint = loads.contacts.add();
-    constraint.force.setZero();
-    constraint.node = i;
+    constraint = ContactConstraint();
+    constraint.point = SurfacePoint::ofNode(i);
     constraint.normal = contact.normal;
     const double surface = contact.normal.dot(ahead) - contact.distance + model.particle_radius;
     // a particle deep inside (the tool was put there) comes out slowly, not at once
@@ -90,7 +90,7 @@ class ToolContactBlock : public ConstraintBlock {
   }
 
   ToolTouch touchOf(const State& state, const ContactConstraint& contact, std::size_t number) const {
-    const int i = contact.node;
+    const int i = contact.point.node[0];
     ToolTouch touch;
     touch.kind = ToolTouch::Kind::Contact;
     touch.node = i;

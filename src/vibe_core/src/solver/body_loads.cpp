@@ -8,6 +8,7 @@ void BodyLoads::clear() {
   attachments.clear();
   threads.clear();
   gas = GasLoad();
+  tool_yield = ToolYield();
   extra = nullptr;
 }
 
@@ -21,6 +22,7 @@ std::size_t BodyLoads::addPoint(const std::vector<int>& node, const std::vector<
     for (double w : weight) constraint.coefficient.emplace_back(w * Eigen::Vector3d::Unit(k));
     constraint.target = target[k];
     constraint.compliance = compliance;
+    constraint.yield.setZero();
     constraint.force = 0;
   }
   return first;

@@ -28,11 +28,12 @@ struct EquationRow {
   double compliance = 0;  ///< 0: exact [m/N]
 };
 
-/// A node outside the tool with Coulomb friction: the form of the normal, which is at least its target, and those of
-/// two tangents.
+/// A point of the surface outside the tool with Coulomb friction: the form of the normal, which is at least its target,
+/// and those of two tangents.
 struct ContactRows {
   std::array<LinearForm, 3> form;
-  double friction = 0;  ///< Coulomb coefficient [1]
+  std::array<Eigen::Vector3d, 3> direction;  ///< normal, two tangents; unit
+  double friction = 0;                       ///< Coulomb coefficient [1]
 };
 
 /// A segment of thread between two attachment points that follow each other.

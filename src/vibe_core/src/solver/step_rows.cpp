@@ -69,11 +69,17 @@ void setThread(const BodyLoads& loads, const ThreadLoad& thread, const MotionVie
   }
 }
 
+void setPoint(const SurfacePoint& point, const Eigen::Vector3d& direction, LinearForm& form) {
+  form.node.assign(point.node.begin(), point.node.begin() + point.count);
+  form.coefficient.clear();
+  for (int k = 0; k < point.count; ++k)
+    form.coefficient.emplace_back(point.weight[static_cast<std::size_t>(k)] * direction);
+}
+
 void setContact(const ContactConstraint& contact, ContactRows& rows) {
   const Eigen::Vector3d normal = contact.normal, tangent = normal.unitOrthogonal();
-  rows.form[0].setNode(contact.node, normal);
-  rows.form[1].setNode(contact.node, tangent);
-  rows.form[2].setNode(contact.node, normal.cross(tangent));
+  rows.direction = {normal, tangent, normal.cross(tangent)};
+  for (std::size_t k = 0; k < 3; ++k) setPoint(contact.point, rows.direction[k], rows.form[k]);
   rows.friction = contact.friction;
 }
 
@@ -99,7 +105,7 @@ void setTargets(const BodyLoads& loads, const ConstraintRows& rows, Eigen::Vecto
     const ContactConstraint& contact = loads.contacts[c];
     const int row = rows.contactRow(c);
     target[row] = contact.offset;
-    for (int k = 1; k < 3; ++k) target[row + k] = rows.contacts[c].form[k].coefficient[0].dot(contact.anchor);
+    for (int k = 1; k < 3; ++k) target[row + k] = rows.contacts[c].direction[k].dot(contact.anchor);
   }
   for (std::size_t t = 0; t < loads.threads.size(); ++t)
     for (int k = 0; k < rows.threads[t].count(); ++k)
@@ -177,8 +183,7 @@ void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
   for (std::size_t c = 0; c < loads.contacts.size(); ++c) {
     ContactConstraint& contact = loads.contacts[c];
     contact.force.setZero();
-    for (int k = 0; k < 3; ++k)
-      contact.force += force[rows.contactRow(c) + k] * rows.contacts[c].form[k].coefficient[0];
+    for (int k = 0; k < 3; ++k) contact.force += force[rows.contactRow(c) + k] * rows.contacts[c].direction[k];
   }
   for (std::size_t t = 0; t < loads.threads.size(); ++t) storeThread(scratch, rows.threads[t], gain, loads.threads[t]);
   loads.gas.volume = scratch.volume;

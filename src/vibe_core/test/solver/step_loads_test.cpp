@@ -93,14 +93,14 @@ struct Slope {
     run.loads.contacts.clear();
     for (int i = 0; i < run.nodes(); ++i)
       if (run.stepper.body().rest[i].z() < 1e-9)
-        run.loads.contacts.push_back({i, {0, 0, 1}, 0, friction_, run.position(i)});
+        run.loads.contacts.push_back({SurfacePoint::ofNode(i), {0, 0, 1}, 0, 0, friction_, run.position(i)});
     run.step();
     sum.setZero();
     for (const ContactConstraint& contact : run.loads.contacts) {
       sum += contact.force;
       pulling = std::min(pulling, contact.force.z());
       outside = std::max(outside, contact.force.head<2>().norm() - friction_ * contact.force.z());
-      sunk = std::min(sunk, run.position(contact.node).z());
+      sunk = std::min(sunk, run.position(contact.point.node[0]).z());
     }
   }
   double meanSpeed() const { return run.momentum().x() / run.mass(); }
@@ -154,14 +154,18 @@ TEST(Contacts, PinchFromBothSidesAndLetGo) {
     run.loads.contacts.clear();
     for (int n = 0; n < run.nodes(); ++n) {
       const double z = body.rest[n].z();
-      if (z < 1e-9) run.loads.contacts.push_back({n, {0, 0, 1}, 0.5 * top - half_gap, 0.3, run.position(n)});
-      if (z > top - 1e-9) run.loads.contacts.push_back({n, {0, 0, -1}, -0.5 * top - half_gap, 0.3, run.position(n)});
+      if (z < 1e-9)
+        run.loads.contacts.push_back(
+            {SurfacePoint::ofNode(n), {0, 0, 1}, 0.5 * top - half_gap, 0, 0.3, run.position(n)});
+      if (z > top - 1e-9)
+        run.loads.contacts.push_back(
+            {SurfacePoint::ofNode(n), {0, 0, -1}, -0.5 * top - half_gap, 0, 0.3, run.position(n)});
     }
     ASSERT_TRUE(run.step().finite);
     double below = 0, above = 0;
     for (const ContactConstraint& contact : run.loads.contacts) {
       ASSERT_GE(contact.force.dot(contact.normal), 0);
-      ASSERT_GT(contact.normal.dot(run.position(contact.node)) - contact.offset, -1e-5);
+      ASSERT_GT(contact.normal.dot(run.position(contact.point.node[0])) - contact.offset, -1e-5);
       (contact.normal.z() > 0 ? below : above) += contact.force.z();
     }
     if (i < 50) continue;
@@ -244,7 +248,8 @@ void load(Body& run, int step) {
   for (int k = 0; k < 4; ++k) {
     const int node = 20 + (11 * k + 17 * (step / 7)) % (tip - 30);
     if ((step / 5 + k) % 3 != 0)
-      run.loads.contacts.push_back({node, {0, 0, 1}, body.rest[node].z() - 1e-3, 0.3, run.position(node)});
+      run.loads.contacts.push_back(
+          {SurfacePoint::ofNode(node), {0, 0, 1}, body.rest[node].z() - 1e-3, 0, 0.3, run.position(node)});
   }
 }
 

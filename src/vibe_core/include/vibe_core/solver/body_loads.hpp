@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "vibe_core/solver/row_list.hpp"
@@ -9,6 +10,30 @@ namespace vibe {
 
 class EnergyTerm;
 
+/// Degrees of freedom of a tool that yields: motions beyond the commanded one, for example of an endoscope's bending
+/// section. Unused ones are zero.
+constexpr int kYieldDofs = 8;
+using YieldVector = Eigen::Matrix<double, kYieldDofs, 1>;
+using YieldMatrix = Eigen::Matrix<double, kYieldDofs, kYieldDofs>;
+
+/// How a tool yields to the forces of its constraints and contacts within the step:
+///   displacement = free - compliance * sum over rows of (yield of the row * force of the row)
+struct ToolYield {
+  int dofs = 0;                                    ///< 0: a rigid tool
+  YieldMatrix compliance = YieldMatrix::Zero();    ///< positive semidefinite [displacement / generalised force]
+  YieldVector free = YieldVector::Zero();          ///< at the end of the step without forces of this step [m], [rad]
+  YieldVector displacement = YieldVector::Zero();  ///< out: at the end of the step [m], [rad]
+};
+
+/// A point of the surface: the weighted mean of up to three nodes.
+struct SurfacePoint {
+  int count = 0;
+  std::array<int, 3> node{-1, -1, -1};
+  std::array<double, 3> weight{};  ///< sum 1 [1]
+
+  static SurfacePoint ofNode(int node) { return {1, {node, -1, -1}, {1, 0, 0}}; }
+};
+
 /// A linear constraint on positions: sum over k of coefficient[k] . x[node[k]] = target - compliance * force.
 /// Examples are held tissue and the weighted mean of a patch on a spring.
 struct LinearConstraint {
@@ -16,6 +41,7 @@ struct LinearConstraint {
   std::vector<Eigen::Vector3d> coefficient;  ///< [1]
   double target = 0;                         ///< [m]
   double compliance = 0;                     ///< 0: exact [m/N]
+  YieldVector yield = YieldVector::Zero();   ///< motion of the target along the coefficients per ToolYield dof
   double force = 0;  ///< out: force of the constraint along its coefficients on the body, mean over the step [N]
 };
 
@@ -40,14 +66,17 @@ struct ThreadLoad {
   std::vector<double> tension;  ///< per segment, of the last step; out: of this step; 0: slack [N]
 };
 
-/// A node that must not come nearer than its gap to a tool, with Coulomb friction against the tool's motion.
+/// A point of the surface that must not come nearer than its gap to a tool, with Coulomb friction against the tool's
+/// motion.
 struct ContactConstraint {
-  int node = -1;
-  Eigen::Vector3d normal;                           ///< out of the tool, unit
-  double offset = 0;                                ///< normal . x >= offset [m]
-  double friction = 0;                              ///< Coulomb coefficient [1]
-  Eigen::Vector3d anchor;                           ///< where the node would be if it stuck to the tool [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< out: tool on node, mean over the step [N]
+  SurfacePoint point;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< out of the tool, unit
+  double offset = 0;                                 ///< normal . x >= offset - compliance * normal force [m]
+  double compliance = 0;                             ///< of the wall's thickness; 0: rigid [m/N]
+  double friction = 0;                               ///< Coulomb coefficient [1]
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< where the point would be if it stuck to the tool [m]
+  Eigen::Matrix<double, 3, kYieldDofs> yield = Eigen::Matrix<double, 3, kYieldDofs>::Zero();  ///< of the anchor
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< out: tool on the surface, mean over the step [N]
 };
 
 /// The gas inside a closed shell.
@@ -68,6 +97,7 @@ struct BodyLoads {
   RowList<AttachmentPoint> attachments;  ///< of the threads; those that stay from step to step keep their numbers
   RowList<ThreadLoad> threads;
   GasLoad gas;
+  ToolYield tool_yield;
   const EnergyTerm* extra = nullptr;  ///< null: none
 
   /// Removes everything, the gas included.

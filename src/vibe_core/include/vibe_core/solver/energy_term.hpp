@@ -1,5 +1,9 @@
 #pragma once
 
+#include <vector>
+
+#include "vibe_core/state/stiffness_coupling.hpp"
+
 namespace vibe {
 
 /// A further energy of the nodes that a step takes into account, such as self-contact.
@@ -10,6 +14,9 @@ class EnergyTerm {
   /// Adds the gradient [N] at absolute positions [m] and returns the energy [J], in double precision throughout.
   /// Finite and once differentiable wherever the positions are finite. No allocation.
   virtual double evaluate(const double* positions4, float* gradient4) const = 0;
+  /// Appends the stiffness (positive semidefinite) of the energy about the positions, for the factor of later steps.
+  /// The equilibrium does not depend on it, only the rate of convergence.
+  virtual void addStiffness(const double* /*positions4*/, std::vector<StiffnessCoupling>& /*couplings*/) const {}
   /// Whether the energy may forbid a move that meets the constraints. False for springs, which give way.
   virtual bool acts() const { return true; }
 };

@@ -20,11 +20,15 @@ struct GripPoint {
 
 /// Sums since the start [J].
 struct EnergyAccount {
-  double tool_work = 0;     ///< done by the tool on the tissue (contact and grip)
-  double gas_work = 0;      ///< done by the gas on the wall
-  double thread_work = 0;   ///< done by threads on the tissue
-  double pull_work = 0;     ///< done by the pull spring
-  double damping_loss = 0;  ///< dissipated by viscous damping
+  double tool_work = 0;        ///< done by the tool on the tissue (contact and grip)
+  double gas_work = 0;         ///< done by the gas on the wall
+  double thread_work = 0;      ///< done by threads on the tissue
+  double pull_work = 0;        ///< done by the pull spring
+  double damping_loss = 0;     ///< dissipated by mass damping
+  double viscous_loss = 0;     ///< dissipated by stiffness damping
+  double contact_loss = 0;     ///< dissipated by sliding walls
+  double numerical_loss = 0;   ///< dissipated by the time scheme
+  double correction_work = 0;  ///< done by corrections after a step that keep walls and tools apart
 };
 
 /// Interruptions of a contact shorter than this do not end it [s].

@@ -7,7 +7,7 @@
 namespace vibe {
 
 /// Version of the fields of State, which snapshots carry. Raise it with every change of the lists below.
-constexpr std::uint32_t kStateVersion = 5;
+constexpr std::uint32_t kStateVersion = 6;
 
 VIBE_FIELDS(Bite, particle, weight, time, depth, thickness, region, wall, along);
 VIBE_FIELDS(TissueGroup, particle, offset, middle, weight, drawn);
@@ -19,9 +19,11 @@ VIBE_FIELDS(ProcedureState, phase, pressed, heat, dose, grade, beam_energy, base
             blood_lost);
 VIBE_FIELDS(PullSpring, particle, node, weight, target, force);
 VIBE_FIELDS(GripPoint, particle, local);
-VIBE_FIELDS(EnergyAccount, tool_work, gas_work, thread_work, pull_work, damping_loss);
-VIBE_FIELDS(StepperMemory, linearization_point, next, linearization_id, next_id, steps, due, elastic_energy,
-            usual_length, rest_steps, recovery_steps, fallback);
+VIBE_FIELDS(EnergyAccount, tool_work, gas_work, thread_work, pull_work, damping_loss, viscous_loss, contact_loss,
+            numerical_loss, correction_work);
+VIBE_FIELDS(StiffnessCoupling, node, weight, stiffness);
+VIBE_FIELDS(StepperMemory, linearization_point, next, couplings, next_couplings, linearization_id, next_id, steps, due,
+            elastic_energy, usual_length, rest_steps, recovery_steps, fallback);
 VIBE_FIELDS(ImpedanceBasis, id, positions, gas_direction, gas_stiffness, node, direction, row_motion);
 VIBE_FIELDS(SlopeMemory<3>, known, has_pair, place, force, step, change);
 VIBE_FIELDS(SlopeMemory<kScopeJointCount>, known, has_pair, place, force, step, change);

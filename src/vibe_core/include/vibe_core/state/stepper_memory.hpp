@@ -3,22 +3,26 @@
 #include <cstdint>
 #include <vector>
 
+#include "vibe_core/state/stiffness_coupling.hpp"
+
 namespace vibe {
 
 /// What an implicit stepper carries from step to step beside the motion. The factor itself is a cache: it is computed
 /// again wherever the scratch does not hold the one that the memory names.
 struct StepperMemory {
-  std::vector<float> linearization_point;  ///< positions of the factor in use (3 * nodes) [m]; empty: rest
-  std::vector<float> next;                 ///< positions of the next factor (3 * nodes) [m]; empty: there is none
-  std::uint64_t linearization_id = 0;      ///< hash of `linearization_point`
-  std::uint64_t next_id = 0;               ///< hash of `next`
-  std::int64_t steps = 0;                  ///< number of steps taken
-  std::int64_t due = 0;                    ///< value of `steps` at which the next factor takes over
-  double elastic_energy = 0;               ///< at the end of the last step [J]
-  double usual_length = 0;                 ///< running mean of the first moves of steps [m]
-  int rest_steps = 0;                      ///< consecutive steps in which nothing moved
-  int recovery_steps = 0;                  ///< remaining steps of a recovery, which lead straight to rest
-  int fallback = 0;                        ///< remaining steps with backward Euler and many iterations
+  std::vector<float> linearization_point;    ///< positions of the factor in use (3 * nodes) [m]; empty: rest
+  std::vector<float> next;                   ///< positions of the next factor (3 * nodes) [m]; empty: there is none
+  std::vector<StiffnessCoupling> couplings;  ///< contacts and threads in the factor in use
+  std::vector<StiffnessCoupling> next_couplings;  ///< the same of the next factor
+  std::uint64_t linearization_id = 0;             ///< hash of `linearization_point` and `couplings`
+  std::uint64_t next_id = 0;                      ///< hash of `next` and `next_couplings`
+  std::int64_t steps = 0;                         ///< number of steps taken
+  std::int64_t due = 0;                           ///< value of `steps` at which the next factor takes over
+  double elastic_energy = 0;                      ///< at the end of the last step [J]
+  double usual_length = 0;                        ///< running mean of the first moves of steps [m]
+  int rest_steps = 0;                             ///< consecutive steps in which nothing moved
+  int recovery_steps = 0;                         ///< remaining steps of a recovery, which lead straight to rest
+  int fallback = 0;                               ///< remaining steps with backward Euler and many iterations
 };
 
 }  // namespace vibe
