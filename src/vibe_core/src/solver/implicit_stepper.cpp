@@ -137,7 +137,7 @@ void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) 
 
 StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory,
                                   StepperScratch& scratch) const {
-  plan_->schedule.advance(body_, motion, memory);
+  plan_->schedule.advance(body_, motion, loads, memory, scratch);
   plan_->schedule.provide(body_, loads.attachments, memory, scratch);
   ++memory.steps;
   StepOutcome outcome;
@@ -254,7 +254,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
     const bool slow = newton.directionLength() > kSlow * before;
     before = newton.directionLength();
     if (outcome.iterations % kRefactorEvery == 0 || (slow && outcome.iterations % kRefactorSlow == 0)) {
-      refactorHere(loads.attachments, scratch);
+      refactorHere(loads, scratch);
       newton.start();
       ++outcome.refactorisations;
     }
@@ -271,14 +271,16 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
   return outcome;
 }
 
-void ImplicitStepper::refactorHere(const RowList<AttachmentPoint>& attachments, StepperScratch& scratch) const {
+void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperScratch& scratch) const {
   std::vector<float> positions(3 * body_.rest.size());
   for (std::size_t i = 0; i < body_.rest.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(scratch.z[4 * i + k]);
-  if (!factorAt(body_, positions, 0, 1, scratch.matrix, *scratch.factor))
-    factorAt(body_, {}, 0, 1, scratch.matrix, *scratch.factor);
+  std::vector<StiffnessCoupling> couplings;
+  collectCouplings(loads, scratch.z.data(), couplings);
+  if (!factorAt(body_, {positions, couplings}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor))
+    factorAt(body_, {{}, {}}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor);
   scratch.attachments = AttachmentColumns();
-  extendAttachmentColumns(*scratch.factor, attachments, scratch.attachments);
+  extendAttachmentColumns(*scratch.factor, loads.attachments, scratch.attachments);
   scratch.schur.reset(*scratch.factor, body_.nodeCount());
   scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
 }

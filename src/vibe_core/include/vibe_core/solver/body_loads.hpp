@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vibe_core/solver/row_list.hpp"
+#include "vibe_core/state/stiffness_coupling.hpp"
 
 namespace vibe {
 
@@ -98,7 +99,8 @@ struct BodyLoads {
   RowList<ThreadLoad> threads;
   GasLoad gas;
   ToolYield tool_yield;
-  const EnergyTerm* extra = nullptr;  ///< null: none
+  const EnergyTerm* extra = nullptr;         ///< null: none
+  std::vector<StiffnessCoupling> couplings;  ///< stiffness beside that of `extra`, for the factor of later steps
 
   /// Removes everything, the gas included.
   void clear();
