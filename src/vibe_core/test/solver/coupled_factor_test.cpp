@@ -118,12 +118,12 @@ struct Descent {
 TEST(CoupledFactor, StiffContactsInTheFactorConvergeInAFewIterations) {
   const std::vector<double> with = Descent(true).lengths, without = Descent(false).lengths;
   EXPECT_GT(with.front(), 1e-6);
-  EXPECT_LT(with[2], 1e-3 * with.front());
-  EXPECT_GT(without[4], 1e-2 * without.front()) << "negative control: the springs need no factor";
+  EXPECT_LT(with[2], 1e-2 * with.front());
+  EXPECT_GT(without[4], 0.1 * without.front()) << "negative control: the springs need no factor";
 }
 
-struct Run {
-  explicit Run(bool in_factor) : springs(plates(), in_factor), body(platesBody(), settings()) {
+struct Session {
+  explicit Session(bool in_factor) : springs(plates(), in_factor), body(platesBody(), settings()) {
     body.loads.extra = &springs;
   }
   static StepSettings settings() {
@@ -141,11 +141,11 @@ struct Run {
 };
 
 TEST(CoupledFactor, StepsTakeTheCouplingsOfThePresentIntoTheNextFactor) {
-  Run with(true), without(false);
-  for (Run* run : {&with, &without}) run->steps(1);
+  Session with(true), without(false);
+  for (Session* run : {&with, &without}) run->steps(1);
   EXPECT_TRUE(with.body.memory.couplings.empty());
   const int before = with.iterations;
-  for (Run* run : {&with, &without}) run->steps(8);
+  for (Session* run : {&with, &without}) run->steps(8);
   EXPECT_EQ(with.body.memory.couplings.size(), with.springs.couplings().size());
   EXPECT_TRUE(without.body.memory.couplings.empty());
   EXPECT_LT(with.iterations, before);
@@ -154,40 +154,33 @@ TEST(CoupledFactor, StepsTakeTheCouplingsOfThePresentIntoTheNextFactor) {
 
 // A replay or a snapshot has no factor in the background.
 TEST(CoupledFactor, TheStateAloneGivesTheSameBits) {
-  Run session(true), replay(true);
+  Session session(true), replay(true);
   session.steps(5);
   replay.body.memory = session.body.memory;
   replay.body.motion = session.body.motion;
   for (int i = 0; i < 8; ++i) {
-    for (Run* run : {&session, &replay}) run->steps(1);
+    for (Session* run : {&session, &replay}) run->steps(1);
     ASSERT_TRUE(sameBits(session.body.motion, replay.body.motion)) << "step " << i;
   }
-  Run other(false);
+  Session other(false);
   other.body.memory = session.body.memory;
   other.body.memory.couplings.clear();
+  other.body.memory.next_couplings.clear();
   other.body.motion = session.body.motion;
-  for (Run* run : {&session, &other}) run->steps(1);
+  for (Session* run : {&session, &other}) run->steps(1);
   EXPECT_FALSE(sameBits(session.body.motion, other.body.motion)) << "negative control: couplings change nothing";
 }
 
 TEST(CoupledFactor, TheNameDependsOnTheCouplings) {
-  Run a(true), b(true), c(false);
-  for (Run* run : {&a, &b, &c}) {
-    run->steps(1);
-    for (double& z : run->body.motion.x[2]) z += 1e-3;
-    const FactorSchedule schedule{3600, 1, 3, 1e-9};
-    run->body.memory.next.clear();
-    schedule.advance(run->body.stepper.body(), run->body.motion.view(), run->body.loads, run->body.memory,
-                     *run->body.scratch);
+  std::vector<std::uint64_t> names;
+  for (const bool in_factor : {true, true, false}) {
+    Session session(in_factor);
+    session.body.motion.x[2].back() += 1e-3;
+    session.steps(1);
+    names.push_back(session.body.memory.next_id);
   }
-  EXPECT_EQ(a.body.memory.next_id, b.body.memory.next_id);
-  a.body.memory.next.clear();
-  for (double& z : c.body.motion.x[2]) z += 0;
-  c.body.motion = a.body.motion;
-  c.body.memory.next.clear();
-  const FactorSchedule schedule{3600, 1, 3, 1e-9};
-  schedule.advance(c.body.stepper.body(), c.body.motion.view(), c.body.loads, c.body.memory, *c.body.scratch);
-  EXPECT_NE(a.body.memory.next_id, c.body.memory.next_id);
+  EXPECT_EQ(names[0], names[1]);
+  EXPECT_NE(names[0], names[2]);
 }
 
 TEST(CoupledFactor, FixedNodesAreLeftOut) {
