@@ -235,10 +235,7 @@ double QuasiNewton::advance(double max, bool verify) {
   if (safe) {
     setTrial(1);
     s.z.swap(s.trial);
-    if (gas_.control == GasLoad::Control::Amount) {  // as the direction foresees them
-      s.pressure += s.schur.gasForce();
-      s.volume = gas_.amount / (s.pressure + gas_.ambient);
-    }
+    if (gas_.control != GasLoad::Control::None) potential_.moveVolume(dot(s.volume_gradient, s.direction));
     return direction_length_;
   }
   const double prescribed = gas_.control == GasLoad::Control::Volume ? s.schur.gasForce() : 0;

@@ -188,6 +188,7 @@ void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
   for (std::size_t t = 0; t < loads.threads.size(); ++t) storeThread(scratch, rows.threads[t], gain, loads.threads[t]);
   loads.gas.volume = scratch.volume;
   loads.gas.pressure = scratch.pressure;
+  loads.gas.stiffness = scratch.gas_stiffness;
 }
 
 }  // namespace vibe
