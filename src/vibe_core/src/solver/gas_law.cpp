@@ -18,18 +18,33 @@ GasLaw::GasLaw(const GasLoad& load, double part)
       volume_min_(amount_min_ / (load.set_pressure + load.ambient)),
       volume_max_(amount_max_ / (load.set_pressure + load.ambient)) {}
 
-double GasLaw::pressure(double volume) const {
+GasLaw::Piece GasLaw::pieceAt(double volume) const {
+  if (load_.control != GasLoad::Control::Regulated) return Piece::Kept;
+  return volume < volume_min_ ? Piece::Least : volume > volume_max_ ? Piece::Most : Piece::Kept;
+}
+
+GasLaw::Line GasLaw::lineOf(Piece piece, double volume) const {
   const double v = std::max(volume, kSmallestVolume);
+  const auto closed = [&](double amount) { return Line{amount / v - load_.ambient, amount / (v * v)}; };
   switch (load_.control) {
     case GasLoad::Control::Amount:
-      return load_.amount / v - load_.ambient;
+      return closed(load_.amount);
     case GasLoad::Control::Regulated:
-      return v < volume_min_   ? amount_min_ / v - load_.ambient
-             : v > volume_max_ ? amount_max_ / v - load_.ambient
-                               : load_.set_pressure;
+      if (piece == Piece::Kept) return {load_.set_pressure, 0};
+      return closed(piece == Piece::Least ? amount_min_ : amount_max_);
+    case GasLoad::Control::Volume:
+      return {load_.pressure, std::numeric_limits<double>::infinity()};
     default:
-      return load_.pressure;
+      return {load_.pressure, 0};
   }
+}
+
+double GasLaw::pressure(double volume) const {
+  return lineOf(pieceAt(volume), volume).pressure;
+}
+
+double GasLaw::stiffness(double volume) const {
+  return lineOf(pieceAt(volume), volume).stiffness;
 }
 
 double GasLaw::energy(double volume) const {
@@ -52,20 +67,6 @@ double GasLaw::energy(double volume) const {
 // Isothermal, from one volume to another.
 double GasLaw::closedEnergy(double amount, double from, double volume) const {
   return load_.ambient * (volume - from) - amount * std::log(volume / std::max(from, kSmallestVolume));
-}
-
-double GasLaw::stiffness(double volume) const {
-  const double v = std::max(volume, kSmallestVolume);
-  switch (load_.control) {
-    case GasLoad::Control::Amount:
-      return load_.amount / (v * v);
-    case GasLoad::Control::Regulated:
-      return v < volume_min_ ? amount_min_ / (v * v) : v > volume_max_ ? amount_max_ / (v * v) : 0;
-    case GasLoad::Control::Volume:
-      return std::numeric_limits<double>::infinity();
-    default:
-      return 0;
-  }
 }
 
 }  // namespace vibe

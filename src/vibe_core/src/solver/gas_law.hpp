@@ -24,6 +24,16 @@ class GasLaw {
   /// How fast the pressure falls with the volume; infinite where the volume is prescribed [Pa/m^3].
   double stiffness(double volume) const;
 
+  /// The piece of the law of an insufflator: the limit of the amount that acts at a volume. Other laws have one piece.
+  enum class Piece { Least, Kept, Most };
+  Piece pieceAt(double volume) const;
+  /// The linear continuation of a piece from a volume, whether or not the piece acts there.
+  struct Line {
+    double pressure = 0;   ///< [Pa]
+    double stiffness = 0;  ///< [Pa/m^3]
+  };
+  Line lineOf(Piece piece, double volume) const;
+
  private:
   double closedEnergy(double amount, double from, double volume) const;
 

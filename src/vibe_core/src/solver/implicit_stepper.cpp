@@ -206,12 +206,11 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
     newton.start();
   }
   scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
-  const double stiffness = potential.gasStiffness(foreseenVolume(loads.gas, motion, scheme, scratch));
-  scratch.schur.setGas(scratch.volume_gradient.data(), stiffness, *scratch.factor);
+  newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
   const bool arrived = iterate(newton, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
   memory.elastic_energy = potential.elasticEnergy();
-  scratch.gas_stiffness = potential.gasStiffness(scratch.volume);
+  scratch.gas_stiffness = potential.gas().stiffness(scratch.volume);
   return outcome.finite && arrived;
 }
 
@@ -274,7 +273,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
       newton.start();
       ++outcome.refactorisations;
     }
-    scratch.schur.setGas(scratch.volume_gradient.data(), potential.gasStiffness(scratch.volume), *scratch.factor);
+    newton.setGas(scratch.volume);
     outcome.last_move = newton.iterate(kFallbackMaxMove * plan_->size, true);
     ++outcome.iterations;
     outcome.converged = newton.directionLength() < std::max(tolerance, newton.resolution());

@@ -22,8 +22,7 @@ class Potential {
   /// Value [J] at z; the gradient [N] goes to `gradient` (4 per node). Also sets the scratch's volume, pressure and
   /// volume gradient.
   double evaluate(const std::vector<double>& z, std::vector<float>& gradient);
-  /// How fast the pressure falls with the volume, at a volume [Pa/m^3].
-  double gasStiffness(double volume) const { return gas_law_.stiffness(volume); }
+  const GasLaw& gas() const { return gas_law_; }
   /// Sets the scratch's volume and pressure for a move that changes the volume by `change` and is not evaluated [m^3].
   void moveVolume(double change);
   double elasticEnergy() const { return elastic_; }  ///< part of the last value [J]
