@@ -41,6 +41,7 @@ class StepperScratch {
   Eigen::VectorXd target, rhs, force;
   Eigen::VectorXd slid;             // thread that slid out of a row in this step, to the scale of the rows [m]
   double volume = 0, pressure = 0;  // of the point under evaluation
+  double gas_stiffness = 0;         // there, after a step [Pa/m^3]
 };
 
 }  // namespace vibe
