@@ -31,6 +31,7 @@ class GripBlock : public ConstraintBlock {
       touch.point = context.tool->end[link] * point.local;
       touch.motion = touch.point - context.tool->start[link] * point.local;
       touch.force = loads.pointForce(first_[g]);
+      touch.work = loads.pointWork(first_[g]);
       touch.direction = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
       touch.direction_count = 3;
       touches.push_back(touch);

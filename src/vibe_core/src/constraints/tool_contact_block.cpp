@@ -98,6 +98,7 @@ class ToolContactBlock : public ConstraintBlock {
     touch.point = {state.x[i], state.y[i], state.z[i]};
     touch.motion = motion_[number];
     touch.force = contact.force;
+    touch.work = contact.work;
     const double push = contact.force.dot(contact.normal);
     const double drag = (contact.force - push * contact.normal).norm();
     const Eigen::Vector3d tangent = contact.normal.unitOrthogonal();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -16,7 +17,9 @@ struct ImplicitScratch : SolverScratch {
   std::shared_ptr<StepperScratch> stepper;
   std::vector<std::unique_ptr<ConstraintBlock>> blocks;  // in the order in which they are asked
   BodyLoads loads;
-  SumTerm terms;  // energies of the blocks
+  SumTerm terms;                                   // energies of the blocks
+  std::vector<char> has_term;                      // per block
+  std::array<std::vector<double>, 6> uncorrected;  // positions and velocities before corrections [m], [m/s]
   ToolPoses poses;
   std::vector<ToolTouch> touches;                 // of the last step
   std::unique_ptr<ImpedanceEstimator> impedance;  // null without a tool

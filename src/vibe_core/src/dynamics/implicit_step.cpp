@@ -9,6 +9,7 @@
 #include "model/max_speed.hpp"
 #include "model/tool_push.hpp"
 #include "solver/stepper_scratch.hpp"
+#include "vibe_core/model/accounting.hpp"
 
 namespace vibe {
 
@@ -90,8 +91,11 @@ bool ImplicitStep::lost() const {
 
 // Straight towards the rest position and without forces: a lost state has no meaningful dynamics.
 void ImplicitStep::recover() {
+  state_.energy.correction_work -= mechanicalEnergy().total() + state_.energy.contact_energy;
+  state_.energy.contact_energy = 0;
   StepperMemory fresh;
   fresh.steps = state_.solver.steps + 1;
+  fresh.elastic_energy = -1;
   fresh.recovery_steps = state_.solver.recovery_steps - 1;
   state_.solver = fresh;
   const double part = 1 - std::exp(-kRecoveryRate * context_.step);
@@ -103,29 +107,65 @@ void ImplicitStep::recover() {
   }
   stopMotion(state_);
   for (const auto& block : scratch_.blocks) block->recover(context_);
+  state_.energy.correction_work += mechanicalEnergy().total();
 }
 
 // @returns false where the state became useless; the simulator then resets it
 bool ImplicitStep::solve() {
   scratch_.terms.clear();
-  for (const auto& block : scratch_.blocks) scratch_.terms.add(block->energyTerm(context_));
+  scratch_.has_term.clear();
+  for (const auto& block : scratch_.blocks) {
+    const EnergyTerm* const term = block->energyTerm(context_);
+    scratch_.terms.add(term);
+    scratch_.has_term.push_back(term != nullptr ? 1 : 0);
+  }
+  contact_energy_ = state_.energy.contact_energy;
   scratch_.loads.extra = scratch_.terms.simplest();
   const StepOutcome outcome = stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
   report_.fallback = outcome.fallback;
+  work_ = outcome.work;
   if (!outcome.finite) std::fill(state_.x.begin(), state_.x.end(), std::numeric_limits<double>::quiet_NaN());
   return outcome.finite;
 }
 
 void ImplicitStep::store() {
-  for (const auto& block : scratch_.blocks) block->correct(context_);
+  correct();
   scratch_.touches.clear();
-  for (const auto& block : scratch_.blocks) block->store(context_, scratch_.loads, scratch_.touches);
+  for (std::size_t b = 0; b < scratch_.blocks.size(); ++b) {
+    const double before = springWork();
+    scratch_.blocks[b]->store(context_, scratch_.loads, scratch_.touches);
+    if (scratch_.has_term[b] != 0) work_.extra -= springWork() - before;  // it has accounted for its term itself
+  }
   if (motion_ != nullptr) {
     reportTool();
     reportImpedance();
   }
-  accountDamping();
+  account();
+}
+
+// Corrections are motions without forces: their work is the difference of the energies.
+void ImplicitStep::correct() {
+  std::vector<double>* const now[6] = {&state_.x, &state_.y, &state_.z, &state_.vx, &state_.vy, &state_.vz};
+  std::array<std::vector<double>, 6>& before = scratch_.uncorrected;
+  for (std::size_t k = 0; k < 6; ++k) before[k] = *now[k];
+  for (const auto& block : scratch_.blocks) block->correct(context_);
+  bool changed = false;
+  for (std::size_t k = 0; k < 6; ++k) changed = changed || before[k] != *now[k];
+  if (!changed) return;
+  const Energies after = mechanicalEnergy();
+  for (std::size_t k = 0; k < 6; ++k) before[k].swap(*now[k]);
+  const Energies uncorrected = mechanicalEnergy();
+  for (std::size_t k = 0; k < 6; ++k) before[k].swap(*now[k]);
+  state_.energy.correction_work += after.total() - uncorrected.total();
+  state_.solver.elastic_energy += (after.elastic + after.foundation) - (uncorrected.elastic + uncorrected.foundation);
+}
+
+// Kinetic, elastic, of foundation and weight.
+Energies ImplicitStep::mechanicalEnergy() const {
+  Energies parts = energiesBesideElastic(model_, state_);
+  parts.elastic = stepper_.elasticEnergy(motionOf(), *scratch_.stepper);
+  return parts;
 }
 
 void ImplicitStep::reportTool() {
@@ -133,6 +173,7 @@ void ImplicitStep::reportTool() {
   for (const ToolTouch& touch : scratch_.touches) {
     if (touch.kind == ToolTouch::Kind::Grip) report_.grip_force -= touch.force;
     if (touch.kind == ToolTouch::Kind::Contact) ++report_.contact_count;
+    state_.energy.friction_loss += touch.force.dot(touch.motion) - touch.work;
     pushTool(-touch.force, touch.point, touch.motion, tip, report_, state_.energy);
   }
 }
@@ -146,13 +187,19 @@ void ImplicitStep::reportImpedance() {
                                  scratch_.stepper->volume_gradient, scratch_.loads.gas.stiffness, state_.impedance);
 }
 
-void ImplicitStep::accountDamping() {
-  double kinetic = 0;
-  for (int i = 0; i < model_.particle_count; ++i)
-    if (model_.inverse_mass[i] > 0)
-      kinetic += 0.5 * model_.mass[i] *
-                 (state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i]);
-  state_.energy.damping_loss += 2 * kinetic * model_.scene.tissue.mass_damping * context_.step;
+void ImplicitStep::account() {
+  EnergyAccount& sum = state_.energy;
+  sum.gas_work += work_.gas;
+  sum.damping_loss += work_.mass_damping;
+  sum.viscous_loss += work_.viscous;
+  sum.numerical_loss += work_.numerical;
+  sum.residual_work += work_.residual;
+  // what walls in contact took from the tissue is stored or lost
+  sum.contact_loss -= work_.extra + sum.contact_energy - contact_energy_;
+}
+
+double ImplicitStep::springWork() const {
+  return state_.energy.pull_work + state_.energy.thread_work;
 }
 
 void ImplicitStep::updateRest(Activity activity) {

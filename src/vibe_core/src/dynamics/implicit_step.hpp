@@ -3,6 +3,7 @@
 #include "contact/tool_motion.hpp"
 #include "dynamics/implicit_scratch.hpp"
 #include "solver/implicit_stepper.hpp"
+#include "vibe_core/model/accounting.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 #include "vibe_core/state/state.hpp"
@@ -27,7 +28,10 @@ class ImplicitStep {
   void store();
   void reportTool();
   void reportImpedance();
-  void accountDamping();
+  void correct();
+  void account();
+  Energies mechanicalEnergy() const;
+  double springWork() const;
   void updateRest(Activity activity);
   MotionView motionOf() const;
 
@@ -39,6 +43,8 @@ class ImplicitStep {
   StepReport& report_;
   ImplicitScratch& scratch_;
   StepContext context_;
+  StepWork work_;              // of the solve
+  double contact_energy_ = 0;  // before it [J]
 };
 
 }  // namespace vibe

@@ -38,6 +38,7 @@ struct ToolTouch {
   Eigen::Vector3d point;   ///< where the force acts at the end of the step, world [m]
   Eigen::Vector3d motion;  ///< of the tool at this point during the step [m]
   Eigen::Vector3d force;   ///< tool on tissue, mean over the step [N]
+  double work = 0;         ///< of this force on the tissue over the step [J]
   /// Unit directions in which the node follows the tool, the first direction_count of them: all three where it sticks,
   /// the normal where it slides. The impedance of the tool is computed from them.
   std::array<Eigen::Vector3d, 3> direction;
