@@ -7,12 +7,11 @@ namespace vibe {
 
 namespace {
 
-// Limit of the Gauss-Seidel sweeps. Measured: contacts that oppose each other, as in a pinch, need hundreds; others
-// few.
-constexpr int kContactSweeps = 1000;
-// Sweeps end when no force moves its contact farther than this. Design choice: a hundredth of the tolerance of a step
-// [m].
-constexpr double kContactMove = 1e-9;
+// Sweeps over threads that slide. Design choice: threads affect each other little; what a sweep more would change
+// slides in the next step.
+constexpr int kSlideSweeps = 30;
+// They end when no force moves its row farther than this. Design choice: a hundredth of what can be seen [m].
+constexpr double kSlideMove = 1e-7;
 
 }  // namespace
 
@@ -125,12 +124,13 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
 }
 
 void ConstraintSchur::sortRows(const ConstraintRows& rows) {
-  equations_.clear(), inequalities_.clear(), contacts_.clear();
+  equations_.clear(), inequalities_.clear(), contact_list_.clear();
   thread_count_ = 0;
+  threads_held_ = false;
   for (int i = 0; i < static_cast<int>(rows.equations.size()); ++i) equations_.push_back(i);
   rows.forEachSpring([this](int row, const LinearForm&, double) { equations_.push_back(row); });
   for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
-    contacts_.push_back({static_cast<int>(inequalities_.size()), rows.contacts[c].friction});
+    contact_list_.push_back({static_cast<int>(inequalities_.size()), rows.contacts[c].friction});
     for (int k = 0; k < 3; ++k) inequalities_.push_back(rows.contactRow(c) + k);
   }
   for (const ThreadRows& thread : rows.threads)
@@ -160,7 +160,7 @@ void ConstraintSchur::addThread(const ThreadRows& rows) {
 }
 
 void ConstraintSchur::holdThreads() {
-  for (int t = 0; t < thread_count_; ++t) threads_[t].capstan.setConstant(kHoldingFactor);
+  threads_held_ = true;
 }
 
 void ConstraintSchur::findUsedSlots() {
@@ -245,39 +245,61 @@ double ConstraintSchur::complianceBetween(int i, int j) {
 
 // The equations are eliminated from the contacts. Loops, since indexed views of Eigen ask for memory.
 void ConstraintSchur::formBlocks() {
-  const auto e = static_cast<Eigen::Index>(equations_.size()), c = static_cast<Eigen::Index>(inequalities_.size());
+  const auto e = static_cast<Eigen::Index>(equations_.size());
+  const auto c = static_cast<Eigen::Index>(inequalities_.size());
   if (e > 0) {
     block_.resize(e, e);
     for (Eigen::Index j = 0; j < e; ++j)
       for (Eigen::Index i = 0; i < e; ++i) block_(i, j) = compliance_(equations_[i], equations_[j]);
     equation_factor_.compute(block_);
   }
-  if (c == 0) return;
-  schur_.resize(c, c);
+  contacts_.begin(static_cast<int>(c));
   for (Eigen::Index j = 0; j < c; ++j)
-    for (Eigen::Index i = 0; i < c; ++i) schur_(i, j) = compliance_(inequalities_[i], inequalities_[j]);
-  if (e == 0) return;
+    for (Eigen::Index i = 0; i < c; ++i)
+      contacts_.compliance(static_cast<int>(i), static_cast<int>(j)) = compliance_(inequalities_[i], inequalities_[j]);
+  if (e > 0) eliminateEquations(e, c);
+  for (const Contact& contact : contact_list_) contacts_.addContact(contact.first, contact.friction);
+  contacts_.finish();
+  contact_force_.setZero(c);
+}
+
+void ConstraintSchur::eliminateEquations(Eigen::Index e, Eigen::Index c) {
   cross_.resize(e, c);
   coupling_.resize(e, c);
   for (Eigen::Index j = 0; j < c; ++j) {
     for (Eigen::Index i = 0; i < e; ++i) cross_(i, j) = compliance_(equations_[i], inequalities_[j]);
     coupling_.col(j) = equation_factor_.solve(cross_.col(j));
   }
-  schur_.noalias() -= cross_.transpose().lazyProduct(coupling_);
+  for (Eigen::Index i = 0; i < c; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const double taken = cross_.col(i).dot(coupling_.col(j));
+      contacts_.compliance(static_cast<int>(i), static_cast<int>(j)) -= taken;
+      if (i != j) contacts_.compliance(static_cast<int>(j), static_cast<int>(i)) -= taken;
+    }
 }
 
-// Projected Gauss-Seidel on the contacts and the threads with the equations eliminated, to their forces from what each
-// row lacks.
+// The forces of contacts and threads with the equations eliminated, from what each row lacks. They begin with those of
+// the last elimination.
 void ConstraintSchur::solveContacts() {
-  const auto n = static_cast<int>(inequalities_.size());
-  contact_force_.setZero(n);
-  double moved = 2 * kContactMove;
-  for (int sweep = 0; sweep < kContactSweeps && moved > kContactMove; ++sweep) {
-    moved = sweepContacts(contact_force_);
-    for (int t = 0; t < thread_count_; ++t) moved = std::max(moved, sweepThread(threads_[t], contact_force_));
-    if (contacts_.empty() && thread_count_ == 1) break;  // it is alone
+  slideThreads();
+  violation_ = contacts_.solve(contact_residual_.data(), contact_force_.data());
+  for (std::size_t i = 0; i < inequalities_.size(); ++i) {
+    const int row = inequalities_[i];
+    force_[row] = contact_force_[static_cast<Eigen::Index>(i)];
+    moves_[row] -= contacts_.left(static_cast<int>(i));
+    holds_[static_cast<std::size_t>(row)] = contacts_.holds(static_cast<int>(i)) ? 1 : 0;
   }
-  for (int i = 0; i < n; ++i) force_[inequalities_[i]] = contact_force_[i];
+}
+
+// How far threads slide through their eyelets. Each thread is solved for given forces of the others.
+void ConstraintSchur::slideThreads() {
+  if (thread_count_ == 0 || threads_held_) return;
+  double moved = 2 * kSlideMove;
+  for (int sweep = 0; sweep < kSlideSweeps && moved > kSlideMove; ++sweep) {
+    moved = contact_list_.empty() ? 0 : contacts_.sweepContacts(contact_residual_.data(), contact_force_.data());
+    for (int t = 0; t < thread_count_; ++t) moved = std::max(moved, slideThread(threads_[t]));
+    if (contact_list_.empty() && thread_count_ == 1) break;  // it is alone
+  }
   for (int t = 0; t < thread_count_; ++t) {
     const Thread& thread = threads_[t];
     for (int k = 0; k + 1 < thread.count; ++k) {
@@ -286,45 +308,30 @@ void ConstraintSchur::solveContacts() {
       slid_[row] = slid;
       moves_[row] += slid;  // the segment has lost it: its spots have to come nearer
       moves_[row + 1] -= slid;
+      contact_residual_[thread.first + k] += slid;
+      contact_residual_[thread.first + k + 1] -= slid;
     }
   }
 }
 
-double ConstraintSchur::sweepContacts(Eigen::VectorXd& lambda) {
-  double moved = 0;
-  for (const Contact& contact : contacts_) {
-    const int i = contact.first;
-    const Eigen::Vector3d before = lambda.segment<3>(i);
-    const double normal_residual = contact_residual_[i] - schur_.row(i).dot(lambda);
-    lambda[i] = std::max(0.0, lambda[i] + normal_residual / schur_(i, i));
-    const double limit = contact.friction * lambda[i];
-    for (int k = 1; k < 3; ++k)
-      lambda[i + k] += (contact_residual_[i + k] - schur_.row(i + k).dot(lambda)) / schur_(i + k, i + k);
-    const double size = std::hypot(lambda[i + 1], lambda[i + 2]);
-    if (size > limit) {
-      lambda[i + 1] *= limit / size;
-      lambda[i + 2] *= limit / size;
-    }
-    for (int k = 0; k < 3; ++k) moved = std::max(moved, std::abs(lambda[i + k] - before[k]) * schur_(i + k, i + k));
-  }
-  return moved;
-}
-
-double ConstraintSchur::sweepThread(Thread& thread, Eigen::VectorXd& lambda) {
+double ConstraintSchur::slideThread(Thread& thread) {
   thread_residual_.resize(thread.count);
+  thread_compliance_.resize(thread.count, thread.count);
   for (int k = 0; k < thread.count; ++k) {
     const int i = thread.first + k;
-    thread_residual_[k] =
-        contact_residual_[i] - schur_.row(i).dot(lambda) +
-        schur_.row(i).segment(thread.first, thread.count).dot(lambda.segment(thread.first, thread.count));
+    double residual = contact_residual_[i];
+    for (int j = 0; j < contacts_.size(); ++j)
+      if (j < thread.first || j >= thread.first + thread.count)
+        residual -= contacts_.compliance(i, j) * contact_force_[j];
+    thread_residual_[k] = residual;
+    for (int j = 0; j < thread.count; ++j) thread_compliance_(k, j) = contacts_.compliance(i, thread.first + j);
   }
-  slideThread(thread_residual_, schur_.block(thread.first, thread.first, thread.count, thread.count), thread.capstan,
-              thread.slide);
+  vibe::slideThread(thread_residual_, thread_compliance_, thread.capstan, thread.slide);
   double moved = 0;
   for (int k = 0; k < thread.count; ++k) {
-    const int i = thread.first + k;
-    moved = std::max(moved, std::abs(thread.slide.tension[k] - lambda[i]) * schur_(i, i));
-    lambda[i] = thread.slide.tension[k];
+    double& force = contact_force_[thread.first + k];
+    moved = std::max(moved, std::abs(thread.slide.tension[k] - force) * thread_compliance_(k, k));
+    force = thread.slide.tension[k];
   }
   return moved;
 }
@@ -333,6 +340,7 @@ double ConstraintSchur::sweepThread(Thread& thread, Eigen::VectorXd& lambda) {
 void ConstraintSchur::solveRows() {
   const auto e = static_cast<Eigen::Index>(equations_.size()), c = static_cast<Eigen::Index>(inequalities_.size());
   force_.setZero(rowCount());
+  violation_ = 0;
   equation_residual_.resize(e);
   for (Eigen::Index i = 0; i < e; ++i) equation_residual_[i] = residual_[equations_[i]];
   if (c > 0) {
@@ -362,6 +370,7 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   findRowValues(y);
   moves_ = rhs;
   slid_.setZero(m);
+  holds_.assign(static_cast<std::size_t>(m), 1);
   residual_ = rhs - row_value_;
   if (gas_stiffness_ != 0 && m > 0) residual_ -= gas_row_ * (gas_residual / gas_norm2_);
   solveRows();

@@ -7,6 +7,7 @@
 
 #include "solver/attachment_columns.hpp"
 #include "solver/constraint_rows.hpp"
+#include "solver/contact_problem.hpp"
 #include "sparse/factor.hpp"
 #include "suture/capstan.hpp"
 
@@ -34,9 +35,13 @@ class ConstraintSchur {
   void eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, double swelling, float* y);
   const Eigen::VectorXd& forces() const { return force_; }
   double gasForce() const { return gas_force_; }
-  /// How far the values of the rows that act move in the solution: `rhs`, less what compliance leaves, plus what
-  /// threads slid [m].
+  /// How far the values of the rows move in the solution, plus what threads slid: `rhs`, less what compliance leaves,
+  /// for the rows that hold [m].
   const Eigen::VectorXd& moves() const { return moves_; }
+  /// The row moves to where `rhs` wants it: it is not a contact that opens or slips, nor a slack thread.
+  bool holds(int row) const { return holds_[static_cast<std::size_t>(row)] != 0; }
+  /// Largest violation of a contact or thread that the last elimination left [m].
+  double violation() const { return violation_; }
   /// Thread that slid out of a row into the next row of its thread [m].
   double slid(int row) const { return slid_[row]; }
   /// From now on until setRows() threads do not slide.
@@ -77,9 +82,10 @@ class ConstraintSchur {
   void formCompliance();
   double complianceBetween(int i, int j);
   void formBlocks();
+  void eliminateEquations(Eigen::Index equations, Eigen::Index inequalities);
   void solveContacts();
-  double sweepContacts(Eigen::VectorXd& force);
-  double sweepThread(Thread& thread, Eigen::VectorXd& force);
+  void slideThreads();
+  double slideThread(Thread& thread);
   void solveRows();
   void solveEquations();
 
@@ -97,9 +103,13 @@ class ConstraintSchur {
   Eigen::VectorXd row_value_;
   std::vector<int> equations_;     // row numbers: those of equations, then of springs
   std::vector<int> inequalities_;  // row numbers: normals and tangents of contacts, then pulls of threads
-  std::vector<Contact> contacts_;
+  std::vector<Contact> contact_list_;
+  ContactProblem contacts_;  // of inequalities_
   std::vector<Thread> threads_;
   int thread_count_ = 0;
+  bool threads_held_ = false;
+  double violation_ = 0;
+  std::vector<char> holds_;  // per row
   bool yields_ = false;
   YieldMatrix tool_compliance_;
   Eigen::Matrix<double, kYieldDofs, Eigen::Dynamic> yield_, given_;  // per row: of its target; compliance times this
@@ -107,7 +117,8 @@ class ConstraintSchur {
   double gas_stiffness_ = 0, gas_norm2_ = 0;
   Eigen::VectorXd gas_row_, force_, moves_, slid_;
   double gas_force_ = 0;
-  Eigen::MatrixXd compliance_, block_, cross_, schur_, coupling_;  // of equations, with contacts, of contacts
+  Eigen::MatrixXd compliance_, block_, cross_, coupling_,
+      thread_compliance_;  // of equations, with contacts, of contacts
   Eigen::VectorXd residual_, equation_residual_, contact_residual_, equation_force_, contact_force_, thread_residual_;
   Eigen::LDLT<Eigen::MatrixXd> equation_factor_;
 };
