@@ -58,6 +58,7 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
   for (const ThreadRows& thread : rows.threads) addThreadRows(thread);
   rows_.finish(cache);
   row_value_.setZero(rowCount());
+  force_.setZero(rowCount());
   sortRows(rows);
   setYield(rows);
   formed_ = false;
