@@ -9,17 +9,7 @@
 namespace vibe {
 
 ImplicitSolver::ImplicitSolver(std::shared_ptr<const ShellElements> shell, ElasticBody body, StepSettings settings)
-    : shell_(std::move(shell)), stepper_(std::move(body), settings) {
-  // a tenth of what it takes to make the whole organ twice as large
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  const std::vector<Eigen::Vector3d>& rest = stepper_.body().rest;
-  for (const Eigen::Vector3d& p : rest) centre += p / static_cast<double>(rest.size());
-  std::vector<double> swollen;
-  for (const Eigen::Vector3d& p : rest)
-    for (int k = 0; k < 3; ++k) swollen.push_back(p[k] - centre[k]);
-  std::vector<double> gradient(swollen.size());
-  absurd_energy_ = 0.1 * shell_->evaluate(swollen.data(), gradient.data());
-}
+    : shell_(std::move(shell)), stepper_(std::move(body), settings), limits_(*shell_, stepper_.body().rest) {}
 
 std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) const {
   auto scratch = std::make_unique<ImplicitScratch>();
@@ -31,8 +21,7 @@ std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) c
 
 void ImplicitSolver::advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
                              SolverScratch& scratch, ThreadPool&, StepReport& report) const {
-  ImplicitStep(model, stepper_, absurd_energy_, motion, insufflator_on, state, static_cast<ImplicitScratch&>(scratch),
-               report)
+  ImplicitStep(model, stepper_, limits_, motion, insufflator_on, state, static_cast<ImplicitScratch&>(scratch), report)
       .run();
 }
 

@@ -31,6 +31,10 @@ constexpr double kRecoveryRate = 20;
 // Steps between checks for an organ that is inside out. Design choice: the check costs a pass over all triangles.
 constexpr int kCheckEvery = 10;
 
+// Share of the wall's tension that the gas has to bear for a state to count as held by it. Design choice: half; the
+// rest is motion and what else pulls.
+constexpr double kHeldPart = 0.5;
+
 void stopMotion(State& state) {
   for (auto* v : {&state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az})
     std::fill(v->begin(), v->end(), 0.0);
@@ -38,12 +42,12 @@ void stopMotion(State& state) {
 
 }  // namespace
 
-ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, double absurd_energy,
+ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, const LossLimits& limits,
                            const ToolMotion* motion, bool insufflator_on, State& state, ImplicitScratch& scratch,
                            StepReport& report)
     : model_(model),
       stepper_(stepper),
-      absurd_energy_(absurd_energy),
+      limits_(limits),
       motion_(motion),
       state_(state),
       report_(report),
@@ -80,13 +84,30 @@ bool ImplicitStep::asleep(Activity activity) const {
   return activity == Activity::Sleep && state_.solver.rest_steps >= kRestSteps && state_.step % kWakeEvery != 0;
 }
 
-// Elasticity does not lead back from everywhere: an everted wall, for example, rests in some other shape.
+// Elasticity does not lead back from everywhere: an everted wall, for example, rests in some other shape, and a wall
+// that bursts has no equilibrium. What loads hold is left alone.
 bool ImplicitStep::lost() const {
   const StepperMemory& memory = state_.solver;
   const double energy =
       memory.steps == 0 ? stepper_.elasticEnergy(motionOf(), *scratch_.stepper) : memory.elastic_energy;
-  if (energy > absurd_energy_) return true;
-  return memory.steps % kCheckEvery == 0 && lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z) < 0;
+  if (energy > limits_.unheldEnergy() && !heldByGas(energy)) return true;
+  if (memory.steps % kCheckEvery != 0) return false;
+  const double volume = lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z);
+  return volume < 0 || (model_.scene.gas && limits_.bursts(volume, state_.pressure, context_.insufflator_on));
+}
+
+// Whether the gas bears most of the wall's tension. By the virial theorem, forces in balance have opposite sums of
+// force times position: 3 p V of the gas. That of the wall is at least twice its energy.
+bool ImplicitStep::heldByGas(double energy) const {
+  if (!model_.scene.gas || !(3 * state_.pressure * state_.volume > 2 * kHeldPart * energy)) return false;
+  if (state_.solver.steps % kCheckEvery != 0) return true;
+  stepper_.elasticEnergy(motionOf(), *scratch_.stepper);
+  const std::vector<float>& gradient = scratch_.stepper->work;
+  double tension = 0;
+  for (int i = 0; i < model_.particle_count; ++i)
+    tension += gradient[4 * i] * state_.x[i] + gradient[4 * i + 1] * state_.y[i] + gradient[4 * i + 2] * state_.z[i];
+  const double volume = lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z);
+  return 3 * state_.pressure * volume > kHeldPart * tension && volume > 0;
 }
 
 // Straight towards the rest position and without forces: a lost state has no meaningful dynamics.

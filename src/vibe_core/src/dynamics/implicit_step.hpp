@@ -2,6 +2,7 @@
 
 #include "contact/tool_motion.hpp"
 #include "dynamics/implicit_scratch.hpp"
+#include "dynamics/loss_limits.hpp"
 #include "solver/implicit_stepper.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/model/model.hpp"
@@ -14,8 +15,8 @@ namespace vibe {
 /// forces. Resting tissue is skipped; lost tissue is led back to rest.
 class ImplicitStep {
  public:
-  /// @param absurd_energy  elastic energy above which the state counts as lost [J]
-  ImplicitStep(const Model& model, const ImplicitStepper& stepper, double absurd_energy, const ToolMotion* motion,
+  /// @param limits  that tell a lost state
+  ImplicitStep(const Model& model, const ImplicitStepper& stepper, const LossLimits& limits, const ToolMotion* motion,
                bool insufflator_on, State& state, ImplicitScratch& scratch, StepReport& report);
   void run();
 
@@ -23,6 +24,7 @@ class ImplicitStep {
   Activity gather();
   bool asleep(Activity activity) const;
   bool lost() const;
+  bool heldByGas(double energy) const;
   void recover();
   bool solve();
   void store();
@@ -37,7 +39,7 @@ class ImplicitStep {
 
   const Model& model_;
   const ImplicitStepper& stepper_;
-  double absurd_energy_;
+  const LossLimits& limits_;
   const ToolMotion* motion_;
   State& state_;
   StepReport& report_;

@@ -73,25 +73,20 @@ TEST(Energy, AccountOfGrabsIsClosed) {
 // The scope presses into the wall and withdraws.
 TEST(Energy, AccountOfAPressedScopeIsClosed) {
   Session session(stomachScene());
-  session.run(8, [](const State& state) {
+  const auto insert = [](double length, bool insufflate) {
     StepInput input;
-    input.buttons[Insufflate] = 1;
-    input.joints[Insertion] = std::min(0.08, 0.02 * state.time);
+    input.buttons[Insufflate] = insufflate ? 1 : 0;
+    input.joints[Insertion] = length;
+    input.joints[TipUpDown] = 0.4;
     return input;
-  });
+  };
+  session.run(8, [&](const State& state) { return insert(std::min(0.12, 0.02 * state.time), true); });
   const double before = session.account().tool_work;
-  session.run(3, [](const State& state) {
-    StepInput input;
-    input.joints[Insertion] = std::min(0.16, 0.08 + 0.05 * (state.time - 8));
-    return input;
-  });
+  session.run(3, [&](const State& state) { return insert(std::min(0.18, 0.12 + 0.05 * (state.time - 8)), false); });
   ASSERT_GT(session.account().tool_work, before + 0.02);
   ASSERT_GT(session.simulation.state().contact_count, 0);
-  session.run(4, [](const State& state) {
-    StepInput input;
-    input.joints[Insertion] = std::max(0.05, 0.16 - 0.05 * (state.time - 11));
-    return input;
-  });
+  session.run(4, [&](const State& state) { return insert(std::max(0.05, 0.18 - 0.05 * (state.time - 11)), false); });
+  EXPECT_EQ(session.simulation.state().contact_count, 0);
   expectClosed(session);
 }
 
