@@ -6,6 +6,7 @@
 #include "common/command_line.hpp"
 #include "contact/contact_states.hpp"
 #include "contact/contact_table.hpp"
+#include "contact/grip_refinement.hpp"
 #include "contact/hard_cases.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
@@ -23,6 +24,8 @@ struct Options {
   int reference_rate = 960, reference_iterations = 8, repeats = 1;
   std::string steps, first_crossing;
   std::vector<std::uint64_t> seeds{1};
+  std::vector<int> particles{1000, 2000, 3618, 8000, 16000};
+  int sites = 6;
   bool brief = false;
   bool check_reference = false, no_reference = false;
 };
@@ -92,6 +95,20 @@ CLI::App* addHard(CLI::App& app, Options& o) {
   return hard;
 }
 
+CLI::App* addRefinement(CLI::App& app, Options& o) {
+  CLI::App* refinement = app.add_subcommand("refinement", "force of a pull by 20 mm on finer and finer meshes");
+  refinement->add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")
+      ->type_name("FILE");
+  refinement->add_option("--particles", o.particles, "meshes (default: 1000 2000 3618 8000 16000)")
+      ->type_name("N")
+      ->check(wholeFrom(100, 200000));
+  refinement->add_option("--sites", o.sites, "places on each, 3 mm apart (default: 6)")
+      ->type_name("N")
+      ->check(wholeFrom(1, 30));
+  refinement->add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
+  return refinement;
+}
+
 template <class T>
 T entry(const std::vector<T>& list, std::size_t k, const char* option, std::size_t rates, T otherwise) {
   if (list.empty()) return otherwise;
@@ -146,6 +163,12 @@ void runHard(const Options& options) {
   save(options.csv, [&](std::ostream& out) { writeHardResults(results, out); });
 }
 
+void runRefinement(const Options& options) {
+  const auto rows = refineGrip(sceneOf(options), options.particles, options.sites, std::cerr);
+  printRefinement(rows, std::cerr);
+  save(options.csv, [&](std::ostream& out) { writeRefinement(rows, out); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -153,9 +176,11 @@ int main(int argc, char** argv) {
   CLI::App app{"Measures steps in which something touches.", "vibe_contact"};
   CLI::App* states = addStates(app, options);
   CLI::App* hard = addHard(app, options);
+  CLI::App* refinement = addRefinement(app, options);
   app.require_subcommand(1);
   return runProgram(app, argc, argv, [&] {
     if (*states) runStates(options);
     if (*hard) runHard(options);
+    if (*refinement) runRefinement(options);
   });
 }
