@@ -31,6 +31,10 @@ struct Run {
   std::uint64_t seed;
 };
 
+void PrintTo(const Run& run, std::ostream* out) {
+  *out << run.name << " " << run.seed;
+}
+
 std::vector<Run> allRuns() {
   std::vector<Run> runs;
   for (const std::string& name : hardCaseNames())

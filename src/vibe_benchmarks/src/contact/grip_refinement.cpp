@@ -20,7 +20,6 @@ constexpr double kPullTime = 1;         // [s]
 constexpr double kLongestWait = 3;      // until it rests [s]
 constexpr double kStill = 2e-4;         // [m/s]
 constexpr double kSiteDistance = 3e-3;  // [m]
-constexpr double kSmooth = 0.02;        // radius of the wall whose mean normal is the direction of the pull [m]
 constexpr double kFastFlow = 5e-4;      // of the insufflator: full within a second [m^3/s]
 constexpr int kCorrections = 4;         // of the target of the spring
 
@@ -33,12 +32,7 @@ Site siteAt(const Model& model, const SurfaceView& wall, double across, double a
   const WallPlan plan(model.organ, wall);
   Site site;
   site.place = placeOf(plan.at(0.5 * plan.length() + along, across), wall);
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  for (const auto& t : wall.triangles) {
-    const Eigen::Vector3d a = wall.position(t[0]), b = wall.position(t[1]), c = wall.position(t[2]);
-    if (((a + b + c) / 3 - site.place).norm() < kSmooth) normal += (b - a).cross(c - a);
-  }
-  site.inwards = -normal.normalized();
+  site.inwards = inwardsAt(wall, site.place);
   double nearest = HUGE_VAL;
   for (int i = 0; i < model.particle_count; ++i) {
     const double distance = (wall.position(i) - site.place).norm();
