@@ -8,6 +8,7 @@
 #include "solver/quasi_newton.hpp"
 #include "solver/rigid_guess.hpp"
 #include "solver/step_rows.hpp"
+#include "solver/thread_couplings.hpp"
 #include "solver/time_scheme.hpp"
 
 namespace vibe {
@@ -298,6 +299,7 @@ void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperScratch& scrat
   scratch.columns.reset();
   scratch.columns.setAttachments(*scratch.factor, loads.attachments);
   scratch.schur.reset(*scratch.factor);
+  findMissingTurns(loads, couplings, scratch.rows);
   scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
 }
 
