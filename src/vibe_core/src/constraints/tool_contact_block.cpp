@@ -15,6 +15,10 @@ namespace {
 // Points of the wall that are predicted this near to the tool become contacts, because they may be reached within the
 // step. Design choice: covers 0.12 m/s that the prediction from velocities does not foresee in a step of 1/60 s [m].
 constexpr double kContactMargin = 2e-3;
+// Stiffness of tissue that cannot give way sideways over its Young's modulus: (1 - nu) / ((1 + nu) (1 - 2 nu)) for a
+// Poisson's ratio of 0.49. Design choice: soft tissue hardly changes its volume; the scene's ratio is that of the
+// membrane [1].
+constexpr double kConfined = 17;
 // Share of the largest friction above which a contact counts as sliding. Design choice: the contact iterations stop
 // within this of the cone [1].
 constexpr double kSticks = 0.999;
@@ -90,10 +94,19 @@ class ToolContactBlock : public ConstraintBlock {
     const double surface = contact.normal.dot(contact.tool_point) + contact.clearance;
     // what is deep inside (the tool was put there) comes out slowly, not at once
     constraint.offset = std::min(surface, contact.normal.dot(anchor) + kDepenetrationSpeed * context.step);
+    constraint.compliance = complianceOf(model, contact);
     constraint.friction = model.scene.scope->friction;
     constraint.anchor = anchor;
     motion_.emplace_back(anchor - p);
     link_.push_back(link);
+  }
+
+  // The inner half of the wall between the tool and the mid-surface is compressed where it cannot give way sideways.
+  static double complianceOf(const Model& model, const SurfaceContact& contact) {
+    double area = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.point.count); ++k)
+      area += contact.point.weight[k] * model.area[contact.point.node[k]];
+    return contact.clearance / (kConfined * model.scene.tissue.young_modulus * area);
   }
 
   static Eigen::Vector3d placeOf(const SurfacePoint& point, const State& state) {
@@ -108,8 +121,8 @@ class ToolContactBlock : public ConstraintBlock {
   ToolTouch touchOf(const State& state, const ContactConstraint& contact, std::size_t number) const {
     ToolTouch touch;
     touch.kind = ToolTouch::Kind::Contact;
-    const auto nearest = std::max_element(contact.point.weight.begin(), contact.point.weight.end());
-    touch.node = contact.point.node[static_cast<std::size_t>(nearest - contact.point.weight.begin())];
+    touch.surface = contact.point;
+    touch.compliance = contact.compliance;
     touch.link = link_[number];
     touch.point = placeOf(contact.point, state);
     touch.motion = motion_[number];

@@ -31,7 +31,9 @@ std::uint64_t idOf(const ImpedanceBasis& basis) {
   hash.addWords(basis.positions.data(), basis.positions.size());
   hash.addWords(basis.gas_direction.data(), basis.gas_direction.size());
   hash.add(&basis.gas_stiffness, sizeof basis.gas_stiffness);
-  hash.add(basis.node.data(), basis.node.size() * sizeof(int));
+  for (const auto& nodes : basis.node) hash.add(nodes.data(), sizeof nodes);
+  for (const auto& weights : basis.weight) hash.add(weights.data(), sizeof weights);
+  hash.addWords(basis.compliance.data(), basis.compliance.size());
   for (const Eigen::Vector3d& direction : basis.direction) hash.add(direction.data(), 3 * sizeof(double));
   for (const auto& motion : basis.row_motion) hash.add(motion.data(), sizeof motion);
   return std::max<std::uint64_t>(1, hash.result());
@@ -44,8 +46,19 @@ void clear(ImpedanceBasis& basis) {
   basis.gas_direction.clear();
   basis.gas_stiffness = 0;
   basis.node.clear();
+  basis.weight.clear();
+  basis.compliance.clear();
   basis.direction.clear();
   basis.row_motion.clear();
+}
+
+bool isNode(int node) {
+  return node >= 0;
+}
+
+void setRow(const SurfacePoint& surface, const Eigen::Vector3d& direction, double compliance, EquationRow& row) {
+  row.form.setPoint(surface, direction);
+  row.compliance = compliance;
 }
 
 void setGas(const std::vector<float>& direction, double stiffness, ImpedanceBasis& basis) {
@@ -126,7 +139,9 @@ void ImpedanceEstimator::renew(const ToolContactRows& touch, const std::array<co
     next.positions[i] = static_cast<float>(positions[i % 3][i / 3]);
   setGas(gas_direction, gas_stiffness, next);
   for (const ToolRow& row : touch.rows) {
-    next.node.push_back(row.node);
+    next.node.push_back(row.surface.node);
+    next.weight.push_back(row.surface.weight);
+    next.compliance.push_back(row.compliance);
     next.direction.push_back(row.direction);
     asVector(next.row_motion.emplace_back()) = row.motion.transpose();
   }
@@ -181,7 +196,8 @@ void ImpedanceEstimator::make(const ImpedanceBasis& basis, Made& out) const {
   ConstraintRows rows;
   Eigen::MatrixXd motion(static_cast<Eigen::Index>(basis.node.size()), kToolMotions);
   for (std::size_t r = 0; r < basis.node.size(); ++r) {
-    rows.equations.add().form.setNode(basis.node[r], basis.direction[r]);
+    const int count = static_cast<int>(std::count_if(basis.node[r].begin(), basis.node[r].end(), isNode));
+    setRow({count, basis.node[r], basis.weight[r]}, basis.direction[r], basis.compliance[r], rows.equations.add());
     for (std::size_t m = 0; m < kToolMotions; ++m) motion(static_cast<Eigen::Index>(r), m) = basis.row_motion[r][m];
   }
   out.stiffness->setRows(rows);
@@ -204,7 +220,8 @@ void ImpedanceEstimator::setRows(const ToolContactRows& touch) {
   rows_.equations.clear();
   motion_.resize(static_cast<Eigen::Index>(touch.rows.size()), kToolMotions);
   for (std::size_t r = 0; r < touch.rows.size(); ++r) {
-    rows_.equations.add().form.setNode(touch.rows[r].node, touch.rows[r].direction);
+    const ToolRow& row = touch.rows[r];
+    setRow(row.surface, row.direction, row.compliance, rows_.equations.add());
     motion_.row(static_cast<Eigen::Index>(r)) = touch.rows[r].motion;
   }
 }
@@ -220,7 +237,7 @@ std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& 
   if (factor_.info() != Eigen::Success || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
 
   nodes_.clear();
-  for (const ToolRow& row : touch.rows) nodes_.push_back(row.node);
+  for (const ToolRow& row : touch.rows) nodes_.insert(nodes_.end(), row.surface.node.begin(), row.surface.node.end());
   const bool comparable = touch.smooth && consecutive && nodes_ == memory.last_nodes;
   memory.has_last = memory.has_last && consecutive;
   memory.last_nodes.swap(nodes_);
