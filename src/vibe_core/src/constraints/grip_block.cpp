@@ -15,7 +15,7 @@ class GripBlock : public ConstraintBlock {
     for (const GripPoint& point : context.state.grip) {
       node_[0] = point.particle;
       const Eigen::Vector3d target = context.tool->end[context.model.grip_link] * point.local;
-      first_.push_back(loads.addPoint(node_, weight_, target, point.compliance));
+      first_.push_back(loads.addPoint(node_, weight_, target, 0));
     }
     return context.state.grip.empty() ? Activity::Sleep : Activity::Disturb;
   }
@@ -27,7 +27,6 @@ class GripBlock : public ConstraintBlock {
       ToolTouch touch;
       touch.kind = ToolTouch::Kind::Grip;
       touch.surface = SurfacePoint::ofNode(point.particle);
-      touch.compliance = point.compliance;
       touch.link = link;
       touch.point = context.tool->end[link] * point.local;
       touch.motion = touch.point - context.tool->start[link] * point.local;

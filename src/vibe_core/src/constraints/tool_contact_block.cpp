@@ -23,17 +23,10 @@ constexpr double kConfined = 17;
 // within this of the cone [1].
 constexpr double kSticks = 0.999;
 
-// The ends are open where the organ goes on: the scope passes through their closing surface.
-std::vector<char> endsOf(const Organ& organ) {
-  std::vector<char> passable;
-  for (const End end : organ.end) passable.push_back(end != End::None ? 1 : 0);
-  return passable;
-}
-
 class ToolContactBlock : public ConstraintBlock {
  public:
   explicit ToolContactBlock(const Model& model)
-      : passable_(endsOf(model.organ)),
+      : passable_(passableVertices(model.organ)),
         excluded_(passable_.size()),
         contacts_(*model.tool, model.organ.surface, model.organ.thickness, passable_) {
     for (auto& v : ahead_) v.resize(static_cast<std::size_t>(model.particle_count));
@@ -41,19 +34,19 @@ class ToolContactBlock : public ConstraintBlock {
 
   Activity prepare(const StepContext& context, BodyLoads& loads) override {
     first_ = loads.contacts.size();
-    motion_.clear();
+    place_.clear();
     link_.clear();
     if (context.tool == nullptr) return Activity::Sleep;
     lookAhead(context);
     exclude(context);
     findContacts(context, loads);
-    return motion_.empty() ? Activity::Sleep : Activity::Disturb;
+    return place_.empty() ? Activity::Sleep : Activity::Disturb;
   }
 
   void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
-    for (std::size_t c = 0; c < motion_.size(); ++c) {
+    for (std::size_t c = 0; c < place_.size(); ++c) {
       const ContactConstraint& contact = loads.contacts[first_ + c];
-      if (!contact.force.isZero()) touches.push_back(touchOf(context.state, contact, c));
+      if (!contact.force.isZero()) touches.push_back(touchOf(context, contact, c));
     }
   }
 
@@ -86,7 +79,7 @@ class ToolContactBlock : public ConstraintBlock {
     const Model& model = context.model;
     const int link = model.tool->shapes()[contact.shape].link;
     const Eigen::Vector3d p = placeOf(contact.point, context.state);
-    const Eigen::Vector3d anchor = context.tool->end[link] * (context.tool->start[link].inverse() * p);
+    const Eigen::Vector3d place = context.tool->start[link].inverse() * p, anchor = context.tool->end[link] * place;
     ContactConstraint& constraint = loads.contacts.add();
     constraint = ContactConstraint();
     constraint.point = contact.point;
@@ -97,7 +90,7 @@ class ToolContactBlock : public ConstraintBlock {
     constraint.compliance = complianceOf(model, contact);
     constraint.friction = model.scene.scope->friction;
     constraint.anchor = anchor;
-    motion_.emplace_back(anchor - p);
+    place_.push_back(place);
     link_.push_back(link);
   }
 
@@ -118,14 +111,14 @@ class ToolContactBlock : public ConstraintBlock {
     return sum;
   }
 
-  ToolTouch touchOf(const State& state, const ContactConstraint& contact, std::size_t number) const {
+  ToolTouch touchOf(const StepContext& context, const ContactConstraint& contact, std::size_t number) const {
     ToolTouch touch;
     touch.kind = ToolTouch::Kind::Contact;
     touch.surface = contact.point;
     touch.compliance = contact.compliance;
     touch.link = link_[number];
-    touch.point = placeOf(contact.point, state);
-    touch.motion = motion_[number];
+    touch.point = placeOf(contact.point, context.state);
+    touch.motion = context.tool->end[touch.link] * place_[number] - context.tool->start[touch.link] * place_[number];
     touch.force = contact.force;
     const double push = contact.force.dot(contact.normal);
     const double drag = (contact.force - push * contact.normal).norm();
@@ -139,9 +132,9 @@ class ToolContactBlock : public ConstraintBlock {
   SurfaceContacts contacts_;
   std::array<std::vector<double>, 3> ahead_;  // [m]
   SurfacePath path_;
-  std::size_t first_ = 0;                // of its contacts in the loads
-  std::vector<Eigen::Vector3d> motion_;  // of the tool at each contact [m]
-  std::vector<int> link_;                // of the tool at each contact
+  std::size_t first_ = 0;               // of its contacts in the loads
+  std::vector<Eigen::Vector3d> place_;  // of each contact at the start of the step, in the frame of its link [m]
+  std::vector<int> link_;               // of the tool at each contact
 };
 
 }  // namespace

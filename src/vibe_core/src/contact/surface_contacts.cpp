@@ -27,13 +27,6 @@ constexpr double kNearest = 0.5;
 constexpr double kSameSide = 0.7;
 constexpr double kBuried = 1e-6;  // depth of a place of one shape within another from which it cannot touch [m]
 
-std::vector<std::array<int, 3>> closedTriangles(const SurfaceMesh& surface, const std::vector<char>& passable) {
-  std::vector<std::array<int, 3>> closed;
-  for (const std::array<int, 3>& n : surface.triangles)
-    if (passable[n[0]] == 0 && passable[n[1]] == 0 && passable[n[2]] == 0) closed.push_back(n);
-  return closed;
-}
-
 std::vector<std::array<int, 3>> neighbours(const std::vector<std::array<int, 3>>& triangles) {
   std::map<std::pair<int, int>, int> of_edge;  // directed
   for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -67,12 +60,18 @@ bool isSamePlace(const SurfacePoint& one, const SurfacePoint& other) {
 
 }  // namespace
 
+std::vector<char> passableVertices(const Organ& organ) {
+  std::vector<char> passable;
+  for (const End end : organ.end) passable.push_back(end != End::None ? 1 : 0);
+  return passable;
+}
+
 SurfaceContacts::SurfaceContacts(const ToolModel& tool, const SurfaceMesh& surface,
                                  const std::vector<double>& thickness, const std::vector<char>& passable)
-    : triangles_(closedTriangles(surface, passable)),
-      neighbour_(neighbours(triangles_)),
-      tool_(tool),
-      near_triangles_(triangles_, static_cast<int>(surface.vertices.size())) {
+    : tool_(tool),
+      near_triangles_(surface, passable),
+      triangles_(near_triangles_.triangles()),
+      neighbour_(neighbours(triangles_)) {
   for (const double t : thickness) {
     half_thickness_.push_back(0.5 * t);
     max_half_thickness_ = std::max(max_half_thickness_, 0.5 * t);
@@ -83,7 +82,7 @@ SurfaceContacts::SurfaceContacts(const ToolModel& tool, const SurfaceMesh& surfa
     for (std::size_t k = 0; k < 3; ++k) length[k] = (surface.vertices[n[(k + 1) % 3]] - surface.vertices[n[k]]).norm();
     length_.push_back(length);
   }
-  fraction_.resize(thickness.size());
+  hit_.resize(thickness.size());
   stamp_.resize(thickness.size());
   pair_of_.assign(triangles_.size(), -1);
 }
@@ -116,6 +115,7 @@ const std::vector<SurfaceContact>& SurfaceContacts::find(const std::vector<Eigen
 void SurfaceContacts::followPairs(const SurfacePath& path, double margin, std::size_t first, std::size_t last) {
   pairs_.clear(), vertices_.clear();
   ++count_;
+  fraction_ = 1;
   for (std::size_t k = first; k < last; ++k) {
     const auto [shape, t] = near_[k];
     const std::array<int, 3>& n = triangles_[t];
@@ -126,9 +126,10 @@ void SurfaceContacts::followPairs(const SurfacePath& path, double margin, std::s
     pair_of_[t] = static_cast<int>(pairs_.size());
     pairs_.push_back(pair);
     for (const int v : n) {
-      if (stamp_[v] != count_) stamp_[v] = count_, fraction_[v] = 1, vertices_.push_back(v);
-      fraction_[v] = std::min(fraction_[v], pair.approach.fraction);
+      if (stamp_[v] != count_) stamp_[v] = count_, hit_[v] = 0, vertices_.push_back(v);
+      if (pair.approach.fraction < 1) hit_[v] = 1;
     }
+    fraction_ = std::min(fraction_, pair.approach.fraction);
   }
   std::sort(vertices_.begin(), vertices_.end());
 }
@@ -136,7 +137,7 @@ void SurfaceContacts::followPairs(const SurfacePath& path, double margin, std::s
 void SurfaceContacts::addVertices(const SurfacePath& path, double margin, int shape,
                                   const std::vector<char>& excluded) {
   for (const int v : vertices_)
-    if (excluded[v] == 0) offer(SurfacePoint::ofNode(v), path, shape, fraction_[v], margin);
+    if (excluded[v] == 0) offer(SurfacePoint::ofNode(v), path, shape, hit_[v] != 0, margin);
 }
 
 void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded) {
@@ -168,12 +169,13 @@ void SurfaceContacts::addEdge(const SurfacePath& path, double margin, int shape,
                               int parts) {
   const std::array<int, 3>& n = triangles_[pair.triangle];
   const int across = neighbour_[pair.triangle][static_cast<std::size_t>(edge)];
-  const double other = across >= 0 && pair_of_[across] >= 0 ? pairs_[pair_of_[across]].approach.fraction : 1;
+  const bool hit = pair.approach.fraction < 1 ||
+                   (across >= 0 && pair_of_[across] >= 0 && pairs_[pair_of_[across]].approach.fraction < 1);
   int from = n[static_cast<std::size_t>(edge)], to = n[static_cast<std::size_t>((edge + 1) % 3)];
   if (from > to) std::swap(from, to);
   for (int k = 1; k < parts; ++k) {
     const double weight = static_cast<double>(k) / parts;
-    offer({2, {from, to, -1}, {1 - weight, weight, 0}}, path, shape, std::min(other, pair.approach.fraction), margin);
+    offer({2, {from, to, -1}, {1 - weight, weight, 0}}, path, shape, hit, margin);
   }
 }
 
@@ -181,12 +183,12 @@ void SurfaceContacts::addInterior(const SurfacePath& path, double margin, int sh
   for (int i = 1; i < parts; ++i)
     for (int j = 1; i + j < parts; ++j) {
       const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
-      offer({3, triangles_[pair.triangle], {1 - u - v, u, v}}, path, shape, pair.approach.fraction, margin);
+      offer({3, triangles_[pair.triangle], {1 - u - v, u, v}}, path, shape, pair.approach.fraction < 1, margin);
     }
 }
 
-void SurfaceContacts::offer(const SurfacePoint& point, const SurfacePath& path, int shape, double fraction,
-                            double margin) {
+// @param hit  the shape would pass through the wall there
+void SurfaceContacts::offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin) {
   const auto placeAt = [&](double when) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k)
@@ -196,11 +198,16 @@ void SurfaceContacts::offer(const SurfacePoint& point, const SurfacePath& path, 
   double clearance = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k)
     clearance += point.weight[k] * half_thickness_[point.node[k]];
-  const Eigen::Vector3d p = placeAt(fraction);
-  const TriangleGap gap = tool_.gap(shape, fraction, {p, p, p});
-  if (fraction == 1 && gap.distance - tool_.radius(shape) - clearance > margin) {
-    const Eigen::Vector3d from = placeAt(0);
-    if (tool_.gap(shape, 0, {from, from, from}).distance - tool_.radius(shape) - clearance > margin) return;
+  const auto gapAt = [&](double when) {
+    const Eigen::Vector3d p = placeAt(when);
+    return tool_.gap(shape, when, {p, p, p});
+  };
+  const double reach = tool_.radius(shape) + clearance + margin;
+  double fraction = fraction_;
+  TriangleGap gap = gapAt(fraction);
+  if (!hit && gap.distance > reach) {  // it leaves; yet it may come back
+    gap = gapAt(fraction = 0);
+    if (gap.distance > reach) return;
   }
   add(point, shape, fraction, gap, clearance);
 }

@@ -4,10 +4,14 @@
 #include <vector>
 
 #include "contact/tool_approach.hpp"
-#include "vibe_core/geometry/surface_mesh.hpp"
+#include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/solver/body_loads.hpp"
 
 namespace vibe {
+
+/// Per vertex: the tool passes through the triangles there. The ends are open where the organ goes on: the scope passes
+/// through their closing surface.
+std::vector<char> passableVertices(const Organ& organ);
 
 /// A point of the wall that a tool shape touches or may reach within the step.
 struct SurfaceContact {
@@ -44,39 +48,38 @@ class SurfaceContacts {
                                           const std::vector<Eigen::Isometry3d>& end, const SurfacePath& path,
                                           double margin, const std::vector<char>& excluded);
 
-  const SweptTool& tool() const { return tool_; }
+  /// Those that the tool cannot pass.
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
-  double halfThickness(const std::array<int, 3>& node, const Eigen::Vector3d& weight) const;
-  double maxHalfThickness() const { return max_half_thickness_; }
-  NearTriangles& near() { return near_triangles_; }
 
  private:
   struct Pair {
     int triangle;
     ToolApproach approach;
   };
+  double halfThickness(const std::array<int, 3>& node, const Eigen::Vector3d& weight) const;
   void followPairs(const SurfacePath& path, double margin, std::size_t first, std::size_t last);
   void addVertices(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   void addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   int partsOf(int shape, double length) const;
   void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, int parts);
   void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts);
-  void offer(const SurfacePoint& point, const SurfacePath& path, int shape, double fraction, double margin);
+  void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin);
   void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance);
   bool isBuried(const SurfaceContact& contact) const;
   void removeDuplicates();
 
-  std::vector<std::array<int, 3>> triangles_;  // that the tool cannot pass
+  SweptTool tool_;
+  NearTriangles near_triangles_;
+  const std::vector<std::array<int, 3>>& triangles_;
   std::vector<std::array<int, 3>> neighbour_;  // of each triangle across the edge after its k-th vertex, -1: none
   std::vector<double> half_thickness_;         // per vertex
   double max_half_thickness_ = 0, half_ = 0;   // the latter: mean
   std::vector<std::array<double, 3>> length_;  // of the triangles' edges at rest [m]
-  SweptTool tool_;
-  NearTriangles near_triangles_;
   std::vector<NearTriangles::Pair> near_;
   std::vector<Pair> pairs_;           // of the shape in turn
   std::vector<int> vertices_;         // of those
-  std::vector<double> fraction_;      // per vertex, up to which all of its triangles stay apart from the shape
+  std::vector<char> hit_;             // per vertex: the shape would pass through one of its triangles
+  double fraction_ = 1;               // up to which the shape in turn and all triangles stay apart
   std::vector<int> stamp_, pair_of_;  // per vertex; per triangle, -1: none
   int count_ = 0;
   std::vector<SurfaceContact> contacts_, kept_;

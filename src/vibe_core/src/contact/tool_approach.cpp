@@ -48,8 +48,11 @@ ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path,
   return result;
 }
 
-NearTriangles::NearTriangles(const std::vector<std::array<int, 3>>& triangles, int vertices)
-    : triangles_(triangles), outside_(static_cast<std::size_t>(vertices)) {}
+NearTriangles::NearTriangles(const SurfaceMesh& surface, const std::vector<char>& passable)
+    : outside_(surface.vertices.size()) {
+  for (const std::array<int, 3>& n : surface.triangles)
+    if (passable[n[0]] == 0 && passable[n[1]] == 0 && passable[n[2]] == 0) triangles_.push_back(n);
+}
 
 void NearTriangles::classify(const Eigen::AlignedBox3d& box, const SurfacePath& path) {
   std::fill(outside_.begin(), outside_.end(), static_cast<unsigned char>(0));

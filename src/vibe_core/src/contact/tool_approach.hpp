@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contact/swept_tool.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe {
 
@@ -38,18 +39,20 @@ class NearTriangles {
     int shape, triangle;
   };
 
-  /// @param triangles  those that the tool cannot pass; must outlive this object
-  /// @param vertices   of the surface
-  NearTriangles(const std::vector<std::array<int, 3>>& triangles, int vertices);
+  /// @param passable  per vertex: the tool passes through the triangles there
+  NearTriangles(const SurfaceMesh& surface, const std::vector<char>& passable);
 
-  /// All pairs of which the boxes around the paths are nearer than `reach`, by shape, then triangle. A pair with a
-  /// vertex that is not finite is left out.
+  /// Those that the tool cannot pass.
+  const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
+
+  /// All pairs of shapes and triangles() of which the boxes around the paths are nearer than `reach`, by shape, then
+  /// triangle. A pair with a vertex that is not finite is left out.
   void find(const SweptTool& tool, const SurfacePath& path, double reach, std::vector<Pair>& found);
 
  private:
   void classify(const Eigen::AlignedBox3d& box, const SurfacePath& path);
 
-  const std::vector<std::array<int, 3>>& triangles_;
+  std::vector<std::array<int, 3>> triangles_;
   std::vector<unsigned char> outside_;    // per vertex, a bit per side of the tool's box beyond which its path lies
   std::vector<Eigen::AlignedBox3d> box_;  // of the triangles in the tool's box
   std::vector<int> inside_;

@@ -6,9 +6,9 @@ namespace vibe {
 
 namespace {
 
-// Share of half the wall's thickness that stays between a shape and the mid-surface. Design choice: far below what
+// Share of the wall's thickness that stays between a shape and the mid-surface. Design choice: far below what
 // contacts keep, far above rounding and what a joint's path differs from a straight one [1].
-constexpr double kKept = 0.1;
+constexpr double kKept = 0.05;
 // What is nearer already may come nearer by a tenth in a step, and never meets [1].
 constexpr double kNearer = 0.9;
 // Attempts to stop the tool on its way before it stays where it was. Design choice: each costs a search.
@@ -19,14 +19,9 @@ constexpr double kPart = 0.9;
 
 }  // namespace
 
-ToolGuard::ToolGuard(const ToolModel& tool, const std::vector<std::array<int, 3>>& triangles,
-                     const std::vector<double>& half_thickness)
-    : triangles_(triangles),
-      half_thickness_(half_thickness),
-      tool_(tool),
-      near_(triangles, static_cast<int>(half_thickness.size())) {
-  for (const double half : half_thickness) max_half_thickness_ = std::max(max_half_thickness_, half);
-}
+ToolGuard::ToolGuard(const ToolModel& tool, const SurfaceMesh& surface, const std::vector<double>& thickness,
+                     const std::vector<char>& passable)
+    : thickness_(thickness), tool_(tool), near_(surface, passable) {}
 
 ToolGuard::Free ToolGuard::keepApart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
   Free free;
@@ -43,21 +38,20 @@ ToolGuard::Free ToolGuard::keepApart(ToolPoses& poses, const ToolMotion& motion,
 double ToolGuard::freePart(const std::vector<Eigen::Isometry3d>& start, const std::vector<Eigen::Isometry3d>& end,
                            const SurfacePath& path) {
   tool_.place(start, end);
-  near_.find(tool_, path, kKept * max_half_thickness_, pairs_);
+  near_.find(tool_, path, kKept * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
   double part = 1;
   for (const NearTriangles::Pair& pair : pairs_) part = std::min(part, freePart(pair, path));
   return part;
 }
 
 double ToolGuard::freePart(const NearTriangles::Pair& pair, const SurfacePath& path) const {
-  const std::array<int, 3>& n = triangles_[pair.triangle];
+  const std::array<int, 3>& n = near_.triangles()[pair.triangle];
   const double radius = tool_.radius(pair.shape);
   const TriangleGap gap = tool_.gap(pair.shape, 0, {path.start(n[0]), path.start(n[1]), path.start(n[2])});
-  const double thinnest = std::min({half_thickness_[n[0]], half_thickness_[n[1]], half_thickness_[n[2]]});
+  const double thinnest = std::min({thickness_[n[0]], thickness_[n[1]], thickness_[n[2]]});
   if (gap.distance == 0) return 1;  // they crossed before
   const double outside = gap.distance - radius;
-  const double floor =
-      outside > 0 ? radius + std::min(kKept * thinnest, kNearer * outside) : kNearer * gap.distance;
+  const double floor = outside > 0 ? radius + std::min(kKept * thinnest, kNearer * outside) : kNearer * gap.distance;
   return approach(tool_, pair.shape, path, n, floor).fraction;
 }
 

@@ -14,10 +14,10 @@ namespace vibe {
 /// stops as well. By induction nothing crosses that did not cross where a session began.
 class ToolGuard {
  public:
-  /// @param triangles       that the tool cannot pass; must outlive this object
-  /// @param half_thickness  of the wall per vertex; must outlive this object [m]
-  ToolGuard(const ToolModel& tool, const std::vector<std::array<int, 3>>& triangles,
-            const std::vector<double>& half_thickness);
+  /// @param thickness  of the wall per vertex [m]
+  /// @param passable   per vertex: the tool passes through the triangles there
+  ToolGuard(const ToolModel& tool, const SurfaceMesh& surface, const std::vector<double>& thickness,
+            const std::vector<char>& passable);
 
   /// Parts of their motions that tool and wall can make, 1: all of it.
   struct Free {
@@ -35,9 +35,7 @@ class ToolGuard {
                   const SurfacePath& path);
   double freePart(const NearTriangles::Pair& pair, const SurfacePath& path) const;
 
-  const std::vector<std::array<int, 3>>& triangles_;
-  const std::vector<double>& half_thickness_;
-  double max_half_thickness_ = 0;
+  std::vector<double> thickness_;
   SweptTool tool_;
   NearTriangles near_;
   std::vector<NearTriangles::Pair> pairs_;

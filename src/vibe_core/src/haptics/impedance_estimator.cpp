@@ -15,6 +15,10 @@ constexpr double kFar = 5e-4;            // a larger move of a node triggers a r
 constexpr double kShortestStep = 2e-5;   // of the tool in a frame from which a slope is taken; design choice [m]
 constexpr double kMinEigenvalue = 1e-3;  // relative to the maximum; softer directions have no equilibrium
 
+// Compliance of the rows for the moving mass, where several points may have the same nearest node. Design choice: a
+// thousandth of that of a wall [m/N].
+constexpr double kFirm = 1e-5;
+
 // The displacement that relieves the force, in the directions that have a stiffness.
 Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::Vector3d& force) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stiffness);
@@ -31,9 +35,7 @@ std::uint64_t idOf(const ImpedanceBasis& basis) {
   hash.addWords(basis.positions.data(), basis.positions.size());
   hash.addWords(basis.gas_direction.data(), basis.gas_direction.size());
   hash.add(&basis.gas_stiffness, sizeof basis.gas_stiffness);
-  for (const auto& nodes : basis.node) hash.add(nodes.data(), sizeof nodes);
-  for (const auto& weights : basis.weight) hash.add(weights.data(), sizeof weights);
-  hash.addWords(basis.compliance.data(), basis.compliance.size());
+  hash.add(basis.node.data(), basis.node.size() * sizeof(int));
   for (const Eigen::Vector3d& direction : basis.direction) hash.add(direction.data(), 3 * sizeof(double));
   for (const auto& motion : basis.row_motion) hash.add(motion.data(), sizeof motion);
   return std::max<std::uint64_t>(1, hash.result());
@@ -46,14 +48,13 @@ void clear(ImpedanceBasis& basis) {
   basis.gas_direction.clear();
   basis.gas_stiffness = 0;
   basis.node.clear();
-  basis.weight.clear();
-  basis.compliance.clear();
   basis.direction.clear();
   basis.row_motion.clear();
 }
 
-bool isNode(int node) {
-  return node >= 0;
+int nearestNode(const SurfacePoint& surface) {
+  const auto most = std::max_element(surface.weight.begin(), surface.weight.end());
+  return surface.node[static_cast<std::size_t>(most - surface.weight.begin())];
 }
 
 void setRow(const SurfacePoint& surface, const Eigen::Vector3d& direction, double compliance, EquationRow& row) {
@@ -139,9 +140,7 @@ void ImpedanceEstimator::renew(const ToolContactRows& touch, const std::array<co
     next.positions[i] = static_cast<float>(positions[i % 3][i / 3]);
   setGas(gas_direction, gas_stiffness, next);
   for (const ToolRow& row : touch.rows) {
-    next.node.push_back(row.surface.node);
-    next.weight.push_back(row.surface.weight);
-    next.compliance.push_back(row.compliance);
+    next.node.push_back(nearestNode(row.surface));
     next.direction.push_back(row.direction);
     asVector(next.row_motion.emplace_back()) = row.motion.transpose();
   }
@@ -196,8 +195,7 @@ void ImpedanceEstimator::make(const ImpedanceBasis& basis, Made& out) const {
   ConstraintRows rows;
   Eigen::MatrixXd motion(static_cast<Eigen::Index>(basis.node.size()), kToolMotions);
   for (std::size_t r = 0; r < basis.node.size(); ++r) {
-    const int count = static_cast<int>(std::count_if(basis.node[r].begin(), basis.node[r].end(), isNode));
-    setRow({count, basis.node[r], basis.weight[r]}, basis.direction[r], basis.compliance[r], rows.equations.add());
+    setRow(SurfacePoint::ofNode(basis.node[r]), basis.direction[r], kFirm, rows.equations.add());
     for (std::size_t m = 0; m < kToolMotions; ++m) motion(static_cast<Eigen::Index>(r), m) = basis.row_motion[r][m];
   }
   out.stiffness->setRows(rows);

@@ -98,9 +98,6 @@ std::string particleDamage(const State& s, std::size_t particle_count) {
   for (const GripPoint& point : s.grip)
     if (point.particle < 0 || static_cast<std::size_t>(point.particle) >= particle_count)
       return "it holds a particle that does not exist";
-  for (const GripPoint& point : s.grip)
-    if (!(point.compliance >= 0 && std::isfinite(point.compliance)) || !point.local.allFinite())
-      return "what it holds has no place or no firmness";
   return "";
 }
 
@@ -113,14 +110,11 @@ std::string basisDamage(const ImpedanceBasis& basis, std::size_t particle_count)
       !isEmptyOr(basis.gas_direction.size(), particle_count, 4))
     return "its tool impedance remembers another organ";
   if (basis.gas_stiffness != 0 && basis.gas_direction.empty()) return "its tool impedance has gas without a direction";
-  const std::size_t rows = basis.node.size();
-  if (basis.direction.size() != rows || basis.row_motion.size() != rows || basis.weight.size() != rows ||
-      basis.compliance.size() != rows)
+  if (basis.direction.size() != basis.node.size() || basis.row_motion.size() != basis.node.size())
     return "its tool impedance has not one direction per row";
-  for (const std::array<int, 3>& nodes : basis.node)
-    for (std::size_t k = 0; k < 3; ++k)
-      if (nodes[k] < (k == 0 ? 0 : -1) || nodes[k] >= static_cast<int>(particle_count))
-        return "its tool impedance remembers a particle that does not exist";
+  for (int node : basis.node)
+    if (node < 0 || static_cast<std::size_t>(node) >= particle_count)
+      return "its tool impedance remembers a particle that does not exist";
   return "";
 }
 

@@ -40,9 +40,7 @@ State fullState() {
   state.solver.linearization_point = state.solver.next = {0};
   for (ImpedanceBasis* basis : {&state.impedance.current, &state.impedance.next}) {
     basis->positions = basis->gas_direction = {0};
-    basis->node = {{0, -1, -1}};
-    basis->weight = {{1, 0, 0}};
-    basis->compliance = {0};
+    basis->node = {0};
     basis->direction = {Eigen::Vector3d::Zero()};
     basis->row_motion.emplace_back();
   }

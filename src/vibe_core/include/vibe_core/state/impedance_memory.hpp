@@ -19,9 +19,7 @@ struct ImpedanceBasis {
   std::vector<float> gas_direction;  ///< volume gradient (4 * nodes) [m^2]
   double gas_stiffness = 0;          ///< [Pa/m^3]; 0: no gas
   // rows for the mass that moves along; empty: no mass
-  std::vector<std::array<int, 3>> node;                      ///< (rows) of the point of the surface; -1: fewer
-  std::vector<std::array<double, 3>> weight;                 ///< (rows) of the nodes
-  std::vector<double> compliance;                            ///< (rows) between the tool and the point [m/N]
+  std::vector<int> node;                                     ///< (rows)
   std::vector<Eigen::Vector3d> direction;                    ///< (rows) unit
   std::vector<std::array<double, kToolMotions>> row_motion;  ///< (rows) move of the row's target per tool motion
 };
@@ -44,7 +42,7 @@ struct ImpedanceMemory {
   std::int64_t next_renewal = 0;                                      ///< step at which `next` takes over
   ImpedanceBasis current;                                             ///< of the stiffness in use
   ImpedanceBasis next;                                                ///< of the stiffness in the making
-  std::vector<int> last_nodes;                                        ///< of the points touched in the last frame
+  std::vector<int> last_nodes;                                        ///< touched in the last frame
   bool has_last = false;                                              ///< the members below are those of the last frame
   std::array<double, kToolMotions> last_place{};                      ///< [m], [rad]
   std::array<double, kToolMotions> last_speed{};                      ///< [m/s], [rad/s]

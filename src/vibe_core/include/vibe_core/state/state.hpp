@@ -16,7 +16,6 @@ namespace vibe {
 struct GripPoint {
   int particle = -1;
   Eigen::Vector3d local;  ///< where, in the frame of the link that carries the helix [m]
-  double compliance = 0;  ///< at the edge of what is held it is held by a spring; 0: firmly [m/N]
 };
 
 /// Sums since the start [J].

@@ -18,14 +18,13 @@ VIBE_FIELDS(ProcedureState, phase, pressed, heat, dose, grade, beam_energy, base
             grip_turns, arm_closed, needle_on_arm, needle_loaded, pierced, pending, sutures, thread_used, bleedings,
             blood_lost);
 VIBE_FIELDS(PullSpring, particle, node, weight, target, force);
-VIBE_FIELDS(GripPoint, particle, local, compliance);
+VIBE_FIELDS(GripPoint, particle, local);
 VIBE_FIELDS(EnergyAccount, tool_work, gas_work, thread_work, pull_work, damping_loss, viscous_loss, contact_loss,
             numerical_loss, correction_work);
 VIBE_FIELDS(StiffnessCoupling, node, weight, stiffness);
 VIBE_FIELDS(StepperMemory, linearization_point, next, couplings, next_couplings, linearization_id, next_id, steps, due,
             elastic_energy, usual_length, rest_steps, recovery_steps, fallback);
-VIBE_FIELDS(ImpedanceBasis, id, positions, gas_direction, gas_stiffness, node, weight, compliance, direction,
-            row_motion);
+VIBE_FIELDS(ImpedanceBasis, id, positions, gas_direction, gas_stiffness, node, direction, row_motion);
 VIBE_FIELDS(SlopeMemory<3>, known, has_pair, place, force, step, change);
 VIBE_FIELDS(SlopeMemory<kScopeJointCount>, known, has_pair, place, force, step, change);
 VIBE_FIELDS(ImpedanceMemory, last_step, next_renewal, current, next, last_nodes, has_last, last_place, last_speed,
