@@ -134,6 +134,7 @@ void ImplicitStep::recover() {
 // @returns false where the state became useless; the simulator then resets it
 bool ImplicitStep::solve() {
   scratch_.terms.clear();
+  scratch_.start[0] = state_.x, scratch_.start[1] = state_.y, scratch_.start[2] = state_.z;
   scratch_.has_term.clear();
   for (const auto& block : scratch_.blocks) {
     const EnergyTerm* const term = block->energyTerm(context_);
@@ -171,6 +172,7 @@ void ImplicitStep::correct() {
   std::array<std::vector<double>, 6>& before = scratch_.uncorrected;
   for (std::size_t k = 0; k < 6; ++k) before[k] = *now[k];
   for (const auto& block : scratch_.blocks) block->correct(context_);
+  if (motion_ != nullptr) keepToolApart();
   bool changed = false;
   for (std::size_t k = 0; k < 6; ++k) changed = changed || before[k] != *now[k];
   if (!changed) return;
@@ -187,6 +189,25 @@ Energies ImplicitStep::mechanicalEnergy() const {
   Energies parts = energiesBesideElastic(model_, state_);
   parts.elastic = stepper_.elasticEnergy(motionOf(), *scratch_.stepper);
   return parts;
+}
+
+// Whatever the solve left, the tool stays on its side of the wall. Straight paths of all nodes have been found free of
+// crossings among each other, so they are at any common part of the paths as well.
+void ImplicitStep::keepToolApart() {
+  const std::array<std::vector<double>*, 3> x{&state_.x, &state_.y, &state_.z}, v{&state_.vx, &state_.vy, &state_.vz},
+      a{&state_.ax, &state_.ay, &state_.az};
+  SurfacePath path;
+  for (std::size_t k = 0; k < 3; ++k) path.from[k] = scratch_.start[k].data(), path.to[k] = x[k]->data();
+  const ToolGuard::Free free = scratch_.guard->keepApart(scratch_.poses, *motion_, path);
+  state_.joints = motion_->inputs(free.tool);
+  if (free.wall >= 1) return;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < x[k]->size(); ++i) {
+      const double move = free.wall * ((*x[k])[i] - scratch_.start[k][i]);
+      (*x[k])[i] = scratch_.start[k][i] + move;
+      (*v[k])[i] = move / context_.step;
+      (*a[k])[i] = 0;
+    }
 }
 
 void ImplicitStep::reportTool() {
