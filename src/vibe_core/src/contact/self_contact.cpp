@@ -15,16 +15,15 @@ namespace vibe {
 namespace {
 
 constexpr double kOneWallThicknesses = 2.5, kOneWallEdges = 3;  // along the surface
-constexpr double kFacingCosine = 0.3;   // of the normals of walls in contact: the next wall along a line faces this one
+constexpr float kFacingCosine = 0.3F;   // of the normals of walls in contact: the next wall along a line faces this one
 constexpr double kSoftness = 0.1;       // modulus of the contact, relative to that of the wall
 constexpr double kOnset = 0.25;         // strain over which contact sets in
 constexpr double kStraightBelow = 0.2;  // fraction of the thickness below which the energy is extended linearly
 constexpr double kDrag = 2;             // relative to force over distance: more than the force turns as a vertex slides
-constexpr double kAhead = 1;            // thicknesses searched beyond contact, so that most steps need no new search
-constexpr double kMinAhead = 0.1;       // least value of the same
-constexpr double kFlatSight = 0.8;      // smallest straight distance on a flat wall, relative to that along edges
-constexpr double kFloor = 0.05;         // minimum distance of walls, in thicknesses
-constexpr double kLeg = 6e-3;           // a step with longer moves is split into parts, so that few walls are near [m]
+// Motion of a node until the next search, in thicknesses, so that most steps need none: of walls that face each other,
+// whose normals must not turn much, and of triangles that may meet.
+constexpr double kNearSlack = 0.1, kMeetingSlack = 0.1;
+constexpr double kFloor = 0.05;  // minimum distance of walls, in thicknesses
 
 struct Squeeze {
   double value, slope, curvature;  // energy and its derivatives with respect to s [1]
@@ -99,10 +98,9 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   area_ = vertexAreas(rest_);
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
-  const double edge = meanEdge(rest_), one_wall = std::max(kOneWallThicknesses * max_thickness_, kOneWallEdges * edge);
-  // seen from a vertex, a flat wall that no longer counts as one wall with it stays beyond the search distance
-  ahead_ = std::clamp(kFlatSight * one_wall - 0.5 * edge - max_thickness_ * (1 + kOnset), kMinAhead * max_thickness_,
-                      kAhead * max_thickness_);
+  near_slack_ = kNearSlack * max_thickness_;
+  meeting_slack_ = kMeetingSlack * max_thickness_;
+  const double one_wall = std::max(kOneWallThicknesses * max_thickness_, kOneWallEdges * meanEdge(rest_));
   memory_ = std::make_unique<SelfContactMemory>(rest_, std::vector<double>(thickness_.size(), one_wall),
                                                 kFloor * min_thickness_);
 }
@@ -112,11 +110,11 @@ SelfContact::~SelfContact() = default;
 void SelfContact::detect(const double* x, const double* y, const double* z, double reach) {
   pairs_.clear();
   if (!start(x, y, z, moved_)) {
-    cover_ = -1;
+    searched_reach_ = -1;
     memory_->near.clear();
     return;
   }
-  if (cover_ < (1 + kOnset) * max_thickness_ + reach + 2 * moved_) search(reach);
+  if (searched_reach_ < reach || moved_ > near_slack_) search(reach);
   addPairs(reach);
 }
 
@@ -136,9 +134,9 @@ void SelfContact::search(double reach) {
   SelfContactMemory& m = *memory_;
   for (int k = 0; k < 3; ++k) m.searched[k] = m.start[k];
   moved_ = 0;
+  searched_reach_ = reach + near_slack_;
   for (std::size_t i = 0; i < m.position.size(); ++i) m.position[i] = m.at(static_cast<int>(i));
-  cover_ = (1 + kOnset) * max_thickness_ + std::max(ahead_, reach + kMinAhead * max_thickness_);
-  m.search.findNear(m.position, cover_, m.found);
+  m.search.findNear(m.position, (1 + kOnset) * max_thickness_ + searched_reach_, near_slack_, kFacingCosine, m.found);
   m.near.clear();
   for (const SelfContactSearch::Near& near : m.found) m.near.push_back({near, Eigen::Vector3d::Zero()});
 }
@@ -166,7 +164,7 @@ double SelfContact::facing(int vertex, int triangle) const {
 
 // For a vertex, the nearest triangle that faces it, and the nearest on the opposite side.
 void SelfContact::addPairs(double reach) {
-  std::vector<SelfContactPaths::Approach>& near = memory_->near;
+  std::vector<SelfContactMemory::Approach>& near = memory_->near;
   for (std::size_t first = 0, next; first < near.size(); first = next) {
     const int vertex = near[first].near.vertex;
     const Eigen::Vector3d p = memory_->at(vertex);
@@ -251,72 +249,55 @@ void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCo
   }
 }
 
-bool SelfContact::endsOf(const double* x, const double* y, const double* z, double& longest) {
-  const double* end[3] = {x, y, z};
-  const double largest = farthest(memory_->start, end, thickness_.size());
-  longest = std::sqrt(largest);
-  return std::isfinite(largest);
-}
-
 const std::vector<int>& SelfContact::resolvePenetrations(const MotionView& motion, double step) {
   stopped_.clear();
-  double *x = motion.x[0], *y = motion.x[1], *z = motion.x[2];
   SelfContactMemory& m = *memory_;
-  double longest = 0;
-  if (cover_ < 0 || !endsOf(x, y, z, longest)) return stopped_;
-  const double floor = kFloor * min_thickness_, sight = cover_ - 2 * moved_ - floor;
-  if (m.near.empty() && 2 * longest < sight) return stopped_;
-  const int legs = 2 * longest < sight ? 1 : static_cast<int>(std::min(64.0, std::ceil(longest / (0.5 * kLeg))));
-  for (std::size_t i = 0; i < m.position.size(); ++i) m.position[i] = m.at(static_cast<int>(i));
-  m.stopped.assign(m.position.size(), 0);
-  for (int leg = 0; leg < legs; ++leg) {
-    double farthest_move = 0;
-    for (std::size_t i = 0; i < m.position.size(); ++i) {
-      m.move[i] = (Eigen::Vector3d(x[i], y[i], z[i]) - m.position[i]) / (legs - leg);
-      farthest_move = std::max(farthest_move, m.move[i].squaredNorm());
-    }
-    farthest_move = std::sqrt(farthest_move);
-    findApproaches(legs > 1, 2 * farthest_move + floor);
-    update();
-  }
+  const std::vector<SelfContactPaths::Pair>* meetings = findMeetings(motion);
+  if (meetings == nullptr || meetings->empty()) return stopped_;
   for (std::size_t i = 0; i < m.position.size(); ++i) {
-    if (m.stopped[i] == 0) continue;
-    for (int k = 0; k < 3; ++k) {
-      motion.x[k][i] = m.position[i][k];
-      motion.v[k][i] = (m.position[i][k] - m.start[k][i]) / step;
-      motion.a[k][i] = 0;
-    }
+    m.position[i] = m.at(static_cast<int>(i));
+    m.end[i] = {motion.x[0][i], motion.x[1][i], motion.x[2][i]};
+    m.move[i] = m.end[i] - m.position[i];
+  }
+  if (!m.paths.shorten(m.position, *meetings, m.move)) return stopped_;
+  for (std::size_t i = 0; i < m.position.size(); ++i) {
+    if (m.move[i] == m.end[i] - m.position[i]) continue;
+    stop(motion, static_cast<int>(i), m.position[i] + m.move[i], step);
     stopped_.push_back(static_cast<int>(i));
   }
   return stopped_;
 }
 
-void SelfContact::findApproaches(bool anew, double distance) {
+// Pairs of triangles that may meet on the paths from detect(); null: the paths are not finite.
+const std::vector<std::array<int, 2>>* SelfContact::findMeetings(const MotionView& motion) {
   SelfContactMemory& m = *memory_;
-  m.approaches.clear();
-  if (!anew) {
-    for (const auto& near : m.near) {
-      const double sight = distance + 0.5 * m.search.longestEdge(near.near.vertex) + moved_;
-      if (near.away.squaredNorm() < sight * sight) m.approaches.push_back(near);
-    }
-    return;
+  const std::size_t n = thickness_.size();
+  const double* start[3] = {m.start[0].data(), m.start[1].data(), m.start[2].data()};
+  const double* end[3] = {motion.x[0], motion.x[1], motion.x[2]};
+  const double slack2 = meeting_slack_ * meeting_slack_, floor = kFloor * min_thickness_;
+  if (searched_reach_ < 0) return nullptr;
+  if (met_ && farthest(m.met, start, n) <= slack2 && farthest(m.met, end, n) <= slack2) return &m.meetings;
+  const double longest2 = farthest(m.start, end, n);
+  if (!std::isfinite(longest2)) return nullptr;
+  for (std::size_t i = 0; i < n; ++i) {
+    m.position[i] = m.at(static_cast<int>(i));
+    m.end[i] = {end[0][i], end[1][i], end[2][i]};
   }
-  cover_ = -1;  // the positions of the search have changed
-  m.search.findNear(m.position, distance, m.found);
-  for (const auto& near : m.found) {
-    const auto& n = rest_.triangles[near.triangle];
-    m.approaches.push_back(
-        {near, triangleFoot(m.position[near.vertex], m.position[n[0]], m.position[n[1]], m.position[n[2]]).away});
+  if (longest2 > slack2) {
+    m.search.findMeetings(m.position, m.end, floor, 0, m.swept);
+    return &m.swept;
   }
+  for (int k = 0; k < 3; ++k) m.met[k] = m.start[k];
+  met_ = true;
+  m.search.findMeetings(m.position, m.position, floor, meeting_slack_, m.meetings);
+  return &m.meetings;
 }
 
-void SelfContact::update() {
-  SelfContactMemory& m = *memory_;
-  m.whole = m.move;
-  const bool shortened = m.paths.shorten(m.position, m.approaches, m.move);
-  for (std::size_t i = 0; i < m.position.size(); ++i) {
-    if (shortened && m.move[i] != m.whole[i]) m.stopped[i] = 1;
-    m.position[i] += m.move[i];
+void SelfContact::stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const {
+  for (int k = 0; k < 3; ++k) {
+    motion.x[k][node] = end[k];
+    motion.v[k][node] = (end[k] - memory_->start[k][node]) / step;
+    motion.a[k][node] = 0;
   }
 }
 

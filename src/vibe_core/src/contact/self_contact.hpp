@@ -84,19 +84,19 @@ class SelfContact : public EnergyTerm {
   void addPair(int near, double facing);
   double meanThickness(int vertex, int triangle) const;
   double facing(int vertex, int triangle) const;
-  void findApproaches(bool anew, double distance);
-  void update();
-  bool endsOf(const double* x, const double* y, const double* z, double& longest);
+  const std::vector<std::array<int, 2>>* findMeetings(const MotionView& motion);
+  void stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const;
 
   SurfaceMesh rest_;
   std::vector<double> thickness_;
   double stiffness_;  // E' [Pa]
   double min_thickness_ = 0, max_thickness_ = 0;
-  double ahead_ = 0;          // search distance beyond contact [m]
-  std::vector<double> area_;  // per vertex at rest [m^2]
+  double near_slack_ = 0, meeting_slack_ = 0;  // motion of a node until the next search [m]
+  std::vector<double> area_;                   // per vertex at rest [m^2]
   std::unique_ptr<SelfContactMemory> memory_;
-  double cover_ = -1;  // the last search found everything nearer than this [m]; < 0: none yet
-  double moved_ = 0;   // largest distance of a node at detect() from its position at the last search [m]
+  double searched_reach_ = -1;  // of the last search [m]; < 0: none yet
+  bool met_ = false;            // meetings were searched
+  double moved_ = 0;            // largest distance of a node at detect() from its position at the last search [m]
   int searches_ = 0;
   std::vector<Pair> pairs_;
   std::vector<int> stopped_;
