@@ -106,12 +106,21 @@ void SutureSession::count(std::size_t first_event, SewnSet& set) const {
   }
 }
 
-SewnSet SutureSession::sew(const std::vector<WallSpot>& spots, double after) {
-  SewnSet set;
-  const std::size_t first_event = events_.size();
+void SutureSession::tag(const std::vector<WallSpot>& spots) {
+  SewnSet unused;
+  tag(spots, unused);
+}
+
+void SutureSession::tag(const std::vector<WallSpot>& spots, SewnSet& set) {
   takeBites(spots);
   press(TTag, true, set.pulling, set);
   press(TTag, false, set.pulling, set);
+}
+
+SewnSet SutureSession::sew(const std::vector<WallSpot>& spots, double after) {
+  SewnSet set;
+  const std::size_t first_event = events_.size();
+  tag(spots, set);
   pull(set);
   const int steps = static_cast<int>(std::lround(after / model().scene.step_period));
   for (int k = 0; k < steps; ++k) press(Cinch, false, set.after, set);
