@@ -19,23 +19,26 @@ class SelfContactMemory;
 /// thicknesses, the two half walls in between are squeezed from t to d. They store the energy of a bar in Hencky's
 /// logarithmic strain (1928), per vertex of area A
 ///   W = A E' t / 2 * ln(s)^2 / 2,  s = d / t,
-/// half of A E' t because the vertices of the other wall store the rest. E' is a tenth of the modulus of the wall: the
-/// mucosa is in contact, and the iterations of a step can resolve a stiffness of the order of the bending stiffness of
-/// the wall. The stiffness grows as d goes to 0. Below 20 % of t the energy is extended linearly, so that force and
-/// energy stay finite in any state. Contact sets in from t + 25 % to t - 25 %, with a continuous stiffness. Within a
-/// step d is measured along the direction between vertex and triangle at its start. This is convex and smooth, and a
-/// vertex that an iterate moves through the other wall is pushed back. A drag of twice the contact force per distance
-/// and step resists sliding and vanishes with the motion. Without it the walls, whose normals change as they slide,
-/// would never come to rest.
+/// half of A E' t because the vertices of the other wall store the rest. E' is a tenth of the modulus of the wall, as
+/// the mucosa is in contact: its shear modulus is 0.56 kPa in vivo, that of the muscularis 5.69 kPa (Dargar et al.
+/// 2019, J Biomech Eng 141:101004). The stiffness grows as d goes to 0. Below 20 % of t the energy is extended
+/// linearly, so that force and energy stay finite in any state. Contact sets in from t + 25 % to t - 25 %, with a
+/// continuous stiffness. Within a step d is measured along the direction between vertex and triangle at its start. This
+/// is convex and smooth, and a vertex that an iterate moves through the other wall is pushed back.
 ///
-/// Paths. resolvePenetrations() shortens the straight paths of the nodes over a step so that no vertex, edge or
-/// triangle passes through another wall, whatever the cause of the motion. Walls that were apart therefore stay apart,
-/// and no record of sides is needed.
+/// Friction. Pairs slide against Coulomb friction, smoothed below a small speed of sliding, with the normal force at
+/// the start of the step (Li et al. 2020, "Incremental Potential Contact", section 5). What it dissipates does not
+/// depend on the step to first order. Below that speed friction is viscous, so walls in contact come to rest where they
+/// would without friction.
+///
+/// Paths. resolvePenetrations() shortens the straight paths of the nodes over a step so that no two triangles without a
+/// common edge pass through each other, whatever the cause of the motion, neighbours in a sharp fold included. What did
+/// not cross stays so, and no record of sides is needed.
 ///
 /// Only walls that face each other are in contact: the cosine between the normals of vertex and triangle is below 0.3.
 /// Parts of the surface within 2.5 thicknesses or 3 mean edge lengths along edges, or within two edges, count as one
-/// wall, which has no contact with itself and is not kept apart: sharper folds are below the resolution of the mesh.
-/// Walls that are nearer than t at rest touch at that distance. There is no static friction.
+/// wall, which has no contact with itself: sharper folds are below the resolution of the mesh, and only kept from
+/// crossing. Walls that are nearer than t at rest touch at that distance.
 class SelfContact : public EnergyTerm {
  public:
   /// A vertex and the triangle of another wall that is nearest to it on one side.
@@ -46,7 +49,8 @@ class SelfContact : public EnergyTerm {
     double thickness;         ///< distance at first contact [m]
     double stiffness;         ///< A E' t / 2 [J]
     Eigen::Vector3d away;     ///< from the foot to the vertex at detect() [m]
-    double drag;              ///< resists sliding from there within the step [N/m]
+    double friction;          ///< force of friction, with the normal force at detect() [N]
+    double speed;             ///< of sliding at detect() [m/s]
   };
 
   /// @param rest           the middle surface at rest, consistently oriented; its vertices are the nodes [m]
@@ -60,15 +64,29 @@ class SelfContact : public EnergyTerm {
   /// Finds the possible contacts within a step; call once before the step. The result depends only on the arguments,
   /// not on earlier calls. Allocates only while its buffers grow. If a position is not finite, there are no contacts.
   /// @param reach  expected largest decrease of the distance between two walls in this step [m]
-  void detect(const double* x, const double* y, const double* z, double reach);
+  /// @param lead   time from then to the point at which the step evaluates forces [s]
+  void detect(const MotionView& motion, double reach, double lead);
 
   double evaluate(const double* positions4, float* gradient4) const override;
   /// Of the pairs of the last detect() that are in contact at the positions, with their normals.
   void addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const override;
 
+  /// The energy at detect(), from the positions there alone [J].
+  double energy() const { return energy_; }
+  /// Of the pairs of the last detect() in a step from there.
+  struct StepWork {
+    double energy = 0;    ///< stored at the end, along the directions at detect() [J]
+    double normal = 0;    ///< done on the walls by the normal forces [J]
+    double friction = 0;  ///< dissipated [J]
+  };
+  /// @param end   of the step: only positions are read
+  /// @param step  the time since detect() [s]
+  StepWork work(const MotionView& end, double step) const;
+
   /// Moves nodes back towards their positions at detect() as far as necessary so that no wall passes through another on
   /// the straight path from there. Walls that were apart at detect() end at least 5 % of the smallest thickness apart,
-  /// or 90 % of their distance if they were nearer. The velocity of a node moved back is that of its shortened path.
+  /// or 90 % of their distance if they were nearer. The velocity of a node moved back is that of its shortened path,
+  /// but no faster than before.
   /// @param step  the time since detect() [s]
   /// @returns the nodes moved back
   const std::vector<int>& resolvePenetrations(const MotionView& motion, double step);
@@ -78,7 +96,10 @@ class SelfContact : public EnergyTerm {
   int searchCount() const { return searches_; }  ///< detect() calls that needed a search
 
  private:
-  bool start(const double* x, const double* y, const double* z, double& moved);
+  bool isStart(const MotionView& motion) const;
+  bool start(const MotionView& motion, double& moved);
+  static Eigen::Vector3d awayAt(const Pair& pair, const double* positions4);
+  static Eigen::Vector3d slidSince(const Pair& pair, const Eigen::Vector3d& away);
   void search(double reach);
   void addPairs(double reach);
   void addPair(int near, double facing);
@@ -94,9 +115,11 @@ class SelfContact : public EnergyTerm {
   double near_slack_ = 0, meeting_slack_ = 0;  // motion of a node until the next search [m]
   std::vector<double> area_;                   // per vertex at rest [m^2]
   std::unique_ptr<SelfContactMemory> memory_;
-  double searched_reach_ = -1;  // of the last search [m]; < 0: none yet
-  bool met_ = false;            // meetings were searched
-  double moved_ = 0;            // largest distance of a node at detect() from its position at the last search [m]
+  double searched_reach_ = -1;    // of the last search [m]; < 0: none yet
+  double reach_ = -1, lead_ = 0;  // of the last detect() [m], [s]
+  double energy_ = 0;
+  bool met_ = false;  // meetings were searched
+  double moved_ = 0;  // largest distance of a node at detect() from its position at the last search [m]
   int searches_ = 0;
   std::vector<Pair> pairs_;
   std::vector<int> stopped_;

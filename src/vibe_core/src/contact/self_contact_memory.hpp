@@ -20,11 +20,14 @@ class SelfContactMemory {
         move(rest.vertices) {
     for (int k = 0; k < 3; ++k) {
       met[k].assign(rest.vertices.size(), 0);
+      speed[k].assign(rest.vertices.size(), 0);
       start[k].assign(rest.vertices.size(), 0);
       searched[k].assign(rest.vertices.size(), 0);
     }
   }
   Eigen::Vector3d at(int node) const { return {start[0][node], start[1][node], start[2][node]}; }
+
+  Eigen::Vector3d speedOf(int node) const { return {speed[0][node], speed[1][node], speed[2][node]}; }
 
   /// A vertex and a triangle that it may touch.
   struct Approach {
@@ -35,8 +38,9 @@ class SelfContactMemory {
   SelfContactSearch search;
   SelfContactPaths paths;
   std::array<std::vector<double>, 3> start, searched,
-      met;                     // positions at detect(), at the last search of each kind [m]
-  std::vector<Approach> near;  // found by the last search
+      met;                                   // positions at detect(), at the last search of each kind [m]
+  std::array<std::vector<double>, 3> speed;  // at detect() [m/s]
+  std::vector<Approach> near;                // found by the last search
   std::vector<SelfContactSearch::Near> found;
   std::vector<SelfContactPaths::Pair> meetings;      // of triangles, found by the last search
   std::vector<SelfContactPaths::Pair> swept;         // the same, of fast paths

@@ -90,13 +90,13 @@ struct World {
     for (int k = 0; k < 3; ++k) at[4 * i + k] = p[k];
   }
   void detect(double reach) {
-    std::vector<double> x, y, z;
-    for (std::size_t i = 0; i < count(); ++i) {
-      x.push_back(at[4 * i]);
-      y.push_back(at[4 * i + 1]);
-      z.push_back(at[4 * i + 2]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[k].resize(count());
+      v[k].resize(count(), 0);
+      for (std::size_t i = 0; i < count(); ++i) x[k][i] = at[4 * i + k];
     }
-    contact.detect(x.data(), y.data(), z.data(), reach);
+    contact.detect({{x[0].data(), x[1].data(), x[2].data()}, {v[0].data(), v[1].data(), v[2].data()}, {}}, reach,
+                   kStep);
   }
   /// Ends a step that has moved by `move` since detect().
   std::size_t resolvePenetrations(const std::vector<double>& move) {
@@ -143,6 +143,7 @@ struct World {
 
   SurfaceMesh rest;
   SelfContact contact;
+  std::array<std::vector<double>, 3> x, v;  // at detect()
   std::vector<double> at;
   std::vector<float> gradient;
 };
@@ -466,7 +467,7 @@ std::pair<double, double> measure(World& world, double moved) {
       {x[0].data(), x[1].data(), x[2].data()}, {v.data(), v.data(), v.data()}, {v.data(), v.data(), v.data()}};
   for (int i = 0; i < 201; ++i) {
     const double start = threadTime();
-    world.contact.detect(x[0].data(), x[1].data(), x[2].data(), 2e-3);
+    world.contact.detect(view, 2e-3, kStep);
     for (double& value : x[0]) value += i % 2 == 0 ? moved : -moved;
     world.contact.resolvePenetrations(view, kStep);
     times.push_back(threadTime() - start);

@@ -26,6 +26,7 @@ struct EnergyAccount {
   double pull_work = 0;        ///< done by the pull spring
   double damping_loss = 0;     ///< dissipated by mass damping
   double viscous_loss = 0;     ///< dissipated by stiffness damping
+  double contact_energy = 0;   ///< stored in walls that touch at the end of the last step; no sum
   double contact_loss = 0;     ///< dissipated by sliding walls
   double numerical_loss = 0;   ///< dissipated by the time scheme
   double correction_work = 0;  ///< done by corrections after a step that keep walls and tools apart
