@@ -28,25 +28,17 @@ class SelfContactBlock : public ConstraintBlock {
 
   const EnergyTerm* energyTerm(const StepContext& context) override {
     detect(context);
-    start_energy_ = contact_.energy();
     return &contact_;
   }
 
   // A step may end with walls that have passed through each other: iterations end early, tools jump.
   void correct(const StepContext& context) override {
-    solved_ = contact_.work(viewOf(context.state), context.step);
     contact_.resolvePenetrations(viewOf(context.state), context.step);
   }
 
-  // What was neither stored nor done on the wall is lost: friction, and what the directions, which are constant within
-  // a step, miss as they turn.
   void store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override {
-    EnergyAccount& account = context.state.energy;
-    const double corrected = contact_.work(viewOf(context.state), context.step).energy - solved_.energy;
     detect(context);
-    account.correction_work += corrected;
-    account.contact_loss += solved_.friction - solved_.normal - (contact_.energy() - start_energy_) + corrected;
-    account.contact_energy = contact_.energy();
+    context.state.energy.contact_energy = contact_.energy();
   }
 
   void recover(const StepContext& context) override {
@@ -68,8 +60,6 @@ class SelfContactBlock : public ConstraintBlock {
             {state.ax.data(), state.ay.data(), state.az.data()}};
   }
 
-  SelfContact::StepWork solved_;
-  double start_energy_ = 0;  // [J]
   SelfContact contact_;
 };
 

@@ -285,24 +285,6 @@ void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCo
   }
 }
 
-SelfContact::StepWork SelfContact::work(const MotionView& end, double step) const {
-  StepWork work;
-  const double smooth = kSlidingSpeed * lead_, part = lead_ / step;
-  for (const Pair& pair : pairs_) {
-    const auto point = [&](int k) {
-      return Eigen::Vector3d(end.x[0][pair.node[k]], end.x[1][pair.node[k]], end.x[2][pair.node[k]]);
-    };
-    Eigen::Vector3d away = point(0);
-    for (int k = 0; k < 3; ++k) away -= pair.weight[k] * point(k + 1);
-    work.energy += pair.stiffness * squeeze(pair.normal.dot(away) / pair.thickness).value;
-    const Eigen::Vector3d slid = slidSince(pair, away), there = pair.away + part * (away - pair.away);
-    work.friction += pair.friction * sliding(part * slid.norm(), smooth).per_way * part * slid.squaredNorm();
-    work.normal -= pair.stiffness / pair.thickness * squeeze(pair.normal.dot(there) / pair.thickness).slope *
-                   pair.normal.dot(away - pair.away);
-  }
-  return work;
-}
-
 // From the foot at detect() to the vertex, where they are now.
 Eigen::Vector3d SelfContact::awayAt(const Pair& pair, const double* positions4) {
   Eigen::Vector3d away = at(positions4, pair.node[0]);

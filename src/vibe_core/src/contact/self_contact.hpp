@@ -73,16 +73,6 @@ class SelfContact : public EnergyTerm {
 
   /// The energy at detect(), from the positions there alone [J].
   double energy() const { return energy_; }
-  /// Of the pairs of the last detect() in a step from there.
-  struct StepWork {
-    double energy = 0;    ///< stored at the end, along the directions at detect() [J]
-    double normal = 0;    ///< done on the walls by the normal forces [J]
-    double friction = 0;  ///< dissipated [J]
-  };
-  /// @param end   of the step: only positions are read
-  /// @param step  the time since detect() [s]
-  StepWork work(const MotionView& end, double step) const;
-
   /// Moves nodes back towards their positions at detect() as far as necessary so that no wall passes through another on
   /// the straight path from there. Walls that were apart at detect() end at least 5 % of the smallest thickness apart,
   /// or 90 % of their distance if they were nearer. The velocity of a node moved back is that of its shortened path,
