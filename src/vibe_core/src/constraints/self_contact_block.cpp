@@ -52,7 +52,9 @@ class SelfContactBlock : public ConstraintBlock {
     const TissueScene& tissue = context.model.scene.tissue;
     // forces are evaluated 1 - alpha_f of the step after its start, and ahead by the damping time (time_scheme.hpp)
     const double lead = context.step / (1 + tissue.spectral_radius) + tissue.stiffness_damping;
-    contact_.detect(viewOf(context.state), std::clamp(move, kMinReach, context.model.particle_radius), lead);
+    const State& s = context.state;
+    contact_.detect({s.x.data(), s.y.data(), s.z.data()}, {s.vx.data(), s.vy.data(), s.vz.data()},
+                    std::clamp(move, kMinReach, context.model.particle_radius), lead);
   }
   static MotionView viewOf(State& state) {
     return {{state.x.data(), state.y.data(), state.z.data()},

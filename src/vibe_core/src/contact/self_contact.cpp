@@ -26,6 +26,8 @@ constexpr double kFriction = 0.05;
 // Speed of sliding from which friction is that of Coulomb; below it is viscous, as of a film of mucus. Design choice: a
 // tenth of the usual speed of folds that are drawn together [m/s].
 constexpr double kSlidingSpeed = 5e-3;
+// Searches of fast paths until all moves are given up, and those before nodes that still collide are stopped in place.
+constexpr int kSearches = 20, kPatience = 4;
 // Motion of a node until the next search, in thicknesses, so that most steps need none: of walls that face each other,
 // whose normals must not turn much, and of triangles that may meet.
 constexpr double kNearSlack = 0.1, kMeetingSlack = 0.1;
@@ -123,13 +125,13 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
 
 SelfContact::~SelfContact() = default;
 
-void SelfContact::detect(const MotionView& motion, double reach, double lead) {
-  if (isStart(motion) && reach == reach_ && lead == lead_) return;
+void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reach, double lead) {
+  if (isStart(x, v) && reach == reach_ && lead == lead_) return;
   reach_ = reach;
   lead_ = lead;
   pairs_.clear();
   energy_ = 0;
-  if (!start(motion, moved_)) {
+  if (!start(x, v, moved_)) {
     searched_reach_ = -1;
     memory_->near.clear();
     return;
@@ -139,25 +141,25 @@ void SelfContact::detect(const MotionView& motion, double reach, double lead) {
 }
 
 // The end of a step is usually the start of the next.
-bool SelfContact::isStart(const MotionView& motion) const {
+bool SelfContact::isStart(const NodeVectors& x, const NodeVectors& v) const {
   if (reach_ < 0) return false;
   const std::size_t n = thickness_.size();
   for (std::size_t k = 0; k < 3; ++k)
-    if (std::memcmp(motion.x[k], memory_->start[k].data(), n * sizeof(double)) != 0 ||
-        std::memcmp(motion.v[k], memory_->speed[k].data(), n * sizeof(double)) != 0)
+    if (std::memcmp(x[k], memory_->start[k].data(), n * sizeof(double)) != 0 ||
+        std::memcmp(v[k], memory_->speed[k].data(), n * sizeof(double)) != 0)
       return false;
   return true;
 }
 
 // Stores the positions and computes their distance from those of the last search.
-bool SelfContact::start(const MotionView& motion, double& moved) {
+bool SelfContact::start(const NodeVectors& x, const NodeVectors& v, double& moved) {
   SelfContactMemory& m = *memory_;
   const std::size_t n = thickness_.size();
   for (std::size_t k = 0; k < 3; ++k) {
-    std::copy(motion.x[k], motion.x[k] + n, m.start[k].begin());
-    std::copy(motion.v[k], motion.v[k] + n, m.speed[k].begin());
+    std::copy(x[k], x[k] + n, m.start[k].begin());
+    std::copy(v[k], v[k] + n, m.speed[k].begin());
   }
-  const double largest = farthest(m.searched, motion.x.data(), n);
+  const double largest = farthest(m.searched, x.data(), n);
   moved = std::sqrt(largest);
   return std::isfinite(largest);
 }
@@ -300,45 +302,52 @@ Eigen::Vector3d SelfContact::slidSince(const Pair& pair, const Eigen::Vector3d& 
 const std::vector<int>& SelfContact::resolvePenetrations(const MotionView& motion, double step) {
   stopped_.clear();
   SelfContactMemory& m = *memory_;
-  const std::vector<SelfContactPaths::Pair>* meetings = findMeetings(motion);
-  if (meetings == nullptr || meetings->empty()) return stopped_;
-  for (std::size_t i = 0; i < m.position.size(); ++i) {
-    m.position[i] = m.at(static_cast<int>(i));
-    m.end[i] = {motion.x[0][i], motion.x[1][i], motion.x[2][i]};
-    m.move[i] = m.end[i] - m.position[i];
+  if (searched_reach_ < 0 || !startPaths(motion)) return stopped_;
+  if (!m.slow) {
+    shortenFastPaths();
+  } else if (m.meetings.empty() || !m.paths.shorten(m.position, m.meetings, false, m.move)) {
+    return stopped_;
   }
-  if (!m.paths.shorten(m.position, *meetings, m.move)) return stopped_;
   for (std::size_t i = 0; i < m.position.size(); ++i) {
-    if (m.move[i] == m.end[i] - m.position[i]) continue;
+    if (m.move[i] == Eigen::Vector3d(motion.x[0][i], motion.x[1][i], motion.x[2][i]) - m.position[i]) continue;
     stop(motion, static_cast<int>(i), m.position[i] + m.move[i], step);
     stopped_.push_back(static_cast<int>(i));
   }
   return stopped_;
 }
 
-// Pairs of triangles that may meet on the paths from detect(); null: the paths are not finite.
-const std::vector<std::array<int, 2>>* SelfContact::findMeetings(const MotionView& motion) {
+// Paths that become shorter by different parts may meet others: they are searched again until nothing changes.
+void SelfContact::shortenFastPaths() {
+  SelfContactMemory& m = *memory_;
+  for (int search = 0; search < kSearches; ++search) {
+    for (std::size_t i = 0; i < m.end.size(); ++i) m.end[i] = m.position[i] + m.move[i];
+    m.search.findMeetings(m.position, m.end, kFloor * min_thickness_, 0, m.swept);
+    if (!m.paths.shorten(m.position, m.swept, search >= kPatience, m.move)) return;
+  }
+  std::fill(m.move.begin(), m.move.end(), Eigen::Vector3d::Zero());
+}
+
+// Sets positions and moves, and finds the pairs of triangles that may meet if the paths are short.
+// @returns false if nothing can meet, or the paths are not finite
+bool SelfContact::startPaths(const MotionView& motion) {
   SelfContactMemory& m = *memory_;
   const std::size_t n = thickness_.size();
   const double* start[3] = {m.start[0].data(), m.start[1].data(), m.start[2].data()};
-  const double* end[3] = {motion.x[0], motion.x[1], motion.x[2]};
-  const double slack2 = meeting_slack_ * meeting_slack_, floor = kFloor * min_thickness_;
-  if (searched_reach_ < 0) return nullptr;
-  if (met_ && farthest(m.met, start, n) <= slack2 && farthest(m.met, end, n) <= slack2) return &m.meetings;
+  const double slack2 = meeting_slack_ * meeting_slack_;
+  const double* const* end = motion.x.data();
+  m.slow = met_ && farthest(m.met, start, n) <= slack2 && farthest(m.met, end, n) <= slack2;
+  if (m.slow && m.meetings.empty()) return false;
   const double longest2 = farthest(m.start, end, n);
-  if (!std::isfinite(longest2)) return nullptr;
+  if (!std::isfinite(longest2)) return false;
   for (std::size_t i = 0; i < n; ++i) {
     m.position[i] = m.at(static_cast<int>(i));
-    m.end[i] = {end[0][i], end[1][i], end[2][i]};
+    m.move[i] = Eigen::Vector3d(end[0][i], end[1][i], end[2][i]) - m.position[i];
   }
-  if (longest2 > slack2) {
-    m.search.findMeetings(m.position, m.end, floor, 0, m.swept);
-    return &m.swept;
-  }
+  if (m.slow || longest2 > slack2) return true;
   for (int k = 0; k < 3; ++k) m.met[k] = m.start[k];
-  met_ = true;
-  m.search.findMeetings(m.position, m.position, floor, meeting_slack_, m.meetings);
-  return &m.meetings;
+  met_ = m.slow = true;
+  m.search.findMeetings(m.position, m.position, kFloor * min_thickness_, meeting_slack_, m.meetings);
+  return true;
 }
 
 void SelfContact::stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const {

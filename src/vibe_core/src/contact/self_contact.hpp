@@ -41,6 +41,8 @@ class SelfContactMemory;
 /// crossing. Walls that are nearer than t at rest touch at that distance.
 class SelfContact : public EnergyTerm {
  public:
+  using NodeVectors = std::array<const double*, 3>;  ///< x, y and z of the nodes
+
   /// A vertex and the triangle of another wall that is nearest to it on one side.
   struct Pair {
     std::array<int, 4> node;  ///< vertex, triangle
@@ -64,8 +66,10 @@ class SelfContact : public EnergyTerm {
   /// Finds the possible contacts within a step; call once before the step. The result depends only on the arguments,
   /// not on earlier calls. Allocates only while its buffers grow. If a position is not finite, there are no contacts.
   /// @param reach  expected largest decrease of the distance between two walls in this step [m]
+  /// @param x      positions [m]
+  /// @param v      velocities [m/s]
   /// @param lead   time from then to the point at which the step evaluates forces [s]
-  void detect(const MotionView& motion, double reach, double lead);
+  void detect(const NodeVectors& x, const NodeVectors& v, double reach, double lead);
 
   double evaluate(const double* positions4, float* gradient4) const override;
   /// Of the pairs of the last detect() that are in contact at the positions, with their normals.
@@ -86,8 +90,8 @@ class SelfContact : public EnergyTerm {
   int searchCount() const { return searches_; }  ///< detect() calls that needed a search
 
  private:
-  bool isStart(const MotionView& motion) const;
-  bool start(const MotionView& motion, double& moved);
+  bool isStart(const NodeVectors& x, const NodeVectors& v) const;
+  bool start(const NodeVectors& x, const NodeVectors& v, double& moved);
   static Eigen::Vector3d awayAt(const Pair& pair, const double* positions4);
   static Eigen::Vector3d slidSince(const Pair& pair, const Eigen::Vector3d& away);
   void search(double reach);
@@ -95,7 +99,8 @@ class SelfContact : public EnergyTerm {
   void addPair(int near, double facing);
   double meanThickness(int vertex, int triangle) const;
   double facing(int vertex, int triangle) const;
-  const std::vector<std::array<int, 2>>* findMeetings(const MotionView& motion);
+  bool startPaths(const MotionView& motion);
+  void shortenFastPaths();
   void stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const;
 
   SurfaceMesh rest_;

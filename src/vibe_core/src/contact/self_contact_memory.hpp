@@ -44,6 +44,7 @@ class SelfContactMemory {
   std::vector<SelfContactSearch::Near> found;
   std::vector<SelfContactPaths::Pair> meetings;      // of triangles, found by the last search
   std::vector<SelfContactPaths::Pair> swept;         // the same, of fast paths
+  bool slow = false;                                 // no node moves farther than `meetings` allow
   std::vector<Eigen::Vector3d> position, end, move;  // of a step [m]
 };
 

@@ -43,7 +43,7 @@ bool has(const std::array<int, 3>& triangle, int vertex) {
 SelfContactPaths::SelfContactPaths(const std::vector<std::array<int, 3>>& triangles, double floor)
     : triangles_(triangles), floor_(floor) {}
 
-bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const std::vector<Pair>& pairs,
+bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const std::vector<Pair>& pairs, bool stop,
                                std::vector<Eigen::Vector3d>& move) {
   start_ = &start;
   move_ = &move;
@@ -56,7 +56,7 @@ bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const 
     bool shortened = false;
     for (const auto& [one, other] : pairs_)
       if ((isNews(one) || isNews(other)) && !keepsApart(one, other))
-        shortened = shortenPair(one, other, round >= kRounds) || shortened;
+        shortened = shortenPair(one, other, stop || round >= kRounds) || shortened;
     if (!shortened) return any;
     if (!any) pairs_ = pairs;  // shorter moves may bring others together
     if (!any) dropTangled();

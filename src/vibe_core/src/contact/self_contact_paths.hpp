@@ -21,9 +21,10 @@ class SelfContactPaths {
 
   /// Triangles that cross at the start may pass each other and their neighbours, so that they can come apart.
   /// @param pairs  all that may come nearer than the floor
+  /// @param stop   nodes that collide stop in place
   /// @param move   in and out [m]
   /// @returns whether any was shortened
-  bool shorten(const std::vector<Eigen::Vector3d>& start, const std::vector<Pair>& pairs,
+  bool shorten(const std::vector<Eigen::Vector3d>& start, const std::vector<Pair>& pairs, bool stop,
                std::vector<Eigen::Vector3d>& move);
 
  private:
