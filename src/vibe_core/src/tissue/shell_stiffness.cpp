@@ -118,7 +118,7 @@ Eigen::Vector3d difference(const Vectors& x, int to, int from) {
 }
 
 void addMembrane(const Material& material, const WallTerms<double>& terms, const double* rest, const FibresOf& fibres,
-                 const Vectors& x, const Vectors& u, Matrix18& k) {
+                 const Vectors& x, const Vectors& u, bool whole, Matrix18& k) {
   for (int side = 0; side < 3; ++side) {
     const SideNodes& n = kSideNodes[side];
     const SideBlocks b =
@@ -127,6 +127,7 @@ void addMembrane(const Material& material, const WallTerms<double>& terms, const
     const int nodes[4] = {n.e_to, n.e_from, n.d_to, n.d_from};
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
+        if (!whole && nodes[i] < nodes[j]) continue;
         const double sign = (i + j) % 2 == 0 ? 1 : -1;
         auto block = k.block<3, 3>(3 * nodes[i], 3 * nodes[j]);
         if (i < 2 && j < 2) block += sign * b.ee;
@@ -212,11 +213,12 @@ void ShellElements::addStiffness(const double* displacement, BlockMatrix& stiffn
     gather(e, displacement, u);
     std::copy(rest(e) + kShellPatch, rest(e) + kShellPatch + 15, &x[0][0]);
     Matrix18 k = Matrix18::Zero();
+    const bool whole = atBoundary(e);  // folding needs the blocks above the diagonal too
     const FibresOf fibres{fibre_rest_.empty() ? nullptr : &fibre_rest_[kFibreRows * e], mesh_.fibres.stiffening};
     addMembrane(m, WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), fibres,
-                Eigen::Map<const Vectors>(&x[0][0]), Eigen::Map<const Vectors>(&u[0][0]), k);
-    addBending(WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), x, u, k);
-    if (atBoundary(e)) foldGhosts(rest(e), k);
+                Eigen::Map<const Vectors>(&x[0][0]), Eigen::Map<const Vectors>(&u[0][0]), whole, k);
+    addBending(WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), x, u, whole, k);
+    if (whole) foldGhosts(rest(e), k);
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b <= a; ++b, ++place) {
         if (*place == BlockMatrix::kNowhere) continue;
