@@ -26,16 +26,22 @@ constexpr double kFlatSight = 0.8;      // smallest straight distance on a flat 
 constexpr double kFloor = 0.05;         // minimum distance of walls, in thicknesses
 constexpr double kLeg = 6e-3;           // a step with longer moves is split into parts, so that few walls are near [m]
 
-/// Energy per A E' t / 2 of a wall squeezed to s of its thickness, and its derivative with respect to s.
-std::pair<double, double> squeeze(double s) {
-  if (s >= 1 + kOnset) return {0, 0};
+struct Squeeze {
+  double value, slope, curvature;  // energy and its derivatives with respect to s [1]
+};
+
+/// Energy per A E' t / 2 of a wall squeezed to s of its thickness.
+Squeeze squeeze(double s) {
+  if (s >= 1 + kOnset) return {0, 0, 0};
   const double kept = std::max(s, kStraightBelow), strain = 1 - kept;
   const double ramp = strain + kOnset;
-  const double h = strain > kOnset ? strain : ramp * ramp / (4 * kOnset);
-  const double h_slope = strain > kOnset ? 1 : ramp / (2 * kOnset);
-  const double hencky = std::log1p(-h);
-  const double slope = hencky / (1 - h) * h_slope;
-  return {0.5 * hencky * hencky + slope * (s - kept), slope};
+  const bool full = strain > kOnset;
+  const double h = full ? strain : ramp * ramp / (4 * kOnset);
+  const double h_slope = full ? 1 : ramp / (2 * kOnset), h_curvature = full ? 0 : 1 / (2 * kOnset);
+  const double hencky = std::log1p(-h), stress = hencky / (1 - h);
+  const double slope = stress * h_slope;
+  const double curvature = (1 - hencky) / ((1 - h) * (1 - h)) * h_slope * h_slope - stress * h_curvature;
+  return {0.5 * hencky * hencky + slope * (s - kept), slope, curvature};
 }
 
 void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double young_modulus) {
@@ -204,7 +210,7 @@ void SelfContact::addPair(int near, double facing) {
   const double s = foot.away.norm() / pair.thickness;
   pair.away = foot.away;
   pair.drag =
-      -kDrag * pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s).second / std::max(s, kStraightBelow);
+      -kDrag * pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s).slope / std::max(s, kStraightBelow);
   pairs_.push_back(pair);
 }
 
@@ -213,12 +219,12 @@ double SelfContact::evaluate(const double* positions4, float* gradient4) const {
   for (const Pair& pair : pairs_) {
     Eigen::Vector3d away = at(positions4, pair.node[0]);
     for (int k = 0; k < 3; ++k) away -= pair.weight[k] * at(positions4, pair.node[k + 1]);
-    const auto [value, slope] = squeeze(pair.normal.dot(away) / pair.thickness);
-    if (value == 0 && pair.drag == 0) continue;
+    const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness);
+    if (squeezed.value == 0 && pair.drag == 0) continue;
     const Eigen::Vector3d change = away - pair.away;
     const Eigen::Vector3d slid = change - pair.normal.dot(change) * pair.normal;
-    energy += pair.stiffness * value + 0.5 * pair.drag * slid.squaredNorm();
-    const Eigen::Vector3d force = pair.stiffness / pair.thickness * slope * pair.normal + pair.drag * slid;
+    energy += pair.stiffness * squeezed.value + 0.5 * pair.drag * slid.squaredNorm();
+    const Eigen::Vector3d force = pair.stiffness / pair.thickness * squeezed.slope * pair.normal + pair.drag * slid;
     for (int c = 0; c < 3; ++c) {
       gradient4[4 * static_cast<std::size_t>(pair.node[0]) + c] += static_cast<float>(force[c]);
       for (int k = 0; k < 3; ++k)
@@ -226,6 +232,23 @@ double SelfContact::evaluate(const double* positions4, float* gradient4) const {
     }
   }
   return energy;
+}
+
+void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const {
+  for (const Pair& pair : pairs_) {
+    Eigen::Vector3d away = at(positions4, pair.node[0]);
+    for (int k = 0; k < 3; ++k) away -= pair.weight[k] * at(positions4, pair.node[k + 1]);
+    const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness);
+    const double normal = pair.stiffness / (pair.thickness * pair.thickness) * squeezed.curvature;
+    if (normal == 0 && pair.drag == 0) continue;
+    const Eigen::Vector3d& n = pair.normal;
+    const Eigen::Matrix3d k = pair.drag * Eigen::Matrix3d::Identity() + (normal - pair.drag) * n * n.transpose();
+    couplings.push_back({pair.node,
+                         {1, -static_cast<float>(pair.weight[0]), -static_cast<float>(pair.weight[1]),
+                          -static_cast<float>(pair.weight[2])},
+                         {static_cast<float>(k(0, 0)), static_cast<float>(k(0, 1)), static_cast<float>(k(0, 2)),
+                          static_cast<float>(k(1, 1)), static_cast<float>(k(1, 2)), static_cast<float>(k(2, 2))}});
+  }
 }
 
 bool SelfContact::endsOf(const double* x, const double* y, const double* z, double& longest) {

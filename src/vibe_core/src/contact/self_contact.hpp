@@ -63,6 +63,8 @@ class SelfContact : public EnergyTerm {
   void detect(const double* x, const double* y, const double* z, double reach);
 
   double evaluate(const double* positions4, float* gradient4) const override;
+  /// Of the pairs of the last detect() that are in contact at the positions, with their normals.
+  void addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const override;
 
   /// Moves nodes back towards their positions at detect() as far as necessary so that no wall passes through another on
   /// the straight path from there. Walls that were apart at detect() end at least 5 % of the smallest thickness apart,

@@ -21,6 +21,8 @@ void ConstraintRows::clear() {
   equations.clear();
   contacts.clear();
   threads.clear();
+  tool_compliance.setZero();
+  tool_yields = false;
 }
 
 void ConstraintRows::number() {

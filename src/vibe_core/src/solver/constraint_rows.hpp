@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "vibe_core/solver/body_loads.hpp"
 #include "vibe_core/solver/row_list.hpp"
 
 namespace vibe {
@@ -25,7 +26,8 @@ struct LinearForm {
 /// The form has a value, up to what its compliance leaves.
 struct EquationRow {
   LinearForm form;
-  double compliance = 0;  ///< 0: exact [m/N]
+  double compliance = 0;                    ///< 0: exact [m/N]
+  YieldVector yield = YieldVector::Zero();  ///< motion of the value per motion of the tool that yields
 };
 
 /// A point of the surface outside the tool with Coulomb friction: the form of the normal, which is at least its target,
@@ -34,6 +36,9 @@ struct ContactRows {
   std::array<LinearForm, 3> form;
   std::array<Eigen::Vector3d, 3> direction;  ///< normal, two tangents; unit
   double friction = 0;                       ///< Coulomb coefficient [1]
+  double compliance = 0;                     ///< of the normal [m/N]
+  /// Motion of the three targets per motion of the tool that yields.
+  Eigen::Matrix<double, 3, kYieldDofs> yield = Eigen::Matrix<double, 3, kYieldDofs>::Zero();
 };
 
 /// A segment of thread between two attachment points that follow each other.
@@ -66,6 +71,9 @@ struct ConstraintRows {
   RowList<EquationRow> equations;
   RowList<ContactRows> contacts;
   RowList<ThreadRows> threads;
+  /// Of the tool: its motion is minus this times the sum over rows of yield * force. Zero: the tool is rigid.
+  YieldMatrix tool_compliance = YieldMatrix::Zero();
+  bool tool_yields = false;
 
   void clear();
   /// Sets the first rows of the threads.
@@ -81,6 +89,15 @@ struct ConstraintRows {
       for (const LinearForm& form : contact.form) use(row++, form);
     for (const ThreadRows& thread : threads)
       for (int k = 0; k < thread.count(); ++k) use(thread.pullRow(k), thread.segments[k].pull);
+  }
+  /// Rows that move with a tool that yields: use(row, yield).
+  template <class Use>
+  void forEachYield(Use use) const {
+    if (!tool_yields) return;
+    int row = 0;
+    for (const EquationRow& equation : equations) use(row++, equation.yield);
+    for (const ContactRows& contact : contacts)
+      for (int k = 0; k < 3; ++k) use(row++, contact.yield.row(k).transpose());
   }
   /// Forms of the rows whose energy the potential has: use(row, form, compliance).
   template <class Use>

@@ -115,9 +115,11 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
   int row = 0;
   for (const EquationRow& equation : rows.equations) setRow(row++, equation.form, equation.compliance, factor);
   for (const ContactRows& contact : rows.contacts)
-    for (const LinearForm& form : contact.form) setRow(row++, form, 0, factor);
+    for (int k = 0; k < 3; ++k)
+      setRow(row++, contact.form[static_cast<std::size_t>(k)], k == 0 ? contact.compliance : 0, factor);
   for (const ThreadRows& thread : rows.threads) setThreadRows(thread, factor, attachments);
   sortRows(rows);
+  setYield(rows);
   findUsedSlots();
   formCompliance();
 }
@@ -133,6 +135,16 @@ void ConstraintSchur::sortRows(const ConstraintRows& rows) {
   }
   for (const ThreadRows& thread : rows.threads)
     if (thread.count() > 0) addThread(thread);
+}
+
+void ConstraintSchur::setYield(const ConstraintRows& rows) {
+  yields_ = rows.tool_yields;
+  if (!yields_) return;
+  yield_.setZero(kYieldDofs, row_count_);
+  rows.forEachYield([this](int row, const YieldVector& yield) { yield_.col(row) = yield; });
+  tool_compliance_ = rows.tool_compliance;
+  given_.resize(kYieldDofs, row_count_);
+  for (int i = 0; i < row_count_; ++i) given_.col(i) = tool_compliance_ * yield_.col(i);
 }
 
 void ConstraintSchur::addThread(const ThreadRows& rows) {
@@ -216,6 +228,7 @@ void ConstraintSchur::formCompliance() {
     for (int j = 0; j < m; ++j) compliance_.col(j) -= (gas_row_[j] / gas_norm2_) * gas_row_;
   }
   for (int i = 0; i < m; ++i) compliance_(i, i) += rows_[i].compliance;
+  if (yields_) compliance_.noalias() += yield_.transpose().lazyProduct(given_);
   formBlocks();
 }
 
@@ -353,6 +366,11 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   if (gas_stiffness_ != 0 && m > 0) residual_ -= gas_row_ * (gas_residual / gas_norm2_);
   solveRows();
   for (int i = 0; i < m; ++i) moves_[i] -= rows_[i].compliance * force_[i];
+  if (yields_) {
+    YieldVector pull = YieldVector::Zero();
+    for (int i = 0; i < m; ++i) pull += force_[i] * yield_.col(i);
+    for (int i = 0; i < m; ++i) moves_[i] -= given_.col(i).dot(pull);
+  }
   addForces(y);
   gas_force_ = 0;
   if (gas_stiffness_ != 0) {

@@ -69,6 +69,7 @@ class ConstraintSchur {
   void setThreadRows(const ThreadRows& thread, const Factor& factor, const AttachmentColumns* attachments);
   void sortRows(const ConstraintRows& rows);
   void addThread(const ThreadRows& thread);
+  void setYield(const ConstraintRows& rows);
   const Eigen::Matrix3f& gram(int a, int b);
   void findUsedSlots();
   void findRowValues(const float* y);
@@ -99,7 +100,10 @@ class ConstraintSchur {
   std::vector<Contact> contacts_;
   std::vector<Thread> threads_;
   int thread_count_ = 0;
-  std::vector<float> gas_;  // L^-1 of the gas direction
+  bool yields_ = false;
+  YieldMatrix tool_compliance_;
+  Eigen::Matrix<double, kYieldDofs, Eigen::Dynamic> yield_, given_;  // per row: of its target; compliance times this
+  std::vector<float> gas_;                                           // L^-1 of the gas direction
   double gas_stiffness_ = 0, gas_norm2_ = 0;
   Eigen::VectorXd gas_row_, force_, moves_, slid_;
   double gas_force_ = 0;

@@ -81,6 +81,9 @@ void setContact(const ContactConstraint& contact, ContactRows& rows) {
   rows.direction = {normal, tangent, normal.cross(tangent)};
   for (std::size_t k = 0; k < 3; ++k) setPoint(contact.point, rows.direction[k], rows.form[k]);
   rows.friction = contact.friction;
+  rows.compliance = contact.compliance;
+  for (int k = 0; k < 3; ++k)
+    rows.yield.row(k) = rows.direction[static_cast<std::size_t>(k)].transpose() * contact.yield;
 }
 
 // Where attachment points have met, as much thread as they are large stays between them. What slid out beyond that
@@ -110,6 +113,7 @@ void setTargets(const BodyLoads& loads, const ConstraintRows& rows, Eigen::Vecto
   for (std::size_t t = 0; t < loads.threads.size(); ++t)
     for (int k = 0; k < rows.threads[t].count(); ++k)
       target[rows.threads[t].pullRow(k)] = -std::max(loads.threads[t].length[k], kMinThread);
+  rows.forEachYield([&](int row, const YieldVector& yield) { target[row] += yield.dot(loads.tool_yield.free); });
 }
 
 // A target for z from one for x at the end of the step.
@@ -127,6 +131,8 @@ double stepTarget(const LinearForm& form, double target, const MotionView& motio
 
 void scaleCompliances(double gain, ConstraintRows& rows) {
   for (EquationRow& row : rows.equations) row.compliance *= gain;
+  for (ContactRows& contact : rows.contacts) contact.compliance *= gain;
+  rows.tool_compliance *= gain;
   for (ThreadRows& thread : rows.threads)
     for (SegmentRows& segment : thread.segments) segment.compliance *= gain, segment.turn_compliance *= gain;
 }
@@ -153,9 +159,12 @@ void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch&
     row.form.node = constraint.node;
     row.form.coefficient = constraint.coefficient;
     row.compliance = constraint.compliance;
+    row.yield = constraint.yield;
   }
   for (const ContactConstraint& contact : loads.contacts) setContact(contact, rows.contacts.add());
   for (const ThreadLoad& thread : loads.threads) setThread(loads, thread, motion, rows.threads.add());
+  rows.tool_yields = loads.tool_yield.dofs > 0;
+  if (rows.tool_yields) rows.tool_compliance = loads.tool_yield.compliance;
   rows.number();
   scratch.target.resize(rows.count());
   scratch.rhs.resize(rows.count());
@@ -186,6 +195,9 @@ void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
     for (int k = 0; k < 3; ++k) contact.force += force[rows.contactRow(c) + k] * rows.contacts[c].direction[k];
   }
   for (std::size_t t = 0; t < loads.threads.size(); ++t) storeThread(scratch, rows.threads[t], gain, loads.threads[t]);
+  YieldVector pull = YieldVector::Zero();
+  rows.forEachYield([&](int row, const YieldVector& yield) { pull += force[row] * yield; });
+  if (rows.tool_yields) loads.tool_yield.displacement = loads.tool_yield.free - loads.tool_yield.compliance * pull;
   loads.gas.volume = scratch.volume;
   loads.gas.pressure = scratch.pressure;
 }

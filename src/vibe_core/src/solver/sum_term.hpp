@@ -27,6 +27,10 @@ class SumTerm : public EnergyTerm {
     return energy;
   }
 
+  void addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const override {
+    for (const EnergyTerm* term : terms_) term->addStiffness(positions4, couplings);
+  }
+
   bool acts() const override {
     for (const EnergyTerm* term : terms_)
       if (term->acts()) return true;

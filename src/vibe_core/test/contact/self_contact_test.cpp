@@ -174,6 +174,46 @@ TEST(SelfContact, GradientIsDerivativeOfEnergy) {
   }
 }
 
+// x . K x of the couplings.
+double quadratic(const std::vector<StiffnessCoupling>& couplings, const std::vector<double>& x) {
+  double sum = 0;
+  for (const StiffnessCoupling& c : couplings) {
+    Eigen::Vector3d u = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < 4; ++k)
+      if (c.node[k] >= 0)
+        u += c.weight[k] * Eigen::Vector3d(x[4 * static_cast<std::size_t>(c.node[k])],
+                                           x[4 * static_cast<std::size_t>(c.node[k]) + 1],
+                                           x[4 * static_cast<std::size_t>(c.node[k]) + 2]);
+    Eigen::Matrix3d stiffness;
+    stiffness << c.stiffness[0], c.stiffness[1], c.stiffness[2], c.stiffness[1], c.stiffness[3], c.stiffness[4],
+        c.stiffness[2], c.stiffness[4], c.stiffness[5];
+    sum += u.dot(stiffness * u);
+  }
+  return sum;
+}
+
+TEST(SelfContact, StiffnessIsSecondDerivativeOfEnergy) {
+  PressedPlates world;
+  std::vector<StiffnessCoupling> couplings;
+  world.contact.addStiffness(world.at.data(), couplings);
+  ASSERT_GT(couplings.size(), 60U);
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 5; ++trial) {
+    std::vector<double> way(world.at.size());
+    for (double& value : way) value = normal(random);
+    const double step = 1e-7, middle = world.evaluate();
+    const std::vector<double> at = world.at;
+    for (std::size_t i = 0; i < at.size(); ++i) world.at[i] = at[i] + step * way[i];
+    const double above = world.evaluate();
+    for (std::size_t i = 0; i < at.size(); ++i) world.at[i] = at[i] - step * way[i];
+    const double below = world.evaluate();
+    world.at = at;
+    const double second = (above - 2 * middle + below) / (step * step);
+    EXPECT_NEAR(quadratic(couplings, way), second, 1e-3 * second);
+  }
+}
+
 TEST(SelfContact, MomentumAndMomentAreConserved) {
   PressedPlates world;
   world.evaluate();

@@ -202,7 +202,7 @@ std::unique_ptr<Body> pulledBlock(double traction, double nu, bool fixed) {
   for (int i = 0; i < run->nodes() && !fixed; ++i)
     for (int k = 0; k < 3; ++k)
       if (body.rest[i][k] < 1e-9 && (k == 0 || body.rest[i].x() < 1e-9))
-        run->loads.constraints.push_back({{i}, {Eigen::Vector3d::Unit(k)}, 0, 0, 0});
+        run->loads.constraints.push_back({{i}, {Eigen::Vector3d::Unit(k)}, 0, 0});
   return run;
 }
 

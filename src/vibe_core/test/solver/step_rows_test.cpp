@@ -16,7 +16,13 @@ struct Fixture {
   Fixture() : body(block({2, 1, 1}, neoHookean())), stepper(body, {}), motion(body), scratch(stepper.makeScratch()) {
     loads.addPoint({1, 2}, {0.25, 0.75}, {0.1, 0.2, 0.3}, 0.02);
     const Eigen::Vector3d normal = Eigen::Vector3d(0, 3, 4) / 5;
-    loads.contacts.push_back({3, normal, 0.7, 0.3, {0.01, 0.02, 0.03}});
+    ContactConstraint contact;
+    contact.point = SurfacePoint::ofNode(3);
+    contact.normal = normal;
+    contact.offset = 0.7;
+    contact.friction = 0.3;
+    contact.anchor = {0.01, 0.02, 0.03};
+    loads.contacts.push_back(contact);
     loads.attachments = {{{0}, {1}}, {{4, 5}, {0.5, 0.5}}, {{7}, {1}}};
     ThreadLoad thread;
     thread.length = {0.02, 0.015};
