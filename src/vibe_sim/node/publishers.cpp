@@ -139,7 +139,7 @@ void Publishers::tool(const Session& session, std::int64_t stamp) {
   last_tool_ = stamp;
   const Model& model = *session.model;
   if (!model.tool) return;
-  model.tool->forwardKinematics(session.state.joints, link_poses_);
+  model.tool->forwardKinematics(session.state.joints, session.state.tool_displacement, link_poses_);
   scope_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
   helix_pose_.publish(makePose(model.tool_base * link_poses_[model.helix_link], kWorldFrame, stamp));
   wrench_.publish(makeWrench(session.state, stamp));

@@ -4,6 +4,7 @@
 
 #include "constraints/depenetration.hpp"
 #include "contact/deepest_contact.hpp"
+#include "contact/tool_jacobian.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -37,7 +38,9 @@ class ToolContactBlock : public ConstraintBlock {
   void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
     for (std::size_t c = 0; c < motion_.size(); ++c) {
       const ContactConstraint& contact = loads.contacts[first_ + c];
-      if (!contact.force.isZero()) touches.push_back(touchOf(context.state, contact, c));
+      if (contact.force.isZero()) continue;
+      touches.push_back(touchOf(context.state, contact, c));
+      if (context.bend) touches.back().motion += contact.yield * loads.tool_yield.displacement;
     }
   }
 
@@ -85,6 +88,7 @@ class ToolContactBlock : public ConstraintBlock {
     constraint.offset = std::min(surface, contact.normal.dot(anchor) + kDepenetrationSpeed * context.step);
     constraint.friction = model.scene.scope->friction;
     constraint.anchor = anchor;
+    if (context.bend) constraint.yield = yieldJacobian(*model.tool, context.tool->end, *context.bend, link, anchor);
     motion_.emplace_back(anchor - p);
     link_.push_back(link);
   }

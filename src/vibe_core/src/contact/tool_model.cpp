@@ -41,8 +41,8 @@ void ToolModel::forwardKinematics(const std::array<double, kJointCount>& inputs,
 void ToolModel::forwardKinematics(const std::array<double, kJointCount>& inputs, const ToolDisplacement& displacement,
                                   std::vector<Eigen::Isometry3d>& link_poses) const {
   const bool bent = std::any_of(displacement.begin() + kShaftDof, displacement.end(), [](double d) { return d != 0; });
-  const ShaftBend bend(bent ? shaft_stations_ : std::vector<double>(),
-                       freeLength(inputs[Insertion] + displacement[Insertion]), displacement);
+  const ShaftBend bend(shaft_stations_, bent ? freeLength(inputs[Insertion] + displacement[Insertion]) : 0,
+                       displacement);
   link_poses.resize(link_names_.size());
   link_poses[0].setIdentity();
   for (const ToolJoint& joint : joints_) {

@@ -14,7 +14,9 @@ std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {
 }
 
 void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
-  tool_->forwardKinematics(inputs(fraction), poses);
+  ToolDisplacement displacement = start_displacement_;
+  for (int d = 0; d < kYieldDofs; ++d) displacement[d] += fraction * (end_displacement_[d] - start_displacement_[d]);
+  tool_->forwardKinematics(inputs(fraction), displacement, poses);
   for (Eigen::Isometry3d& pose : poses) pose = base_ * pose;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/tool_jacobian.hpp"
 #include "dynamics/tool_contact_rows.hpp"
 #include "geometry/lumen.hpp"
 #include "model/max_speed.hpp"
@@ -70,6 +71,13 @@ Activity ImplicitStep::gather() {
     motion_->linkPoses(1, scratch_.poses.end);
   }
   scratch_.loads.clear();
+  if (motion_ != nullptr && model_.scope_springs) {
+    const auto joints = motion_->inputs(1);
+    const ToolDisplacement& displacement = motion_->startDisplacement();
+    scratch_.loads.tool_yield = model_.scope_springs->yield(joints, displacement, context_.step);
+    bend_.emplace(model_.tool->shaftBend(joints, displacement));
+    context_.bend = &*bend_;
+  }
   Activity most = Activity::Sleep;
   for (const auto& block : scratch_.blocks) most = std::max(most, block->prepare(context_, scratch_.loads));
   return most;
@@ -114,7 +122,17 @@ bool ImplicitStep::solve() {
   report_.iterations = outcome.iterations;
   report_.fallback = outcome.fallback;
   if (!outcome.finite) std::fill(state_.x.begin(), state_.x.end(), std::numeric_limits<double>::quiet_NaN());
+  if (outcome.finite && context_.bend != nullptr) yieldTool();
   return outcome.finite;
+}
+
+// From here on the tool is where the forces of this step have brought it.
+void ImplicitStep::yieldTool() {
+  ToolMotion yielded = *motion_;
+  report_.tool_displacement = motion_->startDisplacement();
+  for (int d = 0; d < kYieldDofs; ++d) report_.tool_displacement[d] += scratch_.loads.tool_yield.displacement[d];
+  yielded.displaceEnd(report_.tool_displacement);
+  yielded.linkPoses(1, scratch_.poses.end);
 }
 
 void ImplicitStep::store() {
@@ -123,6 +141,7 @@ void ImplicitStep::store() {
   for (const auto& block : scratch_.blocks) block->store(context_, scratch_.loads, scratch_.touches);
   if (motion_ != nullptr) {
     reportTool();
+    reportHand();
     reportImpedance();
   }
   accountDamping();
@@ -135,6 +154,21 @@ void ImplicitStep::reportTool() {
     if (touch.kind == ToolTouch::Kind::Contact) ++report_.contact_count;
     pushTool(-touch.force, touch.point, touch.motion, tip, report_, state_.energy);
   }
+}
+
+// Inputs that are not the scope's act from within the tool: the hand that pushes an instrument.
+void ImplicitStep::reportHand() {
+  Eigen::Matrix<double, kJointCount, 1> effort = Eigen::Matrix<double, kJointCount, 1>::Zero();
+  for (const ToolTouch& touch : scratch_.touches)
+    effort += pointJacobian(*model_.tool, scratch_.poses.end, touch.link, touch.point).transpose() * touch.force;
+  const auto from = motion_->inputs(0), to = motion_->inputs(1);
+  if (model_.scope_springs) {
+    const ToolDisplacement &before = motion_->startDisplacement(), &after = report_.tool_displacement;
+    effort[Insertion] -= model_.scope_springs->configurationalForce(to, before);
+    state_.energy.scope_loss += model_.scope_springs->loss(to, before, after, context_.step);
+  }
+  for (int j = 0; j < kJointCount; ++j) state_.energy.hand_work += effort[j] * (to[j] - from[j]);
+  for (int j = 0; j < kScopeJointCount; ++j) report_.hand_effort[j] = effort[j];
 }
 
 // Begins before anything is touched, because the factor that the impedance needs takes a while to make.

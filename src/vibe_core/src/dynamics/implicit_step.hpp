@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "contact/tool_motion.hpp"
 #include "dynamics/implicit_scratch.hpp"
 #include "solver/implicit_stepper.hpp"
@@ -24,8 +26,10 @@ class ImplicitStep {
   bool lost() const;
   void recover();
   bool solve();
+  void yieldTool();
   void store();
   void reportTool();
+  void reportHand();
   void reportImpedance();
   void accountDamping();
   void updateRest(Activity activity);
@@ -38,6 +42,7 @@ class ImplicitStep {
   State& state_;
   StepReport& report_;
   ImplicitScratch& scratch_;
+  std::optional<ShaftBend> bend_;  // of a tool that yields
   StepContext context_;
 };
 
