@@ -74,9 +74,12 @@ std::array<double, kJointCount> ScopeSprings::handMotion(const std::array<double
   const double damped = 1 + relaxationTime(start, displacement) / step;
   std::array<double, kJointCount> result = end;
   for (int j = 0; j < kScopeJointCount; ++j) {
-    const double limit = tool_->limits()[j].effort, load = k[j] * displacement[j];
+    const JointLimits& limits = tool_->limits()[j];
     // if the tool stays where it is, a motion m of the hand leaves K q - (1 + t/h) K m
-    const double most = (limit + load) / (k[j] * damped), least = -(limit - load) / (k[j] * damped);
+    const double load = k[j] * displacement[j] / limits.effort, give = limits.effort / (k[j] * damped);
+    // springs too stiff for that at the speed of a step: the nearer to its limit, the slower the hand
+    const double way = std::max(give, limits.velocity * step);
+    const double most = (1 + load) * (load > -1 ? way : give), least = -(1 - load) * (load < 1 ? way : give);
     result[j] = start[j] + std::clamp(end[j] - start[j], least, most);
   }
   return result;
@@ -95,6 +98,14 @@ ToolYield ScopeSprings::yield(const std::array<double, kJointCount>& joints, con
   yield.free[Insertion] += yield.compliance(Insertion, Insertion) * configurationalForce(joints, displacement);
   yield.displacement = yield.free;
   return yield;
+}
+
+YieldVector ScopeSprings::load(const std::array<double, kJointCount>& joints, const ToolDisplacement& from,
+                               const ToolDisplacement& to, double step) const {
+  YieldVector load = stiffness(joints[Insertion] + from[Insertion]);
+  const double damping = relaxationTime(joints, from) / step;
+  for (int d = 0; d < kYieldDofs; ++d) load[d] *= -(to[d] + damping * (to[d] - from[d]));
+  return load;
 }
 
 double ScopeSprings::loss(const std::array<double, kJointCount>& joints, const ToolDisplacement& from,

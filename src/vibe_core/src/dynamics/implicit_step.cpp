@@ -164,7 +164,8 @@ void ImplicitStep::reportHand() {
   const auto from = motion_->inputs(0), to = motion_->inputs(1);
   if (model_.scope_springs) {
     const ToolDisplacement &before = motion_->startDisplacement(), &after = report_.tool_displacement;
-    effort[Insertion] -= model_.scope_springs->configurationalForce(to, before);
+    effort.head<kScopeJointCount>() =
+        model_.scope_springs->load(to, before, after, context_.step).head<kScopeJointCount>();
     state_.energy.scope_loss += model_.scope_springs->loss(to, before, after, context_.step);
   }
   for (int j = 0; j < kJointCount; ++j) state_.energy.hand_work += effort[j] * (to[j] - from[j]);

@@ -32,7 +32,8 @@ class ScopeSprings {
   double relaxationTime(const std::array<double, kJointCount>& joints, const ToolDisplacement& displacement) const;
 
   /// Where a hand whose force is limited brings the joints, on the way from `start` to `end`: it stalls, or is pushed
-  /// back, where the springs between it and the tool would carry more than JointLimits::effort.
+  /// back, where the springs between it and the tool would carry more than JointLimits::effort. Springs so stiff that a
+  /// step at full speed loads them beyond that may exceed it for a step.
   std::array<double, kJointCount> handMotion(const std::array<double, kJointCount>& start,
                                              const std::array<double, kJointCount>& end,
                                              const ToolDisplacement& displacement, double step) const;
@@ -41,6 +42,11 @@ class ScopeSprings {
   /// @param joints  of the hand, at the end of the step
   ToolYield yield(const std::array<double, kJointCount>& joints, const ToolDisplacement& displacement,
                   double step) const;
+
+  /// What the springs and their dampers carry at the end of a step from one displacement to another, positive if the
+  /// hand pushes the tool forward.
+  YieldVector load(const std::array<double, kJointCount>& joints, const ToolDisplacement& from,
+                   const ToolDisplacement& to, double step) const;
 
   /// Dissipated by the springs' dampers (and by implicit Euler) in a step from one displacement to another [J].
   double loss(const std::array<double, kJointCount>& joints, const ToolDisplacement& from, const ToolDisplacement& to,
