@@ -45,6 +45,8 @@ class SutureSession {
   /// @return false if something still moves
   bool calmDown(double longest);
 
+  /// The beginning of sew(): takes the bites and drops the T-tag.
+  void tag(const std::vector<WallSpot>& spots);
   /// @param after  time to continue after the release of the cinch [s]
   SewnSet sew(const std::vector<WallSpot>& spots, double after = 1);
 
@@ -55,7 +57,7 @@ class SutureSession {
 
  private:
   void step();
-  void takeBites(const std::vector<WallSpot>& spots);
+  void tag(const std::vector<WallSpot>& spots, SewnSet& set);
   void press(Button button, bool down, StepCosts& costs, SewnSet& set);
   void pull(SewnSet& set);
   void count(std::size_t first_event, SewnSet& set) const;
@@ -65,6 +67,10 @@ class SutureSession {
   std::vector<Event> events_;  // since the start
   double start_balance_ = 0;
 };
+
+/// A set with these bites through the whole wall, not tagged yet, as the needle would take them.
+/// @param time  of the bites [s]
+Suture sutureThrough(const Model& model, const SurfaceView& wall, const std::vector<WallSpot>& spots, double time);
 
 /// Fastest particle [m/s].
 double maxSpeed(const State& state);

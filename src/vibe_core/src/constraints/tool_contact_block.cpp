@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "constraints/depenetration.hpp"
+#include "constraints/tool_yield.hpp"
 #include "contact/deepest_contact.hpp"
-#include "contact/tool_jacobian.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -40,7 +40,7 @@ class ToolContactBlock : public ConstraintBlock {
       const ContactConstraint& contact = loads.contacts[first_ + c];
       if (contact.force.isZero()) continue;
       touches.push_back(touchOf(context.state, contact, c));
-      if (context.bend) touches.back().motion += contact.yield * loads.tool_yield.displacement;
+      if (context.bend != nullptr) touches.back().motion += contact.yield * loads.tool_yield.displacement;
     }
   }
 
@@ -88,7 +88,7 @@ class ToolContactBlock : public ConstraintBlock {
     constraint.offset = std::min(surface, contact.normal.dot(anchor) + kDepenetrationSpeed * context.step);
     constraint.friction = model.scene.scope->friction;
     constraint.anchor = anchor;
-    if (context.bend) constraint.yield = yieldJacobian(*model.tool, context.tool->end, *context.bend, link, anchor);
+    constraint.yield = toolYield(context, link, anchor);
     motion_.emplace_back(anchor - p);
     link_.push_back(link);
   }

@@ -75,7 +75,8 @@ Activity ImplicitStep::gather() {
     const auto joints = motion_->inputs(1);
     const ToolDisplacement& displacement = motion_->startDisplacement();
     scratch_.loads.tool_yield = model_.scope_springs->yield(joints, displacement, context_.step);
-    bend_.emplace(model_.tool->shaftBend(joints, displacement));
+    motion_->linkPoses(0.5, scratch_.poses.middle);
+    bend_.emplace(model_.tool->shaftBend(motion_->inputs(0.5), displacement));
     context_.bend = &*bend_;
   }
   Activity most = Activity::Sleep;
@@ -176,11 +177,9 @@ void ImplicitStep::reportHand() {
 void ImplicitStep::reportImpedance() {
   if (scratch_.touches.empty() && scratch_.loads.contacts.empty()) return;
   findToolContactRows(model_, *motion_, stepper_, report_, scratch_);
-  const StepperScratch& stepper = *scratch_.stepper;
-  const double gas_stiffness = model_.scene.gas ? state_.gas_amount / (stepper.volume * stepper.volume) : 0;
   report_.tool_impedance =
       scratch_.impedance->update(state_.step, scratch_.tool_rows, {state_.x.data(), state_.y.data(), state_.z.data()},
-                                 stepper.volume_gradient, gas_stiffness, state_.impedance);
+                                 scratch_.stepper->volume_gradient, scratch_.loads.gas.stiffness, state_.impedance);
 }
 
 void ImplicitStep::accountDamping() {

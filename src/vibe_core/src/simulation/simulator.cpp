@@ -126,7 +126,8 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     commandProcedure(model, {}, input, state, events);  // says which part of the scene is missing
   }
   movePullSpring(model, input, state);
-  StepReport report;
+  StepReport& report = workspace.report();
+  report = StepReport();
   if (model.scope_springs) report.tool_displacement = relaxed(model, state, dt);
   moveTissue(model, motion ? &*motion : nullptr, pedal, insufflator_on, state, workspace, report);
   beam.insufflation = std::max(0.0, (state.gas_amount - gas_before) / (kAmbientPressure * dt));

@@ -21,7 +21,7 @@ struct StepContext {
   double step;            ///< duration [s]
   const ToolPoses* tool;  ///< null without a tool. A tool that yields: before the solve as if it did not in this step
   bool insufflator_on;    ///< for the gas
-  const ShaftBend* bend = nullptr;  ///< of a tool that yields, at the poses tool->end; null: it is rigid
+  const ShaftBend* bend = nullptr;  ///< of a tool that yields, at the poses tool->middle; null: it is rigid
 };
 
 /// What a block means for tissue at rest. A step is skipped while all blocks of a resting tissue agree to `Sleep`.

@@ -92,6 +92,8 @@ class Simulation {
   const std::vector<Event>& events() const { return events_; }     ///< of the last step
   /// Impedance of the tissue at the tool in the last step; empty while nothing is touched, and with shape matching.
   const std::optional<ToolImpedance>& toolImpedance() const { return workspace_->toolImpedance(); }
+  /// Iterations, contacts and forces of the last step.
+  const StepReport& report() const { return workspace_->report(); }
   /// Since the state was last replaced; zero without SimulationSettings::metrics.
   const SessionMetrics& metrics() const;
   /// Durations of vibe::step(), without metrics, since the simulation was made. Windows are the caller's to clear.

@@ -25,6 +25,8 @@ class Workspace {
   /// Output of the last step beside the state: mechanical impedance of the tissue at the tool. Empty while nothing is
   /// touched, and with solvers that do not estimate it (shape matching).
   std::optional<ToolImpedance>& toolImpedance() { return tool_impedance_; }
+  /// Results of the last step beside the state.
+  StepReport& report() { return report_; }
   MarkingScratch* marking() { return marking_.get(); }  ///< null in a scene without marking or scope
   int threads() const { return pool_.threads(); }
 
@@ -36,6 +38,7 @@ class Workspace {
   std::unique_ptr<MarkingScratch> marking_;
   std::vector<Eigen::Isometry3d> link_poses_;
   std::optional<ToolImpedance> tool_impedance_;
+  StepReport report_;
 };
 
 }  // namespace vibe

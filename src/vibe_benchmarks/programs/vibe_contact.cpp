@@ -1,0 +1,161 @@
+// Measures steps in contact: speed beside the error against a time-converged motion, and the hard cases.
+#include <fstream>
+#include <iostream>
+#include <string>
+
+#include "common/command_line.hpp"
+#include "contact/contact_states.hpp"
+#include "contact/contact_table.hpp"
+#include "contact/hard_cases.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
+
+namespace {
+
+using namespace vibe;
+
+struct Options {
+  std::string csv, scene = "package://vibe_core/scenes/stomach.yaml";
+  std::vector<std::string> names;
+  std::vector<int> rate{60}, iterations;
+  std::vector<double> radius;
+  int reference_rate = 960, reference_iterations = 8, repeats = 1;
+  std::string steps, first_crossing;
+  std::vector<std::uint64_t> seeds{1};
+  bool brief = false;
+  bool check_reference = false, no_reference = false;
+};
+
+template <class Write>
+void save(const std::string& file, const Write& write) {
+  if (file.empty()) return;
+  if (file == "-") return write(std::cout);
+  std::ofstream out(file);
+  write(out);
+  out.close();
+  if (!out) throw Error(file + ": cannot be written; give --csv a path in a writable folder.");
+}
+
+CLI::Validator rateOfFrames() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const int rate = std::atoi(text.c_str());
+        return rate >= 60 && rate % 60 == 0 ? std::string() : text + " is not a multiple of 60, the rate of the frames";
+      },
+      "");
+}
+
+CLI::App* addStates(CLI::App& app, Options& o) {
+  CLI::App* states =
+      app.add_subcommand("states", "speed and error of states with contact:\n" + describeContactStates());
+  states->add_option("STATE", o.names, "states (default: all); the free pull is always measured")
+      ->type_name("")
+      ->check(CLI::IsMember(contactStateNames()).description(""));
+  states->add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
+  states->add_option("--rate", o.rate, "steps per second, a multiple of 60; several: one setting each (default: 60)")
+      ->type_name("HZ")
+      ->check(rateOfFrames());
+  states->add_option("--iterations", o.iterations, "tissue.iterations; one, or one per rate (default: the scene's)")
+      ->type_name("N")
+      ->check(wholeFrom(1, 1000));
+  states->add_option("--spectral-radius", o.radius, "one, or one per rate (default: the scene's)")
+      ->type_name("R")
+      ->check(CLI::Range(0.0, 1.0).description(""));
+  states->add_option("--reference-rate", o.reference_rate, "steps per second of the reference (default: 960)")
+      ->type_name("HZ")
+      ->check(rateOfFrames());
+  states->add_option("--reference-iterations", o.reference_iterations, "of the reference (default: 8)")
+      ->type_name("N")
+      ->check(wholeFrom(1, 1000));
+  states->add_flag("--check-reference", o.check_reference, "compare it with a reference of twice its rate");
+  states->add_flag("--no-reference", o.no_reference, "times only");
+  states->add_option("--repeats", o.repeats, "runs of each setting (default: 1); of each step the fastest counts")
+      ->type_name("N")
+      ->check(wholeFrom(1, 1000));
+  states->add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
+  return states;
+}
+
+CLI::App* addHard(CLI::App& app, Options& o) {
+  CLI::App* hard = app.add_subcommand("hard", "cases that no contact may break:\n" + describeHardCases());
+  hard->add_option("CASE", o.names, "cases (default: all)")
+      ->type_name("")
+      ->check(CLI::IsMember(hardCaseNames()).description(""));
+  hard->add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
+  hard->add_option("--seed", o.seeds, "of the case random; several: one run each (default: 1)")->type_name("N");
+  hard->add_flag("--brief", o.brief, "shorter motions, fewer sets");
+  hard->add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
+  hard->add_option("--steps", o.steps, "write a line per step there")->type_name("FILE");
+  hard->add_option("--first-crossing", o.first_crossing, "snapshot of the state before the first crossing")
+      ->type_name("FILE");
+  return hard;
+}
+
+template <class T>
+T entry(const std::vector<T>& list, std::size_t k, const char* option, std::size_t rates, T otherwise) {
+  if (list.empty()) return otherwise;
+  if (list.size() != 1 && list.size() != rates)
+    throw Error(std::string(option) + " has neither one value nor as many as --rate.");
+  return list.size() == 1 ? list.front() : list[k];
+}
+
+ContactPlan planOf(const Options& o, const Scene& scene) {
+  ContactPlan plan;
+  plan.names = o.names;
+  plan.repeats = o.repeats;
+  plan.check_reference = o.check_reference;
+  for (std::size_t k = 0; k < o.rate.size(); ++k)
+    plan.settings.push_back({o.rate[k], entry(o.iterations, k, "--iterations", o.rate.size(), scene.tissue.iterations),
+                             entry(o.radius, k, "--spectral-radius", o.rate.size(), scene.tissue.spectral_radius)});
+  if (!o.no_reference)
+    plan.reference = ContactSetting{o.reference_rate, o.reference_iterations, scene.tissue.spectral_radius};
+  return plan;
+}
+
+Scene sceneOf(const Options& options) {
+  Scene scene = loadScene(resolveAddress(options.scene));
+  if (!scene.gas || !scene.scope || !scene.suture || !scene.helix)
+    throw Error(options.scene + ": needs the sections gas, scope, helix and suture; add them.");
+  return scene;
+}
+
+void runStates(const Options& options) {
+  const Scene scene = sceneOf(options);
+  const std::string urdf = readTextFile(resolveAddress(scene.scope->urdf), "URDF");
+  const auto rows = runContactStates(scene, urdf, planOf(options, scene), std::cerr);
+  std::cerr << "\n" << processorName() << "\n";
+  printContactHeader(std::cerr);
+  for (const ContactRow& row : rows) printContactRow(row, std::cerr);
+  save(options.csv, [&](std::ostream& out) { writeContactRows(rows, out); });
+}
+
+void runHard(const Options& options) {
+  const Scene scene = sceneOf(options);
+  HardCases cases(scene, readTextFile(resolveAddress(scene.scope->urdf), "URDF"), options.brief, std::cerr);
+  std::ofstream steps(options.steps);
+  if (!options.steps.empty()) writeHardStepHeader(steps);
+  const HardOutput output{options.steps.empty() ? nullptr : &steps, options.first_crossing};
+  std::vector<HardResult> results;
+  printHardHeader(std::cerr);
+  for (const std::string& name : options.names.empty() ? hardCaseNames() : options.names)
+    for (const std::uint64_t seed : name == "random" ? options.seeds : std::vector<std::uint64_t>{1}) {
+      results.push_back(runHardCase(cases.prepare(name, seed), output));
+      printHardResult(results.back(), std::cerr);
+    }
+  save(options.csv, [&](std::ostream& out) { writeHardResults(results, out); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Measures steps in which something touches.", "vibe_contact"};
+  CLI::App* states = addStates(app, options);
+  CLI::App* hard = addHard(app, options);
+  app.require_subcommand(1);
+  return runProgram(app, argc, argv, [&] {
+    if (*states) runStates(options);
+    if (*hard) runHard(options);
+  });
+}

@@ -1,0 +1,135 @@
+#include "contact/contact_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/contact_check.hpp"
+#include "contact/self_contact.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/model/accounting.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr int kFramesPerSecond = 60;
+constexpr std::size_t kFirstForceFrame = 5;  // before, the force is that of a shock wave
+
+Eigen::Vector3d signalOf(const ContactCase& one, const State& state) {
+  if (one.signal == ContactSignal::ToolForce) return state.tool_force;
+  const Suture& suture = state.procedure.sutures.back();
+  return {suture.tension.empty() ? 0 : suture.tension.front(), 0, 0};
+}
+
+bool isMishap(const Event& event) {
+  return event.kind == Event::Kind::Slip || event.kind == Event::Kind::TearOut ||
+         event.kind == Event::Kind::ThreadBroke || event.kind == Event::Kind::Recovery;
+}
+
+double distance(const std::array<std::vector<double>, 3>& a, const std::array<std::vector<double>, 3>& b) {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; i < a[axis].size(); ++i) sum += std::pow(a[axis][i] - b[axis][i], 2);
+  return std::sqrt(sum);
+}
+
+/// Steps one case and fills its record.
+class Recorder {
+ public:
+  Recorder(const ContactCase& one, const ContactSetting& setting)
+      : one_(one), simulation_(modelAt(one, setting), SimulationSettings::study(1)), check_(simulation_.model()) {
+    trace_.setting = setting;
+    simulation_.replaceState(one.start);
+    trace_.frames.push_back({one.start.x, one.start.y, one.start.z});
+  }
+
+  ContactTrace run() {
+    const int per_frame = trace_.setting.rate / kFramesPerSecond;
+    const int frames = static_cast<int>(std::lround(one_.duration * kFramesPerSecond));
+    const double before = energyBalance(simulation_.model(), simulation_.state());
+    for (int frame = 0; frame < frames; ++frame) {
+      Eigen::Vector3d force = Eigen::Vector3d::Zero();
+      for (int k = 1; k <= per_frame; ++k) {
+        step((frame * per_frame + k) / static_cast<double>(trace_.setting.rate));
+        force += signalOf(one_, simulation_.state()) / per_frame;
+      }
+      endFrame(force);
+    }
+    trace_.iterations /= frames * per_frame;
+    trace_.balance = energyBalance(simulation_.model(), simulation_.state()) - before;
+    trace_.hash = simulation_.hash();
+    return std::move(trace_);
+  }
+
+ private:
+  void step(double end) {
+    const EnergyAccount before = simulation_.state().energy;
+    const auto& events = simulation_.step(one_.input(end));
+    const State& state = simulation_.state();
+    if (!first_) trace_.cpu.push_back(1e3 * simulation_.timer().last_cpu);
+    first_ = false;
+    const StepReport& report = simulation_.report();
+    trace_.iterations += report.iterations;
+    trace_.max_iterations = std::max(trace_.max_iterations, report.iterations);
+    trace_.fallback_steps += report.fallback ? 1 : 0;
+    trace_.contacts = std::max(trace_.contacts, state.contact_count);
+    trace_.events += static_cast<int>(std::count_if(events.begin(), events.end(), isMishap));
+    const EnergyAccount& now = state.energy;
+    trace_.work += std::abs(now.tool_work - before.tool_work) + std::abs(now.gas_work - before.gas_work) +
+                   std::abs(now.thread_work - before.thread_work) + std::abs(now.pull_work - before.pull_work);
+  }
+
+  void endFrame(const Eigen::Vector3d& force) {
+    const State& state = simulation_.state();
+    trace_.force.push_back(force);
+    trace_.frames.push_back({state.x, state.y, state.z});
+    trace_.crossings = std::max(trace_.crossings, static_cast<int>(check_.wall(state).size()));
+    trace_.depth = std::max(trace_.depth, check_.tool(state).depth);
+    trace_.pairs = std::max(trace_.pairs, countPairs(state));
+  }
+
+  int countPairs(const State& state) {
+    const Model& model = simulation_.model();
+    if (!model.scene.tissue.self_contact) return 0;
+    SelfContact contact(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus);
+    contact.detect(state.x.data(), state.y.data(), state.z.data(), 0);
+    return static_cast<int>(contact.pairs().size());
+  }
+
+  const ContactCase& one_;
+  Simulation simulation_;
+  ContactCheck check_;
+  ContactTrace trace_;
+  bool first_ = true;
+};
+
+}  // namespace
+
+ContactTrace runContact(const ContactCase& one, const ContactSetting& setting, int repeats) {
+  ContactTrace trace = Recorder(one, setting).run();
+  for (int again = 1; again < repeats; ++again) {
+    const ContactTrace other = Recorder(one, setting).run();
+    if (other.hash != trace.hash) throw Error("Two runs of '" + one.name + "' end with different bits.");
+    for (std::size_t k = 0; k < trace.cpu.size(); ++k) trace.cpu[k] = std::min(trace.cpu[k], other.cpu[k]);
+  }
+  return trace;
+}
+
+ContactErrors compareContact(const ContactTrace& trace, const ContactTrace& reference) {
+  ContactErrors errors;
+  double moved = 0;
+  for (std::size_t f = 0; f < reference.frames.size(); ++f) {
+    moved = std::max(moved, distance(reference.frames[f], reference.frames.front()));
+    errors.motion_end = distance(trace.frames[f], reference.frames[f]);
+    errors.motion = std::fmax(errors.motion, errors.motion_end);
+  }
+  for (std::size_t f = 0; f < reference.force.size(); ++f) {
+    errors.largest = std::max(errors.largest, reference.force[f].norm());
+    errors.force_end = (trace.force[f] - reference.force[f]).norm();
+    if (f >= kFirstForceFrame) errors.force = std::fmax(errors.force, errors.force_end);
+  }
+  errors.motion /= moved, errors.motion_end /= moved;
+  errors.force /= errors.largest, errors.force_end /= errors.largest;
+  return errors;
+}
+
+}  // namespace vibe

@@ -1,0 +1,215 @@
+#include "contact/contact_states.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "contact/free_hand.hpp"
+#include "suture/set_layout.hpp"
+#include "suture/suture_session.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+constexpr double kPull = 0.02;         // [m]
+constexpr double kMotion = 0.5;        // time of a motion, at constant speed [s]
+constexpr double kHold = 0.5;          // after it [s]
+constexpr double kApproach = 0.05;     // speed of the scope until it touches [m/s]
+constexpr double kClearance = 2e-3;    // of the scope before it presses [m]
+constexpr double kPress = 18.5e-3;     // deeper than at first contact [m]
+constexpr double kFoldPull = 0.03;     // before the wound fold is measured [m]
+constexpr double kFoldTurn = kPi / 2;  // likewise [rad]
+constexpr double kMoreTurn = kPi / 4;  // while it is measured [rad]
+constexpr double kCinch = 3.5;         // longer than a set here needs [s]
+
+/// Part of a motion that is done at a time.
+double part(double time, double duration) {
+  return std::clamp(time / duration, 0.0, 1.0);
+}
+
+void startClock(State& state) {
+  state.step = 0;
+  state.time = 0;
+}
+
+StepInput holdAt(const State& state) {
+  StepInput input;
+  input.joints = state.joints;
+  input.buttons[Insufflate] = 1;
+  return input;
+}
+
+/// Steps with an input that may depend on the time since now.
+void stepFor(double duration, const std::function<StepInput(double end)>& input, Simulation& simulation) {
+  const int steps = static_cast<int>(std::lround(duration / simulation.stepPeriod()));
+  for (int k = 1; k <= steps; ++k) simulation.step(input(k * simulation.stepPeriod()));
+}
+
+}  // namespace
+
+const std::vector<std::string>& contactStateNames() {
+  static const std::vector<std::string> kNames{"free", "free_closed", "pressed", "wound", "cinch1", "cinch6"};
+  return kNames;
+}
+
+std::string describeContactStates() {
+  return "  free         a patch of the greater curvature, held by the helix, is pulled inwards by 20 mm in 0.5 s and\n"
+         "               held for 0.5 s; insufflator on\n"
+         "  free_closed  the same, insufflator off\n"
+         "  pressed      the scope, straight, presses the wall by 18.5 mm in 0.5 s and stays for 0.5 s\n"
+         "  wound        a patch pulled by 30 mm and turned by 180 degrees is pulled by 10 mm and turned by 90 "
+         "degrees\n"
+         "               more in 0.5 s, and held for 0.5 s\n"
+         "  cinch1       the first of six sets of 7 bites is cinched\n"
+         "  cinch6       the sixth, after five\n";
+}
+
+ContactStates::ContactStates(const Scene& scene, std::string urdf, std::ostream& log)
+    : model_(buildModel(scene, urdf)), urdf_(std::move(urdf)), log_(log) {
+  log_ << "insufflation\n";
+  SutureSession session(model_);
+  session.settle();
+  settled_ = session.state();
+  startClock(settled_);
+}
+
+ContactCase ContactStates::prepare(const std::string& name) {
+  log_ << name << ": preparation" << std::endl;
+  ContactCase one;
+  if (name == "free")
+    one = pull(true);
+  else if (name == "free_closed")
+    one = pull(false);
+  else if (name == "pressed")
+    one = pressed();
+  else if (name == "wound")
+    one = wound();
+  else if (name == "cinch1")
+    one = cinch(0);
+  else if (name == "cinch6")
+    one = cinch(5);
+  else
+    throw Error("There is no state '" + name + "'; the program's help names those there are.");
+  one.name = name;
+  startClock(one.start);
+  return one;
+}
+
+// The wall, settled, with a free hand at the greater curvature that has not taken hold yet.
+ContactCase ContactStates::byHand(double along) const {
+  ContactCase one;
+  const SurfaceView wall{model_->organ.surface.triangles, settled_.x, settled_.y, settled_.z};
+  const WallPlan plan(model_->organ, wall);
+  const WallSpot spot = plan.at(along * plan.length(), 0);
+  const auto& corner = wall.triangles[static_cast<std::size_t>(spot.triangle)];
+  const Eigen::Vector3d a = wall.position(corner[0]);
+  const Eigen::Vector3d outwards = (wall.position(corner[1]) - a).cross(wall.position(corner[2]) - a).normalized();
+  auto model = std::make_shared<Model>();
+  model->scene = model_->scene;
+  model->organ = model_->organ;
+  holdByHand(placeOf(spot, wall), -outwards, model->scene);
+  one.urdf = freeHandUrdf();
+  finishModel(one.urdf, *model);
+  one.model = model;
+  one.start = settled_;
+  one.start.joints = {};
+  one.start.joints[Insertion] = kHandStart;
+  return one;
+}
+
+ContactCase ContactStates::pull(bool insufflator) const {
+  ContactCase one = byHand(0.5);
+  one.duration = kMotion + kHold;
+  StepInput held = holdAt(one.start);
+  held.buttons[HelixGrab] = 1;
+  held.buttons[Insufflate] = insufflator ? 1 : 0;
+  one.input = [held](double end) {
+    StepInput input = held;
+    input.joints[Insertion] += kPull * part(end, kMotion);
+    return input;
+  };
+  return one;
+}
+
+ContactCase ContactStates::pressed() const {
+  ContactCase one;
+  one.model = model_;
+  one.urdf = urdf_;
+  one.duration = kMotion + kHold;
+  Simulation simulation(model_, SimulationSettings::study(1));
+  simulation.replaceState(settled_);
+  StepInput input = holdAt(settled_);
+  const double farthest = model_->tool->limits()[Insertion].upper;
+  while (simulation.state().contact_count == 0) {
+    if (input.joints[Insertion] >= farthest) throw Error("The scope does not reach the wall; 'pressed' needs it.");
+    input.joints[Insertion] += kApproach * simulation.stepPeriod();
+    simulation.step(input);
+  }
+  input.joints[Insertion] = simulation.state().joints[Insertion] - kClearance;
+  stepFor(
+      1, [&](double) { return input; }, simulation);
+  one.start = simulation.state();
+  one.input = [input](double end) {
+    StepInput now = input;
+    now.joints[Insertion] += (kClearance + kPress) * part(end, kMotion);
+    return now;
+  };
+  return one;
+}
+
+ContactCase ContactStates::wound() const {
+  ContactCase one = byHand(0.5);
+  one.duration = kMotion + kHold;
+  StepInput held = holdAt(one.start);
+  held.buttons[HelixGrab] = 1;
+  Simulation simulation(one.model, SimulationSettings::study(1));
+  simulation.replaceState(one.start);
+  const auto pulled = [&](double time) {
+    StepInput input = held;
+    input.joints[Insertion] += kFoldPull * part(time, 1);
+    input.joints[Rotation] += kFoldTurn * part(time - 1, 1);
+    return input;
+  };
+  stepFor(
+      0.1, [&](double) { return held; }, simulation);
+  stepFor(3, pulled, simulation);
+  one.start = simulation.state();
+  if (one.start.grip.empty()) throw Error("The wall came off the helix; the state 'wound' cannot be prepared.");
+  const StepInput last = pulled(3);
+  one.input = [last](double end) {
+    StepInput input = last;
+    input.joints[Insertion] += 0.5 * kPull * part(end, kMotion);
+    input.joints[Rotation] += kMoreTurn * part(end, kMotion);
+    return input;
+  };
+  return one;
+}
+
+ContactCase ContactStates::cinch(int sets_before) const {
+  ContactCase one;
+  one.model = model_;
+  one.urdf = urdf_;
+  one.signal = ContactSignal::ThreadTension;
+  one.duration = kCinch + kHold;
+  SutureSession session(model_);
+  session.settle();
+  const auto spots = planSets(WallPlan(model_->organ, session.wall()), SetLayout());
+  for (int set = 0; set < sets_before; ++set) {
+    log_ << "set " << set + 1 << " of " << sets_before << " before it" << std::endl;
+    session.sew(spots[static_cast<std::size_t>(set)]);
+  }
+  session.tag(spots[static_cast<std::size_t>(sets_before)]);
+  one.start = session.state();
+  const StepInput held = holdAt(one.start);
+  one.input = [held](double end) {
+    StepInput input = held;
+    input.buttons[Cinch] = end < kCinch + 1e-6 ? 1 : 0;
+    return input;
+  };
+  return one;
+}
+
+}  // namespace vibe

@@ -1,0 +1,137 @@
+#include "contact/contact_table.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "contact/contact_states.hpp"
+
+namespace vibe {
+namespace {
+
+std::string textOf(const ContactSetting& setting) {
+  char text[60];
+  std::snprintf(text, sizeof text, "%d Hz, %d it, radius %g", setting.rate, setting.iterations,
+                setting.spectral_radius);
+  return text;
+}
+
+ContactRow rowOf(const std::string& name, ContactTrace trace, const std::optional<ContactTrace>& reference) {
+  ContactRow row;
+  row.name = name;
+  row.setting = trace.setting;
+  row.times = timesOf(trace.cpu);
+  if (reference) row.errors = compareContact(trace, *reference);
+  trace.frames.clear();
+  trace.force.clear();
+  row.trace = std::move(trace);
+  return row;
+}
+
+/// The cases to run; the free pull always comes first, because all times are relative to it.
+std::vector<std::string> namesOf(const ContactPlan& plan) {
+  std::vector<std::string> names = plan.names.empty() ? contactStateNames() : plan.names;
+  const std::string& first = contactStateNames().front();
+  names.erase(std::remove(names.begin(), names.end(), first), names.end());
+  names.insert(names.begin(), first);
+  return names;
+}
+
+class Table {
+ public:
+  Table(const ContactPlan& plan, std::ostream& log) : plan_(plan), log_(log) {}
+
+  void addCase(const ContactCase& one) {
+    std::optional<ContactTrace> reference;
+    if (plan_.reference) {
+      log_ << one.name << ": reference, " << textOf(*plan_.reference) << std::endl;
+      reference = runContact(one, *plan_.reference, 1);
+    }
+    if (reference && plan_.check_reference) addCheck(one, *reference);
+    for (const ContactSetting& setting : plan_.settings)
+      add(rowOf(one.name, runContact(one, setting, plan_.repeats), reference));
+  }
+
+  std::vector<ContactRow> takeRows() { return std::move(rows_); }
+
+ private:
+  void addCheck(const ContactCase& one, const ContactTrace& reference) {
+    ContactSetting finer = *plan_.reference;
+    finer.rate *= 2;
+    log_ << one.name << ": the reference against " << textOf(finer) << std::endl;
+    add(rowOf(one.name, reference, runContact(one, finer, 1)));
+  }
+
+  void add(ContactRow row) {
+    const std::string setting = textOf(row.setting);
+    if (row.name == contactStateNames().front()) free_[setting] = row.times.p50;
+    const auto free = free_.find(setting);
+    row.ratio = free == free_.end() ? 0 : row.times.p50 / free->second;
+    printContactRow(row, log_);
+    rows_.push_back(std::move(row));
+  }
+
+  const ContactPlan& plan_;
+  std::ostream& log_;
+  std::map<std::string, double> free_;  // median of the free pull per setting [ms]
+  std::vector<ContactRow> rows_;
+};
+
+}  // namespace
+
+std::vector<ContactRow> runContactStates(const Scene& scene, const std::string& urdf, const ContactPlan& plan,
+                                         std::ostream& log) {
+  ContactStates states(scene, urdf, log);
+  Table table(plan, log);
+  for (const std::string& name : namesOf(plan)) table.addCase(states.prepare(name));
+  return table.takeRows();
+}
+
+void printContactHeader(std::ostream& out) {
+  out << "state        setting                      p50    p99    max  ms/frame  x free   it max fb  touch pairs cross "
+         " mm in"
+         " events   balance J    work J   motion   at end    force   at end  largest\n";
+}
+
+void printContactRow(const ContactRow& row, std::ostream& out) {
+  const ContactTrace& t = row.trace;
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "%-12s %-26s %6.2f %6.2f %6.1f  %8.2f %7.2f %4.1f %3d %3d %5d %5d %5d %6.2f %6d %11.5f %9.4f",
+                row.name.c_str(), textOf(row.setting).c_str(), row.times.p50, row.times.p99, row.times.max,
+                row.times.mean * row.setting.rate / 60, row.ratio, t.iterations, t.max_iterations, t.fallback_steps,
+                t.contacts, t.pairs, t.crossings, 1e3 * t.depth, t.events, t.balance, t.work);
+  out << text;
+  if (row.errors) {
+    const ContactErrors& e = *row.errors;
+    std::snprintf(text, sizeof text, " %6.3f %% %6.3f %% %6.2f %% %6.2f %% %6.2f N", 100 * e.motion, 100 * e.motion_end,
+                  100 * e.force, 100 * e.force_end, e.largest);
+    out << text;
+  }
+  out << std::endl;
+}
+
+void writeContactRows(const std::vector<ContactRow>& rows, std::ostream& out) {
+  out << "state,rate,iterations,spectral_radius,ms_mean,ms_p50,ms_p99,ms_max,ratio_to_free,iterations_mean,"
+         "iterations_max,fallback_steps,contacts,pairs,crossings,depth_mm,events,balance_J,work_J,motion_error,"
+         "motion_error_end,force_error,force_error_end,largest_force_N,state_hash\n";
+  for (const ContactRow& row : rows) {
+    const ContactTrace& t = row.trace;
+    char text[600];
+    std::snprintf(text, sizeof text, "%s,%d,%d,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.6g,%.6g,",
+                  row.name.c_str(), row.setting.rate, row.setting.iterations, row.setting.spectral_radius,
+                  row.times.mean, row.times.p50, row.times.p99, row.times.max, row.ratio, t.iterations,
+                  t.max_iterations, t.fallback_steps, t.contacts, t.pairs, t.crossings, 1e3 * t.depth, t.events,
+                  t.balance, t.work);
+    out << text;
+    if (row.errors)
+      std::snprintf(text, sizeof text, "%.4g,%.4g,%.4g,%.4g,%.4g,%016llx", row.errors->motion, row.errors->motion_end,
+                    row.errors->force, row.errors->force_end, row.errors->largest,
+                    static_cast<unsigned long long>(t.hash));
+    else
+      std::snprintf(text, sizeof text, ",,,,,%016llx", static_cast<unsigned long long>(t.hash));
+    out << text << "\n";
+  }
+}
+
+}  // namespace vibe

@@ -1,0 +1,52 @@
+#include "contact/free_hand.hpp"
+
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+constexpr double kAnyForce = 1e6;  // [N]
+
+std::string link(const std::string& name) {
+  return "<link name=\"" + name + "\"/>\n";
+}
+
+std::string joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
+                  const std::string& axis) {
+  std::string text = "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+                     "\"/><child link=\"" + child + "\"/>";
+  if (type != "fixed")
+    text += "<axis xyz=\"" + axis + "\"/><limit lower=\"" + (type == "prismatic" ? "0" : "-1000") +
+            "\" upper=\"1000\" velocity=\"100000\" effort=\"1000\"/>";
+  return text + "</joint>\n";
+}
+
+}  // namespace
+
+std::string freeHandUrdf() {
+  std::string text = "<robot name=\"hand\">\n";
+  for (const char* name :
+       {"scope_base", "slide", "shaft", "ring", "scope_tip", "scope_camera_optical", "helix_slide", "helix", "needle"})
+    text += link(name);
+  text += joint("insertion", "prismatic", "scope_base", "slide", "1 0 0");
+  text += joint("rotation", "revolute", "slide", "shaft", "1 0 0");
+  text += joint("tip_up_down", "revolute", "shaft", "ring", "0 -1 0");
+  text += joint("tip_left_right", "revolute", "ring", "scope_tip", "0 0 1");
+  text += joint("camera", "fixed", "scope_tip", "scope_camera_optical", "1 0 0");
+  text += joint("helix_advance", "prismatic", "scope_tip", "helix_slide", "1 0 0");
+  text += joint("helix_rotation", "revolute", "helix_slide", "helix", "1 0 0");
+  text += joint("needle_driver", "prismatic", "scope_tip", "needle", "1 0 0");
+  return text + "</robot>\n";
+}
+
+void holdByHand(const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, Scene& scene) {
+  if (!scene.scope) scene.scope.emplace();
+  if (!scene.helix) scene.helix.emplace();
+  scene.scope->base_from_anatomy = false;
+  scene.scope->base_position = tip - kHandStart * direction;
+  scene.scope->base_rpy = {0, std::asin(-direction.z()), std::atan2(direction.y(), direction.x())};
+  scene.helix->hold_force = kAnyForce;
+  scene.helix->initial_hold_force = kAnyForce;
+}
+
+}  // namespace vibe

@@ -1,0 +1,21 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+
+#include "vibe_core/scene/scene.hpp"
+
+namespace vibe {
+
+/// A tool without collision shapes that holds the wall with its helix: URDF text. The joint `insertion` moves the tip
+/// along the x axis of the base, `rotation` turns it about that axis. Nothing limits its speed or the helix.
+std::string freeHandUrdf();
+
+/// Value of the joint `insertion` at which the tip is at the place given to holdByHand() [m].
+constexpr double kHandStart = 0.1;
+
+/// Replaces the endoscope of a scene by the free hand, and lets its helix hold against any force.
+/// @param tip        place of the helix with `insertion` at kHandStart, in world [m]
+/// @param direction  unit, in which `insertion` grows
+void holdByHand(const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, Scene& scene);
+
+}  // namespace vibe
