@@ -78,19 +78,19 @@ TEST(CompliantScope, PressedOnTissueIsASpringInSeriesWithIt) {
   Scene soft_scene = scopeScene(alongOnly()), rigid_scene = scopeScene({});
   soft_scene.scope->friction = rigid_scene.scope->friction = 0;  // which would remember the way there
   World soft = scopeWorld(soft_scene), rigid = scopeWorld(rigid_scene);
-  soft.run(5.0, at(0.14));
+  soft.run(3.0, at(0.14));
   const double force = -soft.state.tool_force.x(), given = -soft.state.tool_displacement[Insertion];
   EXPECT_GT(force, 0.3);
   EXPECT_NEAR(300 * given, force, 0.01 * force);
   EXPECT_NEAR(tipOf(soft).z(), kRadius - 0.14 + given, 1e-5);
   EXPECT_NEAR(soft.state.hand_effort[Insertion], force, 0.01 * force);
-  rigid.run(5.0, at(0.14 - given));
+  rigid.run(3.0, at(0.14 - given));
   EXPECT_NEAR(-rigid.state.tool_force.x(), force, 0.01 * force) << "the tissue sees where the tip is, not the hand";
 }
 
 TEST(CompliantScope, EveryDegreeOfFreedomIsInEquilibrium) {
   World world = scopeWorld(scopeScene(ScopeComplianceScene{}));
-  world.run(6.0, at(0.14, 0.5, 0.3));
+  world.run(4.0, at(0.14, 0.5, 0.3));
   const ToolDisplacement& q = world.state.tool_displacement;
   const YieldVector k = world.model->scope_springs->stiffness(world.state.joints[Insertion] + q[Insertion]);
   for (int j = 0; j < kScopeJointCount; ++j) {
@@ -110,11 +110,12 @@ TEST(CompliantScope, RigidOneStaysWhereTheHandIs) {
   stiff.shaft_rigidity = stiff.torsional_rigidity = stiff.bending_stiffness = 1e4;
   rigid_scene.scope->compliance = stiff;
   World nearly = scopeWorld(rigid_scene);
-  for (World* world : {&rigid, &nearly}) world->run(3.0, at(0.14, 0.5));
+  for (World* world : {&rigid, &nearly}) world->run(2.0, at(0.135));
   for (double d : rigid.state.tool_displacement) EXPECT_EQ(d, 0);
   EXPECT_GT(rigid.state.hand_effort[Insertion], 0.3) << "the load at the hand is known without springs";
   EXPECT_LT((tipOf(rigid) - tipOf(nearly)).norm(), 1e-5);
-  EXPECT_LT((rigid.state.tool_force - nearly.state.tool_force).norm(), 5e-3 * rigid.state.tool_force.norm());
+  EXPECT_LT((rigid.state.tool_force - nearly.state.tool_force).norm(), 0.03 * rigid.state.tool_force.norm())
+      << "both still settle";
 }
 
 TEST(CompliantScope, WithoutLoadItIsStraightAgain) {
@@ -133,9 +134,7 @@ TEST(CompliantScope, WorkOfTheHandIsAccountedFor) {
     world.run(1.0, input);
     const EnergyAccount& energy = world.state.energy;
     const double missing = energy.hand_work - energy.tool_work - springEnergy(world) - energy.scope_loss;
-    EXPECT_LT(std::abs(missing), 0.02 * std::abs(energy.hand_work) + 1e-6);
-    std::printf("hand %.6f tool %.6f springs %.6f loss %.6f missing %.6f J\n", energy.hand_work, energy.tool_work,
-                springEnergy(world), energy.scope_loss, missing);
+    EXPECT_LT(std::abs(missing), 0.005 * std::abs(energy.hand_work) + 1e-6);
   }
   EXPECT_GT(springEnergy(world), 0.02 * world.state.energy.hand_work);
 }
