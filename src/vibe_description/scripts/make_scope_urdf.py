@@ -20,6 +20,8 @@ CAP_RADIUS = 0.0079    # [S]
 CAP_LENGTH = 0.012     # [D]
 ARM_REACH = 0.0184     # [S] of the needle arm's bracket beyond the endoscope
 NEEDLE_OPEN = (0.0148, -0.0025, 0.0134)  # [D] the needle's point in scope_tip, within 23.3 mm of the whole device [S]
+SHAFT_PIECES = 6       # [D] of the part of the shaft that enters the lumen and bends there: 2 % more than that part
+SHAFT_PIECE = 0.034    # [D]
 SEGMENT_LENGTH = BEND_LENGTH / SEGMENTS
 STRAIGHT_LENGTH = BEND_LENGTH - SEGMENT_LENGTH / 2 + TIP_LENGTH  # from the first bending joint to the tip
 
@@ -53,6 +55,10 @@ INPUTS = {
                       "chord of the curved needle's path, 0 with the arm open, upper end with the needle in the anchor "
                       "exchange (design choice); velocity: closed in 0.2 s (design choice)"),
 }
+
+# Joints of the shaft that no input drives: the simulator bends the shaft under load. Largest angle [rad], speed [rad/s]
+# and torque [N m] per joint: design choice, far beyond what a hand causes.
+SHAFT_LIMIT = (1.5, 10.0, 5.0)
 
 COLOURS = {"scope_black": "0.06 0.06 0.07 1", "ring_grey": "0.22 0.22 0.24 1", "steel": "0.72 0.74 0.77 1",
            "glass": "0.25 0.45 0.75 1", "needle_gold": "0.85 0.65 0.25 1"}
@@ -180,26 +186,59 @@ class Urdf:
         mimic = f'<mimic joint="{source}" multiplier="{number(1 / SEGMENTS)}" offset="0"/>'
         self.joint(f"{source}_{index}", "revolute", parent, child, at, extra=(f'<axis xyz="{axis}"/>', limit, mimic))
 
+    def shaft_joint(self, source, index, parent, child, at):
+        """A joint that bends under load only, about the axis of the bend of the same direction."""
+        axis = INPUTS[source.replace("shaft", "tip")][1]
+        angle, velocity, effort = SHAFT_LIMIT
+        limit = (f'<limit lower="{number(-angle)}" upper="{number(angle)}" velocity="{number(velocity)}" '
+                 f'effort="{number(effort)}"/>')
+        self.joint(f"{source}_{index}", "revolute", parent, child, at, extra=(f'<axis xyz="{axis}"/>', limit))
+
+
+def tube_x(start, end, radius):
+    """Visuals of a round bar along x that goes on at its end."""
+    return [Cylinder(radius, end - start, ((start + end) / 2, 0, 0)), Sphere(radius, (end, 0, 0))]
+
 
 def add_shaft(urdf):
+    """The insertion tube. It turns behind its bends: a bent shaft that a hand turns keeps its shape in space."""
     carrier = Body.ball(SCOPE_DENSITY, CARRIER_RADIUS)
     urdf.link("scope_base", note="at the gastro-oesophageal junction, x along the insertion into the lumen")
     urdf.input_joint("insertion", "scope_base", "scope_slide")
     urdf.link("scope_slide", carrier, note="where the tip of the straight endoscope is")
-    urdf.input_joint("rotation", "scope_slide", "scope_shaft", (-STRAIGHT_LENGTH, 0, 0))
-    urdf.link("scope_shaft", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, -SHAFT_LENGTH, 0),
-              [Cylinder(SCOPE_RADIUS, SHAFT_LENGTH, (-SHAFT_LENGTH / 2, 0, 0)), Sphere(SCOPE_RADIUS, (0, 0, 0))],
-              capsule_x(-SHAFT_LENGTH, 0, SCOPE_RADIUS), note="insertion tube up to the first bending joint")
-    urdf.input_joint("tip_up_down", "scope_shaft", "up_down_wheel")
+    bends = SHAFT_PIECES * SHAFT_PIECE
+    urdf.joint("scope_shaft_mount", "fixed", "scope_slide", "scope_shaft", (-STRAIGHT_LENGTH - bends, 0, 0))
+    back = -(SHAFT_LENGTH - bends)
+    urdf.link("scope_shaft", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, back, 0), tube_x(back, 0, SCOPE_RADIUS),
+              capsule_x(back, 0, SCOPE_RADIUS), note="part of the insertion tube that stays in the oesophagus")
+    for k in range(1, SHAFT_PIECES + 2):
+        add_shaft_piece(urdf, k)
+    urdf.input_joint("rotation", f"shaft_{SHAFT_PIECES + 1}", "scope_neck")
+    urdf.link("scope_neck", carrier, note="end of the insertion tube, at the first bending joint")
+    urdf.input_joint("tip_up_down", "scope_neck", "up_down_wheel")
     urdf.link("up_down_wheel", carrier, note="carries nothing: its joint holds the total bend that the segments mimic")
-    urdf.input_joint("tip_left_right", "scope_shaft", "left_right_wheel")
+    urdf.input_joint("tip_left_right", "scope_neck", "left_right_wheel")
     urdf.link("left_right_wheel", carrier, note="carries nothing, as up_down_wheel")
+
+
+def add_shaft_piece(urdf, index):
+    """A universal joint and the piece behind it; behind the last one there is none."""
+    parent = f"shaft_{index - 1}" if index > 1 else "scope_shaft"
+    carrier = Body.ball(SCOPE_DENSITY, CARRIER_RADIUS)
+    urdf.shaft_joint("shaft_up_down", index, parent, f"shaft_yoke_{index}", (SHAFT_PIECE if index > 1 else 0, 0, 0))
+    urdf.link(f"shaft_yoke_{index}", carrier)
+    urdf.shaft_joint("shaft_left_right", index, f"shaft_yoke_{index}", f"shaft_{index}", (0, 0, 0))
+    if index > SHAFT_PIECES:
+        urdf.link(f"shaft_{index}", carrier)
+        return
+    urdf.link(f"shaft_{index}", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, 0, SHAFT_PIECE),
+              tube_x(0, SHAFT_PIECE, SCOPE_RADIUS), capsule_x(0, SHAFT_PIECE, SCOPE_RADIUS))
 
 
 def add_bending_section(urdf):
     """Universal joints in the middle of equal lengths: the polygon then leaves and meets the arc along its tangents."""
     for k in range(1, SEGMENTS + 1):
-        parent = f"segment_{k - 1}" if k > 1 else "scope_shaft"
+        parent = f"segment_{k - 1}" if k > 1 else "scope_neck"
         length = SEGMENT_LENGTH if k < SEGMENTS else SEGMENT_LENGTH / 2
         urdf.bend_joint(k, "tip_up_down", parent, f"ring_{k}", (SEGMENT_LENGTH if k > 1 else 0, 0, 0))
         urdf.link(f"ring_{k}", Body.ball(SCOPE_DENSITY, CARRIER_RADIUS))

@@ -241,8 +241,23 @@ StepInput readStepInput(const vibe_msgs::StepInput& message) {
   return input;
 }
 
-sensor_msgs::JointState makeJointState(const State& state, std::int64_t stamp) {
-  return makeJoints(state.joints, {0, kJointCount}, stamp);
+sensor_msgs::JointState makeJointState(const ToolModel& tool, const State& state, std::int64_t stamp) {
+  std::array<double, kJointCount> joints = state.joints;
+  for (int j = 0; j < kScopeJointCount; ++j) joints[j] += state.tool_displacement[j];
+  sensor_msgs::JointState message = makeJoints(joints, {0, kJointCount}, stamp);
+  const ShaftBend bend = tool.shaftBend(state.joints, state.tool_displacement);
+  for (const ToolJoint& joint : tool.joints()) {
+    if (joint.station < 0) continue;
+    message.name.push_back(joint.name);
+    message.position.push_back(bend.angle(joint.station, joint.direction));
+  }
+  return message;
+}
+
+sensor_msgs::JointState makeHandJoints(const State& state, std::int64_t stamp) {
+  sensor_msgs::JointState message = makeJoints(state.joints, jointsOf(InputChannel::Scope), stamp);
+  message.effort.assign(state.hand_effort.begin(), state.hand_effort.end());
+  return message;
 }
 
 geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::string& frame, std::int64_t stamp) {

@@ -56,8 +56,11 @@ vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, st
 /// What a recorded step used, bit for bit.
 StepInput readStepInput(const vibe_msgs::StepInput& message);
 
-/// All joints of the tool's inputs, for robot_state_publisher, which works out those that mimic them.
-sensor_msgs::JointState makeJointState(const State& state, std::int64_t stamp);
+/// All joints that the tool really has, for robot_state_publisher, which works out those that mimic them: those of its
+/// inputs, displaced where a scope gives way, then those of the shaft.
+sensor_msgs::JointState makeJointState(const ToolModel& tool, const State& state, std::int64_t stamp);
+/// Where the hand holds the scope's joints, and with what effort.
+sensor_msgs::JointState makeHandJoints(const State& state, std::int64_t stamp);
 geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::string& frame, std::int64_t stamp);
 geometry_msgs::WrenchStamped makeWrench(const State& state, std::int64_t stamp);
 /// @param force_limit  at which the helix loses what it holds [N]; infinite where it holds nothing

@@ -42,6 +42,7 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       helix_pose_(handle.advertise<geometry_msgs::PoseStamped>("overstitch/helix/measured_cp", kSmallQueue)),
       wrench_(handle.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
       joint_states_(handle.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
+      hand_joints_(handle.advertise<sensor_msgs::JointState>("scope/setpoint_js", kSmallQueue)),
       topology_(handle.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
       particles_(handle.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue)),
       procedure_(handle.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
@@ -129,9 +130,9 @@ void Publishers::warn(const std::string& text) {
 }
 
 bool Publishers::hasListener() const {
-  const auto all = {&scope_pose_, &helix_pose_,    &wrench_, &joint_states_, &topology_,      &particles_,
-                    &procedure_,  &skill_metrics_, &events_, &sutures_,      &applied_input_, &solver_statistics_,
-                    &scene_,      &haptic_,        &pull_,   &clock_};
+  const auto all = {&scope_pose_,        &helix_pose_, &wrench_,        &joint_states_, &hand_joints_, &topology_,
+                    &particles_,         &procedure_,  &skill_metrics_, &events_,       &sutures_,     &applied_input_,
+                    &solver_statistics_, &scene_,      &haptic_,        &pull_,         &clock_};
   return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 
@@ -139,11 +140,12 @@ void Publishers::tool(const Session& session, std::int64_t stamp) {
   last_tool_ = stamp;
   const Model& model = *session.model;
   if (!model.tool) return;
-  model.tool->forwardKinematics(session.state.joints, link_poses_);
+  model.tool->forwardKinematics(session.state.joints, session.state.tool_displacement, link_poses_);
   scope_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
   helix_pose_.publish(makePose(model.tool_base * link_poses_[model.helix_link], kWorldFrame, stamp));
   wrench_.publish(makeWrench(session.state, stamp));
-  joint_states_.publish(makeJointState(session.state, stamp));
+  joint_states_.publish(makeJointState(*model.tool, session.state, stamp));
+  hand_joints_.publish(makeHandJoints(session.state, stamp));
 }
 
 void Publishers::haptic(const Session& session, std::int64_t stamp) {

@@ -51,8 +51,8 @@ class Publishers {
   bool hasRecorder() const { return applied_input_.getNumSubscribers() > 0; }
 
  private:
-  ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, topology_, particles_, procedure_, skill_metrics_,
-      events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, clock_;
+  ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
+      skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, clock_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;

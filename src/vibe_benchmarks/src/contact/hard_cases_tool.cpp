@@ -98,7 +98,7 @@ class RandomDrive {
 
 double helixGap(const Model& model, const State& state) {
   std::vector<Eigen::Isometry3d> poses;
-  model.tool->forwardKinematics(state.joints, poses);
+  model.tool->forwardKinematics(state.joints, state.tool_displacement, poses);
   const Eigen::Vector3d tip = model.tool_base * poses[static_cast<std::size_t>(model.helix_link)].translation();
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < state.x.size(); ++i)

@@ -56,6 +56,7 @@ Eigen::Isometry3d poseFromAnatomy(const Organ& organ) {
 void addTool(const std::string& tool_urdf, Model& model) {
   const ScopeScene& scope = *model.scene.scope;
   model.tool = std::make_shared<const ToolModel>(ToolModel::fromUrdf(tool_urdf, scope.urdf));
+  if (scope.compliance) model.scope_springs.emplace(*model.tool, *scope.compliance);
   model.tip_link = model.tool->linkIndex("scope_tip");
   model.helix_link = model.tool->linkIndex("helix");
   model.grip_link = model.tool->joints()[static_cast<std::size_t>(model.helix_link) - 1].parent_link;

@@ -1,5 +1,6 @@
 #include "constraints/grip_block.hpp"
 
+#include "constraints/tool_yield.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -16,6 +17,7 @@ class GripBlock : public ConstraintBlock {
       node_[0] = point.particle;
       const Eigen::Vector3d target = context.tool->end[context.model.grip_link] * point.local;
       first_.push_back(loads.addPoint(node_, weight_, target, 0));
+      if (context.bend != nullptr) setYield(context, target, loads);
     }
     return context.state.grip.empty() ? Activity::Sleep : Activity::Disturb;
   }
@@ -39,6 +41,12 @@ class GripBlock : public ConstraintBlock {
   }
 
  private:
+  void setYield(const StepContext& context, const Eigen::Vector3d& target, BodyLoads& loads) const {
+    const auto yield = toolYield(context, context.model.grip_link, target);
+    for (int k = 0; k < 3; ++k)
+      loads.constraints[first_.back() + static_cast<std::size_t>(k)].yield = yield.row(k).transpose();
+  }
+
   std::vector<std::size_t> first_;  // constraint of each held particle
   std::vector<int> node_{0};
   std::vector<double> weight_{1};

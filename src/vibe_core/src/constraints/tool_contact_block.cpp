@@ -4,6 +4,7 @@
 #include <array>
 
 #include "constraints/depenetration.hpp"
+#include "constraints/tool_yield.hpp"
 #include "contact/surface_contacts.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
@@ -90,6 +91,7 @@ class ToolContactBlock : public ConstraintBlock {
     constraint.compliance = complianceOf(model, contact);
     constraint.friction = model.scene.scope->friction;
     constraint.anchor = anchor;
+    constraint.yield = toolYield(context, link, anchor);
     place_.push_back(place);
     link_.push_back(link);
   }

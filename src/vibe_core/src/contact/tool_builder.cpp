@@ -15,6 +15,16 @@ int inputIndex(const std::string& name) {
   return it == kJointNames.end() ? -1 : static_cast<int>(it - kJointNames.begin());
 }
 
+const std::string kShaftUpDown = "shaft_up_down_";
+const std::string kShaftLeftRight = "shaft_left_right_";
+constexpr double kSameStation = 1e-6;  // joints of the shaft that are nearer to each other are at one place [m]
+
+// moved by no input: bends under load
+bool isShaftJoint(const urdf::Joint& joint) {
+  const auto begins = [&](const std::string& with) { return joint.name.compare(0, with.size(), with) == 0; };
+  return joint.type == urdf::Joint::REVOLUTE && !joint.mimic && (begins(kShaftUpDown) || begins(kShaftLeftRight));
+}
+
 std::string inputList() {
   std::string list;
   for (const char* name : kJointNames) list += (list.empty() ? "" : ", ") + std::string(name);
@@ -26,6 +36,7 @@ std::string inputList() {
 ToolBuilder::ToolBuilder(const UrdfDocument& document, const std::string& place) : document_(&document), place_(place) {
   addTree(*document.model().getRoot());
   checkComplete();
+  placeShaft();
 }
 
 void ToolBuilder::fail(const char* tag, const std::string& name, const std::string& what) const {
@@ -88,6 +99,12 @@ void ToolBuilder::addJoint(const urdf::Joint& joint, int parent, int child) {
   if (!(axis.norm() > 1e-9) || !std::isfinite(axis.norm()))
     fail("joint", joint.name, "has an axis without direction; write one of length 1");
   result.axis = axis.normalized();
+  if (isShaftJoint(joint)) {
+    result.station = 0;  // placed when the whole tree is known
+    result.direction = joint.name.compare(0, kShaftUpDown.size(), kShaftUpDown) == 0 ? 0 : 1;
+    joints.push_back(result);
+    return;
+  }
   result.input = inputOf(joint);
   if (joint.mimic) {
     result.multiplier = joint.mimic->multiplier;
@@ -114,13 +131,41 @@ int ToolBuilder::inputOf(const urdf::Joint& joint) const {
 
 void ToolBuilder::addInput(const urdf::Joint& joint, int input) {
   if (!joint.limits) fail("joint", joint.name, "has no limit element; write lower, upper, velocity and effort");
-  const JointLimits limit = {joint.limits->lower, joint.limits->upper, joint.limits->velocity};
+  const JointLimits limit = {joint.limits->lower, joint.limits->upper, joint.limits->velocity, joint.limits->effort};
   if (!std::isfinite(limit.lower) || !std::isfinite(limit.upper) || limit.lower >= limit.upper)
     fail("joint", joint.name, "has a lower limit that is not below its upper limit; write finite limits in order");
   if (!std::isfinite(limit.velocity) || limit.velocity <= 0)
     fail("joint", joint.name, "has a velocity limit that is not positive; write the greatest speed in SI units");
+  if (!(limit.effort > 0))
+    fail("joint", joint.name, "has an effort limit that is not positive; write what a hand applies");
   limits[input] = limit;
   found_[input] = true;
+}
+
+// Where the joints of the shaft are, with all inputs at 0: the last one along the root's x axis is the end of the
+// shaft.
+void ToolBuilder::placeShaft() {
+  std::vector<Eigen::Isometry3d> pose(link_names.size(), Eigen::Isometry3d::Identity());
+  std::vector<double> along;
+  for (const ToolJoint& joint : joints) {
+    pose[joint.child_link] = pose[joint.parent_link] * joint.origin;
+    if (joint.station >= 0) along.push_back(pose[joint.child_link].translation().x());
+  }
+  if (along.empty()) return;
+  shaft_end = *std::max_element(along.begin(), along.end());
+  for (double x : along) shaft_stations.push_back(shaft_end - x);
+  std::sort(shaft_stations.begin(), shaft_stations.end());
+  const auto same = [](double a, double b) { return b - a < kSameStation; };
+  shaft_stations.erase(std::unique(shaft_stations.begin(), shaft_stations.end(), same), shaft_stations.end());
+  if (shaft_stations.size() > static_cast<std::size_t>(kMaxShaftStations))
+    throw Error(place_ + ": the shaft has joints at more than " + std::to_string(kMaxShaftStations) +
+                " places; give it fewer.");
+  for (ToolJoint& joint : joints) {
+    if (joint.station < 0) continue;
+    const double behind = shaft_end - pose[joint.child_link].translation().x() - kSameStation;
+    const auto at = std::lower_bound(shaft_stations.begin(), shaft_stations.end(), behind);
+    joint.station = static_cast<int>(at - shaft_stations.begin());
+  }
 }
 
 void ToolBuilder::checkComplete() const {

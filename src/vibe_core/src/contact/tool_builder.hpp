@@ -21,6 +21,8 @@ class ToolBuilder {
   std::vector<ToolJoint> joints;
   std::vector<ToolShape> shapes;
   std::array<JointLimits, kJointCount> limits{};
+  std::vector<double> shaft_stations;  ///< see ToolModel::shaftStations()
+  double shaft_end = 0;                ///< see ToolModel::freeLength()
 
  private:
   void addTree(const urdf::Link& root);
@@ -28,6 +30,7 @@ class ToolBuilder {
   void addJoint(const urdf::Joint& joint, int parent, int child);
   void addInput(const urdf::Joint& joint, int input);
   int inputOf(const urdf::Joint& joint) const;
+  void placeShaft();
   void checkComplete() const;
   [[noreturn]] void fail(const char* tag, const std::string& name, const std::string& what) const;
 

@@ -2,17 +2,43 @@
 
 namespace vibe {
 
+namespace {
+
+// How a point moves with the joint that carries a link. The motion of a joint changes neither its axis nor, if it is
+// revolute, its origin.
+Eigen::Vector3d jointMotion(const ToolJoint& joint, const Eigen::Isometry3d& pose, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d axis = pose.linear() * joint.axis;
+  if (joint.type == ToolJoint::Type::Revolute) return axis.cross(point - pose.translation());
+  return axis;
+}
+
+}  // namespace
+
 Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
                                                     int link, const Eigen::Vector3d& point) {
   Eigen::Matrix<double, 3, kJointCount> jacobian = Eigen::Matrix<double, 3, kJointCount>::Zero();
   while (link > 0) {
     const ToolJoint& joint = tool.joints()[link - 1];  // the joint that carries the link
-    if (joint.input >= 0) {
-      // the motion of a joint changes neither its axis nor, if it is revolute, its origin
-      const Eigen::Vector3d axis = poses[link].linear() * joint.axis;
-      const bool turns = joint.type == ToolJoint::Type::Revolute;
-      const Eigen::Vector3d moves = turns ? axis.cross(point - poses[link].translation()).eval() : axis;
-      jacobian.col(joint.input) += joint.multiplier * moves;
+    if (joint.input >= 0) jacobian.col(joint.input) += joint.multiplier * jointMotion(joint, poses[link], point);
+    link = joint.parent_link;
+  }
+  return jacobian;
+}
+
+Eigen::Matrix<double, 3, kYieldDofs> yieldJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
+                                                   const ShaftBend& bend, int link, const Eigen::Vector3d& point) {
+  Eigen::Matrix<double, 3, kYieldDofs> jacobian = Eigen::Matrix<double, 3, kYieldDofs>::Zero();
+  while (link > 0) {
+    const ToolJoint& joint = tool.joints()[link - 1];
+    if (joint.station >= 0) {
+      const Eigen::Vector3d moves = jointMotion(joint, poses[link], point);
+      const ShaftBend::Share& share = bend.share(joint.station);
+      const int dof = kShaftDof + 2 * joint.direction;
+      jacobian.col(dof) += share.mean * moves;
+      jacobian.col(dof + 1) += share.change * moves;
+      jacobian.col(Insertion) += bend.angleRate(joint.station, joint.direction) * moves;
+    } else if (joint.input >= 0 && joint.input < kScopeJointCount) {
+      jacobian.col(joint.input) += joint.multiplier * jointMotion(joint, poses[link], point);
     }
     link = joint.parent_link;
   }

@@ -13,8 +13,14 @@ std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {
   return inputs;
 }
 
+ToolDisplacement ToolMotion::displacement(double fraction) const {
+  ToolDisplacement displacement = start_displacement_;
+  for (int d = 0; d < kYieldDofs; ++d) displacement[d] += fraction * (end_displacement_[d] - start_displacement_[d]);
+  return displacement;
+}
+
 void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
-  tool_->forwardKinematics(inputs(fraction), poses);
+  tool_->forwardKinematics(inputs(fraction), displacement(fraction), poses);
   for (Eigen::Isometry3d& pose : poses) pose = base_ * pose;
 }
 

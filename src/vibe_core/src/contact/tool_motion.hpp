@@ -7,19 +7,32 @@
 
 namespace vibe {
 
-/// Path of the tool during one step: every input moves at constant speed from its start to its end value.
+/// Path of the tool during one step: every input, and the displacement of a tool that gives way, moves at constant
+/// speed from its start to its end value.
 class ToolMotion {
  public:
-  /// @param base  pose of the tool's root link in world
+  /// @param base          pose of the tool's root link in world
+  /// @param displacement  of the tool at the start; at the end as well, until displaceEnd() says otherwise
   ToolMotion(const ToolModel& tool, const Eigen::Isometry3d& base, const std::array<double, kJointCount>& start,
-             const std::array<double, kJointCount>& end)
-      : tool_(&tool), base_(base), start_(start), end_(end) {}
+             const std::array<double, kJointCount>& end, const ToolDisplacement& displacement = {})
+      : tool_(&tool),
+        base_(base),
+        start_(start),
+        end_(end),
+        start_displacement_(displacement),
+        end_displacement_(displacement) {}
+
+  void displaceEnd(const ToolDisplacement& displacement) { end_displacement_ = displacement; }
+  const ToolDisplacement& startDisplacement() const { return start_displacement_; }
 
   /// Pose of every link in world at a fraction [0, 1] of the step.
   void linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const;
 
   /// The inputs at a fraction [0, 1] of the step [m], [rad].
   std::array<double, kJointCount> inputs(double fraction) const;
+
+  /// The displacement at a fraction [0, 1] of the step [m], [rad].
+  ToolDisplacement displacement(double fraction) const;
 
   /// An upper bound of the displacement of any point of a collision shape between two sets of link poses [m].
   double travel(const std::vector<Eigen::Isometry3d>& from, const std::vector<Eigen::Isometry3d>& to) const;
@@ -28,6 +41,7 @@ class ToolMotion {
   const ToolModel* tool_;
   Eigen::Isometry3d base_;
   std::array<double, kJointCount> start_, end_;
+  ToolDisplacement start_displacement_, end_displacement_;
 };
 
 /// Positions of the inputs after `dt` on the way to `command`, within the limits of position and speed. Entries that

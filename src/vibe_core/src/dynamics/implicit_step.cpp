@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/tool_jacobian.hpp"
 #include "dynamics/tool_contact_rows.hpp"
 #include "geometry/lumen.hpp"
 #include "model/max_speed.hpp"
@@ -75,6 +76,14 @@ Activity ImplicitStep::gather() {
     motion_->linkPoses(1, scratch_.poses.end);
   }
   scratch_.loads.clear();
+  if (motion_ != nullptr && model_.scope_springs) {
+    const auto joints = motion_->inputs(1);
+    const ToolDisplacement& displacement = motion_->startDisplacement();
+    scratch_.loads.tool_yield = model_.scope_springs->yield(joints, displacement, context_.step);
+    motion_->linkPoses(0.5, scratch_.poses.middle);
+    bend_.emplace(model_.tool->shaftBend(motion_->inputs(0.5), displacement));
+    context_.bend = &*bend_;
+  }
   Activity most = Activity::Sleep;
   for (const auto& block : scratch_.blocks) most = std::max(most, block->prepare(context_, scratch_.loads));
   return most;
@@ -148,7 +157,17 @@ bool ImplicitStep::solve() {
   report_.fallback = outcome.fallback;
   work_ = outcome.work;
   if (!outcome.finite) std::fill(state_.x.begin(), state_.x.end(), std::numeric_limits<double>::quiet_NaN());
+  if (outcome.finite && context_.bend != nullptr) yieldTool();
   return outcome.finite;
+}
+
+// From here on the tool is where the forces of this step have brought it.
+void ImplicitStep::yieldTool() {
+  report_.tool_displacement = motion_->startDisplacement();
+  for (int d = 0; d < kYieldDofs; ++d) report_.tool_displacement[d] += scratch_.loads.tool_yield.displacement[d];
+  yielded_.emplace(*motion_);
+  yielded_->displaceEnd(report_.tool_displacement);
+  yielded_->linkPoses(1, scratch_.poses.end);
 }
 
 void ImplicitStep::store() {
@@ -161,6 +180,7 @@ void ImplicitStep::store() {
   }
   if (motion_ != nullptr) {
     reportTool();
+    reportHand();
     reportImpedance();
   }
   account();
@@ -198,8 +218,10 @@ void ImplicitStep::keepToolApart() {
       a{&state_.ax, &state_.ay, &state_.az};
   SurfacePath path;
   for (std::size_t k = 0; k < 3; ++k) path.from[k] = scratch_.start[k].data(), path.to[k] = x[k]->data();
-  const ToolGuard::Free free = scratch_.guard->keepApart(scratch_.poses, *motion_, path);
-  state_.joints = motion_->inputs(free.tool);
+  const ToolMotion& motion = yielded_ ? *yielded_ : *motion_;
+  const ToolGuard::Free free = scratch_.guard->keepApart(scratch_.poses, motion, path);
+  state_.joints = motion.inputs(free.tool);
+  if (yielded_) report_.tool_displacement = motion.displacement(free.tool);
   if (free.wall >= 1) return;
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < x[k]->size(); ++i) {
@@ -218,6 +240,22 @@ void ImplicitStep::reportTool() {
     state_.energy.friction_loss += touch.force.dot(touch.motion) - touch.work;
     pushTool(-touch.force, touch.point, touch.motion, tip, report_, state_.energy);
   }
+}
+
+// Inputs that are not the scope's act from within the tool: the hand that pushes an instrument.
+void ImplicitStep::reportHand() {
+  Eigen::Matrix<double, kJointCount, 1> effort = Eigen::Matrix<double, kJointCount, 1>::Zero();
+  for (const ToolTouch& touch : scratch_.touches)
+    effort += pointJacobian(*model_.tool, scratch_.poses.end, touch.link, touch.point).transpose() * touch.force;
+  const auto from = motion_->inputs(0), to = state_.joints;
+  if (model_.scope_springs) {
+    const ToolDisplacement &before = motion_->startDisplacement(), &after = report_.tool_displacement;
+    effort.head<kScopeJointCount>() =
+        model_.scope_springs->load(to, before, after, context_.step).head<kScopeJointCount>();
+    state_.energy.scope_loss += model_.scope_springs->loss(to, before, after, context_.step);
+  }
+  for (int j = 0; j < kJointCount; ++j) state_.energy.hand_work += effort[j] * (to[j] - from[j]);
+  for (int j = 0; j < kScopeJointCount; ++j) report_.hand_effort[j] = effort[j];
 }
 
 // Begins before anything is touched, because the factor that the impedance needs takes a while to make.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "contact/tool_motion.hpp"
 #include "dynamics/implicit_scratch.hpp"
 #include "dynamics/loss_limits.hpp"
@@ -27,9 +29,11 @@ class ImplicitStep {
   bool heldByGas(double energy) const;
   void recover();
   bool solve();
+  void yieldTool();
   void store();
   void keepToolApart();
   void reportTool();
+  void reportHand();
   void reportImpedance();
   void correct();
   void account();
@@ -45,6 +49,8 @@ class ImplicitStep {
   State& state_;
   StepReport& report_;
   ImplicitScratch& scratch_;
+  std::optional<ShaftBend> bend_;      // of a tool that yields
+  std::optional<ToolMotion> yielded_;  // its motion in the step
   StepContext context_;
   StepWork work_;              // of the solve
   double contact_energy_ = 0;  // before it [J]

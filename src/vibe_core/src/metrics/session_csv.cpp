@@ -40,7 +40,7 @@ void SessionCsv::write(const Model& model, const State& state, const std::vector
   for (double joint : state.joints) out << ',' << joint;
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();
   if (model.tool) {
-    model.tool->forwardKinematics(state.joints, poses_);
+    model.tool->forwardKinematics(state.joints, state.tool_displacement, poses_);
     tip = model.tool_base * poses_[model.tip_link].translation();
   }
   for (const Eigen::Vector3d& v : {tip, state.tool_force, state.tool_torque})

@@ -35,7 +35,7 @@ void MetricsRecorder::restart(const Model& model, const State& start) {
 
 Eigen::Vector3d MetricsRecorder::tipPosition(const Model& model, const State& state) {
   if (!model.tool) return Eigen::Vector3d::Zero();
-  model.tool->forwardKinematics(state.joints, poses_);
+  model.tool->forwardKinematics(state.joints, state.tool_displacement, poses_);
   return model.tool_base * poses_[model.tip_link].translation();
 }
 

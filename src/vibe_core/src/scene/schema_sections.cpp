@@ -28,6 +28,11 @@ const std::vector<SchemaSection>& sceneSections() {
       {"scope.base", "Pose of the root link. Without this section the scope enters at the oesophagus.",
        [](Scene& s) { s.scope->base_from_anatomy = false; },
        [](const Scene& s) { return s.scope.has_value() && !s.scope->base_from_anatomy; }},
+      {"scope.compliance",
+       "Bending section and shaft give way under load, so that the tip is not where the hand commands it. Without this "
+       "section the scope is rigid.",
+       [](Scene& s) { s.scope->compliance.emplace(); },
+       [](const Scene& s) { return s.scope.has_value() && s.scope->compliance.has_value(); }},
       {"helix", "Tissue helix of the suturing device; needs `scope`.", [](Scene& s) { s.helix.emplace(); },
        [](const Scene& s) { return s.helix.has_value(); }, "scope", "whose tool carries the helix"},
       {"suture",

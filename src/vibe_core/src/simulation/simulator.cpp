@@ -25,6 +25,7 @@ void storeForces(const Model& model, const StepReport& report, const std::vector
   state.tool_force = to_tip * report.tool_force;
   state.tool_torque = to_tip * report.tool_torque;
   state.grip_force = report.grip_force.norm();
+  state.hand_effort = report.hand_effort;
   state.contact_count = report.contact_count;
 }
 
@@ -71,10 +72,20 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
   state.pull = PullSpring();
   slackenThreads(state);
   coolDown(state);
+  state.tool_displacement = fresh.tool_displacement;
+  state.hand_effort = fresh.hand_effort;
   state.tool_force.setZero();
   state.tool_torque.setZero();
   state.grip_force = 0;
   emitEvent(Event::Kind::Recovery, state.time, -1, 0, events).detail = EventDetail::NotFinite;
+}
+
+// Where a tool goes on which nothing acts.
+ToolDisplacement relaxed(const Model& model, const State& state, double dt) {
+  const YieldVector moved = model.scope_springs->yield(state.joints, state.tool_displacement, dt).free;
+  ToolDisplacement end = state.tool_displacement;
+  for (int d = 0; d < kYieldDofs; ++d) end[d] += moved[d];
+  return end;
 }
 
 void moveTissue(const Model& model, const ToolMotion* motion, bool pedal, bool insufflator_on, State& state,
@@ -104,8 +115,9 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   std::optional<ToolMotion> motion;
   std::vector<Eigen::Isometry3d>& poses = workspace.linkPoses();
   if (model.tool) {
-    const auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
-    motion.emplace(*model.tool, model.tool_base, state.joints, end);
+    auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
+    if (model.scope_springs) end = model.scope_springs->handMotion(state.joints, end, state.tool_displacement, dt);
+    motion.emplace(*model.tool, model.tool_base, state.joints, end, state.tool_displacement);
     motion->linkPoses(0, poses);
     updateGrip(model, poses, input.buttons[HelixGrab] != 0, state, events);
     commandProcedure(model, poses, input, state, events);
@@ -116,13 +128,15 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   movePullSpring(model, input, state);
   StepReport& report = workspace.report();
   report = StepReport();
+  if (model.scope_springs) report.tool_displacement = relaxed(model, state, dt);
   moveTissue(model, motion ? &*motion : nullptr, pedal, insufflator_on, state, workspace, report);
   beam.insufflation = std::max(0.0, (state.gas_amount - gas_before) / (kAmbientPressure * dt));
   workspace.toolImpedance() = report.tool_impedance;
   ++state.step;
   state.time = static_cast<double>(state.step) * dt;
   if (model.tool) {
-    ToolMotion(*model.tool, model.tool_base, state.joints, state.joints).linkPoses(1, poses);
+    state.tool_displacement = report.tool_displacement;
+    ToolMotion(*model.tool, model.tool_base, state.joints, state.joints, state.tool_displacement).linkPoses(1, poses);
     storeForces(model, report, poses, state);
     reportContact(report.contact_count, dt, state, events);
     releaseOverloadedGrip(model, state, events);

@@ -101,6 +101,19 @@ std::string particleDamage(const State& s, std::size_t particle_count) {
   return "";
 }
 
+std::string toolDamage(const State& s, const Model& model) {
+  double sum = 0;
+  bool displaced = false;
+  for (double value : s.joints) sum += value;
+  for (double value : s.hand_effort) sum += value;
+  for (double value : s.tool_displacement) {
+    sum += value;
+    displaced = displaced || value != 0;
+  }
+  if (!std::isfinite(sum)) return "a joint of its tool is not a number";
+  return displaced && !model.scope_springs ? "its tool gives way, which a rigid one does not" : "";
+}
+
 bool isEmptyOr(std::size_t size, std::size_t particle_count, std::size_t per_particle) {
   return size == 0 || size == per_particle * particle_count;
 }
@@ -131,6 +144,7 @@ std::string solverDamage(const State& s, std::size_t particle_count) {
 std::string findDamage(const State& state, const Model& model) {
   const int count = model.particle_count;
   std::string damage = particleDamage(state, static_cast<std::size_t>(count));
+  if (damage.empty()) damage = toolDamage(state, model);
   if (damage.empty()) damage = solverDamage(state, static_cast<std::size_t>(count));
   if (damage.empty()) damage = procedureDamage(state.procedure, count);
   if (damage.empty()) damage = pullDamage(state.pull, count);

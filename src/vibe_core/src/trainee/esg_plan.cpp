@@ -85,7 +85,7 @@ class EsgPlanResult {
     const Model& model = hand_.model();
     const State& state = hand_.state();
     std::vector<Eigen::Isometry3d> poses;
-    model.tool->forwardKinematics(state.joints, poses);
+    model.tool->forwardKinematics(state.joints, state.tool_displacement, poses);
     const Eigen::Vector3d tip = model.tool_base * poses[model.helix_link].translation();
     double min = 1;
     for (int i = 0; i < model.particle_count; ++i)

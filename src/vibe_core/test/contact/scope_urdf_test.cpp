@@ -44,7 +44,11 @@ TEST(ScopeUrdf, HasTheLinksThatOthersNeed) {
   EXPECT_EQ(scope->getRoot()->name, "scope_base");
   std::set<std::string> expected = {
       "scope_base", "scope_slide",      "scope_shaft",    "up_down_wheel", "scope_tip", "scope_camera_optical",
-      "device_cap", "left_right_wheel", "helix_carriage", "helix",         "needle"};
+      "device_cap", "left_right_wheel", "helix_carriage", "helix",         "needle",    "scope_neck"};
+  for (int k = 1; k <= 7; ++k) {
+    expected.insert("shaft_yoke_" + std::to_string(k));
+    expected.insert("shaft_" + std::to_string(k));
+  }
   for (int k = 1; k <= 8; ++k) {
     expected.insert("ring_" + std::to_string(k));
     expected.insert("segment_" + std::to_string(k));
@@ -53,14 +57,19 @@ TEST(ScopeUrdf, HasTheLinksThatOthersNeed) {
   EXPECT_EQ(scope->joints_.size() + 1, scope->links_.size());
 }
 
-TEST(ScopeUrdf, JointsAreInputsOrMimicThem) {
+TEST(ScopeUrdf, JointsAreInputsOrMimicThemOrBelongToTheShaft) {
   std::set<std::string> inputs(kJointNames.begin(), kJointNames.end());
-  int mimicking = 0;
+  int mimicking = 0, passive = 0;
   const auto scope = parsedScope();
   for (const auto& entry : scope->joints_) {
     const urdf::Joint& joint = *entry.second;
     if (joint.type == urdf::Joint::FIXED) continue;
     ASSERT_TRUE(joint.limits) << joint.name;
+    if (joint.name.compare(0, 6, "shaft_") == 0) {
+      ++passive;
+      EXPECT_FALSE(joint.mimic) << joint.name;
+      continue;
+    }
     if (!joint.mimic) {
       EXPECT_EQ(inputs.erase(joint.name), 1u) << joint.name;
       continue;
@@ -73,6 +82,7 @@ TEST(ScopeUrdf, JointsAreInputsOrMimicThem) {
   }
   EXPECT_TRUE(inputs.empty());
   EXPECT_EQ(mimicking, 16);
+  EXPECT_EQ(passive, 14) << "the shaft bends in two directions at seven places";
 }
 
 TEST(ScopeUrdf, EveryMovingLinkHasAPossibleBody) {
@@ -103,10 +113,11 @@ TEST(ScopeUrdf, EveryPartThatCanTouchTheWallHasACollisionShape) {
   const auto scope = parsedScope();
   std::vector<std::string> touching = {"scope_shaft", "scope_tip", "device_cap"};
   for (int k = 1; k <= 8; ++k) touching.push_back("segment_" + std::to_string(k));
+  for (int k = 1; k <= 6; ++k) touching.push_back("shaft_" + std::to_string(k));
   for (const std::string& name : touching) EXPECT_FALSE(scope->links_.at(name)->collision_array.empty()) << name;
   for (const char* name : {"helix", "needle"})
     EXPECT_TRUE(scope->links_.at(name)->collision_array.empty()) << name << " penetrates the wall";
-  EXPECT_EQ(loadScope().shapes().size(), 11u) << "capsules of shaft, segments, tip and device";
+  EXPECT_EQ(loadScope().shapes().size(), 17u) << "capsules of shaft and its pieces, segments, tip and device";
 }
 
 // 15.8 mm with the arm closed (SAGES Manual of Flexible Endoscopy); the shapes end at the distal face, the bracket has

@@ -64,7 +64,7 @@ TEST(ToolCollision, FindsDistanceAndNormalAtTheTube) {
   Cloud cloud;
   const Vector3d outwards(0, 0.6, -0.8);
   for (const double distance : {0.0009, -0.0004, 0.0031})
-    cloud.add(base * (Vector3d(-0.1, 0, 0) + (0.0063 + distance) * outwards));
+    cloud.add(base * (Vector3d(-0.17, 0, 0) + (0.0063 + distance) * outwards));
   ToolCollision collision(tool);
   collision.findCandidates(poses, cloud.x.data(), cloud.y.data(), cloud.z.data(), cloud.count(), 0.002);
   EXPECT_EQ(collision.candidateCount(), 2);

@@ -19,7 +19,7 @@ std::shared_ptr<const Model> modelOf(Scene scene, double step_period) {
 double insertionForce(const Simulation& simulation) {
   const Model& model = simulation.model();
   std::vector<Eigen::Isometry3d> poses;
-  model.tool->forwardKinematics(simulation.state().joints, poses);
+  model.tool->forwardKinematics(simulation.state().joints, simulation.state().tool_displacement, poses);
   const Eigen::Isometry3d tip = model.tool_base * poses[model.tip_link];
   const Eigen::Vector3d force = tip.linear() * simulation.state().tool_force;
   return model.tool_base.linear().col(0).dot(force);

@@ -25,6 +25,7 @@ STREAMS = {
     "overstitch/helix/measured_cp": (PoseStamped, "world"),
     "scope/measured_cf": (WrenchStamped, "scope_tip"),
     "joint_states": (JointState, "scope_base"),
+    "scope/setpoint_js": (JointState, "scope_base"),
     "tissue/particles": (PointCloud2, "stomach"),
     "applied_input": (StepInput, ""),
 }

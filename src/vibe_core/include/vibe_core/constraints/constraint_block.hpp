@@ -10,6 +10,7 @@
 namespace vibe {
 
 class EnergyTerm;
+class ShaftBend;
 struct Model;
 struct State;
 
@@ -18,8 +19,9 @@ struct StepContext {
   const Model& model;
   State& state;           ///< before the solve: at the start of the step; after it: at its end
   double step;            ///< duration [s]
-  const ToolPoses* tool;  ///< null without a tool
+  const ToolPoses* tool;  ///< null without a tool. A tool that yields: before the solve as if it did not in this step
   bool insufflator_on;    ///< for the gas
+  const ShaftBend* bend = nullptr;  ///< of a tool that yields, at the poses tool->middle; null: it is rigid
 };
 
 /// What a block means for tissue at rest. A step is skipped while all blocks of a resting tissue agree to `Sleep`.

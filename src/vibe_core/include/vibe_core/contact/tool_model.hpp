@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "vibe_core/contact/shaft_bend.hpp"
 #include "vibe_core/input/step_input.hpp"
+#include "vibe_core/state/tool_displacement.hpp"
 
 class btConvexShape;
 
@@ -23,6 +25,8 @@ struct ToolJoint {
   int input = -1;         ///< index of the driving input in StepInput::joints; -1: fixed
   double multiplier = 1;  ///< position = multiplier * input + offset (URDF mimic)
   double offset = 0;      ///< [m], [rad]
+  int station = -1;   ///< index into ToolModel::shaftStations(): a joint of the shaft that bends under load; -1: none
+  int direction = 0;  ///< of such a joint: 0: up, 1: left
 };
 
 /// A convex collision shape of a link: a capsule, cylinder, sphere or box, as a Bullet shape.
@@ -38,6 +42,7 @@ struct JointLimits {
   double lower = 0;     ///< [m], [rad]
   double upper = 0;     ///< [m], [rad]
   double velocity = 0;  ///< [m/s], [rad/s]
+  double effort = 0;    ///< the hand lets slip above this [N], [N m]
 };
 
 /// Endoscope with suturing device: kinematic tree and collision shapes from one URDF. Constant after loading. Parents
@@ -46,9 +51,12 @@ class ToolModel {
  public:
   /// @param urdf_xml  text of the URDF
   /// @param place     name used in error messages, e.g. the file name
+  /// Joints named shaft_up_down_1, shaft_left_right_1, ... are moved by no input: they bend under load, and are 0 with
+  /// a tool that is rigid. A URDF without them has a straight shaft.
   /// @throws Error for text that is not a valid URDF, a joint type other than fixed, revolute or prismatic, a moving
-  ///         joint that neither is one of kJointNames nor mimics one, a missing joint of kJointNames, missing limits, a
-  ///         mesh collision shape, or a missing link helix, needle, scope_tip or scope_camera_optical.
+  ///         joint that neither is one of kJointNames, nor mimics one, nor is one of the shaft, a missing joint of
+  ///         kJointNames, missing limits, a mesh collision shape, or a missing link helix, needle, scope_tip or
+  ///         scope_camera_optical.
   static ToolModel fromUrdf(const std::string& urdf_xml, const std::string& place);
 
   int linkCount() const { return static_cast<int>(link_names_.size()); }
@@ -64,6 +72,18 @@ class ToolModel {
   void forwardKinematics(const std::array<double, kJointCount>& inputs,
                          std::vector<Eigen::Isometry3d>& link_poses) const;
 
+  /// The same of a tool that is displaced from what its inputs say.
+  void forwardKinematics(const std::array<double, kJointCount>& inputs, const ToolDisplacement& displacement,
+                         std::vector<Eigen::Isometry3d>& link_poses) const;
+
+  /// Distance of each joint of the shaft from its end, ascending [m]; empty: the shaft is straight.
+  const std::vector<double>& shaftStations() const { return shaft_stations_; }
+  /// Length of the shaft inside the lumen, behind the bending section, negative while that is still outside.
+  /// @param insertion  that the tool really has [m]
+  double freeLength(double insertion) const { return insertion + shaft_end_; }
+  /// The bend of the shaft at these positions of the inputs.
+  ShaftBend shaftBend(const std::array<double, kJointCount>& inputs, const ToolDisplacement& displacement) const;
+
   /// Computes joint inputs within the limits that bring scope_tip to a target pose in the root frame, starting from
   /// `start`. Uses damped least squares over the first four inputs. Position has weight 1 per metre, the direction of
   /// the x axis of the tip 0.02 per radian. The scope has four degrees of freedom, so a full pose is rarely reachable.
@@ -76,6 +96,8 @@ class ToolModel {
   std::vector<ToolJoint> joints_;  // ordered parent first; joint k has child_link k + 1
   std::vector<ToolShape> shapes_;
   std::array<JointLimits, kJointCount> limits_{};
+  std::vector<double> shaft_stations_;
+  double shaft_end_ = 0;  // along the axis of the root link at insertion 0 [m]
 };
 
 }  // namespace vibe

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "vibe_core/contact/scope_springs.hpp"
 #include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/geometry/render_surface.hpp"
@@ -34,6 +35,7 @@ struct Model {
   int substeps = 0;  ///< per step, of a solver that uses them: the asked number, or the fewest that are stable; else 0
 
   std::shared_ptr<const ToolModel> tool;                        ///< null without scope
+  std::optional<ScopeSprings> scope_springs;                    ///< empty: the tool is rigid
   Eigen::Isometry3d tool_base = Eigen::Isometry3d::Identity();  ///< pose of the tool's root link in world
   int tip_link = -1;                                            ///< link numbers in tool
   int helix_link = -1;

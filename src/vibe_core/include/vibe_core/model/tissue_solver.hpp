@@ -5,6 +5,7 @@
 #include <string>
 
 #include "vibe_core/haptics/tool_impedance.hpp"
+#include "vibe_core/state/tool_displacement.hpp"
 
 namespace vibe {
 
@@ -19,6 +20,8 @@ struct StepReport {
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about scope_tip, mean over the step, in world [N m]
   Eigen::Vector3d grip_force = Eigen::Vector3d::Zero();   ///< part of tool_force that acts on the helix [N]
   std::optional<ToolImpedance> tool_impedance;            ///< empty without contact, or if the solver computes none
+  ToolDisplacement tool_displacement{};                   ///< in: if nothing acts on the tool; out: at the end
+  std::array<double, kScopeJointCount> hand_effort{};     ///< of the hand on the joints, mean over the step [N], [N m]
   int contact_count = 0;                                  ///< maximum number of particles touched at once
   int iterations = 0;                                     ///< of an implicit solver
   bool fallback = false;                                  ///< the step needed backward Euler and more iterations

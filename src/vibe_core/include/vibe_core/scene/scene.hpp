@@ -75,13 +75,24 @@ struct FoundationScene {
   bool carries_weight = true;  ///< the foundation balances the weight, so that the organ is at rest in its given shape
 };
 
+/// An endoscope that gives way under load, see ScopeSprings.
+struct ScopeComplianceScene {
+  double shaft_rigidity = 0.027;     ///< flexural, of the insertion tube [N m^2]
+  double torsional_rigidity = 0.40;  ///< of the insertion tube [N m^2]
+  double outer_length = 0.40;        ///< between the hand and the entry, which twists as well [m]
+  double axial_stiffness = 2000;     ///< between the hand and the tip [N/m]
+  double bending_stiffness = 0.3;    ///< of the bending section's wires, per total bend [N m/rad]
+  double relaxation_time = 0.05;     ///< viscosity over stiffness [s]
+};
+
 /// The endoscope with its suturing device.
 struct ScopeScene {
   std::string urdf = "package://vibe_description/urdf/scope.urdf";
-  bool base_from_anatomy = true;            ///< scope_base at the organ's entry, x axis into the lumen
-  Eigen::Vector3d base_position{0, 0, 0};   ///< otherwise this position, in world [m]
-  std::array<double, 3> base_rpy{0, 0, 0};  ///< and this orientation [rad]
-  double friction = 0.1;                    ///< Coulomb coefficient tool on mucosa [1]
+  bool base_from_anatomy = true;                   ///< scope_base at the organ's entry, x axis into the lumen
+  Eigen::Vector3d base_position{0, 0, 0};          ///< otherwise this position, in world [m]
+  std::array<double, 3> base_rpy{0, 0, 0};         ///< and this orientation [rad]
+  double friction = 0.1;                           ///< Coulomb coefficient tool on mucosa [1]
+  std::optional<ScopeComplianceScene> compliance;  ///< empty: a rigid scope
 };
 
 /// Tissue helix: holds the particles near its tip.

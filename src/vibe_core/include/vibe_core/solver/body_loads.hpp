@@ -6,14 +6,13 @@
 
 #include "vibe_core/solver/row_list.hpp"
 #include "vibe_core/state/stiffness_coupling.hpp"
+#include "vibe_core/state/tool_displacement.hpp"
 
 namespace vibe {
 
 class EnergyTerm;
 
-/// Degrees of freedom of a tool that yields: motions beyond the commanded one, for example of an endoscope's bending
-/// section. Unused ones are zero.
-constexpr int kYieldDofs = 8;
+/// Motions of a tool that yields, beyond the commanded one, in the order of ToolDisplacement.
 using YieldVector = Eigen::Matrix<double, kYieldDofs, 1>;
 using YieldMatrix = Eigen::Matrix<double, kYieldDofs, kYieldDofs>;
 

@@ -9,6 +9,7 @@
 #include "vibe_core/state/procedure_state.hpp"
 #include "vibe_core/state/pull_spring.hpp"
 #include "vibe_core/state/stepper_memory.hpp"
+#include "vibe_core/state/tool_displacement.hpp"
 
 namespace vibe {
 
@@ -21,6 +22,8 @@ struct GripPoint {
 /// Sums since the start [J], see energyBalance(). Shape matching knows works and damping_loss only.
 struct EnergyAccount {
   double tool_work = 0;        ///< done by the tool (contact and grip): its forces times its own motion
+  double hand_work = 0;        ///< done by the hand on the tool: tool_work, scope_loss and the energy of its springs
+  double scope_loss = 0;       ///< dissipated by the dampers of a scope that gives way
   double gas_work = 0;         ///< done by the gas on the wall
   double thread_work = 0;      ///< done by threads on the tissue
   double pull_work = 0;        ///< done by the pull spring on the tissue
@@ -57,11 +60,14 @@ struct State {
   double volume = 0;      ///< of the lumen [m^3]
   bool pressure_reached = false;
 
-  std::array<double, kJointCount> joints{};  ///< actual positions of the tool's inputs (limits applied) [m], [rad]
-  std::vector<GripPoint> grip;               ///< what the helix holds; empty: nothing
-  bool helix_pressed = false;                ///< button state of the last step, for edges
-  bool in_contact = false;                   ///< the tool touches tissue, or did within the last kContactGap
-  double untouched_time = 0;                 ///< since the tool last touched tissue, while in_contact [s]
+  std::array<double, kJointCount> joints{};  ///< of the hand: positions of the tool's inputs, limits applied [m], [rad]
+  ToolDisplacement tool_displacement{};      ///< of the tool from these positions; 0 with a rigid one
+  std::array<double, kScopeJointCount>
+      hand_effort{};            ///< of the hand on the scope's joints, mean over the step [N], [N m]
+  std::vector<GripPoint> grip;  ///< what the helix holds; empty: nothing
+  bool helix_pressed = false;   ///< button state of the last step, for edges
+  bool in_contact = false;      ///< the tool touches tissue, or did within the last kContactGap
+  double untouched_time = 0;    ///< since the tool last touched tissue, while in_contact [s]
 
   Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in scope_tip [N]
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about the origin of scope_tip, in scope_tip [N m]
