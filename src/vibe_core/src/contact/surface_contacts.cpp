@@ -13,8 +13,10 @@ namespace {
 // half the wall while they touch. Design choice: far from crossing, and a scope in a stomach of a few thousand
 // particles needs none [1].
 constexpr double kLeast = 0.25;
-// Stretch of the wall for which that is so. Design choice: the working range of the material laws [1].
-constexpr double kStretch = 1.3;
+// Stretch of the wall for which that is so. Design choice: that of an insufflated stomach [1].
+constexpr double kStretch = 1.15;
+// Parts of a triangle through which a shape already passes, because it was put there: points within are pushed aside.
+constexpr int kPierced = 4;
 // Most parts into which an edge is divided. Design choice: a needle of half a millimetre in a mesh of 10 mm.
 constexpr int kMaxParts = 8;
 // Depth below the surface of a shape, over its radius, up to which a path is followed to take a normal; the axis itself
@@ -144,7 +146,7 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
   for (const Pair& pair : pairs_) {
     const std::array<int, 3>& n = triangles_[pair.triangle];
     if (excluded[n[0]] != 0 && excluded[n[1]] != 0 && excluded[n[2]] != 0) continue;
-    int most = 1;
+    int most = pair.approach.nearest == 0 ? kPierced : 1;
     for (std::size_t k = 0; k < 3; ++k) {
       const int parts = partsOf(shape, length_[static_cast<std::size_t>(pair.triangle)][k]);
       most = std::max(most, parts);

@@ -47,7 +47,7 @@ void offerEdge(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Triangl
   const double across = uu * vv - uv * uv;
   double s = across > 0 ? std::clamp((uv * vr - ur * vv) / across, 0.0, 1.0) : 0;
   double e = vv > 0 ? (uv * s + vr) / vv : 0;
-  if (e < 0 || e > 1) {
+  if (e < 0 || e > 1 || vv == 0) {  // an edge without length is a point
     e = std::clamp(e, 0.0, 1.0);
     s = uu > 0 ? std::clamp((uv * e - ur) / uu, 0.0, 1.0) : 0;
   }

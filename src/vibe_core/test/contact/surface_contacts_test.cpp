@@ -153,7 +153,8 @@ TEST(SegmentTriangleGap, IsTheNearestOfManySamples) {
   const auto point = [&] { return Vector3d(c(random), c(random), c(random)); };
   for (int trial = 0; trial < 300; ++trial) {
     const Vector3d a = point(), b = point();
-    const std::array<Vector3d, 3> t{point(), point(), point()};
+    std::array<Vector3d, 3> t{point(), point(), point()};
+    if (trial % 3 == 0) t[1] = t[2] = t[0];  // a point
     const TriangleGap gap = segmentTriangleGap(a, b, t);
     double nearest = 10;
     constexpr int kCuts = 40;
@@ -164,6 +165,10 @@ TEST(SegmentTriangleGap, IsTheNearestOfManySamples) {
           const Vector3d q = t[0] + (t[1] - t[0]) * u / kCuts + (t[2] - t[0]) * v / kCuts;
           nearest = std::min(nearest, (p - q).norm());
         }
+    if (trial % 3 == 0) {
+      const double s = std::clamp((t[0] - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+      EXPECT_NEAR(gap.distance, (t[0] - a - s * (b - a)).norm(), 1e-12);
+    }
     EXPECT_LE(gap.distance, nearest + 1e-12);
     EXPECT_GT(gap.distance, nearest - 0.09);
     EXPECT_NEAR(gap.weight.sum(), 1, 1e-12);
