@@ -97,20 +97,20 @@ bool ImplicitStep::asleep(Activity activity) const {
 // that bursts has no equilibrium. What loads hold is left alone.
 bool ImplicitStep::lost() const {
   const StepperMemory& memory = state_.solver;
-  const double energy =
-      memory.steps == 0 ? stepper_.elasticEnergy(motionOf(), *scratch_.stepper) : memory.elastic_energy;
-  if (energy > limits_.unheldEnergy() && !heldByGas(energy)) return true;
+  if (memory.steps == 0 ||
+      memory.elastic_energy > limits_.unheldEnergy()) {  // which has that of the foundation as well
+    const double energy = stepper_.elasticEnergy(motionOf(), *scratch_.stepper);
+    if (energy > limits_.unheldEnergy() && !heldByGas()) return true;
+  }
   if (memory.steps % kCheckEvery != 0) return false;
   const double volume = lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z);
   return volume < 0 || (model_.scene.gas && limits_.bursts(volume, state_.pressure, context_.insufflator_on));
 }
 
 // Whether the gas bears most of the wall's tension. By the virial theorem, forces in balance have opposite sums of
-// force times position: 3 p V of the gas. That of the wall is at least twice its energy.
-bool ImplicitStep::heldByGas(double energy) const {
-  if (!model_.scene.gas || !(3 * state_.pressure * state_.volume > 2 * kHeldPart * energy)) return false;
-  if (state_.solver.steps % kCheckEvery != 0) return true;
-  stepper_.elasticEnergy(motionOf(), *scratch_.stepper);
+// force times position: 3 p V of the gas. The wall's gradient is that of the last elasticEnergy().
+bool ImplicitStep::heldByGas() const {
+  if (!model_.scene.gas) return false;
   const std::vector<float>& gradient = scratch_.stepper->work;
   double tension = 0;
   for (int i = 0; i < model_.particle_count; ++i)

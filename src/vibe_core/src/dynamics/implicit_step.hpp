@@ -26,7 +26,7 @@ class ImplicitStep {
   Activity gather();
   bool asleep(Activity activity) const;
   bool lost() const;
-  bool heldByGas(double energy) const;
+  bool heldByGas() const;
   void recover();
   bool solve();
   void yieldTool();

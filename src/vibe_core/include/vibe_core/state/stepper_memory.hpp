@@ -18,11 +18,11 @@ struct StepperMemory {
   std::uint64_t next_id = 0;                      ///< hash of `next` and `next_couplings`
   std::int64_t steps = 0;                         ///< number of steps taken
   std::int64_t due = 0;                           ///< value of `steps` at which the next factor takes over
-  double elastic_energy = 0;                      ///< at the end of the last step [J]
-  double usual_length = 0;                        ///< running mean of the first moves of steps [m]
-  int rest_steps = 0;                             ///< consecutive steps in which nothing moved
-  int recovery_steps = 0;                         ///< remaining steps of a recovery, which lead straight to rest
-  int fallback = 0;                               ///< remaining steps with backward Euler and many iterations
+  double elastic_energy = 0;  ///< of elements and foundation at the end of the last step; < 0: unknown [J]
+  double usual_length = 0;    ///< running mean of the first moves of steps [m]
+  int rest_steps = 0;         ///< consecutive steps in which nothing moved
+  int recovery_steps = 0;     ///< remaining steps of a recovery, which lead straight to rest
+  int fallback = 0;           ///< remaining steps with backward Euler and many iterations
 };
 
 }  // namespace vibe
