@@ -38,6 +38,7 @@ class StepperScratch {
   std::vector<double> curvature;                 // 1 / (move . change)
   int pairs = 0;
   ConstraintRows rows;
+  std::vector<std::pair<double, std::size_t>> contact_order;  // see limitContacts()
   Eigen::VectorXd target, rhs, force;
   Eigen::VectorXd slid;             // thread that slid out of a row in this step, to the scale of the rows [m]
   double volume = 0, pressure = 0;  // of the point under evaluation
