@@ -37,6 +37,7 @@ struct ContactRows {
   std::array<LinearForm, 3> form;
   std::array<Eigen::Vector3d, 3> direction;  ///< normal, two tangents; unit
   double friction = 0;                       ///< Coulomb coefficient [1]
+  bool counts = true;                        ///< false: beyond the budget of a step, without force
   double compliance = 0;                     ///< of the normal [m/N]
   /// Motion of the three targets per motion of the tool that yields.
   Eigen::Matrix<double, 3, kYieldDofs> yield = Eigen::Matrix<double, 3, kYieldDofs>::Zero();

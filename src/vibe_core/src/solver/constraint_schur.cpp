@@ -58,8 +58,12 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
   rows_.clear();
   for (const EquationRow& equation : rows.equations) addRow(equation.form, equation.compliance, factor);
   for (const ContactRows& contact : rows.contacts)
-    for (int k = 0; k < 3; ++k)
-      addRow(contact.form[static_cast<std::size_t>(k)], k == 0 ? contact.compliance : 0, factor);
+    for (int k = 0; k < 3; ++k) {
+      if (contact.counts)
+        addRow(contact.form[static_cast<std::size_t>(k)], k == 0 ? contact.compliance : 0, factor);
+      else
+        rows_.addRow(1);
+    }
   for (const ThreadRows& thread : rows.threads) addThreadRows(thread);
   rows_.finish(cache);
   row_value_.setZero(rowCount());
@@ -71,7 +75,7 @@ void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, 
 }
 
 void ConstraintSchur::sortRows(const ConstraintRows& rows) {
-  equations_.clear(), inequalities_.clear(), contact_list_.clear();
+  equations_.clear(), inequalities_.clear(), contact_list_.clear(), idle_.clear();
   thread_count_ = 0;
   threads_held_ = false;
   for (int i = 0; i < static_cast<int>(rows.equations.size()); ++i) equations_.push_back(i);
@@ -79,6 +83,8 @@ void ConstraintSchur::sortRows(const ConstraintRows& rows) {
     for (int k = 0; k < 2 * thread.count(); ++k)
       if (thread.segments[k / 2].turn_missing > 0) equations_.push_back(thread.turnRow(k / 2, k % 2));
   for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
+    for (int k = 0; k < 3 && !rows.contacts[c].counts; ++k) idle_.push_back(rows.contactRow(c) + k);
+    if (!rows.contacts[c].counts) continue;
     contact_list_.push_back({static_cast<int>(inequalities_.size()), rows.contacts[c].friction});
     for (int k = 0; k < 3; ++k) inequalities_.push_back(rows.contactRow(c) + k);
   }
@@ -270,6 +276,7 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   moves_ = rhs;
   slid_.setZero(m);
   holds_.assign(static_cast<std::size_t>(m), 1);
+  for (const int row : idle_) holds_[static_cast<std::size_t>(row)] = 0;
   residual_ = rhs - row_value_;
   if (gas_stiffness_ != 0 && m > 0) residual_ -= gas_row_ * (gas_residual / gas_norm2_);
   solveRows();

@@ -84,6 +84,7 @@ class ConstraintSchur {
   Eigen::VectorXd row_value_;
   std::vector<int> equations_;     // row numbers: those of equations, then of springs
   std::vector<int> inequalities_;  // row numbers: normals and tangents of contacts, then pulls of threads
+  std::vector<int> idle_;          // row numbers of contacts beyond the budget
   std::vector<Contact> contact_list_;
   ContactProblem contacts_;  // of inequalities_
   std::vector<Thread> threads_;

@@ -40,35 +40,36 @@ void ContactProblem::begin(int rows) {
   left_.assign(n, 0.0);
   best_force_.resize(n);
   step_.resize(n);
-  group_of_row_.assign(n, -1);
+  group_of_row_.assign(n, kNone);
   groups_.clear();
   factored_ = false;
   factorizations_ = 0;
 }
 
-void ContactProblem::addGroup(int first, bool one_sided, double friction) {
-  for (int k = 0; k < (one_sided ? 1 : 3); ++k)
-    group_of_row_[static_cast<std::size_t>(first + k)] = static_cast<int>(groups_.size());
+void ContactProblem::addGroup(int first, int rows, double friction) {
+  for (int k = 0; k < rows; ++k) group_of_row_[static_cast<std::size_t>(first + k)] = static_cast<int>(groups_.size());
   Group group;
   group.first = first;
-  group.one_sided = one_sided;
+  group.rows = rows;
   group.friction = friction;
   groups_.push_back(group);
 }
 
 void ContactProblem::addContact(int first, double friction) {
-  addGroup(first, false, friction);
+  addGroup(first, friction > 0 ? 3 : 1, friction);
+  for (int k = 1; k < 3 && friction <= 0; ++k) group_of_row_[static_cast<std::size_t>(first + k)] = kFree;
 }
 
 void ContactProblem::finish() {
+  contact_count_ = static_cast<int>(groups_.size());
   for (int i = 0; i < n_; ++i) {
-    if (group_of_row_[static_cast<std::size_t>(i)] < 0) addGroup(i, true, 0);
+    if (group_of_row_[static_cast<std::size_t>(i)] == kNone) addGroup(i, 1, 0);
     compliance(i, i) *= 1 + kSoftness;
   }
   for (Group& group : groups_) {
     const int i = group.first;
     group.normal_gain = 1 / compliance(i, i);
-    if (group.one_sided) continue;
+    if (group.rows == 1) continue;
     const double a = compliance(i + 1, i + 1), b = compliance(i + 2, i + 2), c = compliance(i + 1, i + 2);
     group.tangent_gain = 1 / (0.5 * (a + b) + std::hypot(0.5 * (a - b), c));  // of the softer direction
   }
@@ -78,6 +79,7 @@ void ContactProblem::finish() {
 }
 
 bool ContactProblem::holds(int row) const {
+  if (group_of_row_[static_cast<std::size_t>(row)] == kFree) return false;
   const auto group = static_cast<std::size_t>(group_of_row_[static_cast<std::size_t>(row)]);
   return mode_[group] == Mode::Sticks || (mode_[group] == Mode::Slips && row == groups_[group].first);
 }
@@ -103,12 +105,12 @@ void ContactProblem::change(int row, double by, double* force) {
 double ContactProblem::sweep(double* force, bool contacts_only) {
   double moved = 0;
   for (const Group& group : groups_) {
-    if (contacts_only && group.one_sided) continue;
+    if (contacts_only && group_of_row_[static_cast<std::size_t>(group.first)] >= contact_count_) continue;
     const int i = group.first;
     const double normal = std::max(0.0, force[i] + group.normal_gain * left(i)) - force[i];
     change(i, normal, force);
     moved = std::max(moved, std::abs(normal) / group.normal_gain);
-    if (group.one_sided) continue;
+    if (group.rows == 1) continue;
     double wanted[2] = {force[i + 1] + group.tangent_gain * left(i + 1),
                         force[i + 2] + group.tangent_gain * left(i + 2)};
     const double limit = group.friction * force[i], size = sizeOf(wanted), part = size > limit ? limit / size : 1;
@@ -137,13 +139,13 @@ bool ContactProblem::classify(double* force) {
     mode_[g] = Mode::Sticks;
     if (!(normal > 0)) {
       mode_[g] = Mode::Open;
-      for (int k = 0; k < (group.one_sided ? 1 : 3); ++k) {
+      for (int k = 0; k < group.rows; ++k) {
         changed = changed || force[i + k] != 0;
         force[i + k] = 0;
       }
       continue;
     }
-    if (group.one_sided) continue;
+    if (group.rows == 1) continue;
     const double wanted[2] = {force[i + 1] + group.tangent_gain * left(i + 1),
                               force[i + 2] + group.tangent_gain * left(i + 2)};
     const double size = sizeOf(wanted);
@@ -166,7 +168,7 @@ double ContactProblem::violation(const double* force) const {
       continue;
     }
     max = std::max(max, std::abs(left(i)));
-    if (group.one_sided) continue;
+    if (group.rows == 1) continue;
     const double limit = group.friction * std::max(0.0, force[i]);
     for (int k = 0; k < 2; ++k)
       max = std::max(max, mode_[g] == Mode::Sticks
@@ -199,8 +201,7 @@ void ContactProblem::setSlipRows(int equation, const Group& group, const Slip& s
 bool ContactProblem::factorActive(const double*) {
   active_.clear();
   for (std::size_t g = 0; g < groups_.size(); ++g)
-    for (int k = 0; k < (groups_[g].one_sided ? 1 : 3) && mode_[g] != Mode::Open; ++k)
-      active_.push_back(groups_[g].first + k);
+    for (int k = 0; k < groups_[g].rows && mode_[g] != Mode::Open; ++k) active_.push_back(groups_[g].first + k);
   lu_.resize(static_cast<int>(active_.size()));
   int equation = 0;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -208,9 +209,9 @@ bool ContactProblem::factorActive(const double*) {
     if (mode_[g] == Mode::Open) continue;
     setNormalRow(equation, group.first);
     if (mode_[g] == Mode::Slips) setSlipRows(equation, group, slip_[g]);
-    if (mode_[g] == Mode::Sticks && !group.one_sided)
+    if (mode_[g] == Mode::Sticks && group.rows > 1)
       for (int k = 1; k < 3; ++k) setNormalRow(equation + k, group.first + k);
-    equation += group.one_sided ? 1 : 3;
+    equation += group.rows;
   }
   factored_mode_ = mode_;
   ++factorizations_;
@@ -224,7 +225,7 @@ void ContactProblem::newtonStep(double* force) {
     if (mode_[g] == Mode::Open) continue;
     step_[equation++] = left(group.first);
     const double limit = group.friction * std::max(0.0, force[group.first]);
-    for (int k = 0; k < 2 && !group.one_sided; ++k) {
+    for (int k = 0; k < 2 && group.rows > 1; ++k) {
       const int row = group.first + 1 + k;
       step_[equation++] =
           mode_[g] == Mode::Sticks ? left(row) : (limit * slip_[g].direction[k] - force[row]) / group.tangent_gain;

@@ -21,7 +21,7 @@ class ContactProblem {
   /// Forgets all rows.
   /// @param rows  in total; those that no contact takes are one-sided
   void begin(int rows);
-  /// Normal and two tangents in the rows first .. first + 2.
+  /// Normal and two tangents in the rows first .. first + 2. Without friction the tangents cost nothing.
   void addContact(int first, double friction);
   /// Compliance between rows, to be set after begin() (lower and upper part) [m/N].
   double& compliance(int i, int j) { return compliance_[at(i, j)]; }
@@ -49,7 +49,7 @@ class ContactProblem {
   enum class Mode : char { Open, Sticks, Slips };
   struct Group {
     int first = 0;
-    bool one_sided = true;
+    int rows = 1;  // 3 with friction
     double friction = 0;
     double normal_gain = 0, tangent_gain = 0;  // force per left [N/m]
   };
@@ -60,7 +60,7 @@ class ContactProblem {
   std::size_t at(int i, int j) const {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(n_) + static_cast<std::size_t>(j);
   }
-  void addGroup(int first, bool one_sided, double friction);
+  void addGroup(int first, int rows, double friction);
   void findLeft(const double* lack, const double* force);
   void change(int row, double by, double* force);
   double sweep(double* force, bool contacts_only);
@@ -76,7 +76,9 @@ class ContactProblem {
   int n_ = 0;
   std::vector<double> compliance_;  // symmetric
   std::vector<Group> groups_;
+  static constexpr int kNone = -1, kFree = -2;  // no group yet; a tangent without friction
   std::vector<int> group_of_row_;
+  int contact_count_ = 0;                   // of groups_, the first ones
   std::vector<Mode> mode_, factored_mode_;  // per group
   std::vector<Slip> slip_;                  // per group
   std::vector<double> left_, best_force_, step_;

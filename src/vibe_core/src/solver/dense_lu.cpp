@@ -11,26 +11,46 @@ void DenseLu::resize(int n) {
   pivot_.resize(static_cast<std::size_t>(n));
 }
 
-void DenseLu::eliminate(int k) {
-  const double* const from = row(k);
-  const double inverse = 1 / from[k];
-  for (int i = k + 1; i < n_; ++i) {
-    double* const to = row(i);
-    if (to[k] == 0) continue;
-    const double factor = to[k] *= inverse;
-    for (int j = k + 1; j < n_; ++j) to[j] -= factor * from[j];
-  }
-}
-
-bool DenseLu::factor() {
-  for (int k = 0; k < n_; ++k) {
+// Columns [from, to) of the rows from `from` on, with the pivots in them.
+bool DenseLu::factorPanel(int from, int to) {
+  for (int k = from; k < to; ++k) {
     int best = k;
     for (int i = k + 1; i < n_; ++i)
       if (std::abs(row(i)[k]) > std::abs(row(best)[k])) best = i;
     if (!(std::abs(row(best)[k]) > 0) || !std::isfinite(row(best)[k])) return false;
     pivot_[static_cast<std::size_t>(k)] = best;
     if (best != k) std::swap_ranges(row(k), row(k) + n_, row(best));
-    eliminate(k);
+    const double* const pivot = row(k);
+    for (int i = k + 1; i < n_; ++i) {
+      double* const to_row = row(i);
+      const double factor = to_row[k] /= pivot[k];
+      for (int j = k + 1; j < to; ++j) to_row[j] -= factor * pivot[j];
+    }
+  }
+  return true;
+}
+
+// The columns behind a panel: first its own rows, then those below, with all of its rows at once.
+void DenseLu::update(int from, int to) {
+  for (int k = from + 1; k < to; ++k)
+    for (int p = from; p < k; ++p) {
+      const double factor = row(k)[p];
+      for (int j = to; j < n_; ++j) row(k)[j] -= factor * row(p)[j];
+    }
+  if (to - from < kPanel) return;  // it is the last one
+  const double *const a = row(from), *const b = row(from + 1), *const c = row(from + 2), *const d = row(from + 3);
+  for (int i = to; i < n_; ++i) {
+    double* const out = row(i);
+    const double* const f = out + from;
+    for (int j = to; j < n_; ++j) out[j] -= (f[0] * a[j] + f[1] * b[j]) + (f[2] * c[j] + f[3] * d[j]);
+  }
+}
+
+bool DenseLu::factor() {
+  for (int from = 0; from < n_; from += kPanel) {
+    const int to = std::min(n_, from + kPanel);
+    if (!factorPanel(from, to)) return false;
+    update(from, to);
   }
   return true;
 }

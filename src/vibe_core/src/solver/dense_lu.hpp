@@ -20,7 +20,9 @@ class DenseLu {
 
  private:
   const double* row(int i) const { return &a_[static_cast<std::size_t>(i) * static_cast<std::size_t>(n_)]; }
-  void eliminate(int k);
+  static constexpr int kPanel = 4;
+  bool factorPanel(int from, int to);
+  void update(int from, int to);
 
   int n_ = 0;
   std::vector<double> a_;  // row after row

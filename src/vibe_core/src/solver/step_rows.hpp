@@ -15,6 +15,9 @@ void setEquilibriumTargets(const BodyLoads& loads, StepperScratch& scratch);
 /// @param in_factor  stiffness that the factor has beside that of the elements
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
                     const std::vector<StiffnessCoupling>& in_factor, StepperScratch& scratch);
+/// Bounds the work of a step: the deepest contacts at the scratch's z keep their friction, further ones only their
+/// normal, and the rest has no force. Needs the targets.
+void limitContacts(StepperScratch& scratch);
 /// The rows' forces back to the loads, and how far the threads slid.
 /// @param gain  of the rows' values over positions, see setStepTargets(); 1 in an equilibrium
 void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads);

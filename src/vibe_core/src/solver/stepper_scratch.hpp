@@ -42,6 +42,7 @@ class StepperScratch {
   std::vector<double> curvature;                 // 1 / (move . change)
   int pairs = 0;
   ConstraintRows rows;
+  std::vector<std::pair<double, std::size_t>> contact_order;  // see limitContacts()
   Eigen::VectorXd target, rhs, force;
   Eigen::VectorXd slid;  // thread that slid out of a row in this step, to the scale of the rows [m]
   /// Keeps what the first evaluation of a step has found.

@@ -79,6 +79,45 @@ TEST(StepRows, AContactHasItsNormalAndTwoTangents) {
   EXPECT_EQ(contact.friction, 0.3);
 }
 
+TEST(StepRows, TheDeepestContactsCountWhereThereAreTooMany) {
+  Fixture fixture;
+  StepperScratch& scratch = *fixture.scratch;
+  const ContactConstraint first = fixture.loads.contacts[0];
+  fixture.loads.contacts.clear();
+  constexpr int kCount = 150;
+  for (int i = 0; i < kCount; ++i) {
+    fixture.loads.contacts.push_back(first);
+    fixture.loads.contacts.back().offset = 1e-5 * ((7 * i) % kCount);
+  }
+  scratch.z = fixture.four(fixture.motion);
+  buildRows(fixture.loads, fixture.motion.view(), scratch);
+  setEquilibriumTargets(fixture.loads, scratch);
+  for (int i = 0; i < kCount; ++i) {
+    const int deeper = kCount - 1 - (7 * i) % kCount;
+    EXPECT_EQ(scratch.rows.contacts[i].friction, deeper < 64 ? first.friction : 0) << deeper;
+    EXPECT_EQ(scratch.rows.contacts[i].counts, deeper < 128) << deeper;
+  }
+  ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
+  scratch.schur.reset(*scratch.factor);
+  scratch.columns.setAttachments(*scratch.factor, fixture.loads.attachments);
+  scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
+  scratch.rhs.setZero();
+  for (int i = 0; i < kCount; ++i) scratch.rhs[scratch.rows.contactRow(i)] = 1e-3;
+  scratch.schur.eliminate(scratch.rhs, 0, scratch.half.data());
+  EXPECT_LT(scratch.schur.violation(), 1e-8);
+  double pushing = 0;
+  for (int i = 0; i < kCount; ++i) {
+    const int row = scratch.rows.contactRow(i);
+    if (scratch.rows.contacts[i].counts) {
+      pushing += scratch.schur.forces()[row];
+      continue;
+    }
+    EXPECT_EQ(scratch.schur.forces().segment<3>(row).norm(), 0);
+    EXPECT_FALSE(scratch.schur.holds(row));
+  }
+  EXPECT_GT(pushing, 1e-3);
+}
+
 TEST(StepRows, ASegmentPullsAlongItselfAndResistsTurning) {
   Fixture fixture;
   const ThreadRows& thread = fixture.scratch->rows.threads[0];
