@@ -15,7 +15,8 @@ namespace vibe {
 
 namespace {
 
-constexpr double kOneWallThicknesses = 2.5, kOneWallEdges = 3;  // along the surface
+// Distance along the surface within which it counts as one wall, in thicknesses: about a half circle of diameter t.
+constexpr double kOneWallThicknesses = 1.6;
 constexpr float kFacingCosine = 0.3F;   // of the normals of walls in contact: the next wall along a line faces this one
 constexpr double kSoftness = 0.1;       // modulus of the contact, relative to that of the wall
 constexpr double kOnset = 0.25;         // strain over which contact sets in
@@ -101,13 +102,6 @@ Eigen::Vector3d at(const double* positions4, int node) {
   return {p[0], p[1], p[2]};
 }
 
-double meanEdge(const SurfaceMesh& mesh) {
-  double sum = 0;
-  for (const auto& n : mesh.triangles)
-    for (int k = 0; k < 3; ++k) sum += (mesh.vertices[n[k]] - mesh.vertices[n[(k + 1) % 3]]).norm();
-  return mesh.triangles.empty() ? 0 : sum / (3 * static_cast<double>(mesh.triangles.size()));
-}
-
 }  // namespace
 
 SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double young_modulus)
@@ -118,9 +112,8 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
   near_slack_ = kNearSlack * max_thickness_;
   meeting_slack_ = kMeetingSlack * max_thickness_;
-  const double one_wall = std::max(kOneWallThicknesses * max_thickness_, kOneWallEdges * meanEdge(rest_));
-  memory_ = std::make_unique<SelfContactMemory>(rest_, std::vector<double>(thickness_.size(), one_wall),
-                                                kFloor * min_thickness_);
+  memory_ = std::make_unique<SelfContactMemory>(
+      rest_, std::vector<double>(thickness_.size(), kOneWallThicknesses * max_thickness_), kFloor * min_thickness_);
 }
 
 SelfContact::~SelfContact() = default;

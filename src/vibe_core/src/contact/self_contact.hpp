@@ -36,7 +36,7 @@ class SelfContactMemory;
 /// not cross stays so, and no record of sides is needed.
 ///
 /// Only walls that face each other are in contact: the cosine between the normals of vertex and triangle is below 0.3.
-/// Parts of the surface within 2.5 thicknesses or 3 mean edge lengths along edges, or within two edges, count as one
+/// Parts of the surface within 1.6 thicknesses along edges, or within two edges, count as one
 /// wall, which has no contact with itself: sharper folds are below the resolution of the mesh, and only kept from
 /// crossing. Walls that are nearer than t at rest touch at that distance.
 class SelfContact : public EnergyTerm {
