@@ -14,9 +14,10 @@ struct Members {
       weight[count++] = static_cast<double>(coupling.weight[i]);
     }
   }
+  static constexpr std::size_t kMost = std::tuple_size<decltype(StiffnessCoupling::node)>::value;
   int count = 0;
-  int node[4] = {};
-  double weight[4] = {};
+  int node[kMost] = {};
+  double weight[kMost] = {};
 };
 
 Eigen::Matrix3d stiffnessOf(const StiffnessCoupling& coupling) {
