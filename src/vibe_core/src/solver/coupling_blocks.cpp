@@ -14,10 +14,9 @@ struct Members {
       weight[count++] = static_cast<double>(coupling.weight[i]);
     }
   }
-  static constexpr std::size_t kMost = std::tuple_size<decltype(StiffnessCoupling::node)>::value;
   int count = 0;
-  int node[kMost] = {};
-  double weight[kMost] = {};
+  int node[6] = {};
+  double weight[6] = {};
 };
 
 Eigen::Matrix3d stiffnessOf(const StiffnessCoupling& coupling) {
