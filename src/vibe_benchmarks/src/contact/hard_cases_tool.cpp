@@ -22,6 +22,7 @@ constexpr double kWindPull = 0.06;                 // [m]
 constexpr double kGrabDistance = 2e-3;             // of the helix from the nearest particle [m]
 constexpr double kReach = 8e-3;                    // of it, so that it takes hold on coarse meshes too [m]
 constexpr double kSleeveTension = 8;               // [N]
+constexpr double kSleeveSpeed = 0.06;              // of the cinch [m/s]
 constexpr double kSleeveWidth = 0.085;             // half, along the wall: beyond the scope [m]
 constexpr double kStrongTissue = 100;              // bites that do not tear out [N]
 constexpr double kSleeveTime = 8;                  // of a cinch [s]
@@ -214,6 +215,7 @@ HardCase HardCases::sleeve() const {
   HardCase hard = begin();
   Scene scene = model_->scene;
   scene.suture->cinch_tension = kSleeveTension;
+  scene.suture->cinch_speed = kSleeveSpeed;
   scene.suture->pull_out_force = kStrongTissue;
   hard.model = withScene(scene, urdf_);
   insertionAtContact(hard.model, hard.start);
