@@ -26,7 +26,7 @@ class GripBlock : public ConstraintBlock {
       const GripPoint& point = context.state.grip[g];
       ToolTouch touch;
       touch.kind = ToolTouch::Kind::Grip;
-      touch.node = point.particle;
+      touch.surface = SurfacePoint::ofNode(point.particle);
       touch.link = link;
       touch.point = context.tool->end[link] * point.local;
       touch.motion = touch.point - context.tool->start[link] * point.local;

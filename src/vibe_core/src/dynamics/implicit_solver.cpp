@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/surface_contacts.hpp"
 #include "dynamics/implicit_step.hpp"
 #include "tissue/shell.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
@@ -25,6 +26,8 @@ std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) c
   auto scratch = std::make_unique<ImplicitScratch>();
   scratch->stepper = stepper_.makeScratch();
   scratch->blocks = makeConstraintBlocks(model);
+  if (model.tool)
+    scratch->guard.emplace(*model.tool, model.organ.surface, model.organ.thickness, passableVertices(model.organ));
   if (model.tool) scratch->impedance = std::make_unique<ImpedanceEstimator>(stepper_.body(), model.scene.step_period);
   return scratch;
 }

@@ -108,6 +108,7 @@ void ImplicitStep::recover() {
 // @returns false where the state became useless; the simulator then resets it
 bool ImplicitStep::solve() {
   scratch_.terms.clear();
+  scratch_.start[0] = state_.x, scratch_.start[1] = state_.y, scratch_.start[2] = state_.z;
   for (const auto& block : scratch_.blocks) scratch_.terms.add(block->energyTerm(context_));
   scratch_.loads.extra = scratch_.terms.simplest();
   const StepOutcome outcome = stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
@@ -119,6 +120,7 @@ bool ImplicitStep::solve() {
 
 void ImplicitStep::store() {
   for (const auto& block : scratch_.blocks) block->correct(context_);
+  if (motion_ != nullptr) keepToolApart();
   scratch_.touches.clear();
   for (const auto& block : scratch_.blocks) block->store(context_, scratch_.loads, scratch_.touches);
   if (motion_ != nullptr) {
@@ -126,6 +128,25 @@ void ImplicitStep::store() {
     reportImpedance();
   }
   accountDamping();
+}
+
+// Whatever the solve left, the tool stays on its side of the wall. Straight paths of all nodes have been found free of
+// crossings among each other, so they are at any common part of the paths as well.
+void ImplicitStep::keepToolApart() {
+  const std::array<std::vector<double>*, 3> x{&state_.x, &state_.y, &state_.z}, v{&state_.vx, &state_.vy, &state_.vz},
+      a{&state_.ax, &state_.ay, &state_.az};
+  SurfacePath path;
+  for (std::size_t k = 0; k < 3; ++k) path.from[k] = scratch_.start[k].data(), path.to[k] = x[k]->data();
+  const ToolGuard::Free free = scratch_.guard->keepApart(scratch_.poses, *motion_, path);
+  state_.joints = motion_->inputs(free.tool);
+  if (free.wall >= 1) return;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < x[k]->size(); ++i) {
+      const double move = free.wall * ((*x[k])[i] - scratch_.start[k][i]);
+      (*x[k])[i] = scratch_.start[k][i] + move;
+      (*v[k])[i] = move / context_.step;
+      (*a[k])[i] = 0;
+    }
 }
 
 void ImplicitStep::reportTool() {

@@ -25,6 +25,7 @@ class ImplicitStep {
   void recover();
   bool solve();
   void store();
+  void keepToolApart();
   void reportTool();
   void reportImpedance();
   void accountDamping();

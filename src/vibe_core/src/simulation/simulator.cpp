@@ -122,7 +122,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   ++state.step;
   state.time = static_cast<double>(state.step) * dt;
   if (model.tool) {
-    motion->linkPoses(1, poses);
+    ToolMotion(*model.tool, model.tool_base, state.joints, state.joints).linkPoses(1, poses);
     storeForces(model, report, poses, state);
     reportContact(report.contact_count, dt, state, events);
     releaseOverloadedGrip(model, state, events);

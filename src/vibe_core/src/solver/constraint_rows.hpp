@@ -18,6 +18,7 @@ struct LinearForm {
     node.assign(1, at);
     coefficient.assign(1, direction);
   }
+  void setPoint(const SurfacePoint& point, const Eigen::Vector3d& direction);
   double value(const std::vector<double>& position4) const;
   /// Adds a force along the form.
   void addForce(double force, std::vector<float>& vector4) const;
@@ -52,7 +53,9 @@ struct SegmentRows {
   std::array<LinearForm, 2> turn;
   std::array<Eigen::Vector3d, 2> across;
   double turn_compliance = 0;  ///< [m/N]
-  double capstan = 1;          ///< largest ratio of the tensions of this segment and the next [1]
+  /// Of the part of their stiffness that the factor does not have; 0: it has enough of it [m/N].
+  double turn_missing = 0;
+  double capstan = 1;  ///< largest ratio of the tensions of this segment and the next [1]
 };
 
 struct ThreadRows {
