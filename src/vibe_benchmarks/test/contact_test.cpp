@@ -106,7 +106,7 @@ TEST(Contact, ThePressedStateTouchesAndTheCinchedOneIsDrawn) {
   std::ostringstream log;
   ContactStates states(coarseStomach(), scopeUrdf(), log);
   const ContactCase pressed = states.prepare("pressed");
-  EXPECT_EQ(pressed.start.contact_count, 0);
+  EXPECT_LT(pressed.start.tool_force.norm(), 0.1);  // [N]
   const ContactTrace push = runContact(pressed, {60, 4, 0.2}, 1);
   EXPECT_GT(push.contacts, 0);
   EXPECT_GT(push.force.back().norm(), 0.5);  // [N]

@@ -18,6 +18,7 @@ constexpr double kPull = 0.02;         // [m]
 constexpr double kMotion = 0.5;        // time of a motion, at constant speed [s]
 constexpr double kHold = 0.5;          // after it [s]
 constexpr double kApproach = 0.05;     // speed of the scope until it touches [m/s]
+constexpr double kTouch = 0.2;         // force that shows that the tip presses the far wall, not the entry [N]
 constexpr double kClearance = 2e-3;    // of the scope before it presses [m]
 constexpr double kPress = 18.5e-3;     // deeper than at first contact [m]
 constexpr std::size_t kFoldSet = 2;    // of six
@@ -143,7 +144,7 @@ ContactCase ContactStates::pressed() const {
   simulation.replaceState(settled_);
   StepInput input = holdAt(settled_);
   const double farthest = model_->tool->limits()[Insertion].upper;
-  while (simulation.state().contact_count == 0) {
+  while (simulation.state().tool_force.norm() < kTouch) {
     if (input.joints[Insertion] >= farthest) throw Error("The scope does not reach the wall; 'pressed' needs it.");
     input.joints[Insertion] += kApproach * simulation.stepPeriod();
     simulation.step(input);

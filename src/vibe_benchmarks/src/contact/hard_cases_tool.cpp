@@ -13,18 +13,20 @@ namespace vibe {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kApproach = 0.05;                 // speed of the scope until it touches [m/s]
-constexpr double kClearance = 2e-3;                // of the scope before it rams [m]
-constexpr double kRam = 0.06;                      // deeper than at first contact [m]
-constexpr double kWithdraw = 0.1;                  // speed [m/s]
-constexpr double kTurns = 20;                      // of the helix
-constexpr double kWindPull = 0.06;                 // [m]
-constexpr double kGrabDistance = 2e-3;             // of the helix from the nearest particle [m]
-constexpr double kReach = 8e-3;                    // of it, so that it takes hold on coarse meshes too [m]
-constexpr double kSleeveTension = 8;               // [N]
-constexpr double kSleeveWidth = 0.085;             // half, along the wall: beyond the scope [m]
-constexpr double kStrongTissue = 100;              // bites that do not tear out [N]
-constexpr double kSleeveTime = 8;                  // of a cinch [s]
+constexpr double kApproach = 0.05;      // speed of the scope until it touches [m/s]
+constexpr double kTouch = 0.2;          // force that shows that the tip presses the far wall, not the entry [N]
+constexpr double kClearance = 2e-3;     // of the scope before it rams [m]
+constexpr double kRam = 0.06;           // deeper than at first contact [m]
+constexpr double kWithdraw = 0.1;       // speed [m/s]
+constexpr double kTurns = 20;           // of the helix
+constexpr double kWindPull = 0.06;      // [m]
+constexpr double kGrabDistance = 2e-3;  // of the helix from the nearest particle [m]
+constexpr double kReach = 8e-3;         // of it, so that it takes hold on coarse meshes too [m]
+constexpr double kSleeveTension = 8;    // [N]
+constexpr double kSleeveSpeed = 0.06;   // of the cinch [m/s]
+constexpr double kSleeveWidth = 0.085;  // half, along the wall: beyond the scope [m]
+constexpr double kStrongTissue = 100;   // bites that do not tear out [N]
+constexpr double kSleeveTime = 8;       // of a cinch [s]
 constexpr double kShortest = 0.3, kLongest = 1.5;  // time of a random motion [s]
 constexpr double kPress = 0.3;                     // probability that a button changes with a motion [1]
 
@@ -113,7 +115,7 @@ double HardCases::insertionAtContact(const std::shared_ptr<const Model>& model, 
   Simulation simulation(model, SimulationSettings::study(1));
   simulation.replaceState(state);
   StepInput input = holdAt(state);
-  while (simulation.state().contact_count == 0) {
+  while (simulation.state().tool_force.norm() < kTouch) {
     if (input.joints[Insertion] >= model->tool->limits()[Insertion].upper)
       throw Error("The scope does not reach the wall; the hard case needs it.");
     input.joints[Insertion] += kApproach * simulation.stepPeriod();
@@ -214,6 +216,7 @@ HardCase HardCases::sleeve() const {
   HardCase hard = begin();
   Scene scene = model_->scene;
   scene.suture->cinch_tension = kSleeveTension;
+  scene.suture->cinch_speed = kSleeveSpeed;
   scene.suture->pull_out_force = kStrongTissue;
   hard.model = withScene(scene, urdf_);
   insertionAtContact(hard.model, hard.start);
