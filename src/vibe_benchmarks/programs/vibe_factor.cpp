@@ -23,7 +23,8 @@ const char kHelp[] =
     "  --scene FILE      organ with tissue.model: shell (default: package://vibe_core/scenes/stomach.yaml)\n"
     "  --help            this text\n"
     "analyse: order of elimination, once per mesh; factor: once per linearization point, in the background;\n"
-    "solve: several times per step. CHOLMOD calls the BLAS of the system, which decides its times.\n";
+    "solve: several times per step; 100 cols: columns of nodes\nthat a tool touches; plan: of a factor with couplings, "
+    "from the order that is there. CHOLMOD calls the BLAS of the system, which decides its times.\n";
 
 constexpr int kRepeats = 15;  // design choice: the median of this many runs is reproducible to a few percent
 
@@ -69,6 +70,72 @@ void printOwn(const std::string& name, const BlockMatrix& matrix) {
   }
 }
 
+// Nodes of the front wall coupled with the nearest ones of the back wall, as where the walls of an empty organ touch.
+std::vector<NodePair> touchingWalls(const ElasticBody& body, const BlockPattern& pattern, std::size_t touching) {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : body.rest) centre += p / static_cast<double>(body.rest.size());
+  std::vector<std::pair<double, int>> front, back;
+  for (std::size_t i = 0; i < body.rest.size(); ++i) {
+    if (body.fixed[i] != 0) continue;
+    const Eigen::Vector3d from = body.rest[i] - centre;
+    (from.x() > 0 ? front : back).emplace_back(from.tail<2>().norm(), static_cast<int>(i));
+  }
+  std::sort(front.begin(), front.end());
+  front.resize(std::min(touching, front.size()));
+  std::vector<NodePair> pairs;
+  for (const auto& near : front) {
+    for (auto& [distance, node] : back) distance = (body.rest[node] - body.rest[near.second]).tail<2>().norm();
+    std::partial_sort(back.begin(), back.begin() + 3, back.end());
+    for (int k = 0; k < 3; ++k) {
+      const NodePair pair{std::max(near.second, back[k].second), std::min(near.second, back[k].second)};
+      if (pattern.find(pair.row, pair.column) < 0) pairs.push_back(pair);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+void printCoupled(const ElasticBody& body, BlockMatrix matrix) {
+  const auto base = makeFactorPlan(matrix.pattern());
+  for (const std::size_t touching : {30, 100, 300}) {
+    const std::string name = std::to_string(touching) + " touch";
+    const std::vector<NodePair> pairs = touchingWalls(body, matrix.pattern(), touching);
+    std::shared_ptr<const FactorPlan> plan;
+    print(name, "vibe half", "plan", [&] { plan = coupledPlan(base, pairs); });
+    matrix.couple(pairs);
+    Factor factor(plan), plain(base);
+    print(name, "vibe half", "factor", [&] { factor.compute(matrix); });
+    std::vector<float> nodes4(4 * body.rest.size(), 1.0F), vector(static_cast<std::size_t>(factor.rows()) + 16, 0.0F);
+    print(name, "vibe half", "solve", [&] {
+      std::fill(nodes4.begin(), nodes4.end(), 1.0F);
+      solve(factor, nodes4, vector);
+    });
+    std::printf("# %zu pairs: %.2f million numbers in the factor, without them %.2f\n", pairs.size(),
+                1e-6 * static_cast<double>(factor.nonzeros()), 1e-6 * static_cast<double>(plain.nonzeros()));
+  }
+}
+
+void printAssembly(const std::string& name, const ElasticBody& body) {
+  BlockMatrix matrix(std::make_shared<BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups())));
+  const std::vector<double> displacement(3 * body.rest.size(), 0.0);
+  print(name, "vibe", "assembly", [&] {
+    matrix.setZero();
+    body.elements->addStiffness(displacement.data(), matrix);
+  });
+}
+
+// Columns of a hundred nodes that lie next to each other, as those under a tool.
+void printColumns(const std::string& name, const ElasticBody& body, const Factor& factor) {
+  std::vector<std::pair<double, int>> nodes;
+  for (std::size_t i = 0; i < body.rest.size(); ++i)
+    nodes.emplace_back((body.rest[i] - body.rest[body.rest.size() / 2]).norm(), static_cast<int>(i));
+  std::sort(nodes.begin(), nodes.end());
+  std::vector<HalfColumns> columns(100);
+  print(name, "vibe half", "100 cols", [&] {
+    for (std::size_t k = 0; k < columns.size(); ++k) factor.halfColumns(nodes[k].second, columns[k]);
+  });
+}
+
 void printCholmod(const std::string& name, const BlockMatrix& matrix) {
   const Eigen::SparseMatrix<double> a = test::eigenMatrix(matrix);
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholmod;
@@ -85,7 +152,12 @@ void printTable(const std::string& scene) {
                                    std::pair<std::string, ElasticBody>("block", test::cantilever({14, 10, 8}))}) {
     const BlockMatrix matrix = test::stiffnessOf(body);
     std::printf("# %s: %d nodes\n", name.c_str(), matrix.pattern().size);
+    printAssembly(name, body);
     printOwn(name, matrix);
+    Factor factor(makeFactorPlan(matrix.pattern()));
+    factor.compute(matrix);
+    printColumns(name, body, factor);
+    if (name == "stomach") printCoupled(body, matrix);
     printCholmod(name, matrix);
   }
 }

@@ -91,7 +91,8 @@ class Recorder {
     const Model& model = simulation_.model();
     if (!model.scene.tissue.self_contact) return 0;
     SelfContact contact(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus);
-    contact.detect(state.x.data(), state.y.data(), state.z.data(), 0);
+    contact.detect({state.x.data(), state.y.data(), state.z.data()},
+                   {state.vx.data(), state.vy.data(), state.vz.data()}, 0, 0);
     return static_cast<int>(contact.pairs().size());
   }
 

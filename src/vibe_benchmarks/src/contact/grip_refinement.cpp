@@ -21,6 +21,7 @@ constexpr double kLongestWait = 3;      // until it rests [s]
 constexpr double kStill = 2e-4;         // [m/s]
 constexpr double kSiteDistance = 3e-3;  // [m]
 constexpr double kFastFlow = 5e-4;      // of the insufflator: full within a second [m^3/s]
+constexpr double kReach = 0.02;         // of the helix, which is in the wall wherever the next particle is [m]
 constexpr int kCorrections = 4;         // of the target of the spring
 
 struct Site {
@@ -64,6 +65,7 @@ class Mesh {
     scene.gas->flow_limit = kFastFlow;
     scene.render_surface = false;
     holdByHand({0, 0, 1}, {0, 0, 1}, scene);  // far away; every site moves the base
+    scene.helix->reach = kReach;
     model_ = buildModel(scene, freeHandUrdf());
     SutureSession session(model_);
     session.settle();

@@ -21,6 +21,10 @@ constexpr double kTurns = 20;                      // of the helix
 constexpr double kWindPull = 0.06;                 // [m]
 constexpr double kGrabDistance = 2e-3;             // of the helix from the nearest particle [m]
 constexpr double kReach = 8e-3;                    // of it, so that it takes hold on coarse meshes too [m]
+constexpr double kSleeveTension = 8;               // [N]
+constexpr double kSleeveWidth = 0.085;             // half, along the wall: beyond the scope [m]
+constexpr double kStrongTissue = 100;              // bites that do not tear out [N]
+constexpr double kSleeveTime = 8;                  // of a cinch [s]
 constexpr double kShortest = 0.3, kLongest = 1.5;  // time of a random motion [s]
 constexpr double kPress = 0.3;                     // probability that a button changes with a motion [1]
 
@@ -205,15 +209,22 @@ HardCase HardCases::wind() const {
   return hard;
 }
 
+// Wide sets whose threads draw the walls around the scope.
 HardCase HardCases::sleeve() const {
   HardCase hard = begin();
+  Scene scene = model_->scene;
+  scene.suture->cinch_tension = kSleeveTension;
+  scene.suture->pull_out_force = kStrongTissue;
+  hard.model = withScene(scene, urdf_);
   insertionAtContact(hard.model, hard.start);
   hard.start.step = 0;
   hard.start.time = 0;
   hard.returns = false;
   const StepInput inside = holdAt(hard.start);
   const int sets = brief_ ? 1 : 3;
-  for (const auto& spots : setsOf(sets, 4, 0.06, brief_ ? 0.15 : 0.4)) addSet(spots, inside, hard);
+  for (const auto& spots : setsOf(sets, 4, kSleeveWidth, brief_ ? 0.15 : 0.4)) addSet(spots, inside, hard);
+  for (HardPhase& phase : hard.phases)
+    if (phase.name == "cinch" && !brief_) phase.duration = kSleeveTime;
   StepInput outside = inside;
   outside.joints[Insertion] = settled_.joints[Insertion];
   const double way = inside.joints[Insertion] - outside.joints[Insertion];

@@ -19,8 +19,6 @@ class GasBlock : public ConstraintBlock {
   void begin(const StepContext& context, BodyLoads& loads) override {
     const State& state = context.state;
     const GasScene& scene = *context.model.scene.gas;
-    start_volume_ = state.volume;
-    start_pressure_ = state.pressure;
     const GasRange range = insufflatorRange(scene, state.gas_amount, context.step);
     loads.gas.amount = state.gas_amount;
     loads.gas.amount_min = range.min;
@@ -34,17 +32,13 @@ class GasBlock : public ConstraintBlock {
   void recover(const StepContext& context) override { measure(context); }
 
  private:
-  // Volume, amount, pressure and work of the gas on the wall, by the trapezoidal rule.
   void measure(const StepContext& context) const {
     State& state = context.state;
     state.volume = lumenVolume(context.model.organ.surface, state.x, state.y, state.z);
     if (context.insufflator_on)
       state.gas_amount = insufflate(*context.model.scene.gas, state.gas_amount, state.volume, context.step);
     state.pressure = gaugePressure(state.gas_amount, state.volume);
-    state.energy.gas_work += 0.5 * (start_pressure_ + state.pressure) * (state.volume - start_volume_);
   }
-
-  double start_volume_ = 0, start_pressure_ = 0;  // of the step [m^3], [Pa]
 };
 
 }  // namespace

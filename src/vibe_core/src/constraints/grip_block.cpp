@@ -28,11 +28,12 @@ class GripBlock : public ConstraintBlock {
       const GripPoint& point = context.state.grip[g];
       ToolTouch touch;
       touch.kind = ToolTouch::Kind::Grip;
-      touch.node = point.particle;
+      touch.surface = SurfacePoint::ofNode(point.particle);
       touch.link = link;
       touch.point = context.tool->end[link] * point.local;
       touch.motion = touch.point - context.tool->start[link] * point.local;
       touch.force = loads.pointForce(first_[g]);
+      touch.work = loads.pointWork(first_[g]);
       touch.direction = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
       touch.direction_count = 3;
       touches.push_back(touch);

@@ -13,7 +13,6 @@ class PullSpringBlock : public ConstraintBlock {
     const PullSpring& pull = context.state.pull;
     if (!pull.holds()) return Activity::Sleep;
     first_ = loads.addPoint(pull.node, pull.weight, pull.target, 1 / kPullStiffness);
-    start_ = heldPosition(context.state);
     return Activity::Disturb;
   }
 
@@ -21,7 +20,7 @@ class PullSpringBlock : public ConstraintBlock {
     PullSpring& pull = context.state.pull;
     if (!pull.holds()) return;
     pull.force = loads.pointForce(first_);
-    context.state.energy.pull_work += pull.force.dot(heldPosition(context.state) - start_);
+    context.state.energy.pull_work += loads.pointWork(first_);
   }
 
   void recover(const StepContext& context) override {
@@ -30,8 +29,7 @@ class PullSpringBlock : public ConstraintBlock {
   }
 
  private:
-  std::size_t first_ = 0;                            // of its constraints
-  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();  // of the patch [m]
+  std::size_t first_ = 0;  // of its constraints
 };
 
 }  // namespace

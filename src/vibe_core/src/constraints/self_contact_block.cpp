@@ -27,23 +27,41 @@ class SelfContactBlock : public ConstraintBlock {
   Activity prepare(const StepContext&, BodyLoads&) override { return Activity::Sleep; }
 
   const EnergyTerm* energyTerm(const StepContext& context) override {
-    const State& state = context.state;
-    const double move = kReachPerMove * context.step * std::sqrt(maxSpeedSquared(state));
-    contact_.detect(state.x.data(), state.y.data(), state.z.data(),
-                    std::clamp(move, kMinReach, context.model.particle_radius));
+    detect(context);
     return &contact_;
   }
 
   // A step may end with walls that have passed through each other: iterations end early, tools jump.
   void correct(const StepContext& context) override {
-    State& state = context.state;
-    contact_.resolvePenetrations({{state.x.data(), state.y.data(), state.z.data()},
-                                  {state.vx.data(), state.vy.data(), state.vz.data()},
-                                  {state.ax.data(), state.ay.data(), state.az.data()}},
-                                 context.step);
+    contact_.resolvePenetrations(viewOf(context.state), context.step);
+  }
+
+  void store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override {
+    detect(context);
+    context.state.energy.contact_energy = contact_.energy();
+  }
+
+  void recover(const StepContext& context) override {
+    detect(context);
+    context.state.energy.contact_energy = contact_.energy();
   }
 
  private:
+  void detect(const StepContext& context) {
+    const double move = kReachPerMove * context.step * std::sqrt(maxSpeedSquared(context.state));
+    const TissueScene& tissue = context.model.scene.tissue;
+    // forces are evaluated 1 - alpha_f of the step after its start, and ahead by the damping time (time_scheme.hpp)
+    const double lead = context.step / (1 + tissue.spectral_radius) + tissue.stiffness_damping;
+    const State& s = context.state;
+    contact_.detect({s.x.data(), s.y.data(), s.z.data()}, {s.vx.data(), s.vy.data(), s.vz.data()},
+                    std::clamp(move, kMinReach, context.model.particle_radius), lead);
+  }
+  static MotionView viewOf(State& state) {
+    return {{state.x.data(), state.y.data(), state.z.data()},
+            {state.vx.data(), state.vy.data(), state.vz.data()},
+            {state.ax.data(), state.ay.data(), state.az.data()}};
+  }
+
   SelfContact contact_;
 };
 

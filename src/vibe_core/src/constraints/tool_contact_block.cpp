@@ -1,10 +1,11 @@
 #include "constraints/tool_contact_block.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "constraints/depenetration.hpp"
 #include "constraints/tool_yield.hpp"
-#include "contact/deepest_contact.hpp"
+#include "contact/surface_contacts.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -12,96 +13,116 @@ namespace vibe {
 
 namespace {
 
-// Particles that are predicted this near to the tool become contacts, because they may be reached within the step.
-// Design choice: covers 0.12 m/s that the prediction from velocities does not foresee in a step of 1/60 s [m].
+// Points of the wall that are predicted this near to the tool become contacts, because they may be reached within the
+// step. Design choice: covers 0.12 m/s that the prediction from velocities does not foresee in a step of 1/60 s [m].
 constexpr double kContactMargin = 2e-3;
+// Stiffness of tissue that cannot give way sideways over its Young's modulus: (1 - nu) / ((1 + nu) (1 - 2 nu)) for a
+// Poisson's ratio of 0.49. Design choice: soft tissue hardly changes its volume; the scene's ratio is that of the
+// membrane [1].
+constexpr double kConfined = 17;
 // Share of the largest friction above which a contact counts as sliding. Design choice: the contact iterations stop
 // within this of the cone [1].
 constexpr double kSticks = 0.999;
 
 class ToolContactBlock : public ConstraintBlock {
  public:
-  explicit ToolContactBlock(const Model& model) : collision_(*model.tool) {
-    for (auto* v : {&ahead_x_, &ahead_y_, &ahead_z_}) v->resize(static_cast<std::size_t>(model.particle_count));
+  explicit ToolContactBlock(const Model& model)
+      : passable_(passableVertices(model.organ)),
+        excluded_(passable_.size()),
+        contacts_(*model.tool, model.organ.surface, model.organ.thickness, passable_) {
+    for (auto& v : ahead_) v.resize(static_cast<std::size_t>(model.particle_count));
   }
 
   Activity prepare(const StepContext& context, BodyLoads& loads) override {
     first_ = loads.contacts.size();
-    motion_.clear();
+    place_.clear();
     link_.clear();
     if (context.tool == nullptr) return Activity::Sleep;
     lookAhead(context);
+    exclude(context);
     findContacts(context, loads);
-    return motion_.empty() ? Activity::Sleep : Activity::Disturb;
+    return place_.empty() ? Activity::Sleep : Activity::Disturb;
   }
 
   void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
-    for (std::size_t c = 0; c < motion_.size(); ++c) {
+    for (std::size_t c = 0; c < place_.size(); ++c) {
       const ContactConstraint& contact = loads.contacts[first_ + c];
-      if (contact.force.isZero()) continue;
-      touches.push_back(touchOf(context.state, contact, c));
-      if (context.bend != nullptr) touches.back().motion += contact.yield * loads.tool_yield.displacement;
+      if (!contact.force.isZero()) touches.push_back(touchOf(context, contact, c));
     }
   }
 
  private:
-  // Where the particles go if nothing stops them.
+  // Where the wall goes if nothing stops it.
   void lookAhead(const StepContext& context) {
     const State& state = context.state;
-    for (std::size_t i = 0; i < ahead_x_.size(); ++i) {
-      ahead_x_[i] = state.x[i] + context.step * state.vx[i];
-      ahead_y_[i] = state.y[i] + context.step * state.vy[i];
-      ahead_z_[i] = state.z[i] + context.step * state.vz[i];
+    const std::array<const std::vector<double>*, 3> x{&state.x, &state.y, &state.z}, v{&state.vx, &state.vy, &state.vz};
+    for (std::size_t k = 0; k < 3; ++k) {
+      path_.from[k] = x[k]->data();
+      path_.to[k] = ahead_[k].data();
+      for (std::size_t i = 0; i < ahead_[k].size(); ++i) ahead_[k][i] = (*x[k])[i] + context.step * (*v[k])[i];
     }
   }
 
-  void findContacts(const StepContext& context, BodyLoads& loads) {
-    const Model& model = context.model;
-    const double reach = model.particle_radius + kContactMargin;
-    collision_.findCandidates(context.tool->end, ahead_x_.data(), ahead_y_.data(), ahead_z_.data(),
-                              model.particle_count, reach);
-    if (collision_.candidateCount() == 0) return;
-    const auto& contacts =
-        collision_.findContacts(context.tool->end, ahead_x_.data(), ahead_y_.data(), ahead_z_.data(), reach);
-    const std::vector<GripPoint>& grip = context.state.grip;
-    forEachDeepest(contacts, [&](const Contact& contact) {
-      const int i = contact.particle;
-      // the ends are open where the organ goes on: the scope passes through their closing surface
-      const bool held = std::any_of(grip.begin(), grip.end(), [i](const GripPoint& p) { return p.particle == i; });
-      if (model.organ.end[i] == End::None && !held && model.inverse_mass[i] > 0) addContact(context, contact, loads);
-    });
+  // What is held or fixed cannot give way.
+  void exclude(const StepContext& context) {
+    for (std::size_t i = 0; i < excluded_.size(); ++i)
+      excluded_[i] = passable_[i] != 0 || context.model.inverse_mass[i] == 0 ? 1 : 0;
+    for (const GripPoint& point : context.state.grip) excluded_[static_cast<std::size_t>(point.particle)] = 1;
   }
 
-  void addContact(const StepContext& context, const Contact& contact, BodyLoads& loads) {
+  void findContacts(const StepContext& context, BodyLoads& loads) {
+    const ToolPoses& poses = *context.tool;
+    for (const SurfaceContact& contact : contacts_.find(poses.start, poses.end, path_, kContactMargin, excluded_))
+      addContact(context, contact, loads);
+  }
+
+  void addContact(const StepContext& context, const SurfaceContact& contact, BodyLoads& loads) {
     const Model& model = context.model;
-    const State& state = context.state;
-    const int i = contact.particle;
     const int link = model.tool->shapes()[contact.shape].link;
-    const Eigen::Vector3d p(state.x[i], state.y[i], state.z[i]), ahead(ahead_x_[i], ahead_y_[i], ahead_z_[i]);
-    const Eigen::Vector3d anchor = context.tool->end[link] * (context.tool->start[link].inverse() * p);
+    const Eigen::Vector3d p = placeOf(contact.point, context.state);
+    const Eigen::Vector3d place = context.tool->start[link].inverse() * p, anchor = context.tool->end[link] * place;
     ContactConstraint& constraint = loads.contacts.add();
     constraint = ContactConstraint();
-    constraint.point = SurfacePoint::ofNode(i);
+    constraint.point = contact.point;
     constraint.normal = contact.normal;
-    const double surface = contact.normal.dot(ahead) - contact.distance + model.particle_radius;
-    // a particle deep inside (the tool was put there) comes out slowly, not at once
+    const double surface = contact.normal.dot(contact.tool_point) + contact.clearance;
+    // what is deep inside (the tool was put there) comes out slowly, not at once
     constraint.offset = std::min(surface, contact.normal.dot(anchor) + kDepenetrationSpeed * context.step);
+    constraint.compliance = complianceOf(model, contact);
     constraint.friction = model.scene.scope->friction;
     constraint.anchor = anchor;
     constraint.yield = toolYield(context, link, anchor);
-    motion_.emplace_back(anchor - p);
+    place_.push_back(place);
     link_.push_back(link);
   }
 
-  ToolTouch touchOf(const State& state, const ContactConstraint& contact, std::size_t number) const {
-    const int i = contact.point.node[0];
+  // The inner half of the wall between the tool and the mid-surface is compressed where it cannot give way sideways.
+  static double complianceOf(const Model& model, const SurfaceContact& contact) {
+    double area = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.point.count); ++k)
+      area += contact.point.weight[k] * model.area[contact.point.node[k]];
+    return contact.clearance / (kConfined * model.scene.tissue.young_modulus * area);
+  }
+
+  static Eigen::Vector3d placeOf(const SurfacePoint& point, const State& state) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
+      const int i = point.node[k];
+      sum += point.weight[k] * Eigen::Vector3d(state.x[i], state.y[i], state.z[i]);
+    }
+    return sum;
+  }
+
+  ToolTouch touchOf(const StepContext& context, const ContactConstraint& contact, std::size_t number) const {
     ToolTouch touch;
     touch.kind = ToolTouch::Kind::Contact;
-    touch.node = i;
+    touch.surface = contact.point;
+    touch.compliance = contact.compliance;
     touch.link = link_[number];
-    touch.point = {state.x[i], state.y[i], state.z[i]};
-    touch.motion = motion_[number];
+    touch.point = placeOf(contact.point, context.state);
+    touch.motion = context.tool->end[touch.link] * place_[number] - context.tool->start[touch.link] * place_[number];
     touch.force = contact.force;
+    touch.work = contact.work;
     const double push = contact.force.dot(contact.normal);
     const double drag = (contact.force - push * contact.normal).norm();
     const Eigen::Vector3d tangent = contact.normal.unitOrthogonal();
@@ -110,11 +131,13 @@ class ToolContactBlock : public ConstraintBlock {
     return touch;
   }
 
-  ToolCollision collision_;
-  std::vector<double> ahead_x_, ahead_y_, ahead_z_;  // [m]
-  std::size_t first_ = 0;                            // of its contacts in the loads
-  std::vector<Eigen::Vector3d> motion_;              // of the tool at each contact [m]
-  std::vector<int> link_;                            // of the tool at each contact
+  std::vector<char> passable_, excluded_;  // per node
+  SurfaceContacts contacts_;
+  std::array<std::vector<double>, 3> ahead_;  // [m]
+  SurfacePath path_;
+  std::size_t first_ = 0;               // of its contacts in the loads
+  std::vector<Eigen::Vector3d> place_;  // of each contact at the start of the step, in the frame of its link [m]
+  std::vector<int> link_;               // of the tool at each contact
 };
 
 }  // namespace

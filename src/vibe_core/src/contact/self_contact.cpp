@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <utility>
@@ -15,16 +16,22 @@ namespace vibe {
 namespace {
 
 constexpr double kOneWallThicknesses = 2.5, kOneWallEdges = 3;  // along the surface
-constexpr double kFacingCosine = 0.3;   // of the normals of walls in contact: the next wall along a line faces this one
+constexpr float kFacingCosine = 0.3F;   // of the normals of walls in contact: the next wall along a line faces this one
 constexpr double kSoftness = 0.1;       // modulus of the contact, relative to that of the wall
 constexpr double kOnset = 0.25;         // strain over which contact sets in
 constexpr double kStraightBelow = 0.2;  // fraction of the thickness below which the energy is extended linearly
-constexpr double kDrag = 2;             // relative to force over distance: more than the force turns as a vertex slides
-constexpr double kAhead = 1;            // thicknesses searched beyond contact, so that most steps need no new search
-constexpr double kMinAhead = 0.1;       // least value of the same
-constexpr double kFlatSight = 0.8;      // smallest straight distance on a flat wall, relative to that along edges
-constexpr double kFloor = 0.05;         // minimum distance of walls, in thicknesses
-constexpr double kLeg = 6e-3;           // a step with longer moves is split into parts, so that few walls are near [m]
+// Coulomb friction of mucosa on mucosa: the upper end of 0.007 to 0.054, measured with a sled on the lumen of small
+// bowel (Terry et al. 2013, Tribol Lett 51:377, doi 10.1007/s11249-013-0167-1) [1].
+constexpr double kFriction = 0.05;
+// Speed of sliding from which friction is that of Coulomb; below it is viscous, as of a film of mucus. Design choice: a
+// tenth of the usual speed of folds that are drawn together [m/s].
+constexpr double kSlidingSpeed = 5e-3;
+// Searches of fast paths until all moves are given up, and those before nodes that still collide are stopped in place.
+constexpr int kSearches = 20, kPatience = 4;
+// Motion of a node until the next search, in thicknesses, so that most steps need none: of walls that face each other,
+// whose normals must not turn much, and of triangles that may meet.
+constexpr double kNearSlack = 0.1, kMeetingSlack = 0.1;
+constexpr double kFloor = 0.05;  // minimum distance of walls, in thicknesses
 
 struct Squeeze {
   double value, slope, curvature;  // energy and its derivatives with respect to s [1]
@@ -42,6 +49,16 @@ Squeeze squeeze(double s) {
   const double slope = stress * h_slope;
   const double curvature = (1 - hencky) / ((1 - h) * (1 - h)) * h_slope * h_slope - stress * h_curvature;
   return {0.5 * hencky * hencky + slope * (s - kept), slope, curvature};
+}
+
+/// Smoothed Coulomb friction: potential per friction force and its derivative over the way slid, both as functions of
+/// that way (Li et al. 2020, "Incremental Potential Contact", section 5.2, f_0 and f_1 / |u|).
+struct Sliding {
+  double way, per_way;  // [m], [1/m]
+};
+Sliding sliding(double way, double smooth) {
+  if (way >= smooth) return {way - smooth / 3, 1 / way};
+  return {way * way / smooth * (1 - way / (3 * smooth)), (2 - way / smooth) / smooth};
 }
 
 void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double young_modulus) {
@@ -99,34 +116,50 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   area_ = vertexAreas(rest_);
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
-  const double edge = meanEdge(rest_), one_wall = std::max(kOneWallThicknesses * max_thickness_, kOneWallEdges * edge);
-  // seen from a vertex, a flat wall that no longer counts as one wall with it stays beyond the search distance
-  ahead_ = std::clamp(kFlatSight * one_wall - 0.5 * edge - max_thickness_ * (1 + kOnset), kMinAhead * max_thickness_,
-                      kAhead * max_thickness_);
+  near_slack_ = kNearSlack * max_thickness_;
+  meeting_slack_ = kMeetingSlack * max_thickness_;
+  const double one_wall = std::max(kOneWallThicknesses * max_thickness_, kOneWallEdges * meanEdge(rest_));
   memory_ = std::make_unique<SelfContactMemory>(rest_, std::vector<double>(thickness_.size(), one_wall),
                                                 kFloor * min_thickness_);
 }
 
 SelfContact::~SelfContact() = default;
 
-void SelfContact::detect(const double* x, const double* y, const double* z, double reach) {
+void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reach, double lead) {
+  if (isStart(x, v) && reach == reach_ && lead == lead_) return;
+  reach_ = reach;
+  lead_ = lead;
   pairs_.clear();
-  if (!start(x, y, z, moved_)) {
-    cover_ = -1;
+  energy_ = 0;
+  if (!start(x, v, moved_)) {
+    searched_reach_ = -1;
     memory_->near.clear();
     return;
   }
-  if (cover_ < (1 + kOnset) * max_thickness_ + reach + 2 * moved_) search(reach);
+  if (searched_reach_ < reach || moved_ > near_slack_) search(reach);
   addPairs(reach);
 }
 
+// The end of a step is usually the start of the next.
+bool SelfContact::isStart(const NodeVectors& x, const NodeVectors& v) const {
+  if (reach_ < 0) return false;
+  const std::size_t n = thickness_.size();
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::memcmp(x[k], memory_->start[k].data(), n * sizeof(double)) != 0 ||
+        std::memcmp(v[k], memory_->speed[k].data(), n * sizeof(double)) != 0)
+      return false;
+  return true;
+}
+
 // Stores the positions and computes their distance from those of the last search.
-bool SelfContact::start(const double* x, const double* y, const double* z, double& moved) {
-  const double* now[3] = {x, y, z};
+bool SelfContact::start(const NodeVectors& x, const NodeVectors& v, double& moved) {
   SelfContactMemory& m = *memory_;
   const std::size_t n = thickness_.size();
-  for (int k = 0; k < 3; ++k) std::copy(now[k], now[k] + n, m.start[k].begin());
-  const double largest = farthest(m.searched, now, n);
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::copy(x[k], x[k] + n, m.start[k].begin());
+    std::copy(v[k], v[k] + n, m.speed[k].begin());
+  }
+  const double largest = farthest(m.searched, x.data(), n);
   moved = std::sqrt(largest);
   return std::isfinite(largest);
 }
@@ -136,9 +169,9 @@ void SelfContact::search(double reach) {
   SelfContactMemory& m = *memory_;
   for (int k = 0; k < 3; ++k) m.searched[k] = m.start[k];
   moved_ = 0;
+  searched_reach_ = reach + near_slack_;
   for (std::size_t i = 0; i < m.position.size(); ++i) m.position[i] = m.at(static_cast<int>(i));
-  cover_ = (1 + kOnset) * max_thickness_ + std::max(ahead_, reach + kMinAhead * max_thickness_);
-  m.search.findNear(m.position, cover_, m.found);
+  m.search.findNear(m.position, (1 + kOnset) * max_thickness_ + searched_reach_, near_slack_, kFacingCosine, m.found);
   m.near.clear();
   for (const SelfContactSearch::Near& near : m.found) m.near.push_back({near, Eigen::Vector3d::Zero()});
 }
@@ -166,7 +199,7 @@ double SelfContact::facing(int vertex, int triangle) const {
 
 // For a vertex, the nearest triangle that faces it, and the nearest on the opposite side.
 void SelfContact::addPairs(double reach) {
-  std::vector<SelfContactPaths::Approach>& near = memory_->near;
+  std::vector<SelfContactMemory::Approach>& near = memory_->near;
   for (std::size_t first = 0, next; first < near.size(); first = next) {
     const int vertex = near[first].near.vertex;
     const Eigen::Vector3d p = memory_->at(vertex);
@@ -206,25 +239,28 @@ void SelfContact::addPair(int near, double facing) {
   pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kOnset));
   pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
   if (!(pair.stiffness > 0)) return;
-  // the normal is constant within the step, so active contacts have to slide slowly
-  const double s = foot.away.norm() / pair.thickness;
+  const Squeeze squeezed = squeeze(foot.away.norm() / pair.thickness);
   pair.away = foot.away;
-  pair.drag =
-      -kDrag * pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s).slope / std::max(s, kStraightBelow);
+  pair.friction = -kFriction * pair.stiffness / pair.thickness * squeezed.slope;
+  Eigen::Vector3d speed = memory_->speedOf(vertex);
+  for (int k = 0; k < 3; ++k) speed -= foot.weight[k] * memory_->speedOf(n[k]);
+  pair.speed = (speed - pair.normal.dot(speed) * pair.normal).norm();
+  energy_ += pair.stiffness * squeezed.value;
   pairs_.push_back(pair);
 }
 
 double SelfContact::evaluate(const double* positions4, float* gradient4) const {
   double energy = 0;
+  const double smooth = kSlidingSpeed * lead_;
   for (const Pair& pair : pairs_) {
-    Eigen::Vector3d away = at(positions4, pair.node[0]);
-    for (int k = 0; k < 3; ++k) away -= pair.weight[k] * at(positions4, pair.node[k + 1]);
+    const Eigen::Vector3d away = awayAt(pair, positions4);
     const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness);
-    if (squeezed.value == 0 && pair.drag == 0) continue;
-    const Eigen::Vector3d change = away - pair.away;
-    const Eigen::Vector3d slid = change - pair.normal.dot(change) * pair.normal;
-    energy += pair.stiffness * squeezed.value + 0.5 * pair.drag * slid.squaredNorm();
-    const Eigen::Vector3d force = pair.stiffness / pair.thickness * squeezed.slope * pair.normal + pair.drag * slid;
+    if (squeezed.value == 0 && pair.friction == 0) continue;
+    const Eigen::Vector3d slid = slidSince(pair, away);
+    const Sliding slide = sliding(slid.norm(), smooth);
+    energy += pair.stiffness * squeezed.value + pair.friction * slide.way;
+    const Eigen::Vector3d force =
+        pair.stiffness / pair.thickness * squeezed.slope * pair.normal + pair.friction * slide.per_way * slid;
     for (int c = 0; c < 3; ++c) {
       gradient4[4 * static_cast<std::size_t>(pair.node[0]) + c] += static_cast<float>(force[c]);
       for (int k = 0; k < 3; ++k)
@@ -234,15 +270,15 @@ double SelfContact::evaluate(const double* positions4, float* gradient4) const {
   return energy;
 }
 
+// Friction with the slope of its force along the way that it is about to slide at its present speed.
 void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const {
   for (const Pair& pair : pairs_) {
-    Eigen::Vector3d away = at(positions4, pair.node[0]);
-    for (int k = 0; k < 3; ++k) away -= pair.weight[k] * at(positions4, pair.node[k + 1]);
-    const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness);
-    const double normal = pair.stiffness / (pair.thickness * pair.thickness) * squeezed.curvature;
-    if (normal == 0 && pair.drag == 0) continue;
+    const double s = pair.normal.dot(awayAt(pair, positions4)) / pair.thickness;
+    const double normal = pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s).curvature;
+    if (normal == 0 && pair.friction == 0) continue;
+    const double drag = pair.friction * sliding(pair.speed * lead_, kSlidingSpeed * lead_).per_way;
     const Eigen::Vector3d& n = pair.normal;
-    const Eigen::Matrix3d k = pair.drag * Eigen::Matrix3d::Identity() + (normal - pair.drag) * n * n.transpose();
+    const Eigen::Matrix3d k = drag * Eigen::Matrix3d::Identity() + (normal - drag) * n * n.transpose();
     couplings.push_back({{pair.node[0], pair.node[1], pair.node[2], pair.node[3], -1, -1},
                          {1, -static_cast<float>(pair.weight[0]), -static_cast<float>(pair.weight[1]),
                           -static_cast<float>(pair.weight[2])},
@@ -251,72 +287,78 @@ void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCo
   }
 }
 
-bool SelfContact::endsOf(const double* x, const double* y, const double* z, double& longest) {
-  const double* end[3] = {x, y, z};
-  const double largest = farthest(memory_->start, end, thickness_.size());
-  longest = std::sqrt(largest);
-  return std::isfinite(largest);
+// From the foot at detect() to the vertex, where they are now.
+Eigen::Vector3d SelfContact::awayAt(const Pair& pair, const double* positions4) {
+  Eigen::Vector3d away = at(positions4, pair.node[0]);
+  for (int k = 0; k < 3; ++k) away -= pair.weight[k] * at(positions4, pair.node[k + 1]);
+  return away;
+}
+
+Eigen::Vector3d SelfContact::slidSince(const Pair& pair, const Eigen::Vector3d& away) {
+  const Eigen::Vector3d change = away - pair.away;
+  return change - pair.normal.dot(change) * pair.normal;
 }
 
 const std::vector<int>& SelfContact::resolvePenetrations(const MotionView& motion, double step) {
   stopped_.clear();
-  double *x = motion.x[0], *y = motion.x[1], *z = motion.x[2];
   SelfContactMemory& m = *memory_;
-  double longest = 0;
-  if (cover_ < 0 || !endsOf(x, y, z, longest)) return stopped_;
-  const double floor = kFloor * min_thickness_, sight = cover_ - 2 * moved_ - floor;
-  if (m.near.empty() && 2 * longest < sight) return stopped_;
-  const int legs = 2 * longest < sight ? 1 : static_cast<int>(std::min(64.0, std::ceil(longest / (0.5 * kLeg))));
-  for (std::size_t i = 0; i < m.position.size(); ++i) m.position[i] = m.at(static_cast<int>(i));
-  m.stopped.assign(m.position.size(), 0);
-  for (int leg = 0; leg < legs; ++leg) {
-    double farthest_move = 0;
-    for (std::size_t i = 0; i < m.position.size(); ++i) {
-      m.move[i] = (Eigen::Vector3d(x[i], y[i], z[i]) - m.position[i]) / (legs - leg);
-      farthest_move = std::max(farthest_move, m.move[i].squaredNorm());
-    }
-    farthest_move = std::sqrt(farthest_move);
-    findApproaches(legs > 1, 2 * farthest_move + floor);
-    update();
+  if (searched_reach_ < 0 || !startPaths(motion)) return stopped_;
+  if (!m.slow) {
+    shortenFastPaths();
+  } else if (m.meetings.empty() || !m.paths.shorten(m.position, m.meetings, false, m.move)) {
+    return stopped_;
   }
   for (std::size_t i = 0; i < m.position.size(); ++i) {
-    if (m.stopped[i] == 0) continue;
-    for (int k = 0; k < 3; ++k) {
-      motion.x[k][i] = m.position[i][k];
-      motion.v[k][i] = (m.position[i][k] - m.start[k][i]) / step;
-      motion.a[k][i] = 0;
-    }
+    if (m.move[i] == Eigen::Vector3d(motion.x[0][i], motion.x[1][i], motion.x[2][i]) - m.position[i]) continue;
+    stop(motion, static_cast<int>(i), m.position[i] + m.move[i], step);
     stopped_.push_back(static_cast<int>(i));
   }
   return stopped_;
 }
 
-void SelfContact::findApproaches(bool anew, double distance) {
+// Paths that become shorter by different parts may meet others: they are searched again until nothing changes.
+void SelfContact::shortenFastPaths() {
   SelfContactMemory& m = *memory_;
-  m.approaches.clear();
-  if (!anew) {
-    for (const auto& near : m.near) {
-      const double sight = distance + 0.5 * m.search.longestEdge(near.near.vertex) + moved_;
-      if (near.away.squaredNorm() < sight * sight) m.approaches.push_back(near);
-    }
-    return;
+  for (int search = 0; search < kSearches; ++search) {
+    for (std::size_t i = 0; i < m.end.size(); ++i) m.end[i] = m.position[i] + m.move[i];
+    m.search.findMeetings(m.position, m.end, kFloor * min_thickness_, 0, m.swept);
+    if (!m.paths.shorten(m.position, m.swept, search >= kPatience, m.move)) return;
   }
-  cover_ = -1;  // the positions of the search have changed
-  m.search.findNear(m.position, distance, m.found);
-  for (const auto& near : m.found) {
-    const auto& n = rest_.triangles[near.triangle];
-    m.approaches.push_back(
-        {near, triangleFoot(m.position[near.vertex], m.position[n[0]], m.position[n[1]], m.position[n[2]]).away});
-  }
+  std::fill(m.move.begin(), m.move.end(), Eigen::Vector3d::Zero());
 }
 
-void SelfContact::update() {
+// Sets positions and moves, and finds the pairs of triangles that may meet if the paths are short.
+// @returns false if nothing can meet, or the paths are not finite
+bool SelfContact::startPaths(const MotionView& motion) {
   SelfContactMemory& m = *memory_;
-  m.whole = m.move;
-  const bool shortened = m.paths.shorten(m.position, m.approaches, m.move);
-  for (std::size_t i = 0; i < m.position.size(); ++i) {
-    if (shortened && m.move[i] != m.whole[i]) m.stopped[i] = 1;
-    m.position[i] += m.move[i];
+  const std::size_t n = thickness_.size();
+  const double* start[3] = {m.start[0].data(), m.start[1].data(), m.start[2].data()};
+  const double slack2 = meeting_slack_ * meeting_slack_;
+  const double* const* end = motion.x.data();
+  m.slow = met_ && farthest(m.met, start, n) <= slack2 && farthest(m.met, end, n) <= slack2;
+  if (m.slow && m.meetings.empty()) return false;
+  const double longest2 = farthest(m.start, end, n);
+  if (!std::isfinite(longest2)) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    m.position[i] = m.at(static_cast<int>(i));
+    m.move[i] = Eigen::Vector3d(end[0][i], end[1][i], end[2][i]) - m.position[i];
+  }
+  if (m.slow || longest2 > slack2) return true;
+  for (int k = 0; k < 3; ++k) m.met[k] = m.start[k];
+  met_ = m.slow = true;
+  m.search.findMeetings(m.position, m.position, kFloor * min_thickness_, meeting_slack_, m.meetings);
+  return true;
+}
+
+void SelfContact::stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const {
+  double before2 = 0;
+  const Eigen::Vector3d speed = (end - memory_->at(node)) / step;
+  for (int k = 0; k < 3; ++k) before2 += motion.v[k][node] * motion.v[k][node];
+  const double part = std::min(1.0, std::sqrt(before2 / std::max(speed.squaredNorm(), before2 * 1e-12)));
+  for (int k = 0; k < 3; ++k) {
+    motion.x[k][node] = end[k];
+    motion.v[k][node] = before2 > 0 ? part * speed[k] : 0;
+    motion.a[k][node] = 0;
   }
 }
 

@@ -19,25 +19,30 @@ class SelfContactMemory;
 /// thicknesses, the two half walls in between are squeezed from t to d. They store the energy of a bar in Hencky's
 /// logarithmic strain (1928), per vertex of area A
 ///   W = A E' t / 2 * ln(s)^2 / 2,  s = d / t,
-/// half of A E' t because the vertices of the other wall store the rest. E' is a tenth of the modulus of the wall: the
-/// mucosa is in contact, and the iterations of a step can resolve a stiffness of the order of the bending stiffness of
-/// the wall. The stiffness grows as d goes to 0. Below 20 % of t the energy is extended linearly, so that force and
-/// energy stay finite in any state. Contact sets in from t + 25 % to t - 25 %, with a continuous stiffness. Within a
-/// step d is measured along the direction between vertex and triangle at its start. This is convex and smooth, and a
-/// vertex that an iterate moves through the other wall is pushed back. A drag of twice the contact force per distance
-/// and step resists sliding and vanishes with the motion. Without it the walls, whose normals change as they slide,
-/// would never come to rest.
+/// half of A E' t because the vertices of the other wall store the rest. E' is a tenth of the modulus of the wall, as
+/// the mucosa is in contact: its shear modulus is 0.56 kPa in vivo, that of the muscularis 5.69 kPa (Dargar et al.
+/// 2019, J Biomech Eng 141:101004). The stiffness grows as d goes to 0. Below 20 % of t the energy is extended
+/// linearly, so that force and energy stay finite in any state. Contact sets in from t + 25 % to t - 25 %, with a
+/// continuous stiffness. Within a step d is measured along the direction between vertex and triangle at its start. This
+/// is convex and smooth, and a vertex that an iterate moves through the other wall is pushed back.
 ///
-/// Paths. resolvePenetrations() shortens the straight paths of the nodes over a step so that no vertex, edge or
-/// triangle passes through another wall, whatever the cause of the motion. Walls that were apart therefore stay apart,
-/// and no record of sides is needed.
+/// Friction. Pairs slide against Coulomb friction, smoothed below a small speed of sliding, with the normal force at
+/// the start of the step (Li et al. 2020, "Incremental Potential Contact", section 5). What it dissipates does not
+/// depend on the step to first order. Below that speed friction is viscous, so walls in contact come to rest where they
+/// would without friction.
+///
+/// Paths. resolvePenetrations() shortens the straight paths of the nodes over a step so that no two triangles without a
+/// common edge pass through each other, whatever the cause of the motion, neighbours in a sharp fold included. What did
+/// not cross stays so, and no record of sides is needed.
 ///
 /// Only walls that face each other are in contact: the cosine between the normals of vertex and triangle is below 0.3.
 /// Parts of the surface within 2.5 thicknesses or 3 mean edge lengths along edges, or within two edges, count as one
-/// wall, which has no contact with itself and is not kept apart: sharper folds are below the resolution of the mesh.
-/// Walls that are nearer than t at rest touch at that distance. There is no static friction.
+/// wall, which has no contact with itself: sharper folds are below the resolution of the mesh, and only kept from
+/// crossing. Walls that are nearer than t at rest touch at that distance.
 class SelfContact : public EnergyTerm {
  public:
+  using NodeVectors = std::array<const double*, 3>;  ///< x, y and z of the nodes
+
   /// A vertex and the triangle of another wall that is nearest to it on one side.
   struct Pair {
     std::array<int, 4> node;  ///< vertex, triangle
@@ -46,7 +51,8 @@ class SelfContact : public EnergyTerm {
     double thickness;         ///< distance at first contact [m]
     double stiffness;         ///< A E' t / 2 [J]
     Eigen::Vector3d away;     ///< from the foot to the vertex at detect() [m]
-    double drag;              ///< resists sliding from there within the step [N/m]
+    double friction;          ///< force of friction, with the normal force at detect() [N]
+    double speed;             ///< of sliding at detect() [m/s]
   };
 
   /// @param rest           the middle surface at rest, consistently oriented; its vertices are the nodes [m]
@@ -60,15 +66,21 @@ class SelfContact : public EnergyTerm {
   /// Finds the possible contacts within a step; call once before the step. The result depends only on the arguments,
   /// not on earlier calls. Allocates only while its buffers grow. If a position is not finite, there are no contacts.
   /// @param reach  expected largest decrease of the distance between two walls in this step [m]
-  void detect(const double* x, const double* y, const double* z, double reach);
+  /// @param x      positions [m]
+  /// @param v      velocities [m/s]
+  /// @param lead   time from then to the point at which the step evaluates forces [s]
+  void detect(const NodeVectors& x, const NodeVectors& v, double reach, double lead);
 
   double evaluate(const double* positions4, float* gradient4) const override;
   /// Of the pairs of the last detect() that are in contact at the positions, with their normals.
   void addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const override;
 
+  /// The energy at detect(), from the positions there alone [J].
+  double energy() const { return energy_; }
   /// Moves nodes back towards their positions at detect() as far as necessary so that no wall passes through another on
   /// the straight path from there. Walls that were apart at detect() end at least 5 % of the smallest thickness apart,
-  /// or 90 % of their distance if they were nearer. The velocity of a node moved back is that of its shortened path.
+  /// or 90 % of their distance if they were nearer. The velocity of a node moved back is that of its shortened path,
+  /// but no faster than before.
   /// @param step  the time since detect() [s]
   /// @returns the nodes moved back
   const std::vector<int>& resolvePenetrations(const MotionView& motion, double step);
@@ -78,25 +90,31 @@ class SelfContact : public EnergyTerm {
   int searchCount() const { return searches_; }  ///< detect() calls that needed a search
 
  private:
-  bool start(const double* x, const double* y, const double* z, double& moved);
+  bool isStart(const NodeVectors& x, const NodeVectors& v) const;
+  bool start(const NodeVectors& x, const NodeVectors& v, double& moved);
+  static Eigen::Vector3d awayAt(const Pair& pair, const double* positions4);
+  static Eigen::Vector3d slidSince(const Pair& pair, const Eigen::Vector3d& away);
   void search(double reach);
   void addPairs(double reach);
   void addPair(int near, double facing);
   double meanThickness(int vertex, int triangle) const;
   double facing(int vertex, int triangle) const;
-  void findApproaches(bool anew, double distance);
-  void update();
-  bool endsOf(const double* x, const double* y, const double* z, double& longest);
+  bool startPaths(const MotionView& motion);
+  void shortenFastPaths();
+  void stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const;
 
   SurfaceMesh rest_;
   std::vector<double> thickness_;
   double stiffness_;  // E' [Pa]
   double min_thickness_ = 0, max_thickness_ = 0;
-  double ahead_ = 0;          // search distance beyond contact [m]
-  std::vector<double> area_;  // per vertex at rest [m^2]
+  double near_slack_ = 0, meeting_slack_ = 0;  // motion of a node until the next search [m]
+  std::vector<double> area_;                   // per vertex at rest [m^2]
   std::unique_ptr<SelfContactMemory> memory_;
-  double cover_ = -1;  // the last search found everything nearer than this [m]; < 0: none yet
-  double moved_ = 0;   // largest distance of a node at detect() from its position at the last search [m]
+  double searched_reach_ = -1;    // of the last search [m]; < 0: none yet
+  double reach_ = -1, lead_ = 0;  // of the last detect() [m], [s]
+  double energy_ = 0;
+  bool met_ = false;  // meetings were searched
+  double moved_ = 0;  // largest distance of a node at detect() from its position at the last search [m]
   int searches_ = 0;
   std::vector<Pair> pairs_;
   std::vector<int> stopped_;

@@ -42,14 +42,14 @@ inline TriangleFoot triangleFoot(const Eigen::Vector3d& p, const Eigen::Vector3d
   return {{1 - v - w, v, w}, ap - v * ab - w * ac};
 }
 
-/// Distance of the segments a, b and c, d (Ericson 5.1.9) [m].
-inline double segmentDistance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                              const Eigen::Vector3d& d) {
+/// The shortest vector from the segment c, d to the segment a, b (Ericson 5.1.9) [m].
+inline Eigen::Vector3d segmentConnection(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                                         const Eigen::Vector3d& d) {
   const Eigen::Vector3d u = b - a, v = d - c, r = a - c;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), vr = v.dot(r), ur = u.dot(r), uv = u.dot(v);
   if (uu == 0 || vv == 0) {
     const double s = uu > 0 ? std::clamp(-ur / uu, 0.0, 1.0) : 0, t = vv > 0 ? std::clamp(vr / vv, 0.0, 1.0) : 0;
-    return (r + s * u - t * v).norm();
+    return r + s * u - t * v;
   }
   const double across = uu * vv - uv * uv;
   double s = across > 0 ? std::clamp((uv * vr - ur * vv) / across, 0.0, 1.0) : 0;
@@ -58,7 +58,7 @@ inline double segmentDistance(const Eigen::Vector3d& a, const Eigen::Vector3d& b
     t = std::clamp(t, 0.0, 1.0);
     s = std::clamp((uv * t - ur) / uu, 0.0, 1.0);
   }
-  return (r + s * u - t * v).norm();
+  return r + s * u - t * v;
 }
 
 }  // namespace vibe

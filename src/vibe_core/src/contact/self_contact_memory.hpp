@@ -13,22 +13,39 @@ namespace vibe {
 class SelfContactMemory {
  public:
   SelfContactMemory(const SurfaceMesh& rest, const std::vector<double>& one_wall, double floor)
-      : search(rest, one_wall), paths(rest.triangles, search, floor), position(rest.vertices), move(rest.vertices) {
+      : search(rest, one_wall),
+        paths(rest.triangles, floor),
+        position(rest.vertices),
+        end(rest.vertices),
+        move(rest.vertices) {
     for (int k = 0; k < 3; ++k) {
+      met[k].assign(rest.vertices.size(), 0);
+      speed[k].assign(rest.vertices.size(), 0);
       start[k].assign(rest.vertices.size(), 0);
       searched[k].assign(rest.vertices.size(), 0);
     }
   }
   Eigen::Vector3d at(int node) const { return {start[0][node], start[1][node], start[2][node]}; }
 
+  Eigen::Vector3d speedOf(int node) const { return {speed[0][node], speed[1][node], speed[2][node]}; }
+
+  /// A vertex and a triangle that it may touch.
+  struct Approach {
+    SelfContactSearch::Near near;
+    Eigen::Vector3d away;  ///< from the triangle to the vertex at detect() [m]
+  };
+
   SelfContactSearch search;
   SelfContactPaths paths;
-  std::array<std::vector<double>, 3> start, searched;  // positions at detect(), at the last search [m]
-  std::vector<SelfContactPaths::Approach> near;        // found by the last search, `away` as at detect()
-  std::vector<SelfContactPaths::Approach> approaches;
+  std::array<std::vector<double>, 3> start, searched,
+      met;                                   // positions at detect(), at the last search of each kind [m]
+  std::array<std::vector<double>, 3> speed;  // at detect() [m/s]
+  std::vector<Approach> near;                // found by the last search
   std::vector<SelfContactSearch::Near> found;
-  std::vector<Eigen::Vector3d> position, move, whole;  // over a part of a step; `whole`: before shortening [m]
-  std::vector<char> stopped;
+  std::vector<SelfContactPaths::Pair> meetings;      // of triangles, found by the last search
+  std::vector<SelfContactPaths::Pair> swept;         // the same, of fast paths
+  bool slow = false;                                 // no node moves farther than `meetings` allow
+  std::vector<Eigen::Vector3d> position, end, move;  // of a step [m]
 };
 
 }  // namespace vibe

@@ -1,7 +1,6 @@
 #include "contact/self_contact_paths.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "contact/self_contact_distance.hpp"
@@ -10,44 +9,57 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRounds = 5;          // of shortening, before nodes that still collide are stopped in place
-constexpr int kStops = 200;         // rounds of stopping, before all nodes are stopped
-constexpr int kAdvances = 100;      // steps towards a collision
-constexpr double kKept = 0.1;       // remaining fraction of the distance above the floor
-constexpr double kNearest = 0.9;    // remaining fraction of a distance below the floor
-constexpr double kTouching = 1e-9;  // two parts that are nearer than this are already in contact [m]
+constexpr int kRounds = 5;           // of shortening, before nodes that still collide are stopped in place
+constexpr int kStops = 200;          // rounds of stopping, before all nodes are stopped
+constexpr int kAdvances = 30;        // steps towards a collision
+constexpr double kEnough = 1e-3;     // part of a path below which an advance is the last
+constexpr double kNearest = 0.9;     // remaining fraction of a distance below the floor
+constexpr double kLeast = 1e-6;      // distance that never gets smaller: far above rounding [m]
+constexpr double kTouching = 1e-10;  // nearer parts touch from the start, and are let go [m]
 
 using Points = std::array<Eigen::Vector3d, 4>;
 
-double distanceOf(const Points& p, int split) {
-  return split == 1 ? triangleFoot(p[0], p[1], p[2], p[3]).away.norm() : segmentDistance(p[0], p[1], p[2], p[3]);
+Eigen::Vector3d connection(const Points& p, int split) {
+  return split == 1 ? triangleFoot(p[0], p[1], p[2], p[3]).away : segmentConnection(p[0], p[1], p[2], p[3]);
 }
 
-std::pair<double, double> rangeAlong(const Eigen::Vector3d& direction, const std::array<int, 3>& triangle,
-                                     const std::vector<Eigen::Vector3d>& at) {
-  const double a = direction.dot(at[triangle[0]]), b = direction.dot(at[triangle[1]]),
-               c = direction.dot(at[triangle[2]]);
-  return {std::min({a, b, c}), std::max({a, b, c})};
+double volume6(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
+  return (b - a).cross(c - a).dot(d - a);
+}
+
+bool pierces(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+             const Eigen::Vector3d& c) {
+  if (volume6(a, b, c, p) * volume6(a, b, c, q) >= 0) return false;
+  const double ab = volume6(p, q, a, b), bc = volume6(p, q, b, c), ca = volume6(p, q, c, a);
+  return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
+}
+
+bool has(const std::array<int, 3>& triangle, int vertex) {
+  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }
 
 }  // namespace
 
-SelfContactPaths::SelfContactPaths(const std::vector<std::array<int, 3>>& triangles, const SelfContactSearch& search,
-                                   double floor)
-    : triangles_(triangles), search_(search), floor_(floor) {}
+SelfContactPaths::SelfContactPaths(const std::vector<std::array<int, 3>>& triangles, double floor)
+    : triangles_(triangles), floor_(floor) {}
 
-bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const std::vector<Approach>& approaches,
+bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const std::vector<Pair>& pairs, bool stop,
                                std::vector<Eigen::Vector3d>& move) {
   start_ = &start;
   move_ = &move;
+  collect(pairs);
+  if (pairs_.empty()) return false;
   news_.assign(start.size(), 1);
   next_news_.assign(start.size(), 0);
   bool any = false;
   for (int round = 0; round < kRounds + kStops; ++round) {
-    collect(approaches);
     bool shortened = false;
-    for (const auto& [one, other] : pairs_) shortened = shortenPair(one, other, round >= kRounds) || shortened;
+    for (const auto& [one, other] : pairs_)
+      if ((isNews(one) || isNews(other)) && !keepsApart(one, other))
+        shortened = shortenPair(one, other, stop || round >= kRounds) || shortened;
     if (!shortened) return any;
+    if (!any) pairs_ = pairs;  // shorter moves may bring others together
+    if (!any) dropTangled();
     any = true;
     news_.swap(next_news_);  // unchanged moves are still free of collisions
     std::fill(next_news_.begin(), next_news_.end(), char{0});
@@ -56,29 +68,71 @@ bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const 
   return any;
 }
 
-// Two triangles that are separated at the start and at the end of their straight paths by a plane perpendicular to the
-// shortest connection between them stay apart: the distance along its normal is a concave function of time.
-void SelfContactPaths::collect(const std::vector<Approach>& approaches) {
+void SelfContactPaths::collect(const std::vector<Pair>& pairs) {
   pairs_.clear();
-  for (const Approach& approach : approaches) {
-    const std::array<int, 3>& other = triangles_[approach.near.triangle];
-    const bool news = isNews(approach.near.triangle);
-    const Eigen::Vector3d normal = approach.away.normalized();
-    const double high = rangeAlong(normal, other, *start_).second;
-    double end = -std::numeric_limits<double>::infinity();
-    for (const int v : other) end = std::max(end, normal.dot((*start_)[v] + (*move_)[v]));
-    search_.visitRing(approach.near.vertex, [&](int t) {
-      if (!news && !isNews(t)) return;
-      if (rangeAlong(normal, triangles_[t], *start_).first - high > floor_) {
-        double low = std::numeric_limits<double>::infinity();
-        for (const int v : triangles_[t]) low = std::min(low, normal.dot((*start_)[v] + (*move_)[v]));
-        if (low - end > floor_) return;
-      }
-      pairs_.emplace_back(std::min(t, approach.near.triangle), std::max(t, approach.near.triangle));
-    });
+  tangled_.assign(start_->size(), 0);
+  for (const Pair& pair : pairs)
+    if (!keepsApart(pair[0], pair[1])) pairs_.push_back(pair);
+  for (const auto& [one, other] : pairs_) {
+    if (!crosses(one, other)) continue;
+    for (const int v : triangles_[one]) tangled_[v] = 1;
+    for (const int v : triangles_[other]) tangled_[v] = 1;
   }
-  std::sort(pairs_.begin(), pairs_.end());
-  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  dropTangled();
+}
+
+void SelfContactPaths::dropTangled() {
+  const auto tangled = [this](int t) {
+    return tangled_[triangles_[t][0]] != 0 || tangled_[triangles_[t][1]] != 0 || tangled_[triangles_[t][2]] != 0;
+  };
+  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
+                              [&](const Pair& pair) { return tangled(pair[0]) && tangled(pair[1]); }),
+               pairs_.end());
+}
+
+// Two triangles that are separated at the start and at the end of their straight paths by a plane with the same normal
+// stay apart: the distance along the normal is a concave function of time.
+bool SelfContactPaths::keepsApart(int one, int other) const {
+  const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
+  const std::vector<Eigen::Vector3d>& at = *start_;
+  const Eigen::Vector3d between = (at[a[0]] + at[a[1]] + at[a[2]]) - (at[b[0]] + at[b[1]] + at[b[2]]);
+  return separates(between, one, other) || separates(normal(one), one, other) || separates(normal(other), one, other);
+}
+
+Eigen::Vector3d SelfContactPaths::normal(int triangle) const {
+  const std::array<int, 3>& t = triangles_[triangle];
+  const Eigen::Vector3d& a = (*start_)[t[0]];
+  return ((*start_)[t[1]] - a).cross((*start_)[t[2]] - a);
+}
+
+bool SelfContactPaths::separates(const Eigen::Vector3d& direction, int one, int other) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double low[2][2] = {{kInfinity, kInfinity}, {kInfinity, kInfinity}};
+  double high[2][2] = {{-kInfinity, -kInfinity}, {-kInfinity, -kInfinity}};
+  for (int side = 0; side < 2; ++side)
+    for (const int v : triangles_[side == 0 ? one : other]) {
+      const double from = direction.dot((*start_)[v]), to = from + direction.dot((*move_)[v]);
+      low[side][0] = std::min(low[side][0], from);
+      high[side][0] = std::max(high[side][0], from);
+      low[side][1] = std::min(low[side][1], to);
+      high[side][1] = std::max(high[side][1], to);
+    }
+  const double gap = floor_ * direction.norm();
+  return (low[0][0] - high[1][0] > gap && low[0][1] - high[1][1] > gap) ||
+         (low[1][0] - high[0][0] > gap && low[1][1] - high[0][1] > gap);
+}
+
+bool SelfContactPaths::crosses(int one, int other) const {
+  const std::vector<Eigen::Vector3d>& at = *start_;
+  const auto anyEdge = [&](const std::array<int, 3>& edges, const std::array<int, 3>& face) {
+    for (int k = 0; k < 3; ++k) {
+      const int p = edges[k], q = edges[(k + 1) % 3];
+      if (!has(face, p) && !has(face, q) && pierces(at[p], at[q], at[face[0]], at[face[1]], at[face[2]])) return true;
+    }
+    return false;
+  };
+  const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
+  return anyEdge(a, b) || anyEdge(b, a);
 }
 
 bool SelfContactPaths::isNews(int triangle) const {
@@ -88,12 +142,15 @@ bool SelfContactPaths::isNews(int triangle) const {
 
 bool SelfContactPaths::shortenPair(int one, int other, bool stop) {
   const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
-  if (search_.sameWall(a, b)) return false;
   bool any = false;
   for (int k = 0; k < 3; ++k) {
-    any = shortenPrimitive({{a[k], b[0], b[1], b[2]}, 1}, stop) || any;
-    any = shortenPrimitive({{b[k], a[0], a[1], a[2]}, 1}, stop) || any;
-    for (int l = 0; l < 3; ++l) any = shortenPrimitive({{a[k], a[(k + 1) % 3], b[l], b[(l + 1) % 3]}, 2}, stop) || any;
+    if (!has(b, a[k])) any = shortenPrimitive({{a[k], b[0], b[1], b[2]}, 1}, stop) || any;
+    if (!has(a, b[k])) any = shortenPrimitive({{b[k], a[0], a[1], a[2]}, 1}, stop) || any;
+    const int p = a[k], q = a[(k + 1) % 3];
+    for (int l = 0; l < 3; ++l) {
+      const int r = b[l], s = b[(l + 1) % 3];
+      if (p != r && p != s && q != r && q != s) any = shortenPrimitive({{p, q, r, s}, 2}, stop) || any;
+    }
   }
   return any;
 }
@@ -108,34 +165,28 @@ bool SelfContactPaths::shortenPrimitive(const Primitive& primitive, bool stop) {
   return true;
 }
 
-// Additive continuous collision detection (Li, Kaufman, Jiang: Codimensional Incremental Potential Contact, 2021):
-// advances by steps that the distance permits until it is used up.
 double SelfContactPaths::freePart(const Primitive& primitive) const {
-  Points at, move;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < 4; ++k) {
-    at[k] = (*start_)[primitive.node[k]];
-    move[k] = (*move_)[primitive.node[k]];
-    mean += 0.25 * move[k];
-  }
-  double longest[2] = {0, 0};
-  for (int k = 0; k < 4; ++k)
-    longest[k < primitive.split ? 0 : 1] =
-        std::max(longest[k < primitive.split ? 0 : 1], (move[static_cast<std::size_t>(k)] - mean).norm());
-  const double speed = longest[0] + longest[1];
-  if (speed == 0) return 1;
-  double distance = distanceOf(at, primitive.split);
-  const double floor = std::min(floor_, kNearest * distance);
-  if (distance - speed > floor || distance < kTouching) return 1;
-  const double kept = kKept * (distance - floor);
+  Points at;
+  for (std::size_t k = 0; k < 4; ++k) at[k] = (*start_)[primitive.node[k]];
+  Eigen::Vector3d away = connection(at, primitive.split);
+  double distance = away.norm();
+  if (distance < kTouching) return 1;
+  const double floor = std::min(distance, std::max(kLeast, std::min(floor_, kNearest * distance)));
   double part = 0;
   for (int advance = 0; advance < kAdvances; ++advance) {
-    const double next = (1 - kKept) * (distance - floor) / speed;
+    double next = 2;
+    for (int i = 0; i < primitive.split; ++i)
+      for (int j = primitive.split; j < 4; ++j) {
+        const std::size_t p = i, q = j;
+        const double closing = away.dot((*move_)[primitive.node[q]] - (*move_)[primitive.node[p]]);
+        if (closing > 0) next = std::min(next, std::max(0.0, (away.dot(at[p] - at[q]) - floor * distance) / closing));
+      }
     if (part + next >= 1) return 1;
-    for (std::size_t k = 0; k < 4; ++k) at[k] += next * (move[k] - mean);
-    distance = distanceOf(at, primitive.split);
-    if (advance > 0 && distance - floor < kept) return part;
+    if (next < kEnough) return part;
     part += next;
+    for (std::size_t k = 0; k < 4; ++k) at[k] = (*start_)[primitive.node[k]] + part * (*move_)[primitive.node[k]];
+    away = connection(at, primitive.split);
+    distance = away.norm();
   }
   return part;
 }

@@ -1,5 +1,6 @@
 #include "contact/self_contact_search.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,8 +12,30 @@
 
 namespace vibe {
 
+namespace {
+
+/// Distance between the parts of two triangles at one vertex that do not contain it [m].
+double fanDistance(std::array<int, 3> a, std::array<int, 3> b, const std::vector<Eigen::Vector3d>& at) {
+  for (std::array<int, 3>* t : {&a, &b}) {
+    const std::array<int, 3>& other = t == &a ? b : a;
+    while (std::find(other.begin(), other.end(), (*t)[0]) == other.end())
+      std::rotate(t->begin(), t->begin() + 1, t->end());
+  }
+  const auto connect = [&](int p, const std::array<int, 3>& t) {
+    return triangleFoot(at[p], at[t[0]], at[t[1]], at[t[2]]).away.squaredNorm();
+  };
+  double least = std::min(std::min(connect(a[1], b), connect(a[2], b)), std::min(connect(b[1], a), connect(b[2], a)));
+  for (int k = 0; k < 3; ++k) {
+    least = std::min(least, segmentConnection(at[a[1]], at[a[2]], at[b[k]], at[b[(k + 1) % 3]]).squaredNorm());
+    least = std::min(least, segmentConnection(at[b[1]], at[b[2]], at[a[k]], at[a[(k + 1) % 3]]).squaredNorm());
+  }
+  return std::sqrt(least);
+}
+
+}  // namespace
+
 SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const std::vector<double>& one_wall)
-    : triangles_(rest.triangles) {
+    : triangles_(rest.triangles), tree_(rest) {
   const std::size_t n = rest.vertices.size();
   triangle_start_.assign(n + 1, 0);
   for (const auto& t : triangles_)
@@ -22,11 +45,6 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const std::vector<
   std::vector<int> next(triangle_start_.begin(), triangle_start_.end() - 1);
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for (const int v : triangles_[t]) triangle_of_[next[v]++] = static_cast<int>(t);
-  edge_.resize(n);
-  cell_of_.resize(n);
-  sorted_.resize(n);
-  wall_stamp_.assign(n, 0);
-  triangle_stamp_.assign(triangles_.size(), 0);
   joinWalls(rest, one_wall);
 }
 
@@ -71,106 +89,65 @@ bool SelfContactSearch::oneWall(int vertex, int other) const {
   return std::binary_search(wall_.begin() + wall_start_[vertex], wall_.begin() + wall_start_[vertex + 1], other);
 }
 
-bool SelfContactSearch::sameWall(const std::array<int, 3>& one, const std::array<int, 3>& other) const {
-  for (const int v : one)
-    for (const int w : other)
-      if (oneWall(v, w)) return true;
+void SelfContactSearch::findNear(const std::vector<Eigen::Vector3d>& positions, double distance, double slack,
+                                 float cosine, std::vector<Near>& found) {
+  found.clear();
+  tree_.enclose(positions, positions, 0.5 * distance, slack, true);
+  tree_.visitFacing(cosine, [&](int one, int other) {
+    addNear(one, other, positions, distance + 2 * slack, found);
+    addNear(other, one, positions, distance + 2 * slack, found);
+  });
+  std::sort(found.begin(), found.end());
+}
+
+// Each vertex belongs to the first of its triangles.
+void SelfContactSearch::addNear(int owner, int triangle, const std::vector<Eigen::Vector3d>& positions, double distance,
+                                std::vector<Near>& found) const {
+  const auto& n = triangles_[triangle];
+  for (const int v : triangles_[owner]) {
+    if (triangle_of_[triangle_start_[v]] != owner) continue;
+    const TriangleFoot foot = triangleFoot(positions[v], positions[n[0]], positions[n[1]], positions[n[2]]);
+    if (!(foot.away.squaredNorm() < distance * distance)) continue;
+    if (!oneWall(v, n[0]) && !oneWall(v, n[1]) && !oneWall(v, n[2])) found.push_back({v, triangle});
+  }
+}
+
+// By a plane parallel to one of the triangles or between their centres, all the time.
+bool SelfContactSearch::apart(int one, int other, const std::vector<Eigen::Vector3d>& start,
+                              const std::vector<Eigen::Vector3d>& end, double distance) const {
+  const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
+  const auto separates = [&](const Eigen::Vector3d& direction, const std::vector<Eigen::Vector3d>& at) {
+    const double p = direction.dot(at[a[0]]), q = direction.dot(at[a[1]]), r = direction.dot(at[a[2]]),
+                 s = direction.dot(at[b[0]]), t = direction.dot(at[b[1]]), u = direction.dot(at[b[2]]);
+    const double gap = distance * direction.norm();
+    if (std::min({p, q, r}) - std::max({s, t, u}) > gap) return 1;
+    return std::min({s, t, u}) - std::max({p, q, r}) > gap ? -1 : 0;
+  };
+  const auto normal = [&](const std::array<int, 3>& t) -> Eigen::Vector3d {
+    return (start[t[1]] - start[t[0]]).cross(start[t[2]] - start[t[0]]);
+  };
+  const Eigen::Vector3d between = (start[a[0]] + start[a[1]] + start[a[2]]) - (start[b[0]] + start[b[1]] + start[b[2]]);
+  for (const Eigen::Vector3d& direction : {between, normal(a), normal(b)}) {
+    const int side = separates(direction, start);
+    if (side != 0 && (&start == &end || separates(direction, end) == side)) return true;
+  }
   return false;
 }
 
-void SelfContactSearch::findNear(const std::vector<Eigen::Vector3d>& positions, double distance,
-                                 std::vector<Near>& found) {
+void SelfContactSearch::findMeetings(const std::vector<Eigen::Vector3d>& start, const std::vector<Eigen::Vector3d>& end,
+                                     double floor, double slack, std::vector<std::array<int, 2>>& found) {
   found.clear();
-  measureEdges(positions);
-  // a point of a triangle is never farther from its nearest vertex than this fraction of its longest edge
-  layGrid(positions, distance + longest_edge_ * (0.5 + 1 / std::sqrt(3.0)));
-  fillCells(positions);
-  for (int i = 0; i < static_cast<int>(positions.size()); ++i)
-    findNearOf(i, positions, distance + 0.5 * edge_[i], found);
-}
+  tree_.enclose(start, end, 0.5 * floor, slack, false);
+  tree_.visitCrossing([&](int one, int other) {
+    int shared = 0;
+    for (const int v : triangles_[one])
+      for (const int w : triangles_[other]) shared += v == w ? 1 : 0;
+    if ((shared == 1 && (slack == 0 || fanDistance(triangles_[one], triangles_[other], start) < floor + 2 * slack)) ||
+        (shared == 0 && !apart(one, other, start, end, floor + 2 * slack)))
 
-void SelfContactSearch::measureEdges(const std::vector<Eigen::Vector3d>& positions) {
-  std::fill(edge_.begin(), edge_.end(), 0.0);
-  double longest = 0;
-  for (const auto& n : triangles_) {
-    const double edge =
-        std::max({(positions[n[0]] - positions[n[1]]).squaredNorm(), (positions[n[1]] - positions[n[2]]).squaredNorm(),
-                  (positions[n[2]] - positions[n[0]]).squaredNorm()});
-    for (const int v : n) edge_[v] = std::max(edge_[v], edge);
-    longest = std::max(longest, edge);
-  }
-  for (double& edge : edge_) edge = std::sqrt(edge);
-  longest_edge_ = std::sqrt(longest);
-}
-
-void SelfContactSearch::layGrid(const std::vector<Eigen::Vector3d>& positions, double distance) {
-  Eigen::Vector3d low = positions[0], high = positions[0];
-  for (const Eigen::Vector3d& p : positions) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  corner_ = low;
-  const Eigen::Vector3d size = high - low;
-  const double max = 4.0 * static_cast<double>(positions.size()) + 64;
-  for (cell_ = distance;; cell_ *= 1.25) {
-    const Eigen::Vector3d count = (size / cell_).array().floor() + 1;
-    if (!(count.prod() <= max)) continue;
-    for (int k = 0; k < 3; ++k) cells_[k] = static_cast<int>(count[k]);
-    return;
-  }
-}
-
-std::array<int, 3> SelfContactSearch::cellOf(const Eigen::Vector3d& p) const {
-  std::array<int, 3> at;
-  for (int k = 0; k < 3; ++k) at[k] = std::min(static_cast<int>((p[k] - corner_[k]) / cell_), cells_[k] - 1);
-  return at;
-}
-
-// Counting sort: vertices stay in ascending order within a cell.
-void SelfContactSearch::fillCells(const std::vector<Eigen::Vector3d>& positions) {
-  cell_start_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const std::array<int, 3> at = cellOf(positions[i]);
-    cell_of_[i] = (at[2] * cells_[1] + at[1]) * cells_[0] + at[0];
-    ++cell_start_[cell_of_[i] + 1];
-  }
-  for (std::size_t c = 0; c + 1 < cell_start_.size(); ++c) cell_start_[c + 1] += cell_start_[c];
-  next_.assign(cell_start_.begin(), cell_start_.end() - 1);
-  for (std::size_t i = 0; i < positions.size(); ++i) sorted_[next_[cell_of_[i]]++] = static_cast<int>(i);
-}
-
-void SelfContactSearch::findNearOf(int vertex, const std::vector<Eigen::Vector3d>& positions, double distance,
-                                   std::vector<Near>& found) {
-  ++stamp_;
-  for (int k = wall_start_[vertex]; k < wall_start_[vertex + 1]; ++k) wall_stamp_[wall_[k]] = stamp_;
-  candidates_.clear();
-  const std::array<int, 3> at = cellOf(positions[vertex]);
-  for (int z = std::max(at[2] - 1, 0); z <= std::min(at[2] + 1, cells_[2] - 1); ++z)
-    for (int y = std::max(at[1] - 1, 0); y <= std::min(at[1] + 1, cells_[1] - 1); ++y)
-      for (int x = std::max(at[0] - 1, 0); x <= std::min(at[0] + 1, cells_[0] - 1); ++x)
-        visitCell((z * cells_[1] + y) * cells_[0] + x, vertex, positions, distance);
-  std::sort(candidates_.begin(), candidates_.end());
-  for (const int t : candidates_) {
-    const auto& n = triangles_[t];
-    const TriangleFoot foot = triangleFoot(positions[vertex], positions[n[0]], positions[n[1]], positions[n[2]]);
-    if (foot.away.squaredNorm() < distance * distance) found.push_back({vertex, t});
-  }
-}
-
-void SelfContactSearch::visitCell(int cell, int vertex, const std::vector<Eigen::Vector3d>& positions,
-                                  double distance) {
-  for (int k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
-    const int other = sorted_[k];
-    const double near = distance + edge_[other] / std::sqrt(3.0);
-    if (wall_stamp_[other] == stamp_ || (positions[other] - positions[vertex]).squaredNorm() > near * near) continue;
-    visitRing(other, [&](int t) {
-      if (triangle_stamp_[t] == stamp_) return;
-      triangle_stamp_[t] = stamp_;
-      const auto& n = triangles_[t];
-      if (wall_stamp_[n[0]] != stamp_ && wall_stamp_[n[1]] != stamp_ && wall_stamp_[n[2]] != stamp_)
-        candidates_.push_back(t);
-    });
-  }
+      found.push_back({one, other});
+  });
+  std::sort(found.begin(), found.end());
 }
 
 }  // namespace vibe

@@ -13,10 +13,14 @@ std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {
   return inputs;
 }
 
-void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
+ToolDisplacement ToolMotion::displacement(double fraction) const {
   ToolDisplacement displacement = start_displacement_;
   for (int d = 0; d < kYieldDofs; ++d) displacement[d] += fraction * (end_displacement_[d] - start_displacement_[d]);
-  tool_->forwardKinematics(inputs(fraction), displacement, poses);
+  return displacement;
+}
+
+void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
+  tool_->forwardKinematics(inputs(fraction), displacement(fraction), poses);
   for (Eigen::Isometry3d& pose : poses) pose = base_ * pose;
 }
 
@@ -44,6 +48,17 @@ std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::
     const double target = std::clamp(command[i], limit.lower, limit.upper);
     const double furthest = limit.velocity * dt;
     result[i] = position[i] + std::clamp(target - position[i], -furthest, furthest);
+  }
+  return result;
+}
+
+std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::array<double, kJointCount>& start,
+                                              const std::array<double, kJointCount>& end,
+                                              const std::array<double, kScopeJointCount>& effort) {
+  std::array<double, kJointCount> result = end;
+  for (int j = 0; j < kScopeJointCount; ++j) {
+    const bool over = std::abs(effort[j]) > tool.limits()[j].effort;
+    if (over && (end[j] - start[j]) * effort[j] > 0) result[j] = start[j];
   }
   return result;
 }

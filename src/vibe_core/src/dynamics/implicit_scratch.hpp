@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "contact/tool_guard.hpp"
 #include "haptics/impedance_estimator.hpp"
 #include "solver/implicit_stepper.hpp"
 #include "solver/sum_term.hpp"
@@ -16,8 +19,12 @@ struct ImplicitScratch : SolverScratch {
   std::shared_ptr<StepperScratch> stepper;
   std::vector<std::unique_ptr<ConstraintBlock>> blocks;  // in the order in which they are asked
   BodyLoads loads;
-  SumTerm terms;  // energies of the blocks
+  SumTerm terms;                                   // energies of the blocks
+  std::vector<char> has_term;                      // per block
+  std::array<std::vector<double>, 6> uncorrected;  // positions and velocities before corrections [m], [m/s]
   ToolPoses poses;
+  std::optional<ToolGuard> guard;                 // empty without a tool
+  std::array<std::vector<double>, 3> start;       // positions at the start of the step [m]
   std::vector<ToolTouch> touches;                 // of the last step
   std::unique_ptr<ImpedanceEstimator> impedance;  // null without a tool
   ToolContactRows tool_rows;

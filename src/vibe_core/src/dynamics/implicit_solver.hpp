@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "dynamics/loss_limits.hpp"
 #include "solver/implicit_stepper.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 
@@ -25,7 +26,7 @@ class ImplicitSolver : public Solver {
  private:
   std::shared_ptr<const ShellElements> shell_;
   ImplicitStepper stepper_;
-  double absurd_energy_ = 0;  // above what any load of a procedure stores [J]
+  LossLimits limits_;
 };
 
 }  // namespace vibe

@@ -10,6 +10,7 @@
 #include "model/max_speed.hpp"
 #include "model/tool_push.hpp"
 #include "solver/stepper_scratch.hpp"
+#include "vibe_core/model/accounting.hpp"
 
 namespace vibe {
 
@@ -31,6 +32,10 @@ constexpr double kRecoveryRate = 20;
 // Steps between checks for an organ that is inside out. Design choice: the check costs a pass over all triangles.
 constexpr int kCheckEvery = 10;
 
+// Share of the wall's tension that the gas has to bear for a state to count as held by it. Design choice: half; the
+// rest is motion and what else pulls.
+constexpr double kHeldPart = 0.5;
+
 void stopMotion(State& state) {
   for (auto* v : {&state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az})
     std::fill(v->begin(), v->end(), 0.0);
@@ -38,12 +43,12 @@ void stopMotion(State& state) {
 
 }  // namespace
 
-ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, double absurd_energy,
+ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, const LossLimits& limits,
                            const ToolMotion* motion, bool insufflator_on, State& state, ImplicitScratch& scratch,
                            StepReport& report)
     : model_(model),
       stepper_(stepper),
-      absurd_energy_(absurd_energy),
+      limits_(limits),
       motion_(motion),
       state_(state),
       report_(report),
@@ -88,19 +93,39 @@ bool ImplicitStep::asleep(Activity activity) const {
   return activity == Activity::Sleep && state_.solver.rest_steps >= kRestSteps && state_.step % kWakeEvery != 0;
 }
 
-// Elasticity does not lead back from everywhere: an everted wall, for example, rests in some other shape.
+// Elasticity does not lead back from everywhere: an everted wall, for example, rests in some other shape, and a wall
+// that bursts has no equilibrium. What loads hold is left alone.
 bool ImplicitStep::lost() const {
   const StepperMemory& memory = state_.solver;
   const double energy =
       memory.steps == 0 ? stepper_.elasticEnergy(motionOf(), *scratch_.stepper) : memory.elastic_energy;
-  if (energy > absurd_energy_) return true;
-  return memory.steps % kCheckEvery == 0 && lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z) < 0;
+  if (energy > limits_.unheldEnergy() && !heldByGas(energy)) return true;
+  if (memory.steps % kCheckEvery != 0) return false;
+  const double volume = lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z);
+  return volume < 0 || (model_.scene.gas && limits_.bursts(volume, state_.pressure, context_.insufflator_on));
+}
+
+// Whether the gas bears most of the wall's tension. By the virial theorem, forces in balance have opposite sums of
+// force times position: 3 p V of the gas. That of the wall is at least twice its energy.
+bool ImplicitStep::heldByGas(double energy) const {
+  if (!model_.scene.gas || !(3 * state_.pressure * state_.volume > 2 * kHeldPart * energy)) return false;
+  if (state_.solver.steps % kCheckEvery != 0) return true;
+  stepper_.elasticEnergy(motionOf(), *scratch_.stepper);
+  const std::vector<float>& gradient = scratch_.stepper->work;
+  double tension = 0;
+  for (int i = 0; i < model_.particle_count; ++i)
+    tension += gradient[4 * i] * state_.x[i] + gradient[4 * i + 1] * state_.y[i] + gradient[4 * i + 2] * state_.z[i];
+  const double volume = lumenVolume(model_.organ.surface, state_.x, state_.y, state_.z);
+  return 3 * state_.pressure * volume > kHeldPart * tension && volume > 0;
 }
 
 // Straight towards the rest position and without forces: a lost state has no meaningful dynamics.
 void ImplicitStep::recover() {
+  state_.energy.correction_work -= mechanicalEnergy().total() + state_.energy.contact_energy;
+  state_.energy.contact_energy = 0;
   StepperMemory fresh;
   fresh.steps = state_.solver.steps + 1;
+  fresh.elastic_energy = -1;
   fresh.recovery_steps = state_.solver.recovery_steps - 1;
   state_.solver = fresh;
   const double part = 1 - std::exp(-kRecoveryRate * context_.step);
@@ -112,16 +137,25 @@ void ImplicitStep::recover() {
   }
   stopMotion(state_);
   for (const auto& block : scratch_.blocks) block->recover(context_);
+  state_.energy.correction_work += mechanicalEnergy().total();
 }
 
 // @returns false where the state became useless; the simulator then resets it
 bool ImplicitStep::solve() {
   scratch_.terms.clear();
-  for (const auto& block : scratch_.blocks) scratch_.terms.add(block->energyTerm(context_));
+  scratch_.start[0] = state_.x, scratch_.start[1] = state_.y, scratch_.start[2] = state_.z;
+  scratch_.has_term.clear();
+  for (const auto& block : scratch_.blocks) {
+    const EnergyTerm* const term = block->energyTerm(context_);
+    scratch_.terms.add(term);
+    scratch_.has_term.push_back(term != nullptr ? 1 : 0);
+  }
+  contact_energy_ = state_.energy.contact_energy;
   scratch_.loads.extra = scratch_.terms.simplest();
   const StepOutcome outcome = stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
   report_.fallback = outcome.fallback;
+  work_ = outcome.work;
   if (!outcome.finite) std::fill(state_.x.begin(), state_.x.end(), std::numeric_limits<double>::quiet_NaN());
   if (outcome.finite && context_.bend != nullptr) yieldTool();
   return outcome.finite;
@@ -129,23 +163,73 @@ bool ImplicitStep::solve() {
 
 // From here on the tool is where the forces of this step have brought it.
 void ImplicitStep::yieldTool() {
-  ToolMotion yielded = *motion_;
+  yielded_ = *motion_;
   report_.tool_displacement = motion_->startDisplacement();
   for (int d = 0; d < kYieldDofs; ++d) report_.tool_displacement[d] += scratch_.loads.tool_yield.displacement[d];
-  yielded.displaceEnd(report_.tool_displacement);
-  yielded.linkPoses(1, scratch_.poses.end);
+  yielded_->displaceEnd(report_.tool_displacement);
+  yielded_->linkPoses(1, scratch_.poses.end);
 }
 
 void ImplicitStep::store() {
-  for (const auto& block : scratch_.blocks) block->correct(context_);
+  correct();
   scratch_.touches.clear();
-  for (const auto& block : scratch_.blocks) block->store(context_, scratch_.loads, scratch_.touches);
+  for (std::size_t b = 0; b < scratch_.blocks.size(); ++b) {
+    const double before = springWork();
+    scratch_.blocks[b]->store(context_, scratch_.loads, scratch_.touches);
+    if (scratch_.has_term[b] != 0) work_.extra -= springWork() - before;  // it has accounted for its term itself
+  }
   if (motion_ != nullptr) {
     reportTool();
     reportHand();
     reportImpedance();
   }
-  accountDamping();
+  account();
+}
+
+// Corrections are motions without forces: their work is the difference of the energies.
+void ImplicitStep::correct() {
+  std::vector<double>* const now[6] = {&state_.x, &state_.y, &state_.z, &state_.vx, &state_.vy, &state_.vz};
+  std::array<std::vector<double>, 6>& before = scratch_.uncorrected;
+  for (std::size_t k = 0; k < 6; ++k) before[k] = *now[k];
+  for (const auto& block : scratch_.blocks) block->correct(context_);
+  if (motion_ != nullptr) keepToolApart();
+  bool changed = false;
+  for (std::size_t k = 0; k < 6; ++k) changed = changed || before[k] != *now[k];
+  if (!changed) return;
+  const Energies after = mechanicalEnergy();
+  for (std::size_t k = 0; k < 6; ++k) before[k].swap(*now[k]);
+  const Energies uncorrected = mechanicalEnergy();
+  for (std::size_t k = 0; k < 6; ++k) before[k].swap(*now[k]);
+  state_.energy.correction_work += after.total() - uncorrected.total();
+  state_.solver.elastic_energy += (after.elastic + after.foundation) - (uncorrected.elastic + uncorrected.foundation);
+}
+
+// Kinetic, elastic, of foundation and weight.
+Energies ImplicitStep::mechanicalEnergy() const {
+  Energies parts = energiesBesideElastic(model_, state_);
+  parts.elastic = stepper_.elasticEnergy(motionOf(), *scratch_.stepper);
+  return parts;
+}
+
+// Whatever the solve left, the tool stays on its side of the wall. Straight paths of all nodes have been found free of
+// crossings among each other, so they are at any common part of the paths as well.
+void ImplicitStep::keepToolApart() {
+  const std::array<std::vector<double>*, 3> x{&state_.x, &state_.y, &state_.z}, v{&state_.vx, &state_.vy, &state_.vz},
+      a{&state_.ax, &state_.ay, &state_.az};
+  SurfacePath path;
+  for (std::size_t k = 0; k < 3; ++k) path.from[k] = scratch_.start[k].data(), path.to[k] = x[k]->data();
+  const ToolMotion& motion = yielded_ ? *yielded_ : *motion_;
+  const ToolGuard::Free free = scratch_.guard->keepApart(scratch_.poses, motion, path);
+  state_.joints = motion.inputs(free.tool);
+  if (yielded_) report_.tool_displacement = motion.displacement(free.tool);
+  if (free.wall >= 1) return;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < x[k]->size(); ++i) {
+      const double move = free.wall * ((*x[k])[i] - scratch_.start[k][i]);
+      (*x[k])[i] = scratch_.start[k][i] + move;
+      (*v[k])[i] = move / context_.step;
+      (*a[k])[i] = 0;
+    }
 }
 
 void ImplicitStep::reportTool() {
@@ -153,6 +237,7 @@ void ImplicitStep::reportTool() {
   for (const ToolTouch& touch : scratch_.touches) {
     if (touch.kind == ToolTouch::Kind::Grip) report_.grip_force -= touch.force;
     if (touch.kind == ToolTouch::Kind::Contact) ++report_.contact_count;
+    state_.energy.friction_loss += touch.force.dot(touch.motion) - touch.work;
     pushTool(-touch.force, touch.point, touch.motion, tip, report_, state_.energy);
   }
 }
@@ -162,7 +247,7 @@ void ImplicitStep::reportHand() {
   Eigen::Matrix<double, kJointCount, 1> effort = Eigen::Matrix<double, kJointCount, 1>::Zero();
   for (const ToolTouch& touch : scratch_.touches)
     effort += pointJacobian(*model_.tool, scratch_.poses.end, touch.link, touch.point).transpose() * touch.force;
-  const auto from = motion_->inputs(0), to = motion_->inputs(1);
+  const auto from = motion_->inputs(0), &to = state_.joints;
   if (model_.scope_springs) {
     const ToolDisplacement &before = motion_->startDisplacement(), &after = report_.tool_displacement;
     effort.head<kScopeJointCount>() =
@@ -182,13 +267,19 @@ void ImplicitStep::reportImpedance() {
                                  scratch_.stepper->volume_gradient, scratch_.loads.gas.stiffness, state_.impedance);
 }
 
-void ImplicitStep::accountDamping() {
-  double kinetic = 0;
-  for (int i = 0; i < model_.particle_count; ++i)
-    if (model_.inverse_mass[i] > 0)
-      kinetic += 0.5 * model_.mass[i] *
-                 (state_.vx[i] * state_.vx[i] + state_.vy[i] * state_.vy[i] + state_.vz[i] * state_.vz[i]);
-  state_.energy.damping_loss += 2 * kinetic * model_.scene.tissue.mass_damping * context_.step;
+void ImplicitStep::account() {
+  EnergyAccount& sum = state_.energy;
+  sum.gas_work += work_.gas;
+  sum.damping_loss += work_.mass_damping;
+  sum.viscous_loss += work_.viscous;
+  sum.numerical_loss += work_.numerical;
+  sum.residual_work += work_.residual;
+  // what walls in contact took from the tissue is stored or lost
+  sum.contact_loss -= work_.extra + sum.contact_energy - contact_energy_;
+}
+
+double ImplicitStep::springWork() const {
+  return state_.energy.pull_work + state_.energy.thread_work;
 }
 
 void ImplicitStep::updateRest(Activity activity) {

@@ -4,7 +4,9 @@
 
 #include "contact/tool_motion.hpp"
 #include "dynamics/implicit_scratch.hpp"
+#include "dynamics/loss_limits.hpp"
 #include "solver/implicit_stepper.hpp"
+#include "vibe_core/model/accounting.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 #include "vibe_core/state/state.hpp"
@@ -15,8 +17,8 @@ namespace vibe {
 /// forces. Resting tissue is skipped; lost tissue is led back to rest.
 class ImplicitStep {
  public:
-  /// @param absurd_energy  elastic energy above which the state counts as lost [J]
-  ImplicitStep(const Model& model, const ImplicitStepper& stepper, double absurd_energy, const ToolMotion* motion,
+  /// @param limits  that tell a lost state
+  ImplicitStep(const Model& model, const ImplicitStepper& stepper, const LossLimits& limits, const ToolMotion* motion,
                bool insufflator_on, State& state, ImplicitScratch& scratch, StepReport& report);
   void run();
 
@@ -24,26 +26,34 @@ class ImplicitStep {
   Activity gather();
   bool asleep(Activity activity) const;
   bool lost() const;
+  bool heldByGas(double energy) const;
   void recover();
   bool solve();
   void yieldTool();
   void store();
+  void keepToolApart();
   void reportTool();
   void reportHand();
   void reportImpedance();
-  void accountDamping();
+  void correct();
+  void account();
+  Energies mechanicalEnergy() const;
+  double springWork() const;
   void updateRest(Activity activity);
   MotionView motionOf() const;
 
   const Model& model_;
   const ImplicitStepper& stepper_;
-  double absurd_energy_;
+  const LossLimits& limits_;
   const ToolMotion* motion_;
   State& state_;
   StepReport& report_;
   ImplicitScratch& scratch_;
-  std::optional<ShaftBend> bend_;  // of a tool that yields
+  std::optional<ShaftBend> bend_;      // of a tool that yields
+  std::optional<ToolMotion> yielded_;  // its motion, after the solve
   StepContext context_;
+  StepWork work_;              // of the solve
+  double contact_energy_ = 0;  // before it [J]
 };
 
 }  // namespace vibe

@@ -15,6 +15,10 @@ constexpr double kFar = 5e-4;            // a larger move of a node triggers a r
 constexpr double kShortestStep = 2e-5;   // of the tool in a frame from which a slope is taken; design choice [m]
 constexpr double kMinEigenvalue = 1e-3;  // relative to the maximum; softer directions have no equilibrium
 
+// Compliance of the rows for the moving mass, where several points may have the same nearest node. Design choice: a
+// thousandth of that of a wall [m/N].
+constexpr double kFirm = 1e-5;
+
 // The displacement that relieves the force, in the directions that have a stiffness.
 Eigen::Vector3d solveWhereStiff(const Eigen::Matrix3d& stiffness, const Eigen::Vector3d& force) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stiffness);
@@ -46,6 +50,16 @@ void clear(ImpedanceBasis& basis) {
   basis.node.clear();
   basis.direction.clear();
   basis.row_motion.clear();
+}
+
+int nearestNode(const SurfacePoint& surface) {
+  const auto most = std::max_element(surface.weight.begin(), surface.weight.end());
+  return surface.node[static_cast<std::size_t>(most - surface.weight.begin())];
+}
+
+void setRow(const SurfacePoint& surface, const Eigen::Vector3d& direction, double compliance, EquationRow& row) {
+  row.form.setPoint(surface, direction);
+  row.compliance = compliance;
 }
 
 void setGas(const std::vector<float>& direction, double stiffness, ImpedanceBasis& basis) {
@@ -126,7 +140,7 @@ void ImpedanceEstimator::renew(const ToolContactRows& touch, const std::array<co
     next.positions[i] = static_cast<float>(positions[i % 3][i / 3]);
   setGas(gas_direction, gas_stiffness, next);
   for (const ToolRow& row : touch.rows) {
-    next.node.push_back(row.node);
+    next.node.push_back(nearestNode(row.surface));
     next.direction.push_back(row.direction);
     asVector(next.row_motion.emplace_back()) = row.motion.transpose();
   }
@@ -181,7 +195,7 @@ void ImpedanceEstimator::make(const ImpedanceBasis& basis, Made& out) const {
   ConstraintRows rows;
   Eigen::MatrixXd motion(static_cast<Eigen::Index>(basis.node.size()), kToolMotions);
   for (std::size_t r = 0; r < basis.node.size(); ++r) {
-    rows.equations.add().form.setNode(basis.node[r], basis.direction[r]);
+    setRow(SurfacePoint::ofNode(basis.node[r]), basis.direction[r], kFirm, rows.equations.add());
     for (std::size_t m = 0; m < kToolMotions; ++m) motion(static_cast<Eigen::Index>(r), m) = basis.row_motion[r][m];
   }
   out.stiffness->setRows(rows);
@@ -204,7 +218,8 @@ void ImpedanceEstimator::setRows(const ToolContactRows& touch) {
   rows_.equations.clear();
   motion_.resize(static_cast<Eigen::Index>(touch.rows.size()), kToolMotions);
   for (std::size_t r = 0; r < touch.rows.size(); ++r) {
-    rows_.equations.add().form.setNode(touch.rows[r].node, touch.rows[r].direction);
+    const ToolRow& row = touch.rows[r];
+    setRow(row.surface, row.direction, row.compliance, rows_.equations.add());
     motion_.row(static_cast<Eigen::Index>(r)) = touch.rows[r].motion;
   }
 }
@@ -220,7 +235,7 @@ std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& 
   if (factor_.info() != Eigen::Success || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
 
   nodes_.clear();
-  for (const ToolRow& row : touch.rows) nodes_.push_back(row.node);
+  for (const ToolRow& row : touch.rows) nodes_.insert(nodes_.end(), row.surface.node.begin(), row.surface.node.end());
   const bool comparable = touch.smooth && consecutive && nodes_ == memory.last_nodes;
   memory.has_last = memory.has_last && consecutive;
   memory.last_nodes.swap(nodes_);

@@ -16,7 +16,8 @@ namespace vibe {
 
 /// Where the tool acts on the tissue in one direction.
 struct ToolRow {
-  int node = -1;
+  SurfacePoint surface;
+  double compliance = 0;                          ///< between the tool and the point [m/N]
   Eigen::Vector3d direction;                      ///< unit
   Eigen::Matrix<double, 1, kToolMotions> motion;  ///< how its target moves with each of the tool's motions
 };

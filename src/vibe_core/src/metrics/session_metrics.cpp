@@ -70,6 +70,7 @@ void MetricsRecorder::sample(const Model& model, const State& state) {
   samples_until_ = static_cast<int>(std::lround(kSamplePeriod / model.scene.step_period)) - 1;
   model.tissue->strain(state, strain_.data());
   for (float strain : strain_) metrics_.max_strain = std::max(metrics_.max_strain, static_cast<double>(strain));
+  metrics_.energy = state.energy;
   metrics_.energy_balance = energyBalance(model, state) - start_balance_;
 }
 
@@ -77,9 +78,26 @@ int SessionMetrics::warnings() const {
   return events.of(Event::Kind::Warning) + events.of(Event::Kind::Recovery);
 }
 
+namespace {
+
+// What was put in, what was lost, and what is left over.
+std::string summarise(const EnergyAccount& e, double balance) {
+  char text[512];
+  std::snprintf(text, sizeof text,
+                "work               tool %.4f J   gas %.4f J   threads %.4f J   pull spring %.4f J\n"
+                "losses             sliding tool %.4f J   mass damping %.4f J   stiffness damping %.4f J\n"
+                "                   walls in contact %.4f J   time scheme %.4f J\n"
+                "solver             corrections %.4f J   residuals %.4f J   energy balance %.4f J\n",
+                e.tool_work, e.gas_work, e.thread_work, e.pull_work, e.friction_loss, e.damping_loss, e.viscous_loss,
+                e.contact_loss, e.numerical_loss, e.correction_work, e.residual_work, balance);
+  return text;
+}
+
+}  // namespace
+
 std::string summarise(const SessionMetrics& m) {
   using Kind = Event::Kind;
-  char text[1024];
+  char text[2048];
   std::snprintf(text, sizeof text,
                 "simulated time     %8.2f s\n"
                 "in contact         %8.2f s   holding tissue %.2f s   insufflating %.2f s\n"
@@ -88,12 +106,12 @@ std::string summarise(const SessionMetrics& m) {
                 "force on the tool  %8.2f N max   %.2f N mean\n"
                 "lumen              %8.1f mL now   %.1f mL max   at %.1f mmHg now   %.1f mmHg max\n"
                 "strain of the wall %8.1f %% max\n"
-                "energy balance     %8.4f J\n"
+                "%s"
                 "warnings           %8d",
                 m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.events.of(Kind::Grab),
                 m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force,
                 m.mean_force, m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322,
-                100 * m.max_strain, m.energy_balance, m.warnings());
+                100 * m.max_strain, summarise(m.energy, m.energy_balance).c_str(), m.warnings());
   return text + ("\n" + summarise(m.skill));
 }
 

@@ -13,7 +13,7 @@ Eigen::Vector3d velocity(const State& s, int i) {
 }
 }  // namespace
 
-Energies energies(const Model& model, const State& state) {
+Energies energiesBesideElastic(const Model& model, const State& state) {
   Energies e;
   const double foundation = model.scene.foundation ? model.scene.foundation->stiffness : 0;
   for (int i = 0; i < model.particle_count; ++i) {
@@ -23,13 +23,21 @@ Energies energies(const Model& model, const State& state) {
     e.gravity -= model.mass[i] * model.unbalanced_gravity.dot(shift);
     e.foundation += 0.5 * foundation * model.area[i] * shift.squaredNorm();
   }
+  return e;
+}
+
+Energies energies(const Model& model, const State& state) {
+  Energies e = energiesBesideElastic(model, state);
   e.elastic = model.tissue->energy(state);
+  e.contact = state.energy.contact_energy;
   return e;
 }
 
 double energyBalance(const Model& model, const State& state) {
-  return energies(model, state).total() - state.energy.tool_work - state.energy.gas_work - state.energy.thread_work -
-         state.energy.pull_work + state.energy.damping_loss;
+  const EnergyAccount& e = state.energy;
+  const double put_in = e.tool_work + e.gas_work + e.thread_work + e.pull_work;
+  const double lost = e.friction_loss + e.damping_loss + e.viscous_loss + e.contact_loss + e.numerical_loss;
+  return energies(model, state).total() - put_in + lost - e.correction_work - e.residual_work;
 }
 
 Eigen::Vector3d linearMomentum(const Model& model, const State& state) {

@@ -125,9 +125,9 @@ std::vector<SchemaRow> tissueRows() {
        "quasi-Newton iterations per step, of model shell; a step takes fewer once nothing moves and up to 12 if it "
        "does not converge; even numbers are more stable, 1 is for steps of a millisecond",
        kChoice},
-      {"tissue.spectral_radius", [](Scene& s) -> double& { return s.tissue.spectral_radius; }, "1", 0, 1,
-       "amplitude that the fastest vibrations keep over a step, of model shell: 1 conserves energy, 0 removes them "
-       "within a step",
+      {"tissue.spectral_radius", [](Scene& s) -> double& { return s.tissue.spectral_radius; }, "1", 0, 0.5,
+       "amplitude that the fastest vibrations keep over a step, of model shell; 0 removes them within a step. With more "
+       "than 0.5, large motions that nothing damps could gain energy",
        "generalised-alpha: Chung, Hulbert 1993, doi 10.1115/1.2900803"},
       {"tissue.self_contact", [](Scene& s) -> bool& { return s.tissue.self_contact; }, "", 0, 0,
        "contact between walls that are pulled together, of model shell", kChoice},

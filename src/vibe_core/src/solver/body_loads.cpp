@@ -42,6 +42,10 @@ std::size_t BodyLoads::addPoint(const std::vector<int>& node, const std::vector<
   return first;
 }
 
+double BodyLoads::pointWork(std::size_t first) const {
+  return constraints[first].work + constraints[first + 1].work + constraints[first + 2].work;
+}
+
 Eigen::Vector3d BodyLoads::pointForce(std::size_t first) const {
   return {constraints[first].force, constraints[first + 1].force, constraints[first + 2].force};
 }

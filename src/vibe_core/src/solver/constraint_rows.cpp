@@ -2,6 +2,12 @@
 
 namespace vibe {
 
+void LinearForm::setPoint(const SurfacePoint& point, const Eigen::Vector3d& direction) {
+  node.assign(point.node.begin(), point.node.begin() + point.count);
+  coefficient.clear();
+  for (int k = 0; k < point.count; ++k) coefficient.emplace_back(point.weight[static_cast<std::size_t>(k)] * direction);
+}
+
 double LinearForm::value(const std::vector<double>& position4) const {
   double sum = 0;
   for (std::size_t k = 0; k < node.size(); ++k) {

@@ -18,6 +18,7 @@ struct LinearForm {
     node.assign(1, at);
     coefficient.assign(1, direction);
   }
+  void setPoint(const SurfacePoint& point, const Eigen::Vector3d& direction);
   double value(const std::vector<double>& position4) const;
   /// Adds a force along the form.
   void addForce(double force, std::vector<float>& vector4) const;

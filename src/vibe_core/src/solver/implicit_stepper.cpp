@@ -8,6 +8,7 @@
 #include "solver/quasi_newton.hpp"
 #include "solver/rigid_guess.hpp"
 #include "solver/step_rows.hpp"
+#include "solver/step_work.hpp"
 #include "solver/thread_couplings.hpp"
 #include "solver/time_scheme.hpp"
 
@@ -168,8 +169,21 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
   if (!outcome.finite) return outcome;
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
   storeForces(scratch, scheme.z_gain / scheme.x_gain, loads);
-  finishStep(motion, outcome.fallback, scratch);
+  outcome.work = finishMotion(body_, scheme, motion, loads, scratch);
+  correctStored(memory, scratch, outcome);
   return outcome;
+}
+
+// A step that starts at the present positions learns their energy. Where it differs from what the last step has
+// foreseen, the scheme has lost the difference in the last step.
+void ImplicitStepper::correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome) const {
+  if (extrapolates(outcome.fallback) || (plan_->free && !outcome.fallback)) {
+    memory.elastic_energy = scratch.elastic_value;
+    return;
+  }
+  if (memory.elastic_energy >= 0 && memory.steps > 1)
+    outcome.work.numerical -= scratch.first_elastic_value - memory.elastic_energy;
+  memory.elastic_energy = std::max(0.0, scratch.first_elastic_value + outcome.work.stored);
 }
 
 // A single iteration does not move far and starts from the inertial prediction. With more iterations a step starts from
@@ -203,15 +217,15 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
                      std::min(plan_->safe_length, kUsualGrowth * memory.usual_length));
   newton.start();
   // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
-  if (extrapolates(outcome.fallback) && !(potential.elasticEnergy() <= kGuessGrowth * memory.elastic_energy)) {
+  if (extrapolates(outcome.fallback) && !(scratch.elastic_value <= kGuessGrowth * memory.elastic_energy)) {
     startFromHere(motion, scratch);
     newton.start();
   }
+  scratch.keepFirst();
   scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
   newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
   const bool arrived = iterate(newton, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
-  memory.elastic_energy = potential.elasticEnergy();
   scratch.gas_stiffness = potential.gas().stiffness(scratch.volume);
   return outcome.finite && arrived;
 }
@@ -238,22 +252,6 @@ bool ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOu
 void ImplicitStepper::startFromHere(const MotionView& motion, StepperScratch& scratch) const {
   for (int i = 0; i < body_.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) scratch.z[4 * i + k] = motion.x[k][i];
-}
-
-void ImplicitStepper::finishStep(const MotionView& motion, bool fallback, StepperScratch& scratch) const {
-  const TimeScheme& scheme = fallback ? plan_->fallback_scheme : plan_->scheme;
-  const double per_gain = 1 / scheme.z_gain;
-  for (int k = 0; k < 3; ++k) {
-    double *const x = motion.x[k], *const v = motion.v[k], *const a = motion.a[k];
-    const double* const z = scratch.z.data() + k;
-    for (int i = 0; i < body_.nodeCount(); ++i) {
-      if (body_.fixed[i] != 0) continue;
-      const double end = (z[4 * i] - scheme.free_z(x[i], v[i], a[i])) * per_gain;
-      x[i] = scheme.free_x(x[i], v[i], a[i]) + scheme.x_gain * end;
-      v[i] += scheme.free_v_a * a[i] + scheme.v_gain * end;
-      a[i] = end;
-    }
-  }
 }
 
 StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, StepperScratch& scratch, double tolerance,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/elastic_body.hpp"
+#include "solver/step_outcome.hpp"
 #include "sparse/factor.hpp"
 #include "vibe_core/state/stepper_memory.hpp"
 
@@ -23,16 +24,6 @@ struct StepSettings {
   /// whole number of steps, so that a replay has the same bits. 0: the factor stays [s]
   double refactor_interval = 1.0 / 6;
   double refactor_distance = 5e-4;  ///< it is begun when a node has moved farther than this [m]
-};
-
-/// What a step or a solve did.
-struct StepOutcome {
-  int iterations = 0;
-  double last_move = 0;      ///< farthest a node moved in the last iteration [m]
-  int refactorisations = 0;  ///< static solves only
-  bool converged = false;    ///< last_move is below the tolerance
-  bool fallback = false;     ///< the step was taken with backward Euler and many iterations
-  bool finite = true;        ///< false: the state is not usable
 };
 
 /// The memory of a stepper: factors, histories, vectors. One per thread of control.
@@ -72,11 +63,11 @@ class ImplicitStepper {
   struct Plan;
   bool extrapolates(bool fallback) const;
   void guess(const MotionView& motion, bool fallback, StepperScratch& scratch) const;
+  void correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome) const;
   bool attempt(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch,
                StepOutcome& outcome) const;
   bool iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
-  void finishStep(const MotionView& motion, bool fallback, StepperScratch& scratch) const;
   void refactorHere(const BodyLoads& loads, StepperScratch& scratch) const;
   void placeAtRest(const StepperScratch& scratch, const MotionView& motion) const;
 

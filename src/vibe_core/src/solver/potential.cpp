@@ -18,7 +18,9 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
   float* u = scratch_.displacement.data();
   const double* const rest = scratch_.rest.data();
   for (int i = 0; i < 4 * n; ++i) u[i] = static_cast<float>(z[i] - rest[i]);
-  std::fill(gradient.begin(), gradient.end(), 0.0F);
+  std::vector<float>& elastic = scratch_.elastic_gradient;
+  scratch_.only_first = false;
+  std::fill(elastic.begin(), elastic.end(), 0.0F);
   double value = 0;
   const int pieces = body_.elements->pieceCount();
   if (gas_.control != GasLoad::Control::None) {
@@ -26,24 +28,35 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
     scratch_.volume = 0;
     for (int p = 0; p < pieces; ++p) {
       double volume = 0;
-      value += body_.shell->evaluate(p, u, gradient.data(), scratch_.volume_gradient.data(), volume);
+      value += body_.shell->evaluate(p, u, elastic.data(), scratch_.volume_gradient.data(), volume);
       scratch_.volume += volume;
     }
     elastic_ = value;
     noise_ = 1e-6 * std::abs(value);
+    scratch_.elastic_value = value += addRareTerms(z, elastic);
     value += gasEnergy();
     const auto p = static_cast<float>(scratch_.pressure);
-    for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] -= p * scratch_.volume_gradient[i];
+    for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] = elastic[i] - p * scratch_.volume_gradient[i];
     for (int i = 0; i < n; ++i)
       if (body_.fixed[i] != 0)
         for (int k = 0; k < 3; ++k) scratch_.volume_gradient[4 * i + k] = 0;
   } else {
-    for (int p = 0; p < pieces; ++p) value += body_.elements->evaluate(p, u, gradient.data());
+    for (int p = 0; p < pieces; ++p) value += body_.elements->evaluate(p, u, elastic.data());
     elastic_ = value;
     noise_ = 1e-6 * std::abs(value);
+    scratch_.elastic_value = value += addRareTerms(z, elastic);
+    gradient = elastic;
   }
-  if (extra_ != nullptr) value += extra_->evaluate(z.data(), gradient.data());
+  if (extra_ != nullptr) value += addExtra(z, gradient);
   return value + addSprings(z, gradient) + addBodyTerms(z, gradient);
+}
+
+double Potential::addExtra(const std::vector<double>& z, std::vector<float>& gradient) const {
+  std::vector<float>& extra = scratch_.extra_gradient;
+  std::fill(extra.begin(), extra.end(), 0.0F);
+  const double value = extra_->evaluate(z.data(), extra.data());
+  for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] += extra[i];
+  return value;
 }
 
 double Potential::addSprings(const std::vector<double>& z, std::vector<float>& gradient) const {
@@ -92,11 +105,11 @@ double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>&
     }
   }
   noise_ += kRounding * (rounded[0] + rounded[1] + rounded[2]);  // of the displacements, which are single precision
-  return 0.5 * (twice[0] + twice[1] + twice[2]) - (work[0] + work[1] + work[2]) + addRareTerms(z, gradient);
+  return 0.5 * (twice[0] + twice[1] + twice[2]) - (work[0] + work[1] + work[2]);
 }
 
 // Springs to the rest position and dead loads, which few bodies have.
-double Potential::addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) {
+double Potential::addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const {
   const bool foundation = !body_.foundation.empty(), load = !body_.load.empty();
   if (!foundation && !load) return 0;
   double value = 0;

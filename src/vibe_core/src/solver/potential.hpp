@@ -31,7 +31,8 @@ class Potential {
  private:
   double gasEnergy();
   double addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
-  double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient);
+  double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const;
+  double addExtra(const std::vector<double>& z, std::vector<float>& gradient) const;
   double addSprings(const std::vector<double>& z, std::vector<float>& gradient) const;
 
   const ElasticBody& body_;

@@ -58,17 +58,10 @@ void setThread(const BodyLoads& loads, const ThreadLoad& thread, const MotionVie
   }
 }
 
-void setPoint(const SurfacePoint& point, const Eigen::Vector3d& direction, LinearForm& form) {
-  form.node.assign(point.node.begin(), point.node.begin() + point.count);
-  form.coefficient.clear();
-  for (int k = 0; k < point.count; ++k)
-    form.coefficient.emplace_back(point.weight[static_cast<std::size_t>(k)] * direction);
-}
-
 void setContact(const ContactConstraint& contact, ContactRows& rows) {
   const Eigen::Vector3d normal = contact.normal, tangent = normal.unitOrthogonal();
   rows.direction = {normal, tangent, normal.cross(tangent)};
-  for (std::size_t k = 0; k < 3; ++k) setPoint(contact.point, rows.direction[k], rows.form[k]);
+  for (std::size_t k = 0; k < 3; ++k) rows.form[k].setPoint(contact.point, rows.direction[k]);
   rows.friction = contact.friction;
   rows.compliance = contact.compliance;
   for (int k = 0; k < 3; ++k)

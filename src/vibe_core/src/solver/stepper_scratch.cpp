@@ -11,7 +11,9 @@ StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_position
       matrix(std::move(pattern)) {
   const std::size_t size = 4 * rest_positions.size();
   for (auto* v : {&rest, &z, &z_hat, &trial}) v->assign(size, 0);
-  for (auto* v : {&displacement, &gradient, &trial_gradient, &volume_gradient, &direction, &work}) v->assign(size, 0);
+  for (auto* v : {&displacement, &gradient, &trial_gradient, &volume_gradient, &direction, &work, &elastic_gradient,
+                  &extra_gradient, &first_displacement, &first_elastic_gradient, &first_extra_gradient})
+    v->assign(size, 0);
   for (std::size_t i = 0; i < rest_positions.size(); ++i)
     for (int k = 0; k < 3; ++k) rest[4 * i + k] = rest_positions[i][k];
   half.assign(3 * rest_positions.size() + 16, 0);

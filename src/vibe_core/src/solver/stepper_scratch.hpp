@@ -26,11 +26,15 @@ class StepperScratch {
   std::future<bool> making;                  // of next_factor
   ColumnCache columns, next_columns;         // of `factor`, of `next_factor`
   ConstraintSchur schur;
-  std::vector<double> rest;                      // positions [m]
-  std::vector<double> z, z_hat;                  // unknown, where inertia wants it [m]
-  std::vector<double> trial;                     // [m]
-  std::vector<float> displacement;               // of the point under evaluation [m]
-  std::vector<float> gradient, trial_gradient;   // [N]
+  std::vector<double> rest;                     // positions [m]
+  std::vector<double> z, z_hat;                 // unknown, where inertia wants it [m]
+  std::vector<double> trial;                    // [m]
+  std::vector<float> displacement;              // of the point under evaluation [m]
+  std::vector<float> gradient, trial_gradient;  // [N]
+  std::vector<float> elastic_gradient;          // its part from elements and foundation [N]
+  std::vector<float> extra_gradient;            // its part from BodyLoads::extra [N]
+  std::vector<float> first_displacement;        // the same of the first point of a step
+  std::vector<float> first_elastic_gradient, first_extra_gradient;
   std::vector<float> volume_gradient;            // [m^2]
   std::vector<float> direction, work;            // [m]
   std::vector<float> half;                       // in elimination order
@@ -39,9 +43,24 @@ class StepperScratch {
   int pairs = 0;
   ConstraintRows rows;
   Eigen::VectorXd target, rhs, force;
-  Eigen::VectorXd slid;             // thread that slid out of a row in this step, to the scale of the rows [m]
-  double volume = 0, pressure = 0;  // of the point under evaluation
-  double gas_stiffness = 0;         // there, after a step [Pa/m^3]
+  Eigen::VectorXd slid;  // thread that slid out of a row in this step, to the scale of the rows [m]
+  /// Keeps what the first evaluation of a step has found.
+  void keepFirst() {
+    first_displacement = displacement;
+    first_elastic_gradient.swap(elastic_gradient);
+    first_extra_gradient.swap(extra_gradient);
+    first_elastic_value = elastic_value;
+    only_first = true;
+  }
+  /// The first evaluation was the last one too.
+  void repeatFirst() {
+    elastic_gradient = first_elastic_gradient;
+    extra_gradient = first_extra_gradient;
+  }
+  double elastic_value = 0, first_elastic_value = 0;  // energy of elements and foundation [J]
+  bool only_first = true;                             // nothing was evaluated since
+  double volume = 0, pressure = 0;                    // of the point under evaluation
+  double gas_stiffness = 0;                           // there, after a step [Pa/m^3]
 };
 
 }  // namespace vibe

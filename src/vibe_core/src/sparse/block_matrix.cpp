@@ -80,13 +80,20 @@ void BlockMatrix::scale(double factor) {
   for (Eigen::Matrix3d& block : coupled_) block *= factor;
 }
 
+namespace {
+
+[[noreturn]] void throwMissing(int row, int column) {
+  throw Error("block (" + std::to_string(row) + ", " + std::to_string(column) +
+              ") is not in the pattern of its matrix: give blockPattern a group that holds both nodes.");
+}
+
+}  // namespace
+
 Eigen::Matrix3d& BlockMatrix::below(int row, int column) {
   const int index = pattern_->find(row, column);
   if (index >= 0) return lower_[index];
   const auto pair = std::lower_bound(pairs_.begin(), pairs_.end(), NodePair{row, column});
-  if (pair == pairs_.end() || !(*pair == NodePair{row, column}))
-    throw Error("block (" + std::to_string(row) + ", " + std::to_string(column) +
-                ") is not in the pattern of its matrix: give blockPattern a group that holds both nodes.");
+  if (pair == pairs_.end() || !(*pair == NodePair{row, column})) throwMissing(row, column);
   return coupled_[static_cast<std::size_t>(pair - pairs_.begin())];
 }
 
@@ -97,6 +104,25 @@ void BlockMatrix::add(int row, int column, const Eigen::Matrix3d& block) {
     below(row, column) += block;
   else
     below(column, row) += block.transpose();
+}
+
+int BlockMatrix::placeOf(int row, int column) const {
+  if (row < 0 || column < 0) return kNowhere;
+  if (row == column) return -1 - row;
+  const int index = pattern_->find(std::max(row, column), std::min(row, column));
+  if (index < 0) throwMissing(row, column);
+  return 2 * index + (row < column ? 1 : 0);
+}
+
+const std::vector<int>& BlockMatrix::placesOf(const std::vector<int>& groups, int group_size) {
+  for (const Places& known : places_)
+    if (known.group_size == group_size && known.groups == groups) return known.place;
+  Places places{groups, {}, group_size};
+  for (std::size_t first = 0; first < groups.size(); first += group_size)
+    for (int a = 0; a < group_size; ++a)
+      for (int b = 0; b <= a; ++b) places.place.push_back(placeOf(groups[first + a], groups[first + b]));
+  places_.push_back(std::move(places));
+  return places_.back().place;
 }
 
 void BlockMatrix::fix(int node) {

@@ -46,6 +46,22 @@ class BlockMatrix {
   /// must be symmetric.
   /// @throws Error  if the block is neither in the pattern nor among the coupled pairs
   void add(int row, int column, const Eigen::Matrix3d& block);
+  /// Where the blocks of groups of nodes are, for addAt(): per group and its members a >= b, in the order (0, 0), (1,
+  /// 0), (1, 1), (2, 0), ... Computed once for a list and kept, so that assembly does not search.
+  /// @param groups  as for blockPattern()
+  /// @throws Error  if a block is not in the pattern
+  const std::vector<int>& placesOf(const std::vector<int>& groups, int group_size);
+  static constexpr int kNowhere = -(1 << 30);  ///< place of a pair with a member that is -1
+  /// Adds a block at a place. @param block  row and column as the members a and b
+  template <class Block>
+  void addAt(int place, const Block& block) {
+    if (place >= 0 && (place & 1) == 0)
+      lower_[static_cast<std::size_t>(place) / 2] += block;
+    else if (place >= 0)
+      lower_[static_cast<std::size_t>(place) / 2] += block.transpose();
+    else
+      diagonal_[static_cast<std::size_t>(-1 - place)] += block;
+  }
   /// Replaces the rows and columns of a node by those of the unit matrix, which fixes the node.
   void fix(int node);
   /// out = A x, vectors of (3 * size), interleaved.
@@ -58,11 +74,17 @@ class BlockMatrix {
   const std::vector<Eigen::Matrix3d>& coupled() const { return coupled_; }  ///< of pairs()
 
  private:
+  struct Places {
+    std::vector<int> groups, place;
+    int group_size;
+  };
+  int placeOf(int row, int column) const;
   Eigen::Matrix3d& below(int row, int column);
 
   std::shared_ptr<const BlockPattern> pattern_;
   std::vector<NodePair> pairs_;
   std::vector<Eigen::Matrix3d> diagonal_, lower_, coupled_;
+  std::vector<Places> places_;
   std::vector<int> column_start_, column_block_;  // the blocks of each column below the diagonal, for fix()
 };
 

@@ -6,13 +6,18 @@
 
 namespace vibe {
 
-constexpr int kDenseRows = 8, kDenseColumns = 6;  // of a register tile
+/// Of a register tile; a tile's rows fill a cache line.
+template <class Real>
+constexpr int kDenseRows = 64 / static_cast<int>(sizeof(Real));
+constexpr int kDenseColumns = 6;
 
-/// C -= A B for the 6 columns of C from `c` on, column-major with column stride `stride`, and 8 rows per row panel. A:
-/// row panels in sequence, each with `depth` columns of 8 numbers. B: `depth` rows of 6 numbers.
-using DenseUpdate = void (*)(const double* a, int row_panels, const double* b, int depth, double* c,
-                             std::int64_t stride);
+/// C -= A B for the 6 columns of C from `c` on, column-major with column stride `stride`, and kDenseRows rows per row
+/// panel. A: row panels in sequence, each with `depth` columns of kDenseRows numbers. B: `depth` rows of 6 numbers.
+template <class Real>
+using DenseUpdate = void (*)(const Real* a, int row_panels, const Real* b, int depth, Real* c, std::int64_t stride);
 
-DenseUpdate denseUpdate(InstructionPath path);
+/// @tparam Real  float or double
+template <class Real>
+DenseUpdate<Real> denseUpdate(InstructionPath path);
 
 }  // namespace vibe

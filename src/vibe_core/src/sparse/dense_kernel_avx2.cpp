@@ -2,8 +2,12 @@
 
 namespace vibe {
 
-DenseUpdate denseUpdateAvx2() {
-  return DenseKernel<xsimd::fma3<xsimd::avx2>>::update;
+DenseUpdate<float> floatUpdateAvx2() {
+  return DenseKernel<float, xsimd::fma3<xsimd::avx2>>::update;
+}
+
+DenseUpdate<double> doubleUpdateAvx2() {
+  return DenseKernel<double, xsimd::fma3<xsimd::avx2>>::update;
 }
 
 }  // namespace vibe

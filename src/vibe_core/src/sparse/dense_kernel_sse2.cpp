@@ -2,8 +2,12 @@
 
 namespace vibe {
 
-DenseUpdate denseUpdateSse2() {
-  return DenseKernel<xsimd::sse2>::update;
+DenseUpdate<float> floatUpdateSse2() {
+  return DenseKernel<float, xsimd::sse2>::update;
+}
+
+DenseUpdate<double> doubleUpdateSse2() {
+  return DenseKernel<double, xsimd::sse2>::update;
 }
 
 }  // namespace vibe

@@ -44,7 +44,8 @@ struct Factor::Storage {
 
   void setPlan(std::shared_ptr<const FactorPlan> wanted) {
     plan = std::move(wanted);
-    multifrontal.setPlan(*plan);
+    if (kind == FactorStorage::Half) single_precision.setPlan(*plan);
+    known_to_double = false;
     const std::size_t rows = 3 * static_cast<std::size_t>(plan->pattern->size);
     scale.resize(rows);
     float_scale.resize(rows);
@@ -85,19 +86,35 @@ struct Factor::Storage {
     return true;
   }
 
-  void take(int s, const DoublePanel& panel) {
+  void take(int s, const FrontPanel<float>& panel) { pack(s, panel, half); }
+  void take(int s, const FrontPanel<double>& panel) {
+    if (kind == FactorStorage::Half) pack(s, panel, half);
+    if (kind == FactorStorage::Float) pack(s, panel, single);
+    if (kind == FactorStorage::Double) pack(s, panel, wide);
+  }
+
+  template <class Real, class Number>
+  void pack(int s, const FrontPanel<Real>& panel, AlignedBuffer<Number>& numbers) {
     const PanelStep& step = plan->steps[s];
-    float* columns = column_scale.data() + step.first_row;
-    if (kind == FactorStorage::Half) packPanel(panel, step, half.data() + step.panel, columns);
-    if (kind == FactorStorage::Float) packPanel(panel, step, single.data() + step.panel, columns);
-    if (kind == FactorStorage::Double) packPanel(panel, step, wide.data() + step.panel, columns);
+    packPanel(panel, step, numbers.data() + step.panel, column_scale.data() + step.first_row);
+  }
+
+  bool compute(const BlockMatrix& matrix) {
+    const auto taking = [this](int s, const auto& panel) { take(s, panel); };
+    if (!takeScale(matrix)) return false;
+    if (kind == FactorStorage::Half && single_precision.run(matrix, scale, taking)) return true;
+    if (!known_to_double) double_precision.setPlan(*plan);
+    known_to_double = true;
+    return double_precision.run(matrix, scale, taking);
   }
 
   std::shared_ptr<const FactorPlan> plan;
   FactorStorage kind;
   PanelKernels kernels;
-  Multifrontal multifrontal;
-  std::vector<double> scale;  // D, in elimination order
+  Multifrontal<float> single_precision;
+  Multifrontal<double> double_precision;
+  bool known_to_double = false;  // the plan; its memory is rarely needed
+  std::vector<double> scale;     // D, in elimination order
   std::vector<float> float_scale, column_scale;
   AlignedBuffer<std::uint16_t> half;
   AlignedBuffer<float> single;
@@ -129,9 +146,7 @@ void Factor::checkPattern(const BlockMatrix& matrix) const {
 
 bool Factor::compute(const BlockMatrix& matrix) {
   checkPattern(matrix);
-  return storage_->takeScale(matrix) &&
-         storage_->multifrontal.run(matrix, storage_->scale,
-                                    [this](int s, const DoublePanel& panel) { storage_->take(s, panel); });
+  return storage_->compute(matrix);
 }
 
 int Factor::rows() const {

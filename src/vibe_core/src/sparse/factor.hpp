@@ -35,10 +35,11 @@ struct HalfColumns {
 };
 
 /// Cholesky factor L Lt = D A D of a positive definite block matrix, where the diagonal scaling D makes every diagonal
-/// entry of the scaled matrix 1. Computed in double precision and stored in the requested one: per supernode as
-/// [L11^-1; -L21 L11^-1], with columns scaled to the range of half precision. The half-precision factor is still the
-/// inverse of some symmetric positive definite matrix, near A^-1 to about 1e-3 if A is well conditioned. It is meant as
-/// a preconditioner. The substitutions may run in several threads at once, compute() must run alone.
+/// entry of the scaled matrix 1. Stored in the requested precision: per supernode as [L11^-1; -L21 L11^-1], with
+/// columns scaled to the range of half precision. For storage in half precision it is computed in single precision, and
+/// in double precision where a pivot of D A D is below 1e-5; otherwise in double precision. The half-precision factor
+/// is still the inverse of some symmetric positive definite matrix, near A^-1 to about 1e-3 if A is well conditioned.
+/// It is meant as a preconditioner. The substitutions may run in several threads at once, compute() must run alone.
 class Factor {
  public:
   explicit Factor(std::shared_ptr<const FactorPlan> plan, FactorStorage storage = FactorStorage::Half);

@@ -8,15 +8,18 @@
 
 namespace vibe {
 
-/// Panel of one supernode as produced by the factorisation: W of PanelStep in double precision, column-major with
-/// column stride `stride`, zero above the diagonal and below the last row.
-struct DoublePanel {
-  const double* numbers;
+/// Panel of one supernode as produced by the factorisation: W of PanelStep, column-major with column stride `stride`,
+/// zero above the diagonal and below the last row.
+template <class Real>
+struct FrontPanel {
+  const Real* numbers;
   std::int64_t stride;
 };
 
 /// Multifrontal Cholesky factorisation (Duff and Reid, ACM Trans. Math. Softw. 9 (1983)) of a sequence of matrices.
 /// Keeps its memory between them.
+/// @tparam Real  of the arithmetic, float or double
+template <class Real>
 class Multifrontal {
  public:
   /// What follows is about this plan, which must outlive its use.
@@ -32,7 +35,7 @@ class Multifrontal {
     for (int s = 0; s < static_cast<int>(plan_->steps.size()); ++s) {
       assemble(s, matrix, scale);
       if (!elimination_.run(front_.data(), rows(s), plan_->steps[s].columns)) return false;
-      take(s, DoublePanel{front_.data(), FrontElimination::stride(rows(s))});
+      take(s, FrontPanel<Real>{front_.data(), FrontElimination<Real>::stride(rows(s))});
       pushUpdate(s);
     }
     return true;
@@ -52,8 +55,8 @@ class Multifrontal {
   void pushUpdate(int s);
 
   const FactorPlan* plan_ = nullptr;
-  FrontElimination elimination_;
-  AlignedBuffer<double> front_, stack_;
+  FrontElimination<Real> elimination_;
+  AlignedBuffer<Real> front_, stack_;
   std::vector<Update> waiting_;
   std::int64_t stack_top_ = 0;
 };

@@ -31,7 +31,8 @@ template <class Number>
 struct Column {
   std::vector<Number> numbers;
 
-  float take(const double* from, int count) {
+  template <class Real>
+  float take(const Real* from, int count) {
     numbers.resize(count);
     for (int i = 0; i < count; ++i) numbers[i] = static_cast<Number>(from[i]);
     return 1;
@@ -45,7 +46,8 @@ struct Column<std::uint16_t> {
 
   // The scale is a power of two, so scaling is exact. It prevents overflow of the column, and the loss by flushing
   // subnormals is less than 2^-27 of the largest number in the column.
-  float take(const double* from, int count) {
+  template <class Real>
+  float take(const Real* from, int count) {
     numbers.resize(count);
     rounded.resize(count);
     float* single = rounded.data();
@@ -61,8 +63,10 @@ struct Column<std::uint16_t> {
   }
 };
 
-template <class Number>
-void pack(const DoublePanel& panel, const PanelStep& step, Number* to, float* column_scale) {
+}  // namespace
+
+template <class Real, class Number>
+void packPanel(const FrontPanel<Real>& panel, const PanelStep& step, Number* to, float* column_scale) {
   thread_local Column<Number> column;
   const int rows = step.row_blocks * kTile;
   for (int first = 0; first < step.columns; first += kTile) {
@@ -78,16 +82,9 @@ void pack(const DoublePanel& panel, const PanelStep& step, Number* to, float* co
   }
 }
 
-}  // namespace
-
-void packPanel(const DoublePanel& panel, const PanelStep& step, std::uint16_t* to, float* column_scale) {
-  pack(panel, step, to, column_scale);
-}
-void packPanel(const DoublePanel& panel, const PanelStep& step, float* to, float* column_scale) {
-  pack(panel, step, to, column_scale);
-}
-void packPanel(const DoublePanel& panel, const PanelStep& step, double* to, float* column_scale) {
-  pack(panel, step, to, column_scale);
-}
+template void packPanel(const FrontPanel<float>&, const PanelStep&, std::uint16_t*, float*);
+template void packPanel(const FrontPanel<double>&, const PanelStep&, std::uint16_t*, float*);
+template void packPanel(const FrontPanel<double>&, const PanelStep&, float*, float*);
+template void packPanel(const FrontPanel<double>&, const PanelStep&, double*, float*);
 
 }  // namespace vibe

@@ -118,7 +118,7 @@ Eigen::Vector3d difference(const Vectors& x, int to, int from) {
 }
 
 void addMembrane(const Material& material, const WallTerms<double>& terms, const double* rest, const FibresOf& fibres,
-                 const Vectors& x, const Vectors& u, Matrix18& k) {
+                 const Vectors& x, const Vectors& u, bool whole, Matrix18& k) {
   for (int side = 0; side < 3; ++side) {
     const SideNodes& n = kSideNodes[side];
     const SideBlocks b =
@@ -127,6 +127,7 @@ void addMembrane(const Material& material, const WallTerms<double>& terms, const
     const int nodes[4] = {n.e_to, n.e_from, n.d_to, n.d_from};
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
+        if (!whole && nodes[i] < nodes[j]) continue;
         const double sign = (i + j) % 2 == 0 ? 1 : -1;
         auto block = k.block<3, 3>(3 * nodes[i], 3 * nodes[j]);
         if (i < 2 && j < 2) block += sign * b.ee;
@@ -162,7 +163,7 @@ Rows18 curvatureRows(const Bent<double>& s) {
 }
 
 void addBending(const WallTerms<double>& terms, const double* rest, const Patch<double>& x, const Patch<double>& u,
-                Matrix18& k) {
+                bool whole, Matrix18& k) {
   const auto rows = [rest](int row) { return rest[row]; };
   const Bent<double> s = bentSurface(rows, x, u);
   const BendingFactor<double> factor = bendingFactor(terms, s.thin);
@@ -173,7 +174,12 @@ void addBending(const WallTerms<double>& terms, const double* rest, const Patch<
   const double gauss = 2 * (1 - terms.poisson_ratio) * s.square;
   law(0, 2) -= gauss, law(2, 0) -= gauss, law(1, 1) += 2 * gauss;
   const Rows18 moment = rest[kShellBend] * factor.whole * law * b;
-  k.noalias() += b.transpose() * moment;
+  const Eigen::Matrix<double, 18, 3> columns = b.transpose();
+  for (int j = 0; j < 18; ++j) {
+    const int first = whole ? 0 : j / 3 * 3;
+    const double m0 = moment(0, j), m1 = moment(1, j), m2 = moment(2, j);
+    for (int i = first; i < 18; ++i) k(i, j) += m0 * columns(i, 0) + m1 * columns(i, 1) + m2 * columns(i, 2);
+  }
 }
 
 // Folds the derivatives of the ghosts into those of the other nodes.
@@ -199,6 +205,7 @@ void foldGhosts(const double* rest, Matrix18& k) {
 }  // namespace
 
 void ShellElements::addStiffness(const double* displacement, BlockMatrix& stiffness) const {
+  const int* place = stiffness.placesOf(patch_nodes_, 6).data();
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
     const auto material = static_cast<std::size_t>(materialOf(e));
     const Material& m = mesh_.materials[material];
@@ -206,19 +213,19 @@ void ShellElements::addStiffness(const double* displacement, BlockMatrix& stiffn
     gather(e, displacement, u);
     std::copy(rest(e) + kShellPatch, rest(e) + kShellPatch + 15, &x[0][0]);
     Matrix18 k = Matrix18::Zero();
+    const bool whole = atBoundary(e);  // folding needs the blocks above the diagonal too
     const FibresOf fibres{fibre_rest_.empty() ? nullptr : &fibre_rest_[kFibreRows * e], mesh_.fibres.stiffening};
     addMembrane(m, WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), fibres,
-                Eigen::Map<const Vectors>(&x[0][0]), Eigen::Map<const Vectors>(&u[0][0]), k);
-    addBending(WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), x, u, k);
-    if (atBoundary(e)) foldGhosts(rest(e), k);
+                Eigen::Map<const Vectors>(&x[0][0]), Eigen::Map<const Vectors>(&u[0][0]), whole, k);
+    addBending(WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), x, u, whole, k);
+    if (whole) foldGhosts(rest(e), k);
     for (int a = 0; a < 6; ++a)
-      for (int b = 0; b <= a; ++b) {
-        const int row = patchNode(e, a), column = patchNode(e, b);
-        if (row < 0 || column < 0) continue;
-        const Eigen::Matrix3d block = k.block<3, 3>(3 * a, 3 * b);
-        stiffness.add(row, column, block);
+      for (int b = 0; b <= a; ++b, ++place) {
+        if (*place == BlockMatrix::kNowhere) continue;
+        const auto block = k.block<3, 3>(3 * a, 3 * b);
+        stiffness.addAt(*place, block);
         // a node that is the apex beyond two sides
-        if (row == column && a != b) stiffness.add(row, column, block.transpose());
+        if (*place < 0 && a != b) stiffness.addAt(*place, block.transpose());
       }
   }
 }

@@ -159,7 +159,7 @@ TEST_P(PullSpringTest, itsWorkIsInTheAccount) {
   Scene scene = foundationScene(GetParam());
   scene.tissue.mass_damping = 0;
   scene.tissue.stiffness_damping = 0;
-  scene.tissue.spectral_radius = 1;
+  scene.tissue.spectral_radius = 0.5;
   scene.step_period = 1e-3;
   World world(scene, plainOrgan(icosphere(kRadius, 3), kWall));
   const double before = energyBalance(*world.model, world.state);

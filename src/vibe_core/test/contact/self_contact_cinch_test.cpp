@@ -61,7 +61,8 @@ class Cinch {
     double fastest = 0;
     for (std::size_t i = 0; i < surface.vertices.size(); ++i) fastest = std::max(fastest, velocity(i).norm());
     if (contact_on_) {
-      contact_->detect(view.x[0], view.x[1], view.x[2], std::clamp(2.5 * kStep * fastest, 5e-4, 2e-3));
+      contact_->detect({view.x[0], view.x[1], view.x[2]}, {view.v[0], view.v[1], view.v[2]},
+                       std::clamp(2.5 * kStep * fastest, 5e-4, 2e-3), kStep);
       loads.extra = contact_.get();
     }
     const StepOutcome outcome = stepper->step(view, loads, memory, *scratch);

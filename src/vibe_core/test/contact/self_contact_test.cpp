@@ -90,13 +90,13 @@ struct World {
     for (int k = 0; k < 3; ++k) at[4 * i + k] = p[k];
   }
   void detect(double reach) {
-    std::vector<double> x, y, z;
-    for (std::size_t i = 0; i < count(); ++i) {
-      x.push_back(at[4 * i]);
-      y.push_back(at[4 * i + 1]);
-      z.push_back(at[4 * i + 2]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      position[k].resize(count());
+      for (std::size_t i = 0; i < count(); ++i) position[k][i] = at[4 * i + k];
+      speed[k].resize(count(), 0);
     }
-    contact.detect(x.data(), y.data(), z.data(), reach);
+    contact.detect({position[0].data(), position[1].data(), position[2].data()},
+                   {speed[0].data(), speed[1].data(), speed[2].data()}, reach, kStep);
   }
   /// Ends a step that has moved by `move` since detect().
   std::size_t resolvePenetrations(const std::vector<double>& move) {
@@ -143,6 +143,7 @@ struct World {
 
   SurfaceMesh rest;
   SelfContact contact;
+  std::array<std::vector<double>, 3> position, speed;  // at detect()
   std::vector<double> at;
   std::vector<float> gradient;
 };
@@ -466,7 +467,7 @@ std::pair<double, double> measure(World& world, double moved) {
       {x[0].data(), x[1].data(), x[2].data()}, {v.data(), v.data(), v.data()}, {v.data(), v.data(), v.data()}};
   for (int i = 0; i < 201; ++i) {
     const double start = threadTime();
-    world.contact.detect(x[0].data(), x[1].data(), x[2].data(), 2e-3);
+    world.contact.detect({x[0].data(), x[1].data(), x[2].data()}, {v.data(), v.data(), v.data()}, 2e-3, kStep);
     for (double& value : x[0]) value += i % 2 == 0 ? moved : -moved;
     world.contact.resolvePenetrations(view, kStep);
     times.push_back(threadTime() - start);

@@ -24,7 +24,7 @@ ElasticBody springs() {
 
 ToolRow rowOf(int node, const Eigen::Vector3d& direction) {
   ToolRow row;
-  row.node = node;
+  row.surface = SurfacePoint::ofNode(node);
   row.direction = direction;
   row.motion.setZero();
   row.motion.head<3>() = direction.transpose();
@@ -168,7 +168,7 @@ TEST(ToolImpedance, FollowsTheSlopeOfTheForcesAlongTheMotion) {
   EXPECT_LT(response->equilibrium.norm(), 1e-5);
   response = estimate.next(touch);  // at rest it stays
   EXPECT_NEAR(along.dot(response->stiffness * along), 60, 0.1);
-  touch.rows[0].node = touch.rows[1].node = touch.rows[2].node = 5;  // something else is touched: no slope
+  for (ToolRow& row : touch.rows) row.surface.node[0] = 5;  // something else is touched: no slope
   touch.place.head<3>() += 1e-3 * across;
   response = estimate.next(touch);
   EXPECT_NEAR(across.dot(response->stiffness * across), kSpring, 0.1);

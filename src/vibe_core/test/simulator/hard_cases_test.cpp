@@ -182,6 +182,65 @@ TEST(Hard, PressureBeyondTheLimitPoint) {
   EXPECT_TRUE(std::isfinite(world.state.pressure));
 }
 
+/// Pressure in a thin sphere of the neo-Hookean law whose radius has grown by a factor, over 2 t / R: dU/dV of
+/// W = mu/2 (I - 3) - mu ln J + lambda/2 ln^2 J, stretched equally in the plane and free in thickness.
+double spherePressure(double mu, double lambda, double stretch) {
+  double low = 0.1, high = 2;  // stretch s of the thickness: mu (s^2 - 1) + lambda ln(stretch^2 s) = 0
+  for (int i = 0; i < 60; ++i) {
+    const double s = 0.5 * (low + high);
+    (mu * (s * s - 1) + lambda * std::log(stretch * stretch * s) > 0 ? high : low) = s;
+  }
+  const double log_volume = std::log(stretch * stretch * low);
+  return (mu * (stretch - 1 / stretch) + lambda * log_volume / stretch) / (stretch * stretch);
+}
+
+double limitPressure(const TissueScene& tissue, double thickness) {
+  const double e = tissue.young_modulus, nu = tissue.poisson_ratio;
+  double max = 0;
+  for (double stretch = 1; stretch < 2; stretch += 1e-3)
+    max = std::max(max, spherePressure(e / (2 * (1 + nu)), e * nu / ((1 + nu) * (1 - 2 * nu)), stretch));
+  return 2 * thickness / kRadius * max;
+}
+
+/// A ball that is filled slowly to a part of its limit pressure or, with a stiffening law, to any pressure.
+World filledBall(const char* law, double pressure_over_limit) {
+  Scene scene = hardScene();
+  scene.tissue.law = law;
+  scene.foundation->stiffness = 1;  // knows where to be
+  scene.gas = GasScene{};
+  scene.gas->insufflator_on = true;
+  scene.gas->flow_limit = 3e-4;
+  scene.gas->regulated_pressure = pressure_over_limit * limitPressure(scene.tissue, 2.3e-3);
+  return World(scene, ball());
+}
+
+TEST(Hard, AStableWallBelowItsLimitPressureIsLeftAlone) {
+  for (const double part : {0.92, 0.98}) {
+    World world = filledBall("neo_hookean", part);
+    runWatched(world, 12);
+    EXPECT_EQ(world.count(Event::Kind::Recovery), 0) << part;
+    EXPECT_EQ(world.count(Event::Kind::PressureReached), 1) << part;
+    EXPECT_GT(std::cbrt(world.state.volume / world.model->rest_volume), part < 0.95 ? 1.2 : 1.27);
+  }
+}
+
+TEST(Hard, AWallThatBurstsIsLedBack) {
+  World world = filledBall("neo_hookean", 1.05);
+  runWatched(world, 20, 10);
+  EXPECT_GE(world.count(Event::Kind::Recovery), 1);
+  EXPECT_EQ(world.count(Event::Kind::PressureReached), 0);
+}
+
+TEST(Hard, AStiffeningWallMayStretchAsFarAsItsGasHoldsIt) {
+  for (const double part : {2.0, 6.0}) {
+    World world = filledBall("yeoh", part);
+    runWatched(world, 20);
+    EXPECT_EQ(world.count(Event::Kind::Recovery), 0) << part;
+    EXPECT_EQ(world.count(Event::Kind::PressureReached), 1) << part;
+    EXPECT_GT(std::cbrt(world.state.volume / world.model->rest_volume), part < 3 ? 1.3 : 1.51);
+  }
+}
+
 TEST(Hard, InsufflationIsNothingUnusual) {
   Scene scene = hardScene();
   scene.gas = GasScene{};

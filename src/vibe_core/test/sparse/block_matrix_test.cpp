@@ -89,5 +89,50 @@ TEST_F(BlockMatrixTest, FixesRowAndColumn) {
   EXPECT_EQ(dense(matrix), expected);
 }
 
+TEST_F(BlockMatrixTest, PlacesOfGroupsAreWhereBlocksAreAddedByNode) {
+  const std::vector<int> elements = {3, 0, 1, 4, 1, -1};
+  BlockMatrix other = matrix;
+  const std::vector<int> places = matrix.placesOf(elements, 3);
+  ASSERT_EQ(places.size(), 12u);
+  std::size_t at = 0;
+  for (std::size_t first = 0; first < elements.size(); first += 3)
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b <= a; ++b, ++at) {
+        const int row = elements[first + a], column = elements[first + b];
+        EXPECT_EQ(places[at] == BlockMatrix::kNowhere, row < 0 || column < 0);
+        if (places[at] == BlockMatrix::kNowhere) continue;
+        const Eigen::Matrix3d added =
+            static_cast<double>(at + 1) * (row == column ? Eigen::Matrix3d(block + block.transpose()) : block);
+        matrix.addAt(places[at], added);
+        other.add(row, column, added);
+      }
+  EXPECT_EQ(dense(matrix), dense(other));
+  EXPECT_GT(dense(matrix).norm(), 1);
+  EXPECT_EQ(matrix.placesOf(elements, 3), places) << "known already";
+  const std::vector<int> missing = {0, 4};
+  EXPECT_THROW(matrix.placesOf(missing, 2), Error);
+}
+
+TEST_F(BlockMatrixTest, CoupledPairsAreBlocksBesideThePattern) {
+  EXPECT_THROW(matrix.add(4, 0, block), Error);
+  matrix.couple({{2, 0}, {4, 0}});
+  matrix.add(4, 0, block);
+  matrix.add(0, 2, block);
+  matrix.add(2, 2, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(matrix.coupled()[0], block.transpose());
+  EXPECT_EQ(matrix.coupled()[1], block);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(15, -1, 3);
+  Eigen::VectorXd out(15);
+  matrix.multiply(x.data(), out.data());
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(15);
+  expected.segment<3>(0) = block.transpose() * x.segment<3>(12) + block * x.segment<3>(6);
+  expected.segment<3>(6) = x.segment<3>(6) + block.transpose() * x.segment<3>(0);
+  expected.segment<3>(12) = block * x.segment<3>(0);
+  EXPECT_LT((out - expected).norm(), 1e-12);
+  matrix.fix(4);
+  EXPECT_EQ(matrix.coupled()[1], Eigen::Matrix3d::Zero());
+  EXPECT_NE(matrix.coupled()[0], Eigen::Matrix3d::Zero());
+}
+
 }  // namespace
 }  // namespace vibe

@@ -217,6 +217,20 @@ TEST(FactorTest, GivesTheSameBitsTwice) {
   EXPECT_EQ(solveFloat(second, b), x);
 }
 
+// The pivot of the second node is 2e-6, of which single precision would lose three percent.
+TEST(FactorTest, SmallPivotsAreComputedInDoublePrecision) {
+  constexpr double kWeak = 1e-6;
+  const std::vector<int> both = {0, 1};
+  BlockMatrix matrix(std::make_shared<BlockPattern>(blockPattern(2, {{&both, 2}})));
+  const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
+  for (const int node : both) matrix.add(node, node, (1 + kWeak) * unit);
+  matrix.add(1, 0, -unit);
+  Factor factor(makeFactorPlan(matrix.pattern()), FactorStorage::Half);
+  ASSERT_TRUE(factor.compute(matrix));
+  const Eigen::VectorXd b = Eigen::VectorXd::Ones(6);
+  EXPECT_LT((kWeak * solveFloat(factor, b) - b).norm(), 3e-3 * b.norm());
+}
+
 TEST(FactorTest, RefusesWhatIsNotPositiveDefinite) {
   std::mt19937 generator(18);
   const BlockMatrix good = shellMatrix(closedMesh(4), 1.0, 0.1);

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -50,13 +51,13 @@ class PanelKernelTest : public ::testing::TestWithParam<std::pair<int, int>> {
     wide.resize(panelSize(columns, step.row_blocks));
     half_scale.assign(vector_size, 1.0F);
     wide_scale.assign(vector_size, 1.0F);
-    packPanel({numbers.data(), stride}, step, half.data(), half_scale.data() + 3);
+    packPanel(FrontPanel<double>{numbers.data(), stride}, step, half.data(), half_scale.data() + 3);
     for (int j = 0; j < columns; ++j)  // what the halves ought to be
       for (int i = j; i < rows; ++i) {
         double& number = numbers[j * stride + i];
         number = roundedToHalf(number, std::ldexp(half_scale[3 + j], -14));
       }
-    packPanel({numbers.data(), stride}, step, wide.data(), wide_scale.data() + 3);
+    packPanel(FrontPanel<double>{numbers.data(), stride}, step, wide.data(), wide_scale.data() + 3);
     for (int i = 0; i < 3 * vector_size; ++i) start.push_back(static_cast<float>(normal(generator)));
   }
 
@@ -126,32 +127,42 @@ INSTANTIATE_TEST_SUITE_P(Shapes, PanelKernelTest,
                                            std::pair(4, 2), std::pair(5, 17), std::pair(6, 1), std::pair(7, 0),
                                            std::pair(8, 30), std::pair(21, 11)));
 
-TEST(DenseKernelTest, PathsAgree) {
+template <class Real>
+class DensePrecisionTest : public ::testing::Test {
+ protected:
+  static constexpr double kTolerance = 500 * std::numeric_limits<Real>::epsilon();
+};
+
+using Precisions = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(DensePrecisionTest, Precisions, );
+
+TYPED_TEST(DensePrecisionTest, PathsAgree) {
   if (bestInstructionPath() != InstructionPath::Avx2) GTEST_SKIP() << "this processor has no AVX2";
-  constexpr int kDepth = 13, kPanels = 3, kStride = 8 * kPanels + 5;
+  constexpr int kTileRows = kDenseRows<TypeParam>, kDepth = 13, kPanels = 3, kStride = kTileRows * kPanels + 5;
   std::mt19937 generator(5);
   std::normal_distribution<double> normal;
-  AlignedBuffer<double> a, b;
-  a.resize(kDepth * kPanels * kDenseRows);
+  AlignedBuffer<TypeParam> a, b;
+  a.resize(kDepth * kPanels * kTileRows);
   b.resize(kDepth * kDenseColumns);
-  for (std::int64_t i = 0; i < a.size(); ++i) a.data()[i] = normal(generator);
-  for (std::int64_t i = 0; i < b.size(); ++i) b.data()[i] = normal(generator);
+  for (std::int64_t i = 0; i < a.size(); ++i) a.data()[i] = static_cast<TypeParam>(normal(generator));
+  for (std::int64_t i = 0; i < b.size(); ++i) b.data()[i] = static_cast<TypeParam>(normal(generator));
   for (const InstructionPath path : {InstructionPath::Sse2, InstructionPath::Avx2}) {
-    std::vector<double> c(kStride * kDenseColumns, 1.0);
-    denseUpdate(path)(a.data(), kPanels, b.data(), kDepth, c.data(), kStride);
+    std::vector<TypeParam> c(kStride * kDenseColumns, 1);
+    denseUpdate<TypeParam>(path)(a.data(), kPanels, b.data(), kDepth, c.data(), kStride);
     for (int j = 0; j < kDenseColumns; ++j)
       for (int i = 0; i < kStride; ++i) {
         double expected = 1;
-        for (int k = 0; k < kDepth && i < kDenseRows * kPanels; ++k)
-          expected -=
-              a.data()[(i / kDenseRows * kDepth + k) * kDenseRows + i % kDenseRows] * b.data()[k * kDenseColumns + j];
-        EXPECT_NEAR(c[j * kStride + i], expected, 1e-13);
+        for (int k = 0; k < kDepth && i < kTileRows * kPanels; ++k)
+          expected -= static_cast<double>(a.data()[(i / kTileRows * kDepth + k) * kTileRows + i % kTileRows]) *
+                      static_cast<double>(b.data()[k * kDenseColumns + j]);
+        EXPECT_NEAR(static_cast<double>(c[j * kStride + i]), expected, this->kTolerance);
       }
   }
 }
 
 // W and the Schur complement by their definitions, for fronts of one block, of whole blocks and of what lies between
-TEST(FrontEliminationTest, LeavesTheInverseAndTheSchurComplement) {
+TYPED_TEST(DensePrecisionTest, LeavesTheInverseAndTheSchurComplement) {
+  using Elimination = FrontElimination<TypeParam>;
   std::mt19937 generator(6);
   std::normal_distribution<double> normal;
   for (const auto& [rows, columns] : {std::pair(3, 3), std::pair(9, 3), std::pair(48, 48), std::pair(60, 48),
@@ -159,24 +170,27 @@ TEST(FrontEliminationTest, LeavesTheInverseAndTheSchurComplement) {
     SCOPED_TRACE(std::to_string(columns) + " of " + std::to_string(rows));
     const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(rows, rows, [&] { return normal(generator); });
     const Eigen::MatrixXd a = root * root.transpose() / rows + Eigen::MatrixXd::Identity(rows, rows);
-    const std::int64_t stride = FrontElimination::stride(rows);
-    AlignedBuffer<double> front;
-    front.resize(FrontElimination::size(rows));
+    const std::int64_t stride = Elimination::stride(rows);
+    AlignedBuffer<TypeParam> front;
+    front.resize(Elimination::size(rows));
     for (int j = 0; j < rows; ++j)
-      for (int i = j; i < rows; ++i) front.data()[j * stride + i] = a(i, j);
-    FrontElimination elimination(rows);
+      for (int i = j; i < rows; ++i) front.data()[j * stride + i] = static_cast<TypeParam>(a(i, j));
+    Elimination elimination;
+    elimination.setLargestFront(rows);
     ASSERT_TRUE(elimination.run(front.data(), rows, columns));
-    const Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>> result(front.data(), rows, rows,
-                                                                      Eigen::OuterStride<>(stride));
+    using Dense = Eigen::Matrix<TypeParam, Eigen::Dynamic, Eigen::Dynamic>;
+    const Eigen::MatrixXd result =
+        Eigen::Map<Dense, 0, Eigen::OuterStride<>>(front.data(), rows, rows, Eigen::OuterStride<>(stride))
+            .template cast<double>();
     const int below = rows - columns;
     const Eigen::MatrixXd l = a.llt().matrixL();
     Eigen::MatrixXd w(rows, columns);
     w.topRows(columns) = l.topLeftCorner(columns, columns).inverse();
     w.bottomRows(below) = -l.bottomLeftCorner(below, columns) * w.topRows(columns);
-    EXPECT_LT((result.leftCols(columns) - w).norm(), 1e-12 * w.norm());
+    EXPECT_LT((result.leftCols(columns) - w).norm(), this->kTolerance * w.norm());
     const Eigen::MatrixXd rest = l.bottomRightCorner(below, below) * l.bottomRightCorner(below, below).transpose();
     const Eigen::MatrixXd difference = result.bottomRightCorner(below, below) - rest;
-    EXPECT_LE(difference.triangularView<Eigen::Lower>().toDenseMatrix().norm(), 1e-12 * a.norm());
+    EXPECT_LE(difference.triangularView<Eigen::Lower>().toDenseMatrix().norm(), this->kTolerance * a.norm());
   }
 }
 

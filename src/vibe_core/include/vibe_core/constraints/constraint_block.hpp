@@ -31,16 +31,18 @@ enum class Activity {
   Disturb  ///< something outside acts: the tissue does not count as resting
 };
 
-/// The force between the tool and one node during a step.
+/// The force between the tool and one point of the surface during a step.
 struct ToolTouch {
   enum class Kind { Grip, Contact };
   Kind kind = Kind::Contact;
-  int node = -1;
+  SurfacePoint surface;
+  double compliance = 0;   ///< between the tool and the point [m/N]
   int link = -1;           ///< of the tool
   Eigen::Vector3d point;   ///< where the force acts at the end of the step, world [m]
   Eigen::Vector3d motion;  ///< of the tool at this point during the step [m]
   Eigen::Vector3d force;   ///< tool on tissue, mean over the step [N]
-  /// Unit directions in which the node follows the tool, the first direction_count of them: all three where it sticks,
+  double work = 0;         ///< of this force on the tissue over the step [J]
+  /// Unit directions in which the point follows the tool, the first direction_count of them: all three where it sticks,
   /// the normal where it slides. The impedance of the tool is computed from them.
   std::array<Eigen::Vector3d, 3> direction;
   int direction_count = 0;

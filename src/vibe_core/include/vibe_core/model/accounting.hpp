@@ -13,13 +13,17 @@ struct Energies {
   double elastic = 0;
   double gravity = 0;  ///< zero at rest; 0 where the foundation carries the weight
   double foundation = 0;
-  double total() const { return kinetic + elastic + gravity + foundation; }
+  double contact = 0;  ///< of walls that touch each other
+  double total() const { return kinetic + elastic + gravity + foundation + contact; }
 };
 Energies energies(const Model& model, const State& state);
+/// The same without elastic and contact energy, which are the expensive ones.
+Energies energiesBesideElastic(const Model& model, const State& state);
 
-/// Kinetic and potential energy, minus the work of tool, gas, threads and pull spring, plus the energy that
-/// mass_damping dissipated [J]. It is constant up to the error of the time stepping, except that stiffness_damping,
-/// which is not in the account, lowers it.
+/// Kinetic and potential energy, minus the work of tool, gas, threads, pull spring, corrections and residuals, plus all
+/// losses in state.energy [J]. With an implicit solver it is constant up to the error of the trapezoidal rule for the
+/// elastic energy over a step, and up to rounding. Shape matching has no account of stiffness_damping and of its own
+/// numerical damping, which lower it.
 double energyBalance(const Model& model, const State& state);
 
 /// Sum of mass times velocity over the free particles [kg m/s].

@@ -43,6 +43,7 @@ struct LinearConstraint {
   double compliance = 0;                     ///< 0: exact [m/N]
   YieldVector yield = YieldVector::Zero();   ///< motion of the target along the coefficients per ToolYield dof
   double force = 0;  ///< out: force of the constraint along its coefficients on the body, mean over the step [N]
+  double work = 0;   ///< out: of this force on the body over the step [J]
 };
 
 /// A few nodes of which something outside feels the weighted mean.
@@ -64,6 +65,7 @@ struct ThreadLoad {
   double stiffness = 0;         ///< force per strain [N]
   double friction = 0;          ///< Coulomb coefficient [1]
   std::vector<double> tension;  ///< per segment, of the last step; out: of this step; 0: slack [N]
+  double work = 0;              ///< out: of the thread on the body over the step [J]
 };
 
 /// A point of the surface that must not come nearer than its gap to a tool, with Coulomb friction against the tool's
@@ -77,6 +79,7 @@ struct ContactConstraint {
   Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< where the point would be if it stuck to the tool [m]
   Eigen::Matrix<double, 3, kYieldDofs> yield = Eigen::Matrix<double, 3, kYieldDofs>::Zero();  ///< of the anchor
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< out: tool on the surface, mean over the step [N]
+  double work = 0;                                  ///< out: of this force on the surface over the step [J]
 };
 
 /// The gas inside a closed shell.
@@ -118,6 +121,8 @@ struct BodyLoads {
                        double compliance);
   /// The force on the body of three constraints from addPoint(), mean over the step [N].
   Eigen::Vector3d pointForce(std::size_t first) const;
+  /// The work of this force on the body over the step [J].
+  double pointWork(std::size_t first) const;
 };
 
 }  // namespace vibe

@@ -19,19 +19,22 @@ struct GripPoint {
   Eigen::Vector3d local;  ///< where, in the frame of the link that carries the helix [m]
 };
 
-/// Sums since the start [J].
+/// Sums since the start [J], see energyBalance(). Shape matching knows works and damping_loss only.
 struct EnergyAccount {
-  double tool_work = 0;        ///< done by the tool on the tissue (contact and grip)
+  double tool_work = 0;        ///< done by the tool (contact and grip): its forces times its own motion
   double hand_work = 0;        ///< done by the hand on the tool: tool_work, scope_loss and the energy of its springs
   double scope_loss = 0;       ///< dissipated by the dampers of a scope that gives way
   double gas_work = 0;         ///< done by the gas on the wall
   double thread_work = 0;      ///< done by threads on the tissue
-  double pull_work = 0;        ///< done by the pull spring
+  double pull_work = 0;        ///< done by the pull spring on the tissue
+  double friction_loss = 0;    ///< tool_work that does not reach the tissue: dissipated where the tool slides
   double damping_loss = 0;     ///< dissipated by mass damping
   double viscous_loss = 0;     ///< dissipated by stiffness damping
-  double contact_loss = 0;     ///< dissipated by sliding walls
+  double contact_loss = 0;     ///< dissipated by walls in contact
+  double contact_energy = 0;   ///< stored by walls in contact now, not a sum
   double numerical_loss = 0;   ///< dissipated by the time scheme
-  double correction_work = 0;  ///< done by corrections after a step that keep walls and tools apart
+  double correction_work = 0;  ///< done by corrections after a step that keep walls and tools apart, and by recoveries
+  double residual_work = 0;    ///< done by forces that the iterations of a step left unbalanced
 };
 
 /// Interruptions of a contact shorter than this do not end it [s].

@@ -19,8 +19,8 @@ VIBE_FIELDS(ProcedureState, phase, pressed, heat, dose, grade, beam_energy, base
             blood_lost);
 VIBE_FIELDS(PullSpring, particle, node, weight, target, force);
 VIBE_FIELDS(GripPoint, particle, local);
-VIBE_FIELDS(EnergyAccount, tool_work, hand_work, scope_loss, gas_work, thread_work, pull_work, damping_loss, viscous_loss, contact_loss,
-            numerical_loss, correction_work);
+VIBE_FIELDS(EnergyAccount, tool_work, hand_work, scope_loss, gas_work, thread_work, pull_work, friction_loss, damping_loss,
+            viscous_loss, contact_loss, contact_energy, numerical_loss, correction_work, residual_work);
 VIBE_FIELDS(StiffnessCoupling, node, weight, stiffness);
 VIBE_FIELDS(StepperMemory, linearization_point, next, couplings, next_couplings, linearization_id, next_id, steps, due,
             elastic_energy, usual_length, rest_steps, recovery_steps, fallback);

@@ -1,0 +1,231 @@
+// Contacts of a tool with the triangles of a wall, and the guard behind them.
+#include "contact/surface_contacts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "contact/thin_tool.hpp"
+#include "contact/tool_guard.hpp"
+#include "worlds.hpp"
+
+namespace vibe {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Points = std::array<std::vector<double>, 3>;
+
+constexpr double kThickness = 2e-3;
+constexpr double kRounding = 1e-8;  // shapes are stored in single precision [m]
+
+/// A square sheet of `cells` by `cells` pairs of triangles around the origin, in the plane x = 0.
+SurfaceMesh sheet(double size, int cells) {
+  SurfaceMesh mesh;
+  for (int i = 0; i <= cells; ++i)
+    for (int j = 0; j <= cells; ++j)
+      mesh.vertices.emplace_back(0, size * (static_cast<double>(i) / cells - 0.5),
+                                 size * (static_cast<double>(j) / cells - 0.5));
+  const auto at = [cells](int i, int j) { return i * (cells + 1) + j; };
+  for (int i = 0; i < cells; ++i)
+    for (int j = 0; j < cells; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return mesh;
+}
+
+Points pointsOf(const SurfaceMesh& mesh) {
+  Points points;
+  for (const Vector3d& p : mesh.vertices)
+    for (int k = 0; k < 3; ++k) points[static_cast<std::size_t>(k)].push_back(p[k]);
+  return points;
+}
+
+SurfacePath pathOf(const Points& from, const Points& to) {
+  return {{from[0].data(), from[1].data(), from[2].data()}, {to[0].data(), to[1].data(), to[2].data()}};
+}
+
+/// A thin tool before a sheet at rest: the capsule's front is `gap` before the sheet at `place` (y, z).
+struct Scene {
+  explicit Scene(double radius, int cells = 6, double length = 0.01)
+      : tool(ToolModel::fromUrdf(test::thinToolText(radius, length, 10), "thin")),
+        mesh(sheet(0.03, cells)),
+        start(pointsOf(mesh)),
+        thickness(mesh.vertices.size(), kThickness),
+        none(mesh.vertices.size(), 0),
+        contacts(tool, mesh, thickness, none) {
+    front = tool_front(length, radius);
+  }
+  /// Link poses that put the front of the capsule at a place, pointing along x.
+  std::vector<Isometry3d> posesAt(const Vector3d& place, const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
+    std::vector<Isometry3d> poses(static_cast<std::size_t>(tool.linkCount()), Isometry3d::Identity());
+    for (Isometry3d& pose : poses) {
+      pose.linear() = turn;
+      pose.translation() = place - turn * front;
+    }
+    return poses;
+  }
+  static Vector3d tool_front(double length, double radius) { return {length + radius, 0, 0}; }
+
+  ToolModel tool;
+  SurfaceMesh mesh;
+  Points start;
+  std::vector<double> thickness;
+  std::vector<char> none;
+  SurfaceContacts contacts;
+  Vector3d front;
+};
+
+TEST(SurfaceContacts, AWideShapeHasOneContactPerVertexInReach) {
+  Scene scene(8e-3, 10);  // 3 mm between vertices
+  const auto poses = scene.posesAt({-1e-3, 0, 0});
+  const auto& found = scene.contacts.find(poses, poses, pathOf(scene.start, scene.start), 0.5e-3, scene.none);
+  ASSERT_GT(found.size(), 4u);
+  for (const SurfaceContact& contact : found) {
+    EXPECT_EQ(contact.point.count, 1);
+    const Vector3d p = scene.mesh.vertices[contact.point.node[0]];
+    const Vector3d centre(-9e-3, 0, 0);
+    EXPECT_NEAR(contact.distance, (p - centre).norm() - 8e-3, kRounding);
+    EXPECT_LT((contact.normal - (p - centre).normalized()).norm(), 1e-7);
+    EXPECT_LT((contact.tool_point - (centre + 8e-3 * contact.normal)).norm(), kRounding);
+    EXPECT_NEAR(contact.clearance, kThickness / 2, 1e-15);
+  }
+  // each vertex within reach is there once
+  std::size_t expected = 0;
+  for (const Vector3d& p : scene.mesh.vertices)
+    expected += (p - Vector3d(-9e-3, 0, 0)).norm() < 8e-3 + kThickness / 2 + 0.5e-3 ? 1 : 0;
+  EXPECT_EQ(found.size(), expected);
+}
+
+// Contacts that all touch leave no room for the shape to come to the mid-surface, wherever it is.
+TEST(SurfaceContacts, BetweenVerticesThereAreEnoughForAThinShape) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-5e-3, 5e-3);
+  for (const double radius : {0.2e-3, 0.5e-3, 2e-3}) {
+    Scene scene(radius, 6);  // 5 mm between vertices
+    for (int trial = 0; trial < 200; ++trial) {
+      const Vector3d at(-0.2 * kThickness, place(random), place(random));
+      const auto poses = scene.posesAt(at);
+      const auto& found = scene.contacts.find(poses, poses, pathOf(scene.start, scene.start), 0, scene.none);
+      ASSERT_FALSE(found.empty()) << "a fifth of the wall from the mid-surface at " << at.transpose();
+      for (const SurfaceContact& contact : found) EXPECT_LT(contact.distance, kThickness / 2 + 1e-12);
+    }
+  }
+}
+
+TEST(SurfaceContacts, ANormalKeepsItsSideHoweverFastTheToolIs) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-5e-3, 5e-3), angle(-1, 1), speed(0, 0.3);
+  Scene scene(0.4e-3, 6);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Eigen::Matrix3d turn =
+        (Eigen::AngleAxisd(angle(random), Vector3d::UnitY()) * Eigen::AngleAxisd(angle(random), Vector3d::UnitZ()))
+            .toRotationMatrix();
+    const Vector3d before(-1.2e-3, place(random), place(random));
+    const auto start = scene.posesAt(before, turn);
+    const auto end = scene.posesAt(before + Vector3d(speed(random), 0, 0), turn);
+    const auto& found = scene.contacts.find(start, end, pathOf(scene.start, scene.start), 2e-3, scene.none);
+    ASSERT_FALSE(found.empty());
+    bool forward = false;
+    for (const SurfaceContact& contact : found) {
+      EXPECT_GT(contact.normal.x(), -1e-9) << "trial " << trial;
+      forward = forward || contact.normal.x() > 0.3;
+    }
+    EXPECT_TRUE(forward) << "the wall is pushed on";
+  }
+}
+
+TEST(SurfaceContacts, WhatIsPassableOrExcludedHasNone) {
+  Scene scene(2e-3);
+  const std::vector<char> all(scene.none.size(), 1);
+  SurfaceContacts open(scene.tool, scene.mesh, scene.thickness, all);
+  const auto poses = scene.posesAt({0, 0, 0});
+  const SurfacePath path = pathOf(scene.start, scene.start);
+  EXPECT_TRUE(open.find(poses, poses, path, 1e-3, scene.none).empty());
+  EXPECT_FALSE(scene.contacts.find(poses, poses, path, 1e-3, scene.none).empty());
+  EXPECT_TRUE(scene.contacts.find(poses, poses, path, 1e-3, all).empty());
+}
+
+TEST(SegmentTriangleGap, IsTheNearestOfManySamples) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> c(-1, 1);
+  const auto point = [&] { return Vector3d(c(random), c(random), c(random)); };
+  for (int trial = 0; trial < 300; ++trial) {
+    const Vector3d a = point(), b = point();
+    const std::array<Vector3d, 3> t{point(), point(), point()};
+    const TriangleGap gap = segmentTriangleGap(a, b, t);
+    double nearest = 10;
+    constexpr int kCuts = 40;
+    for (int i = 0; i <= kCuts; ++i)
+      for (int u = 0; u <= kCuts; ++u)
+        for (int v = 0; u + v <= kCuts; ++v) {
+          const Vector3d p = a + (b - a) * i / kCuts;
+          const Vector3d q = t[0] + (t[1] - t[0]) * u / kCuts + (t[2] - t[0]) * v / kCuts;
+          nearest = std::min(nearest, (p - q).norm());
+        }
+    EXPECT_LE(gap.distance, nearest + 1e-12);
+    EXPECT_GT(gap.distance, nearest - 0.09);
+    EXPECT_NEAR(gap.weight.sum(), 1, 1e-12);
+    const Vector3d at = gap.weight[0] * t[0] + gap.weight[1] * t[1] + gap.weight[2] * t[2];
+    EXPECT_LT((gap.core + gap.distance * gap.normal - at).norm(), 1e-9);
+  }
+}
+
+// The guard alone, without contacts: wall and tool in random motion.
+TEST(ToolGuard, NothingPassesWhateverMoves) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> c(-1, 1), fast(0, 0.2);
+  Scene scene(0.3e-3, 6);
+  ToolGuard guard(scene.tool, scene.mesh, scene.thickness, scene.none);
+  const Isometry3d base = Isometry3d::Identity();
+  int stopped = 0, passing = 0;
+  for (int trial = 0; trial < 150; ++trial) {
+    std::array<double, kJointCount> from{}, to{};
+    from[Insertion] = 0.1;
+    to[Insertion] = 0.1 + fast(random);
+    to[TipUpDown] = 0.3 * c(random);
+    to[TipLeftRight] = 0.3 * c(random);
+    const ToolMotion motion(scene.tool, base, from, to);
+    ToolPoses poses;
+    motion.linkPoses(0, poses.start);
+    motion.linkPoses(1, poses.end);
+    const Vector3d tip = poses.start[scene.tool.linkIndex("scope_tip")] * Vector3d(0.01, 0, 0);
+    Points wall = scene.start, moved;
+    const Vector3d shift(tip.x() + 1e-3 + 5e-3 * std::abs(c(random)), tip.y() + 4e-3 * c(random),
+                         tip.z() + 4e-3 * c(random));
+    for (std::size_t k = 0; k < 3; ++k)
+      for (double& x : wall[k]) x += shift[static_cast<int>(k)];
+    moved = wall;
+    const double pushed = -0.03 * std::abs(c(random));
+    for (double& x : moved[0]) x += pushed;  // towards the tool
+    const auto crosses = [&](double tool_part, double wall_part) {
+      constexpr int kMoments = 60;
+      std::vector<Isometry3d> at;
+      for (int moment = 0; moment <= kMoments; ++moment) {
+        motion.linkPoses(tool_part * moment / kMoments, at);
+        const Isometry3d& pose = at[scene.tool.linkIndex("scope_tip")];
+        for (const auto& n : scene.contacts.triangles()) {
+          std::array<Vector3d, 3> t;
+          for (std::size_t i = 0; i < 3; ++i) t[i] = pathOf(wall, moved).at(n[i], wall_part * moment / kMoments);
+          if (segmentTriangleGap(pose.translation(), pose * Vector3d(0.01, 0, 0), t).distance == 0) return true;
+        }
+      }
+      return false;
+    };
+    ASSERT_FALSE(crosses(0, 0));
+    passing += crosses(1, 1) ? 1 : 0;
+    const ToolGuard::Free free = guard.keepApart(poses, motion, pathOf(wall, moved));
+    EXPECT_FALSE(crosses(free.tool, free.wall)) << "trial " << trial;
+    stopped += free.tool < 1 || free.wall < 1 ? 1 : 0;
+    // what the tool reaches is on its way
+    std::vector<Isometry3d> reached;
+    motion.linkPoses(free.tool, reached);
+    EXPECT_TRUE(reached.back().isApprox(poses.end.back()));
+  }
+  EXPECT_GT(passing, 50) << "without the guard they cross";
+  EXPECT_GE(stopped, passing);
+}
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,99 @@
+// A needle that is thinner than the particles are apart, and faster than a hand: the wall gives way or the needle
+// stops, but it never comes out on the other side.
+#include <gtest/gtest.h>
+
+#include "contact/thin_tool.hpp"
+#include "contact/tool_collision.hpp"
+#include "contact/triangle_gap.hpp"
+#include "worlds.hpp"
+
+namespace vibe {
+namespace {
+
+using test::World;
+
+constexpr double kRadius = 0.05, kNeedle = 0.4e-3, kLength = 0.01;
+
+/// A ball of 7.6 mm between particles, and a needle that enters at the top and points down, tilted by `tilt`.
+World needleWorld(double speed, double tilt) {
+  Scene scene;
+  scene.foundation = FoundationScene{};
+  scene.scope = ScopeScene{};
+  scene.scope->base_from_anatomy = false;
+  scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
+  scene.scope->base_rpy = {0, M_PI / 2 + tilt, 0};
+  Organ organ = test::plainOrgan(test::icosphere(kRadius, 3), 2e-3);
+  for (std::size_t i = 0; i < organ.end.size(); ++i)
+    if (organ.surface.vertices[i].z() > 0.8 * kRadius) organ.end[i] = End::Oesophagus;
+  return World(scene, std::move(organ), test::thinToolText(kNeedle, kLength, speed));
+}
+
+std::vector<Eigen::Isometry3d> posesOf(const World& world) {
+  std::vector<Eigen::Isometry3d> poses;
+  world.model->tool->forwardKinematics(world.state.joints, poses);
+  for (Eigen::Isometry3d& pose : poses) pose = world.model->tool_base * pose;
+  return poses;
+}
+
+bool piercesWall(const World& world) {
+  const Eigen::Isometry3d tip = posesOf(world)[world.model->tip_link];
+  const auto& end = world.model->organ.end;
+  for (const auto& n : world.model->organ.surface.triangles) {
+    if (end[n[0]] != End::None || end[n[1]] != End::None || end[n[2]] != End::None) continue;
+    const std::array<Eigen::Vector3d, 3> t{world.position(n[0]), world.position(n[1]), world.position(n[2])};
+    if (segmentTriangleGap(tip.translation(), tip * Eigen::Vector3d(kLength, 0, 0), t).distance == 0) return true;
+  }
+  return false;
+}
+
+// Inside: the lines from the front of the needle to the open top pass no wall.
+bool isBeyondWall(const World& world) {
+  const Eigen::Vector3d front = posesOf(world)[world.model->tip_link] * Eigen::Vector3d(kLength, 0, 0);
+  Eigen::Vector3d top = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (int i = 0; i < world.model->particle_count; ++i)
+    if (world.model->organ.end[i] != End::None) top += world.position(i), ++count;
+  top /= count;
+  int crossings = 0;
+  for (const auto& n : world.model->organ.surface.triangles) {
+    const std::array<Eigen::Vector3d, 3> t{world.position(n[0]), world.position(n[1]), world.position(n[2])};
+    crossings += segmentTriangleGap(front, top - Eigen::Vector3d(1e-4, 2e-4, 5e-3), t).distance == 0 ? 1 : 0;
+  }
+  return crossings % 2 != 0;
+}
+
+/// Whether a test of particles alone would see the needle.
+bool particleInReach(const World& world) {
+  ToolCollision collision(*world.model->tool);
+  const State& s = world.state;
+  const double reach = world.model->particle_radius + 0.5e-3;
+  collision.findCandidates(posesOf(world), s.x.data(), s.y.data(), s.z.data(), world.model->particle_count, reach);
+  return collision.candidateCount() > 0;
+}
+
+class Needle : public ::testing::TestWithParam<double> {};
+
+TEST_P(Needle, NeverPassesTheWall) {
+  int unseen = 0;
+  for (const double tilt : {0.0, -0.31, 0.52}) {
+    World world = needleWorld(GetParam(), tilt);
+    StepInput input;
+    input.joints[Insertion] = 0.3;  // far beyond the ball
+    input.joints[TipUpDown] = 0.4 * tilt;
+    for (int i = 0; i < 60; ++i) {
+      world.step(input);
+      ASSERT_FALSE(piercesWall(world)) << "tilt " << tilt << ", step " << i;
+      ASSERT_FALSE(isBeyondWall(world)) << "tilt " << tilt << ", step " << i;
+      unseen += world.state.contact_count > 0 && !particleInReach(world) ? 1 : 0;
+    }
+    EXPECT_TRUE(world.state.contact_count > 0 || world.state.joints[Insertion] < 0.3) << "it has met the wall";
+  }
+  if (GetParam() < 0.5) {
+    EXPECT_GT(unseen, 0) << "particles alone would have let it pass";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Speeds, Needle, ::testing::Values(0.12, 1.0, 5.0));
+
+}  // namespace
+}  // namespace vibe
