@@ -130,9 +130,9 @@ void Publishers::warn(const std::string& text) {
 }
 
 bool Publishers::hasListener() const {
-  const auto all = {&scope_pose_, &helix_pose_,    &wrench_, &joint_states_, &hand_joints_, &topology_,      &particles_,
-                    &procedure_,  &skill_metrics_, &events_, &sutures_,      &applied_input_, &solver_statistics_,
-                    &scene_,      &haptic_,        &pull_,   &clock_};
+  const auto all = {&scope_pose_,        &helix_pose_, &wrench_,        &joint_states_, &hand_joints_, &topology_,
+                    &particles_,         &procedure_,  &skill_metrics_, &events_,       &sutures_,     &applied_input_,
+                    &solver_statistics_, &scene_,      &haptic_,        &pull_,         &clock_};
   return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 

@@ -13,11 +13,9 @@ constexpr double kShortest = 6e-5;
 // keeps the way of a step below a wall's thickness or two [m/s].
 constexpr double kSpringBack = 0.3;
 
-
 }  // namespace
 
-ScopeSprings::ScopeSprings(const ToolModel& tool, const ScopeComplianceScene& scene)
-    : tool_(&tool), scene_(scene) {}
+ScopeSprings::ScopeSprings(const ToolModel& tool, const ScopeComplianceScene& scene) : tool_(&tool), scene_(scene) {}
 
 YieldVector ScopeSprings::stiffness(double insertion) const {
   YieldVector k = YieldVector::Zero();

@@ -136,12 +136,14 @@ void ToolBuilder::addInput(const urdf::Joint& joint, int input) {
     fail("joint", joint.name, "has a lower limit that is not below its upper limit; write finite limits in order");
   if (!std::isfinite(limit.velocity) || limit.velocity <= 0)
     fail("joint", joint.name, "has a velocity limit that is not positive; write the greatest speed in SI units");
-  if (!(limit.effort > 0)) fail("joint", joint.name, "has an effort limit that is not positive; write what a hand applies");
+  if (!(limit.effort > 0))
+    fail("joint", joint.name, "has an effort limit that is not positive; write what a hand applies");
   limits[input] = limit;
   found_[input] = true;
 }
 
-// Where the joints of the shaft are, with all inputs at 0: the last one along the root's x axis is the end of the shaft.
+// Where the joints of the shaft are, with all inputs at 0: the last one along the root's x axis is the end of the
+// shaft.
 void ToolBuilder::placeShaft() {
   std::vector<Eigen::Isometry3d> pose(link_names.size(), Eigen::Isometry3d::Identity());
   std::vector<double> along;

@@ -60,7 +60,8 @@ TEST(ScopeSprings, ShaftBendsLikeACantilever) {
     }
 }
 
-// Large deflections: elastica under a dead load F L^2 / EI = 1 (Bisshopp and Drucker 1945): 0.302 L across, 0.056 L back.
+// Large deflections: elastica under a dead load F L^2 / EI = 1 (Bisshopp and Drucker 1945): 0.302 L across, 0.056 L
+// back.
 TEST(ScopeSprings, LargeDeflectionIsNearTheElastica) {
   Loaded scope(0.2);
   scope.settle({0, 0, scope.scene.shaft_rigidity / 0.04}, 2000);
@@ -137,7 +138,8 @@ TEST(ScopeSprings, UrdfWithoutJointsOfTheShaftHasAStraightOne) {
   for (const char* name : {"shaft_up_down_", "shaft_left_right_"})
     for (int k = 1; k <= 7; ++k) {
       const std::string joint = std::string("<joint name=\"") + name + std::to_string(k) + "\" type=\"revolute\"";
-      text.replace(text.find(joint), joint.size(), std::string("<joint name=\"") + name + std::to_string(k) + "\" type=\"fixed\"");
+      text.replace(text.find(joint), joint.size(),
+                   std::string("<joint name=\"") + name + std::to_string(k) + "\" type=\"fixed\"");
     }
   const ToolModel tool = ToolModel::fromUrdf(text, "scope.urdf");
   const YieldVector k = ScopeSprings(tool, {}).stiffness(0.2);

@@ -54,7 +54,8 @@ TEST(ShaftBend, RatesAreThoseOfTheFreeLength) {
   ToolDisplacement q{};
   q[kShaftDof] = 2, q[kShaftDof + 1] = -1.5;
   for (double length : {0.02, 0.06, 0.15}) {
-    const ShaftBend here(kStations, length, q), longer(kStations, length + 1e-6, q), shorter(kStations, length - 1e-6, q);
+    const ShaftBend here(kStations, length, q), longer(kStations, length + 1e-6, q),
+        shorter(kStations, length - 1e-6, q);
     for (int i = 0; i < 7; ++i)
       EXPECT_NEAR(here.angleRate(i, 0), (longer.angle(i, 0) - shorter.angle(i, 0)) / 2e-6, 1e-6) << length << ", " << i;
   }
@@ -87,7 +88,8 @@ TEST(ShaftBend, DisplacementsAreAddedToTheInputsAndStraightScopesStay) {
   std::vector<Isometry3d> moved, same, plain;
   tool.forwardKinematics({0.2, 0.3, 0.4, 0.5}, {0.01, -0.1, 0.2, -0.3}, moved);
   tool.forwardKinematics({0.21, 0.2, 0.6, 0.2}, same);
-  for (std::size_t link = 0; link < moved.size(); ++link) EXPECT_LT((moved[link].matrix() - same[link].matrix()).norm(), 1e-12);
+  for (std::size_t link = 0; link < moved.size(); ++link)
+    EXPECT_LT((moved[link].matrix() - same[link].matrix()).norm(), 1e-12);
   tool.forwardKinematics({0.2, 0.3, 0.4, 0.5}, ToolDisplacement{}, same);
   tool.forwardKinematics({0.2, 0.3, 0.4, 0.5}, plain);
   for (std::size_t link = 0; link < moved.size(); ++link) EXPECT_EQ(same[link].matrix(), plain[link].matrix());

@@ -25,8 +25,8 @@ struct ToolJoint {
   int input = -1;         ///< index of the driving input in StepInput::joints; -1: fixed
   double multiplier = 1;  ///< position = multiplier * input + offset (URDF mimic)
   double offset = 0;      ///< [m], [rad]
-  int station = -1;       ///< index into ToolModel::shaftStations(): a joint of the shaft that bends under load; -1: none
-  int direction = 0;      ///< of such a joint: 0: up, 1: left
+  int station = -1;   ///< index into ToolModel::shaftStations(): a joint of the shaft that bends under load; -1: none
+  int direction = 0;  ///< of such a joint: 0: up, 1: left
 };
 
 /// A convex collision shape of a link: a capsule, cylinder, sphere or box, as a Bullet shape.
@@ -51,8 +51,8 @@ class ToolModel {
  public:
   /// @param urdf_xml  text of the URDF
   /// @param place     name used in error messages, e.g. the file name
-  /// Joints named shaft_up_down_1, shaft_left_right_1, ... are moved by no input: they bend under load, and are 0 with a
-  /// tool that is rigid. A URDF without them has a straight shaft.
+  /// Joints named shaft_up_down_1, shaft_left_right_1, ... are moved by no input: they bend under load, and are 0 with
+  /// a tool that is rigid. A URDF without them has a straight shaft.
   /// @throws Error for text that is not a valid URDF, a joint type other than fixed, revolute or prismatic, a moving
   ///         joint that neither is one of kJointNames, nor mimics one, nor is one of the shaft, a missing joint of
   ///         kJointNames, missing limits, a mesh collision shape, or a missing link helix, needle, scope_tip or

@@ -19,8 +19,8 @@ VIBE_FIELDS(ProcedureState, phase, pressed, heat, dose, grade, beam_energy, base
             blood_lost);
 VIBE_FIELDS(PullSpring, particle, node, weight, target, force);
 VIBE_FIELDS(GripPoint, particle, local);
-VIBE_FIELDS(EnergyAccount, tool_work, hand_work, scope_loss, gas_work, thread_work, pull_work, friction_loss, damping_loss,
-            viscous_loss, contact_loss, contact_energy, numerical_loss, correction_work, residual_work);
+VIBE_FIELDS(EnergyAccount, tool_work, hand_work, scope_loss, gas_work, thread_work, pull_work, friction_loss,
+            damping_loss, viscous_loss, contact_loss, contact_energy, numerical_loss, correction_work, residual_work);
 VIBE_FIELDS(StiffnessCoupling, node, weight, stiffness);
 VIBE_FIELDS(StepperMemory, linearization_point, next, couplings, next_couplings, linearization_id, next_id, steps, due,
             elastic_energy, usual_length, rest_steps, recovery_steps, fallback);
@@ -30,7 +30,8 @@ VIBE_FIELDS(SlopeMemory<kScopeJointCount>, known, has_pair, place, force, step, 
 VIBE_FIELDS(ImpedanceMemory, last_step, next_renewal, current, next, last_nodes, has_last, last_place, last_speed,
             last_force, last_jump, slope, joint_slope);
 VIBE_FIELDS(State, step, time, seed, random, x, y, z, vx, vy, vz, ax, ay, az, qw, qx, qy, qz, wx, wy, wz, gas_amount,
-            pressure, volume, pressure_reached, joints, tool_displacement, hand_effort, grip, helix_pressed, in_contact, untouched_time, tool_force,
-            tool_torque, grip_force, contact_count, pull, procedure, energy, solver, impedance);
+            pressure, volume, pressure_reached, joints, tool_displacement, hand_effort, grip, helix_pressed, in_contact,
+            untouched_time, tool_force, tool_torque, grip_force, contact_count, pull, procedure, energy, solver,
+            impedance);
 
 }  // namespace vibe
