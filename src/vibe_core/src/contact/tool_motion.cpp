@@ -52,4 +52,15 @@ std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::
   return result;
 }
 
+std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::array<double, kJointCount>& start,
+                                              const std::array<double, kJointCount>& end,
+                                              const std::array<double, kScopeJointCount>& effort) {
+  std::array<double, kJointCount> result = end;
+  for (int j = 0; j < kScopeJointCount; ++j) {
+    const bool over = std::abs(effort[j]) > tool.limits()[j].effort;
+    if (over && (end[j] - start[j]) * effort[j] > 0) result[j] = start[j];
+  }
+  return result;
+}
+
 }  // namespace vibe

@@ -31,7 +31,7 @@ class ToolMotion {
   /// The inputs at a fraction [0, 1] of the step [m], [rad].
   std::array<double, kJointCount> inputs(double fraction) const;
 
-  /// The displacement at a fraction [0, 1] of the step [m], [rad].
+  /// The displacement at a fraction [0, 1] of the step.
   ToolDisplacement displacement(double fraction) const;
 
   /// An upper bound of the displacement of any point of a collision shape between two sets of link poses [m].
@@ -48,5 +48,12 @@ class ToolMotion {
 /// are not finite keep their position.
 std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::array<double, kJointCount>& position,
                                               const std::array<double, kJointCount>& command, double dt);
+
+/// The same with a hand whose force is limited: it does not move a joint of the scope on against an effort beyond
+/// JointLimits::effort.
+/// @param effort  of the hand on the joints in the last step [N], [N m]
+std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::array<double, kJointCount>& start,
+                                              const std::array<double, kJointCount>& end,
+                                              const std::array<double, kScopeJointCount>& effort);
 
 }  // namespace vibe

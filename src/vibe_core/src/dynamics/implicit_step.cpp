@@ -163,9 +163,9 @@ bool ImplicitStep::solve() {
 
 // From here on the tool is where the forces of this step have brought it.
 void ImplicitStep::yieldTool() {
+  yielded_ = *motion_;
   report_.tool_displacement = motion_->startDisplacement();
   for (int d = 0; d < kYieldDofs; ++d) report_.tool_displacement[d] += scratch_.loads.tool_yield.displacement[d];
-  yielded_.emplace(*motion_);
   yielded_->displaceEnd(report_.tool_displacement);
   yielded_->linkPoses(1, scratch_.poses.end);
 }
@@ -247,7 +247,7 @@ void ImplicitStep::reportHand() {
   Eigen::Matrix<double, kJointCount, 1> effort = Eigen::Matrix<double, kJointCount, 1>::Zero();
   for (const ToolTouch& touch : scratch_.touches)
     effort += pointJacobian(*model_.tool, scratch_.poses.end, touch.link, touch.point).transpose() * touch.force;
-  const auto from = motion_->inputs(0), to = state_.joints;
+  const auto from = motion_->inputs(0), &to = state_.joints;
   if (model_.scope_springs) {
     const ToolDisplacement &before = motion_->startDisplacement(), &after = report_.tool_displacement;
     effort.head<kScopeJointCount>() =

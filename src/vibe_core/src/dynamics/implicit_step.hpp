@@ -50,7 +50,7 @@ class ImplicitStep {
   StepReport& report_;
   ImplicitScratch& scratch_;
   std::optional<ShaftBend> bend_;      // of a tool that yields
-  std::optional<ToolMotion> yielded_;  // its motion in the step
+  std::optional<ToolMotion> yielded_;  // its motion, after the solve
   StepContext context_;
   StepWork work_;              // of the solve
   double contact_energy_ = 0;  // before it [J]

@@ -116,7 +116,8 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   std::vector<Eigen::Isometry3d>& poses = workspace.linkPoses();
   if (model.tool) {
     auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
-    if (model.scope_springs) end = model.scope_springs->handMotion(state.joints, end, state.tool_displacement, dt);
+    end = model.scope_springs ? model.scope_springs->handMotion(state.joints, end, state.tool_displacement, dt)
+                              : stalledMotion(*model.tool, state.joints, end, state.hand_effort);
     motion.emplace(*model.tool, model.tool_base, state.joints, end, state.tool_displacement);
     motion->linkPoses(0, poses);
     updateGrip(model, poses, input.buttons[HelixGrab] != 0, state, events);
