@@ -137,7 +137,7 @@ void ImplicitStep::recover() {
   }
   stopMotion(state_);
   for (const auto& block : scratch_.blocks) block->recover(context_);
-  state_.energy.correction_work += mechanicalEnergy().total();
+  state_.energy.correction_work += mechanicalEnergy().total() + state_.energy.contact_energy;
 }
 
 // @returns false where the state became useless; the simulator then resets it
