@@ -20,7 +20,7 @@ constexpr double kRam = 0.06;           // deeper than at first contact [m]
 constexpr double kWithdraw = 0.1;       // speed [m/s]
 constexpr double kTurns = 20;           // of the helix
 constexpr double kWindPull = 0.06;      // [m]
-constexpr double kGrabDistance = 2e-3;  // of the helix from the nearest particle [m]
+constexpr double kAdvanceStep = 5e-4;   // of the helix in the search for the wall [m]
 constexpr double kReach = 8e-3;         // of it, so that it takes hold on coarse meshes too [m]
 constexpr double kSleeveTension = 8;    // [N]
 constexpr double kSleeveSpeed = 0.06;   // of the cinch [m/s]
@@ -108,6 +108,18 @@ double helixGap(const Model& model, const State& state) {
   return nearest;
 }
 
+/// How far the helix has to be advanced to be nearest to a particle.
+double bestAdvance(const Model& model, State state) {
+  double best = 0, nearest = std::numeric_limits<double>::infinity();
+  const double farthest = model.tool->limits()[HelixAdvance].upper;
+  for (double advance = 0; advance <= farthest; advance += kAdvanceStep) {
+    state.joints[HelixAdvance] = advance;
+    const double gap = helixGap(model, state);
+    if (gap < nearest) nearest = gap, best = advance;
+  }
+  return best;
+}
+
 }  // namespace
 
 // Inserts the scope until it touches.
@@ -182,11 +194,8 @@ HardCase HardCases::wind() const {
   Simulation simulation(hard.model, SimulationSettings::study(1));
   simulation.replaceState(hard.start);
   StepInput input = holdAt(hard.start);
-  const auto& helix = hard.model->tool->limits()[HelixAdvance];
-  while (helixGap(*hard.model, simulation.state()) > kGrabDistance && input.joints[HelixAdvance] < helix.upper) {
-    input.joints[HelixAdvance] += 5e-4;
-    simulation.step(input);
-  }
+  input.joints[HelixAdvance] = bestAdvance(*hard.model, hard.start);
+  for (int k = 0; k < 60; ++k) simulation.step(input);
   input.buttons[HelixGrab] = 1;
   simulation.step(input);
   if (simulation.state().grip.empty()) throw Error("The helix does not reach the wall; the hard case needs it.");
