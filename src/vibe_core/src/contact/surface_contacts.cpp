@@ -200,10 +200,7 @@ void SurfaceContacts::offer(const SurfacePoint& point, const SurfacePath& path, 
   double clearance = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k)
     clearance += point.weight[k] * half_thickness_[point.node[k]];
-  const auto gapAt = [&](double when) {
-    const Eigen::Vector3d p = placeAt(when);
-    return tool_.gap(shape, when, {p, p, p});
-  };
+  const auto gapAt = [&](double when) { return tool_.gap(shape, when, placeAt(when)); };
   const double reach = tool_.radius(shape) + clearance + margin;
   double fraction = fraction_;
   TriangleGap gap = gapAt(fraction);
@@ -231,8 +228,7 @@ void SurfaceContacts::add(const SurfacePoint& point, int shape, double fraction,
 bool SurfaceContacts::isBuried(const SurfaceContact& contact) const {
   const Eigen::Vector3d& p = contact.tool_point;
   for (int s = 0; s < tool_.count(); ++s)
-    if (s != contact.shape && tool_.box(s).contains(p) &&
-        tool_.gap(s, 1, {p, p, p}).distance < tool_.radius(s) - kBuried)
+    if (s != contact.shape && tool_.box(s).contains(p) && tool_.gap(s, 1, p).distance < tool_.radius(s) - kBuried)
       return true;
   return false;
 }

@@ -106,6 +106,18 @@ TriangleGap SweptTool::gap(int shape, double fraction, const std::array<Eigen::V
   return gap;
 }
 
+TriangleGap SweptTool::gap(int shape, double fraction, const Eigen::Vector3d& point) const {
+  if (!shapes_[shape].round) return gap(shape, fraction, {point, point, point});
+  const auto [a, b] = segment(shape, fraction);
+  TriangleGap gap;
+  gap.weight = {1, 0, 0};
+  gap.core = nearestOnSegment(a, b, point);
+  gap.normal = point - gap.core;
+  gap.distance = gap.normal.norm();
+  if (gap.distance > 0) gap.normal /= gap.distance;
+  return gap;
+}
+
 Eigen::Vector3d SweptTool::pointAtEnd(int shape, double fraction, const Eigen::Vector3d& point) const {
   if (fraction == 1) return point;
   const Shape& s = shapes_[shape];

@@ -35,6 +35,8 @@ class SweptTool {
 
   /// Nearest points of the core and a triangle at a fraction of the step, in world.
   TriangleGap gap(int shape, double fraction, const std::array<Eigen::Vector3d, 3>& triangle) const;
+  /// The same for a point.
+  TriangleGap gap(int shape, double fraction, const Eigen::Vector3d& point) const;
   /// Where a point or a direction of the shape is at the end of the step.
   Eigen::Vector3d pointAtEnd(int shape, double fraction, const Eigen::Vector3d& point) const;
   Eigen::Vector3d directionAtEnd(int shape, double fraction, const Eigen::Vector3d& direction) const;

@@ -1,6 +1,7 @@
 #include "contact/tool_approach.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vibe {
 
@@ -16,8 +17,10 @@ Triangle triangleAt(const SurfacePath& path, const std::array<int, 3>& n, double
   return {path.at(n[0], fraction), path.at(n[1], fraction), path.at(n[2], fraction)};
 }
 
+}  // namespace
+
 // A bound of the relative motion of the two; what they have in common does not count.
-double closingSpeed(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle) {
+double closingDistance(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle) {
   const std::array<Eigen::Vector3d, 2> moves = tool.moves(shape);
   const Eigen::Vector3d common = 0.5 * (moves[0] + moves[1]);
   double wall = 0;
@@ -26,11 +29,9 @@ double closingSpeed(const SweptTool& tool, int shape, const SurfacePath& path, c
   return wall + (tool.radius(shape) > 0 ? turn : tool.travel(shape) + common.norm());
 }
 
-}  // namespace
-
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor) {
-  const double speed = closingSpeed(tool, shape, path, triangle);
+  const double speed = closingDistance(tool, shape, path, triangle);
   ToolApproach result;
   result.fraction = 0;
   result.gap = tool.gap(shape, 0, triangleAt(path, triangle, 0));
@@ -68,29 +69,39 @@ void NearTriangles::classify(const Eigen::AlignedBox3d& box, const SurfacePath& 
   }
 }
 
+void NearTriangles::collectBalls(const SurfacePath& path) {
+  balls_.clear();
+  for (int t = 0; t < static_cast<int>(triangles_.size()); ++t) {
+    const auto& [a, b, c] = triangles_[t];
+    if ((outside_[a] & outside_[b] & outside_[c]) != 0) continue;
+    Ball ball{t, (path.start(a) + path.start(b) + path.start(c)) / 3, 0, 0};
+    for (const int v : {a, b, c}) {
+      const Eigen::Vector3d from = path.start(v);
+      ball.radius = std::max(ball.radius, (from - ball.centre).squaredNorm());
+      ball.move = std::max(ball.move, (path.at(v, 1) - from).squaredNorm());
+    }
+    ball.radius = std::sqrt(ball.radius), ball.move = std::sqrt(ball.move);
+    if (std::isfinite(ball.centre.sum() + ball.radius + ball.move)) balls_.push_back(ball);
+  }
+}
+
 void NearTriangles::find(const SweptTool& tool, const SurfacePath& path, double reach, std::vector<Pair>& found) {
   found.clear();
   Eigen::AlignedBox3d all = tool.box();
   all.min().array() -= reach, all.max().array() += reach;
   classify(all, path);
-  inside_.clear(), box_.clear();
-  for (int t = 0; t < static_cast<int>(triangles_.size()); ++t) {
-    const std::array<int, 3>& n = triangles_[t];
-    if ((outside_[n[0]] & outside_[n[1]] & outside_[n[2]]) != 0) continue;
-    Eigen::AlignedBox3d box;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const int v : n) {
-      const Eigen::Vector3d from = path.start(v), to = path.at(v, 1);
-      box.extend(from), box.extend(to);
-      sum += from + to;
+  collectBalls(path);
+  for (int s = 0; s < tool.count(); ++s) {
+    const Eigen::Vector3d low = tool.box(s).min(), high = tool.box(s).max();
+    const auto [a, b] = tool.segment(s, 0);
+    const double grown = tool.radius(s) + tool.travel(s) + reach;
+    for (const Ball& ball : balls_) {
+      const double near = ball.radius + ball.move + reach;
+      if (((ball.centre - high).array() > near).any() || ((low - ball.centre).array() > near).any()) continue;
+      const double apart = tool.hasSegment(s) ? (ball.centre - nearestOnSegment(a, b, ball.centre)).norm() : 0;
+      if (apart <= grown + ball.radius + ball.move) found.push_back({s, ball.triangle});
     }
-    if (!sum.allFinite()) continue;
-    box.min().array() -= reach, box.max().array() += reach;
-    inside_.push_back(t), box_.push_back(box);
   }
-  for (int s = 0; s < tool.count(); ++s)
-    for (std::size_t k = 0; k < inside_.size(); ++k)
-      if (tool.box(s).intersects(box_[k])) found.push_back({s, inside_[k]});
 }
 
 }  // namespace vibe

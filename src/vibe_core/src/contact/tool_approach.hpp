@@ -32,6 +32,9 @@ struct ToolApproach {
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor);
 
+/// A bound of how much nearer a shape and a triangle can come in the step [m].
+double closingDistance(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle);
+
 /// Pairs of shapes and triangles whose ways through a step come near each other.
 class NearTriangles {
  public:
@@ -45,17 +48,23 @@ class NearTriangles {
   /// Those that the tool cannot pass.
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
 
-  /// All pairs of shapes and triangles() of which the boxes around the paths are nearer than `reach`, by shape, then
-  /// triangle. A pair with a vertex that is not finite is left out.
+  /// All pairs of shapes and triangles() that may come nearer than `reach`, by shape, then triangle. A triangle with a
+  /// vertex that is not finite is left out.
   void find(const SweptTool& tool, const SurfacePath& path, double reach, std::vector<Pair>& found);
 
  private:
   void classify(const Eigen::AlignedBox3d& box, const SurfacePath& path);
+  void collectBalls(const SurfacePath& path);
 
   std::vector<std::array<int, 3>> triangles_;
-  std::vector<unsigned char> outside_;    // per vertex, a bit per side of the tool's box beyond which its path lies
-  std::vector<Eigen::AlignedBox3d> box_;  // of the triangles in the tool's box
-  std::vector<int> inside_;
+  std::vector<unsigned char> outside_;  // per vertex, a bit per side of the tool's box beyond which its path lies
+  /// A triangle in the tool's box: a ball that holds it at the start, and its longest path.
+  struct Ball {
+    int triangle;
+    Eigen::Vector3d centre;
+    double radius, move;
+  };
+  std::vector<Ball> balls_;
 };
 
 }  // namespace vibe

@@ -52,6 +52,7 @@ double ToolGuard::freePart(const NearTriangles::Pair& pair, const SurfacePath& p
   if (gap.distance == 0) return 1;  // they crossed before
   const double outside = gap.distance - radius;
   const double floor = outside > 0 ? radius + std::min(kKept * thinnest, kNearer * outside) : kNearer * gap.distance;
+  if (gap.distance - closingDistance(tool_, pair.shape, path, n) > floor) return 1;
   return approach(tool_, pair.shape, path, n, floor).fraction;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 
 class btConvexShape;
@@ -13,6 +14,12 @@ struct TriangleGap {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from the core to the triangle; zero where they cross
   double distance = 0;                               ///< from the core; 0 where they cross [m]
 };
+
+inline Eigen::Vector3d nearestOnSegment(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d along = b - a;
+  const double square = along.squaredNorm();
+  return square > 0 ? a + std::clamp((p - a).dot(along) / square, 0.0, 1.0) * along : a;
+}
 
 /// Nearest points of the segment from a to b, which may be a point, and a triangle (Ericson, Real-Time Collision
 /// Detection, 5.1.10). The distance is zero where the segment pierces the triangle.
