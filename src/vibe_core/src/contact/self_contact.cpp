@@ -27,6 +27,11 @@ constexpr double kFriction = 0.05;
 // Speed of sliding from which friction is that of Coulomb; below it is viscous, as of a film of mucus. Design choice: a
 // tenth of the usual speed of folds that are drawn together [m/s].
 constexpr double kSlidingSpeed = 5e-3;
+// Stretch of an edge in a step because one of its nodes stops earlier than the other on its path. Design choice: a tenth,
+// which a step can resolve [1].
+constexpr double kStretch = 0.1;
+constexpr double kFewer = 1e-3;  // part of it that is not worth another change
+constexpr int kSweeps = 100;     // over the triangles, while stops spread
 // Searches of fast paths until all moves are given up, and those before nodes that still collide are stopped in place.
 constexpr int kSearches = 20, kPatience = 4;
 // Motion of a node until the next search, in thicknesses, so that most steps need none: of walls that face each other,
@@ -312,12 +317,39 @@ const std::vector<int>& SelfContact::resolvePenetrations(const MotionView& motio
 // Paths that become shorter by different parts may meet others: they are searched again until nothing changes.
 void SelfContact::shortenFastPaths() {
   SelfContactMemory& m = *memory_;
+  m.whole = m.move;
   for (int search = 0; search < kSearches; ++search) {
     for (std::size_t i = 0; i < m.end.size(); ++i) m.end[i] = m.position[i] + m.move[i];
     m.search.findMeetings(m.position, m.end, kFloor * min_thickness_, 0, m.swept);
     if (!m.paths.shorten(m.position, m.swept, search >= kPatience, m.move)) return;
+    spreadStops();
   }
   std::fill(m.move.begin(), m.move.end(), Eigen::Vector3d::Zero());
+}
+
+// Nodes around one that stops slow down, so that its triangles are not torn apart.
+void SelfContact::spreadStops() {
+  SelfContactMemory& m = *memory_;
+  for (std::size_t i = 0; i < m.move.size(); ++i) {
+    const double whole2 = m.whole[i].squaredNorm();
+    m.part[i] = whole2 > 0 ? m.move[i].dot(m.whole[i]) / whole2 : 1;
+    m.length[i] = std::sqrt(whole2);
+  }
+  bool changed = true;
+  for (int sweep = 0; sweep < kSweeps && changed; ++sweep) {
+    changed = false;
+    for (const auto& n : rest_.triangles)
+      for (int k = 0; k < 3; ++k) {
+        int slow = n[k], fast = n[(k + 1) % 3];
+        if (m.part[slow] > m.part[fast]) std::swap(slow, fast);
+        const double late = m.length[fast] * (m.part[fast] - m.part[slow]);
+        const double allowed = kStretch * (m.position[fast] - m.position[slow]).norm();
+        if (late <= allowed * (1 + kFewer)) continue;
+        m.part[fast] = m.part[slow] + allowed / m.length[fast];
+        m.move[fast] = m.part[fast] * m.whole[fast];
+        changed = true;
+      }
+  }
 }
 
 // Sets positions and moves, and finds the pairs of triangles that may meet if the paths are short.

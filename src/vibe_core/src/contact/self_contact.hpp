@@ -101,6 +101,7 @@ class SelfContact : public EnergyTerm {
   double facing(int vertex, int triangle) const;
   bool startPaths(const MotionView& motion);
   void shortenFastPaths();
+  void spreadStops();
   void stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const;
 
   SurfaceMesh rest_;

@@ -17,7 +17,10 @@ class SelfContactMemory {
         paths(rest.triangles, floor),
         position(rest.vertices),
         end(rest.vertices),
-        move(rest.vertices) {
+        move(rest.vertices),
+        whole(rest.vertices),
+        part(rest.vertices.size()),
+        length(rest.vertices.size()) {
     for (int k = 0; k < 3; ++k) {
       met[k].assign(rest.vertices.size(), 0);
       speed[k].assign(rest.vertices.size(), 0);
@@ -46,6 +49,8 @@ class SelfContactMemory {
   std::vector<SelfContactPaths::Pair> swept;         // the same, of fast paths
   bool slow = false;                                 // no node moves farther than `meetings` allow
   std::vector<Eigen::Vector3d> position, end, move;  // of a step [m]
+  std::vector<Eigen::Vector3d> whole;                // moves before they were shortened [m]
+  std::vector<double> part, length;                  // of the whole moves [1], [m]
 };
 
 }  // namespace vibe

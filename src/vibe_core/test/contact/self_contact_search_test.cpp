@@ -1,0 +1,150 @@
+#include "contact/self_contact.hpp"
+
+#include <gtest/gtest.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "contact/self_contact_worlds.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+using namespace test;
+
+TEST(SelfContactSearch, SphereMeetsItselfOnlyWhenFlattened) {
+  World world(sphere(0.05, 19));
+  ASSERT_EQ(world.count(), 3612U);
+  for (const double scale : {1.0, 2.0}) {
+    for (std::size_t i = 0; i < world.count(); ++i) world.set(i, scale * world.rest.vertices[i]);
+    world.detect(2e-3);
+    EXPECT_TRUE(world.contact.pairs().empty()) << scale;
+    EXPECT_EQ(world.evaluate(), 0);
+  }
+  for (std::size_t i = 0; i < world.count(); ++i) {
+    Eigen::Vector3d p = world.rest.vertices[i];
+    p.z() *= 0.04;
+    world.set(i, p);
+  }
+  world.detect(2e-3);
+  EXPECT_GT(world.contact.pairs().size(), 1000U);
+  EXPECT_GT(world.evaluate(), 0);
+}
+
+TEST(SelfContactSearch, NeighboursAlongTheSurfaceNeverCount) {
+  World world(sphere(0.05, 12));
+  for (std::size_t i = 0; i < world.count(); ++i) world.set(i, 0.1 * world.rest.vertices[i]);
+  world.shake(2e-3, 9);
+  world.detect(2e-3);
+  ASSERT_GT(world.contact.pairs().size(), 500U);
+  double min = 1;
+  for (const auto& pair : world.contact.pairs())
+    for (std::size_t k = 1; k < 4; ++k)
+      min = std::min(min, (world.rest.vertices[pair.node[k]] - world.rest.vertices[pair.node[0]]).norm());
+  EXPECT_GT(min, 2 * kThickness);
+}
+
+TEST(SelfContactSearch, ResultDoesNotDependOnHistory) {
+  PressedPlates fresh;
+  World old(plates(8, 6));
+  for (const double gap : {0.05, 0.01, 4e-3, 3e-3, -1e-3}) {
+    old.bring(plateSize(8), gap);
+    old.detect(gap > 5e-3 ? 2e-3 : 0.5e-3);
+  }
+  old.at = fresh.at;
+  old.detect(1e-3);
+  ASSERT_EQ(old.contact.pairs().size(), fresh.contact.pairs().size());
+  EXPECT_EQ(old.evaluate(), fresh.evaluate());
+  EXPECT_EQ(old.gradient, fresh.gradient);
+}
+
+TEST(SelfContactSearch, SearchesOnlyWhenSomethingCanHaveComeNear) {
+  World world(plates(8, 6));
+  world.detect(1e-3);
+  world.detect(1e-3);
+  EXPECT_EQ(world.contact.searchCount(), 1);
+  double gap = 0.1;
+  while (world.contact.pairs().empty() && gap > 0) {  // the approach is not missed in spite of the skipped searches
+    gap -= 0.1e-3;
+    world.bring(plateSize(8), gap, {0, 0});
+    world.detect(1e-3);
+  }
+  EXPECT_NEAR(gap, 1.25 * kThickness + 1e-3, 0.11e-3);
+  EXPECT_LT(world.contact.searchCount(), 320);
+}
+
+TEST(SelfContactSearch, PositionsThatAreNotFiniteMeetNothing) {
+  PressedPlates world;
+  world.at[4] = std::numeric_limits<double>::quiet_NaN();
+  world.detect(1e-3);
+  EXPECT_TRUE(world.contact.pairs().empty());
+  world.at[4] = 0;
+  world.detect(1e-3);
+  EXPECT_FALSE(world.contact.pairs().empty());
+}
+
+TEST(SelfContactSearch, RejectsWhatItCannotUse) {
+  const SurfaceMesh mesh = plates(2, 2);
+  std::vector<double> thickness(mesh.vertices.size(), kThickness);
+  EXPECT_NO_THROW(SelfContact(mesh, thickness, kModulus));
+  EXPECT_THROW(SelfContact(mesh, thickness, 0), Error);
+  thickness[3] = 0;
+  EXPECT_THROW(SelfContact(mesh, thickness, kModulus), Error);
+  thickness.pop_back();
+  EXPECT_THROW(SelfContact(mesh, thickness, kModulus), Error);
+  SurfaceMesh broken = mesh;
+  broken.triangles[1][2] = 99;
+  EXPECT_THROW(SelfContact(broken, std::vector<double>(mesh.vertices.size(), kThickness), kModulus), Error);
+}
+
+double threadTime() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+// `moved` of the nodes between calls; median and least time of a step's calls [ms]
+std::pair<double, double> measure(World& world, double moved) {
+  std::array<std::vector<double>, 3> x;
+  std::vector<double> v(world.count()), times;
+  for (std::size_t i = 0; i < world.count(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) x[k].push_back(world.at[4 * i + k]);
+  const MotionView view{
+      {x[0].data(), x[1].data(), x[2].data()}, {v.data(), v.data(), v.data()}, {v.data(), v.data(), v.data()}};
+  for (int i = 0; i < 201; ++i) {
+    const double start = threadTime();
+    world.contact.detect({x[0].data(), x[1].data(), x[2].data()}, {v.data(), v.data(), v.data()}, 2e-3, kStep);
+    for (double& value : x[0]) value += i % 2 == 0 ? moved : -moved;
+    world.contact.resolvePenetrations(view, kStep);
+    times.push_back(threadTime() - start);
+  }
+  std::sort(times.begin(), times.end());
+  return {times[times.size() / 2], times.front()};
+}
+
+TEST(SelfContactSearch, CostsLittleWhereNothingIsNear) {
+  World world(sphere(0.05, 19));
+  const auto still = measure(world, 1e-7), moving = measure(world, 5e-3);
+  World pinched(sphere(0.05, 19));  // pinched about its axis until the poles meet
+  for (std::size_t i = 0; i < pinched.count(); ++i) {
+    const double off = std::hypot(pinched.at[4 * i], pinched.at[4 * i + 1]);
+    pinched.at[4 * i + 2] *= std::clamp((off - 0.012) / 0.028, 0.025, 1.0);
+  }
+  const auto local = measure(pinched, 1e-7);
+  std::printf("still %.4f (%.4f) ms, searching %.3f (%.3f) ms, pinched, %zu pairs: %.3f (%.3f) ms\n", still.first,
+              still.second, moving.first, moving.second, pinched.contact.pairs().size(), local.first, local.second);
+  const double start = threadTime();
+  for (int i = 0; i < 100; ++i) pinched.evaluate();
+  std::printf("pinched: evaluate %.4f ms\n", (threadTime() - start) / 100);
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
+  EXPECT_LT(still.second, 0.02);
+#endif
+}
+
+}  // namespace
+}  // namespace vibe
