@@ -16,10 +16,14 @@ double gasAmount(double gauge_pressure, double volume) {
   return (kAmbientPressure + gauge_pressure) * volume;
 }
 
-double insufflate(const GasScene& gas, double amount, double volume, double dt) {
+GasRange insufflatorRange(const GasScene& gas, double amount, double dt) {
   const double limit = gas.flow_limit * kAmbientPressure * dt;
-  const double wanted = gasAmount(gas.regulated_pressure, volume) - amount;
-  return amount + std::clamp(wanted, -limit, limit);
+  return {std::max(0.0, amount - limit), amount + limit};
+}
+
+double insufflate(const GasScene& gas, double amount, double volume, double dt) {
+  const GasRange range = insufflatorRange(gas, amount, dt);
+  return std::clamp(gasAmount(gas.regulated_pressure, volume), range.min, range.max);
 }
 
 }  // namespace vibe

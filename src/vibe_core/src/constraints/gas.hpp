@@ -13,7 +13,16 @@ double gaugePressure(double amount, double volume);
 /// Amount that gives a gauge pressure in a volume [J].
 double gasAmount(double gauge_pressure, double volume);
 
-/// Amount after the insufflator has worked for `dt` towards its set point, in or out, within its flow limit [J].
+/// What an insufflator may reach in a step.
+struct GasRange {
+  double min = 0;  ///< of the amount [J]
+  double max = 0;  ///< of the amount [J]
+};
+
+/// Amounts between which the insufflator may be after `dt`, in or out, within its flow limit.
+GasRange insufflatorRange(const GasScene& gas, double amount, double dt);
+
+/// Amount after the insufflator has worked for `dt` towards its set point in a volume, within its range [J].
 double insufflate(const GasScene& gas, double amount, double volume, double dt);
 
 }  // namespace vibe

@@ -12,17 +12,20 @@ namespace {
 class GasBlock : public ConstraintBlock {
  public:
   Activity prepare(const StepContext& context, BodyLoads& loads) override {
-    loads.gas.control = GasLoad::Control::Amount;
+    loads.gas.control = context.insufflator_on ? GasLoad::Control::Regulated : GasLoad::Control::Amount;
     return context.insufflator_on ? Activity::Disturb : Activity::Sleep;
   }
 
   void begin(const StepContext& context, BodyLoads& loads) override {
-    State& state = context.state;
+    const State& state = context.state;
+    const GasScene& scene = *context.model.scene.gas;
     start_volume_ = state.volume;
     start_pressure_ = state.pressure;
-    if (context.insufflator_on)
-      state.gas_amount = insufflate(*context.model.scene.gas, state.gas_amount, state.volume, context.step);
+    const GasRange range = insufflatorRange(scene, state.gas_amount, context.step);
     loads.gas.amount = state.gas_amount;
+    loads.gas.amount_min = range.min;
+    loads.gas.amount_max = range.max;
+    loads.gas.set_pressure = scene.regulated_pressure;
     loads.gas.ambient = kAmbientPressure;
     loads.gas.volume = state.volume;
   }
@@ -31,10 +34,12 @@ class GasBlock : public ConstraintBlock {
   void recover(const StepContext& context) override { measure(context); }
 
  private:
-  // Volume, pressure and work of the gas on the wall, by the trapezoidal rule.
+  // Volume, amount, pressure and work of the gas on the wall, by the trapezoidal rule.
   void measure(const StepContext& context) const {
     State& state = context.state;
     state.volume = lumenVolume(context.model.organ.surface, state.x, state.y, state.z);
+    if (context.insufflator_on)
+      state.gas_amount = insufflate(*context.model.scene.gas, state.gas_amount, state.volume, context.step);
     state.pressure = gaugePressure(state.gas_amount, state.volume);
     state.energy.gas_work += 0.5 * (start_pressure_ + state.pressure) * (state.volume - start_volume_);
   }

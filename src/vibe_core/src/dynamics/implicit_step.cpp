@@ -141,11 +141,9 @@ void ImplicitStep::reportTool() {
 void ImplicitStep::reportImpedance() {
   if (scratch_.touches.empty() && scratch_.loads.contacts.empty()) return;
   findToolContactRows(model_, *motion_, stepper_, report_, scratch_);
-  const StepperScratch& stepper = *scratch_.stepper;
-  const double gas_stiffness = model_.scene.gas ? state_.gas_amount / (stepper.volume * stepper.volume) : 0;
   report_.tool_impedance =
       scratch_.impedance->update(state_.step, scratch_.tool_rows, {state_.x.data(), state_.y.data(), state_.z.data()},
-                                 stepper.volume_gradient, gas_stiffness, state_.impedance);
+                                 scratch_.stepper->volume_gradient, scratch_.loads.gas.stiffness, state_.impedance);
 }
 
 void ImplicitStep::accountDamping() {

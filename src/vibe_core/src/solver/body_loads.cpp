@@ -10,6 +10,7 @@ void BodyLoads::clear() {
   gas = GasLoad();
   tool_yield = ToolYield();
   extra = nullptr;
+  couplings.clear();
 }
 
 std::size_t BodyLoads::addPoint(const std::vector<int>& node, const std::vector<double>& weight,

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "solver/coupling_blocks.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {
 namespace {
@@ -12,14 +14,26 @@ namespace {
 // Design choice: the rounding of single precision, in which the solution is stored [1].
 constexpr double kShift = 1e-7;
 
-std::uint64_t hashOf(const std::vector<float>& values) {  // FNV-1a over 32-bit words; 1: nothing
+// FNV-1a over 32-bit words
+template <class Word>
+void mix(std::uint64_t& hash, Word word) {
+  static_assert(sizeof(Word) == sizeof(std::uint32_t));
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &word, sizeof bits);
+  hash = (hash ^ bits) * 1099511628211ULL;
+}
+
+// 1: about rest, without couplings
+std::uint64_t hashOf(const std::vector<float>& positions, const std::vector<StiffnessCoupling>& couplings) {
+  if (positions.empty() && couplings.empty()) return 1;
   std::uint64_t hash = 1469598103934665603ULL;
-  for (float value : values) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) * 1099511628211ULL;
+  for (const float value : positions) mix(hash, value);
+  for (const StiffnessCoupling& coupling : couplings) {
+    for (const int node : coupling.node) mix(hash, node);
+    for (const float value : coupling.weight) mix(hash, value);
+    for (const float value : coupling.stiffness) mix(hash, value);
   }
-  return values.empty() ? 1 : hash;
+  return hash;
 }
 
 void copyPositions(const MotionView& motion, int nodes, std::vector<float>& out) {
@@ -28,18 +42,7 @@ void copyPositions(const MotionView& motion, int nodes, std::vector<float>& out)
     for (int k = 0; k < 3; ++k) out[3 * static_cast<std::size_t>(i) + k] = static_cast<float>(motion.x[k][i]);
 }
 
-// A matrix that is not positive definite gets another chance about rest.
-void factorSafely(const ElasticBody& body, const std::vector<float>& positions, double inertia, double margin,
-                  BlockMatrix& matrix, Factor& factor) {
-  if (factorAt(body, positions, inertia, margin, matrix, factor)) return;
-  if (factorAt(body, {}, inertia, margin, matrix, factor)) return;
-  throw Error("The stiffness of the body at rest is not positive definite; check its mesh, masses and materials.");
-}
-
-}  // namespace
-
-bool factorAt(const ElasticBody& body, const std::vector<float>& positions, double inertia, double margin,
-              BlockMatrix& matrix, Factor& factor) {
+void addElements(const ElasticBody& body, const std::vector<float>& positions, double margin, BlockMatrix& matrix) {
   const std::size_t n = body.rest.size();
   std::vector<double> displacement(3 * n, 0.0);
   if (!positions.empty())
@@ -50,6 +53,10 @@ bool factorAt(const ElasticBody& body, const std::vector<float>& positions, doub
   matrix.setZero();
   body.elements->addStiffness(displacement.data(), matrix);
   if (margin != 1) matrix.scale(margin);
+}
+
+void addSprings(const ElasticBody& body, double inertia, BlockMatrix& matrix) {
+  const std::size_t n = body.rest.size();
   double mean = 0;
   for (std::size_t i = 0; i < n; ++i) mean += matrix.diagonal()[i].trace() / (3 * static_cast<double>(n));
   for (std::size_t i = 0; i < n; ++i) {
@@ -57,28 +64,67 @@ bool factorAt(const ElasticBody& body, const std::vector<float>& positions, doub
     if (!body.foundation.empty()) spring += body.foundation[i];
     matrix.add(static_cast<int>(i), static_cast<int>(i), spring * Eigen::Matrix3d::Identity());
   }
-  for (std::size_t i = 0; i < n; ++i)
+}
+
+}  // namespace
+
+bool factorAt(const ElasticBody& body, const FactorPoint& point, double inertia, double margin,
+              const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix, Factor& factor) {
+  const std::vector<NodePair> pairs = coupledPairs(point.couplings, body.fixed, matrix.pattern());
+  if (pairsOf(*factor.plan()) != pairs) factor.setPlan(coupledPlan(plan, pairs));
+  matrix.couple(pairs);
+  addElements(body, point.positions, margin, matrix);
+  addSprings(body, inertia, matrix);
+  addCouplings(point.couplings, body.fixed, matrix);
+  for (std::size_t i = 0; i < body.rest.size(); ++i)
     if (body.fixed[i] != 0) matrix.fix(static_cast<int>(i));
   return factor.compute(matrix);
 }
 
-void FactorSchedule::nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory) {
-  copyPositions(motion, body.nodeCount(), memory.linearization_point);
-  memory.linearization_id = hashOf(memory.linearization_point);
-  memory.next.clear();
+bool factorAt(const ElasticBody& body, const std::vector<float>& positions, double inertia, double margin,
+              BlockMatrix& matrix, Factor& factor) {
+  return factorAt(body, {positions, {}}, inertia, margin, factor.plan(), matrix, factor);
 }
 
-void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, StepperMemory& memory) const {
-  if (memory.linearization_id == 0) memory.linearization_id = hashOf(memory.linearization_point);
+void collectCouplings(const BodyLoads& loads, const double* positions4, std::vector<StiffnessCoupling>& couplings) {
+  couplings = loads.couplings;
+  if (loads.extra != nullptr) loads.extra->addStiffness(positions4, couplings);
+}
+
+void FactorSchedule::nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory) {
+  copyPositions(motion, body.nodeCount(), memory.linearization_point);
+  memory.couplings.clear();
+  memory.linearization_id = hashOf(memory.linearization_point, memory.couplings);
+  memory.next.clear();
+  memory.next_couplings.clear();
+}
+
+void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, const BodyLoads& loads,
+                             StepperMemory& memory, StepperScratch& scratch) const {
+  if (memory.linearization_id == 0) memory.linearization_id = hashOf(memory.linearization_point, memory.couplings);
   if (!memory.next.empty() && memory.steps >= memory.due) {
     memory.linearization_point.swap(memory.next);
+    memory.couplings.swap(memory.next_couplings);
     memory.linearization_id = memory.next_id;
     memory.next.clear();
+    memory.next_couplings.clear();
   }
   if (steps == 0 || !memory.next.empty() || !farFrom(body, motion, memory.linearization_point)) return;
   copyPositions(motion, body.nodeCount(), memory.next);
-  memory.next_id = hashOf(memory.next);
+  for (int i = 0; i < body.nodeCount(); ++i)
+    for (int k = 0; k < 3; ++k) scratch.trial[4 * i + k] = motion.x[k][i];
+  collectCouplings(loads, scratch.trial.data(), memory.next_couplings);
+  memory.next_id = hashOf(memory.next, memory.next_couplings);
   memory.due = memory.steps + steps;
+}
+
+// A matrix that is not positive definite gets another chance about rest.
+void FactorSchedule::factorSafely(const ElasticBody& body, const FactorPoint& point,
+                                  const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix,
+                                  Factor& factor) const {
+  if (factorAt(body, point, inertia, margin, plan, matrix, factor)) return;
+  if (factorAt(body, {{}, {}}, inertia, margin, plan, matrix, factor)) return;
+  throw Error("The stiffness of the body at rest is not positive definite; check its mesh, masses and materials.");
 }
 
 void FactorSchedule::provide(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
@@ -89,7 +135,7 @@ void FactorSchedule::provide(const ElasticBody& body, const RowList<AttachmentPo
       scratch.factor.swap(scratch.next_factor);
       std::swap(scratch.attachments, scratch.next_attachments);
     } else {
-      factorSafely(body, memory.linearization_point, inertia, margin, scratch.matrix, *scratch.factor);
+      factorSafely(body, {memory.linearization_point, memory.couplings}, scratch.plan, scratch.matrix, *scratch.factor);
       scratch.attachments = AttachmentColumns();
     }
     scratch.next_id = 0;
@@ -113,8 +159,9 @@ void FactorSchedule::makeInBackground(const ElasticBody& body, const RowList<Att
                                       const StepperMemory& memory, StepperScratch& scratch) const {
   if (scratch.making.valid()) scratch.making.get();
   scratch.next_id = memory.next_id;
-  scratch.making = std::async(std::launch::async, [this, &body, &scratch, positions = memory.next, attachments] {
-    factorSafely(body, positions, inertia, margin, scratch.next_matrix, *scratch.next_factor);
+  scratch.making = std::async(std::launch::async, [this, &body, &scratch, positions = memory.next,
+                                                   couplings = memory.next_couplings, attachments] {
+    factorSafely(body, {positions, couplings}, scratch.plan, scratch.matrix, *scratch.next_factor);
     scratch.next_attachments = AttachmentColumns();
     extendAttachmentColumns(*scratch.next_factor, attachments, scratch.next_attachments);
     return true;

@@ -66,6 +66,20 @@ double shortestDistance(const ElasticBody& body) {
   return std::sqrt(shortest2);
 }
 
+// Where the forces of the step act, if the nodes keep their velocities. It selects the stiffness of an insufflator,
+// which only determines the rate of convergence.
+double foreseenVolume(const GasLoad& gas, const MotionView& motion, const TimeScheme& scheme,
+                      const StepperScratch& scratch) {
+  if (gas.control != GasLoad::Control::Regulated) return scratch.volume;
+  double rate = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float* const gradient = scratch.volume_gradient.data() + k;
+    for (std::size_t i = 0; 4 * i < scratch.volume_gradient.size(); ++i)
+      rate += static_cast<double>(gradient[4 * i]) * motion.v[k][i];
+  }
+  return scratch.volume + scheme.part() * scheme.h * rate;
+}
+
 FactorSchedule scheduleOf(const StepSettings& settings, double inertia) {
   FactorSchedule schedule;
   schedule.inertia = inertia;
@@ -137,7 +151,7 @@ void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) 
 
 StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory,
                                   StepperScratch& scratch) const {
-  plan_->schedule.advance(body_, motion, memory);
+  plan_->schedule.advance(body_, motion, loads, memory, scratch);
   plan_->schedule.provide(body_, loads.attachments, memory, scratch);
   ++memory.steps;
   StepOutcome outcome;
@@ -182,7 +196,7 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
   guess(motion, outcome.fallback, scratch);
   buildRows(loads, motion, scratch);
   setStepTargets(loads, motion, scheme, scratch);
-  Potential potential(body_, loads, scheme.inertia, scratch);
+  Potential potential(body_, loads, scheme.inertia, scratch, scheme.part());
   QuasiNewton newton(body_, potential, loads, scratch,
                      std::min(plan_->safe_length, kUsualGrowth * memory.usual_length));
   newton.start();
@@ -192,10 +206,11 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
     newton.start();
   }
   scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
-  scratch.schur.setGas(scratch.volume_gradient.data(), potential.gasStiffness(), *scratch.factor);
+  newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
   const bool arrived = iterate(newton, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
   memory.elastic_energy = potential.elasticEnergy();
+  scratch.gas_stiffness = potential.gas().stiffness(scratch.volume);
   return outcome.finite && arrived;
 }
 
@@ -254,11 +269,11 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
     const bool slow = newton.directionLength() > kSlow * before;
     before = newton.directionLength();
     if (outcome.iterations % kRefactorEvery == 0 || (slow && outcome.iterations % kRefactorSlow == 0)) {
-      refactorHere(loads.attachments, scratch);
+      refactorHere(loads, scratch);
       newton.start();
       ++outcome.refactorisations;
     }
-    scratch.schur.setGas(scratch.volume_gradient.data(), potential.gasStiffness(), *scratch.factor);
+    newton.setGas(scratch.volume);
     outcome.last_move = newton.iterate(kFallbackMaxMove * plan_->size, true);
     ++outcome.iterations;
     outcome.converged = newton.directionLength() < std::max(tolerance, newton.resolution());
@@ -271,14 +286,16 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
   return outcome;
 }
 
-void ImplicitStepper::refactorHere(const RowList<AttachmentPoint>& attachments, StepperScratch& scratch) const {
+void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperScratch& scratch) const {
   std::vector<float> positions(3 * body_.rest.size());
   for (std::size_t i = 0; i < body_.rest.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(scratch.z[4 * i + k]);
-  if (!factorAt(body_, positions, 0, 1, scratch.matrix, *scratch.factor))
-    factorAt(body_, {}, 0, 1, scratch.matrix, *scratch.factor);
+  std::vector<StiffnessCoupling> couplings;
+  collectCouplings(loads, scratch.z.data(), couplings);
+  if (!factorAt(body_, {positions, couplings}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor))
+    factorAt(body_, {{}, {}}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor);
   scratch.attachments = AttachmentColumns();
-  extendAttachmentColumns(*scratch.factor, attachments, scratch.attachments);
+  extendAttachmentColumns(*scratch.factor, loads.attachments, scratch.attachments);
   scratch.schur.reset(*scratch.factor, body_.nodeCount());
   scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
 }

@@ -77,7 +77,7 @@ class ImplicitStepper {
   bool iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
   void finishStep(const MotionView& motion, bool fallback, StepperScratch& scratch) const;
-  void refactorHere(const RowList<AttachmentPoint>& attachments, StepperScratch& scratch) const;
+  void refactorHere(const BodyLoads& loads, StepperScratch& scratch) const;
   void placeAtRest(const StepperScratch& scratch, const MotionView& motion) const;
 
   ElasticBody body_;

@@ -60,23 +60,14 @@ double Potential::addSprings(const std::vector<double>& z, std::vector<float>& g
 }
 
 double Potential::gasEnergy() {
-  switch (gas_.control) {
-    case GasLoad::Control::Amount: {
-      const double volume = std::max(scratch_.volume, 1e-12);
-      scratch_.pressure = gas_.amount / volume - gas_.ambient;
-      noise_ += 1e-7 * std::abs(scratch_.pressure) * volume;
-      return gas_.ambient * (volume - gas_.volume) - gas_.amount * std::log(volume / std::max(gas_.volume, 1e-12));
-    }
-    default:  // a prescribed pressure, or the force that holds a prescribed volume
-      scratch_.pressure = gas_.pressure;
-      noise_ += 1e-7 * std::abs(scratch_.pressure * scratch_.volume);
-      return -gas_.pressure * (scratch_.volume - gas_.volume);
-  }
+  scratch_.pressure = gas_law_.pressure(scratch_.volume);
+  noise_ += 1e-7 * std::abs(scratch_.pressure * scratch_.volume);
+  return gas_law_.energy(scratch_.volume);
 }
 
-double Potential::gasStiffness() const {
-  if (gas_.control == GasLoad::Control::Amount) return gas_.amount / (scratch_.volume * scratch_.volume);
-  return gas_.control == GasLoad::Control::Volume ? std::numeric_limits<double>::infinity() : 0;
+void Potential::moveVolume(double change) {
+  scratch_.volume += change;
+  scratch_.pressure = gas_law_.pressure(scratch_.volume);
 }
 
 // Four lanes per node, the last of them zero, so that the compiler can use vectors of them.

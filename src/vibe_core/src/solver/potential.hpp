@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/gas_law.hpp"
 #include "solver/stepper_scratch.hpp"
 
 namespace vibe {
@@ -9,14 +10,21 @@ namespace vibe {
 class Potential {
  public:
   /// @param inertia  mass times this is the spring to z_hat [1/s^2]; 0: a static problem
-  Potential(const ElasticBody& body, const BodyLoads& loads, double inertia, StepperScratch& scratch)
-      : body_(body), gas_(loads.gas), extra_(loads.extra), inertia_(inertia), scratch_(scratch) {}
+  /// @param part     of the step after which its forces act, see GasLaw [1]
+  Potential(const ElasticBody& body, const BodyLoads& loads, double inertia, StepperScratch& scratch, double part = 1)
+      : body_(body),
+        gas_(loads.gas),
+        gas_law_(loads.gas, part),
+        extra_(loads.extra),
+        inertia_(inertia),
+        scratch_(scratch) {}
 
   /// Value [J] at z; the gradient [N] goes to `gradient` (4 per node). Also sets the scratch's volume, pressure and
   /// volume gradient.
   double evaluate(const std::vector<double>& z, std::vector<float>& gradient);
-  /// How fast the pressure falls with the volume [Pa/m^3].
-  double gasStiffness() const;
+  const GasLaw& gas() const { return gas_law_; }
+  /// Sets the scratch's volume and pressure for a move that changes the volume by `change` and is not evaluated [m^3].
+  void moveVolume(double change);
   double elasticEnergy() const { return elastic_; }  ///< part of the last value [J]
   double noise() const { return noise_; }            ///< rounding error of the last value [J]
 
@@ -28,6 +36,7 @@ class Potential {
 
   const ElasticBody& body_;
   const GasLoad& gas_;
+  GasLaw gas_law_;
   const EnergyTerm* extra_;
   double inertia_;
   StepperScratch& scratch_;

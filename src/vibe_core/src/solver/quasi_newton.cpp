@@ -149,6 +149,42 @@ void QuasiNewton::slideThreads() {
   s.schur.holdThreads();
 }
 
+void QuasiNewton::setGas(double volume) {
+  gas_piece_ = potential_.gas().pieceAt(volume);
+  scratch_.schur.setGas(scratch_.volume_gradient.data(), potential_.gas().lineOf(gas_piece_, scratch_.volume).stiffness,
+                        *scratch_.factor);
+}
+
+// @returns whether the direction leads to another piece of the gas law than the one it was computed with
+bool QuasiNewton::changeGas() {
+  if (gas_.control != GasLoad::Control::Regulated) return false;
+  const double end = scratch_.volume + dot(scratch_.volume_gradient, scratch_.direction);
+  if (potential_.gas().pieceAt(end) == gas_piece_) return false;
+  setGas(end);
+  return true;
+}
+
+// By how much the volume changes in the direction where the gas has no stiffness of its own. The piece of an
+// insufflator's law may lie elsewhere than the present volume.
+double QuasiNewton::swelling() const {
+  if (gas_.control == GasLoad::Control::Volume) return gas_.target_volume - scratch_.volume;
+  if (gas_.control != GasLoad::Control::Regulated || gas_piece_ == GasLaw::Piece::Kept) return 0;
+  const GasLaw::Line line = potential_.gas().lineOf(gas_piece_, scratch_.volume);
+  return (line.pressure - scratch_.pressure) / line.stiffness;
+}
+
+// With what the pressure lacks to the set point where the direction leads there.
+void QuasiNewton::loadWork() {
+  StepperScratch& s = scratch_;
+  const double lack = gas_.control == GasLoad::Control::Regulated && gas_piece_ == GasLaw::Piece::Kept
+                          ? gas_.set_pressure - s.pressure
+                          : 0;
+  if (lack == 0) return s.factor->load(s.work.data(), s.half.data());
+  s.direction = s.work;
+  addScaled(lack, s.volume_gradient, s.direction);
+  s.factor->load(s.direction.data(), s.half.data());
+}
+
 // Two-loop recursion (Nocedal 1980) with the factor, the rows and the gas as initial inverse.
 void QuasiNewton::findDirection() {
   StepperScratch& s = scratch_;
@@ -164,10 +200,21 @@ void QuasiNewton::findDirection() {
   }
   if (s.pairs > 0) addRowForces(1, s.work);
   for (float& value : s.work) value = -value;
-  s.factor->load(s.work.data(), s.half.data());
+  applyInverse(alpha);
+  if (changeGas()) {
+    rowResidual();
+    applyInverse(alpha);
+  }
+  direction_length_ = largest(s.direction);
+  slope_ = dot(s.gradient, s.direction);
+}
+
+// To the work vector: what follows the first loop.
+void QuasiNewton::applyInverse(const double* alpha) {
+  StepperScratch& s = scratch_;
+  loadWork();
   s.factor->forward(s.half.data());
-  const double swelling = gas_.control == GasLoad::Control::Volume ? gas_.target_volume - s.volume : 0;
-  s.schur.eliminate(s.rhs, swelling, s.half.data());
+  s.schur.eliminate(s.rhs, swelling(), s.half.data());
   residual_ = rowResiduals();
   slideThreads();
   s.factor->backward(s.half.data());
@@ -179,8 +226,6 @@ void QuasiNewton::findDirection() {
   for (int i = 0; i < body_.nodeCount(); ++i)
     if (body_.fixed[i] != 0)
       for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
-  direction_length_ = largest(s.direction);
-  slope_ = dot(s.gradient, s.direction);
 }
 
 // The value with the rows' (and a prescribed volume's) forces as multipliers: it falls along the direction although the
@@ -235,10 +280,7 @@ double QuasiNewton::advance(double max, bool verify) {
   if (safe) {
     setTrial(1);
     s.z.swap(s.trial);
-    if (gas_.control == GasLoad::Control::Amount) {  // as the direction foresees them
-      s.pressure += s.schur.gasForce();
-      s.volume = gas_.amount / (s.pressure + gas_.ambient);
-    }
+    if (gas_.control != GasLoad::Control::None) potential_.moveVolume(dot(s.volume_gradient, s.direction));
     return direction_length_;
   }
   const double prescribed = gas_.control == GasLoad::Control::Volume ? s.schur.gasForce() : 0;

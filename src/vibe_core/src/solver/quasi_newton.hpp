@@ -13,6 +13,9 @@ class QuasiNewton {
 
   /// Evaluates at the scratch's z.
   void start();
+  /// Eliminates the gas with the stiffness that it has at a foreseen volume. Where an insufflator's law turns out to
+  /// have another, iterations change it.
+  void setGas(double volume);
   /// Forgets the history; needed after a new factor.
   void restart() { scratch_.pairs = 0; }
   /// One step: direction, then as much of it as lowers the energy.
@@ -36,6 +39,10 @@ class QuasiNewton {
 
  private:
   void findDirection();
+  bool changeGas();
+  double swelling() const;
+  void loadWork();
+  void applyInverse(const double* alpha);
   void rowResidual();
   void slideThreads();
   double rowResiduals() const;
@@ -52,6 +59,7 @@ class QuasiNewton {
   StepperScratch& scratch_;
   double safe_length_;
   double value_ = 0;
+  GasLaw::Piece gas_piece_ = GasLaw::Piece::Kept;
   double direction_length_ = 0, last_length_ = -1;
   double slope_ = 0;
   double first_length_ = 0;

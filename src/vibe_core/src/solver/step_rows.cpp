@@ -200,6 +200,7 @@ void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
   if (rows.tool_yields) loads.tool_yield.displacement = loads.tool_yield.free - loads.tool_yield.compliance * pull;
   loads.gas.volume = scratch.volume;
   loads.gas.pressure = scratch.pressure;
+  loads.gas.stiffness = scratch.gas_stiffness;
 }
 
 }  // namespace vibe

@@ -3,12 +3,12 @@
 namespace vibe {
 
 StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_positions,
-                               std::shared_ptr<const FactorPlan> plan, FactorStorage storage,
+                               std::shared_ptr<const FactorPlan> elements_plan, FactorStorage storage,
                                std::shared_ptr<const BlockPattern> pattern)
-    : factor(std::make_unique<Factor>(plan, storage)),
+    : plan(std::move(elements_plan)),
+      factor(std::make_unique<Factor>(plan, storage)),
       next_factor(std::make_unique<Factor>(plan, storage)),
-      matrix(pattern),
-      next_matrix(pattern) {
+      matrix(std::move(pattern)) {
   const std::size_t size = 4 * rest_positions.size();
   for (auto* v : {&rest, &z, &z_hat, &trial}) v->assign(size, 0);
   for (auto* v : {&displacement, &gradient, &trial_gradient, &volume_gradient, &direction, &work}) v->assign(size, 0);

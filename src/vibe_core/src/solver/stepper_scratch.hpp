@@ -13,14 +13,15 @@ namespace vibe {
 /// All memory of an ImplicitStepper. Node vectors are 4 numbers per node.
 class StepperScratch {
  public:
-  StepperScratch(const std::vector<Eigen::Vector3d>& rest, std::shared_ptr<const FactorPlan> plan,
+  StepperScratch(const std::vector<Eigen::Vector3d>& rest, std::shared_ptr<const FactorPlan> elements_plan,
                  FactorStorage storage, std::shared_ptr<const BlockPattern> pattern);
   ~StepperScratch();
 
   static constexpr int kHistory = 6;
 
+  std::shared_ptr<const FactorPlan> plan;  // of the elements alone
   std::unique_ptr<Factor> factor, next_factor;
-  BlockMatrix matrix, next_matrix;
+  BlockMatrix matrix;                               // of the factor that is being made
   std::uint64_t factor_id = 0, next_id = 0;         // what they are about; 0: nothing
   std::future<bool> making;                         // of next_factor
   AttachmentColumns attachments, next_attachments;  // of `factor`, of `next_factor`
@@ -40,6 +41,7 @@ class StepperScratch {
   Eigen::VectorXd target, rhs, force;
   Eigen::VectorXd slid;             // thread that slid out of a row in this step, to the scale of the rows [m]
   double volume = 0, pressure = 0;  // of the point under evaluation
+  double gas_stiffness = 0;         // there, after a step [Pa/m^3]
 };
 
 }  // namespace vibe

@@ -16,6 +16,8 @@ struct TimeScheme {
   double alpha_m = 0, alpha_f = 0, gamma = 1, beta = 1;
   double x_gain, v_gain, z_gain;
   double inertia;  ///< [1/s^2]
+  /// Part of the step after which the forces act [1].
+  double part() const { return 1 - alpha_f; }
   double rate, time;
 
   /// a * acceleration + v * velocity + position

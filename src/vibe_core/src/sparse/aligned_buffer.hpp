@@ -24,6 +24,10 @@ class AlignedBuffer {
     size_ = count;
     std::uninitialized_fill_n(memory_.get(), bytes / sizeof(Number), Number());
   }
+  /// At least this many numbers; those that are there already keep their values where it is large enough.
+  void grow(std::int64_t count) {
+    if (size_ < count) resize(count);
+  }
   std::int64_t size() const { return size_; }
   Number* data() { return memory_.get(); }
   const Number* data() const { return memory_.get(); }

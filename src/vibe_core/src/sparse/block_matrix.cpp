@@ -66,32 +66,45 @@ BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> pattern)
 void BlockMatrix::setZero() {
   std::fill(diagonal_.begin(), diagonal_.end(), Eigen::Matrix3d::Zero());
   std::fill(lower_.begin(), lower_.end(), Eigen::Matrix3d::Zero());
+  std::fill(coupled_.begin(), coupled_.end(), Eigen::Matrix3d::Zero());
+}
+
+void BlockMatrix::couple(const std::vector<NodePair>& pairs) {
+  pairs_ = pairs;
+  coupled_.assign(pairs_.size(), Eigen::Matrix3d::Zero());
 }
 
 void BlockMatrix::scale(double factor) {
   for (Eigen::Matrix3d& block : diagonal_) block *= factor;
   for (Eigen::Matrix3d& block : lower_) block *= factor;
+  for (Eigen::Matrix3d& block : coupled_) block *= factor;
+}
+
+Eigen::Matrix3d& BlockMatrix::below(int row, int column) {
+  const int index = pattern_->find(row, column);
+  if (index >= 0) return lower_[index];
+  const auto pair = std::lower_bound(pairs_.begin(), pairs_.end(), NodePair{row, column});
+  if (pair == pairs_.end() || !(*pair == NodePair{row, column}))
+    throw Error("block (" + std::to_string(row) + ", " + std::to_string(column) +
+                ") is not in the pattern of its matrix: give blockPattern a group that holds both nodes.");
+  return coupled_[static_cast<std::size_t>(pair - pairs_.begin())];
 }
 
 void BlockMatrix::add(int row, int column, const Eigen::Matrix3d& block) {
-  if (row == column) {
+  if (row == column)
     diagonal_[row] += block;
-    return;
-  }
-  const int index = pattern_->find(std::max(row, column), std::min(row, column));
-  if (index < 0)
-    throw Error("block (" + std::to_string(row) + ", " + std::to_string(column) +
-                ") is not in the pattern of its matrix: give blockPattern a group that holds both nodes.");
-  if (row > column)
-    lower_[index] += block;
+  else if (row > column)
+    below(row, column) += block;
   else
-    lower_[index] += block.transpose();
+    below(column, row) += block.transpose();
 }
 
 void BlockMatrix::fix(int node) {
   diagonal_[node].setIdentity();
   for (int k = pattern_->start[node]; k < pattern_->start[node + 1]; ++k) lower_[k].setZero();
   for (int k = column_start_[node]; k < column_start_[node + 1]; ++k) lower_[column_block_[k]].setZero();
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    if (pairs_[k].row == node || pairs_[k].column == node) coupled_[k].setZero();
 }
 
 void BlockMatrix::multiply(const double* x, double* out) const {
@@ -106,6 +119,10 @@ void BlockMatrix::multiply(const double* x, double* out) const {
       Vector(out + 3 * j) += lower_[k].transpose() * own;  // column < row: already written
     }
     Vector(out + 3 * i) = sum;
+  }
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    Vector(out + 3 * pairs_[k].row) += coupled_[k] * ConstVector(x + 3 * pairs_[k].column);
+    Vector(out + 3 * pairs_[k].column) += coupled_[k].transpose() * ConstVector(x + 3 * pairs_[k].row);
   }
 }
 

@@ -18,22 +18,33 @@ struct BlockPattern {
   int find(int row, int column_wanted) const;
 };
 
+/// Two nodes of which the first has the larger number: a block below the diagonal.
+struct NodePair {
+  int row, column;
+  bool operator==(const NodePair& other) const { return row == other.row && column == other.column; }
+  bool operator<(const NodePair& other) const { return row != other.row ? row < other.row : column < other.column; }
+};
+
 /// The pattern in which all nodes of each group are coupled.
 /// @param groups  consecutive groups of `group_size` node numbers; -1 entries are skipped
 /// @throws Error  if a list does not consist of whole groups, or a node is outside the matrix
 BlockPattern blockPattern(int size, const std::vector<std::pair<const std::vector<int>*, int>>& groups);
 
-/// A symmetric matrix of 3 x 3 blocks over a shared pattern. Only the lower triangle is stored.
+/// A symmetric matrix of 3 x 3 blocks over a shared pattern, and over a few pairs of nodes beside it that may change.
+/// Only the lower triangle is stored.
 class BlockMatrix {
  public:
   explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern);
 
   void setZero();
+  /// Replaces the pairs of nodes beside the pattern; their blocks are zero.
+  /// @param pairs  sorted, each once, none in the pattern
+  void couple(const std::vector<NodePair>& pairs);
   /// Multiplies every block.
   void scale(double factor);
   /// Adds a block at (row, column); for row < column its transpose is added at (column, row). On the diagonal the block
   /// must be symmetric.
-  /// @throws Error  if the block is not in the pattern
+  /// @throws Error  if the block is neither in the pattern nor among the coupled pairs
   void add(int row, int column, const Eigen::Matrix3d& block);
   /// Replaces the rows and columns of a node by those of the unit matrix, which fixes the node.
   void fix(int node);
@@ -43,10 +54,15 @@ class BlockMatrix {
   const BlockPattern& pattern() const { return *pattern_; }
   const std::vector<Eigen::Matrix3d>& diagonal() const { return diagonal_; }
   const std::vector<Eigen::Matrix3d>& lower() const { return lower_; }
+  const std::vector<NodePair>& pairs() const { return pairs_; }
+  const std::vector<Eigen::Matrix3d>& coupled() const { return coupled_; }  ///< of pairs()
 
  private:
+  Eigen::Matrix3d& below(int row, int column);
+
   std::shared_ptr<const BlockPattern> pattern_;
-  std::vector<Eigen::Matrix3d> diagonal_, lower_;
+  std::vector<NodePair> pairs_;
+  std::vector<Eigen::Matrix3d> diagonal_, lower_, coupled_;
   std::vector<int> column_start_, column_block_;  // the blocks of each column below the diagonal, for fix()
 };
 

@@ -10,6 +10,10 @@ namespace vibe {
 /// same pattern and seed.
 std::vector<int> nestedDissection(const BlockPattern& pattern, int seed);
 
+/// The pattern with further pairs of nodes.
+/// @param pairs  sorted, each once, none in the pattern
+BlockPattern extended(const BlockPattern& pattern, const std::vector<NodePair>& pairs);
+
 /// A group of nodes that are eliminated together as one dense block; a node of the supernode tree.
 struct Supernode {
   std::vector<int> nodes;  ///< eliminated here

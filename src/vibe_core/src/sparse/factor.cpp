@@ -40,15 +40,18 @@ PanelKernels kernelsFor(FactorStorage storage) {
 }  // namespace
 
 struct Factor::Storage {
-  Storage(const FactorPlan& plan_wanted, FactorStorage storage)
-      : plan(plan_wanted), kind(storage), kernels(kernelsFor(storage)), multifrontal(plan) {
-    const int rows = 3 * plan.pattern.size;
+  explicit Storage(FactorStorage storage) : kind(storage), kernels(kernelsFor(storage)) {}
+
+  void setPlan(std::shared_ptr<const FactorPlan> wanted) {
+    plan = std::move(wanted);
+    multifrontal.setPlan(*plan);
+    const std::size_t rows = 3 * static_cast<std::size_t>(plan->pattern->size);
     scale.resize(rows);
     float_scale.resize(rows);
     column_scale.resize(rows);
-    if (kind == FactorStorage::Half) half.resize(plan.panel_size);
-    if (kind == FactorStorage::Float) single.resize(plan.panel_size);
-    if (kind == FactorStorage::Double) wide.resize(plan.panel_size);
+    if (kind == FactorStorage::Half) half.grow(plan->panel_size);
+    if (kind == FactorStorage::Float) single.grow(plan->panel_size);
+    if (kind == FactorStorage::Double) wide.grow(plan->panel_size);
   }
 
   const void* numbers() const {
@@ -58,23 +61,23 @@ struct Factor::Storage {
   }
 
   PanelSet panels() const {
-    return {plan.steps.data(),     static_cast<int>(plan.steps.size()),
-            plan.row_index.data(), numbers(),
-            column_scale.data(),   ahead()};
+    return {plan->steps.data(),     static_cast<int>(plan->steps.size()),
+            plan->row_index.data(), numbers(),
+            column_scale.data(),    ahead()};
   }
 
   // measured: panels in the last-level cache need a shorter prefetch distance than those in memory
   std::ptrdiff_t ahead() const {
-    const std::int64_t bytes = plan.panel_size * (kind == FactorStorage::Half    ? 2
-                                                  : kind == FactorStorage::Float ? 4
-                                                                                 : 8);
+    const std::int64_t bytes = plan->panel_size * (kind == FactorStorage::Half    ? 2
+                                                   : kind == FactorStorage::Float ? 4
+                                                                                  : 8);
     return bytes < kLargeFactor ? 8192 : 16384;
   }
 
   bool takeScale(const BlockMatrix& matrix) {
-    for (int k = 0; k < plan.pattern.size; ++k)
+    for (int k = 0; k < plan->pattern->size; ++k)
       for (int a = 0; a < 3; ++a) {
-        const double entry = matrix.diagonal()[plan.order[k]](a, a);
+        const double entry = matrix.diagonal()[plan->order[k]](a, a);
         if (!(entry > 0) || !std::isfinite(entry)) return false;
         scale[3 * k + a] = 1 / std::sqrt(entry);
         float_scale[3 * k + a] = static_cast<float>(scale[3 * k + a]);
@@ -83,14 +86,14 @@ struct Factor::Storage {
   }
 
   void take(int s, const DoublePanel& panel) {
-    const PanelStep& step = plan.steps[s];
+    const PanelStep& step = plan->steps[s];
     float* columns = column_scale.data() + step.first_row;
     if (kind == FactorStorage::Half) packPanel(panel, step, half.data() + step.panel, columns);
     if (kind == FactorStorage::Float) packPanel(panel, step, single.data() + step.panel, columns);
     if (kind == FactorStorage::Double) packPanel(panel, step, wide.data() + step.panel, columns);
   }
 
-  const FactorPlan& plan;
+  std::shared_ptr<const FactorPlan> plan;
   FactorStorage kind;
   PanelKernels kernels;
   Multifrontal multifrontal;
@@ -102,25 +105,37 @@ struct Factor::Storage {
 };
 
 Factor::Factor(std::shared_ptr<const FactorPlan> plan, FactorStorage storage)
-    : plan_(std::move(plan)), storage_(std::make_unique<Storage>(*plan_, storage)) {}
+    : storage_(std::make_unique<Storage>(storage)) {
+  setPlan(std::move(plan));
+}
 
 Factor::~Factor() = default;
 
+void Factor::setPlan(std::shared_ptr<const FactorPlan> plan) {
+  plan_ = std::move(plan);
+  storage_->setPlan(plan_);
+}
+
+void Factor::checkPattern(const BlockMatrix& matrix) const {
+  const BlockPattern &given = matrix.pattern(), &known = *plan_->pattern;
+  if (given.size == known.size && given.start == known.start && given.column == known.column &&
+      matrix.pairs() == plan_->pairs)
+    return;
+  throw Error("a matrix of " + std::to_string(given.size) + " nodes and " +
+              std::to_string(given.column.size() + matrix.pairs().size()) +
+              " blocks does not have the pattern of its factor's plan (" + std::to_string(known.size) + " nodes, " +
+              std::to_string(known.column.size() + plan_->pairs.size()) + " blocks): make the plan from its pattern.");
+}
+
 bool Factor::compute(const BlockMatrix& matrix) {
-  const BlockPattern& pattern = matrix.pattern();
-  if (pattern.size != plan_->pattern.size || pattern.start != plan_->pattern.start ||
-      pattern.column != plan_->pattern.column)
-    throw Error("a matrix of " + std::to_string(pattern.size) + " nodes and " + std::to_string(pattern.column.size()) +
-                " blocks does not have the pattern of its factor's plan (" + std::to_string(plan_->pattern.size) +
-                " nodes, " + std::to_string(plan_->pattern.column.size()) +
-                " blocks): make the plan from its pattern.");
+  checkPattern(matrix);
   return storage_->takeScale(matrix) &&
          storage_->multifrontal.run(matrix, storage_->scale,
                                     [this](int s, const DoublePanel& panel) { storage_->take(s, panel); });
 }
 
 int Factor::rows() const {
-  return 3 * plan_->pattern.size;
+  return 3 * plan_->pattern->size;
 }
 
 void Factor::load(const float* nodes4, float* vector) const {
@@ -156,10 +171,10 @@ void Factor::solve(const double* b, double* x) const {
         "a factor stored in half or single precision cannot solve in double: make it with "
         "FactorStorage::Double.");
   double* vector = workOfThread<double>(rows() + kTile + workSize(*plan_));
-  for (int k = 0; k < plan_->pattern.size; ++k)
+  for (int k = 0; k < plan_->pattern->size; ++k)
     for (int a = 0; a < 3; ++a) vector[3 * k + a] = storage_->scale[3 * k + a] * b[3 * plan_->order[k] + a];
   solveDouble(storage_->panels(), vector, vector + rows() + kTile);
-  for (int k = 0; k < plan_->pattern.size; ++k)
+  for (int k = 0; k < plan_->pattern->size; ++k)
     for (int a = 0; a < 3; ++a) x[3 * plan_->order[k] + a] = storage_->scale[3 * k + a] * vector[3 * k + a];
 }
 

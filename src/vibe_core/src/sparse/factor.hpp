@@ -16,6 +16,14 @@ enum class FactorStorage { Half, Float, Double };
 /// METIS uses rand(): another thread that calls rand() or srand() meanwhile changes the plan.
 class FactorPlan;
 std::shared_ptr<const FactorPlan> makeFactorPlan(const BlockPattern& pattern);
+/// The plan for a pattern with further pairs of nodes: the order of `base`, in which those nodes that the pairs connect
+/// across branches of the elimination tree are moved up to where the branches meet. After Zarebavani et al., "Parth",
+/// ACM Trans. Graph. 44 (2025). A function of its arguments alone, without METIS, and safe in any thread.
+/// @param base   of a pattern without pairs
+/// @param pairs  sorted, each once, none in the pattern; empty: the result is `base`
+std::shared_ptr<const FactorPlan> coupledPlan(const std::shared_ptr<const FactorPlan>& base,
+                                              const std::vector<NodePair>& pairs);
+const std::vector<NodePair>& pairsOf(const FactorPlan& plan);
 
 /// L^-1 times the three unit vectors of a node. It is nonzero only on the path from the node to the root of the
 /// elimination tree. Rows are in elimination order, padded to supernodes: one run per supernode on the path, ascending,
@@ -38,9 +46,13 @@ class Factor {
   Factor(const Factor&) = delete;
   Factor& operator=(const Factor&) = delete;
 
+  /// Changes the plan to one of a matrix of the same size, and keeps the memory. compute() comes next.
+  void setPlan(std::shared_ptr<const FactorPlan> plan);
+  const std::shared_ptr<const FactorPlan>& plan() const { return plan_; }
+
   /// @returns false if the matrix is not positive definite (a pivot of D A D is below 1e-14, or not a number); the
   ///         factor is then unusable until the next success
-  /// @throws Error  if the pattern of the matrix is not that of the plan
+  /// @throws Error  if pattern or pairs of the matrix are not those of the plan
   bool compute(const BlockMatrix& matrix);
 
   /// Length of the vectors below: 3 * nodes.
@@ -62,6 +74,8 @@ class Factor {
 
  private:
   struct Storage;
+  void checkPattern(const BlockMatrix& matrix) const;
+
   std::shared_ptr<const FactorPlan> plan_;
   std::unique_ptr<Storage> storage_;
 };

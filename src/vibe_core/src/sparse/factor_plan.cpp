@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sparse/elimination.hpp"
+#include "sparse/order_repair.hpp"
 
 namespace vibe {
 namespace {
@@ -11,9 +12,11 @@ constexpr int kFirstSeed = 1, kSeeds = 4;
 
 class Planner {
  public:
-  Planner(const BlockPattern& pattern, const std::vector<Supernode>& supernodes)
+  Planner(std::shared_ptr<const BlockPattern> pattern, const std::vector<NodePair>& pairs,
+          const std::vector<Supernode>& supernodes)
       : plan_(std::make_shared<FactorPlan>()), supernodes_(supernodes) {
-    plan_->pattern = pattern;
+    plan_->pattern = std::move(pattern);
+    plan_->pairs = pairs;
   }
 
   std::shared_ptr<const FactorPlan> make() {
@@ -27,7 +30,7 @@ class Planner {
 
  private:
   void numberNodes() {
-    plan_->position.resize(plan_->pattern.size);
+    plan_->position.resize(plan_->pattern->size);
     for (std::size_t s = 0; s < supernodes_.size(); ++s)
       for (const int node : supernodes_[s].nodes) {
         plan_->position[node] = static_cast<int>(plan_->order.size());
@@ -82,11 +85,14 @@ class Planner {
 
   void addEntries() {
     std::vector<std::vector<FactorPlan::Entry>> entries(supernodes_.size());
-    const BlockPattern& pattern = plan_->pattern;
+    const BlockPattern& pattern = *plan_->pattern;
     for (int i = 0; i < pattern.size; ++i) {
       addEntry(entries, -1 - i, i, i);
       for (int k = pattern.start[i]; k < pattern.start[i + 1]; ++k) addEntry(entries, k, i, pattern.column[k]);
     }
+    const int known = static_cast<int>(pattern.column.size());
+    for (int k = 0; k < static_cast<int>(plan_->pairs.size()); ++k)
+      addEntry(entries, known + k, plan_->pairs[k].row, plan_->pairs[k].column);
     for (std::size_t s = 0; s < entries.size(); ++s) {
       plan_->fronts[s].first_entry = static_cast<int>(plan_->entries.size());
       plan_->fronts[s].entry_count = static_cast<int>(entries[s].size());
@@ -137,7 +143,18 @@ std::shared_ptr<const FactorPlan> makeFactorPlan(const BlockPattern& pattern) {
     std::vector<Supernode> supernodes = amalgamate(symbolicFactor(pattern, nestedDissection(pattern, seed)));
     if (best.empty() || totalCost(supernodes) < totalCost(best)) best = std::move(supernodes);
   }
-  return Planner(pattern, best).make();
+  return Planner(std::make_shared<const BlockPattern>(pattern), {}, best).make();
+}
+
+std::shared_ptr<const FactorPlan> coupledPlan(const std::shared_ptr<const FactorPlan>& base,
+                                              const std::vector<NodePair>& pairs) {
+  if (pairs.empty()) return base;
+  const BlockPattern pattern = extended(*base->pattern, pairs);
+  return Planner(base->pattern, pairs, amalgamate(symbolicFactor(pattern, repairedOrder(*base, pairs)))).make();
+}
+
+const std::vector<NodePair>& pairsOf(const FactorPlan& plan) {
+  return plan.pairs;
 }
 
 }  // namespace vibe

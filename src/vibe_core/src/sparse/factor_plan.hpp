@@ -15,7 +15,8 @@ class FactorPlan {
  public:
   /// A block of the matrix in the front of a supernode; row and column are relative to the first of the front.
   struct Entry {
-    int block;  ///< index into BlockMatrix::lower(); -1 - node: the diagonal block of the node
+    int block;  ///< -1 - node: the diagonal block of the node; else index into BlockMatrix::lower(), and on from its
+                ///< end into BlockMatrix::coupled()
     int row, column;
     bool transposed;
   };
@@ -30,10 +31,11 @@ class FactorPlan {
     int first_run = 0, run_count = 0;
   };
 
-  BlockPattern pattern;
-  std::vector<int> order;     ///< nodes by position in the elimination
-  std::vector<int> position;  ///< the inverse permutation
-  std::vector<int> holder;    ///< supernode by position in the elimination
+  std::shared_ptr<const BlockPattern> pattern;
+  std::vector<NodePair> pairs;  ///< beside the pattern
+  std::vector<int> order;       ///< nodes by position in the elimination
+  std::vector<int> position;    ///< the inverse permutation
+  std::vector<int> holder;      ///< supernode by position in the elimination
   std::vector<PanelStep> steps;
   std::vector<std::int32_t> row_index;  ///< see PanelStep
   std::vector<Front> fronts;

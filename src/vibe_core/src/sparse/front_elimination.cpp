@@ -15,13 +15,16 @@ constexpr int panels(int count, int size) {
 
 }  // namespace
 
-FrontElimination::FrontElimination(int largest_front) : update_(denseUpdate(bestInstructionPath())) {
-  below_.resize(static_cast<std::int64_t>(largest_front + kDenseRows) * kBlock);
-  own_.resize(static_cast<std::int64_t>(largest_front + kDenseColumns) * kBlock);
+FrontElimination::FrontElimination() : update_(denseUpdate(bestInstructionPath())) {
   negative_inverse_a_.resize(kBlock * kBlock);
   negative_inverse_b_.resize(kBlock * kBlock);
   lower_.resize(kBlock * kBlock);
   inverse_.resize(kBlock * kBlock);
+}
+
+void FrontElimination::setLargestFront(int rows) {
+  below_.grow(static_cast<std::int64_t>(rows + kDenseRows) * kBlock);
+  own_.grow(static_cast<std::int64_t>(rows + kDenseColumns) * kBlock);
 }
 
 bool FrontElimination::run(double* front, int rows, int columns) {

@@ -19,7 +19,9 @@ class FrontElimination {
   }
   static std::int64_t size(std::int64_t rows) { return stride(rows) * (rows + kDenseColumns); }
 
-  explicit FrontElimination(int largest_front);
+  FrontElimination();
+  /// Makes room for fronts of so many rows.
+  void setLargestFront(int rows);
   /// @returns false if a pivot is not positive (for a matrix with a unit diagonal: not above rounding)
   bool run(double* front, int rows, int columns);
 

@@ -8,24 +8,27 @@ namespace {
 constexpr int kDiagonal = 16;  // numbers above the diagonal that register tiles still access
 
 }  // namespace
-Multifrontal::Multifrontal(const FactorPlan& plan) : plan_(plan), elimination_(plan.largest_front) {
-  front_.resize(FrontElimination::size(plan.largest_front));
-  stack_.resize(plan.stack_size);
+
+void Multifrontal::setPlan(const FactorPlan& plan) {
+  plan_ = &plan;
+  elimination_.setLargestFront(plan.largest_front);
+  front_.grow(FrontElimination::size(plan.largest_front));
+  stack_.grow(plan.stack_size);
   waiting_.reserve(plan.steps.size());
 }
 
 int Multifrontal::rows(int s) const {
-  return plan_.steps[s].columns + 3 * plan_.steps[s].below_nodes;
+  return plan_->steps[s].columns + 3 * plan_->steps[s].below_nodes;
 }
 
 void Multifrontal::assemble(int s, const BlockMatrix& matrix, const std::vector<double>& scale) {
-  const FactorPlan::Front& front = plan_.fronts[s];
+  const FactorPlan::Front& front = plan_->fronts[s];
   const std::int64_t stride = FrontElimination::stride(rows(s));
   for (std::int64_t j = 0; j < rows(s); ++j) {
     const std::int64_t first = std::max<std::int64_t>(0, j - kDiagonal);
     std::fill(front_.data() + j * stride + first, front_.data() + (j + 1) * stride, 0.0);
   }
-  for (int i = 0; i < front.entry_count; ++i) addEntry(plan_.entries[front.first_entry + i], s, matrix, scale);
+  for (int i = 0; i < front.entry_count; ++i) addEntry(plan_->entries[front.first_entry + i], s, matrix, scale);
   for (int i = 0; i < front.child_count; ++i) {
     addUpdate(waiting_.back(), stride);
     stack_top_ = waiting_.back().begin;
@@ -34,14 +37,17 @@ void Multifrontal::assemble(int s, const BlockMatrix& matrix, const std::vector<
 }
 
 int Multifrontal::rowOfFront(int s, int row) const {
-  const PanelStep& step = plan_.steps[s];
+  const PanelStep& step = plan_->steps[s];
   if (row < step.columns) return step.first_row + row;
-  return plan_.row_index[step.first_index + (row - step.columns) / 3];
+  return plan_->row_index[step.first_index + (row - step.columns) / 3];
 }
 
 void Multifrontal::addEntry(const FactorPlan::Entry& entry, int s, const BlockMatrix& matrix,
                             const std::vector<double>& scale) {
-  const Eigen::Matrix3d& block = entry.block < 0 ? matrix.diagonal()[-1 - entry.block] : matrix.lower()[entry.block];
+  const int known = static_cast<int>(matrix.lower().size());
+  const Eigen::Matrix3d& block = entry.block < 0       ? matrix.diagonal()[-1 - entry.block]
+                                 : entry.block < known ? matrix.lower()[entry.block]
+                                                       : matrix.coupled()[entry.block - known];
   const double* row_scale = scale.data() + rowOfFront(s, entry.row);
   const double* column_scale = scale.data() + rowOfFront(s, entry.column);
   for (int j = 0; j < 3; ++j) {
@@ -53,9 +59,9 @@ void Multifrontal::addEntry(const FactorPlan::Entry& entry, int s, const BlockMa
 }
 
 void Multifrontal::addUpdate(const Update& update, std::int64_t front_stride) {
-  const FactorPlan::Front& child = plan_.fronts[update.supernode];
-  const int rows = 3 * plan_.steps[update.supernode].below_nodes;
-  const FactorPlan::Run* runs = plan_.runs.data() + child.first_run;
+  const FactorPlan::Front& child = plan_->fronts[update.supernode];
+  const int rows = 3 * plan_->steps[update.supernode].below_nodes;
+  const FactorPlan::Run* runs = plan_->runs.data() + child.first_run;
   for (int a = 0; a < child.run_count; ++a)
     for (int j = 0; j < runs[a].count; ++j) {
       const double* from = stack_.data() + update.begin + static_cast<std::int64_t>(runs[a].from + j) * rows;
@@ -67,7 +73,7 @@ void Multifrontal::addUpdate(const Update& update, std::int64_t front_stride) {
 }
 
 void Multifrontal::pushUpdate(int s) {
-  const PanelStep& step = plan_.steps[s];
+  const PanelStep& step = plan_->steps[s];
   const std::int64_t count = 3 * step.below_nodes, front_stride = FrontElimination::stride(rows(s));
   for (std::int64_t j = 0; j < count; ++j) {
     const double* from = front_.data() + (step.columns + j) * front_stride + step.columns;

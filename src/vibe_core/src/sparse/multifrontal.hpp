@@ -15,11 +15,12 @@ struct DoublePanel {
   std::int64_t stride;
 };
 
-/// Multifrontal Cholesky factorisation (Duff and Reid, ACM Trans. Math. Softw. 9 (1983)) of a sequence of matrices with
-/// the same plan. Keeps its memory between them.
+/// Multifrontal Cholesky factorisation (Duff and Reid, ACM Trans. Math. Softw. 9 (1983)) of a sequence of matrices.
+/// Keeps its memory between them.
 class Multifrontal {
  public:
-  explicit Multifrontal(const FactorPlan& plan);
+  /// What follows is about this plan, which must outlive its use.
+  void setPlan(const FactorPlan& plan);
 
   /// Factors D A D and passes the panel of every supernode to `take(supernode, panel)`, in ascending order.
   /// @param scale  D, by row in elimination order
@@ -28,9 +29,9 @@ class Multifrontal {
   bool run(const BlockMatrix& matrix, const std::vector<double>& scale, const Take& take) {
     stack_top_ = 0;
     waiting_.clear();
-    for (int s = 0; s < static_cast<int>(plan_.steps.size()); ++s) {
+    for (int s = 0; s < static_cast<int>(plan_->steps.size()); ++s) {
       assemble(s, matrix, scale);
-      if (!elimination_.run(front_.data(), rows(s), plan_.steps[s].columns)) return false;
+      if (!elimination_.run(front_.data(), rows(s), plan_->steps[s].columns)) return false;
       take(s, DoublePanel{front_.data(), FrontElimination::stride(rows(s))});
       pushUpdate(s);
     }
@@ -50,7 +51,7 @@ class Multifrontal {
   void addUpdate(const Update& update, std::int64_t front_stride);
   void pushUpdate(int s);
 
-  const FactorPlan& plan_;
+  const FactorPlan* plan_ = nullptr;
   FrontElimination elimination_;
   AlignedBuffer<double> front_, stack_;
   std::vector<Update> waiting_;

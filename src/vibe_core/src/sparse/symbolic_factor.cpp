@@ -77,6 +77,22 @@ std::vector<std::vector<int>> factorColumns(const std::vector<std::vector<int>>&
 
 }  // namespace
 
+BlockPattern extended(const BlockPattern& pattern, const std::vector<NodePair>& pairs) {
+  BlockPattern out;
+  out.size = pattern.size;
+  out.start.assign(1, 0);
+  auto pair = pairs.begin();
+  for (int i = 0; i < pattern.size; ++i) {
+    const auto first = static_cast<std::ptrdiff_t>(out.column.size());
+    out.column.insert(out.column.end(), pattern.column.begin() + pattern.start[i],
+                      pattern.column.begin() + pattern.start[i + 1]);
+    for (; pair != pairs.end() && pair->row == i; ++pair) out.column.push_back(pair->column);
+    std::sort(out.column.begin() + first, out.column.end());
+    out.start.push_back(static_cast<int>(out.column.size()));
+  }
+  return out;
+}
+
 std::vector<Supernode> symbolicFactor(const BlockPattern& pattern, std::vector<int> order) {
   // a postorder of the tree is an equivalent order in which every supernode is a contiguous run of columns
   const std::vector<int> turned = postorder(eliminationTree(earlierNeighbours(pattern, inverse(order))));

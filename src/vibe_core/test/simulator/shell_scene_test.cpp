@@ -85,7 +85,9 @@ TEST(ShellScene, WhatTheSolverRemembersCounts) {
   Scene scene = livelyScene();
   scene.tissue.iterations = 1;  // what a step leaves out hangs on the usual length of its moves
   World world(scene, plainOrgan(icosphere(kRadius, 3), kWall));
+  world.run(0.25);  // until the usual length is one
   for (int i = 0; i < 60 && world.state.solver.next.empty(); ++i) world.step();
+  ASSERT_FALSE(world.state.solver.next.empty());
   const auto future = [&](State state) {
     Workspace other(*world.model);
     std::vector<Event> events;

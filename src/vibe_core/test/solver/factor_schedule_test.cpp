@@ -15,8 +15,11 @@ constexpr FactorSchedule kSchedule{3600, 1, 3, 1e-3};
 struct Fixture {
   Fixture() : body(cantilever({3, 1, 1})), stepper(body, {}), motion(body), scratch(stepper.makeScratch()) {}
   void moveTip(double by) { motion.x[2].back() = body.rest.back().z() + by; }
+  void advance(const FactorSchedule& schedule = kSchedule) {
+    schedule.advance(body, motion.view(), loads, memory, *scratch);
+  }
   void step() {
-    kSchedule.advance(body, motion.view(), memory);
+    advance();
     kSchedule.provide(body, {}, memory, *scratch);
     ++memory.steps;
   }
@@ -31,6 +34,7 @@ struct Fixture {
   ElasticBody body;
   ImplicitStepper stepper;
   BodyMotion motion;
+  BodyLoads loads;
   StepperMemory memory;
   std::shared_ptr<StepperScratch> scratch;
 };
@@ -81,15 +85,14 @@ TEST(FactorSchedule, AnIntervalOfZeroKeepsTheFactor) {
   FactorSchedule schedule = kSchedule;
   schedule.steps = 0;
   fixture.moveTip(0.1);
-  for (int i = 0; i < 10; ++i, ++fixture.memory.steps)
-    schedule.advance(fixture.body, fixture.motion.view(), fixture.memory);
+  for (int i = 0; i < 10; ++i, ++fixture.memory.steps) fixture.advance(schedule);
   EXPECT_TRUE(fixture.memory.next.empty());
 }
 
 TEST(FactorSchedule, APositionThatIsNotFiniteCountsAsFar) {
   Fixture fixture;
   fixture.moveTip(std::nan(""));
-  kSchedule.advance(fixture.body, fixture.motion.view(), fixture.memory);
+  fixture.advance();
   EXPECT_FALSE(fixture.memory.next.empty());
 }
 
@@ -112,7 +115,7 @@ TEST(FactorSchedule, AFactorFromTheBackgroundHasTheBitsOfOneMadeAtOnce) {
 TEST(FactorSchedule, AttachmentColumnsFollowTheirFactor) {
   Fixture fixture;
   RowList<AttachmentPoint> points{{{4, 5}, {0.5, 0.5}}};
-  kSchedule.advance(fixture.body, fixture.motion.view(), fixture.memory);
+  fixture.advance();
   kSchedule.provide(fixture.body, points, fixture.memory, *fixture.scratch);
   ASSERT_EQ(fixture.scratch->attachments.columns.size(), 1u);
   points.push_back({{7}, {1}});

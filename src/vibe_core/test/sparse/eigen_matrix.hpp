@@ -22,6 +22,10 @@ inline Eigen::SparseMatrix<double> eigenMatrix(const BlockMatrix& matrix) {
       put(pattern.column[k], i, matrix.lower()[k].transpose());
     }
   }
+  for (std::size_t k = 0; k < matrix.pairs().size(); ++k) {
+    put(matrix.pairs()[k].row, matrix.pairs()[k].column, matrix.coupled()[k]);
+    put(matrix.pairs()[k].column, matrix.pairs()[k].row, matrix.coupled()[k].transpose());
+  }
   Eigen::SparseMatrix<double> result(3 * pattern.size, 3 * pattern.size);
   result.setFromTriplets(entries.begin(), entries.end());
   return result;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vibe_core/solver/row_list.hpp"
+#include "vibe_core/state/stiffness_coupling.hpp"
 
 namespace vibe {
 
@@ -81,13 +82,19 @@ struct ContactConstraint {
 
 /// The gas inside a closed shell.
 struct GasLoad {
-  enum class Control { None, Pressure, Amount, Volume };
+  /// What is given: nothing (no gas), the pressure, the amount of a closed gas, the set point of an insufflator that
+  /// keeps the pressure within its flow, or the volume.
+  enum class Control { None, Pressure, Amount, Regulated, Volume };
   Control control = Control::None;
-  double pressure = 0;       ///< gauge; given for Pressure, otherwise out [Pa]
-  double amount = 0;         ///< absolute pressure times volume, for Amount [J]
+  double pressure = 0;       ///< gauge; given for Pressure, otherwise out: where the forces of the step act [Pa]
+  double amount = 0;         ///< absolute pressure times volume at the start of the step; for Amount, Regulated [J]
+  double amount_min = 0;     ///< least amount at the end of the step, for Regulated [J]
+  double amount_max = 0;     ///< largest amount at the end of the step, for Regulated [J]
+  double set_pressure = 0;   ///< gauge, for Regulated [Pa]
   double ambient = 101325;   ///< [Pa]
   double target_volume = 0;  ///< for Volume [m^3]
-  double volume = 0;         ///< out [m^3]
+  double volume = 0;         ///< at the start of the step; out: where the forces of the step act [m^3]
+  double stiffness = 0;      ///< out: how fast the pressure falls with the volume there [Pa/m^3]
 };
 
 /// Everything that acts on the body during one step, beside its own elasticity, foundation and weight.
@@ -98,7 +105,8 @@ struct BodyLoads {
   RowList<ThreadLoad> threads;
   GasLoad gas;
   ToolYield tool_yield;
-  const EnergyTerm* extra = nullptr;  ///< null: none
+  const EnergyTerm* extra = nullptr;         ///< null: none
+  std::vector<StiffnessCoupling> couplings;  ///< stiffness beside that of `extra`, for the factor of later steps
 
   /// Removes everything, the gas included.
   void clear();
