@@ -21,15 +21,12 @@ constexpr double kMarginOfOne = 2;
 // Elastic energy of an extrapolated guess over that of the last step, above which the guess is dropped. Design choice:
 // a guess along a smooth motion changes the energy by a few percent per step [1].
 constexpr double kGuessGrowth = 2;
-// Steps with backward Euler after a step that failed. Design choice: a sixth of a second at 60 Hz, in which backward
-// Euler damps what made the step fail.
+// Steps with backward Euler after a step that did not arrive. Design choice: a sixth of a second at 60 Hz, in which
+// backward Euler damps what made the step fail.
 constexpr int kFallbackSteps = 10;
-// Iterations of such a step, and limit of any other. Design choice: twice the history of six pairs, so that L-BFGS can
-// show its superlinear rate.
-constexpr int kFallbackIterations = 12;
-// Iterations after which the constraints are met exactly, whatever that costs in energy. Design choice: half of the
-// limit, so that as many iterations remain to reduce the energy again.
-constexpr int kSatisfyConstraints = 6;
+// Iterations after which the constraints are met exactly, whatever that costs in energy. Design choice: about half of
+// what a step may take, so that as many iterations remain to reduce the energy again.
+constexpr int kSatisfyConstraints = 5;
 // Largest move of a fallback or static iteration over the size of the body. Design choice: about a fold of the wall of
 // a stomach (1 cm in 20 cm), within which the linearization is still of some use [1].
 constexpr double kFallbackMaxMove = 0.05;
@@ -41,9 +38,12 @@ constexpr double kSafeStrain = 0.02;
 constexpr double kUsualGrowth = 1.5;
 // Weight of the last step in that running mean. Design choice: a memory of ten steps [1].
 constexpr double kUsualShare = 0.1;
-// Length of the last direction over the first, above which a step counts as not converged and is repeated. Design
-// choice: a step that leaves half of its move has not found the equilibrium [1].
+// Length of the last direction over the first, above which a step counts as not arrived. Design choice: a step that
+// leaves half of its move has not found the equilibrium [1].
 constexpr double kArrived = 0.5;
+// The same where the last direction did not lower the energy: near the end that may be due to rounding. Design choice:
+// what a step may leave anyway [1].
+constexpr double kNearlyArrived = 0.1;
 // Iterations of a static solve between two factors. Design choice: a factor costs about as much as ten iterations; six
 // is the history that a new factor discards.
 constexpr int kRefactorEvery = 6;
@@ -157,16 +157,15 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
   StepOutcome outcome;
   outcome.fallback = settings_.backward_euler || memory.fallback > 0;
   if (memory.fallback > 0) --memory.fallback;
-  if (!attempt(motion, loads, memory, scratch, outcome) && !outcome.fallback) {
-    memory.fallback = kFallbackSteps;
-    outcome = StepOutcome();
-    outcome.fallback = true;
-    attempt(motion, loads, memory, scratch, outcome);
-  }
+  iterateStep(motion, loads, memory, scratch, outcome);
   if (!outcome.finite) return outcome;
+  if (!outcome.arrived && !settings_.backward_euler) memory.fallback = kFallbackSteps;
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
   storeForces(scratch, scheme.z_gain / scheme.x_gain, loads);
-  finishStep(motion, outcome.fallback, scratch);
+  if (!outcome.arrived)
+    useMeanVelocity(motion, scheme, scratch);
+  else
+    finishStep(motion, scheme, scratch);
   return outcome;
 }
 
@@ -189,16 +188,15 @@ void ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperScra
   if (!from_hat && !fallback && plan_->free) moveRigidly(body_, motion, scheme, scratch);
 }
 
-// @returns false where no lower energy was found, or is not after many iterations
-bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, StepperMemory& memory,
-                              StepperScratch& scratch, StepOutcome& outcome) const {
+void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory,
+                                  StepperScratch& scratch, StepOutcome& outcome) const {
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
   guess(motion, outcome.fallback, scratch);
   buildRows(loads, motion, scratch);
   setStepTargets(loads, motion, scheme, scratch);
   Potential potential(body_, loads, scheme.inertia, scratch, scheme.part());
-  QuasiNewton newton(body_, potential, loads, scratch,
-                     std::min(plan_->safe_length, kUsualGrowth * memory.usual_length));
+  QuasiNewton newton(body_, potential, loads, scratch, std::min(plan_->safe_length, kUsualGrowth * memory.usual_length),
+                     settings_.iterations + kSpareEvaluations);
   newton.start();
   // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
   if (extrapolates(outcome.fallback) && !(potential.elasticEnergy() <= kGuessGrowth * memory.elastic_energy)) {
@@ -207,30 +205,32 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
   }
   scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
   newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
-  const bool arrived = iterate(newton, memory, outcome);
+  iterate(newton, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
   memory.elastic_energy = potential.elasticEnergy();
   scratch.gas_stiffness = potential.gas().stiffness(scratch.volume);
-  return outcome.finite && arrived;
 }
 
 // Iterations go on until they contract: otherwise stiff motions would grow from step to step.
-bool ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const {
-  const int min = outcome.fallback && !settings_.backward_euler ? kFallbackIterations : 1;
-  const int enough = std::max(min, settings_.iterations), max = std::max(enough, kFallbackIterations);
+void ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const {
   const double longest = outcome.fallback ? kFallbackMaxMove * plan_->size : std::numeric_limits<double>::max();
   double first_length = 0;
   bool done = false;
-  while (outcome.iterations < max && !done && !outcome.converged && !newton.failed()) {
-    outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < enough);
+  while (!done && !outcome.converged && !newton.exhausted() && std::isfinite(outcome.last_move) &&
+         (!newton.failed() || newton.startAgain())) {
+    outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < settings_.iterations);
     if (outcome.iterations++ == 0) first_length = newton.directionLength();
-    if (outcome.iterations == kSatisfyConstraints && newton.satisfyConstraints()) continue;  // and on from there
-    done = outcome.iterations >= enough && newton.contracts();
+    if (outcome.iterations == kSatisfyConstraints && !newton.exhausted() && newton.satisfyConstraints())
+      continue;  // and on from there
+    done = outcome.iterations >= settings_.iterations && newton.contracts();
     outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
   }
   memory.usual_length += kUsualShare * (first_length - memory.usual_length);
-  // where the remaining move is rounding, so is an energy that does not fall
-  return outcome.converged || (!newton.failed() && (done || newton.directionLength() < kArrived * first_length));
+  const double enough = (newton.failed() ? kNearlyArrived : kArrived) * first_length;
+  outcome.arrived = outcome.converged || done || newton.directionLength() < enough;
+  outcome.residual = newton.residual();
+  outcome.evaluations = newton.evaluations();
+  outcome.solves = newton.solves();
 }
 
 void ImplicitStepper::startFromHere(const MotionView& motion, StepperScratch& scratch) const {
@@ -238,8 +238,23 @@ void ImplicitStepper::startFromHere(const MotionView& motion, StepperScratch& sc
     for (int k = 0; k < 3; ++k) scratch.z[4 * i + k] = motion.x[k][i];
 }
 
-void ImplicitStepper::finishStep(const MotionView& motion, bool fallback, StepperScratch& scratch) const {
-  const TimeScheme& scheme = fallback ? plan_->fallback_scheme : plan_->scheme;
+// What iterations that ended early lack would be amplified by a velocity from the scheme.
+void ImplicitStepper::useMeanVelocity(const MotionView& motion, const TimeScheme& scheme,
+                                      const StepperScratch& scratch) const {
+  const double per_gain = 1 / scheme.z_gain, per_step = 1 / scheme.h;
+  for (int k = 0; k < 3; ++k) {
+    double *const x = motion.x[k], *const v = motion.v[k], *const a = motion.a[k];
+    for (int i = 0; i < body_.nodeCount(); ++i) {
+      if (body_.fixed[i] != 0) continue;
+      const double end = (scratch.z[4 * i + k] - scheme.free_z(x[i], v[i], a[i])) * per_gain, from = x[i];
+      x[i] = scheme.free_x(from, v[i], a[i]) + scheme.x_gain * end;
+      v[i] = (x[i] - from) * per_step;
+      a[i] = 0;
+    }
+  }
+}
+
+void ImplicitStepper::finishStep(const MotionView& motion, const TimeScheme& scheme, StepperScratch& scratch) const {
   const double per_gain = 1 / scheme.z_gain;
   for (int k = 0; k < 3; ++k) {
     double *const x = motion.x[k], *const v = motion.v[k], *const a = motion.a[k];

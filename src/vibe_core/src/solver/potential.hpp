@@ -29,9 +29,10 @@ class Potential {
   double noise() const { return noise_; }            ///< rounding error of the last value [J]
 
  private:
+  void startSums(const std::vector<double>& z, std::vector<float>& gradient);
   double gasEnergy();
   double addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
-  double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient);
+  double addDeadLoads(const std::vector<double>& z, std::vector<float>& gradient) const;
   double addSprings(const std::vector<double>& z, std::vector<float>& gradient) const;
 
   const ElasticBody& body_;
