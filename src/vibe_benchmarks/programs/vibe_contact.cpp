@@ -6,6 +6,7 @@
 #include "common/command_line.hpp"
 #include "contact/contact_states.hpp"
 #include "contact/contact_table.hpp"
+#include "contact/hard_cases.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
@@ -20,6 +21,9 @@ struct Options {
   std::vector<int> rate{60}, iterations;
   std::vector<double> radius;
   int reference_rate = 960, reference_iterations = 8, repeats = 1;
+  std::string steps, first_crossing;
+  std::vector<std::uint64_t> seeds{1};
+  bool brief = false;
   bool check_reference = false, no_reference = false;
 };
 
@@ -73,6 +77,21 @@ CLI::App* addStates(CLI::App& app, Options& o) {
   return states;
 }
 
+CLI::App* addHard(CLI::App& app, Options& o) {
+  CLI::App* hard = app.add_subcommand("hard", "cases that no contact may break:\n" + describeHardCases());
+  hard->add_option("CASE", o.names, "cases (default: all)")
+      ->type_name("")
+      ->check(CLI::IsMember(hardCaseNames()).description(""));
+  hard->add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
+  hard->add_option("--seed", o.seeds, "of the case random; several: one run each (default: 1)")->type_name("N");
+  hard->add_flag("--brief", o.brief, "shorter motions, fewer sets");
+  hard->add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
+  hard->add_option("--steps", o.steps, "write a line per step there")->type_name("FILE");
+  hard->add_option("--first-crossing", o.first_crossing, "snapshot of the state before the first crossing")
+      ->type_name("FILE");
+  return hard;
+}
+
 template <class T>
 T entry(const std::vector<T>& list, std::size_t k, const char* option, std::size_t rates, T otherwise) {
   if (list.empty()) return otherwise;
@@ -94,10 +113,15 @@ ContactPlan planOf(const Options& o, const Scene& scene) {
   return plan;
 }
 
+Scene sceneOf(const Options& options) {
+  Scene scene = loadScene(resolveAddress(options.scene));
+  if (!scene.gas || !scene.scope || !scene.suture || !scene.helix)
+    throw Error(options.scene + ": needs the sections gas, scope, helix and suture; add them.");
+  return scene;
+}
+
 void runStates(const Options& options) {
-  const Scene scene = loadScene(resolveAddress(options.scene));
-  if (!scene.gas || !scene.scope || !scene.suture)
-    throw Error(options.scene + ": needs the sections gas, scope and suture; add them.");
+  const Scene scene = sceneOf(options);
   const std::string urdf = readTextFile(resolveAddress(scene.scope->urdf), "URDF");
   const auto rows = runContactStates(scene, urdf, planOf(options, scene), std::cerr);
   std::cerr << "\n" << processorName() << "\n";
@@ -106,14 +130,32 @@ void runStates(const Options& options) {
   save(options.csv, [&](std::ostream& out) { writeContactRows(rows, out); });
 }
 
+void runHard(const Options& options) {
+  const Scene scene = sceneOf(options);
+  HardCases cases(scene, readTextFile(resolveAddress(scene.scope->urdf), "URDF"), options.brief, std::cerr);
+  std::ofstream steps(options.steps);
+  if (!options.steps.empty()) writeHardStepHeader(steps);
+  const HardOutput output{options.steps.empty() ? nullptr : &steps, options.first_crossing};
+  std::vector<HardResult> results;
+  printHardHeader(std::cerr);
+  for (const std::string& name : options.names.empty() ? hardCaseNames() : options.names)
+    for (const std::uint64_t seed : name == "random" ? options.seeds : std::vector<std::uint64_t>{1}) {
+      results.push_back(runHardCase(cases.prepare(name, seed), output));
+      printHardResult(results.back(), std::cerr);
+    }
+  save(options.csv, [&](std::ostream& out) { writeHardResults(results, out); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Measures steps in which something touches.", "vibe_contact"};
   CLI::App* states = addStates(app, options);
+  CLI::App* hard = addHard(app, options);
   app.require_subcommand(1);
   return runProgram(app, argc, argv, [&] {
     if (*states) runStates(options);
+    if (*hard) runHard(options);
   });
 }

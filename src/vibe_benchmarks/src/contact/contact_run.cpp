@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/contact_check.hpp"
 #include "contact/self_contact.hpp"
-#include "suture/wall_crossing.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/model/accounting.hpp"
 
@@ -36,7 +36,7 @@ double distance(const std::array<std::vector<double>, 3>& a, const std::array<st
 class Recorder {
  public:
   Recorder(const ContactCase& one, const ContactSetting& setting)
-      : one_(one), simulation_(modelAt(one, setting), SimulationSettings::study(1)) {
+      : one_(one), simulation_(modelAt(one, setting), SimulationSettings::study(1)), check_(simulation_.model()) {
     trace_.setting = setting;
     simulation_.replaceState(one.start);
     trace_.frames.push_back({one.start.x, one.start.y, one.start.z});
@@ -82,7 +82,8 @@ class Recorder {
     const State& state = simulation_.state();
     trace_.force.push_back(force);
     trace_.frames.push_back({state.x, state.y, state.z});
-    trace_.crossed_frames += wallsCross(simulation_.model(), state) ? 1 : 0;
+    trace_.crossings = std::max(trace_.crossings, static_cast<int>(check_.wall(state).size()));
+    trace_.depth = std::max(trace_.depth, check_.tool(state).depth);
     trace_.pairs = std::max(trace_.pairs, countPairs(state));
   }
 
@@ -96,6 +97,7 @@ class Recorder {
 
   const ContactCase& one_;
   Simulation simulation_;
+  ContactCheck check_;
   ContactTrace trace_;
   bool first_ = true;
 };

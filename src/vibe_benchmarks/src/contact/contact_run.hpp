@@ -19,7 +19,8 @@ struct ContactTrace {
   int fallback_steps = 0;   ///< repeated with backward Euler
   int contacts = 0;         ///< with the tool, most in a step
   int pairs = 0;            ///< of walls in contact, most in a frame
-  int crossed_frames = 0;   ///< in which walls cross
+  int crossings = 0;        ///< pairs of triangles of the wall that cross, most at the end of a frame
+  double depth = 0;         ///< of the wall's middle surface in the tool, most at the end of a frame [m]
   int events = 0;           ///< slips, tear-outs, broken threads and recoveries
   double balance = 0;       ///< energyBalance() at the end minus that at the start [J]
   double work = 0;          ///< sum over the steps of |work| of tool, gas, threads and pull spring [J]

@@ -88,7 +88,8 @@ std::vector<ContactRow> runContactStates(const Scene& scene, const std::string& 
 }
 
 void printContactHeader(std::ostream& out) {
-  out << "state        setting                      p50    p99    max  ms/frame  x free   it max fb  touch pairs cross"
+  out << "state        setting                      p50    p99    max  ms/frame  x free   it max fb  touch pairs cross "
+         " mm in"
          " events   balance J    work J   motion   at end    force   at end  largest\n";
 }
 
@@ -96,10 +97,10 @@ void printContactRow(const ContactRow& row, std::ostream& out) {
   const ContactTrace& t = row.trace;
   char text[400];
   std::snprintf(text, sizeof text,
-                "%-12s %-26s %6.2f %6.2f %6.1f  %8.2f %7.2f %4.1f %3d %3d %5d %5d %5d %6d %11.5f %9.4f",
+                "%-12s %-26s %6.2f %6.2f %6.1f  %8.2f %7.2f %4.1f %3d %3d %5d %5d %5d %6.2f %6d %11.5f %9.4f",
                 row.name.c_str(), textOf(row.setting).c_str(), row.times.p50, row.times.p99, row.times.max,
                 row.times.mean * row.setting.rate / 60, row.ratio, t.iterations, t.max_iterations, t.fallback_steps,
-                t.contacts, t.pairs, t.crossed_frames, t.events, t.balance, t.work);
+                t.contacts, t.pairs, t.crossings, 1e3 * t.depth, t.events, t.balance, t.work);
   out << text;
   if (row.errors) {
     const ContactErrors& e = *row.errors;
@@ -112,16 +113,16 @@ void printContactRow(const ContactRow& row, std::ostream& out) {
 
 void writeContactRows(const std::vector<ContactRow>& rows, std::ostream& out) {
   out << "state,rate,iterations,spectral_radius,ms_mean,ms_p50,ms_p99,ms_max,ratio_to_free,iterations_mean,"
-         "iterations_max,fallback_steps,contacts,pairs,crossed_frames,events,balance_J,work_J,motion_error,"
+         "iterations_max,fallback_steps,contacts,pairs,crossings,depth_mm,events,balance_J,work_J,motion_error,"
          "motion_error_end,force_error,force_error_end,largest_force_N,state_hash\n";
   for (const ContactRow& row : rows) {
     const ContactTrace& t = row.trace;
     char text[600];
-    std::snprintf(text, sizeof text, "%s,%d,%d,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%d,%.6g,%.6g,",
+    std::snprintf(text, sizeof text, "%s,%d,%d,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%.3g,%d,%d,%d,%d,%d,%.4g,%d,%.6g,%.6g,",
                   row.name.c_str(), row.setting.rate, row.setting.iterations, row.setting.spectral_radius,
                   row.times.mean, row.times.p50, row.times.p99, row.times.max, row.ratio, t.iterations,
-                  t.max_iterations, t.fallback_steps, t.contacts, t.pairs, t.crossed_frames, t.events, t.balance,
-                  t.work);
+                  t.max_iterations, t.fallback_steps, t.contacts, t.pairs, t.crossings, 1e3 * t.depth, t.events,
+                  t.balance, t.work);
     out << text;
     if (row.errors)
       std::snprintf(text, sizeof text, "%.4g,%.4g,%.4g,%.4g,%.4g,%016llx", row.errors->motion, row.errors->motion_end,

@@ -26,6 +26,21 @@ double maxSpeed(const State& state) {
   return max;
 }
 
+Suture sutureThrough(const Model& model, const SurfaceView& wall, const std::vector<WallSpot>& spots, double time) {
+  Suture suture;
+  suture.begin = time;
+  for (const WallSpot& spot : spots) {
+    suture.bites.push_back(
+        biteAround(model, wall, spot.triangle, placeOf(spot, wall), model.scene.suture->bite_radius));
+    suture.bites.back().depth = suture.bites.back().thickness;
+    suture.bites.back().time = time;
+  }
+  const auto where = [&](std::size_t k) { return bitePosition(suture.bites[k], wall.x, wall.y, wall.z); };
+  for (std::size_t k = 1; k < spots.size(); ++k) suture.length.push_back((where(k) - where(k - 1)).norm());
+  suture.tension.assign(suture.length.size(), 0.0);
+  return suture;
+}
+
 SutureSession::SutureSession(std::shared_ptr<const Model> model, std::uint64_t seed)
     : simulation_(std::move(model), SimulationSettings::study(seed)) {
   const Scene& scene = simulation_.model().scene;
@@ -53,21 +68,6 @@ bool SutureSession::calmDown(double longest) {
     step();
   } while (std::abs(state().pressure - target) > 1e-3 * target || maxSpeed(state()) > kStill);
   return true;
-}
-
-void SutureSession::takeBites(const std::vector<WallSpot>& spots) {
-  Suture suture;
-  suture.begin = state().time;
-  for (const WallSpot& spot : spots) {
-    const Eigen::Vector3d place = placeOf(spot, wall());
-    suture.bites.push_back(biteAround(model(), wall(), spot.triangle, place, model().scene.suture->bite_radius));
-    suture.bites.back().depth = suture.bites.back().thickness;
-    suture.bites.back().time = state().time;
-  }
-  const auto where = [&](std::size_t k) { return bitePosition(suture.bites[k], state().x, state().y, state().z); };
-  for (std::size_t k = 1; k < spots.size(); ++k) suture.length.push_back((where(k) - where(k - 1)).norm());
-  suture.tension.assign(suture.length.size(), 0.0);
-  simulation_.editState().procedure.sutures.push_back(std::move(suture));
 }
 
 void SutureSession::press(Button button, bool down, StepCosts& costs, SewnSet& set) {
@@ -112,7 +112,7 @@ void SutureSession::tag(const std::vector<WallSpot>& spots) {
 }
 
 void SutureSession::tag(const std::vector<WallSpot>& spots, SewnSet& set) {
-  takeBites(spots);
+  simulation_.editState().procedure.sutures.push_back(sutureThrough(model(), wall(), spots, state().time));
   press(TTag, true, set.pulling, set);
   press(TTag, false, set.pulling, set);
 }

@@ -57,7 +57,6 @@ class SutureSession {
 
  private:
   void step();
-  void takeBites(const std::vector<WallSpot>& spots);
   void tag(const std::vector<WallSpot>& spots, SewnSet& set);
   void press(Button button, bool down, StepCosts& costs, SewnSet& set);
   void pull(SewnSet& set);
@@ -68,6 +67,10 @@ class SutureSession {
   std::vector<Event> events_;  // since the start
   double start_balance_ = 0;
 };
+
+/// A set with these bites through the whole wall, not tagged yet, as the needle would take them.
+/// @param time  of the bites [s]
+Suture sutureThrough(const Model& model, const SurfaceView& wall, const std::vector<WallSpot>& spots, double time);
 
 /// Fastest particle [m/s].
 double maxSpeed(const State& state);

@@ -33,7 +33,8 @@ bool StaticStiffness::make(const std::vector<float>& positions) {
   for (int i = 0; i < body_.nodeCount(); ++i)
     if (body_.fixed[i] != 0) matrix_.fix(i);
   if (!factor_.compute(matrix_)) return false;
-  schur_.reset(factor_, body_.nodeCount());
+  columns_.reset();
+  schur_.reset(factor_);
   return true;
 }
 
@@ -42,7 +43,7 @@ void StaticStiffness::setGas(const std::vector<float>& direction4, double stiffn
 }
 
 void StaticStiffness::setRows(const ConstraintRows& rows) {
-  schur_.setRows(rows, factor_);
+  schur_.setRows(rows, factor_, columns_);
 }
 
 Eigen::MatrixXd StaticStiffness::movingMass(const Eigen::MatrixXd& motion) {

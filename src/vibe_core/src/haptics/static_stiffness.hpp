@@ -24,7 +24,7 @@ class StaticStiffness {
   void setRows(const ConstraintRows& rows);
 
   /// Compliance between the rows [m/N].
-  const Eigen::MatrixXd& compliance() const { return schur_.compliance(); }
+  const Eigen::MatrixXd& compliance() { return schur_.compliance(); }
   /// The mass that moves along when the rows' values are moved slowly, by Guyan reduction: T^T M T, with T the
   /// displacements for each column of `motion` (rows x modes) [kg].
   Eigen::MatrixXd movingMass(const Eigen::MatrixXd& motion);
@@ -33,6 +33,7 @@ class StaticStiffness {
   const ElasticBody& body_;
   BlockMatrix matrix_;
   Factor factor_;
+  ColumnCache columns_;
   ConstraintSchur schur_;
   std::vector<double> displacement_;
   std::vector<float> half_;

@@ -1,5 +1,7 @@
 #include "vibe_core/solver/body_loads.hpp"
 
+#include <algorithm>
+
 namespace vibe {
 
 void BodyLoads::clear() {
@@ -11,6 +13,17 @@ void BodyLoads::clear() {
   tool_yield = ToolYield();
   extra = nullptr;
   couplings.clear();
+}
+
+std::vector<int> BodyLoads::nodes() const {
+  std::vector<int> all;
+  for (const LinearConstraint& constraint : constraints)
+    all.insert(all.end(), constraint.node.begin(), constraint.node.end());
+  for (const ContactConstraint& contact : contacts)
+    all.insert(all.end(), contact.point.node.begin(), contact.point.node.begin() + contact.point.count);
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
 }
 
 std::size_t BodyLoads::addPoint(const std::vector<int>& node, const std::vector<double>& weight,

@@ -5,8 +5,10 @@
 #include <array>
 #include <vector>
 
-#include "solver/attachment_columns.hpp"
+#include "solver/column_cache.hpp"
 #include "solver/constraint_rows.hpp"
+#include "solver/contact_problem.hpp"
+#include "solver/half_rows.hpp"
 #include "sparse/factor.hpp"
 #include "suture/capstan.hpp"
 
@@ -14,19 +16,19 @@ namespace vibe {
 
 /// Block elimination (Woodbury) of a few constraints and of the gas, with the vectors half solved: for A = L Lt a row j
 /// becomes Z = L^-1 j, sparse because it lives on the elimination tree's paths of its nodes, and the compliance between
-/// rows is Z^T Z. Columns of nodes are kept until the factor changes, so that a touched node costs once.
+/// rows is Z^T Z.
 class ConstraintSchur {
  public:
   /// Forgets everything about the old factor.
-  void reset(const Factor& factor, int node_count);
-  /// @param attachments  points that the threads run between, about the same factor; null without threads. A list that
-  ///                     does not begin with the one before needs a reset().
-  void setRows(const ConstraintRows& rows, const Factor& factor, const AttachmentColumns* attachments = nullptr);
+  void reset(const Factor& factor);
+  /// @param cache  about the same factor, with the attachment points that the threads run between; it must live until
+  ///               the next setRows() or reset(). It may be shared and keeps what it learns.
+  void setRows(const ConstraintRows& rows, const Factor& factor, ColumnCache& cache);
   /// The gas: force `direction` (4 per node) per pressure, pressure falling by stiffness per volume. stiffness 0: none;
   /// infinite: the volume is prescribed.
   void setGas(const float* direction4, double stiffness, const Factor& factor);
 
-  int rowCount() const { return row_count_; }
+  int rowCount() const { return rows_.count(); }
   /// Given y = L^-1 (right-hand side), finds the forces of rows and gas so that the rows' values of the solution are
   /// `rhs` (equations) or at least that (contacts and threads), and adds them to y. Threads slide where friction does
   /// not hold them.
@@ -34,24 +36,24 @@ class ConstraintSchur {
   void eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, double swelling, float* y);
   const Eigen::VectorXd& forces() const { return force_; }
   double gasForce() const { return gas_force_; }
-  /// How far the values of the rows that act move in the solution: `rhs`, less what compliance leaves, plus what
-  /// threads slid [m].
+  /// How far the values of the rows move in the solution, plus what threads slid: `rhs`, less what compliance leaves,
+  /// for the rows that hold [m].
   const Eigen::VectorXd& moves() const { return moves_; }
+  /// The row moves to where `rhs` wants it: it is not a contact that opens or slips, nor a slack thread.
+  bool holds(int row) const { return holds_[static_cast<std::size_t>(row)] != 0; }
+  /// Largest violation of a contact or thread that the last elimination left [m].
+  double violation() const { return violation_; }
   /// Thread that slid out of a row into the next row of its thread [m].
   double slid(int row) const { return slid_[row]; }
   /// From now on until setRows() threads do not slide.
   void holdThreads();
   /// Compliance between rows, gas taken into account (rows x rows) [m/N].
-  const Eigen::MatrixXd& compliance() const { return compliance_; }
+  const Eigen::MatrixXd& compliance() {
+    formCompliance();
+    return compliance_;
+  }
 
  private:
-  static constexpr int kMaxSlots = 384;
-  /// A row as the elimination sees it: in slots, which are nodes or attachment points whose columns are known.
-  struct SlotRow {
-    std::vector<int> slot;
-    std::vector<Eigen::Vector3d> coefficient;
-    double compliance = 0;
-  };
   struct Contact {
     int first = 0;  // of inequalities_: normal, two tangents
     double friction = 0;
@@ -61,45 +63,34 @@ class ConstraintSchur {
     Eigen::VectorXd capstan;
     ThreadSlide slide;
   };
-  void makeRoom(const ConstraintRows& rows, std::size_t attachment_count);
-  int slotOf(int key, const Factor& factor, const AttachmentColumns* attachments);
-  void setRow(int row, const LinearForm& form, double compliance, const Factor& factor);
-  void setRow(int row, int attachment, const Eigen::Vector3d& along, double compliance, const Factor& factor,
-              const AttachmentColumns* attachments);
-  void setThreadRows(const ThreadRows& thread, const Factor& factor, const AttachmentColumns* attachments);
+  void addRow(const LinearForm& form, double compliance, const Factor& factor);
+  void addRun(int attachment, const Eigen::Vector3d& along, double compliance);
+  void addThreadRows(const ThreadRows& thread);
   void sortRows(const ConstraintRows& rows);
   void addThread(const ThreadRows& thread);
   void setYield(const ConstraintRows& rows);
-  const Eigen::Matrix3f& gram(int a, int b);
-  void findUsedSlots();
-  void findRowValues(const float* y);
-  void addForces(float* y);
   void formCompliance();
-  double complianceBetween(int i, int j);
   void formBlocks();
+  void eliminateEquations(Eigen::Index equations, Eigen::Index inequalities);
   void solveContacts();
-  double sweepContacts(Eigen::VectorXd& force);
-  double sweepThread(Thread& thread, Eigen::VectorXd& force);
+  void slideThreads();
+  double slideThread(Thread& thread);
   void solveRows();
   void solveEquations();
 
-  int node_count_ = 0;
-  std::vector<int> slot_of_key_;  // of nodes, then of attachment points
-  std::vector<int> key_of_slot_;
-  std::vector<HalfColumns> columns_;
-  std::vector<Eigen::Matrix3f> gram_;  // of slots a >= b, row after row
-  std::vector<char> gram_known_;
-  const AttachmentColumns* attachments_ = nullptr;
-  int row_count_ = 0;  // of rows_, which keep their memory
-  std::vector<SlotRow> rows_;
-  std::vector<int> used_slots_;
-  std::vector<Eigen::Vector3f> seen_;  // per slot: a vector's value at the node, or the rows' force on it
+  ColumnCache* cache_ = nullptr;  // null: there are no rows
+  HalfRows rows_;
+  bool formed_ = false;  // the compliance is that of the rows and the gas
   Eigen::VectorXd row_value_;
   std::vector<int> equations_;     // row numbers: those of equations, then of springs
   std::vector<int> inequalities_;  // row numbers: normals and tangents of contacts, then pulls of threads
-  std::vector<Contact> contacts_;
+  std::vector<Contact> contact_list_;
+  ContactProblem contacts_;  // of inequalities_
   std::vector<Thread> threads_;
   int thread_count_ = 0;
+  bool threads_held_ = false;
+  double violation_ = 0;
+  std::vector<char> holds_;  // per row
   bool yields_ = false;
   YieldMatrix tool_compliance_;
   Eigen::Matrix<double, kYieldDofs, Eigen::Dynamic> yield_, given_;  // per row: of its target; compliance times this
@@ -107,7 +98,8 @@ class ConstraintSchur {
   double gas_stiffness_ = 0, gas_norm2_ = 0;
   Eigen::VectorXd gas_row_, force_, moves_, slid_;
   double gas_force_ = 0;
-  Eigen::MatrixXd compliance_, block_, cross_, schur_, coupling_;  // of equations, with contacts, of contacts
+  Eigen::MatrixXd compliance_, block_, cross_, coupling_,
+      thread_compliance_;  // of equations, with contacts, of contacts
   Eigen::VectorXd residual_, equation_residual_, contact_residual_, equation_force_, contact_force_, thread_residual_;
   Eigen::LDLT<Eigen::MatrixXd> equation_factor_;
 };

@@ -127,45 +127,38 @@ void FactorSchedule::factorSafely(const ElasticBody& body, const FactorPoint& po
   throw Error("The stiffness of the body at rest is not positive definite; check its mesh, masses and materials.");
 }
 
-void FactorSchedule::provide(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
-                             const StepperMemory& memory, StepperScratch& scratch) const {
+void FactorSchedule::provide(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
+                             StepperScratch& scratch) const {
   if (scratch.factor_id != memory.linearization_id) {
     if (scratch.making.valid()) scratch.making.get();
     if (scratch.next_id == memory.linearization_id) {
       scratch.factor.swap(scratch.next_factor);
-      std::swap(scratch.attachments, scratch.next_attachments);
+      std::swap(scratch.columns, scratch.next_columns);
     } else {
       factorSafely(body, {memory.linearization_point, memory.couplings}, scratch.plan, scratch.matrix, *scratch.factor);
-      scratch.attachments = AttachmentColumns();
+      scratch.columns.reset();
     }
     scratch.next_id = 0;
     scratch.factor_id = memory.linearization_id;
-    scratch.schur.reset(*scratch.factor, body.nodeCount());
+    scratch.schur.reset(*scratch.factor);
   }
-  if (!memory.next.empty() && scratch.next_id != memory.next_id) makeInBackground(body, attachments, memory, scratch);
-  provideAttachments(body, attachments, scratch);
+  if (!memory.next.empty() && scratch.next_id != memory.next_id) makeInBackground(body, loads, memory, scratch);
+  scratch.columns.setAttachments(*scratch.factor, loads.attachments);
 }
 
-// What was not made beside the factor: spots that came since, or after some went.
-void FactorSchedule::provideAttachments(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
-                                        StepperScratch& scratch) {
-  const std::vector<AttachmentPoint>& known = scratch.attachments.attachments;
-  const bool begins = known.size() <= attachments.size() && std::equal(known.begin(), known.end(), attachments.begin());
-  if (!begins) scratch.schur.reset(*scratch.factor, body.nodeCount());
-  extendAttachmentColumns(*scratch.factor, attachments, scratch.attachments);
-}
-
-void FactorSchedule::makeInBackground(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
-                                      const StepperMemory& memory, StepperScratch& scratch) const {
+// With the columns of what is held and touched now, which most likely still is when the factor is used.
+void FactorSchedule::makeInBackground(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
+                                      StepperScratch& scratch) const {
   if (scratch.making.valid()) scratch.making.get();
   scratch.next_id = memory.next_id;
-  scratch.making = std::async(std::launch::async, [this, &body, &scratch, positions = memory.next,
-                                                   couplings = memory.next_couplings, attachments] {
-    factorSafely(body, {positions, couplings}, scratch.plan, scratch.matrix, *scratch.next_factor);
-    scratch.next_attachments = AttachmentColumns();
-    extendAttachmentColumns(*scratch.next_factor, attachments, scratch.next_attachments);
-    return true;
-  });
+  scratch.making =
+      std::async(std::launch::async, [this, &body, &scratch, positions = memory.next, couplings = memory.next_couplings,
+                                      nodes = loads.nodes(), attachments = loads.attachments] {
+        factorSafely(body, {positions, couplings}, scratch.plan, scratch.matrix, *scratch.next_factor);
+        scratch.next_columns.reset();
+        scratch.next_columns.prepare(*scratch.next_factor, nodes, attachments);
+        return true;
+      });
 }
 
 bool FactorSchedule::farFrom(const ElasticBody& body, const MotionView& motion, const std::vector<float>& about) const {

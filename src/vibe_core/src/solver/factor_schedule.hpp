@@ -32,7 +32,7 @@ struct FactorSchedule {
   void advance(const ElasticBody& body, const MotionView& motion, const BodyLoads& loads, StepperMemory& memory,
                StepperScratch& scratch) const;
   /// The factor that the memory names, and the columns of the spots about it.
-  void provide(const ElasticBody& body, const RowList<AttachmentPoint>& attachments, const StepperMemory& memory,
+  void provide(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
                StepperScratch& scratch) const;
   /// The present positions, without couplings, from this step on.
   static void nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory);
@@ -41,10 +41,8 @@ struct FactorSchedule {
   bool farFrom(const ElasticBody& body, const MotionView& motion, const std::vector<float>& about) const;
   void factorSafely(const ElasticBody& body, const FactorPoint& point, const std::shared_ptr<const FactorPlan>& plan,
                     BlockMatrix& matrix, Factor& factor) const;
-  void makeInBackground(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
-                        const StepperMemory& memory, StepperScratch& scratch) const;
-  static void provideAttachments(const ElasticBody& body, const RowList<AttachmentPoint>& attachments,
-                                 StepperScratch& scratch);
+  void makeInBackground(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
+                        StepperScratch& scratch) const;
 };
 
 /// Stiffness that the loads add at positions (4 per node) [m].

@@ -152,7 +152,7 @@ void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) 
 StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory,
                                   StepperScratch& scratch) const {
   plan_->schedule.advance(body_, motion, loads, memory, scratch);
-  plan_->schedule.provide(body_, loads.attachments, memory, scratch);
+  plan_->schedule.provide(body_, loads, memory, scratch);
   ++memory.steps;
   StepOutcome outcome;
   outcome.fallback = settings_.backward_euler || memory.fallback > 0;
@@ -203,7 +203,7 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
     startFromHere(motion, scratch);
     newton.start();
   }
-  scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
+  scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
   newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
   iterate(newton, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
@@ -309,10 +309,10 @@ void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperScratch& scrat
   collectCouplings(loads, scratch.z.data(), couplings);
   if (!factorAt(body_, {positions, couplings}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor))
     factorAt(body_, {{}, {}}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor);
-  scratch.attachments = AttachmentColumns();
-  extendAttachmentColumns(*scratch.factor, loads.attachments, scratch.attachments);
-  scratch.schur.reset(*scratch.factor, body_.nodeCount());
-  scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
+  scratch.columns.reset();
+  scratch.columns.setAttachments(*scratch.factor, loads.attachments);
+  scratch.schur.reset(*scratch.factor);
+  scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
 }
 
 void ImplicitStepper::placeAtRest(const StepperScratch& scratch, const MotionView& motion) const {

@@ -116,12 +116,13 @@ void QuasiNewton::rowResidual() {
       [this](int row, const LinearForm& form) { scratch_.rhs[row] = scratch_.target[row] - form.value(scratch_.z); });
 }
 
-// How far the rows that act move. Contacts that do not touch and slack threads may move freely.
+// How far the rows that hold move. Contacts that open or slip and slack threads may move freely.
 double QuasiNewton::rowResiduals() const {
   const Eigen::VectorXd &moves = scratch_.schur.moves(), &forces = scratch_.schur.forces();
   const int contacts_end = scratch_.rows.contactRow(scratch_.rows.contacts.size());
   double max = 0;
-  for (int row = 0; row < contacts_end; ++row) max = std::max(max, std::abs(moves[row]));
+  for (int row = 0; row < contacts_end; ++row)
+    if (scratch_.schur.holds(row)) max = std::max(max, std::abs(moves[row]));
   for (const ThreadRows& thread : scratch_.rows.threads)
     for (int k = 0; k < thread.count(); ++k) {
       const int row = thread.pullRow(k);

@@ -21,10 +21,10 @@ class StepperScratch {
 
   std::shared_ptr<const FactorPlan> plan;  // of the elements alone
   std::unique_ptr<Factor> factor, next_factor;
-  BlockMatrix matrix;                               // of the factor that is being made
-  std::uint64_t factor_id = 0, next_id = 0;         // what they are about; 0: nothing
-  std::future<bool> making;                         // of next_factor
-  AttachmentColumns attachments, next_attachments;  // of `factor`, of `next_factor`
+  BlockMatrix matrix;                        // of the factor that is being made
+  std::uint64_t factor_id = 0, next_id = 0;  // what they are about; 0: nothing
+  std::future<bool> making;                  // of next_factor
+  ColumnCache columns, next_columns;         // of `factor`, of `next_factor`
   ConstraintSchur schur;
   std::vector<double> rest;                      // positions [m]
   std::vector<double> z, z_hat;                  // unknown, where inertia wants it [m]

@@ -92,13 +92,13 @@ struct Descent {
     const std::vector<StiffnessCoupling> none;
     EXPECT_TRUE(factorAt(body, {{}, in_factor ? springs.couplings() : none}, 0, 1, scratch->plan, scratch->matrix,
                          *scratch->factor));
-    scratch->schur.reset(*scratch->factor, body.nodeCount());
+    scratch->schur.reset(*scratch->factor);
     for (int i = 0; i < body.nodeCount(); ++i)
       for (int k = 0; k < 3; ++k) scratch->z[4 * i + k] = body.rest[i][k];
     loads.extra = &springs;
     buildRows(loads, motion.view(), *scratch);
     setEquilibriumTargets(loads, *scratch);
-    scratch->schur.setRows(scratch->rows, *scratch->factor);
+    scratch->schur.setRows(scratch->rows, *scratch->factor, scratch->columns);
     Potential potential(body, loads, 0, *scratch);
     QuasiNewton newton(body, potential, loads, *scratch);
     newton.start();

@@ -114,16 +114,19 @@ TEST(FactorSchedule, AFactorFromTheBackgroundHasTheBitsOfOneMadeAtOnce) {
 
 TEST(FactorSchedule, AttachmentColumnsFollowTheirFactor) {
   Fixture fixture;
-  RowList<AttachmentPoint> points{{{4, 5}, {0.5, 0.5}}};
+  BodyLoads loads;
+  loads.attachments = {{{4, 5}, {0.5, 0.5}}};
   fixture.advance();
-  kSchedule.provide(fixture.body, points, fixture.memory, *fixture.scratch);
-  ASSERT_EQ(fixture.scratch->attachments.columns.size(), 1u);
-  points.push_back({{7}, {1}});
-  kSchedule.provide(fixture.body, points, fixture.memory, *fixture.scratch);
-  EXPECT_EQ(fixture.scratch->attachments.columns.size(), 2u);
-  points.clear();
-  kSchedule.provide(fixture.body, points, fixture.memory, *fixture.scratch);
-  EXPECT_TRUE(fixture.scratch->attachments.columns.empty());
+  kSchedule.provide(fixture.body, loads, fixture.memory, *fixture.scratch);
+  const ColumnCache& columns = fixture.scratch->columns;
+  const std::vector<float> first = columns.columns(columns.attachmentSlot(0)).value;
+  loads.attachments.push_back({{7}, {1}});
+  kSchedule.provide(fixture.body, loads, fixture.memory, *fixture.scratch);
+  EXPECT_EQ(columns.columns(columns.attachmentSlot(0)).value, first);
+  EXPECT_FALSE(columns.columns(columns.attachmentSlot(1)).value.empty());
+  loads.attachments = {{{7}, {1}}};
+  kSchedule.provide(fixture.body, loads, fixture.memory, *fixture.scratch);
+  EXPECT_NE(columns.columns(columns.attachmentSlot(0)).value, first);
 }
 
 }  // namespace

@@ -31,14 +31,14 @@ struct Problem {
   explicit Problem(const ElasticBody& factored)
       : body(springs()), stepper(body, {}, FactorStorage::Double), scratch(stepper.makeScratch()), motion(body) {
     EXPECT_TRUE(factorAt(factored, {}, 0, 1, scratch->matrix, *scratch->factor));
-    scratch->schur.reset(*scratch->factor, body.nodeCount());
+    scratch->schur.reset(*scratch->factor);
     for (int i = 0; i < body.nodeCount(); ++i)
       for (int k = 0; k < 3; ++k) scratch->z[4 * i + k] = body.rest[i][k];
   }
   void setLoads() {
     buildRows(loads, motion.view(), *scratch);
     setEquilibriumTargets(loads, *scratch);
-    scratch->schur.setRows(scratch->rows, *scratch->factor);
+    scratch->schur.setRows(scratch->rows, *scratch->factor, scratch->columns);
   }
   double errorAt(int node) const {
     const Eigen::Vector3d expected = body.rest[node] + body.load[node] / kSpring;

@@ -138,9 +138,9 @@ TEST(StepRows, ForcesComeBackToTheLoads) {
   StepperScratch& scratch = *fixture.scratch;
   setEquilibriumTargets(fixture.loads, scratch);
   ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
-  scratch.schur.reset(*scratch.factor, fixture.body.nodeCount());
-  extendAttachmentColumns(*scratch.factor, fixture.loads.attachments, scratch.attachments);
-  scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
+  scratch.schur.reset(*scratch.factor);
+  scratch.columns.setAttachments(*scratch.factor, fixture.loads.attachments);
+  scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
   scratch.rhs.setConstant(1e-3);
   scratch.rhs.tail<4>().setZero();
   scratch.schur.eliminate(scratch.rhs, 0, scratch.half.data());
@@ -161,9 +161,9 @@ TEST(StepRows, AsMuchThreadAsAFoldNeedsStaysBetweenTwoBites) {
   StepperScratch& scratch = *fixture.scratch;
   scratch.slid.setZero(scratch.rows.count());
   ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
-  scratch.schur.reset(*scratch.factor, fixture.body.nodeCount());
-  extendAttachmentColumns(*scratch.factor, fixture.loads.attachments, scratch.attachments);
-  scratch.schur.setRows(scratch.rows, *scratch.factor, &scratch.attachments);
+  scratch.schur.reset(*scratch.factor);
+  scratch.columns.setAttachments(*scratch.factor, fixture.loads.attachments);
+  scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
   scratch.slid[6] = 0.018;
   storeForces(scratch, 1, fixture.loads);
   EXPECT_DOUBLE_EQ(fixture.loads.threads[0].length[0], kMinThread);

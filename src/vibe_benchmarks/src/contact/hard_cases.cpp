@@ -1,0 +1,81 @@
+#include "contact/hard_cases.hpp"
+
+#include <ostream>
+
+#include "contact/joint_limits.hpp"
+#include "suture/suture_session.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+
+const std::vector<std::string>& hardCaseNames() {
+  static const std::vector<std::string> kNames{"ram_0.15", "ram_0.3",    "ram_0.5", "ram_1",    "random",   "wind",
+                                               "across",   "desufflate", "sets_20", "over_set", "pressure", "sleeve"};
+  return kNames;
+}
+
+std::string describeHardCases() {
+  return "  ram_V       the scope, straight, is pushed 60 mm into the wall at V m/s and withdrawn\n"
+         "  random      all joints go to random places within their limits and speeds, buttons are pressed at random,\n"
+         "              for 30 s\n"
+         "  wind        the helix, turned 20 times while it holds, is turned by half a turn and pulled by 60 mm\n"
+         "  across      two bites 150 mm apart are cinched with 8 N, then the thread is removed\n"
+         "  desufflate  two sets, then the gas is let out and in again\n"
+         "  sets_20     20 sets of 4 bites\n"
+         "  over_set    a set of 7 bites over one of 7\n"
+         "  pressure    5, 45 and 5 mmHg, 1 s each, five times\n"
+         "  sleeve      three wide sets are cinched around the scope, which is withdrawn and inserted again\n";
+}
+
+HardCases::HardCases(const Scene& scene, std::string urdf, bool brief, std::ostream& log)
+    : model_(buildModel(scene, urdf)), urdf_(std::move(urdf)), brief_(brief) {
+  log << "insufflation" << std::endl;
+  SutureSession session(model_);
+  session.settle();
+  settled_ = session.state();
+  settled_.step = 0;
+  settled_.time = 0;
+}
+
+HardCase HardCases::prepare(const std::string& name, std::uint64_t seed) {
+  HardCase hard;
+  if (name.rfind("ram_", 0) == 0)
+    hard = ram(std::stod(name.substr(4)));
+  else if (name == "random")
+    hard = random(seed);
+  else if (name == "wind")
+    hard = wind();
+  else if (name == "across")
+    hard = cinchAcross();
+  else if (name == "desufflate")
+    hard = desufflate();
+  else if (name == "sets_20")
+    hard = manySets();
+  else if (name == "over_set")
+    hard = setOverSet();
+  else if (name == "pressure")
+    hard = pressureSteps();
+  else if (name == "sleeve")
+    hard = sleeve();
+  else
+    throw Error("There is no hard case '" + name + "'; the program's help names those there are.");
+  hard.name = name == "random" ? name + "_" + std::to_string(seed) : name;
+  return hard;
+}
+
+HardCase HardCases::begin() const {
+  HardCase hard;
+  hard.model = model_;
+  hard.start = settled_;
+  return hard;
+}
+
+std::shared_ptr<const Model> HardCases::withScene(const Scene& scene, const std::string& urdf) const {
+  auto model = std::make_shared<Model>();
+  model->scene = scene;
+  model->organ = model_->organ;
+  finishModel(urdf, *model);
+  return model;
+}
+
+}  // namespace vibe

@@ -1,0 +1,52 @@
+#pragma once
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "contact/hard_case.hpp"
+#include "suture/wall_plan.hpp"
+
+namespace vibe {
+
+/// Names of the hard cases.
+const std::vector<std::string>& hardCaseNames();
+
+/// One line each.
+std::string describeHardCases();
+
+/// Prepares hard cases on a scene with gas, scope, helix and suture.
+class HardCases {
+ public:
+  /// Builds the model and insufflates it.
+  /// @param urdf   text of the scene's tool
+  /// @param brief  shorter motions, fewer sets: seconds instead of minutes
+  HardCases(const Scene& scene, std::string urdf, bool brief, std::ostream& log);
+
+  /// @param seed  of the case `random`
+  /// @throws Error for another name than those of hardCaseNames(), or if the start cannot be reached
+  HardCase prepare(const std::string& name, std::uint64_t seed = 1);
+
+ private:
+  HardCase begin() const;
+  HardCase ram(double speed) const;
+  HardCase random(std::uint64_t seed) const;
+  HardCase wind() const;
+  HardCase cinchAcross() const;
+  HardCase desufflate() const;
+  HardCase manySets() const;
+  HardCase setOverSet() const;
+  HardCase pressureSteps() const;
+  HardCase sleeve() const;
+  double insertionAtContact(const std::shared_ptr<const Model>& model, State& state) const;
+  std::shared_ptr<const Model> withScene(const Scene& scene, const std::string& urdf) const;
+  void addSet(const std::vector<WallSpot>& spots, const StepInput& hold, HardCase& hard) const;
+  std::vector<std::vector<WallSpot>> setsOf(int sets, int bites, double half_width, double share) const;
+
+  std::shared_ptr<const Model> model_;
+  std::string urdf_;
+  State settled_;
+  bool brief_;
+};
+
+}  // namespace vibe

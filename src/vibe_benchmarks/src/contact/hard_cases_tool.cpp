@@ -1,0 +1,224 @@
+// Hard cases in which the tool does it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/random.hpp"
+#include "contact/hard_cases.hpp"
+#include "contact/joint_limits.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kApproach = 0.05;                 // speed of the scope until it touches [m/s]
+constexpr double kClearance = 2e-3;                // of the scope before it rams [m]
+constexpr double kRam = 0.06;                      // deeper than at first contact [m]
+constexpr double kWithdraw = 0.1;                  // speed [m/s]
+constexpr double kTurns = 20;                      // of the helix
+constexpr double kWindPull = 0.06;                 // [m]
+constexpr double kGrabDistance = 2e-3;             // of the helix from the nearest particle [m]
+constexpr double kShortest = 0.3, kLongest = 1.5;  // time of a random motion [s]
+constexpr double kPress = 0.3;                     // probability that a button changes with a motion [1]
+
+StepInput holdAt(const State& state) {
+  StepInput input;
+  input.joints = state.joints;
+  input.buttons[Insufflate] = 1;
+  return input;
+}
+
+HardPhase phaseOf(const std::string& name, double duration, std::function<StepInput(double)> input) {
+  HardPhase phase;
+  phase.name = name;
+  phase.duration = duration;
+  phase.input = std::move(input);
+  return phase;
+}
+
+HardPhase still(const std::string& name, double duration, const StepInput& input) {
+  return phaseOf(name, duration, [input](double) { return input; });
+}
+
+/// From one command to another, all joints in the same time.
+HardPhase move(const std::string& name, double duration, const StepInput& from, const StepInput& to) {
+  return phaseOf(name, duration, [from, to, duration](double end) {
+    StepInput input = to;
+    const double part = std::clamp(end / duration, 0.0, 1.0);
+    for (std::size_t j = 0; j < input.joints.size(); ++j)
+      input.joints[j] = from.joints[j] + part * (to.joints[j] - from.joints[j]);
+    return input;
+  });
+}
+
+/// Joints that go from one random place to the next, with smooth speeds within the limits, and buttons that change.
+class RandomDrive {
+ public:
+  RandomDrive(const ToolModel& tool, const StepInput& start, std::uint64_t seed)
+      : limits_(tool.limits()), random_(seed), from_(start), to_(start) {}
+
+  StepInput at(double time) {
+    while (time >= end_) choose();
+    StepInput input = to_;
+    const double part = std::clamp((time - begin_) / (end_ - begin_), 0.0, 1.0);
+    const double smooth = part * part * (3 - 2 * part);
+    for (std::size_t j = 0; j < input.joints.size(); ++j)
+      input.joints[j] = from_.joints[j] + smooth * (to_.joints[j] - from_.joints[j]);
+    return input;
+  }
+
+ private:
+  void choose() {
+    from_ = to_;
+    begin_ = end_;
+    double duration = kShortest + (kLongest - kShortest) * nextUniform(random_);
+    for (std::size_t j = 0; j < limits_.size(); ++j) {
+      const double place = limits_[j].lower + (limits_[j].upper - limits_[j].lower) * nextUniform(random_);
+      // the largest speed of the motion is 1.5 times its mean
+      const double farthest = limits_[j].velocity * duration / 1.5;
+      to_.joints[j] = from_.joints[j] + std::clamp(place - from_.joints[j], -farthest, farthest);
+    }
+    for (const Button button : {HelixGrab, Needle, TTag, Cinch})
+      if (nextUniform(random_) < kPress) to_.buttons[button] ^= 1;
+    end_ = begin_ + duration;
+  }
+
+  std::array<JointLimits, kJointCount> limits_;
+  std::uint64_t random_;
+  StepInput from_, to_;
+  double begin_ = 0, end_ = 0;
+};
+
+double helixGap(const Model& model, const State& state) {
+  std::vector<Eigen::Isometry3d> poses;
+  model.tool->forwardKinematics(state.joints, poses);
+  const Eigen::Vector3d tip = model.tool_base * poses[static_cast<std::size_t>(model.helix_link)].translation();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < state.x.size(); ++i)
+    nearest = std::min(nearest, (Eigen::Vector3d(state.x[i], state.y[i], state.z[i]) - tip).norm());
+  return nearest;
+}
+
+}  // namespace
+
+// Inserts the scope until it touches.
+double HardCases::insertionAtContact(const std::shared_ptr<const Model>& model, State& state) const {
+  Simulation simulation(model, SimulationSettings::study(1));
+  simulation.replaceState(state);
+  StepInput input = holdAt(state);
+  while (simulation.state().contact_count == 0) {
+    if (input.joints[Insertion] >= model->tool->limits()[Insertion].upper)
+      throw Error("The scope does not reach the wall; the hard case needs it.");
+    input.joints[Insertion] += kApproach * simulation.stepPeriod();
+    simulation.step(input);
+  }
+  const double touching = simulation.state().joints[Insertion];
+  input.joints[Insertion] = touching - kClearance;
+  for (int k = 0; k < 60; ++k) simulation.step(input);
+  state = simulation.state();
+  return touching;
+}
+
+HardCase HardCases::ram(double speed) const {
+  HardCase hard = begin();
+  JointLimits limits = model_->tool->limits()[Insertion];
+  limits.velocity = std::max(limits.velocity, 1.01 * speed);
+  hard.model = withScene(model_->scene, withJointLimits(urdf_, "insertion", limits));
+  const double touching = insertionAtContact(hard.model, hard.start);
+  hard.start.step = 0;
+  hard.start.time = 0;
+  const StepInput near = holdAt(hard.start);
+  StepInput deep = near;
+  deep.joints[Insertion] = std::min(limits.upper, touching + kRam);
+  const double way = deep.joints[Insertion] - near.joints[Insertion];
+  hard.phases.push_back(move("ram", way / speed, near, deep));
+  hard.phases.push_back(still("hold", 0.5, deep));
+  hard.phases.push_back(move("withdraw", way / kWithdraw, deep, near));
+  hard.phases.push_back(still("rest", brief_ ? 1 : 3, near));
+  return hard;
+}
+
+HardCase HardCases::random(std::uint64_t seed) const {
+  HardCase hard = begin();
+  const StepInput start = holdAt(hard.start);
+  const auto drive = std::make_shared<RandomDrive>(*model_->tool, start, seed);
+  const double duration = brief_ ? 5 : 30;
+  hard.phases.push_back(phaseOf("random", duration, [drive](double end) { return drive->at(end); }));
+  const auto release = [drive, start, duration](double) {
+    StepInput input = drive->at(duration);
+    input.buttons = start.buttons;
+    return input;
+  };
+  hard.phases.push_back(phaseOf("release", 0.25, release));
+  hard.phases.push_back(phaseOf("withdraw", 3, [drive, start, duration](double end) {
+    StepInput input = drive->at(duration);
+    input.buttons = start.buttons;
+    const double part = std::clamp(end / 2.5, 0.0, 1.0);
+    for (std::size_t j = 0; j < input.joints.size(); ++j) input.joints[j] += part * (start.joints[j] - input.joints[j]);
+    return input;
+  }));
+  hard.phases.push_back(still("rest", 2, start));
+  hard.phases.back().prepare = [](Simulation& simulation) { simulation.editState().procedure.sutures.clear(); };
+  return hard;
+}
+
+HardCase HardCases::wind() const {
+  HardCase hard = begin();
+  JointLimits limits = model_->tool->limits()[HelixRotation];
+  limits.upper = std::max(limits.upper, 2 * kPi * (kTurns + 1));
+  hard.model = withScene(model_->scene, withJointLimits(urdf_, "helix_rotation", limits));
+  insertionAtContact(hard.model, hard.start);
+  Simulation simulation(hard.model, SimulationSettings::study(1));
+  simulation.replaceState(hard.start);
+  StepInput input = holdAt(hard.start);
+  const auto& helix = hard.model->tool->limits()[HelixAdvance];
+  while (helixGap(*hard.model, simulation.state()) > kGrabDistance && input.joints[HelixAdvance] < helix.upper) {
+    input.joints[HelixAdvance] += 5e-4;
+    simulation.step(input);
+  }
+  input.buttons[HelixGrab] = 1;
+  simulation.step(input);
+  if (simulation.state().grip.empty()) throw Error("The helix does not reach the wall; the hard case needs it.");
+  hard.start = simulation.state();
+  hard.start.step = 0;
+  hard.start.time = 0;
+  const double turns = brief_ ? 4 : kTurns;
+  StepInput wound = input, turned, pulled;
+  wound.joints[HelixRotation] += 2 * kPi * turns;
+  turned = wound;
+  turned.joints[Rotation] += turned.joints[Rotation] > 0 ? -kPi : kPi;
+  pulled = turned;
+  pulled.joints[Insertion] -= kWindPull;
+  StepInput released = pulled;
+  released.buttons[HelixGrab] = 0;
+  released.joints[HelixAdvance] = 0;
+  hard.phases.push_back(move("wind", 2 * kPi * turns / (0.95 * limits.velocity), input, wound));
+  hard.phases.push_back(move("turn", 1.5, wound, turned));
+  hard.phases.push_back(move("pull", 1, turned, pulled));
+  hard.phases.push_back(still("hold", 0.5, pulled));
+  hard.phases.push_back(still("rest", brief_ ? 1 : 3, released));
+  return hard;
+}
+
+HardCase HardCases::sleeve() const {
+  HardCase hard = begin();
+  insertionAtContact(hard.model, hard.start);
+  hard.start.step = 0;
+  hard.start.time = 0;
+  hard.returns = false;
+  const StepInput inside = holdAt(hard.start);
+  const int sets = brief_ ? 1 : 3;
+  for (const auto& spots : setsOf(sets, 4, 0.06, brief_ ? 0.15 : 0.4)) addSet(spots, inside, hard);
+  StepInput outside = inside;
+  outside.joints[Insertion] = settled_.joints[Insertion];
+  const double way = inside.joints[Insertion] - outside.joints[Insertion];
+  hard.phases.push_back(move("withdraw", way / kWithdraw, inside, outside));
+  hard.phases.push_back(move("insert", way / kWithdraw, outside, inside));
+  hard.phases.push_back(move("withdraw again", way / kWithdraw, inside, outside));
+  hard.phases.push_back(still("rest", brief_ ? 1 : 3, outside));
+  return hard;
+}
+
+}  // namespace vibe
