@@ -44,6 +44,8 @@ constexpr double kArrived = 0.5;
 // The same where the last direction did not lower the energy: near the end that may be due to rounding. Design choice:
 // what a step may leave anyway [1].
 constexpr double kNearlyArrived = 0.1;
+// The same over the rounding error of a position. Design choice: in some directions energies are less certain [1].
+constexpr double kRoundings = 10;
 // Iterations of a static solve between two factors. Design choice: a factor costs about as much as ten iterations; six
 // is the history that a new factor discards.
 constexpr int kRefactorEvery = 6;
@@ -226,7 +228,8 @@ void ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOu
     outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
   }
   memory.usual_length += kUsualShare * (first_length - memory.usual_length);
-  const double enough = (newton.failed() ? kNearlyArrived : kArrived) * first_length;
+  const double enough = newton.failed() ? std::max(kNearlyArrived * first_length, kRoundings * newton.resolution())
+                                        : kArrived * first_length;
   outcome.arrived = outcome.converged || done || newton.directionLength() < enough;
   outcome.residual = newton.residual();
   outcome.evaluations = newton.evaluations();

@@ -62,6 +62,7 @@ class QuasiNewton {
   double evaluate(const std::vector<double>& z, std::vector<float>& gradient);
   double advance(double max, bool verify);
   void takeUnseen();
+  double slopeAtTrial() const;
   double search(double part);
   void keepPair(double part);
   void setTrial(double part);
