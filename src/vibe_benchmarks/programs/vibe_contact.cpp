@@ -6,6 +6,7 @@
 #include "common/command_line.hpp"
 #include "contact/contact_states.hpp"
 #include "contact/contact_table.hpp"
+#include "contact/grip_refinement.hpp"
 #include "contact/hard_cases.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
@@ -22,7 +23,11 @@ struct Options {
   std::vector<double> radius;
   int reference_rate = 960, reference_iterations = 8, repeats = 1;
   std::string steps, first_crossing;
+  std::vector<std::string> scripts;
+  double duration = 1e9;
   std::vector<std::uint64_t> seeds{1};
+  std::vector<int> particles{1000, 2000, 3618, 8000, 16000};
+  int sites = 6;
   bool brief = false;
   bool check_reference = false, no_reference = false;
 };
@@ -84,12 +89,29 @@ CLI::App* addHard(CLI::App& app, Options& o) {
       ->check(CLI::IsMember(hardCaseNames()).description(""));
   hard->add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
   hard->add_option("--seed", o.seeds, "of the case random; several: one run each (default: 1)")->type_name("N");
+  hard->add_option("--script", o.scripts, "sessions of these trainee scripts; without CASE only they run")
+      ->type_name("FILE");
+  hard->add_option("--duration", o.duration, "at most so much of a session [s]")->type_name("S")->check(finiteFrom(0));
   hard->add_flag("--brief", o.brief, "shorter motions, fewer sets");
   hard->add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
   hard->add_option("--steps", o.steps, "write a line per step there")->type_name("FILE");
   hard->add_option("--first-crossing", o.first_crossing, "snapshot of the state before the first crossing")
       ->type_name("FILE");
   return hard;
+}
+
+CLI::App* addRefinement(CLI::App& app, Options& o) {
+  CLI::App* refinement = app.add_subcommand("refinement", "force of a pull by 20 mm on finer and finer meshes");
+  refinement->add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")
+      ->type_name("FILE");
+  refinement->add_option("--particles", o.particles, "meshes (default: 1000 2000 3618 8000 16000)")
+      ->type_name("N")
+      ->check(wholeFrom(100, 200000));
+  refinement->add_option("--sites", o.sites, "places on each, 3 mm apart (default: 6)")
+      ->type_name("N")
+      ->check(wholeFrom(1, 30));
+  refinement->add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
+  return refinement;
 }
 
 template <class T>
@@ -137,13 +159,23 @@ void runHard(const Options& options) {
   if (!options.steps.empty()) writeHardStepHeader(steps);
   const HardOutput output{options.steps.empty() ? nullptr : &steps, options.first_crossing};
   std::vector<HardResult> results;
+  const auto run = [&](const HardCase& hard) {
+    results.push_back(runHardCase(hard, output));
+    printHardResult(results.back(), std::cerr);
+  };
   printHardHeader(std::cerr);
-  for (const std::string& name : options.names.empty() ? hardCaseNames() : options.names)
-    for (const std::uint64_t seed : name == "random" ? options.seeds : std::vector<std::uint64_t>{1}) {
-      results.push_back(runHardCase(cases.prepare(name, seed), output));
-      printHardResult(results.back(), std::cerr);
-    }
+  const bool all = options.names.empty() && options.scripts.empty();
+  for (const std::string& name : all ? hardCaseNames() : options.names)
+    for (const std::uint64_t seed : name == "random" ? options.seeds : std::vector<std::uint64_t>{1})
+      run(cases.prepare(name, seed));
+  for (const std::string& script : options.scripts) run(cases.session(script, options.duration));
   save(options.csv, [&](std::ostream& out) { writeHardResults(results, out); });
+}
+
+void runRefinement(const Options& options) {
+  const auto rows = refineGrip(sceneOf(options), options.particles, options.sites, std::cerr);
+  printRefinement(rows, std::cerr);
+  save(options.csv, [&](std::ostream& out) { writeRefinement(rows, out); });
 }
 
 }  // namespace
@@ -153,9 +185,11 @@ int main(int argc, char** argv) {
   CLI::App app{"Measures steps in which something touches.", "vibe_contact"};
   CLI::App* states = addStates(app, options);
   CLI::App* hard = addHard(app, options);
+  CLI::App* refinement = addRefinement(app, options);
   app.require_subcommand(1);
   return runProgram(app, argc, argv, [&] {
     if (*states) runStates(options);
     if (*hard) runHard(options);
+    if (*refinement) runRefinement(options);
   });
 }

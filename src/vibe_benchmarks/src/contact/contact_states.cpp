@@ -20,9 +20,11 @@ constexpr double kHold = 0.5;          // after it [s]
 constexpr double kApproach = 0.05;     // speed of the scope until it touches [m/s]
 constexpr double kClearance = 2e-3;    // of the scope before it presses [m]
 constexpr double kPress = 18.5e-3;     // deeper than at first contact [m]
-constexpr double kFoldPull = 0.03;     // before the wound fold is measured [m]
-constexpr double kFoldTurn = kPi / 2;  // likewise [rad]
-constexpr double kMoreTurn = kPi / 4;  // while it is measured [rad]
+constexpr std::size_t kFoldSet = 2;    // of six
+constexpr double kFoldPull = 0.015;    // before the wound fold is measured [m]
+constexpr double kFoldTurn = kPi / 4;  // likewise [rad]
+constexpr double kMorePull = 0.01;     // while it is measured [m]
+constexpr double kMoreTurn = kPi / 6;  // likewise [rad]
 constexpr double kCinch = 3.5;         // longer than a set here needs [s]
 
 /// Part of a motion that is done at a time.
@@ -60,9 +62,9 @@ std::string describeContactStates() {
          "               held for 0.5 s; insufflator on\n"
          "  free_closed  the same, insufflator off\n"
          "  pressed      the scope, straight, presses the wall by 18.5 mm in 0.5 s and stays for 0.5 s\n"
-         "  wound        a patch pulled by 30 mm and turned by 180 degrees is pulled by 10 mm and turned by 90 "
-         "degrees\n"
-         "               more in 0.5 s, and held for 0.5 s\n"
+         "  wound        the fold of a cinched set, pulled by 15 mm and turned by 45 degrees, is pulled by 10 mm and "
+         "turned\n"
+         "               by 30 degrees more in 0.5 s, and held for 0.5 s\n"
          "  cinch1       the first of six sets of 7 bites is cinched\n"
          "  cinch6       the sixth, after five\n";
 }
@@ -98,30 +100,28 @@ ContactCase ContactStates::prepare(const std::string& name) {
   return one;
 }
 
-// The wall, settled, with a free hand at the greater curvature that has not taken hold yet.
-ContactCase ContactStates::byHand(double along) const {
+// A state with a free hand at a place of the wall that has not taken hold yet.
+ContactCase ContactStates::byHand(const State& state, const WallSpot& spot) const {
   ContactCase one;
-  const SurfaceView wall{model_->organ.surface.triangles, settled_.x, settled_.y, settled_.z};
-  const WallPlan plan(model_->organ, wall);
-  const WallSpot spot = plan.at(along * plan.length(), 0);
-  const auto& corner = wall.triangles[static_cast<std::size_t>(spot.triangle)];
-  const Eigen::Vector3d a = wall.position(corner[0]);
-  const Eigen::Vector3d outwards = (wall.position(corner[1]) - a).cross(wall.position(corner[2]) - a).normalized();
+  const SurfaceView wall{model_->organ.surface.triangles, state.x, state.y, state.z};
+  const Eigen::Vector3d place = placeOf(spot, wall);
   auto model = std::make_shared<Model>();
   model->scene = model_->scene;
   model->organ = model_->organ;
-  holdByHand(placeOf(spot, wall), -outwards, model->scene);
+  holdByHand(place, inwardsAt(wall, place), model->scene);
   one.urdf = freeHandUrdf();
   finishModel(one.urdf, *model);
   one.model = model;
-  one.start = settled_;
+  one.start = state;
   one.start.joints = {};
   one.start.joints[Insertion] = kHandStart;
   return one;
 }
 
 ContactCase ContactStates::pull(bool insufflator) const {
-  ContactCase one = byHand(0.5);
+  const SurfaceView wall{model_->organ.surface.triangles, settled_.x, settled_.y, settled_.z};
+  const WallPlan plan(model_->organ, wall);
+  ContactCase one = byHand(settled_, plan.at(0.5 * plan.length(), 0));
   one.duration = kMotion + kHold;
   StepInput held = holdAt(one.start);
   held.buttons[HelixGrab] = 1;
@@ -160,28 +160,33 @@ ContactCase ContactStates::pressed() const {
   return one;
 }
 
+// A set is cinched; the hand takes hold of its fold.
 ContactCase ContactStates::wound() const {
-  ContactCase one = byHand(0.5);
+  SutureSession session(model_);
+  session.settle();
+  const auto spots = planSets(WallPlan(model_->organ, session.wall()), SetLayout())[kFoldSet];
+  session.sew(spots);
+  ContactCase one = byHand(session.state(), spots[spots.size() / 2]);
   one.duration = kMotion + kHold;
   StepInput held = holdAt(one.start);
   held.buttons[HelixGrab] = 1;
-  Simulation simulation(one.model, SimulationSettings::study(1));
-  simulation.replaceState(one.start);
-  const auto pulled = [&](double time) {
+  const auto pulled = [held](double time) {
     StepInput input = held;
     input.joints[Insertion] += kFoldPull * part(time, 1);
-    input.joints[Rotation] += kFoldTurn * part(time - 1, 1);
+    input.joints[Rotation] += kFoldTurn * part(time, 1);
     return input;
   };
+  Simulation simulation(one.model, SimulationSettings::study(1));
+  simulation.replaceState(one.start);
   stepFor(
       0.1, [&](double) { return held; }, simulation);
-  stepFor(3, pulled, simulation);
+  stepFor(2, pulled, simulation);
   one.start = simulation.state();
   if (one.start.grip.empty()) throw Error("The wall came off the helix; the state 'wound' cannot be prepared.");
-  const StepInput last = pulled(3);
+  const StepInput last = pulled(2);
   one.input = [last](double end) {
     StepInput input = last;
-    input.joints[Insertion] += 0.5 * kPull * part(end, kMotion);
+    input.joints[Insertion] += kMorePull * part(end, kMotion);
     input.joints[Rotation] += kMoreTurn * part(end, kMotion);
     return input;
   };

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "contact/contact_case.hpp"
+#include "suture/wall_plan.hpp"
 
 namespace vibe {
 
@@ -27,7 +28,7 @@ class ContactStates {
   ContactCase pressed() const;
   ContactCase wound() const;
   ContactCase cinch(int sets_before) const;
-  ContactCase byHand(double along) const;
+  ContactCase byHand(const State& state, const WallSpot& spot) const;
 
   std::shared_ptr<const Model> model_;
   std::string urdf_;

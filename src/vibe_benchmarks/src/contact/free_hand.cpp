@@ -1,11 +1,13 @@
 #include "contact/free_hand.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace vibe {
 namespace {
 
 constexpr double kAnyForce = 1e6;  // [N]
+constexpr double kSmooth = 0.02;   // radius of the wall whose mean normal counts [m]
 
 std::string link(const std::string& name) {
   return "<link name=\"" + name + "\"/>\n";
@@ -47,6 +49,15 @@ void holdByHand(const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, Sc
   scene.scope->base_rpy = {0, std::asin(-direction.z()), std::atan2(direction.y(), direction.x())};
   scene.helix->hold_force = kAnyForce;
   scene.helix->initial_hold_force = kAnyForce;
+}
+
+Eigen::Vector3d inwardsAt(const SurfaceView& wall, const Eigen::Vector3d& place) {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (const auto& t : wall.triangles) {
+    const Eigen::Vector3d a = wall.position(t[0]), b = wall.position(t[1]), c = wall.position(t[2]);
+    if (((a + b + c) / 3 - place).norm() < kSmooth) normal += (b - a).cross(c - a);
+  }
+  return -normal.normalized();
 }
 
 }  // namespace vibe

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "vibe_core/geometry/surface_view.hpp"
 #include "vibe_core/scene/scene.hpp"
 
 namespace vibe {
@@ -17,5 +18,8 @@ constexpr double kHandStart = 0.1;
 /// @param tip        place of the helix with `insertion` at kHandStart, in world [m]
 /// @param direction  unit, in which `insertion` grows
 void holdByHand(const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, Scene& scene);
+
+/// Mean unit normal into the lumen of the wall within 20 mm of a place.
+Eigen::Vector3d inwardsAt(const SurfaceView& wall, const Eigen::Vector3d& place);
 
 }  // namespace vibe

@@ -1,16 +1,20 @@
 #include "contact/hard_cases.hpp"
 
+#include <algorithm>
 #include <ostream>
 
 #include "contact/joint_limits.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/trainee/trainee_script.hpp"
 
 namespace vibe {
 
 const std::vector<std::string>& hardCaseNames() {
-  static const std::vector<std::string> kNames{"ram_0.15", "ram_0.3",    "ram_0.5", "ram_1",    "random",   "wind",
-                                               "across",   "desufflate", "sets_20", "over_set", "pressure", "sleeve"};
+  static const std::vector<std::string> kNames{"ram_0.15", "ram_0.3", "ram_0.5",    "ram_1",   "random",
+                                               "wind",     "across",  "desufflate", "sets_20", "over_set",
+                                               "pressure", "sleeve",  "8x7",        "14x4"};
   return kNames;
 }
 
@@ -24,7 +28,8 @@ std::string describeHardCases() {
          "  sets_20     20 sets of 4 bites\n"
          "  over_set    a set of 7 bites over one of 7\n"
          "  pressure    5, 45 and 5 mmHg, 1 s each, five times\n"
-         "  sleeve      three wide sets are cinched around the scope, which is withdrawn and inserted again\n";
+         "  sleeve      three wide sets are cinched around the scope, which is withdrawn and inserted again\n"
+         "  8x7, 14x4   8 sets of 7 bites, 14 sets of 4\n";
 }
 
 HardCases::HardCases(const Scene& scene, std::string urdf, bool brief, std::ostream& log)
@@ -50,7 +55,11 @@ HardCase HardCases::prepare(const std::string& name, std::uint64_t seed) {
   else if (name == "desufflate")
     hard = desufflate();
   else if (name == "sets_20")
-    hard = manySets();
+    hard = manySets(20, 4);
+  else if (name == "8x7")
+    hard = manySets(8, 7);
+  else if (name == "14x4")
+    hard = manySets(14, 4);
   else if (name == "over_set")
     hard = setOverSet();
   else if (name == "pressure")
@@ -60,6 +69,21 @@ HardCase HardCases::prepare(const std::string& name, std::uint64_t seed) {
   else
     throw Error("There is no hard case '" + name + "'; the program's help names those there are.");
   hard.name = name == "random" ? name + "_" + std::to_string(seed) : name;
+  return hard;
+}
+
+HardCase HardCases::session(const std::string& script, double longest) const {
+  const auto trainee = std::make_shared<const TraineeScript>(TraineeScript::load(resolveAddress(script)));
+  HardCase hard;
+  hard.name = trainee->name();
+  hard.model = model_;
+  hard.start = initialState(*model_, model_->scene.seed);
+  hard.returns = false;
+  HardPhase phase;
+  phase.name = "session";
+  phase.duration = std::min(longest, trainee->duration());
+  phase.input = [trainee, step = model_->scene.step_period](double end) { return trainee->at(end - step); };
+  hard.phases.push_back(std::move(phase));
   return hard;
 }
 

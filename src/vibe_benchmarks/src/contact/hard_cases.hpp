@@ -27,6 +27,11 @@ class HardCases {
   /// @throws Error for another name than those of hardCaseNames(), or if the start cannot be reached
   HardCase prepare(const std::string& name, std::uint64_t seed = 1);
 
+  /// The session of a trainee script from the initial state of the scene on.
+  /// @param longest  of it [s]
+  /// @throws Error if the file is no trainee script
+  HardCase session(const std::string& script, double longest) const;
+
  private:
   HardCase begin() const;
   HardCase ram(double speed) const;
@@ -34,7 +39,7 @@ class HardCases {
   HardCase wind() const;
   HardCase cinchAcross() const;
   HardCase desufflate() const;
-  HardCase manySets() const;
+  HardCase manySets(int sets, int bites) const;
   HardCase setOverSet() const;
   HardCase pressureSteps() const;
   HardCase sleeve() const;

@@ -111,13 +111,13 @@ HardCase HardCases::desufflate() const {
   return hard;
 }
 
-HardCase HardCases::manySets() const {
+HardCase HardCases::manySets(int sets, int bites) const {
   HardCase hard = begin();
   hard.returns = false;
   const StepInput hold = holdAt(hard.start);
-  auto sets = setsOf(20, 4, 0.018, 0.6);
-  if (brief_) sets.resize(2);
-  for (const auto& spots : sets) addSet(spots, hold, hard);
+  auto places = setsOf(sets, bites, 0.018, 0.6);
+  if (brief_) places.resize(2);
+  for (const auto& spots : places) addSet(spots, hold, hard);
   return hard;
 }
 

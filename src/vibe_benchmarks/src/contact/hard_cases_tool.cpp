@@ -20,6 +20,7 @@ constexpr double kWithdraw = 0.1;                  // speed [m/s]
 constexpr double kTurns = 20;                      // of the helix
 constexpr double kWindPull = 0.06;                 // [m]
 constexpr double kGrabDistance = 2e-3;             // of the helix from the nearest particle [m]
+constexpr double kReach = 8e-3;                    // of it, so that it takes hold on coarse meshes too [m]
 constexpr double kShortest = 0.3, kLongest = 1.5;  // time of a random motion [s]
 constexpr double kPress = 0.3;                     // probability that a button changes with a motion [1]
 
@@ -168,7 +169,9 @@ HardCase HardCases::wind() const {
   HardCase hard = begin();
   JointLimits limits = model_->tool->limits()[HelixRotation];
   limits.upper = std::max(limits.upper, 2 * kPi * (kTurns + 1));
-  hard.model = withScene(model_->scene, withJointLimits(urdf_, "helix_rotation", limits));
+  Scene scene = model_->scene;
+  scene.helix->reach = std::max(scene.helix->reach, kReach);
+  hard.model = withScene(scene, withJointLimits(urdf_, "helix_rotation", limits));
   insertionAtContact(hard.model, hard.start);
   Simulation simulation(hard.model, SimulationSettings::study(1));
   simulation.replaceState(hard.start);

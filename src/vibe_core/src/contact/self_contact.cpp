@@ -243,7 +243,7 @@ void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCo
     if (normal == 0 && pair.drag == 0) continue;
     const Eigen::Vector3d& n = pair.normal;
     const Eigen::Matrix3d k = pair.drag * Eigen::Matrix3d::Identity() + (normal - pair.drag) * n * n.transpose();
-    couplings.push_back({pair.node,
+    couplings.push_back({{pair.node[0], pair.node[1], pair.node[2], pair.node[3], -1, -1},
                          {1, -static_cast<float>(pair.weight[0]), -static_cast<float>(pair.weight[1]),
                           -static_cast<float>(pair.weight[2])},
                          {static_cast<float>(k(0, 0)), static_cast<float>(k(0, 1)), static_cast<float>(k(0, 2)),

@@ -52,7 +52,9 @@ struct SegmentRows {
   std::array<LinearForm, 2> turn;
   std::array<Eigen::Vector3d, 2> across;
   double turn_compliance = 0;  ///< [m/N]
-  double capstan = 1;          ///< largest ratio of the tensions of this segment and the next [1]
+  /// Of the part of their stiffness that the factor does not have; 0: it has enough of it [m/N].
+  double turn_missing = 0;
+  double capstan = 1;  ///< largest ratio of the tensions of this segment and the next [1]
 };
 
 struct ThreadRows {

@@ -41,8 +41,13 @@ void ConstraintSchur::addThreadRows(const ThreadRows& thread) {
   for (int k = 0; k < thread.count(); ++k)
     addRun(thread.first_attachment + k, thread.segments[k].along, thread.segments[k].compliance);
   for (int k = 0; k < thread.count(); ++k)
-    for (int j = 0; j < 2; ++j)
-      addRun(thread.first_attachment + k, thread.segments[k].across[j], thread.segments[k].turn_compliance);
+    for (int j = 0; j < 2; ++j) {
+      const SegmentRows& segment = thread.segments[k];
+      if (segment.turn_missing > 0)
+        addRun(thread.first_attachment + k, segment.across[j], segment.turn_missing);
+      else
+        rows_.addRow(1);  // without a term: the factor has it
+    }
 }
 
 void ConstraintSchur::setRows(const ConstraintRows& rows, const Factor& factor, ColumnCache& cache) {
@@ -70,7 +75,9 @@ void ConstraintSchur::sortRows(const ConstraintRows& rows) {
   thread_count_ = 0;
   threads_held_ = false;
   for (int i = 0; i < static_cast<int>(rows.equations.size()); ++i) equations_.push_back(i);
-  rows.forEachSpring([this](int row, const LinearForm&, double) { equations_.push_back(row); });
+  for (const ThreadRows& thread : rows.threads)
+    for (int k = 0; k < 2 * thread.count(); ++k)
+      if (thread.segments[k / 2].turn_missing > 0) equations_.push_back(thread.turnRow(k / 2, k % 2));
   for (std::size_t c = 0; c < rows.contacts.size(); ++c) {
     contact_list_.push_back({static_cast<int>(inequalities_.size()), rows.contacts[c].friction});
     for (int k = 0; k < 3; ++k) inequalities_.push_back(rows.contactRow(c) + k);

@@ -15,8 +15,8 @@ struct Members {
     }
   }
   int count = 0;
-  int node[4] = {};
-  double weight[4] = {};
+  int node[6] = {};
+  double weight[6] = {};
 };
 
 Eigen::Matrix3d stiffnessOf(const StiffnessCoupling& coupling) {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "solver/coupling_blocks.hpp"
+#include "solver/thread_couplings.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 
@@ -86,8 +87,10 @@ bool factorAt(const ElasticBody& body, const std::vector<float>& positions, doub
   return factorAt(body, {positions, {}}, inertia, margin, factor.plan(), matrix, factor);
 }
 
-void collectCouplings(const BodyLoads& loads, const double* positions4, std::vector<StiffnessCoupling>& couplings) {
+void collectCouplings(const BodyLoads& loads, const double* positions4, double gain,
+                      std::vector<StiffnessCoupling>& couplings) {
   couplings = loads.couplings;
+  addThreadCouplings(loads, positions4, gain, couplings);
   if (loads.extra != nullptr) loads.extra->addStiffness(positions4, couplings);
 }
 
@@ -113,7 +116,7 @@ void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, 
   copyPositions(motion, body.nodeCount(), memory.next);
   for (int i = 0; i < body.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) scratch.trial[4 * i + k] = motion.x[k][i];
-  collectCouplings(loads, scratch.trial.data(), memory.next_couplings);
+  collectCouplings(loads, scratch.trial.data(), gain, memory.next_couplings);
   memory.next_id = hashOf(memory.next, memory.next_couplings);
   memory.due = memory.steps + steps;
 }

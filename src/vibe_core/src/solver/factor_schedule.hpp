@@ -27,6 +27,7 @@ struct FactorSchedule {
   double margin;    ///< times the stiffness of the elements
   int steps;        ///< from the positions to the step that uses the factor about them; 0: it stays
   double distance;  ///< a node must have moved farther for another factor [m]
+  double gain = 1;  ///< of the rows' values over positions, see setStepTargets()
 
   /// Lets the next factor take over where it is due, and names the positions and couplings of the one after.
   void advance(const ElasticBody& body, const MotionView& motion, const BodyLoads& loads, StepperMemory& memory,
@@ -46,6 +47,8 @@ struct FactorSchedule {
 };
 
 /// Stiffness that the loads add at positions (4 per node) [m].
-void collectCouplings(const BodyLoads& loads, const double* positions4, std::vector<StiffnessCoupling>& couplings);
+/// @param gain  of the rows' values over positions, see setStepTargets(); 1 in an equilibrium
+void collectCouplings(const BodyLoads& loads, const double* positions4, double gain,
+                      std::vector<StiffnessCoupling>& couplings);
 
 }  // namespace vibe

@@ -58,7 +58,8 @@ void HalfRows::compliances(Eigen::MatrixXd& out) {
   out.resize(count(), count());
   const std::size_t size = 3 * used_.size();
   for (int i = 0; i < count(); ++i) {
-    given_.assign(size, 0.0);
+    const bool empty = first_[static_cast<std::size_t>(i)] == end(i);
+    if (!empty) given_.assign(size, 0.0);
     for (int t = first_[static_cast<std::size_t>(i)]; t < end(i); ++t)
       for (int k = 0; k < 3; ++k) {
         const double c = coefficient_[static_cast<std::size_t>(t)][k];
@@ -68,6 +69,10 @@ void HalfRows::compliances(Eigen::MatrixXd& out) {
       }
     for (int j = 0; j <= i; ++j) {
       double sum = 0;
+      if (empty) {
+        out(i, j) = out(j, i) = 0;
+        continue;
+      }
       for (int t = first_[static_cast<std::size_t>(j)]; t < end(j); ++t) {
         const Eigen::Vector3d& c = coefficient_[static_cast<std::size_t>(t)];
         const double* const at = &given_[3 * static_cast<std::size_t>(place_[static_cast<std::size_t>(t)])];

@@ -12,7 +12,7 @@ namespace vibe {
 class HalfRows {
  public:
   void clear();
-  /// Begins another row.
+  /// Begins another row. One that gets no term has no effect.
   void addRow(double compliance);
   /// Adds coefficient . x at a slot of the cache to the last row.
   void addTerm(int slot, const Eigen::Vector3d& coefficient);

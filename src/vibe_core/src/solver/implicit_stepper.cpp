@@ -8,6 +8,7 @@
 #include "solver/quasi_newton.hpp"
 #include "solver/rigid_guess.hpp"
 #include "solver/step_rows.hpp"
+#include "solver/thread_couplings.hpp"
 #include "solver/time_scheme.hpp"
 
 namespace vibe {
@@ -82,9 +83,10 @@ double foreseenVolume(const GasLoad& gas, const MotionView& motion, const TimeSc
   return scratch.volume + scheme.part() * scheme.h * rate;
 }
 
-FactorSchedule scheduleOf(const StepSettings& settings, double inertia) {
+FactorSchedule scheduleOf(const StepSettings& settings, const TimeScheme& scheme) {
   FactorSchedule schedule;
-  schedule.inertia = inertia;
+  schedule.inertia = scheme.inertia;
+  schedule.gain = scheme.z_gain / scheme.x_gain;
   schedule.margin = settings.iterations == 1 && !settings.backward_euler ? kMarginOfOne : 1;
   schedule.steps = settings.refactor_interval > 0
                        ? std::max(1, static_cast<int>(std::lround(settings.refactor_interval / settings.step)))
@@ -120,7 +122,7 @@ struct ImplicitStepper::Plan {
         factor_plan(makeFactorPlan(*pattern)),
         scheme(settings, body.mass_damping, body.stiffness_damping),
         fallback_scheme(fallbackOf(settings), body.mass_damping, body.stiffness_damping),
-        schedule(scheduleOf(settings, scheme.inertia)),
+        schedule(scheduleOf(settings, scheme)),
         storage(factor_storage),
         free(body.foundation.empty() &&
              std::none_of(body.fixed.begin(), body.fixed.end(), [](char fixed) { return fixed != 0; })),
@@ -195,7 +197,7 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
   guess(motion, outcome.fallback, scratch);
   buildRows(loads, motion, scratch);
-  setStepTargets(loads, motion, scheme, scratch);
+  setStepTargets(loads, motion, scheme, memory.couplings, scratch);
   Potential potential(body_, loads, scheme.inertia, scratch, scheme.part());
   QuasiNewton newton(body_, potential, loads, scratch, std::min(plan_->safe_length, kUsualGrowth * memory.usual_length),
                      settings_.iterations + kSpareEvaluations);
@@ -309,12 +311,13 @@ void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperScratch& scrat
   for (std::size_t i = 0; i < body_.rest.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(scratch.z[4 * i + k]);
   std::vector<StiffnessCoupling> couplings;
-  collectCouplings(loads, scratch.z.data(), couplings);
+  collectCouplings(loads, scratch.z.data(), 1, couplings);
   if (!factorAt(body_, {positions, couplings}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor))
     factorAt(body_, {{}, {}}, 0, 1, scratch.plan, scratch.matrix, *scratch.factor);
   scratch.columns.reset();
   scratch.columns.setAttachments(*scratch.factor, loads.attachments);
   scratch.schur.reset(*scratch.factor);
+  findMissingTurns(loads, couplings, scratch.rows);
   scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
 }
 

@@ -3,16 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "solver/thread_couplings.hpp"
 #include "suture/capstan.hpp"
 
 namespace vibe {
 namespace {
-
-// Shortest segment that has a direction. Design choice: far below the size of a bite, far above rounding [m].
-constexpr double kShortestSegment = 1e-6;
-// Tension of a slack segment for its resistance to being turned. Design choice: keeps the compliance finite at a force
-// that nobody can measure [N].
-constexpr double kMinTension = 1e-6;
 
 Eigen::Vector3d positionOf(const AttachmentPoint& attachment, const MotionView& motion) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -35,23 +30,17 @@ void runBetween(const BodyLoads& loads, int first, const Eigen::Vector3d& along,
   addAttachment(loads.attachments[first + 1], -along, form);
 }
 
-// Two points in one place have no direction between them. Then any direction is correct, because the pull is zero.
-Eigen::Vector3d directionOf(const Eigen::Vector3d& between) {
-  const double length = between.norm();
-  return length > kShortestSegment ? Eigen::Vector3d(between / length) : Eigen::Vector3d(Eigen::Vector3d::UnitX());
-}
-
 // A tense segment resists being turned: two springs across it. Its direction is that at the start of the step, and the
 // effect of turning on the pull is stiff beside soft tissue.
 void setSegment(const BodyLoads& loads, const ThreadLoad& thread, int k, const Eigen::Vector3d& between,
                 SegmentRows& segment) {
   const int first = thread.first_attachment + k;
-  segment.along = directionOf(between);
+  segment.along = segmentDirection(between);
   segment.compliance = std::max(thread.length[k], kMinThread) / thread.stiffness;
   runBetween(loads, first, segment.along, segment.pull);
   const Eigen::Vector3d across = segment.along.unitOrthogonal();
   segment.across = {across, segment.along.cross(across)};
-  segment.turn_compliance = std::max(between.norm(), kMinThread) / std::max(thread.tension[k], kMinTension);
+  segment.turn_compliance = segment.turn_missing = turnCompliance(between.norm(), thread.tension[k]);
   for (std::size_t j = 0; j < 2; ++j) runBetween(loads, first, segment.across[j], segment.turn[j]);
 }
 
@@ -129,12 +118,18 @@ double stepTarget(const LinearForm& form, double target, const MotionView& motio
   return free + scheme.z_gain / scheme.x_gain * residual;
 }
 
+void scaleSegment(double gain, SegmentRows& segment) {
+  segment.compliance *= gain;
+  segment.turn_compliance *= gain;
+  segment.turn_missing *= gain;
+}
+
 void scaleCompliances(double gain, ConstraintRows& rows) {
   for (EquationRow& row : rows.equations) row.compliance *= gain;
   for (ContactRows& contact : rows.contacts) contact.compliance *= gain;
   rows.tool_compliance *= gain;
   for (ThreadRows& thread : rows.threads)
-    for (SegmentRows& segment : thread.segments) segment.compliance *= gain, segment.turn_compliance *= gain;
+    for (SegmentRows& segment : thread.segments) scaleSegment(gain, segment);
 }
 
 void storeThread(const StepperScratch& scratch, const ThreadRows& rows, double gain, ThreadLoad& thread) {
@@ -175,7 +170,7 @@ void setEquilibriumTargets(const BodyLoads& loads, StepperScratch& scratch) {
 }
 
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
-                    StepperScratch& scratch) {
+                    const std::vector<StiffnessCoupling>& in_factor, StepperScratch& scratch) {
   setTargets(loads, scratch.rows, scratch.target);
   const auto set = [&](int row, const LinearForm& form) {
     scratch.target[row] = stepTarget(form, scratch.target[row], motion, scheme);
@@ -183,6 +178,7 @@ void setStepTargets(const BodyLoads& loads, const MotionView& motion, const Time
   scratch.rows.forEachMultiplier(set);
   scratch.rows.forEachSpring([&set](int row, const LinearForm& form, double) { set(row, form); });
   scaleCompliances(scheme.z_gain / scheme.x_gain, scratch.rows);
+  findMissingTurns(loads, in_factor, scratch.rows);
 }
 
 void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {

@@ -12,8 +12,9 @@ void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch&
 void setEquilibriumTargets(const BodyLoads& loads, StepperScratch& scratch);
 /// The same for a step: rows are met at its end, so that z has to move by the scheme's ratio of gains times as much.
 /// Scales the compliances of the rows in the same way.
+/// @param in_factor  stiffness that the factor has beside that of the elements
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
-                    StepperScratch& scratch);
+                    const std::vector<StiffnessCoupling>& in_factor, StepperScratch& scratch);
 /// The rows' forces back to the loads, and how far the threads slid.
 /// @param gain  of the rows' values over positions, see setStepTargets(); 1 in an equilibrium
 void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads);

@@ -25,8 +25,12 @@ class Springs : public EnergyTerm {
     for (int x = 0; x < kCubes[0]; ++x)
       for (int y = 0; y < kCubes[1]; ++y) {
         StiffnessCoupling& c = couplings_.emplace_back();
-        c.node = {number(x, y, kCubes[2]), half + number(x, y, 0), half + number(x + 1, y, 0),
-                  half + number(x, y + 1, 0)};
+        c.node = {number(x, y, kCubes[2]),
+                  half + number(x, y, 0),
+                  half + number(x + 1, y, 0),
+                  half + number(x, y + 1, 0),
+                  -1,
+                  -1};
         c.weight = {1, -0.5F, -0.25F, -0.25F};
         c.stiffness = {0, 0, 0, 0, 0, static_cast<float>(kContact)};
         rest_.push_back(0);

@@ -112,7 +112,7 @@ TEST(StepRows, TargetsOfAStepAreMetAtItsEnd) {
   for (int i = 0; i < fixture.body.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) fixture.motion.v[k][i] = 0.1 * (k + 1) + 0.01 * i, fixture.motion.a[k][i] = 2.0 * k - i;
   const TimeScheme scheme(fixture.stepper.settings(), 1.5, 0.01);
-  setStepTargets(fixture.loads, fixture.motion.view(), scheme, *fixture.scratch);
+  setStepTargets(fixture.loads, fixture.motion.view(), scheme, {}, *fixture.scratch);
   const LinearForm& form = fixture.scratch->rows.equations[0].form;
   const double target = fixture.scratch->target[0];
   // one acceleration for all nodes, such that z is at the target

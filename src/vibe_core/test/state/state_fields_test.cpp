@@ -149,8 +149,8 @@ TEST(Fields, TheListNamesFieldsAndTheirTypes) {
 /// version in state_fields.hpp or step_input_fields.hpp, so that older files are refused by name, then put the new
 /// values here.
 TEST(Fields, AnotherListOfFieldsHasAnotherVersion) {
-  EXPECT_EQ(kStateVersion, 5U);
-  EXPECT_EQ(fieldFingerprint<State>(), 3601331576669218306U) << fieldList<State>();
+  EXPECT_EQ(kStateVersion, 6U);
+  EXPECT_EQ(fieldFingerprint<State>(), 11766969897475590182U) << fieldList<State>();
   EXPECT_EQ(kStepInputVersion, 2U);
   EXPECT_EQ(fieldFingerprint<StepInput>(), 12597398189629362862U) << fieldList<StepInput>();
 }

@@ -1,0 +1,39 @@
+#pragma once
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "vibe_core/scene/scene.hpp"
+
+namespace vibe {
+
+/// Force of one pull on one mesh.
+struct RefinementRow {
+  std::string grip;     ///< "helix" or "patch", the patch of the pull spring
+  int particles = 0;    ///< of the organ
+  int site = 0;         ///< number of the place
+  int held = 0;         ///< particles
+  double distance = 0;  ///< by which what is held has moved along the pull [m]
+  double force = 0;     ///< along the pull, at rest [N]
+};
+
+/// Mean and standard deviation over the sites of one grip and mesh.
+struct RefinementMean {
+  std::string grip;
+  int particles = 0, sites = 0;
+  double force = 0, spread = 0;  ///< [N]
+};
+
+/// Pulls the insufflated stomach inwards by 20 mm at places beside each other on the greater curvature of the body,
+/// the same on every mesh, and waits until it rests. What differs between meshes of many particles is the error of the
+/// mesh; what differs between sites of one mesh is how grip and mesh happen to meet.
+/// @param sites  places, 3 mm apart
+std::vector<RefinementRow> refineGrip(const Scene& scene, const std::vector<int>& particles, int sites,
+                                      std::ostream& log);
+
+std::vector<RefinementMean> meansOf(const std::vector<RefinementRow>& rows);
+
+void printRefinement(const std::vector<RefinementRow>& rows, std::ostream& out);
+void writeRefinement(const std::vector<RefinementRow>& rows, std::ostream& out);  ///< CSV
+
+}  // namespace vibe
