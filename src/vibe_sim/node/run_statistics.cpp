@@ -22,7 +22,11 @@ void RunStatistics::begin(Session& session) {
   startWindow(session);
 }
 
-void RunStatistics::countStep(double period) {
+void RunStatistics::countStep(double period, const StepReport& report) {
+  for (Work* work : {&window_work_, &all_work_}) {
+    work->residual = std::max(work->residual, report.residual);
+    work->unfinished += report.arrived ? 0 : 1;
+  }
   ++steps;
   simulated_ += period;
   window_simulated_ += period;
@@ -37,6 +41,7 @@ void RunStatistics::startWindow(Session& session) {
   window_simulated_ = 0;
   all_missed_deadlines_ += missed_deadlines;
   missed_deadlines = 0;
+  window_work_ = Work();
   for (StepTimer* timer : {&session.simulation.timer(), &publish, &total}) {
     timer->cpu.window.clear();
     timer->wall.window.clear();
@@ -65,6 +70,8 @@ vibe_msgs::SolverStatistics RunStatistics::windowMessage(const Session& session)
   result.window = steadyTime() - window_begin_;
   result.real_time_factor = ratio(window_simulated_, result.window);
   result.missed_deadlines = missed_deadlines;
+  result.residual = window_work_.residual;
+  result.unfinished_steps = window_work_.unfinished;
   return result;
 }
 
@@ -73,6 +80,8 @@ vibe_msgs::SolverStatistics RunStatistics::wholeMessage(const Session& session) 
   result.window = steadyTime() - begin_;
   result.real_time_factor = ratio(simulated_, result.window);
   result.missed_deadlines = all_missed_deadlines_ + missed_deadlines;
+  result.residual = all_work_.residual;
+  result.unfinished_steps = all_work_.unfinished;
   return result;
 }
 

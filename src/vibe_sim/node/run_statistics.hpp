@@ -6,6 +6,7 @@
 
 #include "session.hpp"
 #include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/model/tissue_solver.hpp"
 
 namespace vibe {
 
@@ -20,7 +21,7 @@ class RunStatistics {
 
   /// The stepping begins now; time before does not count.
   void begin(Session& session);
-  void countStep(double period);
+  void countStep(double period, const StepReport& report);
   bool windowIsOver() const;  ///< one second has passed
 
   vibe_msgs::SolverStatistics windowMessage(const Session& session) const;
@@ -33,11 +34,17 @@ class RunStatistics {
   void startWindow(Session& session);
 
  private:
+  struct Work {  // of the solver
+    double residual = 0;           // largest [m]
+    std::uint32_t unfinished = 0;  // steps
+  };
+
   double begin_ = 0;                        // steady time [s]
   double window_begin_ = 0;                 // [s]
   double simulated_ = 0;                    // since begin [s]
   double window_simulated_ = 0;             // [s]
   std::uint32_t all_missed_deadlines_ = 0;  // before the window
+  Work window_work_, all_work_;
 
   vibe_msgs::SolverStatistics message(const Session& session, DurationHistogram DurationRecord::*which) const;
 };

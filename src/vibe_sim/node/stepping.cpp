@@ -195,7 +195,7 @@ void Stepper::takeStep() {
   publishers_.stepResult(session_, status_);
   statistics_.publish.stop();
   last_clock_ = steadyTime();
-  statistics_.countStep(session_.time.period());
+  statistics_.countStep(session_.time.period(), session_.simulation.report());
   statistics_.total.stop();
   if (steps_left_ > 0 && --steps_left_ == 0) {
     answerSteps({true, "Took " + std::to_string(steps_asked_) + " steps."});

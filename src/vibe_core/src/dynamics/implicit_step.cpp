@@ -154,6 +154,9 @@ bool ImplicitStep::solve() {
   scratch_.loads.extra = scratch_.terms.simplest();
   const StepOutcome outcome = stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
+  report_.evaluations = outcome.evaluations;
+  report_.residual = outcome.residual;
+  report_.arrived = outcome.arrived;
   report_.fallback = outcome.fallback;
   work_ = outcome.work;
   if (!outcome.finite) std::fill(state_.x.begin(), state_.x.end(), std::numeric_limits<double>::quiet_NaN());

@@ -23,15 +23,12 @@ constexpr double kMarginOfOne = 2;
 // Elastic energy of an extrapolated guess over that of the last step, above which the guess is dropped. Design choice:
 // a guess along a smooth motion changes the energy by a few percent per step [1].
 constexpr double kGuessGrowth = 2;
-// Steps with backward Euler after a step that failed. Design choice: a sixth of a second at 60 Hz, in which backward
-// Euler damps what made the step fail.
+// Steps with backward Euler after a step that did not arrive. Design choice: a sixth of a second at 60 Hz, in which
+// backward Euler damps what made the step fail.
 constexpr int kFallbackSteps = 10;
-// Iterations of such a step, and limit of any other. Design choice: twice the history of six pairs, so that L-BFGS can
-// show its superlinear rate.
-constexpr int kFallbackIterations = 12;
-// Iterations after which the constraints are met exactly, whatever that costs in energy. Design choice: half of the
-// limit, so that as many iterations remain to reduce the energy again.
-constexpr int kSatisfyConstraints = 6;
+// Iterations after which the constraints are met exactly, whatever that costs in energy. Design choice: about half of
+// what a step may take, so that as many iterations remain to reduce the energy again.
+constexpr int kSatisfyConstraints = 5;
 // Largest move of a fallback or static iteration over the size of the body. Design choice: about a fold of the wall of
 // a stomach (1 cm in 20 cm), within which the linearization is still of some use [1].
 constexpr double kFallbackMaxMove = 0.05;
@@ -43,9 +40,14 @@ constexpr double kSafeStrain = 0.02;
 constexpr double kUsualGrowth = 1.5;
 // Weight of the last step in that running mean. Design choice: a memory of ten steps [1].
 constexpr double kUsualShare = 0.1;
-// Length of the last direction over the first, above which a step counts as not converged and is repeated. Design
-// choice: a step that leaves half of its move has not found the equilibrium [1].
+// Length of the last direction over the first, above which a step counts as not arrived. Design choice: a step that
+// leaves half of its move has not found the equilibrium [1].
 constexpr double kArrived = 0.5;
+// The same where the last direction did not lower the energy: near the end that may be due to rounding. Design choice:
+// what a step may leave anyway [1].
+constexpr double kNearlyArrived = 0.1;
+// The same over the rounding error of a position. Design choice: in some directions energies are less certain [1].
+constexpr double kRoundings = 10;
 // Iterations of a static solve between two factors. Design choice: a factor costs about as much as ten iterations; six
 // is the history that a new factor discards.
 constexpr int kRefactorEvery = 6;
@@ -160,16 +162,12 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
   StepOutcome outcome;
   outcome.fallback = settings_.backward_euler || memory.fallback > 0;
   if (memory.fallback > 0) --memory.fallback;
-  if (!attempt(motion, loads, memory, scratch, outcome) && !outcome.fallback) {
-    memory.fallback = kFallbackSteps;
-    outcome = StepOutcome();
-    outcome.fallback = true;
-    attempt(motion, loads, memory, scratch, outcome);
-  }
+  iterateStep(motion, loads, memory, scratch, outcome);
   if (!outcome.finite) return outcome;
+  if (!outcome.arrived && !settings_.backward_euler) memory.fallback = kFallbackSteps;
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
   storeForces(scratch, scheme.z_gain / scheme.x_gain, loads);
-  outcome.work = finishMotion(body_, scheme, motion, loads, scratch);
+  outcome.work = finishMotion(body_, scheme, motion, loads, !outcome.arrived, scratch);
   correctStored(memory, scratch, outcome);
   return outcome;
 }
@@ -205,16 +203,15 @@ void ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperScra
   if (!from_hat && !fallback && plan_->free) moveRigidly(body_, motion, scheme, scratch);
 }
 
-// @returns false where no lower energy was found, or is not after many iterations
-bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, StepperMemory& memory,
-                              StepperScratch& scratch, StepOutcome& outcome) const {
+void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory,
+                                  StepperScratch& scratch, StepOutcome& outcome) const {
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
   guess(motion, outcome.fallback, scratch);
   buildRows(loads, motion, scratch);
   setStepTargets(loads, motion, scheme, memory.couplings, scratch);
   Potential potential(body_, loads, scheme.inertia, scratch, scheme.part());
-  QuasiNewton newton(body_, potential, loads, scratch,
-                     std::min(plan_->safe_length, kUsualGrowth * memory.usual_length));
+  QuasiNewton newton(body_, potential, loads, scratch, std::min(plan_->safe_length, kUsualGrowth * memory.usual_length),
+                     settings_.iterations + kSpareEvaluations);
   newton.start();
   // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
   if (extrapolates(outcome.fallback) && !(scratch.elastic_value <= kGuessGrowth * memory.elastic_energy)) {
@@ -224,29 +221,32 @@ bool ImplicitStepper::attempt(const MotionView& motion, BodyLoads& loads, Steppe
   scratch.keepFirst();
   scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
   newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
-  const bool arrived = iterate(newton, memory, outcome);
+  iterate(newton, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
   scratch.gas_stiffness = potential.gas().stiffness(scratch.volume);
-  return outcome.finite && arrived;
 }
 
 // Iterations go on until they contract: otherwise stiff motions would grow from step to step.
-bool ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const {
-  const int min = outcome.fallback && !settings_.backward_euler ? kFallbackIterations : 1;
-  const int enough = std::max(min, settings_.iterations), max = std::max(enough, kFallbackIterations);
+void ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const {
   const double longest = outcome.fallback ? kFallbackMaxMove * plan_->size : std::numeric_limits<double>::max();
   double first_length = 0;
   bool done = false;
-  while (outcome.iterations < max && !done && !outcome.converged && !newton.failed()) {
-    outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < enough);
+  while (!done && !outcome.converged && !newton.exhausted() && std::isfinite(outcome.last_move) &&
+         (!newton.failed() || newton.startAgain())) {
+    outcome.last_move = newton.iterate(longest, outcome.iterations + 1 < settings_.iterations);
     if (outcome.iterations++ == 0) first_length = newton.directionLength();
-    if (outcome.iterations == kSatisfyConstraints && newton.satisfyConstraints()) continue;  // and on from there
-    done = outcome.iterations >= enough && newton.contracts();
+    if (outcome.iterations == kSatisfyConstraints && !newton.exhausted() && newton.satisfyConstraints())
+      continue;  // and on from there
+    done = outcome.iterations >= settings_.iterations && newton.contracts();
     outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
   }
   memory.usual_length += kUsualShare * (first_length - memory.usual_length);
-  // where the remaining move is rounding, so is an energy that does not fall
-  return outcome.converged || (!newton.failed() && (done || newton.directionLength() < kArrived * first_length));
+  const double enough = newton.failed() ? std::max(kNearlyArrived * first_length, kRoundings * newton.resolution())
+                                        : kArrived * first_length;
+  outcome.arrived = outcome.converged || done || newton.directionLength() < enough;
+  outcome.residual = newton.residual();
+  outcome.evaluations = newton.evaluations();
+  outcome.solves = newton.solves();
 }
 
 void ImplicitStepper::startFromHere(const MotionView& motion, StepperScratch& scratch) const {

@@ -17,7 +17,8 @@ struct StepSettings {
   /// 1: trapezoidal rule, conserves energy; 0: removes them in one step. [0, 1]
   double spectral_radius = 0.2;
   bool backward_euler = false;  ///< first order and strongly damping, for states far from any equilibrium
-  /// Quasi-Newton iterations of a step; it takes more, at most 12, while they do not halve what is left.
+  /// Quasi-Newton iterations of a step. It takes more while they do not halve what is left, up to a fixed number of
+  /// evaluations of the energy; what remains then is left to the next steps, which start from the true forces.
   int iterations = 3;
   double tolerance = 1e-7;  ///< a step ends earlier when no node would move farther than this [m]
   /// A factor about other positions takes over this long after they were, and is made in the background meanwhile; a
@@ -29,6 +30,11 @@ struct StepSettings {
 /// The memory of a stepper: factors, histories, vectors. One per thread of control.
 class StepperScratch;
 class QuasiNewton;
+struct TimeScheme;
+
+/// Evaluations of the energy that a step may take beyond StepSettings::iterations. Design choice: eight, so that L-BFGS
+/// with a history of six pairs shows its superlinear rate in a step that needs it.
+constexpr int kSpareEvaluations = 8;
 
 /// Backward Euler or generalised-alpha steps, and static equilibria, by quasi-Newton iterations: L-BFGS (Nocedal 1980)
 /// on top of the factor of a stiffness about an earlier state, with a line search on the energy.
@@ -47,8 +53,10 @@ class ImplicitStepper {
   /// Names the present positions as those that the factor is about, at once. Costs tens of step times.
   void refactor(const MotionView& motion, StepperMemory& memory) const;
 
-  /// One step. A step that does not find lower energy is taken again with backward Euler and more iterations, and so
-  /// are the next few. Forces of the loads are their means over the step.
+  /// One step. Its work is limited by counts: settings().iterations + kSpareEvaluations evaluations of the energy, and
+  /// at most two solves for each. A step that does not arrive ends at the best point it has found, with the mean
+  /// velocity over the step, and the next few steps take backward Euler. Forces of the loads are their means over the
+  /// step.
   StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch) const;
 
   /// The equilibrium under the loads from the positions in `motion` (velocities become 0), refactoring as it goes.
@@ -64,9 +72,9 @@ class ImplicitStepper {
   bool extrapolates(bool fallback) const;
   void guess(const MotionView& motion, bool fallback, StepperScratch& scratch) const;
   void correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome) const;
-  bool attempt(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch,
-               StepOutcome& outcome) const;
-  bool iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const;
+  void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch,
+                   StepOutcome& outcome) const;
+  void iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
   void refactorHere(const BodyLoads& loads, StepperScratch& scratch) const;
   void placeAtRest(const StepperScratch& scratch, const MotionView& motion) const;

@@ -14,41 +14,40 @@ constexpr double kRounding = 6e-8;  // half a unit in the last place of single p
 }
 
 double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gradient) {
-  const int n = body_.nodeCount();
-  float* u = scratch_.displacement.data();
-  const double* const rest = scratch_.rest.data();
-  for (int i = 0; i < 4 * n; ++i) u[i] = static_cast<float>(z[i] - rest[i]);
-  std::vector<float>& elastic = scratch_.elastic_gradient;
+  startSums(z, gradient);
+  const bool has_gas = gas_.control != GasLoad::Control::None;
+  const float* const u = scratch_.displacement.data();
+  float* const volume_gradient = scratch_.volume_gradient.data();
+  double value = 0, volume = 0;
+  for (int p = 0; p < body_.elements->pieceCount(); ++p) {
+    double part = 0;
+    value += has_gas ? body_.shell->evaluate(p, u, gradient.data(), volume_gradient, part)
+                     : body_.elements->evaluate(p, u, gradient.data());
+    volume += part;
+  }
+  elastic_ = value;
+  noise_ = 1e-6 * std::abs(value);
+  scratch_.elastic_value = value += addRareTerms(z, gradient);
+  scratch_.elastic_gradient = gradient;
   scratch_.only_first = false;
-  std::fill(elastic.begin(), elastic.end(), 0.0F);
-  double value = 0;
-  const int pieces = body_.elements->pieceCount();
-  if (gas_.control != GasLoad::Control::None) {
-    std::fill(scratch_.volume_gradient.begin(), scratch_.volume_gradient.end(), 0.0F);
-    scratch_.volume = 0;
-    for (int p = 0; p < pieces; ++p) {
-      double volume = 0;
-      value += body_.shell->evaluate(p, u, elastic.data(), scratch_.volume_gradient.data(), volume);
-      scratch_.volume += volume;
-    }
-    elastic_ = value;
-    noise_ = 1e-6 * std::abs(value);
-    scratch_.elastic_value = value += addRareTerms(z, elastic);
+  if (has_gas) {
+    scratch_.volume = volume;
     value += gasEnergy();
-    const auto p = static_cast<float>(scratch_.pressure);
-    for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] = elastic[i] - p * scratch_.volume_gradient[i];
-    for (int i = 0; i < n; ++i)
-      if (body_.fixed[i] != 0)
-        for (int k = 0; k < 3; ++k) scratch_.volume_gradient[4 * i + k] = 0;
-  } else {
-    for (int p = 0; p < pieces; ++p) value += body_.elements->evaluate(p, u, elastic.data());
-    elastic_ = value;
-    noise_ = 1e-6 * std::abs(value);
-    scratch_.elastic_value = value += addRareTerms(z, elastic);
-    gradient = elastic;
   }
   if (extra_ != nullptr) value += addExtra(z, gradient);
   return value + addSprings(z, gradient) + addBodyTerms(z, gradient);
+}
+
+// The displacements, and zeros to add to.
+void Potential::startSums(const std::vector<double>& z, std::vector<float>& gradient) {
+  const std::size_t size = z.size();
+  const double *const at = z.data(), *const rest = scratch_.rest.data();
+  float *const u = scratch_.displacement.data(), *const g = gradient.data(), *const v = scratch_.volume_gradient.data();
+  for (std::size_t i = 0; i < size; ++i) {
+    u[i] = static_cast<float>(at[i] - rest[i]);
+    g[i] = 0;
+    v[i] = 0;
+  }
 }
 
 double Potential::addExtra(const std::vector<double>& z, std::vector<float>& gradient) const {
@@ -83,25 +82,30 @@ void Potential::moveVolume(double change) {
   scratch_.pressure = gas_law_.pressure(scratch_.volume);
 }
 
-// Four lanes per node, the last of them zero, so that the compiler can use vectors of them.
+// Gas pressure, inertia and weight. Four lanes per node, the last of them zero, so that the compiler can
+// use vectors of them.
 double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient) {
-  const double* const hat = scratch_.z_hat.data();
+  const double *const hat = scratch_.z_hat.data(), *const rest = scratch_.rest.data();
+  float* const area = scratch_.volume_gradient.data();
+  const float pressure = gas_.control != GasLoad::Control::None ? static_cast<float>(scratch_.pressure) : 0.0F;
   const double pull[4] = {body_.gravity[0], body_.gravity[1], body_.gravity[2], 0};
   double twice[4] = {0, 0, 0, 0}, work[4] = {0, 0, 0, 0}, rounded[4] = {0, 0, 0, 0};
   for (int i = 0; i < body_.nodeCount(); ++i) {
-    float* const g = &gradient[4 * i];
+    float *const g = &gradient[4 * i], *const push = &area[4 * i];
     if (body_.fixed[i] != 0) {
-      for (int k = 0; k < 4; ++k) g[k] = 0;
+      for (int k = 0; k < 4; ++k) g[k] = 0, push[k] = 0;
       continue;
     }
     const double mass = body_.mass[i], spring = inertia_ * mass;
     const float* const u = &scratch_.displacement[4 * i];
     for (int k = 0; k < 4; ++k) {
-      const double away = z[4 * i + k] - hat[4 * i + k], force = spring * away, weight = mass * pull[k];
+      const double away = z[4 * i + k] - hat[4 * i + k], moved = z[4 * i + k] - rest[4 * i + k];
+      const double force = spring * away, weight = mass * pull[k];
+      const float before = g[k] - pressure * push[k];
       twice[k] += force * away;
-      work[k] += weight * u[k];
-      rounded[k] += static_cast<double>(std::abs(g[k] * u[k]));
-      g[k] += static_cast<float>(force - weight);
+      work[k] += weight * moved;
+      rounded[k] += static_cast<double>(std::abs(before * u[k]));
+      g[k] = before + static_cast<float>(force - weight);
     }
   }
   noise_ += kRounding * (rounded[0] + rounded[1] + rounded[2]);  // of the displacements, which are single precision
@@ -116,10 +120,8 @@ double Potential::addRareTerms(const std::vector<double>& z, std::vector<float>&
   for (int i = 0; i < body_.nodeCount(); ++i) {
     if (body_.fixed[i] != 0) continue;
     for (int k = 0; k < 3; ++k) {
-      const double moved = z[4 * i + k] - body_.rest[i][k];
-      const double spring = foundation ? body_.foundation[i] : 0, dead = load ? body_.load[i][k] : 0;
-      value += (0.5 * spring * moved - dead) * moved;
-      gradient[4 * i + k] += static_cast<float>(spring * moved - dead);
+      value -= body_.load[i][k] * (z[4 * i + k] - body_.rest[i][k]);
+      gradient[4 * i + k] -= static_cast<float>(body_.load[i][k]);
     }
   }
   return value;

@@ -29,6 +29,7 @@ class Potential {
   double noise() const { return noise_; }            ///< rounding error of the last value [J]
 
  private:
+  void startSums(const std::vector<double>& z, std::vector<float>& gradient);
   double gasEnergy();
   double addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient);
   double addRareTerms(const std::vector<double>& z, std::vector<float>& gradient) const;

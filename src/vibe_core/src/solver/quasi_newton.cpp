@@ -13,9 +13,17 @@ namespace {
 // Share of the linear prediction by which the energy must fall (Armijo). Nocedal, Wright 2006, Numerical Optimization,
 // section 3.1: "c1 is chosen to be quite small, say c1 = 1e-4" [1].
 constexpr double kSufficientDecrease = 1e-4;
-// Halvings of a step before it counts as failed. Design choice: a part of 2e-4 of a direction is below what a step can
-// use.
-constexpr int kMaxHalvings = 12;
+// Bounds of the next part of a direction over the one that was too long, between which it is the minimum of the
+// parabola through value, slope and trial. Nocedal, Wright 2006, section 3.5: "quadratic interpolation", safeguarded
+// [1].
+constexpr double kShortest = 0.1, kLongest = 0.5;
+// Rounding errors of a value that may hide a decrease; then the slope decides (approximate Wolfe condition: Hager,
+// Zhang 2005, doi 10.1137/030601880, equation 2.4). Design choice: the errors of many elements seldom add up to more
+// [1].
+constexpr double kRoundings = 10;
+// Trials along a direction before it counts as useless. Design choice: at the shortest, a part of 1e-4 of a direction,
+// which is below what a step can use.
+constexpr int kMaxTrials = 5;
 // Residual of the constraints over the resolution of single precision, above which it is not rounding. Design choice:
 // a row sums up to some ten nodes, each a few roundings off [1].
 constexpr double kUnmet = 100;
@@ -37,11 +45,14 @@ constexpr double kSafeRest = 0.1;
 // precision; below it the curvature has no correct digit [1].
 constexpr double kMinPairCosine = 1e-8;
 
+// Two nodes at once: eight sums in double precision, added up in a fixed order.
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
-  double sum[4] = {0, 0, 0, 0};
-  for (std::size_t i = 0; i < a.size(); i += 4)
-    for (int k = 0; k < 4; ++k) sum[k] += static_cast<double>(a[i + k]) * b[i + k];
-  return (sum[0] + sum[1]) + sum[2];
+  double sum[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+  const std::size_t even = a.size() / 8 * 8;
+  for (std::size_t i = 0; i < even; i += 8)
+    for (std::size_t k = 0; k < 8; ++k) sum[k] += static_cast<double>(a[i + k]) * static_cast<double>(b[i + k]);
+  for (std::size_t i = even; i < a.size(); ++i) sum[i - even] += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
 void addScaled(double scale, const std::vector<float>& a, std::vector<float>& to) {
@@ -56,21 +67,50 @@ double largest(const std::vector<float>& a) {
   return std::sqrt(static_cast<double>(max));
 }
 
+// The minimum of the parabola over the part that was tried.
+// @param slope   foreseen change of the value over the part; negative
+// @param change  true change
+double shortening(double slope, double change) {
+  const double bend = change - slope;
+  return bend > 0 ? std::clamp(-slope / (2 * bend), kShortest, kLongest) : kLongest;
+}
+
 }  // namespace
 
 QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch,
-                         double safe_length)
+                         double safe_length, int max_evaluations)
     : body_(body),
       potential_(potential),
       gas_(loads.gas),
       extra_(loads.extra),
       scratch_(scratch),
-      safe_length_(safe_length) {}
+      safe_length_(safe_length),
+      max_evaluations_(max_evaluations) {}
 
 void QuasiNewton::start() {
   restart();
   last_length_ = -1;
-  value_ = potential_.evaluate(scratch_.z, scratch_.gradient);
+  value_ = evaluate(scratch_.z, scratch_.gradient);
+}
+
+double QuasiNewton::evaluate(const std::vector<double>& z, std::vector<float>& gradient) {
+  ++evaluations_;
+  return potential_.evaluate(z, gradient);
+}
+
+// Without the history, which may have led astray, the direction is that of the factor.
+bool QuasiNewton::startAgain() {
+  if (scratch_.pairs == 0 || exhausted()) return false;
+  restart();
+  last_length_ = -1;
+  failed_ = false;
+  return true;
+}
+
+// A whole step that was followed by a shorter one says how the next ones go on.
+double QuasiNewton::residual() const {
+  if (failed_ || before_length_ <= 0) return direction_length_;
+  return direction_length_ * std::min(1.0, direction_length_ / before_length_);
 }
 
 // How far the rows are from their targets at z. The potential has the springs.
@@ -213,6 +253,7 @@ void QuasiNewton::findDirection() {
 // To the work vector: what follows the first loop.
 void QuasiNewton::applyInverse(const double* alpha) {
   StepperScratch& s = scratch_;
+  ++solves_;
   loadWork();
   s.factor->forward(s.half.data());
   s.schur.eliminate(s.rhs, swelling(), s.half.data());
@@ -270,37 +311,51 @@ double QuasiNewton::iterate(double max, bool verify) {
 }
 
 double QuasiNewton::advance(double max, bool verify) {
-  StepperScratch& s = scratch_;
-  double part = direction_length_ > max ? max / direction_length_ : 1;
-  if (first_length_ == 0) first_length_ = direction_length_;
-  const bool shrinks = last_length_ > 0 && direction_length_ < kSafeContraction * last_length_ &&
-                       direction_length_ < kSafeRest * first_length_;
-  contracts_ = part == 1 && (shrinks || direction_length_ < safe_length_);
-  const bool safe = !verify && contracts_;
+  const double part = direction_length_ > max ? max / direction_length_ : 1;
+  const bool begins = first_length_ == 0;
+  if (begins) first_length_ = direction_length_;
+  const bool shrinks = last_length_ > 0 && direction_length_ < kSafeContraction * last_length_;
+  const bool is_short = direction_length_ < safe_length_ && (shrinks || begins);
+  contracts_ = part == 1 && (is_short || (shrinks && direction_length_ < kSafeRest * first_length_));
+  before_length_ = last_length_;
   last_length_ = -1;  // only a whole step says how fast the next ones shrink
-  if (safe) {
-    setTrial(1);
-    s.z.swap(s.trial);
-    if (gas_.control != GasLoad::Control::None) potential_.moveVolume(dot(s.volume_gradient, s.direction));
-    return direction_length_;
-  }
+  if (verify || !contracts_) return search(part);
+  takeUnseen();
+  return direction_length_;
+}
+
+// The whole direction, without an evaluation at its end.
+void QuasiNewton::takeUnseen() {
+  StepperScratch& s = scratch_;
+  setTrial(1);
+  s.z.swap(s.trial);
+  if (gas_.control != GasLoad::Control::None) potential_.moveVolume(dot(s.volume_gradient, s.direction));
+}
+
+double QuasiNewton::slopeAtTrial() const {
+  return dot(scratch_.trial_gradient, scratch_.direction) - lagrangian(0);
+}
+
+// As much of the direction as lowers the energy.
+double QuasiNewton::search(double part) {
+  StepperScratch& s = scratch_;
   const double prescribed = gas_.control == GasLoad::Control::Volume ? s.schur.gasForce() : 0;
   const double old_pressure = gas_.pressure;
-  const double from = value_ + lagrangian(0);
+  const double from = value_ + lagrangian(0), slope = slope_ - lagrangian(0);
   double to = value_;
-  for (int halving = 0;; ++halving) {
+  for (int trial = 1;; ++trial) {
     setTrial(part);
     if (prescribed != 0) gas_.pressure = old_pressure + part * prescribed;
-    to = potential_.evaluate(s.trial, s.trial_gradient);
+    to = evaluate(s.trial, s.trial_gradient);
     if (prescribed != 0) break;  // the volume is held: no energy to compare
-    const double slope = slope_ - lagrangian(0);
-    const double decrease = to + lagrangian(part) - from;
-    if (std::isfinite(to) && decrease <= kSufficientDecrease * part * slope + potential_.noise()) break;
-    if (halving == kMaxHalvings) {
+    const double change = to + lagrangian(part) - from;
+    if (std::isfinite(to) && change <= kSufficientDecrease * part * slope + potential_.noise()) break;
+    if (change <= kRoundings * potential_.noise() && slopeAtTrial() <= (2 * kSufficientDecrease - 1) * slope) break;
+    if (trial == kMaxTrials || exhausted()) {
       failed_ = true;
       return 0;
     }
-    part *= std::isfinite(to) ? 0.5 : 0.1;
+    part *= std::isfinite(to) ? shortening(part * slope, change) : kShortest;
   }
   // a pair in which the rows move would move them again
   if (residual_ <= kSmallResidual * direction_length_) keepPair(part);

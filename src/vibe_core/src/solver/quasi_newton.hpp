@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "solver/potential.hpp"
 
 namespace vibe {
@@ -7,9 +9,10 @@ namespace vibe {
 /// Iterations of L-BFGS on top of the scratch's factor towards the minimum of a potential under the scratch's rows.
 class QuasiNewton {
  public:
-  /// @param safe_length  a last move shorter than this is not verified [m]
+  /// @param safe_length      a last move shorter than this is not verified [m]
+  /// @param max_evaluations  of the potential, after which it is exhausted
   QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch,
-              double safe_length = 0);
+              double safe_length = 0, int max_evaluations = std::numeric_limits<int>::max());
 
   /// Evaluates at the scratch's z.
   void start();
@@ -32,10 +35,18 @@ class QuasiNewton {
   double value() const { return value_; }
   /// Rounding error of the displacements, which are single precision [m].
   double resolution() const;
-  /// The last iterate moved less than half of the one before and a tenth of the first, or a safe length.
+  /// The last direction is less than half of the one before (if any), and a tenth of the first or a safe length.
   bool contracts() const { return contracts_; }
   /// The last iterate found no lower energy along its direction, and did not move.
   bool failed() const { return failed_; }
+  /// After a failure: forgets the history, if there is any, so that the next iterate takes another direction.
+  bool startAgain();
+  bool exhausted() const { return evaluations_ >= max_evaluations_; }
+  int evaluations() const { return evaluations_; }
+  int solves() const { return solves_; }
+  /// How far the next iterate would move a node: the last direction times the rate at which directions shrink, or the
+  /// last direction where no rate is known [m].
+  double residual() const;
 
  private:
   void findDirection();
@@ -48,7 +59,11 @@ class QuasiNewton {
   double rowResiduals() const;
   void addRowForces(double sign, std::vector<float>& vector) const;
   double lagrangian(double value) const;
+  double evaluate(const std::vector<double>& z, std::vector<float>& gradient);
   double advance(double max, bool verify);
+  void takeUnseen();
+  double slopeAtTrial() const;
+  double search(double part);
   void keepPair(double part);
   void setTrial(double part);
 
@@ -58,9 +73,11 @@ class QuasiNewton {
   const EnergyTerm* extra_;
   StepperScratch& scratch_;
   double safe_length_;
+  int max_evaluations_;
+  int evaluations_ = 0, solves_ = 0;
   double value_ = 0;
   GasLaw::Piece gas_piece_ = GasLaw::Piece::Kept;
-  double direction_length_ = 0, last_length_ = -1;
+  double direction_length_ = 0, last_length_ = -1, before_length_ = -1;
   double slope_ = 0;
   double first_length_ = 0;
   bool threads_have_slid_ = false;

@@ -25,9 +25,9 @@ struct Sums {
 };
 
 // Moves one coordinate of the nodes.
-void moveAxis(const ElasticBody& body, const TimeScheme& scheme, int k, const MotionView& motion,
+void moveAxis(const ElasticBody& body, const TimeScheme& scheme, int k, const MotionView& motion, bool mean_velocity,
               StepperScratch& scratch, Sums& sums) {
-  const double per_gain = 1 / scheme.z_gain;
+  const double per_gain = 1 / scheme.z_gain, per_step = 1 / scheme.h;
   double *const x = motion.x[k], *const v = motion.v[k], *const a = motion.a[k];
   const double* const z = scratch.z.data() + k;
   const double* const rest = scratch.rest.data() + k;
@@ -43,15 +43,16 @@ void moveAxis(const ElasticBody& body, const TimeScheme& scheme, int k, const Mo
     sums.move2 += d * d;
     sums.inertia += mass * ((1 - scheme.alpha_m) * end + scheme.alpha_m * a[i]) * d;
     sums.damping += mass * (speed + scheme.alpha_f * (v[i] - speed)) * d;
-    sums.kinetic += 0.5 * mass * (speed * speed - v[i] * v[i]);
+    const double stored = mean_velocity ? d * per_step : speed;
+    sums.kinetic += 0.5 * mass * (stored * stored - v[i] * v[i]);
     sums.weight += mass * body.gravity[k] * d;
     sums.to_z += (z[4 * i] - x[i]) * d;
     sums.to_first += (first[4 * i] - from) * d;
     sums.to_last += (last[4 * i] - from) * d;
     move[4 * i] = d;
     x[i] = to;
-    v[i] = speed;
-    a[i] = end;
+    v[i] = stored;
+    a[i] = mean_velocity ? 0 : end;
   }
 }
 
@@ -122,9 +123,9 @@ double workOfRows(StepperScratch& scratch, BodyLoads& loads) {
 }  // namespace
 
 StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const MotionView& motion, BodyLoads& loads,
-                      StepperScratch& scratch) {
+                      bool mean_velocity, StepperScratch& scratch) {
   Sums s;
-  for (int k = 0; k < 3; ++k) moveAxis(body, scheme, k, motion, scratch, s);
+  for (int k = 0; k < 3; ++k) moveAxis(body, scheme, k, motion, mean_velocity, scratch, s);
   StepWork work;
   const double rows = workOfRows(scratch, loads);
   if (!(s.move2 > 0)) return work;

@@ -63,6 +63,13 @@ inline xsimd::batch<T, A> mulAdd(const xsimd::batch<T, A>& a, const xsimd::batch
                                  const xsimd::batch<T, A>& c) {
   return xsimd::fma(a, b, c);
 }
+#ifdef __AVX512F__
+// xsimd 8 has no fused operations for AVX-512
+using WidePack = xsimd::batch<float, xsimd::avx512bw>;
+inline WidePack mulAdd(const WidePack& a, const WidePack& b, const WidePack& c) {
+  return _mm512_fmadd_ps(a, b, c);
+}
+#endif
 
 template <class B>
 inline B larger(const B& a, const B& b) {

@@ -48,7 +48,11 @@ struct ShellKernel {
   ShellSweepFunction fibres;  ///< contribution of fibres to the above, without the volume
 };
 ShellKernel shellKernelSse2();
-ShellKernel shellKernelAvx2();  ///< AVX2, FMA; call its function only on a machine that has both
+ShellKernel shellKernelAvx2();    ///< AVX2, FMA; call its functions only on a machine that has both
+ShellKernel shellKernelAvx512();  ///< the bits of AVX2; call its functions only where haveAvx512()
+
+/// This machine has AVX2, FMA and the parts F, VL, BW and DQ of AVX-512.
+bool haveAvx512();
 
 /// The widest path that this machine supports.
 ShellKernel chooseShellKernel();

@@ -29,27 +29,34 @@ struct ShellKernelOf {
     for (int a = 0; a < 5; ++a) Lanes::add(s.gradient4, offset[a + 1].lane + lane, f[a]);
   }
 
+  /// @param terms  made from the sweep
+  template <Law law, bool ghosts, bool volume, class Sum>
+  [[gnu::always_inline]] static void sweepBatch(ShellSweep& s, const WallTerms<Pack>& terms, int batch,
+                                                const TetReals* rows, Sum& energy, Sum& enclosed) {
+    for (int lane = 0; lane < kTetLanes; lane += kWidth) {
+      const TetOffsets* offset = s.node + batch * 6;
+      const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
+      Pack u1[3], u[5][3], f[5][3];
+      gather(s, offset, lane, u1, u);
+      if constexpr (ghosts) placeGhosts(rest, u);
+      energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps>(terms, rest, u, f));
+      if constexpr (ghosts) returnGhosts(rest, f);
+      scatter(s, offset, lane, f);
+      if constexpr (volume) {
+        Pack share[3];
+        enclosed.add(coneVolume(rest, u, u1, share));
+        for (int a = 0; a < 3; ++a) Lanes::add(s.volume_gradient4, offset[a].lane + lane, share);
+      }
+    }
+  }
+
   template <Law law, bool ghosts, bool volume>
   static double sweepAll(ShellSweep& s) {
     const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
     typename Lanes::Sum energy, enclosed;
     const TetReals* rows = s.rest;
     for (int batch = s.first; batch < s.last; ++batch, rows += ghosts ? kShellGhostRows : kShellRows)
-      for (int lane = 0; lane < kTetLanes; lane += kWidth) {
-        const TetOffsets* offset = s.node + batch * 6;
-        const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
-        Pack u1[3], u[5][3], f[5][3];
-        gather(s, offset, lane, u1, u);
-        if constexpr (ghosts) placeGhosts(rest, u);
-        energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps>(terms, rest, u, f));
-        if constexpr (ghosts) returnGhosts(rest, f);
-        scatter(s, offset, lane, f);
-        if constexpr (volume) {
-          Pack share[3];
-          enclosed.add(coneVolume(rest, u, u1, share));
-          for (int a = 0; a < 3; ++a) Lanes::add(s.volume_gradient4, offset[a].lane + lane, share);
-        }
-      }
+      sweepBatch<law, ghosts, volume>(s, terms, batch, rows, energy, enclosed);
     if constexpr (volume) s.volume += enclosed.total();
     return energy.total();
   }

@@ -105,6 +105,21 @@ inline bool allOf(const xsimd::batch_bool<float, A>& condition) {
   return xsimd::all(condition);
 }
 
+/// The next iterate of lanes that are still iterated.
+template <class B, class Mask>
+[[gnu::always_inline]] inline B unlessFinished(const Mask& /*plain*/, const B& /*now*/, const B& next) {
+  return next;
+}
+#ifdef __AVX512F__
+/// Wide packs hold two packs of the AVX2 path, each of which stays where it is once all its lanes have converged.
+template <class Mask>
+[[gnu::always_inline]] inline WidePack unlessFinished(const Mask& plain, const WidePack& now, const WidePack& next) {
+  const unsigned lanes = static_cast<__mmask16>(plain);
+  const unsigned finished = ((lanes & 0xffU) == 0xffU ? 0xffU : 0U) | ((lanes & 0xff00U) == 0xff00U ? 0xff00U : 0U);
+  return _mm512_mask_mov_ps(next, static_cast<__mmask16>(finished), now);
+}
+#endif
+
 /// The laws P(K) + lambda/2 (ln J)^2 are solved for L = 2 ln J within these bounds of D and |L|. There single precision
 /// does not overflow, and J is above kLogStart.
 constexpr double kPlainAreaLow = 0.1, kPlainAreaHigh = 1e6, kPlainLog = 1.5;
@@ -193,7 +208,8 @@ template <Law law, int Steps, class B, class Mask>
   LogPoint<B> at;
   B h, slope, curve;
   for (int step = 0; step < Steps; ++step) {
-    if (step > 0) log = larger(smaller(B(log + z), constant<B>(kPlainLog)), constant<B>(-kPlainLog));
+    if (step > 0)
+      log = unlessFinished(plain, log, B(larger(smaller(B(log + z), constant<B>(kPlainLog)), constant<B>(-kPlainLog))));
     at = logPoint<law>(terms, m, log, expGap(log));
     h = at.residual(), slope = at.slope(terms.quarter_bulk);
     const B inverse = one / slope, thick = at.p.first * at.c, linear = -h * inverse;

@@ -22,6 +22,11 @@ inline xsimd::batch<T, A> minusMul(const xsimd::batch<T, A>& a, const xsimd::bat
                                    const xsimd::batch<T, A>& c) {
   return xsimd::fnma(a, b, c);
 }
+#ifdef __AVX512F__
+inline WidePack minusMul(const WidePack& a, const WidePack& b, const WidePack& c) {
+  return _mm512_fnmadd_ps(a, b, c);
+}
+#endif
 
 /// a b - c d
 template <class B>

@@ -354,6 +354,8 @@ class TopicsTest(unittest.TestCase):
         self.assertEqual(message.particle_count, 300)
         self.assertEqual(message.active_count, 300)
         self.assertEqual(message.missed_deadlines, 0)
+        self.assertEqual(message.unfinished_steps, 0)
+        self.assertLess(message.residual, 1e-3)
         self.assertGreater(message.window, 0.9)
         self.assertLess(message.window, 3)
         self.assertEqual(len(message.state_hash), 16)

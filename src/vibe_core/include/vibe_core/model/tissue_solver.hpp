@@ -24,9 +24,12 @@ struct StepReport {
   std::array<double, kScopeJointCount> hand_effort{};     ///< of the hand on the joints, mean over the step [N], [N m]
   int contact_count = 0;                                  ///< maximum number of particles touched at once
   int iterations = 0;                                     ///< of an implicit solver
-  bool fallback = false;                                  ///< the step needed backward Euler and more iterations
-  bool put_back = false;                                  ///< the state was not usable; its recovery to rest began
-  int speed_limited = 0;                                  ///< how often the speed of a particle was limited
+  int evaluations = 0;                                    ///< of the elastic energy, by an implicit solver
+  double residual = 0;                                    ///< farthest a further iteration would move a node [m]
+  bool arrived = true;    ///< false: the limit of work left much of the step to the next
+  bool fallback = false;  ///< backward Euler, because one of the last did not arrive
+  bool put_back = false;  ///< the state was not usable; its recovery to rest began
+  int speed_limited = 0;  ///< how often the speed of a particle was limited
 };
 
 /// Scratch memory of a solver; carries nothing from one step to the next.

@@ -50,7 +50,7 @@ struct TissueScene {
   std::optional<FibreScene> fibres;                           ///< of model shell
   double mass_damping = 30;                                   ///< Rayleigh damping, mass part [1/s]
   double stiffness_damping = 15e-6;  ///< Rayleigh damping, stiffness part; damps short waves [s]
-  int iterations = 4;                ///< quasi-Newton iterations per step, of model shell
+  int iterations = 2;                ///< quasi-Newton iterations per step, of model shell
   double spectral_radius = 0.2;      ///< generalised-alpha, of model shell [1]
   bool self_contact = false;         ///< contact between walls that are pulled together, of model shell
   int substeps = 0;  ///< substeps per step, of model shape_matching; 0: the fewest that are stable, see Model

@@ -1,0 +1,85 @@
+// The work of a step is limited by counts. What a step leaves over is seen again by the next, and shrinks.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "solver/implicit_worlds.hpp"
+
+namespace vibe {
+namespace {
+
+using namespace test;
+
+constexpr int kIterations = 2;
+constexpr int kFrames = 240;
+
+std::unique_ptr<Body> disturbedBeam(double amount) {
+  ElasticBody body = cantilever({8, 2, 2});
+  body.mass_damping = 30;
+  StepSettings settings;
+  settings.iterations = kIterations;
+  auto run = std::make_unique<Body>(body, settings);
+  const Eigen::VectorXd moved = randomDisplacement(run->nodes(), amount * kSide);
+  for (int i = 0; i < run->nodes(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (body.fixed[i] == 0) run->motion.x[k][i] += moved[3 * i + k];
+  return run;
+}
+
+double farthestFromRest(const Body& run) {
+  double max = 0;
+  for (int i = 0; i < run.nodes(); ++i) max = std::max(max, (run.position(i) - run.stepper.body().rest[i]).norm());
+  return max;
+}
+
+// Turned inside out in many places: the factor at rest is useless there.
+TEST(BoundedStep, EveryStepOfATangledBeamTakesLimitedWorkAndItsResidualShrinks) {
+  const std::unique_ptr<Body> beam = disturbedBeam(0.7);
+  Body& run = *beam;
+  std::vector<double> residual;
+  int most = 0, unfinished = 0;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const StepOutcome outcome = run.step();
+    ASSERT_TRUE(outcome.finite);
+    ASSERT_LE(outcome.evaluations, kIterations + kSpareEvaluations) << frame;
+    ASSERT_LE(outcome.solves, outcome.evaluations) << frame;
+    most = std::max(most, outcome.evaluations);
+    unfinished += outcome.arrived ? 0 : 1;
+    residual.push_back(outcome.residual);
+  }
+  EXPECT_EQ(most, kIterations + kSpareEvaluations) << "negative control: no step needed the limit";
+  EXPECT_GT(unfinished, 0) << "negative control: every step arrived";
+  const auto largest = [&](int from, int to) {
+    return *std::max_element(residual.begin() + from, residual.begin() + to);
+  };
+  EXPECT_GT(largest(0, 10), 1e-4);
+  EXPECT_LT(largest(60, 120), 0.1 * largest(0, 10));
+  EXPECT_LT(largest(180, 240), 1e-6);
+  EXPECT_LT(farthestFromRest(run), 1e-5);
+}
+
+TEST(BoundedStep, AStepThatDoesNotArriveIsFollowedByBackwardEuler) {
+  const std::unique_ptr<Body> beam = disturbedBeam(0.7);
+  Body& run = *beam;
+  StepOutcome outcome = run.step();
+  for (int frame = 1; frame < kFrames && outcome.arrived; ++frame) outcome = run.step();
+  ASSERT_FALSE(outcome.arrived);
+  EXPECT_FALSE(outcome.fallback) << "the scheme of a step is chosen before it";
+  for (int i = 0; i < run.nodes(); ++i)
+    for (const auto& a : run.motion.a) ASSERT_EQ(a[i], 0);
+  EXPECT_TRUE(run.step().fallback);
+}
+
+// In a smooth motion the limit plays no part.
+TEST(BoundedStep, ASmallDisturbanceTakesTheUsualWork) {
+  const std::unique_ptr<Body> beam = disturbedBeam(0.01);
+  Body& run = *beam;
+  for (int frame = 0; frame < 30; ++frame) {
+    const StepOutcome outcome = run.step();
+    ASSERT_TRUE(outcome.arrived);
+    ASSERT_LE(outcome.evaluations, 2 * kIterations + 2) << frame;
+  }
+}
+
+}  // namespace
+}  // namespace vibe
