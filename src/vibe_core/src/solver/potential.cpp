@@ -119,9 +119,11 @@ double Potential::addRareTerms(const std::vector<double>& z, std::vector<float>&
   double value = 0;
   for (int i = 0; i < body_.nodeCount(); ++i) {
     if (body_.fixed[i] != 0) continue;
+    const double spring = foundation ? body_.foundation[i] : 0;
     for (int k = 0; k < 3; ++k) {
-      value -= body_.load[i][k] * (z[4 * i + k] - body_.rest[i][k]);
-      gradient[4 * i + k] -= static_cast<float>(body_.load[i][k]);
+      const double moved = z[4 * i + k] - body_.rest[i][k], pull = load ? body_.load[i][k] : 0;
+      value += (0.5 * spring * moved - pull) * moved;
+      gradient[4 * i + k] += static_cast<float>(spring * moved - pull);
     }
   }
   return value;
