@@ -56,6 +56,7 @@ struct SegmentRows {
   double turn_compliance = 0;  ///< [m/N]
   /// Of the part of their stiffness that the factor does not have; 0: it has enough of it [m/N].
   double turn_missing = 0;
+  double spare = 0;    ///< thread that may slide out of it [m]
   double capstan = 1;  ///< largest ratio of the tensions of this segment and the next [1]
 };
 

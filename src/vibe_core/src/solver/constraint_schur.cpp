@@ -110,6 +110,8 @@ void ConstraintSchur::addThread(const ThreadRows& rows) {
   for (int k = 0; k < thread.count; ++k) inequalities_.push_back(rows.pullRow(k));
   thread.capstan.resize(thread.count - 1);
   for (int k = 0; k + 1 < thread.count; ++k) thread.capstan[k] = rows.segments[k].capstan;
+  thread.spare.resize(thread.count);
+  for (int k = 0; k < thread.count; ++k) thread.spare[k] = rows.segments[k].spare;
   thread.slide.tension.setZero(thread.count);
   thread.slide.slide.setZero(thread.count - 1);
 }
@@ -230,7 +232,7 @@ double ConstraintSchur::slideThread(Thread& thread) {
     thread_residual_[k] = residual;
     for (int j = 0; j < thread.count; ++j) thread_compliance_(k, j) = contacts_.compliance(i, thread.first + j);
   }
-  vibe::slideThread(thread_residual_, thread_compliance_, thread.capstan, thread.slide);
+  limited_slide_.solve(thread_residual_, thread_compliance_, thread.capstan, thread.spare, thread.slide);
   double moved = 0;
   for (int k = 0; k < thread.count; ++k) {
     double& force = contact_force_[thread.first + k];

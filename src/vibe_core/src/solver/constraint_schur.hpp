@@ -10,7 +10,7 @@
 #include "solver/contact_problem.hpp"
 #include "solver/half_rows.hpp"
 #include "sparse/factor.hpp"
-#include "suture/capstan.hpp"
+#include "suture/limited_slide.hpp"
 
 namespace vibe {
 
@@ -60,7 +60,7 @@ class ConstraintSchur {
   };
   struct Thread {
     int first = 0, count = 0;  // of inequalities_
-    Eigen::VectorXd capstan;
+    Eigen::VectorXd capstan, spare;
     ThreadSlide slide;
   };
   void addRow(const LinearForm& form, double compliance, const Factor& factor);
@@ -87,6 +87,7 @@ class ConstraintSchur {
   std::vector<int> idle_;          // row numbers of contacts beyond the budget
   std::vector<Contact> contact_list_;
   ContactProblem contacts_;  // of inequalities_
+  LimitedSlide limited_slide_;
   std::vector<Thread> threads_;
   int thread_count_ = 0;
   bool threads_held_ = false;

@@ -30,9 +30,11 @@ constexpr double kUnmet = 100;
 // Residual of the rows over the length of the direction, below which the rows hardly move. Design choice: a pair of the
 // history with larger row moves would repeat them in later directions [1].
 constexpr double kSmallResidual = 1e-4;
-// The same for threads: their rows may move by this part of a residual, because a thread is elastic. Design choice:
-// with kSmallResidual the rows of threads may move by a third of a direction [1].
-constexpr double kThreadShare = 3e-4;
+// The same over the resolution of single precision, in which the solution with all forces of the rows is stored. Design
+// choice: a row sums up to some ten nodes [1].
+constexpr double kRowRoundings = 10;
+// The same as kSmallResidual for threads, which are elastic. Design choice [1].
+constexpr double kThreadShare = 1.0 / 3;
 // Part of the foreseen slide of a thread that is taken in a step. Design choice: the factor does not contain
 // self-contact, which resists the slide where walls touch; with half of it the slide does not overshoot [1].
 constexpr double kSlidePart = 0.5;
@@ -120,19 +122,20 @@ void QuasiNewton::rowResidual() {
       [this](int row, const LinearForm& form) { scratch_.rhs[row] = scratch_.target[row] - form.value(scratch_.z); });
 }
 
-// How far the rows that hold move. Contacts that open or slip and slack threads may move freely.
-double QuasiNewton::rowResiduals() const {
+// Whether the rows that hold stay where they are, but for rounding. Contacts that open or slip and slack threads may
+// move freely.
+bool QuasiNewton::rowsStay() const {
   const Eigen::VectorXd &moves = scratch_.schur.moves(), &forces = scratch_.schur.forces();
+  const double rounding = kRowRoundings * resolution();
+  const double limit = std::max(kSmallResidual * direction_length_, rounding);
   const int contacts_end = scratch_.rows.contactRow(scratch_.rows.contacts.size());
-  double max = 0;
   for (int row = 0; row < contacts_end; ++row)
-    if (scratch_.schur.holds(row)) max = std::max(max, std::abs(moves[row]));
+    if (scratch_.schur.holds(row) && std::abs(moves[row]) > limit) return false;
+  const double of_thread = std::max(kThreadShare * direction_length_, rounding);
   for (const ThreadRows& thread : scratch_.rows.threads)
-    for (int k = 0; k < thread.count(); ++k) {
-      const int row = thread.pullRow(k);
-      if (forces[row] > 0) max = std::max(max, kThreadShare * std::abs(moves[row]));
-    }
-  return max;
+    for (int k = 0; k < thread.count(); ++k)
+      if (forces[thread.pullRow(k)] > 0 && std::abs(moves[thread.pullRow(k)]) > of_thread) return false;
+  return true;
 }
 
 // By the move of least energy of the factor, whatever the true energy: what a tool holds goes where the tool goes. The
@@ -257,7 +260,6 @@ void QuasiNewton::applyInverse(const double* alpha) {
   loadWork();
   s.factor->forward(s.half.data());
   s.schur.eliminate(s.rhs, swelling(), s.half.data());
-  residual_ = rowResiduals();
   slideThreads();
   s.factor->backward(s.half.data());
   s.factor->store(s.half.data(), s.direction.data());
@@ -358,7 +360,7 @@ double QuasiNewton::search(double part) {
     part *= std::isfinite(to) ? shortening(part * slope, change) : kShortest;
   }
   // a pair in which the rows move would move them again
-  if (residual_ <= kSmallResidual * direction_length_) keepPair(part);
+  if (rowsStay()) keepPair(part);
   if (part == 1) last_length_ = direction_length_;
   value_ = to;
   s.gradient.swap(s.trial_gradient);

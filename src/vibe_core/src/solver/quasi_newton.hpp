@@ -56,7 +56,7 @@ class QuasiNewton {
   void applyInverse(const double* alpha);
   void rowResidual();
   void slideThreads();
-  double rowResiduals() const;
+  bool rowsStay() const;
   void addRowForces(double sign, std::vector<float>& vector) const;
   double lagrangian(double value) const;
   double evaluate(const std::vector<double>& z, std::vector<float>& gradient);
@@ -82,7 +82,6 @@ class QuasiNewton {
   double first_length_ = 0;
   bool threads_have_slid_ = false;
   bool failed_ = false, contracts_ = false;
-  double residual_ = 0;  // of the rows, largest [m]
 };
 
 }  // namespace vibe

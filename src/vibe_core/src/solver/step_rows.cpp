@@ -42,6 +42,7 @@ void setSegment(const BodyLoads& loads, const ThreadLoad& thread, int k, const E
   segment.along = segmentDirection(between);
   segment.compliance = std::max(thread.length[k], kMinThread) / thread.stiffness;
   runBetween(loads, first, segment.along, segment.pull);
+  segment.spare = std::max(0.0, thread.length[k] - kMinThread);
   const Eigen::Vector3d across = segment.along.unitOrthogonal();
   segment.across = {across, segment.along.cross(across)};
   segment.turn_compliance = segment.turn_missing = turnCompliance(between.norm(), thread.tension[k]);
@@ -118,6 +119,7 @@ double stepTarget(const LinearForm& form, double target, const MotionView& motio
 
 void scaleSegment(double gain, SegmentRows& segment) {
   segment.compliance *= gain;
+  segment.spare *= gain;
   segment.turn_compliance *= gain;
   segment.turn_missing *= gain;
 }
