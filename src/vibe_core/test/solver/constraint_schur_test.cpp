@@ -202,6 +202,7 @@ struct ThreeBites {
           segment.pull.coefficient.emplace_back((end == 0 ? 1 : -1) * points[k + end].weight[i] * along[k]);
         }
       segment.turn = {segment.pull, segment.pull};
+      segment.spare = 100;
     }
     rows.number();
     system.schur.setRows(rows, *system.factor, system.columns);
