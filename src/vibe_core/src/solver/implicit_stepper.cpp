@@ -221,13 +221,14 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
   scratch.keepFirst();
   scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
   newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
-  iterate(newton, memory, outcome);
+  iterate(newton, scratch, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
   scratch.gas_stiffness = potential.gas().stiffness(scratch.volume);
 }
 
 // Iterations go on until they contract: otherwise stiff motions would grow from step to step.
-void ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const {
+void ImplicitStepper::iterate(QuasiNewton& newton, const StepperScratch& scratch, StepperMemory& memory,
+                              StepOutcome& outcome) const {
   const double longest = outcome.fallback ? kFallbackMaxMove * plan_->size : std::numeric_limits<double>::max();
   double first_length = 0;
   bool done = false;
@@ -244,7 +245,7 @@ void ImplicitStepper::iterate(QuasiNewton& newton, StepperMemory& memory, StepOu
   const double enough = newton.failed() ? std::max(kNearlyArrived * first_length, kRoundings * newton.resolution())
                                         : kArrived * first_length;
   outcome.arrived = outcome.converged || done || newton.directionLength() < enough;
-  outcome.residual = newton.residual();
+  outcome.residual = std::max(newton.residual(), scratch.schur.violation());
   outcome.evaluations = newton.evaluations();
   outcome.solves = newton.solves();
 }

@@ -74,7 +74,7 @@ class ImplicitStepper {
   void correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome) const;
   void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch,
                    StepOutcome& outcome) const;
-  void iterate(QuasiNewton& newton, StepperMemory& memory, StepOutcome& outcome) const;
+  void iterate(QuasiNewton& newton, const StepperScratch& scratch, StepperMemory& memory, StepOutcome& outcome) const;
   void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
   void refactorHere(const BodyLoads& loads, StepperScratch& scratch) const;
   void placeAtRest(const StepperScratch& scratch, const MotionView& motion) const;

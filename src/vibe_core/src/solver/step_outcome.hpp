@@ -30,11 +30,11 @@ struct StepOutcome {
   bool converged = false;    ///< last_move is below the tolerance
   bool fallback = false;     ///< the step was taken with backward Euler because one of the last did not arrive
   bool arrived = true;       ///< false: the step ended because its work is limited; the next steps go on
-  double residual = 0;       ///< how far the next iteration would have moved a node [m]
-  int evaluations = 0;       ///< of the energy and its gradient
-  int solves = 0;            ///< with the factor
-  bool finite = true;        ///< false: the state is not usable
-  StepWork work;             ///< of a step
+  double residual = 0;  ///< how far the next iteration would have moved a node, or a contact or thread is violated [m]
+  int evaluations = 0;  ///< of the energy and its gradient
+  int solves = 0;       ///< with the factor
+  bool finite = true;   ///< false: the state is not usable
+  StepWork work;        ///< of a step
 };
 
 }  // namespace vibe

@@ -25,7 +25,7 @@ struct StepReport {
   int contact_count = 0;                                  ///< maximum number of particles touched at once
   int iterations = 0;                                     ///< of an implicit solver
   int evaluations = 0;                                    ///< of the elastic energy, by an implicit solver
-  double residual = 0;                                    ///< farthest a further iteration would move a node [m]
+  double residual = 0;                                    ///< of a further iteration, or of contacts and threads [m]
   bool arrived = true;    ///< false: the limit of work left much of the step to the next
   bool fallback = false;  ///< backward Euler, because one of the last did not arrive
   bool put_back = false;  ///< the state was not usable; its recovery to rest began
