@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace vibe {
@@ -14,7 +14,14 @@ constexpr int kLargestGraph = 64;  // triangles of a part that may count as free
                                    // wide as the part of the surface that counts as one wall
 constexpr float kLeastHeight = 0.1F;  // smallest cosine between normals and the direction without overhangs
 
+constexpr float kRounding = 2.4e-7F;  // of a position in single precision, twice over [1]
+
+using Box = SelfContactTree::Box;
 using Directions = SelfContactTree::Directions;
+
+Box join(const Box& a, const Box& b) {
+  return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
+}
 
 Directions join(const Directions& a, const Directions& b) {
   return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high), std::max(a.turn, b.turn)};
@@ -22,7 +29,8 @@ Directions join(const Directions& a, const Directions& b) {
 
 }  // namespace
 
-SelfContactTree::SelfContactTree(const SurfaceMesh& rest) : triangles_(rest.triangles) {
+SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles& rings)
+    : triangles_(rest.triangles), rings_(rings) {
   order_.resize(triangles_.size());
   std::iota(order_.begin(), order_.end(), 0);
   std::vector<Eigen::Vector3d> centre;
@@ -30,14 +38,17 @@ SelfContactTree::SelfContactTree(const SurfaceMesh& rest) : triangles_(rest.tria
     centre.push_back((rest.vertices[t[0]] + rest.vertices[t[1]] + rest.vertices[t[2]]) / 3);
   if (!triangles_.empty()) build(0, static_cast<int>(order_.size()), centre);
   box_.resize(triangles_.size());
-  directions_.resize(triangles_.size());
-  ring_directions_.resize(rest.vertices.size());
+  own_.resize(triangles_.size());
+  around_.resize(triangles_.size());
+  changed_.resize(triangles_.size());
+  ring_.resize(rest.vertices.size());
 }
 
 // Halves at the median along the longest extent.
 int SelfContactTree::build(int first, int count, const std::vector<Eigen::Vector3d>& centre) {
   const int index = static_cast<int>(nodes_.size());
-  nodes_.push_back({{}, {}, first, count, 0, 0, 0});
+  limits_.emplace_back();
+  nodes_.push_back({{}, {}, {}, first, count, 0, 0});
   listVertices(nodes_[index]);
   if (count <= kLeaf) return index;
   Eigen::Vector3d low = centre[order_[first]], high = low;
@@ -52,7 +63,7 @@ int SelfContactTree::build(int first, int count, const std::vector<Eigen::Vector
   });
   build(first, count / 2, centre);
   const int right = build(first + count / 2, count - count / 2, centre);
-  nodes_[index].right = right;
+  limits_[index].right = right;
   return index;
 }
 
@@ -85,86 +96,105 @@ bool SelfContactTree::isConnected(const Node& node) const {
   return count == node.count;
 }
 
-void SelfContactTree::enclose(const std::vector<Eigen::Vector3d>& start, const std::vector<Eigen::Vector3d>& end,
-                              double margin, double slack, bool rings) {
+void SelfContactTree::adapt(const SelfContactBounds& bounds, bool all) {
+  forgetChanges();
+  if (all) {
+    std::fill(changed_.begin(), changed_.end(), char{kEverything});
+  } else {
+    for (const int v : bounds.moved()) rings_.visit(v, [this](int t) { changed_[t] |= kBox; });
+    for (const int t : bounds.turned()) changed_[t] |= kOwn;
+  }
   for (std::size_t t = 0; t < triangles_.size(); ++t)
-    encloseTriangle(static_cast<int>(t), start, end, margin + slack, slack);
-  if (rings) spreadOverRings();
+    if (changed_[t] != 0) encloseTriangle(static_cast<int>(t), bounds);
+  spread(bounds, all);
+  joinChildren();
+}
+
+void SelfContactTree::forgetChanges() {
+  std::fill(changed_.begin(), changed_.end(), char{0});
+  for (std::size_t n = 0; n < limits_.size(); ++n) {
+    if (limits_[n].changed != 0) nodes_[n].before = nodes_[n].own;
+    limits_[n].changed = 0;
+  }
+}
+
+void SelfContactTree::encloseTriangle(int triangle, const SelfContactBounds& bounds) {
+  Box& box = box_[triangle];
+  box = {Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity()),
+         Eigen::Vector3f::Constant(-std::numeric_limits<float>::infinity())};
+  for (const int v : triangles_[triangle]) {
+    const Eigen::Vector3f centre = bounds.centre()[v].cast<float>();
+    const Eigen::Vector3f radius = (kRounding * centre.cwiseAbs()).array() + static_cast<float>(bounds.radius(v));
+    box.low = box.low.cwiseMin(centre - radius);
+    box.high = box.high.cwiseMax(centre + radius);
+  }
+  const SelfContactBounds::Cone& cone = bounds.cone(triangle);
+  if (cone.turn > 1) {
+    own_[triangle] = {Eigen::Vector3f::Constant(-1), Eigen::Vector3f::Constant(1), 0};
+  } else {
+    own_[triangle] = {cone.normal, cone.normal, cone.turn};
+  }
+}
+
+// Directions of the triangles at the corners of those that have turned.
+void SelfContactTree::spread(const SelfContactBounds& bounds, bool all) {
+  const auto spreadOver = [this](int v) {
+    ring_[v] = {Eigen::Vector3f::Constant(2), Eigen::Vector3f::Constant(-2), 0};
+    rings_.visit(v, [&](int t) { ring_[v] = join(ring_[v], own_[t]); });
+    rings_.visit(v, [&](int t) { changed_[t] |= kAround; });
+  };
+  if (all) {
+    for (std::size_t v = 0; v < ring_.size(); ++v) spreadOver(static_cast<int>(v));
+  } else {
+    for (const int t : bounds.turned())
+      for (const int v : triangles_[t]) spreadOver(v);
+  }
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    if ((changed_[t] & kAround) == 0) continue;
+    const auto& n = triangles_[t];
+    around_[t] = join(join(ring_[n[0]], ring_[n[1]]), ring_[n[2]]);
+  }
+}
+
+void SelfContactTree::joinChildren() {
   for (std::size_t n = nodes_.size(); n-- > 0;) {
-    Node& node = nodes_[n];
-    if (node.right != 0) {
-      const Node &a = nodes_[n + 1], &b = nodes_[node.right];
-      node.box = {a.box.low.cwiseMin(b.box.low), a.box.high.cwiseMax(b.box.high)};
-      node.directions = join(a.directions, b.directions);
+    Limits& limits = limits_[n];
+    if (limits.right == 0) {
+      joinTriangles(n);
       continue;
     }
-    node.box = box_[order_[node.first]];
-    node.directions = directions_[order_[node.first]];
-    for (int i = node.first + 1; i < node.first + node.count; ++i) {
-      const int t = order_[i];
-      node.box = {node.box.low.cwiseMin(box_[t].low), node.box.high.cwiseMax(box_[t].high)};
-      node.directions = join(node.directions, directions_[t]);
-    }
+    const Limits &a = limits_[n + 1], &b = limits_[limits.right];
+    limits.changed = static_cast<char>(a.changed | b.changed);
+    if (limits.changed == 0) continue;
+    limits.box = join(a.box, b.box);
+    const Node &one = nodes_[n + 1], &other = nodes_[limits.right];
+    nodes_[n].own = join(one.own, other.own);
+    nodes_[n].around = join(one.around, other.around);
   }
 }
 
-// The area vector along straight paths is a quadratic Bezier curve, a positive combination of its three control points.
-void SelfContactTree::encloseTriangle(int triangle, const std::vector<Eigen::Vector3d>& start,
-                                      const std::vector<Eigen::Vector3d>& end, double margin, double slack) {
-  const auto& t = triangles_[triangle];
-  const Eigen::Vector3d &a = start[t[0]], &b = start[t[1]], &c = start[t[2]];
-  Box& box = box_[triangle];
-  box.low = a.cwiseMin(b).cwiseMin(c);
-  box.high = a.cwiseMax(b).cwiseMax(c);
-  const Eigen::Vector3d ab = b - a, ac = c - a, area = ab.cross(ac);
-  const double size2 = area.squaredNorm();
-  const Eigen::Vector3f normal = (area / std::sqrt(size2)).cast<float>();
-  Directions& directions = directions_[triangle];
-  directions = {normal, normal, 0};
-  double turn2 = 0;  // square of how far the slack turns the normal: twice the slack over the least height
-  if (slack > 0)
-    turn2 = 4 * slack * slack * std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()}) / size2;
-  if (&start != &end) {
-    const Eigen::Vector3d &d = end[t[0]], &e = end[t[1]], &f = end[t[2]];
-    box.low = box.low.cwiseMin(d).cwiseMin(e).cwiseMin(f);
-    box.high = box.high.cwiseMax(d).cwiseMax(e).cwiseMax(f);
-    const Eigen::Vector3d de = e - d, df = f - d;
-    const Eigen::Vector3f middle = (ab.cross(df) + de.cross(ac)).normalized().cast<float>();
-    const Eigen::Vector3f last = de.cross(df).normalized().cast<float>();
-    directions.low = directions.low.cwiseMin(middle).cwiseMin(last);
-    directions.high = directions.high.cwiseMax(middle).cwiseMax(last);
-  }
-  box.low.array() -= margin;
-  box.high.array() += margin;
-  if (!(size2 > 0 && turn2 < 1)) {  // it may point anywhere
-    directions = {Eigen::Vector3f::Constant(-1), Eigen::Vector3f::Constant(1), 0};
-  } else {
-    directions.turn = static_cast<float>(std::sqrt(turn2));
+void SelfContactTree::joinTriangles(std::size_t leaf) {
+  Limits& limits = limits_[leaf];
+  Node& node = nodes_[leaf];
+  for (int i = node.first; i < node.first + node.count; ++i) limits.changed |= changed_[order_[i]];
+  if (limits.changed == 0) return;
+  limits.box = box_[order_[node.first]];
+  node.own = own_[order_[node.first]];
+  node.around = around_[order_[node.first]];
+  for (int i = node.first + 1; i < node.first + node.count; ++i) {
+    const int t = order_[i];
+    limits.box = join(limits.box, box_[t]);
+    node.own = join(node.own, own_[t]);
+    node.around = join(node.around, around_[t]);
   }
 }
 
-void SelfContactTree::spreadOverRings() {
-  for (Directions& ring : ring_directions_) ring = {Eigen::Vector3f::Constant(2), Eigen::Vector3f::Constant(-2), 0};
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (const int v : triangles_[t]) ring_directions_[v] = join(ring_directions_[v], directions_[t]);
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (const int v : triangles_[t]) directions_[t] = join(directions_[t], ring_directions_[v]);
-}
-
-float SelfContactTree::smallestCosine(const Directions& a, const Directions& b) {
-  const auto ll = a.low.cwiseProduct(b.low), lh = a.low.cwiseProduct(b.high), hl = a.high.cwiseProduct(b.low),
-             hh = a.high.cwiseProduct(b.high);
-  return ll.cwiseMin(lh).cwiseMin(hl).cwiseMin(hh).sum() - a.turn - b.turn;
-}
-
-// Whether the union of two parts is connected and the normals of both have a common direction without overhangs.
-bool SelfContactTree::isGraph(int a, int b) const {
-  const Node &one = nodes_[a], &other = nodes_[b];
-  if (one.vertices == 0 || other.vertices == 0) return false;
-  const Directions all = join(one.directions, other.directions);
+// Whether the normals of two parts have a common direction without overhangs.
+bool SelfContactTree::isGraph(const Directions& a, const Directions& b) {
+  const Directions all = join(a, b);
   const Eigen::Vector3f up = all.low + all.high;
   const float least = up.cwiseProduct(all.low).cwiseMin(up.cwiseProduct(all.high)).sum();
-  return least > (kLeastHeight + all.turn) * up.norm() && (a == b || adjacent(one, other));
+  return least > (kLeastHeight + all.turn) * up.norm();
 }
 
 bool SelfContactTree::adjacent(const Node& a, const Node& b) const {

@@ -1,0 +1,216 @@
+#include "contact/self_contact_bounds.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vibe {
+
+namespace {
+
+constexpr double kSpare = 0.5;  // of a ball around a fast path, in slacks: it may end so much farther
+constexpr double kLead = 0.8;   // of a ball ahead of a moving vertex, in slacks. Design choice: most of the slack
+constexpr double kWide = 1.5;   // of a ball that is made smaller when its vertex has become slow, in slacks
+// Width of the cones. Design choice: walls whose normals differ by less than a right angle are not compared although
+// both cones are taken off the least cosine of walls that face each other [1].
+constexpr double kTurn = 0.25;
+constexpr double kWideTurn = 1.5 * kTurn;
+constexpr float kRounding = 1e-5F;   // of a cosine in single precision: positions to 1e-8 m, edges of millimetres [1]
+constexpr double kSteepest = 0.5;    // sine of a turn below which its chord is at most kChord times as long
+constexpr double kChord = 1.04;
+constexpr std::size_t kGroup = 8;    // triangles
+
+using Group = Eigen::Array<float, kGroup, 1>;
+
+struct Vectors {
+  Group x, y, z;
+  Vectors operator-(const Vectors& b) const { return {x - b.x, y - b.y, z - b.z}; }
+  Vectors operator+(const Vectors& b) const { return {x + b.x, y + b.y, z + b.z}; }
+  Group dot(const Vectors& b) const { return x * b.x + y * b.y + z * b.z; }
+  Vectors cross(const Vectors& b) const { return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x}; }
+};
+
+Group cosine(const Vectors& area, const Vectors& normal) {
+  return area.dot(normal) / area.dot(area).sqrt();
+}
+
+Eigen::Vector3d at(const SelfContactBounds::NodeVectors& x, int vertex) {
+  return {x[0][vertex], x[1][vertex], x[2][vertex]};
+}
+
+/// Four values per vertex, as a group of triangles reads them.
+void pack(const SelfContactBounds::NodeVectors& x, std::vector<float>& packed) {
+  for (std::size_t i = 0; 4 * i < packed.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) packed[4 * i + k] = static_cast<float>(x[k][i]);
+}
+
+}  // namespace
+
+/// Of a group of triangles: two edges and their product.
+struct SelfContactBounds::Area {
+  Vectors ab, ac, product;
+};
+
+SelfContactBounds::SelfContactBounds(const std::vector<std::array<int, 3>>& triangles, std::size_t vertices,
+                                     double slack)
+    : triangles_(triangles),
+      slack_(slack),
+      centre_(vertices, Eigen::Vector3d::Zero()),
+      radius_(vertices, -1),
+      square_(vertices, -1),
+      cone_(triangles.size()),
+      start_(4 * vertices),
+      end_(4 * vertices) {
+  const std::size_t padded = (triangles.size() + kGroup - 1) / kGroup * kGroup;
+  for (std::size_t k = 0; k < 3; ++k) {
+    middle_[k].assign(vertices, 0);
+    checked_[k].assign(vertices, 0);
+    normal_[k].assign(padded, 0);
+  }
+  turn_.assign(padded, 0);
+  cosine_.assign(padded, 2);
+}
+
+void SelfContactBounds::reset() {
+  std::fill(square_.begin(), square_.end(), -1.0);
+  std::fill(cosine_.begin(), cosine_.end(), 2.0F);
+  still_ = -1;
+}
+
+bool SelfContactBounds::adapt(const NodeVectors& start, const NodeVectors& end) {
+  moved_.clear();
+  turned_.clear();
+  if (start != end)
+    for (const int i : wide_) square_[i] = -1;
+  if (!adaptBalls(start, end)) {
+    reset();
+    return false;
+  }
+  double farthest = 0;
+  for (std::size_t i = 0; i < radius_.size(); ++i) {
+    const double x = end[0][i] - checked_[0][i], y = end[1][i] - checked_[1][i], z = end[2][i] - checked_[2][i];
+    const double square = x * x + y * y + z * z;
+    farthest = square > farthest ? square : farthest;
+  }
+  if (still_ < 0 || farthest > still_ * still_ || (any_wide_cone_ && start != end)) adaptCones(start, end);
+  return true;
+}
+
+bool SelfContactBounds::adaptBalls(const NodeVectors& start, const NodeVectors& end) {
+  const std::size_t n = radius_.size();
+  const auto leaves = [&](std::size_t i) {
+    const double x = end[0][i] - middle_[0][i], y = end[1][i] - middle_[1][i], z = end[2][i] - middle_[2][i];
+    return !(x * x + y * y + z * z <= square_[i]);
+  };
+  constexpr std::size_t kMany = 64;  // vertices: most groups of so many need nothing
+  for (std::size_t first = 0; first < n; first += kMany) {
+    const std::size_t last = std::min(first + kMany, n);
+    int count = 0;
+    for (std::size_t i = first; i < last; ++i) count += leaves(i) ? 1 : 0;
+    for (std::size_t i = first; count > 0 && i < last; ++i) {
+      if (!leaves(i)) continue;
+      if (!at(end, static_cast<int>(i)).allFinite()) return false;
+      moved_.push_back(static_cast<int>(i));
+    }
+  }
+  if (moved_.empty()) return true;
+  wide_.erase(std::remove_if(wide_.begin(), wide_.end(), [this](int i) { return square_[i] < 0; }), wide_.end());
+  for (const int i : moved_) moveBall(i, start, end);
+  return true;
+}
+
+// Ahead of a slow vertex, so that it stays in the ball for long.
+void SelfContactBounds::moveBall(int vertex, const NodeVectors& start, const NodeVectors& end) {
+  const Eigen::Vector3d from = at(start, vertex), to = at(end, vertex), way = to - from;
+  const double length = way.norm();
+  Eigen::Vector3d& centre = centre_[vertex];
+  centre = 0.5 * (from + to);
+  double& radius = radius_[vertex];
+  radius = std::max(slack_, 0.5 * length + kSpare * slack_);
+  if (radius == slack_ && length > 0) centre = from + kLead * slack_ / length * way;
+  for (int k = 0; k < 3; ++k) middle_[k][vertex] = centre[k];
+  square_[vertex] = radius * radius;
+  if (radius > kWide * slack_) wide_.push_back(vertex);
+}
+
+SelfContactBounds::Area SelfContactBounds::areaOf(std::size_t first, const std::vector<float>& at) const {
+  std::array<Vectors, 3> corner;
+  for (std::size_t i = 0; i < kGroup; ++i) {
+    const auto& t = triangles_[std::min(first + i, triangles_.size() - 1)];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float* p = &at[4 * static_cast<std::size_t>(t[c])];
+      corner[c].x[i] = p[0];
+      corner[c].y[i] = p[1];
+      corner[c].z[i] = p[2];
+    }
+  }
+  Area area{corner[1] - corner[0], corner[2] - corner[0], {}};
+  area.product = area.ab.cross(area.ac);
+  return area;
+}
+
+// The area vector along straight paths is a quadratic Bezier curve, a positive combination of its three control points.
+// Afterwards no normal leaves its cone while no vertex moves by more than still_: a triangle of height h turns by less
+// than 2 still_ / h.
+void SelfContactBounds::adaptCones(const NodeVectors& start, const NodeVectors& end) {
+  const bool path = start != end;
+  pack(end, end_);
+  if (path) pack(start, start_);
+  for (std::size_t k = 0; k < 3; ++k) std::copy(end[k], end[k] + radius_.size(), checked_[k].begin());
+  any_wide_cone_ = false;
+  Group still = Group::Constant(std::numeric_limits<float>::infinity());
+  float turned_still = std::numeric_limits<float>::infinity();
+  for (std::size_t first = 0; first < triangles_.size(); first += kGroup) {
+    const auto load = [first](const std::vector<float>& values) { return Eigen::Map<const Group>(&values[first]); };
+    const Vectors normal{load(normal_[0]), load(normal_[1]), load(normal_[2])};
+    const Area to = areaOf(first, end_);
+    const Group last = cosine(to.product, normal);
+    Group least = last;
+    if (path) {
+      const Area from = areaOf(first, start_);
+      least = least.min(cosine(from.product, normal)).min(cosine(from.ab.cross(to.ac) + to.ab.cross(from.ac), normal));
+    }
+    const Vectors bc = to.ac - to.ab;
+    const Group longest = to.ab.dot(to.ab).max(to.ac.dot(to.ac)).max(bc.dot(bc));
+    const Group height = (to.product.dot(to.product) / longest).sqrt();
+    const Group rest = load(turn_) - (2 - 2 * last + kRounding).max(0).sqrt();
+    const Group spare = height * rest.min(static_cast<float>(kSteepest)) / static_cast<float>(2 * kChord);
+    const auto held = least >= load(cosine_);
+    still = held.select(still.min(spare), still);
+    if (held.all()) continue;
+    const std::size_t count = std::min(kGroup, triangles_.size() - first);
+    for (std::size_t i = 0; i < count; ++i)
+      if (!(least[i] >= cosine_[first + i]))
+        turned_still = std::min(turned_still, turnCone(static_cast<int>(first + i), start, end) * height[i]);
+  }
+  still_ = std::max(0.0F, std::min(still.minCoeff(), turned_still));
+}
+
+// @returns how far its vertices may move then, in heights
+float SelfContactBounds::turnCone(int triangle, const NodeVectors& start, const NodeVectors& end) {
+  const auto& t = triangles_[triangle];
+  const Eigen::Vector3d a = at(start, t[0]), d = at(end, t[0]);
+  const Eigen::Vector3d ab = at(start, t[1]) - a, ac = at(start, t[2]) - a, de = at(end, t[1]) - d,
+                        df = at(end, t[2]) - d;
+  const Eigen::Vector3d from = ab.cross(ac).normalized(), to = de.cross(df).normalized(),
+                        middle = (ab.cross(df) + de.cross(ac)).normalized();
+  const Eigen::Vector3d normal = (from + to).normalized();
+  const double chord = std::sqrt(
+      std::max({(from - normal).squaredNorm(), (to - normal).squaredNorm(), (middle - normal).squaredNorm()}));
+  const bool any = !(chord + 0.5 * kTurn < 1) || !(normal.squaredNorm() > 0.5);
+  const double turn = any ? 2 : std::max(kTurn, chord + 0.5 * kTurn);
+  cone_[triangle] = {normal.cast<float>(), static_cast<float>(turn)};
+  for (int k = 0; k < 3; ++k) normal_[k][triangle] = static_cast<float>(normal[k]);
+  turn_[triangle] = static_cast<float>(turn);
+  cosine_[triangle] = static_cast<float>(1 - 0.5 * turn * turn) + kRounding;
+  if (turn > kWideTurn) {
+    any_wide_cone_ = true;
+    cosine_[triangle] = 2;
+  }
+  turned_.push_back(triangle);
+  const double rest = std::min(kSteepest, turn - (to - normal).norm());
+  return any ? std::numeric_limits<float>::max() : static_cast<float>(rest / (2 * kChord));
+}
+
+}  // namespace vibe
