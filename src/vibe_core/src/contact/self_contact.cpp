@@ -180,12 +180,11 @@ void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t n
   SelfContactMemory& m = *memory_;
   m.approaches.clear();
   const Eigen::Vector3d p = m.at(vertex);
-  const Eigen::Vector3f rounded = p.cast<float>();
   const double farthest = (1 + kOnset) * max_thickness_ + reach;
   const auto farthest2 = static_cast<float>(1.001 * farthest * farthest);  // for rounding
   for (std::size_t k = first; k < next; ++k) {
     const int triangle = m.search.near()[k].triangle;
-    if (m.search.leastSquare(rounded, triangle) > farthest2) continue;
+    if (m.search.leastSquare(p, triangle) > farthest2) continue;
     const auto& n = rest_.triangles[triangle];
     m.approaches.push_back({triangle, triangleFoot(p, m.at(n[0]), m.at(n[1]), m.at(n[2])).away});
   }

@@ -14,7 +14,7 @@ constexpr double kLead = 0.8;   // of a ball ahead of a moving vertex, in slacks
 constexpr double kWide = 1.5;   // of a ball that is made smaller when its vertex has become slow, in slacks
 // Width of the cones. Design choice: walls whose normals differ by less than a right angle are not compared although
 // both cones are taken off the least cosine of walls that face each other [1].
-constexpr double kTurn = 0.25;
+constexpr double kTurn = 0.1;
 constexpr double kWideTurn = 1.5 * kTurn;
 constexpr float kRounding = 1e-5F;   // of a cosine in single precision: positions to 1e-8 m, edges of millimetres [1]
 constexpr double kSteepest = 0.5;    // sine of a turn below which its chord is at most kChord times as long

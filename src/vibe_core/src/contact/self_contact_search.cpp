@@ -46,6 +46,7 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& se
       bounds_(triangles_, rest.vertices.size(), settings.slack),
       tree_(rest, rings_) {
   joinWalls(rest, settings.one_wall);
+  tree_.setWalls([this](int v, int w) { return oneWall(v, w); });
 }
 
 // Dijkstra's shortest paths along edges from every vertex, and all vertices within two edges.

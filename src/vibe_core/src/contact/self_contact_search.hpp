@@ -48,9 +48,11 @@ class SelfContactSearch {
   /// parts without overhang do not come near themselves.
   const std::vector<Meeting>& meetings() const { return meetings_; }
   /// No more than the distance from p to a triangle, at any time [m^2].
-  float leastSquare(const Eigen::Vector3f& p, int triangle) const {
+  float leastSquare(const Eigen::Vector3d& p, int triangle) const {
     const SelfContactTree::Box& box = tree_.box(triangle);
-    return (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0F).squaredNorm();
+    Eigen::Array4f at = Eigen::Array4f::Zero();
+    at.head<3>() = p.cast<float>().array();
+    return (box.low - at).max(at + box.minus_high).max(0).matrix().squaredNorm();
   }
 
   const VertexTriangles& rings() const { return rings_; }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -17,14 +18,9 @@ constexpr float kLeastHeight = 0.1F;  // smallest cosine between normals and the
 constexpr float kRounding = 2.4e-7F;  // of a position in single precision, twice over [1]
 
 using Box = SelfContactTree::Box;
-using Directions = SelfContactTree::Directions;
 
-Box join(const Box& a, const Box& b) {
-  return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
-}
-
-Directions join(const Directions& a, const Directions& b) {
-  return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high), std::max(a.turn, b.turn)};
+Box joinBoxes(const Box& a, const Box& b) {
+  return {a.low.min(b.low), a.minus_high.min(b.minus_high)};
 }
 
 }  // namespace
@@ -48,7 +44,7 @@ SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles&
 int SelfContactTree::build(int first, int count, const std::vector<Eigen::Vector3d>& centre) {
   const int index = static_cast<int>(nodes_.size());
   limits_.emplace_back();
-  nodes_.push_back({{}, {}, {}, first, count, 0, 0});
+  nodes_.push_back({{}, {}, {}, first, count, 0, 0, false});
   listVertices(nodes_[index]);
   if (count <= kLeaf) return index;
   Eigen::Vector3d low = centre[order_[first]], high = low;
@@ -113,35 +109,44 @@ void SelfContactTree::adapt(const SelfContactBounds& bounds, bool all) {
 void SelfContactTree::forgetChanges() {
   std::fill(changed_.begin(), changed_.end(), char{0});
   for (std::size_t n = 0; n < limits_.size(); ++n) {
-    if (limits_[n].changed != 0) nodes_[n].before = nodes_[n].own;
+    if ((limits_[n].changed & kOwn) != 0) nodes_[n].before = nodes_[n].own;
     limits_[n].changed = 0;
   }
 }
 
 void SelfContactTree::encloseTriangle(int triangle, const SelfContactBounds& bounds) {
-  Box& box = box_[triangle];
-  box = {Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity()),
-         Eigen::Vector3f::Constant(-std::numeric_limits<float>::infinity())};
-  for (const int v : triangles_[triangle]) {
-    const Eigen::Vector3f centre = bounds.centre()[v].cast<float>();
-    const Eigen::Vector3f radius = (kRounding * centre.cwiseAbs()).array() + static_cast<float>(bounds.radius(v));
-    box.low = box.low.cwiseMin(centre - radius);
-    box.high = box.high.cwiseMax(centre + radius);
+  if ((changed_[triangle] & kBox) != 0) {
+    Box& box = box_[triangle];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int v = triangles_[triangle][k];
+      Eigen::Array4f centre = Eigen::Array4f::Zero(), radius = Eigen::Array4f::Zero();
+      centre.head<3>() = bounds.centre()[v].cast<float>().array();
+      radius.head<3>() = kRounding * centre.head<3>().abs() + static_cast<float>(bounds.radius(v));
+      const Box ball{centre - radius, -centre - radius};
+      box = k == 0 ? ball : joinBoxes(box, ball);
+    }
   }
-  const SelfContactBounds::Cone& cone = bounds.cone(triangle);
-  if (cone.turn > 1) {
-    own_[triangle] = {Eigen::Vector3f::Constant(-1), Eigen::Vector3f::Constant(1), 0};
-  } else {
-    own_[triangle] = {cone.normal, cone.normal, cone.turn};
-  }
+  if ((changed_[triangle] & kOwn) == 0) return;
+  const auto& [normal, turn] = bounds.cone(triangle);
+  Cone& own = own_[triangle];
+  own = Cone();
+  if (turn > 1) return;
+  own.axis.head<3>() = normal;
+  own.cosine = 1 - 0.5F * turn * turn;
+  own.sine = turn * std::sqrt(1 - 0.25F * turn * turn);
 }
 
-// Directions of the triangles at the corners of those that have turned.
+// Normals of the triangles at the corners of those that have turned.
 void SelfContactTree::spread(const SelfContactBounds& bounds, bool all) {
   const auto spreadOver = [this](int v) {
-    ring_[v] = {Eigen::Vector3f::Constant(2), Eigen::Vector3f::Constant(-2), 0};
-    rings_.visit(v, [&](int t) { ring_[v] = join(ring_[v], own_[t]); });
-    rings_.visit(v, [&](int t) { changed_[t] |= kAround; });
+    Cone& ring = ring_[v];
+    ring = {Eigen::Vector4f::Zero(), 1, 0};
+    rings_.visit(v, [&](int t) { ring.axis += own_[t].axis; });
+    ring.axis.normalize();
+    rings_.visit(v, [&](int t) {
+      widen(own_[t], ring);
+      changed_[t] |= kAround;
+    });
   };
   if (all) {
     for (std::size_t v = 0; v < ring_.size(); ++v) spreadOver(static_cast<int>(v));
@@ -152,49 +157,69 @@ void SelfContactTree::spread(const SelfContactBounds& bounds, bool all) {
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     if ((changed_[t] & kAround) == 0) continue;
     const auto& n = triangles_[t];
-    around_[t] = join(join(ring_[n[0]], ring_[n[1]]), ring_[n[2]]);
+    around_[t] = {(ring_[n[0]].axis + ring_[n[1]].axis + ring_[n[2]].axis).normalized(), 1, 0};
+    for (const int v : n) widen(ring_[v], around_[t]);
   }
+}
+
+// About the same axis.
+void SelfContactTree::widen(const Cone& part, Cone& cone) {
+  const float chord2 = (part.axis - cone.axis).squaredNorm();
+  const float cosine = 1 - 0.5F * chord2, sine = std::sqrt(chord2 * std::max(0.0F, 1 - 0.25F * chord2));
+  const float side = cosine * part.cosine - sine * part.sine;
+  if (!(cosine > 0 && part.cosine > 0 && side > 0)) {
+    cone.cosine = -1;
+  } else if (side < cone.cosine) {
+    cone.cosine = side;
+    cone.sine = sine * part.cosine + cosine * part.sine;
+  }
+}
+
+SelfContactTree::Cone SelfContactTree::join(const Cone& a, const Cone& b) {
+  Cone all{(a.axis + b.axis).normalized(), 1, 0};
+  widen(a, all);
+  widen(b, all);
+  return all;
 }
 
 void SelfContactTree::joinChildren() {
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Limits& limits = limits_[n];
     if (limits.right == 0) {
-      joinTriangles(n);
+      joinTriangles(nodes_[n], limits, nodes_[n].own, nodes_[n].around);
       continue;
     }
     const Limits &a = limits_[n + 1], &b = limits_[limits.right];
     limits.changed = static_cast<char>(a.changed | b.changed);
     if (limits.changed == 0) continue;
-    limits.box = join(a.box, b.box);
+    if ((limits.changed & kBox) != 0) limits.box = joinBoxes(a.box, b.box);
     const Node &one = nodes_[n + 1], &other = nodes_[limits.right];
-    nodes_[n].own = join(one.own, other.own);
-    nodes_[n].around = join(one.around, other.around);
+    if ((limits.changed & kOwn) != 0) nodes_[n].own = join(one.own, other.own);
+    if ((limits.changed & kAround) != 0) nodes_[n].around = join(one.around, other.around);
   }
 }
 
-void SelfContactTree::joinTriangles(std::size_t leaf) {
-  Limits& limits = limits_[leaf];
-  Node& node = nodes_[leaf];
-  for (int i = node.first; i < node.first + node.count; ++i) limits.changed |= changed_[order_[i]];
-  if (limits.changed == 0) return;
-  limits.box = box_[order_[node.first]];
-  node.own = own_[order_[node.first]];
-  node.around = around_[order_[node.first]];
-  for (int i = node.first + 1; i < node.first + node.count; ++i) {
-    const int t = order_[i];
-    limits.box = join(limits.box, box_[t]);
-    node.own = join(node.own, own_[t]);
-    node.around = join(node.around, around_[t]);
+void SelfContactTree::joinTriangles(const Node& leaf, Limits& limits, Cone& own, Cone& around) const {
+  const int* const first = &order_[leaf.first];
+  const int* const last = first + leaf.count;
+  for (const int* t = first; t != last; ++t) limits.changed |= changed_[*t];
+  if ((limits.changed & kBox) != 0) {
+    limits.box = box_[*first];
+    for (const int* t = first + 1; t != last; ++t) limits.box = joinBoxes(limits.box, box_[*t]);
   }
+  const auto unite = [&](const std::vector<Cone>& cones, Cone& all) {
+    all = {Eigen::Vector4f::Zero(), 1, 0};
+    for (const int* t = first; t != last; ++t) all.axis += cones[*t].axis;
+    all.axis.normalize();
+    for (const int* t = first; t != last; ++t) widen(cones[*t], all);
+  };
+  if ((limits.changed & kOwn) != 0) unite(own_, own);
+  if ((limits.changed & kAround) != 0) unite(around_, around);
 }
 
 // Whether the normals of two parts have a common direction without overhangs.
-bool SelfContactTree::isGraph(const Directions& a, const Directions& b) {
-  const Directions all = join(a, b);
-  const Eigen::Vector3f up = all.low + all.high;
-  const float least = up.cwiseProduct(all.low).cwiseMin(up.cwiseProduct(all.high)).sum();
-  return least > (kLeastHeight + all.turn) * up.norm();
+bool SelfContactTree::isGraph(const Cone& a, const Cone& b) {
+  return a.cosine > kLeastHeight && b.cosine > kLeastHeight && join(a, b).cosine > kLeastHeight;
 }
 
 bool SelfContactTree::adjacent(const Node& a, const Node& b) const {

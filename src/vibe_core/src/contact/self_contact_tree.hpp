@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "contact/self_contact_bounds.hpp"
@@ -11,7 +12,7 @@
 
 namespace vibe {
 
-/// Boxes and directions of the triangles of a moving surface in a binary tree. Its topology is that of the rest shape;
+/// Boxes around the triangles and cones around the normals of a moving surface in a binary tree. Its topology is that of the rest shape;
 /// adapt() renews what has changed. It finds pairs of triangles without visiting smooth parts of the surface: parts
 /// whose normals agree neither face each other nor cross (Volino, Magnenat-Thalmann 1994, "Efficient self-collision
 /// detection on smoothly discretized surface animations using geometrical shape regularity"), for moving triangles with
@@ -20,17 +21,28 @@ namespace vibe {
 class SelfContactTree {
  public:
   SelfContactTree(const SurfaceMesh& rest, const VertexTriangles& rings);
+  /// Says which vertices belong to one wall, which does not face itself.
+  template <class OneWall>
+  void setWalls(const OneWall& one_wall) {
+    for (Node& node : nodes_) {
+      const int *first = vertex_.data() + node.first_vertex, *last = first + node.vertices;
+      node.one_wall = node.vertices > 0 && std::all_of(first, last, [&](int v) {
+                        return std::all_of(first, last, [&](int w) { return one_wall(v, w); });
+                      });
+    }
+  }
 
+  /// Fourth components are 0.
   struct Box {
-    Eigen::Vector3f low = Eigen::Vector3f::Zero(), high = Eigen::Vector3f::Zero();
+    Eigen::Array4f low = Eigen::Array4f::Zero(), minus_high = Eigen::Array4f::Zero();
   };
-  /// Of unit normals.
-  struct Directions {
-    Eigen::Vector3f low = Eigen::Vector3f::Zero(), high = Eigen::Vector3f::Zero();  ///< per component
-    float turn = 0;  ///< largest distance of a normal to one within these limits
+  /// Around unit normals.
+  struct Cone {
+    Eigen::Vector4f axis = Eigen::Vector4f::Zero();  ///< unit, fourth component 0
+    float cosine = -1, sine = 0;  ///< of the angle from the axis to the side; cosine <= 0: any normals
   };
 
-  /// Renews boxes and directions where the bounds have changed in their last adapt(); everywhere if `all`.
+  /// Renews boxes and cones where the bounds have changed in their last adapt(); everywhere if `all`.
   void adapt(const SelfContactBounds& bounds, bool all);
 
   /// Calls visit(a, b), a < b, for pairs of triangles that are nearer than about a distance and of which a normal of
@@ -39,10 +51,11 @@ class SelfContactTree {
   template <class Visit>
   void visitFacing(float cosine, float distance, Visit visit) const {
     const auto one_way = [&](const Node& a, const Node& b) {
-      return smallestCosine(a.around, b.around) >= cosine ? Part::Skip : Part::Changes;
+      if (&a == &b && a.one_wall) return Part::Skip;
+      return keepsCosine(a.around, b.around, cosine) ? Part::Skip : Part::Changes;
     };
     traverse(kBox | kAround, distance, one_way, [&](int a, int b) {
-      if (smallestCosine(around_[a], around_[b]) < cosine) visit(a, b);
+      if (!keepsCosine(around_[a], around_[b], cosine)) visit(a, b);
     });
   }
   /// Calls visit(a, b), a < b, for pairs of triangles that are nearer than about a distance, except where both belong to
@@ -74,19 +87,24 @@ class SelfContactTree {
     char changed = 0;  // Change
   };
   struct Node {
-    Directions own, before, around;  // of the triangles; before the last adapt(); with those at their corners
-    int first, count;                // triangles in order_
-    int first_vertex, vertices;      // in vertex_; none: too large or not connected
+    Cone own, before, around;  // of the triangles; before the last adapt(); with those at their corners
+    int first, count;           // triangles in order_
+    int first_vertex, vertices;  // in vertex_; none: too large or not connected
+    bool one_wall;               // whether all its vertices belong to one wall
   };
   static bool apart(const Box& a, const Box& b, float distance) {
-    return (a.low.array() - distance > b.high.array()).any() || (b.low.array() - distance > a.high.array()).any();
+    return (a.low + b.minus_high).max(b.low + a.minus_high).maxCoeff() > distance;
   }
-  static float smallestCosine(const Directions& a, const Directions& b) {
-    const Eigen::Vector3f ll = a.low.cwiseProduct(b.low), lh = a.low.cwiseProduct(b.high),
-                          hl = a.high.cwiseProduct(b.low), hh = a.high.cwiseProduct(b.high);
-    return ll.cwiseMin(lh).cwiseMin(hl.cwiseMin(hh)).sum() - a.turn - b.turn;
+  /// Whether the cosine between normals of one cone and of the other is never below `cosine` > 0.
+  static bool keepsCosine(const Cone& a, const Cone& b, float cosine) {
+    const float both = a.cosine * b.cosine - a.sine * b.sine, between2 = (a.axis - b.axis).squaredNorm();
+    if (a.cosine <= 0 || b.cosine <= 0 || both <= 0 || between2 >= 2) return false;
+    const float sine = a.sine * b.cosine + a.cosine * b.sine, spare = (1 - 0.5F * between2) * both - cosine;
+    return spare >= 0 && spare * spare >= between2 * (1 - 0.25F * between2) * sine * sine;
   }
-  static bool isGraph(const Directions& a, const Directions& b);
+  static void widen(const Cone& part, Cone& cone);
+  static Cone join(const Cone& a, const Cone& b);
+  static bool isGraph(const Cone& a, const Cone& b);
   bool adjacent(const Node& a, const Node& b) const;
 
   int build(int first, int count, const std::vector<Eigen::Vector3d>& centre);
@@ -96,7 +114,7 @@ class SelfContactTree {
   void encloseTriangle(int triangle, const SelfContactBounds& bounds);
   void spread(const SelfContactBounds& bounds, bool all);
   void joinChildren();
-  void joinTriangles(std::size_t leaf);
+  void joinTriangles(const Node& leaf, Limits& limits, Cone& own, Cone& around) const;
 
   template <class Judge, class Visit>
   void traverse(char changes, float distance, const Judge& judge, const Visit& visit) const {
@@ -143,7 +161,7 @@ class SelfContactTree {
   std::vector<int> order_;                              // triangles
   std::vector<int> vertex_;                             // ascending, of the nodes that have a list
   std::vector<Box> box_;                                // per triangle
-  std::vector<Directions> own_, around_, ring_;         // per triangle, per triangle, per vertex
+  std::vector<Cone> own_, around_, ring_;         // per triangle, per triangle, per vertex
   std::vector<char> changed_;                           // Change, per triangle
   mutable std::vector<std::array<int, 3>> stack_;
 };
