@@ -27,8 +27,8 @@ constexpr double kFriction = 0.05;
 // Speed of sliding from which friction is that of Coulomb; below it is viscous, as of a film of mucus. Design choice: a
 // tenth of the usual speed of folds that are drawn together [m/s].
 constexpr double kSlidingSpeed = 5e-3;
-// Stretch of an edge in a step because one of its nodes stops earlier than the other on its path. Design choice: a tenth,
-// which a step can resolve [1].
+// Stretch of an edge in a step because one of its nodes stops earlier than the other on its path. Design choice: a
+// tenth, which a step can resolve [1].
 constexpr double kStretch = 0.1;
 constexpr double kFewer = 1e-3;  // part of it that is not worth another change
 constexpr int kSweeps = 100;     // over the triangles, while stops spread
@@ -167,6 +167,7 @@ double SelfContact::facing(int vertex, int triangle) const {
 
 void SelfContact::addPairs(double reach) {
   const std::vector<SelfContactSearch::Near>& near = memory_->search.near();
+  memory_->search.measure(SelfContactMemory::view(memory_->start));
   for (std::size_t first = 0, next; first < near.size(); first = next) {
     const int vertex = near[first].vertex;
     for (next = first + 1; next < near.size() && near[next].vertex == vertex;) ++next;
@@ -181,12 +182,11 @@ void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t n
   m.approaches.clear();
   const Eigen::Vector3d p = m.at(vertex);
   const double farthest = (1 + kOnset) * max_thickness_ + reach;
-  const auto farthest2 = static_cast<float>(1.001 * farthest * farthest);  // for rounding
   for (std::size_t k = first; k < next; ++k) {
-    const int triangle = m.search.near()[k].triangle;
-    if (m.search.leastSquare(p, triangle) > farthest2) continue;
-    const auto& n = rest_.triangles[triangle];
-    m.approaches.push_back({triangle, triangleFoot(p, m.at(n[0]), m.at(n[1]), m.at(n[2])).away});
+    const SelfContactSearch::Near& near = m.search.near()[k];
+    if (m.search.leastDistance(near) > farthest) continue;
+    const auto& n = rest_.triangles[near.triangle];
+    m.approaches.push_back({near.triangle, triangleFoot(p, m.at(n[0]), m.at(n[1]), m.at(n[2])).away});
   }
 }
 

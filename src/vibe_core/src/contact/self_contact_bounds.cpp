@@ -4,22 +4,26 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace vibe {
 
 namespace {
 
-constexpr double kSpare = 0.5;  // of a ball around a fast path, in slacks: it may end so much farther
-constexpr double kLead = 0.8;   // of a ball ahead of a moving vertex, in slacks. Design choice: most of the slack
-constexpr double kWide = 1.5;   // of a ball that is made smaller when its vertex has become slow, in slacks
+// Balls, in slacks. Design choice: vertices that move together fast are searched anew once in about ten steps.
+constexpr double kSteps = 5;     // a ball holds for about twice so many steps [1]
+constexpr double kFarthest = 3;  // radius for such a time
+constexpr double kSpare = 0.5;   // of a ball around a faster path: it may end so much farther
+constexpr double kLead = 0.8;    // of a ball ahead of its vertex, in radii
+constexpr double kWide = 1.9;    // radius of a ball that is made smaller, over the one for its vertex now
 // Width of the cones. Design choice: walls whose normals differ by less than a right angle are not compared although
 // both cones are taken off the least cosine of walls that face each other [1].
 constexpr double kTurn = 0.1;
 constexpr double kWideTurn = 1.5 * kTurn;
-constexpr float kRounding = 1e-5F;   // of a cosine in single precision: positions to 1e-8 m, edges of millimetres [1]
-constexpr double kSteepest = 0.5;    // sine of a turn below which its chord is at most kChord times as long
+constexpr float kRounding = 1e-5F;  // of a cosine in single precision: positions to 1e-8 m, edges of millimetres [1]
+constexpr double kSteepest = 0.5;   // sine of a turn below which its chord is at most kChord times as long
 constexpr double kChord = 1.04;
-constexpr std::size_t kGroup = 8;    // triangles
+constexpr std::size_t kGroup = 8;  // triangles
 
 using Group = Eigen::Array<float, kGroup, 1>;
 
@@ -39,6 +43,22 @@ Eigen::Vector3d at(const SelfContactBounds::NodeVectors& x, int vertex) {
   return {x[0][vertex], x[1][vertex], x[2][vertex]};
 }
 
+using Components = std::array<Eigen::Map<const Eigen::ArrayXd>, 3>;
+Components componentsOf(const SelfContactBounds::NodeVectors& x, std::size_t count) {
+  const auto size = static_cast<Eigen::Index>(count);
+  return {Eigen::Map<const Eigen::ArrayXd>(x[0], size), Eigen::Map<const Eigen::ArrayXd>(x[1], size),
+          Eigen::Map<const Eigen::ArrayXd>(x[2], size)};
+}
+Components componentsOf(const std::array<std::vector<double>, 3>& x) {
+  return componentsOf({x[0].data(), x[1].data(), x[2].data()}, x[0].size());
+}
+
+/// Square of the largest distance between two sets of points [m^2].
+double farthestSquare(const SelfContactBounds::NodeVectors& x, const std::array<std::vector<double>, 3>& from) {
+  const Components a = componentsOf(x, from[0].size()), b = componentsOf(from);
+  return ((a[0] - b[0]).square() + (a[1] - b[1]).square() + (a[2] - b[2]).square()).maxCoeff();
+}
+
 /// Four values per vertex, as a group of triangles reads them.
 void pack(const SelfContactBounds::NodeVectors& x, std::vector<float>& packed) {
   for (std::size_t i = 0; 4 * i < packed.size(); ++i)
@@ -52,16 +72,19 @@ struct SelfContactBounds::Area {
   Vectors ab, ac, product;
 };
 
-SelfContactBounds::SelfContactBounds(const std::vector<std::array<int, 3>>& triangles, std::size_t vertices,
+SelfContactBounds::SelfContactBounds(const std::vector<std::array<int, 3>>& triangles, std::vector<int> part,
                                      double slack)
     : triangles_(triangles),
+      part_(std::move(part)),
+      part_moves_(part_.empty() ? 0 : *std::max_element(part_.begin(), part_.end()) + 1),
       slack_(slack),
-      centre_(vertices, Eigen::Vector3d::Zero()),
-      radius_(vertices, -1),
-      square_(vertices, -1),
+      centre_(part_.size(), Eigen::Vector3d::Zero()),
+      radius_(part_.size(), -1),
+      square_(part_.size(), -1),
       cone_(triangles.size()),
-      start_(4 * vertices),
-      end_(4 * vertices) {
+      start_(4 * part_.size()),
+      end_(4 * part_.size()) {
+  const std::size_t vertices = part_.size();
   const std::size_t padded = (triangles.size() + kGroup - 1) / kGroup * kGroup;
   for (std::size_t k = 0; k < 3; ++k) {
     middle_[k].assign(vertices, 0);
@@ -82,56 +105,71 @@ bool SelfContactBounds::adapt(const NodeVectors& start, const NodeVectors& end) 
   moved_.clear();
   turned_.clear();
   if (start != end)
-    for (const int i : wide_) square_[i] = -1;
+    for (const int i : wide_)
+      if (radius_[i] > kWide * radiusFor((at(end, i) - at(start, i)).norm())) square_[i] = -1;
   if (!adaptBalls(start, end)) {
     reset();
     return false;
   }
-  double farthest = 0;
-  for (std::size_t i = 0; i < radius_.size(); ++i) {
-    const double x = end[0][i] - checked_[0][i], y = end[1][i] - checked_[1][i], z = end[2][i] - checked_[2][i];
-    const double square = x * x + y * y + z * z;
-    farthest = square > farthest ? square : farthest;
-  }
-  if (still_ < 0 || farthest > still_ * still_ || (any_wide_cone_ && start != end)) adaptCones(start, end);
+  if (still_ < 0 || farthestSquare(end, checked_) > still_ * still_ || (any_wide_cone_ && start != end))
+    adaptCones(start, end);
   return true;
 }
 
 bool SelfContactBounds::adaptBalls(const NodeVectors& start, const NodeVectors& end) {
   const std::size_t n = radius_.size();
-  const auto leaves = [&](std::size_t i) {
-    const double x = end[0][i] - middle_[0][i], y = end[1][i] - middle_[1][i], z = end[2][i] - middle_[2][i];
-    return !(x * x + y * y + z * z <= square_[i]);
-  };
-  constexpr std::size_t kMany = 64;  // vertices: most groups of so many need nothing
+  const Components x = componentsOf(end, n), middle = componentsOf(middle_);
+  constexpr Eigen::Index kMany = 128;  // vertices: most groups of so many need nothing
+  Eigen::Array<double, Eigen::Dynamic, 1, 0, kMany, 1> beyond;
   for (std::size_t first = 0; first < n; first += kMany) {
-    const std::size_t last = std::min(first + kMany, n);
-    int count = 0;
-    for (std::size_t i = first; i < last; ++i) count += leaves(i) ? 1 : 0;
-    for (std::size_t i = first; count > 0 && i < last; ++i) {
-      if (!leaves(i)) continue;
-      if (!at(end, static_cast<int>(i)).allFinite()) return false;
-      moved_.push_back(static_cast<int>(i));
+    const auto from = static_cast<Eigen::Index>(first);
+    const Eigen::Index count = std::min<Eigen::Index>(kMany, static_cast<Eigen::Index>(n) - from);
+    const auto square = [&](std::size_t k) {
+      return (x[k].segment(from, count) - middle[k].segment(from, count)).square();
+    };
+    beyond = square(0) + square(1) + square(2) - Eigen::Map<const Eigen::ArrayXd>(&square_[first], count);
+    if (!std::isfinite(beyond.sum())) return false;
+    if (beyond.maxCoeff() <= 0) continue;
+    for (std::size_t i = first; i < first + static_cast<std::size_t>(count); ++i) {
+      if (beyond[static_cast<Eigen::Index>(i - first)] > 0) moved_.push_back(static_cast<int>(i));
     }
   }
   if (moved_.empty()) return true;
+  addNeighbours(start, end);
   wide_.erase(std::remove_if(wide_.begin(), wide_.end(), [this](int i) { return square_[i] < 0; }), wide_.end());
   for (const int i : moved_) moveBall(i, start, end);
   return true;
 }
 
-// Ahead of a slow vertex, so that it stays in the ball for long.
+// Balls of the same parts whose vertices have left the centre behind.
+void SelfContactBounds::addNeighbours(const NodeVectors& start, const NodeVectors& end) {
+  std::fill(part_moves_.begin(), part_moves_.end(), char{0});
+  for (const int i : moved_) part_moves_[part_[i]] = 1;
+  for (std::size_t k = 0, count = moved_.size(); k < part_.size(); ++k) {
+    const int i = static_cast<int>(k);
+    if (part_moves_[part_[k]] == 0 || (count > 0 && std::binary_search(moved_.begin(), moved_.begin() + count, i)))
+      continue;
+    const Eigen::Vector3d to = at(end, i);
+    if ((to - centre_[k]).dot(to - at(start, i)) > 0) moved_.push_back(i);
+  }
+}
+
+// Ahead of the vertex, so that it stays in the ball for long.
 void SelfContactBounds::moveBall(int vertex, const NodeVectors& start, const NodeVectors& end) {
-  const Eigen::Vector3d from = at(start, vertex), to = at(end, vertex), way = to - from;
+  const Eigen::Vector3d from = at(start, vertex), way = at(end, vertex) - from;
   const double length = way.norm();
   Eigen::Vector3d& centre = centre_[vertex];
-  centre = 0.5 * (from + to);
   double& radius = radius_[vertex];
-  radius = std::max(slack_, 0.5 * length + kSpare * slack_);
-  if (radius == slack_ && length > 0) centre = from + kLead * slack_ / length * way;
+  radius = radiusFor(length);
+  centre = from + std::max(0.5, length > 0 ? kLead * radius / length : 0) * way;
   for (int k = 0; k < 3; ++k) middle_[k][vertex] = centre[k];
   square_[vertex] = radius * radius;
   if (radius > kWide * slack_) wide_.push_back(vertex);
+}
+
+// Around a path of a length.
+double SelfContactBounds::radiusFor(double length) const {
+  return std::max(std::clamp(kSteps * length, slack_, kFarthest * slack_), 0.5 * length + kSpare * slack_);
 }
 
 SelfContactBounds::Area SelfContactBounds::areaOf(std::size_t first, const std::vector<float>& at) const {

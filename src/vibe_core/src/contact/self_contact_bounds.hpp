@@ -6,9 +6,9 @@
 
 namespace vibe {
 
-/// Bounds of a moving surface over a step: a ball around the straight path of each vertex, and a cone around the normals
-/// of each triangle along these paths. They are larger than necessary, so that most of them hold for several steps;
-/// adapt() renews only those that do not.
+/// Bounds of a moving surface over a step: a ball around the straight path of each vertex, and a cone around the
+/// normals of each triangle along these paths. They are larger than necessary, so that most of them hold for several
+/// steps; adapt() renews only those that do not.
 class SelfContactBounds {
  public:
   using NodeVectors = std::array<const double*, 3>;  ///< x, y and z of the vertices
@@ -18,8 +18,10 @@ class SelfContactBounds {
     float turn = 0;  ///< largest distance of the unit normals from it [1]; above 1: they may point anywhere
   };
 
+  /// @param part   per vertex, number of the part of the surface whose balls are renewed together, as far as it is
+  /// worth
   /// @param slack  radius of the balls of slow vertices [m]
-  SelfContactBounds(const std::vector<std::array<int, 3>>& triangles, std::size_t vertices, double slack);
+  SelfContactBounds(const std::vector<std::array<int, 3>>& triangles, std::vector<int> part, double slack);
 
   /// Renews the bounds that do not hold on the paths from `start` to `end`. Bounds of the paths that led to `start`, or
   /// of the point `start`, must have been the last, or `start` and `end` be the same arrays.
@@ -28,8 +30,8 @@ class SelfContactBounds {
   /// The next call of adapt() renews all.
   void reset();
 
-  const std::vector<int>& moved() const { return moved_; }    ///< vertices with a new ball
-  const std::vector<int>& turned() const { return turned_; }  ///< triangles with a new cone
+  const std::vector<int>& moved() const { return moved_; }                ///< vertices with a new ball
+  const std::vector<int>& turned() const { return turned_; }              ///< triangles with a new cone
   const std::vector<Eigen::Vector3d>& centre() const { return centre_; }  ///< of the balls [m]
   double radius(int vertex) const { return radius_[vertex]; }             ///< of the balls [m]
   const Cone& cone(int triangle) const { return cone_[triangle]; }
@@ -37,12 +39,16 @@ class SelfContactBounds {
  private:
   struct Area;
   bool adaptBalls(const NodeVectors& start, const NodeVectors& end);
+  void addNeighbours(const NodeVectors& start, const NodeVectors& end);
   void moveBall(int vertex, const NodeVectors& start, const NodeVectors& end);
   void adaptCones(const NodeVectors& start, const NodeVectors& end);
+  double radiusFor(double length) const;
   Area areaOf(std::size_t first, const std::vector<float>& at) const;
   float turnCone(int triangle, const NodeVectors& start, const NodeVectors& end);
 
   const std::vector<std::array<int, 3>>& triangles_;
+  std::vector<int> part_;
+  std::vector<char> part_moves_;
   double slack_;
   std::vector<int> moved_, turned_;
   std::vector<Eigen::Vector3d> centre_;

@@ -16,7 +16,8 @@ namespace {
 
 // Distance for which near vertices are listed, over the one that is asked for, and how much shorter the latter may get.
 // Design choice: the distance changes with the speed of the walls, and a new list costs much.
-constexpr double kSpare = 1.2, kTooFar = 0.3;
+constexpr double kSpare = 1.05, kTooFar = 0.3;
+constexpr float kRoundedDown = 1 - 1e-6F, kRoundedUp = 1 + 1e-6F;  // of a distance in single precision
 
 /// Distance between the parts of two triangles at one vertex that do not contain it [m].
 double fanDistance(std::array<int, 3> a, std::array<int, 3> b, const std::vector<Eigen::Vector3d>& at) {
@@ -43,8 +44,10 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& se
       cosine_(settings.cosine),
       floor_(settings.floor),
       rings_(triangles_, rest.vertices.size()),
-      bounds_(triangles_, rest.vertices.size(), settings.slack),
-      tree_(rest, rings_) {
+      tree_(rest, rings_),
+      bounds_(triangles_, tree_.parts(), settings.slack),
+      vertex_off_(rest.vertices.size()),
+      triangle_off_(triangles_.size()) {
   joinWalls(rest, settings.one_wall);
   tree_.setWalls([this](int v, int w) { return oneWall(v, w); });
 }
@@ -129,7 +132,19 @@ void SelfContactSearch::addNear(int owner, int triangle) {
     const double distance = distance_ + bounds_.radius(v) + radius(triangle);
     const TriangleFoot foot = triangleFoot(at[v], at[n[0]], at[n[1]], at[n[2]]);
     if (!(foot.away.squaredNorm() < distance * distance)) continue;
-    if (!oneWall(v, n[0]) && !oneWall(v, n[1]) && !oneWall(v, n[2])) new_near_.push_back({v, triangle});
+    if (!oneWall(v, n[0]) && !oneWall(v, n[1]) && !oneWall(v, n[2]))
+      new_near_.push_back({v, triangle, kRoundedDown * static_cast<float>(foot.away.norm())});
+  }
+}
+
+void SelfContactSearch::measure(const NodeVectors& at) {
+  if (near_.empty()) return;
+  for (std::size_t i = 0; i < vertex_off_.size(); ++i)
+    vertex_off_[i] =
+        kRoundedUp * static_cast<float>((Eigen::Vector3d(at[0][i], at[1][i], at[2][i]) - bounds_.centre()[i]).norm());
+  for (std::size_t t = 0; t < triangle_off_.size(); ++t) {
+    const auto& n = triangles_[t];
+    triangle_off_[t] = std::max({vertex_off_[n[0]], vertex_off_[n[1]], vertex_off_[n[2]]});
   }
 }
 

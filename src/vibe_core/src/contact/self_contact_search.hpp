@@ -20,6 +20,7 @@ class SelfContactSearch {
 
   struct Near {
     int vertex, triangle;
+    float distance;  ///< of the centres of their balls [m]
     bool operator<(const Near& other) const {
       return vertex < other.vertex || (vertex == other.vertex && triangle < other.triangle);
     }
@@ -47,12 +48,11 @@ class SelfContactSearch {
   /// All pairs of triangles without a common edge that may come nearer than the floor, ascending; with others. Small
   /// parts without overhang do not come near themselves.
   const std::vector<Meeting>& meetings() const { return meetings_; }
-  /// No more than the distance from p to a triangle, at any time [m^2].
-  float leastSquare(const Eigen::Vector3d& p, int triangle) const {
-    const SelfContactTree::Box& box = tree_.box(triangle);
-    Eigen::Array4f at = Eigen::Array4f::Zero();
-    at.head<3>() = p.cast<float>().array();
-    return (box.low - at).max(at + box.minus_high).max(0).matrix().squaredNorm();
+  /// Prepares leastDistance() for positions for which the lists hold.
+  void measure(const NodeVectors& at);
+  /// No more than the distance of a vertex from a triangle that is near() [m].
+  float leastDistance(const Near& near) const {
+    return near.distance - vertex_off_[near.vertex] - triangle_off_[near.triangle];
   }
 
   const VertexTriangles& rings() const { return rings_; }
@@ -71,11 +71,12 @@ class SelfContactSearch {
   std::vector<std::array<int, 3>> triangles_;
   double cosine_, floor_;
   VertexTriangles rings_;
-  SelfContactBounds bounds_;
   SelfContactTree tree_;
+  SelfContactBounds bounds_;
   std::vector<int> wall_start_, wall_;  // vertices of the same wall, ascending
   double distance_ = -1;                // for which near_ holds; < 0: both lists are to be made [m]
   int count_ = 0;
+  std::vector<float> vertex_off_, triangle_off_;  // from the centres of the balls in measure() [m]
   std::vector<Near> near_, new_near_, old_near_;
   std::vector<Meeting> meetings_, new_meetings_, old_meetings_;
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -15,6 +16,7 @@ constexpr int kLargestGraph = 64;  // triangles of a part that may count as free
                                    // wide as the part of the surface that counts as one wall
 constexpr float kLeastHeight = 0.1F;  // smallest cosine between normals and the direction without overhangs
 
+constexpr int kPart = 64;             // triangles of a part that is renewed together. Design choice: about 10 mm wide
 constexpr float kRounding = 2.4e-7F;  // of a position in single precision, twice over [1]
 
 using Box = SelfContactTree::Box;
@@ -32,7 +34,14 @@ SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles&
   std::vector<Eigen::Vector3d> centre;
   for (const auto& t : triangles_)
     centre.push_back((rest.vertices[t[0]] + rest.vertices[t[1]] + rest.vertices[t[2]]) / 3);
+  leaf_of_.resize(triangles_.size());
   if (!triangles_.empty()) build(0, static_cast<int>(order_.size()), centre);
+  parent_.assign(nodes_.size(), -1);
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const int index = static_cast<int>(n), right = limits_[n].right;
+    if (right != 0) parent_[n + 1] = parent_[right] = index;
+    for (int i = 0; right == 0 && i < nodes_[n].count; ++i) leaf_of_[order_[nodes_[n].first + i]] = index;
+  }
   box_.resize(triangles_.size());
   own_.resize(triangles_.size());
   around_.resize(triangles_.size());
@@ -92,26 +101,55 @@ bool SelfContactTree::isConnected(const Node& node) const {
   return count == node.count;
 }
 
+std::vector<int> SelfContactTree::parts() const {
+  std::vector<int> part(ring_.size(), 0);
+  int count = 0;
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    const Node& node = nodes_[n];
+    if (node.count > kPart || (n > 0 && nodes_[parent_[n]].count <= kPart)) continue;
+    for (int i = node.first; i < node.first + node.count; ++i)
+      for (const int v : triangles_[order_[i]]) part[v] = count;
+    ++count;
+  }
+  return part;
+}
+
 void SelfContactTree::adapt(const SelfContactBounds& bounds, bool all) {
   forgetChanges();
-  if (all) {
-    std::fill(changed_.begin(), changed_.end(), char{kEverything});
-  } else {
-    for (const int v : bounds.moved()) rings_.visit(v, [this](int t) { changed_[t] |= kBox; });
-    for (const int t : bounds.turned()) changed_[t] |= kOwn;
-  }
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    if (changed_[t] != 0) encloseTriangle(static_cast<int>(t), bounds);
+  markChanges(bounds, all);
+  for (const int t : renewed_) encloseTriangle(t, bounds);
   spread(bounds, all);
+  for (const int t : renewed_)
+    for (int n = leaf_of_[t]; n >= 0 && (limits_[n].changed | changed_[t]) != limits_[n].changed; n = parent_[n]) {
+      if (limits_[n].changed == 0) renewed_nodes_.push_back(n);
+      limits_[n].changed |= changed_[t];
+    }
+  std::sort(renewed_nodes_.begin(), renewed_nodes_.end(), std::greater<int>());
   joinChildren();
 }
 
 void SelfContactTree::forgetChanges() {
-  std::fill(changed_.begin(), changed_.end(), char{0});
-  for (std::size_t n = 0; n < limits_.size(); ++n) {
+  for (const int t : renewed_) changed_[t] = 0;
+  for (const int n : renewed_nodes_) {
     if ((limits_[n].changed & kOwn) != 0) nodes_[n].before = nodes_[n].own;
     limits_[n].changed = 0;
   }
+  renewed_.clear();
+  renewed_nodes_.clear();
+}
+
+void SelfContactTree::markChanges(const SelfContactBounds& bounds, bool all) {
+  if (all) {
+    for (std::size_t t = 0; t < triangles_.size(); ++t) mark(static_cast<int>(t), kEverything);
+  } else {
+    for (const int v : bounds.moved()) rings_.visit(v, [this](int t) { mark(t, kBox); });
+    for (const int t : bounds.turned()) mark(t, kOwn);
+  }
+}
+
+void SelfContactTree::mark(int triangle, char change) {
+  if (changed_[triangle] == 0) renewed_.push_back(triangle);
+  changed_[triangle] = static_cast<char>(changed_[triangle] | change);
 }
 
 void SelfContactTree::encloseTriangle(int triangle, const SelfContactBounds& bounds) {
@@ -145,7 +183,7 @@ void SelfContactTree::spread(const SelfContactBounds& bounds, bool all) {
     ring.axis.normalize();
     rings_.visit(v, [&](int t) {
       widen(own_[t], ring);
-      changed_[t] |= kAround;
+      mark(t, kAround);
     });
   };
   if (all) {
@@ -154,7 +192,7 @@ void SelfContactTree::spread(const SelfContactBounds& bounds, bool all) {
     for (const int t : bounds.turned())
       for (const int v : triangles_[t]) spreadOver(v);
   }
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+  for (const int t : renewed_) {
     if ((changed_[t] & kAround) == 0) continue;
     const auto& n = triangles_[t];
     around_[t] = {(ring_[n[0]].axis + ring_[n[1]].axis + ring_[n[2]].axis).normalized(), 1, 0};
@@ -182,16 +220,15 @@ SelfContactTree::Cone SelfContactTree::join(const Cone& a, const Cone& b) {
   return all;
 }
 
+// Of the nodes that have changed.
 void SelfContactTree::joinChildren() {
-  for (std::size_t n = nodes_.size(); n-- > 0;) {
+  for (const int n : renewed_nodes_) {
     Limits& limits = limits_[n];
     if (limits.right == 0) {
       joinTriangles(nodes_[n], limits, nodes_[n].own, nodes_[n].around);
       continue;
     }
     const Limits &a = limits_[n + 1], &b = limits_[limits.right];
-    limits.changed = static_cast<char>(a.changed | b.changed);
-    if (limits.changed == 0) continue;
     if ((limits.changed & kBox) != 0) limits.box = joinBoxes(a.box, b.box);
     const Node &one = nodes_[n + 1], &other = nodes_[limits.right];
     if ((limits.changed & kOwn) != 0) nodes_[n].own = join(one.own, other.own);
@@ -202,7 +239,6 @@ void SelfContactTree::joinChildren() {
 void SelfContactTree::joinTriangles(const Node& leaf, Limits& limits, Cone& own, Cone& around) const {
   const int* const first = &order_[leaf.first];
   const int* const last = first + leaf.count;
-  for (const int* t = first; t != last; ++t) limits.changed |= changed_[*t];
   if ((limits.changed & kBox) != 0) {
     limits.box = box_[*first];
     for (const int* t = first + 1; t != last; ++t) limits.box = joinBoxes(limits.box, box_[*t]);

@@ -12,12 +12,12 @@
 
 namespace vibe {
 
-/// Boxes around the triangles and cones around the normals of a moving surface in a binary tree. Its topology is that of the rest shape;
-/// adapt() renews what has changed. It finds pairs of triangles without visiting smooth parts of the surface: parts
-/// whose normals agree neither face each other nor cross (Volino, Magnenat-Thalmann 1994, "Efficient self-collision
-/// detection on smoothly discretized surface animations using geometrical shape regularity"), for moving triangles with
-/// the bounds of Tang, Curtis, Yoon, Manocha 2009, "ICCD: Interactive continuous collision detection between deformable
-/// models using connectivity-based culling", section 4.
+/// Boxes around the triangles and cones around the normals of a moving surface in a binary tree. Its topology is that
+/// of the rest shape; adapt() renews what has changed. It finds pairs of triangles without visiting smooth parts of the
+/// surface: parts whose normals agree neither face each other nor cross (Volino, Magnenat-Thalmann 1994, "Efficient
+/// self-collision detection on smoothly discretized surface animations using geometrical shape regularity"), for moving
+/// triangles with the bounds of Tang, Curtis, Yoon, Manocha 2009, "ICCD: Interactive continuous collision detection
+/// between deformable models using connectivity-based culling", section 4.
 class SelfContactTree {
  public:
   SelfContactTree(const SurfaceMesh& rest, const VertexTriangles& rings);
@@ -42,6 +42,8 @@ class SelfContactTree {
     float cosine = -1, sine = 0;  ///< of the angle from the axis to the side; cosine <= 0: any normals
   };
 
+  /// Per vertex, number of a small part of the surface.
+  std::vector<int> parts() const;
   /// Renews boxes and cones where the bounds have changed in their last adapt(); everywhere if `all`.
   void adapt(const SelfContactBounds& bounds, bool all);
 
@@ -58,9 +60,9 @@ class SelfContactTree {
       if (!keepsCosine(around_[a], around_[b], cosine)) visit(a, b);
     });
   }
-  /// Calls visit(a, b), a < b, for pairs of triangles that are nearer than about a distance, except where both belong to
-  /// a small connected part of the surface that has no overhang in some direction at any time. Only pairs of which one
-  /// hasNewPath(), or that were excepted before the last adapt().
+  /// Calls visit(a, b), a < b, for pairs of triangles that are nearer than about a distance, except where both belong
+  /// to a small connected part of the surface that has no overhang in some direction at any time. Only pairs of which
+  /// one hasNewPath(), or that were excepted before the last adapt().
   template <class Visit>
   void visitCrossing(float distance, Visit visit) const {
     const auto graph = [&](const Node& a, const Node& b) {
@@ -87,8 +89,8 @@ class SelfContactTree {
     char changed = 0;  // Change
   };
   struct Node {
-    Cone own, before, around;  // of the triangles; before the last adapt(); with those at their corners
-    int first, count;           // triangles in order_
+    Cone own, before, around;    // of the triangles; before the last adapt(); with those at their corners
+    int first, count;            // triangles in order_
     int first_vertex, vertices;  // in vertex_; none: too large or not connected
     bool one_wall;               // whether all its vertices belong to one wall
   };
@@ -111,6 +113,8 @@ class SelfContactTree {
   void listVertices(Node& node);
   bool isConnected(const Node& node) const;
   void forgetChanges();
+  void markChanges(const SelfContactBounds& bounds, bool all);
+  void mark(int triangle, char change);
   void encloseTriangle(int triangle, const SelfContactBounds& bounds);
   void spread(const SelfContactBounds& bounds, bool all);
   void joinChildren();
@@ -158,11 +162,13 @@ class SelfContactTree {
   const VertexTriangles& rings_;
   std::vector<Limits> limits_;  // of the nodes, parents before children
   std::vector<Node> nodes_;
-  std::vector<int> order_;                              // triangles
-  std::vector<int> vertex_;                             // ascending, of the nodes that have a list
-  std::vector<Box> box_;                                // per triangle
-  std::vector<Cone> own_, around_, ring_;         // per triangle, per triangle, per vertex
-  std::vector<char> changed_;                           // Change, per triangle
+  std::vector<int> order_;                    // triangles
+  std::vector<int> vertex_;                   // ascending, of the nodes that have a list
+  std::vector<Box> box_;                      // per triangle
+  std::vector<Cone> own_, around_, ring_;     // per triangle, per triangle, per vertex
+  std::vector<char> changed_;                 // Change, per triangle
+  std::vector<int> leaf_of_, parent_;         // per triangle, per node: node
+  std::vector<int> renewed_, renewed_nodes_;  // triangles, nodes with a change
   mutable std::vector<std::array<int, 3>> stack_;
 };
 
