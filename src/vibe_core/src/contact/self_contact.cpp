@@ -98,12 +98,8 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   area_ = vertexAreas(rest_);
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
-  SelfContactSearch::Settings settings;
-  settings.one_wall.assign(thickness_.size(), kOneWallThicknesses * max_thickness_);
-  settings.cosine = kFacingCosine;
-  settings.floor = kFloor * min_thickness_;
-  settings.slack = kSlack * max_thickness_;
-  memory_ = std::make_unique<SelfContactMemory>(rest_, settings);
+  memory_ = std::make_unique<SelfContactMemory>(rest_, kOneWallThicknesses * max_thickness_, kFacingCosine,
+                                                kFloor * min_thickness_, kSlack * max_thickness_);
 }
 
 SelfContact::~SelfContact() = default;

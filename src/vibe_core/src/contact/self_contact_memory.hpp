@@ -12,9 +12,13 @@ namespace vibe {
 /// Working memory of a SelfContact between the calls of a step.
 class SelfContactMemory {
  public:
-  SelfContactMemory(const SurfaceMesh& rest, const SelfContactSearch::Settings& settings)
-      : search(rest, settings),
-        paths(rest.triangles, settings.floor),
+  /// Distances [m].
+  /// @param one_wall  along edges within which the surface is one wall
+  /// @param slack     motion of a vertex for which what was found holds
+  SelfContactMemory(const SurfaceMesh& rest, double one_wall, double cosine, double floor, double slack)
+      : walls(rest, one_wall),
+        search(rest, {walls, cosine, floor, slack}),
+        paths(rest.triangles, walls, floor),
         position(rest.vertices),
         move(rest.vertices),
         whole(rest.vertices),
@@ -35,6 +39,7 @@ class SelfContactMemory {
     Eigen::Vector3d away;  ///< from the triangle to the vertex at detect() [m]
   };
 
+  SurfaceWalls walls;
   SelfContactSearch search;
   SelfContactPaths paths;
   std::array<std::vector<double>, 3> start, end;  // positions at detect(), after the step [m]

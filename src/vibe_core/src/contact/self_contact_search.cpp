@@ -3,10 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <queue>
-#include <utility>
 
 #include "contact/self_contact_distance.hpp"
 
@@ -41,6 +37,7 @@ double fanDistance(std::array<int, 3> a, std::array<int, 3> b, const std::vector
 
 SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& settings)
     : triangles_(rest.triangles),
+      walls_(settings.walls),
       cosine_(settings.cosine),
       floor_(settings.floor),
       rings_(triangles_, rest.vertices.size()),
@@ -48,49 +45,7 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& se
       bounds_(triangles_, tree_.parts(), settings.slack),
       vertex_off_(rest.vertices.size()),
       triangle_off_(triangles_.size()) {
-  joinWalls(rest, settings.one_wall);
-  tree_.setWalls([this](int v, int w) { return oneWall(v, w); });
-}
-
-// Dijkstra's shortest paths along edges from every vertex, and all vertices within two edges.
-void SelfContactSearch::joinWalls(const SurfaceMesh& rest, const std::vector<double>& one_wall) {
-  const auto neighbours = vertexNeighbours(rest);
-  const int n = static_cast<int>(rest.vertices.size());
-  std::vector<double> length(n, std::numeric_limits<double>::infinity());
-  std::vector<int> touched;
-  using Entry = std::pair<double, int>;
-  wall_start_.assign(1, 0);
-  for (int i = 0; i < n; ++i) {
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-    length[i] = 0;
-    queue.push({0, i});
-    touched.assign(1, i);
-    while (!queue.empty()) {
-      const auto [far, v] = queue.top();
-      queue.pop();
-      if (far > length[v]) continue;
-      for (const int w : neighbours[v]) {
-        const double there = far + (rest.vertices[v] - rest.vertices[w]).norm();
-        if (there > one_wall[i] || there >= length[w]) continue;
-        if (std::isinf(length[w])) touched.push_back(w);
-        length[w] = there;
-        queue.push({there, w});
-      }
-    }
-    for (const int v : touched) length[v] = std::numeric_limits<double>::infinity();
-    for (const int v : neighbours[i]) {
-      touched.push_back(v);
-      touched.insert(touched.end(), neighbours[v].begin(), neighbours[v].end());
-    }
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    wall_.insert(wall_.end(), touched.begin(), touched.end());
-    wall_start_.push_back(static_cast<int>(wall_.size()));
-  }
-}
-
-bool SelfContactSearch::oneWall(int vertex, int other) const {
-  return std::binary_search(wall_.begin() + wall_start_[vertex], wall_.begin() + wall_start_[vertex + 1], other);
+  tree_.setWalls(walls_);
 }
 
 bool SelfContactSearch::adapt(const NodeVectors& start, const NodeVectors& end, double distance) {
@@ -132,7 +87,7 @@ void SelfContactSearch::addNear(int owner, int triangle) {
     const double distance = distance_ + bounds_.radius(v) + radius(triangle);
     const TriangleFoot foot = triangleFoot(at[v], at[n[0]], at[n[1]], at[n[2]]);
     if (!(foot.away.squaredNorm() < distance * distance)) continue;
-    if (!oneWall(v, n[0]) && !oneWall(v, n[1]) && !oneWall(v, n[2]))
+    if (!walls_.oneWall(v, n[0]) && !walls_.oneWall(v, n[1]) && !walls_.oneWall(v, n[2]))
       new_near_.push_back({v, triangle, kRoundedDown * static_cast<float>(foot.away.norm())});
   }
 }

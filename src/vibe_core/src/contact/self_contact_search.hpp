@@ -6,6 +6,7 @@
 
 #include "contact/self_contact_bounds.hpp"
 #include "contact/self_contact_tree.hpp"
+#include "contact/surface_walls.hpp"
 #include "contact/vertex_triangles.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
@@ -27,10 +28,10 @@ class SelfContactSearch {
   };
   /// Distances [m], cosine of an angle between normals [1].
   struct Settings {
-    std::vector<double> one_wall;  ///< per vertex, distance along edges within which the surface is the same wall
-    double cosine;                 ///< of walls that face each other, at most
-    double floor;                  ///< of triangles that may not come nearer
-    double slack;                  ///< motion of a vertex for which the lists hold
+    const SurfaceWalls& walls;  ///< outlives the search
+    double cosine;              ///< of walls that face each other, at most
+    double floor;               ///< of triangles that may not come nearer
+    double slack;               ///< motion of a vertex for which the lists hold
   };
 
   SelfContactSearch(const SurfaceMesh& rest, const Settings& settings);
@@ -59,8 +60,6 @@ class SelfContactSearch {
   int count() const { return count_; }  ///< of the calls of adapt() that had to renew parts of the lists
 
  private:
-  void joinWalls(const SurfaceMesh& rest, const std::vector<double>& one_wall);
-  bool oneWall(int vertex, int other) const;
   void renewNear();
   void addNear(int owner, int triangle);
   void renewMeetings();
@@ -69,12 +68,12 @@ class SelfContactSearch {
   double radius(int triangle) const;
 
   std::vector<std::array<int, 3>> triangles_;
+  const SurfaceWalls& walls_;
   double cosine_, floor_;
   VertexTriangles rings_;
   SelfContactTree tree_;
   SelfContactBounds bounds_;
-  std::vector<int> wall_start_, wall_;  // vertices of the same wall, ascending
-  double distance_ = -1;                // for which near_ holds; < 0: both lists are to be made [m]
+  double distance_ = -1;  // for which near_ holds; < 0: both lists are to be made [m]
   int count_ = 0;
   std::vector<float> vertex_off_, triangle_off_;  // from the centres of the balls in measure() [m]
   std::vector<Near> near_, new_near_, old_near_;

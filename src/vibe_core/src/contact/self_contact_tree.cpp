@@ -101,6 +101,14 @@ bool SelfContactTree::isConnected(const Node& node) const {
   return count == node.count;
 }
 
+void SelfContactTree::setWalls(const SurfaceWalls& walls) {
+  for (Node& node : nodes_) {
+    const int *first = vertex_.data() + node.first_vertex, *last = first + node.vertices;
+    const auto nearAll = [&](int v) { return std::all_of(first, last, [&](int w) { return walls.oneWall(v, w); }); };
+    node.one_wall = node.vertices > 0 && std::all_of(first, last, nearAll);
+  }
+}
+
 std::vector<int> SelfContactTree::parts() const {
   std::vector<int> part(ring_.size(), 0);
   int count = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/self_contact_bounds.hpp"
+#include "contact/surface_walls.hpp"
 #include "contact/vertex_triangles.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
@@ -22,15 +23,7 @@ class SelfContactTree {
  public:
   SelfContactTree(const SurfaceMesh& rest, const VertexTriangles& rings);
   /// Says which vertices belong to one wall, which does not face itself.
-  template <class OneWall>
-  void setWalls(const OneWall& one_wall) {
-    for (Node& node : nodes_) {
-      const int *first = vertex_.data() + node.first_vertex, *last = first + node.vertices;
-      node.one_wall = node.vertices > 0 && std::all_of(first, last, [&](int v) {
-                        return std::all_of(first, last, [&](int w) { return one_wall(v, w); });
-                      });
-    }
-  }
+  void setWalls(const SurfaceWalls& walls);
 
   /// Fourth components are 0.
   struct Box {
