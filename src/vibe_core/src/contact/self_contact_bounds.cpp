@@ -53,12 +53,6 @@ Components componentsOf(const std::array<std::vector<double>, 3>& x) {
   return componentsOf({x[0].data(), x[1].data(), x[2].data()}, x[0].size());
 }
 
-/// Square of the largest distance between two sets of points [m^2].
-double farthestSquare(const SelfContactBounds::NodeVectors& x, const std::array<std::vector<double>, 3>& from) {
-  const Components a = componentsOf(x, from[0].size()), b = componentsOf(from);
-  return ((a[0] - b[0]).square() + (a[1] - b[1]).square() + (a[2] - b[2]).square()).maxCoeff();
-}
-
 /// Four values per vertex, as a group of triangles reads them.
 void pack(const SelfContactBounds::NodeVectors& x, std::vector<float>& packed) {
   for (std::size_t i = 0; 4 * i < packed.size(); ++i)
@@ -111,28 +105,30 @@ bool SelfContactBounds::adapt(const NodeVectors& start, const NodeVectors& end) 
     reset();
     return false;
   }
-  if (still_ < 0 || farthestSquare(end, checked_) > still_ * still_ || (any_wide_cone_ && start != end))
-    adaptCones(start, end);
+  if (still_ < 0 || farthest_ > still_ * still_ || (any_wide_cone_ && start != end)) adaptCones(start, end);
   return true;
 }
 
 bool SelfContactBounds::adaptBalls(const NodeVectors& start, const NodeVectors& end) {
-  const std::size_t n = radius_.size();
-  const Components x = componentsOf(end, n), middle = componentsOf(middle_);
+  const auto n = static_cast<Eigen::Index>(radius_.size());
+  const Components x = componentsOf(end, radius_.size()), middle = componentsOf(middle_),
+                   checked = componentsOf(checked_);
+  const Eigen::Map<const Eigen::ArrayXd> allowed(square_.data(), n);
+  farthest_ = 0;
   constexpr Eigen::Index kMany = 128;  // vertices: most groups of so many need nothing
-  Eigen::Array<double, Eigen::Dynamic, 1, 0, kMany, 1> beyond;
-  for (std::size_t first = 0; first < n; first += kMany) {
-    const auto from = static_cast<Eigen::Index>(first);
-    const Eigen::Index count = std::min<Eigen::Index>(kMany, static_cast<Eigen::Index>(n) - from);
-    const auto square = [&](std::size_t k) {
-      return (x[k].segment(from, count) - middle[k].segment(from, count)).square();
+  Eigen::Array<double, Eigen::Dynamic, 1, 0, kMany, 1> squares;
+  for (Eigen::Index first = 0; first < n; first += kMany) {
+    const Eigen::Index count = std::min<Eigen::Index>(kMany, n - first);
+    const auto square = [&](const Components& from, std::size_t k) {
+      return (x[k].segment(first, count) - from[k].segment(first, count)).square();
     };
-    beyond = square(0) + square(1) + square(2) - Eigen::Map<const Eigen::ArrayXd>(&square_[first], count);
-    if (!std::isfinite(beyond.sum())) return false;
-    if (beyond.maxCoeff() <= 0) continue;
-    for (std::size_t i = first; i < first + static_cast<std::size_t>(count); ++i) {
-      if (beyond[static_cast<Eigen::Index>(i - first)] > 0) moved_.push_back(static_cast<int>(i));
-    }
+    squares = square(checked, 0) + square(checked, 1) + square(checked, 2);
+    farthest_ = std::max(farthest_, squares.maxCoeff());
+    squares = square(middle, 0) + square(middle, 1) + square(middle, 2) - allowed.segment(first, count);
+    if (!std::isfinite(squares.sum())) return false;
+    if (squares.maxCoeff() <= 0) continue;
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (squares[i] > 0) moved_.push_back(static_cast<int>(first + i));
   }
   if (moved_.empty()) return true;
   addNeighbours(start, end);

@@ -59,7 +59,8 @@ class SelfContactBounds {
   std::array<std::vector<float>, 3> normal_;  // of the cones, by component; in groups of 8, as the next ones
   std::vector<float> turn_, cosine_;          // of the cones: their width, and the least cosine with the normal in them
   bool any_wide_cone_ = false;
-  double still_ = -1;  // vertices may be so far from their ends at the last check of the normals; < 0: check [m]
+  double farthest_ = 0;  // square of the largest distance of a vertex from there [m^2]
+  double still_ = -1;    // vertices may be so far from their ends at the last check of the normals; < 0: check [m]
   std::array<std::vector<double>, 3> checked_;  // these ends [m]
   std::vector<float> start_, end_;              // of the paths, four values per vertex [m]
 };
