@@ -13,7 +13,8 @@ namespace {
 // half the wall while they touch. Design choice: far from crossing, and a scope in a stomach of a few thousand
 // particles needs none [1].
 constexpr double kLeast = 0.25;
-// Stretch of the wall for which that is so. Design choice: that of an insufflated stomach [1].
+// Stretch of the wall for which that is so at least, so that edges have the same points from step to step; points are
+// added where the wall is stretched more. Design choice: that of an insufflated stomach [1].
 constexpr double kStretch = 1.15;
 // Parts of a triangle through which a shape already passes, because it was put there: points within are pushed aside.
 constexpr int kPierced = 4;
@@ -148,7 +149,9 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
     if (excluded[n[0]] != 0 && excluded[n[1]] != 0 && excluded[n[2]] != 0) continue;
     int most = pair.approach.nearest == 0 ? kPierced : 1;
     for (std::size_t k = 0; k < 3; ++k) {
-      const int parts = partsOf(shape, length_[static_cast<std::size_t>(pair.triangle)][k]);
+      const double length = (path.start(n[(k + 1) % 3]) - path.start(n[k])).norm();
+      const int parts =
+          partsOf(shape, std::max(length, kStretch * length_[static_cast<std::size_t>(pair.triangle)][k]));
       most = std::max(most, parts);
       const int across = neighbour_[pair.triangle][k];
       if (parts > 1 && !(across >= 0 && pair_of_[across] >= 0 && across < pair.triangle))
@@ -164,7 +167,7 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
 int SurfaceContacts::partsOf(int shape, double length) const {
   const double radius = tool_.radius(shape), touching = radius + half_, least = radius + kLeast * half_;
   const double spacing = std::sqrt(3 * (touching * touching - least * least));
-  return std::clamp(static_cast<int>(std::ceil(kStretch * length / spacing)), 1, kMaxParts);
+  return std::clamp(static_cast<int>(std::ceil(length / spacing)), 1, kMaxParts);
 }
 
 void SurfaceContacts::addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge,

@@ -32,9 +32,6 @@ struct ToolApproach {
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor);
 
-/// A bound of how much nearer a shape and a triangle can come in the step [m].
-double closingDistance(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle);
-
 /// Pairs of shapes and triangles whose ways through a step come near each other.
 class NearTriangles {
  public:

@@ -19,6 +19,11 @@ ToolDisplacement ToolMotion::displacement(double fraction) const {
   return displacement;
 }
 
+void ToolMotion::stop(double fraction) {
+  end_ = inputs(fraction);
+  end_displacement_ = displacement(fraction);
+}
+
 void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
   tool_->forwardKinematics(inputs(fraction), displacement(fraction), poses);
   for (Eigen::Isometry3d& pose : poses) pose = base_ * pose;

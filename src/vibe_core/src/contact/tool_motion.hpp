@@ -23,6 +23,10 @@ class ToolMotion {
         end_displacement_(displacement) {}
 
   void displaceEnd(const ToolDisplacement& displacement) { end_displacement_ = displacement; }
+  /// The motion ends at a fraction [0, 1] of the way.
+  void stop(double fraction);
+  /// One input ends elsewhere.
+  void moveEnd(int input, double position) { end_[static_cast<std::size_t>(input)] = position; }
   const ToolDisplacement& startDisplacement() const { return start_displacement_; }
 
   /// Pose of every link in world at a fraction [0, 1] of the step.

@@ -221,14 +221,14 @@ void ImplicitStep::keepToolApart() {
       a{&state_.ax, &state_.ay, &state_.az};
   SurfacePath path;
   for (std::size_t k = 0; k < 3; ++k) path.from[k] = scratch_.start[k].data(), path.to[k] = x[k]->data();
-  const ToolMotion& motion = yielded_ ? *yielded_ : *motion_;
-  const ToolGuard::Free free = scratch_.guard->keepApart(scratch_.poses, motion, path);
-  state_.joints = motion.inputs(free.tool);
-  if (yielded_) report_.tool_displacement = motion.displacement(free.tool);
-  if (free.wall >= 1) return;
+  ToolMotion motion = yielded_ ? *yielded_ : *motion_;
+  const double free = scratch_.guard->keepApart(scratch_.poses, motion, path);
+  state_.joints = motion.inputs(1);
+  if (yielded_) report_.tool_displacement = motion.displacement(1);
+  if (free >= 1) return;
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < x[k]->size(); ++i) {
-      const double move = free.wall * ((*x[k])[i] - scratch_.start[k][i]);
+      const double move = free * ((*x[k])[i] - scratch_.start[k][i]);
       (*x[k])[i] = scratch_.start[k][i] + move;
       (*v[k])[i] = move / context_.step;
       (*a[k])[i] = 0;
