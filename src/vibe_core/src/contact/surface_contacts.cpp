@@ -13,6 +13,12 @@ namespace {
 // half the wall while they touch. Design choice: far from crossing, and a scope in a stomach of a few thousand
 // particles needs none [1].
 constexpr double kLeast = 0.25;
+// Where a triangle is nearer than this share of half the wall, its nearest point is a contact as well, which keeps
+// kLeast. Design choice: what points between vertices are meant to keep, and more than what the guard of the tool does
+// (tool_guard) [1].
+constexpr double kNearestPoint = 0.5;
+// Least weight of vertices that can give way at such a point [1].
+constexpr double kGivesWay = 0.1;
 // Stretch of the wall for which that is so at least, so that edges have the same points from step to step; points are
 // added where the wall is stretched more. Design choice: that of an insufflated stomach [1].
 constexpr double kStretch = 1.15;
@@ -108,6 +114,7 @@ const std::vector<SurfaceContact>& SurfaceContacts::find(const std::vector<Eigen
     followPairs(path, margin, first, last);
     addVertices(path, margin, shape, excluded);
     addBetween(path, margin, shape, excluded);
+    addNearest(shape, excluded);
     for (const Pair& pair : pairs_) pair_of_[pair.triangle] = -1;
   }
   removeDuplicates();
@@ -158,6 +165,21 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
         addEdge(path, margin, shape, pair, static_cast<int>(k), parts);
     }
     if (most > 2) addInterior(path, margin, shape, pair, most);
+  }
+}
+
+// What the points leave: none of them is where the wall is nearest.
+void SurfaceContacts::addNearest(int shape, const std::vector<char>& excluded) {
+  for (const Pair& pair : pairs_) {
+    const TriangleGap& gap = pair.approach.start;
+    const std::array<int, 3>& n = triangles_[pair.triangle];
+    const double half = halfThickness(n, gap.weight);
+    if (gap.distance - tool_.radius(shape) > kNearestPoint * half) continue;
+    double gives_way = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (excluded[n[k]] == 0) gives_way += gap.weight[static_cast<int>(k)];
+    if (gives_way < kGivesWay) continue;
+    add({3, n, {gap.weight[0], gap.weight[1], gap.weight[2]}}, shape, 0, gap, kLeast * half);
   }
 }
 

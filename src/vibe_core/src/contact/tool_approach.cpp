@@ -59,6 +59,7 @@ ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path,
   ToolApproach result;
   result.fraction = 0;
   result.gap = tool.gap(shape, 0, triangleAt(path, triangle, 0));
+  result.start = result.gap;
   result.nearest = result.gap.distance;
   const double kept = kKept * (result.gap.distance - floor);
   for (int advance = 0; advance < kAdvances && result.fraction < 1; ++advance) {

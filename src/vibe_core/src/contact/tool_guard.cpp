@@ -37,14 +37,14 @@ double ToolGuard::keepApart(ToolPoses& poses, ToolMotion& motion, const SurfaceP
     motion.stop(stop < kStops ? kPart * free : 0);
     free = freePart(poses, motion, path);
   }
-  free = moveJoints(poses, wanted, path, free, motion);
+  SurfacePath rest = path;
+  rest.part *= free;
+  moveJoints(poses, wanted, rest, motion);
   motion.linkPoses(1, poses.end);
   return free;
 }
 
-// @param free  part of the wall's path with the present motion
-double ToolGuard::moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, double free,
-                             ToolMotion& motion) {
+void ToolGuard::moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, ToolMotion& motion) {
   const auto target = wanted.inputs(1);
   for (int j = 0; j < kJointCount; ++j)
     for (const double part : kJointParts) {
@@ -52,13 +52,10 @@ double ToolGuard::moveJoints(ToolPoses& poses, const ToolMotion& wanted, const S
       if (to == from) continue;
       ToolMotion tried = motion;
       tried.moveEnd(j, to);
-      const double left = freePart(poses, tried, path);
-      if (left < free) continue;
-      free = left;
+      if (freePart(poses, tried, path) < 1) continue;
       motion = tried;
       break;
     }
-  return free;
 }
 
 double ToolGuard::freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {

@@ -29,8 +29,7 @@ class ToolGuard {
 
  private:
   double freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path);
-  double moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, double free,
-                    ToolMotion& motion);
+  void moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, ToolMotion& motion);
   double freePart(const NearTriangles::Pair& pair, const SurfacePath& path) const;
 
   std::vector<double> thickness_;

@@ -60,4 +60,14 @@ std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::
                                               const std::array<double, kJointCount>& end,
                                               const std::array<double, kScopeJointCount>& effort);
 
+/// The same with joints that tissue has stopped a moment ago: the hand does not push them on in that direction.
+/// @param stall  steps for which that holds, with the sign of the direction; 0: not stopped
+std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>& start,
+                                           const std::array<double, kJointCount>& end,
+                                           const std::array<int, kJointCount>& stall);
+
+/// State::stall after a step.
+/// @param stopped  sign of the motion of each joint that tissue has stopped in the step, 0: it has not
+void updateStall(const std::array<int, kJointCount>& stopped, std::array<int, kJointCount>& stall);
+
 }  // namespace vibe

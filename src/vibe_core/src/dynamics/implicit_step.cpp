@@ -36,6 +36,10 @@ constexpr int kCheckEvery = 10;
 // rest is motion and what else pulls.
 constexpr double kHeldPart = 0.5;
 
+// Share of its way below which a joint counts as stopped. Design choice: a joint that makes a tenth of its way pushes
+// on [1].
+constexpr double kStopped = 0.1;
+
 void stopMotion(State& state) {
   for (auto* v : {&state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az})
     std::fill(v->begin(), v->end(), 0.0);
@@ -224,6 +228,10 @@ void ImplicitStep::keepToolApart() {
   ToolMotion motion = yielded_ ? *yielded_ : *motion_;
   const double free = scratch_.guard->keepApart(scratch_.poses, motion, path);
   state_.joints = motion.inputs(1);
+  const auto start = motion_->inputs(0), wanted = motion_->inputs(1);
+  for (std::size_t j = 0; j < start.size(); ++j)
+    if (std::abs(state_.joints[j] - start[j]) < kStopped * std::abs(wanted[j] - start[j]))
+      report_.stopped[j] = wanted[j] > start[j] ? 1 : -1;
   if (yielded_) report_.tool_displacement = motion.displacement(1);
   if (free >= 1) return;
   for (std::size_t k = 0; k < 3; ++k)
