@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "contact/contact_check.hpp"
 #include "contact/self_contact.hpp"
@@ -90,16 +91,17 @@ class Recorder {
   int countPairs(const State& state) {
     const Model& model = simulation_.model();
     if (!model.scene.tissue.self_contact) return 0;
-    SelfContact contact(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus);
-    contact.detect({state.x.data(), state.y.data(), state.z.data()},
-                   {state.vx.data(), state.vy.data(), state.vz.data()}, 0, 0);
-    return static_cast<int>(contact.pairs().size());
+    if (!contact_) contact_.emplace(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus);
+    contact_->detect({state.x.data(), state.y.data(), state.z.data()},
+                     {state.vx.data(), state.vy.data(), state.vz.data()}, 0, 0);
+    return static_cast<int>(contact_->pairs().size());
   }
 
   const ContactCase& one_;
   Simulation simulation_;
   ContactCheck check_;
   ContactTrace trace_;
+  std::optional<SelfContact> contact_;
   bool first_ = true;
 };
 

@@ -43,6 +43,7 @@ class HardCases {
   HardCase setOverSet() const;
   HardCase pressureSteps() const;
   HardCase sleeve() const;
+  std::vector<std::vector<WallSpot>> sleeveSets() const;
   double insertionAtContact(const std::shared_ptr<const Model>& model, State& state) const;
   std::shared_ptr<const Model> withScene(const Scene& scene, const std::string& urdf) const;
   void addSet(const std::vector<WallSpot>& spots, const StepInput& hold, HardCase& hard) const;

@@ -25,6 +25,7 @@ constexpr double kReach = 8e-3;         // of it, so that it takes hold on coars
 constexpr double kSleeveTension = 8;    // [N]
 constexpr double kSleeveSpeed = 0.06;   // of the cinch [m/s]
 constexpr double kSleeveWidth = 0.085;  // half, along the wall: beyond the scope [m]
+constexpr double kSleeveLength = 0.15;  // over the length of the body; half of it where there are three [1]
 constexpr double kStrongTissue = 100;   // bites that do not tear out [N]
 constexpr double kSleeveTime = 8;       // of a cinch [s]
 constexpr double kShortest = 0.3, kLongest = 1.5;  // time of a random motion [s]
@@ -220,6 +221,21 @@ HardCase HardCases::wind() const {
   return hard;
 }
 
+// In the middle of the body, where it is widest.
+std::vector<std::vector<WallSpot>> HardCases::sleeveSets() const {
+  const SurfaceView wall{model_->organ.surface.triangles, settled_.x, settled_.y, settled_.z};
+  const WallPlan plan(model_->organ, wall);
+  const double length = brief_ ? kSleeveLength : kSleeveLength / 2;
+  std::vector<std::vector<WallSpot>> sets;
+  for (const int k : brief_ ? std::vector<int>{0} : std::vector<int>{-1, 0, 1}) {
+    const double from = 0.5 + 2 * k * length - length / 2;
+    sets.emplace_back();
+    for (const auto& [along, across] : {std::pair(0, -1), {0, 1}, {1, 1}, {1, -1}})
+      sets.back().push_back(plan.at((from + along * length) * plan.length(), across * kSleeveWidth));
+  }
+  return sets;
+}
+
 // Wide sets whose threads draw the walls around the scope.
 HardCase HardCases::sleeve() const {
   HardCase hard = begin();
@@ -233,8 +249,7 @@ HardCase HardCases::sleeve() const {
   hard.start.time = 0;
   hard.returns = false;
   const StepInput inside = holdAt(hard.start);
-  const int sets = brief_ ? 1 : 3;
-  for (const auto& spots : setsOf(sets, 4, kSleeveWidth, brief_ ? 0.15 : 0.4)) addSet(spots, inside, hard);
+  for (const auto& spots : sleeveSets()) addSet(spots, inside, hard);
   for (HardPhase& phase : hard.phases)
     if (phase.name == "cinch" && !brief_) phase.duration = kSleeveTime;
   StepInput outside = inside;

@@ -27,16 +27,16 @@ constexpr double kFriction = 0.05;
 // Speed of sliding from which friction is that of Coulomb; below it is viscous, as of a film of mucus. Design choice: a
 // tenth of the usual speed of folds that are drawn together [m/s].
 constexpr double kSlidingSpeed = 5e-3;
-// Stretch of an edge in a step because one of its nodes stops earlier than the other on its path. Design choice: a tenth,
-// which a step can resolve [1].
+// Stretch of an edge in a step because one of its nodes stops earlier than the other on its path. Design choice: a
+// tenth, which a step can resolve [1].
 constexpr double kStretch = 0.1;
 constexpr double kFewer = 1e-3;  // part of it that is not worth another change
 constexpr int kSweeps = 100;     // over the triangles, while stops spread
 // Searches of fast paths until all moves are given up, and those before nodes that still collide are stopped in place.
 constexpr int kSearches = 20, kPatience = 4;
-// Motion of a node until the next search, in thicknesses, so that most steps need none: of walls that face each other,
-// whose normals must not turn much, and of triangles that may meet.
-constexpr double kNearSlack = 0.1, kMeetingSlack = 0.1;
+// Motion of a node until the next search around it, in thicknesses. Design choice: small enough that what is found is
+// little more than what is near, large enough that slow nodes need few searches.
+constexpr double kSlack = 0.3;
 constexpr double kFloor = 0.05;  // minimum distance of walls, in thicknesses
 
 struct Squeeze {
@@ -85,23 +85,6 @@ void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double
                 " Pa; it must be above 0.");
 }
 
-/// Square of the largest distance between two sets of points; not finite if one of them is not [m^2].
-double farthest(const std::array<std::vector<double>, 3>& from, const double* const* to, std::size_t count) {
-  double max[4] = {0, 0, 0, 0}, sum[4] = {0, 0, 0, 0};  // four independent sums: the only cost for walls far apart
-  const double *a = from[0].data(), *b = from[1].data(), *c = from[2].data();
-  const auto add = [&](std::size_t i, std::size_t k) {
-    const double x = to[0][i] - a[i], y = to[1][i] - b[i], z = to[2][i] - c[i];
-    const double square = x * x + y * y + z * z;
-    sum[k] += square;
-    max[k] = square > max[k] ? square : max[k];
-  };
-  std::size_t i = 0;
-  for (; i + 4 <= count; i += 4)
-    for (std::size_t k = 0; k < 4; ++k) add(i + k, k);
-  for (; i < count; ++i) add(i, 0);
-  return std::max(std::max(max[0], max[1]), std::max(max[2], max[3])) + 0 * (sum[0] + sum[1] + sum[2] + sum[3]);
-}
-
 Eigen::Vector3d at(const double* positions4, int node) {
   const double* p = positions4 + 4 * static_cast<std::size_t>(node);
   return {p[0], p[1], p[2]};
@@ -115,13 +98,15 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   area_ = vertexAreas(rest_);
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
-  near_slack_ = kNearSlack * max_thickness_;
-  meeting_slack_ = kMeetingSlack * max_thickness_;
-  memory_ = std::make_unique<SelfContactMemory>(
-      rest_, std::vector<double>(thickness_.size(), kOneWallThicknesses * max_thickness_), kFloor * min_thickness_);
+  memory_ = std::make_unique<SelfContactMemory>(rest_, kOneWallThicknesses * max_thickness_, kFacingCosine,
+                                                kFloor * min_thickness_, kSlack * max_thickness_);
 }
 
 SelfContact::~SelfContact() = default;
+
+int SelfContact::searchCount() const {
+  return memory_->search.count();
+}
 
 void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reach, double lead) {
   if (isStart(x, v) && reach == reach_ && lead == lead_) return;
@@ -129,13 +114,10 @@ void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reac
   lead_ = lead;
   pairs_.clear();
   energy_ = 0;
-  if (!start(x, v, moved_)) {
-    searched_reach_ = -1;
-    memory_->near.clear();
-    return;
-  }
-  if (searched_reach_ < reach || moved_ > near_slack_) search(reach);
-  addPairs(reach);
+  start(x, v);
+  const SelfContactSearch::NodeVectors at = SelfContactMemory::view(memory_->start);
+  found_ = memory_->search.adapt(at, at, (1 + kOnset) * max_thickness_ + reach);
+  if (found_) addPairs(reach);
 }
 
 // The end of a step is usually the start of the next.
@@ -149,29 +131,13 @@ bool SelfContact::isStart(const NodeVectors& x, const NodeVectors& v) const {
   return true;
 }
 
-// Stores the positions and computes their distance from those of the last search.
-bool SelfContact::start(const NodeVectors& x, const NodeVectors& v, double& moved) {
+void SelfContact::start(const NodeVectors& x, const NodeVectors& v) {
   SelfContactMemory& m = *memory_;
   const std::size_t n = thickness_.size();
   for (std::size_t k = 0; k < 3; ++k) {
     std::copy(x[k], x[k] + n, m.start[k].begin());
     std::copy(v[k], v[k] + n, m.speed[k].begin());
   }
-  const double largest = farthest(m.searched, x.data(), n);
-  moved = std::sqrt(largest);
-  return std::isfinite(largest);
-}
-
-void SelfContact::search(double reach) {
-  ++searches_;
-  SelfContactMemory& m = *memory_;
-  for (int k = 0; k < 3; ++k) m.searched[k] = m.start[k];
-  moved_ = 0;
-  searched_reach_ = reach + near_slack_;
-  for (std::size_t i = 0; i < m.position.size(); ++i) m.position[i] = m.at(static_cast<int>(i));
-  m.search.findNear(m.position, (1 + kOnset) * max_thickness_ + searched_reach_, near_slack_, kFacingCosine, m.found);
-  m.near.clear();
-  for (const SelfContactSearch::Near& near : m.found) m.near.push_back({near, Eigen::Vector3d::Zero()});
 }
 
 double SelfContact::meanThickness(int vertex, int triangle) const {
@@ -189,43 +155,58 @@ double SelfContact::facing(int vertex, int triangle) const {
     return (m.at(n[1]) - a).cross(m.at(n[2]) - a);
   };
   Eigen::Vector3d own = Eigen::Vector3d::Zero();
-  m.search.visitRing(vertex, [&](int t) { own += areaVector(t); });
+  m.search.rings().visit(vertex, [&](int t) { own += areaVector(t); });
   const Eigen::Vector3d other = areaVector(triangle);
   const double size = std::sqrt(own.squaredNorm() * other.squaredNorm());
   return size > 0 ? std::clamp(1 - own.dot(other) / (kFacingCosine * size), 0.0, 1.0) : 0;
 }
 
-// For a vertex, the nearest triangle that faces it, and the nearest on the opposite side.
 void SelfContact::addPairs(double reach) {
-  std::vector<SelfContactMemory::Approach>& near = memory_->near;
+  const std::vector<SelfContactSearch::Near>& near = memory_->search.near();
+  memory_->search.measure(SelfContactMemory::view(memory_->start));
   for (std::size_t first = 0, next; first < near.size(); first = next) {
-    const int vertex = near[first].near.vertex;
-    const Eigen::Vector3d p = memory_->at(vertex);
-    int best[2] = {-1, -1};
-    double best_facing[2] = {0, 0};
-    for (next = first; next < near.size() && near[next].near.vertex == vertex; ++next) {
-      const auto& n = rest_.triangles[near[next].near.triangle];
-      near[next].away = triangleFoot(p, memory_->at(n[0]), memory_->at(n[1]), memory_->at(n[2])).away;
-    }
-    for (int side = 0; side < 2 && (side == 0 || best[0] >= 0); ++side) {
-      double min = std::numeric_limits<double>::infinity();
-      for (std::size_t k = first; k < next; ++k) {
-        const double distance = near[k].away.norm();
-        if (distance >= min || (side == 1 && near[k].away.dot(near[best[0]].away) >= 0)) continue;
-        if (distance >= (1 + kOnset) * meanThickness(vertex, near[k].near.triangle) + reach) continue;
-        const double faces = facing(vertex, near[k].near.triangle);
-        if (faces == 0) continue;
-        min = distance;
-        best[side] = static_cast<int>(k);
-        best_facing[side] = faces;
-      }
-      if (best[side] >= 0) addPair(best[side], best_facing[side]);
-    }
+    const int vertex = near[first].vertex;
+    for (next = first + 1; next < near.size() && near[next].vertex == vertex;) ++next;
+    collectApproaches(vertex, first, next, reach);
+    if (!memory_->approaches.empty()) addPairsOf(vertex, reach);
   }
 }
 
-void SelfContact::addPair(int near, double facing) {
-  const auto [vertex, triangle] = memory_->near[near].near;
+// The triangles of a part of the list of what is near that are as near as the thickest walls in contact.
+void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t next, double reach) {
+  SelfContactMemory& m = *memory_;
+  m.approaches.clear();
+  const Eigen::Vector3d p = m.at(vertex);
+  const double farthest = (1 + kOnset) * max_thickness_ + reach;
+  for (std::size_t k = first; k < next; ++k) {
+    const SelfContactSearch::Near& near = m.search.near()[k];
+    if (m.search.leastDistance(near) > farthest) continue;
+    const auto& n = rest_.triangles[near.triangle];
+    m.approaches.push_back({near.triangle, triangleFoot(p, m.at(n[0]), m.at(n[1]), m.at(n[2])).away});
+  }
+}
+
+// The nearest triangle that faces the vertex, and the nearest on the opposite side.
+void SelfContact::addPairsOf(int vertex, double reach) {
+  const std::vector<SelfContactMemory::Approach>& near = memory_->approaches;
+  const SelfContactMemory::Approach* best[2] = {nullptr, nullptr};
+  for (int side = 0; side < 2 && (side == 0 || best[0] != nullptr); ++side) {
+    double min = std::numeric_limits<double>::infinity(), best_facing = 0;
+    for (const SelfContactMemory::Approach& one : near) {
+      const double distance = one.away.norm();
+      if (distance >= min || (side == 1 && one.away.dot(best[0]->away) >= 0)) continue;
+      if (distance >= (1 + kOnset) * meanThickness(vertex, one.triangle) + reach) continue;
+      const double faces = facing(vertex, one.triangle);
+      if (faces == 0) continue;
+      min = distance;
+      best[side] = &one;
+      best_facing = faces;
+    }
+    if (best[side] != nullptr) addPair(vertex, best[side]->triangle, best_facing);
+  }
+}
+
+void SelfContact::addPair(int vertex, int triangle, double facing) {
   const auto& n = rest_.triangles[triangle];
   const TriangleFoot foot = triangleFoot(memory_->at(vertex), memory_->at(n[0]), memory_->at(n[1]), memory_->at(n[2]));
   const auto& r = rest_.vertices;
@@ -300,31 +281,44 @@ Eigen::Vector3d SelfContact::slidSince(const Pair& pair, const Eigen::Vector3d& 
 const std::vector<int>& SelfContact::resolvePenetrations(const MotionView& motion, double step) {
   stopped_.clear();
   SelfContactMemory& m = *memory_;
-  if (searched_reach_ < 0 || !startPaths(motion)) return stopped_;
-  if (!m.slow) {
-    shortenFastPaths();
-  } else if (m.meetings.empty() || !m.paths.shorten(m.position, m.meetings, false, m.move)) {
-    return stopped_;
-  }
+  if (!startPaths(motion) || !shortenPaths()) return stopped_;
   for (std::size_t i = 0; i < m.position.size(); ++i) {
-    if (m.move[i] == Eigen::Vector3d(motion.x[0][i], motion.x[1][i], motion.x[2][i]) - m.position[i]) continue;
+    if (m.move[i] == m.whole[i]) continue;
     stop(motion, static_cast<int>(i), m.position[i] + m.move[i], step);
     stopped_.push_back(static_cast<int>(i));
   }
   return stopped_;
 }
 
-// Paths that become shorter by different parts may meet others: they are searched again until nothing changes.
-void SelfContact::shortenFastPaths() {
+// Finds the pairs of triangles that may meet, and sets positions and moves if there are some.
+// @returns false if nothing can meet, or the paths are not finite
+bool SelfContact::startPaths(const MotionView& motion) {
   SelfContactMemory& m = *memory_;
-  m.whole = m.move;
+  const std::array<const double*, 3> end{motion.x[0], motion.x[1], motion.x[2]};
+  found_ = found_ && m.search.adapt(SelfContactMemory::view(m.start), end, (1 + kOnset) * max_thickness_ + reach_);
+  if (!found_ || m.search.meetings().empty()) return false;
+  for (std::size_t i = 0; i < m.position.size(); ++i) {
+    m.position[i] = m.at(static_cast<int>(i));
+    m.whole[i] = Eigen::Vector3d(end[0][i], end[1][i], end[2][i]) - m.position[i];
+    m.move[i] = m.whole[i];
+  }
+  return true;
+}
+
+// Paths that become shorter by different parts may meet others: they are searched again until nothing changes.
+// @returns whether any was shortened
+bool SelfContact::shortenPaths() {
+  SelfContactMemory& m = *memory_;
   for (int search = 0; search < kSearches; ++search) {
-    for (std::size_t i = 0; i < m.end.size(); ++i) m.end[i] = m.position[i] + m.move[i];
-    m.search.findMeetings(m.position, m.end, kFloor * min_thickness_, 0, m.swept);
-    if (!m.paths.shorten(m.position, m.swept, search >= kPatience, m.move)) return;
+    if (!m.paths.shorten(m.position, m.search.meetings(), search >= kPatience, m.move)) return search > 0;
     spreadStops();
+    for (std::size_t i = 0; i < m.move.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) m.end[k][i] = m.position[i][k] + m.move[i][k];
+    m.search.adapt(SelfContactMemory::view(m.start), SelfContactMemory::view(m.end),
+                   (1 + kOnset) * max_thickness_ + reach_);
   }
   std::fill(m.move.begin(), m.move.end(), Eigen::Vector3d::Zero());
+  return true;
 }
 
 // Nodes around one that stops slow down, so that its triangles are not torn apart.
@@ -350,29 +344,6 @@ void SelfContact::spreadStops() {
         changed = true;
       }
   }
-}
-
-// Sets positions and moves, and finds the pairs of triangles that may meet if the paths are short.
-// @returns false if nothing can meet, or the paths are not finite
-bool SelfContact::startPaths(const MotionView& motion) {
-  SelfContactMemory& m = *memory_;
-  const std::size_t n = thickness_.size();
-  const double* start[3] = {m.start[0].data(), m.start[1].data(), m.start[2].data()};
-  const double slack2 = meeting_slack_ * meeting_slack_;
-  const double* const* end = motion.x.data();
-  m.slow = met_ && farthest(m.met, start, n) <= slack2 && farthest(m.met, end, n) <= slack2;
-  if (m.slow && m.meetings.empty()) return false;
-  const double longest2 = farthest(m.start, end, n);
-  if (!std::isfinite(longest2)) return false;
-  for (std::size_t i = 0; i < n; ++i) {
-    m.position[i] = m.at(static_cast<int>(i));
-    m.move[i] = Eigen::Vector3d(end[0][i], end[1][i], end[2][i]) - m.position[i];
-  }
-  if (m.slow || longest2 > slack2) return true;
-  for (int k = 0; k < 3; ++k) m.met[k] = m.start[k];
-  met_ = m.slow = true;
-  m.search.findMeetings(m.position, m.position, kFloor * min_thickness_, meeting_slack_, m.meetings);
-  return true;
 }
 
 void SelfContact::stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const {

@@ -87,20 +87,21 @@ class SelfContact : public EnergyTerm {
 
   const std::vector<Pair>& pairs() const { return pairs_; }
   bool acts() const override { return !pairs_.empty(); }
-  int searchCount() const { return searches_; }  ///< detect() calls that needed a search
+  int searchCount() const;  ///< how often the lists of what may be near had to be renewed
 
  private:
   bool isStart(const NodeVectors& x, const NodeVectors& v) const;
-  bool start(const NodeVectors& x, const NodeVectors& v, double& moved);
+  void start(const NodeVectors& x, const NodeVectors& v);
   static Eigen::Vector3d awayAt(const Pair& pair, const double* positions4);
   static Eigen::Vector3d slidSince(const Pair& pair, const Eigen::Vector3d& away);
-  void search(double reach);
   void addPairs(double reach);
-  void addPair(int near, double facing);
+  void collectApproaches(int vertex, std::size_t first, std::size_t next, double reach);
+  void addPairsOf(int vertex, double reach);
+  void addPair(int vertex, int triangle, double facing);
   double meanThickness(int vertex, int triangle) const;
   double facing(int vertex, int triangle) const;
   bool startPaths(const MotionView& motion);
-  void shortenFastPaths();
+  bool shortenPaths();
   void spreadStops();
   void stop(const MotionView& motion, int node, const Eigen::Vector3d& end, double step) const;
 
@@ -108,15 +109,11 @@ class SelfContact : public EnergyTerm {
   std::vector<double> thickness_;
   double stiffness_;  // E' [Pa]
   double min_thickness_ = 0, max_thickness_ = 0;
-  double near_slack_ = 0, meeting_slack_ = 0;  // motion of a node until the next search [m]
-  std::vector<double> area_;                   // per vertex at rest [m^2]
+  std::vector<double> area_;  // per vertex at rest [m^2]
   std::unique_ptr<SelfContactMemory> memory_;
-  double searched_reach_ = -1;    // of the last search [m]; < 0: none yet
   double reach_ = -1, lead_ = 0;  // of the last detect() [m], [s]
+  bool found_ = false;            // whether the positions at the last detect() were finite
   double energy_ = 0;
-  bool met_ = false;  // meetings were searched
-  double moved_ = 0;  // largest distance of a node at detect() from its position at the last search [m]
-  int searches_ = 0;
   std::vector<Pair> pairs_;
   std::vector<int> stopped_;
 };

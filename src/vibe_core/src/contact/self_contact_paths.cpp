@@ -9,12 +9,15 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRounds = 5;           // of shortening, before nodes that still collide are stopped in place
-constexpr int kStops = 200;          // rounds of stopping, before all nodes are stopped
-constexpr int kAdvances = 30;        // steps towards a collision
-constexpr double kEnough = 1e-3;     // part of a path below which an advance is the last
-constexpr double kNearest = 0.9;     // remaining fraction of a distance below the floor
-constexpr double kLeast = 1e-6;      // distance that never gets smaller: far above rounding [m]
+constexpr int kRounds = 5;        // of shortening, before nodes that still collide are stopped in place
+constexpr int kStops = 200;       // rounds of stopping, before all nodes are stopped
+constexpr int kAdvances = 30;     // steps towards a collision
+constexpr double kEnough = 1e-3;  // part of a path below which an advance is the last
+constexpr double kNearest = 0.9;  // remaining fraction of a distance below the floor
+constexpr double kLeast = 1e-6;   // distance that never gets smaller: far above rounding [m]
+// Distance of parts of one wall. Design choice: so small that a part without overhang does not come so near to itself
+// unless its triangles degenerate, and need not be searched [m].
+constexpr double kLeastInWall = 1e-5;
 constexpr double kTouching = 1e-10;  // nearer parts touch from the start, and are let go [m]
 
 using Points = std::array<Eigen::Vector3d, 4>;
@@ -40,8 +43,9 @@ bool has(const std::array<int, 3>& triangle, int vertex) {
 
 }  // namespace
 
-SelfContactPaths::SelfContactPaths(const std::vector<std::array<int, 3>>& triangles, double floor)
-    : triangles_(triangles), floor_(floor) {}
+SelfContactPaths::SelfContactPaths(const std::vector<std::array<int, 3>>& triangles, const SurfaceWalls& walls,
+                                   double floor)
+    : triangles_(triangles), walls_(walls), floor_(floor) {}
 
 bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const std::vector<Pair>& pairs, bool stop,
                                std::vector<Eigen::Vector3d>& move) {
@@ -165,13 +169,21 @@ bool SelfContactPaths::shortenPrimitive(const Primitive& primitive, bool stop) {
   return true;
 }
 
+bool SelfContactPaths::isOneWall(const Primitive& primitive) const {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(primitive.split); ++i)
+    for (std::size_t j = primitive.split; j < 4; ++j)
+      if (!walls_.oneWall(primitive.node[i], primitive.node[j])) return false;
+  return true;
+}
+
 double SelfContactPaths::freePart(const Primitive& primitive) const {
   Points at;
   for (std::size_t k = 0; k < 4; ++k) at[k] = (*start_)[primitive.node[k]];
   Eigen::Vector3d away = connection(at, primitive.split);
   double distance = away.norm();
   if (distance < kTouching) return 1;
-  const double floor = std::min(distance, std::max(kLeast, std::min(floor_, kNearest * distance)));
+  const double least = isOneWall(primitive) ? kLeastInWall : std::max(kLeast, floor_);
+  const double floor = std::min(distance, std::max(kLeast, std::min(least, kNearest * distance)));
   double part = 0;
   for (int advance = 0; advance < kAdvances; ++advance) {
     double next = 2;

@@ -4,6 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "contact/surface_walls.hpp"
+
 namespace vibe {
 
 /// Straight paths of the nodes of a surface, shortened so that no part of the surface passes through another.
@@ -16,8 +18,9 @@ class SelfContactPaths {
  public:
   using Pair = std::array<int, 2>;  ///< two triangles
 
-  /// @param floor  minimum distance [m]
-  SelfContactPaths(const std::vector<std::array<int, 3>>& triangles, double floor);
+  /// @param walls  parts of one wall are only kept from touching
+  /// @param floor  minimum distance of different walls [m]
+  SelfContactPaths(const std::vector<std::array<int, 3>>& triangles, const SurfaceWalls& walls, double floor);
 
   /// Triangles that cross at the start may pass each other and their neighbours, so that they can come apart.
   /// @param pairs  all that may come nearer than the floor
@@ -41,9 +44,11 @@ class SelfContactPaths {
   bool shortenPair(int one, int other, bool stop);
   bool shortenPrimitive(const Primitive& primitive, bool stop);
   double freePart(const Primitive& primitive) const;
+  bool isOneWall(const Primitive& primitive) const;
   Eigen::Vector3d normal(int triangle) const;
 
   const std::vector<std::array<int, 3>>& triangles_;
+  const SurfaceWalls& walls_;
   double floor_;
   const std::vector<Eigen::Vector3d>* start_ = nullptr;
   std::vector<Eigen::Vector3d>* move_ = nullptr;

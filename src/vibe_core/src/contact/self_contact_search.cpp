@@ -3,16 +3,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <queue>
-#include <utility>
 
 #include "contact/self_contact_distance.hpp"
 
 namespace vibe {
 
 namespace {
+
+// Distance for which near vertices are listed, over the one that is asked for, and how much shorter the latter may get.
+// Design choice: the distance changes with the speed of the walls, and a new list costs much.
+constexpr double kSpare = 1.05, kTooFar = 0.3;
+constexpr float kRoundedDown = 1 - 1e-6F, kRoundedUp = 1 + 1e-6F;  // of a distance in single precision
 
 /// Distance between the parts of two triangles at one vertex that do not contain it [m].
 double fanDistance(std::array<int, 3> a, std::array<int, 3> b, const std::vector<Eigen::Vector3d>& at) {
@@ -34,120 +35,118 @@ double fanDistance(std::array<int, 3> a, std::array<int, 3> b, const std::vector
 
 }  // namespace
 
-SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const std::vector<double>& one_wall)
-    : triangles_(rest.triangles), tree_(rest) {
-  const std::size_t n = rest.vertices.size();
-  triangle_start_.assign(n + 1, 0);
-  for (const auto& t : triangles_)
-    for (const int v : t) ++triangle_start_[v + 1];
-  for (std::size_t i = 0; i < n; ++i) triangle_start_[i + 1] += triangle_start_[i];
-  triangle_of_.resize(3 * triangles_.size());
-  std::vector<int> next(triangle_start_.begin(), triangle_start_.end() - 1);
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (const int v : triangles_[t]) triangle_of_[next[v]++] = static_cast<int>(t);
-  joinWalls(rest, one_wall);
+SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& settings)
+    : triangles_(rest.triangles),
+      walls_(settings.walls),
+      cosine_(settings.cosine),
+      floor_(settings.floor),
+      rings_(triangles_, rest.vertices.size()),
+      tree_(rest, rings_),
+      bounds_(triangles_, tree_.parts(), settings.slack),
+      vertex_off_(rest.vertices.size()),
+      triangle_off_(triangles_.size()) {
+  tree_.setWalls(walls_);
 }
 
-// Dijkstra's shortest paths along edges from every vertex, and all vertices within two edges.
-void SelfContactSearch::joinWalls(const SurfaceMesh& rest, const std::vector<double>& one_wall) {
-  const auto neighbours = vertexNeighbours(rest);
-  const int n = static_cast<int>(rest.vertices.size());
-  std::vector<double> length(n, std::numeric_limits<double>::infinity());
-  std::vector<int> touched;
-  using Entry = std::pair<double, int>;
-  wall_start_.assign(1, 0);
-  for (int i = 0; i < n; ++i) {
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-    length[i] = 0;
-    queue.push({0, i});
-    touched.assign(1, i);
-    while (!queue.empty()) {
-      const auto [far, v] = queue.top();
-      queue.pop();
-      if (far > length[v]) continue;
-      for (const int w : neighbours[v]) {
-        const double there = far + (rest.vertices[v] - rest.vertices[w]).norm();
-        if (there > one_wall[i] || there >= length[w]) continue;
-        if (std::isinf(length[w])) touched.push_back(w);
-        length[w] = there;
-        queue.push({there, w});
-      }
-    }
-    for (const int v : touched) length[v] = std::numeric_limits<double>::infinity();
-    for (const int v : neighbours[i]) {
-      touched.push_back(v);
-      touched.insert(touched.end(), neighbours[v].begin(), neighbours[v].end());
-    }
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    wall_.insert(wall_.end(), touched.begin(), touched.end());
-    wall_start_.push_back(static_cast<int>(wall_.size()));
+bool SelfContactSearch::adapt(const NodeVectors& start, const NodeVectors& end, double distance) {
+  const bool all = distance > distance_ || distance < kTooFar * distance_;
+  if (all) bounds_.reset();
+  if (!bounds_.adapt(start, end)) {
+    distance_ = -1;
+    return false;
   }
+  if (bounds_.moved().empty() && bounds_.turned().empty()) return true;
+  if (all) distance_ = kSpare * distance;
+  ++count_;
+  tree_.adapt(bounds_, all);
+  renewNear();
+  renewMeetings();
+  return true;
 }
 
-bool SelfContactSearch::oneWall(int vertex, int other) const {
-  return std::binary_search(wall_.begin() + wall_start_[vertex], wall_.begin() + wall_start_[vertex + 1], other);
-}
-
-void SelfContactSearch::findNear(const std::vector<Eigen::Vector3d>& positions, double distance, double slack,
-                                 float cosine, std::vector<Near>& found) {
-  found.clear();
-  tree_.enclose(positions, positions, 0.5 * distance, slack, true);
-  tree_.visitFacing(cosine, [&](int one, int other) {
-    addNear(one, other, positions, distance + 2 * slack, found);
-    addNear(other, one, positions, distance + 2 * slack, found);
+void SelfContactSearch::renewNear() {
+  old_near_.clear();
+  for (const Near& near : near_)
+    if (!tree_.hasNewNear(rings_.first(near.vertex)) && !tree_.hasNewNear(near.triangle)) old_near_.push_back(near);
+  new_near_.clear();
+  tree_.visitFacing(static_cast<float>(cosine_), static_cast<float>(distance_), [this](int one, int other) {
+    addNear(one, other);
+    addNear(other, one);
   });
-  std::sort(found.begin(), found.end());
+  std::sort(new_near_.begin(), new_near_.end());
+  near_.resize(old_near_.size() + new_near_.size());
+  std::merge(old_near_.begin(), old_near_.end(), new_near_.begin(), new_near_.end(), near_.begin());
 }
 
 // Each vertex belongs to the first of its triangles.
-void SelfContactSearch::addNear(int owner, int triangle, const std::vector<Eigen::Vector3d>& positions, double distance,
-                                std::vector<Near>& found) const {
+void SelfContactSearch::addNear(int owner, int triangle) {
   const auto& n = triangles_[triangle];
+  const std::vector<Eigen::Vector3d>& at = bounds_.centre();
   for (const int v : triangles_[owner]) {
-    if (triangle_of_[triangle_start_[v]] != owner) continue;
-    const TriangleFoot foot = triangleFoot(positions[v], positions[n[0]], positions[n[1]], positions[n[2]]);
+    if (rings_.first(v) != owner) continue;
+    const double distance = distance_ + bounds_.radius(v) + radius(triangle);
+    const TriangleFoot foot = triangleFoot(at[v], at[n[0]], at[n[1]], at[n[2]]);
     if (!(foot.away.squaredNorm() < distance * distance)) continue;
-    if (!oneWall(v, n[0]) && !oneWall(v, n[1]) && !oneWall(v, n[2])) found.push_back({v, triangle});
+    if (!walls_.oneWall(v, n[0]) && !walls_.oneWall(v, n[1]) && !walls_.oneWall(v, n[2]))
+      new_near_.push_back({v, triangle, kRoundedDown * static_cast<float>(foot.away.norm())});
   }
 }
 
-// By a plane parallel to one of the triangles or between their centres, all the time.
-bool SelfContactSearch::apart(int one, int other, const std::vector<Eigen::Vector3d>& start,
-                              const std::vector<Eigen::Vector3d>& end, double distance) const {
+void SelfContactSearch::measure(const NodeVectors& at) {
+  if (near_.empty()) return;
+  for (std::size_t i = 0; i < vertex_off_.size(); ++i)
+    vertex_off_[i] =
+        kRoundedUp * static_cast<float>((Eigen::Vector3d(at[0][i], at[1][i], at[2][i]) - bounds_.centre()[i]).norm());
+  for (std::size_t t = 0; t < triangle_off_.size(); ++t) {
+    const auto& n = triangles_[t];
+    triangle_off_[t] = std::max({vertex_off_[n[0]], vertex_off_[n[1]], vertex_off_[n[2]]});
+  }
+}
+
+double SelfContactSearch::radius(int triangle) const {
+  const auto& n = triangles_[triangle];
+  return std::max({bounds_.radius(n[0]), bounds_.radius(n[1]), bounds_.radius(n[2])});
+}
+
+void SelfContactSearch::renewMeetings() {
+  old_meetings_.clear();
+  for (const Meeting& pair : meetings_)
+    if (!tree_.hasNewPath(pair[0]) && !tree_.hasNewPath(pair[1])) old_meetings_.push_back(pair);
+  new_meetings_.clear();
+  tree_.visitCrossing(static_cast<float>(floor_), [this](int one, int other) {
+    if (mayMeet(one, other)) new_meetings_.push_back({one, other});
+  });
+  std::sort(new_meetings_.begin(), new_meetings_.end());
+  meetings_.resize(old_meetings_.size() + new_meetings_.size());
+  const auto end = std::set_union(old_meetings_.begin(), old_meetings_.end(), new_meetings_.begin(),
+                                  new_meetings_.end(), meetings_.begin());
+  meetings_.erase(end, meetings_.end());
+}
+
+bool SelfContactSearch::mayMeet(int one, int other) const {
+  const double distance = floor_ + radius(one) + radius(other);
+  int shared = 0;
+  for (const int v : triangles_[one])
+    for (const int w : triangles_[other]) shared += v == w ? 1 : 0;
+  if (shared == 0) return !apart(one, other, distance);
+  return shared == 1 && fanDistance(triangles_[one], triangles_[other], bounds_.centre()) < distance;
+}
+
+// By a plane parallel to one of the triangles or between their centres.
+bool SelfContactSearch::apart(int one, int other, double distance) const {
   const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
-  const auto separates = [&](const Eigen::Vector3d& direction, const std::vector<Eigen::Vector3d>& at) {
+  const std::vector<Eigen::Vector3d>& at = bounds_.centre();
+  const auto separates = [&](const Eigen::Vector3d& direction) {
     const double p = direction.dot(at[a[0]]), q = direction.dot(at[a[1]]), r = direction.dot(at[a[2]]),
                  s = direction.dot(at[b[0]]), t = direction.dot(at[b[1]]), u = direction.dot(at[b[2]]);
     const double gap = distance * direction.norm();
-    if (std::min({p, q, r}) - std::max({s, t, u}) > gap) return 1;
-    return std::min({s, t, u}) - std::max({p, q, r}) > gap ? -1 : 0;
+    return std::min({p, q, r}) - std::max({s, t, u}) > gap || std::min({s, t, u}) - std::max({p, q, r}) > gap;
   };
   const auto normal = [&](const std::array<int, 3>& t) -> Eigen::Vector3d {
-    return (start[t[1]] - start[t[0]]).cross(start[t[2]] - start[t[0]]);
+    return (at[t[1]] - at[t[0]]).cross(at[t[2]] - at[t[0]]);
   };
-  const Eigen::Vector3d between = (start[a[0]] + start[a[1]] + start[a[2]]) - (start[b[0]] + start[b[1]] + start[b[2]]);
-  for (const Eigen::Vector3d& direction : {between, normal(a), normal(b)}) {
-    const int side = separates(direction, start);
-    if (side != 0 && (&start == &end || separates(direction, end) == side)) return true;
-  }
-  return false;
-}
-
-void SelfContactSearch::findMeetings(const std::vector<Eigen::Vector3d>& start, const std::vector<Eigen::Vector3d>& end,
-                                     double floor, double slack, std::vector<std::array<int, 2>>& found) {
-  found.clear();
-  tree_.enclose(start, end, 0.5 * floor, slack, false);
-  tree_.visitCrossing([&](int one, int other) {
-    int shared = 0;
-    for (const int v : triangles_[one])
-      for (const int w : triangles_[other]) shared += v == w ? 1 : 0;
-    if ((shared == 1 && (slack == 0 || fanDistance(triangles_[one], triangles_[other], start) < floor + 2 * slack)) ||
-        (shared == 0 && !apart(one, other, start, end, floor + 2 * slack)))
-
-      found.push_back({one, other});
-  });
-  std::sort(found.begin(), found.end());
+  return separates((at[a[0]] + at[a[1]] + at[a[2]]) - (at[b[0]] + at[b[1]] + at[b[2]])) || separates(normal(a)) ||
+         separates(normal(b));
 }
 
 }  // namespace vibe

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numeric>
 
 namespace vibe {
@@ -14,30 +16,44 @@ constexpr int kLargestGraph = 64;  // triangles of a part that may count as free
                                    // wide as the part of the surface that counts as one wall
 constexpr float kLeastHeight = 0.1F;  // smallest cosine between normals and the direction without overhangs
 
-using Directions = SelfContactTree::Directions;
+constexpr int kPart = 64;             // triangles of a part that is renewed together. Design choice: about 10 mm wide
+constexpr float kRounding = 2.4e-7F;  // of a position in single precision, twice over [1]
 
-Directions join(const Directions& a, const Directions& b) {
-  return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high), std::max(a.turn, b.turn)};
+using Box = SelfContactTree::Box;
+
+Box joinBoxes(const Box& a, const Box& b) {
+  return {a.low.min(b.low), a.minus_high.min(b.minus_high)};
 }
 
 }  // namespace
 
-SelfContactTree::SelfContactTree(const SurfaceMesh& rest) : triangles_(rest.triangles) {
+SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles& rings)
+    : triangles_(rest.triangles), rings_(rings) {
   order_.resize(triangles_.size());
   std::iota(order_.begin(), order_.end(), 0);
   std::vector<Eigen::Vector3d> centre;
   for (const auto& t : triangles_)
     centre.push_back((rest.vertices[t[0]] + rest.vertices[t[1]] + rest.vertices[t[2]]) / 3);
+  leaf_of_.resize(triangles_.size());
   if (!triangles_.empty()) build(0, static_cast<int>(order_.size()), centre);
+  parent_.assign(nodes_.size(), -1);
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const int index = static_cast<int>(n), right = limits_[n].right;
+    if (right != 0) parent_[n + 1] = parent_[right] = index;
+    for (int i = 0; right == 0 && i < nodes_[n].count; ++i) leaf_of_[order_[nodes_[n].first + i]] = index;
+  }
   box_.resize(triangles_.size());
-  directions_.resize(triangles_.size());
-  ring_directions_.resize(rest.vertices.size());
+  own_.resize(triangles_.size());
+  around_.resize(triangles_.size());
+  changed_.resize(triangles_.size());
+  ring_.resize(rest.vertices.size());
 }
 
 // Halves at the median along the longest extent.
 int SelfContactTree::build(int first, int count, const std::vector<Eigen::Vector3d>& centre) {
   const int index = static_cast<int>(nodes_.size());
-  nodes_.push_back({{}, {}, first, count, 0, 0, 0});
+  limits_.emplace_back();
+  nodes_.push_back({{}, {}, {}, first, count, 0, 0, false});
   listVertices(nodes_[index]);
   if (count <= kLeaf) return index;
   Eigen::Vector3d low = centre[order_[first]], high = low;
@@ -52,7 +68,7 @@ int SelfContactTree::build(int first, int count, const std::vector<Eigen::Vector
   });
   build(first, count / 2, centre);
   const int right = build(first + count / 2, count - count / 2, centre);
-  nodes_[index].right = right;
+  limits_[index].right = right;
   return index;
 }
 
@@ -85,86 +101,169 @@ bool SelfContactTree::isConnected(const Node& node) const {
   return count == node.count;
 }
 
-void SelfContactTree::enclose(const std::vector<Eigen::Vector3d>& start, const std::vector<Eigen::Vector3d>& end,
-                              double margin, double slack, bool rings) {
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    encloseTriangle(static_cast<int>(t), start, end, margin + slack, slack);
-  if (rings) spreadOverRings();
+void SelfContactTree::setWalls(const SurfaceWalls& walls) {
+  for (Node& node : nodes_) {
+    const int *first = vertex_.data() + node.first_vertex, *last = first + node.vertices;
+    const auto nearAll = [&](int v) { return std::all_of(first, last, [&](int w) { return walls.oneWall(v, w); }); };
+    node.one_wall = node.vertices > 0 && std::all_of(first, last, nearAll);
+  }
+}
+
+std::vector<int> SelfContactTree::parts() const {
+  std::vector<int> part(ring_.size(), 0);
+  int count = 0;
   for (std::size_t n = nodes_.size(); n-- > 0;) {
-    Node& node = nodes_[n];
-    if (node.right != 0) {
-      const Node &a = nodes_[n + 1], &b = nodes_[node.right];
-      node.box = {a.box.low.cwiseMin(b.box.low), a.box.high.cwiseMax(b.box.high)};
-      node.directions = join(a.directions, b.directions);
+    const Node& node = nodes_[n];
+    if (node.count > kPart || (n > 0 && nodes_[parent_[n]].count <= kPart)) continue;
+    for (int i = node.first; i < node.first + node.count; ++i)
+      for (const int v : triangles_[order_[i]]) part[v] = count;
+    ++count;
+  }
+  return part;
+}
+
+void SelfContactTree::adapt(const SelfContactBounds& bounds, bool all) {
+  forgetChanges();
+  markChanges(bounds, all);
+  for (const int t : renewed_) encloseTriangle(t, bounds);
+  spread(bounds, all);
+  for (const int t : renewed_)
+    for (int n = leaf_of_[t]; n >= 0 && (limits_[n].changed | changed_[t]) != limits_[n].changed; n = parent_[n]) {
+      if (limits_[n].changed == 0) renewed_nodes_.push_back(n);
+      limits_[n].changed |= changed_[t];
+    }
+  std::sort(renewed_nodes_.begin(), renewed_nodes_.end(), std::greater<int>());
+  joinChildren();
+}
+
+void SelfContactTree::forgetChanges() {
+  for (const int t : renewed_) changed_[t] = 0;
+  for (const int n : renewed_nodes_) {
+    if ((limits_[n].changed & kOwn) != 0) nodes_[n].before = nodes_[n].own;
+    limits_[n].changed = 0;
+  }
+  renewed_.clear();
+  renewed_nodes_.clear();
+}
+
+void SelfContactTree::markChanges(const SelfContactBounds& bounds, bool all) {
+  if (all) {
+    for (std::size_t t = 0; t < triangles_.size(); ++t) mark(static_cast<int>(t), kEverything);
+  } else {
+    for (const int v : bounds.moved()) rings_.visit(v, [this](int t) { mark(t, kBox); });
+    for (const int t : bounds.turned()) mark(t, kOwn);
+  }
+}
+
+void SelfContactTree::mark(int triangle, char change) {
+  if (changed_[triangle] == 0) renewed_.push_back(triangle);
+  changed_[triangle] = static_cast<char>(changed_[triangle] | change);
+}
+
+void SelfContactTree::encloseTriangle(int triangle, const SelfContactBounds& bounds) {
+  if ((changed_[triangle] & kBox) != 0) {
+    Box& box = box_[triangle];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int v = triangles_[triangle][k];
+      Eigen::Array4f centre = Eigen::Array4f::Zero(), radius = Eigen::Array4f::Zero();
+      centre.head<3>() = bounds.centre()[v].cast<float>().array();
+      radius.head<3>() = kRounding * centre.head<3>().abs() + static_cast<float>(bounds.radius(v));
+      const Box ball{centre - radius, -centre - radius};
+      box = k == 0 ? ball : joinBoxes(box, ball);
+    }
+  }
+  if ((changed_[triangle] & kOwn) == 0) return;
+  const auto& [normal, turn] = bounds.cone(triangle);
+  Cone& own = own_[triangle];
+  own = Cone();
+  if (turn > 1) return;
+  own.axis.head<3>() = normal;
+  own.cosine = 1 - 0.5F * turn * turn;
+  own.sine = turn * std::sqrt(1 - 0.25F * turn * turn);
+}
+
+// Normals of the triangles at the corners of those that have turned.
+void SelfContactTree::spread(const SelfContactBounds& bounds, bool all) {
+  const auto spreadOver = [this](int v) {
+    Cone& ring = ring_[v];
+    ring = {Eigen::Vector4f::Zero(), 1, 0};
+    rings_.visit(v, [&](int t) { ring.axis += own_[t].axis; });
+    ring.axis.normalize();
+    rings_.visit(v, [&](int t) {
+      widen(own_[t], ring);
+      mark(t, kAround);
+    });
+  };
+  if (all) {
+    for (std::size_t v = 0; v < ring_.size(); ++v) spreadOver(static_cast<int>(v));
+  } else {
+    for (const int t : bounds.turned())
+      for (const int v : triangles_[t]) spreadOver(v);
+  }
+  for (const int t : renewed_) {
+    if ((changed_[t] & kAround) == 0) continue;
+    const auto& n = triangles_[t];
+    around_[t] = {(ring_[n[0]].axis + ring_[n[1]].axis + ring_[n[2]].axis).normalized(), 1, 0};
+    for (const int v : n) widen(ring_[v], around_[t]);
+  }
+}
+
+// About the same axis.
+void SelfContactTree::widen(const Cone& part, Cone& cone) {
+  const float chord2 = (part.axis - cone.axis).squaredNorm();
+  const float cosine = 1 - 0.5F * chord2, sine = std::sqrt(chord2 * std::max(0.0F, 1 - 0.25F * chord2));
+  const float side = cosine * part.cosine - sine * part.sine;
+  if (!(cosine > 0 && part.cosine > 0 && side > 0)) {
+    cone.cosine = -1;
+  } else if (side < cone.cosine) {
+    cone.cosine = side;
+    cone.sine = sine * part.cosine + cosine * part.sine;
+  }
+}
+
+SelfContactTree::Cone SelfContactTree::join(const Cone& a, const Cone& b) {
+  Cone all{(a.axis + b.axis).normalized(), 1, 0};
+  widen(a, all);
+  widen(b, all);
+  return all;
+}
+
+// Of the nodes that have changed.
+void SelfContactTree::joinChildren() {
+  for (const int n : renewed_nodes_) {
+    Limits& limits = limits_[n];
+    if (limits.right == 0) {
+      joinTriangles(nodes_[n], limits, nodes_[n].own, nodes_[n].around);
       continue;
     }
-    node.box = box_[order_[node.first]];
-    node.directions = directions_[order_[node.first]];
-    for (int i = node.first + 1; i < node.first + node.count; ++i) {
-      const int t = order_[i];
-      node.box = {node.box.low.cwiseMin(box_[t].low), node.box.high.cwiseMax(box_[t].high)};
-      node.directions = join(node.directions, directions_[t]);
-    }
+    const Limits &a = limits_[n + 1], &b = limits_[limits.right];
+    if ((limits.changed & kBox) != 0) limits.box = joinBoxes(a.box, b.box);
+    const Node &one = nodes_[n + 1], &other = nodes_[limits.right];
+    if ((limits.changed & kOwn) != 0) nodes_[n].own = join(one.own, other.own);
+    if ((limits.changed & kAround) != 0) nodes_[n].around = join(one.around, other.around);
   }
 }
 
-// The area vector along straight paths is a quadratic Bezier curve, a positive combination of its three control points.
-void SelfContactTree::encloseTriangle(int triangle, const std::vector<Eigen::Vector3d>& start,
-                                      const std::vector<Eigen::Vector3d>& end, double margin, double slack) {
-  const auto& t = triangles_[triangle];
-  const Eigen::Vector3d &a = start[t[0]], &b = start[t[1]], &c = start[t[2]];
-  Box& box = box_[triangle];
-  box.low = a.cwiseMin(b).cwiseMin(c);
-  box.high = a.cwiseMax(b).cwiseMax(c);
-  const Eigen::Vector3d ab = b - a, ac = c - a, area = ab.cross(ac);
-  const double size2 = area.squaredNorm();
-  const Eigen::Vector3f normal = (area / std::sqrt(size2)).cast<float>();
-  Directions& directions = directions_[triangle];
-  directions = {normal, normal, 0};
-  double turn2 = 0;  // square of how far the slack turns the normal: twice the slack over the least height
-  if (slack > 0)
-    turn2 = 4 * slack * slack * std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()}) / size2;
-  if (&start != &end) {
-    const Eigen::Vector3d &d = end[t[0]], &e = end[t[1]], &f = end[t[2]];
-    box.low = box.low.cwiseMin(d).cwiseMin(e).cwiseMin(f);
-    box.high = box.high.cwiseMax(d).cwiseMax(e).cwiseMax(f);
-    const Eigen::Vector3d de = e - d, df = f - d;
-    const Eigen::Vector3f middle = (ab.cross(df) + de.cross(ac)).normalized().cast<float>();
-    const Eigen::Vector3f last = de.cross(df).normalized().cast<float>();
-    directions.low = directions.low.cwiseMin(middle).cwiseMin(last);
-    directions.high = directions.high.cwiseMax(middle).cwiseMax(last);
+void SelfContactTree::joinTriangles(const Node& leaf, Limits& limits, Cone& own, Cone& around) const {
+  const int* const first = &order_[leaf.first];
+  const int* const last = first + leaf.count;
+  if ((limits.changed & kBox) != 0) {
+    limits.box = box_[*first];
+    for (const int* t = first + 1; t != last; ++t) limits.box = joinBoxes(limits.box, box_[*t]);
   }
-  box.low.array() -= margin;
-  box.high.array() += margin;
-  if (!(size2 > 0 && turn2 < 1)) {  // it may point anywhere
-    directions = {Eigen::Vector3f::Constant(-1), Eigen::Vector3f::Constant(1), 0};
-  } else {
-    directions.turn = static_cast<float>(std::sqrt(turn2));
-  }
+  const auto unite = [&](const std::vector<Cone>& cones, Cone& all) {
+    all = {Eigen::Vector4f::Zero(), 1, 0};
+    for (const int* t = first; t != last; ++t) all.axis += cones[*t].axis;
+    all.axis.normalize();
+    for (const int* t = first; t != last; ++t) widen(cones[*t], all);
+  };
+  if ((limits.changed & kOwn) != 0) unite(own_, own);
+  if ((limits.changed & kAround) != 0) unite(around_, around);
 }
 
-void SelfContactTree::spreadOverRings() {
-  for (Directions& ring : ring_directions_) ring = {Eigen::Vector3f::Constant(2), Eigen::Vector3f::Constant(-2), 0};
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (const int v : triangles_[t]) ring_directions_[v] = join(ring_directions_[v], directions_[t]);
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (const int v : triangles_[t]) directions_[t] = join(directions_[t], ring_directions_[v]);
-}
-
-float SelfContactTree::smallestCosine(const Directions& a, const Directions& b) {
-  const auto ll = a.low.cwiseProduct(b.low), lh = a.low.cwiseProduct(b.high), hl = a.high.cwiseProduct(b.low),
-             hh = a.high.cwiseProduct(b.high);
-  return ll.cwiseMin(lh).cwiseMin(hl).cwiseMin(hh).sum() - a.turn - b.turn;
-}
-
-// Whether the union of two parts is connected and the normals of both have a common direction without overhangs.
-bool SelfContactTree::isGraph(int a, int b) const {
-  const Node &one = nodes_[a], &other = nodes_[b];
-  if (one.vertices == 0 || other.vertices == 0) return false;
-  const Directions all = join(one.directions, other.directions);
-  const Eigen::Vector3f up = all.low + all.high;
-  const float least = up.cwiseProduct(all.low).cwiseMin(up.cwiseProduct(all.high)).sum();
-  return least > (kLeastHeight + all.turn) * up.norm() && (a == b || adjacent(one, other));
+// Whether the normals of two parts have a common direction without overhangs.
+bool SelfContactTree::isGraph(const Cone& a, const Cone& b) {
+  return a.cosine > kLeastHeight && b.cosine > kLeastHeight && join(a, b).cosine > kLeastHeight;
 }
 
 bool SelfContactTree::adjacent(const Node& a, const Node& b) const {

@@ -3,114 +3,166 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
+#include "contact/self_contact_bounds.hpp"
+#include "contact/surface_walls.hpp"
+#include "contact/vertex_triangles.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe {
 
-/// Boxes and directions of the triangles of a moving surface in a binary tree. Its topology is that of the rest shape;
-/// enclose() adapts it to positions. It finds pairs of triangles without visiting smooth parts of the surface: parts
-/// whose normals agree neither face each other nor cross (Volino, Magnenat-Thalmann 1994, "Efficient self-collision
-/// detection on smoothly discretized surface animations using geometrical shape regularity"), for moving triangles with
-/// the bounds of Tang, Curtis, Yoon, Manocha 2009, "ICCD: Interactive continuous collision detection between deformable
-/// models using connectivity-based culling", section 4.
+/// Boxes around the triangles and cones around the normals of a moving surface in a binary tree. Its topology is that
+/// of the rest shape; adapt() renews what has changed. It finds pairs of triangles without visiting smooth parts of the
+/// surface: parts whose normals agree neither face each other nor cross (Volino, Magnenat-Thalmann 1994, "Efficient
+/// self-collision detection on smoothly discretized surface animations using geometrical shape regularity"), for moving
+/// triangles with the bounds of Tang, Curtis, Yoon, Manocha 2009, "ICCD: Interactive continuous collision detection
+/// between deformable models using connectivity-based culling", section 4.
 class SelfContactTree {
  public:
-  explicit SelfContactTree(const SurfaceMesh& rest);
+  SelfContactTree(const SurfaceMesh& rest, const VertexTriangles& rings);
+  /// Says which vertices belong to one wall, which does not face itself.
+  void setWalls(const SurfaceWalls& walls);
 
+  /// Fourth components are 0.
   struct Box {
-    Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
+    Eigen::Array4f low = Eigen::Array4f::Zero(), minus_high = Eigen::Array4f::Zero();
   };
-  /// Of unit normals.
-  struct Directions {
-    Eigen::Vector3f low = Eigen::Vector3f::Zero(), high = Eigen::Vector3f::Zero();  ///< per component
-    float turn = 0;  ///< largest distance of a normal to one within these limits
+  /// Around unit normals.
+  struct Cone {
+    Eigen::Vector4f axis = Eigen::Vector4f::Zero();  ///< unit, fourth component 0
+    float cosine = -1, sine = 0;  ///< of the angle from the axis to the side; cosine <= 0: any normals
   };
 
-  /// Adapts the tree to straight paths from `start` to `end`, which may be the same.
-  /// @param margin  all boxes grow by it to each side [m]
-  /// @param slack   nodes may be so far from these paths [m]
-  /// @param rings   whether the directions of a triangle include those of all triangles at its corners
-  void enclose(const std::vector<Eigen::Vector3d>& start, const std::vector<Eigen::Vector3d>& end, double margin,
-               double slack, bool rings);
+  /// Per vertex, number of a small part of the surface.
+  std::vector<int> parts() const;
+  /// Renews boxes and cones where the bounds have changed in their last adapt(); everywhere if `all`.
+  void adapt(const SelfContactBounds& bounds, bool all);
 
-  /// Calls visit(a, b), a < b, for pairs of triangles whose boxes overlap and whose normals (or those of triangles at
-  /// their corners, see enclose()) may have a cosine below `cosine`.
+  /// Calls visit(a, b), a < b, for pairs of triangles that are nearer than about a distance and of which a normal of
+  /// one, or of a triangle at its corners, and such a normal of the other may have a cosine below `cosine`. Only pairs
+  /// of which one hasNewNear().
   template <class Visit>
-  void visitFacing(float cosine, Visit visit) const {
-    traverse(
-        [this, cosine](int a, int b) { return smallestCosine(nodes_[a].directions, nodes_[b].directions) >= cosine; },
-        visit);
+  void visitFacing(float cosine, float distance, Visit visit) const {
+    const auto one_way = [&](const Node& a, const Node& b) {
+      if (&a == &b && a.one_wall) return Part::Skip;
+      return keepsCosine(a.around, b.around, cosine) ? Part::Skip : Part::Changes;
+    };
+    traverse(kBox | kAround, distance, one_way, [&](int a, int b) {
+      if (!keepsCosine(around_[a], around_[b], cosine)) visit(a, b);
+    });
   }
-  /// Calls visit(a, b), a < b, for pairs of triangles whose boxes overlap, except where both belong to a small
-  /// connected part of the surface that has no overhang in some direction at any time.
+  /// Calls visit(a, b), a < b, for pairs of triangles that are nearer than about a distance, except where both belong
+  /// to a small connected part of the surface that has no overhang in some direction at any time. Only pairs of which
+  /// one hasNewPath(), or that were excepted before the last adapt().
   template <class Visit>
-  void visitCrossing(Visit visit) const {
-    traverse([this](int a, int b) { return isGraph(a, b); }, visit);
+  void visitCrossing(float distance, Visit visit) const {
+    const auto graph = [&](const Node& a, const Node& b) {
+      if (a.vertices == 0 || b.vertices == 0) return Part::Changes;
+      const bool now = isGraph(a.own, b.own);
+      if (!now && !isGraph(a.before, b.before)) return Part::Changes;
+      if (&a != &b && !adjacent(a, b)) return Part::Changes;
+      return now ? Part::Skip : Part::All;
+    };
+    traverse(kBox | kOwn, distance, graph, visit);
   }
+  /// Whether the last adapt() has changed what visitFacing() and visitCrossing() look at.
+  bool hasNewNear(int triangle) const { return (changed_[triangle] & (kBox | kAround)) != 0; }
+  bool hasNewPath(int triangle) const { return (changed_[triangle] & (kBox | kOwn)) != 0; }
+  /// All that may be within it [m].
+  const Box& box(int triangle) const { return box_[triangle]; }
 
  private:
-  struct Node {
+  enum Change : char { kBox = 1, kOwn = 2, kAround = 4, kEverything = 7 };
+  enum class Part { Skip, Changes, All };
+  struct Limits {
     Box box;
-    Directions directions;
-    int first, count;            // triangles in order_
-    int right;                   // the left child follows its parent; 0: leaf
-    int first_vertex, vertices;  // in vertex_; none: too large or not connected
+    int right = 0;     // the left child follows its parent; 0: leaf
+    char changed = 0;  // Change
   };
-  static bool apart(const Box& a, const Box& b) {
-    return (a.low.array() > b.high.array()).any() || (b.low.array() > a.high.array()).any();
+  struct Node {
+    Cone own, before, around;    // of the triangles; before the last adapt(); with those at their corners
+    int first, count;            // triangles in order_
+    int first_vertex, vertices;  // in vertex_; none: too large or not connected
+    bool one_wall;               // whether all its vertices belong to one wall
+  };
+  static bool apart(const Box& a, const Box& b, float distance) {
+    return (a.low + b.minus_high).max(b.low + a.minus_high).maxCoeff() > distance;
   }
-  static float smallestCosine(const Directions& a, const Directions& b);
-  bool isGraph(int a, int b) const;
+  /// Whether the cosine between normals of one cone and of the other is never below `cosine` > 0.
+  static bool keepsCosine(const Cone& a, const Cone& b, float cosine) {
+    const float both = a.cosine * b.cosine - a.sine * b.sine, between2 = (a.axis - b.axis).squaredNorm();
+    if (a.cosine <= 0 || b.cosine <= 0 || both <= 0 || between2 >= 2) return false;
+    const float sine = a.sine * b.cosine + a.cosine * b.sine, spare = (1 - 0.5F * between2) * both - cosine;
+    return spare >= 0 && spare * spare >= between2 * (1 - 0.25F * between2) * sine * sine;
+  }
+  static void widen(const Cone& part, Cone& cone);
+  static Cone join(const Cone& a, const Cone& b);
+  static bool isGraph(const Cone& a, const Cone& b);
   bool adjacent(const Node& a, const Node& b) const;
 
   int build(int first, int count, const std::vector<Eigen::Vector3d>& centre);
   void listVertices(Node& node);
   bool isConnected(const Node& node) const;
-  void encloseTriangle(int triangle, const std::vector<Eigen::Vector3d>& start, const std::vector<Eigen::Vector3d>& end,
-                       double margin, double slack);
-  void spreadOverRings();
+  void forgetChanges();
+  void markChanges(const SelfContactBounds& bounds, bool all);
+  void mark(int triangle, char change);
+  void encloseTriangle(int triangle, const SelfContactBounds& bounds);
+  void spread(const SelfContactBounds& bounds, bool all);
+  void joinChildren();
+  void joinTriangles(const Node& leaf, Limits& limits, Cone& own, Cone& around) const;
 
-  template <class Skip, class Visit>
-  void traverse(const Skip& skip, Visit& visit) const {
-    stack_.assign(1, {0, 0});
+  template <class Judge, class Visit>
+  void traverse(char changes, float distance, const Judge& judge, const Visit& visit) const {
+    stack_.assign(1, {0, 0, 0});
     while (!stack_.empty()) {
-      const auto [a, b] = stack_.back();
+      auto [a, b, all] = stack_.back();
       stack_.pop_back();
-      if ((a != b && apart(nodes_[a].box, nodes_[b].box)) || skip(a, b)) continue;
-      const bool leaf_a = nodes_[a].right == 0, leaf_b = nodes_[b].right == 0;
-      if (leaf_a && leaf_b) {
-        visitLeaves(nodes_[a], nodes_[b], a == b, visit);
+      const Limits &one = limits_[a], &other = limits_[b];
+      if (all == 0 && ((one.changed | other.changed) & changes) == 0) continue;
+      if (a != b && apart(one.box, other.box, distance)) continue;
+      const Part part = judge(nodes_[a], nodes_[b]);
+      if (part == Part::Skip) continue;
+      if (part == Part::All) all = 1;
+      if (one.right == 0 && other.right == 0) {
+        visitLeaves(a, b, changes, all != 0, distance, visit);
       } else if (a == b) {
-        stack_.push_back({a + 1, nodes_[a].right});
-        stack_.push_back({nodes_[a].right, nodes_[a].right});
-        stack_.push_back({a + 1, a + 1});
-      } else if (leaf_b || (!leaf_a && nodes_[a].count >= nodes_[b].count)) {
-        stack_.push_back({nodes_[a].right, b});
-        stack_.push_back({a + 1, b});
+        stack_.push_back({a + 1, one.right, all});
+        stack_.push_back({one.right, one.right, all});
+        stack_.push_back({a + 1, a + 1, all});
+      } else if (other.right == 0 || (one.right != 0 && nodes_[a].count >= nodes_[b].count)) {
+        stack_.push_back({one.right, b, all});
+        stack_.push_back({a + 1, b, all});
       } else {
-        stack_.push_back({a, nodes_[b].right});
-        stack_.push_back({a, b + 1});
+        stack_.push_back({a, other.right, all});
+        stack_.push_back({a, b + 1, all});
       }
     }
   }
   template <class Visit>
-  void visitLeaves(const Node& a, const Node& b, bool same, Visit& visit) const {
-    for (int i = 0; i < a.count; ++i)
-      for (int j = same ? i + 1 : 0; j < b.count; ++j) {
-        const int one = order_[a.first + i], other = order_[b.first + j];
-        if (!apart(box_[one], box_[other])) visit(std::min(one, other), std::max(one, other));
+  void visitLeaves(int a, int b, char changes, bool all, float distance, const Visit& visit) const {
+    const Node &one = nodes_[a], &other = nodes_[b];
+    for (int i = 0; i < one.count; ++i)
+      for (int j = a == b ? i + 1 : 0; j < other.count; ++j) {
+        const int t = order_[one.first + i], u = order_[other.first + j];
+        if (!all && ((changed_[t] | changed_[u]) & changes) == 0) continue;
+        if (!apart(box_[t], box_[u], distance)) visit(std::min(t, u), std::max(t, u));
       }
   }
 
   std::vector<std::array<int, 3>> triangles_;
-  std::vector<Node> nodes_;                               // parents before children
-  std::vector<int> order_;                                // triangles
-  std::vector<int> vertex_;                               // ascending, of the nodes that have a list
-  std::vector<Box> box_;                                  // per triangle
-  std::vector<Directions> directions_, ring_directions_;  // per triangle, per vertex
-  mutable std::vector<std::array<int, 2>> stack_;
+  const VertexTriangles& rings_;
+  std::vector<Limits> limits_;  // of the nodes, parents before children
+  std::vector<Node> nodes_;
+  std::vector<int> order_;                    // triangles
+  std::vector<int> vertex_;                   // ascending, of the nodes that have a list
+  std::vector<Box> box_;                      // per triangle
+  std::vector<Cone> own_, around_, ring_;     // per triangle, per triangle, per vertex
+  std::vector<char> changed_;                 // Change, per triangle
+  std::vector<int> leaf_of_, parent_;         // per triangle, per node: node
+  std::vector<int> renewed_, renewed_nodes_;  // triangles, nodes with a change
+  mutable std::vector<std::array<int, 3>> stack_;
 };
 
 }  // namespace vibe

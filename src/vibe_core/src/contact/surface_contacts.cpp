@@ -13,7 +13,14 @@ namespace {
 // half the wall while they touch. Design choice: far from crossing, and a scope in a stomach of a few thousand
 // particles needs none [1].
 constexpr double kLeast = 0.25;
-// Stretch of the wall for which that is so. Design choice: that of an insufflated stomach [1].
+// Where a triangle is nearer than this share of half the wall, its nearest point is a contact as well, which keeps
+// kLeast. Design choice: what points between vertices are meant to keep, and more than what the guard of the tool does
+// (tool_guard) [1].
+constexpr double kNearestPoint = 0.5;
+// Least weight of vertices that can give way at such a point [1].
+constexpr double kGivesWay = 0.1;
+// Stretch of the wall for which that is so at least, so that edges have the same points from step to step; points are
+// added where the wall is stretched more. Design choice: that of an insufflated stomach [1].
 constexpr double kStretch = 1.15;
 // Parts of a triangle through which a shape already passes, because it was put there: points within are pushed aside.
 constexpr int kPierced = 4;
@@ -107,6 +114,7 @@ const std::vector<SurfaceContact>& SurfaceContacts::find(const std::vector<Eigen
     followPairs(path, margin, first, last);
     addVertices(path, margin, shape, excluded);
     addBetween(path, margin, shape, excluded);
+    addNearest(shape, excluded);
     for (const Pair& pair : pairs_) pair_of_[pair.triangle] = -1;
   }
   removeDuplicates();
@@ -148,7 +156,9 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
     if (excluded[n[0]] != 0 && excluded[n[1]] != 0 && excluded[n[2]] != 0) continue;
     int most = pair.approach.nearest == 0 ? kPierced : 1;
     for (std::size_t k = 0; k < 3; ++k) {
-      const int parts = partsOf(shape, length_[static_cast<std::size_t>(pair.triangle)][k]);
+      const double length = (path.start(n[(k + 1) % 3]) - path.start(n[k])).norm();
+      const int parts =
+          partsOf(shape, std::max(length, kStretch * length_[static_cast<std::size_t>(pair.triangle)][k]));
       most = std::max(most, parts);
       const int across = neighbour_[pair.triangle][k];
       if (parts > 1 && !(across >= 0 && pair_of_[across] >= 0 && across < pair.triangle))
@@ -158,13 +168,28 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
   }
 }
 
+// What the points leave: none of them is where the wall is nearest.
+void SurfaceContacts::addNearest(int shape, const std::vector<char>& excluded) {
+  for (const Pair& pair : pairs_) {
+    const TriangleGap& gap = pair.approach.start;
+    const std::array<int, 3>& n = triangles_[pair.triangle];
+    const double half = halfThickness(n, gap.weight);
+    if (gap.distance - tool_.radius(shape) > kNearestPoint * half) continue;
+    double gives_way = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (excluded[n[k]] == 0) gives_way += gap.weight[static_cast<int>(k)];
+    if (gives_way < kGivesWay) continue;
+    add({3, n, {gap.weight[0], gap.weight[1], gap.weight[2]}}, shape, 0, gap, kLeast * half);
+  }
+}
+
 // Vertices that touch keep the square of the distance of a point between them from the core of a shape at least at
 // touching^2 - sum over edges of w_j w_k length^2, because the square of the distance from a convex set grows no faster
 // than that from a point. In the middle of an even triangle the sum is length^2 / 3.
 int SurfaceContacts::partsOf(int shape, double length) const {
   const double radius = tool_.radius(shape), touching = radius + half_, least = radius + kLeast * half_;
   const double spacing = std::sqrt(3 * (touching * touching - least * least));
-  return std::clamp(static_cast<int>(std::ceil(kStretch * length / spacing)), 1, kMaxParts);
+  return std::clamp(static_cast<int>(std::ceil(length / spacing)), 1, kMaxParts);
 }
 
 void SurfaceContacts::addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge,

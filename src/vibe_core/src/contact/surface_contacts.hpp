@@ -60,6 +60,7 @@ class SurfaceContacts {
   void followPairs(const SurfacePath& path, double margin, std::size_t first, std::size_t last);
   void addVertices(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   void addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
+  void addNearest(int shape, const std::vector<char>& excluded);
   int partsOf(int shape, double length) const;
   void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, int parts);
   void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts);

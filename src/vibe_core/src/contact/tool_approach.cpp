@@ -10,14 +10,13 @@ namespace {
 constexpr int kAdvances = 40;     // steps towards a contact; each takes nine tenths of what is free
 constexpr double kAdvance = 0.9;  // of the distance above the floor per step [1]
 constexpr double kKept = 0.1;     // of that distance at the start, at which an approach ends [1]
+constexpr double kAim = 0.5;      // of that, at which steps along straight lines aim [1]
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
 Triangle triangleAt(const SurfacePath& path, const std::array<int, 3>& n, double fraction) {
   return {path.at(n[0], fraction), path.at(n[1], fraction), path.at(n[2], fraction)};
 }
-
-}  // namespace
 
 // A bound of the relative motion of the two; what they have in common does not count.
 double closingDistance(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle) {
@@ -29,19 +28,45 @@ double closingDistance(const SweptTool& tool, int shape, const SurfacePath& path
   return wall + (tool.radius(shape) > 0 ? turn : tool.travel(shape) + common.norm());
 }
 
+// Up to where the two are sure to stay apart. Ends of the core and vertices move along straight lines, and so do their
+// distances along the direction in which they are apart now: where all of these stay above a floor, so does the
+// distance.
+double freeUntil(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
+                 const ToolApproach& now, double floor, double aim) {
+  const double left = 1 - now.fraction;
+  if (!tool.hasSegment(shape)) {
+    const double free = now.gap.distance - floor, speed = closingDistance(tool, shape, path, triangle);
+    return free >= left * speed ? 1 : std::min(1.0, now.fraction + kAdvance * free / speed);
+  }
+  const auto from = tool.segment(shape, now.fraction), to = tool.segment(shape, 1);
+  double part = 1;
+  bool meets = false;
+  for (const int v : triangle) {
+    const double wall_from = now.gap.normal.dot(path.at(v, now.fraction)), wall_to = now.gap.normal.dot(path.at(v, 1));
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double before = wall_from - now.gap.normal.dot(from[k]), after = wall_to - now.gap.normal.dot(to[k]);
+      meets = meets || after < floor;
+      if (after < aim) part = std::min(part, before > aim ? (before - aim) / (before - after) : 0);
+    }
+  }
+  return meets ? now.fraction + left * part : 1;
+}
+
+}  // namespace
+
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor) {
-  const double speed = closingDistance(tool, shape, path, triangle);
   ToolApproach result;
   result.fraction = 0;
   result.gap = tool.gap(shape, 0, triangleAt(path, triangle, 0));
+  result.start = result.gap;
   result.nearest = result.gap.distance;
   const double kept = kKept * (result.gap.distance - floor);
   for (int advance = 0; advance < kAdvances && result.fraction < 1; ++advance) {
     const double free = result.gap.distance - floor;
     if (free <= 0 || (advance > 0 && free < kept)) break;
-    const double left = 1 - result.fraction;
-    const double next = free >= left * speed ? 1 : std::min(1.0, result.fraction + kAdvance * free / speed);
+    const double next = freeUntil(tool, shape, path, triangle, result, floor, floor + kAim * kept);
+    if (next == result.fraction) break;
     result.gap = tool.gap(shape, next, triangleAt(path, triangle, next));
     result.fraction = next;
   }

@@ -11,11 +11,12 @@ namespace vibe {
 /// Straight paths of the vertices of a surface during a step.
 struct SurfacePath {
   std::array<const double*, 3> from{}, to{};  ///< coordinates [m]
+  double part = 1;                            ///< of these ways that the vertices go
 
   Eigen::Vector3d start(int vertex) const { return {from[0][vertex], from[1][vertex], from[2][vertex]}; }
   Eigen::Vector3d at(int vertex, double fraction) const {
     const Eigen::Vector3d end(to[0][vertex], to[1][vertex], to[2][vertex]);
-    return start(vertex) + fraction * (end - start(vertex));
+    return start(vertex) + fraction * part * (end - start(vertex));
   }
 };
 
@@ -23,6 +24,7 @@ struct SurfacePath {
 struct ToolApproach {
   double fraction = 1;  ///< of the step
   TriangleGap gap;      ///< then
+  TriangleGap start;    ///< at the start of the step
   double nearest = 0;   ///< the smaller of their distances at the start and then [m]
 };
 
@@ -31,9 +33,6 @@ struct ToolApproach {
 /// @param floor  [m]; a pair that is nearer at the start stays there: fraction 0
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor);
-
-/// A bound of how much nearer a shape and a triangle can come in the step [m].
-double closingDistance(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle);
 
 /// Pairs of shapes and triangles whose ways through a step come near each other.
 class NearTriangles {

@@ -1,6 +1,7 @@
 #include "contact/tool_guard.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace vibe {
 
@@ -11,11 +12,16 @@ namespace {
 constexpr double kKept = 0.05;
 // What is nearer already may come nearer by a tenth in a step, and never meets [1].
 constexpr double kNearer = 0.9;
+// Where less than this share of the thickness is left, only rounding may bring the two nearer: a distance that shrinks
+// by a part of itself in every step would become too small to get free from [1].
+constexpr double kLeast = 1e-3, kHardlyNearer = 1 - 1e-6;
 // Attempts to stop the tool on its way before it stays where it was. Design choice: each costs a search.
 constexpr int kStops = 4;
 // Share of the free part of the way that the tool takes. Design choice: leaves a distance from which the next step can
 // go on [1].
 constexpr double kPart = 0.9;
+// Parts of what is left of its way that a joint tries. Design choice: each costs a search [1].
+constexpr std::array<double, 2> kJointParts{1, 0.25};
 
 }  // namespace
 
@@ -23,21 +29,38 @@ ToolGuard::ToolGuard(const ToolModel& tool, const SurfaceMesh& surface, const st
                      const std::vector<char>& passable)
     : thickness_(thickness), tool_(tool), near_(surface, passable) {}
 
-ToolGuard::Free ToolGuard::keepApart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
-  Free free;
-  double part = freePart(poses.start, poses.end, path);
-  for (int stop = 1; part < 1 && stop <= kStops; ++stop) {
-    free.tool = stop < kStops ? kPart * part * free.tool : 0;
-    motion.linkPoses(free.tool, poses.end);
-    part = freePart(poses.start, poses.end, path);
+double ToolGuard::keepApart(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path) {
+  double free = freePart(poses, motion, path);
+  if (free == 1) return 1;
+  const ToolMotion wanted = motion;
+  for (int stop = 1; free < 1 && stop <= kStops; ++stop) {
+    motion.stop(stop < kStops ? kPart * free : 0);
+    free = freePart(poses, motion, path);
   }
-  free.wall = part;
+  SurfacePath rest = path;
+  rest.part *= free;
+  moveJoints(poses, wanted, rest, motion);
+  motion.linkPoses(1, poses.end);
   return free;
 }
 
-double ToolGuard::freePart(const std::vector<Eigen::Isometry3d>& start, const std::vector<Eigen::Isometry3d>& end,
-                           const SurfacePath& path) {
-  tool_.place(start, end);
+void ToolGuard::moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, ToolMotion& motion) {
+  const auto target = wanted.inputs(1);
+  for (int j = 0; j < kJointCount; ++j)
+    for (const double part : kJointParts) {
+      const double from = motion.inputs(1)[j], to = from + part * (target[j] - from);
+      if (to == from) continue;
+      ToolMotion tried = motion;
+      tried.moveEnd(j, to);
+      if (freePart(poses, tried, path) < 1) continue;
+      motion = tried;
+      break;
+    }
+}
+
+double ToolGuard::freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
+  motion.linkPoses(1, poses.end);
+  tool_.place(poses.start, poses.end);
   near_.find(tool_, path, kKept * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
   double part = 1;
   for (const NearTriangles::Pair& pair : pairs_) part = std::min(part, freePart(pair, path));
@@ -50,9 +73,8 @@ double ToolGuard::freePart(const NearTriangles::Pair& pair, const SurfacePath& p
   const TriangleGap gap = tool_.gap(pair.shape, 0, {path.start(n[0]), path.start(n[1]), path.start(n[2])});
   const double thinnest = std::min({thickness_[n[0]], thickness_[n[1]], thickness_[n[2]]});
   if (gap.distance == 0) return 1;  // they crossed before
-  const double outside = gap.distance - radius;
-  const double floor = outside > 0 ? radius + std::min(kKept * thinnest, kNearer * outside) : kNearer * gap.distance;
-  if (gap.distance - closingDistance(tool_, pair.shape, path, n) > floor) return 1;
+  const double outside = gap.distance - radius, nearer = outside > kLeast * thinnest ? kNearer : kHardlyNearer;
+  const double floor = outside > 0 ? radius + std::min(kKept * thinnest, nearer * outside) : kNearer * gap.distance;
   return approach(tool_, pair.shape, path, n, floor).fraction;
 }
 

@@ -11,7 +11,9 @@ namespace vibe {
 /// Keeps the tool on its side of the wall, whatever the solver found. A step that starts without a triangle of the wall
 /// passing through the core of a tool shape ends without one: the motions of tool and wall are followed together, and
 /// where they would meet, the tool stops on its way; where the wall would run into a tool that stands still, the wall
-/// stops as well. By induction nothing crosses that did not cross where a session began.
+/// stops as well. What stops the tool does not stop each of its joints: those go on whose own motion is free, so that a
+/// tool that is stuck gets free when the hand moves back. By induction nothing crosses that did not cross where a
+/// session began.
 class ToolGuard {
  public:
   /// @param thickness  of the wall per vertex [m]
@@ -19,20 +21,15 @@ class ToolGuard {
   ToolGuard(const ToolModel& tool, const SurfaceMesh& surface, const std::vector<double>& thickness,
             const std::vector<char>& passable);
 
-  /// Parts of their motions that tool and wall can make, 1: all of it.
-  struct Free {
-    double tool = 1;
-    double wall = 1;
-  };
-
   /// @param poses   of the tool; in and out: `end` becomes the pose that the tool reaches
-  /// @param motion  of the tool from start to end
-  /// @param path    of the wall, of which the caller then takes the free part
-  Free keepApart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path);
+  /// @param motion  of the tool from start to end; in and out: that to the pose that it reaches
+  /// @param path    of the wall
+  /// @returns the part of its path that the wall can go, 1: all of it
+  double keepApart(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path);
 
  private:
-  double freePart(const std::vector<Eigen::Isometry3d>& start, const std::vector<Eigen::Isometry3d>& end,
-                  const SurfacePath& path);
+  double freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path);
+  void moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, ToolMotion& motion);
   double freePart(const NearTriangles::Pair& pair, const SurfacePath& path) const;
 
   std::vector<double> thickness_;

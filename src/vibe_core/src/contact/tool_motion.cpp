@@ -7,6 +7,14 @@
 
 namespace vibe {
 
+namespace {
+
+// Steps until a joint that tissue has stopped tries to go on. Design choice: the tissue has a few steps to give way to
+// a tool that stands still, and the hand tries often enough to go on with it [1].
+constexpr int kStallSteps = 6;
+
+}  // namespace
+
 std::array<double, kJointCount> ToolMotion::inputs(double fraction) const {
   std::array<double, kJointCount> inputs{};
   for (int i = 0; i < kJointCount; ++i) inputs[i] = start_[i] + fraction * (end_[i] - start_[i]);
@@ -17,6 +25,11 @@ ToolDisplacement ToolMotion::displacement(double fraction) const {
   ToolDisplacement displacement = start_displacement_;
   for (int d = 0; d < kYieldDofs; ++d) displacement[d] += fraction * (end_displacement_[d] - start_displacement_[d]);
   return displacement;
+}
+
+void ToolMotion::stop(double fraction) {
+  end_ = inputs(fraction);
+  end_displacement_ = displacement(fraction);
 }
 
 void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
@@ -61,6 +74,22 @@ std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::
     if (over && (end[j] - start[j]) * effort[j] > 0) result[j] = start[j];
   }
   return result;
+}
+
+std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>& start,
+                                           const std::array<double, kJointCount>& end,
+                                           const std::array<int, kJointCount>& stall) {
+  std::array<double, kJointCount> result = end;
+  for (int j = 0; j < kJointCount; ++j)
+    if ((end[j] - start[j]) * stall[j] > 0) result[j] = start[j];
+  return result;
+}
+
+void updateStall(const std::array<int, kJointCount>& stopped, std::array<int, kJointCount>& stall) {
+  for (int j = 0; j < kJointCount; ++j) {
+    stall[j] -= stall[j] > 0 ? 1 : stall[j] < 0 ? -1 : 0;
+    if (stopped[j] != 0) stall[j] = stopped[j] * kStallSteps;
+  }
 }
 
 }  // namespace vibe

@@ -23,6 +23,10 @@ class ToolMotion {
         end_displacement_(displacement) {}
 
   void displaceEnd(const ToolDisplacement& displacement) { end_displacement_ = displacement; }
+  /// The motion ends at a fraction [0, 1] of the way.
+  void stop(double fraction);
+  /// One input ends elsewhere.
+  void moveEnd(int input, double position) { end_[static_cast<std::size_t>(input)] = position; }
   const ToolDisplacement& startDisplacement() const { return start_displacement_; }
 
   /// Pose of every link in world at a fraction [0, 1] of the step.
@@ -55,5 +59,15 @@ std::array<double, kJointCount> limitedMotion(const ToolModel& tool, const std::
 std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::array<double, kJointCount>& start,
                                               const std::array<double, kJointCount>& end,
                                               const std::array<double, kScopeJointCount>& effort);
+
+/// The same with joints that tissue has stopped a moment ago: the hand does not push them on in that direction.
+/// @param stall  steps for which that holds, with the sign of the direction; 0: not stopped
+std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>& start,
+                                           const std::array<double, kJointCount>& end,
+                                           const std::array<int, kJointCount>& stall);
+
+/// State::stall after a step.
+/// @param stopped  sign of the motion of each joint that tissue has stopped in the step, 0: it has not
+void updateStall(const std::array<int, kJointCount>& stopped, std::array<int, kJointCount>& stall);
 
 }  // namespace vibe

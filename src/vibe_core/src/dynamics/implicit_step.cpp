@@ -36,6 +36,10 @@ constexpr int kCheckEvery = 10;
 // rest is motion and what else pulls.
 constexpr double kHeldPart = 0.5;
 
+// Share of its way below which a joint counts as stopped. Design choice: a joint that makes a tenth of its way pushes
+// on [1].
+constexpr double kStopped = 0.1;
+
 void stopMotion(State& state) {
   for (auto* v : {&state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az})
     std::fill(v->begin(), v->end(), 0.0);
@@ -182,8 +186,9 @@ void ImplicitStep::store() {
     if (scratch_.has_term[b] != 0) work_.extra -= springWork() - before;  // it has accounted for its term itself
   }
   if (motion_ != nullptr) {
+    const double tool_work = state_.energy.tool_work;
     reportTool();
-    reportHand();
+    reportHand(state_.energy.tool_work - tool_work);
     reportImpedance();
   }
   account();
@@ -221,14 +226,19 @@ void ImplicitStep::keepToolApart() {
       a{&state_.ax, &state_.ay, &state_.az};
   SurfacePath path;
   for (std::size_t k = 0; k < 3; ++k) path.from[k] = scratch_.start[k].data(), path.to[k] = x[k]->data();
-  const ToolMotion& motion = yielded_ ? *yielded_ : *motion_;
-  const ToolGuard::Free free = scratch_.guard->keepApart(scratch_.poses, motion, path);
-  state_.joints = motion.inputs(free.tool);
-  if (yielded_) report_.tool_displacement = motion.displacement(free.tool);
-  if (free.wall >= 1) return;
+  ToolMotion motion = yielded_ ? *yielded_ : *motion_;
+  const double free = scratch_.guard->keepApart(scratch_.poses, motion, path);
+  state_.joints = motion.inputs(1);
+  const auto start = motion_->inputs(0), wanted = motion_->inputs(1);
+  tool_stopped_ = state_.joints != wanted || (yielded_ && motion.displacement(1) != yielded_->displacement(1));
+  for (std::size_t j = 0; j < start.size(); ++j)
+    if (std::abs(state_.joints[j] - start[j]) < kStopped * std::abs(wanted[j] - start[j]))
+      report_.stopped[j] = wanted[j] > start[j] ? 1 : -1;
+  if (yielded_) report_.tool_displacement = motion.displacement(1);
+  if (free >= 1) return;
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < x[k]->size(); ++i) {
-      const double move = free.wall * ((*x[k])[i] - scratch_.start[k][i]);
+      const double move = free * ((*x[k])[i] - scratch_.start[k][i]);
       (*x[k])[i] = scratch_.start[k][i] + move;
       (*v[k])[i] = move / context_.step;
       (*a[k])[i] = 0;
@@ -246,18 +256,28 @@ void ImplicitStep::reportTool() {
 }
 
 // Inputs that are not the scope's act from within the tool: the hand that pushes an instrument.
-void ImplicitStep::reportHand() {
+// @param tool_work  of the tool on the tissue in this step [J]
+void ImplicitStep::reportHand(double tool_work) {
   Eigen::Matrix<double, kJointCount, 1> effort = Eigen::Matrix<double, kJointCount, 1>::Zero();
   for (const ToolTouch& touch : scratch_.touches)
     effort += pointJacobian(*model_.tool, scratch_.poses.end, touch.link, touch.point).transpose() * touch.force;
   const auto from = motion_->inputs(0), &to = state_.joints;
+  const double scope_loss = state_.energy.scope_loss;
   if (model_.scope_springs) {
     const ToolDisplacement &before = motion_->startDisplacement(), &after = report_.tool_displacement;
     effort.head<kScopeJointCount>() =
         model_.scope_springs->load(to, before, after, context_.step).head<kScopeJointCount>();
     state_.energy.scope_loss += model_.scope_springs->loss(to, before, after, context_.step);
   }
-  for (int j = 0; j < kJointCount; ++j) state_.energy.hand_work += effort[j] * (to[j] - from[j]);
+  double hand_work = 0;
+  for (int j = 0; j < kJointCount; ++j) hand_work += effort[j] * (to[j] - from[j]);
+  state_.energy.hand_work += hand_work;
+  // short of the equilibrium of springs and forces, the scope loses what its springs do beyond the forces
+  if ((tool_stopped_ || !report_.arrived) && model_.scope_springs) {
+    const double stored = model_.scope_springs->energy(to, report_.tool_displacement) -
+                          model_.scope_springs->energy(from, motion_->startDisplacement());
+    state_.energy.scope_loss = scope_loss + hand_work - tool_work - stored;
+  }
   for (int j = 0; j < kScopeJointCount; ++j) report_.hand_effort[j] = effort[j];
 }
 

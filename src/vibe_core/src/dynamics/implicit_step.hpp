@@ -33,7 +33,7 @@ class ImplicitStep {
   void store();
   void keepToolApart();
   void reportTool();
-  void reportHand();
+  void reportHand(double tool_work);
   void reportImpedance();
   void correct();
   void account();
@@ -52,6 +52,7 @@ class ImplicitStep {
   std::optional<ShaftBend> bend_;      // of a tool that yields
   std::optional<ToolMotion> yielded_;  // its motion, after the solve
   StepContext context_;
+  bool tool_stopped_ = false;  // by tissue, on its way
   StepWork work_;              // of the solve
   double contact_energy_ = 0;  // before it [J]
 };

@@ -88,6 +88,7 @@ Scene completeScene(const Scene& scene) {
   if (!full.gravity) full.gravity.emplace();
   if (!full.foundation) full.foundation.emplace();
   if (!full.scope) full.scope.emplace();
+  if (!full.scope->compliance) full.scope->compliance.emplace();
   if (!full.helix) full.helix.emplace();
   if (!full.suture) full.suture.emplace();
   if (!full.bleeding) full.bleeding.emplace();

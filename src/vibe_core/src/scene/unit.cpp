@@ -102,6 +102,9 @@ constexpr Measure kMeasures[] = {
     {"m/s", "a speed", "0.02 (m/s), 2 cm/s or 20 mm/s"},
     {"m/s^2", "an acceleration", "-9.81 (m/s^2) or 9.81 N/kg"},
     {"J", "an energy", "25 (J) or 0.6 kJ"},
+    {"N/m", "a stiffness", "2000 (N/m) or 2 N/mm"},
+    {"N m^2", "a rigidity", "0.027 (N m^2) or 270 N cm^2"},
+    {"N m/rad", "a rotational stiffness", "0.3 (N m/rad) or 5 N mm/deg"},
     {"W", "a power", "40 (W) or 40 W"},
     {"rad", "an angle", "1.57 (rad), 90 deg or 3 turns"},
     {"rad/s", "an angular speed", "0.5 (rad/s) or 30 deg/s"},
@@ -150,6 +153,23 @@ bool multiplyFactor(std::string_view factor, int sign, Unit& unit) {
   return true;
 }
 
+/// "N / m" -> "N/m", "N m" -> "N*m": a space between two units multiplies them.
+std::string withoutSpaces(std::string_view text) {
+  const auto isSign = [](char c) { return c == '*' || c == '/' || c == '^'; };
+  std::string joined;
+  bool apart = false;
+  for (const char c : trim(text)) {
+    if (std::isspace(static_cast<unsigned char>(c))) {
+      apart = true;
+      continue;
+    }
+    if (apart && !isSign(c) && !isSign(joined.back())) joined += '*';
+    apart = false;
+    joined += c;
+  }
+  return joined;
+}
+
 const Measure* findMeasure(const Dimension& dimension) {
   for (const Measure& measure : kMeasures) {
     if (parseUnit(measure.si_unit)->dimension == dimension) return &measure;
@@ -181,9 +201,10 @@ bool operator==(const Dimension& a, const Dimension& b) {
          a.grey == b.grey;
 }
 
-std::optional<Unit> parseUnit(const std::string& text) {
+std::optional<Unit> parseUnit(const std::string& written) {
   constexpr std::size_t kLongestUnit = 40;
-  if (text.size() > kLongestUnit) return std::nullopt;
+  if (written.size() > kLongestUnit) return std::nullopt;
+  const std::string text = withoutSpaces(written);
   Unit unit;
   int sign = 1;
   std::size_t begin = 0;

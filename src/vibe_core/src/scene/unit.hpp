@@ -24,7 +24,7 @@ struct Unit {
   Dimension dimension;
 };
 
-/// Reads a unit such as "mm", "mmHg", "L/min", "g/cm^3", "1/s", "N*s/m" or "%". Empty for an unknown one.
+/// Reads a unit such as "mm", "mmHg", "L/min", "g/cm^3", "1/s", "N*s/m", "N m^2" or "%". Empty for an unknown one.
 /// Conversion factors: BIPM, The International System of Units, 9th edition 2019; mmHg as 133.322387415 Pa.
 std::optional<Unit> parseUnit(const std::string& text);
 

@@ -79,6 +79,7 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
   slackenThreads(state);
   coolDown(state);
   state.tool_displacement = fresh.tool_displacement;
+  state.stall = fresh.stall;
   state.hand_effort = fresh.hand_effort;
   state.tool_force.setZero();
   state.tool_torque.setZero();
@@ -124,6 +125,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
     end = model.scope_springs ? model.scope_springs->handMotion(state.joints, end, state.tool_displacement, dt)
                               : stalledMotion(*model.tool, state.joints, end, state.hand_effort);
+    end = heldMotion(state.joints, end, state.stall);
     motion.emplace(*model.tool, model.tool_base, state.joints, end, state.tool_displacement);
     motion->linkPoses(0, poses);
     updateGrip(model, poses, input.buttons[HelixGrab] != 0, state, events);
@@ -143,6 +145,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   state.time = static_cast<double>(state.step) * dt;
   if (model.tool) {
     state.tool_displacement = report.tool_displacement;
+    updateStall(report.stopped, state.stall);
     ToolMotion(*model.tool, model.tool_base, state.joints, state.joints, state.tool_displacement).linkPoses(1, poses);
     storeForces(model, report, poses, state);
     reportContact(report.contact_count, dt, state, events);

@@ -264,6 +264,8 @@ double ContactProblem::newton(const double* lack, double* force) {
 double ContactProblem::solve(const double* lack, double* force) {
   if (n_ == 0) return 0;
   best_ = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < n_; ++i)
+    if (group_of_row_[static_cast<std::size_t>(i)] == kFree) force[i] = 0;
   if (!factored_) {
     findLeft(lack, force);
     for (int i = 0; i < kFirstSweeps; ++i) sweep(force, false);

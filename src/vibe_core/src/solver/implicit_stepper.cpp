@@ -181,7 +181,9 @@ void ImplicitStepper::correctStored(StepperMemory& memory, const StepperScratch&
   }
   if (memory.elastic_energy >= 0 && memory.steps > 1)
     outcome.work.numerical -= scratch.first_elastic_value - memory.elastic_energy;
-  memory.elastic_energy = std::max(0.0, scratch.first_elastic_value + outcome.work.stored);
+  const double foreseen = scratch.first_elastic_value + outcome.work.stored;
+  memory.elastic_energy = std::max(0.0, foreseen);  // far from the forces' linear range it may be negative
+  outcome.work.numerical -= memory.elastic_energy - foreseen;
 }
 
 // A single iteration does not move far and starts from the inertial prediction. With more iterations a step starts from

@@ -60,9 +60,11 @@ TEST(SelfContactPaths, EdgesDoNotPassThroughEdges) {
   world.detect(1e-3);
   std::vector<double> move(world.at.size(), 0.0);
   for (std::size_t i = 0; i < 3; ++i) move[4 * i + 2] = -0.03;
-  EXPECT_EQ(world.resolvePenetrations(move), 2U);
+  EXPECT_EQ(world.resolvePenetrations(move), 3U);  // the edge, and the corner above, which does not run into it
   EXPECT_GT(world.get(0).z(), 0);
   EXPECT_LT(world.get(0).z(), 2e-3);
+  EXPECT_LT(world.get(2).z(), 0.05 - 5e-3);
+  EXPECT_GT(world.get(2).z(), 0.04 - 6e-3);
 }
 
 TEST(SelfContactPaths, WhatMeetsNothingIsLeftToTheBit) {
@@ -80,32 +82,35 @@ TEST(SelfContactPaths, WhatMeetsNothingIsLeftToTheBit) {
   EXPECT_EQ(world.resolvePenetrations(apart), 0U);
 }
 
-// A plate folded sharply is folded on, through itself: triangles near the crease belong to one wall.
+// A plate folded sharply is folded on and twisted, through itself: triangles near the crease belong to one wall.
 std::size_t crossingsOfFold(bool limited) {
   SurfaceMesh mesh;
   addPlate(8, 2.5e-3, 0, true, mesh);
   World world(mesh);
-  const auto foldTo = [&](double degrees) {
-    const double angle = degrees * M_PI / 180;
+  const auto foldTo = [&](double degrees, double twist) {
     std::vector<double> move = world.at;
     for (std::size_t i = 0; i < world.count(); ++i) {
       const Eigen::Vector3d& p = world.rest.vertices[i];
+      const double angle = (degrees + twist * p.y()) * M_PI / 180;
       if (p.x() > 0) move[4 * i] = p.x() * std::cos(angle), move[4 * i + 2] = p.x() * std::sin(angle);
     }
     for (std::size_t k = 0; k < move.size(); ++k) move[k] -= world.at[k];
     return move;
   };
-  std::vector<double> move = foldTo(150);
+  std::vector<double> move = foldTo(150, 0);
   for (std::size_t k = 0; k < move.size(); ++k) world.at[k] += move[k];
   EXPECT_EQ(world.crossings(), 0U);
   world.detect(1e-3);
-  move = foldTo(215);
+  move = foldTo(180, 4000);
+  const std::vector<double> start = world.at;
   if (limited) {
     EXPECT_GT(world.resolvePenetrations(move), 0U);
   } else {
     for (std::size_t k = 0; k < move.size(); ++k) world.at[k] += move[k];
   }
-  return world.crossings();
+  std::size_t most = 0;
+  for (double part = 0.1; part < 1.05; part += 0.1) most = std::max(most, world.crossings(start, part));
+  return most;
 }
 
 TEST(SelfContactPaths, NeighboursInASharpFoldDoNotCross) {

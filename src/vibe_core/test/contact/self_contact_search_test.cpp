@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <random>
 #include <utility>
 
 #include "contact/self_contact_worlds.hpp"
@@ -61,6 +62,44 @@ TEST(SelfContactSearch, ResultDoesNotDependOnHistory) {
   ASSERT_EQ(old.contact.pairs().size(), fresh.contact.pairs().size());
   EXPECT_EQ(old.evaluate(), fresh.evaluate());
   EXPECT_EQ(old.gradient, fresh.gradient);
+}
+
+/// A sphere that is flattened while a part of it is pushed about fast, and all of it shaken.
+std::vector<double> pushAbout(const World& world, int step, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<double> move(world.at.size(), 0.0);
+  const Eigen::Vector3d push(3e-3 * std::sin(0.7 * step), 2e-3 * std::cos(0.4 * step), step % 9 < 5 ? -4e-3 : 5e-3);
+  for (std::size_t i = 0; i < world.count(); ++i) {
+    const Eigen::Vector3d p = world.get(i), at_rest = world.rest.vertices[i];
+    const double near = std::exp(-(at_rest - Eigen::Vector3d(0, 0, 0.03)).squaredNorm() / 1e-4);
+    for (int k = 0; k < 3; ++k) move[4 * i + k] = near * push[k] + 0.05e-3 * uniform(random);
+    move[4 * i + 2] -= step < 20 ? 0.1 * p.z() : 0.01 * p.z();
+  }
+  return move;
+}
+
+TEST(SelfContactSearch, RenewsAllThatMatters) {
+  World old(sphere(0.03, 9));
+  std::mt19937 random(5);
+  std::size_t pairs = 0, stopped = 0;
+  for (int step = 0; step < 40; ++step) {
+    World fresh(old.rest);
+    fresh.at = old.at;
+    const double reach = step % 7 == 3 ? 2e-3 : 0.5e-3;
+    old.detect(reach);
+    fresh.detect(reach);
+    ASSERT_EQ(old.contact.pairs().size(), fresh.contact.pairs().size()) << step;
+    ASSERT_EQ(old.evaluate(), fresh.evaluate()) << step;
+    ASSERT_EQ(old.gradient, fresh.gradient) << step;
+    pairs = std::max(pairs, old.contact.pairs().size());
+    const std::vector<double> move = pushAbout(old, step, random);
+    stopped += old.resolvePenetrations(move);
+    fresh.resolvePenetrations(move);
+    ASSERT_EQ(old.at, fresh.at) << step;
+    ASSERT_EQ(old.crossings(), 0U) << step;
+  }
+  EXPECT_GT(pairs, 100U);
+  EXPECT_GT(stopped, 50U);
 }
 
 TEST(SelfContactSearch, SearchesOnlyWhenSomethingCanHaveComeNear) {

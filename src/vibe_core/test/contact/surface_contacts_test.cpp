@@ -204,11 +204,11 @@ TEST(ToolGuard, NothingPassesWhateverMoves) {
     moved = wall;
     const double pushed = -0.03 * std::abs(c(random));
     for (double& x : moved[0]) x += pushed;  // towards the tool
-    const auto crosses = [&](double tool_part, double wall_part) {
+    const auto crosses = [&](const ToolMotion& made, double tool_part, double wall_part) {
       constexpr int kMoments = 60;
       std::vector<Isometry3d> at;
       for (int moment = 0; moment <= kMoments; ++moment) {
-        motion.linkPoses(tool_part * moment / kMoments, at);
+        made.linkPoses(tool_part * moment / kMoments, at);
         const Isometry3d& pose = at[scene.tool.linkIndex("scope_tip")];
         for (const auto& n : scene.contacts.triangles()) {
           std::array<Vector3d, 3> t;
@@ -218,18 +218,75 @@ TEST(ToolGuard, NothingPassesWhateverMoves) {
       }
       return false;
     };
-    ASSERT_FALSE(crosses(0, 0));
-    passing += crosses(1, 1) ? 1 : 0;
-    const ToolGuard::Free free = guard.keepApart(poses, motion, pathOf(wall, moved));
-    EXPECT_FALSE(crosses(free.tool, free.wall)) << "trial " << trial;
-    stopped += free.tool < 1 || free.wall < 1 ? 1 : 0;
-    // what the tool reaches is on its way
+    ASSERT_FALSE(crosses(motion, 0, 0));
+    passing += crosses(motion, 1, 1) ? 1 : 0;
+    ToolMotion made = motion;
+    const double free = guard.keepApart(poses, made, pathOf(wall, moved));
+    EXPECT_FALSE(crosses(made, 1, free)) << "trial " << trial;
+    stopped += made.inputs(1) != motion.inputs(1) || free < 1 ? 1 : 0;
     std::vector<Isometry3d> reached;
-    motion.linkPoses(free.tool, reached);
+    made.linkPoses(1, reached);
     EXPECT_TRUE(reached.back().isApprox(poses.end.back()));
   }
   EXPECT_GT(passing, 50) << "without the guard they cross";
   EXPECT_GE(stopped, passing);
+}
+
+/// A tool whose front is before a sheet that stands still, and joints that can be commanded.
+class StuckTool : public testing::Test {
+ protected:
+  StuckTool() : scene_(kRadius, 6), guard_(scene_.tool, scene_.mesh, scene_.thickness, scene_.none), joints_{0.1} {
+    poses_.resize(static_cast<std::size_t>(scene_.tool.linkCount()));
+    scene_.tool.forwardKinematics(joints_, poses_);
+    const Vector3d front = poses_[scene_.tool.linkIndex("scope_tip")] * scene_.front;
+    wall_ = scene_.start;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (double& x : wall_[k]) x += front[static_cast<int>(k)] + (k == 0 ? 1e-3 : 0);
+  }
+  /// @returns the part of its way that the wall can go
+  double moveTo(const std::array<double, kJointCount>& command) {
+    ToolMotion motion(scene_.tool, Isometry3d::Identity(), joints_, command);
+    ToolPoses poses;
+    motion.linkPoses(0, poses.start);
+    motion.linkPoses(1, poses.end);
+    const double free = guard_.keepApart(poses, motion, pathOf(wall_, wall_));
+    joints_ = motion.inputs(1);
+    return free;
+  }
+  double outside() {
+    scene_.tool.forwardKinematics(joints_, poses_);
+    return wall_[0][0] - (poses_[scene_.tool.linkIndex("scope_tip")] * scene_.front).x();
+  }
+
+  static constexpr double kRadius = 0.5e-3;
+  Scene scene_;
+  ToolGuard guard_;
+  std::array<double, kJointCount> joints_;
+  std::vector<Isometry3d> poses_;
+  Points wall_;
+};
+
+TEST_F(StuckTool, JointsThatAreFreeGoOn) {
+  auto command = joints_;
+  command[Insertion] += 5e-3;
+  command[Rotation] += 0.3;
+  EXPECT_EQ(moveTo(command), 1);
+  EXPECT_DOUBLE_EQ(joints_[Rotation], command[Rotation]) << "the tool turns about its own axis";
+  EXPECT_LT(joints_[Insertion], 0.1011);
+  EXPECT_GT(outside(), 0);
+}
+
+TEST_F(StuckTool, GetsFreeHoweverLongItHasBeenPushed) {
+  auto command = joints_;
+  for (int k = 0; k < 600; ++k) {
+    command[Insertion] = joints_[Insertion] + 5e-3;
+    moveTo(command);
+  }
+  EXPECT_GT(outside(), 1e-7);
+  EXPECT_LT(outside(), 0.1 * kThickness);
+  command[Insertion] = joints_[Insertion] - 5e-3;
+  moveTo(command);
+  EXPECT_DOUBLE_EQ(joints_[Insertion], command[Insertion]);
 }
 
 }  // namespace

@@ -128,9 +128,9 @@ class BadUrdf : public testing::TestWithParam<int> {
          "scope.urdf:LINE: link 'device_cap' has a collision shape whose radius is not between 1e-6 m and 10 m; write "
          "it in metres.",
          "<link name=\"device_cap\""},
-        {"FarAway", replaced(good, "<origin xyz=\"-0.0985 0 0\"", "<origin xyz=\"-98.5 0 0\""),
-         "scope.urdf:LINE: joint 'rotation' has an origin that is more than 10 m away; write it in metres.",
-         "<joint name=\"rotation\""},
+        {"FarAway", replaced(good, "<origin xyz=\"-0.3025 0 0\"", "<origin xyz=\"-302.5 0 0\""),
+         "scope.urdf:LINE: joint 'scope_shaft_mount' has an origin that is more than 10 m away; write it in metres.",
+         "<joint name=\"scope_shaft_mount\""},
         {"TwoParents", replaced(good, "<child link=\"needle\"/>", "<child link=\"helix\"/>"), "scope.urdf", ""},
         {"Ring",
          replaced(good, "</robot>",

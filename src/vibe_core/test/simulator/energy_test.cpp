@@ -77,7 +77,7 @@ TEST(Energy, AccountOfAPressedScopeIsClosed) {
     StepInput input;
     input.buttons[Insufflate] = insufflate ? 1 : 0;
     input.joints[Insertion] = length;
-    input.joints[TipUpDown] = 0.4;
+    input.joints[TipUpDown] = 0.4 * std::min(1.0, std::max(0.0, length - 0.05) / 0.05);  // straight in the entry
     return input;
   };
   session.run(8, [&](const State& state) { return insert(std::min(0.12, 0.02 * state.time), true); });

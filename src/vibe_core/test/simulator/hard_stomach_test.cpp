@@ -127,8 +127,11 @@ TEST(HardStomach, GripPulledByFortyMillimetresInOneFrame) {
   stomach.state.helix_pressed = true;
   StepInput hold;
   hold.buttons[HelixGrab] = 1;
+  // the work of a step is limited: it says what it leaves; the grip slips before the next one goes on
   step(*stomach.model, stomach.state, hold, *stomach.workspace, stomach.events);
-  EXPECT_LT((stomach.position(held) - to).norm(), 1e-6);
+  EXPECT_FALSE(stomach.workspace->report().arrived);
+  EXPECT_GT(stomach.workspace->report().residual, 1e-3);
+  EXPECT_LT((stomach.position(held) - to).norm(), 0.03);
   stomach.run(0.2, hold);
   expectHealed(stomach);
   EXPECT_EQ(stomach.count(Event::Kind::Recovery), 0);

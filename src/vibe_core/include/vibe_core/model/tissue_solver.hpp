@@ -22,6 +22,7 @@ struct StepReport {
   std::optional<ToolImpedance> tool_impedance;            ///< empty without contact, or if the solver computes none
   ToolDisplacement tool_displacement{};                   ///< in: if nothing acts on the tool; out: at the end
   std::array<double, kScopeJointCount> hand_effort{};     ///< of the hand on the joints, mean over the step [N], [N m]
+  std::array<int, kJointCount> stopped{};                 ///< joints that tissue has stopped: sign of their motion
   int contact_count = 0;                                  ///< maximum number of particles touched at once
   int iterations = 0;                                     ///< of an implicit solver
   int evaluations = 0;                                    ///< of the elastic energy, by an implicit solver

@@ -63,11 +63,13 @@ struct State {
   std::array<double, kJointCount> joints{};  ///< of the hand: positions of the tool's inputs, limits applied [m], [rad]
   ToolDisplacement tool_displacement{};      ///< of the tool from these positions; 0 with a rigid one
   std::array<double, kScopeJointCount>
-      hand_effort{};            ///< of the hand on the scope's joints, mean over the step [N], [N m]
-  std::vector<GripPoint> grip;  ///< what the helix holds; empty: nothing
-  bool helix_pressed = false;   ///< button state of the last step, for edges
-  bool in_contact = false;      ///< the tool touches tissue, or did within the last kContactGap
-  double untouched_time = 0;    ///< since the tool last touched tissue, while in_contact [s]
+      hand_effort{};                     ///< of the hand on the scope's joints, mean over the step [N], [N m]
+  std::array<int, kJointCount> stall{};  ///< steps in which the hand does not push a joint that tissue has stopped,
+                                         ///< with the sign of its motion
+  std::vector<GripPoint> grip;           ///< what the helix holds; empty: nothing
+  bool helix_pressed = false;            ///< button state of the last step, for edges
+  bool in_contact = false;               ///< the tool touches tissue, or did within the last kContactGap
+  double untouched_time = 0;             ///< since the tool last touched tissue, while in_contact [s]
 
   Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in scope_tip [N]
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about the origin of scope_tip, in scope_tip [N m]
