@@ -59,6 +59,7 @@ bool SelfContactSearch::adapt(const NodeVectors& start, const NodeVectors& end, 
   if (all) distance_ = kSpare * distance;
   ++count_;
   tree_.adapt(bounds_, all);
+  tree_.visitChanges([this](int t) { bounds_.setCoarse(t, tree_.isRough(t)); });
   renewNear();
   renewMeetings();
   return true;
