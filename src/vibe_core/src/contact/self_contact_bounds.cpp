@@ -87,6 +87,9 @@ SelfContactBounds::SelfContactBounds(const std::vector<std::array<int, 3>>& tria
     checked_[k].assign(vertices, 0);
     normal_[k].assign(padded, 0);
   }
+  moved_.reserve(vertices);
+  wide_.reserve(vertices);
+  turned_.reserve(triangles.size());
   turn_.assign(padded, 0);
   cosine_.assign(padded, 2);
 }
