@@ -95,5 +95,26 @@ TEST_P(Needle, NeverPassesTheWall) {
 
 INSTANTIATE_TEST_SUITE_P(Speeds, Needle, ::testing::Values(0.12, 1.0, 5.0));
 
+// Contacts that the solver has resolved leave nothing to the guard behind them: the scope is where the hand puts it.
+TEST(ScopeOnWall, FollowsTheHandWhileItPresses) {
+  World world = needleWorld(0.15, 0);
+  world = World(world.model->scene, world.model->organ, scopeText());
+  StepInput input;
+  input.joints[Insertion] = 0.08;
+  world.run(1, input);
+  double most = 0;
+  for (int k = 0; k < 240; ++k) {
+    const double moved = k < 120 ? 4e-4 : 0;  // 24 mm/s, then still
+    input.joints[Insertion] += moved;
+    input.joints[TipUpDown] += moved;
+    world.step(input);
+    ASSERT_EQ(world.state.joints[Insertion], input.joints[Insertion]) << "step " << k;
+    ASSERT_EQ(world.state.joints[TipUpDown], input.joints[TipUpDown]) << "step " << k;
+    for (const int stalls : world.state.stall) ASSERT_EQ(stalls, 0);
+    most = std::max(most, world.state.tool_force.norm());
+  }
+  EXPECT_GT(most, 0.5) << "N";
+}
+
 }  // namespace
 }  // namespace vibe
