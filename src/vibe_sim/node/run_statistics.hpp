@@ -34,7 +34,7 @@ class RunStatistics {
   void startWindow(Session& session);
 
  private:
-  struct Work {  // of the solver
+  struct Work {                    // of the solver
     double residual = 0;           // largest [m]
     std::uint32_t unfinished = 0;  // steps
   };

@@ -19,9 +19,10 @@ constexpr double kWide = 1.9;    // radius of a ball that is made smaller, over 
 // Width of the cones. Design choice: walls whose normals differ by less than a right angle are not compared although
 // both cones are taken off the least cosine of walls that face each other [1].
 constexpr double kTurn = 0.1;
-constexpr double kWideTurn = 1.5 * kTurn;
-constexpr float kRounding = 1e-5F;  // of a cosine in single precision: positions to 1e-8 m, edges of millimetres [1]
-constexpr double kSteepest = 0.5;   // sine of a turn below which its chord is at most kChord times as long
+constexpr double kCoarseTurn = 0.3;  // where cones cannot tell walls apart anyway
+constexpr double kWideTurn = 1.5;    // of a cone that is made smaller in each step, in usual widths
+constexpr float kRounding = 1e-5F;   // of a cosine in single precision: positions to 1e-8 m, edges of millimetres [1]
+constexpr double kSteepest = 0.5;    // sine of a turn below which its chord is at most kChord times as long
 constexpr double kChord = 1.04;
 constexpr std::size_t kGroup = 8;  // triangles
 
@@ -76,6 +77,7 @@ SelfContactBounds::SelfContactBounds(const std::vector<std::array<int, 3>>& tria
       radius_(part_.size(), -1),
       square_(part_.size(), -1),
       cone_(triangles.size()),
+      coarse_(triangles.size(), 0),
       start_(4 * part_.size()),
       end_(4 * part_.size()) {
   const std::size_t vertices = part_.size();
@@ -85,6 +87,9 @@ SelfContactBounds::SelfContactBounds(const std::vector<std::array<int, 3>>& tria
     checked_[k].assign(vertices, 0);
     normal_[k].assign(padded, 0);
   }
+  moved_.reserve(vertices);
+  wide_.reserve(vertices);
+  turned_.reserve(triangles.size());
   turn_.assign(padded, 0);
   cosine_.assign(padded, 2);
 }
@@ -232,13 +237,14 @@ float SelfContactBounds::turnCone(int triangle, const NodeVectors& start, const 
   const Eigen::Vector3d normal = (from + to).normalized();
   const double chord = std::sqrt(
       std::max({(from - normal).squaredNorm(), (to - normal).squaredNorm(), (middle - normal).squaredNorm()}));
-  const bool any = !(chord + 0.5 * kTurn < 1) || !(normal.squaredNorm() > 0.5);
-  const double turn = any ? 2 : std::max(kTurn, chord + 0.5 * kTurn);
+  const double usual = coarse_[triangle] != 0 ? kCoarseTurn : kTurn;
+  const bool any = !(chord + 0.5 * usual < 1) || !(normal.squaredNorm() > 0.5);
+  const double turn = any ? 2 : std::max(usual, chord + 0.5 * usual);
   cone_[triangle] = {normal.cast<float>(), static_cast<float>(turn)};
   for (int k = 0; k < 3; ++k) normal_[k][triangle] = static_cast<float>(normal[k]);
   turn_[triangle] = static_cast<float>(turn);
   cosine_[triangle] = static_cast<float>(1 - 0.5 * turn * turn) + kRounding;
-  if (turn > kWideTurn) {
+  if (turn > kWideTurn * usual) {
     any_wide_cone_ = true;
     cosine_[triangle] = 2;
   }

@@ -27,6 +27,8 @@ class SelfContactBounds {
   /// of the point `start`, must have been the last, or `start` and `end` be the same arrays.
   /// @returns false if a position is not finite; then the bounds are not to be used, and the next call renews all
   bool adapt(const NodeVectors& start, const NodeVectors& end);
+  /// Whether the next cone of a triangle may be so wide that it is seldom renewed.
+  void setCoarse(int triangle, bool coarse) { coarse_[triangle] = coarse ? 1 : 0; }
   /// The next call of adapt() renews all.
   void reset();
 
@@ -56,6 +58,7 @@ class SelfContactBounds {
   std::vector<double> radius_, square_;        // of the balls, and their squares; < 0: to be renewed [m], [m^2]
   std::vector<int> wide_;                      // vertices with a large ball, for a fast path
   std::vector<Cone> cone_;
+  std::vector<char> coarse_;                  // whether, per triangle
   std::array<std::vector<float>, 3> normal_;  // of the cones, by component; in groups of 8, as the next ones
   std::vector<float> turn_, cosine_;          // of the cones: their width, and the least cosine with the normal in them
   bool any_wide_cone_ = false;

@@ -13,6 +13,8 @@ namespace {
 // Distance for which near vertices are listed, over the one that is asked for, and how much shorter the latter may get.
 // Design choice: the distance changes with the speed of the walls, and a new list costs much.
 constexpr double kSpare = 1.05, kTooFar = 0.3;
+// Entries of a list for which there is memory from the start. Design choice: those of a surface with a few folds.
+constexpr std::size_t kPerTriangle = 4;
 constexpr float kRoundedDown = 1 - 1e-6F, kRoundedUp = 1 + 1e-6F;  // of a distance in single precision
 
 /// Distance between the parts of two triangles at one vertex that do not contain it [m].
@@ -46,6 +48,9 @@ SelfContactSearch::SelfContactSearch(const SurfaceMesh& rest, const Settings& se
       vertex_off_(rest.vertices.size()),
       triangle_off_(triangles_.size()) {
   tree_.setWalls(walls_);
+  for (std::vector<Near>* list : {&near_, &new_near_, &old_near_}) list->reserve(kPerTriangle * triangles_.size());
+  for (std::vector<Meeting>* list : {&meetings_, &new_meetings_, &old_meetings_})
+    list->reserve(kPerTriangle * triangles_.size());
 }
 
 bool SelfContactSearch::adapt(const NodeVectors& start, const NodeVectors& end, double distance) {
@@ -59,6 +64,7 @@ bool SelfContactSearch::adapt(const NodeVectors& start, const NodeVectors& end, 
   if (all) distance_ = kSpare * distance;
   ++count_;
   tree_.adapt(bounds_, all);
+  tree_.visitChanges([this](int t) { bounds_.setCoarse(t, tree_.isRough(t)); });
   renewNear();
   renewMeetings();
   return true;

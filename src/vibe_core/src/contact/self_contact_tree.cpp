@@ -47,6 +47,9 @@ SelfContactTree::SelfContactTree(const SurfaceMesh& rest, const VertexTriangles&
   around_.resize(triangles_.size());
   changed_.resize(triangles_.size());
   ring_.resize(rest.vertices.size());
+  renewed_.reserve(triangles_.size());
+  renewed_nodes_.reserve(nodes_.size());
+  stack_.reserve(nodes_.size());
 }
 
 // Halves at the median along the longest extent.

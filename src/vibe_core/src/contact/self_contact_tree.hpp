@@ -70,10 +70,18 @@ class SelfContactTree {
   /// Whether the last adapt() has changed what visitFacing() and visitCrossing() look at.
   bool hasNewNear(int triangle) const { return (changed_[triangle] & (kBox | kAround)) != 0; }
   bool hasNewPath(int triangle) const { return (changed_[triangle] & (kBox | kOwn)) != 0; }
+  /// Calls visit(triangle) for each triangle of which the last adapt() has changed something.
+  template <class Visit>
+  void visitChanges(Visit visit) const {
+    for (const int t : renewed_) visit(t);
+  }
+  /// Whether the normals of a triangle and those around it differ so much that they tell nothing about what it faces.
+  bool isRough(int triangle) const { return around_[triangle].cosine < kRough; }
   /// All that may be within it [m].
   const Box& box(int triangle) const { return box_[triangle]; }
 
  private:
+  static constexpr float kRough = 0.82F;  // half of the largest angle between normals that do not face each other
   enum Change : char { kBox = 1, kOwn = 2, kAround = 4, kEverything = 7 };
   enum class Part { Skip, Changes, All };
   struct Limits {

@@ -35,7 +35,8 @@ class QuasiNewton {
   double value() const { return value_; }
   /// Rounding error of the displacements, which are single precision [m].
   double resolution() const;
-  /// The last direction is less than half of the one before (if any), and a tenth of the first or a safe length.
+  /// The last direction is less than half of the one before and a few hundredths of the first, or it is the first and
+  /// has a safe length.
   bool contracts() const { return contracts_; }
   /// The last iterate found no lower energy along its direction, and did not move.
   bool failed() const { return failed_; }
