@@ -67,7 +67,7 @@ class ToolContactBlock : public ConstraintBlock {
   void exclude(const StepContext& context) {
     for (std::size_t i = 0; i < excluded_.size(); ++i)
       excluded_[i] = passable_[i] != 0 || context.model.inverse_mass[i] == 0 ? 1 : 0;
-    for (const GripPoint& point : context.state.grip) excluded_[static_cast<std::size_t>(point.particle)] = 1;
+    for (const GripPoint& point : context.state.grip) excluded_[static_cast<std::size_t>(point.particle)] = kHeld;
   }
 
   void findContacts(const StepContext& context, BodyLoads& loads) {

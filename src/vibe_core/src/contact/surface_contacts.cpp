@@ -78,6 +78,7 @@ std::vector<char> passableVertices(const Organ& organ) {
 SurfaceContacts::SurfaceContacts(const ToolModel& tool, const SurfaceMesh& surface,
                                  const std::vector<double>& thickness, const std::vector<char>& passable)
     : tool_(tool),
+      on_tip_(shapesOnTip(tool)),
       near_triangles_(surface, passable),
       triangles_(near_triangles_.triangles()),
       neighbour_(neighbours(triangles_)) {
@@ -150,6 +151,12 @@ void SurfaceContacts::addVertices(const SurfacePath& path, double margin, int sh
     if (excluded[v] == 0) offer(SurfacePoint::ofNode(v), path, shape, hit_[v] != 0, margin);
 }
 
+bool SurfaceContacts::isDrawnIn(int shape, std::initializer_list<int> vertices,
+                                const std::vector<char>& excluded) const {
+  return on_tip_[shape] != 0 &&
+         std::any_of(vertices.begin(), vertices.end(), [&](int vertex) { return excluded[vertex] == kHeld; });
+}
+
 void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded) {
   for (const Pair& pair : pairs_) {
     const std::array<int, 3>& n = triangles_[pair.triangle];
@@ -161,10 +168,11 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
           partsOf(shape, std::max(length, kStretch * length_[static_cast<std::size_t>(pair.triangle)][k]));
       most = std::max(most, parts);
       const int across = neighbour_[pair.triangle][k];
+      if (isDrawnIn(shape, {n[k], n[(k + 1) % 3]}, excluded)) continue;
       if (parts > 1 && !(across >= 0 && pair_of_[across] >= 0 && across < pair.triangle))
         addEdge(path, margin, shape, pair, static_cast<int>(k), parts);
     }
-    if (most > 2) addInterior(path, margin, shape, pair, most);
+    if (most > 2 && !isDrawnIn(shape, {n[0], n[1], n[2]}, excluded)) addInterior(path, margin, shape, pair, most);
   }
 }
 
@@ -175,6 +183,7 @@ void SurfaceContacts::addNearest(int shape, const std::vector<char>& excluded) {
     const std::array<int, 3>& n = triangles_[pair.triangle];
     const double half = halfThickness(n, gap.weight);
     if (gap.distance - tool_.radius(shape) > kNearestPoint * half) continue;
+    if (isDrawnIn(shape, {n[0], n[1], n[2]}, excluded)) continue;
     double gives_way = 0;
     for (std::size_t k = 0; k < 3; ++k)
       if (excluded[n[k]] == 0) gives_way += gap.weight[static_cast<int>(k)];

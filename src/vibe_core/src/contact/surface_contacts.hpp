@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <initializer_list>
 #include <vector>
 
 #include "contact/tool_approach.hpp"
@@ -8,6 +9,9 @@
 #include "vibe_core/solver/body_loads.hpp"
 
 namespace vibe {
+
+/// Of a vertex that the helix holds, see SurfaceContacts::find().
+constexpr char kHeld = 2;
 
 /// Per vertex: the tool passes through the triangles there. The ends are open where the organ goes on: the scope passes
 /// through their closing surface.
@@ -42,7 +46,8 @@ class SurfaceContacts {
   /// @param start, end  pose of every link in world
   /// @param path    vertices at the start of the step, and at its end if nothing stops them
   /// @param margin  contacts are those that come nearer to touching than this [m]
-  /// @param excluded  per vertex: it takes no part; a triangle of only such vertices neither
+  /// @param excluded  per vertex: 1: it takes no part; a triangle of only such vertices neither; kHeld: the helix holds
+  ///                  it, and draws triangles there into the device on the tip of the scope
   /// @returns ordered by nodes, then depth; valid until the next call
   const std::vector<SurfaceContact>& find(const std::vector<Eigen::Isometry3d>& start,
                                           const std::vector<Eigen::Isometry3d>& end, const SurfacePath& path,
@@ -59,6 +64,7 @@ class SurfaceContacts {
   double halfThickness(const std::array<int, 3>& node, const Eigen::Vector3d& weight) const;
   void followPairs(const SurfacePath& path, double margin, std::size_t first, std::size_t last);
   void addVertices(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
+  bool isDrawnIn(int shape, std::initializer_list<int> vertices, const std::vector<char>& excluded) const;
   void addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   void addNearest(int shape, const std::vector<char>& excluded);
   int partsOf(int shape, double length) const;
@@ -70,6 +76,7 @@ class SurfaceContacts {
   void removeDuplicates();
 
   SweptTool tool_;
+  std::vector<char> on_tip_;  // per shape
   NearTriangles near_triangles_;
   const std::vector<std::array<int, 3>>& triangles_;
   std::vector<std::array<int, 3>> neighbour_;  // of each triangle across the edge after its k-th vertex, -1: none

@@ -74,6 +74,16 @@ ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path,
   return result;
 }
 
+std::vector<char> shapesOnTip(const ToolModel& tool) {
+  std::vector<char> carried(static_cast<std::size_t>(tool.linkCount()), 0);
+  carried[tool.linkIndex("scope_tip")] = 1;
+  for (const ToolJoint& joint : tool.joints())
+    if (carried[joint.parent_link] != 0) carried[joint.child_link] = 1;
+  std::vector<char> on_tip;
+  for (const ToolShape& shape : tool.shapes()) on_tip.push_back(carried[shape.link]);
+  return on_tip;
+}
+
 NearTriangles::NearTriangles(const SurfaceMesh& surface, const std::vector<char>& passable)
     : outside_(surface.vertices.size()) {
   for (const std::array<int, 3>& n : surface.triangles)

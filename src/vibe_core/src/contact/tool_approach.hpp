@@ -34,6 +34,9 @@ struct ToolApproach {
 ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path, const std::array<int, 3>& triangle,
                       double floor);
 
+/// Per shape: it sits on the tip of the scope or on what the tip carries, such as the suturing device.
+std::vector<char> shapesOnTip(const ToolModel& tool);
+
 /// Pairs of shapes and triangles whose ways through a step come near each other.
 class NearTriangles {
  public:

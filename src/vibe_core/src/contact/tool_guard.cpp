@@ -27,9 +27,11 @@ constexpr std::array<double, 2> kJointParts{1, 0.25};
 
 ToolGuard::ToolGuard(const ToolModel& tool, const SurfaceMesh& surface, const std::vector<double>& thickness,
                      const std::vector<char>& passable)
-    : thickness_(thickness), tool_(tool), near_(surface, passable) {}
+    : thickness_(thickness), on_tip_(shapesOnTip(tool)), tool_(tool), near_(surface, passable) {}
 
-double ToolGuard::keepApart(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path) {
+double ToolGuard::keepApart(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path,
+                            const std::vector<int>& held) {
+  held_ = held;
   double free = freePart(poses, motion, path);
   if (free == 1) return 1;
   const ToolMotion wanted = motion;
@@ -63,8 +65,16 @@ double ToolGuard::freePart(ToolPoses& poses, const ToolMotion& motion, const Sur
   tool_.place(poses.start, poses.end);
   near_.find(tool_, path, kKept * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
   double part = 1;
-  for (const NearTriangles::Pair& pair : pairs_) part = std::min(part, freePart(pair, path));
+  for (const NearTriangles::Pair& pair : pairs_)
+    if (!isDrawnIn(pair)) part = std::min(part, freePart(pair, path));
   return part;
+}
+
+bool ToolGuard::isDrawnIn(const NearTriangles::Pair& pair) const {
+  if (held_.empty() || on_tip_[pair.shape] == 0) return false;
+  const std::array<int, 3>& n = near_.triangles()[pair.triangle];
+  return std::any_of(n.begin(), n.end(),
+                     [this](int vertex) { return std::find(held_.begin(), held_.end(), vertex) != held_.end(); });
 }
 
 double ToolGuard::freePart(const NearTriangles::Pair& pair, const SurfacePath& path) const {

@@ -24,15 +24,21 @@ class ToolGuard {
   /// @param poses   of the tool; in and out: `end` becomes the pose that the tool reaches
   /// @param motion  of the tool from start to end; in and out: that to the pose that it reaches
   /// @param path    of the wall
+  /// @param held    vertices that the helix holds. It draws triangles there into the device, which are no
+  ///                obstacle for what sits on the tip of the scope
   /// @returns the part of its path that the wall can go, 1: all of it
-  double keepApart(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path);
+  double keepApart(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path, const std::vector<int>& held);
 
  private:
   double freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path);
   void moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, ToolMotion& motion);
   double freePart(const NearTriangles::Pair& pair, const SurfacePath& path) const;
 
+  bool isDrawnIn(const NearTriangles::Pair& pair) const;
+
   std::vector<double> thickness_;
+  std::vector<char> on_tip_;  // per shape
+  std::vector<int> held_;     // vertices
   SweptTool tool_;
   NearTriangles near_;
   std::vector<NearTriangles::Pair> pairs_;

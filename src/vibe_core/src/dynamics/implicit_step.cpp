@@ -227,7 +227,9 @@ void ImplicitStep::keepToolApart() {
   SurfacePath path;
   for (std::size_t k = 0; k < 3; ++k) path.from[k] = scratch_.start[k].data(), path.to[k] = x[k]->data();
   ToolMotion motion = yielded_ ? *yielded_ : *motion_;
-  const double free = scratch_.guard->keepApart(scratch_.poses, motion, path);
+  scratch_.held.clear();
+  for (const GripPoint& point : state_.grip) scratch_.held.push_back(point.particle);
+  const double free = scratch_.guard->keepApart(scratch_.poses, motion, path, scratch_.held);
   state_.joints = motion.inputs(1);
   const auto start = motion_->inputs(0), wanted = motion_->inputs(1);
   tool_stopped_ = state_.joints != wanted || (yielded_ && motion.displacement(1) != yielded_->displacement(1));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 
 #include "contact/thin_tool.hpp"
@@ -221,7 +222,7 @@ TEST(ToolGuard, NothingPassesWhateverMoves) {
     ASSERT_FALSE(crosses(motion, 0, 0));
     passing += crosses(motion, 1, 1) ? 1 : 0;
     ToolMotion made = motion;
-    const double free = guard.keepApart(poses, made, pathOf(wall, moved));
+    const double free = guard.keepApart(poses, made, pathOf(wall, moved), {});
     EXPECT_FALSE(crosses(made, 1, free)) << "trial " << trial;
     stopped += made.inputs(1) != motion.inputs(1) || free < 1 ? 1 : 0;
     std::vector<Isometry3d> reached;
@@ -244,12 +245,12 @@ class StuckTool : public testing::Test {
       for (double& x : wall_[k]) x += front[static_cast<int>(k)] + (k == 0 ? 1e-3 : 0);
   }
   /// @returns the part of its way that the wall can go
-  double moveTo(const std::array<double, kJointCount>& command) {
+  double moveTo(const std::array<double, kJointCount>& command, const std::vector<int>& held = {}) {
     ToolMotion motion(scene_.tool, Isometry3d::Identity(), joints_, command);
     ToolPoses poses;
     motion.linkPoses(0, poses.start);
     motion.linkPoses(1, poses.end);
-    const double free = guard_.keepApart(poses, motion, pathOf(wall_, wall_));
+    const double free = guard_.keepApart(poses, motion, pathOf(wall_, wall_), held);
     joints_ = motion.inputs(1);
     return free;
   }
@@ -274,6 +275,15 @@ TEST_F(StuckTool, JointsThatAreFreeGoOn) {
   EXPECT_DOUBLE_EQ(joints_[Rotation], command[Rotation]) << "the tool turns about its own axis";
   EXPECT_LT(joints_[Insertion], 0.1011);
   EXPECT_GT(outside(), 0);
+}
+
+TEST_F(StuckTool, WhatTheHelixHoldsIsDrawnIntoTheDevice) {
+  auto command = joints_;
+  command[Insertion] += 5e-3;
+  std::vector<int> all(wall_[0].size());
+  std::iota(all.begin(), all.end(), 0);
+  EXPECT_EQ(moveTo(command, all), 1);
+  EXPECT_DOUBLE_EQ(joints_[Insertion], command[Insertion]);
 }
 
 TEST_F(StuckTool, GetsFreeHoweverLongItHasBeenPushed) {
