@@ -213,7 +213,7 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
   setStepTargets(loads, motion, scheme, memory.couplings, scratch);
   Potential potential(body_, loads, scheme.inertia, scratch, scheme.part());
   QuasiNewton newton(body_, potential, loads, scratch, std::min(plan_->safe_length, kUsualGrowth * memory.usual_length),
-                     settings_.iterations + kSpareEvaluations);
+                     settings_.iterations + (outcome.fallback ? kSpareInFallback : kSpareEvaluations));
   newton.start();
   // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
   if (extrapolates(outcome.fallback) && !(scratch.elastic_value <= kGuessGrowth * memory.elastic_energy)) {

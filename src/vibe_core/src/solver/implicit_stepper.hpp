@@ -35,6 +35,9 @@ struct TimeScheme;
 /// Evaluations of the energy that a step may take beyond StepSettings::iterations. Design choice: eight, so that L-BFGS
 /// with a history of six pairs shows its superlinear rate in a step that needs it.
 constexpr int kSpareEvaluations = 8;
+/// The same of a step with backward Euler, which follows one that did not arrive. Design choice: a step from far away
+/// spends half of its evaluations on line searches.
+constexpr int kSpareInFallback = 16;
 
 /// Backward Euler or generalised-alpha steps, and static equilibria, by quasi-Newton iterations: L-BFGS (Nocedal 1980)
 /// on top of the factor of a stiffness about an earlier state, with a line search on the energy.
@@ -53,7 +56,8 @@ class ImplicitStepper {
   /// Names the present positions as those that the factor is about, at once. Costs tens of step times.
   void refactor(const MotionView& motion, StepperMemory& memory) const;
 
-  /// One step. Its work is limited by counts: settings().iterations + kSpareEvaluations evaluations of the energy, and
+  /// One step. Its work is limited by counts: settings().iterations + kSpareEvaluations evaluations of the energy
+  /// (kSpareInFallback in steps with backward Euler), and
   /// at most two solves for each. A step that does not arrive ends at the best point it has found, with the mean
   /// velocity over the step, and the next few steps take backward Euler. Forces of the loads are their means over the
   /// step.
