@@ -114,10 +114,13 @@ void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reac
   lead_ = lead;
   pairs_.clear();
   energy_ = 0;
-  start(x, v);
+  for (std::size_t k = 0; k < 3; ++k) std::copy(x[k], x[k] + thickness_.size(), memory_->start[k].begin());
   const SelfContactSearch::NodeVectors at = SelfContactMemory::view(memory_->start);
   found_ = memory_->search.adapt(at, at, (1 + kOnset) * max_thickness_ + reach);
-  if (found_) addPairs(reach);
+  speeds_matter_ = found_ && !memory_->search.near().empty();
+  if (!speeds_matter_) return;
+  for (std::size_t k = 0; k < 3; ++k) std::copy(v[k], v[k] + thickness_.size(), memory_->speed[k].begin());
+  addPairs(reach);
 }
 
 // The end of a step is usually the start of the next.
@@ -126,18 +129,9 @@ bool SelfContact::isStart(const NodeVectors& x, const NodeVectors& v) const {
   const std::size_t n = thickness_.size();
   for (std::size_t k = 0; k < 3; ++k)
     if (std::memcmp(x[k], memory_->start[k].data(), n * sizeof(double)) != 0 ||
-        std::memcmp(v[k], memory_->speed[k].data(), n * sizeof(double)) != 0)
+        (speeds_matter_ && std::memcmp(v[k], memory_->speed[k].data(), n * sizeof(double)) != 0))
       return false;
   return true;
-}
-
-void SelfContact::start(const NodeVectors& x, const NodeVectors& v) {
-  SelfContactMemory& m = *memory_;
-  const std::size_t n = thickness_.size();
-  for (std::size_t k = 0; k < 3; ++k) {
-    std::copy(x[k], x[k] + n, m.start[k].begin());
-    std::copy(v[k], v[k] + n, m.speed[k].begin());
-  }
 }
 
 double SelfContact::meanThickness(int vertex, int triangle) const {

@@ -91,7 +91,6 @@ class SelfContact : public EnergyTerm {
 
  private:
   bool isStart(const NodeVectors& x, const NodeVectors& v) const;
-  void start(const NodeVectors& x, const NodeVectors& v);
   static Eigen::Vector3d awayAt(const Pair& pair, const double* positions4);
   static Eigen::Vector3d slidSince(const Pair& pair, const Eigen::Vector3d& away);
   void addPairs(double reach);
@@ -113,6 +112,7 @@ class SelfContact : public EnergyTerm {
   std::unique_ptr<SelfContactMemory> memory_;
   double reach_ = -1, lead_ = 0;  // of the last detect() [m], [s]
   bool found_ = false;            // whether the positions at the last detect() were finite
+  bool speeds_matter_ = false;    // something is near; otherwise memory_->speed is not set
   double energy_ = 0;
   std::vector<Pair> pairs_;
   std::vector<int> stopped_;

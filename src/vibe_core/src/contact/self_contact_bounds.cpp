@@ -26,6 +26,8 @@ constexpr double kSteepest = 0.5;    // sine of a turn below which its chord is 
 constexpr double kChord = 1.04;
 constexpr std::size_t kGroup = 8;  // triangles
 
+constexpr Eigen::Index kBlock = 128;  // vertices: most blocks of so many need nothing
+using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBlock, 1>;
 using Group = Eigen::Array<float, kGroup, 1>;
 
 struct Vectors {
@@ -97,12 +99,14 @@ SelfContactBounds::SelfContactBounds(const std::vector<std::array<int, 3>>& tria
 void SelfContactBounds::reset() {
   std::fill(square_.begin(), square_.end(), -1.0);
   std::fill(cosine_.begin(), cosine_.end(), 2.0F);
-  still_ = -1;
+  still_ = holds_ = -1;
+  max_radius_ = 0;
 }
 
 bool SelfContactBounds::adapt(const NodeVectors& start, const NodeVectors& end) {
   moved_.clear();
   turned_.clear();
+  if (holdAll(end)) return true;
   if (start != end)
     for (const int i : wide_)
       if (radius_[i] > kWide * radiusFor((at(end, i) - at(start, i)).norm())) square_[i] = -1;
@@ -110,7 +114,27 @@ bool SelfContactBounds::adapt(const NodeVectors& start, const NodeVectors& end) 
     reset();
     return false;
   }
-  if (still_ < 0 || farthest_ > still_ * still_ || (any_wide_cone_ && start != end)) adaptCones(start, end);
+  if (still_ < 0 || farthest_ > still_ * still_ || (any_wide_cone_ && start != end)) {
+    adaptCones(start, end);
+    farthest_ = 0;
+  }
+  holds_ = wide_.empty() && !any_wide_cone_ ? std::min(still_, ball_spare_ - std::sqrt(farthest_)) : -1;
+  return true;
+}
+
+// One pass over the vertices where hardly anything moves.
+bool SelfContactBounds::holdAll(const NodeVectors& end) const {
+  if (!(holds_ > 0)) return false;
+  const Components x = componentsOf(end, radius_.size()), checked = componentsOf(checked_);
+  Block squares;
+  for (Eigen::Index first = 0, n = x[0].size(); first < n; first += kBlock) {
+    const Eigen::Index count = std::min(kBlock, n - first);
+    const auto square = [&](std::size_t k) {
+      return (x[k].segment(first, count) - checked[k].segment(first, count)).square();
+    };
+    squares = square(0) + square(1) + square(2);
+    if (!(squares.sum() <= holds_ * holds_)) return false;  // more than enough, and finite
+  }
   return true;
 }
 
@@ -120,10 +144,10 @@ bool SelfContactBounds::adaptBalls(const NodeVectors& start, const NodeVectors& 
                    checked = componentsOf(checked_);
   const Eigen::Map<const Eigen::ArrayXd> allowed(square_.data(), n);
   farthest_ = 0;
-  constexpr Eigen::Index kMany = 128;  // vertices: most groups of so many need nothing
-  Eigen::Array<double, Eigen::Dynamic, 1, 0, kMany, 1> squares;
-  for (Eigen::Index first = 0; first < n; first += kMany) {
-    const Eigen::Index count = std::min<Eigen::Index>(kMany, n - first);
+  double least = std::numeric_limits<double>::infinity();
+  Block squares;
+  for (Eigen::Index first = 0; first < n; first += kBlock) {
+    const Eigen::Index count = std::min(kBlock, n - first);
     const auto square = [&](const Components& from, std::size_t k) {
       return (x[k].segment(first, count) - from[k].segment(first, count)).square();
     };
@@ -131,10 +155,13 @@ bool SelfContactBounds::adaptBalls(const NodeVectors& start, const NodeVectors& 
     farthest_ = std::max(farthest_, squares.maxCoeff());
     squares = square(middle, 0) + square(middle, 1) + square(middle, 2) - allowed.segment(first, count);
     if (!std::isfinite(squares.sum())) return false;
+    least = std::min(least, -squares.maxCoeff());
     if (squares.maxCoeff() <= 0) continue;
     for (Eigen::Index i = 0; i < count; ++i)
       if (squares[i] > 0) moved_.push_back(static_cast<int>(first + i));
   }
+  // radius - distance is more than (radius^2 - distance^2) / (2 radius)
+  ball_spare_ = moved_.empty() ? least / (2 * max_radius_) : -1;
   if (moved_.empty()) return true;
   addNeighbours(start, end);
   wide_.erase(std::remove_if(wide_.begin(), wide_.end(), [this](int i) { return square_[i] < 0; }), wide_.end());
@@ -165,6 +192,7 @@ void SelfContactBounds::moveBall(int vertex, const NodeVectors& start, const Nod
   centre = from + std::max(0.5, length > 0 ? kLead * radius / length : 0) * way;
   for (int k = 0; k < 3; ++k) middle_[k][vertex] = centre[k];
   square_[vertex] = radius * radius;
+  max_radius_ = std::max(max_radius_, radius);
   if (radius > kWide * slack_) wide_.push_back(vertex);
 }
 

@@ -40,6 +40,7 @@ class SelfContactBounds {
 
  private:
   struct Area;
+  bool holdAll(const NodeVectors& end) const;
   bool adaptBalls(const NodeVectors& start, const NodeVectors& end);
   void addNeighbours(const NodeVectors& start, const NodeVectors& end);
   void moveBall(int vertex, const NodeVectors& start, const NodeVectors& end);
@@ -62,6 +63,9 @@ class SelfContactBounds {
   std::array<std::vector<float>, 3> normal_;  // of the cones, by component; in groups of 8, as the next ones
   std::vector<float> turn_, cosine_;          // of the cones: their width, and the least cosine with the normal in them
   bool any_wide_cone_ = false;
+  double max_radius_ = 0;   // of the balls since the last reset [m]
+  double ball_spare_ = -1;  // no ball fails while its vertex moves by less [m]
+  double holds_ = -1;    // no bound fails while all vertices are nearer to their ends at the last check; < 0: check [m]
   double farthest_ = 0;  // square of the largest distance of a vertex from there [m^2]
   double still_ = -1;    // vertices may be so far from their ends at the last check of the normals; < 0: check [m]
   std::array<std::vector<double>, 3> checked_;  // these ends [m]
