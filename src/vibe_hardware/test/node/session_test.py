@@ -105,7 +105,8 @@ class SessionTest(unittest.TestCase):
         self.assertAlmostEqual(deepest, 0.078, delta=0.002)
         self.assertAlmostEqual(max(joints[1] for joints in applied), 0.3, delta=0.01)
         self.assertAlmostEqual(max(joints[2] for joints in applied), 0.2, delta=1e-3)
-        self.assertAlmostEqual(applied[-1][4], 5e-3, delta=3e-4)
+        # moves at 10 mm/s while a button is held, in wall time: 0.1 s may go astray on a busy machine
+        self.assertAlmostEqual(applied[-1][4], 5e-3, delta=1e-3)
         measured = {round(message.position[0], 9) for message in self.scope.messages}
         followed = [round(joints[0], 9) in measured for joints in applied if joints[0] > 0]
         self.assertGreater(len(followed), 100)
