@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+
+#include "vibe_core/trainee/tremor.hpp"
+
+namespace vibe {
+
+/// How well a trainee performs. The defaults describe an experienced endoscopist; novice() a beginner. Values between
+/// the two are a learning curve.
+struct Skill {
+  std::string name = "expert";
+  double pace = 1;              ///< speed of the hand relative to an experienced one [1]
+  double reaction_time = 0.15;  ///< from what is seen or felt to the motion of the hand [s]
+  double aim_error = 1e-3;      ///< standard deviation of the place of a bite or mark, per direction [m]
+  double force_limit = 5;       ///< at which a motion is stopped [N]
+  double turns = 3;             ///< revolutions of the helix
+  double drawn = 5e-3;          ///< distance of the helix from the device when the arm closes [m]
+  int attempts = 3;             ///< per bite or mark
+  bool checks_depth = true;     ///< draws the wall in farther if the needle has not penetrated it fully
+  double tightness = 1;         ///< part of the tension of a full cinch at which it is released [1]
+  TremorSettings tremor{8, 12, {5e-5, 1.7e-3, 1.7e-3, 1.7e-3, 2e-5, 0, 0}, 1};
+
+  static Skill expert() { return {}; }
+  static Skill novice();
+};
+
+/// Between two skills: 0: the first, 1: the second.
+Skill between(const Skill& first, const Skill& second, double part);
+
+}  // namespace vibe

@@ -1,0 +1,195 @@
+#include "vibe_core/geometry/anatomical_map.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "geometry/regions.hpp"
+#include "geometry/triangle_tree.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/stomach_axis.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr double kStride = 1e-3;        // of a walk; a quarter of a particle's spacing, design choice [m]
+constexpr double kNormalRadius = 6e-3;  // over which the wall's direction is averaged: as wide as the device's cap [m]
+constexpr double kAlongWeight = 2.0;    // of the distance along the axis beside that around it; design choice [1]
+
+Eigen::Vector3d weightsIn(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                          const Eigen::Vector3d& c) {
+  const Eigen::Vector3d normal = (b - a).cross(c - a);
+  const double area2 = normal.squaredNorm();
+  if (!(area2 > 0)) return Eigen::Vector3d::Constant(1. / 3);
+  const double u = normal.dot((c - b).cross(p - b)) / area2, v = normal.dot((a - c).cross(p - c)) / area2;
+  return {u, v, 1 - u - v};
+}
+
+// Of an organ in another shape: the landmark of the axis goes with its vertex.
+Organ inShape(const Organ& organ, const std::vector<Eigen::Vector3d>& vertices) {
+  Organ present = organ;
+  const auto& rest = organ.surface.vertices;
+  const auto nearer = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return (a - organ.landmarks.fundus).squaredNorm() < (b - organ.landmarks.fundus).squaredNorm();
+  };
+  const auto apex = std::min_element(rest.begin(), rest.end(), nearer) - rest.begin();
+  present.landmarks.fundus = vertices[static_cast<std::size_t>(apex)];
+  present.surface.vertices = vertices;
+  return present;
+}
+
+double turned(double angle) {
+  return std::remainder(angle, 2 * M_PI);
+}
+
+}  // namespace
+
+Eigen::Vector3d positionOf(const WallPoint& point, const std::vector<std::array<int, 3>>& triangles,
+                           const std::vector<Eigen::Vector3d>& vertices) {
+  const auto& corner = triangles[static_cast<std::size_t>(point.triangle)];
+  return point.weight[0] * vertices[corner[0]] + point.weight[1] * vertices[corner[1]] +
+         point.weight[2] * vertices[corner[2]];
+}
+
+AnatomicalMap::AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> vertices)
+    : triangles_(organ.surface.triangles), vertices_(std::move(vertices)) {
+  const std::size_t count = vertices_.size();
+  for (std::size_t v = 0; v < count; ++v) end_.push_back(organ.end[v] != End::None);
+  if (std::find(organ.end.begin(), organ.end.end(), End::Duodenum) == organ.end.end() ||
+      std::find(organ.end.begin(), organ.end.end(), End::Oesophagus) == organ.end.end())
+    throw Error(
+        "The organ has no oesophagus or no duodenum, so it has no anatomical coordinates; give its landmarks in "
+        "geometry.landmarks.");
+  const StomachAxis axis = findAxis(inShape(organ, vertices_));
+  axis_length_ = axis.length();
+  for (std::size_t v = 0; v < count; ++v) {
+    along_.push_back(axis.lengthAt(static_cast<int>(v)) / axis_length_);
+    around_.push_back(turned(M_PI / 2 - axis.angleAt(static_cast<int>(v))));
+  }
+  findDirections();
+}
+
+void AnatomicalMap::findDirections() {
+  const std::size_t count = vertices_.size();
+  triangles_at_.resize(count);
+  distal_.assign(count, Eigen::Vector3d::Zero());
+  outward_.assign(count, Eigen::Vector3d::Zero());
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const auto& v = triangles_[t];
+    const Eigen::Vector3d &a = vertices_[v[0]], &b = vertices_[v[1]], &c = vertices_[v[2]];
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    const double area2 = normal.squaredNorm();
+    if (!(area2 > 0)) continue;
+    // gradient of a linear function, times twice the area
+    const Eigen::Vector3d slope =
+        normal.cross(along_[v[0]] * (c - b) + along_[v[1]] * (a - c) + along_[v[2]] * (b - a)) / std::sqrt(area2);
+    for (int corner : v) {
+      triangles_at_[corner].push_back(static_cast<int>(t));
+      distal_[corner] += slope;
+      outward_[corner] += normal;
+    }
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    outward_[v].normalize();
+    distal_[v] = (distal_[v] - outward_[v] * outward_[v].dot(distal_[v])).normalized();
+  }
+}
+
+WallPoint AnatomicalMap::at(double along, double around) const {
+  // the nearest vertex, in units of the circumference at half the axis' length, then the best point of its triangles
+  const auto missOf = [&](double a, double r) {
+    const double da = kAlongWeight * (a - along), dr = turned(r - around) / (2 * M_PI);
+    return da * da + dr * dr;
+  };
+  int best = 0;
+  double min = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < vertices_.size(); ++v) {
+    if (end_[v]) continue;
+    const double miss = missOf(along_[v], around_[v]);
+    if (miss < min) min = miss, best = static_cast<int>(v);
+  }
+  WallPoint point{triangles_at_[best].front(), Eigen::Vector3d::Zero()};
+  const auto weightsOf = [&](int t) {
+    const auto& v = triangles_[static_cast<std::size_t>(t)];
+    const auto flat = [&](int corner) {
+      return Eigen::Vector3d(kAlongWeight * along_[corner], turned(around_[corner] - around) / (2 * M_PI), 0);
+    };
+    const Eigen::Vector3d a = flat(v[0]), b = flat(v[1]), c = flat(v[2]);
+    return weightsIn(closestPointOnTriangle({kAlongWeight * along, 0, 0}, a, b, c), a, b, c);
+  };
+  min = std::numeric_limits<double>::infinity();
+  for (int t : triangles_at_[best]) {
+    const WallPoint candidate{t, weightsOf(t)};
+    const double miss = missOf(this->along(candidate), this->around(candidate));
+    if (miss < min) min = miss, point = candidate;
+  }
+  return point;
+}
+
+double AnatomicalMap::along(const WallPoint& point) const {
+  const auto& v = triangles_[static_cast<std::size_t>(point.triangle)];
+  return point.weight[0] * along_[v[0]] + point.weight[1] * along_[v[1]] + point.weight[2] * along_[v[2]];
+}
+
+double AnatomicalMap::around(const WallPoint& point) const {
+  const auto& v = triangles_[static_cast<std::size_t>(point.triangle)];
+  const double first = around_[v[0]];
+  return turned(first + point.weight[1] * turned(around_[v[1]] - first) +
+                point.weight[2] * turned(around_[v[2]] - first));
+}
+
+Eigen::Vector3d AnatomicalMap::position(const WallPoint& point) const {
+  return positionOf(point, triangles_, vertices_);
+}
+
+Eigen::Vector3d AnatomicalMap::outward(const WallPoint& point) const {
+  const Eigen::Vector3d centre = position(point);
+  const auto& corners = triangles_[static_cast<std::size_t>(point.triangle)];
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) sum += point.weight[k] * outward_[corners[k]];
+  for (std::size_t v = 0; v < vertices_.size(); ++v) {
+    const bool near = (vertices_[v] - centre).squaredNorm() < kNormalRadius * kNormalRadius;
+    if (near && outward_[v].dot(sum) > 0) sum += outward_[v];  // of the same wall, not of a fold's other one
+  }
+  return sum.normalized();
+}
+
+Eigen::Vector3d AnatomicalMap::direction(const WallPoint& point, Way way) const {
+  const auto& v = triangles_[static_cast<std::size_t>(point.triangle)];
+  Eigen::Vector3d ahead = Eigen::Vector3d::Zero(), out = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) ahead += point.weight[k] * distal_[v[k]], out += point.weight[k] * outward_[v[k]];
+  out.normalize();
+  ahead = (ahead - out * out.dot(ahead)).normalized();
+  // tangent x greater = anterior
+  return way == Way::Distal ? ahead : Eigen::Vector3d(ahead.cross(out));
+}
+
+WallPoint AnatomicalMap::nearest(const Eigen::Vector3d& place, int around_triangle) const {
+  WallPoint best;
+  double min = std::numeric_limits<double>::infinity();
+  for (int corner : triangles_[static_cast<std::size_t>(around_triangle)])
+    for (int t : triangles_at_[corner]) {
+      const auto& v = triangles_[static_cast<std::size_t>(t)];
+      const Eigen::Vector3d &a = vertices_[v[0]], &b = vertices_[v[1]], &c = vertices_[v[2]];
+      const Eigen::Vector3d point = closestPointOnTriangle(place, a, b, c);
+      const double distance = (point - place).squaredNorm();
+      if (distance < min) min = distance, best = {t, weightsIn(point, a, b, c)};
+    }
+  return best;
+}
+
+WallPoint AnatomicalMap::walkStraight(WallPoint from, double distance, Way way) const {
+  const int strides = static_cast<int>(std::ceil(std::abs(distance) / kStride));
+  for (int k = 0; k < strides; ++k)
+    from = nearest(position(from) + distance / strides * direction(from, way), from.triangle);
+  return from;
+}
+
+WallPoint AnatomicalMap::walk(const WallPoint& from, double distal, double anterior) const {
+  return walkStraight(walkStraight(from, distal, Way::Distal), anterior, Way::Anterior);
+}
+
+}  // namespace vibe

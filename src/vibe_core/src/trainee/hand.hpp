@@ -1,0 +1,59 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "vibe_core/events/event.hpp"
+#include "vibe_core/trainee/observation.hpp"
+#include "vibe_core/trainee/skill.hpp"
+
+namespace vibe {
+
+/// The hands of a trainee: elementary motions, each of which lasts some steps and perceives what happens meanwhile.
+/// Calls return when the motion has ended.
+class Hand {
+ public:
+  using Joints = std::array<double, kJointCount>;
+
+  /// @param next  ends the present step and returns when the next one has been perceived
+  Hand(const Model& model, const Skill& skill, std::function<void()> next);
+
+  /// Called before the coroutine goes on.
+  void perceive(const Observation& seen);
+
+  const Model& model() const { return model_; }
+  const Skill& skill() const { return skill_; }
+  const Observation& view() const { return *view_; }
+  const StepInput& command() const { return command_; }
+  const Joints& joints() const { return command_.joints; }  ///< commanded
+
+  void wait(double seconds);
+  /// @return whether the condition became true in time
+  bool await(const std::function<bool()>& condition, double patience);
+
+  /// Moves joints to positions at hand speed, in at least `min` seconds. Entries that are not finite stay.
+  /// @param limit  force on the tool at which the motion stops [N]
+  /// @return false if it was stopped on the way
+  bool moveTo(const Joints& joints, double min, double limit = kNoLimit);
+  bool move(Joint joint, double position, double min, double limit = kNoLimit);
+  static constexpr double kNoLimit = 1e9;
+
+  void press(Button button) { command_.buttons[button] = 1; }
+  void release(Button button) { command_.buttons[button] = 0; }
+  void hold(Button button, double seconds);
+
+  /// Events since the last forget().
+  bool happened(Event::Kind kind) const { return find(kind) != nullptr; }
+  const Event* find(Event::Kind kind) const;
+  void forget() { events_.clear(); }
+
+ private:
+  const Model& model_;
+  const Skill& skill_;
+  std::function<void()> next_;
+  const Observation* view_ = nullptr;
+  StepInput command_;
+  std::vector<Event> events_;
+};
+
+}  // namespace vibe

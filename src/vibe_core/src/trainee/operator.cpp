@@ -1,0 +1,33 @@
+#include "trainee/operator.hpp"
+
+#include <limits>
+
+#include "common/random.hpp"
+
+namespace vibe {
+
+double Operator::nextNormal() {
+  double sum = -6;  // of twelve uniform numbers: variance 1
+  for (int k = 0; k < 12; ++k) sum += nextUniform(random);
+  return sum;
+}
+
+Eigen::Vector2d Operator::nextAimError() {
+  const double a = nextNormal(), b = nextNormal();
+  return skill().aim_error * Eigen::Vector2d(a, b);
+}
+
+WallPoint find(const Place& place, const AnatomicalMap& map) {
+  return map.walk(map.at(place.along, place.around), place.distal, place.anterior);
+}
+
+void stepBack(Operator& me) {
+  Hand::Joints joints = me.hand.joints();
+  joints[Insertion] = std::min(joints[Insertion], 0.05);
+  joints[TipUpDown] = joints[TipLeftRight] = 0;
+  joints[HelixAdvance] = 2e-3;
+  joints[HelixRotation] = joints[NeedleDriver] = 0;
+  me.hand.moveTo(joints, 1);
+}
+
+}  // namespace vibe

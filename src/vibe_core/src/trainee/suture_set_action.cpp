@@ -1,0 +1,55 @@
+#include "trainee/operator.hpp"
+#include "trainee/suture_pattern.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr double kLongestCinch = 20;  // [s]
+
+bool isTight(const Operator& me) {
+  const Observation& seen = me.view();
+  if (seen.stage == Suture::Stage::Cinched || seen.stage == Suture::Stage::Broken) return true;
+  return seen.tension >= me.skill().tightness * me.model().scene.suture->cinch_tension;
+}
+
+}  // namespace
+
+GoalResult perform(const CinchGoal&, Operator& me) {
+  Hand& hand = me.hand;
+  hand.forget();
+  hand.hold(TTag, 0.15);
+  if (!hand.await([&] { return hand.happened(Event::Kind::TTagDropped); }, 1))
+    return {false, "the T-tag could not be dropped"};
+  stepBack(me);
+  hand.press(Cinch);
+  hand.wait(0.5);
+  const bool tight = hand.await([&] { return isTight(me); }, kLongestCinch);
+  hand.release(Cinch);
+  hand.wait(0.5);
+  return tight ? GoalResult{true, ""} : GoalResult{false, "the thread did not become tight"};
+}
+
+GoalResult perform(const SutureSetGoal& goal, Operator& me) {
+  if (!me.view().needle_loaded) return {false, "there is no needle"};
+  const AnatomicalMap map = me.lookAround();
+  const WallPoint centre = find(goal.centre, map);
+  std::vector<WallPoint> targets;
+  for (const Eigen::Vector2d& place : suturePattern(goal.pattern, goal.bites, goal.length, goal.width))
+    targets.push_back(map.walk(centre, place.x(), goal.mirrored ? -place.y() : place.y()));
+  int taken = 0;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    me.say("bite " + std::to_string(k + 1) + " of " + std::to_string(targets.size()));
+    if (takeBite(targets[k], me).reached) ++taken;
+  }
+  if (taken < 2) return {false, "only " + std::to_string(taken) + " bites could be taken"};
+  if (goal.cinched) {
+    me.say("T-tag and cinch");
+    const GoalResult cinch = perform(CinchGoal{}, me);
+    if (!cinch.reached) return cinch;
+  }
+  const std::string count = std::to_string(taken) + " of " + std::to_string(targets.size()) + " bites taken";
+  return {taken == static_cast<int>(targets.size()), count};
+}
+
+}  // namespace vibe

@@ -1,0 +1,114 @@
+#include "vibe_core/trainee/trainee.hpp"
+
+#include <boost/coroutine2/coroutine.hpp>
+#include <cmath>
+#include <deque>
+#include <utility>
+
+#include "trainee/operator.hpp"
+
+namespace vibe {
+
+namespace {
+
+// The goals run in a coroutine: code that reads as what a person does, one thing after the other, and that gives way to
+// the simulator between steps.
+using Coroutine = boost::coroutines2::coroutine<void>;
+
+}  // namespace
+
+struct Trainee::Impl {
+  Impl(std::shared_ptr<const Model> shared, const Skill& given, std::uint64_t seed, Trainee& owner)
+      : model(std::move(shared)),
+        skill(given),
+        tremor(skill.tremor, seed),
+        hand(*model, skill, [this] { (*pause)(); }),
+        me{hand, seed, [this](const std::string& what) { say(what); }},
+        trainee(owner),
+        delay(std::lround(skill.reaction_time / model->scene.step_period)) {}
+
+  void say(const std::string& what) {
+    activity = what;
+    if (trainee.on_activity) trainee.on_activity(what);
+  }
+
+  void pursue() {
+    while (true) {
+      if (results.size() == goals.size()) {
+        (*pause)();
+        continue;
+      }
+      const Goal goal = goals[results.size()];
+      say(describe(goal));
+      results.push_back(std::visit([this](const auto& g) { return perform(g, me); }, goal));
+      if (trainee.on_result) trainee.on_result(static_cast<int>(results.size()) - 1, results.back());
+    }
+  }
+
+  void resume() {
+    if (body) {
+      (*body)();
+      return;
+    }
+    body = std::make_unique<Coroutine::pull_type>([this](Coroutine::push_type& sink) {
+      pause = &sink;
+      pursue();
+    });
+  }
+
+  std::shared_ptr<const Model> model;
+  Skill skill;
+  Tremor tremor;
+  Hand hand;
+  Operator me;
+  Trainee& trainee;
+  long delay;
+
+  Observation seen;
+  std::vector<Goal> goals;
+  std::vector<GoalResult> results;
+  std::string activity;
+  std::deque<StepInput> decided;  // inputs on their way to the hand
+  Coroutine::push_type* pause = nullptr;
+  std::unique_ptr<Coroutine::pull_type> body;  // last, so that it ends first
+};
+
+Trainee::Trainee(std::shared_ptr<const Model> model, const Skill& skill, std::uint64_t seed)
+    : impl_(std::make_unique<Impl>(std::move(model), skill, seed, *this)) {}
+
+Trainee::~Trainee() = default;
+
+void Trainee::add(const Goal& goal) {
+  impl_->goals.push_back(goal);
+}
+
+StepInput Trainee::next(const Observation& seen) {
+  Impl& me = *impl_;
+  me.seen = seen;
+  me.hand.perceive(me.seen);
+  if (me.decided.empty()) me.decided.assign(static_cast<std::size_t>(me.delay), me.hand.command());
+  me.resume();
+  me.decided.push_back(me.hand.command());
+  StepInput input = me.decided.front();
+  me.decided.pop_front();
+  for (int j = 0; j < kJointCount; ++j) input.joints[j] += me.tremor.at(j, seen.time);
+  return input;
+}
+
+bool Trainee::done() const {
+  return impl_->results.size() == impl_->goals.size();
+}
+
+int Trainee::current() const {
+  return static_cast<int>(impl_->results.size());
+}
+
+const std::string& Trainee::activity() const {
+  return impl_->activity;
+}
+
+const std::vector<GoalResult>& Trainee::results() const {
+  return impl_->results;
+}
+
+}  // namespace vibe
