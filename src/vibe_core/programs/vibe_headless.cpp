@@ -18,6 +18,8 @@
 #include "vibe_core/scene/mesh_guess.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
+#include "vibe_core/trainee/protocol.hpp"
+#include "vibe_core/trainee/trainee.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
 namespace {
@@ -37,9 +39,9 @@ struct Options {
 void addOptions(CLI::App& app, Options& o) {
   app.add_option("--scene", o.scene, "scene to run (default: package://vibe_core/scenes/stomach.yaml)")
       ->type_name("FILE");
-  app.add_option("--script", o.script, "what the trainee does (default: nothing)")->type_name("FILE");
+  app.add_option("--script", o.script, "what the trainee does: a script or a protocol of goals (default: nothing)")->type_name("FILE");
   app.add_option("--mesh", o.mesh, "surface of the organ instead of the scene's")->type_name("FILE");
-  app.add_option("--duration", o.duration, "simulated seconds (default: length of the script, else 10)")
+  app.add_option("--duration", o.duration, "simulated seconds (default: length of the script, until the goals of a protocol have ended, else 10)")
       ->type_name("S")
       ->check(finiteFrom(0));
   app.add_option("--csv", o.csv, "write one row per step there (- for standard output)")->type_name("FILE");
@@ -67,18 +69,29 @@ std::shared_ptr<const Model> load(const Options& o) {
 }
 
 std::unique_ptr<TraineeScript> loadScript(const Options& o) {
-  if (o.script.empty()) return nullptr;
+  if (o.script.empty() || isProtocol(resolveAddress(o.script))) return nullptr;
   return std::make_unique<TraineeScript>(TraineeScript::load(resolveAddress(o.script)));
 }
 
-void printProgress(double time, double duration, const TraineeScript* script) {
-  const std::string doing = script == nullptr ? "" : script->phaseAt(time);
-  std::fprintf(stderr, "\r%7.2f of %.2f s  %-30s", time, duration, doing.c_str());
+std::unique_ptr<Trainee> loadTrainee(const Options& o, const std::shared_ptr<const Model>& model) {
+  if (o.script.empty() || !isProtocol(resolveAddress(o.script))) return nullptr;
+  const Protocol protocol = Protocol::load(resolveAddress(o.script));
+  auto trainee = std::make_unique<Trainee>(model, protocol.skill, protocol.seed);
+  for (const Goal& goal : protocol.goals) trainee->add(goal);
+  return trainee;
+}
+
+void printProgress(double time, double duration, const std::string& doing) {
+  if (duration > 0)
+    std::fprintf(stderr, "\r%7.2f of %.2f s  %-50s", time, duration, doing.c_str());
+  else
+    std::fprintf(stderr, "\r%7.2f s  %-50s", time, doing.c_str());
 }
 
 void printScriptLength(const Options& o) {
-  if (o.script.empty()) throw Error("--script-length needs a --script.");
-  std::printf("%.3f\n", loadScript(o)->duration());
+  const std::unique_ptr<TraineeScript> script = loadScript(o);
+  if (!script) throw Error("--script-length needs a --script with actions; a protocol of goals has no fixed length.");
+  std::printf("%.3f\n", script->duration());
 }
 
 void printEvents(const std::vector<Event>& events, bool over_progress) {
@@ -87,28 +100,51 @@ void printEvents(const std::vector<Event>& events, bool over_progress) {
                  describe(event).c_str());
 }
 
+void reportGoals(bool show, Trainee& trainee, const Simulation& simulation) {
+  trainee.on_result = [show, &trainee, &simulation](int number, const GoalResult& result) {
+    std::fprintf(stderr, "%s%7.2f s  goal %d (%s) %s%s%s\n", show ? "\r" : "", simulation.time(), number + 1,
+                 describe(trainee.goals()[number]).c_str(), result.reached ? "reached" : "given up",
+                 result.reason.empty() ? "" : ": ", result.reason.c_str());
+  };
+}
+
+// 0: until the goals have ended
+double durationOf(const Options& o, const TraineeScript* script, const Trainee* trainee) {
+  if (o.duration > 0) return o.duration;
+  if (trainee != nullptr) return 0;
+  return script != nullptr ? script->duration() : 10;
+}
+
 void run(const Options& o) {
   if (o.script_length) return printScriptLength(o);
   const std::shared_ptr<const Model> model = load(o);
   const std::unique_ptr<TraineeScript> script = loadScript(o);
+  const std::unique_ptr<Trainee> trainee = loadTrainee(o, model);
   const std::string softness = softnessWarning(*model);
   if (!softness.empty()) std::fprintf(stderr, "%s\n", softness.c_str());
-  const double duration = o.duration > 0 ? o.duration : (script ? script->duration() : 10);
+  const double duration = durationOf(o, script.get(), trainee.get());
   const std::unique_ptr<SessionCsv> csv = o.csv.empty() ? nullptr : std::make_unique<SessionCsv>(o.csv);
   const bool show = !o.quiet && isatty(STDERR_FILENO) == 1;
 
   SimulationSettings settings;
   settings.threads = o.threads;
   Simulation simulation(model, settings);
+  if (trainee && !o.quiet) reportGoals(show, *trainee, simulation);
   const double begin = steadyTime();
-  simulation.run(
-      std::lround(duration / simulation.stepPeriod()),
-      [&](double time) { return script ? script->at(time) : StepInput{}; },
-      [&](const Simulation& s) {
-        if (csv) csv->write(*model, s.state(), s.events());
-        if (!o.quiet) printEvents(s.events(), show);
-        if (show && s.stepCount() % 30 == 1) printProgress(s.time(), duration, script.get());
-      });
+  const auto inputAt = [&](double time) {
+    if (trainee) return trainee->next(observe(simulation));
+    return script ? script->at(time) : StepInput{};
+  };
+  const auto observer = [&](const Simulation& s) {
+    if (csv) csv->write(*model, s.state(), s.events());
+    if (!o.quiet) printEvents(s.events(), show);
+    const std::string doing = trainee ? trainee->activity() : script ? script->phaseAt(s.time()) : "";
+    if (show && s.stepCount() % 30 == 1) printProgress(s.time(), duration, doing);
+  };
+  if (duration > 0)
+    simulation.run(std::lround(duration / simulation.stepPeriod()), inputAt, observer);
+  else
+    while (!trainee->done()) simulation.run(1, inputAt, observer);
   if (show) std::fprintf(stderr, "\r%-60s\r", "");
   if (!o.snapshot.empty()) simulation.saveSnapshot(o.snapshot);
   if (o.quiet)

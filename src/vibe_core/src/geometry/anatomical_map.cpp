@@ -54,6 +54,44 @@ Eigen::Vector3d positionOf(const WallPoint& point, const std::vector<std::array<
          point.weight[2] * vertices[corner[2]];
 }
 
+Eigen::Vector3d outwardAt(const WallPoint& point, const std::vector<std::array<int, 3>>& triangles,
+                          const std::vector<Eigen::Vector3d>& vertices) {
+  const Eigen::Vector3d centre = positionOf(point, triangles, vertices);
+  const auto normalOf = [&](const std::array<int, 3>& v) -> Eigen::Vector3d {
+    return (vertices[v[1]] - vertices[v[0]]).cross(vertices[v[2]] - vertices[v[0]]);
+  };
+  const Eigen::Vector3d own = normalOf(triangles[static_cast<std::size_t>(point.triangle)]);
+  Eigen::Vector3d sum = own;
+  for (const auto& v : triangles) {
+    const Eigen::Vector3d middle = (vertices[v[0]] + vertices[v[1]] + vertices[v[2]]) / 3;
+    if ((middle - centre).squaredNorm() > kNormalRadius * kNormalRadius) continue;
+    const Eigen::Vector3d normal = normalOf(v);
+    if (normal.dot(own) > 0) sum += normal;
+  }
+  return sum.normalized();
+}
+
+WallPoint nearestIn(int triangle, const Eigen::Vector3d& place, const std::vector<std::array<int, 3>>& triangles,
+                    const std::vector<Eigen::Vector3d>& vertices) {
+  const auto& v = triangles[static_cast<std::size_t>(triangle)];
+  const Eigen::Vector3d &a = vertices[v[0]], &b = vertices[v[1]], &c = vertices[v[2]];
+  return {triangle, weightsIn(closestPointOnTriangle(place, a, b, c), a, b, c)};
+}
+
+WallPoint nearestOn(const Eigen::Vector3d& place, const WallPoint& same_side,
+                    const std::vector<std::array<int, 3>>& triangles, const std::vector<Eigen::Vector3d>& vertices) {
+  const Eigen::Vector3d outward = outwardAt(same_side, triangles, vertices);
+  WallPoint best = same_side;
+  double min = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Eigen::Vector3d &a = vertices[triangles[t][0]], &b = vertices[triangles[t][1]], &c = vertices[triangles[t][2]];
+    if ((b - a).cross(c - a).dot(outward) <= 0) continue;
+    const double distance = (closestPointOnTriangle(place, a, b, c) - place).squaredNorm();
+    if (distance < min) min = distance, best = nearestIn(static_cast<int>(t), place, triangles, vertices);
+  }
+  return best;
+}
+
 AnatomicalMap::AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> vertices)
     : triangles_(organ.surface.triangles), vertices_(std::move(vertices)) {
   const std::size_t count = vertices_.size();
@@ -146,15 +184,18 @@ Eigen::Vector3d AnatomicalMap::position(const WallPoint& point) const {
 }
 
 Eigen::Vector3d AnatomicalMap::outward(const WallPoint& point) const {
-  const Eigen::Vector3d centre = position(point);
+  return outwardAt(point, triangles_, vertices_);
+}
+
+Eigen::Vector2d AnatomicalMap::alongWall(const WallPoint& point, const Eigen::Vector3d& displacement) const {
+  return {displacement.dot(direction(point, Way::Distal)), displacement.dot(direction(point, Way::Anterior))};
+}
+
+WallPoint AnatomicalMap::atVertex(int vertex) const {
+  WallPoint point{triangles_at_[static_cast<std::size_t>(vertex)].front(), Eigen::Vector3d::Zero()};
   const auto& corners = triangles_[static_cast<std::size_t>(point.triangle)];
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int k = 0; k < 3; ++k) sum += point.weight[k] * outward_[corners[k]];
-  for (std::size_t v = 0; v < vertices_.size(); ++v) {
-    const bool near = (vertices_[v] - centre).squaredNorm() < kNormalRadius * kNormalRadius;
-    if (near && outward_[v].dot(sum) > 0) sum += outward_[v];  // of the same wall, not of a fold's other one
-  }
-  return sum.normalized();
+  for (int k = 0; k < 3; ++k) point.weight[k] = corners[k] == vertex ? 1 : 0;
+  return point;
 }
 
 Eigen::Vector3d AnatomicalMap::direction(const WallPoint& point, Way way) const {

@@ -30,7 +30,7 @@ bool Hand::await(const std::function<bool()>& condition, double patience) {
   return condition();
 }
 
-bool Hand::moveTo(const Joints& joints, double min, double limit) {
+bool Hand::moveTo(const Joints& joints, double min, const std::function<bool()>& stop) {
   const Joints from = command_.joints;
   Joints to = from;
   for (int j = 0; j < kJointCount; ++j)
@@ -38,7 +38,7 @@ bool Hand::moveTo(const Joints& joints, double min, double limit) {
   const double duration = std::max(min, durationOfMotion(from, to, skill_.pace, model_.tool->limits()));
   const long steps = std::max(1L, std::lround(duration / model_.scene.step_period));
   for (long k = 1; k <= steps; ++k) {
-    if (view_->force.norm() > limit) return false;
+    if (stop && stop()) return false;
     const double part = minimumJerk(static_cast<double>(k) / static_cast<double>(steps));
     for (int j = 0; j < kJointCount; ++j) command_.joints[j] = from[j] + part * (to[j] - from[j]);
     next_();
@@ -46,11 +46,11 @@ bool Hand::moveTo(const Joints& joints, double min, double limit) {
   return true;
 }
 
-bool Hand::move(Joint joint, double position, double min, double limit) {
+bool Hand::move(Joint joint, double position, double min, const std::function<bool()>& stop) {
   Joints joints;
   joints.fill(std::numeric_limits<double>::quiet_NaN());
   joints[joint] = position;
-  return moveTo(joints, min, limit);
+  return moveTo(joints, min, stop);
 }
 
 void Hand::hold(Button button, double seconds) {

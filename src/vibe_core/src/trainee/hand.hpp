@@ -32,11 +32,12 @@ class Hand {
   bool await(const std::function<bool()>& condition, double patience);
 
   /// Moves joints to positions at hand speed, in at least `min` seconds. Entries that are not finite stay.
-  /// @param limit  force on the tool at which the motion stops [N]
-  /// @return false if it was stopped on the way
-  bool moveTo(const Joints& joints, double min, double limit = kNoLimit);
-  bool move(Joint joint, double position, double min, double limit = kNoLimit);
-  static constexpr double kNoLimit = 1e9;
+  /// @param stop  ends the motion on its way where it becomes true; empty: never
+  /// @return false if it was stopped
+  bool moveTo(const Joints& joints, double min, const std::function<bool()>& stop = {});
+  bool move(Joint joint, double position, double min, const std::function<bool()>& stop = {});
+  /// What is felt is more than the skill allows. For `stop`.
+  bool feelsTooMuch() const { return view_->force.norm() > skill_.force_limit; }
 
   void press(Button button) { command_.buttons[button] = 1; }
   void release(Button button) { command_.buttons[button] = 0; }

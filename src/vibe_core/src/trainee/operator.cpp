@@ -1,10 +1,23 @@
 #include "trainee/operator.hpp"
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
 
 #include "common/random.hpp"
 
 namespace vibe {
+
+namespace {
+
+// Before anything is learned: from the geometry of the device, with the wall drawn in [m].
+const Eigen::Vector3d kNeedleFromHelix(0, -5.3e-3, 5e-3);
+constexpr double kSameAngle = 0.25;  // learning replaces what was learned this near [rad]
+
+double between(double a, double b) {
+  return std::abs(std::remainder(a - b, 2 * M_PI));
+}
+
+}  // namespace
 
 double Operator::nextNormal() {
   double sum = -6;  // of twelve uniform numbers: variance 1
@@ -15,6 +28,33 @@ double Operator::nextNormal() {
 Eigen::Vector2d Operator::nextAimError() {
   const double a = nextNormal(), b = nextNormal();
   return skill().aim_error * Eigen::Vector2d(a, b);
+}
+
+Eigen::Vector3d Operator::needleFromHelix(double around) const {
+  const auto nearer = [around](const auto& a, const auto& b) {
+    return between(a.first, around) < between(b.first, around);
+  };
+  const auto nearest = std::min_element(learned.begin(), learned.end(), nearer);
+  return nearest == learned.end() ? kNeedleFromHelix : nearest->second;
+}
+
+void Operator::learnNeedle(double around, const Eigen::Vector3d& from_helix) {
+  const auto same = [around](const auto& one) { return between(one.first, around) < kSameAngle; };
+  learned.erase(std::remove_if(learned.begin(), learned.end(), same), learned.end());
+  learned.emplace_back(around, from_helix);
+}
+
+const AnatomicalMap& Operator::map() {
+  if (!seen_map || view().sets == 0) seen_map = std::make_shared<AnatomicalMap>(model().organ, view().wall);
+  return *seen_map;
+}
+
+Eigen::Vector3d Operator::position(const WallPoint& point) const {
+  return positionOf(point, model().organ.surface.triangles, view().wall);
+}
+
+Eigen::Vector3d Operator::outward(const WallPoint& point) const {
+  return outwardAt(point, model().organ.surface.triangles, view().wall);
 }
 
 WallPoint find(const Place& place, const AnatomicalMap& map) {

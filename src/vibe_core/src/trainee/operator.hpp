@@ -1,7 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "trainee/hand.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
@@ -19,10 +22,18 @@ struct Operator {
   const Skill& skill() const { return hand.skill(); }
   const Observation& view() const { return hand.view(); }
 
-  AnatomicalMap lookAround() const { return {model().organ, view().wall}; }
-  Eigen::Vector3d place(const WallPoint& point) const {
-    return positionOf(point, model().organ.surface.triangles, view().wall);
-  }
+  /// The organ as it was when the trainee last looked at it while no thread held it. Places are found in this map;
+  /// the points of the wall that are found there move with the tissue.
+  const AnatomicalMap& map();
+  std::shared_ptr<const AnatomicalMap> seen_map;  ///< empty: has not looked yet
+  Eigen::Vector3d position(const WallPoint& point) const;  ///< now, in world [m]
+  Eigen::Vector3d outward(const WallPoint& point) const;   ///< now
+  /// Where the needle goes through the wall, from the helix, in scope_tip [m]: as seen last at the nearest angle around
+  /// the organ, because it depends on how the device lies to the wall.
+  Eigen::Vector3d needleFromHelix(double around) const;
+  void learnNeedle(double around, const Eigen::Vector3d& from_helix);
+  std::vector<std::pair<double, Eigen::Vector3d>> learned;  ///< angle [rad], needle from helix [m]
+
   double nextNormal();
   /// Aim error along the wall [m].
   Eigen::Vector2d nextAimError();

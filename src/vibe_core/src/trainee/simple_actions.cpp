@@ -24,14 +24,13 @@ GoalResult perform(const MarkGoal& goal, Operator& me) {
   if (!me.model().scene.marking) return {false, "the scene has no argon beam"};
   const double probe = me.model().scene.marking->apc.probe_length;
   const Eigen::Vector2d error = me.nextAimError();
-  const WallPoint target = find(goal.place, me.lookAround());
+  const AnatomicalMap& map = me.map();
+  const WallPoint target = map.walk(find(goal.place, map), error[0], error[1]);
   for (const double off : {0.02, 0.0}) {
-    const AnatomicalMap map = me.lookAround();
-    const WallPoint aimed = map.walk(target, error[0], error[1]);
-    const Eigen::Vector3d outward = map.outward(aimed);
-    const IkSolution aim = aimAt(me.model(), map.position(aimed) - (probe + kBeamGap + off) * outward, outward,
+    const Eigen::Vector3d outward = me.outward(target);
+    const IkSolution aim = aimAt(me.model(), me.position(target) - (probe + kBeamGap + off) * outward, outward,
                                  Eigen::Vector3d::Zero(), me.hand.joints());
-    me.hand.moveTo(aim.joints, off > 0 ? 0.5 : 0.3, me.skill().force_limit);
+    me.hand.moveTo(aim.joints, off > 0 ? 0.5 : 0.3, [&] { return me.hand.feelsTooMuch(); });
   }
   me.hand.wait(me.skill().reaction_time);
   me.hand.forget();

@@ -32,7 +32,7 @@ GoalResult perform(const CinchGoal&, Operator& me) {
 
 GoalResult perform(const SutureSetGoal& goal, Operator& me) {
   if (!me.view().needle_loaded) return {false, "there is no needle"};
-  const AnatomicalMap map = me.lookAround();
+  const AnatomicalMap& map = me.map();
   const WallPoint centre = find(goal.centre, map);
   std::vector<WallPoint> targets;
   for (const Eigen::Vector2d& place : suturePattern(goal.pattern, goal.bites, goal.length, goal.width))

@@ -23,7 +23,7 @@ struct Trainee::Impl {
         skill(given),
         tremor(skill.tremor, seed),
         hand(*model, skill, [this] { (*pause)(); }),
-        me{hand, seed, [this](const std::string& what) { say(what); }},
+        me{hand, seed, [this](const std::string& what) { say(what); }, {}, {}},
         trainee(owner),
         delay(std::lround(skill.reaction_time / model->scene.step_period)) {}
 
@@ -105,6 +105,10 @@ int Trainee::current() const {
 
 const std::string& Trainee::activity() const {
   return impl_->activity;
+}
+
+const std::vector<Goal>& Trainee::goals() const {
+  return impl_->goals;
 }
 
 const std::vector<GoalResult>& Trainee::results() const {

@@ -17,6 +17,19 @@ struct WallPoint {
 Eigen::Vector3d positionOf(const WallPoint& point, const std::vector<std::array<int, 3>>& triangles,
                            const std::vector<Eigen::Vector3d>& vertices);
 
+/// Unit vector out of the lumen there, mean over the wall within 6 mm; walls of a fold that face the other way do not
+/// count.
+Eigen::Vector3d outwardAt(const WallPoint& point, const std::vector<std::array<int, 3>>& triangles,
+                          const std::vector<Eigen::Vector3d>& vertices);
+
+/// The nearest point of one triangle to a place.
+WallPoint nearestIn(int triangle, const Eigen::Vector3d& place, const std::vector<std::array<int, 3>>& triangles,
+                    const std::vector<Eigen::Vector3d>& vertices);
+
+/// The nearest point of the wall to a place, on the side of the wall on which another point lies.
+WallPoint nearestOn(const Eigen::Vector3d& place, const WallPoint& same_side,
+                    const std::vector<std::array<int, 3>>& triangles, const std::vector<Eigen::Vector3d>& vertices);
+
 /// Anatomical coordinates of a stomach in its present shape: along its axis, around it, and in metres along its wall.
 /// Making one takes some 40 ms for 3,618 vertices (the axis).
 class AnatomicalMap {
@@ -40,8 +53,11 @@ class AnatomicalMap {
   double along(const WallPoint& point) const;   ///< see at() [1]
   double around(const WallPoint& point) const;  ///< see at(), -pi to pi [rad]
   Eigen::Vector3d position(const WallPoint& point) const;  ///< [m]
-  /// Unit vector out of the lumen, mean over the wall within 6 mm.
-  Eigen::Vector3d outward(const WallPoint& point) const;
+  Eigen::Vector3d outward(const WallPoint& point) const;   ///< see outwardAt()
+  /// Components of a displacement along the wall at a point: distal, anterior [m].
+  Eigen::Vector2d alongWall(const WallPoint& point, const Eigen::Vector3d& displacement) const;
+  /// The point of the wall at a vertex.
+  WallPoint atVertex(int vertex) const;
 
  private:
   enum class Way { Distal, Anterior };

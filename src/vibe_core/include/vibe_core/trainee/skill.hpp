@@ -15,7 +15,7 @@ struct Skill {
   double force_limit = 5;       ///< at which a motion is stopped [N]
   double turns = 3;             ///< revolutions of the helix
   double drawn = 5e-3;          ///< distance of the helix from the device when the arm closes [m]
-  int attempts = 3;             ///< per bite or mark
+  int attempts = 5;             ///< per bite or mark
   bool checks_depth = true;     ///< draws the wall in farther if the needle has not penetrated it fully
   double tightness = 1;         ///< part of the tension of a full cinch at which it is released [1]
   TremorSettings tremor{8, 12, {5e-5, 1.7e-3, 1.7e-3, 1.7e-3, 2e-5, 0, 0}, 1};

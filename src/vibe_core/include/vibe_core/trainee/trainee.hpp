@@ -34,6 +34,7 @@ class Trainee {
   bool done() const;                   ///< every goal has ended
   int current() const;                 ///< number of the goal that is pursued, or of goals, if none is left
   const std::string& activity() const;  ///< what it is doing: "bite 3 of 7, second try"
+  const std::vector<Goal>& goals() const;
   const std::vector<GoalResult>& results() const;  ///< one per goal that has ended
 
   /// Called when the activity changes; may be empty.

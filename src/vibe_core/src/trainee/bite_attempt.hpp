@@ -1,0 +1,42 @@
+#pragma once
+#include <optional>
+
+#include "trainee/needle_view.hpp"
+#include "trainee/operator.hpp"
+
+namespace vibe {
+
+/// One attempt at a bite: the helix takes hold of the wall beside the target, draws it into the device until the needle
+/// would pass through the target, the arm closes, the exchange takes the needle, and the arm takes it back.
+class BiteAttempt {
+ public:
+  /// @param last  accepts a bite that is not at its target or not through the whole wall
+  BiteAttempt(const WallPoint& target, bool last, Operator& me);
+
+  GoalResult make();
+
+ private:
+  void settle();
+  double gap() const;
+  void aimBesideTarget();
+  bool approach(double into, double min);
+  bool grab();
+  GoalResult drawAndClose();
+  void drawIn();
+  bool isDeepEnough(const NeedleView& needle) const;
+  std::optional<GoalResult> judgeView();
+  GoalResult closeArm();
+  GoalResult exchange();
+  void letGo();
+  void takeNeedleBack();
+
+  const WallPoint target_;  // of the bite, with the error of aim
+  const bool last_;
+  Operator& me_;
+  Hand& hand_;
+  WallPoint aim_;                                           // of the helix
+  Eigen::Vector3d correction_ = Eigen::Vector3d::Zero();  // what the last motions of the helix missed [m]
+  double aside_ = 1;                                        // of the helix from its aim along the wall [m]
+};
+
+}  // namespace vibe

@@ -1,0 +1,112 @@
+// Anatomical coordinates of a stomach in its present shape.
+#include "vibe_core/geometry/anatomical_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/scene/scene.hpp"
+
+namespace vibe {
+namespace {
+
+const Organ& stomach() {
+  static const Organ organ = [] {
+    Scene scene;
+    scene.geometry.particles = 2000;
+    scene.attach_oesophagus = scene.attach_duodenum = true;
+    return buildOrgan(scene, {});
+  }();
+  return organ;
+}
+
+std::vector<Eigen::Vector3d> rest() {
+  return stomach().surface.vertices;
+}
+
+TEST(AnatomicalMap, FindsThePlacesThatItsCoordinatesName) {
+  const AnatomicalMap map(stomach(), rest());
+  for (const double along : {0.25, 0.4, 0.5, 0.6})
+    for (const double around : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
+      const WallPoint point = map.at(along, around);
+      EXPECT_NEAR(map.along(point), along, 0.005);
+      EXPECT_NEAR(map.around(point), around, 0.03) << along;
+      EXPECT_NEAR(point.weight.sum(), 1, 1e-12);
+      EXPECT_GE(point.weight.minCoeff(), -1e-9);
+    }
+}
+
+TEST(AnatomicalMap, WallsLieWhereTheAnglesSay) {
+  const AnatomicalMap map(stomach(), rest());
+  const auto wallAt = [&](double around) {
+    const WallPoint point = map.at(0.5, around);
+    return stomach().wall[stomach().surface.triangles[point.triangle][0]];
+  };
+  EXPECT_EQ(wallAt(0), Wall::GreaterCurvature);
+  EXPECT_EQ(wallAt(M_PI / 2), Wall::Anterior);
+  EXPECT_EQ(wallAt(-M_PI / 2), Wall::Posterior);
+  EXPECT_EQ(wallAt(M_PI), Wall::LesserCurvature);
+}
+
+TEST(AnatomicalMap, WalksAsFarAsAsked) {
+  const AnatomicalMap map(stomach(), rest());
+  const WallPoint begin = map.at(0.45, 0);
+  for (const double way : {-0.02, 0.01, 0.03}) {
+    const WallPoint distal = map.walk(begin, way, 0), anterior = map.walk(begin, 0, way);
+    // the chord of an arc with a radius of at least 35 mm
+    EXPECT_NEAR((map.position(distal) - map.position(begin)).norm(), std::abs(way), 0.05 * std::abs(way));
+    EXPECT_NEAR((map.position(anterior) - map.position(begin)).norm(), std::abs(way), 0.05 * std::abs(way));
+    EXPECT_GT((map.along(distal) - map.along(begin)) * way, 0);
+    EXPECT_GT((map.around(anterior) - map.around(begin)) * way, 0);
+    EXPECT_NEAR(map.along(anterior), map.along(begin), 0.01) << "across the axis";
+    EXPECT_NEAR(map.around(distal), map.around(begin), 0.15) << "along the axis";
+  }
+}
+
+TEST(AnatomicalMap, WalkingBackLeadsHome) {
+  const AnatomicalMap map(stomach(), rest());
+  const WallPoint begin = map.at(0.5, 0.3);
+  const WallPoint back = map.walk(map.walk(begin, 0, 0.03), 0, -0.03);
+  EXPECT_NEAR((map.position(back) - map.position(begin)).norm(), 0, 1e-3);
+}
+
+TEST(AnatomicalMap, CoordinatesGoWithTheOrgan) {
+  // moved, turned about the front-to-back axis and larger: the same places have the same coordinates
+  const Eigen::AngleAxisd turn(0.4, stomach().landmarks.anterior);
+  std::vector<Eigen::Vector3d> moved;
+  for (const Eigen::Vector3d& p : rest()) moved.push_back(1.15 * (turn * p) + Eigen::Vector3d(0.1, -0.2, 0.3));
+  const AnatomicalMap map(stomach(), rest()), other(stomach(), moved);
+  // the patch around the apex, where the axis begins, has a fixed size
+  EXPECT_NEAR(other.axisLength(), 1.15 * map.axisLength(), 1e-2 * map.axisLength());
+  for (const double around : {-1.0, 0.0, 1.0}) {
+    const WallPoint a = map.at(0.5, around), b = other.at(0.5, around);
+    const Eigen::Vector3d expected = 1.15 * (turn * map.position(a)) + Eigen::Vector3d(0.1, -0.2, 0.3);
+    EXPECT_NEAR((other.position(b) - expected).norm(), 0, 2e-3) << around;
+  }
+}
+
+TEST(AnatomicalMap, NormalsLeadOutOfTheLumen) {
+  const AnatomicalMap map(stomach(), rest());
+  for (const double around : {-1.5, 0.0, 1.5}) {
+    const WallPoint point = map.at(0.5, around), opposite = map.at(0.5, around + M_PI);
+    EXPECT_NEAR(map.outward(point).norm(), 1, 1e-12);
+    EXPECT_GT(map.outward(point).dot((map.position(point) - map.position(opposite)).normalized()), 0.8);
+  }
+}
+
+TEST(AnatomicalMap, AnOrganWithoutEndsHasNoCoordinates) {
+  Organ bare = stomach();
+  bare.end.assign(bare.end.size(), End::None);
+  try {
+    AnatomicalMap(bare, bare.surface.vertices);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("geometry.landmarks"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace vibe

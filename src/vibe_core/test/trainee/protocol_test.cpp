@@ -1,0 +1,101 @@
+// Protocols of goals: what they mean, and what is wrong with them.
+#include "vibe_core/trainee/protocol.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+namespace {
+
+Protocol parse(const std::string& goals) {
+  return Protocol::parse("name: test\n" + goals, "test.yaml");
+}
+
+std::string errorOf(const std::string& goals) {
+  try {
+    parse(goals);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Protocol, ReadsEveryGoal) {
+  const Protocol protocol = parse(
+      "seed: 7\nskill: novice\ngoals:\n"
+      "  - insufflate: {patience: 40 s}\n"
+      "  - mark: {along: 60 %, around: 90 deg, for: 3 s}\n"
+      "  - bite: {along: 0.5, around: 0, distal: 10 mm, anterior: -5 mm}\n"
+      "  - suture_set: {pattern: z, bites: 8, along: 0.4, length: 3 cm, width: 5 cm, mirrored: true, cinched: false}\n"
+      "  - cinch\n"
+      "  - wait: {for: 2 s}\n"
+      "  - withdraw\n");
+  EXPECT_EQ(protocol.seed, 7u);
+  EXPECT_EQ(protocol.skill.name, "novice");
+  ASSERT_EQ(protocol.goals.size(), 7u);
+  EXPECT_EQ(std::get<InsufflateGoal>(protocol.goals[0]).patience, 40);
+  const MarkGoal mark = std::get<MarkGoal>(protocol.goals[1]);
+  EXPECT_DOUBLE_EQ(mark.place.along, 0.6);
+  EXPECT_DOUBLE_EQ(mark.place.around, M_PI / 2);
+  EXPECT_EQ(mark.time, 3);
+  const BiteGoal bite = std::get<BiteGoal>(protocol.goals[2]);
+  EXPECT_DOUBLE_EQ(bite.place.distal, 0.01);
+  EXPECT_DOUBLE_EQ(bite.place.anterior, -0.005);
+  const SutureSetGoal set = std::get<SutureSetGoal>(protocol.goals[3]);
+  EXPECT_EQ(set.pattern, Technique::Z);
+  EXPECT_EQ(set.bites, 8);
+  EXPECT_DOUBLE_EQ(set.length, 0.03);
+  EXPECT_DOUBLE_EQ(set.width, 0.05);
+  EXPECT_TRUE(set.mirrored);
+  EXPECT_FALSE(set.cinched);
+  EXPECT_TRUE(std::holds_alternative<CinchGoal>(protocol.goals[4]));
+  EXPECT_EQ(std::get<WaitGoal>(protocol.goals[5]).time, 2);
+  EXPECT_TRUE(std::holds_alternative<WithdrawGoal>(protocol.goals[6]));
+}
+
+TEST(Protocol, ASleeveIsARowOfSets) {
+  const Protocol protocol = parse("goals:\n  - sleeve: {sets: 3, from: 60 %, to: 20 %, bites: 5}\n");
+  ASSERT_EQ(protocol.goals.size(), 3u);
+  const double along[] = {0.6, 0.4, 0.2};
+  for (int k = 0; k < 3; ++k) {
+    const SutureSetGoal set = std::get<SutureSetGoal>(protocol.goals[k]);
+    EXPECT_NEAR(set.centre.along, along[k], 1e-12);
+    EXPECT_EQ(set.bites, 5);
+  }
+}
+
+TEST(Protocol, SkillsLieBetweenExpertAndNovice) {
+  const Skill expert = Skill::expert(), novice = Skill::novice();
+  const Skill half = parse("skill: {novice: 0.5}\ngoals: [withdraw]\n").skill;
+  EXPECT_NEAR(half.aim_error, 0.5 * (expert.aim_error + novice.aim_error), 1e-12);
+  const Skill own = parse("skill: {like: novice, aim_error: 2 mm, attempts: 5}\ngoals: [withdraw]\n").skill;
+  EXPECT_DOUBLE_EQ(own.aim_error, 2e-3);
+  EXPECT_EQ(own.attempts, 5);
+  EXPECT_EQ(own.reaction_time, novice.reaction_time);
+}
+
+TEST(Protocol, EveryMistakeIsNamedWithItsPlaceAndRemedy) {
+  const auto expect = [](const std::string& goals, const std::string& part) {
+    EXPECT_NE(errorOf(goals).find(part), std::string::npos) << errorOf(goals);
+    EXPECT_NE(errorOf(goals).find("test.yaml"), std::string::npos) << errorOf(goals);
+  };
+  expect("goals:\n  - suture_sets: {}\n", "suture_set");
+  expect("goals:\n  - bite: {allong: 0.5}\n", "along");
+  expect("goals:\n  - bite: {along: 1.5}\n", "along");
+  expect("goals:\n  - bite: {along: 5 mm}\n", "along");
+  expect("goals:\n  - suture_set: {pattern: w}\n", "pattern");
+  expect("goals:\n  - suture_set: {pattern: square, bites: 4}\n", "does not exist");
+  expect("goals:\n  - cinch: {tension: 3 N}\n", "has none");
+  expect("goals:\n  - {insufflate: {}, withdraw: {}}\n", "second goal");
+  expect("goals: []\n", "no goals");
+  expect("skill: clumsy\ngoals: [withdraw]\n", "novice");
+  expect("skill: {aim: 1 mm}\ngoals: [withdraw]\n", "aim_error");
+  EXPECT_NE(errorOf("goals:\n  - bite: {along: .nan}\n"), "no error");
+}
+
+}  // namespace
+}  // namespace vibe

@@ -1,0 +1,118 @@
+// A trainee that looks: it reaches its goals on an organ that it has not seen before, and gives up with a reason.
+#include "vibe_core/trainee/trainee.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/geometry/anatomical_map.hpp"
+#include "vibe_core/simulation/simulation.hpp"
+
+namespace vibe {
+namespace {
+
+std::shared_ptr<const Model> smallStomach() {
+  static const std::shared_ptr<const Model> model = [] {
+    Scene scene;
+    scene.geometry.particles = 800;
+    scene.attach_oesophagus = scene.attach_duodenum = true;
+    scene.gas.emplace().insufflator_on = false;
+    scene.foundation.emplace();
+    scene.scope.emplace();
+    scene.helix.emplace().reach = 8e-3;  // the particles are 9 mm apart
+    scene.suture.emplace();
+    return buildModel(scene, readTextFile(std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf", "URDF"));
+  }();
+  return model;
+}
+
+struct Session {
+  explicit Session(const Skill& skill = Skill::expert(), std::uint64_t seed = 1)
+      : simulation(smallStomach()), trainee(smallStomach(), skill, seed) {}
+
+  void perform(double limit = 60) {
+    while (!trainee.done() && simulation.time() < limit) simulation.step(trainee.next(observe(simulation)));
+  }
+
+  Simulation simulation;
+  Trainee trainee;
+};
+
+TEST(Trainee, InsufflatesAndBitesWhereItIsTold) {
+  Session session;
+  session.trainee.add(InsufflateGoal{});
+  session.trainee.add(BiteGoal{{0.5, 0.3, 0, 0}});
+  session.perform();
+  ASSERT_EQ(session.trainee.results().size(), 2u);
+  EXPECT_TRUE(session.trainee.results()[0].reached) << session.trainee.results()[0].reason;
+  EXPECT_TRUE(session.trainee.results()[1].reached) << session.trainee.results()[1].reason;
+  const ProcedureState& procedure = session.simulation.state().procedure;
+  ASSERT_EQ(procedure.sutures.size(), 1u);
+  ASSERT_EQ(procedure.sutures[0].bites.size(), 1u);
+  const Bite& bite = procedure.sutures[0].bites[0];
+  EXPECT_TRUE(bite.fullThickness());
+  EXPECT_TRUE(procedure.needle_on_arm) << "ready for the next";
+  // aim error and spacing of the particles (9 mm) together
+  const Organ& organ = smallStomach()->organ;
+  const AnatomicalMap map(organ, organ.surface.vertices);
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < bite.particle.size(); ++k)
+    place += bite.weight[k] * organ.surface.vertices[bite.particle[k]];
+  EXPECT_LT((place - map.position(map.at(0.5, 0.3))).norm(), 12e-3);
+}
+
+TEST(Trainee, TheSameSeedMovesTheSameWay) {
+  const auto hashOf = [](std::uint64_t seed) {
+    Session session(Skill::expert(), seed);
+    session.trainee.add(InsufflateGoal{2});
+    session.trainee.add(BiteGoal{{0.5, 0, 0, 0}});
+    session.perform(6);
+    return session.simulation.hash();
+  };
+  EXPECT_EQ(hashOf(1), hashOf(1));
+  EXPECT_NE(hashOf(1), hashOf(2));
+}
+
+TEST(Trainee, ActsAfterItsReactionTime) {
+  Skill skill;
+  skill.reaction_time = 0.5;
+  skill.tremor.scale = 0;
+  Session session(skill);
+  session.trainee.add(InsufflateGoal{1});
+  int first = -1;
+  for (int k = 0; k < 120 && first < 0; ++k)
+    if (session.simulation.step(session.trainee.next(observe(session.simulation)));
+        session.simulation.input().joints[Insertion] != session.simulation.model().tool->limits()[Insertion].lower)
+      first = k;
+  EXPECT_NEAR(first * session.simulation.stepPeriod(), 0.5, 2.5 * session.simulation.stepPeriod());
+}
+
+TEST(Trainee, GivesUpWithAReasonAndGoesOn) {
+  Session session;
+  session.trainee.add(InsufflateGoal{0.5});  // far too little time
+  session.trainee.add(MarkGoal{});           // the scene has no argon beam
+  session.trainee.add(CinchGoal{});          // there is no bite
+  session.trainee.add(WaitGoal{0.1});
+  session.perform(20);
+  ASSERT_TRUE(session.trainee.done());
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_FALSE(session.trainee.results()[k].reached) << k;
+    EXPECT_FALSE(session.trainee.results()[k].reason.empty()) << k;
+  }
+  EXPECT_TRUE(session.trainee.results()[3].reached);
+}
+
+TEST(Skill, ALineFromExpertToNovice) {
+  const Skill expert = Skill::expert(), novice = Skill::novice();
+  EXPECT_EQ(between(expert, novice, 0).aim_error, expert.aim_error);
+  EXPECT_EQ(between(expert, novice, 1).aim_error, novice.aim_error);
+  EXPECT_EQ(between(expert, novice, 1).attempts, novice.attempts);
+  double last = 0;
+  for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    const Skill skill = between(expert, novice, part);
+    EXPECT_GT(skill.aim_error, last);
+    last = skill.aim_error;
+  }
+}
+
+}  // namespace
+}  // namespace vibe
