@@ -38,15 +38,24 @@ constexpr int kSearches = 20, kPatience = 4;
 // little more than what is near, large enough that slow nodes need few searches.
 constexpr double kSlack = 0.3;
 constexpr double kFloor = 0.05;  // minimum distance of walls, in thicknesses
+// Thickness of what is left of the wall where it is squeezed most, over the thickness of the wall. Design choice: far
+// below what pressed walls have, far above the minimum distance [1].
+constexpr double kCore = 0.4;
+// Its modulus over that of the wall [1].
+const double kCoreStiffness = getenv("CS") ? atof(getenv("CS")) : 1; //DBG
+// Distance at which its contact sets in, and to which places are found, in thicknesses. Design choice: what comes nearer
+// in a step is stopped once [1].
+constexpr double kClose = (1 + kOnset) * kCore, kFound = 0.6;
 
 struct Squeeze {
   double value, slope, curvature;  // energy and its derivatives with respect to s [1]
 };
 
 /// Energy per A E' t / 2 of a wall squeezed to s of its thickness.
-Squeeze squeeze(double s) {
+/// @param straight_below  extended linearly there
+Squeeze squeeze(double s, double straight_below) {
   if (s >= 1 + kOnset) return {0, 0, 0};
-  const double kept = std::max(s, kStraightBelow), strain = 1 - kept;
+  const double kept = std::max(s, straight_below), strain = 1 - kept;
   const double ramp = strain + kOnset;
   const bool full = strain > kOnset;
   const double h = full ? strain : ramp * ramp / (4 * kOnset);
@@ -99,7 +108,8 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
   memory_ = std::make_unique<SelfContactMemory>(rest_, kOneWallThicknesses * max_thickness_, kFacingCosine,
-                                                kFloor * min_thickness_, kSlack * max_thickness_);
+                                                kFloor * min_thickness_, kFound * max_thickness_,
+                                                kSlack * max_thickness_);
 }
 
 SelfContact::~SelfContact() = default;
@@ -117,10 +127,11 @@ void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reac
   for (std::size_t k = 0; k < 3; ++k) std::copy(x[k], x[k] + thickness_.size(), memory_->start[k].begin());
   const SelfContactSearch::NodeVectors at = SelfContactMemory::view(memory_->start);
   found_ = memory_->search.adapt(at, at, (1 + kOnset) * max_thickness_ + reach);
-  speeds_matter_ = found_ && !memory_->search.near().empty();
+  speeds_matter_ = found_ && !(memory_->search.near().empty() && memory_->search.meetings().empty());
   if (!speeds_matter_) return;
   for (std::size_t k = 0; k < 3; ++k) std::copy(v[k], v[k] + thickness_.size(), memory_->speed[k].begin());
   addPairs(reach);
+  addClosePairs();
 }
 
 // The end of a step is usually the start of the next.
@@ -207,16 +218,51 @@ void SelfContact::addPair(int vertex, int triangle, double facing) {
   const double at_rest = triangleFoot(r[vertex], r[n[0]], r[n[1]], r[n[2]]).away.norm();
   Pair pair;
   pair.node = {vertex, n[0], n[1], n[2]};
-  pair.weight = foot.weight;
-  pair.normal = foot.away.normalized();
-  pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kOnset));
-  pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
-  if (!(pair.stiffness > 0)) return;
-  const Squeeze squeezed = squeeze(foot.away.norm() / pair.thickness);
+  pair.weight = {1, -foot.weight[0], -foot.weight[1], -foot.weight[2]};
   pair.away = foot.away;
+  pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kOnset));
+  pair.straight_below = kStraightBelow;
+  pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
+  finish(pair);
+}
+
+void SelfContact::addClosePairs() {
+  SelfContactMemory& m = *memory_;
+  for (const ClosePoints& close : m.close.find(m.search.meetings(), m.start, kFound * max_thickness_))
+    addClosePair(close);
+}
+
+// What is nearer than a triangle's foot on one side of a vertex may be elsewhere: edges that cross, further triangles.
+void SelfContact::addClosePair(const ClosePoints& close) {
+  Eigen::Vector3d at_rest = Eigen::Vector3d::Zero();
+  double thickness = 0, area = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (close.node[k] < 0) continue;
+    const double part = 0.5 * std::abs(close.weight[k]);
+    at_rest += close.weight[k] * rest_.vertices[close.node[k]];
+    thickness += part * thickness_[close.node[k]];
+    area += part * area_[close.node[k]];
+  }
+  Pair pair;
+  pair.node = close.node;
+  pair.weight = close.weight;
+  pair.away = close.away;
+  pair.thickness = std::min(kCore * thickness, at_rest.norm() / (1 + kOnset));
+  pair.straight_below = kFloor / kCore;
+  pair.stiffness = 0.5 * close.share * area * kCoreStiffness / kSoftness * stiffness_ * pair.thickness;
+  finish(pair);
+}
+
+// With what follows from the state: normal, energy and friction.
+void SelfContact::finish(Pair& pair) {
+  const double distance = pair.away.norm();
+  if (!(pair.stiffness > 0 && distance > 0)) return;
+  pair.normal = pair.away / distance;
+  const Squeeze squeezed = squeeze(distance / pair.thickness, pair.straight_below);
   pair.friction = -kFriction * pair.stiffness / pair.thickness * squeezed.slope;
-  Eigen::Vector3d speed = memory_->speedOf(vertex);
-  for (int k = 0; k < 3; ++k) speed -= foot.weight[k] * memory_->speedOf(n[k]);
+  Eigen::Vector3d speed = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < 4; ++k)
+    if (pair.node[k] >= 0) speed += pair.weight[k] * memory_->speedOf(pair.node[k]);
   pair.speed = (speed - pair.normal.dot(speed) * pair.normal).norm();
   energy_ += pair.stiffness * squeezed.value;
   pairs_.push_back(pair);
@@ -227,18 +273,16 @@ double SelfContact::evaluate(const double* positions4, float* gradient4) const {
   const double smooth = kSlidingSpeed * lead_;
   for (const Pair& pair : pairs_) {
     const Eigen::Vector3d away = awayAt(pair, positions4);
-    const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness);
+    const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness, pair.straight_below);
     if (squeezed.value == 0 && pair.friction == 0) continue;
     const Eigen::Vector3d slid = slidSince(pair, away);
     const Sliding slide = sliding(slid.norm(), smooth);
     energy += pair.stiffness * squeezed.value + pair.friction * slide.way;
     const Eigen::Vector3d force =
         pair.stiffness / pair.thickness * squeezed.slope * pair.normal + pair.friction * slide.per_way * slid;
-    for (int c = 0; c < 3; ++c) {
-      gradient4[4 * static_cast<std::size_t>(pair.node[0]) + c] += static_cast<float>(force[c]);
-      for (int k = 0; k < 3; ++k)
-        gradient4[4 * static_cast<std::size_t>(pair.node[k + 1]) + c] -= static_cast<float>(pair.weight[k] * force[c]);
-    }
+    for (std::size_t k = 0; k < 4; ++k)
+      for (Eigen::Index c = 0; c < 3 && pair.node[k] >= 0; ++c)
+        gradient4[4 * static_cast<std::size_t>(pair.node[k]) + c] += static_cast<float>(pair.weight[k] * force[c]);
   }
   return energy;
 }
@@ -247,23 +291,24 @@ double SelfContact::evaluate(const double* positions4, float* gradient4) const {
 void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const {
   for (const Pair& pair : pairs_) {
     const double s = pair.normal.dot(awayAt(pair, positions4)) / pair.thickness;
-    const double normal = pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s).curvature;
+    const double normal = pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s, pair.straight_below).curvature;
     if (normal == 0 && pair.friction == 0) continue;
     const double drag = pair.friction * sliding(pair.speed * lead_, kSlidingSpeed * lead_).per_way;
     const Eigen::Vector3d& n = pair.normal;
     const Eigen::Matrix3d k = drag * Eigen::Matrix3d::Identity() + (normal - drag) * n * n.transpose();
     couplings.push_back({{pair.node[0], pair.node[1], pair.node[2], pair.node[3], -1, -1},
-                         {1, -static_cast<float>(pair.weight[0]), -static_cast<float>(pair.weight[1]),
-                          -static_cast<float>(pair.weight[2])},
+                         {static_cast<float>(pair.weight[0]), static_cast<float>(pair.weight[1]),
+                          static_cast<float>(pair.weight[2]), static_cast<float>(pair.weight[3])},
                          {static_cast<float>(k(0, 0)), static_cast<float>(k(0, 1)), static_cast<float>(k(0, 2)),
                           static_cast<float>(k(1, 1)), static_cast<float>(k(1, 2)), static_cast<float>(k(2, 2))}});
   }
 }
 
-// From the foot at detect() to the vertex, where they are now.
+// The difference of its points, where they are now.
 Eigen::Vector3d SelfContact::awayAt(const Pair& pair, const double* positions4) {
-  Eigen::Vector3d away = at(positions4, pair.node[0]);
-  for (int k = 0; k < 3; ++k) away -= pair.weight[k] * at(positions4, pair.node[k + 1]);
+  Eigen::Vector3d away = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < 4; ++k)
+    if (pair.node[k] >= 0) away += pair.weight[k] * at(positions4, pair.node[k]);
   return away;
 }
 

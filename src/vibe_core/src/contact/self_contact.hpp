@@ -12,6 +12,7 @@
 namespace vibe {
 
 class SelfContactMemory;
+struct ClosePoints;
 
 /// Self-contact of a shell: a contact energy during the solution of a step, and a limit on the paths at its end.
 ///
@@ -43,14 +44,16 @@ class SelfContact : public EnergyTerm {
  public:
   using NodeVectors = std::array<const double*, 3>;  ///< x, y and z of the nodes
 
-  /// A vertex and the triangle of another wall that is nearest to it on one side.
+  /// Two points of the surface: a vertex and the point of another wall that is nearest to it on one side, or places
+  /// that are close.
   struct Pair {
-    std::array<int, 4> node;  ///< vertex, triangle
-    Eigen::Vector3d weight;   ///< barycentric, of the foot
-    Eigen::Vector3d normal;   ///< unit, from the foot to the vertex
+    std::array<int, 4> node;       ///< -1: fewer
+    std::array<double, 4> weight;  ///< of the difference of the points = sum of weight * position; sum 0
+    Eigen::Vector3d normal;        ///< unit, from the second to the first
     double thickness;         ///< distance at first contact [m]
+    double straight_below;    ///< distance over that thickness below which the energy is linear [1]
     double stiffness;         ///< A E' t / 2 [J]
-    Eigen::Vector3d away;     ///< from the foot to the vertex at detect() [m]
+    Eigen::Vector3d away;     ///< from the second to the first point at detect() [m]
     double friction;          ///< force of friction, with the normal force at detect() [N]
     double speed;             ///< of sliding at detect() [m/s]
   };
@@ -97,6 +100,9 @@ class SelfContact : public EnergyTerm {
   void collectApproaches(int vertex, std::size_t first, std::size_t next, double reach);
   void addPairsOf(int vertex, double reach);
   void addPair(int vertex, int triangle, double facing);
+  void addClosePairs();
+  void addClosePair(const ClosePoints& close);
+  void finish(Pair& pair);
   double meanThickness(int vertex, int triangle) const;
   double facing(int vertex, int triangle) const;
   bool startPaths(const MotionView& motion);

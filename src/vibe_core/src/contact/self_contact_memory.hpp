@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "contact/self_contact_close.hpp"
 #include "contact/self_contact_paths.hpp"
 #include "contact/self_contact_search.hpp"
 
@@ -14,10 +15,13 @@ class SelfContactMemory {
  public:
   /// Distances [m].
   /// @param one_wall  along edges within which the surface is one wall
+  /// @param floor     minimum distance of paths
+  /// @param found     distance to which triangles are found
   /// @param slack     motion of a vertex for which what was found holds
-  SelfContactMemory(const SurfaceMesh& rest, double one_wall, double cosine, double floor, double slack)
+  SelfContactMemory(const SurfaceMesh& rest, double one_wall, double cosine, double floor, double found, double slack)
       : walls(rest, one_wall),
-        search(rest, {walls, cosine, floor, slack}),
+        search(rest, {walls, cosine, found, slack}),
+        close(rest.triangles, search.rings()),
         paths(rest.triangles, walls, floor),
         position(rest.vertices),
         move(rest.vertices),
@@ -41,6 +45,7 @@ class SelfContactMemory {
 
   SurfaceWalls walls;
   SelfContactSearch search;
+  SelfContactClose close;
   SelfContactPaths paths;
   std::array<std::vector<double>, 3> start, end;  // positions at detect(), after the step [m]
   std::array<std::vector<double>, 3> speed;       // at detect() [m/s]
