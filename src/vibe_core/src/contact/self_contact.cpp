@@ -38,14 +38,12 @@ constexpr int kSearches = 20, kPatience = 4;
 // little more than what is near, large enough that slow nodes need few searches.
 constexpr double kSlack = 0.3;
 constexpr double kFloor = 0.05;  // minimum distance of walls, in thicknesses
-// Thickness of what is left of the wall where it is squeezed most, over the thickness of the wall. Design choice: far
-// below what pressed walls have, far above the minimum distance [1].
-constexpr double kCore = 0.4;
-// Its modulus over that of the wall [1].
-const double kCoreStiffness = getenv("CS") ? atof(getenv("CS")) : 1; //DBG
-// Distance at which its contact sets in, and to which places are found, in thicknesses. Design choice: what comes nearer
-// in a step is stopped once [1].
-constexpr double kClose = (1 + kOnset) * kCore, kFound = 0.6;
+// Thickness of two half walls whose mucosa is squeezed flat, over that of the wall. Design choice: far below what
+// usual pressures leave, far above the minimum distance [1].
+constexpr double kCore = 0.3;
+// Distance up to which places are looked for where these meet, in thicknesses. Design choice: above (1 + kOnset) kCore,
+// so that walls meet in the solution of a step before they reach the minimum distance [1].
+constexpr double kFound = 0.5;
 
 struct Squeeze {
   double value, slope, curvature;  // energy and its derivatives with respect to s [1]
@@ -94,6 +92,14 @@ void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double
                 " Pa; it must be above 0.");
 }
 
+double longestEdge(const SurfaceMesh& mesh) {
+  double longest2 = 0;
+  for (const auto& n : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      longest2 = std::max(longest2, (mesh.vertices[n[(k + 1) % 3]] - mesh.vertices[n[k]]).squaredNorm());
+  return std::sqrt(longest2);
+}
+
 Eigen::Vector3d at(const double* positions4, int node) {
   const double* p = positions4 + 4 * static_cast<std::size_t>(node);
   return {p[0], p[1], p[2]};
@@ -107,9 +113,9 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   area_ = vertexAreas(rest_);
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
+  close_distance_ = 0.5 * longestEdge(rest_) + kFound * max_thickness_;
   memory_ = std::make_unique<SelfContactMemory>(rest_, kOneWallThicknesses * max_thickness_, kFacingCosine,
-                                                kFloor * min_thickness_, kFound * max_thickness_,
-                                                kSlack * max_thickness_);
+                                                kFloor * min_thickness_, kSlack * max_thickness_);
 }
 
 SelfContact::~SelfContact() = default;
@@ -126,8 +132,8 @@ void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reac
   energy_ = 0;
   for (std::size_t k = 0; k < 3; ++k) std::copy(x[k], x[k] + thickness_.size(), memory_->start[k].begin());
   const SelfContactSearch::NodeVectors at = SelfContactMemory::view(memory_->start);
-  found_ = memory_->search.adapt(at, at, (1 + kOnset) * max_thickness_ + reach);
-  speeds_matter_ = found_ && !(memory_->search.near().empty() && memory_->search.meetings().empty());
+  found_ = memory_->search.adapt(at, at, searchDistance());
+  speeds_matter_ = found_ && !memory_->search.near().empty();
   if (!speeds_matter_) return;
   for (std::size_t k = 0; k < 3; ++k) std::copy(v[k], v[k] + thickness_.size(), memory_->speed[k].begin());
   addPairs(reach);
@@ -143,6 +149,11 @@ bool SelfContact::isStart(const NodeVectors& x, const NodeVectors& v) const {
         (speeds_matter_ && std::memcmp(v[k], memory_->speed[k].data(), n * sizeof(double)) != 0))
       return false;
   return true;
+}
+
+// To which vertices and triangles are listed. Where two edges cross, an end of one is within half its length.
+double SelfContact::searchDistance() const {
+  return std::max((1 + kOnset) * max_thickness_ + reach_, close_distance_);
 }
 
 double SelfContact::meanThickness(int vertex, int triangle) const {
@@ -168,21 +179,24 @@ double SelfContact::facing(int vertex, int triangle) const {
 
 void SelfContact::addPairs(double reach) {
   const std::vector<SelfContactSearch::Near>& near = memory_->search.near();
+  memory_->facing.clear();
   memory_->search.measure(SelfContactMemory::view(memory_->start));
   for (std::size_t first = 0, next; first < near.size(); first = next) {
     const int vertex = near[first].vertex;
     for (next = first + 1; next < near.size() && near[next].vertex == vertex;) ++next;
-    collectApproaches(vertex, first, next, reach);
-    if (!memory_->approaches.empty()) addPairsOf(vertex, reach);
+    collectApproaches(vertex, first, next);
+    if (memory_->approaches.empty()) continue;
+    addPairsOf(vertex, reach);
+    collectFacing(vertex);
   }
 }
 
-// The triangles of a part of the list of what is near that are as near as the thickest walls in contact.
-void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t next, double reach) {
+// The triangles of a part of the list of what is near that may be as near as was asked for.
+void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t next) {
   SelfContactMemory& m = *memory_;
   m.approaches.clear();
   const Eigen::Vector3d p = m.at(vertex);
-  const double farthest = (1 + kOnset) * max_thickness_ + reach;
+  const double farthest = searchDistance();
   for (std::size_t k = first; k < next; ++k) {
     const SelfContactSearch::Near& near = m.search.near()[k];
     if (m.search.leastDistance(near) > farthest) continue;
@@ -226,10 +240,23 @@ void SelfContact::addPair(int vertex, int triangle, double facing) {
   finish(pair);
 }
 
+// Triangles at a vertex and those that it faces: where walls are close, one of the vertices there is not far.
+void SelfContact::collectFacing(int vertex) {
+  SelfContactMemory& m = *memory_;
+  const double farthest2 = close_distance_ * close_distance_;
+  for (const SelfContactMemory::Approach& one : m.approaches) {
+    if (!(one.away.squaredNorm() < farthest2) || facing(vertex, one.triangle) == 0) continue;
+    m.search.rings().visit(vertex, [&](int t) {
+      m.facing.push_back({std::min(t, one.triangle), std::max(t, one.triangle)});
+    });
+  }
+}
+
 void SelfContact::addClosePairs() {
   SelfContactMemory& m = *memory_;
-  for (const ClosePoints& close : m.close.find(m.search.meetings(), m.start, kFound * max_thickness_))
-    addClosePair(close);
+  std::sort(m.facing.begin(), m.facing.end());
+  m.facing.erase(std::unique(m.facing.begin(), m.facing.end()), m.facing.end());
+  for (const ClosePoints& close : m.close.find(m.facing, m.start, kFound * max_thickness_)) addClosePair(close);
 }
 
 // What is nearer than a triangle's foot on one side of a vertex may be elsewhere: edges that cross, further triangles.
@@ -249,7 +276,7 @@ void SelfContact::addClosePair(const ClosePoints& close) {
   pair.away = close.away;
   pair.thickness = std::min(kCore * thickness, at_rest.norm() / (1 + kOnset));
   pair.straight_below = kFloor / kCore;
-  pair.stiffness = 0.5 * close.share * area * kCoreStiffness / kSoftness * stiffness_ * pair.thickness;
+  pair.stiffness = 0.5 * close.share * area / kSoftness * stiffness_ * pair.thickness;
   finish(pair);
 }
 
@@ -291,7 +318,8 @@ double SelfContact::evaluate(const double* positions4, float* gradient4) const {
 void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const {
   for (const Pair& pair : pairs_) {
     const double s = pair.normal.dot(awayAt(pair, positions4)) / pair.thickness;
-    const double normal = pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s, pair.straight_below).curvature;
+    const double normal =
+        pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s, pair.straight_below).curvature;
     if (normal == 0 && pair.friction == 0) continue;
     const double drag = pair.friction * sliding(pair.speed * lead_, kSlidingSpeed * lead_).per_way;
     const Eigen::Vector3d& n = pair.normal;
@@ -334,7 +362,7 @@ const std::vector<int>& SelfContact::resolvePenetrations(const MotionView& motio
 bool SelfContact::startPaths(const MotionView& motion) {
   SelfContactMemory& m = *memory_;
   const std::array<const double*, 3> end{motion.x[0], motion.x[1], motion.x[2]};
-  found_ = found_ && m.search.adapt(SelfContactMemory::view(m.start), end, (1 + kOnset) * max_thickness_ + reach_);
+  found_ = found_ && m.search.adapt(SelfContactMemory::view(m.start), end, searchDistance());
   if (!found_ || m.search.meetings().empty()) return false;
   for (std::size_t i = 0; i < m.position.size(); ++i) {
     m.position[i] = m.at(static_cast<int>(i));
@@ -353,8 +381,7 @@ bool SelfContact::shortenPaths() {
     spreadStops();
     for (std::size_t i = 0; i < m.move.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) m.end[k][i] = m.position[i][k] + m.move[i][k];
-    m.search.adapt(SelfContactMemory::view(m.start), SelfContactMemory::view(m.end),
-                   (1 + kOnset) * max_thickness_ + reach_);
+    m.search.adapt(SelfContactMemory::view(m.start), SelfContactMemory::view(m.end), searchDistance());
   }
   std::fill(m.move.begin(), m.move.end(), Eigen::Vector3d::Zero());
   return true;

@@ -8,7 +8,16 @@ namespace vibe {
 
 namespace {
 
-constexpr int kNone = -1;  // node that has no part in a place
+constexpr int kNone = -1;            // node that has no part in a place
+constexpr double kEqual = 1 - 1e-9;  // ratio of two squared distances that are the same but for rounding
+
+bool isBefore(const ClosePoints& a, const ClosePoints& b) {
+  return a.split < b.split || (a.split == b.split && a.node < b.node);
+}
+
+bool isSame(const ClosePoints& a, const ClosePoints& b) {
+  return a.split == b.split && a.node == b.node;
+}
 
 bool has(const std::array<int, 3>& triangle, int vertex) {
   return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
@@ -20,24 +29,18 @@ const std::vector<ClosePoints>& SelfContactClose::find(const std::vector<Pair>& 
                                                        const std::array<std::vector<double>, 3>& at, double distance) {
   at_ = &at;
   distance_ = distance;
-  candidates_.clear(), found_.clear();
+  places_.clear();
   for (const Pair& pair : pairs) {
     if (apart(pair)) continue;
     addVertices(pair[0], pair[1]);
     addVertices(pair[1], pair[0]);
     addEdges(pair[0], pair[1]);
   }
-  std::sort(candidates_.begin(), candidates_.end());
-  for (std::size_t first = 0, last = 0; first < candidates_.size(); first = last) {
-    int triangles = 0, before = kNone;
-    for (; last < candidates_.size() && candidates_[first].isAt(candidates_[last]); ++last) {
-      triangles += candidates_[last].triangle != before ? 1 : 0;
-      before = candidates_[last].triangle;
-    }
-    const ClosePoints& place = candidates_[first].place;
-    if (place.split == 2 || triangles == trianglesAround(place)) found_.push_back(place);
-  }
-  return found_;
+  std::sort(places_.begin(), places_.end(), isBefore);
+  places_.erase(std::unique(places_.begin(), places_.end(), isSame), places_.end());
+  places_.erase(std::remove_if(places_.begin(), places_.end(), [this](const ClosePoints& p) { return !isNearest(p); }),
+                places_.end());
+  return places_;
 }
 
 Eigen::Vector3d SelfContactClose::at(int node) const {
@@ -68,7 +71,7 @@ void SelfContactClose::addVertices(int of, int triangle) {
       const double weight = foot.weight[static_cast<Eigen::Index>(k)];
       if (weight > 0) close.node[next] = n[k], close.weight[next++] = -weight;
     }
-    candidates_.push_back({close, triangle});
+    if (!isInWall(close)) places_.push_back(close);
   }
 }
 
@@ -93,27 +96,29 @@ void SelfContactClose::addEdgePair(std::array<int, 2> one, std::array<int, 2> ot
   if (!(s > 0 && s < 1 && t > 0 && t < 1)) return;
   const Eigen::Vector3d away = r + s * u - t * v;
   if (!(away.squaredNorm() < distance_ * distance_)) return;
-  candidates_.push_back(
-      {{{one[0], one[1], other[0], other[1]}, 2, {1 - s, s, t - 1, -t}, away, across / (uu * vv)}, kNone});
+  const ClosePoints close{{one[0], one[1], other[0], other[1]}, 2, {1 - s, s, t - 1, -t}, away, across / (uu * vv)};
+  if (!isInWall(close)) places_.push_back(close);
 }
 
-// That contain the point opposite to the vertex.
-int SelfContactClose::trianglesAround(const ClosePoints& place) const {
-  if (place.node[3] != kNone) return 1;
-  int count = 0;
+bool SelfContactClose::isInWall(const ClosePoints& place) const {
+  for (int i = 0; i < place.split; ++i)
+    for (std::size_t j = place.split; j < 4; ++j)
+      if (place.node[j] >= 0 && walls_.oneWall(place.node[i], place.node[j])) return true;
+  return false;
+}
+
+// Whether no triangle around the point opposite to a vertex is nearer.
+bool SelfContactClose::isNearest(const ClosePoints& place) const {
+  if (place.split == 2 || place.node[3] != kNone) return true;
+  const Eigen::Vector3d vertex = at(place.node[0]);
+  const double least = kEqual * place.away.squaredNorm();
+  bool nearest = true;
   rings_.visit(place.node[1], [&](int t) {
-    count += place.node[2] == kNone || has(triangles_[t], place.node[2]) ? 1 : 0;
+    const auto& n = triangles_[t];
+    if (!nearest || (place.node[2] != kNone && !has(n, place.node[2]))) return;
+    nearest = triangleFoot(vertex, at(n[0]), at(n[1]), at(n[2])).away.squaredNorm() >= least;
   });
-  return count;
-}
-
-bool SelfContactClose::Candidate::isAt(const Candidate& other) const {
-  return place.split == other.place.split && place.node == other.place.node;
-}
-
-bool SelfContactClose::Candidate::operator<(const Candidate& other) const {
-  if (place.split != other.place.split) return place.split < other.place.split;
-  return place.node < other.place.node || (place.node == other.place.node && triangle < other.triangle);
+  return nearest;
 }
 
 }  // namespace vibe
