@@ -9,6 +9,8 @@ With the table of `vibe_sutures scenarios` it adds the growth of a step over the
 import math
 import statistics
 
+from matplotlib.ticker import LogLocator
+
 from plot_lib import FRAME, label_log_axes, parse_arguments, plt, read_table, save, set_title
 
 STATES = {
@@ -22,13 +24,16 @@ STATES = {
 LEAST = 1e-3  # error drawn at least [%]
 
 
-def settings(row):
-    return f"{row['rate']} Hz, {row['iterations']} it."
+def labels(rows):
+    """Of the points: steps per second, and the iterations where the table has several."""
+    several = len({row["iterations"] for row in rows}) > 1
+    return lambda row: row["rate"] + (f" x {row['iterations']}" if several else "")
 
 
 def draw_errors(axis, rows, column, title):
+    label_of = labels(rows)
     for name, (label, colour, marker) in STATES.items():
-        points = [(float(row["ms_p50"]) * float(row["rate"]) / 60, max(100 * float(row[column]), LEAST), settings(row))
+        points = [(float(row["ms_p50"]) * float(row["rate"]) / 60, max(100 * float(row[column]), LEAST), label_of(row))
                   for row in rows if row["state"] == name and row[column]]
         points.sort()
         if not points:
@@ -36,9 +41,10 @@ def draw_errors(axis, rows, column, title):
         axis.plot([p[0] for p in points], [p[1] for p in points], marker + "-", color=colour, linewidth=0.8,
                   markersize=5, label=label)
         for time, error, text in points:
-            axis.annotate(text, (time, error), textcoords="offset points", xytext=(4, 3), fontsize=5.5, color=colour)
+            axis.annotate(text, (time, error), textcoords="offset points", xytext=(5, 3), fontsize=7, color=colour)
     axis.axvline(FRAME, color="tab:red", linestyle="--", linewidth=0.9, label="a 60 Hz frame")
-    label_log_axes(axis, "median CPU time of a 60 Hz frame [ms]", title + " [%]")
+    label_log_axes(axis, "median CPU time of a 60 Hz frame [ms]; labels: steps per second", title + " [%]")
+    axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.legend(fontsize=7)
 
 
@@ -88,7 +94,8 @@ def main(options, table, pictures):
     rows = read_table(table, "motion_error", "vibe_contact states --csv")
     extra = [name for name in ("sutures", "steps") if name in options]
     count = 2 + len(extra)
-    figure, axes = plt.subplots(1 if count == 2 else 2, 2, figsize=(13, 5.5 if count == 2 else 10.5), squeeze=False)
+    lines, columns = (2, 2) if count == 4 else (1, count)
+    figure, axes = plt.subplots(lines, columns, figsize=(6 * columns, 5.2 * lines), squeeze=False)
     axes = [axis for line in axes for axis in line]
     set_title(figure, "Steps in contact: speed against error", options)
     draw_errors(axes[0], rows, "motion_error", "error of the motion, worst frame")
@@ -97,8 +104,6 @@ def main(options, table, pictures):
         draw_growth(axes[2], read_table(options["sutures"], "pulling_mean", "vibe_sutures scenarios --csv"))
     if "steps" in options:
         draw_contacts(axes[count - 1], read_table(options["steps"], "contacts", "vibe_contact hard --steps"))
-    for axis in axes[count:]:
-        axis.set_axis_off()
     figure.tight_layout()
     save(figure, pictures)
 
