@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "contact/self_contact_distance.hpp"
+#include "contact/self_contact_law.hpp"
 #include "contact/self_contact_memory.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -19,7 +20,6 @@ namespace {
 constexpr double kOneWallThicknesses = 1.6;
 constexpr float kFacingCosine = 0.3F;   // of the normals of walls in contact: the next wall along a line faces this one
 constexpr double kSoftness = 0.1;       // modulus of the contact, relative to that of the wall
-constexpr double kOnset = 0.25;         // strain over which contact sets in
 constexpr double kStraightBelow = 0.2;  // fraction of the thickness below which the energy is extended linearly
 // Coulomb friction of mucosa on mucosa: the upper end of 0.007 to 0.054, measured with a sled on the lumen of small
 // bowel (Terry et al. 2013, Tribol Lett 51:377, doi 10.1007/s11249-013-0167-1) [1].
@@ -41,38 +41,9 @@ constexpr double kFloor = 0.05;  // minimum distance of walls, in thicknesses
 // Thickness of two half walls whose mucosa is squeezed flat, over that of the wall. Design choice: far below what
 // usual pressures leave, far above the minimum distance [1].
 constexpr double kCore = 0.3;
-// Distance up to which places are looked for where these meet, in thicknesses. Design choice: above (1 + kOnset) kCore,
-// so that walls meet in the solution of a step before they reach the minimum distance [1].
+// Distance up to which places are looked for where these meet, in thicknesses. Design choice: above (1 + kContactOnset)
+// kCore, so that walls meet in the solution of a step before they reach the minimum distance [1].
 constexpr double kFound = 0.5;
-
-struct Squeeze {
-  double value, slope, curvature;  // energy and its derivatives with respect to s [1]
-};
-
-/// Energy per A E' t / 2 of a wall squeezed to s of its thickness.
-/// @param straight_below  extended linearly there
-Squeeze squeeze(double s, double straight_below) {
-  if (s >= 1 + kOnset) return {0, 0, 0};
-  const double kept = std::max(s, straight_below), strain = 1 - kept;
-  const double ramp = strain + kOnset;
-  const bool full = strain > kOnset;
-  const double h = full ? strain : ramp * ramp / (4 * kOnset);
-  const double h_slope = full ? 1 : ramp / (2 * kOnset), h_curvature = full ? 0 : 1 / (2 * kOnset);
-  const double hencky = std::log1p(-h), stress = hencky / (1 - h);
-  const double slope = stress * h_slope;
-  const double curvature = (1 - hencky) / ((1 - h) * (1 - h)) * h_slope * h_slope - stress * h_curvature;
-  return {0.5 * hencky * hencky + slope * (s - kept), slope, curvature};
-}
-
-/// Smoothed Coulomb friction: potential per friction force and its derivative over the way slid, both as functions of
-/// that way (Li et al. 2020, "Incremental Potential Contact", section 5.2, f_0 and f_1 / |u|).
-struct Sliding {
-  double way, per_way;  // [m], [1/m]
-};
-Sliding sliding(double way, double smooth) {
-  if (way >= smooth) return {way - smooth / 3, 1 / way};
-  return {way * way / smooth * (1 - way / (3 * smooth)), (2 - way / smooth) / smooth};
-}
 
 void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double young_modulus) {
   if (rest.vertices.empty() || thickness.size() != rest.vertices.size())
@@ -153,7 +124,7 @@ bool SelfContact::isStart(const NodeVectors& x, const NodeVectors& v) const {
 
 // To which vertices and triangles are listed. Where two edges cross, an end of one is within half its length.
 double SelfContact::searchDistance() const {
-  return std::max((1 + kOnset) * max_thickness_ + reach_, close_distance_);
+  return std::max((1 + kContactOnset) * max_thickness_ + reach_, close_distance_);
 }
 
 double SelfContact::meanThickness(int vertex, int triangle) const {
@@ -214,7 +185,7 @@ void SelfContact::addPairsOf(int vertex, double reach) {
     for (const SelfContactMemory::Approach& one : near) {
       const double distance = one.away.norm();
       if (distance >= min || (side == 1 && one.away.dot(best[0]->away) >= 0)) continue;
-      if (distance >= (1 + kOnset) * meanThickness(vertex, one.triangle) + reach) continue;
+      if (distance >= (1 + kContactOnset) * meanThickness(vertex, one.triangle) + reach) continue;
       const double faces = facing(vertex, one.triangle);
       if (faces == 0) continue;
       min = distance;
@@ -234,7 +205,7 @@ void SelfContact::addPair(int vertex, int triangle, double facing) {
   pair.node = {vertex, n[0], n[1], n[2]};
   pair.weight = {1, -foot.weight[0], -foot.weight[1], -foot.weight[2]};
   pair.away = foot.away;
-  pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kOnset));
+  pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kContactOnset));
   pair.straight_below = kStraightBelow;
   pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
   finish(pair);
@@ -274,7 +245,7 @@ void SelfContact::addClosePair(const ClosePoints& close) {
   pair.node = close.node;
   pair.weight = close.weight;
   pair.away = close.away;
-  pair.thickness = std::min(kCore * thickness, at_rest.norm() / (1 + kOnset));
+  pair.thickness = std::min(kCore * thickness, at_rest.norm() / (1 + kContactOnset));
   pair.straight_below = kFloor / kCore;
   pair.stiffness = 0.5 * close.share * area / kSoftness * stiffness_ * pair.thickness;
   finish(pair);
