@@ -24,7 +24,7 @@ struct StepSettings {
   double tolerance = 1e-7;  ///< a step ends earlier when no node would move farther than this [m]
   /// A factor about other positions takes over this long after they were, and is made in the background meanwhile; a
   /// whole number of steps, so that a replay has the same bits. 0: the factor stays [s]
-  double refactor_interval = 1.0 / 6;
+  double refactor_interval = 0.1;
   double refactor_distance = 5e-4;  ///< it is begun when a node has moved farther than this [m]
 };
 
@@ -75,7 +75,7 @@ class ImplicitStepper {
   struct Plan;
   bool extrapolates(bool fallback) const;
   void guess(const MotionView& motion, bool fallback, StepperScratch& scratch) const;
-  void correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome) const;
+  static void correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome);
   void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch,
                    StepOutcome& outcome) const;
   void iterate(QuasiNewton& newton, const StepperScratch& scratch, StepperMemory& memory, StepOutcome& outcome) const;

@@ -19,6 +19,7 @@ struct StepWork {
   double viscous = 0;       ///< dissipated by stiffness damping [J]
   double numerical = 0;     ///< dissipated by the time scheme [J]
   double stored = 0;        ///< change of the energy of elements and foundation, as foreseen [J]
+  double to_first = 0;      ///< the same from the start of the step to its first point of evaluation [J]
   double residual = 0;      ///< done by what the iterations left unbalanced [J]
 };
 
