@@ -6,16 +6,12 @@ usage: plot_contact.py [--machine=TEXT] [--sutures=TABLE.csv] [--steps=STEPS.csv
 With the table of `vibe_sutures scenarios` it adds the growth of a step over the sets, with the steps of
 `vibe_contact hard --steps` the cost of a step over its contacts.
 """
-import csv
 import math
 import statistics
-import sys
 
-import matplotlib
+from matplotlib.ticker import LogLocator
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter  # noqa: E402
+from plot_lib import FRAME, label_log_axes, parse_arguments, plt, read_table, save, set_title
 
 STATES = {
     "free": ("free pull", "tab:blue", "o"),
@@ -25,25 +21,19 @@ STATES = {
     "cinch1": ("first set cinched", "tab:green", "D"),
     "cinch6": ("sixth set cinched", "tab:olive", "D"),
 }
-FRAME = 1000 / 60  # [ms]
 LEAST = 1e-3  # error drawn at least [%]
 
 
-def read(name, needed):
-    with open(name, newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    if not rows or needed not in rows[0]:
-        sys.exit(f"{name}: has no column '{needed}'; see --help for the program that writes it")
-    return rows
-
-
-def settings(row):
-    return f"{row['rate']} Hz, {row['iterations']} it."
+def labels(rows):
+    """Of the points: steps per second, and the iterations where the table has several."""
+    several = len({row["iterations"] for row in rows}) > 1
+    return lambda row: row["rate"] + (f" x {row['iterations']}" if several else "")
 
 
 def draw_errors(axis, rows, column, title):
+    label_of = labels(rows)
     for name, (label, colour, marker) in STATES.items():
-        points = [(float(row["ms_p50"]) * float(row["rate"]) / 60, max(100 * float(row[column]), LEAST), settings(row))
+        points = [(float(row["ms_p50"]) * float(row["rate"]) / 60, max(100 * float(row[column]), LEAST), label_of(row))
                   for row in rows if row["state"] == name and row[column]]
         points.sort()
         if not points:
@@ -51,17 +41,10 @@ def draw_errors(axis, rows, column, title):
         axis.plot([p[0] for p in points], [p[1] for p in points], marker + "-", color=colour, linewidth=0.8,
                   markersize=5, label=label)
         for time, error, text in points:
-            axis.annotate(text, (time, error), textcoords="offset points", xytext=(4, 3), fontsize=5.5, color=colour)
+            axis.annotate(text, (time, error), textcoords="offset points", xytext=(5, 3), fontsize=7, color=colour)
     axis.axvline(FRAME, color="tab:red", linestyle="--", linewidth=0.9, label="a 60 Hz frame")
-    axis.set_xscale("log")
-    axis.set_yscale("log")
-    axis.set_xlabel("median CPU time of a 60 Hz frame [ms]")
-    axis.set_ylabel(title + " [%]")
-    for one, locator in ((axis.xaxis, LogLocator(subs=(1, 2, 5))), (axis.yaxis, LogLocator())):
-        one.set_major_locator(locator)
-        one.set_major_formatter(FormatStrFormatter("%g"))
-        one.set_minor_formatter(NullFormatter())
-    axis.grid(True, which="major", color="0.92")
+    label_log_axes(axis, "median CPU time of a 60 Hz frame [ms]; labels: steps per second", title + " [%]")
+    axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.legend(fontsize=7)
 
 
@@ -108,34 +91,22 @@ def draw_contacts(axis, rows):
 
 
 def main(options, table, pictures):
-    rows = read(table, "motion_error")
+    rows = read_table(table, "motion_error", "vibe_contact states --csv")
     extra = [name for name in ("sutures", "steps") if name in options]
     count = 2 + len(extra)
-    figure, axes = plt.subplots(1 if count == 2 else 2, 2, figsize=(13, 5.5 if count == 2 else 10.5), squeeze=False)
+    lines, columns = (2, 2) if count == 4 else (1, count)
+    figure, axes = plt.subplots(lines, columns, figsize=(6 * columns, 5.2 * lines), squeeze=False)
     axes = [axis for line in axes for axis in line]
-    machine = options.get("machine", "")
-    figure.suptitle("Steps in contact: speed against error" + (f"\n{machine}" if machine else ""), fontsize=11)
+    set_title(figure, "Steps in contact: speed against error", options)
     draw_errors(axes[0], rows, "motion_error", "error of the motion, worst frame")
     draw_errors(axes[1], rows, "force_error", "error of force or tension, worst frame")
     if "sutures" in options:
-        draw_growth(axes[2], read(options["sutures"], "pulling_mean"))
+        draw_growth(axes[2], read_table(options["sutures"], "pulling_mean", "vibe_sutures scenarios --csv"))
     if "steps" in options:
-        draw_contacts(axes[count - 1], read(options["steps"], "contacts"))
-    for axis in axes[count:]:
-        axis.set_axis_off()
+        draw_contacts(axes[count - 1], read_table(options["steps"], "contacts", "vibe_contact hard --steps"))
     figure.tight_layout()
-    for picture in pictures:
-        figure.savefig(picture, dpi=130, metadata={"Date": None} if picture.endswith(".svg") else None)
+    save(figure, pictures)
 
 
 if __name__ == "__main__":
-    arguments = sys.argv[1:]
-    chosen = {}
-    while arguments and arguments[0].startswith("--"):
-        key, _, value = arguments.pop(0)[2:].partition("=")
-        if key not in ("machine", "sutures", "steps") or not value:
-            sys.exit(__doc__.strip())
-        chosen[key] = value
-    if len(arguments) < 2:
-        sys.exit(__doc__.strip())
-    main(chosen, arguments[0], arguments[1:])
+    main(*parse_arguments(__doc__, ("machine", "sutures", "steps")))

@@ -3,16 +3,12 @@
 
 usage: plot_speed_error.py [--machine=TEXT] TABLE.csv PICTURE.png [PICTURE.svg ...]
 """
-import csv
 import math
 import sys
 
-import matplotlib
+from matplotlib.transforms import Bbox
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter  # noqa: E402
-from matplotlib.transforms import Bbox  # noqa: E402
+from plot_lib import label_log_axes, parse_arguments, plt, read_table, save, set_title
 
 PULL = "pull_20mm"
 WORST = 1.0  # errors beyond are drawn at the edge, as triangles with their figure
@@ -80,17 +76,9 @@ def draw_errors(axis, rows, column, title):
                   color="tab:red", linewidth=0.9, label="aims: left of and below the line" if number_of == 0 else None)
     axis.text(math.sqrt(PROTOTYPE[0] * PROTOTYPE[1]), 100 * lowest(points) * 1.2, "ViBE prototype", rotation=90,
               ha="center", va="bottom", fontsize=7, color="0.4")
-    axis.set_xscale("log")
-    axis.set_yscale("log")
+    label_log_axes(axis, "median CPU time of a 60 Hz frame [ms]", title + " [%]")
     axis.set_xlim(axis_left(points), max(45, 2 * max(point[1] for point in points)))
     axis.set_ylim(100 * lowest(points), 190)
-    axis.set_xlabel("median CPU time of a 60 Hz frame [ms]")
-    axis.set_ylabel(title + " [%]")
-    axis.grid(True, which="major", color="0.92")
-    axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.yaxis.set_major_formatter(FormatStrFormatter("%g"))
-    axis.xaxis.set_major_formatter(FormatStrFormatter("%g"))
-    axis.xaxis.set_minor_formatter(NullFormatter())
     place_labels(axis, points)
 
 
@@ -141,43 +129,29 @@ def draw_growth(axis, rows):
     if steps:
         axis.axhline(3 * min(1e3 * v[1] / v[0] for v in steps), color="tab:red", linewidth=0.9, linestyle="--",
                      label="aim for the step: below three times the smallest")
-    axis.set_xscale("log")
-    axis.set_yscale("log")
+    label_log_axes(axis, "particles", "median CPU time per particle [us]")
     axis.set_ylim(0.1, 200)
-    axis.set_xticks([v[0] for v in steps])
+    axis.set_xticks([v[0] for v in steps], [str(v[0]) for v in steps])
     axis.margins(x=0.15)
-    axis.xaxis.set_major_formatter(FormatStrFormatter("%d"))
-    axis.yaxis.set_major_formatter(FormatStrFormatter("%g"))
-    axis.xaxis.set_minor_formatter(NullFormatter())
-    axis.set_xlabel("particles")
-    axis.set_ylabel("median CPU time per particle [us]")
     axis.legend(fontsize=7, loc="center left")
-    axis.grid(True, which="major", color="0.92")
 
 
-def main(table, pictures, machine):
-    with open(table, newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+def main(options, table, pictures):
+    rows = read_table(table, "case", "vibe_bench --csv")
     pulls = [row for row in rows if row["case"] == PULL]
     if not pulls:
         sys.exit(f"{table}: has no row of the case '{PULL}'; write it with vibe_bench --csv, without --case")
     figure, axes = plt.subplots(2, 2, figsize=(13, 10.5))
     particles = pulls[0]["particles"]
-    figure.suptitle(f"20 mm pull in 0.5 s, {particles} particles, one thread: speed against error" +
-                    (f"\n{machine}" if machine else ""), fontsize=11)
+    set_title(figure, f"20 mm pull in 0.5 s, {particles} particles, one thread: speed against error", options)
     figure.subplots_adjust(left=0.07, right=0.98, top=0.92, bottom=0.06, wspace=0.18, hspace=0.2)
     draw_errors(axes[0][0], pulls, "motion_error", "error of the motion, worst frame")
     draw_errors(axes[0][1], pulls, "force_error", "error of the force, worst frame")
     draw_errors(axes[1][0], pulls, "static_error", "error 0.5 s after the stop")
     draw_growth(axes[1][1], rows)
     axes[1][0].legend(fontsize=7, loc="center left")
-    for picture in pictures:
-        figure.savefig(picture, dpi=130, metadata={"Date": None} if picture.endswith(".svg") else None)
+    save(figure, pictures)
 
 
 if __name__ == "__main__":
-    arguments = sys.argv[1:]
-    named = arguments.pop(0).split("=", 1)[1] if arguments and arguments[0].startswith("--machine=") else ""
-    if len(arguments) < 2:
-        sys.exit(__doc__.strip())
-    main(arguments[0], arguments[1:], named)
+    main(*parse_arguments(__doc__, ("machine",)))

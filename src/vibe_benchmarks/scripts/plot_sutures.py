@@ -3,13 +3,9 @@
 
 usage: plot_sutures.py [--machine=TEXT] TABLE.csv PICTURE.png [PICTURE.svg ...]
 """
-import csv
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+from plot_lib import FRAME, parse_arguments, plt, read_table, save, set_title
 
 PROTOTYPE_FPS = (55, 59)  # Erden et al., both scenarios
 TITLES = {"8x7": "8 sets of 7 bites", "14x4": "14 sets of 4 bites"}
@@ -36,7 +32,7 @@ def draw_times(axis, rows):
     axis.plot(sets, column(rows, "after_mean"), "o--", color="tab:green", markersize=4, label="mean in the second after")
     prototype = float(rows[0]["prototype"])
     axis.axhline(prototype, color="tab:orange", label=f"ViBE prototype, {prototype:g} ms (Intel i7-12700KF)")
-    axis.axhline(1000 / 60, color="tab:red", linestyle="--", linewidth=0.9, label="a 60 Hz frame")
+    axis.axhline(FRAME, color="tab:red", linestyle="--", linewidth=0.9, label="a 60 Hz frame")
     axis.set_ylabel("solver, CPU time of a step [ms]")
 
 
@@ -50,14 +46,13 @@ def finish(axis, title):
     axis.legend(fontsize=7, loc="upper left")
 
 
-def main(table, pictures, machine):
-    with open(table, newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+def main(options, table, pictures):
+    rows = read_table(table, "scenario", "vibe_sutures scenarios --csv")
     missing = [name for name in TITLES if not any(row["scenario"] == name for row in rows)]
     if missing:
         sys.exit(f"{table}: has no rows of the scenario '{missing[0]}'; write it with vibe_sutures scenarios --csv")
     figure, axes = plt.subplots(2, 2, figsize=(12, 8.5))
-    figure.suptitle("Suture sets, 3,618 particles" + (f"\n{machine}" if machine else ""), fontsize=11)
+    set_title(figure, "Suture sets, 3,618 particles", options)
     for place, (name, title) in enumerate(TITLES.items()):
         chosen = [row for row in rows if row["scenario"] == name]
         draw_rate(axes[0][place], chosen)
@@ -65,13 +60,8 @@ def main(table, pictures, machine):
         draw_times(axes[1][place], chosen)
         finish(axes[1][place], title)
     figure.tight_layout()
-    for picture in pictures:
-        figure.savefig(picture, dpi=120, metadata={"Date": None} if picture.endswith(".svg") else None)
+    save(figure, pictures, dpi=120)
 
 
 if __name__ == "__main__":
-    arguments = sys.argv[1:]
-    named = arguments.pop(0).split("=", 1)[1] if arguments and arguments[0].startswith("--machine=") else ""
-    if len(arguments) < 2:
-        sys.exit(__doc__.strip())
-    main(arguments[0], arguments[1:], named)
+    main(*parse_arguments(__doc__, ("machine",)))

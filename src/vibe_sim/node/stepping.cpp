@@ -234,11 +234,14 @@ void Stepper::reportLag(double lag) {
   const double now = steadyTime();
   if (now - last_lag_report_ < kLagReportPeriod) return;
   last_lag_report_ = now;
-  char sentence[256];
+  const double step = statistics_.total.wall.all.quantile(0.5), period = session_.time.period();
+  const char* remedy = step < period ? "stop other programs, or use fewer particles if single steps are long"
+                                     : "use fewer particles or substeps";
+  char sentence[320];
   std::snprintf(sentence, sizeof sentence,
-                "The simulation is %.2f s behind the wall clock and gives that time up: a step takes %.1f ms and "
-                "simulates %.1f ms; use fewer particles or sub-steps.",
-                lag, 1e3 * statistics_.total.wall.all.quantile(0.5), 1e3 * session_.time.period());
+                "The simulation is %.2f s behind the wall clock and gives that time up: the median step takes %.1f ms "
+                "and simulates %.1f ms; %s.",
+                lag, 1e3 * step, 1e3 * period, remedy);
   ROS_WARN_STREAM(sentence);
   publishers_.warn(sentence);
 }

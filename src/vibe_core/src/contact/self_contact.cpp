@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "contact/self_contact_distance.hpp"
+#include "contact/self_contact_law.hpp"
 #include "contact/self_contact_memory.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -19,7 +20,6 @@ namespace {
 constexpr double kOneWallThicknesses = 1.6;
 constexpr float kFacingCosine = 0.3F;   // of the normals of walls in contact: the next wall along a line faces this one
 constexpr double kSoftness = 0.1;       // modulus of the contact, relative to that of the wall
-constexpr double kOnset = 0.25;         // strain over which contact sets in
 constexpr double kStraightBelow = 0.2;  // fraction of the thickness below which the energy is extended linearly
 // Coulomb friction of mucosa on mucosa: the upper end of 0.007 to 0.054, measured with a sled on the lumen of small
 // bowel (Terry et al. 2013, Tribol Lett 51:377, doi 10.1007/s11249-013-0167-1) [1].
@@ -38,34 +38,12 @@ constexpr int kSearches = 20, kPatience = 4;
 // little more than what is near, large enough that slow nodes need few searches.
 constexpr double kSlack = 0.3;
 constexpr double kFloor = 0.05;  // minimum distance of walls, in thicknesses
-
-struct Squeeze {
-  double value, slope, curvature;  // energy and its derivatives with respect to s [1]
-};
-
-/// Energy per A E' t / 2 of a wall squeezed to s of its thickness.
-Squeeze squeeze(double s) {
-  if (s >= 1 + kOnset) return {0, 0, 0};
-  const double kept = std::max(s, kStraightBelow), strain = 1 - kept;
-  const double ramp = strain + kOnset;
-  const bool full = strain > kOnset;
-  const double h = full ? strain : ramp * ramp / (4 * kOnset);
-  const double h_slope = full ? 1 : ramp / (2 * kOnset), h_curvature = full ? 0 : 1 / (2 * kOnset);
-  const double hencky = std::log1p(-h), stress = hencky / (1 - h);
-  const double slope = stress * h_slope;
-  const double curvature = (1 - hencky) / ((1 - h) * (1 - h)) * h_slope * h_slope - stress * h_curvature;
-  return {0.5 * hencky * hencky + slope * (s - kept), slope, curvature};
-}
-
-/// Smoothed Coulomb friction: potential per friction force and its derivative over the way slid, both as functions of
-/// that way (Li et al. 2020, "Incremental Potential Contact", section 5.2, f_0 and f_1 / |u|).
-struct Sliding {
-  double way, per_way;  // [m], [1/m]
-};
-Sliding sliding(double way, double smooth) {
-  if (way >= smooth) return {way - smooth / 3, 1 / way};
-  return {way * way / smooth * (1 - way / (3 * smooth)), (2 - way / smooth) / smooth};
-}
+// Thickness of two half walls whose mucosa is squeezed flat, over that of the wall. Design choice: far below what
+// usual pressures leave, far above the minimum distance [1].
+constexpr double kCore = 0.3;
+// Distance up to which places are looked for where these meet, in thicknesses. Design choice: above (1 + kContactOnset)
+// kCore, so that walls meet in the solution of a step before they reach the minimum distance [1].
+constexpr double kFound = 0.5;
 
 void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double young_modulus) {
   if (rest.vertices.empty() || thickness.size() != rest.vertices.size())
@@ -85,6 +63,14 @@ void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double
                 " Pa; it must be above 0.");
 }
 
+double longestEdge(const SurfaceMesh& mesh) {
+  double longest2 = 0;
+  for (const auto& n : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      longest2 = std::max(longest2, (mesh.vertices[n[(k + 1) % 3]] - mesh.vertices[n[k]]).squaredNorm());
+  return std::sqrt(longest2);
+}
+
 Eigen::Vector3d at(const double* positions4, int node) {
   const double* p = positions4 + 4 * static_cast<std::size_t>(node);
   return {p[0], p[1], p[2]};
@@ -98,6 +84,7 @@ SelfContact::SelfContact(SurfaceMesh rest, std::vector<double> thickness, double
   area_ = vertexAreas(rest_);
   min_thickness_ = *std::min_element(thickness_.begin(), thickness_.end());
   max_thickness_ = *std::max_element(thickness_.begin(), thickness_.end());
+  close_distance_ = 0.5 * longestEdge(rest_) + kFound * max_thickness_;
   memory_ = std::make_unique<SelfContactMemory>(rest_, kOneWallThicknesses * max_thickness_, kFacingCosine,
                                                 kFloor * min_thickness_, kSlack * max_thickness_);
 }
@@ -116,11 +103,12 @@ void SelfContact::detect(const NodeVectors& x, const NodeVectors& v, double reac
   energy_ = 0;
   for (std::size_t k = 0; k < 3; ++k) std::copy(x[k], x[k] + thickness_.size(), memory_->start[k].begin());
   const SelfContactSearch::NodeVectors at = SelfContactMemory::view(memory_->start);
-  found_ = memory_->search.adapt(at, at, (1 + kOnset) * max_thickness_ + reach);
+  found_ = memory_->search.adapt(at, at, searchDistance());
   speeds_matter_ = found_ && !memory_->search.near().empty();
   if (!speeds_matter_) return;
   for (std::size_t k = 0; k < 3; ++k) std::copy(v[k], v[k] + thickness_.size(), memory_->speed[k].begin());
   addPairs(reach);
+  addClosePairs();
 }
 
 // The end of a step is usually the start of the next.
@@ -132,6 +120,11 @@ bool SelfContact::isStart(const NodeVectors& x, const NodeVectors& v) const {
         (speeds_matter_ && std::memcmp(v[k], memory_->speed[k].data(), n * sizeof(double)) != 0))
       return false;
   return true;
+}
+
+// To which vertices and triangles are listed. Where two edges cross, an end of one is within half its length.
+double SelfContact::searchDistance() const {
+  return std::max((1 + kContactOnset) * max_thickness_ + reach_, close_distance_);
 }
 
 double SelfContact::meanThickness(int vertex, int triangle) const {
@@ -157,21 +150,24 @@ double SelfContact::facing(int vertex, int triangle) const {
 
 void SelfContact::addPairs(double reach) {
   const std::vector<SelfContactSearch::Near>& near = memory_->search.near();
+  memory_->facing.clear();
   memory_->search.measure(SelfContactMemory::view(memory_->start));
   for (std::size_t first = 0, next; first < near.size(); first = next) {
     const int vertex = near[first].vertex;
     for (next = first + 1; next < near.size() && near[next].vertex == vertex;) ++next;
-    collectApproaches(vertex, first, next, reach);
-    if (!memory_->approaches.empty()) addPairsOf(vertex, reach);
+    collectApproaches(vertex, first, next);
+    if (memory_->approaches.empty()) continue;
+    addPairsOf(vertex, reach);
+    collectFacing(vertex);
   }
 }
 
-// The triangles of a part of the list of what is near that are as near as the thickest walls in contact.
-void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t next, double reach) {
+// The triangles of a part of the list of what is near that may be as near as was asked for.
+void SelfContact::collectApproaches(int vertex, std::size_t first, std::size_t next) {
   SelfContactMemory& m = *memory_;
   m.approaches.clear();
   const Eigen::Vector3d p = m.at(vertex);
-  const double farthest = (1 + kOnset) * max_thickness_ + reach;
+  const double farthest = searchDistance();
   for (std::size_t k = first; k < next; ++k) {
     const SelfContactSearch::Near& near = m.search.near()[k];
     if (m.search.leastDistance(near) > farthest) continue;
@@ -189,7 +185,7 @@ void SelfContact::addPairsOf(int vertex, double reach) {
     for (const SelfContactMemory::Approach& one : near) {
       const double distance = one.away.norm();
       if (distance >= min || (side == 1 && one.away.dot(best[0]->away) >= 0)) continue;
-      if (distance >= (1 + kOnset) * meanThickness(vertex, one.triangle) + reach) continue;
+      if (distance >= (1 + kContactOnset) * meanThickness(vertex, one.triangle) + reach) continue;
       const double faces = facing(vertex, one.triangle);
       if (faces == 0) continue;
       min = distance;
@@ -207,16 +203,64 @@ void SelfContact::addPair(int vertex, int triangle, double facing) {
   const double at_rest = triangleFoot(r[vertex], r[n[0]], r[n[1]], r[n[2]]).away.norm();
   Pair pair;
   pair.node = {vertex, n[0], n[1], n[2]};
-  pair.weight = foot.weight;
-  pair.normal = foot.away.normalized();
-  pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kOnset));
-  pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
-  if (!(pair.stiffness > 0)) return;
-  const Squeeze squeezed = squeeze(foot.away.norm() / pair.thickness);
+  pair.weight = {1, -foot.weight[0], -foot.weight[1], -foot.weight[2]};
   pair.away = foot.away;
+  pair.thickness = std::min(meanThickness(vertex, triangle), at_rest / (1 + kContactOnset));
+  pair.straight_below = kStraightBelow;
+  pair.stiffness = 0.5 * facing * area_[vertex] * stiffness_ * pair.thickness;
+  finish(pair);
+}
+
+// Triangles at a vertex and those that it faces: where walls are close, one of the vertices there is not far.
+void SelfContact::collectFacing(int vertex) {
+  SelfContactMemory& m = *memory_;
+  const double farthest2 = close_distance_ * close_distance_;
+  for (const SelfContactMemory::Approach& one : m.approaches) {
+    if (!(one.away.squaredNorm() < farthest2) || facing(vertex, one.triangle) == 0) continue;
+    m.search.rings().visit(vertex, [&](int t) {
+      m.facing.push_back({std::min(t, one.triangle), std::max(t, one.triangle)});
+    });
+  }
+}
+
+void SelfContact::addClosePairs() {
+  SelfContactMemory& m = *memory_;
+  std::sort(m.facing.begin(), m.facing.end());
+  m.facing.erase(std::unique(m.facing.begin(), m.facing.end()), m.facing.end());
+  for (const ClosePoints& close : m.close.find(m.facing, m.start, kFound * max_thickness_)) addClosePair(close);
+}
+
+// What is nearer than a triangle's foot on one side of a vertex may be elsewhere: edges that cross, further triangles.
+void SelfContact::addClosePair(const ClosePoints& close) {
+  Eigen::Vector3d at_rest = Eigen::Vector3d::Zero();
+  double thickness = 0, area = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (close.node[k] < 0) continue;
+    const double part = 0.5 * std::abs(close.weight[k]);
+    at_rest += close.weight[k] * rest_.vertices[close.node[k]];
+    thickness += part * thickness_[close.node[k]];
+    area += part * area_[close.node[k]];
+  }
+  Pair pair;
+  pair.node = close.node;
+  pair.weight = close.weight;
+  pair.away = close.away;
+  pair.thickness = std::min(kCore * thickness, at_rest.norm() / (1 + kContactOnset));
+  pair.straight_below = kFloor / kCore;
+  pair.stiffness = 0.5 * close.share * area / kSoftness * stiffness_ * pair.thickness;
+  finish(pair);
+}
+
+// With what follows from the state: normal, energy and friction.
+void SelfContact::finish(Pair& pair) {
+  const double distance = pair.away.norm();
+  if (!(pair.stiffness > 0 && distance > 0)) return;
+  pair.normal = pair.away / distance;
+  const Squeeze squeezed = squeeze(distance / pair.thickness, pair.straight_below);
   pair.friction = -kFriction * pair.stiffness / pair.thickness * squeezed.slope;
-  Eigen::Vector3d speed = memory_->speedOf(vertex);
-  for (int k = 0; k < 3; ++k) speed -= foot.weight[k] * memory_->speedOf(n[k]);
+  Eigen::Vector3d speed = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < 4; ++k)
+    if (pair.node[k] >= 0) speed += pair.weight[k] * memory_->speedOf(pair.node[k]);
   pair.speed = (speed - pair.normal.dot(speed) * pair.normal).norm();
   energy_ += pair.stiffness * squeezed.value;
   pairs_.push_back(pair);
@@ -227,18 +271,16 @@ double SelfContact::evaluate(const double* positions4, float* gradient4) const {
   const double smooth = kSlidingSpeed * lead_;
   for (const Pair& pair : pairs_) {
     const Eigen::Vector3d away = awayAt(pair, positions4);
-    const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness);
+    const Squeeze squeezed = squeeze(pair.normal.dot(away) / pair.thickness, pair.straight_below);
     if (squeezed.value == 0 && pair.friction == 0) continue;
     const Eigen::Vector3d slid = slidSince(pair, away);
     const Sliding slide = sliding(slid.norm(), smooth);
     energy += pair.stiffness * squeezed.value + pair.friction * slide.way;
     const Eigen::Vector3d force =
         pair.stiffness / pair.thickness * squeezed.slope * pair.normal + pair.friction * slide.per_way * slid;
-    for (int c = 0; c < 3; ++c) {
-      gradient4[4 * static_cast<std::size_t>(pair.node[0]) + c] += static_cast<float>(force[c]);
-      for (int k = 0; k < 3; ++k)
-        gradient4[4 * static_cast<std::size_t>(pair.node[k + 1]) + c] -= static_cast<float>(pair.weight[k] * force[c]);
-    }
+    for (std::size_t k = 0; k < 4; ++k)
+      for (Eigen::Index c = 0; c < 3 && pair.node[k] >= 0; ++c)
+        gradient4[4 * static_cast<std::size_t>(pair.node[k]) + c] += static_cast<float>(pair.weight[k] * force[c]);
   }
   return energy;
 }
@@ -247,23 +289,25 @@ double SelfContact::evaluate(const double* positions4, float* gradient4) const {
 void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCoupling>& couplings) const {
   for (const Pair& pair : pairs_) {
     const double s = pair.normal.dot(awayAt(pair, positions4)) / pair.thickness;
-    const double normal = pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s).curvature;
+    const double normal =
+        pair.stiffness / (pair.thickness * pair.thickness) * squeeze(s, pair.straight_below).curvature;
     if (normal == 0 && pair.friction == 0) continue;
     const double drag = pair.friction * sliding(pair.speed * lead_, kSlidingSpeed * lead_).per_way;
     const Eigen::Vector3d& n = pair.normal;
     const Eigen::Matrix3d k = drag * Eigen::Matrix3d::Identity() + (normal - drag) * n * n.transpose();
     couplings.push_back({{pair.node[0], pair.node[1], pair.node[2], pair.node[3], -1, -1},
-                         {1, -static_cast<float>(pair.weight[0]), -static_cast<float>(pair.weight[1]),
-                          -static_cast<float>(pair.weight[2])},
+                         {static_cast<float>(pair.weight[0]), static_cast<float>(pair.weight[1]),
+                          static_cast<float>(pair.weight[2]), static_cast<float>(pair.weight[3])},
                          {static_cast<float>(k(0, 0)), static_cast<float>(k(0, 1)), static_cast<float>(k(0, 2)),
                           static_cast<float>(k(1, 1)), static_cast<float>(k(1, 2)), static_cast<float>(k(2, 2))}});
   }
 }
 
-// From the foot at detect() to the vertex, where they are now.
+// The difference of its points, where they are now.
 Eigen::Vector3d SelfContact::awayAt(const Pair& pair, const double* positions4) {
-  Eigen::Vector3d away = at(positions4, pair.node[0]);
-  for (int k = 0; k < 3; ++k) away -= pair.weight[k] * at(positions4, pair.node[k + 1]);
+  Eigen::Vector3d away = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < 4; ++k)
+    if (pair.node[k] >= 0) away += pair.weight[k] * at(positions4, pair.node[k]);
   return away;
 }
 
@@ -289,7 +333,7 @@ const std::vector<int>& SelfContact::resolvePenetrations(const MotionView& motio
 bool SelfContact::startPaths(const MotionView& motion) {
   SelfContactMemory& m = *memory_;
   const std::array<const double*, 3> end{motion.x[0], motion.x[1], motion.x[2]};
-  found_ = found_ && m.search.adapt(SelfContactMemory::view(m.start), end, (1 + kOnset) * max_thickness_ + reach_);
+  found_ = found_ && m.search.adapt(SelfContactMemory::view(m.start), end, searchDistance());
   if (!found_ || m.search.meetings().empty()) return false;
   for (std::size_t i = 0; i < m.position.size(); ++i) {
     m.position[i] = m.at(static_cast<int>(i));
@@ -308,8 +352,7 @@ bool SelfContact::shortenPaths() {
     spreadStops();
     for (std::size_t i = 0; i < m.move.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) m.end[k][i] = m.position[i][k] + m.move[i][k];
-    m.search.adapt(SelfContactMemory::view(m.start), SelfContactMemory::view(m.end),
-                   (1 + kOnset) * max_thickness_ + reach_);
+    m.search.adapt(SelfContactMemory::view(m.start), SelfContactMemory::view(m.end), searchDistance());
   }
   std::fill(m.move.begin(), m.move.end(), Eigen::Vector3d::Zero());
   return true;

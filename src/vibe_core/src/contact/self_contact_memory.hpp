@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "contact/self_contact_close.hpp"
 #include "contact/self_contact_paths.hpp"
 #include "contact/self_contact_search.hpp"
 
@@ -14,10 +15,12 @@ class SelfContactMemory {
  public:
   /// Distances [m].
   /// @param one_wall  along edges within which the surface is one wall
+  /// @param floor     minimum distance of paths
   /// @param slack     motion of a vertex for which what was found holds
   SelfContactMemory(const SurfaceMesh& rest, double one_wall, double cosine, double floor, double slack)
       : walls(rest, one_wall),
         search(rest, {walls, cosine, floor, slack}),
+        close(rest.triangles, search.rings(), walls),
         paths(rest.triangles, walls, floor),
         position(rest.vertices),
         move(rest.vertices),
@@ -41,10 +44,12 @@ class SelfContactMemory {
 
   SurfaceWalls walls;
   SelfContactSearch search;
+  SelfContactClose close;
   SelfContactPaths paths;
   std::array<std::vector<double>, 3> start, end;  // positions at detect(), after the step [m]
   std::array<std::vector<double>, 3> speed;       // at detect() [m/s]
   std::vector<Approach> approaches;               // of one vertex
+  std::vector<SelfContactClose::Pair> facing;     // triangles that may be close
   std::vector<Eigen::Vector3d> position, move;    // of a step [m]
   std::vector<Eigen::Vector3d> whole;             // moves before they were shortened [m]
   std::vector<double> part, length;               // of the whole moves [1], [m]

@@ -172,8 +172,8 @@ bool SelfContactPaths::shortenPrimitive(const Primitive& primitive, bool stop) {
 bool SelfContactPaths::isOneWall(const Primitive& primitive) const {
   for (std::size_t i = 0; i < static_cast<std::size_t>(primitive.split); ++i)
     for (std::size_t j = primitive.split; j < 4; ++j)
-      if (!walls_.oneWall(primitive.node[i], primitive.node[j])) return false;
-  return true;
+      if (walls_.oneWall(primitive.node[i], primitive.node[j])) return true;
+  return false;
 }
 
 double SelfContactPaths::freePart(const Primitive& primitive) const {

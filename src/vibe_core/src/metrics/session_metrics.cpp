@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "contact/tool_motion.hpp"
+#include "metrics/rounded.hpp"
 #include "metrics/skill_text.hpp"
 #include "vibe_core/model/accounting.hpp"
 
@@ -82,14 +83,16 @@ namespace {
 
 // What was put in, what was lost, and what is left over.
 std::string summarise(const EnergyAccount& e, double balance) {
+  const auto shown = [](double energy) { return rounded(energy, 4); };
   char text[512];
   std::snprintf(text, sizeof text,
                 "work               tool %.4f J   gas %.4f J   threads %.4f J   pull spring %.4f J\n"
                 "losses             sliding tool %.4f J   mass damping %.4f J   stiffness damping %.4f J\n"
                 "                   walls in contact %.4f J   time scheme %.4f J\n"
                 "solver             corrections %.4f J   residuals %.4f J   energy balance %.4f J\n",
-                e.tool_work, e.gas_work, e.thread_work, e.pull_work, e.friction_loss, e.damping_loss, e.viscous_loss,
-                e.contact_loss, e.numerical_loss, e.correction_work, e.residual_work, balance);
+                shown(e.tool_work), shown(e.gas_work), shown(e.thread_work), shown(e.pull_work), shown(e.friction_loss),
+                shown(e.damping_loss), shown(e.viscous_loss), shown(e.contact_loss), shown(e.numerical_loss),
+                shown(e.correction_work), shown(e.residual_work), shown(balance));
   return text;
 }
 

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "metrics/rounded.hpp"
+
 namespace vibe {
 namespace {
 
@@ -23,7 +25,7 @@ __attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ..
 
 /// In so many places; '-': no value.
 std::string number(std::optional<double> value, double scale, int decimals, int width = 0) {
-  return value ? format("%*.*f", width, decimals, *value * scale) : format("%*s", width, "-");
+  return value ? format("%*.*f", width, decimals, rounded(*value * scale, decimals)) : format("%*s", width, "-");
 }
 
 std::string percent(std::optional<double> value) {

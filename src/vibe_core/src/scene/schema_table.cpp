@@ -124,12 +124,12 @@ std::vector<SchemaRow> tissueRows() {
        "Rayleigh damping proportional to stiffness: it damps short waves and hardly affects long ones", kChoice},
       {"tissue.iterations", [](Scene& s) -> int& { return s.tissue.iterations; }, "1", 1, 100,
        "quasi-Newton iterations per step, of model shell; a step takes fewer once nothing moves and up to 8 more if it "
-       "does not converge; even numbers are more stable, 1 is for steps of a millisecond",
+       "does not converge, up to 16 more in the ten steps after one that did not arrive; even numbers are more stable, "
+       "1 is for steps of a millisecond",
        kChoice},
       {"tissue.spectral_radius", [](Scene& s) -> double& { return s.tissue.spectral_radius; }, "1", 0, 0.5,
        "amplitude that the fastest vibrations keep over a step, of model shell; 0 removes them within a step. With "
-       "more "
-       "than 0.5, large motions that nothing damps could gain energy",
+       "more than 0.5, large motions that nothing damps could gain energy",
        "generalised-alpha: Chung, Hulbert 1993, doi 10.1115/1.2900803"},
       {"tissue.self_contact", [](Scene& s) -> bool& { return s.tissue.self_contact; }, "", 0, 0,
        "contact between walls that are pulled together, of model shell", kChoice},

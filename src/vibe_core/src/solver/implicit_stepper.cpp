@@ -172,18 +172,15 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
   return outcome;
 }
 
-// A step that starts at the present positions learns their energy. Where it differs from what the last step has
-// foreseen, the scheme has lost the difference in the last step.
-void ImplicitStepper::correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome) const {
-  if (extrapolates(outcome.fallback) || (plan_->free && !outcome.fallback)) {
-    memory.elastic_energy = scratch.elastic_value;
-    return;
-  }
-  if (memory.elastic_energy >= 0 && memory.steps > 1)
-    outcome.work.numerical -= scratch.first_elastic_value - memory.elastic_energy;
-  const double foreseen = scratch.first_elastic_value + outcome.work.stored;
+// The first evaluation of a step tells the energy at its start. Where it differs from what the last step has foreseen,
+// the scheme has lost the difference in the last step.
+void ImplicitStepper::correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome) {
+  StepWork& work = outcome.work;
+  const double start = scratch.first_elastic_value - work.to_first;
+  if (memory.elastic_energy >= 0 && memory.steps > 1) work.numerical -= start - memory.elastic_energy;
+  const double foreseen = start + work.stored;
   memory.elastic_energy = std::max(0.0, foreseen);  // far from the forces' linear range it may be negative
-  outcome.work.numerical -= memory.elastic_energy - foreseen;
+  work.numerical -= memory.elastic_energy - foreseen;
 }
 
 // A single iteration does not move far and starts from the inertial prediction. With more iterations a step starts from

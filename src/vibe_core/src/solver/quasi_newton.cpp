@@ -346,6 +346,7 @@ double QuasiNewton::search(double part) {
   const double old_pressure = gas_.pressure;
   const double from = value_ + lagrangian(0), slope = slope_ - lagrangian(0);
   double to = value_;
+  s.exchangeEvaluations();
   for (int trial = 1;; ++trial) {
     setTrial(part);
     if (prescribed != 0) gas_.pressure = old_pressure + part * prescribed;
@@ -356,6 +357,7 @@ double QuasiNewton::search(double part) {
     if (change <= kRoundings * potential_.noise() && slopeAtTrial() <= (2 * kSufficientDecrease - 1) * slope) break;
     if (trial == kMaxTrials || exhausted()) {
       failed_ = true;
+      s.exchangeEvaluations();
       return 0;
     }
     part *= std::isfinite(to) ? shortening(part * slope, change) : kShortest;

@@ -19,6 +19,7 @@ struct StepWork {
   double viscous = 0;       ///< dissipated by stiffness damping [J]
   double numerical = 0;     ///< dissipated by the time scheme [J]
   double stored = 0;        ///< change of the energy of elements and foundation, as foreseen [J]
+  double to_first = 0;      ///< the same from the start of the step to its first point of evaluation [J]
   double residual = 0;      ///< done by what the iterations left unbalanced [J]
 };
 
@@ -28,7 +29,7 @@ struct StepOutcome {
   double last_move = 0;      ///< farthest a node moved in the last iteration [m]
   int refactorisations = 0;  ///< static solves only
   bool converged = false;    ///< last_move is below the tolerance
-  bool fallback = false;     ///< the step was taken with backward Euler because one of the last did not arrive
+  bool fallback = false;     ///< backward Euler, because of the settings or because one of the last did not arrive
   bool arrived = true;       ///< false: the step ended because its work is limited; the next steps go on
   double residual = 0;  ///< how far the next iteration would have moved a node, or a contact or thread is violated [m]
   int evaluations = 0;  ///< of the energy and its gradient

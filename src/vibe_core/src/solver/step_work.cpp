@@ -74,6 +74,8 @@ struct ForceAlong {
   }
   /// From the start of the step to its end.
   double integral() const { return integralTo(1 - from) - integralTo(-from); }
+  /// From the start of the step to the first point of evaluation.
+  double integralToFirst() const { return -integralTo(-from); }
 
  private:
   double integralTo(double u) const { return u * (first + u * (slope / 2 + curvature * (u / 3 - length / 2))); }
@@ -141,6 +143,7 @@ StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const M
   work.mass_damping = scheme.rate * s.damping;
   work.viscous = elastic.at(at) - elastic.at(scheme.part());
   work.stored = elastic.integral();
+  work.to_first = elastic.integralToFirst();
   work.numerical = s.inertia - s.kinetic + elastic.at(scheme.part()) - work.stored;
   work.residual = s.inertia + work.mass_damping + elastic.at(at) - s.weight - work.gas - work.extra - rows;
   return work;

@@ -1,5 +1,7 @@
 #include "solver/stepper_scratch.hpp"
 
+#include <utility>
+
 namespace vibe {
 
 StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_positions,
@@ -12,7 +14,8 @@ StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_position
   const std::size_t size = 4 * rest_positions.size();
   for (auto* v : {&rest, &z, &z_hat, &trial}) v->assign(size, 0);
   for (auto* v : {&displacement, &gradient, &trial_gradient, &volume_gradient, &direction, &work, &elastic_gradient,
-                  &extra_gradient, &first_displacement, &first_elastic_gradient, &first_extra_gradient})
+                  &extra_gradient, &first_displacement, &first_elastic_gradient, &first_extra_gradient,
+                  &kept_displacement_, &kept_elastic_gradient_, &kept_extra_gradient_, &kept_volume_gradient_})
     v->assign(size, 0);
   for (std::size_t i = 0; i < rest_positions.size(); ++i)
     for (int k = 0; k < 3; ++k) rest[4 * i + k] = rest_positions[i][k];
@@ -24,6 +27,17 @@ StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_position
 
 StepperScratch::~StepperScratch() {
   if (making.valid()) making.wait();
+}
+
+void StepperScratch::exchangeEvaluations() {
+  displacement.swap(kept_displacement_);
+  elastic_gradient.swap(kept_elastic_gradient_);
+  extra_gradient.swap(kept_extra_gradient_);
+  volume_gradient.swap(kept_volume_gradient_);
+  std::swap(elastic_value, kept_elastic_value_);
+  std::swap(volume, kept_volume_);
+  std::swap(pressure, kept_pressure_);
+  std::swap(only_first, kept_only_first_);
 }
 
 }  // namespace vibe

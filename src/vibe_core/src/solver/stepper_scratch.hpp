@@ -58,10 +58,17 @@ class StepperScratch {
     elastic_gradient = first_elastic_gradient;
     extra_gradient = first_extra_gradient;
   }
+  /// Exchanges what the last evaluation has found with what is kept: before a trial, and again where it is rejected.
+  void exchangeEvaluations();
   double elastic_value = 0, first_elastic_value = 0;  // energy of elements and foundation [J]
   bool only_first = true;                             // nothing was evaluated since
   double volume = 0, pressure = 0;                    // of the point under evaluation
   double gas_stiffness = 0;                           // there, after a step [Pa/m^3]
+
+ private:
+  std::vector<float> kept_displacement_, kept_elastic_gradient_, kept_extra_gradient_, kept_volume_gradient_;
+  double kept_elastic_value_ = 0, kept_volume_ = 0, kept_pressure_ = 0;
+  bool kept_only_first_ = true;
 };
 
 }  // namespace vibe

@@ -3,7 +3,8 @@
 namespace vibe {
 
 ShellKernel shellKernelAvx2() {
-  return {"avx2", ShellKernelOf<xsimd::fma3<xsimd::avx2>>::sweep, ShellKernelOf<xsimd::fma3<xsimd::avx2>>::sweepFibres};
+  using Kernel = ShellKernelOf<xsimd::fma3<xsimd::avx2>>;
+  return {"avx2", sweepShell<Kernel>, Kernel::sweepFibres};
 }
 
 }  // namespace vibe

@@ -81,20 +81,12 @@ struct ShellKernelOfPairs {
     if constexpr (volume) s.volume += enclosed.total();
     return energy.total();
   }
-
-  static double sweep(ShellSweep& s) {
-    return withLaw(s.law, [&](auto tag) {
-      constexpr Law law = decltype(tag)::value;
-      if (s.ghosts) return s.volume_gradient4 ? sweepAll<law, true, true>(s) : sweepAll<law, true, false>(s);
-      return s.volume_gradient4 ? sweepAll<law, false, true>(s) : sweepAll<law, false, false>(s);
-    });
-  }
 };
 
 }  // namespace
 
 ShellKernel shellKernelAvx512() {
-  return {"avx512", ShellKernelOfPairs::sweep, ShellKernelOfPairs::Single::sweepFibres};
+  return {"avx512", sweepShell<ShellKernelOfPairs>, ShellKernelOfPairs::Single::sweepFibres};
 }
 
 }  // namespace vibe

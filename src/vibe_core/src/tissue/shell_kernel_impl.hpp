@@ -84,15 +84,19 @@ struct ShellKernelOf {
   }
 
   static double sweepFibres(ShellSweep& s) { return s.ghosts ? sweepFibresOf<true>(s) : sweepFibresOf<false>(s); }
-
-  static double sweep(ShellSweep& s) {
-    return withLaw(s.law, [&](auto tag) {
-      constexpr Law law = decltype(tag)::value;
-      if (s.ghosts) return s.volume_gradient4 ? sweepAll<law, true, true>(s) : sweepAll<law, true, false>(s);
-      return s.volume_gradient4 ? sweepAll<law, false, true>(s) : sweepAll<law, false, false>(s);
-    });
-  }
 };
+
+/// Kernel::sweepAll() of the law of a sweep, with ghosts and volume if it has them.
+template <class Kernel>
+double sweepShell(ShellSweep& s) {
+  return withLaw(s.law, [&](auto tag) {
+    constexpr Law law = decltype(tag)::value;
+    const bool volume = s.volume_gradient4 != nullptr;
+    if (s.ghosts)
+      return volume ? Kernel::template sweepAll<law, true, true>(s) : Kernel::template sweepAll<law, true, false>(s);
+    return volume ? Kernel::template sweepAll<law, false, true>(s) : Kernel::template sweepAll<law, false, false>(s);
+  });
+}
 
 }  // namespace
 }  // namespace vibe

@@ -3,7 +3,8 @@
 namespace vibe {
 
 ShellKernel shellKernelSse2() {
-  return {"sse2", ShellKernelOf<xsimd::sse2>::sweep, ShellKernelOf<xsimd::sse2>::sweepFibres};
+  using Kernel = ShellKernelOf<xsimd::sse2>;
+  return {"sse2", sweepShell<Kernel>, Kernel::sweepFibres};
 }
 
 }  // namespace vibe

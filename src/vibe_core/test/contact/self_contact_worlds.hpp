@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <random>
-#include <tuple>
 #include <vector>
 
 #include "contact/self_contact.hpp"
+#include "sparse/closed_mesh.hpp"
 #include "vibe_core/contact/wall_crossings.hpp"
 
 namespace vibe::test {
@@ -46,32 +45,12 @@ inline int plateSize(int cells) {
   return (cells + 1) * (cells + 1);
 }
 
-/// An icosahedron whose faces are cut into parts^2 triangles, on a sphere: 10 parts^2 + 2 vertices.
-inline SurfaceMesh sphere(double radius, int parts) {
-  const double g = (1 + std::sqrt(5.0)) / 2;
-  const std::vector<Eigen::Vector3d> corner = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
-                                               {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
-                                               {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  const int faces[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                            {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                            {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+/// closedMesh() on a sphere of another radius.
+inline SurfaceMesh sphere(double radius, int cuts) {
+  const ClosedMesh unit = closedMesh(cuts);
   SurfaceMesh mesh;
-  std::map<std::tuple<long, long, long>, int> known;
-  for (const auto& face : faces) {
-    auto vertex = [&](int i, int j) {
-      const Eigen::Vector3d p =
-          (corner[face[0]] * (parts - i - j) + corner[face[1]] * i + corner[face[2]] * j).normalized();
-      const auto key = std::make_tuple(std::lround(p.x() * 1e6), std::lround(p.y() * 1e6), std::lround(p.z() * 1e6));
-      const auto [found, fresh] = known.insert({key, static_cast<int>(mesh.vertices.size())});
-      if (fresh) mesh.vertices.push_back(radius * p);
-      return found->second;
-    };
-    for (int i = 0; i < parts; ++i)
-      for (int j = 0; i + j < parts; ++j) {
-        mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j), vertex(i, j + 1)});
-        if (i + j + 1 < parts) mesh.triangles.push_back({vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
-      }
-  }
+  for (const Eigen::Vector3d& node : unit.nodes) mesh.vertices.push_back(radius * node);
+  mesh.triangles = unit.triangles;
   return mesh;
 }
 

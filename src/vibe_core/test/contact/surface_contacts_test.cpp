@@ -233,7 +233,7 @@ TEST(ToolGuard, NothingPassesWhateverMoves) {
   EXPECT_GE(stopped, passing);
 }
 
-/// A tool whose front is before a sheet that stands still, and joints that can be commanded.
+/// A tool whose front is 1 mm before a sheet, and joints that can be commanded.
 class StuckTool : public testing::Test {
  protected:
   StuckTool() : scene_(kRadius, 6), guard_(scene_.tool, scene_.mesh, scene_.thickness, scene_.none), joints_{0.1} {
@@ -244,14 +244,18 @@ class StuckTool : public testing::Test {
     for (std::size_t k = 0; k < 3; ++k)
       for (double& x : wall_[k]) x += front[static_cast<int>(k)] + (k == 0 ? 1e-3 : 0);
   }
+  /// @param push  of the wall towards the tool [m]
   /// @returns the part of its way that the wall can go
-  double moveTo(const std::array<double, kJointCount>& command, const std::vector<int>& held = {}) {
+  double moveTo(const std::array<double, kJointCount>& command, const std::vector<int>& held = {}, double push = 0) {
     ToolMotion motion(scene_.tool, Isometry3d::Identity(), joints_, command);
     ToolPoses poses;
     motion.linkPoses(0, poses.start);
     motion.linkPoses(1, poses.end);
-    const double free = guard_.keepApart(poses, motion, pathOf(wall_, wall_), held);
+    Points pushed = wall_;
+    for (double& x : pushed[0]) x -= push;
+    const double free = guard_.keepApart(poses, motion, pathOf(wall_, pushed), held);
     joints_ = motion.inputs(1);
+    for (double& x : wall_[0]) x -= free * push;
     return free;
   }
   double outside() {
@@ -275,6 +279,28 @@ TEST_F(StuckTool, JointsThatAreFreeGoOn) {
   EXPECT_DOUBLE_EQ(joints_[Rotation], command[Rotation]) << "the tool turns about its own axis";
   EXPECT_LT(joints_[Insertion], 0.1011);
   EXPECT_GT(outside(), 0);
+}
+
+// The wall would run into the tool and stops on its way. The joints are tried against what it goes, not against all of
+// it, which none of them could bear.
+TEST_F(StuckTool, JointsGoOnWhereTheWallIsStopped) {
+  auto command = joints_;
+  command[Insertion] += 5e-3;
+  command[Rotation] += 0.3;
+  const double free = moveTo(command, {}, 20e-3);
+  EXPECT_GT(free, 0.5e-3 / 20e-3) << "it comes to the tool";
+  EXPECT_LT(free, 1e-3 / 20e-3);
+  EXPECT_DOUBLE_EQ(joints_[Rotation], command[Rotation]) << "the tool turns about its own axis";
+  EXPECT_LT(joints_[Insertion], 0.101);
+  EXPECT_GT(outside(), 0);
+}
+
+TEST_F(StuckTool, GivesWayToAWallThatIsFaster) {
+  auto command = joints_;
+  command[Insertion] -= 5e-3;
+  EXPECT_LT(moveTo(command, {}, 20e-3), 1);
+  EXPECT_DOUBLE_EQ(joints_[Insertion], command[Insertion]);
+  EXPECT_GT(outside(), 5e-3);
 }
 
 TEST_F(StuckTool, WhatTheHelixHoldsIsDrawnIntoTheDevice) {

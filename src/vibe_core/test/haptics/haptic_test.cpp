@@ -6,16 +6,15 @@
 #include <cstdio>
 #include <functional>
 
-#include "contact/scope_fixture.hpp"
+#include "scope_worlds.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
-#include "worlds.hpp"
 
 namespace vibe {
 namespace {
 
-using test::icosphere;
-using test::plainOrgan;
+using test::openBall;
+using test::scopeAt;
 using test::World;
 
 constexpr double kRadius = 0.06, kFrame = 1.0 / 60, kMillisecond = 1e-3;
@@ -28,27 +27,10 @@ World ballWorld(double step_period, const std::string& model = "shell", int leve
   scene.foundation = FoundationScene{};
   scene.gas = GasScene{};
   scene.gas->initial_pressure = 800;
-  scene.scope = ScopeScene{};
-  scene.scope->base_from_anatomy = false;
+  scene.scope = test::scopeFromAbove(kRadius);
   scene.scope->friction = friction;
-  scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
-  scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
-  scene.helix = HelixScene{};
-  scene.helix->hold_turns = 0;  // holds with all of its force from the first touch
-  scene.helix->reach = 8e-3;
-  scene.helix->grip_radius = 10e-3;
-  Organ organ = plainOrgan(icosphere(kRadius, level), 2.3e-3);
-  for (std::size_t i = 0; i < organ.end.size(); ++i)  // the scope enters here
-    if (organ.surface.vertices[i].z() > 0.85 * kRadius) organ.end[i] = End::Oesophagus;
-  return World(scene, std::move(organ), scopeText());
-}
-
-StepInput at(double insertion, double helix_advance = 0, bool grab = false) {
-  StepInput input;
-  input.joints[Insertion] = insertion;
-  input.joints[HelixAdvance] = helix_advance;
-  input.buttons[HelixGrab] = grab ? 1 : 0;
-  return input;
+  scene.helix = test::wideHelix();
+  return test::scopeWorld(scene, openBall(kRadius, level, 2.3e-3));
 }
 
 Eigen::Isometry3d tipOf(const World& world) {
@@ -62,18 +44,18 @@ Eigen::Vector3d forceOn(const World& world) {
 }
 
 void takeHold(World& world) {
-  world.run(1.5, at(0.1, 0.028));
-  world.run(0.5, at(0.1, 0.028, true));
+  world.run(1.5, scopeAt(0.1, 0.028));
+  world.run(0.5, scopeAt(0.1, 0.028, true));
   ASSERT_FALSE(world.state.grip.empty());
 }
 
 TEST(Haptic, NothingTouchedIsNothingSaid) {
   World world = ballWorld(kFrame);
-  world.run(1, at(0.04));
+  world.run(1, scopeAt(0.04));
   EXPECT_FALSE(world.workspace->toolImpedance());
-  world.run(2, at(0.13));
+  world.run(2, scopeAt(0.13));
   EXPECT_TRUE(world.workspace->toolImpedance());
-  world.run(2, at(0.04));
+  world.run(2, scopeAt(0.04));
   EXPECT_FALSE(world.workspace->toolImpedance());
 }
 
@@ -81,9 +63,9 @@ TEST(Haptic, NothingTouchedIsNothingSaid) {
 TEST(Haptic, AHandPullsAtTheToolThroughTheTissue) {
   World world = ballWorld(kFrame);
   takeHold(world);
-  world.run(1, at(0.1, 0.028, true));
+  world.run(1, scopeAt(0.1, 0.028, true));
   const Eigen::Vector3d alone = forceOn(world);
-  StepInput input = at(0.1, 0.028, true);
+  StepInput input = scopeAt(0.1, 0.028, true);
   input.pull_particle = world.state.grip.front().particle;
   input.pull_target = world.position(input.pull_particle) + Eigen::Vector3d(5e-3, 0, 0);
   world.run(1, input);
@@ -91,7 +73,7 @@ TEST(Haptic, AHandPullsAtTheToolThroughTheTissue) {
   EXPECT_GT(pull.x(), 0.5);
   EXPECT_LT((forceOn(world) - alone - pull).norm(), 0.1 * pull.norm());
   EXPECT_TRUE(world.workspace->toolImpedance());
-  world.run(1, at(0.1, 0.028, true));
+  world.run(1, scopeAt(0.1, 0.028, true));
   EXPECT_LT((forceOn(world) - alone).norm(), 0.02 * pull.norm());
 }
 
@@ -110,7 +92,7 @@ std::vector<double> numbersOf(const std::optional<ToolImpedance>& impedance) {
 /// The tool slides along the wall and presses on and off; with `grip` it pulls at what the helix holds.
 StepInput slide(int step, bool grip) {
   const double part = 0.5 * (1 - std::cos(2 * M_PI * step / 47.0));
-  StepInput input = grip ? at(0.1 - 0.01 * part, 0.028, true) : at(0.12 + 0.008 * part);
+  StepInput input = grip ? scopeAt(0.1 - 0.01 * part, 0.028, true) : scopeAt(0.12 + 0.008 * part);
   input.joints[Rotation] = 0.3 * part;
   return input;
 }
@@ -123,7 +105,7 @@ int differingSteps(int steps, bool grip, bool forget) {
   if (grip)
     takeHold(world);
   else
-    world.run(1.2, at(0.12));
+    world.run(1.2, scopeAt(0.12));
   for (int i = 0; i < steps; ++i) world.step(slide(i, grip));
   EXPECT_TRUE(world.workspace->toolImpedance());
   const std::string file = ::testing::TempDir() + "vibe_haptic_test.bin";
@@ -158,13 +140,13 @@ TEST(Haptic, ASnapshotContinuesTheImpedanceToTheBit) {
 // What is left of another session in the workspace does not count.
 TEST(Haptic, AUsedWorkspaceGivesTheImpedanceOfANewOne) {
   World used = ballWorld(kFrame), fresh = ballWorld(kFrame);
-  used.run(2, at(0.13));
+  used.run(2, scopeAt(0.13));
   ASSERT_TRUE(used.workspace->toolImpedance());
   used.state = initialState(*used.model, 1);
   fresh.state = initialState(*fresh.model, 1);
   int touched = 0;
   for (int i = 0; i < 150; ++i) {
-    used.step(at(0.13)), fresh.step(at(0.13));
+    used.step(scopeAt(0.13)), fresh.step(scopeAt(0.13));
     touched += fresh.workspace->toolImpedance() ? 1 : 0;
     ASSERT_EQ(numbersOf(used.workspace->toolImpedance()), numbersOf(fresh.workspace->toolImpedance())) << "step " << i;
   }
@@ -173,18 +155,18 @@ TEST(Haptic, AUsedWorkspaceGivesTheImpedanceOfANewOne) {
 
 TEST(Haptic, ShapeMatchingCannotTell) {
   World world = ballWorld(kFrame, "shape_matching");
-  world.run(2, at(0.13));
+  world.run(2, scopeAt(0.13));
   ASSERT_GT(world.state.contact_count, 0);
   EXPECT_FALSE(world.workspace->toolImpedance());
 }
 
 TEST(Haptic, SaysTheForceAndAStiffnessWithoutEnergyOfItsOwn) {
   World world = ballWorld(kFrame);
-  world.run(1.2, at(0.10));
+  world.run(1.2, scopeAt(0.10));
   int touched = 0;
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
   for (double insertion = 0.10; insertion < 0.135; insertion += 1e-3) {
-    StepInput input = at(insertion);
+    StepInput input = scopeAt(insertion);
     input.joints[Rotation] = 20 * (insertion - 0.1);
     world.step(input);
     const double change = (forceOn(world) - before).norm();
@@ -208,7 +190,7 @@ TEST(Haptic, SameBitsOnEveryRun) {
   World a = ballWorld(kFrame), b = ballWorld(kFrame);
   for (World* world : {&a, &b}) {
     takeHold(*world);
-    world->run(0.3, at(0.09, 0.028, true));
+    world->run(0.3, scopeAt(0.09, 0.028, true));
     ASSERT_TRUE(world->workspace->toolImpedance());
     EXPECT_LT((world->workspace->toolImpedance()->force - forceOn(*world)).norm(), 1e-9);
   }
@@ -222,23 +204,23 @@ TEST(Haptic, StiffnessIsTheSlopeOfTheSettledForce) {
   constexpr double kMove = 2e-4;
   World world = ballWorld(kFrame);
   takeHold(world);
-  world.run(3, at(0.098, 0.028, true));
+  world.run(3, scopeAt(0.098, 0.028, true));
   const State held = world.state;
   Eigen::Vector3d force[2];
   for (int side = 0; side < 2; ++side) {
     world.state = held;
-    world.run(2, at(0.098 + (side == 0 ? kMove : -kMove), 0.028, true));
+    world.run(2, scopeAt(0.098 + (side == 0 ? kMove : -kMove), 0.028, true));
     force[side] = forceOn(world);
   }
   const double slope = (force[0] - force[1]).z() / (2 * kMove);  // inserting goes down
   ASSERT_GT(slope, 10);
   world.state = held;
   world.state.impedance = ImpedanceMemory();  // without a slope observed in earlier motion
-  world.run(0.6, at(0.098, 0.028, true));
+  world.run(0.6, scopeAt(0.098, 0.028, true));
   // before the first motion: never too soft, and 21 % too stiff here
   EXPECT_NEAR(world.workspace->toolImpedance()->stiffness(2, 2) / slope, 1.21, 0.02);
-  world.run(0.5, at(0.096, 0.028, true));
-  for (double insertion = 0.096; insertion < 0.098; insertion += 4e-5) world.step(at(insertion, 0.028, true));
+  world.run(0.5, scopeAt(0.096, 0.028, true));
+  for (double insertion = 0.096; insertion < 0.098; insertion += 4e-5) world.step(scopeAt(insertion, 0.028, true));
   EXPECT_NEAR(world.workspace->toolImpedance()->stiffness(2, 2), slope, 0.05 * slope);
   EXPECT_NEAR(world.workspace->toolImpedance()->joints[Insertion].stiffness, slope, 0.05 * slope);
 }
@@ -296,7 +278,8 @@ TEST(Haptic, RendersATractionBetweenFramesBetterThanTheLastForce) {
   World frames = ballWorld(kFrame);
   takeHold(frames);
   const Errors errors = renderBetweenFrames(
-      std::move(frames), 3, [](double t) { return at(0.1 - 4e-3 * (1 - std::cos(2 * M_PI * t)), 0.028, true); }, 1);
+      std::move(frames), 3, [](double t) { return scopeAt(0.1 - 4e-3 * (1 - std::cos(2 * M_PI * t)), 0.028, true); },
+      1);
   EXPECT_GT(errors.change, 0.1);
   EXPECT_LT(errors.rendered, errors.held / 4);  // what is left is the error of the frames' own forces
   EXPECT_LT(errors.axis, errors.held_axis / 4);
@@ -306,7 +289,7 @@ TEST(Haptic, RendersATractionBetweenFramesBetterThanTheLastForce) {
 TEST(Haptic, RendersAContactBetweenFramesBetterThanTheLastForce) {
   World frames = ballWorld(kFrame, "shell", 4);  // 4.6 mm between particles, which pass the tool one by one
   const auto bent = [](double insertion) {       // under a straight tip the wall can slip off to either side
-    StepInput input = at(insertion);
+    StepInput input = scopeAt(insertion);
     input.joints[TipUpDown] = 0.2;
     return input;
   };
@@ -321,7 +304,7 @@ TEST(Haptic, RendersAContactBetweenFramesBetterThanTheLastForce) {
 
 TEST(Kilohertz, SettlesWhereFramesSettle) {
   World fast = ballWorld(kMillisecond), slow = ballWorld(kFrame);
-  for (World* world : {&fast, &slow}) world->run(2.5, at(0.13));
+  for (World* world : {&fast, &slow}) world->run(2.5, scopeAt(0.13));
   EXPECT_EQ(fast.count(Event::Kind::Recovery), 0);
   EXPECT_NEAR(fast.state.time, 2.5, 1e-9);
   // friction lets the wall stick to the side of the tool in more than one way: see the test without
@@ -333,7 +316,7 @@ TEST(Kilohertz, SettlesWhereFramesSettle) {
 // Without friction, and with a tip that is bent a little: under a straight one the wall can slip off to either side.
 TEST(Kilohertz, SettlesWhereFramesSettleInAllDirectionsWithoutFriction) {
   World fast = ballWorld(kMillisecond, "shell", 3, 0), slow = ballWorld(kFrame, "shell", 3, 0);
-  StepInput bent = at(0.13);
+  StepInput bent = scopeAt(0.13);
   bent.joints[TipUpDown] = 0.2;
   for (World* world : {&fast, &slow}) world->run(2.5, bent);
   ASSERT_GT(forceOn(slow).z(), 0.1);
@@ -346,17 +329,17 @@ TEST(Kilohertz, HoldsPullsAndLetsGo) {
   takeHold(world);
   const int target = world.state.grip.front().particle;
   const Eigen::Vector3d before = world.position(target);
-  world.run(0.5, at(0.09, 0.028, true));
+  world.run(0.5, scopeAt(0.09, 0.028, true));
   EXPECT_NEAR((world.position(target) - before).z(), 0.01, 1e-6);
   EXPECT_LT(forceOn(world).z(), -0.1);
-  world.run(1.5, at(0.03, 0.028, false));
+  world.run(1.5, scopeAt(0.03, 0.028, false));
   EXPECT_EQ(world.state.tool_force.norm(), 0);
   EXPECT_EQ(world.count(Event::Kind::Recovery), 0);
 }
 
 TEST(Kilohertz, ASnapshotContinuesToTheBit) {
   World world = ballWorld(kMillisecond);
-  world.run(1.3, at(0.12));
+  world.run(1.3, scopeAt(0.12));
   const std::string file = ::testing::TempDir() + "vibe_kilohertz_test.bin";
   saveSnapshot(*world.model, world.state, file);
   State loaded = loadSnapshot(*world.model, file);
@@ -364,8 +347,8 @@ TEST(Kilohertz, ASnapshotContinuesToTheBit) {
   Workspace other(*world.model);
   std::vector<Event> events;
   for (int i = 0; i < 400; ++i) {  // over several renewals of the factor
-    world.step(at(0.14));
-    step(*world.model, loaded, at(0.14), other, events);
+    world.step(scopeAt(0.14));
+    step(*world.model, loaded, scopeAt(0.14), other, events);
   }
   EXPECT_GT(forceOn(world).norm(), 0.05);
   EXPECT_EQ(hash(loaded), hash(world.state));

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <vector>
 
+#include "vibe_core/metrics/session_metrics.hpp"
+
 namespace vibe {
 namespace {
 
@@ -118,6 +120,15 @@ TEST(SkillText, whatIsNotDefinedIsADash) {
   EXPECT_NE(text.find("of full thickness -"), std::string::npos);
   EXPECT_NE(text.find("reduced by -\n"), std::string::npos);
   EXPECT_NE(text.back(), '\n');
+}
+
+TEST(SkillText, zeroHasNoSign) {
+  SkillMetrics m = session();
+  m.organ.volume_reduction = -1e-5;
+  EXPECT_NE(summarise(m).find("reduced by 0.0 %"), std::string::npos);
+  SessionMetrics energies;
+  energies.energy_balance = energies.energy.residual_work = -1e-9;
+  EXPECT_NE(summarise(energies).find("residuals 0.0000 J   energy balance 0.0000 J"), std::string::npos);
 }
 
 TEST(SkillText, saysWhyAnOrganIsNotMeasured) {

@@ -23,10 +23,7 @@ Scene markingScene() {
   Scene scene;
   scene.tissue.model = "shell";
   scene.foundation = FoundationScene{};
-  scene.scope = ScopeScene{};
-  scene.scope->base_from_anatomy = false;
-  scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
-  scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
+  scene.scope = test::scopeFromAbove(kRadius);
   scene.marking = MarkingScene{};
   return scene;
 }
@@ -42,17 +39,10 @@ struct Stage : World {
 
   /// @param gap  from the probe's end to the mucosa at the bottom [m]
   explicit Stage(const Scene& scene = markingScene(), double gap = kGap, int level = 4)
-      : World(scene, openBall(level), test::scopeText()) {
+      : World(test::scopeWorld(scene, test::openBall(kRadius, level, kWall, 0.8))) {
     placeTip(gap);
     state.joints = input.joints;
     input.buttons[ApcPedal] = 1;
-  }
-
-  static Organ openBall(int level) {
-    Organ organ = test::plainOrgan(test::icosphere(kRadius, level), kWall);
-    for (std::size_t i = 0; i < organ.end.size(); ++i)  // the scope enters here
-      if (organ.surface.vertices[i].z() > 0.8 * kRadius) organ.end[i] = End::Oesophagus;
-    return organ;
   }
 
   void placeTip(double gap) { input.joints[Insertion] = 2 * kRadius - kWall / 2 - gap - ApcParameters{}.probe_length; }

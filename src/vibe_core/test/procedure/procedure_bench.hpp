@@ -6,18 +6,12 @@
 
 #include "procedure/needle.hpp"
 #include "procedure/procedure.hpp"
-#include "vibe_core/common/package_path.hpp"
-#include "worlds.hpp"
+#include "scope_worlds.hpp"
 
 namespace vibe::test {
 
 constexpr double kBenchRadius = 0.03;
 constexpr double kBenchThickness = 2e-3;
-
-inline const std::string& scopeText() {
-  static const std::string text = readTextFile(std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf", "URDF");
-  return text;
-}
 
 /// A ball with everything that a procedure needs and nothing else.
 inline Scene benchScene() {

@@ -172,7 +172,7 @@ TEST(ProcedureTable, ASceneWithoutAPartSaysSoOncePerPress) {
     Scene scene = test::bareScene();
     if (with_scope) scene.scope = ScopeScene{};
     if (with_scope) scene.scope->base_from_anatomy = false;
-    test::World world(scene, test::plainOrgan(test::icosphere(0.03, 1), 2e-3), test::scopeText());
+    test::World world(scene, test::plainOrgan(test::icosphere(0.03, 1), 2e-3), scopeText());
     std::set<std::string> texts;
     for (int button = 0; button < kButtonCount; ++button) {
       StepInput input;
@@ -190,7 +190,7 @@ TEST(ProcedureTable, ASceneWithoutAPartSaysSoOncePerPress) {
 }
 
 TEST(ProcedureTable, TheHelixGrabsOrMissesOncePerPress) {
-  test::World world(benchScene(), test::plainOrgan(test::icosphere(0.03, 2), 2e-3), test::scopeText());
+  test::World world(benchScene(), test::plainOrgan(test::icosphere(0.03, 2), 2e-3), scopeText());
   StepInput press;
   press.buttons[HelixGrab] = 1;
   for (int k = 0; k < 3; ++k) {

@@ -367,7 +367,7 @@ TEST(Procedure, StepsWithoutCommandsAskForNoMemory) {
 TEST(Procedure, TheWholeSimulatorBearsCommandsThatAreNoNumbers) {
   Scene scene = hardScene(4);
   scene.tissue.mass_damping = 30;
-  test::World world(scene, test::plainOrgan(test::icosphere(kBenchRadius, 1), 2e-3), test::scopeText());
+  test::World world(scene, test::plainOrgan(test::icosphere(kBenchRadius, 1), 2e-3), scopeText());
   Dice dice{5};
   for (int k = 0; k < 600; ++k) {
     StepInput input;

@@ -18,23 +18,13 @@ class ProcedureTissue : public ::testing::Test {
     scene.foundation = FoundationScene{};
     scene.gas = GasScene{};
     scene.gas->initial_pressure = 800;
-    scene.scope = ScopeScene{};
-    scene.scope->base_from_anatomy = false;
-    scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
-    scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
+    scene.scope = test::scopeFromAbove(kRadius);
     scene.helix = HelixScene{};
     scene.suture = SutureScene{};
     return scene;
   }
 
-  static Organ ball() {
-    Organ organ = test::plainOrgan(test::icosphere(kRadius, 3), 2.3e-3);
-    for (std::size_t i = 0; i < organ.end.size(); ++i)  // the scope enters here
-      if (organ.surface.vertices[i].z() > 0.85 * kRadius) organ.end[i] = End::Oesophagus;
-    return organ;
-  }
-
-  ProcedureTissue() : world(scene(), ball(), test::scopeText()) {}
+  ProcedureTissue() : world(test::scopeWorld(scene(), test::openBall(kRadius, 3, 2.3e-3))) {}
 
   // Bends the tip, takes hold of the wall before it and screws the helix in.
   void takeHold(double bend) {

@@ -5,11 +5,10 @@
 
 #include <cstdio>
 
-#include "contact/scope_fixture.hpp"
+#include "scope_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 #include "vibe_core/state/state_fields.hpp"
-#include "worlds.hpp"
 
 namespace vibe {
 namespace {
@@ -23,10 +22,7 @@ std::shared_ptr<const Model> ball(double radius = kRadius) {
   scene.tissue.mass_damping = 5;
   scene.foundation = FoundationScene{};
   scene.gas = GasScene{};
-  scene.scope = ScopeScene{};
-  scene.scope->base_from_anatomy = false;
-  scene.scope->base_position = Eigen::Vector3d(0, 0, radius);
-  scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
+  scene.scope = test::scopeFromAbove(radius);
   return test::World(scene, test::plainOrgan(test::icosphere(radius, 2), 2e-3), scopeText()).model;
 }
 

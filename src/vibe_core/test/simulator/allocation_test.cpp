@@ -5,14 +5,11 @@
 
 #include <algorithm>
 
-#include "contact/scope_fixture.hpp"
-#include "worlds.hpp"
+#include "scope_worlds.hpp"
 
 namespace vibe {
 namespace {
 
-using test::icosphere;
-using test::plainOrgan;
 using test::World;
 
 constexpr double kRadius = 0.06;
@@ -25,18 +22,9 @@ World sessionWorld() {
   scene.foundation = FoundationScene{};
   scene.gas = GasScene{};
   scene.gas->initial_pressure = 800;
-  scene.scope = ScopeScene{};
-  scene.scope->base_from_anatomy = false;
-  scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
-  scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
-  scene.helix = HelixScene{};
-  scene.helix->hold_turns = 0;  // holds with all of its force from the first touch
-  scene.helix->reach = 8e-3;
-  scene.helix->grip_radius = 10e-3;
-  Organ organ = plainOrgan(icosphere(kRadius, 4), 2.3e-3);
-  for (std::size_t i = 0; i < organ.end.size(); ++i)  // the scope enters here
-    if (organ.surface.vertices[i].z() > 0.85 * kRadius) organ.end[i] = End::Oesophagus;
-  return World(scene, std::move(organ), scopeText());
+  scene.scope = test::scopeFromAbove(kRadius);
+  scene.helix = test::wideHelix();
+  return test::scopeWorld(scene, test::openBall(kRadius, 4, 2.3e-3));
 }
 
 // The helix draws what it holds to the tip, which comes to touch the wall, and lets it go half of the way again.

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 
-#include "vibe_core/common/package_path.hpp"
+#include "scope_worlds.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
-#include "worlds.hpp"
 
 namespace vibe {
 namespace {
 
-using test::icosphere;
-using test::plainOrgan;
 using test::World;
 
 constexpr double kRadius = 0.06;
@@ -26,26 +23,14 @@ Scene scopeScene(std::optional<ScopeComplianceScene> compliance) {
   scene.gravity.reset();
   scene.foundation = FoundationScene{};
   scene.foundation->stiffness = 2e5;
-  scene.scope = ScopeScene{};
-  scene.scope->base_from_anatomy = false;
-  scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
-  scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
+  scene.scope = test::scopeFromAbove(kRadius);
   scene.scope->compliance = compliance;
-  scene.helix = HelixScene{};
-  scene.helix->hold_turns = 0;
+  scene.helix = test::firmHelix();
   return scene;
 }
 
-Organ openBall() {
-  Organ organ = plainOrgan(icosphere(kRadius, 4), 2e-3);  // 4.6 mm between particles
-  for (std::size_t i = 0; i < organ.end.size(); ++i)      // the scope enters here
-    if (organ.surface.vertices[i].z() > 0.85 * kRadius) organ.end[i] = End::Oesophagus;
-  return organ;
-}
-
 World scopeWorld(const Scene& scene) {
-  static const std::string urdf = readTextFile(std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf", "URDF");
-  return World(scene, openBall(), urdf);
+  return test::scopeWorld(scene, test::openBall(kRadius, 4, 2e-3));  // 4.6 mm between particles
 }
 
 StepInput at(double insertion, double up = 0, double left = 0) {

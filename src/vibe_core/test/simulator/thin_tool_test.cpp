@@ -5,7 +5,7 @@
 #include "contact/thin_tool.hpp"
 #include "contact/tool_collision.hpp"
 #include "contact/triangle_gap.hpp"
-#include "worlds.hpp"
+#include "scope_worlds.hpp"
 
 namespace vibe {
 namespace {
@@ -18,14 +18,9 @@ constexpr double kRadius = 0.05, kNeedle = 0.4e-3, kLength = 0.01;
 World needleWorld(double speed, double tilt) {
   Scene scene;
   scene.foundation = FoundationScene{};
-  scene.scope = ScopeScene{};
-  scene.scope->base_from_anatomy = false;
-  scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
-  scene.scope->base_rpy = {0, M_PI / 2 + tilt, 0};
-  Organ organ = test::plainOrgan(test::icosphere(kRadius, 3), 2e-3);
-  for (std::size_t i = 0; i < organ.end.size(); ++i)
-    if (organ.surface.vertices[i].z() > 0.8 * kRadius) organ.end[i] = End::Oesophagus;
-  return World(scene, std::move(organ), test::thinToolText(kNeedle, kLength, speed));
+  scene.scope = test::scopeFromAbove(kRadius);
+  scene.scope->base_rpy[1] += tilt;
+  return World(scene, test::openBall(kRadius, 3, 2e-3, 0.8), test::thinToolText(kNeedle, kLength, speed));
 }
 
 std::vector<Eigen::Isometry3d> posesOf(const World& world) {

@@ -5,16 +5,14 @@
 
 #include "contact/tool_collision.hpp"
 #include "contact/tool_motion.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "scope_worlds.hpp"
 #include "vibe_core/model/accounting.hpp"
-#include "worlds.hpp"
 
 namespace vibe {
 namespace {
 
 using test::bareScene;
-using test::icosphere;
-using test::plainOrgan;
+using test::scopeAt;
 using test::World;
 
 constexpr double kRadius = 0.06;
@@ -27,33 +25,13 @@ Scene scopeScene() {
   scene.tissue.substeps = 60;
   scene.foundation = FoundationScene{};
   scene.foundation->stiffness = 2e4;
-  scene.scope = ScopeScene{};
-  scene.scope->base_from_anatomy = false;
-  scene.scope->base_position = Eigen::Vector3d(0, 0, kRadius);
-  scene.scope->base_rpy = {0, M_PI / 2, 0};  // x down
-  scene.helix = HelixScene{};
-  scene.helix->hold_turns = 0;  // holds with all of its force from the first touch
+  scene.scope = test::scopeFromAbove(kRadius);
+  scene.helix = test::firmHelix();
   return scene;
 }
 
-Organ openBall() {
-  Organ organ = plainOrgan(icosphere(kRadius, 4), 2e-3);  // 4.6 mm between particles
-  for (std::size_t i = 0; i < organ.end.size(); ++i)      // the scope enters here
-    if (organ.surface.vertices[i].z() > 0.85 * kRadius) organ.end[i] = End::Oesophagus;
-  return organ;
-}
-
 World scopeWorld(const Scene& scene = scopeScene()) {
-  static const std::string urdf = readTextFile(std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf", "URDF");
-  return World(scene, openBall(), urdf);
-}
-
-StepInput at(double insertion, double helix_advance = 0, bool grab = false) {
-  StepInput input;
-  input.joints[Insertion] = insertion;
-  input.joints[HelixAdvance] = helix_advance;
-  input.buttons[HelixGrab] = grab ? 1 : 0;
-  return input;
+  return test::scopeWorld(scene, test::openBall(kRadius, 4, 2e-3));  // 4.6 mm between particles
 }
 
 Eigen::Vector3d forceInWorld(const World& world) {
@@ -78,7 +56,7 @@ double deepest(const World& world) {
 
 TEST(Tool, OutOfReachNothingHappens) {
   World world = scopeWorld();
-  world.run(1.0, at(0.04));
+  world.run(1.0, scopeAt(0.04));
   EXPECT_EQ(world.state.tool_force, Eigen::Vector3d::Zero());
   EXPECT_EQ(world.state.tool_torque, Eigen::Vector3d::Zero());
   EXPECT_LT(world.maxShift(), 1e-9);
@@ -87,7 +65,7 @@ TEST(Tool, OutOfReachNothingHappens) {
 
 TEST(Tool, PushesTissueAsideAndFeelsIt) {
   World world = scopeWorld();
-  world.run(3.0, at(0.14));  // 2 cm beyond the wall opposite
+  world.run(3.0, scopeAt(0.14));  // 2 cm beyond the wall opposite
   EXPECT_EQ(world.count(Event::Kind::ContactBegin), 1);
   EXPECT_EQ(world.count(Event::Kind::Recovery), 0);
   EXPECT_LT(deepest(world), 0.5e-3);
@@ -99,7 +77,7 @@ TEST(Tool, PushesTissueAsideAndFeelsIt) {
 
 TEST(Tool, AtRestTheForceIsWhatBedAndGravityCarry) {
   World world = scopeWorld();
-  world.run(6.0, at(0.13));
+  world.run(6.0, scopeAt(0.13));
   // equilibrium of the whole body: foundation force on the tissue + tool force on the tissue = 0
   Eigen::Vector3d foundation = Eigen::Vector3d::Zero();
   for (int i = 0; i < world.model->particle_count; ++i)
@@ -111,7 +89,7 @@ TEST(Tool, AtRestTheForceIsWhatBedAndGravityCarry) {
 
 TEST(Tool, ThroughTheWallInOneFrameIsStoppedByItsOwnSpeedLimit) {
   World world = scopeWorld();
-  world.step(at(0.30));
+  world.step(scopeAt(0.30));
   EXPECT_NEAR(world.state.joints[Insertion], world.model->tool->limits()[Insertion].velocity / 60, 1e-12);
 }
 
@@ -132,8 +110,8 @@ TEST(Tool, FrictionDragsTissueAlong) {
     Scene scene = scopeScene();
     scene.scope->friction = k == 0 ? 0.0 : 0.6;
     World world = scopeWorld(scene);
-    world.run(2.0, at(0.14));
-    StepInput turned = at(0.14);
+    world.run(2.0, scopeAt(0.14));
+    StepInput turned = scopeAt(0.14);
     turned.joints[Rotation] = 1.0;
     world.run(2.0, turned);
     Eigen::Vector3d torque = world.state.tool_torque;
@@ -146,8 +124,8 @@ class Grip : public ::testing::Test {
  protected:
   World world = scopeWorld();
   void takeHold() {
-    world.run(1.5, at(0.095, 0.028));
-    world.run(0.2, at(0.095, 0.028, true));
+    world.run(1.5, scopeAt(0.095, 0.028));
+    world.run(0.2, scopeAt(0.095, 0.028, true));
     ASSERT_EQ(world.count(Event::Kind::Grab), 1);
   }
 };
@@ -156,11 +134,11 @@ TEST_F(Grip, HoldsPullsAndLetsGo) {
   takeHold();
   const int target = world.state.grip.front().particle;
   const Eigen::Vector3d before = world.position(target);
-  world.run(2.0, at(0.075, 0.028, true));
+  world.run(2.0, scopeAt(0.075, 0.028, true));
   EXPECT_NEAR((world.position(target) - before).z(), 0.02, 1e-6) << "it moves with the helix";
   EXPECT_LT(forceInWorld(world).z(), -0.1) << "the tissue pulls the scope down";
   EXPECT_NEAR(world.state.grip_force, world.state.tool_force.norm(), 1e-9) << "nothing else touches";
-  world.run(3.0, at(0.03, 0.028, false));
+  world.run(3.0, scopeAt(0.03, 0.028, false));
   EXPECT_EQ(world.count(Event::Kind::Release), 1);
   EXPECT_EQ(world.state.tool_force.norm(), 0);
   EXPECT_LT((world.position(target) - world.model->organ.surface.vertices[target]).norm(), 1e-3) << "it springs back";
@@ -170,7 +148,7 @@ TEST_F(Grip, WorkOfTheToolIsWhatTheTissueStores) {
   takeHold();
   const double work = world.state.energy.tool_work;
   const double balance = energyBalance(*world.model, world.state);
-  world.run(6.0, at(0.075, 0.028, true));
+  world.run(6.0, scopeAt(0.075, 0.028, true));
   const double done = world.state.energy.tool_work - work;
   ASSERT_GT(done, 1e-3);
   EXPECT_NEAR(energyBalance(*world.model, world.state), balance, 0.03 * done);
@@ -178,16 +156,16 @@ TEST_F(Grip, WorkOfTheToolIsWhatTheTissueStores) {
 
 TEST_F(Grip, SlipsAboveItsHoldForce) {
   takeHold();
-  world.run(1.0, at(0.0, 0.0, true));
+  world.run(1.0, scopeAt(0.0, 0.0, true));
   EXPECT_EQ(world.count(Event::Kind::Slip), 1);
   EXPECT_TRUE(world.state.grip.empty());
-  world.run(0.5, at(0.0, 0.0, true));
+  world.run(0.5, scopeAt(0.0, 0.0, true));
   EXPECT_EQ(world.count(Event::Kind::Grab), 1) << "a held button does not grab again";
 }
 
 TEST_F(Grip, MissesInTheAir) {
-  world.run(0.5, at(0.02));
-  world.run(0.2, at(0.02, 0, true));
+  world.run(0.5, scopeAt(0.02));
+  world.run(0.2, scopeAt(0.02, 0, true));
   EXPECT_EQ(world.count(Event::Kind::GrabMissed), 1);
   EXPECT_EQ(world.count(Event::Kind::Grab), 0);
   EXPECT_TRUE(world.state.grip.empty());

@@ -123,10 +123,17 @@ TEST(QuasiNewton, ADirectionWithoutLowerEnergyIsReportedAndNotTaken) {
   Potential potential(problem.body, problem.loads, 0, *problem.scratch);
   QuasiNewton newton(problem.body, potential, problem.loads, *problem.scratch);
   newton.start();
-  const std::vector<double> before = problem.scratch->z;
+  const StepperScratch& scratch = *problem.scratch;
+  const std::vector<double> before = scratch.z;
+  const std::vector<float> displacement = scratch.displacement, elastic = scratch.elastic_gradient;
+  const double energy = scratch.elastic_value;
   EXPECT_EQ(newton.iterate(kFar, true), 0);
   EXPECT_TRUE(newton.failed());
-  EXPECT_EQ(problem.scratch->z, before);
+  EXPECT_EQ(scratch.z, before);
+  // forces and works of the step are those at z, not those of the trial that was rejected
+  EXPECT_EQ(scratch.displacement, displacement);
+  EXPECT_EQ(scratch.elastic_gradient, elastic);
+  EXPECT_EQ(scratch.elastic_value, energy);
 }
 
 TEST(QuasiNewton, AConstraintIsMetAtTheMinimum) {

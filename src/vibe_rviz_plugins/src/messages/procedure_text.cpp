@@ -107,8 +107,8 @@ std::vector<NamedText> solverStatisticsRows(const vibe_msgs::SolverStatistics& s
                   statistics.missed_deadlines > 0});
   rows.push_back({"Particles",
                   std::to_string(statistics.active_count) + " of " + std::to_string(statistics.particle_count) +
-                      " awake, " + std::to_string(statistics.contact_count) + " touched",
-                  "Particles that are simulated, and those that the tool touches.", false});
+                      " awake, " + std::to_string(statistics.contact_count) + " points of contact",
+                  "Particles that are simulated, and points where the tool touches the wall.", false});
   rows.push_back({"State hash", statistics.state_hash.empty() ? kNoValue : statistics.state_hash.substr(0, kHashShown),
                   "Equal hashes at equal steps mean equal sessions; whole: " + statistics.state_hash, false});
   return rows;

@@ -60,7 +60,7 @@ struct Event {
     GrabMissed = 1,    ///< no tissue in reach; value: distance to the nearest particle, limit: reach of the helix [m]
     Release = 2,       ///< the helix let go on command; value: force just before [N]
     Slip = 3,          ///< the tissue tore off; value: force, limit: what the helix holds [N]; amount: turns
-    ContactBegin = 4,  ///< the tool touches tissue; value: particles touched
+    ContactBegin = 4,  ///< the tool touches tissue; value: points of contact
     ContactEnd = 5,
     PressureReached = 6,   ///< the insufflator has reached its set point; value: gauge pressure [Pa]
     Warning = 7,           ///< of a program about its inputs, which brings its own sentence; never from a step

@@ -11,9 +11,9 @@
 namespace vibe {
 
 /// One row per step for spreadsheets and scripts. Columns: step, time [s], the seven inputs, tip position in world [m],
-/// force and torque on the tool in scope_tip [N], [N m], grip force [N], particles touched and held, gauge pressure
-/// [Pa], volume [m^3], phase of the procedure, bites in the wall, sutures, max tension of a thread [N], blood lost
-/// [m^3], events (kinds separated by ';').
+/// force and torque on the tool in scope_tip [N], [N m], grip force [N], points of contact, particles held, gauge
+/// pressure [Pa], volume [m^3], phase of the procedure, bites in the wall, sutures, max tension of a thread [N], blood
+/// lost [m^3], events (kinds separated by ';').
 class SessionCsv {
  public:
   /// @param file  "-": standard output

@@ -23,7 +23,7 @@ struct StepReport {
   ToolDisplacement tool_displacement{};                   ///< in: if nothing acts on the tool; out: at the end
   std::array<double, kScopeJointCount> hand_effort{};     ///< of the hand on the joints, mean over the step [N], [N m]
   std::array<int, kJointCount> stopped{};                 ///< joints that tissue has stopped: sign of their motion
-  int contact_count = 0;                                  ///< maximum number of particles touched at once
+  int contact_count = 0;                                  ///< see State
   int iterations = 0;                                     ///< of an implicit solver
   int evaluations = 0;                                    ///< of the elastic energy, by an implicit solver
   double residual = 0;                                    ///< of a further iteration, or of contacts and threads [m]

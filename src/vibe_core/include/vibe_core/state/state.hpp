@@ -21,9 +21,11 @@ struct GripPoint {
 
 /// Sums since the start [J], see energyBalance(). Shape matching knows works and damping_loss only.
 struct EnergyAccount {
-  double tool_work = 0;        ///< done by the tool (contact and grip): its forces times its own motion
-  double hand_work = 0;        ///< done by the hand on the tool: tool_work, scope_loss and the energy of its springs
-  double scope_loss = 0;       ///< dissipated by the dampers of a scope that gives way
+  double tool_work = 0;  ///< done by the tool (contact and grip): its forces times its own motion
+  double hand_work = 0;  ///< done by the hand on the tool: tool_work, scope_loss and the energy of its springs
+  /// Dissipated by the dampers of a scope that gives way. Where the guard stops the tool, or a step does not arrive,
+  /// springs and forces are not in equilibrium: then it is all of hand_work beyond tool_work and the springs' energy.
+  double scope_loss = 0;
   double gas_work = 0;         ///< done by the gas on the wall
   double thread_work = 0;      ///< done by threads on the tissue
   double pull_work = 0;        ///< done by the pull spring on the tissue
@@ -74,7 +76,7 @@ struct State {
   Eigen::Vector3d tool_force = Eigen::Vector3d::Zero();   ///< tissue on tool, mean over the step, in scope_tip [N]
   Eigen::Vector3d tool_torque = Eigen::Vector3d::Zero();  ///< about the origin of scope_tip, in scope_tip [N m]
   double grip_force = 0;                                  ///< magnitude of the force on the grip [N]
-  int contact_count = 0;                                  ///< particles touched in the last sub-step
+  int contact_count = 0;  ///< points where the tool touches the wall; shape matching: particles that it touches
 
   PullSpring pull;  ///< pulls the tissue from outside
 

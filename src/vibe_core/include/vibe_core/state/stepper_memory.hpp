@@ -22,7 +22,7 @@ struct StepperMemory {
   double usual_length = 0;    ///< running mean of the first moves of steps [m]
   int rest_steps = 0;         ///< consecutive steps in which nothing moved
   int recovery_steps = 0;     ///< remaining steps of a recovery, which lead straight to rest
-  int fallback = 0;           ///< remaining steps with backward Euler and many iterations
+  int fallback = 0;           ///< remaining steps with backward Euler, after one that did not arrive
 };
 
 }  // namespace vibe

@@ -1,0 +1,108 @@
+// Places of two walls that a vertex and its nearest triangle do not see: edges that cross.
+#include "contact/self_contact_close.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contact/self_contact_worlds.hpp"
+#include "solver/implicit_stepper.hpp"
+#include "tissue/shell.hpp"
+
+namespace vibe {
+namespace {
+
+using namespace test;
+
+/// Two roofs whose ridges cross in the middle: one with its ridge along y, and one upside down above it, along x.
+SurfaceMesh roofs(double gap) {
+  constexpr double kHalf = 2.5e-3, kDown = 4e-3;
+  SurfaceMesh mesh;
+  mesh.vertices = {{0, -kHalf, 0},   {0, kHalf, 0},   {-kHalf, 0, -kDown},      {kHalf, 0, -kDown},
+                   {-kHalf, 0, gap}, {kHalf, 0, gap}, {0, -kHalf, gap + kDown}, {0, kHalf, gap + kDown}};
+  mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {4, 5, 6}, {5, 4, 7}};
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+TEST(SelfContactClose, EdgesThatCrossPushEachOtherApart) {
+  World world(roofs(20e-3));
+  for (std::size_t i = 4; i < 8; ++i)
+    world.set(i, world.rest.vertices[i] - Eigen::Vector3d(0, 0, 20e-3 - 0.2 * kThickness));
+  world.detect(0.5e-3);
+  ASSERT_GT(world.evaluate(), 0);
+  const Eigen::Vector3d up = world.totalForce(4, 8), down = world.totalForce(0, 4);
+  EXPECT_GT(up.z(), 0.05);
+  EXPECT_NEAR((up + down).norm(), 0, 1e-6 * up.norm());
+  EXPECT_GT(world.force(4).z(), 0.2 * up.z()) << "ends of the edge";
+  EXPECT_GT(world.force(5).z(), 0.2 * up.z());
+}
+
+TEST(SelfContactClose, FindsEachPlaceOnce) {
+  const SurfaceMesh rest = roofs(0.5e-3);
+  const VertexTriangles rings(rest.triangles, rest.vertices.size());
+  const SurfaceWalls walls(rest, 1e-3);
+  std::array<std::vector<double>, 3> at;
+  for (const Eigen::Vector3d& p : rest.vertices)
+    for (std::size_t k = 0; k < 3; ++k) at[k].push_back(p[static_cast<Eigen::Index>(k)]);
+  SelfContactClose close(rest.triangles, rings, walls);
+  const std::vector<SelfContactClose::Pair> all = {{0, 2}, {0, 3}, {1, 2}, {1, 3}};
+  ASSERT_EQ(close.find(all, at, 1e-3).size(), 1U);
+  const ClosePoints place = close.find(all, at, 1e-3)[0];
+  EXPECT_EQ(place.node, (std::array<int, 4>{0, 1, 4, 5}));
+  EXPECT_NEAR(place.away.norm(), 0.5e-3, 1e-12);
+  EXPECT_NEAR(place.share, 1, 1e-12);
+  for (const double weight : place.weight) EXPECT_NEAR(std::abs(weight), 0.5, 1e-12);
+  EXPECT_TRUE(close.find(all, at, 0.4e-3).empty());
+}
+
+// The upper roof is heavy, and only moves up and down.
+TEST(SelfContactClose, EdgesThatCrossComeToRestBeforeTheyAreStopped) {
+  constexpr double kGap = 1.5 * kThickness, kWeight = 0.05;  // [m], [N]
+  const SurfaceMesh rest = roofs(kGap);
+  ShellMesh mesh;
+  mesh.nodes = rest.vertices;
+  mesh.triangles = rest.triangles;
+  mesh.thickness.assign(rest.triangles.size(), kThickness);
+  mesh.materials = {Material{Law::NeoHookean, kModulus, 0.45, 0}};
+  ElasticBody body;
+  body.elements = std::make_shared<const ShellElements>(mesh);
+  body.rest = rest.vertices;
+  body.mass.assign(8, kWeight / 4 / 9.81);
+  body.fixed = {1, 1, 1, 1, 0, 0, 0, 0};
+  body.gravity = {0, 0, -9.81};
+  body.mass_damping = 30;
+  StepSettings settings;
+  settings.step = kStep;
+  settings.iterations = 4;
+  const ImplicitStepper stepper(body, settings);
+  BodyMotion motion(body);
+  const std::shared_ptr<StepperScratch> scratch = stepper.makeScratch();
+  StepperMemory memory;
+  BodyLoads loads;
+  for (int v = 4; v < 8; ++v)
+    for (int k = 0; k < 2; ++k) {
+      LinearConstraint& constraint = loads.constraints.add();
+      constraint.node = {v};
+      constraint.coefficient = {Eigen::Vector3d::Unit(k)};
+      constraint.target = rest.vertices[v][k];
+    }
+  SelfContact contact(rest, std::vector<double>(8, kThickness), kModulus);
+  const MotionView view = motion.view();
+  std::size_t stopped = 0;
+  double before = 0;
+  for (int step = 0; step < 240; ++step) {
+    if (step == 180) stopped = 0, before = view.x[2][4];
+    contact.detect({view.x[0], view.x[1], view.x[2]}, {view.v[0], view.v[1], view.v[2]}, 0.5e-3, kStep);
+    loads.extra = &contact;
+    ASSERT_TRUE(stepper.step(view, loads, memory, *scratch).finite);
+    stopped += contact.resolvePenetrations(view, kStep).size();
+  }
+  EXPECT_EQ(stopped, 0U) << "in the last second";
+  EXPECT_GT(view.x[2][4], 0.05 * kThickness);
+  EXPECT_LT(view.x[2][4], 0.375 * kThickness) << "the edges touch";
+  EXPECT_NEAR(view.x[2][4], before, 1e-6) << "at rest";
+}
+
+}  // namespace
+}  // namespace vibe
