@@ -39,9 +39,11 @@ struct Options {
 void addOptions(CLI::App& app, Options& o) {
   app.add_option("--scene", o.scene, "scene to run (default: package://vibe_core/scenes/stomach.yaml)")
       ->type_name("FILE");
-  app.add_option("--script", o.script, "what the trainee does: a script or a protocol of goals (default: nothing)")->type_name("FILE");
+  app.add_option("--script", o.script, "what the trainee does: a script or a protocol of goals (default: nothing)")
+      ->type_name("FILE");
   app.add_option("--mesh", o.mesh, "surface of the organ instead of the scene's")->type_name("FILE");
-  app.add_option("--duration", o.duration, "simulated seconds (default: length of the script, until the goals of a protocol have ended, else 10)")
+  app.add_option("--duration", o.duration,
+                 "simulated seconds (default: length of the script, until the goals of a protocol have ended, else 10)")
       ->type_name("S")
       ->check(finiteFrom(0));
   app.add_option("--csv", o.csv, "write one row per step there (- for standard output)")->type_name("FILE");

@@ -84,7 +84,8 @@ WallPoint nearestOn(const Eigen::Vector3d& place, const WallPoint& same_side,
   WallPoint best = same_side;
   double min = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const Eigen::Vector3d &a = vertices[triangles[t][0]], &b = vertices[triangles[t][1]], &c = vertices[triangles[t][2]];
+    const Eigen::Vector3d &a = vertices[triangles[t][0]], &b = vertices[triangles[t][1]],
+                          &c = vertices[triangles[t][2]];
     if ((b - a).cross(c - a).dot(outward) <= 0) continue;
     const double distance = (closestPointOnTriangle(place, a, b, c) - place).squaredNorm();
     if (distance < min) min = distance, best = nearestIn(static_cast<int>(t), place, triangles, vertices);

@@ -34,9 +34,11 @@ Event& emitForSet(Event::Kind kind, double value, const State& state, std::vecto
   return event;
 }
 
-void recognise(const SutureScene& scene, Suture& suture, const State& state, std::vector<Event>& events) {
+// On the wall at rest: how the tissue is held now, and where earlier sets have moved it, does not matter.
+void recognise(const Model& model, Suture& suture, const State& state, std::vector<Event>& events) {
+  const SutureScene& scene = *model.scene.suture;
   suture.taken.clear();
-  for (const Bite& bite : suture.bites) suture.taken.push_back(bitePosition(bite, state.x, state.y, state.z));
+  for (const Bite& bite : suture.bites) suture.taken.push_back(restPosition(bite, model.organ.surface.vertices));
   const TechniqueRule rule = scene.classifier == "printed" ? TechniqueRule::Printed : TechniqueRule::Corrected;
   const TechniqueResult found = recogniseTechnique(suture.taken, rule);
   suture.technique = static_cast<std::uint8_t>(found.technique);
@@ -100,7 +102,7 @@ void dropTTag(const Model& model, State& state, std::vector<Event>& events) {
   procedure.needle_loaded = false;
   procedure.needle_on_arm = false;
   emitForSet(Event::Kind::TTagDropped, countBites(*active), state, events);
-  recognise(scene, *active, state, events);
+  recognise(model, *active, state, events);
   enterPhase(Phase::Pull, state, events);
 }
 

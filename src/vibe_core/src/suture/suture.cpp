@@ -18,6 +18,12 @@ const char* toString(Suture::Stage stage) {
   return "unknown";
 }
 
+Eigen::Vector3d restPosition(const Bite& bite, const std::vector<Eigen::Vector3d>& vertices) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < bite.particle.size(); ++k) sum += bite.weight[k] * vertices[bite.particle[k]];
+  return sum;
+}
+
 Eigen::Vector3d bitePosition(const Bite& bite, const std::vector<double>& x, const std::vector<double>& y,
                              const std::vector<double>& z) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

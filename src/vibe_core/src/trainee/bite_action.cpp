@@ -5,10 +5,10 @@ namespace vibe {
 
 GoalResult takeBite(const WallPoint& target, Operator& me) {
   GoalResult result;
-  for (int attempt = 1; attempt <= me.skill().attempts; ++attempt) {
-    result = BiteAttempt(target, attempt == me.skill().attempts, me).make();
+  for (int attempt = 0; attempt < me.skill().attempts; ++attempt) {
+    result = BiteAttempt(target, attempt, me).make();
     if (result.reached) return result;
-    me.say("try " + std::to_string(attempt) + " of " + std::to_string(me.skill().attempts) + ": " + result.reason);
+    me.say("try " + std::to_string(attempt + 1) + " of " + std::to_string(me.skill().attempts) + ": " + result.reason);
   }
   return result;
 }

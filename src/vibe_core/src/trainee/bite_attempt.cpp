@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "trainee/ik_solution.hpp"
@@ -21,8 +20,13 @@ constexpr double kAside = 1.5e-3;       // of the helix from its aim along the w
 constexpr double kArmClosed = 18e-3;    // needle_driver [m]
 constexpr double kDeepEnough = 1.5;     // depth of the needle over the wall's thickness [1]
 constexpr double kBesideTarget = 6e-3;  // of the needle from the target, to be tried again [m]
+constexpr double kMorePerTry = 1e-3;    // with every further try that much more is accepted [m]
+constexpr double kLearning = 0.7;       // weight of the present try in what is learned [1]
 constexpr double kTurn = 6.283185307179586;
 const Eigen::Vector3d kHelixInTip(kHelixOut - 2e-3, 2.8e-3, -2.2e-3);  // tip of the helix in scope_tip [m]
+
+// Before anything has been seen: where the needle passes, from the helix, with the wall drawn in, in scope_tip [m].
+const Eigen::Vector3d kNeedleFromHelix(0, -5.3e-3, 5e-3);
 
 WallPoint withError(const WallPoint& target, Operator& me) {
   const Eigen::Vector2d error = me.nextAimError();
@@ -35,8 +39,13 @@ Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) 
 
 }  // namespace
 
-BiteAttempt::BiteAttempt(const WallPoint& target, bool last, Operator& me)
-    : target_(withError(target, me)), last_(last), me_(me), hand_(me.hand), aim_(target_) {}
+BiteAttempt::BiteAttempt(const WallPoint& target, int number, Operator& me)
+    : target_(withError(target, me)),
+      number_(number),
+      last_(number + 1 >= me.skill().attempts),
+      me_(me),
+      hand_(me.hand),
+      aim_(target_) {}
 
 GoalResult BiteAttempt::make() {
   GoalResult result{false, "the helix got no hold of the wall"};
@@ -60,15 +69,22 @@ double BiteAttempt::gap() const {
   return std::sqrt(min);
 }
 
-// The needle passes beside the helix, so the helix is to take hold beside the target.
-void BiteAttempt::aimBesideTarget() {
-  const Eigen::Vector3d outward = me_.outward(target_), target = me_.position(target_);
-  const Hand::Joints joints = aimAt(me_.model(), target, outward, kHelixInTip, hand_.joints()).joints;
+// From the geometry of the device, before anything has been seen: along the wall, distal and anterior [m].
+Eigen::Vector2d BiteAttempt::expectedNeedle() const {
+  const Eigen::Vector3d outward = me_.outward(target_);
+  const Hand::Joints joints = aimAt(me_.model(), me_.position(target_), outward, kHelixInTip, hand_.joints()).joints;
   std::vector<Eigen::Isometry3d> poses;
   me_.model().tool->forwardKinematics(joints, poses);
   const Eigen::Matrix3d tip = (me_.model().tool_base * poses[me_.model().tip_link]).linear();
-  const Eigen::Vector3d beside = across(tip * me_.needleFromHelix(me_.map().around(target_)), outward);
-  aim_ = nearestOn(target - beside, target_, me_.model().organ.surface.triangles, me_.view().wall);
+  return me_.seen_map->alongWall(target_, tip * kNeedleFromHelix);
+}
+
+// The needle passes beside the helix, so the helix is to take hold beside the target.
+void BiteAttempt::aimBesideTarget() {
+  const AnatomicalMap& map = *me_.seen_map;
+  const std::optional<Eigen::Vector2d> learned = me_.needleFromHelix(map.around(target_));
+  const Eigen::Vector2d beside = learned ? *learned : expectedNeedle();
+  aim_ = map.walk(target_, -beside[0], -beside[1]);
 }
 
 // Moves the helix to its aim at a depth below the mucosa; what the last motion missed is added to the next.
@@ -121,11 +137,13 @@ std::optional<GoalResult> BiteAttempt::judgeView() {
   if (!needle) return GoalResult{false, "no tissue is before the needle"};
   const AnatomicalMap& map = *me_.seen_map;
   const Eigen::Vector3d miss = map.position(needle->where) - map.position(target_);
-  const Eigen::Vector3d seen = me_.view().tip_turn.conjugate() * (me_.position(needle->where) - me_.position(aim_));
-  std::printf("  foreseen miss %.1f mm depth %.1f helix %.1f\n", 1e3 * miss.norm(), 1e3 * needle->depth, 1e3 * me_.view().joints[HelixAdvance]);
-  me_.learnNeedle(map.around(target_), {0, seen.y(), seen.z()});
-  if (last_ || !me_.skill().checks_depth) return {};
-  if (miss.norm() > kBesideTarget) return GoalResult{false, "the needle would pass beside its target"};
+  const Eigen::Vector2d seen = map.alongWall(target_, map.position(needle->where) - map.position(aim_));
+  const double around = map.around(target_);
+  const Eigen::Vector2d before = me_.needleFromHelix(around).value_or(seen);
+  me_.learnNeedle(around, before + kLearning * (seen - before));
+  if (!me_.skill().checks_depth) return {};
+  if (miss.norm() > kBesideTarget + number_ * kMorePerTry)
+    return GoalResult{false, "the needle would pass beside its target"};
   return {};
 }
 

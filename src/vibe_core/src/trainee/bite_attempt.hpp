@@ -10,14 +10,16 @@ namespace vibe {
 /// would pass through the target, the arm closes, the exchange takes the needle, and the arm takes it back.
 class BiteAttempt {
  public:
-  /// @param last  accepts a bite that is not at its target or not through the whole wall
-  BiteAttempt(const WallPoint& target, bool last, Operator& me);
+  /// @param number  of tries before: with each, a place farther from the target is accepted, and in the last one a bite
+  ///                that does not go through the whole wall
+  BiteAttempt(const WallPoint& target, int number, Operator& me);
 
   GoalResult make();
 
  private:
   void settle();
   double gap() const;
+  Eigen::Vector2d expectedNeedle() const;
   void aimBesideTarget();
   bool approach(double into, double min);
   bool grab();
@@ -31,12 +33,13 @@ class BiteAttempt {
   void takeNeedleBack();
 
   const WallPoint target_;  // of the bite, with the error of aim
+  const int number_;
   const bool last_;
   Operator& me_;
   Hand& hand_;
-  WallPoint aim_;                                           // of the helix
+  WallPoint aim_;                                         // of the helix
   Eigen::Vector3d correction_ = Eigen::Vector3d::Zero();  // what the last motions of the helix missed [m]
-  double aside_ = 1;                                        // of the helix from its aim along the wall [m]
+  double aside_ = 1;                                      // of the helix from its aim along the wall [m]
 };
 
 }  // namespace vibe

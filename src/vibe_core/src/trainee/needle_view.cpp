@@ -15,7 +15,9 @@ std::optional<NeedleView> lookAtNeedle(const Model& model, const Observation& se
   model.tool->forwardKinematics(seen.joints, poses);
   const auto [begin, end] = needlePath(model, poses);
   const Eigen::Isometry3d from_tip = poses[model.tip_link].inverse();
-  const auto inWorld = [&](const Eigen::Vector3d& p) { return Eigen::Vector3d(seen.tip + seen.tip_turn * (from_tip * p)); };
+  const auto inWorld = [&](const Eigen::Vector3d& p) {
+    return Eigen::Vector3d(seen.tip + seen.tip_turn * (from_tip * p));
+  };
   const SurfaceView wall{model.organ.surface.triangles, x, y, z};
   const DeepestPoint deepest = deepestPoint(wall, inWorld(begin), inWorld(end));
   if (deepest.triangle < 0) return {};

@@ -9,8 +9,6 @@ namespace vibe {
 
 namespace {
 
-// Before anything is learned: from the geometry of the device, with the wall drawn in [m].
-const Eigen::Vector3d kNeedleFromHelix(0, -5.3e-3, 5e-3);
 constexpr double kSameAngle = 0.25;  // learning replaces what was learned this near [rad]
 
 double between(double a, double b) {
@@ -30,15 +28,16 @@ Eigen::Vector2d Operator::nextAimError() {
   return skill().aim_error * Eigen::Vector2d(a, b);
 }
 
-Eigen::Vector3d Operator::needleFromHelix(double around) const {
+std::optional<Eigen::Vector2d> Operator::needleFromHelix(double around) const {
   const auto nearer = [around](const auto& a, const auto& b) {
     return between(a.first, around) < between(b.first, around);
   };
   const auto nearest = std::min_element(learned.begin(), learned.end(), nearer);
-  return nearest == learned.end() ? kNeedleFromHelix : nearest->second;
+  if (nearest == learned.end()) return {};
+  return nearest->second;
 }
 
-void Operator::learnNeedle(double around, const Eigen::Vector3d& from_helix) {
+void Operator::learnNeedle(double around, const Eigen::Vector2d& from_helix) {
   const auto same = [around](const auto& one) { return between(one.first, around) < kSameAngle; };
   learned.erase(std::remove_if(learned.begin(), learned.end(), same), learned.end());
   learned.emplace_back(around, from_helix);

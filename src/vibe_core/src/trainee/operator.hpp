@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,8 +16,8 @@ namespace vibe {
 /// What the actions of a trainee share: hands, knowledge of the organ, random errors, and how to say what is going on.
 struct Operator {
   Hand& hand;
-  std::uint64_t random;                               ///< state of the generator of errors
-  std::function<void(const std::string&)> say;        ///< what is being done
+  std::uint64_t random;                         ///< state of the generator of errors
+  std::function<void(const std::string&)> say;  ///< what is being done
 
   const Model& model() const { return hand.model(); }
   const Skill& skill() const { return hand.skill(); }
@@ -25,14 +26,14 @@ struct Operator {
   /// The organ as it was when the trainee last looked at it while no thread held it. Places are found in this map;
   /// the points of the wall that are found there move with the tissue.
   const AnatomicalMap& map();
-  std::shared_ptr<const AnatomicalMap> seen_map;  ///< empty: has not looked yet
+  std::shared_ptr<const AnatomicalMap> seen_map;           ///< empty: has not looked yet
   Eigen::Vector3d position(const WallPoint& point) const;  ///< now, in world [m]
   Eigen::Vector3d outward(const WallPoint& point) const;   ///< now
-  /// Where the needle goes through the wall, from the helix, in scope_tip [m]: as seen last at the nearest angle around
-  /// the organ, because it depends on how the device lies to the wall.
-  Eigen::Vector3d needleFromHelix(double around) const;
-  void learnNeedle(double around, const Eigen::Vector3d& from_helix);
-  std::vector<std::pair<double, Eigen::Vector3d>> learned;  ///< angle [rad], needle from helix [m]
+  /// Where the needle goes through the wall, from the helix along the wall: distal, anterior [m]. As seen last at the
+  /// nearest angle around the organ, because it depends on how the device lies to the wall; empty: nothing seen yet.
+  std::optional<Eigen::Vector2d> needleFromHelix(double around) const;
+  void learnNeedle(double around, const Eigen::Vector2d& from_helix);
+  std::vector<std::pair<double, Eigen::Vector2d>> learned;  ///< angle [rad], needle from helix [m]
 
   double nextNormal();
   /// Aim error along the wall [m].

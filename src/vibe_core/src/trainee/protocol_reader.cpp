@@ -113,7 +113,8 @@ void ProtocolReader::readSleeve(const YamlField& field) {
   keys.pattern = &set.pattern;
   keys.counts = {{"bites", 2, kTechniqueMaxBites, &set.bites}};
   keys.flags = {{"mirrored", &set.mirrored}, {"cinched", &set.cinched}};
-  keys.numbers = {{"length", "m", 1e-3, kLongestPattern, &set.length}, {"width", "m", 1e-3, kLongestPattern, &set.width}};
+  keys.numbers = {{"length", "m", 1e-3, kLongestPattern, &set.length},
+                  {"width", "m", 1e-3, kLongestPattern, &set.width}};
   if (field.key == "suture_set") {
     for (const Number& key : placeKeys(set.centre)) keys.numbers.push_back(key);
   } else {

@@ -9,7 +9,7 @@ namespace vibe {
 
 /// A point of the wall that moves with the tissue.
 struct WallPoint {
-  int triangle = -1;                                        ///< of Organ::surface
+  int triangle = -1;                                           ///< of Organ::surface
   Eigen::Vector3d weight = Eigen::Vector3d::Constant(1. / 3);  ///< of its corners, sum 1 [1]
 };
 
@@ -50,8 +50,8 @@ class AnatomicalMap {
   /// proximally and to the back. [m]
   WallPoint walk(const WallPoint& from, double distal, double anterior) const;
 
-  double along(const WallPoint& point) const;   ///< see at() [1]
-  double around(const WallPoint& point) const;  ///< see at(), -pi to pi [rad]
+  double along(const WallPoint& point) const;              ///< see at() [1]
+  double around(const WallPoint& point) const;             ///< see at(), -pi to pi [rad]
   Eigen::Vector3d position(const WallPoint& point) const;  ///< [m]
   Eigen::Vector3d outward(const WallPoint& point) const;   ///< see outwardAt()
   /// Components of a displacement along the wall at a point: distal, anterior [m].
@@ -69,7 +69,7 @@ class AnatomicalMap {
 
   const std::vector<std::array<int, 3>>& triangles_;
   std::vector<Eigen::Vector3d> vertices_;
-  std::vector<std::vector<int>> triangles_at_;  // of each vertex
+  std::vector<std::vector<int>> triangles_at_;     // of each vertex
   std::vector<Eigen::Vector3d> distal_, outward_;  // unit vectors at the vertices
   std::vector<double> along_, around_;             // per vertex [1], [rad]
   std::vector<bool> end_;                          // per vertex: oesophagus or duodenum

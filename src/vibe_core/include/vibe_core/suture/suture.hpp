@@ -34,7 +34,7 @@ struct Suture {
   std::vector<double> length;   ///< thread length between the bites, unstretched [m]
   std::vector<double> tension;  ///< in the last step; 0: slack [N]
 
-  std::vector<Eigen::Vector3d> taken;  ///< positions of the bites when the T-tag was dropped, in world [m]
+  std::vector<Eigen::Vector3d> taken;  ///< the bites of which the technique was recognised, on the wall at rest [m]
   std::uint8_t technique = 0;          ///< Technique, recognised when the T-tag was dropped
   double technique_margin = 0;         ///< see recogniseTechnique()
   std::array<int, 2> transitions{{-1, -1}};
@@ -50,6 +50,10 @@ struct Suture {
 };
 
 const char* toString(Suture::Stage stage);
+
+/// Where a bite is on the wall at rest [m].
+/// @param vertices  of the organ at rest
+Eigen::Vector3d restPosition(const Bite& bite, const std::vector<Eigen::Vector3d>& vertices);
 
 /// Current position of a bite [m]. x, y, z: particle positions.
 Eigen::Vector3d bitePosition(const Bite& bite, const std::vector<double>& x, const std::vector<double>& y,

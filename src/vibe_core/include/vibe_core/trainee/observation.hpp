@@ -17,12 +17,12 @@ struct Observation {
   std::int64_t step = 0;  ///< steps taken so far
   double time = 0;        ///< [s]
 
-  std::vector<Eigen::Vector3d> wall;            ///< particle positions, of single precision, in world [m]
-  std::array<double, kJointCount> joints{};     ///< of the hand, limits applied [m], [rad]
+  std::vector<Eigen::Vector3d> wall;              ///< particle positions, of single precision, in world [m]
+  std::array<double, kJointCount> joints{};       ///< of the hand, limits applied [m], [rad]
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< position of scope_tip, in world [m]
   Eigen::Quaterniond tip_turn = Eigen::Quaterniond::Identity();  ///< its orientation
   Eigen::Vector3d helix = Eigen::Vector3d::Zero();               ///< position of the helix' tip, in world [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();               ///< tissue on tool, mean over the step, in scope_tip [N]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< tissue on tool, mean over the step, in scope_tip [N]
 
   double pressure = 0;            ///< of the gas, gauge [Pa]
   bool pressure_reached = false;  ///< the insufflator is at its set point
