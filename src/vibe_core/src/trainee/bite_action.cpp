@@ -4,6 +4,8 @@
 namespace vibe {
 
 GoalResult takeBite(const WallPoint& target, Operator& me) {
+  if (!me.model().scene.helix || !me.model().scene.suture)
+    return {false, "the scene has no helix or no suture; add 'helix: {}' and 'suture: {}'"};
   GoalResult result;
   for (int attempt = 0; attempt < me.skill().attempts; ++attempt) {
     result = BiteAttempt(target, attempt, me).make();

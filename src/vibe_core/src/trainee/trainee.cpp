@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trainee/operator.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
@@ -14,6 +15,11 @@ namespace {
 // The goals run in a coroutine: code that reads as what a person does, one thing after the other, and that gives way to
 // the simulator between steps.
 using Coroutine = boost::coroutines2::coroutine<void>;
+
+std::shared_ptr<const Model> withScope(std::shared_ptr<const Model> model) {
+  if (!model->tool) throw Error("The scene '" + model->scene.name + "' has no scope for a trainee; add 'scope: {}'.");
+  return model;
+}
 
 }  // namespace
 
@@ -32,6 +38,14 @@ struct Trainee::Impl {
     if (trainee.on_activity) trainee.on_activity(what);
   }
 
+  GoalResult attempt(const Goal& goal) {
+    try {
+      return std::visit([this](const auto& g) { return perform(g, me); }, goal);
+    } catch (const Error& error) {  // an organ without anatomy, a pattern that does not exist
+      return {false, error.what()};
+    }
+  }
+
   void pursue() {
     while (true) {
       if (results.size() == goals.size()) {
@@ -40,7 +54,7 @@ struct Trainee::Impl {
       }
       const Goal goal = goals[results.size()];
       say(describe(goal));
-      results.push_back(std::visit([this](const auto& g) { return perform(g, me); }, goal));
+      results.push_back(attempt(goal));
       if (trainee.on_result) trainee.on_result(static_cast<int>(results.size()) - 1, results.back());
     }
   }
@@ -74,7 +88,7 @@ struct Trainee::Impl {
 };
 
 Trainee::Trainee(std::shared_ptr<const Model> model, const Skill& skill, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(std::move(model), skill, seed, *this)) {}
+    : impl_(std::make_unique<Impl>(withScope(std::move(model)), skill, seed, *this)) {}
 
 Trainee::~Trainee() = default;
 
