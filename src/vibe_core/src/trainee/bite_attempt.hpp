@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "trainee/bite_plan.hpp"
 #include "trainee/needle_view.hpp"
 #include "trainee/operator.hpp"
 
@@ -12,20 +13,23 @@ class BiteAttempt {
  public:
   /// @param number  of tries before: with each, a place farther from the target is accepted, and in the last one a bite
   ///                that does not go through the whole wall
-  BiteAttempt(const WallPoint& target, int number, Operator& me);
+  /// @param learned what the needle missed beyond what was imagined, in earlier tries: distal, anterior [m]; updated
+  BiteAttempt(const WallPoint& target, int number, Eigen::Vector2d& learned, Operator& me);
 
   GoalResult make();
 
  private:
   void settle();
   double gap() const;
-  Eigen::Vector2d expectedNeedle() const;
-  void aimBesideTarget();
   bool approach(double into, double min);
   bool grab();
   GoalResult drawAndClose();
+  std::optional<NeedleView> look() const;
+  double missOf(const NeedleView& needle) const;
+  bool isGood(const NeedleView& needle) const;
   void drawIn();
-  bool isDeepEnough(const NeedleView& needle) const;
+  void pushOn();
+  void learn(const NeedleView& needle);
   std::optional<GoalResult> judgeView();
   GoalResult closeArm();
   GoalResult exchange();
@@ -35,9 +39,11 @@ class BiteAttempt {
   const WallPoint target_;  // of the bite, with the error of aim
   const int number_;
   const bool last_;
+  Eigen::Vector2d& learned_;
   Operator& me_;
   Hand& hand_;
-  WallPoint aim_;                                         // of the helix
+  BitePlan plan_;
+  Observation before_;                                    // of the draw
   Eigen::Vector3d correction_ = Eigen::Vector3d::Zero();  // what the last motions of the helix missed [m]
   double aside_ = 1;                                      // of the helix from its aim along the wall [m]
 };
