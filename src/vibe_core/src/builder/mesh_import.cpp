@@ -94,7 +94,8 @@ ImportedMesh importMesh(const GeometryScene& geometry) {
   checkSurface(result.surface, geometry.file);
   orientOutwards(result.surface);
 
-  const Eigen::Matrix3d map = findScale(geometry, result.surface) * rotationFromRpy(geometry.rotation_rpy);
+  const Eigen::Matrix3d map =
+      geometry.scale * findScale(geometry, result.surface) * rotationFromRpy(geometry.rotation_rpy);
   for (auto& v : result.surface.vertices) v = map * v;
   result.landmarks.oesophagus = map * *geometry.oesophagus;
   result.landmarks.fundus = map * *geometry.fundus;

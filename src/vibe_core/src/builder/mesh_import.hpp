@@ -14,7 +14,7 @@ struct ImportedMesh {
 /// Reads geometry.file and brings it to metres (geometry.unit, or geometry.target_volume) and to our axes
 /// (geometry.rotation_rpy); the landmarks go the same way.
 /// A unit of 0 is accepted for glTF, whose standard prescribes metres, and with a target volume, which alone
-/// determines the size. The largest side of the result must be 5 cm to 1 m.
+/// determines the size. The largest side of the result, before geometry.scale, must be 5 cm to 1 m.
 /// @throws Error if the file cannot be read (see readMeshFile()), the surface cannot be used (see checkSurface()), the
 ///         unit is missing or implausible, or a landmark is missing.
 ImportedMesh importMesh(const GeometryScene& geometry);

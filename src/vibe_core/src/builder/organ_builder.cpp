@@ -70,7 +70,8 @@ void markDome(Organ& organ, const TubeEnd& tube, End end) {
 }
 
 Organ buildStomach(const Scene& scene, const Progress& progress) {
-  const StomachShape shape = makeStomachShape(scene.geometry.volume);
+  const double volume = scene.geometry.volume * std::pow(scene.geometry.scale, 3);
+  const StomachShape shape = makeStomachShape(volume, scene.geometry.shape);
   Organ organ;
   organ.surface = remesh(shape.surface, scene.geometry.particles, shape.project, progress);
   organ.landmarks = shape.landmarks;
@@ -79,7 +80,7 @@ Organ buildStomach(const Scene& scene, const Progress& progress) {
   markDome(organ, shape.duodenum, End::Duodenum);
   organ.entry = shape.oesophagus.centre;
   organ.entry_axis = -shape.oesophagus.outward;
-  transform(organ, std::cbrt(scene.geometry.volume / enclosedVolume(organ.surface)), Eigen::Vector3d::Zero());
+  transform(organ, std::cbrt(volume / enclosedVolume(organ.surface)), Eigen::Vector3d::Zero());
   transform(organ, 1.0, -centroid(organ.surface));
   labelStomach(organ);
   return organ;
@@ -167,9 +168,9 @@ SurfaceMesh icosahedron() {
 }
 
 Organ buildSphere(const Scene& scene, const Progress& progress) {
-  const double radius = scene.geometry.radius;
+  const double radius = scene.geometry.radius * scene.geometry.scale;
   if (!(radius >= 1e-3 && radius <= 1.0)) {
-    throw Error("geometry.radius is " + std::to_string(radius) + " m; choose 0.001 to 1");
+    throw Error("geometry.radius, times geometry.scale, is " + std::to_string(radius) + " m; choose 0.001 to 1");
   }
   Organ organ;
   organ.surface = remesh(

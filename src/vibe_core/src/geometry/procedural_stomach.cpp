@@ -9,33 +9,18 @@
 
 #include "geometry/ball_union.hpp"
 #include "geometry/marching_tetrahedra.hpp"
+#include "geometry/stomach_knots.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr double kNominalVolume = 0.75e-3;  // [m^3] of the shape below, unscaled
-constexpr double kBlend = 4.5e-3;           // [m]
-constexpr double kFlattening = 0.82;        // depth over width of a section
-constexpr double kSpacing = 5e-3;           // [m] between balls; small enough that a row has no ripples
-constexpr double kCell = 4e-3;              // [m] of the grid for surface extraction
-constexpr double kTubeRadius = 11e-3;       // [m] a scope of 6 mm radius passes with clearance for the wall
-
-/// Point of the axis of the organ and the radius of the lumen there.
-struct Knot {
-  double x, y, z, radius;  // [mm], x anterior, y left, z cranial
-};
-
-// design choice: from the fundus down the body, around the bend, up the antrum to the right, through the pylorus
-constexpr Knot kBody[] = {{-17, 43, 60, 39},   {-14, 38, 35, 45},  {-8, 30, 8, 45.5},    {-1, 22, -18, 43},
-                          {5, 11, -42, 39},    {10, -6, -58, 34},  {13, -27, -62, 29.5}, {12, -48, -55, 25.5},
-                          {7, -64, -42, 20.5}, {2, -73, -30, 14.5}};
-constexpr Knot kPylorus{-4, -82, -17, 5};
-constexpr Knot kDuodenum{-10, -91, -2, 12.5};
-constexpr Knot kIncisuraSide{2, -33, -30, 0};  // the incisura is the surface point nearest to this one
-constexpr Knot kJunction{-9, 0, 46, 0};
-constexpr Knot kGullet{-13, -12, 82, 0};
+constexpr double kBlend = 4.5e-3;      // [m]
+constexpr double kFlattening = 0.82;   // depth over width of a section
+constexpr double kSpacing = 5e-3;      // [m] between balls; small enough that a row has no ripples
+constexpr double kCell = 4e-3;         // [m] of the grid for surface extraction
+constexpr double kTubeRadius = 11e-3;  // [m] a scope of 6 mm radius passes with clearance for the wall
 
 using Row = std::vector<Eigen::Vector4d>;  // centre and radius [m]
 
@@ -68,18 +53,18 @@ void addRow(BallUnion& balls, const Row& row) {
 }
 
 /// The axis of the organ; tubes have the given radius.
-Row bodyKnots(double tube_radius) {
+Row bodyKnots(const StomachKnots& shape, double tube_radius) {
   Row knots;
-  for (const auto& k : kBody) knots.push_back(toMetres(k));
-  knots.push_back(toMetres(kPylorus));
-  Eigen::Vector4d duodenum = toMetres(kDuodenum);
+  for (const auto& k : shape.body) knots.push_back(toMetres(k));
+  knots.push_back(toMetres(shape.pylorus));
+  Eigen::Vector4d duodenum = toMetres(shape.duodenum);
   duodenum[3] *= tube_radius / kTubeRadius;
   knots.push_back(duodenum);
   return knots;
 }
 
-Row gulletKnots(double tube_radius) {
-  Row knots{toMetres(kGullet), toMetres(kJunction)};
+Row gulletKnots(const StomachKnots& shape, double tube_radius) {
+  Row knots{toMetres(shape.gullet), toMetres(shape.junction)};
   for (auto& k : knots) k[3] = tube_radius;
   return knots;
 }
@@ -119,14 +104,15 @@ void scale(StomachShape& shape, double factor) {
 
 }  // namespace
 
-StomachShape makeStomachShape(double volume) {
+StomachShape makeStomachShape(double volume, const std::string& kind) {
   if (!(volume >= 0.15e-3 && volume <= 4e-3)) {
-    throw Error("geometry.volume is " + std::to_string(volume * 1e3) +
+    throw Error("geometry.volume, times the cube of geometry.scale, is " + std::to_string(volume * 1e3) +
                 " litres; a stomach can be made with 0.15 to 4 litres (0.15e-3 to 4e-3 m^3)");
   }
-  const double tube_radius = kTubeRadius * std::cbrt(kNominalVolume / volume);
-  const Row knots = bodyKnots(tube_radius);
-  const Row body = sample(knots), gullet = sample(gulletKnots(tube_radius));
+  const StomachKnots& given = stomachKnots(kind);
+  const double tube_radius = kTubeRadius * std::cbrt(given.volume / volume);
+  const Row knots = bodyKnots(given, tube_radius);
+  const Row body = sample(knots), gullet = sample(gulletKnots(given, tube_radius));
   const auto balls = std::make_shared<BallUnion>(kBlend, kFlattening);
   addRow(*balls, body);
   addRow(*balls, gullet);
@@ -136,10 +122,10 @@ StomachShape makeStomachShape(double volume) {
   box.extend(boxAround(gullet, 2.0 * kBlend));
   shape.surface = marchTetrahedra([&](const Eigen::Vector3d& p) { return balls->value(p); }, box, kCell);
   for (auto& v : shape.surface.vertices) v = balls->project(v);
-  shape.landmarks.oesophagus = toMetres(kJunction).head<3>();
+  shape.landmarks.oesophagus = toMetres(given.junction).head<3>();
   shape.landmarks.fundus = highest(shape.surface, body.front().head<3>(), 1.3 * body.front()[3]);
-  shape.landmarks.incisura = balls->project(toMetres(kIncisuraSide).head<3>());
-  shape.landmarks.pylorus = toMetres(kPylorus).head<3>();
+  shape.landmarks.incisura = balls->project(toMetres(given.incisura_side).head<3>());
+  shape.landmarks.pylorus = toMetres(given.pylorus).head<3>();
   // the outermost ball has no outer neighbour and is smaller there: the rim is at the next one
   shape.oesophagus = makeEnd(gullet[1], gullet[2]);
   shape.duodenum = makeEnd(body[body.size() - 2], body[body.size() - 3]);

@@ -7,12 +7,16 @@
 #include "scene/renamed_keys.hpp"
 #include "scene/scene_value.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
 #include "vibe_core/scene/schema.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe {
 namespace {
+
+constexpr const char* kBase = "base";  // the key of the scene file that another one starts from
+constexpr int kMaxBases = 8;           // design choice: a chain of more is a circle
 
 /// Keys and sections directly inside a section.
 std::vector<std::string> keysIn(const std::string& section) {
@@ -25,6 +29,7 @@ std::vector<std::string> keysIn(const std::string& section) {
       keys.push_back(lastPart(inner.name));
     }
   }
+  if (section.empty()) keys.emplace_back(kBase);
   return keys;
 }
 
@@ -32,20 +37,24 @@ bool isPackagePath(const std::string& path) {
   return path.rfind("package://", 0) == 0;
 }
 
+Scene load(const std::string& file, int depth);
+
 /// Reads one file into a Scene.
 class SceneReader {
  public:
-  explicit SceneReader(const YamlSource& source) : source_(source) {}
+  /// @param depth  number of files that start from this one
+  explicit SceneReader(const YamlSource& source, int depth = 0) : source_(source), depth_(depth) {}
 
   Scene read() {
+    readBase();
     readSection(source_.root());
     checkApplies();
     checkRequired();
     checkNeeds();
     checkProcedure();
     scene_.file = source_.place();
-    resolve(scene_.geometry.file);
-    if (scene_.scope && !isPackagePath(scene_.scope->urdf)) resolve(scene_.scope->urdf);
+    if (seen_.count("geometry.file") > 0) resolve(scene_.geometry.file);
+    if (seen_.count("scope.urdf") > 0 && !isPackagePath(scene_.scope->urdf)) resolve(scene_.scope->urdf);
     return scene_;
   }
 
@@ -59,13 +68,34 @@ class SceneReader {
 
  private:
   const YamlSource& source_;
+  int depth_;
   Scene scene_;
+  bool has_base_ = false;
   std::map<std::string, YamlField> seen_;
+
+  /// Starts from the scene that the file names, which is valid on its own.
+  void readBase() {
+    for (const YamlField& field : source_.map(source_.root())) {
+      if (field.key != kBase) continue;
+      std::string file = source_.text(field);
+      if (isPackagePath(file)) {
+        file = resolveAddress(file);
+      } else {
+        resolve(file);
+      }
+      if (depth_ >= kMaxBases) source_.fail(field, "leads back to itself; name a scene that does not start from this");
+      checkFile(field, file);
+      scene_ = load(file, depth_ + 1);
+      has_base_ = true;
+    }
+  }
 
   void readSection(const YamlField& section) {
     seen_.emplace(section.path, section);
-    findSection(section.path)->enter(scene_);
+    const SchemaSection& known = *findSection(section.path);
+    if (!has_base_ || !known.isPresent(scene_)) known.enter(scene_);
     for (const YamlField& field : source_.map(section)) {
+      if (field.path == kBase) continue;
       if (findSection(field.path) != nullptr && !field.path.empty()) {
         readSection(field);
       } else if (const SchemaRow* row = findRow(field.path)) {
@@ -109,6 +139,8 @@ class SceneReader {
       const bool applies = !row.only_for || *row.only_for == scene_.geometry.kind;
       const auto section = seen_.find(sectionOf(row.key));
       if (!row.required || !applies || section == seen_.end() || seen_.count(row.key) > 0) continue;
+      Scene full = completeScene(scene_);
+      if (has_base_ && isGiven(row, full)) continue;
       source_.fail(section->second, "lacks the key '" + lastPart(row.key) + "' (" + row.help + "); add it");
     }
   }
@@ -116,7 +148,7 @@ class SceneReader {
   void checkNeeds() const {
     for (const SchemaSection& section : sceneSections()) {
       const auto field = seen_.find(section.name);
-      if (section.needs == nullptr || field == seen_.end() || seen_.count(section.needs) > 0) continue;
+      if (section.needs == nullptr || field == seen_.end() || findSection(section.needs)->isPresent(scene_)) continue;
       const std::string needed = section.needs;
       source_.fail(field->second,
                    "needs the section '" + needed + "', " + section.needs_why + "; add '" + needed + ": {}'");
@@ -178,12 +210,20 @@ constexpr YamlLimits kSceneLimits{};
 
 }  // namespace
 
-Scene loadScene(const std::string& file) {
+namespace {
+
+Scene load(const std::string& file, int depth) {
   const YamlSource source = YamlSource::load(file, kSceneLimits);
-  SceneReader reader(source);
+  SceneReader reader(source, depth);
   Scene scene = reader.read();
   reader.checkFiles();
   return scene;
+}
+
+}  // namespace
+
+Scene loadScene(const std::string& file) {
+  return load(file, 0);
 }
 
 Scene parseScene(const std::string& yaml, const std::string& place) {

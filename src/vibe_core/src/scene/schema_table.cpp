@@ -33,11 +33,28 @@ std::vector<SchemaRow> topRows() {
 std::vector<SchemaRow> geometryRows() {
   return {
       {"geometry.kind", [](Scene& s) -> GeometryScene::Kind& { return s.geometry.kind; }, "", 0, 0,
-       "`stomach`: procedural J-shaped stomach; `mesh`: any closed surface from a file; `sphere`: for tests", kChoice},
+       "`stomach`: procedural stomach; `mesh`: any closed surface from a file; `sphere`: for tests", kChoice},
       {"geometry.particles", [](Scene& s) -> int& { return s.geometry.particles; }, "1", 100, 200000,
        "number of particles on the mid-surface of the wall; met exactly", "particle count of the ViBE prototype"},
+      {"geometry.scale", [](Scene& s) -> double& { return s.geometry.scale; }, "1", 0.5, 2,
+       "factor on all lengths of the organ; the wall keeps its thickness, and oesophagus and duodenum of a procedural "
+       "stomach their width",
+       kChoice},
+      {"geometry.shape",
+       [](Scene& s) -> std::string& { return s.geometry.shape; },
+       "",
+       0,
+       0,
+       "`j`: long and vertical with a deep bend; `steer_horn`: transverse, tapers without an angle to the pylorus, its "
+       "lowest part; `sthenic`: between them. The types of radiology, which go with the physique: Burdan 2012, Surg "
+       "Radiol Anat 34:171",
+       kChoice,
+       kStomach,
+       nullptr,
+       false,
+       {"sthenic", "j", "steer_horn"}},
       {"geometry.volume", [](Scene& s) -> double& { return s.geometry.volume; }, "m^3", 1e-5, 1e-2,
-       "enclosed volume at rest, without stress",
+       "enclosed volume at rest, without stress and before `scale`",
        "Toro 2015, Surg Laparosc Endosc Percutan Tech 25:324: capacity 0.71 +- 0.32 L, rounded", kStomach},
       {"geometry.radius", [](Scene& s) -> double& { return s.geometry.radius; }, "m", 1e-3, 1.0, "radius of the sphere",
        kChoice, kSphere},

@@ -65,6 +65,34 @@ TEST(ShippedScenes, ImportedMeshSaysThatTheFileIsUpToTheUser) {
   EXPECT_EQ(*scene.geometry.pylorus, Eigen::Vector3d(20, -30, 30));
 }
 
+TEST(SceneBase, OverridesWhatItNamesAndKeepsTheRest) {
+  const Scene base = loadScene(kScenes + "stomach.yaml");
+  const auto with = [](const std::string& yaml) { return parseScene(yaml, kScenes + "s.yaml"); };
+  Scene scene = with("base: stomach.yaml\ngas: {regulated_pressure: 8 mmHg}\nscope: {friction: 0.2}\n");
+  EXPECT_NEAR(scene.gas->regulated_pressure, 1066.579, 1e-3);
+  EXPECT_EQ(scene.gas->flow_limit, base.gas->flow_limit);
+  EXPECT_EQ(scene.scope->friction, 0.2);
+  EXPECT_EQ(scene.file, kScenes + "s.yaml");
+  EXPECT_EQ(scene.scope->urdf, base.scope->urdf);
+  scene.gas = base.gas, scene.scope->friction = base.scope->friction;
+  EXPECT_EQ(toYaml(scene), toYaml(base));
+  // a section of the base satisfies what another one needs, whatever the order
+  EXPECT_TRUE(with("marking: {power: 20}\nbase: sphere.yaml\nscope: {}\n").marking);
+  EXPECT_ERROR(with("marking: {power: 20}\nbase: sphere.yaml\n"), "needs the section 'scope'");
+  EXPECT_ERROR(with("base: stomach.yaml\nsuture: {loose_tension: 4}\n"), "suture.loose_tension: is 4 N");
+  EXPECT_ERROR(with("base: none.yaml\n"), "base: there is no file");
+  EXPECT_ERROR(with("basee: stomach.yaml\n"), "did you mean 'base'");
+  EXPECT_ERROR(with("gas: {base: stomach.yaml}\n"), "gas.base: is not");
+  EXPECT_EQ(toYaml(with("base: package://vibe_core/scenes/stomach.yaml\n")), toYaml(base));
+}
+
+TEST(SceneBase, ACircleIsAnError) {
+  const std::string file = ::testing::TempDir() + "scene_base_test.yaml";
+  std::ofstream(file) << "base: scene_base_test.yaml\n";
+  EXPECT_ERROR(loadScene(file), "leads back to itself");
+  std::filesystem::remove(file);
+}
+
 TEST(SceneParser, SectionsArePresentOnlyIfNamed) {
   for (const std::string& empty : {std::string("gas:\n"), std::string("gas: {}\n"), std::string("gas: ~\n")}) {
     const Scene scene = parsed(empty);

@@ -5,21 +5,17 @@
 
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe {
 namespace {
 
-std::shared_ptr<const Model> smallStomach() {
+std::shared_ptr<const Model> stomach() {
   static const std::shared_ptr<const Model> model = [] {
-    Scene scene;
-    scene.geometry.particles = 800;
-    scene.attach_oesophagus = scene.attach_duodenum = true;
-    scene.gas.emplace().insufflator_on = false;
-    scene.foundation.emplace();
-    scene.scope.emplace();
-    scene.helix.emplace().reach = 8e-3;  // the particles are 9 mm apart
-    scene.suture.emplace();
+    Scene scene = loadScene(std::string(VIBE_CORE_DIR) + "/scenes/stomach.yaml");
+    scene.scope->compliance.emplace();
+    scene.marking.reset();
     return buildModel(scene, readTextFile(std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf", "URDF"));
   }();
   return model;
@@ -27,7 +23,7 @@ std::shared_ptr<const Model> smallStomach() {
 
 struct Session {
   explicit Session(const Skill& skill = Skill::expert(), std::uint64_t seed = 1)
-      : simulation(smallStomach()), trainee(smallStomach(), skill, seed) {}
+      : simulation(stomach()), trainee(stomach(), skill, seed) {}
 
   void perform(double limit = 60) {
     while (!trainee.done() && simulation.time() < limit) simulation.step(trainee.next(observe(simulation)));
@@ -51,13 +47,13 @@ TEST(Trainee, InsufflatesAndBitesWhereItIsTold) {
   const Bite& bite = procedure.sutures[0].bites[0];
   EXPECT_TRUE(bite.fullThickness());
   EXPECT_TRUE(procedure.needle_on_arm) << "ready for the next";
-  // aim error and spacing of the particles (9 mm) together
-  const Organ& organ = smallStomach()->organ;
+  // aim error, and how far beside its target a first try may be
+  const Organ& organ = stomach()->organ;
   const AnatomicalMap map(organ, organ.surface.vertices);
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < bite.particle.size(); ++k)
     place += bite.weight[k] * organ.surface.vertices[bite.particle[k]];
-  EXPECT_LT((place - map.position(map.at(0.5, 0.3))).norm(), 12e-3);
+  EXPECT_LT((place - map.position(map.at(0.5, 0.3))).norm(), 8e-3);
 }
 
 TEST(Trainee, TheSameSeedMovesTheSameWay) {
@@ -65,7 +61,7 @@ TEST(Trainee, TheSameSeedMovesTheSameWay) {
     Session session(Skill::expert(), seed);
     session.trainee.add(InsufflateGoal{2});
     session.trainee.add(BiteGoal{{0.5, 0, 0, 0}});
-    session.perform(6);
+    session.perform(3);
     return session.simulation.hash();
   };
   EXPECT_EQ(hashOf(1), hashOf(1));

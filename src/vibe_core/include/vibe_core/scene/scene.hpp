@@ -16,8 +16,11 @@ struct GeometryScene {
   Kind kind = Kind::Stomach;
   int particles = 3618;  ///< exactly this many vertices of the mid-surface, 100 to 200,000
 
+  double scale = 1;  ///< factor on all lengths of the organ, but not on the thickness of its wall [1]
+
   // kind: stomach (procedural)
-  double volume = 0.9e-3;  ///< enclosed volume without stress [m^3]
+  std::string shape = "sthenic";  ///< sthenic, j, steer_horn; see stomachKnots()
+  double volume = 0.9e-3;         ///< enclosed volume without stress and before `scale` [m^3]
 
   // kind: sphere (tests and benchmarks)
   double radius = 0.05;  ///< [m]

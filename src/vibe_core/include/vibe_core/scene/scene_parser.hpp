@@ -5,8 +5,8 @@
 
 namespace vibe {
 
-/// Reads and validates a scene file (format: docs/scenes.md). Paths in it are relative to the file; in the result
-/// they lead from the working directory.
+/// Reads and validates a scene file (format: docs/scenes.md), on top of the scene that its key `base` names. Paths in
+/// it are relative to the file; in the result they lead from the working directory.
 /// @throws Error "file:line: key: what is wrong; remedy" for anything the schema does not allow, or a missing file
 Scene loadScene(const std::string& file);
 
