@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trainee/operator.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
@@ -14,6 +15,11 @@ namespace {
 // The goals run in a coroutine: code that reads as what a person does, one thing after the other, and that gives way to
 // the simulator between steps.
 using Coroutine = boost::coroutines2::coroutine<void>;
+
+std::shared_ptr<const Model> withScope(std::shared_ptr<const Model> model) {
+  if (model->tool) return model;
+  throw Error("The scene '" + model->scene.name + "' has no scope, which a trainee needs; add a section 'scope'.");
+}
 
 }  // namespace
 
@@ -27,9 +33,24 @@ struct Trainee::Impl {
         trainee(owner),
         delay(std::lround(skill.reaction_time / model->scene.step_period)) {}
 
+  /// Between images the wall is where it was seen last.
+  void perceive(const Observation& now) {
+    std::vector<Eigen::Vector3d> last_wall = std::move(seen.wall);
+    seen = now;
+    if (seen.wall.empty()) seen.wall = std::move(last_wall);
+  }
+
   void say(const std::string& what) {
     activity = what;
     if (trainee.on_activity) trainee.on_activity(what);
+  }
+
+  GoalResult attempt(const Goal& goal) {
+    try {
+      return std::visit([this](const auto& g) { return perform(g, me); }, goal);
+    } catch (const Error& error) {  // of the library, such as an organ without landmarks
+      return {false, error.what()};
+    }
   }
 
   void pursue() {
@@ -40,7 +61,7 @@ struct Trainee::Impl {
       }
       const Goal goal = goals[results.size()];
       say(describe(goal));
-      results.push_back(std::visit([this](const auto& g) { return perform(g, me); }, goal));
+      results.push_back(attempt(goal));
       if (trainee.on_result) trainee.on_result(static_cast<int>(results.size()) - 1, results.back());
     }
   }
@@ -74,7 +95,7 @@ struct Trainee::Impl {
 };
 
 Trainee::Trainee(std::shared_ptr<const Model> model, const Skill& skill, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(std::move(model), skill, seed, *this)) {}
+    : impl_(std::make_unique<Impl>(withScope(std::move(model)), skill, seed, *this)) {}
 
 Trainee::~Trainee() = default;
 
@@ -84,7 +105,12 @@ void Trainee::add(const Goal& goal) {
 
 StepInput Trainee::next(const Observation& seen) {
   Impl& me = *impl_;
-  me.seen = seen;
+  me.perceive(seen);
+  if (me.seen.wall.empty()) {  // it acts from the first image on
+    StepInput still;
+    still.joints = seen.joints;
+    return still;
+  }
   me.hand.perceive(me.seen);
   if (me.decided.empty()) me.decided.assign(static_cast<std::size_t>(me.delay), me.hand.command());
   me.resume();
