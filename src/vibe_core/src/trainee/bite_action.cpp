@@ -3,11 +3,19 @@
 
 namespace vibe {
 
+namespace {
+
+constexpr double kNextTime =
+    0.5;  // part of a surprise that is expected of the next bite, beside the last; measured [1]
+
+}  // namespace
+
 GoalResult takeBite(const WallPoint& target, Operator& me) {
   GoalResult result;
-  Eigen::Vector2d learned = Eigen::Vector2d::Zero();
+  me.surprise *= kNextTime;
+  me.hand.wait(me.skill().look_time);
   for (int attempt = 0; attempt < me.skill().attempts; ++attempt) {
-    result = BiteAttempt(target, attempt, learned, me).make();
+    result = BiteAttempt(target, attempt, me).make();
     if (result.reached) return result;
     me.say("try " + std::to_string(attempt + 1) + " of " + std::to_string(me.skill().attempts) + ": " + result.reason);
   }

@@ -37,11 +37,10 @@ Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) 
 
 }  // namespace
 
-BiteAttempt::BiteAttempt(const WallPoint& target, int number, Eigen::Vector2d& learned, Operator& me)
+BiteAttempt::BiteAttempt(const WallPoint& target, int number, Operator& me)
     : target_(withError(target, me)),
       number_(number),
       last_(number + 1 >= me.skill().attempts),
-      learned_(learned),
       me_(me),
       hand_(me.hand) {}
 
@@ -80,10 +79,10 @@ bool BiteAttempt::approach(double into, double min) {
 }
 
 bool BiteAttempt::grab() {
-  plan_ = planBite(target_, learned_, me_);
+  plan_ = planBite(target_, me_);
   approach(-kStandOff, 0.5);
   // the scope gives way, so the device may lie otherwise than planned
-  const BitePlan seen = planBiteFromHere(target_, learned_, me_);
+  const BitePlan seen = planBiteFromHere(target_, me_);
   if (std::isfinite(seen.cost)) plan_.held = seen.held;
   for (const double more : {1, 1, 2, 2, 3, 4}) {  // the wall yields
     if (!approach(more * kHelixDepth, 0.3)) break;
@@ -142,11 +141,12 @@ void BiteAttempt::pushOn() {
 void BiteAttempt::learn(const NeedleView& needle) {
   const auto& triangles = me_.model().organ.surface.triangles;
   const WallPoint held = nearestOn(before_.helix, plan_.held, triangles, before_.wall);
-  const auto imagined =
-      imagineNeedle(me_.model(), before_, {held, before_.tip_turn, before_.joints[HelixAdvance], me_.view().joints[HelixAdvance]});
+  const auto imagined = imagineNeedle(
+      me_.model(), before_, {held, before_.tip_turn, before_.joints[HelixAdvance], me_.view().joints[HelixAdvance]});
   if (!imagined) return;
   const AnatomicalMap& map = *me_.seen_map;
-  learned_ = map.alongWall(target_, map.position(needle.where) - map.position(imagined->where));
+  me_.surprise =
+      me_.skill().foresight * map.alongWall(target_, map.position(needle.where) - map.position(imagined->where));
 }
 
 // What is seen before the arm closes; empty: all is well.

@@ -13,8 +13,7 @@ class BiteAttempt {
  public:
   /// @param number  of tries before: with each, a place farther from the target is accepted, and in the last one a bite
   ///                that does not go through the whole wall
-  /// @param learned what the needle missed beyond what was imagined, in earlier tries: distal, anterior [m]; updated
-  BiteAttempt(const WallPoint& target, int number, Eigen::Vector2d& learned, Operator& me);
+  BiteAttempt(const WallPoint& target, int number, Operator& me);
 
   GoalResult make();
 
@@ -39,7 +38,6 @@ class BiteAttempt {
   const WallPoint target_;  // of the bite, with the error of aim
   const int number_;
   const bool last_;
-  Eigen::Vector2d& learned_;
   Operator& me_;
   Hand& hand_;
   BitePlan plan_;

@@ -137,8 +137,8 @@ IkSolution reachFor(const Model& model, const Eigen::Vector3d& point, const Eige
     const Eigen::Matrix<double, kReaching, 1> step = slope.transpose() * square.ldlt().solve(point - now);
     for (int j = 0; j < kReaching; ++j) {
       const JointLimits& limit = model.tool->limits()[j];
-      aim.joints[j] = std::clamp(aim.joints[j] + kComparable[j] * std::clamp(step[j], -kMaxStep, kMaxStep),
-                                 limit.lower, limit.upper);
+      aim.joints[j] = std::clamp(aim.joints[j] + kComparable[j] * std::clamp(step[j], -kMaxStep, kMaxStep), limit.lower,
+                                 limit.upper);
     }
   }
   aim.miss = (pointAt(model, aim.joints, offset) - point).norm();

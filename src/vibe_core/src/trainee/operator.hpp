@@ -30,6 +30,9 @@ struct Operator {
   Eigen::Vector3d position(const WallPoint& point) const;  ///< now, in world [m]
   Eigen::Vector3d outward(const WallPoint& point) const;   ///< now
 
+  /// What the needle missed in the last bite beyond what had been imagined: distal, anterior [m].
+  Eigen::Vector2d surprise = Eigen::Vector2d::Zero();
+
   double nextNormal();
   /// Aim error along the wall [m].
   Eigen::Vector2d nextAimError();
