@@ -17,8 +17,8 @@ namespace {
 using Coroutine = boost::coroutines2::coroutine<void>;
 
 std::shared_ptr<const Model> withScope(std::shared_ptr<const Model> model) {
-  if (!model->tool) throw Error("The scene '" + model->scene.name + "' has no scope for a trainee; add 'scope: {}'.");
-  return model;
+  if (model->tool) return model;
+  throw Error("The scene '" + model->scene.name + "' has no scope, which a trainee needs; add a section 'scope'.");
 }
 
 }  // namespace
@@ -29,9 +29,16 @@ struct Trainee::Impl {
         skill(given),
         tremor(skill.tremor, seed),
         hand(*model, skill, [this] { (*pause)(); }),
-        me{hand, seed, [this](const std::string& what) { say(what); }, {}, {}},
+        me{hand, seed, [this](const std::string& what) { say(what); }, {}},
         trainee(owner),
         delay(std::lround(skill.reaction_time / model->scene.step_period)) {}
+
+  /// Between images the wall is where it was seen last.
+  void perceive(const Observation& now) {
+    std::vector<Eigen::Vector3d> last_wall = std::move(seen.wall);
+    seen = now;
+    if (seen.wall.empty()) seen.wall = std::move(last_wall);
+  }
 
   void say(const std::string& what) {
     activity = what;
@@ -41,7 +48,7 @@ struct Trainee::Impl {
   GoalResult attempt(const Goal& goal) {
     try {
       return std::visit([this](const auto& g) { return perform(g, me); }, goal);
-    } catch (const Error& error) {  // an organ without anatomy, a pattern that does not exist
+    } catch (const Error& error) {  // of the library, such as an organ without landmarks
       return {false, error.what()};
     }
   }
@@ -98,7 +105,12 @@ void Trainee::add(const Goal& goal) {
 
 StepInput Trainee::next(const Observation& seen) {
   Impl& me = *impl_;
-  me.seen = seen;
+  me.perceive(seen);
+  if (me.seen.wall.empty()) {  // it acts from the first image on
+    StepInput still;
+    still.joints = seen.joints;
+    return still;
+  }
   me.hand.perceive(me.seen);
   if (me.decided.empty()) me.decided.assign(static_cast<std::size_t>(me.delay), me.hand.command());
   me.resume();
