@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trainee/operator.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
@@ -32,6 +33,15 @@ struct Trainee::Impl {
     if (trainee.on_activity) trainee.on_activity(what);
   }
 
+  // Places that the organ does not have end a goal, not the session.
+  GoalResult tryTo(const Goal& goal) {
+    try {
+      return std::visit([this](const auto& g) { return perform(g, me); }, goal);
+    } catch (const Error& error) {
+      return {false, error.what()};
+    }
+  }
+
   void pursue() {
     while (true) {
       if (results.size() == goals.size()) {
@@ -40,7 +50,7 @@ struct Trainee::Impl {
       }
       const Goal goal = goals[results.size()];
       say(describe(goal));
-      results.push_back(std::visit([this](const auto& g) { return perform(g, me); }, goal));
+      results.push_back(tryTo(goal));
       if (trainee.on_result) trainee.on_result(static_cast<int>(results.size()) - 1, results.back());
     }
   }
