@@ -4,6 +4,7 @@
 #include <std_msgs/String.h>
 #include <vibe_msgs/ProcedureState.h>
 #include <vibe_msgs/SkillMetrics.h>
+#include <vibe_msgs/StepResult.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +13,13 @@
 #include "conversions.hpp"
 #include "procedure_message.hpp"
 #include "pull_message.hpp"
+#include "step_result_message.hpp"
 #include "suture_message.hpp"
 #include "vibe_core/procedure/helix_grip.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kParticleRate = 60;                      // of tissue/particles and sutures in simulated time [Hz]
 constexpr double kHapticRate = 100;                       // of haptic/parameters at most, in simulated time [Hz]
 constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure and sutures when nothing happens [ns]
 
@@ -26,10 +27,6 @@ constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure and su
 // is busy for a moment; of the large clouds as many as fit into some 60 MB.
 constexpr std::uint32_t kSmallQueue = 10000;
 constexpr std::uint32_t kCloudQueue = 600;
-
-int particleInterval(double step_period) {
-  return std::max(1, static_cast<int>(std::lround(1 / (kParticleRate * step_period))));
-}
 
 int hapticInterval(double step_period) {
   return static_cast<int>(std::ceil(1 / (kHapticRate * step_period) - 1e-6));
@@ -44,7 +41,7 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       joint_states_(handle.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
       hand_joints_(handle.advertise<sensor_msgs::JointState>("scope/setpoint_js", kSmallQueue)),
       topology_(handle.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
-      particles_(handle.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue)),
+      particles_(handle.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue, true)),
       procedure_(handle.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
       skill_metrics_(handle.advertise<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kSmallQueue, true)),
       events_(handle.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
@@ -53,7 +50,8 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       solver_statistics_(handle.advertise<vibe_msgs::SolverStatistics>("solver_statistics", kSmallQueue)),
       scene_(handle.advertise<std_msgs::String>("scene", 1, true)),
       haptic_(handle.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
-      pull_(handle.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)) {
+      pull_(handle.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)),
+      step_result_(handle.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, true)) {
   if (with_clock) clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
 }
 
@@ -78,12 +76,13 @@ void Publishers::stepResult(const Session& session, const RunStatus& status) {
   tool(session, stamp);
   haptic(session, stamp);
   pull(session, stamp);
-  if (session.state.step % particleInterval(session.time.period()) == 0) particles(session, stamp);
+  if (session.state.step % imageInterval(session.time.period()) == 0) particles(session, stamp);
   if (suturesAreDue(session)) sutures(session);
   for (const Event& event : session.events) events_.publish(makeEvent(event, stamp));
   if (kindOf(session, status) != last_kind_ || stamp - last_procedure_ >= kProcedurePeriod) {
     procedureState(session, status);
   }
+  step_result_.publish(makeStepResult(session, false));
   clock(stamp);
 }
 
@@ -97,10 +96,12 @@ void Publishers::wholeState(const Session& session, const RunStatus& status) {
   if (haptic_touching_) hapticRelease(stamp);
   pull(session, stamp);
   tool(session, stamp);
+  step_result_.publish(makeStepResult(session, true));
   clock(stamp);
 }
 
-void Publishers::repeatClock(const Session& session) {
+void Publishers::heartbeat(const Session& session) {
+  if (particles_missed_) particles(session, session.now());
   clock(session.now());
 }
 
@@ -115,7 +116,7 @@ bool Publishers::suturesAreDue(const Session& session) const {
   const ProcedureState& procedure = session.state.procedure;
   if (kindOf(procedure) != last_suture_kind_) return true;
   if (procedure.sutures.empty()) return false;
-  const bool in_turn = session.state.step % particleInterval(session.time.period()) == 0;
+  const bool in_turn = session.state.step % imageInterval(session.time.period()) == 0;
   return (in_turn && sutures_.getNumSubscribers() > 0) || session.now() - last_sutures_ >= kProcedurePeriod;
 }
 
@@ -132,7 +133,7 @@ void Publishers::warn(const std::string& text) {
 bool Publishers::hasListener() const {
   const auto all = {&scope_pose_,        &helix_pose_, &wrench_,        &joint_states_, &hand_joints_, &topology_,
                     &particles_,         &procedure_,  &skill_metrics_, &events_,       &sutures_,     &applied_input_,
-                    &solver_statistics_, &scene_,      &haptic_,        &pull_,         &clock_};
+                    &solver_statistics_, &scene_,      &haptic_,        &pull_,         &step_result_, &clock_};
   return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 
@@ -177,7 +178,8 @@ void Publishers::pull(const Session& session, std::int64_t stamp) {
 
 void Publishers::particles(const Session& session, std::int64_t stamp) {
   last_particles_ = stamp;
-  if (particles_.getNumSubscribers() == 0) return;
+  particles_missed_ = particles_.getNumSubscribers() == 0;
+  if (particles_missed_) return;
   particles_.publish(cloud_->update(*session.model, session.state, stamp));
 }
 

@@ -36,8 +36,9 @@ class Publishers {
   void stepResult(const Session& session, const RunStatus& status);
   /// What of the present state has not been sent yet, decimation aside: after a start, reset or load, and at the end.
   void wholeState(const Session& session, const RunStatus& status);
-  /// The time again, although it stands still, for nodes that have just started and wait for time.
-  void repeatClock(const Session& session);
+  /// While time stands still, for nodes that have just started: the time again, and the particles if nobody listened to
+  /// them when they were due.
+  void heartbeat(const Session& session);
   /// procedure/state and procedure/skill_metrics.
   void procedureState(const Session& session, const RunStatus& status);
 
@@ -52,7 +53,8 @@ class Publishers {
 
  private:
   ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
-      skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, clock_;
+      skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, step_result_,
+      clock_;
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;
@@ -62,6 +64,7 @@ class Publishers {
   std::int64_t last_sutures_ = 0;
   std::int64_t last_tool_ = -1;
   std::int64_t last_particles_ = -1;
+  bool particles_missed_ = false;     // due, but not sent, because nobody listened
   bool haptic_touching_ = false;      // as last sent
   bool pull_held_ = false;            // as last sent
   std::atomic<std::int64_t> now_{0};  // of the last state

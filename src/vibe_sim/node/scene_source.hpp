@@ -11,4 +11,9 @@ namespace vibe {
 /// @throws Error
 std::shared_ptr<const Model> loadModel(const std::string& scene_address, const std::string& mesh_address);
 
+/// The model of a scene in the form in which the simulator publishes it.
+/// @param place  where the text is from, for messages
+/// @throws Error
+std::shared_ptr<const Model> modelOfText(const std::string& text, const std::string& place);
+
 }  // namespace vibe

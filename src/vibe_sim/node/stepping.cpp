@@ -143,7 +143,7 @@ void Stepper::wait(Hold hold) {
   hold_ = hold;
   const bool time_stands_still = hold != Hold::Pace;
   if (time_stands_still && now - std::max(last_clock_, hold_begin_) >= kClockHeartbeat) {
-    publishers_.repeatClock(session_);
+    publishers_.heartbeat(session_);
     last_clock_ = now;
   }
   checkPatience(hold);

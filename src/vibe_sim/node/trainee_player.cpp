@@ -15,15 +15,11 @@ constexpr double kResendAfter = 0.5;                // the clock stands still: s
 constexpr std::int64_t kSamplePeriod = 10'000'000;  // 100 Hz [ns]
 constexpr std::int64_t kButtonInterval = 10;        // samples between buttons that do not change
 constexpr std::int64_t kMaxBacklog = 100;           // samples; more are skipped
-constexpr std::uint32_t kQueue = 1000;
 
 }  // namespace
 
 TraineePlayer::TraineePlayer(ros::NodeHandle handle, TraineeScript script, bool lockstep)
-    : script_(std::move(script)),
-      scope_(handle.advertise<sensor_msgs::JointState>("scope/measured_js", kQueue)),
-      overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue)),
-      buttons_(handle.advertise<sensor_msgs::Joy>("scope/buttons", kQueue)) {
+    : script_(std::move(script)), sender_(handle) {
   if (!lockstep) {
     timer_ = handle.createWallTimer(ros::WallDuration(0.002), &TraineePlayer::sample, this);
     return;
@@ -51,7 +47,7 @@ void TraineePlayer::onClock(const rosgraph_msgs::Clock& message) {
 }
 
 void TraineePlayer::sendAhead() {
-  if (clock_now_ < 0 || step_period_ <= 0 || !hasListeners()) return;
+  if (clock_now_ < 0 || step_period_ <= 0 || !sender_.hasListeners()) return;
   const std::int64_t now = stepAt(origin_, clock_now_, step_period_);
   next_step_ = std::max(next_step_, now);
   for (; next_step_ <= now + kStepsAhead; ++next_step_) {
@@ -69,7 +65,7 @@ void TraineePlayer::resend(const ros::WallTimerEvent&) {
 
 void TraineePlayer::sample(const ros::WallTimerEvent&) {
   const ros::Time ros_now = ros::Time::now();
-  if (ros_now.isZero() || !hasListeners()) return;
+  if (ros_now.isZero() || !sender_.hasListeners()) return;
   const std::int64_t now = fromRosTime(ros_now);
   if (begin_ < 0 || now < begin_) {
     begin_ = now;
@@ -82,18 +78,11 @@ void TraineePlayer::sample(const ros::WallTimerEvent&) {
   }
 }
 
-bool TraineePlayer::hasListeners() const {
-  return scope_.getNumSubscribers() > 0 && overstitch_.getNumSubscribers() > 0 && buttons_.getNumSubscribers() > 0;
-}
-
 void TraineePlayer::send(double script_time, std::int64_t stamp) {
   const StepInput input = script_.at(script_time);
-  scope_.publish(makeScopeJoints(input, stamp));
-  overstitch_.publish(makeOverstitchJoints(input, stamp));
   const bool lockstep = step_period_ > 0;
-  if (lockstep || input.buttons != last_sent_.buttons || next_sample_ % kButtonInterval == 0) {
-    buttons_.publish(makeButtons(input, stamp));
-  }
+  const bool with_buttons = lockstep || input.buttons != last_sent_.buttons || next_sample_ % kButtonInterval == 0;
+  sender_.send(input, stamp, with_buttons);
   last_sent_ = input;
   sayPhase(script_time);
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "input_sender.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
 namespace vibe {
@@ -27,12 +28,11 @@ class TraineePlayer {
   // free running
   void sample(const ros::WallTimerEvent& event);
 
-  bool hasListeners() const;
   void send(double script_time, std::int64_t stamp);
   void sayPhase(double script_time);
 
   TraineeScript script_;
-  ros::Publisher scope_, overstitch_, buttons_;
+  InputSender sender_;
   ros::Subscriber procedure_, clock_;
   ros::WallTimer timer_;
   std::string phase_;

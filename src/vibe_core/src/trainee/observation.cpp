@@ -1,10 +1,22 @@
 #include "vibe_core/trainee/observation.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "procedure/thread_events.hpp"
 
 namespace vibe {
 
 namespace {
+
+constexpr double kImageRate = 60;  // of the wall, in simulated time: a video screen [Hz]
+
+void observeWall(const State& state, Observation& seen) {
+  seen.wall.reserve(state.x.size());
+  for (std::size_t i = 0; i < state.x.size(); ++i)
+    seen.wall.emplace_back(static_cast<float>(state.x[i]), static_cast<float>(state.y[i]),
+                           static_cast<float>(state.z[i]));
+}
 
 void observeTool(const Model& model, const State& state, Observation& seen) {
   seen.joints = state.joints;
@@ -29,23 +41,35 @@ void observeProcedure(const ProcedureState& procedure, Observation& seen) {
   seen.tension = last.tension.empty() ? 0 : cinchTension(last);
 }
 
+void observeEvents(const std::vector<Event>& events, Observation& seen) {
+  for (const Event& event : events) {
+    if (event.kind == Event::Kind::Warning) continue;
+    Event& perceived = seen.events.emplace_back();
+    perceived.kind = event.kind;
+    perceived.time = seen.time;
+    perceived.particle = event.particle;
+    perceived.value = event.value;
+  }
+}
+
 }  // namespace
+
+int imageInterval(double step_period) {
+  return std::max(1, static_cast<int>(std::lround(1 / (kImageRate * step_period))));
+}
 
 Observation observe(const Simulation& simulation) {
   const State& state = simulation.state();
   Observation seen;
   seen.step = state.step;
   seen.time = state.time;
-  seen.wall.reserve(state.x.size());
-  for (std::size_t i = 0; i < state.x.size(); ++i)
-    seen.wall.emplace_back(static_cast<float>(state.x[i]), static_cast<float>(state.y[i]),
-                           static_cast<float>(state.z[i]));
+  if (state.step % imageInterval(simulation.stepPeriod()) == 0) observeWall(state, seen);
   if (simulation.model().tool) observeTool(simulation.model(), state, seen);
   seen.pressure = state.pressure;
   seen.pressure_reached = state.pressure_reached;
   seen.grips = !state.grip.empty();
   observeProcedure(state.procedure, seen);
-  seen.events = simulation.events();
+  observeEvents(simulation.events(), seen);
   return seen;
 }
 

@@ -198,6 +198,8 @@ Skill ProtocolReader::mixedSkill(const YamlField& field) const {
   keys.numbers = {{"novice", "1", 0, 1, &novice},
                   {"pace", "1", 0.05, 5, &skill.pace},
                   {"reaction_time", "s", 0, 2, &skill.reaction_time},
+                  {"look_time", "s", 0, 600, &skill.look_time},
+                  {"foresight", "", 0, 1, &skill.foresight},
                   {"aim_error", "m", 0, 0.05, &skill.aim_error},
                   {"force_limit", "N", 0.1, 100, &skill.force_limit},
                   {"turns", "1", 0, 10, &skill.turns},

@@ -16,6 +16,11 @@ namespace {
 // the simulator between steps.
 using Coroutine = boost::coroutines2::coroutine<void>;
 
+std::shared_ptr<const Model> withScope(std::shared_ptr<const Model> model) {
+  if (model->tool) return model;
+  throw Error("The scene '" + model->scene.name + "' has no scope, which a trainee needs; add a section 'scope'.");
+}
+
 }  // namespace
 
 struct Trainee::Impl {
@@ -24,20 +29,26 @@ struct Trainee::Impl {
         skill(given),
         tremor(skill.tremor, seed),
         hand(*model, skill, [this] { (*pause)(); }),
-        me{hand, seed, [this](const std::string& what) { say(what); }, {}, {}},
+        me{hand, seed, [this](const std::string& what) { say(what); }, {}},
         trainee(owner),
         delay(std::lround(skill.reaction_time / model->scene.step_period)) {}
+
+  /// Between images the wall is where it was seen last.
+  void perceive(const Observation& now) {
+    std::vector<Eigen::Vector3d> last_wall = std::move(seen.wall);
+    seen = now;
+    if (seen.wall.empty()) seen.wall = std::move(last_wall);
+  }
 
   void say(const std::string& what) {
     activity = what;
     if (trainee.on_activity) trainee.on_activity(what);
   }
 
-  // Places that the organ does not have end a goal, not the session.
-  GoalResult tryTo(const Goal& goal) {
+  GoalResult attempt(const Goal& goal) {
     try {
       return std::visit([this](const auto& g) { return perform(g, me); }, goal);
-    } catch (const Error& error) {
+    } catch (const Error& error) {  // of the library, such as an organ without landmarks
       return {false, error.what()};
     }
   }
@@ -50,7 +61,7 @@ struct Trainee::Impl {
       }
       const Goal goal = goals[results.size()];
       say(describe(goal));
-      results.push_back(tryTo(goal));
+      results.push_back(attempt(goal));
       if (trainee.on_result) trainee.on_result(static_cast<int>(results.size()) - 1, results.back());
     }
   }
@@ -84,7 +95,7 @@ struct Trainee::Impl {
 };
 
 Trainee::Trainee(std::shared_ptr<const Model> model, const Skill& skill, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(std::move(model), skill, seed, *this)) {}
+    : impl_(std::make_unique<Impl>(withScope(std::move(model)), skill, seed, *this)) {}
 
 Trainee::~Trainee() = default;
 
@@ -94,7 +105,12 @@ void Trainee::add(const Goal& goal) {
 
 StepInput Trainee::next(const Observation& seen) {
   Impl& me = *impl_;
-  me.seen = seen;
+  me.perceive(seen);
+  if (me.seen.wall.empty()) {  // it acts from the first image on
+    StepInput still;
+    still.joints = seen.joints;
+    return still;
+  }
   me.hand.perceive(me.seen);
   if (me.decided.empty()) me.decided.assign(static_cast<std::size_t>(me.delay), me.hand.command());
   me.resume();

@@ -16,7 +16,7 @@ from node_test_support import EPOCH, OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS
 from node_test_support import Recorder, buttons, joints, stamp_of, wait_until
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Joy, PointCloud2
-from vibe_msgs.msg import ProcedureEvent, ProcedureState, SkillMetrics, SolverStatistics, StepInput, SutureArray
+from vibe_msgs.msg import ProcedureEvent, ProcedureState, SkillMetrics, SolverStatistics, StepInput, StepResult, SutureArray
 from vibe_msgs.msg import TissuePull, TissuePullState, TissueTopology
 from vibe_msgs.srv import Reset, Step
 
@@ -27,6 +27,7 @@ STREAMS = {
     "joint_states": (JointState, "scope_base"),
     "scope/setpoint_js": (JointState, "scope_base"),
     "tissue/particles": (PointCloud2, "stomach"),
+    "step_result": (StepResult, "world"),
     "applied_input": (StepInput, ""),
 }
 BASE_X = -0.12  # of scope_base in balloon.yaml [m]

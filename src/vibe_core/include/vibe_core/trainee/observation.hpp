@@ -12,14 +12,16 @@
 namespace vibe {
 
 /// What a trainee perceives at the end of a step: what the simulator publishes, with the precision of its messages. A
-/// node makes it from messages, a program without ROS with observe(); both give the same bits.
+/// node makes it from messages, a program without ROS with observe(); both have the same bits.
 struct Observation {
   std::int64_t step = 0;  ///< steps taken so far
   double time = 0;        ///< [s]
 
-  std::vector<Eigen::Vector3d> wall;              ///< particle positions, of single precision, in world [m]
-  std::array<double, kJointCount> joints{};       ///< of the hand, limits applied [m], [rad]
-  Eigen::Vector3d tip = Eigen::Vector3d::Zero();  ///< position of scope_tip, in world [m]
+  /// Particle positions, of single precision, in world [m]; empty if no image of the wall belongs to the step, see
+  /// imageInterval().
+  std::vector<Eigen::Vector3d> wall;
+  std::array<double, kJointCount> joints{};                      ///< of the hand, limits applied [m], [rad]
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();                 ///< position of scope_tip, in world [m]
   Eigen::Quaterniond tip_turn = Eigen::Quaterniond::Identity();  ///< its orientation
   Eigen::Vector3d helix = Eigen::Vector3d::Zero();               ///< position of the helix' tip, in world [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< tissue on tool, mean over the step, in scope_tip [N]
@@ -34,8 +36,11 @@ struct Observation {
   Suture::Stage stage = Suture::Stage::Open;  ///< of the last one
   double tension = 0;                         ///< of its first segment [N]
 
-  std::vector<Event> events;  ///< of the step
+  std::vector<Event> events;  ///< of the step, with kind, time, particle and value only; without warnings about inputs
 };
+
+/// Steps from one image of the wall to the next: as many as make 60 images per second of simulated time, at least 1.
+int imageInterval(double step_period);
 
 /// Without ROS.
 Observation observe(const Simulation& simulation);

@@ -21,6 +21,7 @@ namespace vibe {
 ///   while (!trainee.done()) simulation.step(trainee.next(observe(simulation)));
 class Trainee {
  public:
+  /// @throws Error if the scene has no scope
   Trainee(std::shared_ptr<const Model> model, const Skill& skill, std::uint64_t seed);
   ~Trainee();
   Trainee(const Trainee&) = delete;

@@ -1,0 +1,25 @@
+#pragma once
+#include <ros/node_handle.h>
+
+#include <cstdint>
+
+#include "vibe_core/input/step_input.hpp"
+
+namespace vibe {
+
+/// Publishes inputs on the topics of the devices.
+class InputSender {
+ public:
+  explicit InputSender(ros::NodeHandle handle);
+
+  /// Whether somebody receives all three topics.
+  bool hasListeners() const;
+  /// @param stamp         of the sample [ns]
+  /// @param with_buttons  else only the joints
+  void send(const StepInput& input, std::int64_t stamp, bool with_buttons = true);
+
+ private:
+  ros::Publisher scope_, overstitch_, buttons_;
+};
+
+}  // namespace vibe
