@@ -11,6 +11,8 @@ constexpr double kNextTime =
 }  // namespace
 
 GoalResult takeBite(const WallPoint& target, Operator& me) {
+  if (!me.model().scene.helix || !me.model().scene.suture)
+    return {false, "the scene has no helix or no suture; add 'helix: {}' and 'suture: {}'"};
   GoalResult result;
   me.surprise *= kNextTime;
   me.hand.wait(me.skill().look_time);

@@ -43,6 +43,7 @@ WallPoint find(const Place& place, const AnatomicalMap& map);
 
 // One file each. All return when the goal is reached or given up.
 GoalResult perform(const InsufflateGoal& goal, Operator& me);
+GoalResult perform(const InspectGoal& goal, Operator& me);
 GoalResult perform(const MarkGoal& goal, Operator& me);
 GoalResult perform(const BiteGoal& goal, Operator& me);
 GoalResult perform(const SutureSetGoal& goal, Operator& me);
