@@ -20,7 +20,7 @@ using namespace vibe;
 
 struct Options {
   std::string scene = "package://vibe_core/scenes/stomach.yaml";
-  std::string script = "package://vibe_core/trainees/goals/sleeve.yaml";
+  std::string script = "package://vibe_core/trainees/expert.yaml";
   std::string csv = "-";
   std::uint64_t first_seed = 1;
   int count = 20;
@@ -30,7 +30,7 @@ struct Options {
 
 void addOptions(CLI::App& app, Options& o) {
   app.add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
-  app.add_option("--script", o.script, "protocol of goals (default: package://vibe_core/trainees/goals/sleeve.yaml)")
+  app.add_option("--script", o.script, "protocol of goals (default: package://vibe_core/trainees/expert.yaml)")
       ->type_name("FILE");
   app.add_option("--csv", o.csv, "write the rows there, appended to what is there (default: standard output)")
       ->type_name("FILE");
