@@ -40,8 +40,8 @@ struct OutcomeRow {
 };
 
 constexpr int kOutcomeSets = 6, kOutcomeBites = 7;
-constexpr double kOutcomeLength = 13e-3, kOutcomeWidth = 60e-3;  // of a set: those of trainees/goals/sleeve.yaml [m]
-constexpr double kOutcomeFrom = 0.63, kOutcomeTo = 0.18;         // of the axis: the same
+constexpr double kOutcomeLength = 13e-3, kOutcomeWidth = 60e-3;  // of a set: those of trainees/expert.yaml [m]
+constexpr double kOutcomeFrom = 0.63, kOutcomeTo = 0.18;         // of the axis: about the same
 constexpr double kOutcomeWindow = 4;                             // [s]
 constexpr double kOutcomeChange = 1e-3;                          // allowed within that window [1]
 
