@@ -38,6 +38,8 @@ struct Suture {
   std::uint8_t technique = 0;          ///< Technique, recognised when the T-tag was dropped
   double technique_margin = 0;         ///< see recogniseTechnique()
   std::array<int, 2> transitions{{-1, -1}};
+  std::uint8_t corrected_technique = 0;  ///< Technique by TechniqueRule::Corrected, whichever rule the scene uses
+  std::uint8_t printed_technique = 0;    ///< by TechniqueRule::Printed
   double pulled = 0;          ///< thread drawn out by the cinch [m]
   double cinch_tension = 0;   ///< tension of the first segment when the cinch was released [N]
   double begin = 0, end = 0;  ///< times of the first bite and of the cinch; end 0: not cinched yet [s]
