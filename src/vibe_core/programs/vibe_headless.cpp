@@ -152,7 +152,8 @@ void run(const Options& o) {
   if (o.quiet)
     std::cout << "state hash: " << toHex(simulation.hash()) << "\n";
   else
-    std::cout << runSummary(simulation.metrics(), simulation.timer().cpu.all, model->particle_count, simulation.time(),
+    std::cout << landmarkRemark(model->scene)
+              << runSummary(simulation.metrics(), simulation.timer().cpu.all, model->particle_count, simulation.time(),
                             steadyTime() - begin, simulation.hash());
 }
 

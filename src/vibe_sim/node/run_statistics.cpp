@@ -5,6 +5,7 @@
 
 #include "conversions.hpp"
 #include "vibe_core/metrics/run_summary.hpp"
+#include "vibe_core/scene/mesh_guess.hpp"
 
 namespace vibe {
 namespace {
@@ -96,8 +97,9 @@ std::string RunStatistics::progressLine(const Session& session) const {
 }
 
 std::string RunStatistics::summary(const Session& session) const {
-  return runSummary(session.metrics(), session.simulation.timer().cpu.all, session.model->particle_count, simulated_,
-                    steadyTime() - begin_, session.simulation.hash());
+  return landmarkRemark(session.model->scene) + runSummary(session.metrics(), session.simulation.timer().cpu.all,
+                                                           session.model->particle_count, simulated_,
+                                                           steadyTime() - begin_, session.simulation.hash());
 }
 
 }  // namespace vibe

@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "geometry/regions.hpp"
@@ -17,7 +19,11 @@ namespace {
 
 constexpr double kStride = 1e-3;        // of a walk; a quarter of a particle's spacing, design choice [m]
 constexpr double kNormalRadius = 6e-3;  // over which the wall's direction is averaged: as wide as the device's cap [m]
-constexpr double kAlongWeight = 2.0;    // of the distance along the axis beside that around it; design choice [1]
+constexpr double kFarAlong = 0.05;    // of a place from the wall found for it, over the axis' length; design choice [1]
+constexpr double kFarAround = 0.35;   // and around the axis: the opening of a tube is as wide; design choice [rad]
+constexpr double kApex = 0.05;        // along the axis: nearer to the apex, angles are not told apart [1]
+constexpr double kStalled = 0.2;      // of a stride: less is no progress; design choice [1]
+constexpr double kAlongWeight = 2.0;  // of the distance along the axis beside that around it; design choice [1]
 
 Eigen::Vector3d weightsIn(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                           const Eigen::Vector3d& c) {
@@ -43,6 +49,19 @@ Organ inShape(const Organ& organ, const std::vector<Eigen::Vector3d>& vertices) 
 
 double turned(double angle) {
   return std::remainder(angle, 2 * M_PI);
+}
+
+std::string placeText(double along, double around) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.0f %% of the axis and %.0f deg around it", 100 * along, around * 180 / M_PI);
+  return text;
+}
+
+[[noreturn]] void failWalk(const char* why, double walked, double distance) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s after %.0f of %.0f mm along the wall; choose a place farther from there.", why,
+                1e3 * walked, 1e3 * std::abs(distance));
+  throw Error(text);
 }
 
 }  // namespace
@@ -96,6 +115,9 @@ WallPoint nearestOn(const Eigen::Vector3d& place, const WallPoint& same_side,
 AnatomicalMap::AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> vertices)
     : triangles_(organ.surface.triangles), vertices_(std::move(vertices)) {
   const std::size_t count = vertices_.size();
+  if (count != organ.surface.vertices.size())
+    throw Error("Anatomical coordinates of " + std::to_string(organ.surface.vertices.size()) +
+                " vertices need as many " + "positions, not " + std::to_string(count) + ".");
   for (std::size_t v = 0; v < count; ++v) end_.push_back(organ.end[v] != End::None);
   if (std::find(organ.end.begin(), organ.end.end(), End::Duodenum) == organ.end.end() ||
       std::find(organ.end.begin(), organ.end.end(), End::Oesophagus) == organ.end.end())
@@ -138,6 +160,9 @@ void AnatomicalMap::findDirections() {
 }
 
 WallPoint AnatomicalMap::at(double along, double around) const {
+  if (!(along >= 0 && along <= 1) || !std::isfinite(around))
+    throw Error("There is no place at " + placeText(along, around) +
+                "; along goes from 0 (apex of the fundus) to 100 % (duodenal end).");
   // the nearest vertex, in units of the circumference at half the axis' length, then the best point of its triangles
   const auto missOf = [&](double a, double r) {
     const double da = kAlongWeight * (a - along), dr = turned(r - around) / (2 * M_PI);
@@ -165,6 +190,10 @@ WallPoint AnatomicalMap::at(double along, double around) const {
     const double miss = missOf(this->along(candidate), this->around(candidate));
     if (miss < min) min = miss, point = candidate;
   }
+  const bool beside = along > kApex && std::abs(turned(this->around(point) - around)) > kFarAround;
+  if (beside || std::abs(this->along(point) - along) > kFarAlong)
+    throw Error("The organ has no wall at " + placeText(along, around) +
+                ", where a tube opens; choose a place beside it.");
   return point;
 }
 
@@ -223,10 +252,29 @@ WallPoint AnatomicalMap::nearest(const Eigen::Vector3d& place, int around_triang
   return best;
 }
 
+bool AnatomicalMap::inEnd(int triangle) const {
+  const auto& v = triangles_[static_cast<std::size_t>(triangle)];
+  return end_[v[0]] && end_[v[1]] && end_[v[2]];
+}
+
 WallPoint AnatomicalMap::walkStraight(WallPoint from, double distance, Way way) const {
   const int strides = static_cast<int>(std::ceil(std::abs(distance) / kStride));
-  for (int k = 0; k < strides; ++k)
-    from = nearest(position(from) + distance / strides * direction(from, way), from.triangle);
+  const double stride = distance / std::max(strides, 1);
+  Eigen::Vector3d heading = direction(from, way);
+  double turn = 0;
+  for (int k = 0; k < strides; ++k) {
+    const WallPoint last = from;
+    from = nearest(position(last) + stride * heading, last.triangle);
+    const Eigen::Vector3d ahead = direction(from, way);
+    const double walked = (k + 1) * std::abs(stride);
+    if (inEnd(from.triangle)) failWalk("The organ ends", walked, distance);
+    if ((position(from) - position(last)).norm() < kStalled * std::abs(stride) || ahead.dot(heading) < 0)
+      failWalk("The way leads over the apex of the fundus", walked, distance);
+    turn += turned(around(from) - around(last));
+    if (way == Way::Anterior && std::abs(turn) > M_PI)
+      failWalk("The way is more than half around the organ", walked, distance);
+    heading = ahead;
+  }
   return from;
 }
 

@@ -33,7 +33,13 @@ double likeliestUnit(const SurfaceMesh& mesh) {
   return best;
 }
 
-std::string describe(const GeometryScene& g, const std::string& mesh_file) {
+std::string doubtAbout(const LandmarkEstimate& estimate, const std::string& mesh_file) {
+  if (estimate.confidence >= kSureLandmarks) return "";
+  return "\nThe landmarks of " + mesh_file + " are doubtful: " + estimate.doubt +
+         "; state them, or its axes as rotation_rpy, in " + sidecarOf(mesh_file) + ".";
+}
+
+std::string describe(const GeometryScene& g, const LandmarkEstimate& estimate, const std::string& mesh_file) {
   const auto point = [](const Eigen::Vector3d& p) {
     char text[96];
     std::snprintf(text, sizeof text, "[%.4g, %.4g, %.4g]", p.x(), p.y(), p.z());
@@ -42,13 +48,18 @@ std::string describe(const GeometryScene& g, const std::string& mesh_file) {
   char head[160];
   std::snprintf(head, sizeof head, "unit: %g\nrotation_rpy: [%.6f, %.6f, %.6f]\nlandmarks:\n", g.unit,
                 g.rotation_rpy[0], g.rotation_rpy[1], g.rotation_rpy[2]);
+  const auto& moved = estimate.spread;
+  char sureness[200];
+  std::snprintf(sureness, sizeof sureness,
+                "\n# confidence %.2f of 1; axes tilted by 20 degrees move them by up to %.0f, %.0f, %.0f and %.0f mm",
+                estimate.confidence, 1e3 * moved[0], 1e3 * moved[1], 1e3 * moved[2], 1e3 * moved[3]);
   return "Unit, axes and landmarks of " + mesh_file + " are guesses; look at the regions, and state them in " +
          sidecarOf(mesh_file) + ":\n" + head + "  oesophagus: " + point(*g.oesophagus) +
          "\n  fundus: " + point(*g.fundus) + "\n  incisura: " + point(*g.incisura) +
-         "\n  pylorus: " + point(*g.pylorus);
+         "\n  pylorus: " + point(*g.pylorus) + sureness + doubtAbout(estimate, mesh_file);
 }
 
-void guess(GeometryScene& geometry) {
+LandmarkEstimate guess(GeometryScene& geometry) {
   SurfaceMesh surface = readMeshFile(geometry.file);
   checkSurface(surface, geometry.file);
   orientOutwards(surface);
@@ -58,12 +69,15 @@ void guess(GeometryScene& geometry) {
                                                         : std::array<double, 3>{0, 0, M_PI / 2};
   const Eigen::Matrix3d map = geometry.unit * rotationFromRpy(geometry.rotation_rpy);
   for (auto& v : surface.vertices) v = map * v;
-  const Landmarks found = estimateLandmarks(remeshSurface(surface, kGuessVertices, nullptr, {}));
+  const LandmarkEstimate estimate = estimateLandmarks(remeshSurface(surface, kGuessVertices, nullptr, {}));
+  const Landmarks& found = estimate.landmarks;
   const Eigen::Matrix3d back = map.inverse();
   geometry.oesophagus = back * found.oesophagus;
   geometry.fundus = back * found.fundus;
   geometry.incisura = back * found.incisura;
   geometry.pylorus = back * found.pylorus;
+  geometry.landmark_confidence = estimate.confidence;
+  return estimate;
 }
 
 }  // namespace
@@ -78,9 +92,17 @@ std::string useMesh(Scene& scene, const std::string& mesh_file) {
   GeometryScene changed = g;
   changed.kind = GeometryScene::Kind::Mesh;
   changed.file = mesh_file;
-  guess(changed);
+  const LandmarkEstimate estimate = guess(changed);
   scene.geometry = changed;
-  return describe(changed, mesh_file);
+  return describe(changed, estimate, mesh_file);
+}
+
+std::string landmarkRemark(const Scene& scene) {
+  if (!scene.geometry.landmark_confidence) return "";
+  char text[64];
+  std::snprintf(text, sizeof text, "landmarks          guessed, confidence %.2f\n",
+                *scene.geometry.landmark_confidence);
+  return text;
 }
 
 }  // namespace vibe

@@ -4,29 +4,27 @@
 #include <cmath>
 #include <limits>
 
+#include "trainee/device_geometry.hpp"
 #include "trainee/ik_solution.hpp"
+#include "trainee/imagined_draw.hpp"
 
 namespace vibe {
 
 namespace {
 
-constexpr double kHelixOut = 26e-3;     // helix_advance while it is screwed in [m]
 constexpr double kHelixHome = 2e-3;     // [m]
 constexpr double kFullyDrawn = 1e-3;    // helix_advance at which the wall is in the device [m]
 constexpr double kStandOff = 10e-3;     // gap between helix and wall before contact [m]
 constexpr double kNear = 3e-3;          // gap within reach of the helix, with a margin [m]
-constexpr double kInto = 1.5e-3;        // depth into the wall, so that it is surely in reach [m]
 constexpr double kAside = 1.5e-3;       // of the helix from its aim along the wall, good enough [m]
+constexpr double kPushed = 10e-3;       // of the device towards the wall, where not enough of it comes [m]
 constexpr double kArmClosed = 18e-3;    // needle_driver [m]
 constexpr double kDeepEnough = 1.5;     // depth of the needle over the wall's thickness [1]
-constexpr double kBesideTarget = 6e-3;  // of the needle from the target, to be tried again [m]
+constexpr double kThrough = 1.15;       // the least with which an expert closes the arm [1]
+constexpr double kOnTarget = 2.5e-3;    // of the needle from the target, not to be improved [m]
+constexpr double kBesideTarget = 5e-3;  // to be tried again [m]
 constexpr double kMorePerTry = 1e-3;    // with every further try that much more is accepted [m]
-constexpr double kLearning = 0.7;       // weight of the present try in what is learned [1]
 constexpr double kTurn = 6.283185307179586;
-const Eigen::Vector3d kHelixInTip(kHelixOut - 2e-3, 2.8e-3, -2.2e-3);  // tip of the helix in scope_tip [m]
-
-// Before anything has been seen: where the needle passes, from the helix, with the wall drawn in, in scope_tip [m].
-const Eigen::Vector3d kNeedleFromHelix(0, -5.3e-3, 5e-3);
 
 WallPoint withError(const WallPoint& target, Operator& me) {
   const Eigen::Vector2d error = me.nextAimError();
@@ -44,8 +42,7 @@ BiteAttempt::BiteAttempt(const WallPoint& target, int number, Operator& me)
       number_(number),
       last_(number + 1 >= me.skill().attempts),
       me_(me),
-      hand_(me.hand),
-      aim_(target_) {}
+      hand_(me.hand) {}
 
 GoalResult BiteAttempt::make() {
   GoalResult result{false, "the helix got no hold of the wall"};
@@ -69,29 +66,10 @@ double BiteAttempt::gap() const {
   return std::sqrt(min);
 }
 
-// From the geometry of the device, before anything has been seen: along the wall, distal and anterior [m].
-Eigen::Vector2d BiteAttempt::expectedNeedle() const {
-  const Eigen::Vector3d outward = me_.outward(target_);
-  const Hand::Joints joints = aimAt(me_.model(), me_.position(target_), outward, kHelixInTip, hand_.joints()).joints;
-  std::vector<Eigen::Isometry3d> poses;
-  me_.model().tool->forwardKinematics(joints, poses);
-  const Eigen::Matrix3d tip = (me_.model().tool_base * poses[me_.model().tip_link]).linear();
-  return me_.seen_map->alongWall(target_, tip * kNeedleFromHelix);
-}
-
-// The needle passes beside the helix, so the helix is to take hold beside the target.
-void BiteAttempt::aimBesideTarget() {
-  const AnatomicalMap& map = *me_.seen_map;
-  const std::optional<Eigen::Vector2d> learned = me_.needleFromHelix(map.around(target_));
-  const Eigen::Vector2d beside = learned ? *learned : expectedNeedle();
-  aim_ = map.walk(target_, -beside[0], -beside[1]);
-}
-
 // Moves the helix to its aim at a depth below the mucosa; what the last motion missed is added to the next.
 bool BiteAttempt::approach(double into, double min) {
-  const Eigen::Vector3d outward = me_.outward(aim_), wanted = me_.position(aim_) + into * outward;
-  Hand::Joints joints = aimAt(me_.model(), wanted + correction_, outward, kHelixInTip, hand_.joints()).joints;
-  joints[HelixAdvance] = kHelixOut;
+  const Eigen::Vector3d outward = me_.outward(plan_.held), wanted = me_.position(plan_.held) + into * outward;
+  const Hand::Joints joints = reachFor(me_.model(), wanted + correction_, helixInTip(kHelixOut), plan_.joints).joints;
   const bool arrived = hand_.moveTo(joints, min, [this] { return hand_.feelsTooMuch(); });
   settle();
   const Eigen::Vector3d miss = wanted - me_.view().helix;
@@ -101,49 +79,87 @@ bool BiteAttempt::approach(double into, double min) {
 }
 
 bool BiteAttempt::grab() {
-  aimBesideTarget();
+  plan_ = planBite(target_, me_);
   approach(-kStandOff, 0.5);
-  for (const double into : {kInto, kInto, 2 * kInto, 2 * kInto, 3 * kInto, 4 * kInto}) {  // the wall yields
-    if (!approach(into, 0.3)) break;
+  // the scope gives way, so the device may lie otherwise than planned
+  const BitePlan seen = planBiteFromHere(target_, me_);
+  if (std::isfinite(seen.cost)) plan_.held = seen.held;
+  for (const double more : {1, 1, 2, 2, 3, 4}) {  // the wall yields
+    if (!approach(more * kHelixDepth, 0.3)) break;
     if (gap() < kNear && aside_ < kAside) break;
   }
+  before_ = me_.view();
   hand_.press(HelixGrab);
   hand_.move(HelixRotation, me_.skill().turns * kTurn, 0.8);
   settle();
   return me_.view().grips;
 }
 
-bool BiteAttempt::isDeepEnough(const NeedleView& needle) const {
-  return needle.depth >= kDeepEnough * needle.thickness;
+std::optional<NeedleView> BiteAttempt::look() const {
+  return lookAtNeedle(me_.model(), me_.view());
 }
 
-// Draws the wall into the device until enough of it lies before the needle.
+double BiteAttempt::missOf(const NeedleView& needle) const {
+  return (me_.seen_map->position(needle.where) - me_.seen_map->position(target_)).norm();
+}
+
+bool BiteAttempt::isGood(const NeedleView& needle) const {
+  return needle.depth >= kDeepEnough * needle.thickness && missOf(needle) < kOnTarget;
+}
+
+// Draws the wall into the device until the needle would go through all of it at the target, or as far as it comes.
 void BiteAttempt::drawIn() {
   if (!me_.skill().checks_depth) {
     hand_.move(HelixAdvance, me_.skill().drawn, 0.8);
     return settle();
   }
   hand_.move(HelixAdvance, kFullyDrawn, 1.5, [this] {
-    const std::optional<NeedleView> needle = lookAtNeedle(me_.model(), me_.view());
-    return needle && isDeepEnough(*needle);
+    const std::optional<NeedleView> needle = look();
+    return needle && isGood(*needle);
   });
   settle();
+  pushOn();
+}
+
+// Where the wall has not come far enough, the device goes to the wall.
+void BiteAttempt::pushOn() {
+  const auto isDeep = [this] {
+    const std::optional<NeedleView> needle = look();
+    return needle && needle->depth >= kDeepEnough * needle->thickness;
+  };
+  if (isDeep() || !me_.view().grips) return;
+  std::vector<Eigen::Isometry3d> poses;
+  me_.model().tool->forwardKinematics(hand_.joints(), poses);
+  const Eigen::Isometry3d tip = me_.model().tool_base * poses[me_.model().tip_link];
+  const Hand::Joints joints =
+      reachFor(me_.model(), tip * Eigen::Vector3d(kPushed, 0, 0), Eigen::Vector3d::Zero(), hand_.joints()).joints;
+  hand_.moveTo(joints, 0.8, [&] { return isDeep() || hand_.feelsTooMuch(); });
+  settle();
+}
+
+// What the needle misses beyond what would have been imagined of the device as it lay when the helix took hold.
+void BiteAttempt::learn(const NeedleView& needle) {
+  const auto& triangles = me_.model().organ.surface.triangles;
+  const WallPoint held = nearestOn(before_.helix, plan_.held, triangles, before_.wall);
+  const auto imagined = imagineNeedle(
+      me_.model(), before_, {held, before_.tip_turn, before_.joints[HelixAdvance], me_.view().joints[HelixAdvance]});
+  if (!imagined) return;
+  const AnatomicalMap& map = *me_.seen_map;
+  me_.surprise =
+      me_.skill().foresight * map.alongWall(target_, map.position(needle.where) - map.position(imagined->where));
 }
 
 // What is seen before the arm closes; empty: all is well.
 std::optional<GoalResult> BiteAttempt::judgeView() {
   if (!me_.view().grips) return GoalResult{false, "the helix slipped"};
-  const std::optional<NeedleView> needle = lookAtNeedle(me_.model(), me_.view());
+  const std::optional<NeedleView> needle = look();
   if (!needle) return GoalResult{false, "no tissue is before the needle"};
-  const AnatomicalMap& map = *me_.seen_map;
-  const Eigen::Vector3d miss = map.position(needle->where) - map.position(target_);
-  const Eigen::Vector2d seen = map.alongWall(target_, map.position(needle->where) - map.position(aim_));
-  const double around = map.around(target_);
-  const Eigen::Vector2d before = me_.needleFromHelix(around).value_or(seen);
-  me_.learnNeedle(around, before + kLearning * (seen - before));
+  learn(*needle);
   if (!me_.skill().checks_depth) return {};
-  if (miss.norm() > kBesideTarget + number_ * kMorePerTry)
+  if (missOf(*needle) > kBesideTarget + number_ * kMorePerTry)
     return GoalResult{false, "the needle would pass beside its target"};
+  if (!last_ && needle->depth < kThrough * needle->thickness)
+    return GoalResult{false, "the needle would go through a part of the wall only"};
   return {};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "trainee/bite_plan.hpp"
 #include "trainee/needle_view.hpp"
 #include "trainee/operator.hpp"
 
@@ -19,13 +20,15 @@ class BiteAttempt {
  private:
   void settle();
   double gap() const;
-  Eigen::Vector2d expectedNeedle() const;
-  void aimBesideTarget();
   bool approach(double into, double min);
   bool grab();
   GoalResult drawAndClose();
+  std::optional<NeedleView> look() const;
+  double missOf(const NeedleView& needle) const;
+  bool isGood(const NeedleView& needle) const;
   void drawIn();
-  bool isDeepEnough(const NeedleView& needle) const;
+  void pushOn();
+  void learn(const NeedleView& needle);
   std::optional<GoalResult> judgeView();
   GoalResult closeArm();
   GoalResult exchange();
@@ -37,7 +40,8 @@ class BiteAttempt {
   const bool last_;
   Operator& me_;
   Hand& hand_;
-  WallPoint aim_;                                         // of the helix
+  BitePlan plan_;
+  Observation before_;                                    // of the draw
   Eigen::Vector3d correction_ = Eigen::Vector3d::Zero();  // what the last motions of the helix missed [m]
   double aside_ = 1;                                      // of the helix from its aim along the wall [m]
 };

@@ -15,6 +15,7 @@ std::string at(const Place& place) {
 
 struct Describer {
   std::string operator()(const InsufflateGoal&) const { return "insufflate"; }
+  std::string operator()(const InspectGoal& goal) const { return "inspect" + at(goal.place); }
   std::string operator()(const MarkGoal& goal) const { return "mark" + at(goal.place); }
   std::string operator()(const BiteGoal& goal) const { return "bite" + at(goal.place); }
   std::string operator()(const SutureSetGoal& goal) const {

@@ -35,7 +35,7 @@ bool Hand::moveTo(const Joints& joints, double min, const std::function<bool()>&
   Joints to = from;
   for (int j = 0; j < kJointCount; ++j)
     if (std::isfinite(joints[j])) to[j] = joints[j];
-  const double duration = std::max(min, durationOfMotion(from, to, skill_.pace, model_.tool->limits()));
+  const double duration = std::max(min / skill_.pace, durationOfMotion(from, to, skill_.pace, model_.tool->limits()));
   const long steps = std::max(1L, std::lround(duration / model_.scene.step_period));
   for (long k = 1; k <= steps; ++k) {
     if (stop && stop()) return false;

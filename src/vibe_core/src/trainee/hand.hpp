@@ -31,7 +31,8 @@ class Hand {
   /// @return whether the condition became true in time
   bool await(const std::function<bool()>& condition, double patience);
 
-  /// Moves joints to positions at hand speed, in at least `min` seconds. Entries that are not finite stay.
+  /// Moves joints to positions at hand speed, in at least `min` seconds at an experienced pace. Entries that are not
+  /// finite stay.
   /// @param stop  ends the motion on its way where it becomes true; empty: never
   /// @return false if it was stopped
   bool moveTo(const Joints& joints, double min, const std::function<bool()>& stop = {});

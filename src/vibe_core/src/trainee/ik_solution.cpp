@@ -16,6 +16,21 @@ constexpr double kTurnWeight = 2;
 constexpr double kMoveWeight = 0.15;  // per radian of joint motion: prefers solutions near the current position
 constexpr double kSlice = 0.02;       // of the axis, to both sides
 
+// Of reachFor(): a damped Newton iteration with the smallest motion, in which 0.1 m of insertion count as a radian.
+constexpr int kReaching = TipLeftRight + 1;  // joints that move the tip
+constexpr double kComparable[kReaching] = {0.1, 1, 1, 1};
+constexpr int kReachRounds = 12;
+constexpr double kSmall = 1e-5;    // of a difference quotient
+constexpr double kDamping = 1e-6;  // (1 mm per radian)^2
+constexpr double kMaxStep = 0.3;   // [rad]
+
+Eigen::Vector3d pointAt(const Model& model, const std::array<double, kJointCount>& joints,
+                        const Eigen::Vector3d& offset) {
+  std::vector<Eigen::Isometry3d> poses;
+  model.tool->forwardKinematics(joints, poses);
+  return model.tool_base * (poses[model.tip_link] * offset);
+}
+
 Eigen::Vector3d positionOf(const State& state, int i) {
   return {state.x[i], state.y[i], state.z[i]};
 }
@@ -105,6 +120,43 @@ IkSolution aimAt(const Model& model, const Eigen::Vector3d& point, const Eigen::
       if (cost < min) min = cost, best = aim;
     }
   return best;
+}
+
+IkSolution reachFor(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& offset,
+                    const std::array<double, kJointCount>& start) {
+  IkSolution aim{start};
+  for (int round = 0; round < kReachRounds; ++round) {
+    const Eigen::Vector3d now = pointAt(model, aim.joints, offset);
+    Eigen::Matrix<double, 3, kReaching> slope;  // of the point, per unit of comparable motion
+    for (int j = 0; j < kReaching; ++j) {
+      std::array<double, kJointCount> moved = aim.joints;
+      moved[j] += kSmall * kComparable[j];
+      slope.col(j) = (pointAt(model, moved, offset) - now) / kSmall;
+    }
+    const Eigen::Matrix3d square = slope * slope.transpose() + kDamping * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix<double, kReaching, 1> step = slope.transpose() * square.ldlt().solve(point - now);
+    for (int j = 0; j < kReaching; ++j) {
+      const JointLimits& limit = model.tool->limits()[j];
+      aim.joints[j] = std::clamp(aim.joints[j] + kComparable[j] * std::clamp(step[j], -kMaxStep, kMaxStep), limit.lower,
+                                 limit.upper);
+    }
+  }
+  aim.miss = (pointAt(model, aim.joints, offset) - point).norm();
+  return aim;
+}
+
+std::optional<std::array<double, kJointCount>> rolled(const Model& model, std::array<double, kJointCount> joints,
+                                                      double angle) {
+  const double bend = std::hypot(joints[TipUpDown], joints[TipLeftRight]);
+  const double plane = std::atan2(joints[TipLeftRight], joints[TipUpDown]) + angle;
+  joints[Rotation] = std::remainder(joints[Rotation] + angle, 2 * M_PI);
+  joints[TipUpDown] = bend * std::cos(plane);
+  joints[TipLeftRight] = bend * std::sin(plane);
+  for (const Joint joint : {Rotation, TipUpDown, TipLeftRight}) {
+    const JointLimits& limit = model.tool->limits()[joint];
+    if (joints[joint] < limit.lower || joints[joint] > limit.upper) return {};
+  }
+  return joints;
 }
 
 }  // namespace vibe

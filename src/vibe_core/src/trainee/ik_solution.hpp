@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
@@ -31,5 +32,15 @@ struct IkSolution {
 /// @param start   current joint positions; those that do not belong to the scope are kept
 IkSolution aimAt(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                  const Eigen::Vector3d& offset, const std::array<double, kJointCount>& start);
+
+/// Joint positions that bring a point of the scope tip to a target with little motion; the viewing direction is left as
+/// it comes. For targets near the current position of the point: the tip's turn around its axis stays about as it is.
+IkSolution reachFor(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& offset,
+                    const std::array<double, kJointCount>& start);
+
+/// Joints with which the tip is about where it is, turned around its own axis: the shaft turns one way, the bend the
+/// other. Empty, if the bend would leave its range. [rad]
+std::optional<std::array<double, kJointCount>> rolled(const Model& model, std::array<double, kJointCount> joints,
+                                                      double angle);
 
 }  // namespace vibe

@@ -7,16 +7,6 @@
 
 namespace vibe {
 
-namespace {
-
-constexpr double kSameAngle = 0.25;  // learning replaces what was learned this near [rad]
-
-double between(double a, double b) {
-  return std::abs(std::remainder(a - b, 2 * M_PI));
-}
-
-}  // namespace
-
 double Operator::nextNormal() {
   double sum = -6;  // of twelve uniform numbers: variance 1
   for (int k = 0; k < 12; ++k) sum += nextUniform(random);
@@ -26,21 +16,6 @@ double Operator::nextNormal() {
 Eigen::Vector2d Operator::nextAimError() {
   const double a = nextNormal(), b = nextNormal();
   return skill().aim_error * Eigen::Vector2d(a, b);
-}
-
-std::optional<Eigen::Vector2d> Operator::needleFromHelix(double around) const {
-  const auto nearer = [around](const auto& a, const auto& b) {
-    return between(a.first, around) < between(b.first, around);
-  };
-  const auto nearest = std::min_element(learned.begin(), learned.end(), nearer);
-  if (nearest == learned.end()) return {};
-  return nearest->second;
-}
-
-void Operator::learnNeedle(double around, const Eigen::Vector2d& from_helix) {
-  const auto same = [around](const auto& one) { return between(one.first, around) < kSameAngle; };
-  learned.erase(std::remove_if(learned.begin(), learned.end(), same), learned.end());
-  learned.emplace_back(around, from_helix);
 }
 
 const AnatomicalMap& Operator::map() {

@@ -29,11 +29,9 @@ struct Operator {
   std::shared_ptr<const AnatomicalMap> seen_map;           ///< empty: has not looked yet
   Eigen::Vector3d position(const WallPoint& point) const;  ///< now, in world [m]
   Eigen::Vector3d outward(const WallPoint& point) const;   ///< now
-  /// Where the needle goes through the wall, from the helix along the wall: distal, anterior [m]. As seen last at the
-  /// nearest angle around the organ, because it depends on how the device lies to the wall; empty: nothing seen yet.
-  std::optional<Eigen::Vector2d> needleFromHelix(double around) const;
-  void learnNeedle(double around, const Eigen::Vector2d& from_helix);
-  std::vector<std::pair<double, Eigen::Vector2d>> learned;  ///< angle [rad], needle from helix [m]
+
+  /// What the needle missed in the last bite beyond what had been imagined: distal, anterior [m].
+  Eigen::Vector2d surprise = Eigen::Vector2d::Zero();
 
   double nextNormal();
   /// Aim error along the wall [m].
@@ -45,6 +43,7 @@ WallPoint find(const Place& place, const AnatomicalMap& map);
 
 // One file each. All return when the goal is reached or given up.
 GoalResult perform(const InsufflateGoal& goal, Operator& me);
+GoalResult perform(const InspectGoal& goal, Operator& me);
 GoalResult perform(const MarkGoal& goal, Operator& me);
 GoalResult perform(const BiteGoal& goal, Operator& me);
 GoalResult perform(const SutureSetGoal& goal, Operator& me);

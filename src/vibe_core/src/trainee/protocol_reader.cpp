@@ -11,21 +11,22 @@ namespace vibe {
 namespace {
 
 constexpr int kMaxGoals = 10000;
-constexpr int kMaxSets = 64;
+constexpr int kMaxSets = 64, kMaxMarks = 64;
 constexpr double kLongestPattern = 0.3;  // along or around the organ: beyond any stomach [m]
 constexpr double kLongestTime = 3600;    // of one goal [s]
 
 const std::vector<std::string>& goalNames() {
-  static const std::vector<std::string> names{"insufflate", "mark",     "bite", "suture_set",
-                                              "cinch",      "withdraw", "wait", "sleeve"};
+  static const std::vector<std::string> names{"insufflate", "inspect", "mark",  "marks",    "bite",
+                                              "suture_set", "sleeve",  "cinch", "withdraw", "wait"};
   return names;
 }
 
-/// A row of sets along the organ.
-struct Sleeve {
-  SutureSetGoal set;
-  int sets = 6;
+/// A row of goals along the organ.
+struct Row {
+  int count = 6;
   double from = 0.66, to = 0.31;  // along the axis; distal first, as in practice
+
+  double along(int k) const { return count > 1 ? from + (to - from) * k / (count - 1) : from; }
 };
 
 }  // namespace
@@ -77,6 +78,15 @@ void ProtocolReader::readGoal(const YamlField& verb) {
     InsufflateGoal goal;
     readMap(verb, {{{"patience", "s", 1, kLongestTime, &goal.patience}}, {}, {}});
     protocol_.goals.emplace_back(goal);
+  } else if (verb.key == "inspect") {
+    InspectGoal goal;
+    Keys keys{placeKeys(goal.place), {}, {}};
+    keys.numbers.push_back({"distance", "m", 5e-3, 0.2, &goal.distance});
+    keys.numbers.push_back({"for", "s", 0, kLongestTime, &goal.time});
+    readMap(verb, keys);
+    protocol_.goals.emplace_back(goal);
+  } else if (verb.key == "marks") {
+    readMarks(verb);
   } else if (verb.key == "mark") {
     MarkGoal goal;
     Keys keys{placeKeys(goal.place), {}, {}};
@@ -107,8 +117,8 @@ void ProtocolReader::readGoal(const YamlField& verb) {
 
 // One set, or a row of them.
 void ProtocolReader::readSleeve(const YamlField& field) {
-  Sleeve sleeve;
-  SutureSetGoal& set = sleeve.set;
+  Row row;
+  SutureSetGoal set;
   Keys keys;
   keys.pattern = &set.pattern;
   keys.counts = {{"bites", 2, kTechniqueMaxBites, &set.bites}};
@@ -118,9 +128,9 @@ void ProtocolReader::readSleeve(const YamlField& field) {
   if (field.key == "suture_set") {
     for (const Number& key : placeKeys(set.centre)) keys.numbers.push_back(key);
   } else {
-    keys.counts.push_back({"sets", 1, kMaxSets, &sleeve.sets});
-    keys.numbers.push_back({"from", "1", 0, 1, &sleeve.from});
-    keys.numbers.push_back({"to", "1", 0, 1, &sleeve.to});
+    keys.counts.push_back({"sets", 1, kMaxSets, &row.count});
+    keys.numbers.push_back({"from", "1", 0, 1, &row.from});
+    keys.numbers.push_back({"to", "1", 0, 1, &row.to});
     keys.numbers.push_back({"around", "rad", -M_PI, M_PI, &set.centre.around});
   }
   readMap(field, keys);
@@ -129,10 +139,27 @@ void ProtocolReader::readSleeve(const YamlField& field) {
     protocol_.goals.emplace_back(set);
     return;
   }
-  for (int k = 0; k < sleeve.sets; ++k) {
-    const double part = sleeve.sets > 1 ? static_cast<double>(k) / (sleeve.sets - 1) : 0;
-    set.centre.along = sleeve.from + part * (sleeve.to - sleeve.from);
+  for (int k = 0; k < row.count; ++k) {
+    set.centre.along = row.along(k);
     protocol_.goals.emplace_back(set);
+  }
+}
+
+// A row of marks along the organ.
+void ProtocolReader::readMarks(const YamlField& field) {
+  Row row;
+  row.count = 4;
+  MarkGoal mark;
+  Keys keys;
+  keys.counts = {{"count", 1, kMaxMarks, &row.count}};
+  keys.numbers = {{"from", "1", 0, 1, &row.from},
+                  {"to", "1", 0, 1, &row.to},
+                  {"around", "rad", -M_PI, M_PI, &mark.place.around},
+                  {"for", "s", 0.1, kLongestTime, &mark.time}};
+  readMap(field, keys);
+  for (int k = 0; k < row.count; ++k) {
+    mark.place.along = row.along(k);
+    protocol_.goals.emplace_back(mark);
   }
 }
 
@@ -198,6 +225,8 @@ Skill ProtocolReader::mixedSkill(const YamlField& field) const {
   keys.numbers = {{"novice", "1", 0, 1, &novice},
                   {"pace", "1", 0.05, 5, &skill.pace},
                   {"reaction_time", "s", 0, 2, &skill.reaction_time},
+                  {"look_time", "s", 0, 600, &skill.look_time},
+                  {"foresight", "", 0, 1, &skill.foresight},
                   {"aim_error", "m", 0, 0.05, &skill.aim_error},
                   {"force_limit", "N", 0.1, 100, &skill.force_limit},
                   {"turns", "1", 0, 10, &skill.turns},

@@ -48,6 +48,7 @@ class ProtocolReader {
   void readGoals(const YamlField& field);
   void readGoal(const YamlField& verb);
   void readSleeve(const YamlField& field);
+  void readMarks(const YamlField& field);
   Skill readSkill(const YamlField& field) const;
   Skill namedSkill(const YamlField& field) const;
   Skill mixedSkill(const YamlField& field) const;

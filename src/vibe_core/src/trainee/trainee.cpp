@@ -35,7 +35,7 @@ struct Trainee::Impl {
         skill(given),
         tremor(skill.tremor, seed),
         hand(*model, skill, [this] { endStep(); }),
-        me{hand, seed, [this](const std::string& what) { say(what); }, {}, {}},
+        me{hand, seed, [this](const std::string& what) { say(what); }, {}},
         trainee(owner),
         delay(std::lround(skill.reaction_time / model->scene.step_period)) {}
 

@@ -5,10 +5,12 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <string>
 
 #include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/scene.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
 
 namespace vibe {
 namespace {
@@ -94,6 +96,58 @@ TEST(AnatomicalMap, NormalsLeadOutOfTheLumen) {
     const WallPoint point = map.at(0.5, around), opposite = map.at(0.5, around + M_PI);
     EXPECT_NEAR(map.outward(point).norm(), 1, 1e-12);
     EXPECT_GT(map.outward(point).dot((map.position(point) - map.position(opposite)).normalized()), 0.8);
+  }
+}
+
+TEST(AnatomicalMap, PlacesBeyondTheOrganAreErrors) {
+  const AnatomicalMap map(stomach(), rest());
+  for (const double along : {-0.01, 1.01, std::nan("")}) EXPECT_THROW(map.at(along, 0), Error) << along;
+  EXPECT_THROW(map.at(0.5, std::nan("")), Error);
+  EXPECT_NO_THROW(map.at(0, 0));    // the apex
+  EXPECT_NO_THROW(map.at(0.5, 7));  // once around and a bit
+  EXPECT_NEAR(map.around(map.at(0.5, 7)), 7 - 2 * M_PI, 0.03);
+  std::vector<Eigen::Vector3d> fewer = rest();
+  fewer.pop_back();
+  EXPECT_THROW(AnatomicalMap(stomach(), fewer), Error);
+}
+
+std::string walkError(const AnatomicalMap& map, const WallPoint& from, double distal, double anterior) {
+  try {
+    map.walk(from, distal, anterior);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+TEST(AnatomicalMap, WalksThatLeaveTheOrganAreErrors) {
+  const AnatomicalMap map(stomach(), rest());
+  EXPECT_EQ(walkError(map, map.at(0.3, 0), -0.03, 0), "");
+  EXPECT_NE(walkError(map, map.at(0.1, 0), -0.2, 0).find("over the apex of the fundus"), std::string::npos);
+  EXPECT_NE(walkError(map, map.at(0.8, 0), 0.2, 0).find("The organ ends after"), std::string::npos);
+  EXPECT_NE(walkError(map, map.at(0.5, 0), 0, 0.3).find("more than half around"), std::string::npos);
+  EXPECT_EQ(walkError(map, map.at(0.5, 0), 0, 0.08), "");
+}
+
+// Every place that a sleeve needs, on every organ.
+TEST(AnatomicalMap, FindsItsPlacesOnEveryShippedStomach) {
+  for (const char* name : {"stomach_small", "stomach_large", "stomach_j", "stomach_steer_horn"}) {
+    const Organ organ = buildOrgan(loadScene(std::string(VIBE_CORE_DIR) + "/scenes/" + name + ".yaml"));
+    const AnatomicalMap map(organ, organ.surface.vertices);
+    for (double along = 0.05; along < 0.93; along += 0.04)
+      for (const double around : {-1.2, -0.6, 0.0, 0.6, 1.2}) {
+        const WallPoint point = map.at(along, around);
+        EXPECT_NEAR(map.along(point), along, 0.01) << name;
+        EXPECT_NEAR(map.around(point), around, 0.06) << name << " along " << along;
+        if (along < 0.15 || along > 0.75) continue;
+        const WallPoint there = map.walk(point, 6e-3, 0), across = map.walk(point, 0, 0.012);
+        EXPECT_NEAR((map.position(there) - map.position(point)).norm(), 6e-3, 1e-3) << name << " along " << along;
+        EXPECT_NEAR((map.position(across) - map.position(point)).norm(), 0.012, 2e-3) << name << " along " << along;
+        EXPECT_LT((map.position(map.walk(there, -6e-3, 0)) - map.position(point)).norm(), 1e-3) << name << along;
+      }
+    EXPECT_NO_THROW(map.at(0, 0)) << name;
+    EXPECT_THROW(map.walk(map.at(0.85, 0), 0.2, 0), Error) << name;
+    EXPECT_THROW(map.walk(map.at(0.15, 0), -0.25, 0), Error) << name;
   }
 }
 

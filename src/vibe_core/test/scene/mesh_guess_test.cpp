@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 
-#include "geometry/landmark_estimate.hpp"
 #include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -16,19 +17,6 @@ Organ stomach() {
   Scene scene;
   scene.geometry.particles = 1500;
   return buildOrgan(scene);
-}
-
-TEST(LandmarkEstimate, FindsThoseOfTheProceduralStomach) {
-  const Organ organ = stomach();
-  const Landmarks found = estimateLandmarks(organ.surface);
-  EXPECT_LT((found.fundus - organ.landmarks.fundus).norm(), 0.02);
-  EXPECT_LT((found.pylorus - organ.landmarks.pylorus).norm(), 0.03);
-  EXPECT_LT((found.oesophagus - organ.landmarks.oesophagus).norm(), 0.04);
-  EXPECT_LT((found.incisura - organ.landmarks.incisura).norm(), 0.05);
-  // control: upside down it is another stomach
-  SurfaceMesh turned = organ.surface;
-  for (auto& v : turned.vertices) v = -v;
-  EXPECT_GT((estimateLandmarks(turned).fundus + organ.landmarks.fundus).norm(), 0.05);
 }
 
 class MeshGuess : public ::testing::Test {
@@ -51,6 +39,10 @@ TEST_F(MeshGuess, BringsAStomachHomeFromAnotherFrame) {
   const std::string remark = useMesh(scene, file);
   EXPECT_NE(remark.find("guesses"), std::string::npos);
   EXPECT_NE(remark.find("unit: 0.001"), std::string::npos);
+  EXPECT_NE(remark.find("confidence 1.00 of 1"), std::string::npos);
+  EXPECT_EQ(remark.find("doubtful"), std::string::npos);
+  EXPECT_DOUBLE_EQ(scene.geometry.landmark_confidence.value_or(0), 1);
+  EXPECT_EQ(landmarkRemark(scene), "landmarks          guessed, confidence 1.00\n");
   EXPECT_NE(remark.find("mesh_guess_test.obj.landmarks.yaml"), std::string::npos);
   const Organ imported = buildOrgan(scene);
   EXPECT_NEAR(enclosedVolume(imported.surface), enclosedVolume(original.surface), 0.01 * 0.9e-3);
@@ -66,7 +58,40 @@ TEST_F(MeshGuess, StatedLandmarksAreNotGuessed) {
   scene.geometry.oesophagus = scene.geometry.fundus = scene.geometry.incisura = scene.geometry.pylorus =
       Eigen::Vector3d(1, 2, 3);
   EXPECT_EQ(useMesh(scene, file), "");
+  EXPECT_FALSE(scene.geometry.landmark_confidence);
+  EXPECT_EQ(landmarkRemark(scene), "");
   EXPECT_EQ(*scene.geometry.fundus, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST_F(MeshGuess, WarnsOfADoubtfulGuessInOneSentence) {
+  SurfaceMesh tilted = stomach().surface;  // by 40 degrees to the side
+  for (auto& v : tilted.vertices) v = Eigen::AngleAxisd(-40 * M_PI / 180, Eigen::Vector3d::UnitY()) * v;
+  write(tilted);
+  Scene scene;
+  const std::string remark = useMesh(scene, file);
+  EXPECT_NE(remark.find("are doubtful: its bend does not lie in the frontal plane; state them"), std::string::npos)
+      << remark;
+  EXPECT_LT(scene.geometry.landmark_confidence.value_or(1), 0.6);
+}
+
+TEST_F(MeshGuess, ASurfaceWithoutLandmarksIsAnError) {
+  Scene sphere;
+  sphere.geometry.kind = GeometryScene::Kind::Sphere;
+  sphere.geometry.particles = 1000;
+  for (const double length : {1.0, 3.0}) {  // a ball, a tube
+    SurfaceMesh mesh = buildOrgan(sphere).surface;
+    for (auto& v : mesh.vertices) v.z() *= length;
+    write(mesh);
+    Scene scene;
+    try {
+      useMesh(scene, file);
+      ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("is not like a stomach"), std::string::npos) << error.what();
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+    EXPECT_EQ(scene.geometry.kind, GeometryScene::Kind::Stomach) << "the scene is as it was";
+  }
 }
 
 TEST_F(MeshGuess, SaysWhatIsWrongWithTheFile) {

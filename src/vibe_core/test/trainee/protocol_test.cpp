@@ -33,10 +33,11 @@ TEST(Protocol, ReadsEveryGoal) {
       "  - suture_set: {pattern: z, bites: 8, along: 0.4, length: 3 cm, width: 5 cm, mirrored: true, cinched: false}\n"
       "  - cinch\n"
       "  - wait: {for: 2 s}\n"
-      "  - withdraw\n");
+      "  - withdraw\n"
+      "  - inspect: {along: 0.2, distance: 5 cm, for: 4 s}\n");
   EXPECT_EQ(protocol.seed, 7u);
   EXPECT_EQ(protocol.skill.name, "novice");
-  ASSERT_EQ(protocol.goals.size(), 7u);
+  ASSERT_EQ(protocol.goals.size(), 8u);
   EXPECT_EQ(std::get<InsufflateGoal>(protocol.goals[0]).patience, 40);
   const MarkGoal mark = std::get<MarkGoal>(protocol.goals[1]);
   EXPECT_DOUBLE_EQ(mark.place.along, 0.6);
@@ -55,6 +56,10 @@ TEST(Protocol, ReadsEveryGoal) {
   EXPECT_TRUE(std::holds_alternative<CinchGoal>(protocol.goals[4]));
   EXPECT_EQ(std::get<WaitGoal>(protocol.goals[5]).time, 2);
   EXPECT_TRUE(std::holds_alternative<WithdrawGoal>(protocol.goals[6]));
+  const InspectGoal look = std::get<InspectGoal>(protocol.goals[7]);
+  EXPECT_DOUBLE_EQ(look.place.along, 0.2);
+  EXPECT_DOUBLE_EQ(look.distance, 0.05);
+  EXPECT_EQ(look.time, 4);
 }
 
 TEST(Protocol, ASleeveIsARowOfSets) {
@@ -66,6 +71,15 @@ TEST(Protocol, ASleeveIsARowOfSets) {
     EXPECT_NEAR(set.centre.along, along[k], 1e-12);
     EXPECT_EQ(set.bites, 5);
   }
+}
+
+TEST(Protocol, MarksAreARow) {
+  const Protocol protocol = parse("goals:\n  - marks: {count: 2, from: 60 %, to: 40 %, around: -60 deg, for: 3 s}\n");
+  ASSERT_EQ(protocol.goals.size(), 2u);
+  const MarkGoal last = std::get<MarkGoal>(protocol.goals[1]);
+  EXPECT_DOUBLE_EQ(last.place.along, 0.4);
+  EXPECT_DOUBLE_EQ(last.place.around, -M_PI / 3);
+  EXPECT_EQ(last.time, 3);
 }
 
 TEST(Protocol, SkillsLieBetweenExpertAndNovice) {
@@ -89,6 +103,7 @@ TEST(Protocol, EveryMistakeIsNamedWithItsPlaceAndRemedy) {
   expect("goals:\n  - bite: {along: 5 mm}\n", "along");
   expect("goals:\n  - suture_set: {pattern: w}\n", "pattern");
   expect("goals:\n  - suture_set: {pattern: square, bites: 4}\n", "does not exist");
+  expect("goals:\n  - marks: {along: 0.5}\n", "along");
   expect("goals:\n  - cinch: {tension: 3 N}\n", "has none");
   expect("goals:\n  - {insufflate: {}, withdraw: {}}\n", "second goal");
   expect("goals: []\n", "no goals");

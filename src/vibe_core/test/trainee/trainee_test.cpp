@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
@@ -56,6 +57,26 @@ TEST(Trainee, InsufflatesAndBitesWhereItIsTold) {
   EXPECT_LT((place - map.position(map.at(0.5, 0.3))).norm(), 8e-3);
 }
 
+TEST(Trainee, LooksAtPlaces) {
+  Session session;
+  session.trainee.add(InsufflateGoal{});
+  const Place back{0.6, -M_PI / 2, 0, 0}, front{0.35, M_PI / 2, 0, 0};
+  session.trainee.add(InspectGoal{back});
+  session.trainee.add(InspectGoal{front});
+  session.perform();
+  for (std::size_t k = 1; k < 3; ++k)
+    EXPECT_TRUE(session.trainee.results()[k].reached) << session.trainee.results()[k].reason;
+  // the last place is before the tip, the first one is not
+  const Observation seen = observe(session.simulation);
+  const AnatomicalMap map(stomach()->organ, seen.wall);
+  const auto offAxis = [&](const Place& place) {
+    const Eigen::Vector3d way = map.position(map.at(place.along, place.around)) - seen.tip;
+    return std::acos(way.normalized().dot(seen.tip_turn * Eigen::Vector3d::UnitX()));
+  };
+  EXPECT_LT(offAxis(front), 0.87);
+  EXPECT_GT(offAxis(back), 0.87);
+}
+
 TEST(Trainee, TheSameSeedMovesTheSameWay) {
   const auto hashOf = [](std::uint64_t seed) {
     Session session(Skill::expert(), seed);
@@ -95,6 +116,38 @@ TEST(Trainee, GivesUpWithAReasonAndGoesOn) {
     EXPECT_FALSE(session.trainee.results()[k].reason.empty()) << k;
   }
   EXPECT_TRUE(session.trainee.results()[3].reached);
+}
+
+std::shared_ptr<const Model> modelOf(const Scene& scene) {
+  const std::string urdf = std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf";
+  return buildModel(scene, scene.scope ? readTextFile(urdf, "URDF") : "");
+}
+
+TEST(Trainee, NeedsAScope) {
+  Scene scene;
+  scene.geometry.particles = 500;
+  EXPECT_THROW(Trainee(modelOf(scene), Skill::expert(), 1), Error);
+}
+
+TEST(Trainee, AnOrganWithoutAnatomyIsAReasonNotACrash) {
+  Scene scene = loadScene(std::string(VIBE_CORE_DIR) + "/scenes/sphere.yaml");
+  ScopeScene& scope = scene.scope.emplace();
+  scope.base_from_anatomy = false;
+  scene.helix.emplace();
+  scene.suture.emplace();
+  const auto model = modelOf(scene);
+  Simulation simulation(model);
+  Trainee trainee(model, Skill::expert(), 1);
+  trainee.add(BiteGoal{});
+  SutureSetGoal impossible;
+  impossible.bites = 1;
+  trainee.add(impossible);
+  trainee.add(WaitGoal{0.1});
+  for (int k = 0; k < 120 && !trainee.done(); ++k) simulation.step(trainee.next(observe(simulation)));
+  ASSERT_TRUE(trainee.done());
+  EXPECT_NE(trainee.results()[0].reason.find("landmarks"), std::string::npos) << trainee.results()[0].reason;
+  EXPECT_FALSE(trainee.results()[1].reached);
+  EXPECT_TRUE(trainee.results()[2].reached);
 }
 
 TEST(Skill, ALineFromExpertToNovice) {

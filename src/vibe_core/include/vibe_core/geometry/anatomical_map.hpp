@@ -36,7 +36,7 @@ class AnatomicalMap {
  public:
   /// @param organ     rest shape and landmarks
   /// @param vertices  present positions, one per vertex of the organ [m]
-  /// @throws Error if the organ has no oesophagus, no duodenum, or no axis can be found
+  /// @throws Error if the organ has no oesophagus, no duodenum, another number of vertices, or no axis can be found
   AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> vertices);
 
   const std::vector<Eigen::Vector3d>& vertices() const { return vertices_; }
@@ -45,9 +45,11 @@ class AnatomicalMap {
   /// The wall at a place.
   /// @param along   position along the axis, 0: apex of the fundus, 1: duodenal end
   /// @param around  angle from the greater curvature, positive towards the anterior wall [rad]
+  /// @throws Error outside of 0 to 1, and in the opening of oesophagus and duodenum
   WallPoint at(double along, double around) const;
   /// The point reached from another one along the wall: first distally, then towards the front. Negative distances go
   /// proximally and to the back. [m]
+  /// @throws Error if the way leads into an end of the organ, over the apex of the fundus, or more than half around it
   WallPoint walk(const WallPoint& from, double distal, double anterior) const;
 
   double along(const WallPoint& point) const;              ///< see at() [1]
@@ -66,6 +68,7 @@ class AnatomicalMap {
   Eigen::Vector3d direction(const WallPoint& point, Way way) const;
   WallPoint nearest(const Eigen::Vector3d& place, int around_triangle) const;
   void findDirections();
+  bool inEnd(int triangle) const;
 
   const std::vector<std::array<int, 3>>& triangles_;
   std::vector<Eigen::Vector3d> vertices_;

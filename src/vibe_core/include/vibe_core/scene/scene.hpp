@@ -31,6 +31,7 @@ struct GeometryScene {
   double target_volume = 0;  ///< scale uniformly to this volume [m^3]; 0: keep the size
   std::array<double, 3> rotation_rpy{0, 0, 0};  ///< fixed-axis roll, pitch, yaw from the file's axes to ours [rad]
   std::optional<Eigen::Vector3d> oesophagus, fundus, incisura, pylorus;  ///< landmarks in the file's frame and unit
+  std::optional<double> landmark_confidence;  ///< of guessed landmarks, 0 to 1, see useMesh(); empty: stated
 };
 
 /// Fibres in the wall, in two families at an angle to each side of the organ's long axis.

@@ -22,6 +22,13 @@ struct InsufflateGoal {
   double patience = 30;  ///< time after which the goal is given up [s]
 };
 
+/// Looks at a place of the wall: from a distance, with the place in the middle of the endoscope's picture.
+struct InspectGoal {
+  Place place;
+  double distance = 40e-3;  ///< of the tip from the wall [m]
+  double time = 1;          ///< that it stays there [s]
+};
+
 struct MarkGoal {
   Place place;
   double time = 2;  ///< that the pedal is pressed [s]
@@ -52,7 +59,8 @@ struct WaitGoal {
   double time = 1;  ///< [s]
 };
 
-using Goal = std::variant<InsufflateGoal, MarkGoal, BiteGoal, SutureSetGoal, CinchGoal, WithdrawGoal, WaitGoal>;
+using Goal =
+    std::variant<InsufflateGoal, InspectGoal, MarkGoal, BiteGoal, SutureSetGoal, CinchGoal, WithdrawGoal, WaitGoal>;
 
 /// One line for people: "suture set u at 45 %, 0 deg".
 std::string describe(const Goal& goal);

@@ -10,6 +10,9 @@ namespace vibe {
 struct Skill {
   std::string name = "expert";
   double pace = 1;              ///< speed of the hand relative to an experienced one [1]
+  double look_time = 7;         ///< that is taken to look before each bite [s]
+  double foresight = 1;         ///< how well it imagines where the needle will pass when the wall is drawn in, 0 to 1:
+                                ///< not beyond what the device looks like now, fully
   double reaction_time = 0.15;  ///< from what is seen or felt to the motion of the hand [s]
   double aim_error = 1e-3;      ///< standard deviation of the place of a bite or mark, per direction [m]
   double force_limit = 5;       ///< at which a motion is stopped [N]

@@ -1,0 +1,116 @@
+#include "trainee/bite_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trainee/device_geometry.hpp"
+#include "trainee/ik_solution.hpp"
+#include "trainee/imagined_draw.hpp"
+
+namespace vibe {
+
+namespace {
+
+constexpr int kRolls = 12;             // positions of the device around its axis that are considered
+constexpr int kRounds = 4;             // of aiming beside the target
+constexpr double kStep = 0.8;          // part of a miss that is corrected per round [1]
+constexpr double kGoodDepth = 4.5e-3;  // of the needle, where more is not better [m]
+// Costs, per metre or radian; design choice: a millimetre beside the target against one of depth, of the device's arm
+// that presses into the wall, and of half a radian of motion.
+constexpr double kMissCost = 1e3, kShallowCost = 2e3, kPressCost = 0.5e3, kMotionCost = 1.5;
+
+// Where the closed arm's needle passes, from the drawn-in helix, in scope_tip [m].
+const Eigen::Vector3d kNeedleFromHelix(0, -5.3e-3, 5e-3);
+
+Eigen::Quaterniond turnOf(const Model& model, const Hand::Joints& joints) {
+  std::vector<Eigen::Isometry3d> poses;
+  model.tool->forwardKinematics(joints, poses);
+  return Eigen::Quaterniond((model.tool_base * poses[model.tip_link]).linear());
+}
+
+class Planner {
+ public:
+  Planner(const WallPoint& target, Operator& me) : target_(target), me_(me), map_(*me.seen_map) {}
+
+  /// Where to take hold with the tip in an orientation.
+  BitePlan aimed(const Eigen::Quaterniond& turn, WallPoint held) const {
+    BitePlan best;
+    for (int round = 0; round < kRounds; ++round) {
+      const std::optional<NeedleView> needle = imagineNeedle(me_.model(), me_.view(), {held, turn});
+      if (!needle) break;
+      const Eigen::Vector2d miss =
+          map_.alongWall(target_, map_.position(needle->where) - map_.position(target_)) + me_.surprise;
+      const double cost = costOf(held, turn, miss.norm(), needle->depth);
+      if (cost < best.cost) best = {held, {}, miss.norm(), needle->depth, cost};
+      held = map_.walk(held, -kStep * miss[0], -kStep * miss[1]);
+    }
+    best.held = foreseen(best.held, turn);
+    return best;
+  }
+
+  BitePlan withRoll(const Hand::Joints& rolled) const {
+    BitePlan plan = aimed(turnOf(me_.model(), rolled), target_);
+    if (!std::isfinite(plan.cost)) return plan;
+    const IkSolution reached = reachHeld(plan.held, rolled);
+    plan = aimed(turnOf(me_.model(), reached.joints), plan.held);
+    plan.joints = reached.joints;
+    plan.cost += kMissCost * reached.miss;
+    for (int j = Rotation; j <= TipLeftRight; ++j)
+      plan.cost += kMotionCost * std::abs(plan.joints[j] - me_.hand.joints()[j]);
+    return plan;
+  }
+
+  BitePlan anyRoll() const {
+    const Eigen::Vector3d at = me_.position(target_), outward = me_.outward(target_);
+    Hand::Joints joints = aimAt(me_.model(), at, outward, helixInTip(kHelixOut), me_.hand.joints()).joints;
+    joints[HelixAdvance] = kHelixOut;
+    BitePlan best;
+    const int considered = 1 + static_cast<int>(std::lround(me_.skill().foresight * (kRolls - 1)));
+    for (int k = 0; k < considered; ++k) {  // 0, 1, -1, 2, ...
+      const auto one = rolled(me_.model(), joints, 2 * M_PI * (k % 2 == 1 ? k / 2 + 1 : -k / 2) / kRolls);
+      if (!one) continue;
+      const BitePlan plan = withRoll(*one);
+      if (plan.cost < best.cost) best = plan;
+    }
+    if (!std::isfinite(best.cost)) best.held = target_, best.joints = joints;
+    return best;
+  }
+
+ private:
+  /// Between where the needle is beside the helix as the device looks now, and a place that is right with foresight.
+  WallPoint foreseen(const WallPoint& right, const Eigen::Quaterniond& turn) const {
+    const double part = me_.skill().foresight;
+    if (part >= 1) return right;
+    const Eigen::Vector2d beside = -map_.alongWall(target_, turn * kNeedleFromHelix);
+    const Eigen::Vector2d there = map_.alongWall(target_, map_.position(right) - map_.position(target_));
+    const Eigen::Vector2d place = beside + part * (there - beside);
+    return map_.walk(target_, place[0], place[1]);
+  }
+
+  double costOf(const WallPoint& held, const Eigen::Quaterniond& turn, double miss, double depth) const {
+    // of the open arm beyond the wall where the helix takes hold
+    const Eigen::Vector3d arm = turn * (openNeedleInTip() - helixInTip(kHelixOut));
+    const double pressed = std::max(0.0, arm.dot(me_.outward(held)));
+    return kMissCost * miss + kShallowCost * std::max(0.0, kGoodDepth - depth) + kPressCost * pressed;
+  }
+
+  IkSolution reachHeld(const WallPoint& held, const Hand::Joints& start) const {
+    return reachFor(me_.model(), me_.position(held) + kHelixDepth * me_.outward(held), helixInTip(kHelixOut), start);
+  }
+
+  const WallPoint target_;
+  Operator& me_;
+  const AnatomicalMap& map_;
+};
+
+}  // namespace
+
+BitePlan planBite(const WallPoint& target, Operator& me) {
+  return Planner(target, me).anyRoll();
+}
+
+BitePlan planBiteFromHere(const WallPoint& target, Operator& me) {
+  return Planner(target, me).aimed(me.view().tip_turn, target);
+}
+
+}  // namespace vibe

@@ -1,0 +1,11 @@
+#pragma once
+#include "trainee/operator.hpp"
+
+namespace vibe {
+
+/// Moves the scope to joint positions past the walls: directly if they are near, else straightened and drawn back into
+/// the entry, turned, and forward from there. Where it meets a wall with more than Skill::force_limit it comes back.
+/// @return whether it arrived
+bool travel(const Hand::Joints& joints, Operator& me);
+
+}  // namespace vibe
