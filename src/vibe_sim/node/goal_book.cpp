@@ -58,8 +58,10 @@ void GoalBook::start(Trainee& trainee) {
 }
 
 void GoalBook::abandon(const std::string& reason) {
-  for (Entry& entry : message_.goals)
+  for (Entry& entry : message_.goals) {
     if (isOpen(entry)) fail(reason, entry);
+    entry.suture = -1;  // the next session has other sutures
+  }
   entry_.clear();
   ended_ = 0;
 }

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <charconv>
+#include <cmath>
 #include <vector>
 
 #include "vibe_core/common/error.hpp"
@@ -36,49 +37,51 @@ const Kind* findKind(const std::string& name) {
   return found == kKinds.end() ? nullptr : &*found;
 }
 
-/// Writes keys whose value is not the one that stands for the default.
-class Writer {
- public:
-  explicit Writer(YAML::Emitter& out) : out_(out) {
-    out_.SetDoublePrecision(std::numeric_limits<double>::max_digits10);
-  }
+/// The shortest text that reads back as the same number.
+std::string textOf(double value) {
+  if (std::isnan(value)) return ".nan";
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
 
-  template <typename T>
-  void add(const char* key, const T& value, const T& absent = T()) {
-    if (value != absent) out_ << YAML::Key << key << YAML::Value << value;
-  }
+void add(const char* key, double value, YAML::Emitter& out) {
+  out << YAML::Key << key << YAML::Value << textOf(value);
+}
 
- private:
-  YAML::Emitter& out_;
-};
+/// Where 0 stands for the default.
+void addIfGiven(const char* key, double value, YAML::Emitter& out) {
+  if (value != 0) add(key, value, out);
+}
 
-void addSet(const vibe_msgs::TraineeGoal& message, Writer& writer) {
-  writer.add("pattern", message.pattern);
-  writer.add("bites", message.bites);
-  writer.add("length", message.length);
-  writer.add("width", message.width);
-  writer.add("mirrored", message.mirrored != 0);
-  writer.add("cinched", message.leave_open == 0, true);
+void addSet(const vibe_msgs::TraineeGoal& message, YAML::Emitter& out) {
+  if (!message.pattern.empty()) out << YAML::Key << "pattern" << YAML::Value << message.pattern;
+  addIfGiven("bites", message.bites, out);
+  addIfGiven("length", message.length, out);
+  addIfGiven("width", message.width, out);
+  out << YAML::Key << "mirrored" << YAML::Value << (message.mirrored != 0);
+  out << YAML::Key << "cinched" << YAML::Value << (message.leave_open == 0);
 }
 
 void addPlace(const vibe_msgs::TraineeGoal& message, YAML::Emitter& out) {
-  out << YAML::Key << "along" << YAML::Value << message.along << YAML::Key << "around" << YAML::Value << message.around;
-  out << YAML::Key << "distal" << YAML::Value << message.distal << YAML::Key << "anterior" << YAML::Value
-      << message.anterior;
+  add("along", message.along, out);
+  add("around", message.around, out);
+  add("distal", message.distal, out);
+  add("anterior", message.anterior, out);
 }
 
 // The language of protocols has one reader, with its ranges, defaults and sentences.
 std::string toProtocol(const vibe_msgs::TraineeGoal& message) {
   YAML::Emitter out;
-  Writer writer(out);
   const Kind* kind = findKind(message.kind);
   out << YAML::Flow << YAML::BeginMap << YAML::Key << "name" << YAML::Value << "message" << YAML::Key << "goals"
       << YAML::Value << YAML::BeginSeq << YAML::BeginMap << YAML::Key << message.kind << YAML::Value << YAML::BeginMap;
   if (kind && kind->has_place) addPlace(message, out);
-  if (kind && kind->time) writer.add(kind->time, message.time);
-  if (message.kind == "suture_set") addSet(message, writer);
-  if (message.kind == "inspect") writer.add("distance", message.distance);
-  if (message.kind == "withdraw") writer.add("insertion", message.insertion);
+  if (kind && kind->time) addIfGiven(kind->time, message.time, out);
+  if (message.kind == "suture_set") addSet(message, out);
+  if (message.kind == "inspect") addIfGiven("distance", message.distance, out);
+  if (message.kind == "withdraw") addIfGiven("insertion", message.insertion, out);
   out << YAML::EndMap << YAML::EndMap << YAML::EndSeq << YAML::EndMap;
   return out.c_str();
 }

@@ -3,7 +3,11 @@
 and without."""
 
 import math
+import os
+import re
+import subprocess
 import sys
+import tempfile
 import unittest
 
 import rospy
@@ -13,6 +17,7 @@ from std_msgs.msg import UInt32
 from vibe_msgs.msg import GoalProgress, StepInput, TraineeGoal, TraineeProgress
 from vibe_msgs.srv import Reset, SendGoal
 
+TUTORIAL = os.path.join(os.path.dirname(os.path.realpath(__file__)), "../../../../docs/tutorials/command_a_trainee.md")
 QUEUED, ACTIVE = GoalProgress.QUEUED, GoalProgress.ACTIVE
 REACHED, FAILED = GoalProgress.REACHED, GoalProgress.FAILED
 
@@ -140,6 +145,20 @@ class ServoTest(unittest.TestCase):
         self.assertFalse(reply.success)
         self.assertGreater(len(reply.message), 20)
         self.assertEqual(self.progress.messages[-1].skill, "novice")
+
+    def test_the_program_of_the_tutorial(self):
+        self.begin(lockstep="false")
+        with open(TUTORIAL, encoding="utf-8") as text:
+            program = re.search(r"```python\n(.*?)```", text.read(), re.DOTALL).group(1)
+        with tempfile.NamedTemporaryFile("w", suffix=".py") as file:
+            file.write(program)
+            file.flush()
+            done = subprocess.run([sys.executable, file.name], stdout=subprocess.PIPE, universal_newlines=True, timeout=240)
+        self.assertEqual(done.returncode, 0)
+        lines = done.stdout.splitlines()
+        self.assertEqual(len(lines), 4, done.stdout)
+        self.assertTrue(lines[0].startswith("insufflate: (True"), done.stdout)
+        self.assertTrue(lines[3].startswith("withdraw: (True"), done.stdout)
 
     def test_wrong_parameters_end_the_program(self):
         trainee = self.start("vibe_trainee", skill="master")
