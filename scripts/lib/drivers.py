@@ -34,21 +34,33 @@ class Driver:
         stopped = [(process.name, process.stop()) for process in reversed(self.senders)]
         return [name for name, in_time in stopped if not in_time]
 
+    def is_done(self):
+        """Whether who drives has done everything there was to do. Raises GraphError when it failed."""
+        return False
+
     def clean_up(self):
         """After all nodes have ended."""
 
 
 class Trainee(Driver):
-    """A script, in simulated time and in lock-step, so that the session repeats to the bit."""
+    """A protocol or a script, in simulated time and in lock-step, so that the session repeats to the bit."""
 
     simulated_time = True
+
+    def __init__(self, arguments):
+        super().__init__(arguments)
+        self.node = None
 
     def set_parameters(self, put):
         put("/vibe_trainee/script", self.arguments.script)
         put("/vibe_trainee/lockstep", True)
+        put("/vibe_trainee/exit_when_done", True)
 
     def start(self, graph):
-        graph.start("vibe_trainee", ["rosrun", "vibe_sim", "vibe_trainee"])
+        self.node = graph.start("vibe_trainee", ["rosrun", "vibe_sim", "vibe_trainee"], visible=True)
+
+    def is_done(self):
+        return self.node.status() == 0
 
 
 class Device(Driver):

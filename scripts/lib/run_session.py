@@ -108,8 +108,11 @@ class Session:
         self.driver.set_parameters(put)
 
     def watch(self):
-        """Until the simulator has ended or a person has closed rviz. Raises GraphError when anything else dies."""
+        """Until the simulator or who drives it has ended, or a person has closed rviz. Raises GraphError when anything
+        else dies."""
         while self.sim.status() is None:
+            if self.driver.is_done():
+                return
             dead = self.graph.dead()
             if dead is not None and dead is not self.sim:
                 raise GraphError(

@@ -22,7 +22,7 @@ sameHash() {
 
 headless() {
   (set +u && source "$root/devel/setup.bash" && rosrun vibe_core vibe_headless --quiet --duration 60 \
-    --script package://vibe_core/trainees/expert.yaml) >"$scratch/headless.txt"
+    --script package://vibe_core/trainees/first.yaml) >"$scratch/headless.txt"
   sameHash "$scratch/headless.txt"
 }
 

@@ -55,7 +55,8 @@ void addOptions(CLI::App& app, Options& o) {
       ->type_name("N")
       ->check(finiteFrom(0));
   app.add_flag("--quiet", o.quiet, "print the state hash only");
-  app.add_flag("--script-length", o.script_length, "print the length of the script [s] and end");
+  app.add_flag("--script-length", o.script_length,
+               "print the length of the script [s] and end; 0: a protocol, which takes as long as its goals");
 }
 
 std::shared_ptr<const Model> load(const Options& o) {
@@ -92,8 +93,7 @@ void printProgress(double time, double duration, const std::string& doing) {
 
 void printScriptLength(const Options& o) {
   const std::unique_ptr<TraineeScript> script = loadScript(o);
-  if (!script) throw Error("--script-length needs a --script with actions; a protocol of goals has no fixed length.");
-  std::printf("%.3f\n", script->duration());
+  std::printf("%.3f\n", script ? script->duration() : 0.0);
 }
 
 void printEvents(const std::vector<Event>& events, bool over_progress) {

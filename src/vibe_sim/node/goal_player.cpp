@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::uint32_t kQueue = 10000;  // of small messages: none may be lost
 constexpr double kResendAfter = 0.5;     // time stands still: something may have been lost [s]
-constexpr double kSettling = 0.5;        // after the last goal, before the node ends [s]
 
 }  // namespace
 
@@ -79,12 +78,13 @@ void GoalPlayer::perform(const Sight& sight) {
   if (sight.seen.step != last_step_ + 1) end();
   if (!trainee_) begin();
   last_step_ = sight.seen.step;
+  // without another input, so that in lock-step the session ends in the state in which the last goal ended
+  if (exit_when_done_ && !trainee_->goals().empty() && trainee_->done()) return ros::requestShutdown();
   last_sent_ = trainee_->next(sight.seen);
   last_stamp_ = sight.stamp;
   last_send_ = steadyTime();
   sender_.send(last_sent_, last_stamp_);
   server_.follow(sight.seen, sight.stamp);
-  exitLater(sight.seen);
 }
 
 void GoalPlayer::begin() {
@@ -109,17 +109,6 @@ void GoalPlayer::report(int number, const GoalResult& result) const {
               describe(trainee_->goals()[static_cast<std::size_t>(number)]).c_str(),
               result.reached ? "reached" : "given up", result.reason.empty() ? "" : ", ", result.reason.c_str());
   std::fflush(stdout);
-}
-
-void GoalPlayer::exitLater(const Observation& seen) {
-  if (!exit_when_done_) return;
-  if (!trainee_->done() || trainee_->goals().empty()) {
-    done_since_ = -1;
-  } else if (done_since_ < 0) {
-    done_since_ = seen.time;
-  } else if (seen.time - done_since_ >= kSettling) {
-    ros::requestShutdown();
-  }
 }
 
 void GoalPlayer::resend(const ros::WallTimerEvent&) {

@@ -35,7 +35,6 @@ class GoalPlayer {
   void begin();
   void end();
   void report(int number, const GoalResult& result) const;
-  void exitLater(const Observation& seen);
 
   Protocol protocol_;
   bool lockstep_, exit_when_done_;
@@ -51,7 +50,6 @@ class GoalPlayer {
   std::optional<Sight> sight_;                   // the next one to act on
   std::unique_ptr<Trainee> trainee_;
   std::int64_t last_step_ = -1;
-  double done_since_ = -1;  // [s] of the session; -1: goals are left
 
   StepInput last_sent_;
   std::int64_t last_stamp_ = -1;  // [ns]; -1: nothing has been sent

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "trainee/device_geometry.hpp"
 #include "trainee/ik_solution.hpp"
@@ -13,7 +14,6 @@ namespace vibe {
 namespace {
 
 constexpr double kHelixHome = 2e-3;     // [m]
-constexpr double kFullyDrawn = 1e-3;    // helix_advance at which the wall is in the device [m]
 constexpr double kStandOff = 10e-3;     // gap between helix and wall before contact [m]
 constexpr double kNear = 3e-3;          // gap within reach of the helix, with a margin [m]
 constexpr double kAside = 1.5e-3;       // of the helix from its aim along the wall, good enough [m]
@@ -24,6 +24,7 @@ constexpr double kThrough = 1.15;       // the least with which an expert closes
 constexpr double kOnTarget = 2.5e-3;    // of the needle from the target, not to be improved [m]
 constexpr double kBesideTarget = 5e-3;  // to be tried again [m]
 constexpr double kMorePerTry = 1e-3;    // with every further try that much more is accepted [m]
+constexpr double kFold = 4e-3;          // a surprise that is learned fully; of larger ones that much [m]
 constexpr double kTurn = 6.283185307179586;
 
 WallPoint withError(const WallPoint& target, Operator& me) {
@@ -33,6 +34,10 @@ WallPoint withError(const WallPoint& target, Operator& me) {
 
 Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
   return v - normal * normal.dot(v);
+}
+
+std::string millimetres(double length) {
+  return std::to_string(std::lround(1e3 * length)) + " mm";
 }
 
 }  // namespace
@@ -83,7 +88,7 @@ bool BiteAttempt::grab() {
   approach(-kStandOff, 0.5);
   // the scope gives way, so the device may lie otherwise than planned
   const BitePlan seen = planBiteFromHere(target_, me_);
-  if (std::isfinite(seen.cost)) plan_.held = seen.held;
+  if (std::isfinite(seen.cost)) plan_.held = seen.held, plan_.drawn = seen.drawn;
   for (const double more : {1, 1, 2, 2, 3, 4}) {  // the wall yields
     if (!approach(more * kHelixDepth, 0.3)) break;
     if (gap() < kNear && aside_ < kAside) break;
@@ -113,27 +118,31 @@ void BiteAttempt::drawIn() {
     hand_.move(HelixAdvance, me_.skill().drawn, 0.8);
     return settle();
   }
-  hand_.move(HelixAdvance, kFullyDrawn, 1.5, [this] {
+  const auto isGoodNow = [this] {
     const std::optional<NeedleView> needle = look();
     return needle && isGood(*needle);
-  });
+  };
+  hand_.move(HelixAdvance, plan_.drawn, 1.2, isGoodNow);
+  settle();
+  if (!isDeep()) hand_.move(HelixAdvance, kFullyDrawn, 0.6, [this] { return isDeep(); });
   settle();
   pushOn();
 }
 
+bool BiteAttempt::isDeep() const {
+  const std::optional<NeedleView> needle = look();
+  return needle && needle->depth >= kDeepEnough * needle->thickness;
+}
+
 // Where the wall has not come far enough, the device goes to the wall.
 void BiteAttempt::pushOn() {
-  const auto isDeep = [this] {
-    const std::optional<NeedleView> needle = look();
-    return needle && needle->depth >= kDeepEnough * needle->thickness;
-  };
   if (isDeep() || !me_.view().grips) return;
   std::vector<Eigen::Isometry3d> poses;
   me_.model().tool->forwardKinematics(hand_.joints(), poses);
   const Eigen::Isometry3d tip = me_.model().tool_base * poses[me_.model().tip_link];
   const Hand::Joints joints =
       reachFor(me_.model(), tip * Eigen::Vector3d(kPushed, 0, 0), Eigen::Vector3d::Zero(), hand_.joints()).joints;
-  hand_.moveTo(joints, 0.8, [&] { return isDeep() || hand_.feelsTooMuch(); });
+  hand_.moveTo(joints, 0.8, [this] { return isDeep() || hand_.feelsTooMuch(); });
   settle();
 }
 
@@ -145,8 +154,10 @@ void BiteAttempt::learn(const NeedleView& needle) {
       me_.model(), before_, {held, before_.tip_turn, before_.joints[HelixAdvance], me_.view().joints[HelixAdvance]});
   if (!imagined) return;
   const AnatomicalMap& map = *me_.seen_map;
-  me_.surprise =
-      me_.skill().foresight * map.alongWall(target_, map.position(needle.where) - map.position(imagined->where));
+  const Eigen::Vector2d further = map.alongWall(target_, map.position(needle.where) - map.position(imagined->where));
+  // a large one is of a fold, which will lie otherwise next time
+  const double part = std::min(1.0, kFold / std::max(further.norm(), 1e-9));
+  me_.surprise = me_.skill().foresight * part * further;
 }
 
 // What is seen before the arm closes; empty: all is well.
@@ -157,7 +168,7 @@ std::optional<GoalResult> BiteAttempt::judgeView() {
   learn(*needle);
   if (!me_.skill().checks_depth) return {};
   if (missOf(*needle) > kBesideTarget + number_ * kMorePerTry)
-    return GoalResult{false, "the needle would pass beside its target"};
+    return GoalResult{false, "the needle would pass " + millimetres(missOf(*needle)) + " beside its target"};
   if (!last_ && needle->depth < kThrough * needle->thickness)
     return GoalResult{false, "the needle would go through a part of the wall only"};
   return {};

@@ -26,6 +26,7 @@ class BiteAttempt {
   std::optional<NeedleView> look() const;
   double missOf(const NeedleView& needle) const;
   bool isGood(const NeedleView& needle) const;
+  bool isDeep() const;
   void drawIn();
   void pushOn();
   void learn(const NeedleView& needle);

@@ -11,10 +11,14 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRolls = 12;             // positions of the device around its axis that are considered
-constexpr int kRounds = 4;             // of aiming beside the target
-constexpr double kStep = 0.8;          // part of a miss that is corrected per round [1]
-constexpr double kGoodDepth = 4.5e-3;  // of the needle, where more is not better [m]
+constexpr int kRolls = 12;                               // positions of the device around its axis that are considered
+constexpr int kRounds = 4;                               // of aiming beside the target
+constexpr double kDrawn[] = {14e-3, 10e-3, 6e-3, 2e-3};  // helix_advance at the end that is considered [m]
+constexpr double kBeside = 2e-3;                         // variations of a plan: of the place of the helix [m]
+constexpr double kLessFollows = 50e-3;                   // and of ImaginedDraw::follows [m]
+constexpr double kLost = 20e-3;                          // counts as the miss of a needle that meets nothing [m]
+constexpr double kStep = 0.8;                            // part of a miss that is corrected per round [1]
+constexpr double kGoodDepth = 4.5e-3;                    // of the needle, where more is not better [m]
 // Costs, per metre or radian; design choice: a millimetre beside the target against one of depth, of the device's arm
 // that presses into the wall, and of half a radian of motion.
 constexpr double kMissCost = 1e3, kShallowCost = 2e3, kPressCost = 0.5e3, kMotionCost = 1.5;
@@ -32,18 +36,16 @@ class Planner {
  public:
   Planner(const WallPoint& target, Operator& me) : target_(target), me_(me), map_(*me.seen_map) {}
 
-  /// Where to take hold with the tip in an orientation.
-  BitePlan aimed(const Eigen::Quaterniond& turn, WallPoint held) const {
+  /// Where to take hold with the tip in an orientation, and how far to draw the wall in: as little as gives depth. A
+  /// needle that goes through the middle of a narrow fold may come out on either side of it.
+  BitePlan aimed(const Eigen::Quaterniond& turn, const WallPoint& held) const {
     BitePlan best;
-    for (int round = 0; round < kRounds; ++round) {
-      const std::optional<NeedleView> needle = imagineNeedle(me_.model(), me_.view(), {held, turn});
-      if (!needle) break;
-      const Eigen::Vector2d miss =
-          map_.alongWall(target_, map_.position(needle->where) - map_.position(target_)) + me_.surprise;
-      const double cost = costOf(held, turn, miss.norm(), needle->depth);
-      if (cost < best.cost) best = {held, {}, miss.norm(), needle->depth, cost};
-      held = map_.walk(held, -kStep * miss[0], -kStep * miss[1]);
+    for (const double drawn : kDrawn) {
+      const BitePlan plan = aimed(turn, held, drawn);
+      if (plan.cost < best.cost) best = plan;
+      if (plan.depth >= kGoodDepth && plan.cost <= best.cost) break;
     }
+    if (std::isfinite(best.cost)) best.cost += kMissCost * uncertainty(best, turn);
     best.held = foreseen(best.held, turn);
     return best;
   }
@@ -77,6 +79,19 @@ class Planner {
   }
 
  private:
+  BitePlan aimed(const Eigen::Quaterniond& turn, WallPoint held, double drawn) const {
+    BitePlan best;
+    for (int round = 0; round < kRounds; ++round) {
+      const std::optional<NeedleView> needle = imagineNeedle(me_.model(), me_.view(), {held, turn, kHelixOut, drawn});
+      if (!needle) break;
+      const Eigen::Vector2d miss = missOf(*needle);
+      const double cost = costOf(held, turn, miss.norm(), needle->depth);
+      if (cost < best.cost) best = {held, {}, drawn, miss.norm(), needle->depth, cost};
+      held = map_.walk(held, -kStep * miss[0], -kStep * miss[1]);
+    }
+    return best;
+  }
+
   /// Between where the needle is beside the helix as the device looks now, and a place that is right with foresight.
   WallPoint foreseen(const WallPoint& right, const Eigen::Quaterniond& turn) const {
     const double part = me_.skill().foresight;
@@ -85,6 +100,27 @@ class Planner {
     const Eigen::Vector2d there = map_.alongWall(target_, map_.position(right) - map_.position(target_));
     const Eigen::Vector2d place = beside + part * (there - beside);
     return map_.walk(target_, place[0], place[1]);
+  }
+
+  /// How much farther from the target the needle would pass, in the mean, if the helix took hold a little beside or
+  /// less of the wall followed: large among folds [m].
+  double uncertainty(const BitePlan& plan, const Eigen::Quaterniond& turn) const {
+    double sum = 0;
+    int count = 0;
+    const auto add = [&](const ImaginedDraw& draw) {
+      const std::optional<NeedleView> needle = imagineNeedle(me_.model(), me_.view(), draw);
+      sum += std::max(0.0, (needle ? missOf(*needle).norm() : kLost) - plan.miss);
+      ++count;
+    };
+    for (const auto& [distal, anterior] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+      add({map_.walk(plan.held, distal * kBeside, anterior * kBeside), turn, kHelixOut, plan.drawn});
+    add({plan.held, turn, kHelixOut, plan.drawn, kLessFollows});
+    return sum / count;
+  }
+
+  /// Of a needle from the target, distal and anterior [m].
+  Eigen::Vector2d missOf(const NeedleView& needle) const {
+    return map_.alongWall(target_, map_.position(needle.where) - map_.position(target_)) + me_.surprise;
   }
 
   double costOf(const WallPoint& held, const Eigen::Quaterniond& turn, double miss, double depth) const {

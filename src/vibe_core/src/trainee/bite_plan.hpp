@@ -11,6 +11,7 @@ namespace vibe {
 struct BitePlan {
   WallPoint held;       ///< by the helix
   Hand::Joints joints;  ///< with the helix on the wall
+  double drawn = 0;     ///< helix_advance to which the wall is to be drawn [m]
   double miss = 0;      ///< of the needle from the target along the wall, as imagined [m]
   double depth = 0;     ///< of the needle, as imagined [m]
   double cost = std::numeric_limits<double>::infinity();

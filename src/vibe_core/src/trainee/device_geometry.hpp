@@ -6,6 +6,7 @@ namespace vibe {
 // The device as its operator knows it; see the URDF of the endoscope.
 
 constexpr double kHelixOut = 26e-3;     ///< helix_advance with which it goes to the wall [m]
+constexpr double kFullyDrawn = 1e-3;    ///< and at which the wall is in the device [m]
 constexpr double kHelixDepth = 1.5e-3;  ///< into the wall, so that it is surely in reach [m]
 
 /// Tip of the helix in scope_tip [m].

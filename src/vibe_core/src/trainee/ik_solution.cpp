@@ -14,7 +14,6 @@ constexpr int kDirectedRounds =
 constexpr double kMissWeight = 1 / 2e-3;  // a miss of 2 mm costs as much as half a radian of turn
 constexpr double kTurnWeight = 2;
 constexpr double kMoveWeight = 0.15;  // per radian of joint motion: prefers solutions near the current position
-constexpr double kSlice = 0.02;       // of the axis, to both sides
 
 // Of reachFor(): a damped Newton iteration with the smallest motion, in which 0.1 m of insertion count as a radian.
 constexpr int kReaching = TipLeftRight + 1;  // joints that move the tip
@@ -29,10 +28,6 @@ Eigen::Vector3d pointAt(const Model& model, const std::array<double, kJointCount
   std::vector<Eigen::Isometry3d> poses;
   model.tool->forwardKinematics(joints, poses);
   return model.tool_base * (poses[model.tip_link] * offset);
-}
-
-Eigen::Vector3d positionOf(const State& state, int i) {
-  return {state.x[i], state.y[i], state.z[i]};
 }
 
 IkSolution aimFrom(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
@@ -65,46 +60,6 @@ double costOf(const IkSolution& aim, const std::array<double, kJointCount>& star
 }
 
 }  // namespace
-
-WallPlace placeOf(const Model& model, const State& state, int particle) {
-  WallPlace place{positionOf(state, particle), Eigen::Vector3d::Zero()};
-  for (const auto& t : model.organ.surface.triangles) {
-    if (t[0] != particle && t[1] != particle && t[2] != particle) continue;
-    const Eigen::Vector3d a = positionOf(state, t[0]);
-    place.outward += (positionOf(state, t[1]) - a).cross(positionOf(state, t[2]) - a);
-  }
-  place.outward.normalize();
-  return place;
-}
-
-int particleAt(const Model& model, double along, double angle) {
-  const auto& rest = model.organ.surface.vertices;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero(), greater = Eigen::Vector3d::Zero();
-  int count = 0, greater_count = 0;
-  const auto inSlice = [&](int i) {
-    return std::abs(model.along[i] - along) < kSlice && model.organ.end[i] == End::None;
-  };
-  for (int i = 0; i < model.particle_count; ++i) {
-    if (!inSlice(i)) continue;
-    centre += rest[i], ++count;
-    if (model.organ.wall[i] == Wall::GreaterCurvature) greater += rest[i], ++greater_count;
-  }
-  if (count == 0 || greater_count == 0) return -1;
-  centre /= count;
-  const Eigen::Vector3d side = model.organ.landmarks.anterior;
-  Eigen::Vector3d out = greater / greater_count - centre;
-  out = (out - side * side.dot(out)).normalized();
-  const Eigen::Vector3d wanted = std::cos(angle) * out + std::sin(angle) * side;
-  int best = -1;
-  double max = -1;
-  for (int i = 0; i < model.particle_count; ++i) {
-    if (!inSlice(i)) continue;
-    const double nearness =
-        wanted.dot((rest[i] - centre).normalized()) - std::abs(model.along[i] - along);  // both of the order of 0.01
-    if (nearness > max) max = nearness, best = i;
-  }
-  return best;
-}
 
 IkSolution aimAt(const Model& model, const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                  const Eigen::Vector3d& offset, const std::array<double, kJointCount>& start) {

@@ -3,23 +3,10 @@
 #include <array>
 #include <optional>
 
+#include "vibe_core/input/step_input.hpp"
 #include "vibe_core/model/model.hpp"
-#include "vibe_core/state/state.hpp"
 
 namespace vibe {
-
-/// A target point on the wall.
-struct WallPlace {
-  Eigen::Vector3d point;    ///< in world [m]
-  Eigen::Vector3d outward;  ///< unit vector out of the lumen
-};
-
-/// Current position of a particle, with the direction of the wall around it.
-WallPlace placeOf(const Model& model, const State& state, int particle);
-
-/// The particle at an anatomical position at rest: `along` the organ's axis (0: apex of the fundus, 1: pylorus), at an
-/// angle around it from the greater curvature [rad]: positive anterior, negative posterior.
-int particleAt(const Model& model, double along, double angle);
 
 /// Joint positions that bring a point of the scope tip to a target, with the viewing direction as close to the wanted
 /// one as its four joints allow.

@@ -9,12 +9,11 @@ namespace vibe {
 
 namespace {
 
-constexpr double kPatch = 5e-3;      // radius of what the helix holds, which moves as one [m]
-constexpr double kFollowing = 0.14;  // at this distance nothing follows: of the size of the organ, measured [m]
+constexpr double kPatch = 5e-3;  // radius of what the helix holds, which moves as one [m]
 
 // Displacement of a membrane around a point load, over that of the load.
-double following(double distance) {
-  return std::clamp(std::log(kFollowing / std::max(distance, kPatch)) / std::log(kFollowing / kPatch), 0.0, 1.0);
+double following(double distance, double none) {
+  return std::clamp(std::log(none / std::max(distance, kPatch)) / std::log(none / kPatch), 0.0, 1.0);
 }
 
 }  // namespace
@@ -27,7 +26,7 @@ std::optional<NeedleView> imagineNeedle(const Model& model, const Observation& s
   imagined.tip_turn = draw.turn;
   imagined.tip = held + kHelixDepth * outward - draw.turn * helixInTip(draw.from);
   const Eigen::Vector3d pull = draw.turn * Eigen::Vector3d(draw.drawn - draw.from, 0, 0);
-  for (Eigen::Vector3d& p : imagined.wall) p += following((p - held).norm()) * pull;
+  for (Eigen::Vector3d& p : imagined.wall) p += following((p - held).norm(), draw.follows) * pull;
   return lookAtNeedle(model, imagined);
 }
 

@@ -11,6 +11,7 @@ struct ImaginedDraw {
   Eigen::Quaterniond turn;  ///< orientation of scope_tip, in world
   double from = 26e-3;      ///< helix_advance where it takes hold [m]
   double drawn = 3e-3;      ///< and at the end [m]
+  double follows = 0.14;  ///< distance at which the wall does not follow any more; default: measured far from folds [m]
 };
 
 /// What the needle would meet then. The tip is imagined where the helix reaches the wall, and stays there; the wall

@@ -85,8 +85,8 @@ TEST_P(ShippedStomach, LetsAStraightScopeIn) {
     EXPECT_GT(tree.closest(organ.entry + s * organ.entry_axis).distance, 7.5e-3) << "at " << s * 1e3 << " mm";
 }
 
-// Between 0.36 L (fed, magnetic resonance imaging) and 2.0 L (filled until the pressure rises, Yehoshua 2008), and of the
-// compliance of resected specimens, 14 to 86 mL/mmHg (Toro 2015).
+// Between 0.36 L (fed, magnetic resonance imaging) and 2.0 L (filled until the pressure rises, Yehoshua 2008), and of
+// the compliance of resected specimens, 14 to 86 mL/mmHg (Toro 2015).
 TEST_P(ShippedStomach, HoldsTheVolumeOfAStomachAtItsPressure) {
   Scene scene = shipped(GetParam());
   scene.geometry.particles = 700;

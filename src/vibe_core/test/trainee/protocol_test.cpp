@@ -92,6 +92,17 @@ TEST(Protocol, SkillsLieBetweenExpertAndNovice) {
   EXPECT_EQ(own.reaction_time, novice.reaction_time);
 }
 
+TEST(Protocol, ShippedOnesAreReadAndEndWithdrawn) {
+  for (const std::string name : {"first", "expert", "novice"}) {
+    const std::string file = std::string(VIBE_CORE_DIR) + "/trainees/" + name + ".yaml";
+    ASSERT_TRUE(isProtocol(file)) << name;
+    const Protocol protocol = Protocol::load(file);
+    EXPECT_EQ(protocol.name, name);
+    EXPECT_TRUE(std::holds_alternative<WithdrawGoal>(protocol.goals.back())) << name;
+  }
+  EXPECT_FALSE(isProtocol(std::string(VIBE_CORE_DIR) + "/trainees/demo/grabs.yaml"));
+}
+
 TEST(Protocol, EveryMistakeIsNamedWithItsPlaceAndRemedy) {
   const auto expect = [](const std::string& goals, const std::string& part) {
     EXPECT_NE(errorOf(goals).find(part), std::string::npos) << errorOf(goals);

@@ -61,8 +61,8 @@ TEST_P(ShippedScript, EndsWithdrawnWithNothingPressed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScript,
-                         ::testing::Values("expert.yaml", "novice.yaml", "demo/grabs.yaml", "demo/clumsy_grabs.yaml",
-                                           "demo/smoke.yaml", "demo/five_states.yaml"));
+                         ::testing::Values("demo/grabs.yaml", "demo/clumsy_grabs.yaml", "demo/smoke.yaml",
+                                           "demo/five_states.yaml"));
 
 }  // namespace
 }  // namespace vibe

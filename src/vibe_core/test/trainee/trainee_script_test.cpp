@@ -131,7 +131,7 @@ TEST(TraineeScript, TremorRidesOnTheMotion) {
 }
 
 TEST(TraineeScript, MotionIsContinuousInTheShippedScripts) {
-  for (const char* name : {"expert", "novice", "demo/smoke"}) {
+  for (const char* name : {"demo/five_states", "demo/clumsy_grabs", "demo/grabs", "demo/smoke"}) {
     const TraineeScript s = TraineeScript::load(kScripts + name + ".yaml");
     for (double t = 0; t < s.duration(); t += 1e-3) {
       const StepInput a = s.at(t), b = s.at(t + 1e-3);

@@ -49,7 +49,7 @@ struct Widgets : testing::Test {
     sutures->sutures[0].stage = vibe_msgs::Suture::CINCHED;
     sutures->sutures[0].bites.resize(7);
     sutures->sutures[1].bites.resize(2);
-    return {state, skill, sutures, nullptr, nullptr};
+    return {state, skill, sutures, nullptr, nullptr, nullptr};
   }
 
   static geometry_msgs::WrenchStampedConstPtr force(double newton) {
