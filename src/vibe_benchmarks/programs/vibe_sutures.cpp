@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/command_line.hpp"
+#include "suture/outcome_study.hpp"
 #include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"
 #include "vibe_core/common/error.hpp"
@@ -17,6 +18,7 @@ using namespace vibe;
 const char kAbout[] =
     "Sews whole procedures of sutures.\n"
     "  scenarios  14 sets of 4 bites and 8 sets of 7 to the end: CPU time per step of each set\n"
+    "  outcomes   what an idealised sleeve of C, U and Z changes at rest, and which modelling choices matter\n"
     "  patterns   volume, length and area of the stomach before and after sets of the patterns C, U and Z\n"
     "The program puts bites into the wall as the needle would take them; T-tag and cinch go through their buttons.";
 
@@ -27,15 +29,15 @@ struct Options {
 };
 
 void addOptions(CLI::App& app, Options& o) {
-  app.add_option("scenarios|patterns", o.mode, "what to sew")
+  app.add_option("scenarios|outcomes|patterns", o.mode, "what to sew")
       ->type_name("")
       ->required()
-      ->check(CLI::IsMember({"scenarios", "patterns"}).description(""));
+      ->check(CLI::IsMember({"scenarios", "outcomes", "patterns"}).description(""));
   app.add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
   app.add_option("--repeats", o.repeats, "runs of each scenario (default: 3); of each step the fastest counts")
       ->type_name("N")
       ->check(wholeFrom(1, 1000));
-  app.add_flag("--quick", o.quick, "one run of each scenario; patterns with one tension and width only");
+  app.add_flag("--quick", o.quick, "one run of each scenario; patterns and outcomes once, with nothing varied");
   app.add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
 }
 
@@ -79,6 +81,17 @@ void runPatterns(const Options& options) {
   save(options.csv, [&](std::ostream& out) { writePatterns(rows, out); });
 }
 
+void runOutcomes(const Options& options) {
+  const Scene scene = sceneOf(options);
+  OutcomeStudy study(scene);
+  std::vector<OutcomeRow> rows;
+  for (const OutcomeTrial& trial : outcomeTrials(scene, options.quick)) {
+    rows.push_back(study.run(trial));
+    printOutcome(rows.back(), std::cerr);
+    save(options.csv, [&](std::ostream& out) { writeOutcomes(rows, out); });
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -87,6 +100,8 @@ int main(int argc, char** argv) {
   addOptions(app, options);
   return runProgram(app, argc, argv, [&] {
     if (options.quick) options.repeats = 1;
-    options.mode == "scenarios" ? runScenarios(options) : runPatterns(options);
+    if (options.mode == "scenarios") runScenarios(options);
+    if (options.mode == "outcomes") runOutcomes(options);
+    if (options.mode == "patterns") runPatterns(options);
   });
 }

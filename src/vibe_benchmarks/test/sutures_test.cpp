@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "procedure/needle.hpp"
+#include "suture/outcome_study.hpp"
 #include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"
 #include "suture/wall_crossing.hpp"
@@ -119,6 +120,45 @@ TEST(Sutures, PatternsAreWhatTheyAreCalled) {
     }
   EXPECT_THROW(patternBites("u", 5), Error);
   EXPECT_THROW(patternBites("spiral", 7), Error);
+}
+
+OutcomeTrial coarseTrial() {
+  OutcomeTrial trial;
+  trial.particles = 900;
+  trial.pressure = trial.sewn_at = 1333;
+  return trial;
+}
+
+TEST(Outcomes, ASleeveAtRestIsSmallerThanTheStomachBefore) {
+  const OutcomeRow row = OutcomeStudy(coarseStomach()).run(coarseTrial());
+  EXPECT_EQ(row.recognised, kOutcomeSets);
+  EXPECT_LE(row.change, kOutcomeChange);
+  EXPECT_FALSE(row.crossed);
+  EXPECT_GT(row.mean_tension, 0.5);
+  EXPECT_GT(reduction(row.before.organ.volume, row.after.organ.volume).value_or(0), 0.05);
+  EXPECT_GT(reduction(row.before.organ.mean_area, row.after.organ.mean_area).value_or(0), 0.05);
+}
+
+TEST(Outcomes, ThreadThatIsNotDrawnTakesNothingAway) {
+  OutcomeTrial trial = coarseTrial();
+  trial.drawn = 0;
+  const OutcomeRow row = OutcomeStudy(coarseStomach()).run(trial);
+  EXPECT_LT(row.drawn, 2e-3);
+  EXPECT_NEAR(row.after.organ.volume / row.before.organ.volume, 1, 2e-3);
+}
+
+TEST(Outcomes, TrialsChangeOneChoiceAtATime) {
+  const Scene scene = coarseStomach();
+  const std::vector<OutcomeTrial> quick = outcomeTrials(scene, true), all = outcomeTrials(scene, false);
+  ASSERT_EQ(quick.size(), 3u);
+  for (const OutcomeTrial& trial : quick) EXPECT_EQ(trial.particles, scene.geometry.particles);
+  for (const OutcomeTrial& trial : all) {
+    const OutcomeTrial& reference = quick.front();
+    const int changed = (trial.particles != reference.particles) + (trial.pressure != reference.pressure) +
+                        (trial.sewn_at != trial.pressure) + (trial.thread_friction != reference.thread_friction) +
+                        (trial.foundation != reference.foundation) + trial.drawn.has_value();
+    EXPECT_EQ(changed, trial.name == "as_cinched" ? 0 : 1) << trial.name;
+  }
 }
 
 TEST(Sutures, ASlopeIsThatOfALine) {

@@ -49,7 +49,9 @@ void measureStrain(const Model& model, const State& state, PatternMeasures& meas
   }
 }
 
-PatternMeasures measure(const SutureSession& session, OrganRuler& ruler) {
+}  // namespace
+
+PatternMeasures measurePattern(const SutureSession& session, OrganRuler& ruler) {
   const Model& model = session.model();
   const State& state = session.state();
   PatternMeasures measures;
@@ -59,6 +61,8 @@ PatternMeasures measure(const SutureSession& session, OrganRuler& ruler) {
   measures.elastic_energy = model.tissue->energy(state);
   return measures;
 }
+
+namespace {
 
 void noteTensions(const State& state, PatternRow& row) {
   std::vector<double> tensions;
@@ -96,10 +100,10 @@ PatternRow runPattern(Scene scene, const SetLayout& layout, double pressure, dou
   OrganRuler ruler(model->organ);
   SutureSession session(model);
   session.settle();
-  row.before = measure(session, ruler);
+  row.before = measurePattern(session, ruler);
   for (const auto& set : planSets(WallPlan(model->organ, session.wall()), layout)) noteSet(session.sew(set, 0.5), row);
   row.at_rest = session.calmDown(kLongestWait);
-  row.after = measure(session, ruler);
+  row.after = measurePattern(session, ruler);
   noteTensions(session.state(), row);
   row.crossed = wallsCross(session.model(), session.state());
   row.state_hash = hash(session.state());

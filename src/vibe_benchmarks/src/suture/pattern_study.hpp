@@ -21,6 +21,9 @@ struct PatternMeasures {
   double elastic_energy = 0;  ///< [J]
 };
 
+class SutureSession;
+PatternMeasures measurePattern(const SutureSession& session, OrganRuler& ruler);
+
 /// One procedure: measures before and after it at the same pressure.
 struct PatternRow {
   SetLayout layout;

@@ -70,6 +70,15 @@ bool SutureSession::calmDown(double longest) {
   return true;
 }
 
+void SutureSession::run(double duration) {
+  const long steps = std::lround(duration / model().scene.step_period);
+  for (long k = 0; k < steps; ++k) step();
+}
+
+void SutureSession::resume(const State& state) {
+  simulation_.editState() = state;
+}
+
 void SutureSession::press(Button button, bool down, StepCosts& costs, SewnSet& set) {
   input_.buttons[button] = down ? 1 : 0;
   step();
@@ -80,7 +89,7 @@ void SutureSession::press(Button button, bool down, StepCosts& costs, SewnSet& s
     for (double tension : suture.tension) set.max_tension = std::max(set.max_tension, tension);
 }
 
-void SutureSession::pull(SewnSet& set) {
+void SutureSession::pull(SewnSet& set, std::optional<double> drawn) {
   const SutureScene& scene = *model().scene.suture;
   const int longest = static_cast<int>(kLongestPull / model().scene.step_period);
   const int hold = static_cast<int>(kHold / model().scene.step_period);
@@ -91,6 +100,7 @@ void SutureSession::pull(SewnSet& set) {
     if (suture.permanent()) break;  // the thread broke
     const bool tight = cinchTension(suture) >= scene.cinch_tension, all_in = suture.pulled - before < kNothing;
     held = tight || all_in ? held + 1 : 0;
+    if (drawn && suture.pulled >= *drawn) break;
   }
   press(Cinch, false, set.pulling, set);
 }
@@ -117,11 +127,11 @@ void SutureSession::tag(const std::vector<WallSpot>& spots, SewnSet& set) {
   press(TTag, false, set.pulling, set);
 }
 
-SewnSet SutureSession::sew(const std::vector<WallSpot>& spots, double after) {
+SewnSet SutureSession::sew(const std::vector<WallSpot>& spots, double after, std::optional<double> drawn) {
   SewnSet set;
   const std::size_t first_event = events_.size();
   tag(spots, set);
-  pull(set);
+  pull(set, drawn);
   const int steps = static_cast<int>(std::lround(after / model().scene.step_period));
   for (int k = 0; k < steps; ++k) press(Cinch, false, set.after, set);
   const Suture& suture = state().procedure.sutures.back();

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "suture/wall_plan.hpp"
@@ -48,7 +49,13 @@ class SutureSession {
   /// The beginning of sew(): takes the bites and drops the T-tag.
   void tag(const std::vector<WallSpot>& spots);
   /// @param after  time to continue after the release of the cinch [s]
-  SewnSet sew(const std::vector<WallSpot>& spots, double after = 1);
+  /// @param drawn  thread at most that the cinch draws; empty: until its tension is reached [m]
+  SewnSet sew(const std::vector<WallSpot>& spots, double after = 1, std::optional<double> drawn = {});
+
+  /// Steps with the insufflator on for this time [s].
+  void run(double duration);
+  /// Goes on from the state of another session with the same particles, for example at another pressure.
+  void resume(const State& state);
 
   const Model& model() const { return simulation_.model(); }
   const State& state() const { return simulation_.state(); }
@@ -59,7 +66,7 @@ class SutureSession {
   void step();
   void tag(const std::vector<WallSpot>& spots, SewnSet& set);
   void press(Button button, bool down, StepCosts& costs, SewnSet& set);
-  void pull(SewnSet& set);
+  void pull(SewnSet& set, std::optional<double> drawn);
   void count(std::size_t first_event, SewnSet& set) const;
 
   Simulation simulation_;

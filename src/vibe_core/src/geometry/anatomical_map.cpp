@@ -131,6 +131,31 @@ AnatomicalMap::AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> ve
     around_.push_back(turned(M_PI / 2 - axis.angleAt(static_cast<int>(v))));
   }
   findDirections();
+  findRegions(organ);
+}
+
+void AnatomicalMap::findRegions(const Organ& organ) {
+  constexpr std::pair<double, double> kNothing{1, 0};
+  const auto extentOf = [&](int region, double widest) {
+    std::pair<double, double> extent = kNothing;
+    for (std::size_t v = 0; v < along_.size(); ++v) {
+      if (static_cast<int>(organ.region[v]) != region || end_[v] || std::abs(around_[v]) > widest) continue;
+      extent.first = std::min(extent.first, along_[v]);
+      extent.second = std::max(extent.second, along_[v]);
+    }
+    return extent;
+  };
+  for (int r = 0; r < kRegionCount; ++r) {
+    auto& extent = extent_[static_cast<std::size_t>(r)];
+    extent = extentOf(r, M_PI / 4);
+    if (extent.first > extent.second) extent = extentOf(r, M_PI);
+  }
+}
+
+double AnatomicalMap::alongIn(Region region, double share) const {
+  const auto& [begin, end] = extent_[static_cast<std::size_t>(region)];
+  if (begin > end) throw Error("The organ has no " + std::string(toString(region)) + "; choose a region that it has.");
+  return begin + share * (end - begin);
 }
 
 void AnatomicalMap::findDirections() {

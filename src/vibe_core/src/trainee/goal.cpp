@@ -9,7 +9,8 @@ namespace {
 
 std::string at(const Place& place) {
   char text[120];
-  std::snprintf(text, sizeof text, " at %.0f %% of the axis, %.0f deg", 100 * place.along, place.around * 180 / M_PI);
+  std::snprintf(text, sizeof text, " at %.0f %% of the %s, %.0f deg", 100 * place.along,
+                place.region ? toString(*place.region) : "axis", place.around * 180 / M_PI);
   return text;
 }
 

@@ -32,7 +32,8 @@ Eigen::Vector3d Operator::outward(const WallPoint& point) const {
 }
 
 WallPoint find(const Place& place, const AnatomicalMap& map) {
-  return map.walk(map.at(place.along, place.around), place.distal, place.anterior);
+  const double along = place.region ? map.alongIn(*place.region, place.along) : place.along;
+  return map.walk(map.at(along, place.around), place.distal, place.anterior);
 }
 
 void stepBack(Operator& me) {

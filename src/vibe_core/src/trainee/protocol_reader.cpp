@@ -73,6 +73,13 @@ std::vector<ProtocolReader::Number> ProtocolReader::placeKeys(Place& place) {
           {"anterior", "m", -kLongestPattern, kLongestPattern, &place.anterior}};
 }
 
+ProtocolReader::Keys ProtocolReader::keysOf(Place& place) {
+  Keys keys;
+  keys.numbers = placeKeys(place);
+  keys.region = &place.region;
+  return keys;
+}
+
 void ProtocolReader::readGoal(const YamlField& verb) {
   if (verb.key == "insufflate") {
     InsufflateGoal goal;
@@ -80,7 +87,7 @@ void ProtocolReader::readGoal(const YamlField& verb) {
     protocol_.goals.emplace_back(goal);
   } else if (verb.key == "inspect") {
     InspectGoal goal;
-    Keys keys{placeKeys(goal.place), {}, {}};
+    Keys keys = keysOf(goal.place);
     keys.numbers.push_back({"distance", "m", 5e-3, 0.2, &goal.distance});
     keys.numbers.push_back({"for", "s", 0, kLongestTime, &goal.time});
     readMap(verb, keys);
@@ -89,13 +96,13 @@ void ProtocolReader::readGoal(const YamlField& verb) {
     readMarks(verb);
   } else if (verb.key == "mark") {
     MarkGoal goal;
-    Keys keys{placeKeys(goal.place), {}, {}};
+    Keys keys = keysOf(goal.place);
     keys.numbers.push_back({"for", "s", 0.1, kLongestTime, &goal.time});
     readMap(verb, keys);
     protocol_.goals.emplace_back(goal);
   } else if (verb.key == "bite") {
     BiteGoal goal;
-    readMap(verb, {placeKeys(goal.place), {}, {}});
+    readMap(verb, keysOf(goal.place));
     protocol_.goals.emplace_back(goal);
   } else if (verb.key == "cinch") {
     readMap(verb, {});
@@ -121,6 +128,7 @@ void ProtocolReader::readSleeve(const YamlField& field) {
   SutureSetGoal set;
   Keys keys;
   keys.pattern = &set.pattern;
+  keys.region = &set.centre.region;
   keys.counts = {{"bites", 2, kTechniqueMaxBites, &set.bites}};
   keys.flags = {{"mirrored", &set.mirrored}, {"cinched", &set.cinched}};
   keys.numbers = {{"length", "m", 1e-3, kLongestPattern, &set.length},
@@ -151,6 +159,7 @@ void ProtocolReader::readMarks(const YamlField& field) {
   row.count = 4;
   MarkGoal mark;
   Keys keys;
+  keys.region = &mark.place.region;
   keys.counts = {{"count", 1, kMaxMarks, &row.count}};
   keys.numbers = {{"from", "1", 0, 1, &row.from},
                   {"to", "1", 0, 1, &row.to},
@@ -179,6 +188,7 @@ void ProtocolReader::readMap(const YamlField& field, const Keys& keys) const {
     for (const Count& key : keys.counts) known.emplace_back(key.key);
     for (const Flag& key : keys.flags) known.emplace_back(key.key);
     if (keys.pattern != nullptr) known.emplace_back("pattern");
+    if (keys.region != nullptr) known.emplace_back("region");
     source_.fail(entry, known.empty() ? "is not a known key; '" + field.key + "' has none"
                                       : "is not a known key; " + suggestKey(entry.key, known));
   }
@@ -191,9 +201,17 @@ bool ProtocolReader::readKey(const YamlField& field, const Keys& keys) const {
     if (field.key == key.key) return *key.value = static_cast<int>(source_.integer(field, key.low, key.high)), true;
   for (const Flag& key : keys.flags)
     if (field.key == key.key) return *key.value = source_.boolean(field), true;
+  if (keys.region != nullptr && field.key == "region") return *keys.region = readRegion(field), true;
   if (keys.pattern == nullptr || field.key != "pattern") return false;
   *keys.pattern = readPattern(field);
   return true;
+}
+
+Region ProtocolReader::readRegion(const YamlField& field) const {
+  std::vector<std::string> words;
+  for (int r = 0; r < kRegionCount; ++r) words.emplace_back(toString(static_cast<Region>(r)));
+  const std::string word = source_.choice(field, words);
+  return static_cast<Region>(std::find(words.begin(), words.end(), word) - words.begin());
 }
 
 Technique ProtocolReader::readPattern(const YamlField& field) const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ class ProtocolReader {
     std::vector<Count> counts;
     std::vector<Flag> flags;
     Technique* pattern = nullptr;
+    std::optional<Region>* region = nullptr;
   };
 
   const YamlSource& source_;
@@ -55,8 +57,10 @@ class ProtocolReader {
   void readMap(const YamlField& field, const Keys& keys) const;
   bool readKey(const YamlField& field, const Keys& keys) const;
   Technique readPattern(const YamlField& field) const;
+  Region readRegion(const YamlField& field) const;
   void checkPattern(const YamlField& field, const SutureSetGoal& goal) const;
   static std::vector<Number> placeKeys(Place& place);
+  static Keys keysOf(Place& place);
 };
 
 }  // namespace vibe

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -97,6 +98,22 @@ TEST(AnatomicalMap, NormalsLeadOutOfTheLumen) {
     EXPECT_NEAR(map.outward(point).norm(), 1, 1e-12);
     EXPECT_GT(map.outward(point).dot((map.position(point) - map.position(opposite)).normalized()), 0.8);
   }
+}
+
+TEST(AnatomicalMap, SharesOfARegionLieInIt) {
+  const AnatomicalMap map(stomach(), rest());
+  const auto regionAt = [&](Region region, double share) {
+    const WallPoint point = map.at(map.alongIn(region, share), 0);
+    return stomach().region[stomach().surface.triangles[point.triangle][0]];
+  };
+  for (const Region region : {Region::Fundus, Region::Body, Region::Antrum, Region::Pylorus})
+    for (const double share : {0.2, 0.5, 0.8}) EXPECT_EQ(regionAt(region, share), region) << toString(region) << share;
+  EXPECT_LT(map.alongIn(Region::Body, 0), map.alongIn(Region::Body, 1));
+  Organ without = stomach();
+  std::replace(without.region.begin(), without.region.end(), Region::Antrum, Region::Body);
+  const AnatomicalMap other(without, rest());
+  EXPECT_THROW(other.alongIn(Region::Antrum, 0.5), Error);
+  EXPECT_NO_THROW(other.alongIn(Region::Body, 0.5));
 }
 
 TEST(AnatomicalMap, PlacesBeyondTheOrganAreErrors) {

@@ -62,6 +62,20 @@ TEST(Protocol, ReadsEveryGoal) {
   EXPECT_EQ(look.time, 4);
 }
 
+TEST(Protocol, PlacesMayBeSharesOfARegion) {
+  const Protocol protocol = parse(
+      "goals:\n  - bite: {region: antrum, along: 20 %}\n  - sleeve: {sets: 2, region: body}\n  - marks: {region: "
+      "fundus}\n"
+      "  - bite: {along: 20 %}\n");
+  EXPECT_EQ(std::get<BiteGoal>(protocol.goals[0]).place.region, Region::Antrum);
+  EXPECT_EQ(describe(protocol.goals[0]), "bite at 20 % of the antrum, 0 deg");
+  EXPECT_EQ(std::get<SutureSetGoal>(protocol.goals[2]).centre.region, Region::Body);
+  EXPECT_EQ(std::get<MarkGoal>(protocol.goals[3]).place.region, Region::Fundus);
+  EXPECT_FALSE(std::get<BiteGoal>(protocol.goals.back()).place.region);
+  EXPECT_NE(errorOf("goals:\n  - bite: {region: bodi}\n").find("did you mean 'body'"), std::string::npos);
+  EXPECT_NE(errorOf("goals:\n  - cinch: {region: body}\n").find("region: is not a known key"), std::string::npos);
+}
+
 TEST(Protocol, ASleeveIsARowOfSets) {
   const Protocol protocol = parse("goals:\n  - sleeve: {sets: 3, from: 60 %, to: 20 %, bites: 5}\n");
   ASSERT_EQ(protocol.goals.size(), 3u);

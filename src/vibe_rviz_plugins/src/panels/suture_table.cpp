@@ -22,7 +22,7 @@ constexpr std::array<Column, 7> kColumns = {{
     {"Bites", "Bites that hold; torn-out bites in brackets."},
     {"Plan", "Technique that the goal of a trainee asks for (trainee/progress)."},
     {"Found", "Technique recognised when the T-tag is dropped, by the rule of the scene, and its margin."},
-    {"Printed", "The same by the rule as printed in the ViBE paper, which knows U, Z and other."},
+    {"Paper", "The same by the rule as printed in the ViBE paper, which knows U, Z and other."},
     {"Stage",
      "Open: takes bites. Tagged: the T-tag is dropped. Cinched: permanent. Loose: cinched with too little tension."},
     {"N", "Maximum tension of the thread now [N]."},

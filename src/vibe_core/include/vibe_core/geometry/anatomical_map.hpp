@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "vibe_core/geometry/organ.hpp"
@@ -40,6 +41,10 @@ class AnatomicalMap {
   AnatomicalMap(const Organ& organ, std::vector<Eigen::Vector3d> vertices);
 
   const std::vector<Eigen::Vector3d>& vertices() const { return vertices_; }
+  /// Position along the axis of a share of a region: of what of it is on the greater curvature, or of all of it if
+  /// nothing is, from the fundus towards the pylorus. 0: its proximal end, 1: its distal end [1]
+  /// @throws Error if the organ lacks the region
+  double alongIn(Region region, double share) const;
   double axisLength() const { return axis_length_; }  ///< from the apex of the fundus to the duodenum [m]
 
   /// The wall at a place.
@@ -68,14 +73,16 @@ class AnatomicalMap {
   Eigen::Vector3d direction(const WallPoint& point, Way way) const;
   WallPoint nearest(const Eigen::Vector3d& place, int around_triangle) const;
   void findDirections();
+  void findRegions(const Organ& organ);
   bool inEnd(int triangle) const;
 
   const std::vector<std::array<int, 3>>& triangles_;
   std::vector<Eigen::Vector3d> vertices_;
-  std::vector<std::vector<int>> triangles_at_;     // of each vertex
-  std::vector<Eigen::Vector3d> distal_, outward_;  // unit vectors at the vertices
-  std::vector<double> along_, around_;             // per vertex [1], [rad]
-  std::vector<bool> end_;                          // per vertex: oesophagus or duodenum
+  std::vector<std::vector<int>> triangles_at_;                  // of each vertex
+  std::vector<Eigen::Vector3d> distal_, outward_;               // unit vectors at the vertices
+  std::vector<double> along_, around_;                          // per vertex [1], [rad]
+  std::array<std::pair<double, double>, kRegionCount> extent_;  // along the axis; empty: the first is larger [1]
+  std::vector<bool> end_;                                       // per vertex: oesophagus or duodenum
   double axis_length_ = 0;
 };
 

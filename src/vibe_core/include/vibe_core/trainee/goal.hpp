@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "vibe_core/geometry/anatomy.hpp"
 #include "vibe_core/suture/technique.hpp"
 #include "vibe_core/trainee/skill.hpp"
 
@@ -12,10 +13,12 @@ namespace vibe {
 /// A place on the wall of the organ in its present shape: anatomical coordinates (see AnatomicalMap), then millimetres
 /// along the wall from there.
 struct Place {
-  double along = 0.5;   ///< the axis, 0: apex of the fundus, 1: duodenal end [1]
+  double along = 0.5;   ///< the axis, 0: apex of the fundus, 1: duodenal end; of `region`, if there is one [1]
   double around = 0;    ///< angle from the greater curvature, positive towards the anterior wall [rad]
   double distal = 0;    ///< distance from there along the wall, towards the pylorus [m]
   double anterior = 0;  ///< and then around the organ, towards the front [m]
+  std::optional<Region> region =
+      std::nullopt;  ///< `along` is a share of it, see AnatomicalMap::alongIn(); empty: of the axis
 };
 
 struct InsufflateGoal {
