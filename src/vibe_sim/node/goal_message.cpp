@@ -66,6 +66,7 @@ void addSet(const vibe_msgs::TraineeGoal& message, YAML::Emitter& out) {
 
 void addPlace(const vibe_msgs::TraineeGoal& message, YAML::Emitter& out) {
   add("along", message.along, out);
+  if (!message.region.empty()) out << YAML::Key << "region" << YAML::Value << message.region;
   add("around", message.around, out);
   add("distal", message.distal, out);
   add("anterior", message.anterior, out);
@@ -93,6 +94,14 @@ std::string withoutPlace(const std::string& sentence) {
   return found == std::string::npos ? sentence : sentence.substr(found + place.size());
 }
 
+const Place* placeOf(const Goal& goal) {
+  if (const auto* set = std::get_if<SutureSetGoal>(&goal)) return &set->centre;
+  if (const auto* bite = std::get_if<BiteGoal>(&goal)) return &bite->place;
+  if (const auto* mark = std::get_if<MarkGoal>(&goal)) return &mark->place;
+  if (const auto* look = std::get_if<InspectGoal>(&goal)) return &look->place;
+  return nullptr;
+}
+
 bool hasSection(const Scene& scene, const std::string& section) {
   if (section == "gas") return scene.gas.has_value();
   if (section == "marking") return scene.marking.has_value();
@@ -115,16 +124,18 @@ Goal readGoal(const vibe_msgs::TraineeGoal& message) {
   return protocol.goals.front();
 }
 
-std::string refusalIn(const Model& model, const vibe_msgs::TraineeGoal& message) {
+std::string refusalIn(const Model& model, const vibe_msgs::TraineeGoal& message, const Goal& goal) {
   const Kind* kind = findKind(message.kind);
   if (!kind) return "";
   for (const char* section : {"gas", "marking", "helix", "suture"})
     if (std::string(kind->needs).find(section) != std::string::npos && !hasSection(model.scene, section))
       return "The scene '" + model.scene.name + "' has no section '" + section + "', which the goal '" + message.kind +
              "' needs.";
-  if (!kind->has_place) return "";
+  const Place* place = placeOf(goal);
+  if (!place) return "";
   try {
     const AnatomicalMap map(model.organ, model.organ.surface.vertices);
+    map.at(place->region ? map.alongIn(*place->region, place->along) : place->along, place->around);
   } catch (const Error& error) {
     return error.what();
   }

@@ -13,8 +13,10 @@ namespace vibe {
 ///         range, a pattern that does not exist
 Goal readGoal(const vibe_msgs::TraineeGoal& message);
 
-/// Why a goal cannot be reached in a scene at all, in one sentence; empty: it may be.
-std::string refusalIn(const Model& model, const vibe_msgs::TraineeGoal& message);
+/// Why a goal cannot be reached in a scene at all, in one sentence: something is missing in the scene, or the organ
+/// lacks the place. Empty: it may be reached.
+/// @param goal  that of the message
+std::string refusalIn(const Model& model, const vibe_msgs::TraineeGoal& message, const Goal& goal);
 
 /// Pattern of a suture set; empty for other goals.
 std::string patternOf(const Goal& goal);

@@ -45,7 +45,7 @@ void GoalServer::follow(const Observation& seen, std::int64_t stamp) {
 std::uint32_t GoalServer::take(const vibe_msgs::TraineeGoal& message) {
   if (!model_) throw Error("The trainee has not seen the scene yet; start the simulator, or wait until it has.");
   const Goal goal = readGoal(message);
-  const std::string refusal = refusalIn(*model_, message);
+  const std::string refusal = refusalIn(*model_, message, goal);
   if (!refusal.empty()) throw Error(refusal);
   const std::uint32_t id = book_.add(message.label, goal);
   if (trainee_) book_.start(*trainee_);

@@ -187,7 +187,6 @@ TEST_F(Widgets, aSetShowsWhatWasPlannedAndWhatBothRulesSay) {
     EXPECT_GE(table.columnWidth(column), QFontMetrics(cell.font()).horizontalAdvance(cell.text()) + 4)
         << table.horizontalHeaderItem(column)->text().toStdString();
   }
-  if (getenv("SHOT")) pictureOf(table).save("/tmp/shot2.png");
 }
 
 TEST_F(Widgets, measuresNameTheirSources) {

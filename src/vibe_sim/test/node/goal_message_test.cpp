@@ -121,14 +121,39 @@ TEST(GoalMessage, WhatIsWrongIsNamedInOneSentence) {
   expect(goal, "wait.for");
 }
 
+std::string refusalOf(const Model& model, const vibe_msgs::TraineeGoal& goal) {
+  return refusalIn(model, goal, readGoal(goal));
+}
+
+TEST(GoalMessage, APlaceMayBeAShareOfARegion) {
+  vibe_msgs::TraineeGoal goal = message("bite");
+  EXPECT_FALSE(std::get<BiteGoal>(readGoal(goal)).place.region);
+  goal.region = "body";
+  goal.along = 0.5;
+  EXPECT_EQ(std::get<BiteGoal>(readGoal(goal)).place.region, Region::Body);
+  goal.region = "bulb";
+  EXPECT_NE(errorOf(goal).find("bite.region"), std::string::npos) << errorOf(goal);
+}
+
+TEST(GoalMessage, ARegionThatTheOrganLacksIsARefusal) {
+  const auto model = std::const_pointer_cast<Model>(loadModel("node/scenes/small_stomach.yaml"));
+  vibe_msgs::TraineeGoal goal = message("bite");
+  goal.region = "antrum";
+  goal.along = 0.5;
+  EXPECT_EQ(refusalOf(*model, goal), "");
+  for (Region& region : model->organ.region)
+    if (region == Region::Antrum) region = Region::Body;
+  EXPECT_NE(refusalOf(*model, goal).find("antrum"), std::string::npos) << refusalOf(*model, goal);
+}
+
 TEST(GoalMessage, WhatASceneLacksIsARefusal) {
   const std::shared_ptr<const Model> stomach = loadModel("node/scenes/small_stomach.yaml");
   for (const char* kind : {"insufflate", "bite", "suture_set", "cinch", "withdraw", "wait"})
-    EXPECT_EQ(refusalIn(*stomach, message(kind)), "") << kind;
-  EXPECT_NE(refusalIn(*stomach, message("mark")).find("'marking'"), std::string::npos);
+    EXPECT_EQ(refusalOf(*stomach, message(kind)), "") << kind;
+  EXPECT_NE(refusalOf(*stomach, message("mark")).find("'marking'"), std::string::npos);
   const std::shared_ptr<const Model> ball = loadModel("node/scenes/balloon.yaml");
-  EXPECT_FALSE(refusalIn(*ball, message("bite")).empty()) << "a ball has no anatomy";
-  EXPECT_EQ(refusalIn(*ball, message("wait")), "");
+  EXPECT_FALSE(refusalOf(*ball, message("bite")).empty()) << "a ball has no anatomy";
+  EXPECT_EQ(refusalOf(*ball, message("wait")), "");
 }
 
 }  // namespace

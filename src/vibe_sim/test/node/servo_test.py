@@ -93,6 +93,7 @@ class ServoTest(unittest.TestCase):
             "out of range": TraineeGoal(kind="bite", along=1.5),
             "not finite": TraineeGoal(kind="bite", along=math.nan),
             "did you mean 'bite'": TraineeGoal(kind="bites"),
+            "did you mean 'body'": TraineeGoal(kind="bite", along=0.5, region="bodi"),
             "known are u, z": TraineeGoal(kind="suture_set", along=0.5, pattern="w"),
             "does not exist": TraineeGoal(kind="suture_set", along=0.5, pattern="square", bites=4),
             "has no section 'marking'": TraineeGoal(kind="mark", along=0.5),
