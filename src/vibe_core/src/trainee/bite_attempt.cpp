@@ -13,18 +13,19 @@ namespace vibe {
 
 namespace {
 
-constexpr double kHelixHome = 2e-3;     // [m]
-constexpr double kStandOff = 10e-3;     // gap between helix and wall before contact [m]
-constexpr double kNear = 3e-3;          // gap within reach of the helix, with a margin [m]
-constexpr double kAside = 1.5e-3;       // of the helix from its aim along the wall, good enough [m]
-constexpr double kPushed = 10e-3;       // of the device towards the wall, where not enough of it comes [m]
-constexpr double kArmClosed = 18e-3;    // needle_driver [m]
-constexpr double kDeepEnough = 1.5;     // depth of the needle over the wall's thickness [1]
-constexpr double kThrough = 1.15;       // the least with which an expert closes the arm [1]
-constexpr double kOnTarget = 2.5e-3;    // of the needle from the target, not to be improved [m]
-constexpr double kBesideTarget = 5e-3;  // to be tried again [m]
-constexpr double kMorePerTry = 1e-3;    // with every further try that much more is accepted [m]
-constexpr double kFold = 4e-3;          // a surprise that is learned fully; of larger ones that much [m]
+constexpr double kHelixHome = 2e-3;      // [m]
+constexpr double kStandOff = 10e-3;      // gap between helix and wall before contact [m]
+constexpr double kNear = 3e-3;           // gap within reach of the helix, with a margin [m]
+constexpr double kAside = 1.5e-3;        // of the helix from its aim along the wall, good enough [m]
+constexpr double kPushed = 10e-3;        // of the device towards the wall, where not enough of it comes [m]
+constexpr double kArmClosed = 18e-3;     // needle_driver [m]
+constexpr double kDeepEnough = 1.5;      // depth of the needle over the wall's thickness [1]
+constexpr double kThrough = 1.15;        // the least with which an expert closes the arm [1]
+constexpr double kOnTarget = 2.5e-3;     // of the needle from the target, not to be improved [m]
+constexpr double kBesideTarget = 5e-3;   // to be tried again [m]
+constexpr double kDrawnPerTry = 1.5e-3;  // farther with every further try, by a trainee that does not check [m]
+constexpr double kMorePerTry = 1e-3;     // with every further try that much more is accepted [m]
+constexpr double kFold = 4e-3;           // a surprise that is learned fully; of larger ones that much [m]
 constexpr double kTurn = 6.283185307179586;
 
 WallPoint withError(const WallPoint& target, Operator& me) {
@@ -109,13 +110,13 @@ double BiteAttempt::missOf(const NeedleView& needle) const {
 }
 
 bool BiteAttempt::isGood(const NeedleView& needle) const {
-  return needle.depth >= kDeepEnough * needle.thickness && missOf(needle) < kOnTarget;
+  return needle.depth >= kThrough * needle.thickness && missOf(needle) < kOnTarget;
 }
 
 // Draws the wall into the device until the needle would go through all of it at the target, or as far as it comes.
 void BiteAttempt::drawIn() {
   if (!me_.skill().checks_depth) {
-    hand_.move(HelixAdvance, me_.skill().drawn, 0.8);
+    hand_.move(HelixAdvance, std::max(kFullyDrawn, me_.skill().drawn - number_ * kDrawnPerTry), 0.8);
     return settle();
   }
   const auto isGoodNow = [this] {
@@ -124,7 +125,7 @@ void BiteAttempt::drawIn() {
   };
   hand_.move(HelixAdvance, plan_.drawn, 1.2, isGoodNow);
   settle();
-  if (!isDeep()) hand_.move(HelixAdvance, kFullyDrawn, 0.6, [this] { return isDeep(); });
+  if (!isDeep()) hand_.move(HelixAdvance, kFullyDrawn, 0.6, [&] { return isDeep() || isGoodNow(); });
   settle();
   pushOn();
 }
@@ -146,14 +147,26 @@ void BiteAttempt::pushOn() {
   settle();
 }
 
-// What the needle misses beyond what would have been imagined of the device as it lay when the helix took hold.
+// How far from the helix the wall has followed, so that what is seen would have been imagined of the device as it lay
+// when the helix took hold; and what the needle misses beyond that.
 void BiteAttempt::learn(const NeedleView& needle) {
-  const auto& triangles = me_.model().organ.surface.triangles;
-  const WallPoint held = nearestOn(before_.helix, plan_.held, triangles, before_.wall);
-  const auto imagined = imagineNeedle(
-      me_.model(), before_, {held, before_.tip_turn, before_.joints[HelixAdvance], me_.view().joints[HelixAdvance]});
-  if (!imagined) return;
   const AnatomicalMap& map = *me_.seen_map;
+  const WallPoint held = nearestOn(before_.helix, plan_.held, me_.model().organ.surface.triangles, before_.wall);
+  const auto imaginedWith = [&](double follows) {
+    const double from = before_.joints[HelixAdvance], drawn = me_.view().joints[HelixAdvance];
+    return imagineNeedle(me_.model(), before_, {held, before_.tip_turn, from, drawn, follows});
+  };
+  double nearest = me_.follows, min = std::numeric_limits<double>::infinity();
+  for (const double follows : {0.03, 0.05, 0.08, kFollowsFree}) {
+    const std::optional<NeedleView> imagined = imaginedWith(follows);
+    if (!imagined) continue;
+    const double off =
+        (map.position(needle.where) - map.position(imagined->where)).norm() + std::abs(needle.depth - imagined->depth);
+    if (off < min) min = off, nearest = follows;
+  }
+  me_.follows = std::sqrt(me_.follows * nearest);
+  const std::optional<NeedleView> imagined = imaginedWith(me_.follows);
+  if (!imagined) return;
   const Eigen::Vector2d further = map.alongWall(target_, map.position(needle.where) - map.position(imagined->where));
   // a large one is of a fold, which will lie otherwise next time
   const double part = std::min(1.0, kFold / std::max(further.norm(), 1e-9));

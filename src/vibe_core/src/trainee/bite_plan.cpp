@@ -15,7 +15,7 @@ constexpr int kRolls = 12;                               // positions of the dev
 constexpr int kRounds = 4;                               // of aiming beside the target
 constexpr double kDrawn[] = {14e-3, 10e-3, 6e-3, 2e-3};  // helix_advance at the end that is considered [m]
 constexpr double kBeside = 2e-3;                         // variations of a plan: of the place of the helix [m]
-constexpr double kLessFollows = 50e-3;                   // and of ImaginedDraw::follows [m]
+constexpr double kLessFollows = 0.4;                     // and of ImaginedDraw::follows [1]
 constexpr double kLost = 20e-3;                          // counts as the miss of a needle that meets nothing [m]
 constexpr double kStep = 0.8;                            // part of a miss that is corrected per round [1]
 constexpr double kGoodDepth = 4.5e-3;                    // of the needle, where more is not better [m]
@@ -82,7 +82,8 @@ class Planner {
   BitePlan aimed(const Eigen::Quaterniond& turn, WallPoint held, double drawn) const {
     BitePlan best;
     for (int round = 0; round < kRounds; ++round) {
-      const std::optional<NeedleView> needle = imagineNeedle(me_.model(), me_.view(), {held, turn, kHelixOut, drawn});
+      const std::optional<NeedleView> needle =
+          imagineNeedle(me_.model(), me_.view(), {held, turn, kHelixOut, drawn, me_.follows});
       if (!needle) break;
       const Eigen::Vector2d miss = missOf(*needle);
       const double cost = costOf(held, turn, miss.norm(), needle->depth);
@@ -113,8 +114,8 @@ class Planner {
       ++count;
     };
     for (const auto& [distal, anterior] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-      add({map_.walk(plan.held, distal * kBeside, anterior * kBeside), turn, kHelixOut, plan.drawn});
-    add({plan.held, turn, kHelixOut, plan.drawn, kLessFollows});
+      add({map_.walk(plan.held, distal * kBeside, anterior * kBeside), turn, kHelixOut, plan.drawn, me_.follows});
+    add({plan.held, turn, kHelixOut, plan.drawn, kLessFollows * me_.follows});
     return sum / count;
   }
 

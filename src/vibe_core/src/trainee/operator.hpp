@@ -30,6 +30,8 @@ struct Operator {
   Eigen::Vector3d position(const WallPoint& point) const;  ///< now, in world [m]
   Eigen::Vector3d outward(const WallPoint& point) const;   ///< now
 
+  /// How far from the helix the wall followed it in the last bites, see ImaginedDraw [m].
+  double follows = 0.14;
   /// What the needle missed in the last bite beyond what had been imagined: distal, anterior [m].
   Eigen::Vector2d surprise = Eigen::Vector2d::Zero();
 

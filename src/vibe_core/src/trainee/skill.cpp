@@ -14,8 +14,8 @@ Skill Skill::novice() {
   skill.aim_error = 4e-3;
   skill.force_limit = 8;  // largest tip force seen in transgastric surgery (Trejos 2011)
   skill.turns = 1.5;
-  skill.drawn = 8e-3;
-  skill.attempts = 2;
+  skill.drawn = 4e-3;
+  skill.attempts = 3;
   skill.checks_depth = false;
   skill.tightness = 0.3;
   skill.tremor.scale = 4;

@@ -17,7 +17,7 @@ struct Skill {
   double aim_error = 1e-3;      ///< standard deviation of the place of a bite or mark, per direction [m]
   double force_limit = 5;       ///< at which a motion is stopped [N]
   double turns = 3;             ///< revolutions of the helix
-  double drawn = 5e-3;          ///< distance of the helix from the device when the arm closes [m]
+  double drawn = 3e-3;          ///< helix_advance to which it draws the wall in without checks_depth [m]
   int attempts = 5;             ///< per bite or mark
   bool checks_depth = true;     ///< draws the wall in farther if the needle has not penetrated it fully
   double tightness = 1;         ///< part of the tension of a full cinch at which it is released [1]
