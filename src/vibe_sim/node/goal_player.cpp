@@ -23,6 +23,7 @@ GoalPlayer::GoalPlayer(ros::NodeHandle handle, Protocol protocol, bool lockstep,
       lockstep_(lockstep),
       exit_when_done_(exit_when_done),
       sender_(handle),
+      server_(handle, protocol_.skill.name),
       queue_(lockstep) {
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
   scene_ = handle.subscribe("scene", 10, &GoalPlayer::onScene, this);
@@ -39,7 +40,7 @@ void GoalPlayer::onScene(const std_msgs::String& message) {
     ROS_ERROR_STREAM("The trainee does not know the scene and does nothing: " << error.what());
   }
   ++scenes_;
-  trainee_.reset();
+  end();
   goOn();
 }
 
@@ -74,19 +75,22 @@ void GoalPlayer::goOn() {
 
 void GoalPlayer::perform(const Sight& sight) {
   if (!lockstep_ && !sender_.hasListeners()) return;
-  if (!trainee_ || sight.seen.step != last_step_ + 1) begin();
+  if (sight.seen.step != last_step_ + 1) end();
+  if (!trainee_) begin();
   last_step_ = sight.seen.step;
   // without another input, so that in lock-step the session ends in the state in which the last goal ended
-  if (exit_when_done_ && trainee_->done()) return ros::requestShutdown();
+  if (exit_when_done_ && !trainee_->goals().empty() && trainee_->done()) return ros::requestShutdown();
   last_sent_ = trainee_->next(sight.seen);
   last_stamp_ = sight.stamp;
   last_send_ = steadyTime();
   sender_.send(last_sent_, last_stamp_);
+  server_.follow(sight.seen, sight.stamp);
 }
 
 void GoalPlayer::begin() {
   trainee_ = std::make_unique<Trainee>(model_, protocol_.skill, protocol_.seed);
-  for (const Goal& goal : protocol_.goals) trainee_->add(goal);
+  for (const Goal& goal : protocol_.goals) server_.add(goal);
+  server_.begin(model_, *trainee_);
   trainee_->on_activity = [](const std::string& what) {
     std::printf("trainee: %s\n", what.c_str());
     std::fflush(stdout);
@@ -94,7 +98,12 @@ void GoalPlayer::begin() {
   trainee_->on_result = [this](int number, const GoalResult& result) { report(number, result); };
 }
 
-void GoalPlayer::report(int number, const GoalResult& result) {
+void GoalPlayer::end() {
+  if (trainee_) server_.end();
+  trainee_.reset();
+}
+
+void GoalPlayer::report(int number, const GoalResult& result) const {
   std::printf("trainee: t = %.1f s  goal %d of %zu, %s: %s%s%s\n",
               static_cast<double>(last_step_) * model_->scene.step_period, number + 1, trainee_->goals().size(),
               describe(trainee_->goals()[static_cast<std::size_t>(number)]).c_str(),

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "goal_server.hpp"
 #include "input_sender.hpp"
 #include "observation_queue.hpp"
 #include "vibe_core/trainee/protocol.hpp"
@@ -13,9 +14,9 @@
 
 namespace vibe {
 
-/// Performs the goals of a protocol by what the simulator publishes. It answers the end of every step with the input of
-/// the next, so that in lock-step a session has the bits of vibe_headless. When the session begins anew (reset,
-/// snapshot, other scene), so does the protocol.
+/// Performs the goals of a protocol, and those that other nodes send, by what the simulator publishes. It answers the
+/// end of every step with the input of the next, so that in lock-step a session has the bits of vibe_headless. When the
+/// session begins anew (reset, snapshot, other scene), so does the protocol; goals of others have failed then.
 class GoalPlayer {
  public:
   /// @param lockstep        wait for the particles of each step; else use the newest
@@ -32,11 +33,13 @@ class GoalPlayer {
   bool knowsModel(std::uint32_t revision);
   void perform(const Sight& sight);
   void begin();
-  void report(int number, const GoalResult& result);
+  void end();
+  void report(int number, const GoalResult& result) const;
 
   Protocol protocol_;
   bool lockstep_, exit_when_done_;
   InputSender sender_;
+  GoalServer server_;
   ObservationQueue queue_;
   ros::Subscriber scene_, result_, particles_;
   ros::WallTimer timer_;

@@ -92,8 +92,12 @@ void addEnds(const Suture& suture, vibe_msgs::Suture& message) {
 
 void addTechnique(const Suture& suture, vibe_msgs::Suture& message) {
   message.technique = suture.technique;
+  message.corrected_technique = suture.corrected_technique;
+  message.printed_technique = suture.printed_technique;
   if (suture.stage >= Suture::Stage::Tagged) {
     message.technique_name = toString(static_cast<Technique>(suture.technique));
+    message.corrected_technique_name = toString(static_cast<Technique>(suture.corrected_technique));
+    message.printed_technique_name = toString(static_cast<Technique>(suture.printed_technique));
   }
   message.technique_margin = suture.technique_margin;
   std::copy(suture.transitions.begin(), suture.transitions.end(), message.transitions.begin());

@@ -1,11 +1,14 @@
-// vibe_trainee: plays a trainee's script, or performs the goals of a protocol, on the simulator's input topics.
+// vibe_trainee: plays a trainee's script, or performs the goals of a protocol and of other nodes, on the simulator's
+// input topics.
 
 #include <ros/ros.h>
 
 #include <cstdio>
+#include <limits>
 
 #include "goal_player.hpp"
 #include "trainee_player.hpp"
+#include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_node/parameter_reader.hpp"
 
@@ -13,6 +16,8 @@ namespace {
 
 struct Parameters {
   std::string script;
+  std::string skill = "expert";
+  int seed = 1;
   bool lockstep = false;
   bool exit_when_done = false;
 };
@@ -20,11 +25,15 @@ struct Parameters {
 Parameters readParameters() {
   Parameters parameters;
   vibe::ParameterReader reader(ros::NodeHandle("~"));
-  parameters.script = reader.required("script", "a trainee script, a protocol, or the package:// address of one");
+  reader.read("script", parameters.script);
+  reader.read("skill", parameters.skill);
+  reader.read("seed", parameters.seed, 0, std::numeric_limits<int>::max());
   reader.read("lockstep", parameters.lockstep);
   reader.read("exit_when_done", parameters.exit_when_done);
   reader.finish();
-  parameters.script = vibe::resolveAddress(parameters.script);
+  if (!parameters.script.empty()) parameters.script = vibe::resolveAddress(parameters.script);
+  if (parameters.skill != "expert" && parameters.skill != "novice")
+    throw vibe::Error("Parameter ~skill is '" + parameters.skill + "'; give expert or novice, or a protocol.");
   return parameters;
 }
 
@@ -35,8 +44,16 @@ void playScript(const Parameters& parameters) {
   ros::spin();
 }
 
-void performProtocol(const Parameters& parameters) {
-  const vibe::Protocol protocol = vibe::Protocol::load(parameters.script);
+/// Of a trainee that only gets goals from other nodes.
+vibe::Protocol noProtocol(const Parameters& parameters) {
+  vibe::Protocol protocol;
+  protocol.name = "goals of other nodes";
+  if (parameters.skill == "novice") protocol.skill = vibe::Skill::novice();
+  protocol.seed = static_cast<std::uint64_t>(parameters.seed);
+  return protocol;
+}
+
+void performGoals(const vibe::Protocol& protocol, const Parameters& parameters) {
   ROS_INFO_STREAM("Performing '" << protocol.name << "', " << protocol.goals.size() << " goals.");
   vibe::GoalPlayer player(ros::NodeHandle(), protocol, parameters.lockstep, parameters.exit_when_done);
   ros::spin();
@@ -48,8 +65,10 @@ int main(int argc, char** argv) {
   try {
     ros::init(argc, argv, "vibe_trainee");
     const Parameters parameters = readParameters();
-    if (vibe::isProtocol(parameters.script)) {
-      performProtocol(parameters);
+    if (parameters.script.empty()) {
+      performGoals(noProtocol(parameters), parameters);
+    } else if (vibe::isProtocol(parameters.script)) {
+      performGoals(vibe::Protocol::load(parameters.script), parameters);
     } else {
       playScript(parameters);
     }

@@ -39,8 +39,11 @@ void recognise(const Model& model, Suture& suture, const State& state, std::vect
   const SutureScene& scene = *model.scene.suture;
   suture.taken.clear();
   for (const Bite& bite : suture.bites) suture.taken.push_back(restPosition(bite, model.organ.surface.vertices));
-  const TechniqueRule rule = scene.classifier == "printed" ? TechniqueRule::Printed : TechniqueRule::Corrected;
-  const TechniqueResult found = recogniseTechnique(suture.taken, rule);
+  const TechniqueResult corrected = recogniseTechnique(suture.taken, TechniqueRule::Corrected);
+  const TechniqueResult printed = recogniseTechnique(suture.taken, TechniqueRule::Printed);
+  const TechniqueResult& found = scene.classifier == "printed" ? printed : corrected;
+  suture.corrected_technique = static_cast<std::uint8_t>(corrected.technique);
+  suture.printed_technique = static_cast<std::uint8_t>(printed.technique);
   suture.technique = static_cast<std::uint8_t>(found.technique);
   suture.technique_margin = found.margin;
   suture.transitions = found.transitions;

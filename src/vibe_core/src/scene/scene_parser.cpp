@@ -217,6 +217,8 @@ Scene load(const std::string& file, int depth) {
   SceneReader reader(source, depth);
   Scene scene = reader.read();
   reader.checkFiles();
+  // whoever builds the organ takes a relative path to lead from the scene file
+  if (!scene.geometry.file.empty()) scene.geometry.file = std::filesystem::absolute(scene.geometry.file).string();
   return scene;
 }
 

@@ -11,6 +11,7 @@
 #include "procedure/marking.hpp"
 #include "procedure/marking_touch.hpp"
 #include "procedure/procedure.hpp"
+#include "procedure/set_point.hpp"
 #include "procedure/thread_events.hpp"
 #include "vibe_core/procedure/helix_grip.hpp"
 
@@ -39,8 +40,7 @@ void reportContact(int contact_count, double dt, State& state, std::vector<Event
 }
 
 void reportPressure(const GasScene& gas, bool insufflator_on, State& state, std::vector<Event>& events) {
-  const double tolerance = std::max(1.0, 0.01 * std::abs(gas.regulated_pressure));
-  const bool reached = insufflator_on && std::abs(state.pressure - gas.regulated_pressure) < tolerance;
+  const bool reached = insufflator_on && isAtSetPoint(state.pressure, gas.regulated_pressure, state.pressure_reached);
   if (reached && !state.pressure_reached)
     emitEvent(Event::Kind::PressureReached, state.time, -1, state.pressure, events);
   state.pressure_reached = reached;

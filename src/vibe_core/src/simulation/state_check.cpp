@@ -1,5 +1,6 @@
 #include "simulation/state_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "vibe_core/suture/technique.hpp"
@@ -39,7 +40,8 @@ std::string groupDamage(const TissueGroup& group, int particle_count) {
 
 std::string sutureDamage(const Suture& suture, int particle_count) {
   if (suture.stage > Suture::Stage::Broken) return "a suture's stage does not exist";
-  if (suture.technique >= kTechniqueCount) return "a suture's technique does not exist";
+  if (std::max({suture.technique, suture.corrected_technique, suture.printed_technique}) >= kTechniqueCount)
+    return "a suture's technique does not exist";
   if (suture.length.size() != suture.tension.size() || suture.length.size() > suture.bites.size())
     return "a suture's thread does not fit its bites";
   if (suture.pulls() && suture.length.size() + 1 != suture.bites.size())

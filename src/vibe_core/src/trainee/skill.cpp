@@ -8,7 +8,7 @@ Skill Skill::novice() {
   Skill skill;
   skill.name = "novice";
   skill.pace = 0.31;  // 31.5 s against 101.5 s for the same task (colonoscope hand motion, Holden)
-  skill.look_time = 25;
+  skill.look_time = 60;
   skill.foresight = 0;
   skill.reaction_time = 0.3;
   skill.aim_error = 4e-3;

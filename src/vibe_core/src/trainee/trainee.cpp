@@ -3,6 +3,7 @@
 #include <boost/coroutine2/coroutine.hpp>
 #include <cmath>
 #include <deque>
+#include <set>
 #include <utility>
 
 #include "trainee/operator.hpp"
@@ -21,6 +22,11 @@ std::shared_ptr<const Model> withScope(std::shared_ptr<const Model> model) {
   throw Error("The scene '" + model->scene.name + "' has no scope, which a trainee needs; add a section 'scope'.");
 }
 
+constexpr const char* kCancelled = "cancelled";
+
+/// Leaves the actions of a goal that is given up.
+struct Cancelled {};
+
 }  // namespace
 
 struct Trainee::Impl {
@@ -28,7 +34,7 @@ struct Trainee::Impl {
       : model(std::move(shared)),
         skill(given),
         tremor(skill.tremor, seed),
-        hand(*model, skill, [this] { (*pause)(); }),
+        hand(*model, skill, [this] { endStep(); }),
         me{hand, seed, [this](const std::string& what) { say(what); }, {}},
         trainee(owner),
         delay(std::lround(skill.reaction_time / model->scene.step_period)) {}
@@ -45,12 +51,32 @@ struct Trainee::Impl {
     if (trainee.on_activity) trainee.on_activity(what);
   }
 
+  void endStep() {
+    (*pause)();
+    if (!draws_back && cancelled.erase(number()) > 0) throw Cancelled{};
+  }
+
+  int number() const { return static_cast<int>(results.size()); }
+
   GoalResult attempt(const Goal& goal) {
+    if (cancelled.erase(number()) > 0) return {false, kCancelled};
+    say(describe(goal));
     try {
       return std::visit([this](const auto& g) { return perform(g, me); }, goal);
     } catch (const Error& error) {  // of the library, such as an organ without landmarks
       return {false, error.what()};
+    } catch (const Cancelled&) {  // a coroutine must not be left from here
     }
+    drawBack();
+    return {false, kCancelled};
+  }
+
+  void drawBack() {
+    draws_back = true;
+    for (const Button button : {ApcPedal, HelixGrab, Needle, TTag, Cinch}) hand.release(button);
+    stepBack(me);
+    cancelled.erase(number());  // again, meanwhile
+    draws_back = false;
   }
 
   void pursue() {
@@ -60,7 +86,6 @@ struct Trainee::Impl {
         continue;
       }
       const Goal goal = goals[results.size()];
-      say(describe(goal));
       results.push_back(attempt(goal));
       if (trainee.on_result) trainee.on_result(static_cast<int>(results.size()) - 1, results.back());
     }
@@ -88,6 +113,8 @@ struct Trainee::Impl {
   Observation seen;
   std::vector<Goal> goals;
   std::vector<GoalResult> results;
+  std::set<int> cancelled;  // numbers of goals to be given up
+  bool draws_back = false;  // after a goal that was given up
   std::string activity;
   std::deque<StepInput> decided;  // inputs on their way to the hand
   Coroutine::push_type* pause = nullptr;
@@ -99,8 +126,13 @@ Trainee::Trainee(std::shared_ptr<const Model> model, const Skill& skill, std::ui
 
 Trainee::~Trainee() = default;
 
-void Trainee::add(const Goal& goal) {
+int Trainee::add(const Goal& goal) {
   impl_->goals.push_back(goal);
+  return static_cast<int>(impl_->goals.size()) - 1;
+}
+
+void Trainee::cancel(int number) {
+  if (number >= current()) impl_->cancelled.insert(number);
 }
 
 StepInput Trainee::next(const Observation& seen) {

@@ -9,6 +9,7 @@
 #include "allocation_count.hpp"
 #include "common/random.hpp"
 #include "procedure/procedure_bench.hpp"
+#include "vibe_core/suture/technique.hpp"
 
 namespace vibe {
 namespace {
@@ -87,6 +88,11 @@ TEST(Procedure, GoesFromTheFirstBiteToACinchedSet) {
   EXPECT_EQ(bench.count(Kind::TTagDropped), 1);
   EXPECT_EQ(bench.count(Kind::TechniqueFound), 1);
   EXPECT_EQ(suture.taken.size(), 4u);
+  const auto by = [&suture](TechniqueRule rule) {
+    return static_cast<int>(recogniseTechnique(suture.taken, rule).technique);
+  };
+  EXPECT_EQ(suture.corrected_technique, by(TechniqueRule::Corrected));
+  EXPECT_EQ(suture.printed_technique, by(TechniqueRule::Printed));
   EXPECT_EQ(suture.stage, Suture::Stage::Tagged);
   EXPECT_EQ(bench.procedure().phase, Phase::Pull);
   const double whole = suture.length.front();

@@ -86,6 +86,19 @@ TEST(SceneBase, OverridesWhatItNamesAndKeepsTheRest) {
   EXPECT_EQ(toYaml(with("base: package://vibe_core/scenes/stomach.yaml\n")), toYaml(base));
 }
 
+TEST(SceneParser, AMeshIsFoundFromAnyWorkingDirectory) {
+  const std::string folder = ::testing::TempDir() + "scene_mesh_test/";
+  std::filesystem::create_directories(folder + "scenes");
+  std::ofstream(folder + "m.obj") << "v 0 0 0\n";
+  std::ofstream(folder + "scenes/s.yaml")
+      << "geometry: {kind: mesh, file: ../m.obj, unit: 1 mm, landmarks: {oesophagus: [0, 0, 0], fundus: [0, 0, 0], "
+         "incisura: [0, 0, 0], pylorus: [0, 0, 0]}}\n";
+  const Scene scene = loadScene(std::filesystem::relative(folder + "scenes/s.yaml").string());
+  EXPECT_TRUE(std::filesystem::path(scene.geometry.file).is_absolute()) << scene.geometry.file;
+  EXPECT_TRUE(std::filesystem::is_regular_file(scene.geometry.file)) << scene.geometry.file;
+  std::filesystem::remove_all(folder);
+}
+
 TEST(SceneBase, ACircleIsAnError) {
   const std::string file = ::testing::TempDir() + "scene_base_test.yaml";
   std::ofstream(file) << "base: scene_base_test.yaml\n";

@@ -155,6 +155,8 @@ TEST(Skill, ALineFromExpertToNovice) {
   EXPECT_EQ(between(expert, novice, 0).aim_error, expert.aim_error);
   EXPECT_EQ(between(expert, novice, 1).aim_error, novice.aim_error);
   EXPECT_EQ(between(expert, novice, 1).attempts, novice.attempts);
+  EXPECT_DOUBLE_EQ(between(expert, novice, 0.5).foresight, 0.5);
+  EXPECT_DOUBLE_EQ(between(expert, novice, 0.25).look_time, 0.75 * expert.look_time + 0.25 * novice.look_time);
   double last = 0;
   for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const Skill skill = between(expert, novice, part);

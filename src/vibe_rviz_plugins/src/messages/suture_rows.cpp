@@ -27,12 +27,30 @@ std::string stageName(const vibe_msgs::Suture& suture) {
   }
 }
 
+/// Patterns that are named by a letter (U, Z, C) are written in upper case.
+std::string displayName(std::string name) {
+  if (name.empty()) return kNoValue;
+  if (name.size() == 1) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name;
+}
+
 std::string techniqueText(const vibe_msgs::Suture& suture) {
   if (suture.technique_name.empty()) return kNoValue;
-  std::string name = suture.technique_name;
-  // patterns that are named by a letter (U, Z, C) are written in upper case
-  if (name.size() == 1) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-  return name + " " + numberText(100 * suture.technique_margin, 0) + "%";
+  return displayName(suture.technique_name) + " " + numberText(100 * suture.technique_margin, 0) + "%";
+}
+
+/// Pattern of the last goal that took bites into a suture; empty: none.
+std::string plannedFor(std::size_t suture, const vibe_msgs::TraineeProgress* progress) {
+  std::string pattern;
+  if (!progress) return pattern;
+  for (const vibe_msgs::GoalProgress& goal : progress->goals)
+    if (goal.suture >= 0 && static_cast<std::size_t>(goal.suture) == suture) pattern = goal.pattern;
+  return pattern;
+}
+
+std::string rulesText(const vibe_msgs::Suture& suture) {
+  return "\nBy the corrected rule " + displayName(suture.corrected_technique_name) +
+         ", by the rule as printed in the paper " + displayName(suture.printed_technique_name) + ".";
 }
 
 std::string helpOf(const SutureRow& row, const vibe_msgs::Suture& suture) {
@@ -40,7 +58,9 @@ std::string helpOf(const SutureRow& row, const vibe_msgs::Suture& suture) {
                      std::to_string(suture.tear_outs) + " torn out. Maximum tension now " +
                      quantityText(maxTension(suture), 2, "N") + ".";
   if (!suture.technique_name.empty())
-    text += "\nTechnique " + row.technique + " is the margin to the next technique (100 %: certain).";
+    text +=
+        "\nTechnique " + row.technique + " is the margin to the next technique (100 %: certain)." + rulesText(suture);
+  if (row.planned != kNoValue) text += "\nPlanned: " + row.planned + ".";
   if (suture.end > 0)
     text += "\nCinched with " + quantityText(suture.cinch_tension, 2, "N") + " after drawing " +
             quantityText(1e3 * suture.pulled, 0, "mm") + " of thread.";
@@ -56,17 +76,21 @@ double maxTension(const vibe_msgs::Suture& suture) {
   return *std::max_element(suture.tension.begin(), suture.tension.end());
 }
 
-std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures) {
+std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures, const vibe_msgs::TraineeProgress* progress) {
   std::vector<SutureRow> rows;
   for (const vibe_msgs::Suture& suture : sutures.sutures) {
     SutureRow row;
     row.set = std::to_string(rows.size() + 1);
     row.bites = std::to_string(suture.bites.size());
     if (suture.tear_outs > 0) row.bites += " (-" + std::to_string(suture.tear_outs) + ")";
+    const std::string planned = plannedFor(rows.size(), progress);
+    row.planned = displayName(planned);
     row.technique = techniqueText(suture);
+    row.printed = displayName(suture.printed_technique_name);
     row.stage = stageName(suture);
     row.tension = numberText(maxTension(suture), 1);
-    row.warns = suture.tear_outs > 0 || suture.loose || suture.stage == vibe_msgs::Suture::BROKEN;
+    const bool missed = !planned.empty() && !suture.technique_name.empty() && planned != suture.technique_name;
+    row.warns = suture.tear_outs > 0 || suture.loose || missed || suture.stage == vibe_msgs::Suture::BROKEN;
     row.help = helpOf(row, suture);
     rows.push_back(std::move(row));
   }

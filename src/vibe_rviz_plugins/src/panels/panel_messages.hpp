@@ -4,6 +4,7 @@
 #include <vibe_msgs/SkillMetrics.h>
 #include <vibe_msgs/SolverStatistics.h>
 #include <vibe_msgs/SutureArray.h>
+#include <vibe_msgs/TraineeProgress.h>
 
 namespace vibe {
 
@@ -14,6 +15,7 @@ struct PanelMessages {
   vibe_msgs::SutureArrayConstPtr sutures;
   vibe_msgs::SolverStatisticsConstPtr solver_statistics;
   geometry_msgs::WrenchStampedConstPtr force;
+  vibe_msgs::TraineeProgressConstPtr progress;
 };
 
 /// How fresh they are.

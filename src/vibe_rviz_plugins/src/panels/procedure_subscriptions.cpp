@@ -46,6 +46,9 @@ void ProcedureSubscriptions::subscribeAll(ros::NodeHandle& handle) {
   }));
   add(handle.subscribe<vibe_msgs::SutureArray>("sutures", 1,
                                                [this](const auto& message) { take(messages_.sutures, message); }));
+  // of a trainee, not of the simulator: it does not say that there is one
+  add(handle.subscribe<vibe_msgs::TraineeProgress>("trainee/progress", 1,
+                                                   [this](const auto& message) { messages_.progress = message; }));
   add(handle.subscribe<vibe_msgs::SolverStatistics>(
       "solver_statistics", 1, [this](const auto& message) { take(messages_.solver_statistics, message); }));
   add(handle.subscribe<ProcedureEvent>("procedure/events", kEventQueue, [this](const auto& message) {

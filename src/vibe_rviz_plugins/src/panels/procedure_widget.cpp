@@ -6,6 +6,7 @@
 #include <QTimer>
 #include <QVBoxLayout>
 
+#include "messages/trainee_text.hpp"
 #include "panels/command_box.hpp"
 #include "panels/event_list.hpp"
 #include "panels/measures_view.hpp"
@@ -46,6 +47,7 @@ ProcedureWidget::ProcedureWidget(QWidget* parent)
       commands_(makeCommands()),
       stepping_(makeStepping()),
       sutures_(new SutureTable),
+      trainee_(wrappingLabel()),
       measures_(new MeasuresView),
       events_(new EventList),
       solver_statistics_(new SolverStatisticsView),
@@ -85,6 +87,8 @@ QWidget* ProcedureWidget::makeContent() {
   addPart(column, "Buttons", commands_);
   addPart(column, "Simulation", stepping_);
   addPart(column, "Sutures", sutures_);
+  trainee_->setObjectName("trainee");
+  addPart(column, "Goals of the trainee", trainee_);
   addPart(column, "Measures and published references", measures_);
   addPart(column, "Simulator", solver_statistics_);
   name_space_edit_->setObjectName("namespace");
@@ -188,7 +192,9 @@ void ProcedureWidget::refresh() {
   stepping_->displayState(static_cast<bool>(messages.state), messages.state && messages.state->paused);
   if (!waited_for_.empty()) stepping_->displayWaiting(waited_for_, now - waits_since_);
   summary_->display(messages);
-  sutures_->display(messages.sutures ? sutureRows(*messages.sutures) : std::vector<SutureRow>());
+  sutures_->display(messages.sutures ? sutureRows(*messages.sutures, messages.progress.get())
+                                     : std::vector<SutureRow>());
+  trainee_->setText(toQt(messages.progress ? traineeText(*messages.progress) : "no trainee with goals"));
   measures_->display(messages);
   solver_statistics_->display(messages, subscriptions_.freshness(now));
 }

@@ -48,6 +48,7 @@ class ProcedureWidget : public QWidget {
   CommandBox* commands_;
   SteppingBox* stepping_;
   SutureTable* sutures_;
+  QLabel* trainee_;
   MeasuresView* measures_;
   EventList* events_;
   SolverStatisticsView* solver_statistics_;

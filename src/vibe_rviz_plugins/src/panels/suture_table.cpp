@@ -11,16 +11,18 @@ namespace {
 
 constexpr int kMaxShown = 8;  // rows without scrolling
 
-constexpr int kTechnique = 2;  // column
+constexpr int kTechnique = 3;  // column
 
 struct Column {
   const char* title;
   const char* help;
 };
-constexpr std::array<Column, 5> kColumns = {{
+constexpr std::array<Column, 7> kColumns = {{
     {"#", "Number of the set, in the order of first bites."},
     {"Bites", "Bites that hold; torn-out bites in brackets."},
-    {"Technique", "Recognised technique and its margin; recognised when the T-tag is dropped."},
+    {"Plan", "Technique that the goal of a trainee asks for (trainee/progress)."},
+    {"Found", "Technique recognised when the T-tag is dropped, by the rule of the scene, and its margin."},
+    {"Paper", "The same by the rule as printed in the ViBE paper, which knows U, Z and other."},
     {"Stage",
      "Open: takes bites. Tagged: the T-tag is dropped. Cinched: permanent. Loose: cinched with too little tension."},
     {"N", "Maximum tension of the thread now [N]."},
@@ -63,8 +65,8 @@ void SutureTable::display(const std::vector<SutureRow>& rows) {
 }
 
 void SutureTable::displayRow(int row, const SutureRow& content) {
-  const std::array<std::string, 5> texts = {content.set, content.bites, content.technique, content.stage,
-                                            content.tension};
+  const std::array<std::string, 7> texts = {content.set,     content.bites, content.planned, content.technique,
+                                            content.printed, content.stage, content.tension};
   for (int column = 0; column < columnCount(); ++column) {
     QTableWidgetItem* cell = item(row, column);
     if (!cell) {

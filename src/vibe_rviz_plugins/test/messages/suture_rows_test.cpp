@@ -44,6 +44,33 @@ TEST(SutureRows, CinchedSetHasATechnique) {
   EXPECT_EQ(sutureRows(sutures)[0].technique, "running 83%");
 }
 
+TEST(SutureRows, PlannedAndRecognisedByBothRules) {
+  auto sutures = oneSet(vibe_msgs::Suture::CINCHED);
+  sutures.sutures.push_back(sutures.sutures[0]);
+  vibe_msgs::Suture& suture = sutures.sutures[1];
+  suture.technique_name = suture.corrected_technique_name = "triangular";
+  suture.printed_technique_name = "z";
+  vibe_msgs::TraineeProgress progress;
+  for (const int number : {-1, 1, 1}) {
+    vibe_msgs::GoalProgress& goal = progress.goals.emplace_back();
+    goal.suture = number;
+    goal.pattern = number < 0 ? "c" : "u";
+  }
+  const auto rows = sutureRows(sutures, &progress);
+  EXPECT_EQ(rows[0].planned, "\u2013");
+  EXPECT_EQ(rows[0].printed, "\u2013") << "not recognised yet";
+  EXPECT_FALSE(rows[0].warns);
+  EXPECT_EQ(rows[1].planned, "U");
+  EXPECT_EQ(rows[1].technique, "triangular 0%");
+  EXPECT_EQ(rows[1].printed, "Z");
+  EXPECT_TRUE(rows[1].warns) << "another technique than planned";
+  for (const char* word : {"corrected rule triangular", "printed in the paper Z", "Planned: U"})
+    EXPECT_NE(rows[1].help.find(word), std::string::npos) << rows[1].help;
+  progress.goals[2].pattern = "triangular";  // the last goal counts
+  EXPECT_FALSE(sutureRows(sutures, &progress)[1].warns);
+  EXPECT_EQ(sutureRows(sutures)[1].planned, "\u2013") << "without a trainee";
+}
+
 TEST(SutureRows, FaultsWarn) {
   auto sutures = oneSet(vibe_msgs::Suture::CINCHED);
   sutures.sutures[0].loose = true;

@@ -49,7 +49,7 @@ struct Widgets : testing::Test {
     sutures->sutures[0].stage = vibe_msgs::Suture::CINCHED;
     sutures->sutures[0].bites.resize(7);
     sutures->sutures[1].bites.resize(2);
-    return {state, skill, sutures, nullptr, nullptr};
+    return {state, skill, sutures, nullptr, nullptr, nullptr};
   }
 
   static geometry_msgs::WrenchStampedConstPtr force(double newton) {
@@ -149,8 +149,8 @@ TEST_F(Widgets, setsAreRows) {
   table.display(sutureRows(*session().sutures));
   ASSERT_EQ(table.rowCount(), 2);
   EXPECT_EQ(table.item(0, 1)->text(), "7");
-  EXPECT_EQ(table.item(0, 3)->text(), "cinched");
-  EXPECT_EQ(table.item(1, 3)->text(), "open");
+  EXPECT_EQ(table.item(0, 5)->text(), "cinched");
+  EXPECT_EQ(table.item(1, 5)->text(), "open");
   const int two = table.sizeHint().height();
   table.display(std::vector<SutureRow>(5));
   EXPECT_GT(table.sizeHint().height(), two);
@@ -159,6 +159,34 @@ TEST_F(Widgets, setsAreRows) {
   EXPECT_LT(table.sizeHint().height(), 3 * five) << "many sets scroll";
   table.display({});
   EXPECT_EQ(table.rowCount(), 0);
+}
+
+TEST_F(Widgets, aSetShowsWhatWasPlannedAndWhatBothRulesSay) {
+  auto sutures = *session().sutures;
+  sutures.sutures[0].technique_name = "u";
+  sutures.sutures[0].technique_margin = 0.99;
+  sutures.sutures[0].printed_technique_name = "other";
+  vibe_msgs::TraineeProgress progress;
+  progress.goals.resize(1);
+  progress.goals[0].pattern = "u";
+  SutureTable table;
+  table.resize(320, 120);
+  table.display(sutureRows(sutures, &progress));
+  const std::vector<std::string> wanted = {"1", "7", "U", "U 99%", "other", "cinched"};
+  for (std::size_t column = 0; column < wanted.size(); ++column)
+    EXPECT_EQ(table.item(0, static_cast<int>(column))->text().toStdString(), wanted[column]);
+  EXPECT_FALSE(table.item(0, 2)->font().bold());
+  const QImage as_planned = pictureOf(table);
+  progress.goals[0].pattern = "z";
+  table.display(sutureRows(sutures, &progress));
+  EXPECT_TRUE(table.item(0, 2)->font().bold()) << "another technique than planned";
+  EXPECT_NE(pictureOf(table), as_planned);
+  // nothing is cut off in a dock of the usual width
+  for (int column = 0; column < table.columnCount(); ++column) {
+    const QTableWidgetItem& cell = *table.item(0, column);
+    EXPECT_GE(table.columnWidth(column), QFontMetrics(cell.font()).horizontalAdvance(cell.text()) + 4)
+        << table.horizontalHeaderItem(column)->text().toStdString();
+  }
 }
 
 TEST_F(Widgets, measuresNameTheirSources) {

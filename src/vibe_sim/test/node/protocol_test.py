@@ -17,8 +17,8 @@ from sensor_msgs.msg import PointCloud2
 from vibe_msgs.msg import ProcedureEvent, StepInput, StepResult
 from vibe_msgs.srv import Reset
 
-DURATION = 11.0
-STEPS = 660
+DURATION = 18.0  # the first bite is over
+STEPS = 1080
 PROTOCOL = "look.protocol.yaml"
 
 
@@ -79,7 +79,7 @@ class ProtocolTest(unittest.TestCase):
         self.assertEqual(self.hash_of_session(await_recorder="true"), self.reference)
         self.assertEqual([m.step for m in self.applied.messages], list(range(STEPS)))
         # it went as far as to look at what it holds
-        self.assertIn(ProcedureEvent.GRAB, [m.kind for m in self.events.messages])
+        self.assertIn(ProcedureEvent.BITE, [m.kind for m in self.events.messages])
         trainee = self.programs[-1]
         self.assertTrue(trainee.says("goal 2 of 4, mark at 40 % of the axis, 0 deg: given up, the scene has no"))
 

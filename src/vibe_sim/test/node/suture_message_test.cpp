@@ -143,6 +143,7 @@ TEST_F(SutureMessage, aBrokenOrShortThreadIsNotDrawn) {
 TEST_F(SutureMessage, tTagAndCinchSitAtTheEndsOnceTheyAreThere) {
   EXPECT_FALSE(first().has_t_tag || first().has_cinch);
   EXPECT_EQ(first().technique_name, "");
+  EXPECT_EQ(first().printed_technique_name, "");
   suture->stage = Suture::Stage::Tagged;
   EXPECT_TRUE(first().has_t_tag);
   EXPECT_FALSE(first().has_cinch);
@@ -158,6 +159,8 @@ TEST_F(SutureMessage, tTagAndCinchSitAtTheEndsOnceTheyAreThere) {
 TEST_F(SutureMessage, tellsTechniqueCinchAndTears) {
   suture->stage = Suture::Stage::Cinched;
   suture->technique = 2;
+  suture->corrected_technique = 2;
+  suture->printed_technique = 1;
   suture->technique_margin = 0.4;
   suture->transitions = {1, 2};
   suture->taken = {{1, 2, 3}};
@@ -170,6 +173,10 @@ TEST_F(SutureMessage, tellsTechniqueCinchAndTears) {
   EXPECT_EQ(s.stage, Wire::CINCHED);
   EXPECT_EQ(s.technique, Wire::TECHNIQUE_Z);
   EXPECT_EQ(s.technique_name, "z");
+  EXPECT_EQ(s.corrected_technique, Wire::TECHNIQUE_Z);
+  EXPECT_EQ(s.corrected_technique_name, "z");
+  EXPECT_EQ(s.printed_technique, Wire::TECHNIQUE_U);
+  EXPECT_EQ(s.printed_technique_name, "u");
   EXPECT_EQ(s.technique_margin, 0.4);
   EXPECT_EQ(s.transitions[0], 1);
   EXPECT_EQ(s.transitions[1], 2);

@@ -6,7 +6,7 @@
 namespace vibe {
 
 /// Reads and validates a scene file (format: docs/scenes.md), on top of the scene that its key `base` names. Paths in
-/// it are relative to the file; in the result they lead from the working directory.
+/// it are relative to the file; in the result they lead from the working directory, and geometry.file is absolute.
 /// @throws Error "file:line: key: what is wrong; remedy" for anything the schema does not allow, or a missing file
 Scene loadScene(const std::string& file);
 

@@ -11,8 +11,8 @@ constexpr std::uint32_t kStateVersion = 6;
 
 VIBE_FIELDS(Bite, particle, weight, time, depth, thickness, region, wall, along);
 VIBE_FIELDS(TissueGroup, particle, offset, middle, weight, drawn);
-VIBE_FIELDS(Suture, stage, bites, length, tension, taken, technique, technique_margin, transitions, pulled,
-            cinch_tension, begin, end, tear_outs, group);
+VIBE_FIELDS(Suture, stage, bites, length, tension, taken, technique, technique_margin, transitions, corrected_technique,
+            printed_technique, pulled, cinch_tension, begin, end, tear_outs, group);
 VIBE_FIELDS(Bleeding, suture, bite, particle, brisk, begin, rate, amount, overdue);
 VIBE_FIELDS(ProcedureState, phase, pressed, heat, dose, grade, beam_energy, base_x, base_y, base_z, grip_rotation,
             grip_turns, arm_closed, needle_on_arm, needle_loaded, pierced, pending, sutures, thread_used, bleedings,

@@ -27,7 +27,11 @@ class Trainee {
   Trainee(const Trainee&) = delete;
   Trainee& operator=(const Trainee&) = delete;
 
-  void add(const Goal& goal);
+  /// @return the number of the goal, from 0
+  int add(const Goal& goal);
+  /// Gives a goal up, now or when its turn comes: lets go of everything, draws back, and goes on with the next. No
+  /// effect on goals that have ended.
+  void cancel(int number);
   /// Perceives the end of a step.
   /// @return the input of the next step, which is decided on what was perceived Skill::reaction_time ago
   StepInput next(const Observation& seen);

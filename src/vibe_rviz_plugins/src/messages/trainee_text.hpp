@@ -1,0 +1,12 @@
+#pragma once
+#include <vibe_msgs/TraineeProgress.h>
+
+#include <string>
+
+namespace vibe {
+
+/// What a trainee does and how far it is, in a few lines: the goal that is pursued, or how many have ended; what is
+/// being done; why the last failed goal failed.
+std::string traineeText(const vibe_msgs::TraineeProgress& progress);
+
+}  // namespace vibe
