@@ -8,6 +8,7 @@
 #include "trainee/device_geometry.hpp"
 #include "trainee/ik_solution.hpp"
 #include "trainee/imagined_draw.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
@@ -51,13 +52,21 @@ BiteAttempt::BiteAttempt(const WallPoint& target, int number, Operator& me)
       hand_(me.hand) {}
 
 GoalResult BiteAttempt::make() {
-  GoalResult result{false, "the helix got no hold of the wall"};
-  if (grab()) {
-    result = drawAndClose();
-    hand_.move(HelixAdvance, kHelixOut - 4e-3, 0.6);
+  GoalResult result;
+  try {
+    result = grabAndStitch();
+  } catch (const Error& error) {  // the way along the wall to a place leaves the organ
+    result = {false, error.what()};
   }
   letGo();
   if (result.reached) takeNeedleBack();
+  return result;
+}
+
+GoalResult BiteAttempt::grabAndStitch() {
+  if (!grab()) return {false, "the helix got no hold of the wall"};
+  const GoalResult result = drawAndClose();
+  hand_.move(HelixAdvance, kHelixOut - 4e-3, 0.6);
   return result;
 }
 

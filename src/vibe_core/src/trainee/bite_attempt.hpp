@@ -18,6 +18,7 @@ class BiteAttempt {
   GoalResult make();
 
  private:
+  GoalResult grabAndStitch();
   void settle();
   double gap() const;
   bool approach(double into, double min);

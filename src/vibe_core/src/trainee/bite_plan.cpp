@@ -6,6 +6,7 @@
 #include "trainee/device_geometry.hpp"
 #include "trainee/ik_solution.hpp"
 #include "trainee/imagined_draw.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
@@ -62,6 +63,15 @@ class Planner {
     return plan;
   }
 
+  /// Of infinite cost where a way along the wall leaves the organ.
+  BitePlan withRollOnTheOrgan(const Hand::Joints& rolled) const {
+    try {
+      return withRoll(rolled);
+    } catch (const Error&) {
+      return {};
+    }
+  }
+
   BitePlan anyRoll() const {
     const Eigen::Vector3d at = me_.position(target_), outward = me_.outward(target_);
     Hand::Joints joints = aimAt(me_.model(), at, outward, helixInTip(kHelixOut), me_.hand.joints()).joints;
@@ -71,7 +81,7 @@ class Planner {
     for (int k = 0; k < considered; ++k) {  // 0, 1, -1, 2, ...
       const auto one = rolled(me_.model(), joints, 2 * M_PI * (k % 2 == 1 ? k / 2 + 1 : -k / 2) / kRolls);
       if (!one) continue;
-      const BitePlan plan = withRoll(*one);
+      const BitePlan plan = withRollOnTheOrgan(*one);
       if (plan.cost < best.cost) best = plan;
     }
     if (!std::isfinite(best.cost)) best.held = target_, best.joints = joints;
