@@ -121,7 +121,7 @@ TEST(ScriptReader, AliasesCannotMultiplyWithoutEnd) {
 TEST(ScriptReader, DamagedScriptsGiveAScriptOrAnErrorWithItsPlace) {
   Mutator mutator(2000);
   int good = 0, refused = 0;
-  for (const char* name : {"expert", "novice", "demo/smoke"}) {
+  for (const char* name : {"demo/five_states", "demo/clumsy_grabs", "demo/smoke"}) {
     std::stringstream text;
     text << std::ifstream(std::string(VIBE_CORE_DIR) + "/trainees/" + name + ".yaml").rdbuf();
     for (int k = 0; k < 1000; ++k) {

@@ -75,7 +75,7 @@ class FailuresTest(unittest.TestCase):
         for parameters, words in cases:
             with self.subTest(parameters=parameters):
                 self.assert_refuses("sim_node", words, **parameters)
-        self.assert_refuses("vibe_trainee", ["script"])
+        self.assert_refuses("vibe_trainee", ["skill", "clumsy", "expert or novice"], skill="clumsy")
         self.assert_refuses("vibe_trainee", ["/nowhere.yaml"], script="/nowhere.yaml")
 
     def test_simulated_time_must_be_wanted_by_both_sides(self):
