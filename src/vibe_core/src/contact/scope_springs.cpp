@@ -69,11 +69,11 @@ std::array<double, kJointCount> ScopeSprings::handMotion(const std::array<double
                                                          const std::array<double, kJointCount>& end,
                                                          const ToolDisplacement& displacement, double step) const {
   const YieldVector k = stiffness(start[Insertion] + displacement[Insertion]);
-  const double damped = 1 + relaxationTime(start, displacement) / step;
+  const double damped = during(start, displacement, displacement, step).damped();
   std::array<double, kJointCount> result = end;
   for (int j = 0; j < kScopeJointCount; ++j) {
     const JointLimits& limits = tool_->limits()[j];
-    // if the tool stays where it is, a motion m of the hand leaves K q - (1 + t/h) K m
+    // if the tool stays where it is, a motion m of the hand leaves K q - (theta + t/h) K m
     const double load = k[j] * displacement[j] / limits.effort, give = limits.effort / (k[j] * damped);
     // springs too stiff for that at the speed of a step: the nearer to its limit, the slower the hand
     const double way = std::max(give, limits.velocity * step);
@@ -83,35 +83,43 @@ std::array<double, kJointCount> ScopeSprings::handMotion(const std::array<double
   return result;
 }
 
-ToolYield ScopeSprings::yield(const std::array<double, kJointCount>& joints, const ToolDisplacement& displacement,
-                              double step) const {
-  const YieldVector k = stiffness(joints[Insertion] + displacement[Insertion]);
-  const double part = step / (step + relaxationTime(joints, displacement));
+ScopeSpringStep ScopeSprings::during(const std::array<double, kJointCount>& joints, const ToolDisplacement& from,
+                                     const ToolDisplacement& middle, double step) const {
+  return {stiffness(joints[Insertion] + middle[Insertion]), configurationalForce(joints, middle),
+          relaxationTime(joints, middle), from, step};
+}
+
+ScopeSpringStep::ScopeSpringStep(const YieldVector& stiffness, double force, double relaxation_time,
+                                 const ToolDisplacement& from, double step)
+    : stiffness_(stiffness),
+      force_(force),
+      damping_(relaxation_time / step),
+      implicit_(std::clamp(1 - damping_, 0.5, 1.0)),
+      from_(from) {}
+
+ToolYield ScopeSpringStep::yield() const {
+  const double part = 1 / damped();
   ToolYield yield;
   yield.dofs = kYieldDofs;
   for (int d = 0; d < kYieldDofs; ++d) {
-    if (k[d] > 0) yield.compliance(d, d) = part / k[d];
-    yield.free[d] = -part * displacement[d];
+    if (stiffness_[d] > 0) yield.compliance(d, d) = part / stiffness_[d];
+    yield.free[d] = -part * from_[d];
   }
-  yield.free[Insertion] += yield.compliance(Insertion, Insertion) * configurationalForce(joints, displacement);
+  yield.free[Insertion] += yield.compliance(Insertion, Insertion) * force_;
   yield.displacement = yield.free;
   return yield;
 }
 
-YieldVector ScopeSprings::load(const std::array<double, kJointCount>& joints, const ToolDisplacement& from,
-                               const ToolDisplacement& to, double step) const {
-  YieldVector load = stiffness(joints[Insertion] + from[Insertion]);
-  const double damping = relaxationTime(joints, from) / step;
-  for (int d = 0; d < kYieldDofs; ++d) load[d] *= -(to[d] + damping * (to[d] - from[d]));
+YieldVector ScopeSpringStep::load(const ToolDisplacement& to) const {
+  YieldVector load = stiffness_;
+  for (int d = 0; d < kYieldDofs; ++d) load[d] *= -(from_[d] + damped() * (to[d] - from_[d]));
   return load;
 }
 
-double ScopeSprings::loss(const std::array<double, kJointCount>& joints, const ToolDisplacement& from,
-                          const ToolDisplacement& to, double step) const {
-  const YieldVector k = stiffness(joints[Insertion] + from[Insertion]);
-  const double damping = relaxationTime(joints, from) / step;
+double ScopeSpringStep::loss(const ToolDisplacement& to) const {
   double sum = 0;
-  for (int d = 0; d < kYieldDofs; ++d) sum += (damping + 0.5) * k[d] * (to[d] - from[d]) * (to[d] - from[d]);
+  for (int d = 0; d < kYieldDofs; ++d)
+    sum += (damped() - 0.5) * stiffness_[d] * (to[d] - from_[d]) * (to[d] - from_[d]);
   return sum;
 }
 

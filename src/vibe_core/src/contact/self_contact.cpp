@@ -44,6 +44,9 @@ constexpr double kCore = 0.3;
 // Distance up to which places are looked for where these meet, in thicknesses. Design choice: above (1 + kContactOnset)
 // kCore, so that walls meet in the solution of a step before they reach the minimum distance [1].
 constexpr double kFound = 0.5;
+// Thickness of a bar within one wall over the distance of its ends at rest, at most. Design choice: a wall that is
+// squeezed along itself to 5/8 does not feel it, a sharp fold does [1].
+constexpr double kFolded = 0.5;
 
 void check(const SurfaceMesh& rest, const std::vector<double>& thickness, double young_modulus) {
   if (rest.vertices.empty() || thickness.size() != rest.vertices.size())
@@ -245,7 +248,8 @@ void SelfContact::addClosePair(const ClosePoints& close) {
   pair.node = close.node;
   pair.weight = close.weight;
   pair.away = close.away;
-  pair.thickness = std::min(kCore * thickness, at_rest.norm() / (1 + kContactOnset));
+  const double apart_at_rest = close.in_wall ? kFolded : 1 / (1 + kContactOnset);
+  pair.thickness = std::min(kCore * thickness, apart_at_rest * at_rest.norm());
   pair.straight_below = kFloor / kCore;
   pair.stiffness = 0.5 * close.share * area / kSoftness * stiffness_ * pair.thickness;
   finish(pair);

@@ -44,8 +44,9 @@ struct ClosePoints;
 ///
 /// Only walls that face each other are in contact: the cosine between the normals of vertex and triangle is below 0.3.
 /// Parts of the surface within 1.6 thicknesses along edges, or within two edges, count as one
-/// wall, which has no contact with itself: sharper folds are below the resolution of the mesh, and only kept from
-/// crossing, at a distance of 10 um. Walls that are nearer than t at rest touch at that distance.
+/// wall: sharper folds are below the resolution of the mesh. Only the bars at places act within it, at most half as
+/// thick as the places are apart at rest, so that a fold comes to rest before it is stopped, at a distance of 10 um.
+/// Walls that are nearer than t at rest touch at that distance.
 class SelfContact : public EnergyTerm {
  public:
   using NodeVectors = std::array<const double*, 3>;  ///< x, y and z of the nodes

@@ -66,12 +66,13 @@ void SelfContactClose::addVertices(int of, int triangle) {
     if (has(n, v)) continue;
     const TriangleFoot foot = triangleFoot(at(v), at(n[0]), at(n[1]), at(n[2]));
     if (!(foot.away.squaredNorm() < distance_ * distance_)) continue;
-    ClosePoints close{{v, kNone, kNone, kNone}, 1, {1, 0, 0, 0}, foot.away, 1};
+    ClosePoints close{{v, kNone, kNone, kNone}, 1, {1, 0, 0, 0}, foot.away, 1, false};
     for (std::size_t k = 0, next = 1; k < 3; ++k) {
       const double weight = foot.weight[static_cast<Eigen::Index>(k)];
       if (weight > 0) close.node[next] = n[k], close.weight[next++] = -weight;
     }
-    if (!isInWall(close)) places_.push_back(close);
+    close.in_wall = isInWall(close);
+    places_.push_back(close);
   }
 }
 
@@ -96,8 +97,8 @@ void SelfContactClose::addEdgePair(std::array<int, 2> one, std::array<int, 2> ot
   if (!(s > 0 && s < 1 && t > 0 && t < 1)) return;
   const Eigen::Vector3d away = r + s * u - t * v;
   if (!(away.squaredNorm() < distance_ * distance_)) return;
-  const ClosePoints close{{one[0], one[1], other[0], other[1]}, 2, {1 - s, s, t - 1, -t}, away, across / (uu * vv)};
-  if (!isInWall(close)) places_.push_back(close);
+  places_.push_back({{one[0], one[1], other[0], other[1]}, 2, {1 - s, s, t - 1, -t}, away, across / (uu * vv), false});
+  places_.back().in_wall = isInWall(places_.back());
 }
 
 bool SelfContactClose::isInWall(const ClosePoints& place) const {

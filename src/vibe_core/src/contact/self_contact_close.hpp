@@ -16,11 +16,12 @@ struct ClosePoints {
   std::array<double, 4> weight;  ///< of their difference `away` = sum of weight * position; sum 0 [1]
   Eigen::Vector3d away;          ///< from the second to the first [m]
   double share;                  ///< 1; of edges: square of the sine of the angle between them [1]
+  bool in_wall;                  ///< on one wall, which is folded there
 };
 
-/// Finds the places at which two walls are nearer than a distance, which are those that may have to be kept apart
-/// (SelfContactPaths). A place is a local minimum of the distance: a vertex over the inside of a triangle, or over an
-/// edge or a vertex that is its nearest point of all triangles there, or two edges that cross.
+/// Finds the places at which two walls, or parts of a folded one, are nearer than a distance, which are those that may
+/// have to be kept apart (SelfContactPaths). A place is a local minimum of the distance: a vertex over the inside of a
+/// triangle, or over an edge or a vertex that is its nearest point of all triangles there, or two edges that cross.
 class SelfContactClose {
  public:
   using Pair = std::array<int, 2>;  ///< two triangles

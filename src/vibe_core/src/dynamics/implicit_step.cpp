@@ -80,17 +80,42 @@ Activity ImplicitStep::gather() {
     motion_->linkPoses(1, scratch_.poses.end);
   }
   scratch_.loads.clear();
-  if (motion_ != nullptr && model_.scope_springs) {
-    const auto joints = motion_->inputs(1);
-    const ToolDisplacement& displacement = motion_->startDisplacement();
-    scratch_.loads.tool_yield = model_.scope_springs->yield(joints, displacement, context_.step);
-    motion_->linkPoses(0.5, scratch_.poses.middle);
-    bend_.emplace(model_.tool->shaftBend(motion_->inputs(0.5), displacement));
-    context_.bend = &*bend_;
-  }
+  if (motion_ != nullptr && model_.scope_springs) gatherSprings();
   Activity most = Activity::Sleep;
   for (const auto& block : scratch_.blocks) most = std::max(most, block->prepare(context_, scratch_.loads));
   return most;
+}
+
+// Where the tool is expected at the end of the step is where it meets the wall, and the tool yields along the directions
+// in which it then moves in the middle: its motion along the wall and the work of the forces are right to second order.
+void ImplicitStep::gatherSprings() {
+  const ToolDisplacement& from = motion_->startDisplacement();
+  expected_ = expectedDisplacement();
+  ToolMotion motion = *motion_;
+  motion.displaceEnd(expected_);
+  motion.linkPoses(0.5, scratch_.poses.middle);
+  motion.linkPoses(1, scratch_.poses.end);
+  bend_.emplace(model_.tool->shaftBend(motion.inputs(0.5), motion.displacement(0.5)));
+  context_.bend = &*bend_;
+  springs_ = model_.scope_springs->during(motion.inputs(0.5), from, motion.displacement(0.5), context_.step);
+  ToolYield& yield = scratch_.loads.tool_yield;
+  yield = springs_->yield();
+  for (int d = 0; d < kYieldDofs; ++d) yield.free[d] -= expected_[d] - from[d];
+  yield.displacement = yield.free;
+}
+
+// At the end of the step, with the forces of the last one.
+ToolDisplacement ImplicitStep::expectedDisplacement() const {
+  const ToolDisplacement& from = motion_->startDisplacement();
+  const ToolYield yield = model_.scope_springs->during(motion_->inputs(0.5), from, from, context_.step).yield();
+  const Eigen::Isometry3d& tip = scratch_.poses.start[model_.tip_link];
+  const YieldVector pull =
+      yieldForce(*model_.tool, scratch_.poses.start, model_.tool->shaftBend(motion_->inputs(0), from), model_.tip_link,
+                 tip.translation(), tip.linear() * state_.tool_force, tip.linear() * state_.tool_torque);
+  const YieldVector moved = yield.free + yield.compliance * pull;
+  ToolDisplacement end = from;
+  for (int d = 0; d < kYieldDofs; ++d) end[d] += moved[d];
+  return end;
 }
 
 bool ImplicitStep::asleep(Activity activity) const {
@@ -171,7 +196,7 @@ bool ImplicitStep::solve() {
 // From here on the tool is where the forces of this step have brought it.
 void ImplicitStep::yieldTool() {
   yielded_ = *motion_;
-  report_.tool_displacement = motion_->startDisplacement();
+  report_.tool_displacement = expected_;
   for (int d = 0; d < kYieldDofs; ++d) report_.tool_displacement[d] += scratch_.loads.tool_yield.displacement[d];
   yielded_->displaceEnd(report_.tool_displacement);
   yielded_->linkPoses(1, scratch_.poses.end);
@@ -265,11 +290,10 @@ void ImplicitStep::reportHand(double tool_work) {
     effort += pointJacobian(*model_.tool, scratch_.poses.end, touch.link, touch.point).transpose() * touch.force;
   const auto from = motion_->inputs(0), &to = state_.joints;
   const double scope_loss = state_.energy.scope_loss;
-  if (model_.scope_springs) {
-    const ToolDisplacement &before = motion_->startDisplacement(), &after = report_.tool_displacement;
-    effort.head<kScopeJointCount>() =
-        model_.scope_springs->load(to, before, after, context_.step).head<kScopeJointCount>();
-    state_.energy.scope_loss += model_.scope_springs->loss(to, before, after, context_.step);
+  if (springs_) {
+    const ToolDisplacement& after = report_.tool_displacement;
+    effort.head<kScopeJointCount>() = springs_->load(after).head<kScopeJointCount>();
+    state_.energy.scope_loss += springs_->loss(after);
   }
   double hand_work = 0;
   for (int j = 0; j < kJointCount; ++j) hand_work += effort[j] * (to[j] - from[j]);

@@ -24,6 +24,8 @@ class ImplicitStep {
 
  private:
   Activity gather();
+  void gatherSprings();
+  ToolDisplacement expectedDisplacement() const;
   bool asleep(Activity activity) const;
   bool lost() const;
   bool heldByGas() const;
@@ -49,8 +51,10 @@ class ImplicitStep {
   State& state_;
   StepReport& report_;
   ImplicitScratch& scratch_;
-  std::optional<ShaftBend> bend_;      // of a tool that yields
-  std::optional<ToolMotion> yielded_;  // its motion, after the solve
+  std::optional<ShaftBend> bend_;           // of a tool that yields, in the middle of the step
+  std::optional<ScopeSpringStep> springs_;  // of it
+  ToolDisplacement expected_{};             // of it at the end of the step
+  std::optional<ToolMotion> yielded_;       // its motion, after the solve
   StepContext context_;
   bool tool_stopped_ = false;  // by tissue, on its way
   StepWork work_;              // of the solve

@@ -89,8 +89,8 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
 
 // Where a tool goes on which nothing acts.
 ToolDisplacement relaxed(const Model& model, const State& state, double dt) {
-  const YieldVector moved = model.scope_springs->yield(state.joints, state.tool_displacement, dt).free;
   ToolDisplacement end = state.tool_displacement;
+  const YieldVector moved = model.scope_springs->during(state.joints, end, end, dt).yield().free;
   for (int d = 0; d < kYieldDofs; ++d) end[d] += moved[d];
   return end;
 }

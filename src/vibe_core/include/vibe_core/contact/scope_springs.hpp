@@ -8,11 +8,40 @@
 
 namespace vibe {
 
+/// The springs of ScopeSprings during one step of length h: the mean load of the step is that of
+///   K (q + (theta + t/h) d),
+/// with q at the start and d the change of the displacement. With theta 1/2 the error is of second order in h; where
+/// the springs relax faster than within h/2, theta is 1 - t/h, so that they do not overshoot.
+class ScopeSpringStep {
+ public:
+  /// @param stiffness        K, per degree of freedom
+  /// @param force            of the springs along the insertion, see ScopeSprings::configurationalForce() [N]
+  /// @param relaxation_time  t [s]
+  /// @param from             q
+  ScopeSpringStep(const YieldVector& stiffness, double force, double relaxation_time, const ToolDisplacement& from,
+                  double step);
+
+  /// Compliance of the tool. Its motions are counted from the displacement at the start of the step.
+  ToolYield yield() const;
+  /// What springs and dampers carry, as a mean over a step to another displacement, positive if the hand pushes the
+  /// tool forward.
+  YieldVector load(const ToolDisplacement& to) const;
+  /// Dissipated by the springs' dampers (and by a theta above 1/2) in that step [J].
+  double loss(const ToolDisplacement& to) const;
+  /// theta + t/h: the load that a motion takes, over that which stays of it.
+  double damped() const { return implicit_ + damping_; }
+
+ private:
+  YieldVector stiffness_;
+  double force_, damping_, implicit_;
+  ToolDisplacement from_;
+};
+
 /// The springs between the hand and the tip of an endoscope that gives way: the insertion tube along its axis and in
 /// torsion, the wires of the bending section, and the shaft inside the lumen as a beam clamped at the entry (bending
 /// energy EI/2 times the integral of the squared curvature). All are linear in the ToolDisplacement q, with stiffness
 /// K, and relax together (Kelvin and Voigt): the load of the tissue on the tool is balanced by K (q + t dq/dt). The
-/// shaft has no inertia; within a step q changes by implicit Euler.
+/// shaft has no inertia; ScopeSpringStep says how q changes within a step.
 class ScopeSprings {
  public:
   /// @param tool  must outlive this object
@@ -38,19 +67,12 @@ class ScopeSprings {
                                              const std::array<double, kJointCount>& end,
                                              const ToolDisplacement& displacement, double step) const;
 
-  /// Compliance of the tool during a step. Its motions are counted from the displacement at the start of the step.
-  /// @param joints  of the hand, at the end of the step
-  ToolYield yield(const std::array<double, kJointCount>& joints, const ToolDisplacement& displacement,
-                  double step) const;
-
-  /// What the springs and their dampers carry at the end of a step from one displacement to another, positive if the
-  /// hand pushes the tool forward.
-  YieldVector load(const std::array<double, kJointCount>& joints, const ToolDisplacement& from,
-                   const ToolDisplacement& to, double step) const;
-
-  /// Dissipated by the springs' dampers (and by implicit Euler) in a step from one displacement to another [J].
-  double loss(const std::array<double, kJointCount>& joints, const ToolDisplacement& from, const ToolDisplacement& to,
-              double step) const;
+  /// The springs during a step.
+  /// @param joints  of the hand, in the middle of the step
+  /// @param from    displacement at the start
+  /// @param middle  displacement that is expected in the middle: stiffness and time constant are those there
+  ScopeSpringStep during(const std::array<double, kJointCount>& joints, const ToolDisplacement& from,
+                         const ToolDisplacement& middle, double step) const;
 
  private:
   const ToolModel* tool_;
