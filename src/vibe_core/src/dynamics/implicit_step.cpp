@@ -86,8 +86,9 @@ Activity ImplicitStep::gather() {
   return most;
 }
 
-// Where the tool is expected at the end of the step is where it meets the wall, and the tool yields along the directions
-// in which it then moves in the middle: its motion along the wall and the work of the forces are right to second order.
+// Where the tool is expected at the end of the step is where it meets the wall, and the tool yields along the
+// directions in which it then moves in the middle: its motion along the wall and the work of the forces are right to
+// second order.
 void ImplicitStep::gatherSprings() {
   const ToolDisplacement& from = motion_->startDisplacement();
   expected_ = expectedDisplacement();

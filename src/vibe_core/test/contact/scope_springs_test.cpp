@@ -33,7 +33,7 @@ struct Loaded {
   void settle(const Vector3d& force, int steps = 400) {
     const ScopeSprings springs(tool, scene);
     for (int i = 0; i < steps; ++i) {
-      const ToolYield yield = springs.yield(joints, q, kStep);
+      const ToolYield yield = springs.during(joints, q, q, kStep).yield();
       const YieldVector moved = yield.free + yield.compliance * pull(force);
       for (int d = 0; d < kYieldDofs; ++d) q[d] += moved[d];
       tool.forwardKinematics(joints, q, poses);
@@ -87,13 +87,57 @@ TEST(ScopeSprings, RelaxesByItsTimeConstant) {
   const Loaded scope(0.1);
   const ScopeSprings springs(scope.tool, scope.scene);
   const ToolDisplacement q = {1e-4, 1e-3, 1e-3, 0, 1e-3, 0, 0, 1e-3};
-  const ToolYield yield = springs.yield(scope.joints, q, kStep);
-  const double left = scope.scene.relaxation_time / (kStep + scope.scene.relaxation_time);
-  for (int d = 1; d < kYieldDofs; ++d) EXPECT_NEAR(q[d] + yield.free[d], left * q[d], 1e-12);
+  const ToolYield yield = springs.during(scope.joints, q, q, kStep).yield();
+  const double left = std::exp(-kStep / scope.scene.relaxation_time);
+  for (int d = 1; d < kYieldDofs; ++d) EXPECT_NEAR(q[d] + yield.free[d], left * q[d], 0.005 * std::abs(q[d]) + 1e-12);
   ToolDisplacement far = q;
   far[kShaftDof] = 5;  // 7 cm at the tip
-  const double way = -springs.yield(scope.joints, far, kStep).free[kShaftDof] / 5 * 0.07;
+  const double way = -springs.during(scope.joints, far, far, kStep).yield().free[kShaftDof] / 5 * 0.07;
   EXPECT_LT(way, 0.35 * kStep) << "springs back no faster than a brisk hand";
+}
+
+// A constant force from rest: q = F/K (1 - exp(-t/tau)).
+TEST(ScopeSprings, StepsAreOfSecondOrder) {
+  const Loaded scope(0.1);
+  const ScopeSprings springs(scope.tool, scope.scene);
+  const auto errorOf = [&](int steps) {
+    ToolDisplacement q{};
+    for (int i = 0; i < steps; ++i) {
+      const ToolYield yield = springs.during(scope.joints, q, q, 0.1 / steps).yield();
+      q[TipUpDown] += yield.free[TipUpDown] + yield.compliance(TipUpDown, TipUpDown) * 1e-3;
+    }
+    return q[TipUpDown] - 1e-3 / scope.scene.bending_stiffness * (1 - std::exp(-0.1 / scope.scene.relaxation_time));
+  };
+  EXPECT_NEAR(errorOf(6) / errorOf(12), 4, 0.1);
+}
+
+// What the force does = energy of the spring + losses, for any relaxation time.
+TEST(ScopeSprings, LossClosesTheEnergyOfAStep) {
+  Loaded scope(0.1);
+  for (const double time : {0.0, 0.001, 0.01, 0.05}) {
+    scope.scene.relaxation_time = time;
+    const ScopeSprings springs(scope.tool, scope.scene);
+    ToolDisplacement from{}, to{};
+    from[TipLeftRight] = 0.02, to[TipLeftRight] = 0.013;
+    const ScopeSpringStep during = springs.during(scope.joints, from, from, kStep);
+    const double work = -during.load(to)[TipLeftRight] * (to[TipLeftRight] - from[TipLeftRight]);
+    const double stored = springs.energy(scope.joints, to) - springs.energy(scope.joints, from);
+    EXPECT_NEAR(work, stored + during.loss(to), 1e-12) << time;
+    EXPECT_GE(during.loss(to), 0) << time;
+  }
+}
+
+TEST(ScopeSprings, ThoseThatRelaxFastDoNotOvershoot) {
+  Loaded scope(0.1);
+  for (const double time : {0.0, 0.001, 0.005, 0.01, 0.1}) {
+    scope.scene.relaxation_time = time;
+    const ScopeSprings springs(scope.tool, scope.scene);
+    ToolDisplacement q{};
+    q[TipUpDown] = 0.1;
+    const double left = q[TipUpDown] + springs.during(scope.joints, q, q, kStep).yield().free[TipUpDown];
+    EXPECT_GE(left, -1e-15) << time;
+    EXPECT_LT(left, q[TipUpDown]) << time;
+  }
 }
 
 TEST(ScopeSprings, ConfigurationalForceIsTheSlopeOfTheEnergy) {
@@ -121,11 +165,10 @@ TEST(ScopeSprings, HandStallsAtItsLimit) {
     auto command = joints;
     command[Insertion] += 0.15 * kStep;
     const auto end = springs.handMotion(joints, command, q, kStep);
-    const double moved = end[Insertion] - joints[Insertion], stiffness = scope.scene.axial_stiffness;
-    const double damping = springs.relaxationTime(joints, q) / kStep;
-    q[Insertion] -= moved;  // the tip is held
+    const ScopeSpringStep during = springs.during(joints, q, q, kStep);
+    q[Insertion] -= end[Insertion] - joints[Insertion];  // the tip is held
     joints = end;
-    most = std::max(most, -stiffness * (q[Insertion] - damping * moved));
+    most = std::max(most, during.load(q)[Insertion]);
   }
   EXPECT_LE(most, limit * (1 + 1e-9));
   EXPECT_NEAR(-scope.scene.axial_stiffness * q[Insertion], limit, 0.01 * limit);

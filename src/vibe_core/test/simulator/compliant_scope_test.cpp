@@ -129,6 +129,28 @@ TEST(CompliantScope, WorkOfTheHandIsAccountedFor) {
   EXPECT_GT(springEnergy(world), 0.02 * world.state.energy.hand_work);
 }
 
+// The tip of a soft scope, pressed on a curved wall in half a second, is pushed aside along it.
+TEST(CompliantScope, SlidesAlongTheWallAsInShortSteps) {
+  constexpr std::size_t kFrames = 45;
+  std::array<std::vector<Eigen::Vector3d>, 2> path;
+  for (const int per_frame : {1, 16}) {
+    Scene scene = scopeScene(ScopeComplianceScene{});
+    scene.step_period = 1.0 / (60 * per_frame);
+    scene.scope->friction = 0;
+    scene.scope->compliance->shaft_rigidity = 0.005;
+    World world = scopeWorld(scene);
+    world.run(1.0, at(0.1, 0.3));
+    for (int i = 1; i <= static_cast<int>(kFrames) * per_frame; ++i) {
+      world.step(at(0.1 + 0.025 * std::min(1.0, i / (30.0 * per_frame)), 0.3));
+      if (i % per_frame == 0) path[per_frame > 1].push_back(tipOf(world));
+    }
+  }
+  double apart = 0;
+  for (std::size_t k = 0; k < kFrames; ++k) apart = std::max(apart, (path[0][k] - path[1][k]).norm());
+  EXPECT_LT(apart, 2e-4) << "with contacts where the scope was before the step: 6e-4";
+  EXPECT_GT(path[1].front().x() - path[1].back().x(), 3e-3);
+}
+
 TEST(CompliantScope, HandsForceIsLimited) {
   Scene scene = scopeScene(ScopeComplianceScene{});
   scene.scope->compliance->shaft_rigidity = 10;  // or it buckles

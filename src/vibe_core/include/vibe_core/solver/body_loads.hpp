@@ -12,7 +12,7 @@ namespace vibe {
 
 class EnergyTerm;
 
-/// Motions of a tool that yields, beyond the commanded one, in the order of ToolDisplacement.
+/// Motions of a tool that yields, in the order of ToolDisplacement, counted from where it is expected.
 using YieldVector = Eigen::Matrix<double, kYieldDofs, 1>;
 using YieldMatrix = Eigen::Matrix<double, kYieldDofs, kYieldDofs>;
 
