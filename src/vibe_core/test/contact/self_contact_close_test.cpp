@@ -56,6 +56,51 @@ TEST(SelfContactClose, FindsEachPlaceOnce) {
   EXPECT_TRUE(close.find(all, at, 0.4e-3).empty());
 }
 
+/// A plate of 1 mm cells.
+SurfaceMesh plate() {
+  SurfaceMesh mesh;
+  addPlate(16, 1e-3, 0, true, mesh);
+  return mesh;
+}
+
+/// Folds it flat about the y axis.
+void fold(double gap, World& world) {
+  for (std::size_t i = 0; i < world.count(); ++i) {
+    const Eigen::Vector3d& p = world.rest.vertices[i];
+    if (p.x() > 0) world.set(i, {-p.x(), p.y(), gap});
+  }
+  world.detect(0);
+  world.evaluate();
+}
+
+/// Bars between places that are one wall.
+std::size_t countInWall(const World& world) {
+  constexpr double kBar = 0.3 * kThickness * (1 + 1e-9);
+  std::size_t count = 0;
+  for (const SelfContact::Pair& pair : world.contact.pairs()) {
+    Eigen::Vector3d at_rest = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < 4; ++k)
+      if (pair.node[k] >= 0) at_rest += pair.weight[k] * world.rest.vertices[static_cast<std::size_t>(pair.node[k])];
+    if (pair.thickness > kBar || at_rest.norm() > 1.55 * kThickness) continue;
+    ++count;
+  }
+  return count;
+}
+
+// Two sides of a fold that are one wall, because they are near along the surface, push each other apart.
+TEST(SelfContactClose, BarsActWithinASharpFold) {
+  World sharp(plate()), wide(plate());
+  fold(0.1 * kThickness, sharp);
+  EXPECT_GT(countInWall(sharp), 10U);
+  for (std::size_t i = 0; i < sharp.count(); ++i) {
+    const Eigen::Vector3d& p = sharp.rest.vertices[i];
+    if (std::abs(p.x() - 2e-3) > 1e-6 || std::abs(p.y()) > 5e-3) continue;
+    EXPECT_GT(sharp.force(i).z(), 0) << i;
+  }
+  fold(0.6 * kThickness, wide);
+  EXPECT_EQ(countInWall(wide), 0U);
+}
+
 // The upper roof is heavy, and only moves up and down.
 TEST(SelfContactClose, EdgesThatCrossComeToRestBeforeTheyAreStopped) {
   constexpr double kGap = 1.5 * kThickness, kWeight = 0.05;  // [m], [N]
