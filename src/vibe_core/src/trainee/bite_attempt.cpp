@@ -29,11 +29,6 @@ constexpr double kMorePerTry = 1e-3;     // with every further try that much mor
 constexpr double kFold = 4e-3;           // a surprise that is learned fully; of larger ones that much [m]
 constexpr double kTurn = 6.283185307179586;
 
-WallPoint withError(const WallPoint& target, Operator& me) {
-  const Eigen::Vector2d error = me.nextAimError();
-  return me.map().walk(target, error[0], error[1]);
-}
-
 Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
   return v - normal * normal.dot(v);
 }
@@ -45,7 +40,7 @@ std::string millimetres(double length) {
 }  // namespace
 
 BiteAttempt::BiteAttempt(const WallPoint& target, int number, Operator& me)
-    : target_(withError(target, me)),
+    : target_(me.withAimError(target)),
       number_(number),
       last_(number + 1 >= me.skill().attempts),
       me_(me),

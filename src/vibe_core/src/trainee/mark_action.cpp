@@ -43,8 +43,7 @@ GoalResult perform(const MarkGoal& goal, Operator& me) {
   const WallPoint place = find(goal.place, me.map());
   GoalResult result{false, ""};
   for (int k = 0; k < me.skill().attempts && !result.reached; ++k) {
-    const Eigen::Vector2d error = me.nextAimError();
-    if (!approach(me.map().walk(place, error[0], error[1]), probe + kBeamGap, me))
+    if (!approach(me.withAimError(place), probe + kBeamGap, me))
       result.reason = "the scope met a wall on its way";
     else if (burn(goal.time, me))
       result = {true, ""};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/random.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
@@ -13,9 +14,13 @@ double Operator::nextNormal() {
   return sum;
 }
 
-Eigen::Vector2d Operator::nextAimError() {
-  const double a = nextNormal(), b = nextNormal();
-  return skill().aim_error * Eigen::Vector2d(a, b);
+WallPoint Operator::withAimError(const WallPoint& target) {
+  const double distal = skill().aim_error * nextNormal(), anterior = skill().aim_error * nextNormal();
+  try {
+    return map().walk(target, distal, anterior);
+  } catch (const Error&) {
+    return target;
+  }
 }
 
 const AnatomicalMap& Operator::map() {

@@ -36,8 +36,9 @@ struct Operator {
   Eigen::Vector2d surprise = Eigen::Vector2d::Zero();
 
   double nextNormal();
-  /// Aim error along the wall [m].
-  Eigen::Vector2d nextAimError();
+  /// What is really aimed at: a point of the wall beside the target, Skill::aim_error away in each direction. Nobody
+  /// aims beside the organ: where the error leads out of it, the target itself.
+  WallPoint withAimError(const WallPoint& target);
 };
 
 /// Point of the wall at a place, now.
