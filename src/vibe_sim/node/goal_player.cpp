@@ -80,10 +80,11 @@ void GoalPlayer::perform(const Sight& sight) {
   last_step_ = sight.seen.step;
   // without another input, so that in lock-step the session ends in the state in which the last goal ended
   if (exit_when_done_ && !trainee_->goals().empty() && trainee_->done()) return ros::requestShutdown();
+  const bool idle = trainee_->done();
   last_sent_ = trainee_->next(sight.seen);
   last_stamp_ = sight.stamp;
   last_send_ = steadyTime();
-  sender_.send(last_sent_, last_stamp_);
+  if (lockstep_ || !idle) sender_.send(last_sent_, last_stamp_);  // without a goal, others may drive
   server_.follow(sight.seen, sight.stamp);
 }
 

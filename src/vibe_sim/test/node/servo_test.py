@@ -13,6 +13,7 @@ import unittest
 import rospy
 import rostest
 from node_test_support import Program, Recorder, scene, wait_until
+from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt32
 from vibe_msgs.msg import GoalProgress, StepInput, TraineeGoal, TraineeProgress
 from vibe_msgs.srv import Reset, SendGoal
@@ -27,6 +28,7 @@ class ServoTest(unittest.TestCase):
     def setUpClass(cls):
         cls.progress = Recorder("trainee/progress", TraineeProgress)
         cls.applied = Recorder("applied_input", StepInput)
+        cls.motion = Recorder("scope/measured_js", JointState)
         cls.goals = rospy.Publisher("trainee/goal", TraineeGoal, queue_size=10)
         cls.cancel = rospy.Publisher("trainee/cancel", UInt32, queue_size=10)
 
@@ -86,6 +88,17 @@ class ServoTest(unittest.TestCase):
     def test_a_bite_here_without_lockstep(self):
         self.begin(lockstep="false")
         self.check_a_bite()
+
+    def test_without_a_goal_others_may_drive(self):
+        self.begin(lockstep="false")
+        self.motion.clear()
+        self.assertTrue(self.send(TraineeGoal(kind="wait", time=1.0)).success)
+        self.assertTrue(self.reaches(1, REACHED))
+        self.assertGreater(len(self.motion.messages), 20)
+        rospy.sleep(0.2)  # what is on its way
+        self.motion.clear()
+        rospy.sleep(1)
+        self.assertEqual(len(self.motion.messages), 0)
 
     def test_bad_goals_are_refused_with_one_sentence_and_the_session_goes_on(self):
         self.begin()
