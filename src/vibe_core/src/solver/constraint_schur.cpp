@@ -94,6 +94,7 @@ void ConstraintSchur::sortRows(const ConstraintRows& rows) {
 
 void ConstraintSchur::setYield(const ConstraintRows& rows) {
   yields_ = rows.tool_yields;
+  pull_.setZero();
   if (!yields_) return;
   yield_.setZero(kYieldDofs, rowCount());
   rows.forEachYield([this](int row, const YieldVector& yield) { yield_.col(row) = yield; });
@@ -283,10 +284,10 @@ void ConstraintSchur::eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, do
   if (gas_stiffness_ != 0 && m > 0) residual_ -= gas_row_ * (gas_residual / gas_norm2_);
   solveRows();
   for (int i = 0; i < m; ++i) moves_[i] -= rows_.compliance(i) * force_[i];
+  pull_.setZero();
   if (yields_) {
-    YieldVector pull = YieldVector::Zero();
-    for (int i = 0; i < m; ++i) pull += force_[i] * yield_.col(i);
-    for (int i = 0; i < m; ++i) moves_[i] -= given_.col(i).dot(pull);
+    for (int i = 0; i < m; ++i) pull_ += force_[i] * yield_.col(i);
+    for (int i = 0; i < m; ++i) moves_[i] -= given_.col(i).dot(pull_);
   }
   if (m > 0) rows_.addForces(*cache_, force_, y);
   gas_force_ = 0;

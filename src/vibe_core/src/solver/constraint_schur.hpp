@@ -35,6 +35,8 @@ class ConstraintSchur {
   /// @param swelling  change of volume where it is prescribed [m^3]
   void eliminate(const Eigen::Ref<const Eigen::VectorXd>& rhs, double swelling, float* y);
   const Eigen::VectorXd& forces() const { return force_; }
+  /// Generalised force of the rows' forces on a tool that yields, see ConstraintRows::tool_compliance.
+  const YieldVector& pull() const { return pull_; }
   double gasForce() const { return gas_force_; }
   /// How far the values of the rows move in the solution, plus what threads slid: `rhs`, less what compliance leaves,
   /// for the rows that hold [m].
@@ -95,6 +97,7 @@ class ConstraintSchur {
   std::vector<char> holds_;  // per row
   bool yields_ = false;
   YieldMatrix tool_compliance_;
+  YieldVector pull_ = YieldVector::Zero();
   Eigen::Matrix<double, kYieldDofs, Eigen::Dynamic> yield_, given_;  // per row: of its target; compliance times this
   std::vector<float> gas_;                                           // L^-1 of the gas direction
   double gas_stiffness_ = 0, gas_norm2_ = 0;

@@ -87,8 +87,11 @@ QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoad
       gas_(loads.gas),
       extra_(loads.extra),
       scratch_(scratch),
+      unknowns_(scratch.unknowns),
       safe_length_(safe_length),
-      max_evaluations_(max_evaluations) {}
+      max_evaluations_(max_evaluations) {
+  unknowns_.begin(scratch.rows);
+}
 
 void QuasiNewton::start() {
   restart();
@@ -126,7 +129,7 @@ void QuasiNewton::rowResidual() {
 // Whether the rows that hold stay where they are, but for rounding. Contacts that open or slip and slack threads may
 // move freely.
 bool QuasiNewton::rowsStay() const {
-  const Eigen::VectorXd &moves = scratch_.schur.moves(), &forces = scratch_.schur.forces();
+  const Eigen::VectorXd &moves = scratch_.row_moves, &forces = scratch_.schur.forces();
   const double rounding = kRowRoundings * resolution();
   const double limit = std::max(kSmallResidual * direction_length_, rounding);
   const int contacts_end = scratch_.rows.contactRow(scratch_.rows.contacts.size());
@@ -145,6 +148,7 @@ bool QuasiNewton::satisfyConstraints() {
   if (extra_ != nullptr && extra_->acts()) return false;  // walls that meet may forbid it
   StepperScratch& s = scratch_;
   rowResidual();
+  unknowns_.addDisplacement(s.rhs);
   double max = 0;
   for (std::size_t i = 0; i < s.rows.equations.size(); ++i) {
     double& rhs = s.rhs[static_cast<Eigen::Index>(i)];
@@ -154,6 +158,7 @@ bool QuasiNewton::satisfyConstraints() {
   if (max <= std::max(kSmallResidual * direction_length_, kUnmet * resolution())) return false;
   std::fill(s.half.begin(), s.half.end(), 0.0F);
   s.schur.eliminate(s.rhs, 0, s.half.data());
+  unknowns_.push(s.schur);
   s.factor->backward(s.half.data());
   s.factor->store(s.half.data(), s.direction.data());
   for (int i = 0; i < body_.nodeCount(); ++i)
@@ -238,10 +243,12 @@ void QuasiNewton::findDirection() {
   // forces of rows may be far larger than the remaining gradient: without this, a pair that moves rows by a rounding
   // would consist of their forces only
   if (s.pairs > 0) addRowForces(-1, s.work);
+  unknowns_.beginDirection(s.schur);
   double alpha[StepperScratch::kHistory];
   for (int i = s.pairs - 1; i >= 0; --i) {
-    alpha[i] = s.curvature[i] * dot(s.move[i], s.work);
+    alpha[i] = s.curvature[i] * (dot(s.move[i], s.work) + unknowns_.gradientTerm(i));
     addScaled(-alpha[i], s.change[i], s.work);
+    unknowns_.subtract(i, alpha[i]);
   }
   if (s.pairs > 0) addRowForces(1, s.work);
   for (float& value : s.work) value = -value;
@@ -260,26 +267,32 @@ void QuasiNewton::applyInverse(const double* alpha) {
   ++solves_;
   loadWork();
   s.factor->forward(s.half.data());
+  unknowns_.addTargets(s.rhs);
   s.schur.eliminate(s.rhs, swelling(), s.half.data());
+  unknowns_.setDirection(s.schur, s.row_moves);
   slideThreads();
   s.factor->backward(s.half.data());
   s.factor->store(s.half.data(), s.direction.data());
   for (int i = 0; i < s.pairs; ++i) {
-    const double beta = -s.curvature[i] * dot(s.change[i], s.direction);
+    const double beta = -s.curvature[i] * (dot(s.change[i], s.direction) + unknowns_.directionTerm(i));
     addScaled(-(alpha[i] - beta), s.move[i], s.direction);
+    unknowns_.reduce(i, alpha[i] - beta);
   }
   for (int i = 0; i < body_.nodeCount(); ++i)
     if (body_.fixed[i] != 0)
       for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
 }
 
-// The value with the rows' (and a prescribed volume's) forces as multipliers: it falls along the direction although the
-// rows move.
+// The value with the rows' (and a prescribed volume's) forces as multipliers, and the energy of the tool: it falls
+// along the direction although the rows move.
 double QuasiNewton::lagrangian(double part) const {
-  double sum = 0;
-  scratch_.rows.forEachMultiplier([&](int row, const LinearForm&) {
-    sum += scratch_.schur.forces()[row] * scratch_.schur.moves()[row] * (1 - part);
-  });
+  return unknowns_.energy(part) - (1 - part) * (lagrangianSlope(part) - unknowns_.slope(part));
+}
+
+double QuasiNewton::lagrangianSlope(double part) const {
+  double sum = unknowns_.slope(part);
+  scratch_.rows.forEachMultiplier(
+      [&](int row, const LinearForm&) { sum -= scratch_.schur.forces()[row] * scratch_.row_moves[row]; });
   return sum;
 }
 
@@ -295,6 +308,7 @@ void QuasiNewton::keepPair(double part) {
     std::rotate(s.change.begin(), s.change.begin() + 1, s.change.end());
     std::rotate(s.curvature.begin(), s.curvature.begin() + 1, s.curvature.end());
     --s.pairs;
+    unknowns_.forgetOldest();
   }
   std::vector<float>&move = s.move[s.pairs], &change = s.change[s.pairs];
   const auto p = static_cast<float>(part);
@@ -302,8 +316,9 @@ void QuasiNewton::keepPair(double part) {
     move[i] = p * s.direction[i];
     change[i] = s.trial_gradient[i] - s.gradient[i];
   }
-  const double product = dot(move, change);
+  const double product = dot(move, change) + unknowns_.curvature(part);
   if (!(product > kMinPairCosine * std::sqrt(dot(move, move) * dot(change, change)))) return;
+  unknowns_.keep(s.pairs, part);
   s.curvature[s.pairs++] = 1 / product;
 }
 
@@ -332,11 +347,12 @@ void QuasiNewton::takeUnseen() {
   StepperScratch& s = scratch_;
   setTrial(1);
   s.z.swap(s.trial);
+  unknowns_.move(1);
   if (gas_.control != GasLoad::Control::None) potential_.moveVolume(dot(s.volume_gradient, s.direction));
 }
 
-double QuasiNewton::slopeAtTrial() const {
-  return dot(scratch_.trial_gradient, scratch_.direction) - lagrangian(0);
+double QuasiNewton::slopeAtTrial(double part) const {
+  return dot(scratch_.trial_gradient, scratch_.direction) + lagrangianSlope(part);
 }
 
 // As much of the direction as lowers the energy.
@@ -344,7 +360,7 @@ double QuasiNewton::search(double part) {
   StepperScratch& s = scratch_;
   const double prescribed = gas_.control == GasLoad::Control::Volume ? s.schur.gasForce() : 0;
   const double old_pressure = gas_.pressure;
-  const double from = value_ + lagrangian(0), slope = slope_ - lagrangian(0);
+  const double from = value_ + lagrangian(0), slope = slope_ + lagrangianSlope(0);
   double to = value_;
   s.exchangeEvaluations();
   for (int trial = 1;; ++trial) {
@@ -354,7 +370,7 @@ double QuasiNewton::search(double part) {
     if (prescribed != 0) break;  // the volume is held: no energy to compare
     const double change = to + lagrangian(part) - from;
     if (std::isfinite(to) && change <= kSufficientDecrease * part * slope + potential_.noise()) break;
-    if (change <= kRoundings * potential_.noise() && slopeAtTrial() <= (2 * kSufficientDecrease - 1) * slope) break;
+    if (change <= kRoundings * potential_.noise() && slopeAtTrial(part) <= (2 * kSufficientDecrease - 1) * slope) break;
     if (trial == kMaxTrials || exhausted()) {
       failed_ = true;
       s.exchangeEvaluations();
@@ -365,6 +381,7 @@ double QuasiNewton::search(double part) {
   // a pair in which the rows move would move them again
   if (rowsStay()) keepPair(part);
   if (part == 1) last_length_ = direction_length_;
+  unknowns_.move(part);
   value_ = to;
   s.gradient.swap(s.trial_gradient);
   s.z.swap(s.trial);

@@ -59,11 +59,12 @@ class QuasiNewton {
   void slideThreads();
   bool rowsStay() const;
   void addRowForces(double sign, std::vector<float>& vector) const;
-  double lagrangian(double value) const;
+  double lagrangian(double part) const;
+  double lagrangianSlope(double part) const;
   double evaluate(const std::vector<double>& z, std::vector<float>& gradient);
   double advance(double max, bool verify);
   void takeUnseen();
-  double slopeAtTrial() const;
+  double slopeAtTrial(double part) const;
   double search(double part);
   void keepPair(double part);
   void setTrial(double part);
@@ -73,6 +74,7 @@ class QuasiNewton {
   GasLoad& gas_;
   const EnergyTerm* extra_;
   StepperScratch& scratch_;
+  RowUnknowns& unknowns_;
   double safe_length_;
   int max_evaluations_;
   int evaluations_ = 0, solves_ = 0;

@@ -7,6 +7,7 @@
 
 #include "solver/constraint_schur.hpp"
 #include "solver/implicit_stepper.hpp"
+#include "solver/row_unknowns.hpp"
 
 namespace vibe {
 
@@ -17,7 +18,7 @@ class StepperScratch {
                  FactorStorage storage, std::shared_ptr<const BlockPattern> pattern);
   ~StepperScratch();
 
-  static constexpr int kHistory = 6;
+  static constexpr int kHistory = RowUnknowns::kHistory;
 
   std::shared_ptr<const FactorPlan> plan;  // of the elements alone
   std::unique_ptr<Factor> factor, next_factor;
@@ -44,7 +45,9 @@ class StepperScratch {
   ConstraintRows rows;
   std::vector<std::pair<double, std::size_t>> contact_order;  // see limitContacts()
   Eigen::VectorXd target, rhs, force;
-  Eigen::VectorXd slid;  // thread that slid out of a row in this step, to the scale of the rows [m]
+  RowUnknowns unknowns;
+  Eigen::VectorXd row_moves;  // of the last direction, beyond what rows give way, to the scale of the rows [m]
+  Eigen::VectorXd slid;       // thread that slid out of a row in this step, to the scale of the rows [m]
   /// Keeps what the first evaluation of a step has found.
   void keepFirst() {
     first_displacement = displacement;
