@@ -8,7 +8,7 @@ namespace vibe {
 
 void RowUnknowns::begin(const ConstraintRows& rows) {
   rows_ = &rows;
-  const int count = rows.contactRow(rows.contacts.size());
+  const int count = rows.count();
   compliance_.setZero(count);
   int row = 0;
   for (const EquationRow& equation : rows.equations) compliance_[row++] = equation.compliance;
@@ -16,6 +16,8 @@ void RowUnknowns::begin(const ConstraintRows& rows) {
     compliance_[row] = contact.counts ? contact.compliance : 0;
     row += 3;
   }
+  for (const ThreadRows& thread : rows.threads)
+    for (int k = 0; k < thread.count(); ++k) compliance_[thread.pullRow(k)] = thread.segments[k].compliance;
   for (Forces* forces : {&force_, &direction_, &left_, &taken_, &last_}) forces->setZero(kYieldDofs + count);
   for (Forces& pair : pair_) pair.setZero(kYieldDofs + count);
 }

@@ -9,10 +9,10 @@ namespace vibe {
 
 class ConstraintSchur;
 
-/// Unknowns of QuasiNewton beside those of the tissue: how far rows give way to their own forces, because a tool yields
-/// or a contact has a compliance. Where they give way by p = -C f, they have the energy p C^-1 p / 2. All is kept as
-/// the forces f, those on the tool's degrees of freedom and then those of equations and contacts: so C may be singular,
-/// and the scalar product of a move with a change of gradient is f C g.
+/// Unknowns of QuasiNewton beside those of the tissue: how far rows give way to their own forces, because a tool
+/// yields, or a contact or a thread has a compliance. Where they give way by p = -C f, they have the energy p C^-1 p
+/// / 2. All is kept as the forces f, those on the tool's degrees of freedom and then those of equations and contacts:
+/// so C may be singular, and the scalar product of a move with a change of gradient is f C g.
 class RowUnknowns {
  public:
   static constexpr int kHistory = 6;  ///< pairs of moves and changes of the gradient
@@ -52,7 +52,7 @@ class RowUnknowns {
   void keep(int i, double part) { pair_[static_cast<std::size_t>(i)] = part * direction_; }
 
  private:
-  using Forces = Eigen::VectorXd;  // kYieldDofs, then one per row of equations and contacts
+  using Forces = Eigen::VectorXd;  // kYieldDofs, then one per row
   void setForces(const ConstraintSchur& schur, Forces& forces) const;
   double product(const Forces& a, const Forces& b) const;
   void addMotion(double sign, const Forces& forces, Eigen::VectorXd& values) const;
