@@ -11,8 +11,8 @@ class ConstraintSchur;
 
 /// Unknowns of QuasiNewton beside those of the tissue: how far rows give way to their own forces, because a tool
 /// yields, or a contact or a thread has a compliance. Where they give way by p = -C f, they have the energy
-/// p C^-1 p / 2. All is kept as the forces f, those on the degrees of freedom of the tool and then one per row: so C may
-/// be singular, and the scalar product of a move with a change of gradient is f C g.
+/// p C^-1 p / 2. All is kept as the forces f, those on the degrees of freedom of the tool and then one per row: so C
+/// may be singular, and the scalar product of a move with a change of gradient is f C g.
 class RowUnknowns {
  public:
   static constexpr int kHistory = 6;  ///< pairs of moves and changes of the gradient
