@@ -2,6 +2,8 @@
 // stops, but it never comes out on the other side.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "contact/thin_tool.hpp"
 #include "contact/tool_collision.hpp"
 #include "contact/triangle_gap.hpp"
@@ -41,20 +43,18 @@ bool piercesWall(const World& world) {
   return false;
 }
 
-// Inside: the lines from the front of the needle to the open top pass no wall.
+// The closed surface winds once around what is inside: sum of the solid angles of its triangles (Van Oosterom, Strackee
+// 1983, doi 10.1109/TBME.1983.325207).
 bool isBeyondWall(const World& world) {
   const Eigen::Vector3d front = posesOf(world)[world.model->tip_link] * Eigen::Vector3d(kLength, 0, 0);
-  Eigen::Vector3d top = Eigen::Vector3d::Zero();
-  int count = 0;
-  for (int i = 0; i < world.model->particle_count; ++i)
-    if (world.model->organ.end[i] != End::None) top += world.position(i), ++count;
-  top /= count;
-  int crossings = 0;
+  double angle = 0;
   for (const auto& n : world.model->organ.surface.triangles) {
-    const std::array<Eigen::Vector3d, 3> t{world.position(n[0]), world.position(n[1]), world.position(n[2])};
-    crossings += segmentTriangleGap(front, top - Eigen::Vector3d(1e-4, 2e-4, 5e-3), t).distance == 0 ? 1 : 0;
+    const Eigen::Vector3d a = world.position(n[0]) - front, b = world.position(n[1]) - front,
+                          c = world.position(n[2]) - front;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return crossings % 2 != 0;
+  return angle < 2 * M_PI;
 }
 
 /// Whether a test of particles alone would see the needle.
