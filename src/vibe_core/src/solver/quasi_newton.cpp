@@ -283,8 +283,8 @@ void QuasiNewton::applyInverse(const double* alpha) {
       for (int k = 0; k < 3; ++k) s.direction[4 * i + k] = 0;
 }
 
-// The value with the rows' (and a prescribed volume's) forces as multipliers, and the energy of the tool: it falls
-// along the direction although the rows move.
+// The value with the rows' (and a prescribed volume's) forces as multipliers, and the energy of what rows give way: it
+// falls along the direction although the rows move.
 double QuasiNewton::lagrangian(double part) const {
   return unknowns_.energy(part) - (1 - part) * (lagrangianSlope(part) - unknowns_.slope(part));
 }
