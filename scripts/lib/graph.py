@@ -87,6 +87,7 @@ class Graph:
         self.env.pop("ROS_NAMESPACE", None)
         self.env.setdefault("ROS_HOME", os.path.join(log_folder, "ros"))
         self.env.setdefault("ROS_LOG_DIR", os.path.join(log_folder, "ros"))
+        self.env.setdefault("ROSCONSOLE_STDOUT_LINE_BUFFERED", "1")  # messages in time also where this is piped
         self.master = xmlrpc.client.ServerProxy(self.env["ROS_MASTER_URI"])
         self.port = port
 

@@ -83,6 +83,7 @@ class Planner {
       if (!one) continue;
       const BitePlan plan = withRollOnTheOrgan(*one);
       if (plan.cost < best.cost) best = plan;
+      me_.hand.wait(me_.model().scene.step_period);  // one turn per step: all at once would stop a real-time session
     }
     if (!std::isfinite(best.cost)) best.held = target_, best.joints = joints;
     return best;

@@ -1,6 +1,5 @@
 #include "trainee/imagined_draw.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "trainee/device_geometry.hpp"
@@ -11,9 +10,11 @@ namespace {
 
 constexpr double kPatch = 5e-3;  // radius of what the helix holds, which moves as one [m]
 
-// Displacement of a membrane around a point load, over that of the load.
-double following(double distance, double none) {
-  return std::clamp(std::log(none / std::max(distance, kPatch)) / std::log(none / kPatch), 0.0, 1.0);
+// Displacement of a membrane around a point load, over that of the load; squares of lengths, in a loop over the wall.
+double following(double distance2, double none2) {
+  if (distance2 >= none2) return 0;
+  if (distance2 <= kPatch * kPatch) return 1;
+  return std::log(none2 / distance2) / std::log(none2 / (kPatch * kPatch));
 }
 
 }  // namespace
@@ -26,7 +27,8 @@ std::optional<NeedleView> imagineNeedle(const Model& model, const Observation& s
   imagined.tip_turn = draw.turn;
   imagined.tip = held + kHelixDepth * outward - draw.turn * helixInTip(draw.from);
   const Eigen::Vector3d pull = draw.turn * Eigen::Vector3d(draw.drawn - draw.from, 0, 0);
-  for (Eigen::Vector3d& p : imagined.wall) p += following((p - held).norm(), draw.follows) * pull;
+  const double none2 = draw.follows * draw.follows;
+  for (Eigen::Vector3d& p : imagined.wall) p += following((p - held).squaredNorm(), none2) * pull;
   return lookAtNeedle(model, imagined);
 }
 

@@ -6,12 +6,31 @@ namespace vibe {
 namespace {
 
 constexpr double kLongestCinch = 20;  // [s]
+constexpr double kStalled = 2;        // without a rise of the tension: no more thread comes [s]
+constexpr double kRise = 0.01;        // that counts, of the full tension [1]
 
 bool isTight(const Operator& me) {
   const Observation& seen = me.view();
   if (seen.stage == Suture::Stage::Cinched || seen.stage == Suture::Stage::Broken) return true;
   return seen.tension >= me.skill().tightness * me.model().scene.suture->cinch_tension;
 }
+
+/// Notices that a thread that pulls becomes no tighter: the bites have met.
+class Stall {
+ public:
+  explicit Stall(const Operator& me) : me_(me), scene_(*me.model().scene.suture) {}
+
+  bool operator()() {
+    const double tension = me_.view().tension;
+    if (tension > max_ + kRise * scene_.cinch_tension) max_ = tension, risen_ = me_.view().time;
+    return tension > scene_.loose_tension && me_.view().time - risen_ > kStalled;
+  }
+
+ private:
+  const Operator& me_;
+  const SutureScene& scene_;
+  double max_ = 0, risen_ = 0;
+};
 
 }  // namespace
 
@@ -24,7 +43,8 @@ GoalResult perform(const CinchGoal&, Operator& me) {
   stepBack(me);
   hand.press(Cinch);
   hand.wait(0.5);
-  const bool tight = hand.await([&] { return isTight(me); }, kLongestCinch);
+  Stall stalled(me);
+  const bool tight = hand.await([&] { return isTight(me) || stalled(); }, kLongestCinch);
   hand.release(Cinch);
   hand.wait(0.5);
   return tight ? GoalResult{true, ""} : GoalResult{false, "the thread did not become tight"};

@@ -3,52 +3,24 @@
 
 #include <gtest/gtest.h>
 
+#include "onlooker.hpp"
 #include "trainee/device_geometry.hpp"
 #include "trainee/ik_solution.hpp"
 #include "trainee/imagined_draw.hpp"
-#include "vibe_core/common/package_path.hpp"
-#include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe {
 namespace {
 
-std::shared_ptr<const Model> stomach() {
-  static const std::shared_ptr<const Model> model = [] {
-    Scene scene;
-    scene.geometry.particles = 2000;
-    scene.attach_oesophagus = scene.attach_duodenum = true;
-    scene.gas.emplace();
-    scene.scope.emplace();
-    scene.helix.emplace();
-    scene.suture.emplace();
-    return buildModel(scene, readTextFile(std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf", "URDF"));
-  }();
-  return model;
-}
-
-/// A trainee's knowledge before it does anything, looking at the organ at rest.
-struct Onlooker {
-  explicit Onlooker(const Skill& given = Skill::expert()) : skill(given), hand(*stomach(), skill, [] {}) {
-    hand.perceive(seen);
-    me.map();
-  }
-
-  Observation seen = observe(Simulation(stomach()));
-  Skill skill;
-  Hand hand;
-  Operator me{hand, 1, [](const std::string&) {}, {}};
-};
-
 Hand::Joints jointsOnWall(const Onlooker& at, const WallPoint& place) {
   const Eigen::Vector3d outward = at.me.outward(place), point = at.me.position(place) + kHelixDepth * outward;
-  Hand::Joints joints = aimAt(*stomach(), point, outward, helixInTip(kHelixOut), at.hand.joints()).joints;
-  return reachFor(*stomach(), point, helixInTip(kHelixOut), joints).joints;
+  Hand::Joints joints = aimAt(*smallStomach(), point, outward, helixInTip(kHelixOut), at.hand.joints()).joints;
+  return reachFor(*smallStomach(), point, helixInTip(kHelixOut), joints).joints;
 }
 
 Eigen::Isometry3d tipAt(const Hand::Joints& joints) {
   std::vector<Eigen::Isometry3d> poses;
-  stomach()->tool->forwardKinematics(joints, poses);
-  return stomach()->tool_base * poses[stomach()->tip_link];
+  smallStomach()->tool->forwardKinematics(joints, poses);
+  return smallStomach()->tool_base * poses[smallStomach()->tip_link];
 }
 
 TEST(ReachFor, BringsThePointThereWithLittleMotion) {
@@ -57,12 +29,12 @@ TEST(ReachFor, BringsThePointThereWithLittleMotion) {
   const Hand::Joints start = jointsOnWall(at, place);
   const Eigen::Vector3d offset = helixInTip(kHelixOut);
   const Eigen::Vector3d target = tipAt(start) * offset + Eigen::Vector3d(4e-3, -6e-3, 5e-3);
-  const IkSolution reached = reachFor(*stomach(), target, offset, start);
+  const IkSolution reached = reachFor(*smallStomach(), target, offset, start);
   EXPECT_LT((tipAt(reached.joints) * offset - target).norm(), 1e-4);
   EXPECT_NEAR(reached.miss, (tipAt(reached.joints) * offset - target).norm(), 1e-9);
   for (int j = Rotation; j <= TipLeftRight; ++j) EXPECT_LT(std::abs(reached.joints[j] - start[j]), 0.3) << j;
   EXPECT_EQ(reached.joints[HelixAdvance], start[HelixAdvance]);
-  EXPECT_GT(reachFor(*stomach(), target + Eigen::Vector3d(0, 0, 1), offset, start).miss, 0.5) << "out of reach";
+  EXPECT_GT(reachFor(*smallStomach(), target + Eigen::Vector3d(0, 0, 1), offset, start).miss, 0.5) << "out of reach";
 }
 
 TEST(Rolled, TurnsTheTipAroundItsAxisWhereItIs) {
@@ -70,7 +42,7 @@ TEST(Rolled, TurnsTheTipAroundItsAxisWhereItIs) {
   const Hand::Joints start = jointsOnWall(at, at.me.seen_map->at(0.5, 0.3));
   int found = 0;
   for (const double angle : {-0.6, 0.4, 0.8}) {
-    const auto joints = rolled(*stomach(), start, angle);
+    const auto joints = rolled(*smallStomach(), start, angle);
     if (!joints) continue;
     ++found;
     const Eigen::Isometry3d before = tipAt(start), after = tipAt(*joints);
@@ -87,7 +59,7 @@ TEST(ImagineNeedle, MoreDrawnMeansDeeper) {
   const WallPoint place = at.me.seen_map->at(0.5, 0.3);
   const Eigen::Quaterniond turn(tipAt(jointsOnWall(at, place)).linear());
   const auto depthAt = [&](double drawn, double follows) {
-    const auto needle = imagineNeedle(*stomach(), at.seen, {place, turn, kHelixOut, drawn, follows});
+    const auto needle = imagineNeedle(*smallStomach(), at.seen, {place, turn, kHelixOut, drawn, follows});
     return needle ? needle->depth : -1;
   };
   EXPECT_LT(depthAt(20e-3, 0.14), 0) << "the wall is still before the arm";
@@ -105,11 +77,22 @@ TEST(PlanBite, TheNeedleIsImaginedAtTheTargetAndDeep) {
     EXPECT_LT(plan.miss, 2e-3);
     EXPECT_GT(plan.depth, 2.5e-3);
     const auto needle = imagineNeedle(
-        *stomach(), at.seen, {plan.held, Eigen::Quaterniond(tipAt(plan.joints).linear()), kHelixOut, plan.drawn});
+        *smallStomach(), at.seen, {plan.held, Eigen::Quaterniond(tipAt(plan.joints).linear()), kHelixOut, plan.drawn});
     ASSERT_TRUE(needle.has_value());
     EXPECT_LT((at.me.position(needle->where) - at.me.position(target)).norm(), 3e-3);
     const double beside = (at.me.position(plan.held) - at.me.position(target)).norm();
     EXPECT_GT(beside, 4e-3) << "the needle does not pass where the helix holds";
+  }
+}
+
+TEST(PlanBite, EveryTurnOfTheDeviceIsImaginedInAStepOfItsOwn) {
+  Skill half;
+  half.foresight = 0.5;
+  for (const auto& [skill, turns] : {std::pair{Skill::expert(), 12}, {half, 7}}) {
+    Onlooker at(skill);
+    planBite(at.me.seen_map->at(0.5, 0.0), at.me);
+    EXPECT_LE(at.steps, turns);
+    EXPECT_GE(at.steps, turns / 2) << "some turns are beyond the scope's limits";
   }
 }
 
@@ -135,8 +118,9 @@ TEST(PlanBite, WithoutForesightTheNeedleIsTakenToPassBesideTheHelix) {
   const double beside = (novice.me.position(plan.held) - novice.me.position(target)).norm();
   EXPECT_GT(beside, 2e-3);
   EXPECT_LT(beside, 9e-3) << "the device's own offset, 7 mm";
-  const auto needle = imagineNeedle(
-      *stomach(), novice.seen, {plan.held, Eigen::Quaterniond(tipAt(plan.joints).linear()), kHelixOut, plan.drawn});
+  const auto needle =
+      imagineNeedle(*smallStomach(), novice.seen,
+                    {plan.held, Eigen::Quaterniond(tipAt(plan.joints).linear()), kHelixOut, plan.drawn});
   const auto missOf = [&](const std::optional<NeedleView>& view) {
     return view ? (expert.me.position(view->where) - expert.me.position(target)).norm() : 1.0;
   };

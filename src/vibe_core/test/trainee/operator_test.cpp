@@ -6,30 +6,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vibe_core/common/package_path.hpp"
-#include "vibe_core/simulation/simulation.hpp"
+#include "onlooker.hpp"
 
 namespace vibe {
 namespace {
-
-std::shared_ptr<const Model> stomach() {
-  static const std::shared_ptr<const Model> model = [] {
-    Scene scene;
-    scene.geometry.particles = 2000;
-    scene.scope.emplace();
-    return buildModel(scene, readTextFile(std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf", "URDF"));
-  }();
-  return model;
-}
 
 /// Distances from the target of points that are aimed at in its stead [m].
 std::vector<double> missesAt(double along, double aim_error) {
   Skill skill;
   skill.aim_error = aim_error;
-  Hand hand(*stomach(), skill, [] {});
-  const Observation seen = observe(Simulation(stomach()));
-  hand.perceive(seen);
-  Operator me{hand, 1, [](const std::string&) {}, {}};
+  Onlooker at(skill);
+  Operator& me = at.me;
   const WallPoint target = me.map().at(along, 0.3);
   std::vector<double> misses;
   for (int k = 0; k < 200; ++k) misses.push_back((me.position(me.withAimError(target)) - me.position(target)).norm());
