@@ -3,6 +3,7 @@
 #include <ros/console.h>
 #include <ros/init.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -15,6 +16,10 @@ namespace {
 
 constexpr std::uint32_t kQueue = 10000;  // of small messages: none may be lost
 constexpr double kResendAfter = 0.5;     // time stands still: something may have been lost [s]
+
+bool isPressed(const StepInput& input) {
+  return std::any_of(input.buttons.begin(), input.buttons.end(), [](std::uint8_t b) { return b != 0; });
+}
 
 }  // namespace
 
@@ -84,7 +89,11 @@ void GoalPlayer::perform(const Sight& sight) {
   last_sent_ = trainee_->next(sight.seen);
   last_stamp_ = sight.stamp;
   last_send_ = steadyTime();
-  if (lockstep_ || !idle) sender_.send(last_sent_, last_stamp_);  // without a goal, others may drive
+  // without a goal, others may drive; but a button that nobody presses any more would be released
+  if (lockstep_ || !idle)
+    sender_.send(last_sent_, last_stamp_);
+  else if (isPressed(last_sent_))
+    sender_.sendButtons(last_sent_, last_stamp_);
   server_.follow(sight.seen, sight.stamp);
 }
 

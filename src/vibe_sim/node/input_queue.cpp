@@ -46,6 +46,17 @@ std::string applySample(const InputSample& sample, const Model& model, StepInput
   return "";
 }
 
+/// @return names of what was pressed; empty: nothing
+std::string releaseButtons(StepInput& input) {
+  std::string names;
+  for (int b = 0; b < kButtonCount; ++b) {
+    if (!input.buttons[b]) continue;
+    names += (names.empty() ? "" : ", ") + std::string(kButtonNames[b]);
+    input.buttons[b] = 0;
+  }
+  return names;
+}
+
 }  // namespace
 
 bool InputQueue::push(const InputSample& sample) {
@@ -82,33 +93,61 @@ std::string InputQueue::missingAt(std::int64_t stamp) const {
   return names;
 }
 
-std::vector<std::string> InputQueue::apply(std::int64_t stamp, const Model& model, StepInput& input) {
+std::vector<std::string> InputQueue::apply(std::int64_t stamp, const Model& model, StepInput& input, bool real_time) {
   std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<std::string> unusable;
+  if (stamp < applied_until_) setBack(stamp);
+  std::vector<std::string> sentences;
   for (Queue& queue : queues_) {
     while (!queue.waiting.empty() && queue.waiting.front().stamp <= stamp) {
       const InputSample& sample = queue.waiting.front();
       std::string sentence = applySample(sample, model, input);
-      if (!sentence.empty()) unusable.push_back(std::move(sentence));
-      if (sample.channel == InputChannel::Pull) last_pull_ = stamp;
+      if (!sentence.empty()) sentences.push_back(std::move(sentence));
+      last_[static_cast<int>(sample.channel)] = stamp;
       queue.waiting.pop_front();
     }
   }
-  if (input.pull_particle >= 0 && stamp - last_pull_ > kPullTimeout) {
+  if (input.pull_particle >= 0 && isSilent(InputChannel::Pull, stamp, kPullTimeout)) {
     input.pull_particle = -1;
     input.pull_target.setZero();
-    unusable.push_back(
+    sentences.push_back(
         "The hand on tissue/pull has been silent for 2 s and lets go; send its target again while it "
         "holds.");
   }
-  applied_until_ = std::max(applied_until_, stamp);
-  return unusable;
+  if (real_time && isSilent(InputChannel::Buttons, stamp, kButtonTimeout)) {
+    const std::string released = releaseButtons(input);
+    if (!released.empty())
+      sentences.push_back("No message has come on scope/buttons for 1 s, so " + released +
+                          " is released and the scope stays where it is; send pressed buttons at 10 Hz.");
+  }
+  applied_until_ = stamp;
+  return sentences;
+}
+
+void InputQueue::setBack(std::int64_t stamp) {
+  for (Queue& queue : queues_) {
+    for (InputSample& sample : queue.waiting) sample.stamp = std::min(sample.stamp, stamp);
+    queue.newest = std::min(queue.newest, stamp);
+  }
+  for (std::int64_t& last : last_) last = std::min(last, stamp);
+  applied_until_ = stamp;
+}
+
+// One that has promised a later sample is not.
+bool InputQueue::isSilent(InputChannel channel, std::int64_t stamp, std::int64_t timeout) const {
+  const int c = static_cast<int>(channel);
+  return queues_[c].waiting.empty() && stamp - last_[c] > timeout;
+}
+
+std::int64_t InputQueue::now() const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return applied_until_;
 }
 
 void InputQueue::clear() {
   std::lock_guard<std::mutex> lock(mutex_);
   queues_ = {};
-  applied_until_ = last_pull_ = 0;
+  applied_until_ = 0;
+  last_ = {};
 }
 
 const char* toString(InputChannel channel) {

@@ -20,6 +20,10 @@ constexpr int kLockstepChannelCount = 3;  ///< the first ones; a pull is optiona
 /// A pull ends if no message arrives for this long: its publisher may be gone [ns of the simulator's time].
 constexpr std::int64_t kPullTimeout = 2'000'000'000;
 
+/// Buttons that are pressed are released if no message arrives for this long: whoever presses them may be gone [ns of
+/// the simulator's time].
+constexpr std::int64_t kButtonTimeout = 1'000'000'000;
+
 /// What a sample of the channel Scope says: joint positions, or the pose that scope_tip is to reach.
 enum class ScopeTarget { Joints, TipInWorld, TipInBase };
 
@@ -54,12 +58,19 @@ class InputQueue {
 
   /// Applies to `input` everything that is due at `stamp`, in the order of stamps; samples from the past count as of
   /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics; a pull
-  /// without a message for kPullTimeout ends.
-  /// @return one sentence per sample that the model cannot use
-  std::vector<std::string> apply(std::int64_t stamp, const Model& model, StepInput& input);
+  /// without a message for kPullTimeout ends. A `stamp` before the last one means that the clock was set back: what
+  /// waits is due at once.
+  /// @param real_time  buttons without a message for kButtonTimeout are released; false where simulated time says
+  /// nothing
+  ///                   about how long a publisher has been silent
+  /// @return one sentence per sample that the model cannot use and per input that has fallen silent
+  std::vector<std::string> apply(std::int64_t stamp, const Model& model, StepInput& input, bool real_time = true);
 
   /// Forgets everything, e.g. because time starts again.
   void clear();
+
+  /// Stamp of the last apply(); 0: none yet.
+  std::int64_t now() const;
 
  private:
   struct Queue {
@@ -69,7 +80,10 @@ class InputQueue {
   mutable std::mutex mutex_;
   std::array<Queue, kInputChannelCount> queues_;
   std::int64_t applied_until_ = 0;
-  std::int64_t last_pull_ = 0;  // time at which a sample of Pull was applied last
+  std::array<std::int64_t, kInputChannelCount> last_{};  // time at which a sample of the channel was applied last
+
+  void setBack(std::int64_t stamp);
+  bool isSilent(InputChannel channel, std::int64_t stamp, std::int64_t timeout) const;
 };
 
 const char* toString(InputChannel channel);

@@ -21,7 +21,11 @@ bool InputSender::hasListeners() const {
 void InputSender::send(const StepInput& input, std::int64_t stamp, bool with_buttons) {
   scope_.publish(makeScopeJoints(input, stamp));
   overstitch_.publish(makeOverstitchJoints(input, stamp));
-  if (with_buttons) buttons_.publish(makeButtons(input, stamp));
+  if (with_buttons) sendButtons(input, stamp);
+}
+
+void InputSender::sendButtons(const StepInput& input, std::int64_t stamp) {
+  buttons_.publish(makeButtons(input, stamp));
 }
 
 }  // namespace vibe

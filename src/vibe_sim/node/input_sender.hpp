@@ -17,6 +17,7 @@ class InputSender {
   /// @param stamp         of the sample [ns]
   /// @param with_buttons  else only the joints
   void send(const StepInput& input, std::int64_t stamp, bool with_buttons = true);
+  void sendButtons(const StepInput& input, std::int64_t stamp);
 
  private:
   ros::Publisher scope_, overstitch_, buttons_;

@@ -14,8 +14,14 @@ constexpr std::uint32_t kQueue = 10000;  // none may be lost in lock-step; the q
 
 }  // namespace
 
-Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& publishers, std::function<void()> arrived)
-    : handle_(handle), queue_(queue), publishers_(publishers), arrived_(std::move(arrived)) {
+Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& publishers, const InputWindow& window,
+               std::function<std::int64_t()> now, std::function<void()> arrived)
+    : handle_(handle),
+      queue_(queue),
+      publishers_(publishers),
+      window_(window),
+      now_(std::move(now)),
+      arrived_(std::move(arrived)) {
   using sensor_msgs::JointState;
   handle_.setCallbackQueue(&callbacks_);
   listen<JointState>("scope/measured_js", [](const JointState& message) {
@@ -54,15 +60,24 @@ void Inputs::receive(const std::string& name, const std::string& publisher, cons
   Topic& topic = topics_.at(name);
   if (!obeys(name, topic, publisher)) return;
   try {
-    if (queue_.push(read())) {
-      arrived_();
-    } else {
-      complain(topic, "A message on " + name + " is ignored: " + std::to_string(InputQueue::kCapacity) +
-                          " messages with later stamps wait already; check the clock of " + publisher + ".");
-    }
+    take(name, topic, publisher, read());
   } catch (const Error& error) {
     complain(topic, "A message on " + name + " from " + publisher + " is ignored: " + error.what());
   }
+}
+
+void Inputs::take(const std::string& name, Topic& topic, const std::string& publisher, const InputSample& sample) {
+  const std::string fault = faultOf(sample.stamp, now_(), window_);
+  if (!fault.empty())
+    return complain(topic, "A message on " + name + " from " + publisher + " is ignored: " + fault +
+                               "; check the clock of that node and whether both read the same /use_sim_time.");
+  if (!queue_.push(sample))
+    return complain(topic, "A message on " + name + " from " + publisher +
+                               " is ignored: " + std::to_string(InputQueue::kCapacity) +
+                               " messages with later stamps wait already; send less ahead.");
+  topic.owner = publisher;
+  topic.last_message = steadyTime();
+  arrived_();
 }
 
 bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& publisher) {
@@ -74,8 +89,6 @@ bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& pub
                         " ignored; stop one of them.");
     return false;
   }
-  topic.owner = publisher;
-  topic.last_message = now;
   return true;
 }
 

@@ -23,6 +23,16 @@ std::optional<std::uint64_t> readSeed(ParameterReader& reader) {
   return static_cast<std::uint64_t>(seed);
 }
 
+InputWindow readInputWindow(ParameterReader& reader, TimeSource source) {
+  InputWindow window = source == TimeSource::Sim ? InputWindow::ofSimulatedTime() : InputWindow::ofWallClock();
+  double look_ahead = -1, staleness = -1;
+  reader.read("input_look_ahead", look_ahead, 0, 1e6, "s");
+  reader.read("input_staleness", staleness, 0, 1e6, "s");
+  if (look_ahead >= 0) window.look_ahead = static_cast<std::int64_t>(1e9 * look_ahead);
+  if (staleness >= 0) window.staleness = static_cast<std::int64_t>(1e9 * staleness);
+  return window;
+}
+
 /// All nodes must agree on whose time it is before any of them reads it.
 void checkSimTime(TimeSource source) {
   bool use_sim_time = false;
@@ -57,6 +67,7 @@ Parameters readParameters(const ros::NodeHandle& private_handle) {
   reader.read("fast", parameters.fast);
   reader.read("lockstep", parameters.lockstep);
   reader.read("lockstep_timeout", parameters.lockstep_timeout, 0.1, 86400, "s");
+  parameters.input_window = readInputWindow(reader, parameters.time_source);
   reader.read("start_paused", parameters.start_paused);
   reader.read("await_recorder", parameters.await_recorder);
   reader.read("threads", parameters.threads, 1, 256);

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "input_window.hpp"
+
 namespace vibe {
 
 enum class TimeSource {
@@ -24,9 +26,10 @@ struct Parameters {
   bool start_paused = false;
   bool await_recorder = false;  ///< no step before somebody listens to applied_input
   int threads = 1;              ///< inside a step
-  double duration = 0;          ///< simulated time after which the node ends; 0: never [s]
-  std::string summary_file;     ///< empty: none
-  double master_timeout = 30;   ///< [s] of wall time without a master and without any listener
+  InputWindow input_window = InputWindow::ofWallClock();
+  double duration = 0;         ///< simulated time after which the node ends; 0: never [s]
+  std::string summary_file;    ///< empty: none
+  double master_timeout = 30;  ///< [s] of wall time without a master and without any listener
 };
 
 /// @throws Error for an unknown parameter, one of a wrong type or out of range, and settings that exclude each other

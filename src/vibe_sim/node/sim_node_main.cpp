@@ -12,6 +12,7 @@
 #include "scene_source.hpp"
 #include "services.hpp"
 #include "stepping.hpp"
+#include "wall_clock.hpp"
 
 namespace {
 
@@ -53,7 +54,10 @@ int run() {
   ros::AsyncSpinner spinner(1);
   vibe::MasterWatch watch(handle, publishers, parameters.master_timeout);
   {
-    vibe::Inputs inputs(handle, queue, publishers, [&stepper] { stepper.wake(); });
+    vibe::Inputs inputs(
+        handle, queue, publishers, parameters.input_window,
+        [&] { return parameters.time_source == vibe::TimeSource::Wall ? vibe::wallNow() : queue.now(); },
+        [&stepper] { stepper.wake(); });
     vibe::Services services(handle, stepper);
     stepper.start();
     spinner.start();

@@ -1,7 +1,6 @@
 #include "stepping.hpp"
 
 #include <ros/console.h>
-#include <ros/time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +8,7 @@
 
 #include "conversions.hpp"
 #include "vibe_core/common/error.hpp"
+#include "wall_clock.hpp"
 
 namespace vibe {
 namespace {
@@ -20,10 +20,6 @@ constexpr double kRecorderPatience = 30;            // [s]
 constexpr double kRecorderSettling = 0.3;           // [s]
 constexpr double kLagReportPeriod = 5;              // [s]
 constexpr std::chrono::milliseconds kIdle(40);
-
-std::int64_t wallNow() {
-  return static_cast<std::int64_t>(ros::WallTime::now().toNSec());
-}
 
 std::int64_t startOrigin(const Parameters& parameters) {
   return parameters.time_source == TimeSource::Sim ? kEpoch : wallNow();
@@ -183,8 +179,10 @@ void Stepper::takeStep() {
   if (statistics_.steps == 0) statistics_.begin(session_);
   statistics_.total.start();
   const bool wall = parameters_.time_source == TimeSource::Wall;
+  const bool real_time = !parameters_.fast && !parameters_.lockstep && steps_left_ == 0;
   StepInput input = session_.input;
-  for (const std::string& sentence : queue_.apply(wall ? wallNow() : session_.now(), *session_.model, input)) {
+  for (const std::string& sentence :
+       queue_.apply(wall ? wallNow() : session_.now(), *session_.model, input, real_time)) {
     ROS_WARN_STREAM(sentence);
     publishers_.warn(sentence);
   }

@@ -8,6 +8,7 @@
 #include "trainee/device_geometry.hpp"
 #include "trainee/ik_solution.hpp"
 #include "trainee/imagined_draw.hpp"
+#include "trainee/travel.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -59,6 +60,7 @@ GoalResult BiteAttempt::make() {
 }
 
 GoalResult BiteAttempt::grabAndStitch() {
+  if (!comeNear()) return {false, "the way to the wall is blocked"};
   if (!grab()) return {false, "the helix got no hold of the wall"};
   const GoalResult result = drawAndClose();
   hand_.move(HelixAdvance, kHelixOut - 4e-3, 0.6);
@@ -88,9 +90,19 @@ bool BiteAttempt::approach(double into, double min) {
   return arrived;
 }
 
-bool BiteAttempt::grab() {
+// Where something presses on the way, such as a fold of an earlier set, the scope comes anew from its entry.
+bool BiteAttempt::comeNear() {
   plan_ = planBite(target_, me_);
-  approach(-kStandOff, 0.5);
+  if (hand_.feelsTooMuch()) retreat(me_);
+  for (int k = 0; k < 2; ++k) {
+    if (approach(-kStandOff, 0.5)) return true;
+    retreat(me_);
+    correction_.setZero();
+  }
+  return false;
+}
+
+bool BiteAttempt::grab() {
   // the scope gives way, so the device may lie otherwise than planned
   const BitePlan seen = planBiteFromHere(target_, me_);
   if (std::isfinite(seen.cost)) plan_.held = seen.held, plan_.drawn = seen.drawn;

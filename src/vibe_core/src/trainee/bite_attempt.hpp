@@ -22,6 +22,7 @@ class BiteAttempt {
   void settle();
   double gap() const;
   bool approach(double into, double min);
+  bool comeNear();
   bool grab();
   GoalResult drawAndClose();
   std::optional<NeedleView> look() const;

@@ -26,15 +26,19 @@ Hand::Joints straight(const Hand::Joints& joints) {
 
 }  // namespace
 
+void retreat(Operator& me) {
+  me.hand.moveTo(straight(me.hand.joints()), 0.5);
+  me.hand.wait(me.skill().reaction_time);
+}
+
 bool travel(const Hand::Joints& joints, Operator& me) {
   const auto tooMuch = [&me] { return me.hand.feelsTooMuch(); };
   if (tooMuch() || turnBetween(me.hand.joints(), joints) > kSmallTurn) {
-    me.hand.moveTo(straight(me.hand.joints()), 0.5);
-    me.hand.wait(me.skill().reaction_time);
+    retreat(me);
     me.hand.move(Rotation, joints[Rotation], 0.2);
   }
   const bool arrived = me.hand.moveTo(joints, 0.3, tooMuch);
-  if (!arrived) me.hand.moveTo(straight(me.hand.joints()), 0.5);
+  if (!arrived) retreat(me);
   return arrived;
 }
 

@@ -8,4 +8,7 @@ namespace vibe {
 /// @return whether it arrived
 bool travel(const Hand::Joints& joints, Operator& me);
 
+/// Straightens the scope and draws it back into the entry, out of what presses on it.
+void retreat(Operator& me);
+
 }  // namespace vibe

@@ -125,6 +125,58 @@ TEST_F(InputQueueTest, lockstepKnowsATimeWhenEveryChannelHasReachedIt) {
   EXPECT_FALSE(queue.knownUntil(100));
 }
 
+TEST_F(InputQueueTest, buttonsThatNobodyPressesAnyMoreAreReleasedAndTheScopeStays) {
+  queue.push(buttonsAt(1, 1000));
+  queue.push(scopeAt(0.1, 1000));
+  EXPECT_TRUE(queue.apply(1000, model, input).empty());
+  EXPECT_TRUE(queue.apply(1000 + kButtonTimeout, model, input).empty());
+  EXPECT_EQ(input.buttons[HelixGrab], 1);
+  const std::vector<std::string> sentences = queue.apply(1001 + kButtonTimeout, model, input);
+  ASSERT_EQ(sentences.size(), 1u);
+  EXPECT_NE(sentences[0].find("scope/buttons"), std::string::npos);
+  EXPECT_NE(sentences[0].find("helix_grab is released"), std::string::npos);
+  EXPECT_EQ(input.buttons[HelixGrab], 0);
+  EXPECT_EQ(input.joints[Insertion], 0.1);
+  EXPECT_TRUE(queue.apply(5000 + kButtonTimeout, model, input).empty()) << "said once";
+  queue.push(buttonsAt(1, 0));
+  queue.apply(6000 + kButtonTimeout, model, input);
+  EXPECT_EQ(input.buttons[HelixGrab], 1);
+}
+
+TEST_F(InputQueueTest, buttonsStayPressedWhereTimeIsNotThatOfTheWall) {
+  queue.push(buttonsAt(1, 1000));
+  queue.apply(1000, model, input, false);
+  EXPECT_TRUE(queue.apply(9 * kButtonTimeout, model, input, false).empty());
+  EXPECT_EQ(input.buttons[HelixGrab], 1);
+}
+
+TEST_F(InputQueueTest, buttonsThatAreNotPressedMayBeSilent) {
+  queue.push(buttonsAt(0, 1000));
+  queue.apply(1000, model, input);
+  EXPECT_TRUE(queue.apply(5 * kButtonTimeout, model, input).empty());
+}
+
+TEST_F(InputQueueTest, aPressThatIsToEndLaterIsNotSilent) {
+  queue.push(buttonsAt(1, 1000));
+  queue.push(buttonsAt(0, 9 * kButtonTimeout));
+  queue.apply(1000, model, input);
+  EXPECT_TRUE(queue.apply(8 * kButtonTimeout, model, input).empty());
+  EXPECT_EQ(input.buttons[HelixGrab], 1);
+}
+
+TEST_F(InputQueueTest, aClockThatIsSetBackLocksNobodyOut) {
+  const std::int64_t hour = 3600LL * 1'000'000'000;
+  queue.apply(2 * hour, model, input);
+  queue.push(scopeAt(0.1, 2 * hour + 1));
+  queue.apply(hour, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.1) << "what waited is due";
+  queue.push(scopeAt(0.2, hour + 100));
+  queue.apply(hour + 99, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.1);
+  queue.apply(hour + 100, model, input);
+  EXPECT_EQ(input.joints[Insertion], 0.2);
+}
+
 class PullQueueTest : public testing::Test {
  protected:
   test::World world{test::bareScene(), test::plainOrgan(test::icosphere(0.05, 2), 2e-3)};

@@ -7,8 +7,8 @@ import unittest
 
 import rospy
 import rostest
-from node_test_support import Program, Recorder, scene, wait_until
-from sensor_msgs.msg import JointState, PointCloud2
+from node_test_support import SCOPE_JOINTS, Program, Recorder, buttons, joints, scene, wait_until
+from sensor_msgs.msg import JointState, Joy, PointCloud2
 from std_srvs.srv import SetBool
 from vibe_msgs.msg import ProcedureEvent, SolverStatistics, StepInput
 from vibe_msgs.srv import Reset
@@ -73,6 +73,40 @@ class WallTimeTest(unittest.TestCase):
         self.performance.clear()
         self.assertTrue(wait_until(lambda: len(self.performance.messages) >= 3, 6))
         self.assertAlmostEqual(self.performance.messages[-1].real_time_factor, 1, delta=0.15)
+
+    def test_a_node_whose_clock_is_wrong_is_told_so_and_locks_nobody_out(self):
+        command = rospy.Publisher("scope/servo_jp", JointState, queue_size=100)
+        self.assertTrue(wait_until(lambda: command.get_num_connections() > 0))
+        for hours in (1, -1):
+            time.sleep(1.1)  # complaints are limited to one a second
+            self.events.clear()
+            stamp = rospy.Time.from_sec(time.time() + 3600 * hours)
+            for k in range(5000):  # more than may wait
+                command.publish(joints([], (0.09, 0, 0, 0), stamp + rospy.Duration(0.001 * k)))
+            told = self.events.find(lambda m: "scope/servo_jp" in m.text and rospy.get_name() in m.text, 10)
+            self.assertIsNotNone(told)
+            self.assertRegex(told.text, "3(59[0-9]|60[0-9])[.][0-9] s (ahead of|behind) the simulator's time")
+        self.assertFalse(any(m.joints[0] == 0.09 for m in self.applied.messages))
+        command.unregister()
+        other = rospy.Publisher("scope/measured_js", JointState, queue_size=10)
+        self.assertTrue(wait_until(lambda: other.get_num_connections() > 0))
+        other.publish(joints(SCOPE_JOINTS, (0.03, 0, 0, 0), rospy.Time.from_sec(time.time())))
+        self.assertTrue(wait_until(lambda: any(m.joints[0] == 0.03 for m in self.applied.messages), 5))
+        other.unregister()
+
+    def test_buttons_of_a_node_that_is_gone_are_released(self):
+        press = rospy.Publisher("scope/buttons", Joy, queue_size=10)
+        self.assertTrue(wait_until(lambda: press.get_num_connections() > 0))
+        for _ in range(20):  # 2 s: longer than the timeout
+            press.publish(buttons([0, 4]))
+            time.sleep(0.1)
+        self.assertEqual(self.applied.messages[-1].buttons[0], 1)
+        self.events.clear()
+        warning = self.events.find(lambda m: "scope/buttons" in m.text, 5)
+        self.assertIsNotNone(warning)
+        self.assertIn("apc_pedal, cinch is released", warning.text)
+        self.assertTrue(wait_until(lambda: not any(self.applied.messages[-1].buttons), 2))
+        press.unregister()
 
     def test_a_free_trainee_moves_the_scope(self):
         trainee = Program("vibe_trainee", "trainee", script=scene("poke.trainee.yaml"))
