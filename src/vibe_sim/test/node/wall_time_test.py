@@ -89,9 +89,12 @@ class WallTimeTest(unittest.TestCase):
         self.assertFalse(any(m.joints[0] == 0.09 for m in self.applied.messages))
         command.unregister()
         other = rospy.Publisher("scope/measured_js", JointState, queue_size=10)
-        self.assertTrue(wait_until(lambda: other.get_num_connections() > 0))
-        other.publish(joints(SCOPE_JOINTS, (0.03, 0, 0, 0), rospy.Time.from_sec(time.time())))
-        self.assertTrue(wait_until(lambda: any(m.joints[0] == 0.03 for m in self.applied.messages), 5))
+
+        def obeyed():
+            other.publish(joints(SCOPE_JOINTS, (0.03, 0, 0, 0), rospy.Time.from_sec(time.time())))
+            return any(m.joints[0] == 0.03 for m in self.applied.messages)
+
+        self.assertTrue(wait_until(obeyed, 5))
         other.unregister()
 
     def test_buttons_of_a_node_that_is_gone_are_released(self):
