@@ -1,4 +1,5 @@
-"""A ROS graph of its own: a master on a free port and nodes that end with this process. Standard library only."""
+"""A ROS graph: a master of its own on a free port, or the user's, and nodes that end with this process. Standard library
+only."""
 
 import ctypes
 import os
@@ -78,20 +79,39 @@ class Process:
 class Graph:
     """A master and the programs around it, in the order they were started."""
 
-    def __init__(self, log_folder):
+    def __init__(self, log_folder, own_master=True):
         self.log_folder = log_folder
+        self.own_master = own_master
         self.processes = []
-        port = free_port()
-        self.env = dict(os.environ, ROS_MASTER_URI="http://localhost:{}".format(port), ROS_HOSTNAME="localhost")
-        self.env.pop("ROS_IP", None)
+        self.parameters = {}  # what the user's master had before: name -> value, or None
+        self.env = dict(os.environ)
+        if own_master:
+            self.port = free_port()
+            self.env.update(ROS_MASTER_URI="http://localhost:{}".format(self.port), ROS_HOSTNAME="localhost")
+            self.env.pop("ROS_IP", None)
+        self.env.setdefault("ROS_MASTER_URI", "http://localhost:11311")
         self.env.pop("ROS_NAMESPACE", None)
         self.env.setdefault("ROS_HOME", os.path.join(log_folder, "ros"))
         self.env.setdefault("ROS_LOG_DIR", os.path.join(log_folder, "ros"))
         self.env.setdefault("ROSCONSOLE_STDOUT_LINE_BUFFERED", "1")  # messages in time also where this is piped
         self.master = xmlrpc.client.ServerProxy(self.env["ROS_MASTER_URI"])
-        self.port = port
+
+    def how_to_attach(self):
+        words = "ROS master: {}; in another terminal: export ROS_MASTER_URI={}".format(*[self.env["ROS_MASTER_URI"]] * 2)
+        return words + (" ROS_HOSTNAME=localhost" if self.own_master else "")
+
+    def use_master(self):
+        """The user's, which must answer and have no session yet."""
+        if not self.has_node("/rosout"):
+            uri = self.env["ROS_MASTER_URI"]
+            raise GraphError("no ROS master answers at {}; start roscore, or leave --master out".format(uri))
+        for name in ("/sim_node", "/vibe_trainee"):
+            if self.has_node(name):
+                raise GraphError("{} runs already at {}; stop it first".format(name, self.env["ROS_MASTER_URI"]))
 
     def start_master(self, seconds=30.0):
+        if not self.own_master:
+            return self.use_master()
         core = self.start("roscore", ["roscore", "-p", str(self.port)])
         deadline = time.monotonic() + seconds
         while not self.has_node("/rosout"):
@@ -115,9 +135,24 @@ class Graph:
             return False
 
     def set_parameter(self, name, value):
+        if not self.own_master and name not in self.parameters:
+            known, _, before = self.master.getParam("/vibe_scripts", name)
+            self.parameters[name] = before if known == 1 else None
         code, message, _ = self.master.setParam("/vibe_scripts", name, value)
         if code != 1:
             raise GraphError("the master refused the parameter {}: {}".format(name, message))
+
+    def restore_parameters(self):
+        """Puts back what the user's master had."""
+        try:
+            for name, before in self.parameters.items():
+                if before is None:
+                    self.master.deleteParam("/vibe_scripts", name)
+                else:
+                    self.master.setParam("/vibe_scripts", name, before)
+        except (OSError, xmlrpc.client.Error):
+            pass  # it is gone, and its parameters with it
+        self.parameters = {}
 
     def dead(self):
         """The first essential program that is not running any more, or None."""
@@ -129,4 +164,5 @@ class Graph:
     def stop_all(self):
         """Stops everything, the last one first. Returns the names of the essential ones that had to be forced."""
         stopped = [(process, process.stop()) for process in reversed(self.processes)]
+        self.restore_parameters()
         return [process.name for process, in_time in stopped if process.essential and not in_time]

@@ -48,6 +48,7 @@ def session_parser():
     parser.add_argument("--duration", type=float, required=True, help="0: no end")
     parser.add_argument("--fast", action="store_true")
     parser.add_argument("--headless", action="store_true")
+    parser.add_argument("--master", action="store_true", help="use the master of ROS_MASTER_URI")
     return parser
 
 
@@ -65,8 +66,7 @@ class Session:
         self.bag = os.path.join(self.output, "session.bag")
         self.logs = os.path.join(self.output, "log")
         os.makedirs(self.logs, exist_ok=True)
-        self.graph = Graph(self.logs)
-        self.graph.env.setdefault("ROSCONSOLE_STDOUT_LINE_BUFFERED", "1")  # what nodes say must not come too late
+        self.graph = Graph(self.logs, own_master=not arguments.master)
         self.driver = DRIVERS[arguments.drive](arguments)
         self.vision = Vision(arguments) if arguments.camera else None
         self.sim = self.recorder = self.rviz = None
@@ -74,6 +74,7 @@ class Session:
     def start(self):
         graph = self.graph
         graph.start_master()
+        print(graph.how_to_attach(), flush=True)
         self.set_parameters()
         graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
         self.sim = graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"], visible=True, patience=30.0)

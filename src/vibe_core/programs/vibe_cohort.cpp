@@ -137,7 +137,7 @@ void write(std::FILE* file, const std::vector<Column>& row, bool names) {
   for (std::size_t k = 0; k < row.size(); ++k)
     std::fprintf(file, "%s%s", k > 0 ? "," : "", names ? row[k].name : row[k].value.c_str());
   std::fprintf(file, "\n");
-  std::fflush(file);
+  if (std::fflush(file) != 0) throw Error("The table could not be written to its end; check the room on the disk.");
 }
 
 std::vector<Column> perform(const Options& o, const std::shared_ptr<const Model>& model, const Protocol& protocol,

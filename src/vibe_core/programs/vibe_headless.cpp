@@ -147,6 +147,7 @@ void run(const Options& o) {
     simulation.run(std::lround(duration / simulation.stepPeriod()), inputAt, observer);
   else
     while (!trainee->done()) simulation.run(1, inputAt, observer);
+  if (csv) csv->finish();
   if (show) std::fprintf(stderr, "\r%-60s\r", "");
   if (!o.snapshot.empty()) simulation.saveSnapshot(o.snapshot);
   if (o.quiet)

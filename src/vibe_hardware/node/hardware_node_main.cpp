@@ -6,11 +6,13 @@
 #include <cstdio>
 
 #include "hardware_node.hpp"
+#include "vibe_node/master.hpp"
 
 namespace {
 
 constexpr int kUsage = 2;
-constexpr double kDelivery = 0.2;  // for listeners to receive that the buttons are released [s]
+constexpr double kMasterPatience = 10;  // [s]
+constexpr double kDelivery = 0.2;       // for listeners to receive that the buttons are released [s]
 
 volatile sig_atomic_t stop_signal = 0;
 
@@ -37,6 +39,7 @@ int main(int argc, char** argv) {
     ros::init(argc, argv, "hardware_node", ros::init_options::NoSigintHandler);
     signal(SIGINT, onSignal);
     signal(SIGTERM, onSignal);
+    if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 0;
     run();
     ros::shutdown();
     return 0;

@@ -3,24 +3,27 @@
 #include <ros/timer.h>
 
 #include <atomic>
+#include <string>
 
 #include "publishers.hpp"
 
 namespace vibe {
 
-/// Notices when the ROS master is gone. Connections between nodes outlive it, so the simulation continues until
-/// no listener is connected either.
+/// Notices when another node publishes /clock too, which makes time jump, and when the ROS master is gone. Connections
+/// between nodes outlive it, so the simulation continues until no listener is connected either.
 class MasterWatch {
  public:
   /// @param timeout  how long to go on without master and listeners [s]
-  MasterWatch(const ros::NodeHandle& handle, const Publishers& publishers, double timeout);
+  MasterWatch(const ros::NodeHandle& handle, Publishers& publishers, double timeout);
 
   bool isHopeless() const { return hopeless_; }
 
  private:
   void check();
+  void lookForRivalClock();
 
-  const Publishers& publishers_;
+  Publishers& publishers_;
+  std::string rival_;  // that was reported last
   double timeout_;
   bool was_there_ = true;
   double alone_since_ = 0;  // steady time [s]; 0: not alone

@@ -127,6 +127,7 @@ void Publishers::sutures(const Session& session) {
 }
 
 void Publishers::warn(const std::string& text) {
+  ++warnings_;
   events_.publish(makeWarning(text, now_));
 }
 

@@ -46,6 +46,8 @@ class Publishers {
 
   /// A warning event at the present simulated time.
   void warn(const std::string& text);
+  /// Number of warnings since the last call.
+  int takeWarnings() { return warnings_.exchange(0); }
 
   /// Whether any topic has a subscriber.
   bool hasListener() const;
@@ -55,6 +57,7 @@ class Publishers {
   ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
       skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, step_result_,
       clock_;
+  std::atomic<int> warnings_{0};
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;

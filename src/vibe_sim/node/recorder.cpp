@@ -32,8 +32,9 @@ Recorder::Recorder(const std::string& file, const std::string& last_topic) : fil
   handle_.setCallbackQueue(&queue_);
   if (!last_topic_.empty()) last_topic_ = handle_.resolveName(last_topic_);
   try {
-    bag_.open(file_ + ".active", rosbag::bagmode::Write);
+    bag_->open(file_ + ".active", rosbag::bagmode::Write);
   } catch (const rosbag::BagException& error) {
+    bag_.release();  // see the destructor
     throw Error("Recording '" + file_ + "' cannot be written (" + error.what() +
                 "); give a path in a writable folder.");
   }
@@ -41,11 +42,14 @@ Recorder::Recorder(const std::string& file, const std::string& last_topic) : fil
 
 Recorder::~Recorder() {
   for (auto& entry : subscribers_) entry.second.shutdown();
+  // A bag is closed by its destructor, and one that could not be written throws there, which ends the program.
+  if (!write_error_.empty()) bag_.release();
 }
 
 bool Recorder::findTopics() {
   ros::master::V_TopicInfo topics;
-  if (!ros::master::getTopics(topics)) return false;
+  // getTopics() alone would wait for a master that is gone, deaf to signals
+  if (!ros::master::check() || !ros::master::getTopics(topics)) return false;
   bool last_exists = false;
   for (const ros::master::TopicInfo& topic : topics) {
     if (subscribers_.count(topic.name) > 0) continue;
@@ -83,7 +87,7 @@ void Recorder::write(const std::string& topic, const Event& event) {
   if (!write_error_.empty()) return;
   try {
     // before the first /clock it is time 0, which a bag refuses
-    bag_.write(topic, std::max(ros::Time::now(), ros::TIME_MIN), *event.getMessage(), event.getConnectionHeaderPtr());
+    bag_->write(topic, std::max(ros::Time::now(), ros::TIME_MIN), *event.getMessage(), event.getConnectionHeaderPtr());
   } catch (const rosbag::BagException& error) {
     write_error_ = "Recording '" + file_ + "' breaks off (" + error.what() + "); make room on the disk.";
   }
@@ -112,7 +116,7 @@ void Recorder::close() {
   drain();
   if (write_error_.empty()) {
     try {
-      bag_.close();
+      bag_->close();
     } catch (const rosbag::BagException& error) {
       write_error_ = "Recording '" + file_ + "' cannot be ended (" + error.what() + "); make room on the disk.";
     }

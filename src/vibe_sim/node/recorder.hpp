@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 
 namespace vibe {
@@ -49,7 +50,7 @@ class Recorder {
   ros::NodeHandle handle_;
   ros::CallbackQueue queue_;
   std::map<std::string, ros::Subscriber> subscribers_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_ = std::make_unique<rosbag::Bag>();
   std::string file_;
   std::string last_topic_;
   std::string write_error_;  // of a callback, where an exception would be lost

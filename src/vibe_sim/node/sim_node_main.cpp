@@ -12,13 +12,21 @@
 #include "scene_source.hpp"
 #include "services.hpp"
 #include "stepping.hpp"
+#include "vibe_node/master.hpp"
 #include "wall_clock.hpp"
 
 namespace {
 
 constexpr int kFailure = 1;
 constexpr int kUsage = 2;
-constexpr double kDelivery = 1.0;  // for listeners to receive what was sent last [s]
+constexpr double kMasterPatience = 10;  // [s]
+constexpr double kDelivery = 1.0;       // for listeners to receive what was sent last [s]
+
+constexpr char kHelp[] =
+    "sim_node: the simulator as a ROS node.\n"
+    "Usage: rosrun vibe_sim sim_node _scene:=FILE [_PARAMETER:=VALUE]...\n"
+    "Parameters: scene, mesh, seed, time_source, fast, lockstep, lockstep_timeout, input_look_ahead, input_staleness,\n"
+    "start_paused, await_recorder, threads, duration, summary_file, master_timeout; see docs/interfaces.md.\n";
 
 volatile sig_atomic_t stop_signal = 0;
 
@@ -78,8 +86,13 @@ int run() {
 int main(int argc, char** argv) {
   try {
     ros::init(argc, argv, "sim_node", ros::init_options::NoSigintHandler);
+    if (vibe::asksForHelp(argc, argv)) {
+      std::fputs(kHelp, stdout);
+      return 0;
+    }
     signal(SIGINT, onSignal);
     signal(SIGTERM, onSignal);
+    if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
     const int result = run();
     ros::shutdown();
     return result;

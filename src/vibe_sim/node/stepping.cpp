@@ -186,6 +186,7 @@ void Stepper::takeStep() {
     ROS_WARN_STREAM(sentence);
     publishers_.warn(sentence);
   }
+  session_.simulation.addWarnings(publishers_.takeWarnings());
   session_.simulation.setInput(input);
   publishers_.appliedInput(session_);
   session_.step(input);
@@ -245,6 +246,7 @@ void Stepper::reportLag(double lag) {
 }
 
 void Stepper::finish() {
+  session_.simulation.addWarnings(publishers_.takeWarnings());
   publishers_.wholeState(session_, status_);
   publishers_.solver_statistics(statistics_.wholeMessage(session_));
   const std::string summary = statistics_.summary(session_);

@@ -9,13 +9,15 @@
 
 #include "recorder.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_node/master.hpp"
 
 namespace {
 
 constexpr int kFailure = 1;
 constexpr int kUsage = 2;
-constexpr double kSearchPeriod = 0.2;   // between looks for new topics [s]
-constexpr double kMasterPatience = 10;  // without an answer of the master before the recording ends [s]
+constexpr double kSearchPeriod = 0.2;  // between looks for new topics [s]
+constexpr double kMasterPatience =
+    10;  // without an answer of the master, at the start or before the recording ends [s]
 
 volatile std::sig_atomic_t stop_signal = 0;
 
@@ -64,9 +66,17 @@ int main(int argc, char** argv) {
   bool running = false;
   try {
     ros::init(argc, argv, "vibe_record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
+    if (vibe::asksForHelp(argc, argv)) {
+      std::puts(
+          "vibe_record: records every topic of the graph to a bag until Ctrl-C.\n"
+          "Usage: rosrun vibe_sim vibe_record [--last TOPIC] FILE\n"
+          "  --last TOPIC  is subscribed to when all other topics are connected");
+      return 0;
+    }
     const Options options = readOptions({argv, argv + argc});
     std::signal(SIGINT, onSignal);
     std::signal(SIGTERM, onSignal);
+    if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
     vibe::Recorder recorder(options.file, options.last_topic);
     running = true;
     recordUntilStopped(recorder);

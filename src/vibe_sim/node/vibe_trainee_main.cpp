@@ -10,9 +10,16 @@
 #include "trainee_player.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
+#include "vibe_node/master.hpp"
 #include "vibe_node/parameter_reader.hpp"
 
 namespace {
+
+constexpr double kMasterPatience = 10;  // [s]
+constexpr char kHelp[] =
+    "vibe_trainee: plays a trainee script, or performs the goals of a protocol and of other nodes.\n"
+    "Usage: rosrun vibe_sim vibe_trainee [_script:=FILE] [_skill:=expert|novice] [_seed:=N] [_lockstep:=BOOL]\n"
+    "       [_exit_when_done:=BOOL]; see docs/interfaces.md.";
 
 struct Parameters {
   std::string script;
@@ -64,6 +71,11 @@ void performGoals(const vibe::Protocol& protocol, const Parameters& parameters) 
 int main(int argc, char** argv) {
   try {
     ros::init(argc, argv, "vibe_trainee");
+    if (vibe::asksForHelp(argc, argv)) {
+      std::puts(kHelp);
+      return 0;
+    }
+    vibe::waitForMaster(kMasterPatience);
     const Parameters parameters = readParameters();
     if (parameters.script.empty()) {
       performGoals(noProtocol(parameters), parameters);

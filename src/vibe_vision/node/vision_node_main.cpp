@@ -5,11 +5,13 @@
 #include <csignal>
 #include <cstdio>
 
+#include "vibe_node/master.hpp"
 #include "vision_node.hpp"
 
 namespace {
 
 constexpr int kUsage = 2;
+constexpr double kMasterPatience = 10;  // [s]
 
 /// As roscpp does on SIGINT, so that the camera is let go.
 void onSignal(int) {
@@ -21,6 +23,7 @@ void onSignal(int) {
 int main(int argc, char** argv) {
   try {
     ros::init(argc, argv, "vision_node");
+    vibe::waitForMaster(kMasterPatience);
     ros::NodeHandle handle, private_handle("~");
     const vibe::VisionParameters parameters = vibe::readVisionParameters(private_handle);
     signal(SIGTERM, onSignal);

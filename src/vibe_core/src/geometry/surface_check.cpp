@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <functional>
 #include <iterator>
@@ -134,6 +135,23 @@ void checkOrientation(const SurfaceMesh& mesh, const std::vector<Side>& sides, c
               "; make the orientation of the faces consistent");
 }
 
+/// Two triangles on the same three vertices close each other's edges but enclose nothing.
+void checkPockets(const SurfaceMesh& mesh, const std::string& name) {
+  std::vector<std::pair<std::array<int, 3>, int>> faces;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    std::array<int, 3> corners{mesh.triangles[t][0], mesh.triangles[t][1], mesh.triangles[t][2]};
+    std::sort(corners.begin(), corners.end());
+    faces.emplace_back(corners, t);
+  }
+  std::sort(faces.begin(), faces.end());
+  const auto same =
+      std::adjacent_find(faces.begin(), faces.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+  if (same == faces.end()) return;
+  throw Error(name + " has two triangles back to back, numbers " + std::to_string(same->second) + " and " +
+              std::to_string(std::next(same)->second) + " at " + place(mesh.vertices[same->first[0]]) +
+              "; remove both, or keep one closed sheet with a volume");
+}
+
 /// In a mesh with closed edges, a vertex where two sheets touch has more than one fan of triangles.
 void checkManifoldVertices(const SurfaceMesh& mesh, const std::string& name) {
   std::vector<std::vector<int>> around(mesh.vertices.size());
@@ -225,6 +243,7 @@ void checkSurface(const SurfaceMesh& mesh, const std::string& name) {
   checkAreas(mesh, name);
   const std::vector<Side> sides = sortedSides(mesh);
   checkManifoldEdges(mesh, sides, name);
+  checkPockets(mesh, name);
   checkHoles(mesh, sides, name);
   checkOrientation(mesh, sides, name);
   checkManifoldVertices(mesh, name);

@@ -50,7 +50,16 @@ void SessionCsv::write(const Model& model, const State& state, const std::vector
   writeProcedure(state.procedure, out);
   for (std::size_t i = 0; i < events.size(); ++i) out << (i > 0 ? ";" : "") << toString(events[i].kind);
   out << '\n';
-  if (!out) throw Error("The CSV could not be written to its end; check the room on the disk.");
+  check();
+}
+
+void SessionCsv::finish() {
+  out_->flush();
+  check();
+}
+
+void SessionCsv::check() const {
+  if (!*out_) throw Error("The CSV could not be written to its end; check the room on the disk.");
 }
 
 }  // namespace vibe

@@ -64,6 +64,10 @@ const SessionMetrics& Simulation::metrics() const {
   return recorder_ ? recorder_->metrics() : kNone;
 }
 
+void Simulation::addWarnings(int count) {
+  if (recorder_) recorder_->addWarnings(count);
+}
+
 std::uint64_t Simulation::hash() const {
   return vibe::hash(state_);
 }

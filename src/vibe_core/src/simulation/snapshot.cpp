@@ -24,6 +24,12 @@ class Writer {
   template <class T>
   void block(const T* data, std::size_t count) {
     out_.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(count * sizeof(T)));
+    sum_.add(data, count * sizeof(T));
+  }
+  /// Of everything so far.
+  void checksum() {
+    const std::uint64_t sum = sum_.result();
+    block(&sum, 1);
   }
   template <class T>
   void list(const std::vector<T>& items) {
@@ -32,6 +38,7 @@ class Writer {
 
  private:
   std::ostream& out_;
+  Fnv1a sum_;
 };
 
 class Reader {
@@ -41,6 +48,14 @@ class Reader {
   void block(T* data, std::size_t count) {
     in_.read(reinterpret_cast<char*>(data), static_cast<std::streamsize>(count * sizeof(T)));
     if (!in_) throw Error("Snapshot '" + file_ + "' ends too early; save it again.");
+    sum_.add(data, count * sizeof(T));
+  }
+  void checksum() {
+    const std::uint64_t sum = sum_.result();
+    std::uint64_t written = 0;
+    block(&written, 1);
+    if (written != sum)
+      throw Error("Snapshot '" + file_ + "' is damaged: its checksum does not fit what is in it; save it again.");
   }
   void block(bool* data, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -71,6 +86,7 @@ class Reader {
  private:
   std::istream& in_;
   std::string file_;
+  Fnv1a sum_;
 };
 
 template <class T>
@@ -130,6 +146,7 @@ void saveSnapshot(const Model& model, const State& state, const std::string& fil
     Writer writer(out);
     writeHeader(model, writer);
     transfer(writer, state);
+    writer.checksum();
     out.flush();
     if (!out) throw Error("Snapshot '" + file + "' could not be written; check that the folder exists and has room.");
   }
@@ -146,6 +163,7 @@ State loadSnapshot(const Model& model, const std::string& file) {
   transfer(reader, state);
   const std::string damage = findDamage(state, model);
   if (!damage.empty()) throw Error("Snapshot '" + file + "' is damaged: " + damage + "; save it again.");
+  reader.checksum();
   if (in.peek() != std::ifstream::traits_type::eof())
     throw Error("Snapshot '" + file + "' is longer than a state; save it again.");
   return state;

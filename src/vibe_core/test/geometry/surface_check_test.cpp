@@ -103,6 +103,13 @@ TEST(SurfaceCheck, refusesADoubledFace) {
   expectRejected(mesh, "3 edges with more than two triangles");
 }
 
+TEST(SurfaceCheck, refusesTwoTrianglesBackToBack) {
+  SurfaceMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {2, 1, 0}};
+  expectRejected(mesh, "two triangles back to back, numbers 0 and 1");
+}
+
 TEST(SurfaceCheck, refusesSheetsThatTouchInAPoint) {
   SurfaceMesh mesh = join(makeBox(0.1, 0.1, 0.1), makeBox(0.1, 0.1, 0.1), {0.1, 0.1, 0.1});
   for (auto& t : mesh.triangles) {

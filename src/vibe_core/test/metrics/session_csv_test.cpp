@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "vibe_core/common/error.hpp"
 #include "worlds.hpp"
 
 namespace vibe {
@@ -33,6 +34,17 @@ std::map<std::string, std::string> writtenRow(const State& state, const std::vec
   std::map<std::string, std::string> result;
   for (std::size_t k = 0; k < std::min(names.size(), values.size()); ++k) result[names[k]] = values[k];
   return result;
+}
+
+TEST(SessionCsv, aFullDiskIsSaidAtTheEnd) {
+  const test::World world(test::bareScene(), test::plainOrgan(test::icosphere(0.05, 1), 2e-3));
+  SessionCsv csv("/dev/full");
+  EXPECT_THROW(
+      {
+        csv.write(*world.model, State{}, {});
+        csv.finish();
+      },
+      Error);
 }
 
 TEST(SessionCsv, tellsWhereTheProcedureStands) {

@@ -110,6 +110,30 @@ TEST_F(SnapshotFile, RefusesWhatDoesNotFit) {
   EXPECT_THROW(loadSnapshot(*world.model, file), Error);
 }
 
+/// Any byte that has changed is found: most by what they mean, the rest by the checksum.
+TEST_F(SnapshotFile, AFlippedByteIsFound) {
+  World world = livelyWorld();
+  saveSnapshot(*world.model, world.state, file);
+  std::string bytes;
+  {
+    std::ifstream in(file, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  int by_checksum = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += 1 + bytes.size() / 400) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 1);
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << changed;
+    try {
+      loadSnapshot(*world.model, file);
+      ADD_FAILURE() << "byte " << at << " was flipped";
+    } catch (const Error& error) {
+      by_checksum += std::string(error.what()).find("checksum") != std::string::npos;
+    }
+  }
+  EXPECT_GT(by_checksum, 100) << "the last bit of a position is still a position";
+}
+
 /// A snapshot of another version is named as such; one byte of another list of fields is not read either.
 TEST_F(SnapshotFile, OfAnotherVersionIsRejectedByName) {
   World world = livelyWorld();

@@ -2,17 +2,20 @@
 """What can go wrong around the simulator: one clear sentence, the right exit status, nothing left behind."""
 
 import os
+import resource
 import signal
 import socket
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import rosgraph
 import rospy
 import rostest
-from node_test_support import Program, Recorder, scene, state_hash, wait_until
+from node_test_support import Program, Recorder, find_program, scene, state_hash, wait_until
+from std_msgs.msg import String
 from vibe_msgs.msg import StepInput
 
 
@@ -138,6 +141,75 @@ class FailuresTest(unittest.TestCase):
         finally:
             master.kill()
             simulator.stop()
+
+    def test_without_a_master_every_program_says_so_and_ends(self):
+        env = {"ROS_MASTER_URI": "http://localhost:{}".format(free_port())}
+        for program in ("sim_node", "vibe_trainee", "vibe_record"):
+            with self.subTest(program):
+                path = find_program(program)
+                shown = subprocess.run([path, "--help"], env=dict(os.environ, **env), capture_output=True, timeout=5)
+                self.assertEqual(shown.returncode, 0)
+                self.assertIn(b"Usage", shown.stdout)
+                alone = subprocess.run(
+                    [path, "file.bag"], env=dict(os.environ, **env), capture_output=True, timeout=30
+                )
+                self.assertNotEqual(alone.returncode, 0)
+                self.assertIn(b"No ROS master answers at " + env["ROS_MASTER_URI"].encode(), alone.stderr)
+
+    def test_a_recorder_whose_master_died_still_hears_ctrl_c(self):
+        port = free_port()
+        env = dict(os.environ, ROS_MASTER_URI="http://localhost:{}".format(port))
+        master = subprocess.Popen(
+            ["rosmaster", "--core", "-p", str(port)], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "orphan.bag")
+            recorder = subprocess.Popen([find_program("vibe_record"), bag], env=env)
+            try:
+                self.assertTrue(wait_until(lambda: os.path.exists(bag + ".active"), 20))
+                rospy.rostime.wallsleep(1)
+                master.kill()
+                master.wait()
+                rospy.rostime.wallsleep(2)
+                recorder.send_signal(signal.SIGINT)
+                self.assertEqual(recorder.wait(10), 0)
+                self.assertTrue(os.path.exists(bag))
+            finally:
+                master.kill()
+                recorder.kill()
+
+    def ends_on_a_full_disk(self, bag, status, limit=None):
+        """vibe_record ends with the status and one sentence; `limit` is the size of a file that has room [bytes]."""
+
+        def little_room():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # so that writing fails as on a full disk
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        publisher = rospy.Publisher("much", String, queue_size=1000)
+        recorder = subprocess.Popen(
+            [find_program("vibe_record"), bag], stderr=subprocess.PIPE, preexec_fn=little_room if limit else None
+        )
+        try:
+            deadline = time.monotonic() + 30
+            while recorder.poll() is None and time.monotonic() < deadline:
+                publisher.publish("x" * 100000)
+                time.sleep(0.01)
+            said = recorder.communicate(timeout=10)[1]
+            self.assertEqual(recorder.returncode, status, said)
+            self.assertEqual(len(said.splitlines()), 1, said)
+            return said
+        finally:
+            recorder.kill()
+            publisher.unregister()
+
+    def test_a_recording_on_a_full_disk_ends_with_one_sentence(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "none.bag")
+            os.symlink("/dev/full", bag + ".active")
+            self.assertIn(b"cannot be written", self.ends_on_a_full_disk(bag, 2))
+            bag = os.path.join(folder, "some.bag")
+            self.assertIn(b"make room on the disk", self.ends_on_a_full_disk(bag, 1, limit=3000000))
+            self.assertGreater(os.path.getsize(bag + ".active"), 1000000)
 
     def test_await_recorder_waits_for_a_listener(self):
         simulator = Program(

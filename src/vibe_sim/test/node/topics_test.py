@@ -121,6 +121,17 @@ class TopicsTest(unittest.TestCase):
         # rospy itself reads the clock with a queue of one, so that some may be missing here
         self.assertTrue(set(running) <= {stamp_of(k) for k in range(1, 50)})
 
+    def test_a_second_clock_is_reported_with_its_name(self):
+        self.events.clear()
+        rival = rospy.Publisher("/clock", Clock, queue_size=1)
+        try:
+            warning = self.events.find(lambda m: "/clock" in m.text, 10)
+            self.assertIsNotNone(warning)
+            self.assertEqual(warning.kind, ProcedureEvent.WARNING)
+            self.assertIn(rospy.get_name(), warning.text)
+        finally:
+            rival.unregister()
+
     def test_clock_is_repeated_at_ten_hertz_while_paused(self):
         self.step(3)
         self.clock.clear()

@@ -21,11 +21,16 @@ class SessionCsv {
   explicit SessionCsv(const std::string& file);
 
   void write(const Model& model, const State& state, const std::vector<Event>& events);
+  /// Call after the last row.
+  /// @throws Error if not all of it has arrived
+  void finish();
 
  private:
   std::ofstream file_;
   std::ostream* out_;
   std::vector<Eigen::Isometry3d> poses_;
+
+  void check() const;
 };
 
 }  // namespace vibe

@@ -44,6 +44,9 @@ class MetricsRecorder {
   /// Call after every step() with its events.
   void record(const Model& model, const State& state, bool insufflator_on, const std::vector<Event>& events);
 
+  /// Warnings of the program about its inputs, which no step has seen.
+  void addWarnings(int count) { metrics_.events.record(std::vector<Event>(static_cast<std::size_t>(count))); }
+
   const SessionMetrics& metrics() const { return metrics_; }
 
  private:

@@ -96,6 +96,8 @@ class Simulation {
   const StepReport& report() const { return workspace_->report(); }
   /// Since the state was last replaced; zero without SimulationSettings::metrics.
   const SessionMetrics& metrics() const;
+  /// Counts warnings of the program about its inputs among those of the metrics.
+  void addWarnings(int count);
   /// Durations of vibe::step(), without metrics, since the simulation was made. Windows are the caller's to clear.
   StepTimer& timer() { return timer_; }
   const StepTimer& timer() const { return timer_; }

@@ -6,8 +6,9 @@
 
 namespace vibe {
 
-/// Version of the fields of State, which snapshots carry. Raise it with every change of the lists below.
-constexpr std::uint32_t kStateVersion = 6;
+/// Version of the fields of State and of the layout of snapshots, which carry it. Raise it with every change of the
+/// lists below.
+constexpr std::uint32_t kStateVersion = 7;
 
 VIBE_FIELDS(Bite, particle, weight, time, depth, thickness, region, wall, along);
 VIBE_FIELDS(TissueGroup, particle, offset, middle, weight, drawn);
