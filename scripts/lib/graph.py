@@ -97,7 +97,7 @@ class Graph:
         self.master = xmlrpc.client.ServerProxy(self.env["ROS_MASTER_URI"])
 
     def how_to_attach(self):
-        words = "ROS master: {}; in another terminal: export ROS_MASTER_URI={}".format(*[self.env["ROS_MASTER_URI"]] * 2)
+        words = "To attach from another terminal: export ROS_MASTER_URI=" + self.env["ROS_MASTER_URI"]
         return words + (" ROS_HOSTNAME=localhost" if self.own_master else "")
 
     def use_master(self):
