@@ -6,6 +6,7 @@ import os
 import signal
 import socket
 import subprocess
+import threading
 import time
 import xmlrpc.client
 
@@ -29,21 +30,50 @@ def free_port():
         return probe.getsockname()[1]
 
 
-class Process:
-    """One program of the graph. `patience` is how long it may take to stop after SIGINT [s]."""
+def write_all(descriptor, data):
+    """A full disk or a closed pipe must not stop the program whose output this is."""
+    try:
+        while data:
+            data = data[os.write(descriptor, data) :]
+    except OSError:
+        pass
 
-    def __init__(self, name, command, log, env, patience=10.0, essential=True):
+
+class Process:
+    """One program of the graph. Its output goes to a log file and, if it is visible, also where ours goes. `patience` is
+    how long it may take to stop after SIGINT [s]."""
+
+    def __init__(self, name, command, log, env, patience=10.0, essential=True, visible=False):
         self.name, self.log, self.patience, self.essential = name, log, patience, essential
-        with open(log, "ab") if log else open(os.devnull, "wb") as output:
+        self.copies = []
+        with open(log, "ab") as output:
             self.process = subprocess.Popen(
                 command,
                 env=env,
                 stdin=subprocess.DEVNULL,
-                stdout=output if log else None,
-                stderr=subprocess.STDOUT if log else None,
+                stdout=subprocess.PIPE if visible else output,
+                stderr=subprocess.PIPE if visible else subprocess.STDOUT,
                 start_new_session=True,
                 preexec_fn=end_with_parent,
             )
+        if visible:
+            for source, ours in ((self.process.stdout, 1), (self.process.stderr, 2)):
+                self.copies.append(threading.Thread(target=self.copy, args=(source, ours), daemon=True))
+                self.copies[-1].start()
+
+    def copy(self, source, ours):
+        with open(self.log, "ab", buffering=0) as log:
+            while True:
+                data = os.read(source.fileno(), 65536)
+                if not data:
+                    return
+                write_all(ours, data)
+                write_all(log.fileno(), data)
+
+    def flush(self, seconds=2.0):
+        """Waits until everything that an ended program has said is where it belongs."""
+        for thread in self.copies:
+            thread.join(seconds)
 
     def status(self):
         """None while it runs, else its exit status."""
@@ -53,6 +83,7 @@ class Process:
         """True when it has ended within this time."""
         try:
             self.process.wait(seconds)
+            self.flush()
             return True
         except subprocess.TimeoutExpired:
             return False
@@ -61,6 +92,7 @@ class Process:
         """SIGINT, then harder. Returns whether SIGINT was enough."""
         for number, patience in ((signal.SIGINT, self.patience), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0)):
             if self.status() is not None:
+                self.flush()
                 return True
             self.process.send_signal(number)
             if self.wait(patience):
@@ -69,7 +101,7 @@ class Process:
 
     def last_words(self):
         """The end of what it wrote, indented."""
-        if not self.log or not os.path.exists(self.log):
+        if not os.path.exists(self.log):
             return ""
         with open(self.log, errors="replace") as text:
             lines = text.read().splitlines()[-TAIL_LINES:]
@@ -122,9 +154,9 @@ class Graph:
             time.sleep(0.1)
 
     def start(self, name, command, visible=False, patience=10.0, essential=True):
-        """Starts a program; its output goes to a log file, or where ours goes when it is visible."""
-        log = None if visible else os.path.join(self.log_folder, name + ".log")
-        process = Process(name, command, log, self.env, patience, essential)
+        """Starts a program; its output goes to a log file and, when it is visible, also where ours goes."""
+        log = os.path.join(self.log_folder, name + ".log")
+        process = Process(name, command, log, self.env, patience, essential, visible)
         self.processes.append(process)
         return process
 

@@ -118,7 +118,7 @@ class Session:
             if dead is not None and dead is not self.sim:
                 raise GraphError(
                     "{} died with status {}; the last it said (all of it: {}):\n{}".format(
-                        dead.name, dead.status(), dead.log or "above", dead.last_words()
+                        dead.name, dead.status(), dead.log, dead.last_words()
                     )
                 )
             if self.is_closed():
