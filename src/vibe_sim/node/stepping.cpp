@@ -197,6 +197,7 @@ void Stepper::takeStep() {
   statistics_.countStep(session_.time.period(), session_.simulation.report());
   statistics_.total.stop();
   if (steps_left_ > 0 && --steps_left_ == 0) {
+    publishers_.procedureState(session_, status_);  // it is sent once a second, and time now stands still
     answerSteps({true, "Took " + std::to_string(steps_asked_) + " steps."});
   }
 }

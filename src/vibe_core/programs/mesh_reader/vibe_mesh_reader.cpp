@@ -6,11 +6,14 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <assimp/DefaultIOSystem.h>
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <string>
 
 #include "geometry/mesh_stream.hpp"
@@ -50,10 +53,39 @@ void append(SurfaceMesh& mesh, const aiScene& scene, const aiNode& node, const a
   for (unsigned k = 0; k < node.mNumChildren; ++k) append(mesh, scene, *node.mChildren[k], transform);
 }
 
+/// Opens files in the folder of the mesh and below only: a file from elsewhere may name any other of this machine.
+class FolderFiles : public Assimp::DefaultIOSystem {
+ public:
+  explicit FolderFiles(const std::string& mesh) : folder_(std::filesystem::weakly_canonical(mesh).parent_path()) {}
+
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    if (isInside(file)) return DefaultIOSystem::Open(file, mode);
+    refused_ = file;
+    return nullptr;
+  }
+
+  const std::string& refused() const { return refused_; }
+
+ private:
+  bool isInside(const char* file) const {
+    const std::filesystem::path path = std::filesystem::weakly_canonical(file);
+    return std::mismatch(folder_.begin(), folder_.end(), path.begin(), path.end()).first == folder_.end();
+  }
+
+  const std::filesystem::path folder_;
+  std::string refused_;  // the last one
+};
+
 SurfaceMesh readHere(const std::string& path) {
   Assimp::Importer importer;
+  auto* files = new FolderFiles(path);
+  importer.SetIOHandler(files);  // owns it
   const aiScene* scene = importer.ReadFile(path, 0);
-  if (scene == nullptr || scene->mRootNode == nullptr) throw Error(importer.GetErrorString());
+  const bool failed = scene == nullptr || scene->mRootNode == nullptr;
+  // materials may be elsewhere; they are not needed
+  if (failed && !files->refused().empty())
+    throw Error("it names '" + files->refused() + "', which is not in its folder");
+  if (failed) throw Error(importer.GetErrorString());
   SurfaceMesh mesh;
   append(mesh, *scene, *scene->mRootNode, aiMatrix4x4());
   return mesh;

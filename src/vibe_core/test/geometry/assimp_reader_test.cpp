@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -59,6 +60,32 @@ TEST_F(MeshReader, readsASurface) {
   const SurfaceMesh mesh = readWithAssimp(file);
   EXPECT_EQ(mesh.triangles.size(), makeBox(0.1, 0.2, 0.3).triangles.size());
   EXPECT_TRUE(noChildIsLeft());
+}
+
+/// A tetrahedron as glTF whose numbers are in another file.
+std::string toGltf(const std::string& uri) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"buffers":[{"byteLength":72,"uri":")" +
+         uri +
+         R"("}],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],)"
+         R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+         R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})";
+}
+
+std::string tetrahedron() {
+  const float corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::uint16_t faces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  return std::string(reinterpret_cast<const char*>(corners), sizeof corners) +
+         std::string(reinterpret_cast<const char*>(faces), sizeof faces);
+}
+
+TEST_F(MeshReader, readsWhatAGltfNamesInItsFolderOnly) {
+  folder.write("numbers.bin", tetrahedron());
+  file = folder.write("tetra.gltf", toGltf("numbers.bin"));
+  EXPECT_EQ(readWithAssimp(file).triangles.size(), 4U);
+  std::filesystem::create_directory(folder.path() + "/below");
+  file = folder.write("below/tetra.gltf", toGltf("../numbers.bin"));
+  EXPECT_NE(refusal().find("numbers.bin', which is not in its folder"), std::string::npos) << refusal();
 }
 
 TEST_F(MeshReader, answersACrashOfTheReaderWithOneSentence) {
