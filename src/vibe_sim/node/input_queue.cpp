@@ -2,11 +2,23 @@
 #include "vibe_core/constraints/pull_patch.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "vibe_core/state/pull_spring.hpp"
 
 namespace vibe {
 namespace {
+
+constexpr double kReached = 5e-3;  // of the tip from its target: close enough to say nothing [m]
+
+std::string beyondReach(const Eigen::Vector3d& target, const Model& model, const StepInput& input) {
+  std::vector<Eigen::Isometry3d> poses;
+  model.tool->forwardKinematics(input.joints, poses);
+  const double miss = (poses[model.tip_link].translation() - target).norm();
+  if (miss < kReached) return "";
+  return "scope/servo_cp asks for a place that the scope misses by " + std::to_string(std::lround(1e3 * miss)) +
+         " mm; it goes as near as it can.";
+}
 
 std::string reachTip(const InputSample& sample, const Model& model, StepInput& input) {
   if (!model.tool)
@@ -15,7 +27,7 @@ std::string reachTip(const InputSample& sample, const Model& model, StepInput& i
   const bool in_world = sample.target == ScopeTarget::TipInWorld;
   const Eigen::Isometry3d pose = in_world ? model.tool_base.inverse() * sample.tip_pose : sample.tip_pose;
   input.joints = model.tool->inverseKinematics(pose, input.joints);
-  return "";
+  return beyondReach(pose.translation(), model, input);
 }
 
 // A pull that the model rejects ends the pull in force: the user has asked for another one.

@@ -18,6 +18,7 @@ constexpr std::int64_t kClockJump = 1'000'000'000;  // ahead of it: somebody has
 constexpr double kClockHeartbeat = 0.08;            // while time stands still [s]
 constexpr double kRecorderPatience = 30;            // [s]
 constexpr double kRecorderSettling = 0.3;           // [s]
+constexpr double kComplaintPeriod = 1;              // [s]
 constexpr double kLagReportPeriod = 5;              // [s]
 constexpr std::chrono::milliseconds kIdle(40);
 
@@ -181,11 +182,8 @@ void Stepper::takeStep() {
   const bool wall = parameters_.time_source == TimeSource::Wall;
   const bool real_time = !parameters_.fast && !parameters_.lockstep && steps_left_ == 0;
   StepInput input = session_.input;
-  for (const std::string& sentence :
-       queue_.apply(wall ? wallNow() : session_.now(), *session_.model, input, real_time)) {
-    ROS_WARN_STREAM(sentence);
-    publishers_.warn(sentence);
-  }
+  for (const std::string& sentence : queue_.apply(wall ? wallNow() : session_.now(), *session_.model, input, real_time))
+    complain(sentence);
   session_.simulation.addWarnings(publishers_.takeWarnings());
   session_.simulation.setInput(input);
   publishers_.appliedInput(session_);
@@ -200,6 +198,16 @@ void Stepper::takeStep() {
     publishers_.procedureState(session_, status_);  // it is sent once a second, and time now stands still
     answerSteps({true, "Took " + std::to_string(steps_asked_) + " steps."});
   }
+}
+
+// Of a command that is sent 100 times a second, one sentence a second is enough.
+void Stepper::complain(const std::string& sentence) {
+  double& last = complaints_.try_emplace(sentence.substr(0, sentence.find(' ')), -1e9).first->second;
+  const double now = steadyTime();
+  if (now - last < kComplaintPeriod) return;
+  last = now;
+  ROS_WARN_STREAM(sentence);
+  publishers_.warn(sentence);
 }
 
 void Stepper::reportEverySecond() {

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -72,6 +73,7 @@ class Stepper {
   Hold findDeadline();
   void wait(Hold hold);
   void takeStep();
+  void complain(const std::string& sentence);
   void reportEverySecond();
   void fail(const std::string& sentence);
 
@@ -103,10 +105,11 @@ class Stepper {
   std::int64_t pace_offset_ = 0;  // wall clock minus stamp at which a step is due [ns]
   double hold_begin_ = 0;         // steady time at which the present hold began [s]
   Hold hold_ = Hold::None;
-  double recorder_since_ = 0;      // steady time; 0: nobody listens yet [s]
-  double last_clock_ = 0;          // steady time [s]
-  double last_lag_report_ = -1e9;  // steady time [s]
-  std::uint32_t steps_asked_ = 0;  // of a running takeSteps()
+  double recorder_since_ = 0;                 // steady time; 0: nobody listens yet [s]
+  double last_clock_ = 0;                     // steady time [s]
+  double last_lag_report_ = -1e9;             // steady time [s]
+  std::map<std::string, double> complaints_;  // about a topic, steady time of the last [s]
+  std::uint32_t steps_asked_ = 0;             // of a running takeSteps()
   std::uint32_t steps_left_ = 0;
   std::shared_ptr<Answer> steps_answer_;
 

@@ -178,6 +178,24 @@ class InputsTest(unittest.TestCase):
             wait_until(lambda: abs(self.poses.messages[-1].pose.position.x - target) < 1e-3, 3)
             self.assertAlmostEqual(self.poses.messages[-1].pose.position.x, target, delta=1e-3)
 
+    def test_a_pose_out_of_reach_is_reported_with_what_is_missing(self):
+        self.wait_for_silence("scope/servo_cp")
+        far = pose(x=0.5)
+        for _ in range(30):
+            self.publishers["scope/servo_cp"].publish(far)
+            rospy.rostime.wallsleep(0.01)
+            self.step(1)
+        warning = self.events.find(lambda m: "scope/servo_cp" in m.text, 5)
+        self.assertIsNotNone(warning)
+        self.assertRegex(warning.text, "misses by [0-9]+ mm")
+        self.assertLessEqual(len([m for m in self.events.messages if "scope/servo_cp" in m.text]), 3)
+        self.events.clear()
+        rospy.rostime.wallsleep(1.1)
+        self.publishers["scope/servo_cp"].publish(pose(x=-0.08))
+        rospy.rostime.wallsleep(0.3)
+        self.last_input_after(90)
+        self.assertIsNone(self.events.find(lambda m: "scope/servo_cp" in m.text, 0.5))
+
     def test_only_one_of_two_publishers_is_obeyed(self):
         self.wait_for_silence("scope/measured_js")
         ours = joints(SCOPE_JOINTS, (0.04, 0, 0, 0), rospy.Time(nsecs=EPOCH))

@@ -285,11 +285,12 @@ class TopicsTest(unittest.TestCase):
 
     def test_skill_metrics_are_latched_and_come_with_the_state(self):
         self.step(150)
-        state = self.procedure.find(lambda m: m.step > 110)  # twice, once per second
+        state = self.procedure.find(lambda m: m.step == 150)  # once per second, and after the last step
         self.assertIsNotNone(state)
         self.assertIsNotNone(self.skill.find(lambda m: m.header.stamp == state.header.stamp))
         # the one of the reset may come late
         self.assertEqual(set(self.skill.stamps()) - {EPOCH}, set(self.procedure.stamps()) - {EPOCH})
+        self.assertEqual(len(set(self.skill.stamps()) - {EPOCH}), 3)
         late = Recorder("procedure/skill_metrics", SkillMetrics)
         message = late.find(lambda m: True)
         self.assertIsNotNone(message, "latched")
