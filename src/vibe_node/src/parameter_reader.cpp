@@ -1,6 +1,9 @@
 #include "vibe_node/parameter_reader.hpp"
 
+#include <ros/console.h>
+
 #include <cmath>
+#include <sstream>
 #include <vector>
 
 #include "vibe_core/common/error.hpp"
@@ -72,6 +75,14 @@ void ParameterReader::finish() const {
                 (remedy.back() == '?' ? "" : ".") + " Remove it with `rosparam delete " + handle_.resolveName(name) +
                 "`.");
   }
+}
+
+void ParameterReader::tell() const {
+  XmlRpcValue all;
+  if (!handle_.getParam(handle_.getNamespace(), all) || all.getType() != XmlRpcValue::TypeStruct) return;
+  std::ostringstream given;
+  for (const auto& [name, value] : all) given << (given.tellp() > 0 ? ", " : "") << name << " = " << value;
+  ROS_INFO_STREAM("Parameters in " << handle_.getNamespace() << ": " << given.str() << ".");
 }
 
 }  // namespace vibe

@@ -13,6 +13,7 @@
 #include "services.hpp"
 #include "stepping.hpp"
 #include "vibe_node/master.hpp"
+#include "vibe_node/parameter_reader.hpp"
 #include "wall_clock.hpp"
 
 namespace {
@@ -56,6 +57,7 @@ int run() {
   // Not only for people: the first log message makes roscpp register a parameter at the master, and if that were the
   // message about our own shutdown, the master would take us for the newest node of this name and stop the real one.
   ROS_INFO_STREAM("Simulating '" << model->scene.name << "' with " << model->particle_count << " particles.");
+  vibe::ParameterReader(ros::NodeHandle("~")).tell();
   vibe::InputQueue queue;
   vibe::Publishers publishers(handle, parameters.time_source == vibe::TimeSource::Sim);
   vibe::Stepper stepper(parameters, model, queue, publishers);
