@@ -26,8 +26,8 @@ class ParameterReader {
   /// @throws Error if a private parameter is set that has not been read; call last
   void finish() const;
 
-  /// Says in the log which private parameters are set: those of an earlier run stay at the master until somebody deletes
-  /// them.
+  /// Says in the log which private parameters are set: those of an earlier run stay at the master until somebody
+  /// deletes them.
   void tell() const;
 
  private:
