@@ -60,9 +60,8 @@ class InputQueue {
   /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics; a pull
   /// without a message for kPullTimeout ends. A `stamp` before the last one means that the clock was set back: what
   /// waits is due at once.
-  /// @param real_time  buttons without a message for kButtonTimeout are released; false where simulated time says
-  /// nothing
-  ///                   about how long a publisher has been silent
+  /// @param real_time  release buttons without a message for kButtonTimeout; false where time does not pass as it does
+  ///                   for the publishers
   /// @return one sentence per sample that the model cannot use and per input that has fallen silent
   std::vector<std::string> apply(std::int64_t stamp, const Model& model, StepInput& input, bool real_time = true);
 

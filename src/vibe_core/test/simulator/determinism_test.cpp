@@ -77,6 +77,10 @@ class SnapshotFile : public ::testing::Test {
  protected:
   std::string file = ::testing::TempDir() + "vibe_snapshot_test.bin";
   ~SnapshotFile() override { std::remove(file.c_str()); }
+  std::string written() const {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
 };
 
 TEST_F(SnapshotFile, ContinuesToTheBit) {
@@ -97,11 +101,7 @@ TEST_F(SnapshotFile, RefusesWhatDoesNotFit) {
   EXPECT_THROW(loadSnapshot(*other.model, file), Error);
   EXPECT_THROW(loadSnapshot(*world.model, file + ".missing"), Error);
   EXPECT_THROW(saveSnapshot(*world.model, world.state, "/no/such/folder/s"), Error);
-  std::string bytes;
-  {
-    std::ifstream in(file, std::ios::binary);
-    bytes.assign(std::istreambuf_iterator<char>(in), {});
-  }
+  const std::string bytes = written();
   for (std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{12}, bytes.size() / 2, bytes.size() - 1}) {
     std::ofstream(file, std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(size));
     EXPECT_THROW(loadSnapshot(*world.model, file), Error) << size << " bytes";
@@ -114,11 +114,7 @@ TEST_F(SnapshotFile, RefusesWhatDoesNotFit) {
 TEST_F(SnapshotFile, AFlippedByteIsFound) {
   World world = livelyWorld();
   saveSnapshot(*world.model, world.state, file);
-  std::string bytes;
-  {
-    std::ifstream in(file, std::ios::binary);
-    bytes.assign(std::istreambuf_iterator<char>(in), {});
-  }
+  const std::string bytes = written();
   int by_checksum = 0;
   for (std::size_t at = 0; at < bytes.size(); at += 1 + bytes.size() / 400) {
     std::string changed = bytes;
@@ -138,11 +134,7 @@ TEST_F(SnapshotFile, AFlippedByteIsFound) {
 TEST_F(SnapshotFile, OfAnotherVersionIsRejectedByName) {
   World world = livelyWorld();
   saveSnapshot(*world.model, world.state, file);
-  std::string bytes;
-  {
-    std::ifstream in(file, std::ios::binary);
-    bytes.assign(std::istreambuf_iterator<char>(in), {});
-  }
+  const std::string bytes = written();
   const auto errorOf = [&](std::size_t at, char value) -> std::string {
     std::string changed = bytes;
     changed[at] = value;
