@@ -15,8 +15,8 @@ struct InputWindow {
   static InputWindow ofSimulatedTime() { return {60'000'000'000, INT64_MAX}; }
 };
 
-/// What is wrong with a stamp [ns] at the simulator's time `now` [ns], as the rest of a sentence: "its stamp is ..."; empty: nothing. Stamp 0, "as soon as
-/// possible", is always right.
+/// What is wrong with a stamp [ns] at the simulator's time `now` [ns], as the rest of a sentence: "its stamp is ...";
+/// empty: nothing. Stamp 0, "as soon as possible", is always right.
 std::string faultOf(std::int64_t stamp, std::int64_t now, const InputWindow& window);
 
 }  // namespace vibe
