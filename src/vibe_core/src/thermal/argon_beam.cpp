@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/ray.hpp"
+
 namespace vibe {
 
 namespace {
@@ -17,48 +19,12 @@ double footprint(double distance, double radius) {
   return std::exp(-0.5 * s * s * s * s);
 }
 
-/// Twice the area vector of a triangle, outwards.
-Eigen::Vector3d areaVector(const SurfaceView& wall, const std::array<int, 3>& t) {
-  const Eigen::Vector3d a = wall.position(t[0]);
-  return (wall.position(t[1]) - a).cross(wall.position(t[2]) - a);
-}
-
 double longestSide(const SurfaceView& wall, const std::array<int, 3>& t) {
   const Eigen::Vector3d a = wall.position(t[0]), b = wall.position(t[1]), c = wall.position(t[2]);
   return std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
 }
 
 }  // namespace
-
-struct ArgonBeam::Ray {
-  Eigen::Vector3d start, direction;  // unit
-  double length;
-  Eigen::Array3d low, high;  // box around it
-
-  Ray(const Eigen::Vector3d& from, const Eigen::Vector3d& unit, double reach)
-      : start(from), direction(unit), length(reach) {
-    const Eigen::Array3d a = from.array(), b = (from + reach * unit).array();
-    low = a.min(b);
-    high = a.max(b);
-  }
-
-  /// Whether the boxes of the triangle and of the ray are disjoint; true for corners that are not numbers.
-  bool farFrom(const std::vector<double>& values, int axis, const std::array<int, 3>& t) const {
-    const double p = values[t[0]], q = values[t[1]], r = values[t[2]];
-    const bool reaches =
-        (p >= low[axis] || q >= low[axis] || r >= low[axis]) && (p <= high[axis] || q <= high[axis] || r <= high[axis]);
-    return !reaches;
-  }
-
-  /// Distance along the ray to the triangle (Moeller and Trumbore 1997), negative if the ray misses it.
-  double meet(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) const {
-    const Eigen::Vector3d ab = b - a, ac = c - a, h = direction.cross(ac), s = start - a, q = s.cross(ab);
-    const double det = ab.dot(h);
-    if (!(std::abs(det) > 0)) return -1;
-    const double u = s.dot(h) / det, v = direction.dot(q) / det;
-    return u >= 0 && v >= 0 && u + v <= 1 ? ac.dot(q) / det : -1;
-  }
-};
 
 ArgonBeam::ArgonBeam(const SurfaceMesh& surface)
     : neighbours_(vertexNeighbours(surface)),
@@ -81,25 +47,13 @@ const BeamHit& ArgonBeam::fire(const Eigen::Vector3d& tip, const Eigen::Vector3d
   const Eigen::Vector3d unit = direction / norm;
   const double probe_end = half_wall + parameters.probe_length;
   const Ray ray(tip - half_wall * unit, unit, probe_end + parameters.reach + half_wall);
-  cast(ray, wall);
-  if (hit_.triangle < 0) return hit_;
-  hit_.point = ray.start + ray_length_ * unit;
-  hit_.gap = std::max(0.0, ray_length_ - half_wall - probe_end);
+  const RayHit met = firstHit(ray, wall);
+  if (met.triangle < 0) return hit_;
+  hit_.triangle = met.triangle;
+  hit_.point = ray.at(met.distance);
+  hit_.gap = std::max(0.0, met.distance - half_wall - probe_end);
   spreadOver(ray, wall, parameters);
   return hit_;
-}
-
-void ArgonBeam::cast(const Ray& ray, const SurfaceView& wall) {
-  ray_length_ = ray.length;
-  for (std::size_t i = 0; i < wall.triangles.size(); ++i) {
-    const auto& t = wall.triangles[i];
-    if (ray.farFrom(wall.x, 0, t) || ray.farFrom(wall.y, 1, t) || ray.farFrom(wall.z, 2, t)) continue;
-    const double length = ray.meet(wall.position(t[0]), wall.position(t[1]), wall.position(t[2]));
-    if (!(length >= 0 && length <= ray_length_)) continue;
-    if (length == ray_length_ && hit_.triangle >= 0) continue;
-    ray_length_ = length;
-    hit_.triangle = static_cast<int>(i);
-  }
 }
 
 double ArgonBeam::areaFacing(int particle, const Ray& ray, const SurfaceView& wall) const {

@@ -9,6 +9,8 @@
 
 namespace vibe {
 
+struct Ray;
+
 /// Share of the beam that one particle receives.
 struct BeamShare {
   int particle = -1;
@@ -60,8 +62,6 @@ class ArgonBeam {
   }  ///< of the last fire(), in order of connection from the hit
 
  private:
-  struct Ray;
-  void cast(const Ray& ray, const SurfaceView& wall);
   void spreadOver(const Ray& ray, const SurfaceView& wall, const ApcParameters& parameters);
   void collect(const Ray& ray, const SurfaceView& wall);
   double areaFacing(int particle, const Ray& ray, const SurfaceView& wall) const;
@@ -71,7 +71,6 @@ class ArgonBeam {
   std::vector<int> patch_;
   std::vector<BeamShare> shares_;
   BeamHit hit_;
-  double ray_length_ = 0;  ///< to the hit
 };
 
 }  // namespace vibe
