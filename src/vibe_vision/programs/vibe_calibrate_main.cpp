@@ -3,11 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "image_files.hpp"
 #include "program_options.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/write_file.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
 #include "vibe_vision/calibrate/lens_calibration.hpp"
 #include "vibe_vision/calibrate/marker_locator.hpp"
@@ -62,10 +62,7 @@ void printWarnings(const std::vector<std::string>& warnings) {
 }
 
 void save(const vibe::VisionConfig& config, const std::string& file) {
-  std::ofstream out(file);
-  out << vibe::toYaml(config);
-  out.close();
-  if (!out) throw vibe::Error(file + ": cannot be written; give a file in an existing folder that you may write to");
+  vibe::writeFile(file, vibe::toYaml(config), "The configuration");
   std::printf("Written to %s.\n", file.c_str());
 }
 

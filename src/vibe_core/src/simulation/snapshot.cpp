@@ -1,13 +1,14 @@
 #include "vibe_core/simulation/snapshot.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 #include "simulation/state_check.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/fnv1a.hpp"
+#include "vibe_core/common/write_file.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
 namespace vibe {
@@ -140,18 +141,12 @@ void readHeader(const Model& model, const std::string& file, Reader& reader) {
 }  // namespace
 
 void saveSnapshot(const Model& model, const State& state, const std::string& file) {
-  const std::string part = file + ".part";
-  {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    Writer writer(out);
-    writeHeader(model, writer);
-    transfer(writer, state);
-    writer.checksum();
-    out.flush();
-    if (!out) throw Error("Snapshot '" + file + "' could not be written; check that the folder exists and has room.");
-  }
-  if (std::rename(part.c_str(), file.c_str()) != 0)
-    throw Error("Snapshot '" + file + "' could not be put in place; check the permissions of its folder.");
+  std::ostringstream out;
+  Writer writer(out);
+  writeHeader(model, writer);
+  transfer(writer, state);
+  writer.checksum();
+  writeFile(file, out.str(), "Snapshot");
 }
 
 State loadSnapshot(const Model& model, const std::string& file) {
