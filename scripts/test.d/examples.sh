@@ -4,16 +4,16 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 examples=$root/examples
 devel=$root/devel${VIBE_VARIANT:-}
 
-# contributing FILE: every block of code of CONTRIBUTING.md below a line `<!-- file: PATH -->` is that file, its recipe or
+# contributing FILE: every block of code of a page below a line `<!-- file: PATH -->` is that file, its recipe or
 # what `<!-- file: PATH from: TEXT to: TEXT -->` cuts out of it; see check_code_blocks.py.
 contributing() {
   /usr/bin/python3 "$root/scripts/lib/check_code_blocks.py" "$1" "$root"
 }
 
 showsTheFiles() {
-  contributing "$root/CONTRIBUTING.md"
+  contributing "$root/CONTRIBUTING.md" && contributing "$root/docs/tutorials/steer_to_a_particle.md"
 }
-check 'code in CONTRIBUTING.md is that of the files it names' showsTheFiles
+check 'code in CONTRIBUTING.md and in the tutorial is that of the files it names' showsTheFiles
 
 # Controls: a block that differs, a file that is missing and a page without blocks are noticed.
 noticesADifference() {

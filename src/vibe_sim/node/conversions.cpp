@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "arm_message.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
@@ -163,6 +164,12 @@ InputSample readJoints(const sensor_msgs::JointState& message, InputChannel chan
   return sample;
 }
 
+InputSample readMove(const sensor_msgs::JointState& message, InputChannel channel) {
+  InputSample sample = readJoints(message, channel, JointSource::Commanded);
+  sample.move = true;
+  return sample;
+}
+
 InputSample readButtons(const sensor_msgs::Joy& message) {
   if (message.buttons.size() != kButtonCount) {
     throw Error("it has " + std::to_string(message.buttons.size()) + " buttons; send " + std::to_string(kButtonCount) +
@@ -242,9 +249,7 @@ StepInput readStepInput(const vibe_msgs::StepInput& message) {
 }
 
 sensor_msgs::JointState makeJointState(const ToolModel& tool, const State& state, std::int64_t stamp) {
-  std::array<double, kJointCount> joints = state.joints;
-  for (int j = 0; j < kScopeJointCount; ++j) joints[j] += state.tool_displacement[j];
-  sensor_msgs::JointState message = makeJoints(joints, {0, kJointCount}, stamp);
+  sensor_msgs::JointState message = makeJoints(toolJoints(state), {0, kJointCount}, stamp);
   const ShaftBend bend = tool.shaftBend(state.joints, state.tool_displacement);
   for (const ToolJoint& joint : tool.joints()) {
     if (joint.station < 0) continue;

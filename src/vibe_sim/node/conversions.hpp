@@ -42,6 +42,9 @@ enum class JointSource { Measured, Commanded };
 /// give the positions in the order of vibe::Joint.
 InputSample readJoints(const sensor_msgs::JointState& message, InputChannel channel, JointSource source);
 
+/// The goal of a move: the same as a command.
+InputSample readMove(const sensor_msgs::JointState& message, InputChannel channel);
+
 /// Buttons by position; more than kButtonCount or fewer is an error, as is a value other than 0 or 1.
 InputSample readButtons(const sensor_msgs::Joy& message);
 

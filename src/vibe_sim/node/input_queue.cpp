@@ -40,7 +40,7 @@ std::string applyPull(const InputSample& sample, const Model& model, StepInput& 
 }
 
 /// @return one sentence if the model cannot use the sample, otherwise empty
-std::string applySample(const InputSample& sample, const Model& model, StepInput& input) {
+std::string applyValues(const InputSample& sample, const Model& model, StepInput& input) {
   if (sample.target != ScopeTarget::Joints) return reachTip(sample, model, input);
   switch (sample.channel) {
     case InputChannel::Scope:
@@ -105,19 +105,22 @@ std::string InputQueue::missingAt(std::int64_t stamp) const {
   return names;
 }
 
-std::vector<std::string> InputQueue::apply(std::int64_t stamp, const Model& model, StepInput& input, bool real_time) {
+std::vector<std::string> InputQueue::apply(std::int64_t stamp, const Model& model, StepInput& input, bool real_time,
+                                           const std::optional<JointArray>& hand) {
   std::lock_guard<std::mutex> lock(mutex_);
   if (stamp < applied_until_) setBack(stamp);
+  const JointArray start = hand.value_or(input.joints);
   std::vector<std::string> sentences;
   for (Queue& queue : queues_) {
     while (!queue.waiting.empty() && queue.waiting.front().stamp <= stamp) {
       const InputSample& sample = queue.waiting.front();
-      std::string sentence = applySample(sample, model, input);
+      std::string sentence = applySample(sample, stamp, model, start, input);
       if (!sentence.empty()) sentences.push_back(std::move(sentence));
       last_[static_cast<int>(sample.channel)] = stamp;
       queue.waiting.pop_front();
     }
   }
+  applyMoves(stamp, input.joints);
   if (input.pull_particle >= 0 && isSilent(InputChannel::Pull, stamp, kPullTimeout)) {
     input.pull_particle = -1;
     input.pull_target.setZero();
@@ -128,11 +131,48 @@ std::vector<std::string> InputQueue::apply(std::int64_t stamp, const Model& mode
   if (real_time && isSilent(InputChannel::Buttons, stamp, kButtonTimeout)) {
     const std::string released = releaseButtons(input);
     if (!released.empty())
-      sentences.push_back("No message has come on scope/buttons for 1 s, so " + released +
-                          " is released and the scope stays where it is; send pressed buttons at 10 Hz.");
+      sentences.push_back(
+          "No message has come on scope/buttons for 1 s, so the scope stays where it is and these buttons "
+          "are released: " +
+          released + "; send pressed buttons at 10 Hz.");
   }
   applied_until_ = stamp;
   return sentences;
+}
+
+std::string InputQueue::applySample(const InputSample& sample, std::int64_t stamp, const Model& model,
+                                    const JointArray& hand, StepInput& input) {
+  moves_[static_cast<int>(sample.channel)].reset();
+  return sample.move ? beginMove(sample, stamp, model, hand) : applyValues(sample, model, input);
+}
+
+std::string InputQueue::beginMove(const InputSample& sample, std::int64_t stamp, const Model& model,
+                                  const JointArray& hand) {
+  const bool scope = sample.channel == InputChannel::Scope;
+  if (!model.tool)
+    return std::string(scope ? "scope" : "overstitch") + "/move_jp has no effect because the scene '" +
+           model.scene.name + "' has no scope; load a scene with one.";
+  const int first = scope ? 0 : kScopeJointCount, count = scope ? kScopeJointCount : kJointCount - kScopeJointCount;
+  moves_[static_cast<int>(sample.channel)].emplace(hand, sample.joints, first, count, model.tool->limits(), stamp);
+  return "";
+}
+
+void InputQueue::applyMoves(std::int64_t stamp, JointArray& joints) {
+  for (std::optional<JointMove>& move : moves_) {
+    if (!move) continue;
+    move->apply(stamp, joints);
+    if (stamp >= move->end()) move.reset();
+  }
+}
+
+bool InputQueue::moves(InputChannel channel) const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return moves_[static_cast<int>(channel)].has_value();
+}
+
+void InputQueue::endMoves() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  moves_ = {};
 }
 
 void InputQueue::setBack(std::int64_t stamp) {
@@ -141,6 +181,7 @@ void InputQueue::setBack(std::int64_t stamp) {
     queue.newest = std::min(queue.newest, stamp);
   }
   for (std::int64_t& last : last_) last = std::min(last, stamp);
+  moves_ = {};
   applied_until_ = stamp;
 }
 
@@ -160,6 +201,7 @@ void InputQueue::clear() {
   queues_ = {};
   applied_until_ = 0;
   last_ = {};
+  moves_ = {};
 }
 
 const char* toString(InputChannel channel) {

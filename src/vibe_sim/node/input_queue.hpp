@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "joint_move.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/model/model.hpp"
 
@@ -31,7 +33,8 @@ enum class ScopeTarget { Joints, TipInWorld, TipInBase };
 struct InputSample {
   InputChannel channel = InputChannel::Scope;
   std::int64_t stamp = 0;  ///< time of the sample [ns]; 0: as soon as possible
-  std::array<double, kJointCount> joints{};
+  JointArray joints{};
+  bool move = false;  ///< the joints are the goal of a JointMove from where the hand is; else where it is to be now
   std::array<std::uint8_t, kButtonCount> buttons{};
   ScopeTarget target = ScopeTarget::Joints;
   Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();  ///< in world or in the tool's root link
@@ -60,10 +63,18 @@ class InputQueue {
   /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics; a pull
   /// without a message for kPullTimeout ends. A `stamp` before the last one means that the clock was set back: what
   /// waits is due at once.
+  /// A move ends at its goal, or when another sample for its joints is applied.
   /// @param real_time  release buttons without a message for kButtonTimeout; false where time does not pass as it does
   ///                   for the publishers
+  /// @param hand       where the hand is, from where a move begins; empty: where `input` says
   /// @return one sentence per sample that the model cannot use and per input that has fallen silent
-  std::vector<std::string> apply(std::int64_t stamp, const Model& model, StepInput& input, bool real_time = true);
+  std::vector<std::string> apply(std::int64_t stamp, const Model& model, StepInput& input, bool real_time = true,
+                                 const std::optional<JointArray>& hand = {});
+
+  /// Whether a move of the scope or of the suturing device is under way.
+  bool moves(InputChannel channel) const;
+  /// Ends all moves where they are, because another state has taken over.
+  void endMoves();
 
   /// Forgets everything, e.g. because time starts again.
   void clear();
@@ -80,7 +91,12 @@ class InputQueue {
   std::array<Queue, kInputChannelCount> queues_;
   std::int64_t applied_until_ = 0;
   std::array<std::int64_t, kInputChannelCount> last_{};  // time at which a sample of the channel was applied last
+  std::array<std::optional<JointMove>, kInputChannelCount> moves_;
 
+  std::string applySample(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand,
+                          StepInput& input);
+  std::string beginMove(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand);
+  void applyMoves(std::int64_t stamp, JointArray& joints);
   void setBack(std::int64_t stamp);
   bool isSilent(InputChannel channel, std::int64_t stamp, std::int64_t timeout) const;
 };

@@ -34,6 +34,12 @@ Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& pub
   listen<JointState>("overstitch/measured_js", [](const JointState& message) {
     return readJoints(message, InputChannel::Overstitch, JointSource::Measured);
   });
+  listen<JointState>("overstitch/servo_jp", [](const JointState& message) {
+    return readJoints(message, InputChannel::Overstitch, JointSource::Commanded);
+  });
+  listen<JointState>("scope/move_jp", [](const JointState& message) { return readMove(message, InputChannel::Scope); });
+  listen<JointState>("overstitch/move_jp",
+                     [](const JointState& message) { return readMove(message, InputChannel::Overstitch); });
   listen<sensor_msgs::Joy>("scope/buttons", readButtons);
   listen<vibe_msgs::TissuePull>("tissue/pull", readPull);
   spinner_ = std::make_unique<ros::AsyncSpinner>(1, &callbacks_);

@@ -51,7 +51,8 @@ Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
       scene_(handle.advertise<std_msgs::String>("scene", 1, true)),
       haptic_(handle.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
       pull_(handle.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)),
-      step_result_(handle.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, true)) {
+      step_result_(handle.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, true)),
+      arms_(handle) {
   if (with_clock) clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
 }
 
@@ -73,11 +74,12 @@ void Publishers::appliedInput(const Session& session) {
 void Publishers::stepResult(const Session& session, const RunStatus& status) {
   const std::int64_t stamp = session.now();
   now_ = stamp;
-  tool(session, stamp);
+  tool(session, true, stamp);
   haptic(session, stamp);
   pull(session, stamp);
   if (session.state.step % imageInterval(session.time.period()) == 0) particles(session, stamp);
   if (suturesAreDue(session)) sutures(session);
+  arms_.operatingState(session, status);
   for (const Event& event : session.events) events_.publish(makeEvent(event, stamp));
   if (kindOf(session, status) != last_kind_ || stamp - last_procedure_ >= kProcedurePeriod) {
     procedureState(session, status);
@@ -95,7 +97,7 @@ void Publishers::wholeState(const Session& session, const RunStatus& status) {
   if (stamp == last_tool_) return;
   if (haptic_touching_) hapticRelease(stamp);
   pull(session, stamp);
-  tool(session, stamp);
+  tool(session, false, stamp);
   step_result_.publish(makeStepResult(session, true));
   clock(stamp);
 }
@@ -110,6 +112,7 @@ void Publishers::procedureState(const Session& session, const RunStatus& status)
   last_procedure_ = session.now();
   procedure_.publish(makeProcedureState(session, status));
   skill_metrics_.publish(makeSkillMetrics(session));
+  arms_.operatingState(session, status);
 }
 
 bool Publishers::suturesAreDue(const Session& session) const {
@@ -135,10 +138,11 @@ bool Publishers::hasListener() const {
   const auto all = {&scope_pose_,        &helix_pose_, &wrench_,        &joint_states_, &hand_joints_, &topology_,
                     &particles_,         &procedure_,  &skill_metrics_, &events_,       &sutures_,     &applied_input_,
                     &solver_statistics_, &scene_,      &haptic_,        &pull_,         &step_result_, &clock_};
-  return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
+  return arms_.hasListener() ||
+         std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
 }
 
-void Publishers::tool(const Session& session, std::int64_t stamp) {
+void Publishers::tool(const Session& session, bool continues, std::int64_t stamp) {
   last_tool_ = stamp;
   const Model& model = *session.model;
   if (!model.tool) return;
@@ -148,6 +152,7 @@ void Publishers::tool(const Session& session, std::int64_t stamp) {
   wrench_.publish(makeWrench(session.state, stamp));
   joint_states_.publish(makeJointState(*model.tool, session.state, stamp));
   hand_joints_.publish(makeHandJoints(session.state, stamp));
+  arms_.place(session, continues, stamp);
 }
 
 void Publishers::haptic(const Session& session, std::int64_t stamp) {

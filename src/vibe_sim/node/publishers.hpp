@@ -10,15 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "arm_publishers.hpp"
 #include "particle_cloud.hpp"
+#include "run_status.hpp"
 #include "session.hpp"
 
 namespace vibe {
-
-/// What procedure/state says in addition to the session.
-struct RunStatus {
-  bool paused = false;
-};
 
 /// Every topic that the simulator sends. Only warn() may be called from any thread; the rest belongs to the stepping
 /// thread.
@@ -39,7 +36,7 @@ class Publishers {
   /// While time stands still, for nodes that have just started: the time again, and the particles if nobody listened to
   /// them when they were due.
   void heartbeat(const Session& session);
-  /// procedure/state and procedure/skill_metrics.
+  /// procedure/state and procedure/skill_metrics, and the operating states.
   void procedureState(const Session& session, const RunStatus& status);
 
   void solver_statistics(const vibe_msgs::SolverStatistics& message) { solver_statistics_.publish(message); }
@@ -57,6 +54,7 @@ class Publishers {
   ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
       skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, step_result_,
       clock_;
+  ArmPublishers arms_;
   std::atomic<int> warnings_{0};
   tf2_ros::StaticTransformBroadcaster static_transforms_;
   std::unique_ptr<ParticleCloud> cloud_;
@@ -72,7 +70,7 @@ class Publishers {
   bool pull_held_ = false;            // as last sent
   std::atomic<std::int64_t> now_{0};  // of the last state
 
-  void tool(const Session& session, std::int64_t stamp);
+  void tool(const Session& session, bool continues, std::int64_t stamp);
   void particles(const Session& session, std::int64_t stamp);
   bool suturesAreDue(const Session& session) const;
   void sutures(const Session& session);

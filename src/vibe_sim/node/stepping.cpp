@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "conversions.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/write_file.hpp"
 #include "wall_clock.hpp"
 
 namespace vibe {
@@ -19,7 +19,8 @@ constexpr double kClockHeartbeat = 0.08;            // while time stands still [
 constexpr double kRecorderPatience = 30;            // [s]
 constexpr double kRecorderSettling = 0.3;           // [s]
 constexpr double kComplaintPeriod = 1;              // [s]
-constexpr double kLagReportPeriod = 5;              // [s]
+constexpr double kLagReportPeriod = 5;              // at first; doubled while the lag goes on [s]
+constexpr double kLagReportPeriodMax = 60;          // [s]
 constexpr std::chrono::milliseconds kIdle(40);
 
 std::int64_t startOrigin(const Parameters& parameters) {
@@ -182,8 +183,11 @@ void Stepper::takeStep() {
   const bool wall = parameters_.time_source == TimeSource::Wall;
   const bool real_time = !parameters_.fast && !parameters_.lockstep && steps_left_ == 0;
   StepInput input = session_.input;
-  for (const std::string& sentence : queue_.apply(wall ? wallNow() : session_.now(), *session_.model, input, real_time))
+  const std::int64_t now = wall ? wallNow() : session_.now();
+  for (const std::string& sentence : queue_.apply(now, *session_.model, input, real_time, session_.state.joints))
     complain(sentence);
+  status_.scope_moves = queue_.moves(InputChannel::Scope);
+  status_.overstitch_moves = queue_.moves(InputChannel::Overstitch);
   session_.simulation.addWarnings(publishers_.takeWarnings());
   session_.simulation.setInput(input);
   publishers_.appliedInput(session_);
@@ -240,7 +244,10 @@ void Stepper::restartPace(std::int64_t now) {
 
 void Stepper::reportLag(double lag) {
   const double now = steadyTime();
-  if (now - last_lag_report_ < kLagReportPeriod) return;
+  const double since = now - last_lag_report_;
+  if (since < lag_report_period_) return;
+  const bool goes_on = since < 2 * lag_report_period_;
+  lag_report_period_ = goes_on ? std::min(2 * lag_report_period_, kLagReportPeriodMax) : kLagReportPeriod;
   last_lag_report_ = now;
   const double step = statistics_.total.wall.all.quantile(0.5), period = session_.time.period();
   const char* remedy = step < period ? "stop other programs, or use fewer particles if single steps are long"
@@ -261,12 +268,7 @@ void Stepper::finish() {
   const std::string summary = statistics_.summary(session_);
   std::fputs(summary.c_str(), stdout);
   std::fflush(stdout);
-  if (parameters_.summary_file.empty()) return;
-  std::FILE* file = std::fopen(parameters_.summary_file.c_str(), "w");
-  const bool written = file && std::fputs(summary.c_str(), file) >= 0;
-  if (!(file && std::fclose(file) == 0 && written)) {
-    throw Error("Cannot write the summary to '" + parameters_.summary_file + "'; check ~summary_file.");
-  }
+  if (!parameters_.summary_file.empty()) writeFile(parameters_.summary_file, summary, "The summary");
 }
 
 }  // namespace vibe

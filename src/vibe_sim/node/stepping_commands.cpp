@@ -115,6 +115,8 @@ Reply Stepper::reset(std::uint64_t seed, bool keep_time) {
 }
 
 void Stepper::afterReplacement() {
+  queue_.endMoves();
+  status_.scope_moves = status_.overstitch_moves = false;
   restartPace(static_cast<std::int64_t>(ros::WallTime::now().toNSec()));
   publishers_.wholeState(session_, status_);
 }

@@ -134,7 +134,7 @@ TEST_F(InputQueueTest, buttonsThatNobodyPressesAnyMoreAreReleasedAndTheScopeStay
   const std::vector<std::string> sentences = queue.apply(1001 + kButtonTimeout, model, input);
   ASSERT_EQ(sentences.size(), 1u);
   EXPECT_NE(sentences[0].find("scope/buttons"), std::string::npos);
-  EXPECT_NE(sentences[0].find("helix_grab is released"), std::string::npos);
+  EXPECT_NE(sentences[0].find("are released: helix_grab;"), std::string::npos);
   EXPECT_EQ(input.buttons[HelixGrab], 0);
   EXPECT_EQ(input.joints[Insertion], 0.1);
   EXPECT_TRUE(queue.apply(5000 + kButtonTimeout, model, input).empty()) << "said once";

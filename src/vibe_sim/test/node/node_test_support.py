@@ -83,13 +83,14 @@ def buttons(pressed=(), stamp=None):
 class Program:
     """A program of the package under test, with its output."""
 
-    def __init__(self, program, name=None, env=None, **parameters):
+    def __init__(self, program, name=None, env=None, remap=(), **parameters):
         path = find_program(program)
         if name and rospy.has_param("/" + name):
             rospy.delete_param("/" + name)  # of an earlier program of this name
         arguments = ["_{}:={}".format(key, value) for key, value in parameters.items()]
         if name:
             arguments.append("__name:=" + name)
+        arguments += remap
         self.lines = []
         self.process = subprocess.Popen(
             [path] + arguments,

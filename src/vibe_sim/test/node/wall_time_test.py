@@ -107,7 +107,7 @@ class WallTimeTest(unittest.TestCase):
         self.events.clear()
         warning = self.events.find(lambda m: "scope/buttons" in m.text, 5)
         self.assertIsNotNone(warning)
-        self.assertIn("apc_pedal, cinch is released", warning.text)
+        self.assertIn("are released: apc_pedal, cinch;", warning.text)
         self.assertTrue(wait_until(lambda: not any(self.applied.messages[-1].buttons), 2))
         press.unregister()
 
