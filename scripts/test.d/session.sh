@@ -97,6 +97,34 @@ survivesInterrupt() {
 }
 check 'an interrupted session is summed up and leaves nothing' survivesInterrupt
 
+# listensOnlyTo MARK ADDRESS: every TCP port that the programs of a session listen on is on this address. Addresses are
+# those of /proc/net/tcp: 0100007F is 127.0.0.1.
+listensOnlyTo() {
+  local inode pid sockets=' ' count=0 address state rest
+  for pid in $(processesWith "VIBE_TEST_MARK=$1"); do
+    sockets+=$(find "/proc/$pid/fd" -lname 'socket:*' -printf '%l ' 2>/dev/null)
+  done
+  while read -r _ address _ state _ _ _ _ _ inode rest; do
+    [ "$state" = 0A ] && [[ $sockets == *"socket:[$inode]"* ]] || continue
+    count=$((count + 1))
+    [ "${address%:*}" = "$2" ] || { echo "listens on $address"; return 1; }
+  done < <(cat /proc/net/tcp /proc/net/tcp6 2>/dev/null)
+  echo "$count ports"
+  [ "$count" -ge 6 ]
+}
+
+isClosedToTheNetwork() {
+  local mark=closed-$$ status=0
+  startSession "$mark" || return 1
+  listensOnlyTo "$mark" 0100007F || status=1
+  # control: another address is told apart
+  ! listensOnlyTo "$mark" 00000000 >/dev/null || status=1
+  kill -INT "$session_pid"
+  wait "$session_pid" || status=1
+  return "$status"
+}
+check 'a session listens on the loopback interface only' isClosedToTheNetwork
+
 # signalProgram MARK SIGNAL PATTERN: sends the signal to the program of a session whose command line matches.
 signalProgram() {
   local pid
