@@ -1,11 +1,14 @@
 # Fuzzes what reads bytes from outside: every src/PACKAGE/fuzz/NAME_fuzz.cpp becomes a libFuzzer program with the address
-# and undefined-behaviour sanitizers and runs for its share of VIBE_FUZZ_SECONDS (60 by default).
+# and undefined-behaviour sanitizers and runs for VIBE_FUZZ_SECONDS (10 by default), two at once. It starts from the
+# files in src/PACKAGE/fuzz/corpus/NAME/, if there are any: examples, and what it once found.
 #
 # A program consists of its file, the sources of vibe_firmware that need no board, and what the file names itself:
 #   // sources: src/driver/report_reader.cpp ...   relative to its package, patterns allowed
-#   // includes: ../vibe_core/src ...               folders for headers, relative to its package
+#   // includes: ../vibe_firmware/fuzz ...         folders for headers of the file, relative to its package
 #   // packages: yaml-cpp ...                      of pkg-config
-# It may include public headers of all packages, and those of the src and fuzz folders of its own.
+#   // units: 100                                  that it must execute at least, if not 1000
+# Every file may include public headers of all packages, and those of the src and fuzz folders of its own. A source that
+# several programs name is compiled once.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ]; then
@@ -19,51 +22,93 @@ if ! clang++ -fsanitize=fuzzer,address,undefined "$scratch/empty.cpp" -o "$scrat
   exit 0
 fi
 
-flags=(-std=c++17 -g -O1 -fno-sanitize-recover=undefined -fsanitize=fuzzer,address,undefined)
+seconds=${VIBE_FUZZ_SECONDS:-10}
+flags=(-std=c++17 -gline-tables-only -O1 -fno-sanitize-recover=all
+  -fsanitize=fuzzer,address,undefined,float-cast-overflow)
+fuzz_files=("$root"/src/*/fuzz/*_fuzz.cpp)
 
 # named FILE WORD: what the line `// WORD: ...` of a file names
 named() { sed -nE "s|^// $2: *||p" "$1"; }
 
-# builds FILE PROGRAM
-builds() {
-  local file=$1 package pattern sources=() includes=() modules
-  package=${file%/fuzz/*}
-  sources=("$root"/src/vibe_firmware/src/{core,protocol}/*.cpp)
-  for pattern in $(named "$file" sources); do
-    # shellcheck disable=SC2206
-    sources+=("$package"/$pattern)
-  done
-  for pattern in "$root"/src/*/include; do includes+=("-I$pattern"); done
-  for pattern in $(named "$file" includes); do includes+=("-I$package/$pattern"); done
-  modules=$(named "$file" packages)
+# twoAtOnce COMMAND...: starts it when fewer than two run
+twoAtOnce() {
+  while [ "$(jobs -rp | wc -l)" -ge 2 ]; do wait -n || true; done
+  "$@" &
+}
+
+# sourcesOf FILE: the files that its program consists of
+sourcesOf() {
+  local package=${1%/fuzz/*} pattern
+  realpath -- "$1" "$root"/src/vibe_firmware/src/{core,protocol}/*.cpp
   # shellcheck disable=SC2046,SC2086
-  clang++ "${flags[@]}" "${includes[@]}" -I"$root/src/vibe_firmware/src" -I"$package/src" -I"$package/fuzz" \
-    ${modules:+$(pkg-config --cflags $modules)} "$file" "${sources[@]}" ${modules:+$(pkg-config --libs $modules)} -o "$2"
+  for pattern in $(named "$1" sources); do realpath -- $package/$pattern; done
 }
 
-# findsNothing PROGRAM SECONDS: the input that breaks it is printed in hexadecimal
-findsNothing() {
-  local status=0
+# objectOf FILE
+objectOf() {
+  local name=${1#"$root/src/"}
+  echo "$scratch/${name//\//.}.o"
+}
+
+# compiles FILE: its object, or what the compiler says beside it
+compiles() {
+  local folder own includes=() object
+  own=$(sed -E "s|^($root/src/[^/]+)/.*|\1|" <<<"$1")
+  for folder in "$root"/src/*/include "$root/src/vibe_firmware/src" "$own/src" "$own/fuzz"; do includes+=("-I$folder"); done
+  for folder in $(named "$1" includes); do includes+=("-I$own/$folder"); done
+  object=$(objectOf "$1")
+  # shellcheck disable=SC2086
+  clang++ "${flags[@]}" "${includes[@]}" $package_flags -c "$1" -o "$object" >"$object.log" 2>&1
+}
+
+# links FILE PROGRAM
+links() {
+  local source objects=() modules
+  for source in $(sourcesOf "$1"); do
+    cat "$(objectOf "$source").log"
+    objects+=("$(objectOf "$source")")
+  done
+  modules=$(named "$1" packages)
+  # shellcheck disable=SC2046,SC2086
+  clang++ "${flags[@]}" "${objects[@]}" ${modules:+$(pkg-config --libs $modules)} -o "$2"
+}
+
+# runs PROGRAM SECONDS [CORPUS]: notes how it ends
+runs() {
+  local status=0 corpus=("$1.corpus")
+  [ ! -d "${3:-}" ] || corpus+=("$3")
   mkdir -p "$1.corpus" "$1.findings"
-  "$1" -max_total_time="$2" -max_len=4096 -timeout=10 -print_final_stats=1 -artifact_prefix="$1.findings/" "$1.corpus" \
-    >"$1.log" 2>&1 || status=$?
-  grep -E 'ERROR|SUMMARY|runtime error|stat::number_of_executed_units' "$1.log" || true
-  local finding
-  for finding in "$1.findings"/*; do [ ! -f "$finding" ] || od -An -tx1 "$finding"; done
-  [ "$status" -eq 0 ] && grep -qE 'number_of_executed_units: [0-9]{4,}' "$1.log"
+  "$1" -max_total_time="$2" -max_len=4096 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+    -artifact_prefix="$1.findings/" "${corpus[@]}" >"$1.log" 2>&1 </dev/null || status=$?
+  echo "$status" >"$1.status"
 }
 
-programs=()
-for file in "$root"/src/*/fuzz/*_fuzz.cpp; do
-  name=$(basename "$file" .cpp)
-  check "$name compiles" builds "$file" "$scratch/$name"
-  [ ! -x "$scratch/$name" ] || programs+=("$scratch/$name")
-done
+# foundNothing PROGRAM UNITS: it ended well after that many units; the input that breaks it is printed in hexadecimal
+foundNothing() {
+  grep -E 'ERROR|SUMMARY|runtime error|stat::number_of_executed_units' "$1.log" || true
+  local finding units
+  for finding in "$1.findings"/*; do [ ! -f "$finding" ] || od -An -tx1 "$finding"; done
+  units=$(sed -nE 's/^stat::number_of_executed_units: *//p' "$1.log")
+  [ "$(cat "$1.status")" -eq 0 ] && [ "${units:-0}" -ge "$2" ]
+}
 
-seconds=$((${VIBE_FUZZ_SECONDS:-60} / (${#programs[@]} > 0 ? ${#programs[@]} : 1)))
-[ "$seconds" -ge 1 ] || seconds=1
-for program in "${programs[@]}"; do
-  check "$(basename "$program") finds nothing in $seconds s" findsNothing "$program" "$seconds"
+# shellcheck disable=SC2046
+package_flags=$(pkg-config --cflags eigen3 $(for file in "${fuzz_files[@]}"; do named "$file" packages; done | sort -u))
+for source in $(for file in "${fuzz_files[@]}"; do sourcesOf "$file"; done | sort -u); do twoAtOnce compiles "$source"; done
+wait
+for file in "${fuzz_files[@]}"; do
+  name=$(basename "$file" .cpp)
+  check "$name compiles" links "$file" "$scratch/$name"
+done
+for file in "${fuzz_files[@]}"; do
+  name=$(basename "$file" .cpp)
+  [ ! -x "$scratch/$name" ] || twoAtOnce runs "$scratch/$name" "$seconds" "${file%/*}/corpus/${name%_fuzz}"
+done
+wait
+for file in "${fuzz_files[@]}"; do
+  name=$(basename "$file" .cpp)
+  units=$(named "$file" units)
+  [ ! -x "$scratch/$name" ] || check "$name finds nothing in $seconds s" foundNothing "$scratch/$name" "${units:-1000}"
 done
 
 # Control: the same way finds an error that is there.
@@ -79,6 +124,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 CPP
 clang++ "${flags[@]}" "$scratch/planted.cpp" -o "$scratch/planted"
 findsThePlantedError() {
-  ! findsNothing "$scratch/planted" 20 && grep -q 'heap-buffer-overflow' "$scratch/planted.log"
+  runs "$scratch/planted" 20
+  ! foundNothing "$scratch/planted" 1000 && grep -q 'heap-buffer-overflow' "$scratch/planted.log"
 }
 check 'control: a planted error is found' findsThePlantedError

@@ -9,7 +9,8 @@
 namespace vibe {
 namespace {
 
-constexpr int kMaxDepth = 16;  // of messages in messages
+constexpr int kMaxDepth = 16;     // of messages in messages
+constexpr int kMaxLines = 10000;  // of all of them, each as often as it is used: that can grow exponentially
 
 const std::map<std::string, std::size_t> kSizes = {{"bool", 1},    {"byte", 1},  {"char", 1},    {"int8", 1},
                                                    {"uint8", 1},   {"int16", 2}, {"uint16", 2},  {"int32", 4},
@@ -56,6 +57,7 @@ class Flattener {
     if (found == messages_.end() || depth > kMaxDepth)
       throw Error("the message definition lacks the type '" + message + "'.");
     for (const std::string& line : found->second) {
+      if (++lines_ > kMaxLines) throw Error("the message definition has more than 10000 lines.");
       if (line.find('=') != std::string::npos) continue;  // a constant
       std::string type, name;
       if (!(std::istringstream(line) >> type >> name)) continue;
@@ -72,6 +74,7 @@ class Flattener {
 
  private:
   std::map<std::string, std::vector<std::string>> messages_;
+  int lines_ = 0;
 };
 
 /// Steps through the bytes of one message.

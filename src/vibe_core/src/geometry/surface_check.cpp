@@ -18,7 +18,8 @@ namespace vibe {
 
 namespace {
 
-constexpr double kFlattest = 1e-9;  // height of a triangle over its longest edge
+constexpr double kFlattest = 1e-9;   // height of a triangle over its longest edge
+constexpr double kFarthest = 1e100;  // coordinates beyond have volumes that are not finite, in any unit
 
 /// A side of a triangle, under its undirected edge.
 struct Side {
@@ -229,12 +230,12 @@ void checkNumbers(const SurfaceMesh& mesh, const std::string& name) {
                   ", but only " + std::to_string(vertices) + " vertices; export the file again");
     }
   }
-  const auto finite = [](const Eigen::Vector3d& p) { return p.allFinite(); };
+  const auto finite = [](const Eigen::Vector3d& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < kFarthest; };
   const auto bad = std::find_if_not(mesh.vertices.begin(), mesh.vertices.end(), finite);
   if (bad == mesh.vertices.end()) return;
   const auto good = std::count_if(mesh.vertices.begin(), mesh.vertices.end(), finite);
   throw Error(name + " has " + counted(vertices - static_cast<int>(good), "vertex", "vertices") +
-              " whose position is not a finite number, the first is number " +
+              " whose position is not a finite number below 1e100, the first is number " +
               std::to_string(bad - mesh.vertices.begin()) + "; export the file again");
 }
 

@@ -13,7 +13,7 @@ namespace vibe {
 ///         as in the mesh).
 void checkSurface(const SurfaceMesh& mesh, const std::string& name);
 
-/// Throws if a vertex is not finite, or a triangle refers to a missing vertex.
+/// Throws if a coordinate is not finite or beyond 1e100, or a triangle refers to a missing vertex.
 void checkNumbers(const SurfaceMesh& mesh, const std::string& name);
 
 /// Reverses all triangles if the enclosed volume is negative. Returns whether it did.

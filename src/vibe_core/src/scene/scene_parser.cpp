@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 
+#include "scene/printable.hpp"
 #include "scene/renamed_keys.hpp"
 #include "scene/scene_value.hpp"
 #include "vibe_core/common/error.hpp"
@@ -96,6 +97,7 @@ class SceneReader {
     if (!has_base_ || !known.isPresent(scene_)) known.enter(scene_);
     for (const YamlField& field : source_.map(section)) {
       if (field.path == kBase) continue;
+      checkDots(field);
       if (findSection(field.path) != nullptr && !field.path.empty()) {
         readSection(field);
       } else if (const SchemaRow* row = findRow(field.path)) {
@@ -105,6 +107,14 @@ class SceneReader {
         failUnknown(section.path, field);
       }
     }
+  }
+
+  /// `scope.friction: 0.1` would set a value in a section that is not there.
+  void checkDots(const YamlField& field) const {
+    const std::size_t dot = field.key.rfind('.');
+    if (dot == std::string::npos) return;
+    source_.fail(field, "has a dot in it; write '" + printable(field.key.substr(dot + 1), 40) + "' in the section '" +
+                            printable(field.key.substr(0, dot), 40) + "'");
   }
 
   [[noreturn]] void failUnknown(const std::string& section, const YamlField& field) const {

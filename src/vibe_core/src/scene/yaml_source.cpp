@@ -18,8 +18,8 @@ namespace vibe {
 namespace {
 
 constexpr std::size_t kMaxText = 4096;
-constexpr int kMaxMergeDepth = 8;
 constexpr std::size_t kMaxMerged = 16;
+constexpr int kMaxMerges = 64;  // maps in one map, those that they merge included: their number can grow exponentially
 
 constexpr std::size_t kShown = 60;  // of a user's text in an error message
 
@@ -86,11 +86,12 @@ std::vector<YamlField> YamlSource::map(const YamlField& field) const {
     fail(field,
          std::string("is ") + kindName(field.value) + ", but a map is needed; write 'key: value' lines below it");
   }
-  collect(field, 0, fields);
+  int merges = 0;
+  collect(field, merges, fields);
   return fields;
 }
 
-void YamlSource::collect(const YamlField& field, int merge_depth, std::vector<YamlField>& fields) const {
+void YamlSource::collect(const YamlField& field, int& merges, std::vector<YamlField>& fields) const {
   std::set<std::string> seen;
   YAML::Node merged;
   for (const auto& entry : field.value) {
@@ -107,10 +108,10 @@ void YamlSource::collect(const YamlField& field, int merge_depth, std::vector<Ya
       fields.push_back(next);
     }
   }
-  if (seen.count("<<") > 0) merge(field, merged, merge_depth, fields);
+  if (seen.count("<<") > 0) merge(field, merged, merges, fields);
 }
 
-void YamlSource::merge(const YamlField& field, const YAML::Node& sources, int merge_depth,
+void YamlSource::merge(const YamlField& field, const YAML::Node& sources, int& merges,
                        std::vector<YamlField>& fields) const {
   std::vector<YAML::Node> maps;
   if (sources.IsSequence()) {
@@ -119,14 +120,14 @@ void YamlSource::merge(const YamlField& field, const YAML::Node& sources, int me
   } else {
     maps.push_back(sources);
   }
-  // These files need no deep or circular merges.
-  if (merge_depth >= kMaxMergeDepth) fail(field, "merges maps into each other too deeply with <<; write the keys out");
   std::set<std::string> known;
   for (const YamlField& own : fields) known.insert(own.key);
   for (const YAML::Node& source : maps) {
     if (!source.IsMap()) fail(field, "merges something with << that is not a map; merge an alias of a map");
+    // These files need no deep or circular merges.
+    if (++merges > kMaxMerges) fail(field, "merges maps into each other too deeply with <<; write the keys out");
     std::vector<YamlField> more;
-    collect({field.key, field.path, field.line, source}, merge_depth + 1, more);
+    collect({field.key, field.path, field.line, source}, merges, more);
     for (const YamlField& candidate : more) {
       if (known.insert(candidate.key).second) fields.push_back(candidate);  // keys of the map itself take precedence
     }

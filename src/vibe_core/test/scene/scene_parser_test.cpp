@@ -131,6 +131,12 @@ TEST(SceneParser, UnknownKeysNameTheNearest) {
   EXPECT_ERROR(parsed("tissue: {colour: red}"), "known are model, law");
 }
 
+TEST(SceneParser, KeysHaveNoDots) {
+  EXPECT_ERROR(parsed("scope.friction: 0.1"),
+               "s.yaml:1: scope.friction: has a dot in it; write 'friction' in the section");
+  EXPECT_ERROR(parsed("scope.compliance: {}"), "write 'compliance' in the section 'scope'");
+}
+
 TEST(SceneParser, KeysOfOtherKindsDoNotApply) {
   EXPECT_ERROR(parsed("geometry:\n  radius: 5 cm\n"),
                "dir/s.yaml:2: geometry.radius: does not apply to geometry.kind "

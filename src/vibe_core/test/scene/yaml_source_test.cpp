@@ -85,6 +85,13 @@ TEST(YamlSource, MergingHasLimits) {
   EXPECT_ERROR(number.map(number.root()), "merges something with << that is not a map");
   const YamlSource many = parsed("a: &x {p: 1}\n<<: [" + repeated("*x, ", 1000) + "*x]\n");
   EXPECT_ERROR(many.map(many.root()), "merge at most 16");
+  std::string levels = "x0: &x0 {p: 1}\n";  // 16^7 maps
+  for (int k = 0; k < 7; ++k) {
+    const std::string alias = "*x" + std::to_string(k), next = "x" + std::to_string(k + 1);
+    levels += next + ": &" + next + " {<<: [" + repeated(alias + ", ", 15) + alias + "]}\n";
+  }
+  const YamlSource growing = parsed(levels + "<<: *x7\n");
+  EXPECT_ERROR(growing.map(growing.root()), "merges maps into each other too deeply");
 }
 
 TEST(YamlSource, KeysMustBeWords) {

@@ -173,6 +173,12 @@ TEST(StepInputReader, RejectsDefinitionsThatAreIncomplete) {
   EXPECT_THROW(StepInputReader("geometry_msgs/Point pull_target\n"), Error);
   EXPECT_THROW(StepInputReader("geometry_msgs/Point[] places\n" + kPointDefinition), Error);
   EXPECT_THROW(StepInputReader("a/A inner\n====\nMSG: a/A\na/A inner\n"), Error) << "a message in itself";
+  std::string levels = "a0/A x\n";  // 8^12 fields
+  for (int k = 0; k < 12; ++k) {
+    levels += "====\nMSG: a" + std::to_string(k) + "/A\n";
+    for (int i = 0; i < 8; ++i) levels += "a" + std::to_string(k + 1) + "/A x\n";
+  }
+  EXPECT_THROW(StepInputReader(levels + "====\nMSG: a12/A\nbool x\n"), Error);
 }
 
 }  // namespace

@@ -62,8 +62,8 @@ class YamlSource {
   YAML::Node root_;
 
   std::string scalar(const YamlField& field, const std::string& expected) const;
-  void collect(const YamlField& field, int merge_depth, std::vector<YamlField>& fields) const;
-  void merge(const YamlField& field, const YAML::Node& sources, int merge_depth, std::vector<YamlField>& fields) const;
+  void collect(const YamlField& field, int& merges, std::vector<YamlField>& fields) const;
+  void merge(const YamlField& field, const YAML::Node& sources, int& merges, std::vector<YamlField>& fields) const;
 };
 
 /// "1.5 Pa" or "3": a number as short as it can be read, with its unit unless it is a pure number.

@@ -1,0 +1,116 @@
+// sources: src/geometry/mesh_stream.cpp src/geometry/mesh_file.cpp src/geometry/mesh_header.cpp
+// sources: src/geometry/assimp_reader.cpp src/geometry/helper_process.cpp src/common/own_place.cpp
+// sources: src/geometry/surface_check.cpp src/geometry/self_intersection.cpp src/geometry/triangle_tree.cpp
+// sources: src/geometry/surface_mesh.cpp src/geometry/remesh.cpp src/geometry/editable_mesh.cpp
+// sources: src/geometry/smoothing.cpp src/geometry/regions.cpp src/geometry/surface_operators.cpp
+// sources: src/geometry/stomach_axis.cpp src/geometry/landmark_estimate.cpp
+// includes: ../vibe_firmware/fuzz
+// units: 100
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "fuzz_input.hpp"
+#include "geometry/landmark_estimate.hpp"
+#include "geometry/mesh_stream.hpp"
+#include "geometry/regions.hpp"
+#include "geometry/remesh.hpp"
+#include "geometry/surface_check.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/mesh_file.hpp"
+
+// Any bytes as a surface from the program that reads mesh files, and a small body after moves, cuts and other changes:
+// an Error with its sentence, or a surface that is welded and checked. Of thirty-two, one is then covered evenly with
+// vertices and labelled, and one is searched for landmarks, which is slow.
+
+namespace {
+
+using namespace vibe;
+using vibe_firmware::FuzzInput;
+using vibe_firmware::require;
+
+constexpr int kVertices = 100;  // the fewest of an organ
+
+/// An octahedron of about the size of an organ.
+SurfaceMesh octahedron() {
+  SurfaceMesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {0.1, -0.1}) mesh.vertices.emplace_back(side * Eigen::Vector3d::Unit(axis));
+  mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  return mesh;
+}
+
+/// A length of any size, often near that of an organ [m].
+double anyLength(FuzzInput& input) {
+  const int exponent = input.byte();
+  const double value = (input.byte() - 128) * 1e-3;
+  return exponent < 224 ? value : value * std::pow(10.0, 25 * (exponent - 240));
+}
+
+void change(FuzzInput& input, SurfaceMesh& mesh) {
+  const int kind = input.byte() % 8;
+  Eigen::Vector3d& vertex = mesh.vertices[input.byte() % mesh.vertices.size()];
+  std::array<int, 3>& triangle = mesh.triangles[input.byte() % mesh.triangles.size()];
+  if (kind == 0) vertex[input.byte() % 3] = anyLength(input);
+  if (kind == 1) triangle[input.byte() % 3] = input.byte() % static_cast<int>(mesh.vertices.size() + 1);
+  if (kind == 2) mesh.triangles.push_back({triangle[1], triangle[0], input.byte() % 8});
+  if (kind == 3 && mesh.triangles.size() > 1) mesh.triangles.pop_back();
+  if (kind < 4) return;
+  // a new vertex near the middle of a triangle, which is cut in three
+  const std::array<int, 3> old = triangle;
+  const int middle = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.emplace_back(0, 0, 0);
+  for (const int v : old)
+    if (v >= 0 && v < middle) mesh.vertices.back() += mesh.vertices[v] / 3 * (0.5 + input.byte() / 255.0);
+  triangle[2] = middle;
+  mesh.triangles.push_back({old[1], old[2], middle});
+  mesh.triangles.push_back({old[2], old[0], middle});
+}
+
+void label(SurfaceMesh surface, FuzzInput& input) {
+  Organ organ;
+  const auto anyVertex = [&] { return surface.vertices[input.word() % surface.vertices.size()]; };
+  organ.end.assign(surface.vertices.size(), End::None);
+  organ.end[input.word() % organ.end.size()] = End::Oesophagus;
+  organ.end[input.word() % organ.end.size()] = End::Duodenum;
+  organ.entry = anyVertex();
+  organ.landmarks = {anyVertex(), anyVertex(), anyVertex(), anyVertex()};
+  organ.landmarks.incisura.z() += anyLength(input);
+  organ.surface = std::move(surface);
+  labelStomach(organ);
+  for (const double value : thicknessFromRegions(organ.surface, organ.region, {1, 2, 3, 4, 5})) require(value > 0);
+}
+
+/// What becomes of a surface from a file until it is an organ.
+/// @param sum  of all bytes: says how far
+void import(const SurfaceMesh& raw, unsigned sum, FuzzInput& input) {
+  try {
+    checkNumbers(raw, "fuzz.obj");
+    SurfaceMesh mesh = weld(raw, 1e-7);
+    checkSurface(mesh, "fuzz.obj");
+    orientOutwards(mesh);
+    if (sum % 32 > 1) return;
+    const SurfaceMesh even = remeshSurface(mesh, kVertices);
+    require(even.vertices.size() == kVertices);
+    checkSurface(even, "fuzz.obj");
+    if (sum % 32 == 0) label(even, input);
+    if (sum % 32 == 1) estimateLandmarks(even);
+  } catch (const Error& error) {
+    require(error.what()[0] != '\0');
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  FuzzInput none(data, 0), input(data, size);
+  const unsigned sum = std::accumulate(data, data + size, 0U);
+  try {
+    import(unpackMesh(std::string(data, data + size)), sum, none);
+  } catch (const Error&) {
+  }
+  SurfaceMesh mesh = octahedron();
+  for (int changes = input.byte() % 64; changes > 0 && !input.empty(); --changes) change(input, mesh);
+  import(mesh, sum, input);
+  return 0;
+}
