@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include "vibe_core/common/error.hpp"
 
@@ -31,6 +32,10 @@ class Marker : public ros::CallbackInterface {
 Recorder::Recorder(const std::string& file, const std::string& last_topic) : file_(file), last_topic_(last_topic) {
   handle_.setCallbackQueue(&queue_);
   if (!last_topic_.empty()) last_topic_ = handle_.resolveName(last_topic_);
+  if (std::filesystem::is_regular_file(file_ + ".active")) {
+    throw Error("Recording '" + file_ + ".active' is there already, from a recorder that was killed; keep it with " +
+                "`rosbag reindex`, or give another path.");
+  }
   try {
     bag_->open(file_ + ".active", rosbag::bagmode::Write);
   } catch (const rosbag::BagException& error) {

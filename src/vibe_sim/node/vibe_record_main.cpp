@@ -50,7 +50,13 @@ Options readOptions(const std::vector<std::string>& words) {
 void recordUntilStopped(vibe::Recorder& recorder) {
   double silence = 0;
   while (!stop_signal && ros::ok()) {
-    silence = recorder.findTopics() ? 0 : silence + kSearchPeriod;
+    const bool answers = recorder.findTopics();
+    if (answers && silence > 0) {
+      std::fprintf(stderr,
+                   "vibe_record: a ROS master answers again; if it is a new one, start another recording: nodes that "
+                   "start from now on are not in this one.\n");
+    }
+    silence = answers ? 0 : silence + kSearchPeriod;
     if (silence > kMasterPatience) {
       std::fprintf(stderr, "vibe_record: the ROS master at %s does not answer; the recording ends.\n",
                    ros::master::getURI().c_str());

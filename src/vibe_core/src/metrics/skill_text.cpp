@@ -34,7 +34,8 @@ std::string percent(std::optional<double> value) {
 
 std::string phaseLine(const char* name, const PhaseSkill& skill) {
   const MotionMeasures& motion = skill.motion;
-  const auto max_force = skill.force.loaded_time > 0 ? std::optional<double>(skill.force.max) : std::nullopt;
+  std::optional<double> max_force;
+  if (skill.force.loaded_time > 0) max_force = skill.force.max;
   return format("%-9s %9.2f %9.3f ", name, skill.time, motion.path_length) +
          number(motion.log_dimensionless_jerk, 1, 2, 8) + number(motion.spectral_arc_length, 1, 2, 8) +
          format("%9d", motion.submovements) + number(motion.economy, 1, 2, 9) + number(max_force, 1, 2, 8) +

@@ -1,0 +1,34 @@
+# What is around the nodes breaks: programs, master, peers, devices, clocks. Figures: the table that is printed.
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+for program in vibe_sim/sim_node vibe_hardware/hardware_node vibe_vision/vision_node; do
+  if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/$program" ]; then
+    echo 'skipped faults (they need the ordinary build)'
+    exit 0
+  fi
+done
+unset DISPLAY
+
+faults() {
+  (set +u && source "$root/devel/setup.bash" && PYTHONDONTWRITEBYTECODE=1 exec /usr/bin/python3 \
+    "$root/scripts/lib/faults.py" --workspace "$root" "$@")
+}
+
+# isOk GROUP NAME: the report says so; else the reason, and what was printed meanwhile.
+isOk() {
+  grep -qxF "ok	$2" "$scratch/report" && return
+  grep -F "not ok	$2	" "$scratch/report" || { echo 'it was not reached'; tail -n 20 "$scratch/$1.txt"; }
+  sed -n "/^--- $2\$/,/^--- /p" "$scratch/$1.txt"
+  return 1
+}
+
+names=$(faults --list)
+for group in nodes master traffic fast peers; do
+  faults --group "$group" --report "$scratch/report" --table "$scratch/table" >"$scratch/$group.txt" 2>&1 || true
+  while IFS='	' read -r of name; do
+    if [ "$of" = "$group" ]; then check "$name" isOk "$group" "$name"; fi
+  done <<<"$names"
+done
+
+echo '    | fault | lost | recovery | what the user sees |'
+if [ -s "$scratch/table" ]; then sed 's/^/    /' "$scratch/table"; fi

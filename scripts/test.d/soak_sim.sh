@@ -1,0 +1,22 @@
+# Two hours of simulated time: the memory of the simulator does not grow.
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
+  echo 'skipped two hours of the simulator (scripts/test --slow makes them)'
+  exit 0
+fi
+
+soak() {
+  (set +u && source "$root/devel/setup.bash" && PYTHONDONTWRITEBYTECODE=1 exec /usr/bin/python3 \
+    "$root/scripts/lib/soak_sim.py" --workspace "$root" "$@") >"$scratch/soak.txt" 2>&1 || { cat "$scratch/soak.txt"; return 1; }
+}
+check 'two hours of simulated time, and the memory of the simulator does not grow' soak --minutes 120
+if [ -s "$scratch/soak.txt" ]; then sed 's/^/    /' "$scratch/soak.txt"; fi
+
+# The control: that the check can fail.
+failsOnGrowth() {
+  local status=0
+  soak --minutes 5 --most-growth -1000 || status=$?
+  [ "$status" -eq 1 ] && grep -q '^soak: memory grows by' "$scratch/soak.txt"
+}
+check 'growth that is not allowed is an error' failsOnGrowth
