@@ -39,6 +39,15 @@ def write_all(descriptor, data):
         pass
 
 
+def loopback_library():
+    """What, preloaded, keeps the TCP servers of a program on the loopback interface; None if it is not built."""
+    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep):
+        path = os.path.join(prefix, "lib", "libvibe_loopback.so")
+        if os.path.exists(path):
+            return path
+    return None
+
+
 class Process:
     """One program of the graph. Its output goes to a log file and, if it is visible, also where ours goes. `patience` is
     how long it may take to stop after SIGINT [s]."""
@@ -121,6 +130,8 @@ class Graph:
             self.port = free_port()
             self.env.update(ROS_MASTER_URI="http://localhost:{}".format(self.port), ROS_HOSTNAME="localhost")
             self.env.pop("ROS_IP", None)
+            preload = [loopback_library(), os.environ.get("LD_PRELOAD")]
+            self.env["LD_PRELOAD"] = ":".join(library for library in preload if library)
         self.env.setdefault("ROS_MASTER_URI", "http://localhost:11311")
         self.env.pop("ROS_NAMESPACE", None)
         self.env.setdefault("ROS_HOME", os.path.join(log_folder, "ros"))
