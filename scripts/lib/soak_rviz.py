@@ -8,14 +8,11 @@ that, times half an hour.
 import argparse
 import json
 import os
-import signal
-import sys
-import tempfile
 import time
 
 from graph import Graph, GraphError
-from run_session import Interrupted, attempt, interrupt
 from rviz_window import RvizWindow, wait_for
+from soak import run, slope
 
 INTERVAL = 2.0  # between two samples [s]
 WARM_UP = 0.3  # of the time
@@ -30,14 +27,6 @@ def parse_arguments():
     parser.add_argument("--rate", type=float, default=10.0, help="how much faster than real time it is played")
     parser.add_argument("--most-growth", type=float, default=20.0, help="in half an hour of the session [MB]")
     return parser.parse_args()
-
-
-def slope(samples):
-    """Of a straight line through (time, value), by least squares."""
-    mean_time = sum(time for time, _ in samples) / len(samples)
-    mean_value = sum(value for _, value in samples) / len(samples)
-    above = sum((time - mean_time) * (value - mean_value) for time, value in samples)
-    return above / sum((time - mean_time) ** 2 for time, _ in samples)
 
 
 class Soak:
@@ -98,24 +87,5 @@ class Soak:
         self.graph.stop_all()
 
 
-def main():
-    arguments = parse_arguments()
-    failures = []
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, interrupt)
-    with tempfile.TemporaryDirectory(prefix="vibe-soak-") as folder:
-        soak = Soak(arguments, folder)
-        try:
-            attempt(soak.start, failures)
-            if not failures:
-                attempt(soak.watch, failures)
-        except Interrupted as reason:
-            failures.append("stopped by {}".format(reason))
-        attempt(soak.stop, failures)
-    for failure in failures:
-        print("soak: " + failure, file=sys.stderr)
-    sys.exit(1 if failures else 0)
-
-
 if __name__ == "__main__":
-    main()
+    run(Soak, parse_arguments())

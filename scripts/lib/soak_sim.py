@@ -7,18 +7,14 @@ warm up; growth is the slope of a straight line through what is resident after t
 
 import argparse
 import os
-import signal
 import socket
-import sys
-import tempfile
 import time
 import xmlrpc.client
 
 from fault_bench import simulated_time
 from fault_peers import Listener, Victim
 from graph import Graph, GraphError
-from run_session import Interrupted, attempt, interrupt
-from soak_rviz import slope
+from soak import run, slope
 
 INTERVAL = 1.0  # between two samples [s of wall time]
 WARM_UP = 0.2  # of the time
@@ -143,24 +139,5 @@ class Soak:
         self.graph.stop_all()
 
 
-def main():
-    arguments = parse_arguments()
-    failures = []
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, interrupt)
-    with tempfile.TemporaryDirectory(prefix="vibe-soak-") as folder:
-        soak = Soak(arguments, folder)
-        try:
-            attempt(soak.start, failures)
-            if not failures:
-                attempt(soak.watch, failures)
-        except Interrupted as reason:
-            failures.append("stopped by {}".format(reason))
-        attempt(soak.stop, failures)
-    for failure in failures:
-        print("soak: " + failure, file=sys.stderr)
-    sys.exit(1 if failures else 0)
-
-
 if __name__ == "__main__":
-    main()
+    run(Soak, parse_arguments())

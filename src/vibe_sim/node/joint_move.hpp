@@ -13,8 +13,9 @@ using JointArray = std::array<double, kJointCount>;
 /// rest (Flash and Hogan 1985), as fast as the limits of the slowest joint allow. A function of time only.
 class JointMove {
  public:
-  /// @param start   all joints; @param goal  only `count` joints from `first` count, clamped to the limits [m], [rad]
-  /// @param limits  of the positions and velocities
+  /// @param start   of all joints [m], [rad]
+  /// @param goal    read from joint `first` to `first + count - 1`, the ones that move; clamped to the limits
+  /// @param limits  of position and velocity
   /// @param begin   stamp [ns]
   JointMove(const JointArray& start, const JointArray& goal, int first, int count,
             const std::array<JointLimits, kJointCount>& limits, std::int64_t begin);
