@@ -33,7 +33,7 @@ class Master:
         bench.start_simulator()
         bench.start("vibe_trainee", "vibe_sim", "vibe_trainee",
                     script=bench.file("motions.yaml", script_of_motions("to and fro")))
-        bench.start("vibe_record", "vibe_sim", "vibe_record", self.bag)
+        bench.start("vibe_record", "vibe_sim", "vibe_record", "--all", self.bag)
         begin = time.monotonic()
         expect(self.steps.wait(begin) and self.joints.wait(begin), "the graph does not start")
         time.sleep(1)

@@ -68,7 +68,7 @@ class Nodes:
         bench.says("vibe_fake_camera", " serves ", seconds=90)
         bench.start("vision_node", "vibe_vision", "vision_node", config=rig, source="gige:127.0.0.1",
                     publish_images="false")
-        bench.start("vibe_record", "vibe_sim", "vibe_record", self.bag)
+        bench.start("vibe_record", "vibe_sim", "vibe_record", "--all", self.bag)
         begin = time.monotonic()
         for name, flow in self.flows.items():
             expect(flow.wait(begin) is not None, "{} does not publish {}: {}".format(

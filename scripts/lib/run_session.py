@@ -47,6 +47,7 @@ def session_parser():
     parser.add_argument("--output", required=True)
     parser.add_argument("--duration", type=float, required=True, help="0: no end")
     parser.add_argument("--fast", action="store_true")
+    parser.add_argument("--record-all", action="store_true", help="every message of every topic")
     parser.add_argument("--headless", action="store_true")
     parser.add_argument("--master", action="store_true", help="use the master of ROS_MASTER_URI")
     return parser
@@ -84,7 +85,8 @@ class Session:
         if self.vision:
             self.vision.start(graph, self.driver)
         # the simulator begins when somebody listens to applied_input: by then every other topic must be connected
-        record = ["rosrun", "vibe_sim", "vibe_record", "--last", "applied_input", self.bag]
+        whole = ["--all"] if self.arguments.record_all else []
+        record = ["rosrun", "vibe_sim", "vibe_record", *whole, "--last", "applied_input", self.bag]
         self.recorder = graph.start("vibe_record", record, patience=RECORDER_PATIENCE)
         if not self.arguments.headless:
             config = os.path.join(self.arguments.workspace, self.driver.rviz_config)

@@ -35,6 +35,8 @@ check 'vibe_cohort: a row per trainee' aRowPerTrainee
 check 'vibe_cohort: the same seed, the same row' sameSeedSameRow
 check 'vibe_cohort --help' cohort --help
 check 'vibe_cohort: no such protocol' refuses 2 'none.yaml' cohort --script "$scratch/none.yaml"
+check 'vibe_cohort: no such surface' refuses 2 'none.obj' \
+  cohort --script "$scratch/short.yaml" --mesh "$scratch/none.obj"
 check 'vibe_cohort: a skill that is none' refuses 2 '--novice' cohort --novice 1.5
 check 'vibe_cohort: no trainee' refuses 2 '--count' cohort --count 0
 check 'vibe_cohort: no such folder' refuses 2 'Cannot write' \

@@ -20,7 +20,7 @@ if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$progr
 fi
 
 record() {
-  "$root/scripts/run" --headless --fast --script "$root/src/vibe_core/trainees/demo/five_states.yaml" --output "$scratch/session"
+  "$root/scripts/run" --headless --fast --record-all --script "$root/src/vibe_core/trainees/demo/five_states.yaml" --output "$scratch/session"
 }
 soak() {
   (set +u && source "$root/devel/setup.bash" && /usr/bin/python3 "$root/scripts/lib/soak_rviz.py" --program "$program" \

@@ -4,6 +4,7 @@
 // sources: src/geometry/surface_mesh.cpp src/geometry/remesh.cpp src/geometry/editable_mesh.cpp
 // sources: src/geometry/smoothing.cpp src/geometry/regions.cpp src/geometry/surface_operators.cpp
 // sources: src/geometry/stomach_axis.cpp src/geometry/landmark_estimate.cpp
+// sources: src/common/elementary_*.cpp
 // includes: ../vibe_firmware/fuzz
 // units: 100
 #include <cmath>

@@ -4,6 +4,7 @@
 // sources: src/suture/technique.cpp src/suture/technique_patterns.cpp src/suture/technique_templates.cpp
 // sources: src/suture/technique_wall.cpp src/suture/technique_rays.cpp
 // sources: src/scene/yaml_source.cpp src/scene/yaml_guard.cpp src/scene/unit.cpp src/scene/nearest_key.cpp
+// sources: src/common/elementary_*.cpp
 // packages: yaml-cpp bullet
 #include <cmath>
 #include <cstdlib>

@@ -1,16 +1,20 @@
 // Many trainees perform one protocol: a row of measures per trainee.
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
+#include "vibe_core/metrics/measures.hpp"
 #include "vibe_core/metrics/run_summary.hpp"
+#include "vibe_core/scene/mesh_guess.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
+#include "vibe_core/trainee/goal_outcomes.hpp"
 #include "vibe_core/trainee/protocol.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 
@@ -21,6 +25,7 @@ using namespace vibe;
 struct Options {
   std::string scene = "package://vibe_core/scenes/stomach.yaml";
   std::string script = "package://vibe_core/trainees/expert.yaml";
+  std::string mesh;
   std::string csv = "-";
   std::uint64_t first_seed = 1;
   int count = 20;
@@ -32,6 +37,7 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
   app.add_option("--script", o.script, "protocol of goals (default: package://vibe_core/trainees/expert.yaml)")
       ->type_name("FILE");
+  app.add_option("--mesh", o.mesh, "surface of the organ instead of the scene's")->type_name("FILE");
   app.add_option("--csv", o.csv, "write the rows there, appended to what is there (default: standard output)")
       ->type_name("FILE");
   app.add_option("--first-seed", o.first_seed, "seed of the first trainee of each skill (default: 1)")->type_name("N");
@@ -45,97 +51,59 @@ void addOptions(CLI::App& app, Options& o) {
 }
 
 struct Column {
-  const char* name;
+  std::string name;
   std::string value;
 };
 
-std::string text(double value) {
+std::string text(const std::optional<double>& value) {
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  if (!value) return "";
+  std::snprintf(buffer, sizeof buffer, "%.6g", *value);
   return buffer;
 }
 
-std::string text(const std::optional<double>& value) {
-  return value ? text(*value) : "";
-}
+struct MeasureColumn {
+  const char* column;
+  const char* measure;
+};
 
-// Sets whose recognised technique is that of the goal.
-int countAsPlanned(const Trainee& trainee, const std::vector<SetSkill>& sets) {
-  std::size_t k = 0;
-  int count = 0;
-  for (const Goal& goal : trainee.goals()) {
-    const auto* planned = std::get_if<SutureSetGoal>(&goal);
-    if (planned == nullptr || k >= sets.size()) continue;
-    if (sets[k].named && sets[k].technique == planned->pattern) ++count;
-    ++k;
-  }
-  return count;
-}
+constexpr MeasureColumn kColumns[] = {{"goals", "goals"},
+                                      {"goals_reached", "goals_reached"},
+                                      {"sets", "sets"},
+                                      {"sets_as_planned", "sets_as_planned"},
+                                      {"bites", "bites"},
+                                      {"bites_full_thickness", "bites_full_thickness"},
+                                      {"bites_torn_out", "tear_outs"},
+                                      {"bites_missed", "missed_bites"},
+                                      {"bites_withdrawn", "withdrawn_bites"},
+                                      {"slips", "slips"},
+                                      {"bites_per_5_min", "bites_per_5_min"},
+                                      {"bite_spacing_sd [m]", "bite_spacing_sd"},
+                                      {"time [s]", "time"},
+                                      {"max_force [N]", "max_force"},
+                                      {"share_above_5_N", "share_above"},
+                                      {"path_length [m]", "path_length"},
+                                      {"movements", "movements"},
+                                      {"spectral_arc_length", "spectral_arc_length"},
+                                      {"log_dimensionless_jerk", "log_dimensionless_jerk"},
+                                      {"blood [m3]", "blood_lost"},
+                                      {"cinch_tension_mean [N]", "cinch_tension_mean"},
+                                      {"area_reduction", "area_reduction"},
+                                      {"volume_reduction", "volume_reduction"},
+                                      {"length_reduction", "length_reduction"}};
 
-std::optional<double> meanCinchTension(const std::vector<SetSkill>& sets) {
-  double sum = 0;
-  int count = 0;
-  for (const SetSkill& set : sets)
-    if (set.cinch_tension) sum += *set.cinch_tension, ++count;
-  if (count == 0) return {};
-  return sum / count;
-}
-
-// From the first to the last bite of each set, with one bite less: the pace of suturing, without insufflation and
-// cinch.
-std::optional<double> bitesPerFiveMinutes(const std::vector<Suture>& sutures) {
-  double time = 0;
-  int bites = 0;
-  for (const Suture& suture : sutures) {
-    if (suture.bites.size() < 2) continue;
-    time += suture.bites.back().time - suture.bites.front().time;
-    bites += static_cast<int>(suture.bites.size()) - 1;
-  }
-  if (!(time > 0)) return {};
-  return 300 * bites / time;
-}
-
-int countReached(const Trainee& trainee) {
-  int count = 0;
-  for (const GoalResult& result : trainee.results()) count += result.reached;
-  return count;
-}
-
-std::vector<Column> measuresOf(const Simulation& simulation, const Trainee& trainee) {
-  const SessionMetrics& m = simulation.metrics();
-  const SkillMetrics& skill = m.skill;
-  const PhaseSkill& whole = skill.phases.whole;
-  const std::vector<Suture>& sutures = simulation.state().procedure.sutures;
-  return {{"goals", text(static_cast<double>(trainee.goals().size()))},
-          {"goals_reached", text(countReached(trainee))},
-          {"sets", text(static_cast<double>(skill.sets.size()))},
-          {"sets_as_planned", text(countAsPlanned(trainee, skill.sets))},
-          {"bites", text(skill.bites.taken)},
-          {"bites_full_thickness", text(skill.bites.full_thickness)},
-          {"bites_torn_out", text(skill.bites.torn_out)},
-          {"bites_missed", text(skill.mistakes.missed_bites)},
-          {"bites_withdrawn", text(skill.mistakes.withdrawn_bites)},
-          {"slips", text(skill.mistakes.slips)},
-          {"bites_per_5_min", text(bitesPerFiveMinutes(sutures))},
-          {"bite_spacing_sd [m]", text(skill.bites.spacing_sd)},
-          {"time [s]", text(m.time)},
-          {"max_force [N]", text(m.max_force)},
-          {"share_above_5_N", text(whole.force.share_above)},
-          {"path_length [m]", text(m.path_length)},
-          {"movements", text(whole.motion.movements)},
-          {"spectral_arc_length", text(whole.motion.spectral_arc_length)},
-          {"log_dimensionless_jerk", text(whole.motion.log_dimensionless_jerk)},
-          {"blood [m3]", text(skill.bleeding.lost)},
-          {"cinch_tension_mean [N]", text(meanCinchTension(skill.sets))},
-          {"area_reduction", text(skill.organ.area_reduction)},
-          {"volume_reduction", text(skill.organ.volume_reduction)},
-          {"length_reduction", text(skill.organ.length_reduction)},
-          {"state_hash", toHex(simulation.hash())}};
+std::vector<Column> columnsOf(const Simulation& simulation, const Trainee& trainee) {
+  std::vector<Measure> measures = measuresOf(simulation.metrics(), simulation.state().procedure.sutures);
+  for (Measure& measure : goalMeasures(&trainee, simulation.metrics().skill.sets)) measures.push_back(measure);
+  std::vector<Column> columns;
+  for (const MeasureColumn& c : kColumns) columns.push_back({c.column, text(valueOf(measures, c.measure))});
+  columns.push_back({"state_hash", toHex(simulation.hash())});
+  return columns;
 }
 
 void write(std::FILE* file, const std::vector<Column>& row, bool names) {
   for (std::size_t k = 0; k < row.size(); ++k)
-    std::fprintf(file, "%s%s", k > 0 ? "," : "", names ? row[k].name : row[k].value.c_str());
+    std::fprintf(file, "%s%s", k > 0 ? "," : "", (names ? row[k].name : row[k].value).c_str());
   std::fprintf(file, "\n");
   if (std::fflush(file) != 0) throw Error("The table could not be written to its end; check the room on the disk.");
 }
@@ -149,13 +117,19 @@ std::vector<Column> perform(const Options& o, const std::shared_ptr<const Model>
   while (!trainee.done() && (o.duration <= 0 || simulation.time() < o.duration))
     simulation.step(trainee.next(observe(simulation)));
   std::vector<Column> row{{"novice", text(novice)}, {"seed", std::to_string(seed)}};
-  const std::vector<Column> measures = measuresOf(simulation, trainee);
-  row.insert(row.end(), measures.begin(), measures.end());
+  const std::vector<Column> columns = columnsOf(simulation, trainee);
+  row.insert(row.end(), columns.begin(), columns.end());
   return row;
 }
 
+std::shared_ptr<const Model> load(const Options& o) {
+  Scene scene = loadScene(resolveAddress(o.scene));
+  if (!o.mesh.empty()) useMesh(scene, std::filesystem::absolute(resolveAddress(o.mesh)));
+  return buildModel(scene, scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "");
+}
+
 void run(const Options& o) {
-  const std::shared_ptr<const Model> model = loadModel(o.scene);
+  const std::shared_ptr<const Model> model = load(o);
   const Protocol protocol = Protocol::load(resolveAddress(o.script));
   std::FILE* file = o.csv == "-" ? stdout : std::fopen(o.csv.c_str(), "a");
   if (file == nullptr) throw Error("Cannot write " + o.csv + "; name a file in a folder that exists and is writable.");

@@ -8,16 +8,21 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/common/write_file.hpp"
+#include "vibe_core/metrics/measures.hpp"
 #include "vibe_core/metrics/run_summary.hpp"
 #include "vibe_core/metrics/session_csv.hpp"
+#include "vibe_core/metrics/session_outcome.hpp"
 #include "vibe_core/scene/mesh_guess.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
+#include "vibe_core/trainee/goal_outcomes.hpp"
 #include "vibe_core/trainee/protocol.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
@@ -28,12 +33,12 @@ using namespace vibe;
 
 struct Options {
   std::string scene = "package://vibe_core/scenes/stomach.yaml";
-  std::string script, mesh, csv, snapshot;
+  std::string script, mesh, csv, measures, snapshot;
   double duration = 0;
   int threads = 1;
   std::optional<std::uint64_t> seed;
   bool quiet = false;
-  bool script_length = false;
+  bool script_length = false, list_measures = false;
 };
 
 void addOptions(CLI::App& app, Options& o) {
@@ -47,6 +52,7 @@ void addOptions(CLI::App& app, Options& o) {
       ->type_name("S")
       ->check(finiteFrom(0));
   app.add_option("--csv", o.csv, "write one row per step there (- for standard output)")->type_name("FILE");
+  app.add_option("--measures", o.measures, "write the measures by name there, as JSON")->type_name("FILE");
   app.add_option("--snapshot", o.snapshot, "write the last state there")->type_name("FILE");
   app.add_option("--threads", o.threads, "threads inside a step (default: 1); the result is the same")
       ->type_name("N")
@@ -55,6 +61,7 @@ void addOptions(CLI::App& app, Options& o) {
       ->type_name("N")
       ->check(finiteFrom(0));
   app.add_flag("--quiet", o.quiet, "print the state hash only");
+  app.add_flag("--list-measures", o.list_measures, "print names and units of all measures as JSON and end");
   app.add_flag("--script-length", o.script_length,
                "print the length of the script [s] and end; 0: a protocol, which takes as long as its goals");
 }
@@ -117,8 +124,25 @@ double durationOf(const Options& o, const TraineeScript* script, const Trainee* 
   return script != nullptr ? script->duration() : 10;
 }
 
+SessionOutcome outcomeOf(const SessionMetrics& metrics, const std::vector<Suture>& sutures, const Trainee* trainee) {
+  SessionOutcome outcome;
+  outcome.measures = measuresOf(metrics, sutures);
+  for (Measure& measure : goalMeasures(trainee, metrics.skill.sets)) outcome.measures.push_back(std::move(measure));
+  outcome.events = metrics.events;
+  if (trainee != nullptr) outcome.goals = goalOutcomes(*trainee);
+  return outcome;
+}
+
+void writeMeasures(const std::string& file, const Simulation& simulation, const Trainee* trainee) {
+  SessionOutcome outcome = outcomeOf(simulation.metrics(), simulation.state().procedure.sutures, trainee);
+  outcome.steps = simulation.stepCount();
+  outcome.state_hash = simulation.hash();
+  writeFile(file, toJson(outcome), "Table of measures");
+}
+
 void run(const Options& o) {
   if (o.script_length) return printScriptLength(o);
+  if (o.list_measures) return void(std::cout << toJson(outcomeOf(SessionMetrics(), {}, nullptr)));
   const std::shared_ptr<const Model> model = load(o);
   const std::unique_ptr<TraineeScript> script = loadScript(o);
   const std::unique_ptr<Trainee> trainee = loadTrainee(o, model);
@@ -150,6 +174,7 @@ void run(const Options& o) {
   if (csv) csv->finish();
   if (show) std::fprintf(stderr, "\r%-60s\r", "");
   if (!o.snapshot.empty()) simulation.saveSnapshot(o.snapshot);
+  if (!o.measures.empty()) writeMeasures(o.measures, simulation, trainee.get());
   if (o.quiet)
     std::cout << "state hash: " << toHex(simulation.hash()) << "\n";
   else

@@ -11,13 +11,13 @@ constexpr std::uint32_t kQueue = 10000;  // as of all small topics: a recorder m
 
 }  // namespace
 
-ArmPublishers::ArmPublishers(ros::NodeHandle& handle)
-    : scope_(handle.advertise<sensor_msgs::JointState>("scope/simulated/measured_js", kQueue)),
-      overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/simulated/measured_js", kQueue)),
-      jacobian_(handle.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kQueue)),
-      wall_(handle.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kQueue)),
-      scope_state_(handle.advertise<vibe_msgs::OperatingState>("scope/operating_state", kQueue, true)),
-      overstitch_state_(handle.advertise<vibe_msgs::OperatingState>("overstitch/operating_state", kQueue, true)) {}
+ArmPublishers::ArmPublishers(OutletSource& outlets)
+    : scope_(outlets.advertise<sensor_msgs::JointState>("scope/simulated/measured_js", kQueue)),
+      overstitch_(outlets.advertise<sensor_msgs::JointState>("overstitch/simulated/measured_js", kQueue)),
+      jacobian_(outlets.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kQueue)),
+      wall_(outlets.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kQueue)),
+      scope_state_(outlets.advertise<vibe_msgs::OperatingState>("scope/operating_state", kQueue, true)),
+      overstitch_state_(outlets.advertise<vibe_msgs::OperatingState>("overstitch/operating_state", kQueue, true)) {}
 
 void ArmPublishers::place(const Session& session, bool continues, std::int64_t stamp) {
   const JointArray joints = toolJoints(session.state);
@@ -45,7 +45,7 @@ void ArmPublishers::operatingState(const Session& session, const RunStatus& stat
 
 bool ArmPublishers::hasListener() const {
   const auto all = {&scope_, &overstitch_, &jacobian_, &wall_, &scope_state_, &overstitch_state_};
-  return std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return p->getNumSubscribers() > 0; });
+  return std::any_of(all.begin(), all.end(), [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });
 }
 
 }  // namespace vibe

@@ -1,11 +1,9 @@
 #pragma once
-#include <ros/node_handle.h>
-#include <ros/publisher.h>
-
 #include <cstdint>
 #include <string>
 
 #include "joint_move.hpp"
+#include "outlet.hpp"
 #include "run_status.hpp"
 #include "session.hpp"
 
@@ -15,7 +13,7 @@ namespace vibe {
 /// the tip needs. Belongs to the stepping thread.
 class ArmPublishers {
  public:
-  explicit ArmPublishers(ros::NodeHandle& handle);
+  explicit ArmPublishers(OutletSource& outlets);
 
   /// The present place of a tool, of a scene with one.
   /// @param continues  the state follows by one step from that of the last call; false: velocities are 0
@@ -25,7 +23,7 @@ class ArmPublishers {
   bool hasListener() const;
 
  private:
-  ros::Publisher scope_, overstitch_, jacobian_, wall_, scope_state_, overstitch_state_;
+  Outlet scope_, overstitch_, jacobian_, wall_, scope_state_, overstitch_state_;
   JointArray last_joints_{};
   std::string last_state_;  // of both, to see a change
 };

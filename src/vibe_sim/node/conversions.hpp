@@ -55,6 +55,7 @@ sensor_msgs::JointState makeScopeJoints(const StepInput& input, std::int64_t sta
 sensor_msgs::JointState makeOverstitchJoints(const StepInput& input, std::int64_t stamp);
 sensor_msgs::Joy makeButtons(const StepInput& input, std::int64_t stamp);
 
+/// Without run and hashes.
 vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, std::int64_t stamp);
 /// What a recorded step used, bit for bit.
 StepInput readStepInput(const vibe_msgs::StepInput& message);

@@ -39,7 +39,7 @@ GoalPlayer::GoalPlayer(ros::NodeHandle handle, Protocol protocol, bool lockstep,
 
 void GoalPlayer::onScene(const std_msgs::String& message) {
   try {
-    model_ = modelOfText(message.data, "topic scene");
+    model_ = modelOfText(message.data, "topic scene").model;
   } catch (const Error& error) {
     model_.reset();
     ROS_ERROR_STREAM("The trainee does not know the scene and does nothing: " << error.what());

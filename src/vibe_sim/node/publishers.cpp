@@ -13,14 +13,17 @@
 #include "conversions.hpp"
 #include "procedure_message.hpp"
 #include "pull_message.hpp"
+#include "session_info_message.hpp"
 #include "step_result_message.hpp"
 #include "suture_message.hpp"
 #include "vibe_core/procedure/helix_grip.hpp"
+#include "vibe_core/simulation/simulator.hpp"
 
 namespace vibe {
 namespace {
 
 constexpr double kHapticRate = 100;                       // of haptic/parameters at most, in simulated time [Hz]
+constexpr std::int64_t kSnapshotPeriod = 10'000'000'000;  // of simulated time [ns]
 constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure and sutures when nothing happens [ns]
 
 // Queues are long because a simulation that runs faster than the wall clock must not lose messages to a recorder that
@@ -34,41 +37,67 @@ int hapticInterval(double step_period) {
 
 }  // namespace
 
-Publishers::Publishers(ros::NodeHandle handle, bool with_clock)
-    : scope_pose_(handle.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
-      helix_pose_(handle.advertise<geometry_msgs::PoseStamped>("overstitch/helix/measured_cp", kSmallQueue)),
-      wrench_(handle.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
-      joint_states_(handle.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
-      hand_joints_(handle.advertise<sensor_msgs::JointState>("scope/setpoint_js", kSmallQueue)),
-      topology_(handle.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
-      particles_(handle.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue, true)),
-      procedure_(handle.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
-      skill_metrics_(handle.advertise<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kSmallQueue, true)),
-      events_(handle.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
-      sutures_(handle.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, true)),
-      applied_input_(handle.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue)),
-      solver_statistics_(handle.advertise<vibe_msgs::SolverStatistics>("solver_statistics", kSmallQueue)),
-      scene_(handle.advertise<std_msgs::String>("scene", 1, true)),
-      haptic_(handle.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
-      pull_(handle.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)),
-      step_result_(handle.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, true)),
-      arms_(handle) {
-  if (with_clock) clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
+Publishers::Publishers(OutletSource outlets, bool with_clock)
+    : scope_pose_(outlets.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
+      helix_pose_(outlets.advertise<geometry_msgs::PoseStamped>("overstitch/helix/measured_cp", kSmallQueue)),
+      wrench_(outlets.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
+      joint_states_(outlets.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
+      hand_joints_(outlets.advertise<sensor_msgs::JointState>("scope/setpoint_js", kSmallQueue)),
+      topology_(outlets.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
+      particles_(outlets.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue, true)),
+      procedure_(outlets.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
+      skill_metrics_(outlets.advertise<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kSmallQueue, true)),
+      events_(outlets.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
+      sutures_(outlets.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, true)),
+      applied_input_(outlets.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue, false,
+                                                             [this] { snapshot_asked_ = true; })),
+      solver_statistics_(outlets.advertise<vibe_msgs::SolverStatistics>("solver_statistics", kSmallQueue)),
+      scene_(outlets.advertise<std_msgs::String>("scene", 1, true)),
+      haptic_(outlets.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
+      pull_(outlets.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)),
+      step_result_(outlets.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, true)),
+      session_info_(outlets.advertise<vibe_msgs::SessionInfo>("session_info", kSmallQueue, true)),
+      snapshot_(outlets.advertise<vibe_msgs::StateSnapshot>("snapshot", kCloudQueue, false,
+                                                            [this] { snapshot_asked_ = true; })),
+      arms_(outlets) {
+  if (outlets.isGraph()) static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
+  if (with_clock) clock_ = outlets.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
 }
 
 void Publishers::announceModel(const Session& session) {
   const Model& model = *session.model;
   cloud_ = std::make_unique<ParticleCloud>(model, session.state, session.revision);
-  scene_.publish(makeSceneText(model.scene, session.state.seed));
+  scene_.publish(makeSceneText(model.scene, session.seed));
   topology_.publish(makeTopology(model, session.revision, session.now()));
   std::vector<geometry_msgs::TransformStamped> transforms = {
       makeTransform(Eigen::Isometry3d::Identity(), kWorldFrame, kTissueFrame, session.now())};
   if (model.tool) transforms.push_back(makeTransform(model.tool_base, kWorldFrame, kScopeBaseFrame, session.now()));
-  static_transforms_.sendTransform(transforms);
+  if (static_transforms_) static_transforms_->sendTransform(transforms);
+  announceRun(session);
+}
+
+void Publishers::announceRun(const Session& session) {
+  session_info_.publish(makeSessionInfo(session));
+  snapshot_asked_ = true;
 }
 
 void Publishers::appliedInput(const Session& session) {
-  applied_input_.publish(makeStepInput(session.input, session.state.step, session.now()));
+  snapshot(session);
+  vibe_msgs::StepInput message = makeStepInput(session.input, session.state.step, session.now());
+  message.run = session.run;
+  if (hasRecorder()) {
+    message.input_hash = hash(session.input, session.state.step);
+    message.state_hash = hash(session.state);
+  }
+  applied_input_.publish(message);
+}
+
+void Publishers::snapshot(const Session& session) {
+  if (snapshot_.getNumSubscribers() == 0) return;
+  const bool asked = snapshot_asked_.exchange(false);
+  if (!asked && session.now() - last_snapshot_ < kSnapshotPeriod) return;
+  last_snapshot_ = session.now();
+  snapshot_.publish(makeStateSnapshot(session));
 }
 
 void Publishers::stepResult(const Session& session, const RunStatus& status) {
@@ -137,9 +166,10 @@ void Publishers::warn(const std::string& text) {
 bool Publishers::hasListener() const {
   const auto all = {&scope_pose_,        &helix_pose_, &wrench_,        &joint_states_, &hand_joints_, &topology_,
                     &particles_,         &procedure_,  &skill_metrics_, &events_,       &sutures_,     &applied_input_,
-                    &solver_statistics_, &scene_,      &haptic_,        &pull_,         &step_result_, &clock_};
+                    &solver_statistics_, &scene_,      &haptic_,        &pull_,         &step_result_, &session_info_,
+                    &snapshot_,          &clock_};
   return arms_.hasListener() ||
-         std::any_of(all.begin(), all.end(), [](const ros::Publisher* p) { return *p && p->getNumSubscribers() > 0; });
+         std::any_of(all.begin(), all.end(), [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });
 }
 
 void Publishers::tool(const Session& session, bool continues, std::int64_t stamp) {
@@ -190,7 +220,6 @@ void Publishers::particles(const Session& session, std::int64_t stamp) {
 }
 
 void Publishers::clock(std::int64_t stamp) {
-  if (!clock_) return;
   rosgraph_msgs::Clock message;
   message.clock = toRosTime(stamp);
   clock_.publish(message);

@@ -1,6 +1,4 @@
 #pragma once
-#include <ros/node_handle.h>
-#include <ros/publisher.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <vibe_msgs/SolverStatistics.h>
 
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "arm_publishers.hpp"
+#include "outlet.hpp"
 #include "particle_cloud.hpp"
 #include "run_status.hpp"
 #include "session.hpp"
@@ -21,13 +20,17 @@ namespace vibe {
 /// thread.
 class Publishers {
  public:
+  /// @param outlets     a node handle, or the bag that takes the place of the graph
   /// @param with_clock  also publish /clock
-  Publishers(ros::NodeHandle handle, bool with_clock);
+  Publishers(OutletSource outlets, bool with_clock);
 
   /// A model begins to be simulated: scene, topology, static transforms.
   void announceModel(const Session& session);
+  /// A run begins: with the first step, after a reset, or with another state or model.
+  void announceRun(const Session& session);
 
-  /// What the step about to be taken uses; call before the step.
+  /// What the step about to be taken uses, with the hash of the state, and a snapshot where one is due; call before the
+  /// step.
   void appliedInput(const Session& session);
   /// What one step has changed, the clock last: who sees the clock at t can have everything up to t.
   void stepResult(const Session& session, const RunStatus& status);
@@ -51,12 +54,12 @@ class Publishers {
   bool hasRecorder() const { return applied_input_.getNumSubscribers() > 0; }
 
  private:
-  ros::Publisher scope_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
+  Outlet scope_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
       skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, step_result_,
-      clock_;
+      session_info_, snapshot_, clock_;
   ArmPublishers arms_;
   std::atomic<int> warnings_{0};
-  tf2_ros::StaticTransformBroadcaster static_transforms_;
+  std::unique_ptr<tf2_ros::StaticTransformBroadcaster> static_transforms_;  // null for a bag
   std::unique_ptr<ParticleCloud> cloud_;
   std::vector<Eigen::Isometry3d> link_poses_;
   std::string last_kind_;            // of procedure/state: what must not change unnoticed
@@ -65,10 +68,12 @@ class Publishers {
   std::int64_t last_sutures_ = 0;
   std::int64_t last_tool_ = -1;
   std::int64_t last_particles_ = -1;
-  bool particles_missed_ = false;     // due, but not sent, because nobody listened
-  bool haptic_touching_ = false;      // as last sent
-  bool pull_held_ = false;            // as last sent
-  std::atomic<std::int64_t> now_{0};  // of the last state
+  std::int64_t last_snapshot_ = -1;
+  std::atomic<bool> snapshot_asked_{true};  // by a new run or a new listener
+  bool particles_missed_ = false;           // due, but not sent, because nobody listened
+  bool haptic_touching_ = false;            // as last sent
+  bool pull_held_ = false;                  // as last sent
+  std::atomic<std::int64_t> now_{0};        // of the last state
 
   void tool(const Session& session, bool continues, std::int64_t stamp);
   void particles(const Session& session, std::int64_t stamp);
@@ -77,6 +82,7 @@ class Publishers {
   void haptic(const Session& session, std::int64_t stamp);
   void hapticRelease(std::int64_t stamp);
   void pull(const Session& session, std::int64_t stamp);
+  void snapshot(const Session& session);
   void clock(std::int64_t stamp);
 };
 

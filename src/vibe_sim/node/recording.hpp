@@ -1,23 +1,74 @@
 #pragma once
+#include <rosbag/bag.h>
+#include <vibe_msgs/SessionInfo.h>
+
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "vibe_core/input/step_input.hpp"
+#include "step_input_reader.hpp"
 
 namespace vibe {
 
-/// What of a recorded session is needed to repeat it.
-struct Recording {
-  std::string scene;                            ///< text of the scene file
-  std::vector<StepInput> inputs;                ///< of steps 0, 1, 2 ...
-  std::map<std::uint64_t, std::string> hashes;  ///< of the state, by number of steps taken; 16 hex digits
-  bool comparable = true;                       ///< false: of a release whose hashes cover other fields of the state
+/// The part of a session from one start, reset or load to the next.
+struct RecordedRun {
+  std::uint32_t number = 1;
+  std::string scene;                             ///< text of the scene file
+  std::optional<vibe_msgs::SessionInfo> info;    ///< what it was made with; empty: of an older release
+  std::vector<RecordedStep> steps;               ///< consecutive; the first is step 0 or has a snapshot
+  std::map<std::uint64_t, ros::Time> snapshots;  ///< by the step that starts there; time in the bag
+
+  std::uint64_t firstStep() const { return steps.front().step; }
+  std::uint64_t endStep() const { return steps.back().step + 1; }
 };
 
-/// Reads the topics scene, applied_input and solver_statistics of a bag, also of older releases (StepInputReader).
-/// @throws Error if the bag cannot be read, begins late, has gaps, or is of a version that this build does not read
-Recording readRecording(const std::string& file);
+/// What of a recorded session is needed to repeat it, read from the topics scene, session_info, snapshot, applied_input
+/// and solver_statistics of a bag, also of older releases (StepInputReader). Inputs and hashes are in memory, snapshots
+/// stay in the file.
+class Recording {
+ public:
+  /// @throws Error if the file is missing, empty, cut off or no bag; if it holds no session; if steps are missing in
+  /// it; or if it is of a version that this build does not read
+  explicit Recording(const std::string& file);
+
+  const std::string& file() const { return file_; }
+  const std::vector<RecordedRun>& runs() const { return runs_; }  ///< at least one, each with at least one step
+  /// Hashes of the state by the stamp of its message [ns]; 16 hex digits. Several where a reset set the time back.
+  const std::multimap<std::int64_t, std::string>& stateHashes() const { return state_hashes_; }
+  /// Steps before the first snapshot of a recording that began late; they cannot be repeated.
+  std::size_t stepsLeftOut() const { return left_out_; }
+  /// What of a later run cannot be repeated, as a sentence without a full stop; empty: nothing.
+  const std::string& lost() const { return lost_; }
+  const std::string& prefix() const { return prefix_; }  ///< namespace of the simulator's topics, with a slash
+
+  /// The bytes of a snapshot.
+  /// @throws Error if the bag cannot be read
+  std::string snapshot(const RecordedRun& run, std::uint64_t step) const;
+
+  rosbag::Bag& bag() const { return *bag_; }
+
+ private:
+  void readAll();
+  void readMessage(const rosbag::MessageInstance& message);
+  RecordedStep readStep(const rosbag::MessageInstance& message);
+  RecordedRun& runOf(std::uint32_t number);
+  void sortSteps(RecordedRun& run) const;
+  void takeRun(RecordedRun& run);
+  void check();
+
+  std::string file_;
+  std::unique_ptr<rosbag::Bag> bag_;
+  std::map<std::string, StepInputReader> readers_;  // by md5 sum of the definition
+  std::map<std::uint32_t, RecordedRun> by_number_;
+  std::vector<std::pair<ros::Time, std::string>> scenes_;
+  std::vector<RecordedRun> runs_;
+  std::multimap<std::int64_t, std::string> state_hashes_;
+  std::size_t left_out_ = 0;
+  std::string lost_;
+  std::string prefix_ = "/";
+};
 
 }  // namespace vibe

@@ -2,6 +2,8 @@
 
 #include <ros/console.h>
 
+#include <utility>
+
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/mesh_guess.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
@@ -10,27 +12,28 @@
 namespace vibe {
 namespace {
 
-std::shared_ptr<const Model> build(const Scene& scene) {
-  const std::string urdf = scene.scope ? readTextFile(resolveAddress(scene.scope->urdf), "URDF") : "";
-  return buildModel(scene, urdf, [](const std::string& what, double fraction) {
+SceneModel build(const Scene& scene, std::string urdf) {
+  if (urdf.empty() && scene.scope) urdf = readTextFile(resolveAddress(scene.scope->urdf), "URDF");
+  auto model = buildModel(scene, urdf, [](const std::string& what, double fraction) {
     ROS_DEBUG_STREAM(what << ": " << static_cast<int>(100 * fraction) << " %");
   });
+  return {std::move(model), std::move(urdf)};
 }
 
 }  // namespace
 
-std::shared_ptr<const Model> loadModel(const std::string& scene_address, const std::string& mesh_address) {
+SceneModel loadModel(const std::string& scene_address, const std::string& mesh_address) {
   Scene scene = loadScene(resolveAddress(scene_address));
   const std::string guesses = mesh_address.empty() ? "" : useMesh(scene, resolveAddress(mesh_address));
   if (!guesses.empty()) ROS_WARN_STREAM(guesses);
-  std::shared_ptr<const Model> model = build(scene);
-  const std::string softness = softnessWarning(*model);
+  SceneModel made = build(scene, "");
+  const std::string softness = softnessWarning(*made.model);
   if (!softness.empty()) ROS_WARN_STREAM(softness);
-  return model;
+  return made;
 }
 
-std::shared_ptr<const Model> modelOfText(const std::string& text, const std::string& place) {
-  return build(parseScene(text, place));
+SceneModel modelOfText(const std::string& text, const std::string& place, const std::string& urdf) {
+  return build(parseScene(text, place), urdf);
 }
 
 }  // namespace vibe

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "sim_time.hpp"
 #include "vibe_core/simulation/simulation.hpp"
@@ -11,7 +12,7 @@ namespace vibe {
 /// The node's simulation with the time on its stamps. Belongs to the stepping thread and is touched by no other.
 class Session {
  public:
-  Session(std::shared_ptr<const Model> new_model, std::uint64_t seed, std::int64_t origin, int threads);
+  Session(std::shared_ptr<const Model> new_model, std::uint64_t first_seed, std::int64_t origin, int threads);
 
   /// One step with an input.
   void step(const StepInput& new_input);
@@ -28,6 +29,9 @@ class Session {
   Simulation simulation;
   TimeLine time;
   std::uint32_t revision = 1;  ///< of the topology
+  std::uint32_t run = 1;       ///< one more whenever another state takes over
+  std::string urdf;            ///< text that the tool was made from; empty without a tool
+  std::uint64_t seed;          ///< of the model's first state, in the published scene
 
   // parts of the simulation
   const std::shared_ptr<const Model>& model;

@@ -53,14 +53,15 @@ void explainEnd(const vibe::MasterWatch& watch) {
 int run() {
   ros::NodeHandle handle;
   const vibe::Parameters parameters = vibe::readParameters(ros::NodeHandle("~"));
-  const std::shared_ptr<const vibe::Model> model = vibe::loadModel(parameters.scene, parameters.mesh);
+  const vibe::SceneModel made = vibe::loadModel(parameters.scene, parameters.mesh);
+  const vibe::Model* model = made.model.get();
   // Not only for people: the first log message makes roscpp register a parameter at the master, and if that were the
   // message about our own shutdown, the master would take us for the newest node of this name and stop the real one.
   ROS_INFO_STREAM("Simulating '" << model->scene.name << "' with " << model->particle_count << " particles.");
   vibe::ParameterReader(ros::NodeHandle("~")).tell();
   vibe::InputQueue queue;
   vibe::Publishers publishers(handle, parameters.time_source == vibe::TimeSource::Sim);
-  vibe::Stepper stepper(parameters, model, queue, publishers);
+  vibe::Stepper stepper(parameters, made, queue, publishers);
   ros::AsyncSpinner spinner(1);
   vibe::MasterWatch watch(handle, publishers, parameters.master_timeout);
   {

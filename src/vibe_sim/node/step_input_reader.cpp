@@ -1,6 +1,7 @@
 #include "step_input_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "vibe_core/common/error.hpp"
@@ -55,7 +56,17 @@ RecordedStep StepInputReader::read(const std::uint8_t* bytes, std::size_t size) 
   if (version < 1 || version > kStepInputVersion)
     throw Error("its vibe_msgs/StepInput is of version " + std::to_string(version) + ", but " + kReads);
   RecordedStep result;
-  result.has_version = message.has("version");
+  if (message.has("header.stamp")) {
+    std::array<std::uint32_t, 2> stamp{};  // seconds, nanoseconds
+    message.get("header.stamp", "time", 1, &stamp);
+    result.stamp = 1'000'000'000LL * stamp[0] + stamp[1];
+  }
+  result.has_hashes = message.has("state_hash");
+  if (result.has_hashes) {
+    message.get("run", "uint32", 1, &result.run);
+    message.get("input_hash", "uint64", 1, &result.input_hash);
+    message.get("state_hash", "uint64", 1, &result.state_hash);
+  }
   message.get("step", "uint64", 1, &result.step);
   message.get("joints", "float64", kJointCount, result.input.joints.data());
   message.get("buttons", "uint8", kButtonCount, result.input.buttons.data());

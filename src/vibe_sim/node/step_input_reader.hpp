@@ -12,7 +12,11 @@ namespace vibe {
 struct RecordedStep {
   std::uint64_t step = 0;  ///< its number
   StepInput input;
-  bool has_version = false;  ///< the message says of which version it is; false: it is from before there were versions
+  std::uint32_t run = 1;         ///< see vibe_msgs/StepInput
+  std::int64_t stamp = 0;        ///< of the start of the step [ns]
+  bool has_hashes = false;       ///< false: of a release that did not record them
+  std::uint64_t input_hash = 0;  ///< of step and input
+  std::uint64_t state_hash = 0;  ///< of the state at the start of the step
 };
 
 /// Reads serialised vibe_msgs/StepInput of this and of older releases. It finds the fields by the definition that a

@@ -29,13 +29,14 @@ std::int64_t startOrigin(const Parameters& parameters) {
 
 }  // namespace
 
-Stepper::Stepper(const Parameters& parameters, const std::shared_ptr<const Model>& model, InputQueue& queue,
-                 Publishers& publishers)
+Stepper::Stepper(const Parameters& parameters, const SceneModel& made, InputQueue& queue, Publishers& publishers)
     : parameters_(parameters),
       queue_(queue),
       publishers_(publishers),
-      session_(model, parameters.seed.value_or(model->scene.seed), startOrigin(parameters), parameters.threads),
-      last_step_(stepsIn(parameters.duration, model->scene.step_period)) {
+      session_(made.model, parameters.seed.value_or(made.model->scene.seed), startOrigin(parameters),
+               parameters.threads),
+      last_step_(stepsIn(parameters.duration, made.model->scene.step_period)) {
+  session_.urdf = made.urdf;
   status_.paused = parameters.start_paused;
 }
 

@@ -15,6 +15,7 @@
 #include "parameters.hpp"
 #include "publishers.hpp"
 #include "run_statistics.hpp"
+#include "scene_source.hpp"
 #include "session.hpp"
 
 namespace vibe {
@@ -37,8 +38,7 @@ enum class Outcome {
 /// answer.
 class Stepper {
  public:
-  Stepper(const Parameters& parameters, const std::shared_ptr<const Model>& model, InputQueue& queue,
-          Publishers& publishers);
+  Stepper(const Parameters& parameters, const SceneModel& made, InputQueue& queue, Publishers& publishers);
   ~Stepper();
 
   void start();

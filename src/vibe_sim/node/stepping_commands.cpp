@@ -118,6 +118,7 @@ void Stepper::afterReplacement() {
   queue_.endMoves();
   status_.scope_moves = status_.overstitch_moves = false;
   restartPace(static_cast<std::int64_t>(ros::WallTime::now().toNSec()));
+  publishers_.announceRun(session_);
   publishers_.wholeState(session_, status_);
 }
 
@@ -148,20 +149,21 @@ Reply Stepper::loadSnapshot(const std::string& file) {
 }
 
 Reply Stepper::loadScene(const std::string& address) {
-  std::shared_ptr<const Model> model;
+  SceneModel made;
   try {
-    model = loadModel(address, "");
+    made = loadModel(address, "");
   } catch (const std::exception& error) {
     return {false, error.what()};
   }
-  return call([this, model]() -> Reply {
+  return call([this, made]() -> Reply {
     const double left = static_cast<double>(last_step_ - statistics_.steps) * session_.time.period();
-    session_.replaceModel(model);
+    session_.replaceModel(made.model);
+    session_.urdf = made.urdf;
     if (last_step_ > 0) last_step_ = statistics_.steps + stepsIn(left, session_.time.period());
     publishers_.announceModel(session_);
     afterReplacement();
-    return {true,
-            "Simulating '" + model->scene.name + "' with " + std::to_string(model->particle_count) + " particles."};
+    return {true, "Simulating '" + made.model->scene.name + "' with " + std::to_string(made.model->particle_count) +
+                      " particles."};
   });
 }
 

@@ -1,4 +1,4 @@
-// vibe_record: records every topic of the graph to a bag, without losing a message, until SIGINT.
+// vibe_record: records the topics of the graph to a bag, without losing a message, until SIGINT.
 
 #include <ros/ros.h>
 
@@ -27,7 +27,8 @@ void onSignal(int number) {
 
 struct Options {
   std::string file;
-  std::string last_topic;
+  std::string last_topic = "applied_input";
+  vibe::RecordingDepth depth = vibe::RecordingDepth::Replayable;
 };
 
 /// @throws Error
@@ -36,13 +37,16 @@ Options readOptions(const std::vector<std::string>& words) {
   for (std::size_t i = 1; i < words.size(); ++i) {
     if (words[i] == "--last" && i + 1 < words.size()) {
       options.last_topic = words[++i];
+    } else if (words[i] == "--all") {
+      options.depth = vibe::RecordingDepth::Everything;
     } else if (words[i].rfind('-', 0) != 0 && options.file.empty()) {
       options.file = words[i];
     } else {
-      throw vibe::Error("Argument '" + words[i] + "' is not understood; call it as: vibe_record [--last TOPIC] FILE");
+      throw vibe::Error("Argument '" + words[i] +
+                        "' is not understood; call it as: vibe_record [--all] [--last TOPIC] FILE");
     }
   }
-  if (options.file.empty()) throw vibe::Error("No file is given; call it as: vibe_record [--last TOPIC] FILE");
+  if (options.file.empty()) throw vibe::Error("No file is given; call it as: vibe_record [--all] [--last TOPIC] FILE");
   return options;
 }
 
@@ -74,16 +78,18 @@ int main(int argc, char** argv) {
     ros::init(argc, argv, "vibe_record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
     if (vibe::asksForHelp(argc, argv)) {
       std::puts(
-          "vibe_record: records every topic of the graph to a bag until Ctrl-C.\n"
-          "Usage: rosrun vibe_sim vibe_record [--last TOPIC] FILE\n"
-          "  --last TOPIC  is subscribed to when all other topics are connected");
+          "vibe_record: records the graph to a bag until Ctrl-C: inputs, events and all that a replay cannot compute\n"
+          "again; of the rest enough to look at it.\n"
+          "Usage: rosrun vibe_sim vibe_record [--all] [--last TOPIC] FILE\n"
+          "  --all         every message of every topic, some 7 MB per second\n"
+          "  --last TOPIC  is subscribed to when all other topics are connected (default: applied_input)");
       return 0;
     }
     const Options options = readOptions({argv, argv + argc});
     std::signal(SIGINT, onSignal);
     std::signal(SIGTERM, onSignal);
     if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
-    vibe::Recorder recorder(options.file, options.last_topic);
+    vibe::Recorder recorder(options.file, options.last_topic, options.depth);
     running = true;
     recordUntilStopped(recorder);
     recorder.close();

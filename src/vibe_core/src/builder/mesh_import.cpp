@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "common/elementary.hpp"
 #include "geometry/rotation.hpp"
 #include "geometry/surface_check.hpp"
 #include "vibe_core/common/error.hpp"
@@ -42,7 +43,7 @@ std::string unitAdvice(double size) {
   for (const double unit : {1.0, 0.01, 0.001, 0.0254}) {
     if (!plausible(size * unit)) continue;
     if (best == 0.0 ||
-        std::abs(std::log(size * unit / kTypicalOrgan)) < std::abs(std::log(size * best / kTypicalOrgan)))
+        std::abs(math::log(size * unit / kTypicalOrgan)) < std::abs(math::log(size * best / kTypicalOrgan)))
       best = unit;
   }
   if (best == 0.0) return "no usual unit makes that an organ of 0.05 to 1 m, so give geometry.target_volume";
@@ -54,7 +55,7 @@ std::string unitAdvice(double size) {
 double findScale(const GeometryScene& geometry, const SurfaceMesh& mesh) {
   const double size = largestSide(mesh);
   if (geometry.target_volume > 0.0) {
-    const double scale = std::cbrt(geometry.target_volume / enclosedVolume(mesh));
+    const double scale = math::cbrt(geometry.target_volume / enclosedVolume(mesh));
     if (plausible(size * scale)) return scale;
     throw Error("geometry.target_volume " + number(geometry.target_volume) + " m^3 makes " + geometry.file + " " +
                 number(size * scale) + " m large; choose a volume that gives an organ of 0.05 to 1 m");

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "builder/mesh_import.hpp"
+#include "common/elementary.hpp"
+#include "common/turn.hpp"
 #include "geometry/procedural_stomach.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/remesh.hpp"
@@ -70,7 +72,7 @@ void markDome(Organ& organ, const TubeEnd& tube, End end) {
 }
 
 Organ buildStomach(const Scene& scene, const Progress& progress) {
-  const double volume = scene.geometry.volume * std::pow(scene.geometry.scale, 3);
+  const double volume = scene.geometry.volume * scene.geometry.scale * scene.geometry.scale * scene.geometry.scale;
   const StomachShape shape = makeStomachShape(volume, scene.geometry.shape);
   Organ organ;
   organ.surface = remesh(shape.surface, scene.geometry.particles, shape.project, progress);
@@ -80,7 +82,7 @@ Organ buildStomach(const Scene& scene, const Progress& progress) {
   markDome(organ, shape.duodenum, End::Duodenum);
   organ.entry = shape.oesophagus.centre;
   organ.entry_axis = -shape.oesophagus.outward;
-  transform(organ, std::cbrt(volume / enclosedVolume(organ.surface)), Eigen::Vector3d::Zero());
+  transform(organ, math::cbrt(volume / enclosedVolume(organ.surface)), Eigen::Vector3d::Zero());
   transform(organ, 1.0, -centroid(organ.surface));
   labelStomach(organ);
   return organ;
@@ -102,7 +104,7 @@ double clearLength(const TriangleTree& tree, const Eigen::Vector3d& start, const
   const Eigen::Vector3d side = direction.unitOrthogonal();
   double clear = tree.firstHit(start, direction);
   for (int k = 0; k < kScopeRays; ++k) {
-    const Eigen::Vector3d offset = Eigen::AngleAxisd(2.0 * M_PI * k / kScopeRays, direction) * side * kScopeRadius;
+    const Eigen::Vector3d offset = rotationAbout(direction, 2.0 * M_PI * k / kScopeRays) * side * kScopeRadius;
     clear = std::min(clear, tree.firstHit(start + offset, direction));
   }
   return clear;
@@ -120,7 +122,7 @@ Eigen::Vector3d longestWayIn(const SurfaceMesh& mesh, const Eigen::Vector3d& ent
     // Fibonacci lattice on the sphere
     const double z = 1.0 - (2.0 * k + 1.0) / kDirections, angle = k * M_PI * (3.0 - std::sqrt(5.0));
     const double r = std::sqrt(1.0 - z * z);
-    const Eigen::Vector3d direction(r * std::cos(angle), r * std::sin(angle), z);
+    const Eigen::Vector3d direction(r * math::cos(angle), r * math::sin(angle), z);
     if (direction.dot(inward) < 0.5) continue;  // within 60 degrees of straight in
     const double length = clearLength(tree, entry + kScopeRadius * 1.5 * inward, direction);
     if (length > best_length && length < std::numeric_limits<double>::infinity()) {
@@ -179,7 +181,7 @@ Organ buildSphere(const Scene& scene, const Progress& progress) {
   const std::size_t count = organ.surface.vertices.size();
   organ.region.assign(count, Region::Body);
   organ.end.assign(count, End::None);
-  for (const auto& v : organ.surface.vertices) organ.wall.push_back(wallAtAngle(std::atan2(v.y(), v.x())));
+  for (const auto& v : organ.surface.vertices) organ.wall.push_back(wallAtAngle(math::atan2(v.y(), v.x())));
   organ.landmarks.oesophagus = organ.landmarks.fundus = radius * Eigen::Vector3d::UnitZ();
   organ.landmarks.pylorus = -radius * Eigen::Vector3d::UnitZ();
   organ.landmarks.incisura = -radius * Eigen::Vector3d::UnitY();

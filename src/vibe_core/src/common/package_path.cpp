@@ -1,9 +1,12 @@
 #include "vibe_core/common/package_path.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -15,6 +18,7 @@ namespace vibe {
 namespace {
 
 const std::string kScheme = "package://";
+constexpr int kDepth = 5;  // of folders below one of ROS_PACKAGE_PATH
 
 std::vector<std::filesystem::path> foldersOf(const char* variable) {
   std::vector<std::filesystem::path> folders;
@@ -23,6 +27,31 @@ std::vector<std::filesystem::path> foldersOf(const char* variable) {
   for (std::string folder; std::getline(list, folder, ':');)
     if (!folder.empty()) folders.emplace_back(folder);
   return folders;
+}
+
+bool isPackage(const std::filesystem::path& folder, const std::string& name) {
+  std::ifstream stream(folder / "package.xml");
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::smatch found;
+  return std::regex_search(text, found, std::regex("<name>\\s*([^<\\s]*)\\s*</name>")) && found[1] == name;
+}
+
+/// Like rospack: a package is called what its package.xml says, wherever it lies; packages do not lie in packages.
+std::optional<std::filesystem::path> searchPackage(const std::filesystem::path& folder, const std::string& package,
+                                                   int depth) {
+  std::error_code unreadable;
+  if (std::filesystem::exists(folder / "package.xml", unreadable)) {
+    if (isPackage(folder, package)) return folder;
+    return std::nullopt;
+  }
+  if (depth == 0 || std::filesystem::exists(folder / "CATKIN_IGNORE", unreadable)) return std::nullopt;
+  std::vector<std::filesystem::path> below;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable))
+    if (entry.is_directory(unreadable) && entry.path().filename().string()[0] != '.') below.push_back(entry.path());
+  std::sort(below.begin(), below.end());
+  for (const auto& next : below)
+    if (auto found = searchPackage(next, package, depth - 1)) return found;
+  return std::nullopt;
 }
 
 std::filesystem::path findPackage(const std::string& package) {
@@ -35,6 +64,8 @@ std::filesystem::path findPackage(const std::string& package) {
   for (const auto& prefix : ownPrefixes()) candidates.push_back(prefix / "share" / package);
   for (const auto& candidate : candidates)
     if (std::filesystem::exists(candidate / "package.xml")) return candidate;
+  for (const auto& folder : foldersOf("ROS_PACKAGE_PATH"))
+    if (const auto found = searchPackage(folder, package, kDepth)) return *found;
   throw Error(
       "There is no package '" + package +
       "' in ROS_PACKAGE_PATH, in CMAKE_PREFIX_PATH or where this program is installed; source the setup.bash of "

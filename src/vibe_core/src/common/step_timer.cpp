@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 namespace {
 
 constexpr double kShortest = 1e-6;  // [s]
-const double kLogRatio = std::log(1.01);
+const double kLogRatio = math::log(1.01);
 
 double readClock(clockid_t clock) {
   timespec now{};
@@ -20,7 +22,7 @@ double readClock(clockid_t clock) {
 }  // namespace
 
 void DurationHistogram::add(double seconds) {
-  const double position = seconds > kShortest ? std::log(seconds / kShortest) / kLogRatio : 0.0;
+  const double position = seconds > kShortest ? math::log(seconds / kShortest) / kLogRatio : 0.0;
   ++bins_[std::min(static_cast<int>(std::min(position, 1e6)), kBins - 1)];
   ++count_;
   sum_ += seconds;
@@ -38,7 +40,7 @@ double DurationHistogram::quantile(double q) const {
   int bin = 0;
   while (bin < kBins - 1 && (seen += bins_[bin]) < std::max<std::uint64_t>(rank, 1)) ++bin;
   // the middle of the bin halves the maximum error; no quantile exceeds the maximum, which is exact
-  return std::min(kShortest * std::exp((bin + 0.5) * kLogRatio), max_);
+  return std::min(kShortest * math::exp((bin + 0.5) * kLogRatio), max_);
 }
 
 void StepTimer::start() {

@@ -1,4 +1,5 @@
 #include "constraints/group_pull.hpp"
+#include "common/turn.hpp"
 #include "constraints/group_draw.hpp"
 
 #include <Eigen/Geometry>
@@ -29,7 +30,7 @@ void turnWith(const std::vector<Eigen::Vector3d>& now, std::vector<Eigen::Vector
     if (!(along > 0)) return;
     const double angle = std::min(torque.norm() / along, kMaxTurn);
     if (!(angle > kMinTurn)) return;
-    const Eigen::AngleAxisd rotation(angle, torque.normalized());
+    const Eigen::Matrix3d rotation = rotationAbout(torque.normalized(), angle);
     for (Eigen::Vector3d& d : offset) d = rotation * d;
   }
 }

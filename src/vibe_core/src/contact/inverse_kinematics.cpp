@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 
 namespace {
@@ -15,7 +17,7 @@ constexpr int kMaxIterations = 100;
 Eigen::Vector3d rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d axis = from.cross(to);
   const double sine = axis.norm();
-  const double angle = std::atan2(sine, from.dot(to));
+  const double angle = math::atan2(sine, from.dot(to));
   if (sine > 1e-12) return axis * (angle / sine);
   return angle > 1 ? Eigen::Vector3d(from.unitOrthogonal() * angle) : Eigen::Vector3d::Zero();
 }

@@ -103,6 +103,8 @@ ToolShape makeShape(const urdf::Geometry* geometry) {
 Eigen::Isometry3d toIsometry(const urdf::Pose& pose) {
   double x = 0, y = 0, z = 0, w = 1;
   pose.rotation.getQuaternion(x, y, z, w);
+  // urdfdom computed it with the C library, whose last bits vary from one machine to another
+  for (double* part : {&x, &y, &z, &w}) *part = std::round(*part * 0x1p40) * 0x1p-40;
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
   result.linear() = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
   result.translation() = Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);

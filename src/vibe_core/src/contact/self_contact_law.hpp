@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 
 constexpr double kContactOnset = 0.25;  ///< strain over which contact of walls sets in [1]
@@ -21,7 +23,7 @@ inline Squeeze squeeze(double s, double straight_below) {
   const bool full = strain > kContactOnset;
   const double h = full ? strain : ramp * ramp / (4 * kContactOnset);
   const double h_slope = full ? 1 : ramp / (2 * kContactOnset), h_curvature = full ? 0 : 1 / (2 * kContactOnset);
-  const double hencky = std::log1p(-h), stress = hencky / (1 - h);
+  const double hencky = math::log1p(-h), stress = hencky / (1 - h);
   const double slope = stress * h_slope;
   const double curvature = (1 - hencky) / ((1 - h) * (1 - h)) * h_slope * h_slope - stress * h_curvature;
   return {0.5 * hencky * hencky + slope * (s - kept), slope, curvature};

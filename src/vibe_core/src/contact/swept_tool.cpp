@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "common/turn.hpp"
+
 namespace vibe {
 
 namespace {
@@ -88,7 +90,7 @@ Eigen::Isometry3d SweptTool::poseAt(const Shape& shape, double fraction) {
   if (fraction == 0) return shape.start;
   if (fraction == 1) return shape.end;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = shape.turned_from.slerp(fraction, shape.turned_to).toRotationMatrix();
+  pose.linear() = between(shape.turned_from, shape.turned_to, fraction).toRotationMatrix();
   pose.translation() = (1 - fraction) * shape.start.translation() + fraction * shape.end.translation();
   return pose;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/turn.hpp"
 #include "contact/inverse_kinematics.hpp"
 #include "contact/tool_builder.hpp"
 #include "contact/urdf_document.hpp"
@@ -50,7 +51,7 @@ void ToolModel::forwardKinematics(const std::array<double, kJointCount>& inputs,
     pose = link_poses[joint.parent_link] * joint.origin;
     if (joint.type == ToolJoint::Type::Fixed) continue;
     if (joint.station >= 0) {
-      if (bent) pose.rotate(Eigen::AngleAxisd(bend.angle(joint.station, joint.direction), joint.axis));
+      if (bent) pose.rotate(rotationAbout(joint.axis, bend.angle(joint.station, joint.direction)));
       continue;
     }
     const double yielded = joint.input < kScopeJointCount ? displacement[joint.input] : 0;
@@ -58,7 +59,7 @@ void ToolModel::forwardKinematics(const std::array<double, kJointCount>& inputs,
     if (joint.type == ToolJoint::Type::Prismatic)
       pose.translate(position * joint.axis);
     else
-      pose.rotate(Eigen::AngleAxisd(position, joint.axis));
+      pose.rotate(rotationAbout(joint.axis, position));
   }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 
 namespace {
@@ -89,7 +91,7 @@ bool WallCrossings::fillCells() {
   }
   if (!std::isfinite(size) || size == 0) return false;
   origin_ = low;
-  cell_size_ = std::max(kCellPerTriangle * 2 * size, std::cbrt((high - low + size).prod() / kMostCells));
+  cell_size_ = std::max(kCellPerTriangle * 2 * size, math::cbrt((high - low + size).prod() / kMostCells));
   cells_ = ((high - low) / cell_size_).cast<int>() + 1;
   begin_.assign(static_cast<std::size_t>(cells_.prod()) + 1, 0);
   const auto forEachCell = [&](const auto& visit) {

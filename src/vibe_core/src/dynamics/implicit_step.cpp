@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/elementary.hpp"
 #include "contact/tool_jacobian.hpp"
 #include "dynamics/tool_contact_rows.hpp"
 #include "geometry/lumen.hpp"
@@ -158,7 +159,7 @@ void ImplicitStep::recover() {
   fresh.elastic_energy = -1;
   fresh.recovery_steps = state_.solver.recovery_steps - 1;
   state_.solver = fresh;
-  const double part = 1 - std::exp(-kRecoveryRate * context_.step);
+  const double part = 1 - math::exp(-kRecoveryRate * context_.step);
   for (int i = 0; i < model_.particle_count; ++i) {
     const Eigen::Vector3d& rest = model_.organ.surface.vertices[i];
     state_.x[i] += part * (rest.x() - state_.x[i]);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/elementary.hpp"
 #include "tissue/shell.hpp"
 
 namespace vibe {
@@ -50,7 +51,7 @@ LossLimits::LossLimits(const ShellElements& shell, const std::vector<Eigen::Vect
 
 bool LossLimits::bursts(double volume, double pressure, bool filling) const {
   if (!(rest_volume_ > 0) || !(volume > 0)) return false;
-  const double stretch = std::cbrt(volume / rest_volume_);
+  const double stretch = math::cbrt(volume / rest_volume_);
   if (!(stretch > limit_stretch_)) return false;
   const auto at = static_cast<std::size_t>((stretch - 1) / kSpacing);
   const double borne = pressure_[std::min(at, pressure_.size() - 1)];

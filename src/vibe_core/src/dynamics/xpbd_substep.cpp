@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
 #include "constraints/depenetration.hpp"
 #include "constraints/gas.hpp"
 #include "contact/deepest_contact.hpp"
@@ -107,7 +108,7 @@ void XpbdSubstep::updateGas() {
 }
 
 void XpbdSubstep::move() {
-  const double decay = std::exp(-model_.scene.tissue.mass_damping * h_);
+  const double decay = math::exp(-model_.scene.tissue.mass_damping * h_);
   accountDamping(decay);
   pool_.parallelFor(model_.particle_count, kGrain * ClusterSet::kLanes, [&](int first, int last) {
     for (int i = first; i < last; ++i) moveParticle(i, decay);

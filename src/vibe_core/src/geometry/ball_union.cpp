@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 
 namespace {
@@ -29,12 +31,12 @@ double BallUnion::evaluate(const Eigen::Vector3d& p, Eigen::Vector3d* gradient) 
     const double distance = d.norm();
     const double exponent = (ball.radius - distance - shift) / blend_;
     if (exponent < kNegligible) continue;
-    const double weight = ball.weight * std::exp(exponent);
+    const double weight = ball.weight * math::exp(exponent);
     sum += weight;
     if (gradient && distance > 0.0) slope += weight / distance * d;
   }
   if (gradient) *gradient = Eigen::Vector3d(slope.x() / flattening_, slope.y(), slope.z()) / sum;
-  return -shift - blend_ * std::log(sum);
+  return -shift - blend_ * math::log(sum);
 }
 
 Eigen::Vector3d BallUnion::offset(const Eigen::Vector3d& p, const Ball& ball) const {

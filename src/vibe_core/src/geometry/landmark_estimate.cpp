@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/elementary.hpp"
+#include "common/turn.hpp"
 #include "geometry/surface_operators.hpp"
 #include "geometry/triangle_tree.hpp"
 #include "vibe_core/common/error.hpp"
@@ -64,7 +66,7 @@ class Reading {
   /// @param width  of the lumen, per vertex [m]
   Reading(const SurfaceMesh& mesh, const std::vector<double>& width)
       : mesh_(mesh),
-        size_(std::cbrt(enclosedVolume(mesh))),
+        size_(math::cbrt(enclosedVolume(mesh))),
         apex_(highest(mesh, width, size_)),
         far_(farthest(mesh, apex_, width)),
         far_width_(width[far_]),
@@ -171,7 +173,7 @@ Landmarks Reading::landmarks() const {
 std::vector<Mark> Reading::marks() const {
   const double narrowing = radius(0.25, 0.5) / radius(0.85, 0.97);
   const Eigen::Vector3d first = course(0.15, 0.45), last = course(0.75, 0.95);
-  const double bend = std::acos(std::clamp(first.dot(last), -1.0, 1.0));
+  const double bend = math::acos(std::clamp(first.dot(last), -1.0, 1.0));
   const Eigen::Vector3d way = (mesh_.vertices[far_] - mesh_.vertices[apex_]) / size_;
   const double frontal = std::abs(first.cross(last).normalized().x());
   return {{ramp(narrowing, 1.5, 2), "it does not narrow towards its far end"},
@@ -197,12 +199,12 @@ Landmarks seenTilted(const SurfaceMesh& surface, const std::vector<double>& widt
 
 // Share of the tilted views that agree; notes the spread.
 Mark steadiness(const SurfaceMesh& surface, const std::vector<double>& width, LandmarkEstimate& estimate) {
-  const double size = std::cbrt(enclosedVolume(surface));
+  const double size = math::cbrt(enclosedVolume(surface));
   const auto here = placesOf(estimate.landmarks);
   int views = 0, same = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (const double angle : {-kTilt, kTilt}) {
-      const Eigen::Matrix3d tilt = Eigen::AngleAxisd(angle, Eigen::Vector3d::Unit(axis)).toRotationMatrix();
+      const Eigen::Matrix3d tilt = rotationAbout(Eigen::Vector3d::Unit(axis), angle);
       const auto there = placesOf(seenTilted(surface, width, tilt));
       bool agrees = true;
       for (std::size_t k = 0; k < here.size(); ++k) {
@@ -218,7 +220,7 @@ Mark steadiness(const SurfaceMesh& surface, const std::vector<double>& width, La
 }  // namespace
 
 LandmarkEstimate estimateLandmarks(const SurfaceMesh& surface) {
-  const std::vector<double> width = lumenWidths(surface, kAround * std::cbrt(enclosedVolume(surface)));
+  const std::vector<double> width = lumenWidths(surface, kAround * math::cbrt(enclosedVolume(surface)));
   const Reading reading(surface, width);
   LandmarkEstimate estimate;
   estimate.landmarks = reading.landmarks();

@@ -73,7 +73,11 @@ class Marcher {
     }
     const auto& one = in.size() == 1 ? in : out;
     const auto& three = in.size() == 1 ? out : in;
-    addTriangle(crossing(one[0], three[0]), crossing(one[0], three[1]), crossing(one[0], three[2]), outward);
+    // one after another: the order numbers the vertices, and compilers evaluate arguments in different orders
+    const int c = crossing(one[0], three[2]);
+    const int b = crossing(one[0], three[1]);
+    const int a = crossing(one[0], three[0]);
+    addTriangle(a, b, c, outward);
   }
 
   Eigen::Vector3d mean(const std::vector<std::int64_t>& nodes) const {

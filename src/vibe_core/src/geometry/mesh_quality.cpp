@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/elementary.hpp"
 #include "geometry/editable_mesh.hpp"
 
 namespace vibe {
@@ -12,7 +13,7 @@ namespace vibe {
 namespace {
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return math::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 double smallestAngle(const SurfaceMesh& mesh) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/elementary.hpp"
 #include "geometry/ball_union.hpp"
 #include "geometry/marching_tetrahedra.hpp"
 #include "geometry/stomach_knots.hpp"
@@ -110,7 +111,7 @@ StomachShape makeStomachShape(double volume, const std::string& kind) {
                 " litres; a stomach can be made with 0.15 to 4 litres (0.15e-3 to 4e-3 m^3)");
   }
   const StomachKnots& given = stomachKnots(kind);
-  const double tube_radius = kTubeRadius * std::cbrt(given.volume / volume);
+  const double tube_radius = kTubeRadius * math::cbrt(given.volume / volume);
   const Row knots = bodyKnots(given, tube_radius);
   const Row body = sample(knots), gullet = sample(gulletKnots(given, tube_radius));
   const auto balls = std::make_shared<BallUnion>(kBlend, kFlattening);
@@ -130,7 +131,7 @@ StomachShape makeStomachShape(double volume, const std::string& kind) {
   shape.oesophagus = makeEnd(gullet[1], gullet[2]);
   shape.duodenum = makeEnd(body[body.size() - 2], body[body.size() - 3]);
 
-  const double factor = std::cbrt(volume / enclosedVolume(shape.surface));
+  const double factor = math::cbrt(volume / enclosedVolume(shape.surface));
   scale(shape, factor);
   shape.project = [balls, factor](const Eigen::Vector3d& p) -> Eigen::Vector3d {
     return factor * balls->project(p / factor);

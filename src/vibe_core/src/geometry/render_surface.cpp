@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "common/elementary.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -60,7 +61,7 @@ void addOldVertex(RenderSurface& render_surface, int vertex, const std::vector<i
   if (neighbours.empty()) {
     addWeight(render_surface, vertex, 1.0);
   } else {
-    const double c = 3.0 / 8.0 + std::cos(2.0 * M_PI / n) / 4.0;
+    const double c = 3.0 / 8.0 + math::cos(2.0 * M_PI / n) / 4.0;
     const double beta = (5.0 / 8.0 - c * c) / n;
     addWeight(render_surface, vertex, 1.0 - n * beta);
     for (const int k : neighbours) addWeight(render_surface, k, beta);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 
 namespace {
@@ -40,7 +42,7 @@ void offsetToVolume(SurfaceMesh& mesh, double volume) {
 }
 
 double scaleToVolume(SurfaceMesh& mesh, double volume) {
-  const double factor = std::cbrt(volume / enclosedVolume(mesh));
+  const double factor = math::cbrt(volume / enclosedVolume(mesh));
   for (auto& v : mesh.vertices) v *= factor;
   return factor;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/elementary.hpp"
 #include "geometry/surface_operators.hpp"
 
 namespace vibe {
@@ -86,7 +87,7 @@ void StomachAxis::placeVertices(const SurfaceMesh& mesh, const std::vector<doubl
     const Eigen::Vector3d out = mesh.vertices[v] - ((1.0 - t) * a.centre + t * b.centre);
     const Eigen::Vector3d front = (1.0 - t) * a.anterior + t * b.anterior;
     const Eigen::Vector3d greater = (1.0 - t) * a.greater + t * b.greater;
-    vertex_angle_[v] = std::atan2(out.dot(greater), out.dot(front));
+    vertex_angle_[v] = math::atan2(out.dot(greater), out.dot(front));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/elementary.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -31,9 +32,10 @@ std::optional<double> logDimensionlessJerk(const std::vector<double>& speed, dou
     sum += difference * difference;
   }
   // T^3 sum (difference / period^2)^2 period: the period drops out but for the number of samples
-  const double jerk = std::pow(static_cast<double>(count), 3) * sum;
+  const auto samples = static_cast<double>(count);
+  const double jerk = samples * samples * samples * sum;
   if (!(jerk > kMinJerk) || !std::isfinite(jerk)) return std::nullopt;
-  return -std::log(jerk);
+  return -math::log(jerk);
 }
 
 MotionRecorder::MotionRecorder(const MotionSettings& settings, std::shared_ptr<SpectralArcLength> spectrum)

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <unsupported/Eigen/FFT>
+
+#include "common/elementary.hpp"
+#include "metrics/fourier_transform.hpp"
 
 namespace vibe {
 namespace {
@@ -28,13 +29,11 @@ int lastAtLeast(const std::vector<double>& magnitude, int count, double min) {
 }  // namespace
 
 struct SpectralArcLength::Tables {
-  Eigen::FFT<double> fft;
+  FourierTransform fourier;
   std::vector<double> padded;
-  std::vector<std::complex<double>> spectrum;
 };
 
 SpectralArcLength::SpectralArcLength(int longest) : tables_(std::make_unique<Tables>()) {
-  tables_->fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   // the transform makes its tables when it meets a length for the first time: here, not in a step
   for (int samples = std::max(longest, 2); samples > 1; samples = (samples + 1) / 2)
     transform(std::vector<double>(samples, 0.0));
@@ -47,10 +46,8 @@ int SpectralArcLength::transform(const std::vector<double>& speed) {
   Tables& t = *tables_;
   t.padded.assign(length, 0.0);
   std::copy(speed.begin(), speed.end(), t.padded.begin());
-  t.spectrum.resize(half);
-  t.fft.fwd(t.spectrum.data(), t.padded.data(), length);
   magnitude_.resize(half);
-  for (int k = 0; k < half; ++k) magnitude_[k] = std::abs(t.spectrum[k]);
+  t.fourier.magnitudes(t.padded, magnitude_);
   return length;
 }
 
@@ -64,7 +61,7 @@ std::optional<double> SpectralArcLength::of(const std::vector<double>& speed, do
   const int last = lastAtLeast(magnitude_, band, kThreshold * max);
   if (last == 0) return std::nullopt;
   double sum = 0;
-  for (int k = 0; k < last; ++k) sum += std::hypot(1.0 / last, (magnitude_[k + 1] - magnitude_[k]) / max);
+  for (int k = 0; k < last; ++k) sum += math::hypot(1.0 / last, (magnitude_[k + 1] - magnitude_[k]) / max);
   return -sum;
 }
 

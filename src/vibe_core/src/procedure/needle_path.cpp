@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/elementary.hpp"
 #include "geometry/triangle_tree.hpp"
 
 namespace vibe {
@@ -73,7 +74,7 @@ double angleAround(const Corners& c, const Eigen::Vector3d& p) {
   if (edges == 0) return 2 * kPi;
   if (edges == 1) return kPi;
   const Eigen::Vector3d u = c[(corner + 1) % 3] - c[corner], v = c[(corner + 2) % 3] - c[corner];
-  return std::atan2(u.cross(v).norm(), u.dot(v));
+  return math::atan2(u.cross(v).norm(), u.dot(v));
 }
 
 Eigen::Vector3d pseudonormal(const std::vector<Candidate>& near, const Eigen::Vector3d& p) {

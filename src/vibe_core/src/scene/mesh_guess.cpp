@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "common/elementary.hpp"
 #include "geometry/landmark_estimate.hpp"
 #include "geometry/remesh.hpp"
 #include "geometry/rotation.hpp"
@@ -26,7 +27,7 @@ double likeliestUnit(const SurfaceMesh& mesh) {
   for (const auto& v : mesh.vertices) box.extend(v);
   double best = 1;
   const auto unlikeliness = [&](double unit) {
-    return std::abs(std::log(box.sizes().maxCoeff() * unit / kTypicalSize));
+    return std::abs(math::log(box.sizes().maxCoeff() * unit / kTypicalSize));
   };
   for (const double unit : {0.01, 0.001, 0.0254})
     if (unlikeliness(unit) < unlikeliness(best)) best = unit;

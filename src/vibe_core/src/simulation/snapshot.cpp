@@ -95,24 +95,9 @@ void add(const std::vector<T>& values, Fnv1a& hash) {
   hash.add(values.data(), values.size() * sizeof(T));
 }
 
-// Rest shape, masses, step and which parts there are: what a state must agree with to be continued.
-std::uint64_t fingerprint(const Model& model) {
-  Fnv1a hash;
-  for (const Eigen::Vector3d& p : model.organ.surface.vertices) hash.add(p.data(), 3 * sizeof(double));
-  add(model.mass, hash);
-  add(model.inverse_mass, hash);
-  hash.add(&model.scene.step_period, sizeof model.scene.step_period);
-  hash.add(&model.substeps, sizeof model.substeps);
-  hash.add(model.scene.tissue.model.data(), model.scene.tissue.model.size());
-  for (bool part : {model.scene.scope.has_value(), model.scene.helix.has_value(), model.scene.suture.has_value(),
-                    model.scene.marking.has_value()})
-    hash.add(&part, sizeof part);
-  return hash.result();
-}
-
 void writeHeader(const Model& model, Writer& writer) {
   const char version = static_cast<char>('0' + kStateVersion);
-  const std::uint64_t fields = fieldFingerprint<State>(), scene = fingerprint(model);
+  const std::uint64_t fields = fieldFingerprint<State>(), scene = modelFingerprint(model);
   writer.block(kMagic, sizeof kMagic);
   writer.block(&version, 1);
   writer.block(&fields, 1);
@@ -134,24 +119,11 @@ void readHeader(const Model& model, const std::string& file, Reader& reader) {
     throw Error("Snapshot '" + file + "' is of version " + version +
                 " but has other fields than this build; save it again with this build.");
   reader.block(&scene, 1);
-  if (scene != fingerprint(model))
+  if (scene != modelFingerprint(model))
     throw Error("Snapshot '" + file + "' belongs to another scene; load the scene it was saved with first.");
 }
 
-}  // namespace
-
-void saveSnapshot(const Model& model, const State& state, const std::string& file) {
-  std::ostringstream out;
-  Writer writer(out);
-  writeHeader(model, writer);
-  transfer(writer, state);
-  writer.checksum();
-  writeFile(file, out.str(), "Snapshot");
-}
-
-State loadSnapshot(const Model& model, const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error("Snapshot '" + file + "' cannot be opened; check the path.");
+State readSnapshot(const Model& model, std::istream& in, const std::string& file) {
   Reader reader(in, file);
   readHeader(model, file, reader);
   State state;
@@ -159,9 +131,49 @@ State loadSnapshot(const Model& model, const std::string& file) {
   const std::string damage = findDamage(state, model);
   if (!damage.empty()) throw Error("Snapshot '" + file + "' is damaged: " + damage + "; save it again.");
   reader.checksum();
-  if (in.peek() != std::ifstream::traits_type::eof())
+  if (in.peek() != std::istream::traits_type::eof())
     throw Error("Snapshot '" + file + "' is longer than a state; save it again.");
   return state;
+}
+
+}  // namespace
+
+std::uint64_t modelFingerprint(const Model& model) {
+  Fnv1a hash;
+  for (const Eigen::Vector3d& p : model.organ.surface.vertices) hash.add(p.data(), 3 * sizeof(double));
+  add(model.mass, hash);
+  add(model.inverse_mass, hash);
+  hash.add(&model.scene.step_period, sizeof model.scene.step_period);
+  hash.add(&model.substeps, sizeof model.substeps);
+  hash.add(model.scene.tissue.model.data(), model.scene.tissue.model.size());
+  for (bool part : {model.scene.scope.has_value(), model.scene.helix.has_value(), model.scene.suture.has_value(),
+                    model.scene.marking.has_value()})
+    hash.add(&part, sizeof part);
+  return hash.result();
+}
+
+std::string encodeSnapshot(const Model& model, const State& state) {
+  std::ostringstream out;
+  Writer writer(out);
+  writeHeader(model, writer);
+  transfer(writer, state);
+  writer.checksum();
+  return out.str();
+}
+
+void saveSnapshot(const Model& model, const State& state, const std::string& file) {
+  writeFile(file, encodeSnapshot(model, state), "Snapshot");
+}
+
+State decodeSnapshot(const Model& model, const std::string& bytes, const std::string& place) {
+  std::istringstream in(bytes);
+  return readSnapshot(model, in, place);
+}
+
+State loadSnapshot(const Model& model, const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw Error("Snapshot '" + file + "' cannot be opened; check the path.");
+  return readSnapshot(model, in, file);
 }
 
 }  // namespace vibe

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 
 namespace {
@@ -71,7 +73,7 @@ void ContactProblem::finish() {
     group.normal_gain = 1 / compliance(i, i);
     if (group.rows == 1) continue;
     const double a = compliance(i + 1, i + 1), b = compliance(i + 2, i + 2), c = compliance(i + 1, i + 2);
-    group.tangent_gain = 1 / (0.5 * (a + b) + std::hypot(0.5 * (a - b), c));  // of the softer direction
+    group.tangent_gain = 1 / (0.5 * (a + b) + math::hypot(0.5 * (a - b), c));  // of the softer direction
   }
   mode_.assign(groups_.size(), Mode::Open);
   factored_mode_.assign(groups_.size(), Mode::Open);

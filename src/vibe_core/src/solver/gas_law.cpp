@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 
 namespace {
@@ -66,7 +68,7 @@ double GasLaw::energy(double volume) const {
 
 // Isothermal, from one volume to another.
 double GasLaw::closedEnergy(double amount, double from, double volume) const {
-  return load_.ambient * (volume - from) - amount * std::log(volume / std::max(from, kSmallestVolume));
+  return load_.ambient * (volume - from) - amount * math::log(volume / std::max(from, kSmallestVolume));
 }
 
 }  // namespace vibe

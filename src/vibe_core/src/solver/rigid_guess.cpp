@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "common/turn.hpp"
+
 namespace vibe {
 
 void moveRigidly(const ElasticBody& body, const MotionView& motion, const TimeScheme& scheme, StepperScratch& scratch) {
@@ -29,7 +31,8 @@ void moveRigidly(const ElasticBody& body, const MotionView& motion, const TimeSc
   inertia += 1e-9 * inertia.trace() * Eigen::Matrix3d::Identity();  // of nodes in a line
   const Eigen::Vector3d turn = inertia.ldlt().solve(spin);
   const double angle = turn.norm();
-  const Eigen::AngleAxisd rotation(angle, angle > 0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX());
+  const Eigen::Matrix3d rotation =
+      rotationAbout(angle > 0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX(), angle);
   for (int i = 0; i < body.nodeCount(); ++i) at(i) = center + shift + rotation * Eigen::Vector3d(at(i) - center);
 }
 

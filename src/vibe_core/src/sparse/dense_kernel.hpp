@@ -18,6 +18,6 @@ using DenseUpdate = void (*)(const Real* a, int row_panels, const Real* b, int d
 
 /// @tparam Real  float or double
 template <class Real>
-DenseUpdate<Real> denseUpdate(InstructionPath path);
+DenseUpdate<Real> denseUpdate(KernelPath path);
 
 }  // namespace vibe

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <xsimd/xsimd.hpp>
-
+#include "common/multiply_add.hpp"
 #include "sparse/dense_kernel.hpp"
 
 namespace vibe {
@@ -22,7 +21,7 @@ struct DenseKernel {
       for (int i = 0; i < kParts; ++i) row[i] = Pack::load_aligned(a + i * kWidth);
       for (int j = 0; j < kDenseColumns; ++j) {
         const Pack factor(b[j]);
-        for (int i = 0; i < kParts; ++i) sum[j][i] = xsimd::fma(row[i], factor, sum[j][i]);
+        for (int i = 0; i < kParts; ++i) sum[j][i] = mulAdd(row[i], factor, sum[j][i]);
       }
     }
     for (int j = 0; j < kDenseColumns; ++j)

@@ -29,9 +29,9 @@ std::int64_t workSize(const FactorPlan& plan) {
 PanelKernels kernelsFor(FactorStorage storage) {
   switch (storage) {
     case FactorStorage::Half:
-      return halfKernels(bestInstructionPath());
+      return halfKernels(kernelPath());
     case FactorStorage::Float:
-      return floatKernels(bestInstructionPath());
+      return floatKernels(kernelPath());
     default:
       return doubleKernels();
   }

@@ -20,7 +20,7 @@ constexpr int panels(int count, int size) {
 }  // namespace
 
 template <class Real>
-FrontElimination<Real>::FrontElimination() : update_(denseUpdate<Real>(bestInstructionPath())) {
+FrontElimination<Real>::FrontElimination() : update_(denseUpdate<Real>(kernelPath())) {
   negative_inverse_a_.resize(kBlock * kBlock);
   negative_inverse_b_.resize(kBlock * kBlock);
   lower_.resize(kBlock * kBlock);

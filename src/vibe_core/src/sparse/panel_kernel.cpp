@@ -5,22 +5,20 @@
 namespace vibe {
 
 PanelKernels halfKernelsSse2();
+PanelKernels halfKernelsFusedSse2();
 PanelKernels halfKernelsAvx2();
 PanelKernels floatKernelsSse2();
+PanelKernels floatKernelsFusedSse2();
 PanelKernels floatKernelsAvx2();
 
-InstructionPath bestInstructionPath() {
-  // every processor with AVX2 also has the conversions of F16C
-  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 ? InstructionPath::Avx2
-                                                                                   : InstructionPath::Sse2;
+PanelKernels halfKernels(KernelPath path) {
+  if (path == KernelPath::Plain) return halfKernelsSse2();
+  return path == KernelPath::FusedSse2 ? halfKernelsFusedSse2() : halfKernelsAvx2();
 }
 
-PanelKernels halfKernels(InstructionPath path) {
-  return path == InstructionPath::Avx2 ? halfKernelsAvx2() : halfKernelsSse2();
-}
-
-PanelKernels floatKernels(InstructionPath path) {
-  return path == InstructionPath::Avx2 ? floatKernelsAvx2() : floatKernelsSse2();
+PanelKernels floatKernels(KernelPath path) {
+  if (path == KernelPath::Plain) return floatKernelsSse2();
+  return path == KernelPath::FusedSse2 ? floatKernelsFusedSse2() : floatKernelsAvx2();
 }
 
 namespace {

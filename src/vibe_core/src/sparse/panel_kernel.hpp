@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/kernel_path.hpp"
+
 namespace vibe {
 
 /// One supernode of c columns and n rows (its own c and those below) in the layout of the kernels. Its panel W holds [
@@ -48,11 +50,8 @@ struct PanelKernels {
   void (*stepOfThree)(const PanelSet& set, int step, int from, float* vectors, float* work);
 };
 
-enum class InstructionPath { Sse2, Avx2 };
-InstructionPath bestInstructionPath();  ///< of this machine
-
-PanelKernels halfKernels(InstructionPath path);
-PanelKernels floatKernels(InstructionPath path);
+PanelKernels halfKernels(KernelPath path);
+PanelKernels floatKernels(KernelPath path);
 PanelKernels doubleKernels();  ///< panel in double, vectors in float
 
 /// Both substitutions in double precision.

@@ -6,8 +6,8 @@
 #endif
 
 #include <cstddef>
-#include <xsimd/xsimd.hpp>
 
+#include "common/multiply_add.hpp"
 #include "sparse/panel_kernel.hpp"
 
 namespace vibe {
@@ -53,21 +53,27 @@ struct Eight {
     for (int i = 0; i < kParts; ++i) part[i].store_aligned(to + i * kWidth);
   }
   void addProduct(const Eight& a, const Eight& b) {
-    for (int i = 0; i < kParts; ++i) part[i] = xsimd::fma(a.part[i], b.part[i], part[i]);
+    for (int i = 0; i < kParts; ++i) part[i] = mulAdd(a.part[i], b.part[i], part[i]);
   }
   void add(const Eight& a) {
     for (int i = 0; i < kParts; ++i) part[i] = part[i] + a.part[i];
   }
-  /// The sums of eight Eights.
+  /// The sums of eight Eights, each ((0 + 1) + (2 + 3)) + ((4 + 5) + (6 + 7)) in every architecture.
   static Eight sums(const Eight* list) {
-    Pack folded[kTile];
-    for (int j = 0; j < kTile; ++j) {
-      folded[j] = list[j].part[0];
-      for (int i = 1; i < kParts; ++i) folded[j] = folded[j] + list[j].part[i];
-    }
     Eight r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = xsimd::haddp(folded + i * kWidth);
+    if constexpr (kParts == 1) {
+      Pack whole[kTile];
+      for (int j = 0; j < kTile; ++j) whole[j] = list[j].part[0];
+      r.part[0] = xsimd::haddp(whole);
+    } else {
+      for (int i = 0; i < kParts; ++i) r.part[i] = fourSums(list + i * kWidth, 0) + fourSums(list + i * kWidth, 1);
+    }
     return r;
+  }
+  static Pack fourSums(const Eight* list, int half) {
+    __m128 a = list[0].part[half], b = list[1].part[half], c = list[2].part[half], d = list[3].part[half];
+    _MM_TRANSPOSE4_PS(a, b, c, d);
+    return Pack(_mm_add_ps(_mm_add_ps(a, b), _mm_add_ps(c, d)));
   }
 };
 

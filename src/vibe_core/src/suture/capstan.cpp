@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "common/elementary.hpp"
 #include "suture/thread_run.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -143,7 +144,7 @@ class SlideProblem {
     for (const int direction : {-1, 1}) {
       double friction = 0;
       for (int k = taker + direction; k >= run.first && k <= run.last; k += direction) {
-        friction += std::log(factor_[direction < 0 ? k : k - 1]);
+        friction += math::log(factor_[direction < 0 ? k : k - 1]);
         if (slack_[k] <= 0) continue;
         if (friction < min) {
           min = friction;
@@ -205,7 +206,7 @@ void checkProblem(const Eigen::Ref<const Eigen::VectorXd>& residual,
 
 double turningAngle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d in = b - a, out = c - b;
-  return std::atan2(in.cross(out).norm(), in.dot(out));
+  return math::atan2(in.cross(out).norm(), in.dot(out));
 }
 
 double capstanFactor(double friction, double angle) {
@@ -213,7 +214,7 @@ double capstanFactor(double friction, double angle) {
     throw Error("An eyelet has the friction " + std::to_string(friction) + " and turns the thread by " +
                 std::to_string(angle) + " rad: both must be numbers from 0 on.");
   if (friction == 0 || angle == 0) return std::isinf(friction) ? friction : 1;
-  return std::exp(friction * angle);
+  return math::exp(friction * angle);
 }
 
 void slideThread(const Eigen::Ref<const Eigen::VectorXd>& residual, const Eigen::Ref<const Eigen::MatrixXd>& compliance,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "common/elementary.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -16,20 +17,20 @@ constexpr double kVertical = 1e-14;
 
 /// ln(sinh(u) / u), accurate to rounding from 0 (where it is u^2 / 6) to where sinh would overflow.
 double logSinhRatio(double u) {
-  if (u > 1) return u - std::log(2 * u) + std::log1p(-std::exp(-2 * u));
+  if (u > 1) return u - math::log(2 * u) + math::log1p(-math::exp(-2 * u));
   const double z = u * u;
   const double rest = 1 + z / 42 * (1 + z / 72 * (1 + z / 110 * (1 + z / 156 * (1 + z / 210))));
-  return std::log1p(z / 6 * (1 + z / 20 * rest));
+  return math::log1p(z / 6 * (1 + z / 20 * rest));
 }
 
 double logSinhRatioSlope(double u) {
-  return u < 0.02 ? u / 3 - u * u * u / 45 : 1 / std::tanh(u) - 1 / u;
+  return u < 0.02 ? u / 3 - u * u * u / 45 : 1 / math::tanh(u) - 1 / u;
 }
 
 /// Solves sinh(u) / u = 1 + excess for u. ln(sinh(u) / u) is convex and sinh(u) / u >= 1 + u^2 / 6, so Newton's method
 /// converges from sqrt(6 excess) down to the root without overshooting. The bounds guard only against rounding.
 double solveSinhRatio(double excess) {
-  const double target = std::log1p(excess);
+  const double target = math::log1p(excess);
   double u = std::sqrt(6 * excess);
   const double min = std::min(u, std::sqrt(6 * target));  // because ln(sinh(u) / u) <= u^2 / 6
   for (int i = 0; i < 60 && u > 0; ++i) {
@@ -69,20 +70,20 @@ void shape(double level, double rise, double spare, Catenary& thread) {
   const double square_excess = spare / (level * level);
   const double u = solveSinhRatio(square_excess / (1 + std::sqrt(1 + square_excess)));
   thread.scale = thread.length * level / (2 * u);
-  thread.lowest = 0.5 * thread.length * (1 - rise / std::tanh(u));
+  thread.lowest = 0.5 * thread.length * (1 - rise / math::tanh(u));
 }
 
 }  // namespace
 
 double Catenary::tension(double arc_length) const {
-  return taut ? 0 : weight * std::hypot(scale, arc_length - lowest);
+  return taut ? 0 : weight * math::hypot(scale, arc_length - lowest);
 }
 
 Eigen::Vector3d Catenary::point(double arc_length) const {
   const double s = std::clamp(arc_length, 0.0, length);
   if (taut) return length > 0 ? Eigen::Vector3d(first + (last - first) * (s / length)) : first;
   const double from = -lowest, to = s - lowest;  // vertical force over weight, at the first end and at s
-  const double first_pull = std::hypot(scale, from), pull = std::hypot(scale, to);
+  const double first_pull = math::hypot(scale, from), pull = math::hypot(scale, to);
   const double height = s == 0 ? 0 : s * ((from + to) / (first_pull + pull));
   double way = 0;
   if (scale > 0) {
@@ -90,7 +91,7 @@ Eigen::Vector3d Catenary::point(double arc_length) const {
     const double p = to / scale, q = from / scale, hyp_p = pull / scale, hyp_q = first_pull / scale;
     const double sum = p * hyp_q + q * hyp_p;
     const double argument = p * q > 0 ? (p - q) * (p + q) / sum : p * hyp_q - q * hyp_p;
-    way = scale * std::asinh(argument);
+    way = scale * math::asinh(argument);
   } else if (to > 0) {
     way = (last - first).dot(across);
   }

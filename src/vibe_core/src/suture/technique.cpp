@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/elementary.hpp"
 #include "suture/technique_templates.hpp"
 #include "suture/technique_wall.hpp"
 
@@ -60,7 +61,7 @@ double misfit(const TechniqueTemplate& drawing, const std::vector<Complex>& bite
   const double size = std::sqrt(square);
   along *= size, against *= size;
   const Complex own = square * drawing.own;
-  const double stiff = square + std::pow(kScatter / kDistortion, 2);
+  const double stiff = square + kScatter * kScatter / (kDistortion * kDistortion);
   const double determinant = square * stiff - std::norm(own);
   const auto explained = [&](Complex free, Complex penalised, Complex mixed) {
     const Complex a = stiff * free - mixed * penalised, b = square * penalised - std::conj(mixed) * free;
@@ -79,15 +80,15 @@ struct MeanMisfit {
 
   void add(double misfit, double weight, const TechniqueTemplate& drawing) {
     if (misfit < min) {
-      sum *= std::exp((misfit - min) / 2);
+      sum *= math::exp((misfit - min) / 2);
       min = misfit;
       best = &drawing;
     }
-    sum += weight * std::exp((min - misfit) / 2);
+    sum += weight * math::exp((min - misfit) / 2);
   }
   double value() const {
     if (best == nullptr) return min;
-    return min - 2 * std::log(sum) - (best->technique == Technique::U ? kUsual : 0);
+    return min - 2 * math::log(sum) - (best->technique == Technique::U ? kUsual : 0);
   }
 };
 
@@ -95,7 +96,7 @@ using Comparison = std::array<MeanMisfit, kTechniqueCount>;
 
 Comparison compare(const std::vector<TechniqueTemplate>& drawings, std::vector<FlatBites> walls) {
   const auto fixed = [](const FlatBites& wall) {
-    return wall.off_wall / (kScatter * kScatter) + std::pow(wall.wrap / kWrap, 2);
+    return wall.off_wall / (kScatter * kScatter) + wall.wrap * wall.wrap / (kWrap * kWrap);
   };
   std::stable_sort(walls.begin(), walls.end(),
                    [&](const FlatBites& a, const FlatBites& b) { return fixed(a) < fixed(b); });
@@ -127,7 +128,7 @@ TechniqueResult nearestDrawing(const std::vector<Eigen::Vector3d>& scaled) {
     for (int k = 0; k < 2; ++k) result.transitions[k] = std::max(-1, misfits[order[0]].best->corners[k] - 1);
   }
   const double rival = min < limit ? std::min(limit, misfits[order[1]].value()) : limit;
-  result.margin = std::isfinite(min) ? std::tanh(std::abs(rival - min) / 4) : 0;
+  result.margin = std::isfinite(min) ? math::tanh(std::abs(rival - min) / 4) : 0;
   return result;
 }
 

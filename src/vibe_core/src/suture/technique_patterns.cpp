@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "common/elementary.hpp"
 #include "common/random.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -24,7 +25,8 @@ class Random {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   int below(int count) { return static_cast<int>(nextInteger(state_) % static_cast<std::uint64_t>(count)); }
   double normal() {  // Box & Muller 1958
-    return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(2 * kPi * uniform());
+    const double size = std::sqrt(-2 * math::log(1 - uniform()));
+    return size * math::cos(2 * kPi * uniform());
   }
   Eigen::Vector3d normal3() {
     const double x = normal(), y = normal(), z = normal();
@@ -37,7 +39,7 @@ class Random {
 
 /// Turtle graphics: bites a unit apart, `vectors` of them per leg, legs scaled to the given lengths.
 void walk(Flat& bites, double direction, double length, int vectors) {
-  const Eigen::Vector2d step = length / vectors * Eigen::Vector2d(std::cos(direction), std::sin(direction));
+  const Eigen::Vector2d step = length / vectors * Eigen::Vector2d(math::cos(direction), math::sin(direction));
   for (int k = 0; k < vectors; ++k) bites.push_back(bites.back() + step);
 }
 
@@ -102,7 +104,7 @@ Flat drawC(Random& random, int vectors) {
   Flat bites;
   for (int k = 0; k <= vectors; ++k) {
     const double angle = sweep * k / vectors;
-    bites.push_back(vectors / sweep * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    bites.push_back(vectors / sweep * Eigen::Vector2d(math::cos(angle), math::sin(angle)));
   }
   return bites;
 }
@@ -137,11 +139,11 @@ Flat draw(Random& random, Technique technique, int vectors) {
 /// Skews, stretches, rotates (except a running suture, which has a direction on the organ), reflects and centres.
 void distort(Random& random, const PatternRanges& ranges, bool turn, Flat& bites) {
   Eigen::Matrix2d map;
-  map << 1, std::tan(random.uniform(-ranges.skew, ranges.skew)), 0,
-      std::exp(random.uniform(std::log(ranges.min_stretch), std::log(ranges.max_stretch)));
+  map << 1, math::tan(random.uniform(-ranges.skew, ranges.skew)), 0,
+      math::exp(random.uniform(math::log(ranges.min_stretch), math::log(ranges.max_stretch)));
   if (random.below(2) == 0) map.col(1) *= -1;
   const double angle = turn ? random.uniform(0, 2 * kPi) : 0;
-  map = Eigen::Rotation2Dd(angle).toRotationMatrix() * map;
+  map = (Eigen::Matrix2d() << math::cos(angle), -math::sin(angle), math::sin(angle), math::cos(angle)).finished() * map;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   for (auto& bite : bites) centre += (bite = map * bite) / static_cast<double>(bites.size());
   for (auto& bite : bites) bite -= centre;
@@ -152,14 +154,14 @@ Eigen::Vector3d onEllipsoid(const Eigen::Vector2d& bite, double radius, double h
   constexpr int kSteps = 64;
   double latitude = 0;
   for (int k = 0; k < kSteps; ++k)
-    latitude += bite.y() / kSteps / std::hypot(radius * std::sin(latitude), half_length * std::cos(latitude));
-  const double around = radius * std::cos(latitude), angle = bite.x() / around;
-  return {around * std::cos(angle), around * std::sin(angle), half_length * std::sin(latitude)};
+    latitude += bite.y() / kSteps / math::hypot(radius * math::sin(latitude), half_length * math::cos(latitude));
+  const double around = radius * math::cos(latitude), angle = bite.x() / around;
+  return {around * math::cos(angle), around * math::sin(angle), half_length * math::sin(latitude)};
 }
 
 Eigen::Vector3d onCylinder(const Eigen::Vector2d& bite, double radius) {
   const double angle = bite.x() / radius;
-  return {radius * std::cos(angle), radius * std::sin(angle), bite.y()};
+  return {radius * math::cos(angle), radius * math::sin(angle), bite.y()};
 }
 
 void check(Technique technique, int bite_count, double noise) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 namespace {
 
@@ -20,10 +22,14 @@ struct Leg {
   int vectors;
 };
 
+Complex polar(double length, double direction) {
+  return {length * math::cos(direction), length * math::sin(direction)};
+}
+
 Points bitesAtCorners(const std::vector<Leg>& legs) {
   Points points{0};
   for (const Leg& leg : legs) {
-    const Complex step = std::polar(leg.length / leg.vectors, leg.direction);
+    const Complex step = polar(leg.length / leg.vectors, leg.direction);
     for (int k = 0; k < leg.vectors; ++k) points.push_back(points.back() + step);
   }
   return points;
@@ -37,7 +43,7 @@ Points bitesAlong(const std::vector<Leg>& legs, int count, double used) {
     double left = used * total * k / (count - 1);
     Complex at = 0;
     for (const Leg& leg : legs) {
-      at += std::polar(std::clamp(left, 0.0, leg.length), leg.direction);
+      at += polar(std::clamp(left, 0.0, leg.length), leg.direction);
       left -= leg.length;
     }
     points.push_back(at);
@@ -188,7 +194,7 @@ void addPolygon(Album& album, Technique technique, int sides, double shortest, d
 
 Points arc(int count, double sweep) {
   Points points;
-  for (int k = 0; k < count; ++k) points.push_back(std::polar(1.0, sweep * k / (count - 1)));
+  for (int k = 0; k < count; ++k) points.push_back(polar(1.0, sweep * k / (count - 1)));
   return points;
 }
 

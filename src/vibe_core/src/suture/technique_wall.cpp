@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 namespace {
 
@@ -42,15 +44,16 @@ bool unroll(const Rows& bites, const Eigen::Vector3d& axis, FlatBites& flat) {
   double radius;
   if (!fitCircle(x, y, centre, radius)) return false;
   const double middle =
-      std::atan2(-centre.y(), -centre.x());  // direction of the bites from the axis; bites are centred
+      math::atan2(-centre.y(), -centre.x());  // direction of the bites from the axis; bites are centred
   flat = {};
   double min = 0, max = 0;
   for (int k = 0; k < bites.rows(); ++k) {
     const double dx = x[k] - centre.x(), dy = y[k] - centre.y();
-    const double angle = std::remainder(std::atan2(dy, dx) - middle, 2 * kPi);
+    const double angle = std::remainder(math::atan2(dy, dx) - middle, 2 * kPi);
     min = std::min(min, angle), max = std::max(max, angle);
     flat.bites.emplace_back(radius * angle, z[k]);
-    flat.off_wall += std::pow(std::hypot(dx, dy) - radius, 2);
+    const double off = math::hypot(dx, dy) - radius;
+    flat.off_wall += off * off;
   }
   flat.wrap = max - min;
   centreBites(flat);

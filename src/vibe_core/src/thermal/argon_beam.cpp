@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
 #include "geometry/ray.hpp"
 
 namespace vibe {
@@ -16,7 +17,7 @@ constexpr double kMeshCarries =
 
 double footprint(double distance, double radius) {
   const double s = distance / radius;
-  return std::exp(-0.5 * s * s * s * s);
+  return math::exp(-0.5 * s * s * s * s);
 }
 
 double longestSide(const SurfaceView& wall, const std::array<int, 3>& t) {
@@ -89,7 +90,7 @@ void ArgonBeam::collect(const Ray& ray, const SurfaceView& wall) {
 }
 
 void ArgonBeam::spreadOver(const Ray& ray, const SurfaceView& wall, const ApcParameters& parameters) {
-  const double radius = parameters.spot_radius + hit_.gap * std::tan(parameters.spread);
+  const double radius = parameters.spot_radius + hit_.gap * math::tan(parameters.spread);
   const double dilution = (parameters.spot_radius / radius) * (parameters.spot_radius / radius);
   hit_.radius = std::max(radius, kMeshCarries * longestSide(wall, wall.triangles[hit_.triangle]));
   collect(ray, wall);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "common/elementary.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -23,7 +24,7 @@ double coolingRate(const ApcParameters& p, GasFlow flow, double cover) {
 
 /// Integral of exp(-rate s) over s from 0 to dt.
 double heldTime(double rate, double dt) {
-  return rate * dt > 1e-12 ? -std::expm1(-rate * dt) / rate : dt;
+  return rate * dt > 1e-12 ? -math::expm1(-rate * dt) / rate : dt;
 }
 
 }  // namespace
@@ -77,11 +78,11 @@ void ThermalDose::advance(const Organ& organ, const std::vector<BeamShare>& shar
                 " entries for " + std::to_string(organ.wall.size()) + " particles; make them with the state.");
   }
   const double everywhere = coolingRate(parameters_, flow, 0);
-  const auto kept = static_cast<float>(std::exp(-everywhere * dt));
+  const auto kept = static_cast<float>(math::exp(-everywhere * dt));
   for (float& h : heat) h = h > kCold ? h * kept : 0;
   for (const BeamShare& share : shares) {
     const double rate = coolingRate(parameters_, flow, share.cover);
-    const double old = static_cast<double>(heat[share.particle]) * std::exp(-(rate - everywhere) * dt);
+    const double old = static_cast<double>(heat[share.particle]) * math::exp(-(rate - everywhere) * dt);
     heat[share.particle] = static_cast<float>(old + share.spot_power * heldTime(rate, dt));
     if (!(heat[share.particle] > dose[share.particle])) continue;
     const BurnGrade before = grade(dose[share.particle]);

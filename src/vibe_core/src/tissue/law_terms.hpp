@@ -1,9 +1,10 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <xsimd/xsimd.hpp>
 
+#include "common/elementary.hpp"
+#include "common/multiply_add.hpp"
 #include "vibe_core/tissue/material_registry.hpp"
 
 // Building blocks of elastic laws, for a scalar or a pack of scalars. Everything is a template or inline in an unnamed
@@ -53,24 +54,6 @@ inline B constant(double value) {
   return B(static_cast<typename ScalarOf<B>::Type>(value));
 }
 
-/// a b + c, fused where the instruction set has it
-template <class B>
-inline B mulAdd(const B& a, const B& b, const B& c) {
-  return a * b + c;
-}
-template <class T, class A>
-inline xsimd::batch<T, A> mulAdd(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b,
-                                 const xsimd::batch<T, A>& c) {
-  return xsimd::fma(a, b, c);
-}
-#ifdef __AVX512F__
-// xsimd 8 has no fused operations for AVX-512
-using WidePack = xsimd::batch<float, xsimd::avx512bw>;
-inline WidePack mulAdd(const WidePack& a, const WidePack& b, const WidePack& c) {
-  return _mm512_fmadd_ps(a, b, c);
-}
-#endif
-
 template <class B>
 inline B larger(const B& a, const B& b) {
   return a > b ? a : b;
@@ -99,7 +82,7 @@ inline xsimd::batch<float, A> choose(const xsimd::batch_bool<float, A>& conditio
 
 /// exp(x) - 1, accurate near 0; |x| < 80
 inline double expMinusOne(double x) {
-  return std::expm1(x);
+  return math::expm1(x);
 }
 
 /// In single precision: x = n ln 2 + r, and the Taylor series of exp(r) - 1 for |r| <= ln(2)/2 (relative error 2e-8).
@@ -123,7 +106,7 @@ inline xsimd::batch<float, A> expMinusOne(const xsimd::batch<float, A>& x) {
 
 /// x - ln(1 + x), x > -1, with a small relative error also near 0, for the energy of small strains.
 inline double logGap(double x) {
-  return x - std::log1p(x);
+  return x - math::log1p(x);
 }
 
 /// In single precision: ln(1 + x) = ln m + e ln 2 with m in [sqrt(1/2), sqrt(2)) and t = m - 1; t - ln(1 + t) is

@@ -1,6 +1,7 @@
 #include "tissue/shape_matching_kernel.hpp"
 
 #include "tissue/shape_matching_kernel_impl.hpp"
+#include "vibe_core/common/arithmetic.hpp"
 
 namespace vibe {
 
@@ -8,18 +9,8 @@ void sweepClustersSse2(const ClusterSweep& sweep, int first_group, int last_grou
   Kernel<xsimd::sse2>::sweep(sweep, first_group, last_group);
 }
 
-namespace {
-bool haveAvx2() {
-  return __builtin_cpu_supports("avx2") != 0;
-}
-}  // namespace
-
 ClusterSweepFunction chooseClusterSweep() {
-  return haveAvx2() ? sweepClustersAvx2 : sweepClustersSse2;
-}
-
-const char* clusterSweepName() {
-  return haveAvx2() ? "avx2" : "sse2";
+  return instructionSet() == InstructionSet::Sse2 ? sweepClustersSse2 : sweepClustersAvx2;
 }
 
 }  // namespace vibe

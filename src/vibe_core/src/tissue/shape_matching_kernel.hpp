@@ -35,10 +35,7 @@ using ClusterSweepFunction = void (*)(const ClusterSweep& sweep, int first_group
 void sweepClustersSse2(const ClusterSweep& sweep, int first_group, int last_group);
 void sweepClustersAvx2(const ClusterSweep& sweep, int first_group, int last_group);
 
-/// The widest path that this machine supports.
+/// For the instruction set in use.
 ClusterSweepFunction chooseClusterSweep();
-
-/// "avx2" or "sse2".
-const char* clusterSweepName();
 
 }  // namespace vibe

@@ -55,7 +55,7 @@ class ShellElements : public ElasticElements {
   ///         material out of range, shares a side with two others, is oriented opposite to its neighbour, or lies
   ///         folded upon it; for a hinged side that does not exist; as checkMaterial for the materials
   explicit ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero(),
-                         ShellKernel kernel = chooseShellKernel());
+                         ShellKernel kernel = shellKernel());
   ~ShellElements() override;
 
   int nodeCount() const override { return static_cast<int>(mesh_.nodes.size()); }

@@ -2,16 +2,17 @@
 
 namespace vibe {
 
-bool haveAvx512() {
-  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
-         __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
-         __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0;
-}
-
-ShellKernel chooseShellKernel() {
-  if (haveAvx512()) return shellKernelAvx512();
-  const bool wide = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
-  return wide ? shellKernelAvx2() : shellKernelSse2();
+ShellKernel shellKernel(KernelPath path) {
+  switch (path) {
+    case KernelPath::Avx512:
+      return shellKernelAvx512();
+    case KernelPath::Avx2:
+      return shellKernelAvx2();
+    case KernelPath::FusedSse2:
+      return shellKernelFusedSse2();
+    default:
+      return shellKernelSse2();
+  }
 }
 
 }  // namespace vibe

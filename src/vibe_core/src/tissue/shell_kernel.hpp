@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/kernel_path.hpp"
 #include "tissue/tetrahedra_kernel.hpp"
 
 namespace vibe {
@@ -47,14 +48,11 @@ struct ShellKernel {
   ShellSweepFunction sweep;
   ShellSweepFunction fibres;  ///< contribution of fibres to the above, without the volume
 };
-ShellKernel shellKernelSse2();
-ShellKernel shellKernelAvx2();    ///< AVX2, FMA; call its functions only on a machine that has both
-ShellKernel shellKernelAvx512();  ///< the bits of AVX2; call its functions only where haveAvx512()
+ShellKernel shellKernelSse2();       ///< plain arithmetic
+ShellKernel shellKernelFusedSse2();  ///< the bits of AVX2 and AVX-512; slow
+ShellKernel shellKernelAvx2();       ///< call the functions of these two only on a machine that has the instructions
+ShellKernel shellKernelAvx512();
 
-/// This machine has AVX2, FMA and the parts F, VL, BW and DQ of AVX-512.
-bool haveAvx512();
-
-/// The widest path that this machine supports.
-ShellKernel chooseShellKernel();
+ShellKernel shellKernel(KernelPath path = kernelPath());
 
 }  // namespace vibe

@@ -34,10 +34,10 @@ struct ShellKernelOfPairs {
   template <class Part>
   [[gnu::always_inline]] static void scatter(const ShellSweep& s, const TetOffsets* offset, const Pack (&f)[5][3],
                                              const Part& part) {
-    Half half[5][3];
+    Half half[1][5][3];
     for (int a = 0; a < 5; ++a)
-      for (int r = 0; r < 3; ++r) half[a][r] = part(f[a][r]);
-    Single::scatter(s, offset, 0, half);
+      for (int r = 0; r < 3; ++r) half[0][a][r] = part(f[a][r]);
+    Single::scatter(s, offset, half);
   }
 
   template <class Part>

@@ -10,7 +10,7 @@ template <class Arch>
 struct ShellKernelOf {
   using Lanes = TetLanes<Arch>;
   using Pack = typename Lanes::Pack;
-  static constexpr int kWidth = static_cast<int>(Pack::size);
+  static constexpr int kWidth = static_cast<int>(Pack::size), kParts = kTetLanes / kWidth;
 
   /// The displacements of a patch relative to node 1, without ghosts.
   [[gnu::always_inline]] static void gather(const ShellSweep& s, const TetOffsets* offset, int lane, Pack (&u1)[3],
@@ -21,33 +21,39 @@ struct ShellKernelOf {
       for (int r = 0; r < 3; ++r) u[a][r] = u[a][r] - u1[r];
     }
   }
-  [[gnu::always_inline]] static void scatter(const ShellSweep& s, const TetOffsets* offset, int lane,
-                                             const Pack (&f)[5][3]) {
-    Pack f1[3];
-    for (int r = 0; r < 3; ++r) f1[r] = -(((f[0][r] + f[1][r]) + (f[2][r] + f[3][r])) + f[4][r]);
-    Lanes::add(s.gradient4, offset[0].lane + lane, f1);
-    for (int a = 0; a < 5; ++a) Lanes::add(s.gradient4, offset[a + 1].lane + lane, f[a]);
+  [[gnu::always_inline]] static void scatter(const ShellSweep& s, const TetOffsets* offset,
+                                             const Pack (&f)[kParts][5][3]) {
+    for (int part = 0; part < kParts; ++part) {
+      Pack f1[3];
+      for (int r = 0; r < 3; ++r)
+        f1[r] = -(((f[part][0][r] + f[part][1][r]) + (f[part][2][r] + f[part][3][r])) + f[part][4][r]);
+      Lanes::add(s.gradient4, offset[0].lane + part * kWidth, f1);
+    }
+    for (int a = 0; a < 5; ++a)
+      for (int part = 0; part < kParts; ++part) Lanes::add(s.gradient4, offset[a + 1].lane + part * kWidth, f[part][a]);
   }
 
   /// @param terms  made from the sweep
   template <Law law, bool ghosts, bool volume, class Sum>
   [[gnu::always_inline]] static void sweepBatch(ShellSweep& s, const WallTerms<Pack>& terms, int batch,
                                                 const TetReals* rows, Sum& energy, Sum& enclosed) {
-    for (int lane = 0; lane < kTetLanes; lane += kWidth) {
-      const TetOffsets* offset = s.node + batch * 6;
+    const TetOffsets* offset = s.node + batch * 6;
+    Pack f[kParts][5][3], share[kParts][3];
+    for (int part = 0; part < kParts; ++part) {
+      const int lane = part * kWidth;
       const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
-      Pack u1[3], u[5][3], f[5][3];
+      Pack u1[3], u[5][3];
       gather(s, offset, lane, u1, u);
       if constexpr (ghosts) placeGhosts(rest, u);
-      energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps>(terms, rest, u, f));
-      if constexpr (ghosts) returnGhosts(rest, f);
-      scatter(s, offset, lane, f);
-      if constexpr (volume) {
-        Pack share[3];
-        enclosed.add(coneVolume(rest, u, u1, share));
-        for (int a = 0; a < 3; ++a) Lanes::add(s.volume_gradient4, offset[a].lane + lane, share);
-      }
+      energy.add(shellEnergy<law, LawFormula<law>::kThicknessSteps>(terms, rest, u, f[part]), part);
+      if constexpr (ghosts) returnGhosts(rest, f[part]);
+      if constexpr (volume) enclosed.add(coneVolume(rest, u, u1, share[part]), part);
     }
+    scatter(s, offset, f);
+    if constexpr (volume)
+      for (int a = 0; a < 3; ++a)
+        for (int part = 0; part < kParts; ++part)
+          Lanes::add(s.volume_gradient4, offset[a].lane + part * kWidth, share[part]);
   }
 
   template <Law law, bool ghosts, bool volume>
@@ -66,20 +72,23 @@ struct ShellKernelOf {
     typename Lanes::Sum energy;
     const TetReals *rows = s.rest, *fibres = s.fibre;
     for (int batch = s.first; batch < s.last;
-         ++batch, rows += ghosts ? kShellGhostRows : kShellRows, fibres += kFibreRows)
-      for (int lane = 0; lane < kTetLanes; lane += kWidth) {
-        const TetOffsets* offset = s.node + batch * 6;
+         ++batch, rows += ghosts ? kShellGhostRows : kShellRows, fibres += kFibreRows) {
+      const TetOffsets* offset = s.node + batch * 6;
+      Pack f[kParts][5][3];
+      for (int part = 0; part < kParts; ++part) {
+        const int lane = part * kWidth;
         const auto rest = [=](int row) { return Pack::load_aligned(rows[row].lane + lane); };
         const auto fibre = [=](int row) { return Pack::load_aligned(fibres[row].lane + lane); };
-        Pack u1[3], u[5][3], f[5][3];
+        Pack u1[3], u[5][3];
         gather(s, offset, lane, u1, u);
-        for (auto& node : f)
+        for (auto& node : f[part])
           for (Pack& value : node) value = Pack(0.0f);
         if constexpr (ghosts) placeGhosts(rest, u);
-        energy.add(fibreEnergy(s.fibre_stiffening, rest, fibre, u, f));
-        if constexpr (ghosts) returnGhosts(rest, f);
-        scatter(s, offset, lane, f);
+        energy.add(fibreEnergy(s.fibre_stiffening, rest, fibre, u, f[part]), part);
+        if constexpr (ghosts) returnGhosts(rest, f[part]);
       }
+      scatter(s, offset, f);
+    }
     return energy.total();
   }
 

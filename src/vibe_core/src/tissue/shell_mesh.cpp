@@ -185,7 +185,7 @@ void ShellElements::measureBending(std::size_t triangle, const PatchMatrix& x, d
   const double t = mesh_.thickness[triangle];
   const double stiffness =
       areaOf(triangle) * t * t * t / 24 * m.young_modulus / (1 - m.poisson_ratio * m.poisson_ratio);
-  rest[kShellBend] = stiffness * 36 * 36 / std::pow(length, 4);
+  rest[kShellBend] = stiffness * 36 * 36 / (length * length * length * length);
 }
 
 void ShellElements::measureFibres() {

@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "common/elementary.hpp"
 #include "tissue/tetrahedra_point.hpp"
 
 // The laws of a solid applied to a wall with zero stress across it, for one wall or a pack of them; law_terms.hpp
@@ -92,6 +93,9 @@ template <Law law, int Steps, class B>
 inline bool within(double x, double low, double high) {
   return x > low && x < high;
 }
+inline bool bothOf(bool a, bool b) {
+  return a && b;
+}
 inline bool allOf(bool condition) {
   return condition;
 }
@@ -101,24 +105,13 @@ inline xsimd::batch_bool<float, A> within(const xsimd::batch<float, A>& x, doubl
   return (x > constant<F>(low)) & (x < constant<F>(high));
 }
 template <class A>
+inline xsimd::batch_bool<float, A> bothOf(const xsimd::batch_bool<float, A>& a, const xsimd::batch_bool<float, A>& b) {
+  return a & b;
+}
+template <class A>
 inline bool allOf(const xsimd::batch_bool<float, A>& condition) {
   return xsimd::all(condition);
 }
-
-/// The next iterate of lanes that are still iterated.
-template <class B, class Mask>
-[[gnu::always_inline]] inline B unlessFinished(const Mask& /*plain*/, const B& /*now*/, const B& next) {
-  return next;
-}
-#ifdef __AVX512F__
-/// Wide packs hold two packs of the AVX2 path, each of which stays where it is once all its lanes have converged.
-template <class Mask>
-[[gnu::always_inline]] inline WidePack unlessFinished(const Mask& plain, const WidePack& now, const WidePack& next) {
-  const unsigned lanes = static_cast<__mmask16>(plain);
-  const unsigned finished = ((lanes & 0xffU) == 0xffU ? 0xffU : 0U) | ((lanes & 0xff00U) == 0xff00U ? 0xff00U : 0U);
-  return _mm512_mask_mov_ps(next, static_cast<__mmask16>(finished), now);
-}
-#endif
 
 /// The laws P(K) + lambda/2 (ln J)^2 are solved for L = 2 ln J within these bounds of D and |L|. There single precision
 /// does not overflow, and J is above kLogStart.
@@ -134,7 +127,7 @@ constexpr double lastStep() {
 /// exact in double precision.
 inline double expGap(double x) {
   return std::abs(x) < 0.01 ? x * x * (1.0 / 2 + x * (1.0 / 6 + x * (1.0 / 24 + x * (1.0 / 120 + x / 720))))
-                            : std::expm1(x) - x;
+                            : math::expm1(x) - x;
 }
 template <class A>
 inline xsimd::batch<float, A> expGap(const xsimd::batch<float, A>& x) {
@@ -199,7 +192,8 @@ template <Law law, class B>
 
 /// The same for the laws P(K) + lambda/2 (ln J)^2 if J is not far from 1, solved for L = 2 ln J. With c = exp(L) / D, K
 /// = tr S - 1 + c - L, the function h = dW/dL = P' (c - 1) + lambda/4 L is nearly linear. One evaluation of fourth
-/// order is sufficient near rest; iterations continue until the steps of all lanes are small.
+/// order is sufficient near rest; iterations continue until the steps of all lanes are small. A lane whose step
+/// is small stays where it is, so that its bits do not depend on its neighbours, nor on the width of a pack.
 /// @param plain  out: where the result is accurate
 template <Law law, int Steps, class B, class Mask>
 [[gnu::always_inline]] inline PlaneStress<B> planeStressOfLog(const WallTerms<B>& terms, WallMetric<B> m, Mask& plain) {
@@ -209,7 +203,7 @@ template <Law law, int Steps, class B, class Mask>
   B h, slope, curve;
   for (int step = 0; step < Steps; ++step) {
     if (step > 0)
-      log = unlessFinished(plain, log, B(larger(smaller(B(log + z), constant<B>(kPlainLog)), constant<B>(-kPlainLog))));
+      log = choose(plain, log, B(larger(smaller(B(log + z), constant<B>(kPlainLog)), constant<B>(-kPlainLog))));
     at = logPoint<law>(terms, m, log, expGap(log));
     h = at.residual(), slope = at.slope(terms.quarter_bulk);
     const B inverse = one / slope, thick = at.p.first * at.c, linear = -h * inverse;
@@ -237,7 +231,7 @@ template <Law law, int Steps, class B, class Mask>
     out.by_i = mulAdd(moved, mulAdd(half * moved, at.p.third, at.p.second), at.p.first);
   }
   out.square = (mulAdd(at.c, growth, at.across) - m.more) * m.inverse_area;
-  plain = plain & within(m.more, kPlainAreaLow - 1, kPlainAreaHigh) & within(log, -kPlainLog, kPlainLog);
+  plain = bothOf(plain, bothOf(within(m.more, kPlainAreaLow - 1, kPlainAreaHigh), within(log, -kPlainLog, kPlainLog)));
   return out;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
 #include "tissue/shell.hpp"
 #include "tissue/shell_fibres.hpp"
 
@@ -91,7 +92,7 @@ SideBlocks sideBlocks(const Material& material, const WallTerms<double>& terms, 
   Eigen::Matrix3d second = withoutNegative(w.second);
   // the stress, without its negative principal values
   const double mean = (w.first[0] + w.first[1]) / 2, half = (w.first[0] - w.first[1]) / 2, shear = w.first[2] / root;
-  const double radius = std::hypot(half, shear), high = std::max(mean + radius, 0.0),
+  const double radius = math::hypot(half, shear), high = std::max(mean + radius, 0.0),
                low = std::max(mean - radius, 0.0);
   const double middle = (high + low) / 2, scale = radius > 0 ? (high - low) / 2 / radius : 0;
   double g[3] = {middle + scale * half, scale * shear, middle - scale * half};

@@ -44,7 +44,7 @@ class TetElements : public ElasticElements {
 
   /// @throws Error with the number of an element whose volume is not positive (at an integration point), or whose node
   ///         or material is out of range; as checkMaterial for the materials
-  explicit TetElements(TetMesh<Nodes> mesh, TetKernel kernel = chooseTetKernel());
+  explicit TetElements(TetMesh<Nodes> mesh, TetKernel kernel = tetKernel());
 
   ~TetElements() override;
 

@@ -2,9 +2,9 @@
 
 namespace vibe {
 
-TetKernel chooseTetKernel() {
-  const bool wide = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
-  return wide ? tetKernelAvx2() : tetKernelSse2();
+TetKernel tetKernel(KernelPath path) {
+  if (path == KernelPath::Plain) return tetKernelSse2();
+  return path == KernelPath::FusedSse2 ? tetKernelFusedSse2() : tetKernelAvx2();
 }
 
 }  // namespace vibe

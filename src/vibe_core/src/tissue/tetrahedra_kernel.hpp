@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "common/kernel_path.hpp"
 #include "vibe_core/tissue/material.hpp"
 
 namespace vibe {
@@ -41,10 +42,10 @@ struct TetKernel {
   const char* name;
   TetSweepFunction linear, quadratic;
 };
-TetKernel tetKernelSse2();
-TetKernel tetKernelAvx2();  ///< AVX2, FMA; call its functions only on a machine that has both
+TetKernel tetKernelSse2();       ///< plain arithmetic
+TetKernel tetKernelFusedSse2();  ///< the bits of AVX2; slow
+TetKernel tetKernelAvx2();       ///< call its functions only on a machine that has AVX2 and FMA
 
-/// The widest path that this machine supports.
-TetKernel chooseTetKernel();
+TetKernel tetKernel(KernelPath path = kernelPath());
 
 }  // namespace vibe

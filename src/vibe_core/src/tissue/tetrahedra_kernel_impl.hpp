@@ -7,13 +7,12 @@
 namespace vibe {
 namespace {
 
-/// Loads the nodes of the lanes, 4 floats each, and adds to them, per instruction path.
+/// Loads the nodes of the lanes, 4 floats each, and adds to them, and forms sums over elements. Here for SSE2, where a
+/// batch has two parts. The order of additions is the same in all instruction sets: everything of a node before the
+/// next node, lanes in ascending order.
 template <class Arch>
-struct TetLanes;
-
-template <>
-struct TetLanes<xsimd::sse2> {
-  using Pack = xsimd::batch<float, xsimd::sse2>;
+struct TetLanes {
+  using Pack = xsimd::batch<float, Arch>;
 
   static void load(const float* base, const std::uint32_t* offset, Pack (&out)[3]) {
     const __m128 a = _mm_loadu_ps(base + offset[0]), b = _mm_loadu_ps(base + offset[1]);
@@ -37,17 +36,18 @@ struct TetLanes<xsimd::sse2> {
 
   static void addTo(float* node, __m128 value) { _mm_storeu_ps(node, _mm_add_ps(_mm_loadu_ps(node), value)); }
 
-  struct Sum {  // in double precision
-    __m128d low = _mm_setzero_pd(), high = _mm_setzero_pd();
+  struct Sum {  // in double precision, two lanes each
+    __m128d lanes[4] = {_mm_setzero_pd(), _mm_setzero_pd(), _mm_setzero_pd(), _mm_setzero_pd()};
 
-    void add(const Pack& value) {
-      low = _mm_add_pd(low, _mm_cvtps_pd(value));
-      high = _mm_add_pd(high, _mm_cvtps_pd(_mm_movehl_ps(value, value)));
+    void add(const Pack& value, int part) {
+      lanes[2 * part] = _mm_add_pd(lanes[2 * part], _mm_cvtps_pd(value));
+      lanes[2 * part + 1] = _mm_add_pd(lanes[2 * part + 1], _mm_cvtps_pd(_mm_movehl_ps(value, value)));
     }
     double total() const {
-      alignas(16) double part[2];
-      _mm_store_pd(part, _mm_add_pd(low, high));
-      return part[0] + part[1];
+      alignas(16) double part[4];
+      _mm_store_pd(part, _mm_add_pd(lanes[0], lanes[2]));
+      _mm_store_pd(part + 2, _mm_add_pd(lanes[1], lanes[3]));
+      return (part[0] + part[1]) + (part[2] + part[3]);
     }
   };
 };
@@ -89,7 +89,7 @@ struct TetLanes<xsimd::fma3<xsimd::avx2>> {
   struct Sum {  // in double precision
     __m256d low = _mm256_setzero_pd(), high = _mm256_setzero_pd();
 
-    void add(const Pack& value) {
+    void add(const Pack& value, int /*part*/ = 0) {
       low = _mm256_add_pd(low, _mm256_cvtps_pd(_mm256_castps256_ps128(value)));
       high = _mm256_add_pd(high, _mm256_cvtps_pd(_mm256_extractf128_ps(value, 1)));
     }
@@ -106,25 +106,29 @@ template <class Arch, int Nodes>
 struct TetKernelOf {
   using Lanes = TetLanes<Arch>;
   using Pack = typename Lanes::Pack;
-  static constexpr int kWidth = static_cast<int>(Pack::size);
+  static constexpr int kWidth = static_cast<int>(Pack::size), kParts = kTetLanes / kWidth;
 
   template <Law law>
   static double sweepLaw(const TetSweep& s) {
     const LawTerms<Pack> terms(*s.constants);
     typename Lanes::Sum energy;
-    for (int batch = s.first; batch < s.last; ++batch)
-      for (int lane = 0; lane < kTetLanes; lane += kWidth) {
-        const TetOffsets* offset = s.node + batch * Nodes;
+    for (int batch = s.first; batch < s.last; ++batch) {
+      const TetOffsets* offset = s.node + batch * Nodes;
+      Pack force[kParts][Nodes][3];
+      for (int part = 0; part < kParts; ++part) {
+        const int lane = part * kWidth, point_stride = s.point_stride;
         const TetReals* rows = s.rest + static_cast<std::ptrdiff_t>(batch) * s.batch_stride;
-        const int point_stride = s.point_stride;
         const auto rest = [=](int point, int row) {
           return Pack::load_aligned(rows[point * point_stride + row].lane + lane);
         };
-        Pack u[Nodes][3], force[Nodes][3];
+        Pack u[Nodes][3];
         for (int a = 0; a < Nodes; ++a) Lanes::load(s.displacement4, offset[a].lane + lane, u[a]);
-        energy.add(elementEnergy<Nodes, law>(terms, u, rest, force));
-        for (int a = 0; a < Nodes; ++a) Lanes::add(s.gradient4, offset[a].lane + lane, force[a]);
+        energy.add(elementEnergy<Nodes, law>(terms, u, rest, force[part]), part);
       }
+      for (int a = 0; a < Nodes; ++a)
+        for (int part = 0; part < kParts; ++part)
+          Lanes::add(s.gradient4, offset[a].lane + part * kWidth, force[part][a]);
+    }
     return energy.total();
   }
 

@@ -12,22 +12,6 @@ namespace {
 constexpr double kGaussNear = 0.58541019662496845446;
 constexpr double kGaussFar = 0.13819660112501051518;
 
-/// c - a b
-template <class B>
-inline B minusMul(const B& a, const B& b, const B& c) {
-  return c - a * b;
-}
-template <class T, class A>
-inline xsimd::batch<T, A> minusMul(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b,
-                                   const xsimd::batch<T, A>& c) {
-  return xsimd::fnma(a, b, c);
-}
-#ifdef __AVX512F__
-inline WidePack minusMul(const WidePack& a, const WidePack& b, const WidePack& c) {
-  return _mm512_fnmadd_ps(a, b, c);
-}
-#endif
-
 /// a b - c d
 template <class B>
 inline B minor(const B& a, const B& b, const B& c, const B& d) {

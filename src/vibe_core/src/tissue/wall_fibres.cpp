@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/elementary.hpp"
 #include "geometry/regions.hpp"
 #include "vibe_core/common/error.hpp"
 
@@ -50,7 +51,7 @@ ShellFibres wallFibres(const FibreScene& scene, const Organ& organ, const std::v
         (organ.surface.vertices[t[1]] - first).cross(organ.surface.vertices[t[2]] - first).normalized();
     const Eigen::Vector3d mean = axis[t[0]] + axis[t[1]] + axis[t[2]];
     const Eigen::Vector3d along = (mean - mean.dot(normal) * normal).normalized(), across = normal.cross(along);
-    const Eigen::Vector3d with = std::cos(scene.angle) * along, beside = std::sin(scene.angle) * across;
+    const Eigen::Vector3d with = math::cos(scene.angle) * along, beside = math::sin(scene.angle) * across;
     fibres.modulus.push_back(scene.modulus * factor[e]);
     fibres.direction.push_back({with + beside, with - beside});
   }

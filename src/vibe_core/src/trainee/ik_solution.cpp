@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/elementary.hpp"
+
 namespace vibe {
 
 namespace {
@@ -49,7 +51,7 @@ IkSolution aimFrom(const Model& model, const Eigen::Vector3d& point, const Eigen
   tool.forwardKinematics(aim.joints, poses);
   const Eigen::Isometry3d tip = model.tool_base * poses[model.tip_link];
   aim.miss = (tip * offset - point).norm();
-  aim.turn = std::acos(std::clamp(tip.linear().col(0).dot(direction), -1.0, 1.0));
+  aim.turn = math::acos(std::clamp(tip.linear().col(0).dot(direction), -1.0, 1.0));
   return aim;
 }
 
@@ -102,11 +104,11 @@ IkSolution reachFor(const Model& model, const Eigen::Vector3d& point, const Eige
 
 std::optional<std::array<double, kJointCount>> rolled(const Model& model, std::array<double, kJointCount> joints,
                                                       double angle) {
-  const double bend = std::hypot(joints[TipUpDown], joints[TipLeftRight]);
-  const double plane = std::atan2(joints[TipLeftRight], joints[TipUpDown]) + angle;
+  const double bend = math::hypot(joints[TipUpDown], joints[TipLeftRight]);
+  const double plane = math::atan2(joints[TipLeftRight], joints[TipUpDown]) + angle;
   joints[Rotation] = std::remainder(joints[Rotation] + angle, 2 * M_PI);
-  joints[TipUpDown] = bend * std::cos(plane);
-  joints[TipLeftRight] = bend * std::sin(plane);
+  joints[TipUpDown] = bend * math::cos(plane);
+  joints[TipLeftRight] = bend * math::sin(plane);
   for (const Joint joint : {Rotation, TipUpDown, TipLeftRight}) {
     const JointLimits& limit = model.tool->limits()[joint];
     if (joints[joint] < limit.lower || joints[joint] > limit.upper) return {};

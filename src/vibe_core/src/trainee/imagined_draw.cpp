@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/elementary.hpp"
 #include "trainee/device_geometry.hpp"
 
 namespace vibe {
@@ -14,7 +15,7 @@ constexpr double kPatch = 5e-3;  // radius of what the helix holds, which moves 
 double following(double distance2, double none2) {
   if (distance2 >= none2) return 0;
   if (distance2 <= kPatch * kPatch) return 1;
-  return std::log(none2 / distance2) / std::log(none2 / (kPatch * kPatch));
+  return math::log(none2 / distance2) / math::log(none2 / (kPatch * kPatch));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/elementary.hpp"
 #include "trainee/ik_solution.hpp"
 
 namespace vibe {
@@ -15,7 +16,7 @@ constexpr double kOblique = 0.7;  // tangent of the angle at which the wall is s
 
 View viewFrom(const Eigen::Vector3d& place, const Eigen::Vector3d& tip, const Eigen::Vector3d& ahead) {
   const Eigen::Vector3d way = place - tip;
-  return {way.norm(), std::acos(std::clamp(way.normalized().dot(ahead), -1.0, 1.0))};
+  return {way.norm(), math::acos(std::clamp(way.normalized().dot(ahead), -1.0, 1.0))};
 }
 
 View viewWith(const Hand::Joints& joints, const Eigen::Vector3d& place, const Model& model) {
@@ -41,7 +42,7 @@ Hand::Joints bestView(const Eigen::Vector3d& place, const Eigen::Vector3d& outwa
     const IkSolution aim =
         aimAt(me.model(), place - distance * ahead, ahead, Eigen::Vector3d::Zero(), me.hand.joints());
     const View view = viewWith(aim.joints, place, me.model());
-    const double cost = view.angle + std::abs(std::log(view.distance / distance));
+    const double cost = view.angle + std::abs(math::log(view.distance / distance));
     if (cost < min) min = cost, best = aim.joints;
   }
   return best;

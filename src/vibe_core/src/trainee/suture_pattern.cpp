@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "common/elementary.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/suture/technique_patterns.hpp"
 
@@ -34,7 +35,7 @@ Flat arc(int bites) {
   Flat places;
   for (int k = 0; k < bites; ++k) {
     const double angle = -M_PI * 2 / 3 + M_PI * 4 / 3 * k / (bites - 1);  // 240 degrees, open to the proximal side
-    places.emplace_back(0.5 * std::cos(angle), -0.5 * std::sin(angle));
+    places.emplace_back(0.5 * math::cos(angle), -0.5 * math::sin(angle));
   }
   return places;
 }

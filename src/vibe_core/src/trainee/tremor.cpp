@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/elementary.hpp"
 #include "common/random.hpp"
 
 namespace vibe {
@@ -30,7 +31,7 @@ Tremor::Tremor(const TremorSettings& settings, std::uint64_t seed) {
 
 double Tremor::at(int joint, double time) const {
   double sum = 0;
-  for (const Wave& wave : waves_[joint]) sum += wave.amplitude * std::sin(wave.angular_frequency * time + wave.phase);
+  for (const Wave& wave : waves_[joint]) sum += wave.amplitude * math::sin(wave.angular_frequency * time + wave.phase);
   return sum;
 }
 

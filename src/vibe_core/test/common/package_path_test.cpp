@@ -48,6 +48,18 @@ TEST_F(PackagePath, findsAPackageInRosPackagePathFirst) {
   EXPECT_EQ(resolveAddress("package://a/x/y"), folder.path() + "/source/a/x/y");
 }
 
+TEST_F(PackagePath, findsAPackageInAFolderOfAnotherName) {
+  const std::string named = folder.path() + "/source/group/other";
+  makePackage(folder.path() + "/source/a_first");
+  makePackage(named);
+  std::ofstream(named + "/package.xml") << "<package>\n  <name> a </name>\n</package>\n";
+  const EnvironmentVariable ros("ROS_PACKAGE_PATH", folder.path() + "/source");
+  EXPECT_EQ(resolveAddress("package://a/x/y"), named + "/x/y");
+  EXPECT_THROW(resolveAddress("package://other2/x"), Error);
+  std::ofstream(folder.path() + "/source/group/CATKIN_IGNORE") << "";
+  EXPECT_THROW(resolveAddress("package://a/x/y"), Error);
+}
+
 TEST_F(PackagePath, findsAPackageInThePrefixOfTheProgramWithoutAnyVariable) {
   const std::string name = "vibe_test_package_" + std::to_string(getpid());
   EXPECT_THROW(resolveAddress("package://" + name), Error);  // control: it is not found before it is there

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -16,6 +17,10 @@
 
 namespace vibe {
 namespace {
+
+bool haveAvx2() {
+  return widestInstructionSet() != InstructionSet::Sse2;
+}
 
 // The nearest number with 11 significant bits, ties to even; zero below `smallest`.
 double roundedToHalf(double value, double smallest) {
@@ -83,7 +88,7 @@ class PanelKernelTest : public ::testing::TestWithParam<std::pair<int, int>> {
     return vector;
   }
 
-  void expectAsPlain(InstructionPath path) {
+  void expectAsPlain(KernelPath path) {
     const PanelKernels kernels = halfKernels(path), plain = doubleKernels();
     expectNear(applied(vector_size, [&](float* v, float* w) { kernels.forward(halfSet(), v, w); }),
                applied(vector_size, [&](float* v, float* w) { plain.forward(wideSet(), v, w); }));
@@ -91,6 +96,23 @@ class PanelKernelTest : public ::testing::TestWithParam<std::pair<int, int>> {
                applied(vector_size, [&](float* v, float* w) { plain.backward(wideSet(), v, w); }));
     expectNear(applied(3 * vector_size, [&](float* v, float* w) { kernels.stepOfThree(halfSet(), 0, 0, v, w); }),
                applied(3 * vector_size, [&](float* v, float* w) { plain.stepOfThree(wideSet(), 0, 0, v, w); }));
+  }
+
+  /// Of all operations, on halves and floats.
+  std::vector<float> allResults(KernelPath path) {
+    std::vector<float> all;
+    const auto append = [&all](const std::vector<float>& more) { all.insert(all.end(), more.begin(), more.end()); };
+    AlignedBuffer<float> single;
+    single.resize(wide.size());
+    for (std::int64_t i = 0; i < wide.size(); ++i) single.data()[i] = static_cast<float>(wide.data()[i]);
+    const auto run = [&](const PanelKernels& kernels, const PanelSet& panel) {
+      append(applied(vector_size, [&](float* v, float* w) { kernels.forward(panel, v, w); }));
+      append(applied(vector_size, [&](float* v, float* w) { kernels.backward(panel, v, w); }));
+      append(applied(3 * vector_size, [&](float* v, float* w) { kernels.stepOfThree(panel, 0, 0, v, w); }));
+    };
+    run(halfKernels(path), halfSet());
+    run(floatKernels(path), set(single.data(), wide_scale.data()));
+    return all;
   }
 
   PanelStep step{};
@@ -103,12 +125,22 @@ class PanelKernelTest : public ::testing::TestWithParam<std::pair<int, int>> {
 };
 
 TEST_P(PanelKernelTest, Sse2EqualsPlainLoopsOverRoundedNumbers) {
-  expectAsPlain(InstructionPath::Sse2);
+  expectAsPlain(KernelPath::Plain);
 }
 
 TEST_P(PanelKernelTest, Avx2EqualsPlainLoopsOverRoundedNumbers) {
-  if (bestInstructionPath() != InstructionPath::Avx2) GTEST_SKIP() << "this processor has no AVX2";
-  expectAsPlain(InstructionPath::Avx2);
+  if (!haveAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  expectAsPlain(KernelPath::Avx2);
+}
+
+TEST_P(PanelKernelTest, FusedPathsGiveTheSameBits) {
+  if (!haveAvx2()) GTEST_SKIP() << "this processor has no AVX2";
+  const std::vector<float> narrow = allResults(KernelPath::FusedSse2);
+  EXPECT_EQ(narrow, allResults(KernelPath::Avx2));
+  EXPECT_EQ(narrow, allResults(KernelPath::Avx512));
+  if (columns > 6) {
+    EXPECT_NE(narrow, allResults(KernelPath::Plain));
+  }
 }
 
 TEST_P(PanelKernelTest, StoresNoSubnormalHalf) {
@@ -137,7 +169,7 @@ using Precisions = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(DensePrecisionTest, Precisions, );
 
 TYPED_TEST(DensePrecisionTest, PathsAgree) {
-  if (bestInstructionPath() != InstructionPath::Avx2) GTEST_SKIP() << "this processor has no AVX2";
+  if (!haveAvx2()) GTEST_SKIP() << "this processor has no AVX2";
   constexpr int kTileRows = kDenseRows<TypeParam>, kDepth = 13, kPanels = 3, kStride = kTileRows * kPanels + 5;
   std::mt19937 generator(5);
   std::normal_distribution<double> normal;
@@ -146,7 +178,8 @@ TYPED_TEST(DensePrecisionTest, PathsAgree) {
   b.resize(kDepth * kDenseColumns);
   for (std::int64_t i = 0; i < a.size(); ++i) a.data()[i] = static_cast<TypeParam>(normal(generator));
   for (std::int64_t i = 0; i < b.size(); ++i) b.data()[i] = static_cast<TypeParam>(normal(generator));
-  for (const InstructionPath path : {InstructionPath::Sse2, InstructionPath::Avx2}) {
+  std::map<KernelPath, std::vector<TypeParam>> results;
+  for (const KernelPath path : {KernelPath::Plain, KernelPath::FusedSse2, KernelPath::Avx2, KernelPath::Avx512}) {
     std::vector<TypeParam> c(kStride * kDenseColumns, 1);
     denseUpdate<TypeParam>(path)(a.data(), kPanels, b.data(), kDepth, c.data(), kStride);
     for (int j = 0; j < kDenseColumns; ++j)
@@ -157,7 +190,11 @@ TYPED_TEST(DensePrecisionTest, PathsAgree) {
                       static_cast<double>(b.data()[k * kDenseColumns + j]);
         EXPECT_NEAR(static_cast<double>(c[j * kStride + i]), expected, this->kTolerance);
       }
+    results[path] = c;
   }
+  EXPECT_EQ(results[KernelPath::FusedSse2], results[KernelPath::Avx2]);
+  EXPECT_EQ(results[KernelPath::FusedSse2], results[KernelPath::Avx512]);
+  EXPECT_NE(results[KernelPath::FusedSse2], results[KernelPath::Plain]);
 }
 
 // W and the Schur complement by their definitions, for fronts of one block, of whole blocks and of what lies between

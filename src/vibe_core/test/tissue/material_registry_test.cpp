@@ -32,7 +32,7 @@ Law copyOfMacklinMueller() {
 }
 
 TEST(MaterialRegistry, ShellOfARegisteredLawIsThatOfTheSameLawInTheLibrary) {
-  for (const ShellKernel& kernel : {shellKernelSse2(), chooseShellKernel()}) {
+  for (const ShellKernel& kernel : {shellKernelSse2(), shellKernel()}) {
     const ShellElements ours(patchwork(Law::MacklinMueller), {0, 0, 0}, kernel);
     const ShellElements theirs(patchwork(copyOfMacklinMueller()), {0, 0, 0}, kernel);
     const Eigen::VectorXd u = randomDisplacement(ours.nodeCount(), 0.1 * kSide);

@@ -79,7 +79,7 @@ TEST(ShellFibres, DoNotFeelRotations) {
 }
 
 /// Everything that holds for a shell holds with fibres, on sheets with all kinds of side and on closed ones.
-void forFibredShells(const std::function<void(const ShellElements&)>& check, ShellKernel kernel = chooseShellKernel()) {
+void forFibredShells(const std::function<void(const ShellElements&)>& check, ShellKernel kernel = shellKernel()) {
   check(ShellElements(fibred(patchwork(Law::Yeoh), V(1, 1, 0), V(1, -2, 0)), {0.02, 0.01, 0}, kernel));
   check(ShellElements(fibred(shaken(sphere(1, 2 * kSide), 0.1 * kSide), V::UnitZ(), V(1, 1, 1)), {0, 0, 0}, kernel));
 }
@@ -102,17 +102,35 @@ TEST(ShellFibres, GradientIsTheDerivativeOfTheEnergy) {
 }
 
 TEST(ShellFibres, SingleIsDoubleOnBothPaths) {
-  for (const ShellKernel& kernel : {shellKernelSse2(), chooseShellKernel()})
+  for (const ShellKernel& kernel : {shellKernelSse2(), shellKernel()})
     forFibredShells(
         [](const ShellElements& elements) {
           for (const double amount : {1e-3, 0.1, 3.0}) {
             const Eigen::VectorXd u = randomDisplacement(elements.nodeCount(), amount * kSide);
             const Evaluation d = inDouble(elements, u), f = inSingle(elements, u);
-            EXPECT_LT((d.gradient - f.gradient).norm(), 2e-5 * d.gradient.norm()) << amount;
+            // at absurd strains the thickness of the wall is less exact: a lane stops after a step below 5 %
+            EXPECT_LT((d.gradient - f.gradient).norm(), (amount < 1 ? 2e-5 : 4e-5) * d.gradient.norm()) << amount;
             EXPECT_NEAR(f.energy, d.energy, 2e-5 * d.energy) << amount;
           }
         },
         kernel);
+}
+
+TEST(ShellFibres, FusedPathsGiveTheSameBits) {
+  if (widestInstructionSet() == InstructionSet::Sse2) GTEST_SKIP() << "this machine has no AVX2";
+  std::vector<Evaluation> all;
+  for (const ShellKernel& kernel : {shellKernelFusedSse2(), shellKernelAvx2(), shellKernelSse2()})
+    forFibredShells(
+        [&all](const ShellElements& elements) {
+          all.push_back(inSingle(elements, randomDisplacement(elements.nodeCount(), 0.3 * kSide)));
+        },
+        kernel);
+  const std::size_t count = all.size() / 3;
+  for (std::size_t k = 0; k < count; ++k) {
+    EXPECT_EQ(all[k].energy, all[count + k].energy);
+    EXPECT_EQ(all[k].gradient, all[count + k].gradient);
+    EXPECT_NE(all[k].gradient, all[2 * count + k].gradient) << "plain arithmetic";
+  }
 }
 
 TEST(ShellFibres, StiffnessIsTheSecondDerivativeWhereTheWallIsFlatAndInTension) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <string>
+
 #include "tissue/shell_worlds.hpp"
 
 namespace vibe {
@@ -23,7 +26,7 @@ void expectSingleIsDouble(ShellKernel kernel) {
 }
 
 bool haveAvx2() {
-  return std::string(chooseShellKernel().name) != "sse2";
+  return widestInstructionSet() != InstructionSet::Sse2;
 }
 
 TEST(ShellKernel, SingleIsDoubleOnTheSse2Path) {
@@ -49,21 +52,40 @@ TEST(ShellKernel, PathsAgree) {
 }
 
 // Small, usual and absurd strains: lanes that need one, several and the rare steps of Newton's method side by side.
-TEST(ShellKernel, Avx512PathHasTheBitsOfAvx2) {
-  if (!haveAvx512()) GTEST_SKIP() << "this machine has no AVX-512";
+void forTwoKernels(const ShellKernel& one, const ShellKernel& other,
+                   const std::function<void(const Evaluation&, const Evaluation&)>& compare) {
   for (const Law law : kLaws)
     for (const double amount : {1e-3, 0.1, 0.5, 3.0}) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(law)) + " " + std::to_string(amount));
       const ShellMesh mesh = patchwork(law);
-      const ShellElements narrow(mesh, Eigen::Vector3d(0.01, 0, 0), shellKernelAvx2());
-      const ShellElements wide(mesh, Eigen::Vector3d(0.01, 0, 0), shellKernelAvx512());
+      const ShellElements narrow(mesh, Eigen::Vector3d(0.01, 0, 0), one),
+          wide(mesh, Eigen::Vector3d(0.01, 0, 0), other);
       Eigen::VectorXd u = randomDisplacement(narrow.nodeCount(), 1e-3 * kSide);
       u.tail(u.size() / 2) = randomDisplacement(narrow.nodeCount(), amount * kSide).tail(u.size() / 2);
-      const Evaluation a = inSingle(narrow, u), b = inSingle(wide, u);
-      EXPECT_EQ(a.energy, b.energy) << static_cast<int>(law) << ' ' << amount;
-      EXPECT_EQ(a.gradient, b.gradient) << static_cast<int>(law) << ' ' << amount;
-      EXPECT_EQ(a.volume, b.volume);
-      EXPECT_EQ(a.volume_gradient, b.volume_gradient);
+      compare(inSingle(narrow, u), inSingle(wide, u));
     }
+}
+
+void expectSameBits(const Evaluation& a, const Evaluation& b) {
+  EXPECT_EQ(a.energy, b.energy);
+  EXPECT_EQ(a.gradient, b.gradient);
+  EXPECT_EQ(a.volume, b.volume);
+  EXPECT_EQ(a.volume_gradient, b.volume_gradient);
+}
+
+TEST(ShellKernel, FusedSse2PathHasTheBitsOfAvx2) {
+  if (!haveAvx2()) GTEST_SKIP() << "this machine has no AVX2";
+  forTwoKernels(shellKernelFusedSse2(), shellKernelAvx2(), expectSameBits);
+}
+
+TEST(ShellKernel, Avx512PathHasTheBitsOfAvx2) {
+  if (widestInstructionSet() != InstructionSet::Avx512) GTEST_SKIP() << "this machine has no AVX-512";
+  forTwoKernels(shellKernelAvx512(), shellKernelAvx2(), expectSameBits);
+}
+
+TEST(ShellKernel, PlainArithmeticHasOtherBits) {
+  forTwoKernels(shellKernelSse2(), shellKernelFusedSse2(),
+                [](const Evaluation& a, const Evaluation& b) { EXPECT_NE(a.gradient, b.gradient); });
 }
 
 TEST(ShellKernel, PiecesAddUpAndAreTheSameEveryTime) {
@@ -90,7 +112,7 @@ TEST(ShellKernel, PiecesAddUpAndAreTheSameEveryTime) {
 }
 
 TEST(ShellKernel, GarbageGivesFiniteForces) {
-  for (const ShellKernel kernel : {shellKernelSse2(), chooseShellKernel()})
+  for (const ShellKernel kernel : {shellKernelSse2(), shellKernel()})
     forAllShells(
         [](const ShellElements& elements) {
           const auto check = [&](const Eigen::VectorXd& u, const char* what) {

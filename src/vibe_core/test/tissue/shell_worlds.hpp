@@ -181,8 +181,7 @@ inline Eigen::MatrixXd denseStiffness(const ElasticElements& elements, const Eig
 }
 
 /// A sheet with all kinds of side, and a closed surface, of every law.
-inline void forAllShells(const std::function<void(const ShellElements&)>& check,
-                         ShellKernel kernel = chooseShellKernel()) {
+inline void forAllShells(const std::function<void(const ShellElements&)>& check, ShellKernel kernel = shellKernel()) {
   for (const Law law : kLaws) {
     SCOPED_TRACE("law " + std::to_string(static_cast<int>(law)));
     {

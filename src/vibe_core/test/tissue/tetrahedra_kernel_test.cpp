@@ -25,7 +25,7 @@ void expectSingleIsDouble(TetKernel kernel) {
 }
 
 bool haveAvx2() {
-  return std::string(chooseTetKernel().name) == "avx2";
+  return widestInstructionSet() != InstructionSet::Sse2;
 }
 
 TEST(TetrahedraKernel, SingleIsDoubleOnTheSse2Path) {
@@ -53,6 +53,27 @@ TEST(TetrahedraKernel, InstructionPathsAgree) {
   for (const Law law : kLaws) {
     expectPathsAgree(linearMesh(law, {3, 2, 1}));
     expectPathsAgree(curvedMesh(law, {3, 2, 1}));
+  }
+}
+
+template <int Nodes>
+void expectFusedPathsGiveTheSameBits(const TetMesh<Nodes>& mesh) {
+  const TetElements<Nodes> narrow(mesh, tetKernelFusedSse2()), wide(mesh, tetKernelAvx2()),
+      plain(mesh, tetKernelSse2());
+  for (const double amount : {1e-4, 0.1, 3.0}) {
+    const Eigen::VectorXd u = randomDisplacement(narrow.nodeCount(), amount * kSide);
+    const Evaluation a = inSingle(narrow, u), b = inSingle(wide, u);
+    EXPECT_EQ(a.energy, b.energy) << amount;
+    EXPECT_EQ(a.gradient, b.gradient) << amount;
+    EXPECT_NE(a.gradient, inSingle(plain, u).gradient) << "plain arithmetic";
+  }
+}
+
+TEST(TetrahedraKernel, FusedPathsGiveTheSameBits) {
+  if (!haveAvx2()) GTEST_SKIP() << "this machine has no AVX2";
+  for (const Law law : kLaws) {
+    expectFusedPathsGiveTheSameBits(linearMesh(law, {3, 2, 1}));
+    expectFusedPathsGiveTheSameBits(curvedMesh(law, {3, 2, 1}));
   }
 }
 

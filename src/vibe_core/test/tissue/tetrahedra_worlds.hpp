@@ -139,7 +139,7 @@ inline TetMesh<10> curvedMesh(Law law, std::array<int, 3> cubes = {2, 1, 1}) {
 // All kinds of element, of every law.
 inline void forAllElements(
     const std::function<void(const ElasticElements&, const std::vector<Eigen::Vector3d>&)>& check,
-    std::array<int, 3> cubes = {2, 1, 1}, TetKernel kernel = chooseTetKernel()) {
+    std::array<int, 3> cubes = {2, 1, 1}, TetKernel kernel = tetKernel()) {
   for (const Law law : kLaws) {
     const TetElements<4> linear(linearMesh(law, cubes), kernel);
     const TetElements<10> straight(straightMesh(law, cubes), kernel), curved(curvedMesh(law, cubes), kernel);

@@ -11,6 +11,7 @@
 #include "panels/event_list.hpp"
 #include "panels/measures_view.hpp"
 #include "panels/panel_colours.hpp"
+#include "panels/record_box.hpp"
 #include "panels/solver_statistics_view.hpp"
 #include "panels/status_summary.hpp"
 #include "panels/stepping_box.hpp"
@@ -46,6 +47,7 @@ ProcedureWidget::ProcedureWidget(QWidget* parent)
       summary_(new StatusSummary),
       commands_(makeCommands()),
       stepping_(makeStepping()),
+      recording_(new RecordBox),
       sutures_(new SutureTable),
       trainee_(wrappingLabel()),
       measures_(new MeasuresView),
@@ -86,6 +88,7 @@ QWidget* ProcedureWidget::makeContent() {
   addPart(column, "Events", events_);
   addPart(column, "Buttons", commands_);
   addPart(column, "Simulation", stepping_);
+  addPart(column, "Recording", recording_);
   addPart(column, "Sutures", sutures_);
   trainee_->setObjectName("trainee");
   addPart(column, "Goals of the trainee", trainee_);
@@ -150,6 +153,7 @@ void ProcedureWidget::setNamespace(const QString& name) {
   events_->clear();
   subscriptions_.listen(name.toStdString());
   sender_.listen(name.toStdString());
+  recording_->setNamespace(name.toStdString());
   refresh();
 }
 
@@ -191,6 +195,7 @@ void ProcedureWidget::refresh() {
   commands_->display(sender_.inControl() || sender_.isTakingControl(), sender_.down(), sender_.sentence(now));
   stepping_->displayState(static_cast<bool>(messages.state), messages.state && messages.state->paused);
   if (!waited_for_.empty()) stepping_->displayWaiting(waited_for_, now - waits_since_);
+  recording_->refresh();
   summary_->display(messages);
   sutures_->display(messages.sutures ? sutureRows(*messages.sutures, messages.progress.get())
                                      : std::vector<SutureRow>());

@@ -16,6 +16,7 @@ class EventList;
 class StatusSummary;
 class MeasuresView;
 class SolverStatisticsView;
+class RecordBox;
 class SteppingBox;
 class SutureTable;
 
@@ -47,6 +48,7 @@ class ProcedureWidget : public QWidget {
   StatusSummary* summary_;
   CommandBox* commands_;
   SteppingBox* stepping_;
+  RecordBox* recording_;
   SutureTable* sutures_;
   QLabel* trainee_;
   MeasuresView* measures_;

@@ -192,7 +192,7 @@ class FailuresTest(unittest.TestCase):
         try:
             deadline = time.monotonic() + 30
             while recorder.poll() is None and time.monotonic() < deadline:
-                publisher.publish("x" * 100000)
+                publisher.publish(os.urandom(50000).hex())  # noise, of which compression takes the half
                 time.sleep(0.01)
             said = recorder.communicate(timeout=10)[1]
             self.assertEqual(recorder.returncode, status, said)

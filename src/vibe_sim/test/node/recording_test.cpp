@@ -10,6 +10,8 @@
 
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 
 #include "conversions.hpp"
 #include "vibe_core/common/error.hpp"
@@ -38,7 +40,7 @@ class RecordingFile : public ::testing::Test {
 
   std::string errorOfReading() {
     try {
-      readRecording(file);
+      Recording{file};
     } catch (const Error& error) {
       return error.what();
     }
@@ -56,16 +58,17 @@ TEST_F(RecordingFile, HoldsSceneInputsAndHashes) {
     writeScene(bag);
     for (int k = 0; k < 3; ++k) bag.write("/applied_input", ros::Time(2 + k), makeStepInput(inputOf(k), k, 0));
     vibe_msgs::SolverStatistics statistics;
-    statistics.steps = 3;
+    statistics.header.stamp = ros::Time(4);
     statistics.state_hash = "0123456789abcdef";
     bag.write("/solver_statistics", ros::Time(5), statistics);
   }
-  const Recording recording = readRecording(file);
-  EXPECT_EQ(recording.scene, "name: recorded");
-  ASSERT_EQ(recording.inputs.size(), 3U);
-  for (int k = 0; k < 3; ++k) EXPECT_EQ(firstDifference(recording.inputs[k], inputOf(k)), "");
-  EXPECT_EQ(recording.hashes.at(3), "0123456789abcdef");
-  EXPECT_TRUE(recording.comparable);
+  const Recording recording(file);
+  ASSERT_EQ(recording.runs().size(), 1U);
+  const RecordedRun& run = recording.runs().front();
+  EXPECT_EQ(run.scene, "name: recorded");
+  ASSERT_EQ(run.steps.size(), 3U);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(firstDifference(run.steps[k].input, inputOf(k)), "");
+  EXPECT_EQ(recording.stateHashes().find(4'000'000'000)->second, "0123456789abcdef");
 }
 
 // A message of another release: step and controls only, with a version unless it is 0.
@@ -88,21 +91,20 @@ TEST_F(RecordingFile, OfAnotherReleaseIsReadIfItsVersionIsKnown) {
     writeScene(bag);
     bag.write("/applied_input", ros::Time(2), foreignInput(1));
   }
-  const Recording recording = readRecording(file);
-  ASSERT_EQ(recording.inputs.size(), 1U);
-  EXPECT_TRUE(recording.comparable);
-  EXPECT_EQ(firstDifference(recording.inputs[0], StepInput()), "");
+  const Recording recording(file);
+  ASSERT_EQ(recording.runs().front().steps.size(), 1U);
+  EXPECT_EQ(firstDifference(recording.runs().front().steps[0].input, StepInput()), "");
 }
 
-TEST_F(RecordingFile, FromBeforeThereWereVersionsIsReadButItsHashesAreNotComparable) {
+TEST_F(RecordingFile, FromBeforeThereWereHashesIsReadWithoutThem) {
   {
     rosbag::Bag bag(file, rosbag::bagmode::Write);
     writeScene(bag);
     bag.write("/applied_input", ros::Time(2), foreignInput(0));
   }
-  const Recording recording = readRecording(file);
-  ASSERT_EQ(recording.inputs.size(), 1U);
-  EXPECT_FALSE(recording.comparable);
+  const Recording recording(file);
+  ASSERT_EQ(recording.runs().front().steps.size(), 1U);
+  EXPECT_FALSE(recording.runs().front().steps[0].has_hashes);
 }
 
 TEST_F(RecordingFile, OfAnUnknownVersionIsRejectedByName) {
@@ -134,6 +136,45 @@ TEST_F(RecordingFile, WithAGapOrWithoutATopicIsRejected) {
     bag.write("/applied_input", ros::Time(3), makeStepInput(inputOf(2), 2, 0));
   }
   expectMentions(errorOfReading(), "step 2 where step 1");
+}
+
+void writeFile(const std::string& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+std::string readFile(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(RecordingFile, EmptyForeignMissingAndCutFilesHaveASentenceEach) {
+  std::remove(file.c_str());
+  expectMentions(errorOfReading(), "check the path");
+  writeFile(file, "");
+  expectMentions(errorOfReading(), "is empty");
+  writeFile(file, "not a bag at all\n");
+  expectMentions(errorOfReading(), "as a bag");
+  {
+    rosbag::Bag bag(file, rosbag::bagmode::Write);
+    std_msgs::String other;
+    bag.write("/chatter", ros::Time(2), other);
+  }
+  expectMentions(errorOfReading(), "not of this simulator");
+  {
+    rosbag::Bag bag(file, rosbag::bagmode::Write);
+    writeScene(bag);
+    for (int k = 0; k < 3; ++k) bag.write("/applied_input", ros::Time(2 + k), makeStepInput(inputOf(k), k, 0));
+  }
+  EXPECT_EQ(errorOfReading(), "");
+  const std::string whole = readFile(file);
+  int sentences = 0;
+  for (std::size_t size = 1; size < whole.size(); size += 97) {
+    writeFile(file, whole.substr(0, size));
+    const std::string sentence = errorOfReading();
+    sentences += sentence.find(file) != std::string::npos;
+    EXPECT_NE(sentence, "") << size;
+  }
+  EXPECT_GT(sentences, 10);
 }
 
 }  // namespace

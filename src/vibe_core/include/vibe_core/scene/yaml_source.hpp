@@ -21,6 +21,7 @@ struct YamlField {
   YAML::Node value;
 
   // Assigning a YAML::Node changes the document that it points into, so fields are only ever copied.
+  YamlField(const YamlField&) = default;
   YamlField& operator=(const YamlField&) = delete;
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <vector>
 
 #include "vibe_core/builder/model_builder.hpp"
@@ -20,8 +21,14 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
 /// The gas source of the scene, or the button, is on.
 bool insufflatorIsOn(const Model& model, const StepInput& input);
 
-/// FNV-1a, 64 bit, over the list of the state's fields and the bits of all of them (state_fields.hpp): equal hashes
-/// mean equal states of builds with the same fields.
+/// XXH3 (Collet), 64 bit, over the list of the state's fields and the bits of all of them (state_fields.hpp): equal
+/// hashes mean equal states of builds with the same fields. Not against forgery.
 std::uint64_t hash(const State& state);
+
+/// The same of an input and the number of the step that used it.
+std::uint64_t hash(const StepInput& input, std::int64_t step);
+
+/// The same of a text, such as a scene.
+std::uint64_t hash(const std::string& text);
 
 }  // namespace vibe

@@ -6,6 +6,17 @@
 
 namespace vibe {
 
+/// The bytes of a snapshot, as saveSnapshot() writes them.
+std::string encodeSnapshot(const Model& model, const State& state);
+
+/// The state of such bytes.
+/// @param place  where they come from, for messages
+/// @throws Error, as loadSnapshot()
+State decodeSnapshot(const Model& model, const std::string& bytes, const std::string& place);
+
+/// What a state must agree with to be continued with a model: rest shape, masses, step, and which parts there are.
+std::uint64_t modelFingerprint(const Model& model);
+
 /// Writes a state to a file: a header with the version and the list of the state's fields (state_fields.hpp) and the
 /// model's fingerprint, then the bits of all fields. The file appears whole or not at all.
 /// @throws Error if the file cannot be written

@@ -1,0 +1,90 @@
+# scripts/cohort with the real simulator and a protocol of a tenth of a second: locally, through Dask, with a bad scene.
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+devel=$root/devel${VIBE_VARIANT:-}
+if [ ! -x "$devel/lib/vibe_core/vibe_cohort" ] || [ ! -e "$devel/lib/vibe_sessions/cohort" ]; then
+  echo 'skipped cohorts (not built; scripts/build builds them)'
+  exit 0
+fi
+export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
+export PYTHONWARNINGS=ignore
+pids=()
+trap '[ ${#pids[@]} -eq 0 ] || kill "${pids[@]}" 2>/dev/null; wait; rm -rf -- "$scratch"' EXIT
+
+inWorkspace() {
+  (set +u && source "$devel/setup.bash" && cd "$scratch" && exec "$@")
+}
+
+# cohort FOLDER [OPTION...]: four trainees of the short protocol
+cohort() {
+  inWorkspace "$devel/lib/vibe_sessions/cohort" --output "$scratch/$1" --script "$scratch/short.yaml" --count 2 \
+    --novice 0 1 "${@:2}"
+}
+
+printf 'name: short\ngoals:\n  - wait: {for: 0.1 s}\n' >"$scratch/short.yaml"
+printf 'colour: red\n' >"$scratch/bad.yaml"
+
+aRowPerSession() {
+  cohort local --jobs 1 && [ "$(cut -d, -f 3,4 "$scratch/local/cohort.csv" | tr '\n' ' ')" = \
+    'novice,seed 0,1 0,2 1,1 1,2 ' ]
+}
+
+# The numbers are those of vibe_cohort.
+theRowsOfTheProgram() {
+  inWorkspace "$devel/lib/vibe_core/vibe_cohort" --script "$scratch/short.yaml" --count 1 --first-seed 2 --novice 1 \
+    >"$scratch/row.csv"
+  [ "$(tail -n 1 "$scratch/row.csv")" = "$(tail -n 1 "$scratch/local/cohort.csv" | cut -d, -f 3-)" ]
+}
+
+# What is done is not done again: rows keep their times.
+goesOn() {
+  local before
+  rm "$scratch/local/rows/stomach_novice1_seed2.json" "$scratch/local/cohort.csv"
+  before=$(stat -c %y "$scratch/local/rows/stomach_novice0_seed1.json")
+  inWorkspace "$devel/lib/vibe_sessions/cohort" --output local &&
+    [ "$(stat -c %y "$scratch/local/rows/stomach_novice0_seed1.json")" = "$before" ] &&
+    [ "$(wc -l <"$scratch/local/cohort.csv")" = 5 ]
+}
+
+startDask() {
+  local address='' k
+  inWorkspace dask-scheduler --host 127.0.0.1 --port 0 --no-dashboard --scheduler-file "$scratch/dask.json" \
+    >"$scratch/scheduler.log" 2>&1 &
+  pids+=($!)
+  for k in $(seq 100); do
+    address=$(sed -nE 's/.*"address": "([^"]+)".*/\1/p' "$scratch/dask.json" 2>/dev/null || true)
+    [ -z "$address" ] || break
+    sleep 0.2
+  done
+  for k in 1 2; do
+    inWorkspace dask-worker "$address" --host 127.0.0.1 --nthreads 1 --no-dashboard --local-directory "$scratch" \
+      >"$scratch/worker$k.log" 2>&1 &
+    pids+=($!)
+  done
+  scheduler=${address#tcp://}
+}
+
+throughDaskTheSame() {
+  cohort dask --scheduler "$scheduler" && cmp "$scratch/dask/cohort.csv" "$scratch/local/cohort.csv"
+}
+
+aBadSceneIsListed() {
+  local said status=0
+  said=$(cohort bad --scene "$scratch/bad.yaml" package://vibe_core/scenes/stomach_j.yaml 2>&1) || status=$?
+  printf '%s\n' "$said"
+  [ "$status" = 1 ] && grep -q 'bad_novice0_seed1 and 3 more failed: .*bad.yaml:1.*colour' <<<"$said" &&
+    [ "$(wc -l <"$scratch/bad/cohort.csv")" = 5 ] && [ "$(wc -l <"$scratch/bad/failed.csv")" = 5 ]
+}
+
+drawsACurve() {
+  inWorkspace "$devel/lib/vibe_sessions/cohort" --plot local && [ -s "$scratch/local/learning_curve.png" ]
+}
+
+startDask
+check 'cohorts: a row per session' aRowPerSession
+check 'cohorts: the rows of vibe_cohort' theRowsOfTheProgram
+check 'cohorts: go on where they ended' goesOn
+check 'cohorts: through Dask the same table' throughDaskTheSame
+check 'cohorts: a bad scene is listed, the others go on' aBadSceneIsListed
+check 'cohorts: a learning curve' drawsACurve
+check 'cohorts: another plan is refused' refuses 2 'another plan: count was 2, not 3' cohort local --count 3

@@ -1,0 +1,79 @@
+# The workspace works from its install space (catkin_make install), and packages of others build against that alone.
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+if [ -n "${VIBE_VARIANT:-}" ] || [ ! -d "$root/build/vibe_core" ]; then
+  echo 'skipped install (not built, or with sanitizers)'
+  exit 0
+fi
+prefix=$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$root/build/CMakeCache.txt")
+space=$scratch$prefix # catkin writes the setup files to this prefix, whatever `cmake --install --prefix` says
+
+installs() {
+  DESTDIR=$scratch cmake --install "$root/build" >"$scratch/install.txt" || { tail "$scratch/install.txt"; return 1; }
+  [ -f "$space/setup.bash" ]
+}
+check 'the workspace is installed' installs
+
+# inSpace PROGRAM ARGUMENT...: with the environment of the install space alone.
+inSpace() {
+  env -i HOME="$HOME" PATH="/usr/local/bin:/usr/bin:/bin" LANG=C.UTF-8 ROS_HOSTNAME=localhost ROS_HOME="$scratch/ros" \
+    ROS_MASTER_URI="${ROS_MASTER_URI:-http://localhost:11311}" \
+    bash -c 'setup=$1/setup.bash words=("${@:2}") && set -- && source "$setup" && exec "${words[@]}"' bash "$space" "$@"
+}
+
+# Nothing of the source folder or of the development space may be in use.
+isAlone() {
+  inSpace env | grep -E '^(CMAKE_PREFIX_PATH|ROS_PACKAGE_PATH|PYTHONPATH|LD_LIBRARY_PATH)=' >"$scratch/env.txt"
+  cat "$scratch/env.txt"
+  grep -qF "$space" "$scratch/env.txt" && ! sed "s|$space||g" "$scratch/env.txt" | grep -F "$root/"
+}
+check 'its environment has no path of the sources' isAlone
+
+runsAScene() {
+  inSpace rosrun vibe_core vibe_headless --script package://vibe_core/trainees/demo/grabs.yaml --duration 1 --quiet
+}
+check 'a scene and a script of the install space run' runsAScene
+
+findsPlugins() {
+  inSpace rospack plugins --attrib=plugin rviz | tee "$scratch/plugins.txt"
+  grep -q "^vibe_rviz_plugins $space/" "$scratch/plugins.txt"
+}
+check 'rviz finds the plugins' findsPlugins
+
+helps() {
+  local program
+  for program in 'vibe_sim sim_node' 'vibe_sim vibe_replay' 'vibe_sim vibe_record' 'vibe_sim vibe_player' \
+    'vibe_sessions report' 'vibe_sessions cohort' 'vibe_sessions regression' 'vibe_benchmarks vibe_bench'; do
+    # shellcheck disable=SC2086
+    inSpace rosrun $program --help >"$scratch/help.txt" 2>&1 || { echo "$program"; cat "$scratch/help.txt"; return 1; }
+  done
+}
+check 'its programs start' helps
+
+aRegressionPasses() {
+  inSpace rosrun vibe_sessions regression "$space/share/vibe_sessions/regressions/sphere.regression.yaml"
+}
+check 'a shipped regression passes' aRegressionPasses
+
+# build NAME: a workspace of somebody else with this example alone, on top of the install space.
+build() {
+  local mine=$scratch/$1
+  mkdir -p "$mine/src"
+  ln -s /usr/share/catkin/cmake/toplevel.cmake "$mine/src/CMakeLists.txt"
+  cp -r "$root/examples/$1" "$mine/src/$1"
+  inSpace cmake -S "$mine/src" -B "$mine/build" -DCATKIN_DEVEL_PREFIX="$mine/devel" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_INSTALL_PREFIX="$mine/install" -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 &&
+    inSpace cmake --build "$mine/build" -j2 && inSpace cmake --build "$mine/build" -j2 --target tests &&
+    inSpace env --chdir="$mine/build" ctest --output-on-failure --no-tests=error --timeout 600
+}
+for name in law constraint lab; do
+  check "examples/$name builds and passes its tests on the install space alone" build "$name"
+done
+
+# Control: what is not installed is not found.
+noticesWhatIsMissing() {
+  mv "$space/include/vibe_core/tissue/material_registry.hpp" "$scratch/"
+  ! build law >/dev/null 2>&1
+}
+rm -rf -- "$scratch/law"
+check 'a header that is not installed is noticed' noticesWhatIsMissing

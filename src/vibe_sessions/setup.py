@@ -1,0 +1,10 @@
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(
+    **generate_distutils_setup(
+        packages=["vibe_sessions", "vibe_sessions.report"],
+        package_dir={"": "src"},
+        package_data={"vibe_sessions.report": ["templates/*"]},
+    )
+)

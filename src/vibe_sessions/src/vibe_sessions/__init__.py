@@ -1,0 +1,1 @@
+"""Recorded sessions: reports, cohorts, regressions."""
