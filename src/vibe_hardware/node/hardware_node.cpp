@@ -165,7 +165,8 @@ void HardwareNode::watchSilence(DeviceKind kind) {
 
 void HardwareNode::publishJoints(DeviceKind kind, double time) {
   if (kind == DeviceKind::Haptic) haptic_publisher_.publish(makeHapticJoints(joints_, haptic_stamps_.at(time)));
-  if (!joints_.leads(kind) || !joints_.isKnown()) return;
+  // With every report of either device: the wheels of one must not wait for the next report of the other.
+  if (!joints_.isKnown() || !joints_.calibration().uses(kind)) return;
   scope_publisher_.publish(makeScopeJoints(joints_, scope_stamps_.at(time)));
 }
 

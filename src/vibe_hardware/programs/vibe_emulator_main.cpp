@@ -4,12 +4,15 @@
 #include <cstdio>
 #include <ctime>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "option_checks.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
+#include "vibe_hardware/emulator/blink_hand.hpp"
+#include "vibe_hardware/emulator/blink_log.hpp"
 #include "vibe_hardware/emulator/emulator.hpp"
 #include "vibe_hardware/emulator/random_hand.hpp"
 #include "vibe_hardware/emulator/recorded_hand.hpp"
@@ -31,14 +34,27 @@ struct Options {
   std::string config = "package://vibe_hardware/config/devices.yaml";
   std::string folder = defaultSocketFolder(), serial = "EMULATOR", drive = "voltage";
   double duration = 0;
+  double clock_error = 0;  // [ppm]
+  BlinkSetup blink;
+  std::string blink_log;
   bool uhid = false;
 };
 
 void addOptions(CLI::App& app, Options& o) {
-  app.add_option("--hand", o.hand, "who moves the devices: script FILE, recorded FILE or random (default: random)")
+  app.add_option("--hand", o.hand, "who moves the devices: script FILE, recorded FILE, random, or blink [SCRIPT] (default: random)")
       ->type_name("KIND [FILE]")
       ->expected(1, 2);
-  app.add_option("--seed", o.seed, "of the random hand (default: 1)")->type_name("N")->check(wholeNumber());
+  app.add_option("--seed", o.seed, "of the random hand and of the blinks (default: 1)")->type_name("N")->check(wholeNumber());
+  app.add_option("--blinks", o.blink.count, "how often the hand blinks (default: 1000)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000));
+  app.add_option("--blink-jump", o.blink.step, "by how much tip_left_right jumps (default: 0.03)")
+      ->type_name("RAD")
+      ->check(CLI::Range(-1.0, 1.0));
+  app.add_option("--blink-log", o.blink_log, "write when the blinks happened and were reported")->type_name("FILE");
+  app.add_option("--clock-error", o.clock_error, "by how much the clock of the devices goes slow (default: 0)")
+      ->type_name("PPM")
+      ->check(CLI::Range(-10000.0, 10000.0));
   app.add_option("--config", o.config, "calibration of the devices (default: " + o.config + ")")->type_name("FILE");
   app.add_option("--folder", o.folder, "of the sockets of the devices (default: " + o.folder + ")")->type_name("DIR");
   app.add_flag("--uhid", o.uhid, "create the devices in the kernel, through /dev/uhid, instead of sockets");
@@ -51,14 +67,23 @@ void addOptions(CLI::App& app, Options& o) {
   app.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.\n");
 }
 
+std::shared_ptr<const Hand> makeBlinkHand(const Options& o) {
+  std::shared_ptr<const Hand> script;
+  if (o.hand.size() > 1) script = std::make_shared<ScriptedHand>(TraineeScript::load(resolveAddress(o.hand[1])));
+  BlinkSetup setup = o.blink;
+  setup.seed = o.seed;
+  return std::make_shared<BlinkHand>(setup, script);
+}
+
 std::shared_ptr<const Hand> makeHand(const Options& o, const Calibration& calibration) {
   const std::string& kind = o.hand[0];
   if (kind == "random") {
     if (o.hand.size() > 1) throw Error("--hand random takes no file; remove '" + o.hand[1] + "'.");
     return std::make_shared<RandomHand>(o.seed);
   }
+  if (kind == "blink") return makeBlinkHand(o);
   if (kind != "script" && kind != "recorded")
-    throw Error("--hand '" + kind + "' is not known; write script FILE, recorded FILE or random.");
+    throw Error("--hand '" + kind + "' is not known; write script FILE, recorded FILE, random or blink [SCRIPT].");
   if (o.hand.size() < 2) throw Error("--hand " + kind + " needs a file; write --hand " + kind + " FILE.");
   const std::string file = resolveAddress(o.hand[1]);
   if (kind == "script") return std::make_shared<ScriptedHand>(TraineeScript::load(file));
@@ -75,16 +100,25 @@ struct Connection {
       server = std::make_unique<SocketServer>(o.folder, name, usb);
   }
 
-  void serve() {
+  /// @return whether a report has left the device
+  bool serve() {
     std::uint8_t report[vibe_firmware::kInputReportSize];
-    if (device.nextReport(report)) server->publish(report, sizeof report);
+    const bool due = device.nextReport(report);
+    if (due) server->publish(report, sizeof report);
     server->serve();
+    return due;
   }
 
   EmulatedDevice& device;
   UsbHost usb;
   std::unique_ptr<DeviceServer> server;
 };
+
+std::int64_t wallClock() {
+  timespec time{};
+  ::clock_gettime(CLOCK_REALTIME, &time);
+  return 1'000'000'000LL * time.tv_sec + time.tv_nsec;
+}
 
 double monotonic() {
   timespec time{};
@@ -106,12 +140,11 @@ class Session {
 
   void run() {
     const double start = monotonic();
-    TickSchedule schedule(start);
+    TickSchedule schedule(start, 1e-6 * options_.clock_error);
     while (stopped == 0 && (options_.duration == 0 || emulator_.time() < options_.duration)) {
       const int due = schedule.due(monotonic());
       for (int i = 0; i < due; ++i) {
-        emulator_.tick();
-        if (haptic_) haptic_->serve(), input_->serve();
+        tick();
       }
       if (toggled != 0) toggle();
       report(schedule);
@@ -122,8 +155,24 @@ class Session {
 
  private:
   Session(const Options& options, const EmulatorSetup& setup)
-      : options_(options), emulator_(setup, makeHand(options, setup.calibration)) {
+      : Session(options, setup, makeHand(options, setup.calibration)) {}
+
+  Session(const Options& options, const EmulatorSetup& setup, const std::shared_ptr<const Hand>& hand)
+      : options_(options), emulator_(setup, hand) {
+    const auto* blinks = dynamic_cast<const BlinkHand*>(hand.get());
+    if (!options.blink_log.empty() && blinks == nullptr)
+      throw Error("--blink-log needs a hand that blinks; add --hand blink.");
+    if (!options.blink_log.empty()) blink_log_.emplace(options.blink_log, blinks->blinks());
     plug();
+  }
+
+  void tick() {
+    emulator_.tick();
+    if (blink_log_) blink_log_->tick(emulator_.handTime(), wallClock());
+    if (!haptic_) return;
+    haptic_->serve();
+    const bool reported = input_->serve();
+    if (blink_log_ && reported) blink_log_->report(wallClock());
   }
 
   static EmulatorSetup setupOf(const Options& options) {
@@ -184,6 +233,7 @@ class Session {
 
   const Options& options_;
   Emulator emulator_;
+  std::optional<BlinkLog> blink_log_;
   std::unique_ptr<Connection> haptic_, input_;
   std::uint64_t dropped_ = 0;
   double next_warning_ = 0;

@@ -15,7 +15,7 @@ constexpr std::uint32_t kQueue = 10000;  // none may be lost in lock-step; the q
 }  // namespace
 
 Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& publishers, const InputWindow& window,
-               std::function<std::int64_t()> now, std::function<void()> arrived)
+               std::function<std::int64_t()> now, std::function<void(InputChannel)> arrived)
     : handle_(handle),
       queue_(queue),
       publishers_(publishers),
@@ -83,7 +83,7 @@ void Inputs::take(const std::string& name, Topic& topic, const std::string& publ
                                " messages with later stamps wait already; send less ahead.");
   topic.owner = publisher;
   topic.last_message = steadyTime();
-  arrived_();
+  arrived_(sample.channel);
 }
 
 bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& publisher) {

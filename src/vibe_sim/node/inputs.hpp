@@ -26,7 +26,7 @@ class Inputs {
   /// @param arrived  called after something has been put into the queue
   /// Both are called from the thread of the inputs.
   Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& publishers, const InputWindow& window,
-         std::function<std::int64_t()> now, std::function<void()> arrived);
+         std::function<std::int64_t()> now, std::function<void(InputChannel)> arrived);
   ~Inputs();
 
  private:
@@ -44,7 +44,7 @@ class Inputs {
   Publishers& publishers_;
   const InputWindow window_;
   std::function<std::int64_t()> now_;
-  std::function<void()> arrived_;
+  std::function<void(InputChannel)> arrived_;
   std::map<std::string, Topic> topics_;  // touched by the one thread of the spinner only, once it runs
   std::unique_ptr<ros::AsyncSpinner> spinner_;
 

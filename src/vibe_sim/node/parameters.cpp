@@ -16,6 +16,15 @@ TimeSource readTimeSource(ParameterReader& reader) {
   throw Error("Parameter ~time_source is '" + word + "'; set it to wall or sim.");
 }
 
+std::optional<InputChannel> readFollow(ParameterReader& reader) {
+  std::string topic;
+  reader.read("follow", topic);
+  if (topic.empty()) return std::nullopt;
+  for (const InputChannel channel : {InputChannel::Scope, InputChannel::Overstitch})
+    if (topic == toString(channel)) return channel;
+  throw Error("Parameter ~follow is '" + topic + "'; set it to scope/measured_js or overstitch/measured_js.");
+}
+
 std::optional<std::uint64_t> readSeed(ParameterReader& reader) {
   int seed = -1;
   reader.read("seed", seed, 0, 2147483647);
@@ -50,6 +59,10 @@ void checkSimTime(TimeSource source) {
 }
 
 void checkCombination(const Parameters& parameters) {
+  if (parameters.realtime_priority > 0 && parameters.fast)
+    throw Error("Parameter ~realtime_priority excludes ~fast: the step that never waits would take a core for itself.");
+  if (parameters.follow && (parameters.fast || parameters.lockstep))
+    throw Error("Parameter ~follow excludes ~fast and ~lockstep: their steps do not follow the wall clock.");
   if (parameters.time_source == TimeSource::Sim) return;
   if (parameters.fast) throw Error("Parameter ~fast needs ~time_source sim: the wall clock cannot run faster.");
   if (parameters.lockstep) throw Error("Parameter ~lockstep needs ~time_source sim: the wall clock does not wait.");
@@ -65,12 +78,14 @@ Parameters readParameters(const ros::NodeHandle& private_handle) {
   parameters.seed = readSeed(reader);
   parameters.time_source = readTimeSource(reader);
   reader.read("fast", parameters.fast);
+  parameters.follow = readFollow(reader);
   reader.read("lockstep", parameters.lockstep);
   reader.read("lockstep_timeout", parameters.lockstep_timeout, 0.1, 86400, "s");
   parameters.input_window = readInputWindow(reader, parameters.time_source);
   reader.read("start_paused", parameters.start_paused);
   reader.read("await_recorder", parameters.await_recorder);
   reader.read("threads", parameters.threads, 1, 256);
+  reader.read("realtime_priority", parameters.realtime_priority, 0, 99);
   reader.read("duration", parameters.duration, 0, 1e6, "s");
   reader.read("summary_file", parameters.summary_file);
   reader.read("master_timeout", parameters.master_timeout, 0.1, 1e6, "s");

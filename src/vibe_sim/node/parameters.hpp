@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "input_queue.hpp"
 #include "input_window.hpp"
 
 namespace vibe {
@@ -21,11 +22,13 @@ struct Parameters {
   std::optional<std::uint64_t> seed;  ///< instead of the scene's
   TimeSource time_source = TimeSource::Wall;
   bool fast = false;             ///< do not wait for the wall clock
+  std::optional<InputChannel> follow;  ///< steps begin when its samples arrive
   bool lockstep = false;         ///< wait for the inputs of every step
   double lockstep_timeout = 10;  ///< [s] of wall time
   bool start_paused = false;
   bool await_recorder = false;  ///< no step before somebody listens to applied_input
   int threads = 1;              ///< inside a step
+  int realtime_priority = 0;    ///< of the stepping thread, SCHED_FIFO; 0: an ordinary thread
   InputWindow input_window = InputWindow::ofWallClock();
   double duration = 0;         ///< simulated time after which the node ends; 0: never [s]
   std::string summary_file;    ///< empty: none

@@ -59,6 +59,7 @@ Publishers::Publishers(OutletSource outlets, bool with_clock)
       session_info_(outlets.advertise<vibe_msgs::SessionInfo>("session_info", kSmallQueue, true)),
       snapshot_(outlets.advertise<vibe_msgs::StateSnapshot>("snapshot", kCloudQueue, false,
                                                             [this] { snapshot_asked_ = true; })),
+      step_timing_(outlets.advertise<vibe_msgs::StepTiming>("step_timing", kSmallQueue)),
       arms_(outlets) {
   if (outlets.isGraph()) static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
   if (with_clock) clock_ = outlets.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
@@ -167,7 +168,7 @@ bool Publishers::hasListener() const {
   const auto all = {&scope_pose_,        &helix_pose_, &wrench_,        &joint_states_, &hand_joints_, &topology_,
                     &particles_,         &procedure_,  &skill_metrics_, &events_,       &sutures_,     &applied_input_,
                     &solver_statistics_, &scene_,      &haptic_,        &pull_,         &step_result_, &session_info_,
-                    &snapshot_,          &clock_};
+                    &snapshot_,          &step_timing_, &clock_};
   return arms_.hasListener() ||
          std::any_of(all.begin(), all.end(), [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });
 }

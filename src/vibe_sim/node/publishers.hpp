@@ -1,6 +1,7 @@
 #pragma once
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <vibe_msgs/SolverStatistics.h>
+#include <vibe_msgs/StepTiming.h>
 
 #include <atomic>
 #include <cstdint>
@@ -42,6 +43,9 @@ class Publishers {
   /// procedure/state and procedure/skill_metrics, and the operating states.
   void procedureState(const Session& session, const RunStatus& status);
 
+  bool hasTimingListener() const { return step_timing_.getNumSubscribers() > 0; }
+  void stepTiming(const vibe_msgs::StepTiming& message) { step_timing_.publish(message); }
+
   void solver_statistics(const vibe_msgs::SolverStatistics& message) { solver_statistics_.publish(message); }
 
   /// A warning event at the present simulated time.
@@ -56,7 +60,7 @@ class Publishers {
  private:
   Outlet scope_pose_, helix_pose_, wrench_, joint_states_, hand_joints_, topology_, particles_, procedure_,
       skill_metrics_, events_, sutures_, applied_input_, solver_statistics_, scene_, haptic_, pull_, step_result_,
-      session_info_, snapshot_, clock_;
+      session_info_, snapshot_, step_timing_, clock_;
   ArmPublishers arms_;
   std::atomic<int> warnings_{0};
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> static_transforms_;  // null for a bag

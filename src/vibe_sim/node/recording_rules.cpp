@@ -21,6 +21,7 @@ const std::vector<RecordingRule>& recordingRules() {
       {"wall/measured_cp", kNever, true},
       {"haptic/parameters", kNever, true},
       {"step_result", kNever, true},
+      {"step_timing", kNever, true},
       {"/clock", 0.1, true},
       {"type:tf2_msgs/TFMessage", kNever, false},
       {"type:sensor_msgs/Image", kNever, false},

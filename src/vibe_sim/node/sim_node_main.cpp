@@ -26,8 +26,8 @@ constexpr double kDelivery = 1.0;       // for listeners to receive what was sen
 constexpr char kHelp[] =
     "sim_node: the simulator as a ROS node.\n"
     "Usage: rosrun vibe_sim sim_node _scene:=FILE [_PARAMETER:=VALUE]...\n"
-    "Parameters: scene, mesh, seed, time_source, fast, lockstep, lockstep_timeout, input_look_ahead, input_staleness,\n"
-    "start_paused, await_recorder, threads, duration, summary_file, master_timeout; see docs/interfaces.md.\n";
+    "Parameters: scene, mesh, seed, time_source, fast, follow, lockstep, lockstep_timeout, input_look_ahead, input_staleness,\n"
+    "start_paused, await_recorder, threads, realtime_priority, duration, summary_file, master_timeout; see docs/interfaces.md.\n";
 
 volatile sig_atomic_t stop_signal = 0;
 
@@ -68,7 +68,7 @@ int run() {
     vibe::Inputs inputs(
         handle, queue, publishers, parameters.input_window,
         [&] { return parameters.time_source == vibe::TimeSource::Wall ? vibe::wallNow() : queue.now(); },
-        [&stepper] { stepper.wake(); });
+        [&stepper](vibe::InputChannel channel) { stepper.wake(channel); });
     vibe::Services services(handle, stepper);
     stepper.start();
     spinner.start();

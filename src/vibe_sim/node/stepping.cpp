@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
 #include "conversions.hpp"
 #include "vibe_core/common/write_file.hpp"
+#include "vibe_node/realtime.hpp"
 #include "wall_clock.hpp"
 
 namespace vibe {
@@ -22,6 +24,15 @@ constexpr double kComplaintPeriod = 1;              // [s]
 constexpr double kLagReportPeriod = 5;              // at first; doubled while the lag goes on [s]
 constexpr double kLagReportPeriodMax = 60;          // [s]
 constexpr std::chrono::milliseconds kIdle(40);
+constexpr std::chrono::microseconds kSamplePoll(200);
+
+// Late steps begin so much earlier than the step period after one another at most. With a burst, the tool would jump
+// and the force of the tissue with it.
+constexpr int kMaxHurry = 2;
+
+std::int64_t inNanoseconds(double seconds) {
+  return std::llround(1e9 * seconds);
+}
 
 std::int64_t startOrigin(const Parameters& parameters) {
   return parameters.time_source == TimeSource::Sim ? kEpoch : wallNow();
@@ -35,7 +46,8 @@ Stepper::Stepper(const Parameters& parameters, const SceneModel& made, InputQueu
       publishers_(publishers),
       session_(made.model, parameters.seed.value_or(made.model->scene.seed), startOrigin(parameters),
                parameters.threads),
-      last_step_(stepsIn(parameters.duration, made.model->scene.step_period)) {
+      last_step_(stepsIn(parameters.duration, made.model->scene.step_period)),
+      lock_(inNanoseconds(made.model->scene.step_period)) {
   session_.urdf = made.urdf;
   status_.paused = parameters.start_paused;
 }
@@ -58,15 +70,17 @@ void Stepper::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Stepper::wake() {
+void Stepper::wake(InputChannel channel) {
   {
     std::lock_guard<std::mutex> lock(mutex_);
     woken_ = true;
+    if (channel == parameters_.follow) lock_.arrive(wallNow());
   }
   changed_.notify_all();
 }
 
 void Stepper::run() {
+  if (parameters_.realtime_priority > 0) runInRealTime();
   try {
     loop();
   } catch (const std::exception& error) {
@@ -74,6 +88,12 @@ void Stepper::run() {
   }
   rejectCommands();
   running_ = false;
+}
+
+// Without the permission, the simulation goes on as an ordinary thread.
+void Stepper::runInRealTime() {
+  for (const std::string& sentence : {lockMemory(), takeRealtimePriority(parameters_.realtime_priority)})
+    if (!sentence.empty()) ROS_WARN_STREAM(sentence);
 }
 
 void Stepper::loop() {
@@ -115,8 +135,15 @@ Stepper::Hold Stepper::findHold() {
 Stepper::Hold Stepper::findDeadline() {
   const std::int64_t now = wallNow();
   const std::int64_t late = now - nextDeadline();
-  if (late < -kClockJump) restartPace(now);
-  if (late < 0) return Hold::Pace;
+  if (late < -kClockJump) {
+    last_begin_ = 0;
+    restartPace(now);
+  }
+  if (late < 0 || now < nextBegin()) return Hold::Pace;
+  if (parameters_.follow) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    if (lock_.awaits(nextDeadline(), now)) return Hold::Sample;
+  }
   if (static_cast<double>(late) > 1e9 * session_.time.period()) ++statistics_.missed_deadlines;
   if (late > kMaxLag) {
     reportLag(1e-9 * static_cast<double>(late));
@@ -140,7 +167,7 @@ void Stepper::wait(Hold hold) {
   const double now = steadyTime();
   if (hold != hold_) hold_begin_ = now;
   hold_ = hold;
-  const bool time_stands_still = hold != Hold::Pace;
+  const bool time_stands_still = hold != Hold::Pace && hold != Hold::Sample;
   if (time_stands_still && now - std::max(last_clock_, hold_begin_) >= kClockHeartbeat) {
     publishers_.heartbeat(session_);
     last_clock_ = now;
@@ -148,9 +175,10 @@ void Stepper::wait(Hold hold) {
   checkPatience(hold);
   std::unique_lock<std::mutex> lock(mutex_);
   std::chrono::nanoseconds duration = kIdle;
-  if (hold == Hold::Pace) duration = std::min(duration, std::chrono::nanoseconds(nextDeadline() - wallNow()));
+  if (hold == Hold::Pace) duration = std::min(duration, std::chrono::nanoseconds(nextBegin() - wallNow()));
+  if (hold == Hold::Sample) duration = kSamplePoll;
   // inputs matter to a step only when it is due, so that their arrival ends no other wait
-  const bool inputs_matter = hold == Hold::Inputs;
+  const bool inputs_matter = hold == Hold::Inputs || hold == Hold::Sample;
   changed_.wait_for(lock, duration, [&] { return stopping_ || !commands_.empty() || (inputs_matter && woken_); });
   woken_ = false;
   // time spent waiting for others is not lag of the simulation
@@ -181,11 +209,14 @@ void Stepper::takeStep() {
   hold_ = Hold::None;
   if (statistics_.steps == 0) statistics_.begin(session_);
   statistics_.total.start();
-  const bool wall = parameters_.time_source == TimeSource::Wall;
+  const std::int64_t now = wallNow();
+  timing_.step = session_.state.step;
+  timing_.due = toRosTime(std::min(nextDeadline(), now));
+  timing_.begin = toRosTime(now);
+  last_begin_ = now;
   const bool real_time = !parameters_.fast && !parameters_.lockstep && steps_left_ == 0;
   StepInput input = session_.input;
-  const std::int64_t now = wall ? wallNow() : session_.now();
-  for (const std::string& sentence : queue_.apply(now, *session_.model, input, real_time, session_.state.joints))
+  for (const std::string& sentence : queue_.apply(inputTime(now), *session_.model, input, real_time, session_.state.joints))
     complain(sentence);
   status_.scope_moves = queue_.moves(InputChannel::Scope);
   status_.overstitch_moves = queue_.moves(InputChannel::Overstitch);
@@ -193,9 +224,16 @@ void Stepper::takeStep() {
   session_.simulation.setInput(input);
   publishers_.appliedInput(session_);
   session_.step(input);
+  timing_.solved = toRosTime(wallNow());
   statistics_.publish.start();
   publishers_.stepResult(session_, status_);
   statistics_.publish.stop();
+  if (publishers_.hasTimingListener()) {
+    timing_.header.stamp = toRosTime(session_.now());
+    timing_.published = toRosTime(wallNow());
+    publishers_.stepTiming(timing_);
+  }
+  if (real_time && parameters_.follow) followInput();
   last_clock_ = steadyTime();
   statistics_.countStep(session_.time.period(), session_.simulation.report());
   statistics_.total.stop();
@@ -231,6 +269,32 @@ void Stepper::fail(const std::string& sentence) {
 
 std::int64_t Stepper::nextDeadline() const {
   return session_.time.stamp(session_.state.step + 1) + pace_offset_;
+}
+
+// When the next step may begin [ns of the wall clock].
+std::int64_t Stepper::nextBegin() const {
+  return std::max(nextDeadline(), last_begin_ + inNanoseconds(session_.time.period()) / kMaxHurry);
+}
+
+// Until which stamp samples count for the next step. A step that makes up for lost time uses what was known at its own
+// time, so that a motion keeps its form.
+std::int64_t Stepper::inputTime(std::int64_t now) const {
+  if (parameters_.time_source == TimeSource::Sim) return session_.now();
+  const std::int64_t due = nextDeadline();
+  return now - due > inNanoseconds(session_.time.period()) ? due : now;
+}
+
+void Stepper::followInput() {
+  std::int64_t shift = 0;
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    shift = lock_.correction(nextDeadline());
+  }
+  if (parameters_.time_source == TimeSource::Sim) {
+    pace_offset_ += shift;
+  } else {
+    session_.time.shiftOrigin(shift);
+  }
 }
 
 void Stepper::restartPace(std::int64_t now) {

@@ -13,6 +13,7 @@
 
 #include "input_queue.hpp"
 #include "parameters.hpp"
+#include "phase_lock.hpp"
 #include "publishers.hpp"
 #include "run_statistics.hpp"
 #include "scene_source.hpp"
@@ -47,8 +48,8 @@ class Stepper {
   bool isRunning() const { return running_; }
   Outcome outcome() const { return outcome_; }
 
-  /// Something has arrived in the queue.
-  void wake();
+  /// A sample of the channel has arrived in the queue.
+  void wake(InputChannel channel);
 
   // Commands, from any other thread; each returns when it is done.
   Reply setPaused(bool paused);
@@ -64,10 +65,11 @@ class Stepper {
  private:
   using Answer = std::promise<Reply>;
   using Command = std::function<void(std::shared_ptr<Answer>)>;
-  enum class Hold { None, Paused, Recorder, Inputs, Pace };
+  enum class Hold { None, Paused, Recorder, Inputs, Pace, Sample };
 
   // the thread
   void run();
+  void runInRealTime();
   void loop();
   Hold findHold();
   Hold findDeadline();
@@ -81,6 +83,9 @@ class Stepper {
   bool mustWaitForRecorder();
   void checkPatience(Hold hold);
   std::int64_t nextDeadline() const;
+  std::int64_t nextBegin() const;
+  std::int64_t inputTime(std::int64_t now) const;
+  void followInput();
   void restartPace(std::int64_t now);
   void reportLag(double lag);
 
@@ -103,6 +108,8 @@ class Stepper {
   RunStatus status_;
   std::int64_t last_step_ = 0;    // statistics_.steps after which to finish; 0: never
   std::int64_t pace_offset_ = 0;  // wall clock minus stamp at which a step is due [ns]
+  std::int64_t last_begin_ = 0;   // wall time of the last step [ns]
+  vibe_msgs::StepTiming timing_;  // of the present step
   double hold_begin_ = 0;         // steady time at which the present hold began [s]
   Hold hold_ = Hold::None;
   double recorder_since_ = 0;                 // steady time; 0: nobody listens yet [s]
@@ -119,6 +126,7 @@ class Stepper {
   std::condition_variable changed_;
   std::deque<std::pair<Command, std::shared_ptr<Answer>>> commands_;
   bool woken_ = false;
+  PhaseLock lock_;  // to the samples of ~follow
   bool stopping_ = false;
   bool accepting_ = true;
   std::atomic<bool> running_{false};

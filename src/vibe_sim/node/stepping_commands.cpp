@@ -160,6 +160,10 @@ Reply Stepper::loadScene(const std::string& address) {
     session_.replaceModel(made.model);
     session_.urdf = made.urdf;
     if (last_step_ > 0) last_step_ = statistics_.steps + stepsIn(left, session_.time.period());
+    {
+      std::lock_guard<std::mutex> lock(mutex_);
+      lock_ = PhaseLock(std::llround(1e9 * session_.time.period()));
+    }
     publishers_.announceModel(session_);
     afterReplacement();
     return {true, "Simulating '" + made.model->scene.name + "' with " + std::to_string(made.model->particle_count) +

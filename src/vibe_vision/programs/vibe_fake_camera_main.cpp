@@ -4,7 +4,9 @@
 #include <csignal>
 #include <fstream>
 #include <iostream>
+#include <random>
 #include <thread>
+#include <vector>
 
 #include "program_options.hpp"
 #include "vibe_core/common/error.hpp"
@@ -14,10 +16,15 @@ namespace {
 
 std::atomic<bool> shall_stop{false};
 
+const std::string kBlink = "blink";  // a scene of its own: the helix jumps at random times
+
 struct Options {
   std::string scene = "moving", config;
   int frames = 300;
   double duration = 0;
+  int blinks = 1000;
+  double blink_after = 5, blink_jump = 1e-4;
+  std::uint64_t seed = 1;
   vibe::FakeCameraOptions camera;
 };
 
@@ -27,11 +34,29 @@ void writeConfig(const std::string& file, const vibe::SyntheticScene& scene) {
   if (!stream.flush()) throw vibe::Error(file + ": cannot be written; check the folder.");
 }
 
-void serve(const Options& options) {
-  const vibe::SyntheticScene scene = vibe::namedScene(options.scene);
+constexpr double kShortestBlink = 0.25, kLongestBlink = 0.5;  // between two [s]
+
+/// Unix times, random so that their phase against every clock is uniform [s].
+std::vector<double> blinkTimes(const Options& options) {
+  std::mt19937_64 random(options.seed);
+  std::uniform_real_distribution<double> interval(kShortestBlink, kLongestBlink);
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  double time = std::chrono::duration<double>(now).count() + options.blink_after;
+  std::vector<double> times;
+  for (int i = 0; i < options.blinks; ++i) times.push_back(time += interval(random));
+  return times;
+}
+
+void serve(Options options) {
+  const bool blinks = options.scene == kBlink;
+  if (!blinks && !options.camera.blink_file.empty()) throw vibe::Error("--blink-log goes with --scene blink; add it.");
+  const vibe::SyntheticScene scene = blinks ? vibe::blinkScene(options.blink_jump) : vibe::namedScene(options.scene);
+  if (blinks) options.frames = 2;
   if (!options.config.empty()) writeConfig(options.config, scene);
   std::cout << "vibe_fake_camera: draws " << options.scene << " ..." << std::endl;
-  const vibe::FakeCamera camera(vibe::renderRing(scene, options.frames), options.camera);
+  const auto ring = vibe::renderRing(scene, options.frames);
+  if (blinks) options.camera.blinks = blinkTimes(options);
+  const vibe::FakeCamera camera(ring, options.camera);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { shall_stop = true; });
   std::cout << "vibe_fake_camera: gige:" << options.camera.address << " serves " << options.scene << ", "
             << scene.camera.width << " x " << scene.camera.height << " at " << scene.rate << " Hz; end with Ctrl-C"
@@ -46,8 +71,8 @@ void serve(const Options& options) {
 }
 
 void addOptions(CLI::App& app, Options& options) {
-  std::string names;
-  for (const std::string& name : vibe::sceneNames()) names += (names.empty() ? "" : ", ") + name;
+  std::string names = kBlink;
+  for (const std::string& name : vibe::sceneNames()) names += ", " + name;
   app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
   app.add_option("--address", options.camera.address, "of a network interface of this computer")->capture_default_str();
   app.add_option("--serial", options.camera.serial, "serial number")->capture_default_str();
@@ -56,6 +81,17 @@ void addOptions(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--truth", options.camera.truth_file,
                  "file for slide [m], rotation [rad] and places [px] of each frame sent, as truth.csv of vibe_render");
+  app.add_option("--blinks", options.blinks, "of the scene blink: how often the helix jumps")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_option("--blink-after", options.blink_after, "time before the first jump [s]")
+      ->check(vibe::finiteIn(0, 1e6))
+      ->capture_default_str();
+  app.add_option("--blink-jump", options.blink_jump, "by how much it jumps [m]")
+      ->check(vibe::finiteIn(-0.02, 0.02))
+      ->capture_default_str();
+  app.add_option("--blink-log", options.camera.blink_file, "file for when each jump happened and was exposed");
+  app.add_option("--seed", options.seed, "of the times of the jumps")->capture_default_str();
   app.add_option("--config", options.config, "file for the configuration of the scene, for the tracker");
   app.add_option("--lost-ratio", options.camera.lost_ratio, "share of the packets that are not sent")
       ->check(vibe::finiteIn(0, 1))

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "counter_random.hpp"
+
 namespace vibe {
 namespace {
 
@@ -12,19 +14,6 @@ constexpr int kWaves = 6;
 constexpr double kLowest = 0.05, kHighest = 0.5;  // [Hz]
 constexpr double kStart = 2;                      // time to leave 0 [s]
 constexpr double kSlot = 4;                       // a button is pressed at most once in each [s]
-
-/// SplitMix64 (Steele, Lea, Flood 2014): well mixed bits of a counter.
-std::uint64_t mixed(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
-  return x ^ (x >> 31);
-}
-
-/// In [0, 1), a function of its arguments only.
-double uniform(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
-  return static_cast<double>(mixed(mixed(mixed(seed) ^ stream) ^ index) >> 11) * 0x1p-53;
-}
 
 bool pressed(std::uint64_t seed, int button, double time) {
   const double slot = std::floor(time / kSlot);

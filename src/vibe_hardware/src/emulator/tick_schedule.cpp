@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vibe_hardware/emulator/emulated_device.hpp"
-
 namespace vibe {
 
 double TickSchedule::next() const {
-  return origin_ + kTick * static_cast<double>(ticks_);
+  return origin_ + tick_ * static_cast<double>(ticks_);
 }
 
 int TickSchedule::due(double now) {
@@ -19,7 +17,7 @@ int TickSchedule::due(double now) {
     origin_ += delay_;
   }
   if (now < next()) return 0;
-  const auto count = static_cast<int>(std::min((now - next()) / kTick, kMaxBurst - 1.0)) + 1;
+  const auto count = static_cast<int>(std::min((now - next()) / tick_, kMaxBurst - 1.0)) + 1;
   ticks_ += count;
   return count;
 }

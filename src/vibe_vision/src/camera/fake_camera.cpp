@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iomanip>
@@ -45,7 +46,8 @@ void requireFree(const std::string& address) {
 struct FakeCamera::Impl {
   std::shared_ptr<const FrameRing> ring;
   FakeCameraOptions options;
-  std::ofstream truth;
+  std::ofstream truth, blink_table;
+  std::size_t blinked = 0;  // blinks that have been shown
   std::atomic<std::uint64_t> sent{0};
   std::mutex mutex;  // of the clock
   double clock_start = 0, clock_at_start = 0;
@@ -55,7 +57,9 @@ struct FakeCamera::Impl {
   Impl(std::shared_ptr<const FrameRing> r, const FakeCameraOptions& o) : ring(std::move(r)), options(o) {
     if (ring->frames.empty()) throw Error("fake camera: has no pictures to show.");
     requireFree(options.address);
+    if (!options.blinks.empty() && ring->frames.size() < 2) throw Error("fake camera: a blink needs two pictures.");
     if (!options.truth_file.empty()) openTruth();
+    if (!options.blink_file.empty()) openBlinks();
     clock_start = hostTime();
     clock_at_start = clock_start + options.clock_ahead;
     server.reset(arv_gv_fake_camera_new(options.address.c_str(), options.serial.c_str()));
@@ -81,6 +85,24 @@ struct FakeCamera::Impl {
     truth << "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible\n" << std::setprecision(17);
   }
 
+  void openBlinks() {
+    blink_table.open(options.blink_file);
+    blink_table << "blink,event,report" << std::endl;
+    if (!blink_table) throw Error(options.blink_file + ": cannot be written; check the folder and its permissions.");
+  }
+
+  /// The picture at the middle of an exposure.
+  FrameRing::Turn blinkAt(double middle) {
+    for (; blinked < options.blinks.size() && options.blinks[blinked] <= middle; ++blinked) {
+      if (!blink_table.is_open()) continue;
+      blink_table << blinked << ',' << std::llround(1e9 * options.blinks[blinked]) << ',' << std::llround(1e9 * middle)
+                  << std::endl;
+    }
+    FrameRing::Turn turn;
+    turn.index = blinked % 2;
+    return turn;
+  }
+
   guint32 value(guint64 address) const {
     guint32 content = 0;
     arv_fake_camera_read_register(camera, static_cast<guint32>(address), &content);
@@ -102,7 +124,7 @@ struct FakeCamera::Impl {
     const double end = static_cast<double>(k * period) * 1e-6;
     const double start = deviceTime(end) - exposure * (1 + options.clock_drift);
     arv_buffer_set_timestamp(buffer, static_cast<guint64>(std::max(0.0, start) * 1e9));
-    const FrameRing::Turn turn = ring->turnOf(k);
+    const FrameRing::Turn turn = options.blinks.empty() ? ring->turnOf(k) : blinkAt(end - exposure / 2);
     copy(ring->frames[turn.index], buffer);
     if (truth.is_open()) write(end - exposure / 2, turn, 1e6 / static_cast<double>(period));
     ++sent;

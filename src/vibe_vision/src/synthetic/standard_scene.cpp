@@ -150,6 +150,15 @@ SyntheticScene standardScene() {
   return scene;
 }
 
+SyntheticScene blinkScene(double jump) {
+  SyntheticScene scene = standardScene();
+  hold(scene);
+  const double before = 0.5 / scene.rate;
+  scene.instruments[0].motion.slide = [=](double time) { return time < before ? kBlinkSlide : kBlinkSlide + jump; };
+  scene.instruments[0].motion.rotation = [](double) { return 0.0; };
+  return scene;
+}
+
 SyntheticScene namedScene(const std::string& name) {
   std::string names;
   for (const auto& [known, change] : changes()) {

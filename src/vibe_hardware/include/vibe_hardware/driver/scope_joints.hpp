@@ -20,8 +20,7 @@ class ScopeJoints {
   void lose(DeviceKind device);  ///< its joints are not known until its next sample
 
   bool isKnown() const;  ///< all devices in use have given samples
-  /// The device that measures the insertion leads: a message is due with each of its samples and has their time. The
-  /// joints of the other device are those of its last sample, up to one report period older.
+  /// The device that measures the insertion leads: what is worked out once per report period is due with its samples.
   bool leads(DeviceKind device) const { return device == leader_; }
   bool isHomed() const { return homed_; }  ///< all joints have been homed since their devices started
 

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "vibe_hardware/emulator/emulated_device.hpp"
+
 namespace vibe {
 
 /// Decides how many ticks of a millisecond are due by the wall clock. A short delay is made up for; after a long one,
@@ -11,8 +13,9 @@ class TickSchedule {
   static constexpr double kDrop = 1;       ///< delay that is not made up for [s]
   static constexpr int kMaxBurst = 50;     ///< ticks at once, so that hosts are served in between
 
-  /// @param start  wall time of the first tick [s]
-  explicit TickSchedule(double start) : origin_(start) {}
+  /// @param start        wall time of the first tick [s]
+  /// @param clock_error  by which share the device's clock goes slow [1]: a crystal is wrong by up to 1e-4
+  explicit TickSchedule(double start, double clock_error = 0) : origin_(start), tick_(kTick * (1 + clock_error)) {}
 
   /// Ticks to take now; they count as taken. @param now  wall time [s], never goes back
   int due(double now);
@@ -27,6 +30,7 @@ class TickSchedule {
 
  private:
   double origin_;
+  double tick_;  // on the host's clock [s]
   std::int64_t ticks_ = 0;
   double delay_ = 0, worst_delay_ = 0, dropped_ = 0;
 };

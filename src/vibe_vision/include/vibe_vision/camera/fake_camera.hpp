@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "vibe_vision/camera/frame_ring.hpp"
 
@@ -13,6 +14,12 @@ struct FakeCameraOptions {
   double lost_ratio = 0;       ///< share of the packets that are not sent
   double clock_ahead = -1000;  ///< camera's clock less Unix time [s]
   double clock_drift = 0;      ///< by which it is fast
+  /// Unix times at which the picture jumps between the first and the second of the ring, ascending; empty: all pictures
+  /// are shown in turn [s].
+  std::vector<double> blinks;
+  /// When each blink happened and when the exposure that shows it was half over, as a table with the columns `blink`,
+  /// `event` and `report` [ns of Unix time]; empty: none.
+  std::string blink_file;
   std::string truth_file;      ///< what each frame that was sent truly shows, as truth.csv of vibe_render; empty: none
 };
 

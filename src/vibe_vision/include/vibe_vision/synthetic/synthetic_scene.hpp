@@ -77,6 +77,9 @@ SyntheticTruth truthAt(const SyntheticScene& scene, std::size_t instrument, doub
 
 /// Two instruments, helix sleeve and needle-driver ring, at 0.1 mm/px in 728 x 544; they move with a peak of 0.5 m/s.
 SyntheticScene standardScene();
+constexpr double kBlinkSlide = 1e-3;  ///< of the helix before the jump of blinkScene() [m]
+/// The instruments at rest; from the second frame on, the helix has slid by `jump` [m].
+SyntheticScene blinkScene(double jump);
 /// The degradations of the benchmark by name: "static", "moving" (1 ms), "long_exposure" (4 ms), "defocus", "light",
 /// "highlights", "occluder", "look_alike", "all", "tilt", "scale". @throws Error for another name, with those there are
 SyntheticScene namedScene(const std::string& name);

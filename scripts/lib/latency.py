@@ -1,0 +1,266 @@
+"""One measurement of latency: emulated devices or a simulated camera, simulator and rviz on a virtual display, while the
+hand blinks; see docs/latency.md.
+
+scripts/latency has checked the arguments, built the workspace and sourced its environment.
+"""
+
+import argparse
+import json
+import os
+import platform
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import yaml
+
+from graph import Graph, GraphError
+from rviz_window import RvizWindow
+
+HAND = "package://vibe_hardware/config/hands/steady.yaml"
+DEVICE_CLOCK_ERROR = 300  # so that the phase between device and host drifts through whole periods [ppm]
+HID_JUMP = 0.03  # of the wheel, less than the joint may move in a step of 1/60 s [rad]
+CAMERA_BASE = 1e-3  # of the helix in the scene blink [m]
+CAMERA_JUMP = 1e-4  # of the helix: crosses its middle in one step [m]
+SHORTEST, LONGEST, BEFORE = 0.25, 0.5, 17.0  # between blinks; time of the hand before the first one [s]
+LAMP = {"Class": "vibe_rviz_plugins/LatencyLamp", "Enabled": True, "Name": "Lamp", "Value": True}
+
+
+class Interrupted(Exception):
+    """Somebody wants it to end."""
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(allow_abbrev=False)
+    parser.add_argument("--workspace", required=True)
+    parser.add_argument("--scene", required=True)
+    parser.add_argument("--output", required=True)
+    parser.add_argument("--blinks", type=int, required=True)
+    parser.add_argument("--rate", type=float, required=True, help="of steps [Hz]")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--free", action="store_true", help="steps follow the wall clock only")
+    parser.add_argument("--camera", action="store_true", help="blinks of an instrument in front of a simulated camera")
+    parser.add_argument("--headless", action="store_true", help="without rviz")
+    parser.add_argument("--load", action="store_true", help="keep one core busy with stress-ng")
+    parser.add_argument("--realtime", type=int, default=0, help="priority of the stepping thread")
+    parser.add_argument("--view", default="", help="a saved view of rviz")
+    return parser.parse_args()
+
+
+def processor():
+    with open("/proc/cpuinfo", encoding="utf-8") as text:
+        for row in text:
+            if row.startswith("model name"):
+                return row.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+class Measurement:
+    def __init__(self, arguments):
+        self.arguments, self.output = arguments, arguments.output
+        self.logs = os.path.join(self.output, "log")
+        os.makedirs(self.logs)
+        self.graph = Graph(self.logs)
+        self.sockets = tempfile.mkdtemp(prefix="vibe-latency-")
+        self.joint = "helix_advance" if arguments.camera else "tip_left_right"
+        self.base = CAMERA_BASE if arguments.camera else 0.0
+        self.jump = CAMERA_JUMP if arguments.camera else HID_JUMP
+        self.blinker = self.probe = None
+
+    def path(self, name):
+        return os.path.join(self.output, name)
+
+    def write_setup(self):
+        """What the report needs to know."""
+        arguments = self.arguments
+        source = "camera" if arguments.camera else "device"
+        periods = {"step": 1 / arguments.rate, source: 1 / 147 if arguments.camera else 0.01}
+        title = "From {} to {}, steps at {:g} Hz{}".format(
+            "camera" if arguments.camera else "HID device",
+            "published state" if arguments.headless else "pixel",
+            arguments.rate,
+            "" if arguments.free else ", following the input",
+        )
+        setup = {
+            "title": title,
+            "joint": self.joint,
+            "base": self.base,
+            "jump": self.jump,
+            "rate": arguments.rate,
+            "follow": not arguments.free,
+            "screen": not arguments.headless,
+            "load": arguments.load,
+            "realtime_priority": arguments.realtime,
+            "periods": periods,
+            "processor": processor(),
+            "cores": os.cpu_count(),
+        }
+        with open(self.path("setup.json"), "w", encoding="utf-8") as file:
+            json.dump(setup, file, indent=1)
+
+    def scene(self):
+        """The scene with another step period."""
+        with open(self.arguments.scene, encoding="utf-8") as file:
+            scene = yaml.safe_load(file)
+        scene["step_period"] = "{:.9f} s".format(1 / self.arguments.rate)
+        path = self.path("scene.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            yaml.safe_dump(scene, file)
+        return path
+
+    def set_parameters(self):
+        put, source = self.graph.set_parameter, "overstitch" if self.arguments.camera else "scope"
+        put("/use_sim_time", False)
+        with open(os.path.join(self.arguments.workspace, "src/vibe_description/urdf/scope.urdf"), encoding="utf-8") as urdf:
+            put("/robot_description", urdf.read())
+        put("/robot_state_publisher/publish_frequency", 200.0)
+        put("/sim_node/scene", self.scene())
+        put("/sim_node/summary_file", self.path("summary.txt"))
+        if not self.arguments.free:
+            put("/sim_node/follow", source + "/measured_js")
+        put("/sim_node/realtime_priority", self.arguments.realtime)
+        put("/hardware_node/bus", self.sockets)
+        put("/latency_probe/folder", self.output)
+        put("/latency_probe/joint", self.joint)
+        put("/latency_probe/device", source + "/measured_js")
+        put("/latency_probe/state", source + ("/simulated/measured_js" if self.arguments.camera else "/setpoint_js"))
+        put("/latency_probe/screen", not self.arguments.headless)
+
+    def start(self):
+        graph = self.graph
+        self.write_setup()
+        graph.start_master()
+        print(graph.how_to_attach(), flush=True)
+        self.set_parameters()
+        graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
+        graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"], patience=30.0)
+        if not self.arguments.headless:
+            self.start_rviz()
+        else:
+            self.start_probe({})
+        if self.arguments.camera:
+            self.start_camera()
+        self.start_devices()
+        if self.arguments.load:
+            graph.start("stress-ng", ["stress-ng", "--cpu", "1", "--quiet"])
+
+    def start_rviz(self):
+        window = RvizWindow(self.graph, self.logs, self.rviz_config(), self.arguments.view)
+        window.start(["rosrun", "rviz", "rviz"])
+        self.start_probe({"DISPLAY": window.display})
+        self.wait_for(self.probe, "latency_probe: ready", "rviz shows no lamp")
+
+    def rviz_config(self):
+        """The configuration of sessions with the lamp."""
+        with open(os.path.join(self.arguments.workspace, "src/vibe_description/rviz/vibe.rviz"), encoding="utf-8") as file:
+            config = yaml.safe_load(file)
+        topic = "overstitch/simulated/measured_js" if self.arguments.camera else "scope/setpoint_js"
+        lamp = dict(LAMP, Joint=self.joint, Threshold=self.base + 0.5 * self.jump, Topic=topic)
+        config["Visualization Manager"]["Displays"].append(lamp)
+        path = self.path("latency.rviz")
+        with open(path, "w", encoding="utf-8") as file:
+            yaml.safe_dump(config, file)
+        return path
+
+    def start_probe(self, environment):
+        settings = ["{}={}".format(name, value) for name, value in environment.items()]
+        self.probe = self.graph.start("latency_probe", ["env", *settings, "rosrun", "vibe_latency", "latency_probe"])
+
+    def start_camera(self):
+        command = ["rosrun", "vibe_vision", "vibe_fake_camera", "--scene", "blink", "--config", self.path("rig.yaml")]
+        command += ["--blinks", str(self.arguments.blinks), "--blink-after", str(BEFORE), "--seed", str(self.arguments.seed)]
+        command += ["--blink-jump", str(self.jump), "--blink-log", self.path("blinks.csv")]
+        self.blinker = self.graph.start("vibe_fake_camera", command)
+        self.wait_for(self.blinker, " serves ", "the simulated camera does not start")
+        self.graph.set_parameter("/vision_node/config", self.path("rig.yaml"))
+        self.graph.set_parameter("/vision_node/source", "gige:127.0.0.1")
+        self.graph.set_parameter("/vision_node/publish_images", False)
+        self.graph.start("vision_node", ["rosrun", "vibe_vision", "vision_node"])
+
+    def start_devices(self):
+        arguments = self.arguments
+        command = ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets]
+        command += ["--clock-error", str(DEVICE_CLOCK_ERROR)]
+        if arguments.camera:
+            command += ["--hand", "script", HAND]
+        else:
+            command += ["--hand", "blink", HAND, "--blinks", str(arguments.blinks), "--seed", str(arguments.seed)]
+            command += ["--blink-jump", str(self.jump), "--blink-log", self.path("blinks.csv")]
+        emulator = self.graph.start("vibe_emulator", command)
+        if not arguments.camera:
+            self.blinker = emulator
+        self.wait_for(emulator, "input", "the emulator offers no devices")
+        node = ["rosrun", "vibe_hardware", "hardware_node"]
+        self.graph.start("hardware_node", node + (["overstitch/measured_js:=buttons_js"] if arguments.camera else []))
+
+    def wait_for(self, process, words, problem, seconds=180.0):
+        deadline = time.monotonic() + seconds
+        while True:
+            with open(process.log, encoding="utf-8", errors="replace") as text:
+                if words in text.read():
+                    return
+            self.check_alive()
+            if time.monotonic() > deadline:
+                raise GraphError("{} within {:.0f} s; see {}".format(problem, seconds, process.log))
+            time.sleep(0.1)
+
+    def check_alive(self):
+        dead = self.graph.dead()
+        if dead is not None:
+            raise GraphError("{} died; the last it said:\n{}".format(dead.name, dead.last_words()))
+
+    def blinked(self):
+        if not os.path.exists(self.path("blinks.csv")):
+            return 0
+        with open(self.path("blinks.csv"), encoding="ascii") as file:
+            return max(0, sum(1 for _ in file) - 1)
+
+    def watch(self):
+        """Until the last blink, with a line now and then."""
+        count, patience = self.arguments.blinks, BEFORE + 60 + LONGEST * self.arguments.blinks
+        begin = told = time.monotonic()
+        while self.blinked() < count:
+            self.check_alive()
+            if time.monotonic() - begin > patience:
+                raise GraphError("only {} of {} blinks within {:.0f} s".format(self.blinked(), count, patience))
+            if time.monotonic() - told > 10:
+                told = time.monotonic()
+                print("{} of {} blinks".format(self.blinked(), count), flush=True)
+            time.sleep(0.2)
+        time.sleep(1.5)
+
+    def stop(self):
+        self.graph.stop_all()
+        shutil.rmtree(self.sockets, ignore_errors=True)
+
+
+def interrupt(number, _frame):
+    for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(each, signal.SIG_IGN)
+    raise Interrupted(signal.Signals(number).name)
+
+
+def main():
+    arguments = parse_arguments()
+    measurement = Measurement(arguments)
+    failure = ""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, interrupt)
+    try:
+        measurement.start()
+        measurement.watch()
+    except (GraphError, OSError, ValueError) as error:
+        failure = str(error)
+    except Interrupted as reason:
+        failure = "stopped by " + str(reason)
+    measurement.stop()
+    if failure:
+        sys.exit("latency: " + failure)
+    sys.exit(subprocess.run(["rosrun", "vibe_latency", "latency_report", arguments.output], check=False).returncode)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,48 @@
+#pragma once
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <vibe_msgs/DisplayTiming.h>
+#include <vibe_msgs/StepInput.h>
+#include <vibe_msgs/StepTiming.h>
+
+#include <memory>
+#include <string>
+
+#include "event_table.hpp"
+#include "lamp_watch.hpp"
+
+namespace vibe {
+
+/// What to watch, from private parameters.
+struct ProbeParameters {
+  std::string folder;                     ///< for the tables; required
+  std::string joint = "tip_left_right";   ///< that blinks
+  std::string device = "scope/measured_js";  ///< topic on which it comes in
+  std::string state = "scope/setpoint_js";   ///< topic on which the simulator answers
+  bool screen = true;                     ///< also watch the lamp on the screen
+};
+
+/// @throws Error for an unknown parameter, one of a wrong type, or an unknown joint
+ProbeParameters readProbeParameters(const ros::NodeHandle& private_handle);
+
+/// Writes when a joint passed each stage from a device to the screen, as tables: device.csv, input.csv, step.csv,
+/// state.csv, display.csv, pixel.csv. All times are of the wall clock [ns]; `wall` is when the message came here.
+class LatencyProbe {
+ public:
+  LatencyProbe(ros::NodeHandle handle, const ProbeParameters& parameters);
+
+  void flush();
+  /// Whether the lamp has been found, or is not looked for.
+  bool seesLamp() const { return !lamp_ || lamp_->isFound(); }
+
+ private:
+  std::string joint_;
+  std::size_t input_joint_;
+  EventTable device_, input_, step_, state_, display_, pixel_;
+  std::vector<ros::Subscriber> subscribers_;
+  std::unique_ptr<LampWatch> lamp_;
+
+  void addJoint(EventTable& table, const sensor_msgs::JointState& message) const;
+};
+
+}  // namespace vibe

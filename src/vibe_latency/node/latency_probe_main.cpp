@@ -1,0 +1,59 @@
+// latency_probe: writes when a joint that blinks passed each stage from a device to the screen. See scripts/latency.
+
+#include <ros/ros.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include "latency_probe.hpp"
+#include "vibe_node/master.hpp"
+#include "vibe_node/parameter_reader.hpp"
+
+namespace {
+
+constexpr char kHelp[] =
+    "latency_probe: writes when a joint that blinks passed each stage from a device to the screen.\n"
+    "Usage: rosrun vibe_latency latency_probe _folder:=DIR [_PARAMETER:=VALUE]...\n"
+    "Parameters: folder, joint, device, state, screen; see docs/latency.md.\n";
+
+constexpr double kMasterPatience = 10;  // [s]
+constexpr double kFlushPeriod = 0.5;    // [s]
+
+volatile sig_atomic_t stop_signal = 0;
+
+void run() {
+  ros::NodeHandle handle;
+  vibe::LatencyProbe probe(handle, vibe::readProbeParameters(ros::NodeHandle("~")));
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  bool told = false;
+  while (ros::ok() && !stop_signal) {
+    ros::WallDuration(kFlushPeriod).sleep();
+    probe.flush();
+    if (!told && probe.seesLamp()) std::puts("latency_probe: ready");
+    told = told || probe.seesLamp();
+    std::fflush(stdout);
+  }
+  spinner.stop();
+  probe.flush();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    ros::init(argc, argv, "latency_probe", ros::init_options::NoSigintHandler);
+    if (vibe::asksForHelp(argc, argv)) {
+      std::fputs(kHelp, stdout);
+      return 0;
+    }
+    for (const int number : {SIGINT, SIGTERM}) signal(number, [](int) { stop_signal = 1; });
+    if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 1;
+    run();
+    ros::shutdown();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "latency_probe: %s\n", error.what());
+    return 2;
+  }
+}

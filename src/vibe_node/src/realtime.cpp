@@ -1,0 +1,46 @@
+#include "vibe_node/realtime.hpp"
+
+#include <malloc.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace vibe {
+namespace {
+
+// As root, or after the limits of the user have been raised in limits.conf(5).
+std::string remedy(const char* limit) {
+  return std::string("; add the line '@realtime - ") + limit +
+         "' to /etc/security/limits.d/realtime.conf, the user to the group realtime, and log in again.";
+}
+
+}  // namespace
+
+std::string takeRealtimePriority(int priority) {
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
+  if (error == 0) return "";
+  return "Steps run without real-time priority: SCHED_FIFO " + std::to_string(priority) + " is not permitted (" +
+         std::strerror(error) + ")" + remedy("rtprio 99");
+}
+
+std::string lockMemory() {
+  // With a limit, memory that is asked for later would be refused, and the process would end.
+  rlimit limit{};
+  ::getrlimit(RLIMIT_MEMLOCK, &limit);
+  const bool enough = limit.rlim_cur == RLIM_INFINITY;
+  if (enough && ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
+    ::mallopt(M_TRIM_THRESHOLD, -1);  // freed memory is not given back
+    ::mallopt(M_MMAP_MAX, 0);         // nor are large blocks
+    return "";
+  }
+  const std::string reason = enough ? std::strerror(errno) : "only " + std::to_string(limit.rlim_cur / 1024) + " kB";
+  return "Memory is not locked: it is not permitted (" + reason + ")" + remedy("memlock unlimited");
+}
+
+}  // namespace vibe

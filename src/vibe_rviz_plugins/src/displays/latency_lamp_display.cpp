@@ -1,0 +1,105 @@
+#include "displays/latency_lamp_display.hpp"
+
+#include <OgreRenderWindow.h>
+#include <rviz/display_context.h>
+#include <rviz/properties/float_property.h>
+#include <rviz/properties/string_property.h>
+#include <rviz/render_panel.h>
+#include <rviz/view_manager.h>
+
+#include <QImage>
+#include <algorithm>
+#include <pluginlib/class_list_macros.hpp>
+
+#include "render/legend.hpp"
+
+namespace vibe {
+namespace {
+
+constexpr int kSize = 64;  // of the lamp [pixels]
+const QColor kLit(0, 255, 0), kDark(255, 0, 255);
+
+QImage lampImage(bool lit) {
+  QImage image(kSize, kSize, QImage::Format_ARGB32);
+  image.fill(lit ? kLit : kDark);
+  return image;
+}
+
+ros::Time wallTime() {
+  const ros::WallTime now = ros::WallTime::now();
+  return {now.sec, now.nsec};
+}
+
+}  // namespace
+
+LatencyLampDisplay::LatencyLampDisplay() : MessageDisplay("scope/setpoint_js") {
+  joint_property_ = new rviz::StringProperty("Joint", "tip_left_right", "The joint that switches the lamp.", this,
+                                             SLOT(redraw()));
+  threshold_property_ = new rviz::FloatProperty(
+      "Threshold", 0, "The lamp is green while the position of the joint [m or rad] is above it.", this, SLOT(redraw()));
+}
+
+LatencyLampDisplay::~LatencyLampDisplay() {
+  if (window_ != nullptr) window_->removeListener(this);
+}
+
+void LatencyLampDisplay::onInitialize() {
+  MessageDisplay::onInitialize();
+  publisher_ = update_nh_.advertise<vibe_msgs::DisplayTiming>("latency_lamp", 100);
+  rviz::RenderPanel* panel = context_->getViewManager()->getRenderPanel();
+  if (panel == nullptr) return;  // in a program without a window
+  window_ = panel->getRenderWindow();
+  window_->addListener(this);
+}
+
+void LatencyLampDisplay::onEnable() {
+  MessageDisplay::onEnable();
+  drawn_ = false;
+}
+
+void LatencyLampDisplay::onDisable() {
+  MessageDisplay::onDisable();
+  if (lamp_) lamp_->hide();
+}
+
+void LatencyLampDisplay::makeVisual() {
+  lamp_ = std::make_unique<Legend>(Legend::Place::TopRight);
+}
+
+void LatencyLampDisplay::clear() {
+  lamp_->hide();
+  drawn_ = pending_ = false;
+}
+
+MessageReport LatencyLampDisplay::read(const sensor_msgs::JointState& message) {
+  const std::string joint = joint_property_->getStdString();
+  const auto found = std::find(message.name.begin(), message.name.end(), joint);
+  const auto index = static_cast<std::size_t>(found - message.name.begin());
+  if (index >= message.name.size() || index >= message.position.size())
+    return {"The message has no position of a joint '" + joint + "'; set Joint to one that it has.", false};
+  const bool lit = message.position[index] > static_cast<double>(threshold_property_->getFloat());
+  if (drawn_ && lit == static_cast<bool>(timing_.lit)) return {lit ? "The lamp is green." : "The lamp is magenta."};
+  timing_.header.stamp = message.header.stamp;
+  timing_.lit = lit;
+  timing_.received = wallTime();
+  drawn_ = false;
+  return {lit ? "The lamp is green." : "The lamp is magenta."};
+}
+
+bool LatencyLampDisplay::draw() {
+  if (drawn_ || shown() == nullptr) return false;
+  lamp_->show(lampImage(timing_.lit));
+  drawn_ = pending_ = true;
+  return true;
+}
+
+void LatencyLampDisplay::postRenderTargetUpdate(const Ogre::RenderTargetEvent&) {
+  if (!pending_) return;
+  pending_ = false;
+  timing_.rendered = wallTime();
+  publisher_.publish(timing_);
+}
+
+}  // namespace vibe
+
+PLUGINLIB_EXPORT_CLASS(vibe::LatencyLampDisplay, rviz::Display)

@@ -1,0 +1,62 @@
+#include "phase_lock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+// Between gaps that are almost as wide, the deadline stays where it is: two devices of the same rate leave two.
+constexpr double kPreference = 0.15;  // of a period
+
+std::int64_t share(double of, std::int64_t period) {
+  return static_cast<std::int64_t>(of * static_cast<double>(period));
+}
+
+}  // namespace
+
+void PhaseLock::arrive(std::int64_t time) {
+  if (time - last_ > kSilence || time < last_) arrived_ = 0;
+  last_ = time;
+  phases_[arrived_ % kWindow] = phaseOf(time);
+  ++arrived_;
+}
+
+std::int64_t PhaseLock::correction(std::int64_t deadline) const {
+  const std::optional<Gap> gap = findGap(phaseOf(deadline), deadline);
+  if (!gap) return 0;
+  std::int64_t error = phaseOf(gap->begin + kMargin - deadline);
+  if (error > period_ / 2) error -= period_;
+  const std::int64_t limit = share(kSlew, period_);
+  return std::clamp(error, -limit, limit);
+}
+
+bool PhaseLock::awaits(std::int64_t deadline, std::int64_t now) const {
+  if (last_ >= deadline - period_ / 2 || now - deadline >= share(kGrace, period_)) return false;
+  return findGap(phaseOf(deadline), now).has_value();
+}
+
+std::int64_t PhaseLock::phaseOf(std::int64_t time) const {
+  const std::int64_t rest = time % period_;
+  return rest < 0 ? rest + period_ : rest;
+}
+
+std::optional<PhaseLock::Gap> PhaseLock::findGap(std::int64_t phase, std::int64_t now) const {
+  const std::size_t n = std::min(arrived_, kWindow);
+  if (n < kFewest || now - last_ > kSilence) return std::nullopt;
+  Phases sorted = phases_;
+  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
+  const std::size_t stride = 1 + static_cast<std::size_t>(kLate * static_cast<double>(n));
+  Gap widest, present;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = (i + stride) % n;
+    const Gap gap{sorted[i], sorted[next] - sorted[i] + (i + stride >= n ? period_ : 0)};
+    if (gap.width > widest.width) widest = gap;
+    if (phaseOf(phase - gap.begin) < gap.width && gap.width > present.width) present = gap;
+  }
+  const Gap& best = present.width + share(kPreference, period_) >= widest.width ? present : widest;
+  if (best.width < share(kGap, period_)) return std::nullopt;
+  return best;
+}
+
+}  // namespace vibe
