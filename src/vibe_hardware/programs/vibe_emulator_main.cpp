@@ -171,8 +171,9 @@ class Session {
     if (blink_log_) blink_log_->tick(emulator_.handTime(), wallClock());
     if (!haptic_) return;
     haptic_->serve();
+    const std::int64_t now = wallClock();  // the host may have the report before serve() returns
     const bool reported = input_->serve();
-    if (blink_log_ && reported) blink_log_->report(wallClock());
+    if (blink_log_ && reported) blink_log_->report(now);
   }
 
   static EmulatorSetup setupOf(const Options& options) {

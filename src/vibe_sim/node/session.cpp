@@ -22,6 +22,7 @@ Session::Session(std::shared_ptr<const Model> new_model, std::uint64_t first_see
       input(simulation.input()),
       events(simulation.events()) {
   seed = state.seed;
+  simulation.warmUp();
 }
 
 void Session::step(const StepInput& new_input) {
@@ -37,6 +38,7 @@ void Session::replaceState(State new_state) {
 void Session::replaceModel(std::shared_ptr<const Model> new_model) {
   const std::int64_t old_step = state.step;
   simulation.replaceModel(std::move(new_model));
+  simulation.warmUp();
   time.continueWith(old_step, state.step, simulation.stepPeriod());
   seed = state.seed;
   ++revision;

@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 
@@ -14,6 +15,7 @@
 #include "stepping.hpp"
 #include "vibe_node/master.hpp"
 #include "vibe_node/parameter_reader.hpp"
+#include "vibe_node/realtime.hpp"
 #include "wall_clock.hpp"
 
 namespace {
@@ -50,9 +52,17 @@ void explainEnd(const vibe::MasterWatch& watch) {
   std::fflush(stdout);
 }
 
+/// All threads that come later inherit the priority, those of ROS too: with a lower one they would be interrupted while
+/// they hold a lock that the stepping thread needs. That one is a little above them.
+void runInRealTime(int priority) {
+  for (const std::string& sentence : {vibe::lockMemory(), vibe::takeRealtimePriority(std::max(1, priority - 1))})
+    if (!sentence.empty()) ROS_WARN_STREAM(sentence);
+}
+
 int run() {
-  ros::NodeHandle handle;
   const vibe::Parameters parameters = vibe::readParameters(ros::NodeHandle("~"));
+  if (parameters.realtime_priority > 0) runInRealTime(parameters.realtime_priority);
+  ros::NodeHandle handle;
   const vibe::SceneModel made = vibe::loadModel(parameters.scene, parameters.mesh);
   const vibe::Model* model = made.model.get();
   // Not only for people: the first log message makes roscpp register a parameter at the master, and if that were the

@@ -80,7 +80,7 @@ void Stepper::wake(InputChannel channel) {
 }
 
 void Stepper::run() {
-  if (parameters_.realtime_priority > 0) runInRealTime();
+  if (parameters_.realtime_priority > 0) takeRealtimePriority(parameters_.realtime_priority);
   try {
     loop();
   } catch (const std::exception& error) {
@@ -88,12 +88,6 @@ void Stepper::run() {
   }
   rejectCommands();
   running_ = false;
-}
-
-// Without the permission, the simulation goes on as an ordinary thread.
-void Stepper::runInRealTime() {
-  for (const std::string& sentence : {lockMemory(), takeRealtimePriority(parameters_.realtime_priority)})
-    if (!sentence.empty()) ROS_WARN_STREAM(sentence);
 }
 
 void Stepper::loop() {

@@ -69,7 +69,6 @@ class Stepper {
 
   // the thread
   void run();
-  void runInRealTime();
   void loop();
   Hold findHold();
   Hold findDeadline();

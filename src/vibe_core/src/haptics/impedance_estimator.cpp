@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/lowest_priority.hpp"
 #include "vibe_core/common/fnv1a.hpp"
 
 namespace vibe {
@@ -185,7 +186,10 @@ void ImpedanceEstimator::makeInBackground(const ImpedanceBasis& basis) {
   finishNext();
   next_basis_ = basis;
   next_.id = basis.id;
-  making_ = std::async(std::launch::async, [this] { make(next_basis_, next_); });
+  making_ = std::async(std::launch::async, [this] {
+    takeLowestPriority();
+    make(next_basis_, next_);
+  });
 }
 
 void ImpedanceEstimator::make(const ImpedanceBasis& basis, Made& out) const {

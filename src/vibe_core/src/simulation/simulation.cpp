@@ -48,6 +48,12 @@ const std::vector<Event>& Simulation::step() {
   return events_;
 }
 
+void Simulation::warmUp() {
+  State state = state_;
+  std::vector<Event> events;
+  vibe::step(*model_, state, input_, *workspace_, events);
+}
+
 void Simulation::record(const std::vector<Event>& events) {
   if (recorder_) recorder_->record(*model_, state_, insufflatorIsOn(*model_, input_), events);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "common/lowest_priority.hpp"
 #include "solver/coupling_blocks.hpp"
 #include "solver/thread_couplings.hpp"
 #include "vibe_core/common/error.hpp"
@@ -157,6 +158,7 @@ void FactorSchedule::makeInBackground(const ElasticBody& body, const BodyLoads& 
   scratch.making =
       std::async(std::launch::async, [this, &body, &scratch, positions = memory.next, couplings = memory.next_couplings,
                                       nodes = loads.nodes(), attachments = loads.attachments] {
+        takeLowestPriority();
         factorSafely(body, {positions, couplings}, scratch.plan, scratch.matrix, *scratch.next_factor);
         scratch.next_columns.reset();
         scratch.next_columns.prepare(*scratch.next_factor, nodes, attachments);

@@ -76,6 +76,10 @@ class Simulation {
   /// Steps with inputs from a source, such as a TraineeScript, until `steps` are taken.
   void run(std::int64_t steps, const InputSource& source, const Observer& observer = {});
 
+  /// Takes one step with a copy of the state and forgets it: the first step analyses the equations, which takes ten
+  /// times as long as a step, so that a simulation in real time does it before time begins. Changes no result.
+  void warmUp();
+
   /// The input in force. Initially, and after the state was replaced, one under which the state stays as it is: joints
   /// where they are, what is held stays held.
   const StepInput& input() const { return input_; }
