@@ -123,6 +123,7 @@ class Measurement:
             put("/sim_node/follow", source + "/measured_js")
         put("/sim_node/realtime_priority", self.arguments.realtime)
         put("/hardware_node/bus", self.sockets)
+        put("/hardware_node/realtime_priority", max(0, self.arguments.realtime - 1))
         put("/latency_probe/folder", self.output)
         put("/latency_probe/joint", self.joint)
         put("/latency_probe/device", source + "/measured_js")
@@ -182,7 +183,9 @@ class Measurement:
 
     def start_devices(self):
         arguments = self.arguments
-        command = ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets]
+        # a device has a processor of its own: in a measurement with priorities, the emulated one has the highest
+        command = ["chrt", "-f", str(arguments.realtime + 1)] if arguments.realtime else []
+        command += ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets]
         command += ["--clock-error", str(DEVICE_CLOCK_ERROR)]
         if arguments.camera:
             command += ["--hand", "script", HAND]

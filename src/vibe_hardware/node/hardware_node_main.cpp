@@ -7,6 +7,7 @@
 
 #include "hardware_node.hpp"
 #include "vibe_node/master.hpp"
+#include "vibe_node/realtime.hpp"
 
 namespace {
 
@@ -20,9 +21,16 @@ void onSignal(int number) {
   stop_signal = number;
 }
 
+/// All threads that come later inherit the priority.
+void runInRealTime(int priority) {
+  for (const std::string& sentence : {vibe::lockMemory(), vibe::takeRealtimePriorityForAll(priority)})
+    if (!sentence.empty()) ROS_WARN_STREAM(sentence);
+}
+
 void run() {
   ros::NodeHandle handle;
   const vibe::HardwareParameters parameters = vibe::readHardwareParameters(ros::NodeHandle("~"));
+  if (parameters.realtime_priority > 0) runInRealTime(parameters.realtime_priority);
   vibe::HardwareNode node(handle, parameters);
   ros::AsyncSpinner spinner(1);
   spinner.start();

@@ -19,6 +19,7 @@ HardwareParameters readHardwareParameters(const ros::NodeHandle& private_handle)
   HardwareParameters parameters;
   reader.read("config", parameters.config);
   reader.read("bus", parameters.bus);
+  reader.read("realtime_priority", parameters.realtime_priority, 0, 99);
   double diagnostic_period = 1;  // diagnostic_updater reads it itself
   reader.read("diagnostic_period", diagnostic_period, 0.1, 60, "s");
   reader.finish();

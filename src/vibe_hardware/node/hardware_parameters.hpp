@@ -12,6 +12,7 @@ namespace vibe {
 struct HardwareParameters {
   std::string config = "package://vibe_hardware/config/devices.yaml";
   std::string bus = "hidraw";  ///< or the folder of an emulator's sockets
+  int realtime_priority = 0;   ///< of all threads, SCHED_FIFO; 0: ordinary threads
 };
 
 /// @throws Error for a parameter that is unknown or wrong

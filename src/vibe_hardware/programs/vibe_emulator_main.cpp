@@ -41,10 +41,13 @@ struct Options {
 };
 
 void addOptions(CLI::App& app, Options& o) {
-  app.add_option("--hand", o.hand, "who moves the devices: script FILE, recorded FILE, random, or blink [SCRIPT] (default: random)")
+  app.add_option("--hand", o.hand,
+                 "who moves the devices: script FILE, recorded FILE, random, or blink [SCRIPT] (default: random)")
       ->type_name("KIND [FILE]")
       ->expected(1, 2);
-  app.add_option("--seed", o.seed, "of the random hand and of the blinks (default: 1)")->type_name("N")->check(wholeNumber());
+  app.add_option("--seed", o.seed, "of the random hand and of the blinks (default: 1)")
+      ->type_name("N")
+      ->check(wholeNumber());
   app.add_option("--blinks", o.blink.count, "how often the hand blinks (default: 1000)")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));

@@ -13,8 +13,8 @@ namespace vibe {
 /// @param pixel  0xRRGGBB
 std::optional<bool> lampState(unsigned long pixel);
 
-/// Watches the lamp that the display LatencyLamp of rviz draws, on a screen with 24 bits per pixel: finds it, then reads
-/// its middle pixel every millisecond, in a thread of its own.
+/// Watches the lamp that the display LatencyLamp of rviz draws, on a screen with 24 bits per pixel: finds it, then
+/// reads its middle pixel every millisecond, in a thread of its own.
 class LampWatch {
  public:
   /// The lamp has changed. @param wall  time of the reading [ns]
@@ -32,7 +32,7 @@ class LampWatch {
   Callback changed_;
   _XDisplay* display_;
   unsigned long root_;  // window
-  int x_ = 0, y_ = 0;  // of the lamp's middle [pixels]
+  int x_ = 0, y_ = 0;   // of the lamp's middle [pixels]
   std::atomic<bool> found_{false}, stopping_{false};
   std::thread thread_;
 

@@ -1,13 +1,13 @@
 #include "vibe_node/realtime.hpp"
 
 #include <malloc.h>
-#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 namespace vibe {
 namespace {
@@ -18,15 +18,31 @@ std::string remedy(const char* limit) {
          "' to /etc/security/limits.d/realtime.conf, the user to the group realtime, and log in again.";
 }
 
+/// @param thread  its id in Linux; 0: the calling one  @return errno
+int setPriority(pid_t thread, int priority) {
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  return ::sched_setscheduler(thread, SCHED_FIFO, &parameters) == 0 ? 0 : errno;
+}
+
+std::string refusal(int error, int priority) {
+  return "The node runs without real-time priority: SCHED_FIFO " + std::to_string(priority) + " is not permitted (" +
+         std::strerror(error) + ")" + remedy("rtprio 99");
+}
+
 }  // namespace
 
 std::string takeRealtimePriority(int priority) {
-  sched_param parameters{};
-  parameters.sched_priority = priority;
-  const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
-  if (error == 0) return "";
-  return "Steps run without real-time priority: SCHED_FIFO " + std::to_string(priority) + " is not permitted (" +
-         std::strerror(error) + ")" + remedy("rtprio 99");
+  const int error = setPriority(0, priority);
+  return error == 0 ? "" : refusal(error, priority);
+}
+
+std::string takeRealtimePriorityForAll(int priority) {
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    const int error = setPriority(std::stoi(thread.path().filename()), priority);
+    if (error != 0 && error != ESRCH) return refusal(error, priority);  // ESRCH: it has ended meanwhile
+  }
+  return "";
 }
 
 std::string lockMemory() {

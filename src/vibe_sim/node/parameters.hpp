@@ -21,10 +21,10 @@ struct Parameters {
   std::string mesh;                   ///< surface file or package:// address instead of the scene\'s organ
   std::optional<std::uint64_t> seed;  ///< instead of the scene's
   TimeSource time_source = TimeSource::Wall;
-  bool fast = false;             ///< do not wait for the wall clock
+  bool fast = false;                   ///< do not wait for the wall clock
   std::optional<InputChannel> follow;  ///< steps begin when its samples arrive
-  bool lockstep = false;         ///< wait for the inputs of every step
-  double lockstep_timeout = 10;  ///< [s] of wall time
+  bool lockstep = false;               ///< wait for the inputs of every step
+  double lockstep_timeout = 10;        ///< [s] of wall time
   bool start_paused = false;
   bool await_recorder = false;  ///< no step before somebody listens to applied_input
   int threads = 1;              ///< inside a step

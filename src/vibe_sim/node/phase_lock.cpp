@@ -42,10 +42,10 @@ std::int64_t PhaseLock::phaseOf(std::int64_t time) const {
 }
 
 std::optional<PhaseLock::Gap> PhaseLock::findGap(std::int64_t phase, std::int64_t now) const {
-  const std::size_t n = std::min(arrived_, kWindow);
-  if (n < kFewest || now - last_ > kSilence) return std::nullopt;
+  constexpr std::size_t n = kWindow;
+  if (arrived_ < n || now - last_ > kSilence) return std::nullopt;
   Phases sorted = phases_;
-  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
+  std::sort(sorted.begin(), sorted.end());
   const std::size_t stride = 1 + static_cast<std::size_t>(kLate * static_cast<double>(n));
   Gap widest, present;
   for (std::size_t i = 0; i < n; ++i) {

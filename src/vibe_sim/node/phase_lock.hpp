@@ -10,19 +10,19 @@ namespace vibe {
 ///
 /// Samples that come at the rate of the steps, or at a whole multiple of it, arrive at the same places of every period;
 /// the rest of the period is a gap without arrivals. The deadline of the steps is moved to the beginning of the widest
-/// gap, slowly, so that the stamps stay almost regular. Samples at other rates arrive anywhere: there is no gap, and the
-/// deadlines stay as they are. A phase-locked loop, with quantiles of arrivals as its phase detector, since single
+/// gap, slowly, so that the stamps stay almost regular. Samples at other rates arrive anywhere: there is no gap, and
+/// the deadlines stay as they are. A phase-locked loop, with quantiles of arrivals as its phase detector, since single
 /// arrivals are late now and then.
 class PhaseLock {
  public:
-  static constexpr std::size_t kWindow = 64;              ///< arrivals that are looked at
-  static constexpr std::size_t kFewest = 16;              ///< arrivals before anything is concluded
-  static constexpr double kLate = 0.05;                   ///< share of arrivals that may lie within the gap
-  static constexpr double kGap = 0.3;                     ///< of a period: a narrower gap is none
-  static constexpr double kSlew = 0.01;                   ///< of a period: max change from step to step
-  static constexpr double kGrace = 0.1;                   ///< of a period: how long a step waits for a late sample
-  static constexpr std::int64_t kMargin = 100'000;        ///< between a sample and the step that uses it [ns]
-  static constexpr std::int64_t kSilence = 500'000'000;   ///< without a sample: begins anew [ns]
+  static constexpr std::size_t kWindow = 128;            ///< arrivals that are looked at; fewer tell nothing
+  static constexpr double kLate = 0.05;                  ///< share of arrivals that may lie within the gap
+  static constexpr double kGap = 0.4;                    ///< of a period: a narrower gap is none
+  static constexpr double kSlew = 0.002;                 ///< of a period: max change from step to step; more than any
+                                                         ///< clock is wrong
+  static constexpr double kGrace = 0.1;                  ///< of a period: how long a step waits for a late sample
+  static constexpr std::int64_t kMargin = 100'000;       ///< between a sample and the step that uses it [ns]
+  static constexpr std::int64_t kSilence = 500'000'000;  ///< without a sample: begins anew [ns]
 
   /// @param period  of the steps in wall time [ns]
   explicit PhaseLock(std::int64_t period) : period_(period) {}
@@ -46,9 +46,9 @@ class PhaseLock {
   using Phases = std::array<std::int64_t, kWindow>;
 
   std::int64_t period_;
-  Phases phases_{};         // of the last arrivals, a ring
+  Phases phases_{};  // of the last arrivals, a ring
   std::size_t arrived_ = 0;
-  std::int64_t last_ = 0;   // arrival [ns]
+  std::int64_t last_ = 0;  // arrival [ns]
 
   std::int64_t phaseOf(std::int64_t time) const;
   std::optional<Gap> findGap(std::int64_t phase, std::int64_t now) const;

@@ -165,9 +165,9 @@ void Publishers::warn(const std::string& text) {
 }
 
 bool Publishers::hasListener() const {
-  const auto all = {&scope_pose_,        &helix_pose_, &wrench_,        &joint_states_, &hand_joints_, &topology_,
-                    &particles_,         &procedure_,  &skill_metrics_, &events_,       &sutures_,     &applied_input_,
-                    &solver_statistics_, &scene_,      &haptic_,        &pull_,         &step_result_, &session_info_,
+  const auto all = {&scope_pose_,        &helix_pose_,  &wrench_,        &joint_states_, &hand_joints_, &topology_,
+                    &particles_,         &procedure_,   &skill_metrics_, &events_,       &sutures_,     &applied_input_,
+                    &solver_statistics_, &scene_,       &haptic_,        &pull_,         &step_result_, &session_info_,
                     &snapshot_,          &step_timing_, &clock_};
   return arms_.hasListener() ||
          std::any_of(all.begin(), all.end(), [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });

@@ -28,8 +28,10 @@ constexpr double kDelivery = 1.0;       // for listeners to receive what was sen
 constexpr char kHelp[] =
     "sim_node: the simulator as a ROS node.\n"
     "Usage: rosrun vibe_sim sim_node _scene:=FILE [_PARAMETER:=VALUE]...\n"
-    "Parameters: scene, mesh, seed, time_source, fast, follow, lockstep, lockstep_timeout, input_look_ahead, input_staleness,\n"
-    "start_paused, await_recorder, threads, realtime_priority, duration, summary_file, master_timeout; see docs/interfaces.md.\n";
+    "Parameters: scene, mesh, seed, time_source, fast, follow, lockstep, lockstep_timeout, input_look_ahead, "
+    "input_staleness,\n"
+    "start_paused, await_recorder, threads, realtime_priority, duration, summary_file, master_timeout; see "
+    "docs/interfaces.md.\n";
 
 volatile sig_atomic_t stop_signal = 0;
 
@@ -52,17 +54,17 @@ void explainEnd(const vibe::MasterWatch& watch) {
   std::fflush(stdout);
 }
 
-/// All threads that come later inherit the priority, those of ROS too: with a lower one they would be interrupted while
-/// they hold a lock that the stepping thread needs. That one is a little above them.
+/// The threads of ROS too, and those that come later: with a lower priority they would be interrupted while they hold a
+/// lock that the stepping thread needs. That one is a little above them.
 void runInRealTime(int priority) {
-  for (const std::string& sentence : {vibe::lockMemory(), vibe::takeRealtimePriority(std::max(1, priority - 1))})
+  for (const std::string& sentence : {vibe::lockMemory(), vibe::takeRealtimePriorityForAll(std::max(1, priority - 1))})
     if (!sentence.empty()) ROS_WARN_STREAM(sentence);
 }
 
 int run() {
+  ros::NodeHandle handle;
   const vibe::Parameters parameters = vibe::readParameters(ros::NodeHandle("~"));
   if (parameters.realtime_priority > 0) runInRealTime(parameters.realtime_priority);
-  ros::NodeHandle handle;
   const vibe::SceneModel made = vibe::loadModel(parameters.scene, parameters.mesh);
   const vibe::Model* model = made.model.get();
   // Not only for people: the first log message makes roscpp register a parameter at the master, and if that were the

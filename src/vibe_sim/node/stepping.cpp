@@ -210,7 +210,8 @@ void Stepper::takeStep() {
   last_begin_ = now;
   const bool real_time = !parameters_.fast && !parameters_.lockstep && steps_left_ == 0;
   StepInput input = session_.input;
-  for (const std::string& sentence : queue_.apply(inputTime(now), *session_.model, input, real_time, session_.state.joints))
+  for (const std::string& sentence :
+       queue_.apply(inputTime(now), *session_.model, input, real_time, session_.state.joints))
     complain(sentence);
   status_.scope_moves = queue_.moves(InputChannel::Scope);
   status_.overstitch_moves = queue_.moves(InputChannel::Overstitch);

@@ -6,7 +6,8 @@ namespace vibe {
 
 /// For a thread that works ahead for a step to come: it inherits the real-time priority of the thread that steps, and
 /// would take the processor from it just when the next step is due. Gives it the lowest real-time priority: below the
-/// stepping thread, but above ordinary programs, since a step may have to wait for it. Ordinary threads stay as they are.
+/// stepping thread, but above ordinary programs, since a step may have to wait for it. Ordinary threads stay as they
+/// are.
 inline void takeLowestPriority() {
   int policy = SCHED_OTHER;
   sched_param parameters{};

@@ -15,7 +15,8 @@ constexpr double kAfter = 1;  // time the hand holds still after the last blink 
 
 BlinkHand::BlinkHand(const BlinkSetup& setup, std::shared_ptr<const Hand> other)
     : other_(std::move(other)), step_(setup.step) {
-  if (other_ && !std::isfinite(other_->duration())) throw Error("A hand that blinks follows one that ends; give a script.");
+  if (other_ && !std::isfinite(other_->duration()))
+    throw Error("A hand that blinks follows one that ends; give a script.");
   if (setup.count < 1 || !(setup.shortest > 0) || !(setup.longest >= setup.shortest))
     throw Error("A hand that blinks needs at least one blink, and a time between blinks above 0.");
   double time = (other_ ? other_->duration() : 0) + setup.begin;

@@ -19,8 +19,7 @@ void BlinkLog::tick(double hand, std::int64_t wall) {
 
 void BlinkLog::report(std::int64_t wall) {
   if (reported_ == events_.size()) return;
-  for (; reported_ < events_.size(); ++reported_)
-    out_ << reported_ << ',' << events_[reported_] << ',' << wall << '\n';
+  for (; reported_ < events_.size(); ++reported_) out_ << reported_ << ',' << events_[reported_] << ',' << wall << '\n';
   out_.flush();
   if (!out_) throw Error("The blinks cannot be written to '" + file_ + "' any more; is the disk full?");
 }

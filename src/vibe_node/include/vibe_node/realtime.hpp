@@ -3,14 +3,17 @@
 
 namespace vibe {
 
-/// Gives the calling thread the real-time priority of SCHED_FIFO, so that no ordinary program delays it. Threads that it
-/// starts later have it too.
+/// Gives the calling thread the real-time priority of SCHED_FIFO, so that no ordinary program delays it. Threads that
+/// it starts later have it too.
 /// @param priority  1 (lowest) to 99
 /// @return empty, or one sentence that says why not and what to do
 std::string takeRealtimePriority(int priority);
 
-/// Locks the memory of this process, what it has and what it will get, and keeps freed memory, so that no step waits for
-/// a page.
+/// The same for all threads that this process has now, such as those of ROS, which have locks that others wait for.
+std::string takeRealtimePriorityForAll(int priority);
+
+/// Locks the memory of this process, what it has and what it will get, and keeps freed memory, so that no step waits
+/// for a page.
 /// @return empty, or one sentence that says why not and what to do
 std::string lockMemory();
 

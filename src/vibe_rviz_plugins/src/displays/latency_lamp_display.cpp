@@ -33,10 +33,11 @@ ros::Time wallTime() {
 }  // namespace
 
 LatencyLampDisplay::LatencyLampDisplay() : MessageDisplay("scope/setpoint_js") {
-  joint_property_ = new rviz::StringProperty("Joint", "tip_left_right", "The joint that switches the lamp.", this,
-                                             SLOT(redraw()));
+  joint_property_ =
+      new rviz::StringProperty("Joint", "tip_left_right", "The joint that switches the lamp.", this, SLOT(redraw()));
   threshold_property_ = new rviz::FloatProperty(
-      "Threshold", 0, "The lamp is green while the position of the joint [m or rad] is above it.", this, SLOT(redraw()));
+      "Threshold", 0, "The lamp is green while the position of the joint [m or rad] is above it.", this,
+      SLOT(redraw()));
 }
 
 LatencyLampDisplay::~LatencyLampDisplay() {

@@ -21,9 +21,9 @@ namespace vibe {
 
 class Legend;
 
-/// A lamp in the corner of the view that is green while a joint is above a threshold and magenta below, for measuring how
-/// long a motion takes to become visible: by a program that reads its pixels, or by a camera in front of the screen.
-/// Whenever it changes, the display publishes when it read the message and when it rendered the frame.
+/// A lamp in the corner of the view that is green while a joint is above a threshold and magenta below, for measuring
+/// how long a motion takes to become visible: by a program that reads its pixels, or by a camera in front of the
+/// screen. Whenever it changes, the display publishes when it read the message and when it rendered the frame.
 class LatencyLampDisplay : public MessageDisplay<sensor_msgs::JointState>, private Ogre::RenderTargetListener {
   Q_OBJECT
  public:

@@ -83,7 +83,7 @@ def buttons(pressed=(), stamp=None):
 class Program:
     """A program of the package under test, with its output."""
 
-    def __init__(self, program, name=None, env=None, remap=(), **parameters):
+    def __init__(self, program, name=None, env=None, remap=(), wrapper=(), **parameters):
         path = find_program(program)
         if name and rospy.has_param("/" + name):
             rospy.delete_param("/" + name)  # of an earlier program of this name
@@ -93,7 +93,7 @@ class Program:
         arguments += remap
         self.lines = []
         self.process = subprocess.Popen(
-            [path] + arguments,
+            list(wrapper) + [path] + arguments,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             env=dict(os.environ, **(env or {})),

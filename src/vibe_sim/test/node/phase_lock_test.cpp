@@ -1,9 +1,11 @@
 // Steps that begin when samples arrive.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <random>
+#include <vector>
 
 #include "phase_lock.hpp"
 
@@ -22,15 +24,15 @@ struct Device {
 };
 
 /// Runs steps for some seconds. @return where the deadline ends up, after the device's clock, in [0, kPeriod) [ns]
-class Run {
+class Session {
  public:
-  explicit Run(std::vector<Device> devices, double deadline = 0) : devices_(std::move(devices)), deadline_(0) {
+  explicit Session(std::vector<Device> devices, double deadline = 0) : devices_(std::move(devices)), deadline_(0) {
     deadline_ = static_cast<std::int64_t>(kStart + deadline);
     for (const Device& device : devices_) next_.push_back(kStart + device.phase);
   }
 
   double settle(double seconds) {
-    const auto end = static_cast<std::int64_t>(deadline_ + 1e9 * seconds);
+    const auto end = deadline_ + static_cast<std::int64_t>(1e9 * seconds);
     while (deadline_ < end) {
       arrivals();
       const std::int64_t correction = lock_.correction(deadline_);
@@ -58,7 +60,8 @@ class Run {
     std::vector<std::int64_t> times;
     for (std::size_t i = 0; i < devices_.size(); ++i) {
       for (; next_[i] < static_cast<double>(deadline_); next_[i] += devices_[i].period) {
-        const double delay = devices_[i].jitter * std::abs(normal(random_)) + (uniform(random_) < devices_[i].late ? 4e6 : 0);
+        const double delay =
+            devices_[i].jitter * std::abs(normal(random_)) + (uniform(random_) < devices_[i].late ? 4e6 : 0);
         times.push_back(static_cast<std::int64_t>(next_[i] + delay));
       }
     }
@@ -69,58 +72,58 @@ class Run {
 
 TEST(PhaseLock, StepsBeginJustAfterTheirSamples) {
   for (const double start : {0.0, 2e6, 5.1e6, 9e6}) {
-    Run run({{1e7, 3e6}}, start);
+    Session run({{1e7, 3e6}}, start);
     EXPECT_NEAR(run.settle(5), 3.3e6, 2e5) << start;
-    EXPECT_LE(run.largest(), kPeriod / 100);
+    EXPECT_LE(run.largest(), kPeriod / 500);
   }
 }
 
 TEST(PhaseLock, ADeviceAtAWholeMultipleWillDo) {
-  Run run({{5e6, 1e6}}, 3e6);
+  Session run({{5e6, 1e6}}, 3e6);
   const double phase = std::fmod(run.settle(5), 5e6);
   EXPECT_NEAR(phase, 1.3e6, 2e5);
 }
 
 TEST(PhaseLock, OtherRatesLeaveTheStepsAlone) {
-  for (const double period : {1e6, 1e9 / 60, 1e9 / 90, 1e9 / 101}) {
-    Run run({{period, 3e6}}, 7e6);
-    EXPECT_LT(std::abs(run.settle(5) - 7e6), 5e5) << period;
+  for (const double period : {1e6, 1e9 / 60, 1e9 / 90, 1e9 / 101, 1e9 / 103}) {
+    Session run({{period, 3e6}}, 7e6);
+    EXPECT_LT(std::abs(run.settle(5) - 7e6), 1e3) << period;
   }
 }
 
 TEST(PhaseLock, LateSamplesNowAndThenDoNotMatter) {
-  Run run({{1e7, 3e6, 1e5, 0.02}}, 0);
+  Session run({{1e7, 3e6, 1e5, 0.02}}, 0);
   EXPECT_NEAR(run.settle(10), 3.3e6, 4e5);
 }
 
 TEST(PhaseLock, FollowsAClockThatGoesWrong) {
-  Run run({{1e7 * (1 + 3e-4), 3e6}}, 0);
+  Session run({{1e7 * (1 + 3e-4), 3e6}}, 0);
   const double before = run.settle(20), drift = 20e9 * 3e-4;
   EXPECT_NEAR(std::fmod(before - drift - 3e6 + 1e8, 1e7), 0.3e6, 3e5);
 }
 
 // The one that comes soon after the other: the step uses both.
 TEST(PhaseLock, WaitsForTheLastOfTwoDevices) {
-  Run run({{1e7, 1e6}, {1e7, 3e6}}, 0);
+  Session run({{1e7, 1e6}, {1e7, 3e6}}, 0);
   EXPECT_NEAR(run.settle(6), 3.3e6, 2e5);
 }
 
 TEST(PhaseLock, WithoutSamplesNothingMoves) {
   PhaseLock lock(kPeriod);
   EXPECT_EQ(lock.correction(1'000'000'000), 0);
-  for (int i = 0; i < 20; ++i) lock.arrive(i * kPeriod);
-  EXPECT_NE(lock.correction(20 * kPeriod + 5'000'000), 0);
-  EXPECT_EQ(lock.correction(120 * kPeriod), 0);  // a second of silence
+  for (int i = 0; i < 200; ++i) lock.arrive(i * kPeriod);
+  EXPECT_NE(lock.correction(200 * kPeriod + 5'000'000), 0);
+  EXPECT_EQ(lock.correction(300 * kPeriod), 0);  // a second of silence
 }
 
 TEST(PhaseLock, AStepWaitsALittleForASampleThatIsLate) {
   PhaseLock lock(kPeriod);
-  for (int i = 0; i <= 40; ++i) lock.arrive(i * kPeriod);
-  const std::int64_t deadline = 41 * kPeriod + 200'000;
+  for (int i = 0; i <= 140; ++i) lock.arrive(i * kPeriod);
+  const std::int64_t deadline = 141 * kPeriod + 200'000;
   EXPECT_TRUE(lock.awaits(deadline, deadline));
   EXPECT_TRUE(lock.awaits(deadline, deadline + 900'000));
   EXPECT_FALSE(lock.awaits(deadline, deadline + 1'100'000));
-  lock.arrive(41 * kPeriod + 300'000);
+  lock.arrive(141 * kPeriod + 300'000);
   EXPECT_FALSE(lock.awaits(deadline, deadline + 300'000));
 }
 

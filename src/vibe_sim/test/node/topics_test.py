@@ -134,6 +134,7 @@ class TopicsTest(unittest.TestCase):
 
     def test_clock_is_repeated_at_ten_hertz_while_paused(self):
         self.step(3)
+        self.assertTrue(wait_until(lambda: rospy.get_rostime().to_nsec() == stamp_of(3)))
         self.clock.clear()
         begin = rospy.get_rostime()
         self.assertTrue(wait_until(lambda: len(self.clock.messages) >= 10, 1.5))

@@ -20,7 +20,7 @@ struct FakeCameraOptions {
   /// When each blink happened and when the exposure that shows it was half over, as a table with the columns `blink`,
   /// `event` and `report` [ns of Unix time]; empty: none.
   std::string blink_file;
-  std::string truth_file;      ///< what each frame that was sent truly shows, as truth.csv of vibe_render; empty: none
+  std::string truth_file;  ///< what each frame that was sent truly shows, as truth.csv of vibe_render; empty: none
 };
 
 /// A GigE Vision camera in this process: Aravis' simulated camera sends the pictures of a ring over the network, with
