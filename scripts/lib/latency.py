@@ -103,9 +103,8 @@ class Measurement:
 
     def scene(self):
         """The scene with another step period."""
-        with open(self.arguments.scene, encoding="utf-8") as file:
-            scene = yaml.safe_load(file)
-        scene["step_period"] = "{:.9f} s".format(1 / self.arguments.rate)
+        name = os.path.splitext(os.path.basename(self.arguments.scene))[0]
+        scene = {"base": self.arguments.scene, "name": name, "step_period": "{:.9f} s".format(1 / self.arguments.rate)}
         path = self.path("scene.yaml")
         with open(path, "w", encoding="utf-8") as file:
             yaml.safe_dump(scene, file)

@@ -1,7 +1,7 @@
 """When each blink passed each stage, from the tables of a measurement.
 
-A blink is a jump of one joint, up or down in turn. It is followed from the device to the screen: the first report with
-it, the first message with it, the step that used this input, the state after that step, the first frame of rviz with
+A blink is a jump of one joint, up or down in turn. It is followed from the sensor to the screen: the first sample with
+it, the driver's message about it, the step that used it, the state after that step, the first frame of rviz with
 this state, and the first reading of the screen with the lamp in its new colour. Later stages are joined by the stamp of
 the state, not by the order of arrival.
 """
@@ -10,10 +10,9 @@ import numpy
 
 # What happens between two of the times below, in this order; each begins where the one before ended.
 STAGES = (
-    ("wait for a report", "event", "report"),
-    ("report to driver", "report", "driver"),
-    ("driver to message", "driver", "message"),
-    ("wait for a step", "message", "begin"),
+    ("wait for a sample", "event", "report"),
+    ("sample to driver", "report", "driver"),
+    ("driver to step", "driver", "begin"),
     ("solve", "begin", "solved"),
     ("publish", "solved", "published"),
     ("wait for a frame", "published", "received"),
@@ -21,12 +20,12 @@ STAGES = (
     ("to the screen", "rendered", "pixel"),
 )
 TOTALS = (
-    ("report to published state", "report", "published"),
+    ("sample to published state", "report", "published"),
     ("event to published state", "event", "published"),
     ("published state to pixel", "published", "pixel"),
     ("event to pixel", "event", "pixel"),
 )
-TIMES = ("event", "report", "driver", "message", "begin", "solved", "published", "received", "rendered", "pixel")
+TIMES = ("event", "report", "driver", "begin", "solved", "published", "received", "rendered", "pixel")
 LOST = -1
 
 
@@ -60,7 +59,7 @@ class Tracer:
         times.update(event=event, report=int(m.blinks["report"][index]))
         device = first_from(m.device["wall"], event, lambda i: self.is_new(m.device["position"][i], blink))
         if device is not None:
-            times.update(driver=int(m.device["stamp"][device]), message=int(m.device["wall"][device]))
+            times["driver"] = int(m.device["stamp"][device])
         used = first_from(m.input["wall"], event, lambda i: self.is_new(m.input["position"][i], blink))
         step = self.by_step.get(int(m.input["step"][used])) if used is not None else None
         if step is None:
