@@ -22,7 +22,7 @@ from rviz_window import RvizWindow
 
 HAND = "package://vibe_hardware/config/hands/steady.yaml"
 DEVICE_CLOCK_ERROR = 300  # so that the phase between device and host drifts through whole periods [ppm]
-HID_JUMP = 0.03  # of the wheel, less than the joint may move in a step of 1/60 s [rad]
+HID_JUMP = 0.03  # of the wheel, as far as the joint may move in a step of 10 ms [rad]
 CAMERA_BASE = 1e-3  # of the helix in the scene blink [m]
 CAMERA_JUMP = 1e-4  # of the helix: crosses its middle in one step [m]
 SHORTEST, LONGEST, BEFORE = 0.25, 0.5, 17.0  # between blinks; time of the hand before the first one [s]
@@ -68,6 +68,7 @@ class Measurement:
         self.joint = "helix_advance" if arguments.camera else "tip_left_right"
         self.base = CAMERA_BASE if arguments.camera else 0.0
         self.jump = CAMERA_JUMP if arguments.camera else HID_JUMP
+        self.follow = "" if arguments.free else ("overstitch" if arguments.camera else "scope") + "/measured_js"
         self.blinker = self.probe = None
 
     def path(self, name):
@@ -82,7 +83,7 @@ class Measurement:
             "camera" if arguments.camera else "HID device",
             "published state" if arguments.headless else "pixel",
             arguments.rate,
-            "" if arguments.free else ", following the input",
+            ", ~follow" if self.follow else "",
         )
         setup = {
             "title": title,
@@ -90,7 +91,7 @@ class Measurement:
             "base": self.base,
             "jump": self.jump,
             "rate": arguments.rate,
-            "follow": not arguments.free,
+            "follow": self.follow,
             "screen": not arguments.headless,
             "load": arguments.load,
             "realtime_priority": arguments.realtime,
@@ -118,8 +119,7 @@ class Measurement:
         put("/robot_state_publisher/publish_frequency", 200.0)
         put("/sim_node/scene", self.scene())
         put("/sim_node/summary_file", self.path("summary.txt"))
-        if not self.arguments.free:
-            put("/sim_node/follow", source + "/measured_js")
+        put("/sim_node/follow", self.follow)
         put("/sim_node/realtime_priority", self.arguments.realtime)
         put("/hardware_node/bus", self.sockets)
         put("/hardware_node/realtime_priority", max(0, self.arguments.realtime - 1))
@@ -133,6 +133,7 @@ class Measurement:
         graph = self.graph
         self.write_setup()
         graph.start_master()
+        print("tables, numbers and figure: " + self.output, flush=True)
         print(graph.how_to_attach(), flush=True)
         self.set_parameters()
         graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
@@ -183,7 +184,7 @@ class Measurement:
     def start_devices(self):
         arguments = self.arguments
         # a device has a processor of its own: in a measurement with priorities, the emulated one has the highest
-        command = ["chrt", "-f", str(arguments.realtime + 1)] if arguments.realtime else []
+        command = self.with_priority()
         command += ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets]
         command += ["--clock-error", str(DEVICE_CLOCK_ERROR)]
         if arguments.camera:
@@ -197,6 +198,16 @@ class Measurement:
         self.wait_for(emulator, "input", "the emulator offers no devices")
         node = ["rosrun", "vibe_hardware", "hardware_node"]
         self.graph.start("hardware_node", node + (["overstitch/measured_js:=buttons_js"] if arguments.camera else []))
+
+    def with_priority(self):
+        """What, before a command, gives it a real-time priority above that of the simulator, where that is permitted."""
+        command = ["chrt", "-f", str(self.arguments.realtime + 1)]
+        if self.arguments.realtime == 0:
+            return []
+        if subprocess.run(command + ["true"], check=False, capture_output=True).returncode == 0:
+            return command
+        print("real-time priority is not permitted here; see docs/latency.md", flush=True)
+        return []
 
     def wait_for(self, process, words, problem, seconds=180.0):
         deadline = time.monotonic() + seconds

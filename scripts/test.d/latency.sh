@@ -5,38 +5,41 @@ export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin # pytho
 latency=$root/scripts/latency
 check 'latency refuses no blinks' refuses 2 "not '0'" "$latency" --blinks 0
 check 'latency refuses a rate that is no number' refuses 2 "not 'fast'" "$latency" --rate fast
+check 'latency refuses more steps than a jump may take' refuses 2 "not '1000'" "$latency" --rate 1000
 check 'latency refuses a priority that is none' refuses 2 "from 0 to 98" "$latency" --realtime 99
 check 'latency refuses a scene that is not there' refuses 2 'no file' "$latency" --scene nowhere.yaml
 check 'latency refuses a folder that is there' refuses 2 'is there already' "$latency" --output "$scratch"
+
+if [ -n "${VIBE_VARIANT:-}" ]; then
+  echo 'skipped measurements (scripts/latency uses the ordinary build, not this one)'
+  exit 0
+fi
 
 # measure NAME OPTION...: a few blinks into $scratch/NAME.
 measure() {
   local name=$1
   shift
-  "$latency" --blinks 8 --scene "$root/src/vibe_sessions/regressions/scenes/coarse_stomach.yaml" \
+  "$latency" --blinks 12 --scene "$root/src/vibe_sessions/regressions/scenes/coarse_stomach.yaml" \
     --output "$scratch/$name" "$@"
 }
 
-# sees NAME STAGE COUNT: so many blinks at least passed a stage, in a time between 0 and 2 s.
+# sees NAME STAGE COUNT: so many blinks at least passed a stage, in a time between 0 and 2 s; 0: none did.
 sees() {
   python3 - "$scratch/$1/latency.json" "$2" "$3" <<'PY'
 import json, sys
 with open(sys.argv[1]) as file:
     numbers = json.load(file)["stages"][sys.argv[2]]
 print(numbers)
-if not (numbers["count"] >= int(sys.argv[3]) and (int(sys.argv[3]) == 0 or 0 < numbers["p50"] < 2)):
-    sys.exit("not what was expected")
+wanted = int(sys.argv[3])
+right = numbers["count"] >= wanted and 0 < numbers["p50"] < 2 if wanted else numbers["count"] == 0
+sys.exit(0 if right else "not what was expected")
 PY
-}
-
-unseen() {
-  ! sees "$1" "$2" 1
 }
 
 check 'latency follows the device to the pixel' measure device
 check 'latency: from the device to the state' sees device 'event to published state' 7
-check 'latency: from the device to the pixel' sees device 'event to pixel' 6
+check 'latency: from the device to the pixel' sees device 'event to pixel' 4
 check 'latency draws a figure' test -s "$scratch/device/latency.png"
 check 'latency follows the camera to the state' measure camera --camera --headless --free --rate 60
 check 'latency: from the exposure to the state' sees camera 'sample to published state' 7
-check 'latency without rviz sees no pixel' unseen camera 'event to pixel'
+check 'latency without rviz sees no pixel' sees camera 'event to pixel' 0

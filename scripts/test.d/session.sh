@@ -64,7 +64,7 @@ isFilledIn() {
   python - "$scratch/first session/session.bag" "$scratch/filled.bag" "$scratch/second/session.bag" <<'PYTHON'
 import collections, io, sys
 import rosbag
-UNREPEATABLE = ("/solver_statistics", "/clock", "/session_info")  # times of the machine; pauses
+UNREPEATABLE = ("/solver_statistics", "/step_timing", "/clock", "/session_info")  # times of the machine; pauses
 def messages(path):
     found = collections.defaultdict(list)
     for topic, message, _, header in rosbag.Bag(path).read_messages(return_connection_header=True):

@@ -52,6 +52,13 @@ LatencyProbe::LatencyProbe(ros::NodeHandle handle, const ProbeParameters& parame
       parameters.device, kQueue, [this](const JointState::ConstPtr& m) { addJoint(device_, *m); }, {}, hints));
   subscribers_.push_back(handle.subscribe<JointState>(
       parameters.state, kQueue, [this](const JointState::ConstPtr& m) { addJoint(state_, *m); }, {}, hints));
+  listenToSteps(handle, hints);
+  listenToDisplay(handle, hints);
+  if (parameters.screen)
+    lamp_ = std::make_unique<LampWatch>([this](std::int64_t wall, bool lit) { pixel_.add({wall, lit ? 1 : 0}); });
+}
+
+void LatencyProbe::listenToSteps(ros::NodeHandle& handle, const ros::TransportHints& hints) {
   subscribers_.push_back(handle.subscribe<vibe_msgs::StepInput>(
       "applied_input", kQueue,
       [this](const vibe_msgs::StepInput::ConstPtr& m) {
@@ -65,14 +72,15 @@ LatencyProbe::LatencyProbe(ros::NodeHandle handle, const ProbeParameters& parame
                    ns(m->solved), ns(m->published)});
       },
       {}, hints));
+}
+
+void LatencyProbe::listenToDisplay(ros::NodeHandle& handle, const ros::TransportHints& hints) {
   subscribers_.push_back(handle.subscribe<vibe_msgs::DisplayTiming>(
       "latency_lamp", kQueue,
       [this](const vibe_msgs::DisplayTiming::ConstPtr& m) {
         display_.add({wallTime(), ns(m->header.stamp), m->lit, ns(m->received), ns(m->rendered)});
       },
       {}, hints));
-  if (parameters.screen)
-    lamp_ = std::make_unique<LampWatch>([this](std::int64_t wall, bool lit) { pixel_.add({wall, lit ? 1 : 0}); });
 }
 
 void LatencyProbe::addJoint(EventTable& table, const sensor_msgs::JointState& message) const {

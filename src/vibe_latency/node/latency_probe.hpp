@@ -42,6 +42,8 @@ class LatencyProbe {
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<LampWatch> lamp_;
 
+  void listenToSteps(ros::NodeHandle& handle, const ros::TransportHints& hints);
+  void listenToDisplay(ros::NodeHandle& handle, const ros::TransportHints& hints);
   void addJoint(EventTable& table, const sensor_msgs::JointState& message) const;
 };
 

@@ -12,7 +12,7 @@
 namespace vibe {
 namespace {
 
-// As root, or after the limits of the user have been raised in limits.conf(5).
+// Limits of a user are raised in limits.conf(5).
 std::string remedy(const char* limit) {
   return std::string("; add the line '@realtime - ") + limit +
          "' to /etc/security/limits.d/realtime.conf, the user to the group realtime, and log in again.";
@@ -47,7 +47,8 @@ std::string takeRealtimePriorityForAll(int priority) {
 
 std::string lockMemory() {
   // With a limit, memory that is asked for later would be refused, and the process would end.
-  rlimit limit{};
+  rlimit limit{RLIM_INFINITY, RLIM_INFINITY};
+  ::setrlimit(RLIMIT_MEMLOCK, &limit);  // root may
   ::getrlimit(RLIMIT_MEMLOCK, &limit);
   const bool enough = limit.rlim_cur == RLIM_INFINITY;
   if (enough && ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {

@@ -18,7 +18,7 @@ std::int64_t share(double of, std::int64_t period) {
 void PhaseLock::arrive(std::int64_t time) {
   if (time - last_ > kSilence || time < last_) arrived_ = 0;
   last_ = time;
-  phases_[arrived_ % kWindow] = phaseOf(time);
+  times_[arrived_ % kWindow] = time;
   ++arrived_;
 }
 
@@ -33,7 +33,12 @@ std::int64_t PhaseLock::correction(std::int64_t deadline) const {
 
 bool PhaseLock::awaits(std::int64_t deadline, std::int64_t now) const {
   if (last_ >= deadline - period_ / 2 || now - deadline >= share(kGrace, period_)) return false;
-  return findGap(phaseOf(deadline), now).has_value();
+  return comesEveryPeriod() && findGap(phaseOf(deadline), now).has_value();
+}
+
+bool PhaseLock::comesEveryPeriod() const {
+  const std::int64_t oldest = times_[arrived_ % kWindow];
+  return arrived_ >= kWindow && last_ - oldest < (static_cast<std::int64_t>(kWindow) - 1) * (period_ + period_ / 20);
 }
 
 std::int64_t PhaseLock::phaseOf(std::int64_t time) const {
@@ -44,7 +49,8 @@ std::int64_t PhaseLock::phaseOf(std::int64_t time) const {
 std::optional<PhaseLock::Gap> PhaseLock::findGap(std::int64_t phase, std::int64_t now) const {
   constexpr std::size_t n = kWindow;
   if (arrived_ < n || now - last_ > kSilence) return std::nullopt;
-  Phases sorted = phases_;
+  std::array<std::int64_t, n> sorted{};
+  std::transform(times_.begin(), times_.end(), sorted.begin(), [this](std::int64_t time) { return phaseOf(time); });
   std::sort(sorted.begin(), sorted.end());
   const std::size_t stride = 1 + static_cast<std::size_t>(kLate * static_cast<double>(n));
   Gap widest, present;

@@ -8,8 +8,8 @@ namespace vibe {
 
 /// Lets steps begin just after the samples of an input arrive, instead of up to a period later.
 ///
-/// Samples that come at the rate of the steps, or at a whole multiple of it, arrive at the same places of every period;
-/// the rest of the period is a gap without arrivals. The deadline of the steps is moved to the beginning of the widest
+/// Samples that come at the rate of the steps, or at twice that rate, arrive at the same places of every period; the
+/// rest of the period is a gap without arrivals. The deadline of the steps is moved to the beginning of the widest
 /// gap, slowly, so that the stamps stay almost regular. Samples at other rates arrive anywhere: there is no gap, and
 /// the deadlines stay as they are. A phase-locked loop, with quantiles of arrivals as its phase detector, since single
 /// arrivals are late now and then.
@@ -43,13 +43,13 @@ class PhaseLock {
     std::int64_t begin = 0;  // phase, in [0, period) [ns]
     std::int64_t width = 0;  // [ns]
   };
-  using Phases = std::array<std::int64_t, kWindow>;
 
   std::int64_t period_;
-  Phases phases_{};  // of the last arrivals, a ring
+  std::array<std::int64_t, kWindow> times_{};  // of the last arrivals, a ring [ns]
   std::size_t arrived_ = 0;
   std::int64_t last_ = 0;  // arrival [ns]
 
+  bool comesEveryPeriod() const;
   std::int64_t phaseOf(std::int64_t time) const;
   std::optional<Gap> findGap(std::int64_t phase, std::int64_t now) const;
 };

@@ -38,7 +38,6 @@ void Session::replaceState(State new_state) {
 void Session::replaceModel(std::shared_ptr<const Model> new_model) {
   const std::int64_t old_step = state.step;
   simulation.replaceModel(std::move(new_model));
-  simulation.warmUp();
   time.continueWith(old_step, state.step, simulation.stepPeriod());
   seed = state.seed;
   ++revision;

@@ -80,7 +80,9 @@ void Stepper::wake(InputChannel channel) {
 }
 
 void Stepper::run() {
-  if (parameters_.realtime_priority > 0) takeRealtimePriority(parameters_.realtime_priority);
+  const std::string refusal =
+      parameters_.realtime_priority > 0 ? takeRealtimePriority(parameters_.realtime_priority) : "";
+  if (!refusal.empty()) ROS_WARN_STREAM_ONCE(refusal);
   try {
     loop();
   } catch (const std::exception& error) {
@@ -129,10 +131,7 @@ Stepper::Hold Stepper::findHold() {
 Stepper::Hold Stepper::findDeadline() {
   const std::int64_t now = wallNow();
   const std::int64_t late = now - nextDeadline();
-  if (late < -kClockJump) {
-    last_begin_ = 0;
-    restartPace(now);
-  }
+  if (late < -kClockJump) restartPace(now);
   if (late < 0 || now < nextBegin()) return Hold::Pace;
   if (parameters_.follow) {
     std::lock_guard<std::mutex> lock(mutex_);
@@ -203,12 +202,9 @@ void Stepper::takeStep() {
   hold_ = Hold::None;
   if (statistics_.steps == 0) statistics_.begin(session_);
   statistics_.total.start();
-  const std::int64_t now = wallNow();
-  timing_.step = session_.state.step;
-  timing_.due = toRosTime(std::min(nextDeadline(), now));
-  timing_.begin = toRosTime(now);
-  last_begin_ = now;
   const bool real_time = !parameters_.fast && !parameters_.lockstep && steps_left_ == 0;
+  const std::int64_t now = wallNow();
+  beginTiming(now, real_time);
   StepInput input = session_.input;
   for (const std::string& sentence :
        queue_.apply(inputTime(now), *session_.model, input, real_time, session_.state.joints))
@@ -223,11 +219,7 @@ void Stepper::takeStep() {
   statistics_.publish.start();
   publishers_.stepResult(session_, status_);
   statistics_.publish.stop();
-  if (publishers_.hasTimingListener()) {
-    timing_.header.stamp = toRosTime(session_.now());
-    timing_.published = toRosTime(wallNow());
-    publishers_.stepTiming(timing_);
-  }
+  endTiming();
   if (real_time && parameters_.follow) followInput();
   last_clock_ = steadyTime();
   statistics_.countStep(session_.time.period(), session_.simulation.report());
@@ -236,6 +228,27 @@ void Stepper::takeStep() {
     publishers_.procedureState(session_, status_);  // it is sent once a second, and time now stands still
     answerSteps({true, "Took " + std::to_string(steps_asked_) + " steps."});
   }
+}
+
+void Stepper::beginTiming(std::int64_t now, bool real_time) {
+  timing_.step = session_.state.step;
+  timing_.due = toRosTime(real_time ? std::min(nextDeadline(), now) : now);
+  timing_.begin = toRosTime(now);
+  last_begin_ = now;
+  // not before: the stamp of a state that has been published must not change
+  if (parameters_.time_source == TimeSource::Sim) {
+    pace_offset_ += follow_shift_;
+  } else {
+    session_.time.shiftOrigin(follow_shift_);
+  }
+  follow_shift_ = 0;
+}
+
+void Stepper::endTiming() {
+  if (!publishers_.hasTimingListener()) return;
+  timing_.header.stamp = toRosTime(session_.now());
+  timing_.published = toRosTime(wallNow());
+  publishers_.stepTiming(timing_);
 }
 
 // Of a command that is sent 100 times a second, one sentence a second is enough.
@@ -263,7 +276,7 @@ void Stepper::fail(const std::string& sentence) {
 }
 
 std::int64_t Stepper::nextDeadline() const {
-  return session_.time.stamp(session_.state.step + 1) + pace_offset_;
+  return session_.time.stamp(session_.state.step + 1) + pace_offset_ + follow_shift_;
 }
 
 // When the next step may begin [ns of the wall clock].
@@ -276,23 +289,17 @@ std::int64_t Stepper::nextBegin() const {
 std::int64_t Stepper::inputTime(std::int64_t now) const {
   if (parameters_.time_source == TimeSource::Sim) return session_.now();
   const std::int64_t due = nextDeadline();
-  return now - due > inNanoseconds(session_.time.period()) ? due : now;
+  // never before that of the step before
+  return now - due > inNanoseconds(session_.time.period()) ? std::max(due, queue_.now()) : now;
 }
 
 void Stepper::followInput() {
-  std::int64_t shift = 0;
-  {
-    std::lock_guard<std::mutex> lock(mutex_);
-    shift = lock_.correction(nextDeadline());
-  }
-  if (parameters_.time_source == TimeSource::Sim) {
-    pace_offset_ += shift;
-  } else {
-    session_.time.shiftOrigin(shift);
-  }
+  std::lock_guard<std::mutex> lock(mutex_);
+  follow_shift_ = lock_.correction(nextDeadline());
 }
 
 void Stepper::restartPace(std::int64_t now) {
+  last_begin_ = std::min(last_begin_, now);  // somebody may have set the clock back
   const std::int64_t shift = now - nextDeadline();
   if (parameters_.time_source == TimeSource::Sim) {
     pace_offset_ += shift;

@@ -74,6 +74,8 @@ class Stepper {
   Hold findDeadline();
   void wait(Hold hold);
   void takeStep();
+  void beginTiming(std::int64_t now, bool real_time);
+  void endTiming();
   void complain(const std::string& sentence);
   void reportEverySecond();
   void fail(const std::string& sentence);
@@ -105,11 +107,12 @@ class Stepper {
   Session session_;
   RunStatistics statistics_;
   RunStatus status_;
-  std::int64_t last_step_ = 0;    // statistics_.steps after which to finish; 0: never
-  std::int64_t pace_offset_ = 0;  // wall clock minus stamp at which a step is due [ns]
-  std::int64_t last_begin_ = 0;   // wall time of the last step [ns]
-  vibe_msgs::StepTiming timing_;  // of the present step
-  double hold_begin_ = 0;         // steady time at which the present hold began [s]
+  std::int64_t last_step_ = 0;     // statistics_.steps after which to finish; 0: never
+  std::int64_t pace_offset_ = 0;   // wall clock minus stamp at which a step is due [ns]
+  std::int64_t follow_shift_ = 0;  // by which the next step is due later than its stamp says [ns]
+  std::int64_t last_begin_ = 0;    // wall time of the last step [ns]
+  vibe_msgs::StepTiming timing_;   // of the present step
+  double hold_begin_ = 0;          // steady time at which the present hold began [s]
   Hold hold_ = Hold::None;
   double recorder_since_ = 0;                 // steady time; 0: nobody listens yet [s]
   double last_clock_ = 0;                     // steady time [s]

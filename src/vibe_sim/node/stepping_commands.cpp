@@ -166,6 +166,8 @@ Reply Stepper::loadScene(const std::string& address) {
     }
     publishers_.announceModel(session_);
     afterReplacement();
+    session_.simulation.warmUp();
+    restartPace(static_cast<std::int64_t>(ros::WallTime::now().toNSec()));
     return {true, "Simulating '" + made.model->scene.name + "' with " + std::to_string(made.model->particle_count) +
                       " particles."};
   });

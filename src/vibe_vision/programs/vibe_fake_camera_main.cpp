@@ -70,17 +70,7 @@ void serve(Options options) {
   std::cout << "vibe_fake_camera: " << camera.sent() << " frames sent" << std::endl;
 }
 
-void addOptions(CLI::App& app, Options& options) {
-  std::string names = kBlink;
-  for (const std::string& name : vibe::sceneNames()) names += ", " + name;
-  app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
-  app.add_option("--address", options.camera.address, "of a network interface of this computer")->capture_default_str();
-  app.add_option("--serial", options.camera.serial, "serial number")->capture_default_str();
-  app.add_option("--frames", options.frames, "drawn at most; 0.4 MB of memory each")
-      ->check(CLI::Range(2, 5000))
-      ->capture_default_str();
-  app.add_option("--truth", options.camera.truth_file,
-                 "file for slide [m], rotation [rad] and places [px] of each frame sent, as truth.csv of vibe_render");
+void addBlinkOptions(CLI::App& app, Options& options) {
   app.add_option("--blinks", options.blinks, "of the scene blink: how often the helix jumps")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
@@ -92,6 +82,20 @@ void addOptions(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--blink-log", options.camera.blink_file, "file for when each jump happened and was exposed");
   app.add_option("--seed", options.seed, "of the times of the jumps")->capture_default_str();
+}
+
+void addOptions(CLI::App& app, Options& options) {
+  std::string names = kBlink;
+  for (const std::string& name : vibe::sceneNames()) names += ", " + name;
+  app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
+  app.add_option("--address", options.camera.address, "of a network interface of this computer")->capture_default_str();
+  app.add_option("--serial", options.camera.serial, "serial number")->capture_default_str();
+  app.add_option("--frames", options.frames, "drawn at most; 0.4 MB of memory each")
+      ->check(CLI::Range(2, 5000))
+      ->capture_default_str();
+  app.add_option("--truth", options.camera.truth_file,
+                 "file for slide [m], rotation [rad] and places [px] of each frame sent, as truth.csv of vibe_render");
+  addBlinkOptions(app, options);
   app.add_option("--config", options.config, "file for the configuration of the scene, for the tracker");
   app.add_option("--lost-ratio", options.camera.lost_ratio, "share of the packets that are not sent")
       ->check(vibe::finiteIn(0, 1))

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
 #include "worlds.hpp"
@@ -41,6 +42,20 @@ TEST(Determinism, SameBitsOnEveryRunAndThreadCount) {
   EXPECT_EQ(hash(a.state), hash(c.state));
   EXPECT_EQ(hash(a.state), hash(d.state));
   EXPECT_EQ(a.state.x, d.state.x);
+}
+
+TEST(Determinism, AWarmUpChangesNothing) {
+  const World world = livelyWorld();
+  Simulation cold(world.model), warm(world.model);
+  warm.warmUp();
+  EXPECT_EQ(warm.hash(), cold.hash());
+  EXPECT_EQ(warm.stepCount(), 0);
+  for (int i = 0; i < 30; ++i) {
+    cold.step();
+    warm.step();
+    if (i == 10) warm.warmUp();
+    ASSERT_EQ(warm.hash(), cold.hash()) << i;
+  }
 }
 
 TEST(Determinism, HashSeesTheLeastDifference) {

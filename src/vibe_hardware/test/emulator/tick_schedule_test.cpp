@@ -15,6 +15,13 @@ TEST(TickSchedule, TakesOneTickPerMillisecond) {
   EXPECT_EQ(schedule.dropped(), 0);
 }
 
+TEST(TickSchedule, AClockThatGoesSlowTicksLess) {
+  TickSchedule schedule(100, 0.01);
+  int ticks = 0;
+  for (double now = 100; now < 110; now += 0.0005) ticks += schedule.due(now);
+  EXPECT_NEAR(ticks, 10000 / 1.01, 1);
+}
+
 TEST(TickSchedule, MakesUpForAShortDelayInBursts) {
   TickSchedule schedule(0);
   schedule.due(0);

@@ -61,8 +61,8 @@ def draw_stages(axes, traced):
     axes.set_xlabel("time per stage [ms]: median, 1st to 99th percentile")
 
 
-def draw_correlation(axes, traced, end):
-    lags, correlation = cross_correlation(traced, "event", end)
+def draw_correlation(axes, measurement, end):
+    lags, correlation = cross_correlation(measurement, end)
     lag = peak_lag(lags, correlation)
     axes.plot(1e3 * lags, correlation, color=BLUE)
     axes.axvline(1e3 * lag, color="black", linestyle=":", linewidth=1)
@@ -74,17 +74,17 @@ def draw_correlation(axes, traced, end):
     axes.set_ylabel("cross-correlation")
 
 
-def draw(traced, path, title):
-    """One page with all of them."""
+def draw(measurement, traced, path):
+    """One page with all of them; at least one blink must have been seen in a published state."""
     end = last_known(traced)
     values = duration(traced, "event", end)
     figure, axes = plt.subplots(2, 2, figsize=(11, 7.5), constrained_layout=True)
     draw_histogram(axes[0, 0], values)
     draw_series(axes[0, 1], traced, values)
     draw_stages(axes[1, 0], traced)
-    draw_correlation(axes[1, 1], traced, end)
+    draw_correlation(axes[1, 1], measurement, end)
     for each in axes.flat:
         each.grid(alpha=0.3)
-    figure.suptitle(title, fontsize=12)
+    figure.suptitle(measurement.setup["title"], fontsize=12)
     figure.savefig(path, dpi=100)
     plt.close(figure)

@@ -35,6 +35,9 @@ def stage_statistics(traced):
 def step_statistics(step, period):
     """How well steps kept their deadlines: a step misses its deadline when its state is published later than one period
     after the step was due."""
+    if len(step["due"]) == 0:
+        nothing = statistics(numpy.array([]))
+        return {"count": 0, "missed": 0, "late begin": nothing, "solve": nothing, "step": nothing}
     due, begin, solved, published = (1e-9 * (step[k] - step["due"][0]) for k in ("due", "begin", "solved", "published"))
     return {
         "count": len(due),
@@ -45,31 +48,40 @@ def step_statistics(step, period):
     }
 
 
-def square_wave(changes, start, count):
-    """Samples of a signal that is 1 after every even change and -1 after every odd one and before."""
-    samples = start + numpy.arange(count) * (1e9 / RATE)
-    return numpy.where(numpy.searchsorted(changes, samples, side="right") % 2 == 1, 1.0, -1.0)
+def square_wave(times, values, samples):
+    """A signal at sample times: the last of the values that came until then; before the first one, its opposite."""
+    values = numpy.concatenate(([-values[0]], values))
+    return values[numpy.searchsorted(times, samples, side="right")]
 
 
-def cross_correlation(traced, begin="event", end="pixel"):
-    """(lags [s], correlation): how well the later signal, shifted back by each lag, agrees with the first.
+def signs(values):
+    return numpy.where(values, 1.0, -1.0)
 
-    The second method of the paper: it needs no pairing of blinks, and its peak is the most frequent delay.
+
+def wave_of_end(measurement, end):
+    """(times [ns], values) of the joint as it was seen at the end of the way: on the screen or in the published state."""
+    if end == "pixel":
+        return measurement.pixel["wall"], signs(measurement.pixel["lit"] == 1)
+    setup = measurement.setup
+    return measurement.state["wall"], signs(measurement.state["position"] > setup["base"] + 0.5 * setup["jump"])
+
+
+def cross_correlation(measurement, end):
+    """(lags [s], correlation): how well what was seen, shifted back by each lag, agrees with what the hand did.
+
+    The second method of the paper: it pairs no blinks and knows nothing of stages. Its peak is the median delay.
+    @param end  "pixel" or "published"
     """
-    known = (traced[begin] >= 0) & (traced[end] >= 0)
-    # a lost blink would turn the rest of the wave upside down: keep whole pairs
-    if len(known) % 2 == 1:
-        known = known[:-1]
-    pairs = known.reshape(-1, 2).all(axis=1).repeat(2)
-    first, second = traced[begin][: len(pairs)][pairs], traced[end][: len(pairs)][pairs]
     lags = numpy.arange(int(LONGEST * RATE)) / RATE
-    if len(first) < 2:
+    events = measurement.blinks["event"]
+    times, values = wave_of_end(measurement, end)
+    if len(events) < 2 or len(times) < 2:
         return lags, numpy.zeros(len(lags))
-    start = float(first[0]) - 1e9
-    count = int((float(second[-1]) - start) / 1e9 * RATE) + len(lags)
-    a, b = square_wave(first, start, count), square_wave(second, start, count)
-    n = count - len(lags)
-    return lags, numpy.array([float(a[:n] @ b[k : k + n]) / n for k in range(len(lags))])
+    count = int((events[-1] - events[0] + 2e9) / 1e9 * RATE)
+    samples = events[0] - 1e9 + numpy.arange(count + len(lags)) * (1e9 / RATE)
+    up = (measurement.blinks["blink"] % 2 == 0) == (measurement.setup["jump"] > 0)
+    first, second = square_wave(events, signs(up), samples), square_wave(times, values, samples)
+    return lags, numpy.array([float(first[:count] @ second[k : k + count]) / count for k in range(len(lags))])
 
 
 def peak_lag(lags, correlation):
@@ -77,10 +89,11 @@ def peak_lag(lags, correlation):
     return float(lags[int(numpy.argmax(correlation))])
 
 
-def phase_coverage(traced, period):
-    """Largest distance between the distribution of the blinks' phases in a period and the uniform one (Kolmogorov), from
-    0 to 1; about 1.36 / sqrt(n) is exceeded by chance once in twenty times."""
-    phases = numpy.sort(traced["event"] % int(1e9 * period)) / (1e9 * period)
+def phase_coverage(waits, period):
+    """How far the waits for a clock are from uniform ones: the largest distance between their distribution and the
+    uniform one (Kolmogorov), from 0 to 1. About 1.36 / sqrt(n) is exceeded by chance once in twenty times; steps that
+    follow a device are far from it, since they wait for no clock."""
+    phases = numpy.sort(waits[~numpy.isnan(waits)] / period % 1)
     n = len(phases)
     if n == 0:
         return 1.0

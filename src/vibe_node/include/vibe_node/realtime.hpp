@@ -7,14 +7,14 @@ namespace vibe {
 /// it starts later have it too.
 /// @param priority  1 (lowest) to 99
 /// @return empty, or one sentence that says why not and what to do
-std::string takeRealtimePriority(int priority);
+[[nodiscard]] std::string takeRealtimePriority(int priority);
 
 /// The same for all threads that this process has now, such as those of ROS, which have locks that others wait for.
-std::string takeRealtimePriorityForAll(int priority);
+[[nodiscard]] std::string takeRealtimePriorityForAll(int priority);
 
 /// Locks the memory of this process, what it has and what it will get, and keeps freed memory, so that no step waits
 /// for a page.
 /// @return empty, or one sentence that says why not and what to do
-std::string lockMemory();
+[[nodiscard]] std::string lockMemory();
 
 }  // namespace vibe

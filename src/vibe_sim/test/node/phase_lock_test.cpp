@@ -127,5 +127,13 @@ TEST(PhaseLock, AStepWaitsALittleForASampleThatIsLate) {
   EXPECT_FALSE(lock.awaits(deadline, deadline + 300'000));
 }
 
+TEST(PhaseLock, NoStepWaitsForASampleOfASlowerDevice) {
+  PhaseLock lock(kPeriod);
+  for (int i = 0; i <= 140; ++i) lock.arrive(2 * i * kPeriod);
+  const std::int64_t deadline = 281 * kPeriod + 200'000;
+  EXPECT_NE(lock.correction(deadline + kPeriod / 2), 0);  // its steps do follow
+  EXPECT_FALSE(lock.awaits(deadline, deadline));
+}
+
 }  // namespace
 }  // namespace vibe

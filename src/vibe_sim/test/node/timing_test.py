@@ -24,11 +24,11 @@ def ns(stamp):
 
 
 class Device:
-    """Sends joints at times begin + k * PERIOD of the wall clock, each with its stamp."""
+    """Sends joints at times begin + k * PERIOD of the wall clock, with stamps that are `ahead` of their sending [s]."""
 
-    def __init__(self, begin, position_at=lambda time: 0.02):
+    def __init__(self, begin, position_at=lambda time: 0.02, ahead=0.0):
         self.publisher = rospy.Publisher("scope/measured_js", JointState, queue_size=10, tcp_nodelay=True)
-        self.begin, self.position_at = begin, position_at
+        self.begin, self.position_at, self.ahead = begin, position_at, ahead
         self.ended = threading.Event()
         self.thread = threading.Thread(target=self.run, daemon=True)
         self.thread.start()
@@ -38,8 +38,9 @@ class Device:
         while not self.ended.is_set():
             due = self.begin + k * PERIOD
             time.sleep(max(0, due - time.time()))
-            stamp = rospy.Time.from_sec(time.time())
-            self.publisher.publish(joints(SCOPE_JOINTS, (self.position_at(due), 0, 0, 0), stamp))
+            stamp = due + self.ahead
+            position = (self.position_at(stamp), 0, 0, 0)
+            self.publisher.publish(joints(SCOPE_JOINTS, position, rospy.Time.from_sec(stamp)))
             k += 1
 
     def stop(self):
@@ -72,10 +73,10 @@ class TimingTest(unittest.TestCase):
         return statistics.median(((b - device.begin) / PERIOD) % 1 for b in begins)
 
     def device_after_steps(self):
-        """A device whose samples come 15 % of a period after the begin of steps as it is now: too late for them."""
+        """A device whose samples come 30 % of a period after the begin of steps as it is now: too late for them."""
         begins = [1e-9 * ns(m.begin) for m in self.timing.messages[-60:]]
         offset = statistics.median((b - begins[0] + 0.5 * PERIOD) % PERIOD - 0.5 * PERIOD for b in begins)
-        first = begins[0] + offset + 0.15 * PERIOD
+        first = begins[0] + offset + 0.3 * PERIOD
         return Device(first + PERIOD * int((time.time() - first) / PERIOD + 10))
 
     def test_times_are_in_order_and_stamps_those_of_the_state(self):
@@ -86,8 +87,7 @@ class TimingTest(unittest.TestCase):
             self.assertLess(abs(ns(message.due) - ns(message.header.stamp)), 2)  # a step is due at the stamp of its result
         steps = [m.step for m in self.timing.messages]
         self.assertEqual(steps, list(range(steps[0], steps[0] + len(steps))))
-        poses = set(self.pose.stamps())
-        self.assertGreater(len(poses & set(self.timing.stamps())), 50)
+        self.assertTrue(wait_until(lambda: len(set(self.pose.stamps()) & set(self.timing.stamps())) > 50))
 
     def test_steps_that_follow_begin_when_a_sample_arrives(self):
         self.start(follow="scope/measured_js")
@@ -102,13 +102,13 @@ class TimingTest(unittest.TestCase):
         device = self.device_after_steps()
         self.addCleanup(device.stop)
         time.sleep(4)
-        self.assertGreater(self.wait_before_step(device), 0.6)
+        self.assertGreater(self.wait_before_step(device), 0.5)
 
     def test_after_a_stall_steps_come_faster_but_in_no_burst_and_the_motion_keeps_its_form(self):
         self.start()
         start = time.time()
         ramp = lambda when: 0.02 + 0.03 * max(0.0, when - start)  # noqa: E731  30 mm/s
-        device = Device(start + 0.1, ramp)
+        device = Device(start + 0.1, ramp, ahead=0.2)  # a stall of this test must not count
         self.addCleanup(device.stop)
         time.sleep(1)
         stalled = time.time()
@@ -116,7 +116,8 @@ class TimingTest(unittest.TestCase):
         time.sleep(0.15)
         self.simulator.process.send_signal(signal.SIGCONT)
         time.sleep(1)
-        messages = [m for m in self.timing.messages if stalled + 0.1 < 1e-9 * ns(m.begin) < stalled + 0.8]
+        # from the last steps before the stall on: a burst would be between them and the first one after it
+        messages = [m for m in self.timing.messages if stalled - 0.05 < 1e-9 * ns(m.begin) < stalled + 0.8]
         begins = [1e-9 * ns(m.begin) for m in messages]
         late = [1e-9 * (ns(m.begin) - ns(m.due)) for m in messages]
         self.assertGreater(max(late), 0.08)
@@ -142,7 +143,9 @@ class TimingTest(unittest.TestCase):
         self.assertNotEqual(taken, refused, self.simulator.output())
 
     def test_without_permission_the_simulator_says_so_and_runs(self):
-        wrapper = ["setpriv", "--bounding-set=-sys_nice,-ipc_lock", "prlimit", "--rtprio=0", "--memlock=65536"]
+        wrapper = ["prlimit", "--rtprio=0", "--memlock=65536"]
+        if os.geteuid() == 0:
+            wrapper = wrapper + ["setpriv", "--bounding-set=-sys_nice,-ipc_lock,-sys_resource"]
         self.start_wrapped(wrapper, realtime_priority=20)
         self.assertFalse(any(policy == SCHED_FIFO for policy, _ in self.scheduling()))
         self.assertTrue(self.simulator.says("runs without real-time priority: SCHED_FIFO"))
