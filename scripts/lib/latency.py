@@ -26,6 +26,7 @@ HID_JUMP = 0.03  # of the wheel, as far as the joint may move in a step of 10 ms
 CAMERA_BASE = 1e-3  # of the helix in the scene blink [m]
 CAMERA_JUMP = 1e-4  # of the helix: crosses its middle in one step [m]
 SHORTEST, LONGEST, BEFORE = 0.25, 0.5, 17.0  # between blinks; time of the hand before the first one [s]
+WARM_UP = 12.0  # of the graph, until the hand is at its place and the tissue has followed [s]
 LAMP = {"Class": "vibe_rviz_plugins/LatencyLamp", "Enabled": True, "Name": "Lamp", "Value": True}
 
 
@@ -47,7 +48,14 @@ def parse_arguments():
     parser.add_argument("--load", action="store_true", help="keep one core busy with stress-ng")
     parser.add_argument("--realtime", type=int, default=0, help="priority of the stepping thread")
     parser.add_argument("--view", default="", help="a saved view of rviz")
-    return parser.parse_args()
+    parser.add_argument("--mode", default="blinks", choices=("blinks", "steps", "sway"))
+    parser.add_argument("--minutes", type=float, default=10.0, help="of the modes steps and sway")
+    parser.add_argument("--lead", type=float, default=0.0, help="of the predicted positions that steps take [ms]")
+    arguments = parser.parse_args()
+    if arguments.mode != "blinks":
+        arguments.headless = arguments.free = True
+        arguments.camera = arguments.mode == "sway"
+    return arguments
 
 
 def processor():
@@ -69,24 +77,34 @@ class Measurement:
         self.base = CAMERA_BASE if arguments.camera else 0.0
         self.jump = CAMERA_JUMP if arguments.camera else HID_JUMP
         self.follow = "" if arguments.free else ("overstitch" if arguments.camera else "scope") + "/measured_js"
-        self.blinker = self.probe = None
+        self.begin = 0  # of what counts [ns]
+        self.probe = None
 
     def path(self, name):
         return os.path.join(self.output, name)
+
+    def title(self):
+        arguments = self.arguments
+        details = ", steps at {:g} Hz{}{}".format(
+            arguments.rate, ", ~follow" if self.follow else "", ", the other core is busy" if arguments.load else ""
+        )
+        if arguments.mode == "steps":
+            return "Deadlines" + details
+        source = "camera" if arguments.camera else "HID device"
+        if arguments.mode == "sway":
+            return "From {} to published state{}, predicted by {:g} ms".format(source, details, arguments.lead)
+        return "From {} to {}{}".format(source, "published state" if arguments.headless else "pixel", details)
 
     def write_setup(self):
         """What the report needs to know."""
         arguments = self.arguments
         source = "camera" if arguments.camera else "device"
         periods = {"step": 1 / arguments.rate, source: 1 / 147 if arguments.camera else 0.01}
-        title = "From {} to {}, steps at {:g} Hz{}".format(
-            "camera" if arguments.camera else "HID device",
-            "published state" if arguments.headless else "pixel",
-            arguments.rate,
-            ", ~follow" if self.follow else "",
-        )
         setup = {
-            "title": title,
+            "title": self.title(),
+            "mode": arguments.mode,
+            "from": self.begin,
+            "lead": 1e-3 * arguments.lead,
             "joint": self.joint,
             "base": self.base,
             "jump": self.jump,
@@ -137,7 +155,8 @@ class Measurement:
         print(graph.how_to_attach(), flush=True)
         self.set_parameters()
         graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
-        graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"], patience=30.0)
+        remapped = ["overstitch/measured_js:=overstitch/predicted_js"] if self.arguments.lead > 0 else []
+        graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"] + remapped, patience=30.0)
         if not self.arguments.headless:
             self.start_rviz()
         else:
@@ -171,14 +190,17 @@ class Measurement:
         self.probe = self.graph.start("latency_probe", ["env", *settings, "rosrun", "vibe_latency", "latency_probe"])
 
     def start_camera(self):
-        command = ["rosrun", "vibe_vision", "vibe_fake_camera", "--scene", "blink", "--config", self.path("rig.yaml")]
-        command += ["--blinks", str(self.arguments.blinks), "--blink-after", str(BEFORE), "--seed", str(self.arguments.seed)]
-        command += ["--blink-jump", str(self.jump), "--blink-log", self.path("blinks.csv")]
-        self.blinker = self.graph.start("vibe_fake_camera", command)
-        self.wait_for(self.blinker, " serves ", "the simulated camera does not start")
+        command = ["rosrun", "vibe_vision", "vibe_fake_camera", "--config", self.path("rig.yaml")]
+        if self.arguments.mode == "sway":
+            command += ["--scene", "sway", "--truth", self.path("truth.csv")]
+        else:
+            command += ["--scene", "blink", "--blink-after", str(BEFORE)] + self.blink_options()
+        camera = self.graph.start("vibe_fake_camera", command)
+        self.wait_for(camera, " serves ", "the simulated camera does not start")
         self.graph.set_parameter("/vision_node/config", self.path("rig.yaml"))
         self.graph.set_parameter("/vision_node/source", "gige:127.0.0.1")
         self.graph.set_parameter("/vision_node/publish_images", False)
+        self.graph.set_parameter("/vision_node/lead", 1e-3 * self.arguments.lead)
         self.graph.start("vision_node", ["rosrun", "vibe_vision", "vision_node"])
 
     def start_devices(self):
@@ -187,17 +209,16 @@ class Measurement:
         command = self.with_priority()
         command += ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets]
         command += ["--clock-error", str(DEVICE_CLOCK_ERROR)]
-        if arguments.camera:
-            command += ["--hand", "script", HAND]
-        else:
-            command += ["--hand", "blink", HAND, "--blinks", str(arguments.blinks), "--seed", str(arguments.seed)]
-            command += ["--blink-jump", str(self.jump), "--blink-log", self.path("blinks.csv")]
+        blinks = arguments.mode == "blinks" and not arguments.camera
+        command += ["--hand", "blink", HAND] + self.blink_options() if blinks else ["--hand", "script", HAND]
         emulator = self.graph.start("vibe_emulator", command)
-        if not arguments.camera:
-            self.blinker = emulator
         self.wait_for(emulator, "input", "the emulator offers no devices")
         node = ["rosrun", "vibe_hardware", "hardware_node"]
         self.graph.start("hardware_node", node + (["overstitch/measured_js:=buttons_js"] if arguments.camera else []))
+
+    def blink_options(self):
+        options = ["--blinks", str(self.arguments.blinks), "--seed", str(self.arguments.seed)]
+        return options + ["--blink-jump", str(self.jump), "--blink-log", self.path("blinks.csv")]
 
     def with_priority(self):
         """What, before a command, gives it a real-time priority above that of the simulator, where that is permitted."""
@@ -232,6 +253,26 @@ class Measurement:
             return max(0, sum(1 for _ in file) - 1)
 
     def watch(self):
+        if self.arguments.mode == "blinks":
+            self.watch_blinks()
+        else:
+            self.watch_time()
+
+    def watch_time(self):
+        """For some minutes, with a line now and then."""
+        begin = told = time.monotonic()
+        end = begin + WARM_UP + 60 * self.arguments.minutes
+        while time.monotonic() < end:
+            self.check_alive()
+            if self.begin == 0 and time.monotonic() > begin + WARM_UP:
+                self.begin = time.time_ns()
+                self.write_setup()
+            if time.monotonic() - told > 30:
+                told = time.monotonic()
+                print("{:.1f} of {:g} minutes".format((told - begin - WARM_UP) / 60, self.arguments.minutes), flush=True)
+            time.sleep(0.2)
+
+    def watch_blinks(self):
         """Until the last blink, with a line now and then."""
         count, patience = self.arguments.blinks, BEFORE + 60 + LONGEST * self.arguments.blinks
         begin = told = time.monotonic()

@@ -6,6 +6,10 @@ latency=$root/scripts/latency
 check 'latency refuses no blinks' refuses 2 "not '0'" "$latency" --blinks 0
 check 'latency refuses a rate that is no number' refuses 2 "not 'fast'" "$latency" --rate fast
 check 'latency refuses more steps than a jump may take' refuses 2 "not '1000'" "$latency" --rate 1000
+check 'latency refuses more steps than there may be' refuses 2 "not '1001'" "$latency" --steps --rate 1001
+check 'latency refuses to measure for no time' refuses 2 "not '0'" "$latency" --steps --minutes 0
+check 'latency refuses a lead too far' refuses 2 "not '201'" "$latency" --sway --lead 201
+check 'latency refuses to predict jumps' refuses 2 'goes with --sway' "$latency" --lead 10
 check 'latency refuses a priority that is none' refuses 2 "from 0 to 98" "$latency" --realtime 99
 check 'latency refuses a scene that is not there' refuses 2 'no file' "$latency" --scene nowhere.yaml
 check 'latency refuses a folder that is there' refuses 2 'is there already' "$latency" --output "$scratch"
@@ -43,3 +47,17 @@ check 'latency draws a figure' test -s "$scratch/device/latency.png"
 check 'latency follows the camera to the state' measure camera --camera --headless --free --rate 60
 check 'latency: from the exposure to the state' sees camera 'sample to published state' 7
 check 'latency without rviz sees no pixel' sees camera 'event to pixel' 0
+
+# says NAME CONDITION: what latency.json of $scratch/NAME says, as n.
+says() {
+  python3 -c 'import json, sys; n = json.load(open(sys.argv[1])); print(n); sys.exit(not eval(sys.argv[2]))' \
+    "$scratch/$1/latency.json" "$2"
+}
+
+check 'latency counts deadlines' measure steps --steps --minutes 0.1 --rate 60
+check 'latency: the steps of six seconds' says steps '330 <= n["steps"]["count"] <= 400 and n["steps"]["step"]["p50"] > 0'
+check 'latency draws the deadlines' test -s "$scratch/steps/latency.png"
+check 'latency tells the age of positions' measure now --sway --minutes 0.1
+check 'latency: positions are old without prediction' says now '0.002 < n["motion"]["age"] < 0.1'
+check 'latency tells the age of predicted positions' measure ahead --sway --minutes 0.1 --lead 40
+check 'latency: positions are ahead with too much prediction' says ahead 'n["motion"]["age"] < 0.01'

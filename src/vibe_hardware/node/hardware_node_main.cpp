@@ -21,16 +21,11 @@ void onSignal(int number) {
   stop_signal = number;
 }
 
-/// All threads that come later inherit the priority.
-void runInRealTime(int priority) {
-  for (const std::string& sentence : {vibe::lockMemory(), vibe::takeRealtimePriorityForAll(priority)})
-    if (!sentence.empty()) ROS_WARN_STREAM(sentence);
-}
-
 void run() {
   ros::NodeHandle handle;
   const vibe::HardwareParameters parameters = vibe::readHardwareParameters(ros::NodeHandle("~"));
-  if (parameters.realtime_priority > 0) runInRealTime(parameters.realtime_priority);
+  if (parameters.realtime_priority > 0)
+    for (const std::string& sentence : vibe::runInRealTime(parameters.realtime_priority)) ROS_WARN_STREAM(sentence);
   vibe::HardwareNode node(handle, parameters);
   ros::AsyncSpinner spinner(1);
   spinner.start();

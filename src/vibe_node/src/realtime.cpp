@@ -60,4 +60,11 @@ std::string lockMemory() {
   return "Memory is not locked: it is not permitted (" + reason + ")" + remedy("memlock unlimited");
 }
 
+std::vector<std::string> runInRealTime(int priority) {
+  std::vector<std::string> refusals;
+  for (const std::string& sentence : {lockMemory(), takeRealtimePriorityForAll(priority)})
+    if (!sentence.empty()) refusals.push_back(sentence);
+  return refusals;
+}
+
 }  // namespace vibe

@@ -71,32 +71,51 @@ std::string releaseButtons(StepInput& input) {
 
 }  // namespace
 
+InputQueue::InputQueue() = default;
+
 bool InputQueue::push(const InputSample& sample) {
-  std::lock_guard<std::mutex> lock(mutex_);
-  Queue& queue = queues_[static_cast<int>(sample.channel)];
+  const auto channel = static_cast<std::size_t>(sample.channel);
+  const std::int64_t stamp = std::max(sample.stamp, applied_until_.load());
+  const bool replaces = taken_[channel] > 0 && stamp == last_pushed_[channel];
+  if (!replaces && taken_[channel] >= kCapacity) return false;
+  ++taken_[channel];
+  if (!inbox_.push(sample)) {
+    --taken_[channel];
+    return false;
+  }
+  last_pushed_[channel] = stamp;
+  return true;
+}
+
+void InputQueue::collect() {
+  inbox_.consume_all([this](const InputSample& sample) { insert(sample); });
+}
+
+void InputQueue::insert(const InputSample& sample) {
+  const auto channel = static_cast<std::size_t>(sample.channel);
+  Queue& queue = queues_[channel];
   InputSample item = sample;
-  item.stamp = std::max(sample.stamp, applied_until_);
+  item.stamp = std::max(sample.stamp, applied_until_.load());
   const auto later = std::upper_bound(queue.waiting.begin(), queue.waiting.end(), item.stamp,
                                       [](std::int64_t stamp, const InputSample& other) { return stamp < other.stamp; });
   const bool replaces = later != queue.waiting.begin() && std::prev(later)->stamp == item.stamp;
-  if (!replaces && queue.waiting.size() >= kCapacity) return false;
-  if (replaces) {
-    *std::prev(later) = item;
+  if (replaces || queue.waiting.full()) {
+    *(later == queue.waiting.begin() ? later : std::prev(later)) = item;
+    --taken_[channel];
   } else {
     queue.waiting.insert(later, item);
   }
   queue.newest = std::max(queue.newest, sample.stamp);
-  return true;
 }
 
-bool InputQueue::knownUntil(std::int64_t stamp) const {
-  std::lock_guard<std::mutex> lock(mutex_);
+bool InputQueue::knownUntil(std::int64_t stamp) {
+  collect();
   return std::all_of(queues_.begin(), queues_.begin() + kLockstepChannelCount,
                      [stamp](const Queue& queue) { return queue.newest >= stamp; });
 }
 
-std::string InputQueue::missingAt(std::int64_t stamp) const {
-  std::lock_guard<std::mutex> lock(mutex_);
+std::string InputQueue::missingAt(std::int64_t stamp) {
+  collect();
   std::string names;
   for (int channel = 0; channel < kLockstepChannelCount; ++channel) {
     if (queues_[channel].newest >= stamp) continue;
@@ -107,7 +126,7 @@ std::string InputQueue::missingAt(std::int64_t stamp) const {
 
 std::vector<std::string> InputQueue::apply(std::int64_t stamp, const Model& model, StepInput& input, bool real_time,
                                            const std::optional<JointArray>& hand) {
-  std::lock_guard<std::mutex> lock(mutex_);
+  collect();
   if (stamp < applied_until_) setBack(stamp);
   const JointArray start = hand.value_or(input.joints);
   std::vector<std::string> sentences;
@@ -117,6 +136,7 @@ std::vector<std::string> InputQueue::apply(std::int64_t stamp, const Model& mode
       std::string sentence = applySample(sample, stamp, model, start, input);
       if (!sentence.empty()) sentences.push_back(std::move(sentence));
       last_[static_cast<int>(sample.channel)] = stamp;
+      --taken_[static_cast<std::size_t>(sample.channel)];
       queue.waiting.pop_front();
     }
   }
@@ -166,12 +186,10 @@ void InputQueue::applyMoves(std::int64_t stamp, JointArray& joints) {
 }
 
 bool InputQueue::moves(InputChannel channel) const {
-  std::lock_guard<std::mutex> lock(mutex_);
   return moves_[static_cast<int>(channel)].has_value();
 }
 
 void InputQueue::endMoves() {
-  std::lock_guard<std::mutex> lock(mutex_);
   moves_ = {};
 }
 
@@ -192,13 +210,16 @@ bool InputQueue::isSilent(InputChannel channel, std::int64_t stamp, std::int64_t
 }
 
 std::int64_t InputQueue::now() const {
-  std::lock_guard<std::mutex> lock(mutex_);
   return applied_until_;
 }
 
 void InputQueue::clear() {
-  std::lock_guard<std::mutex> lock(mutex_);
-  queues_ = {};
+  collect();
+  for (std::size_t channel = 0; channel < queues_.size(); ++channel) {
+    taken_[channel] -= queues_[channel].waiting.size();
+    queues_[channel].waiting.clear();
+    queues_[channel].newest = 0;
+  }
   applied_until_ = 0;
   last_ = {};
   moves_ = {};

@@ -1,9 +1,10 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <atomic>
+#include <boost/circular_buffer.hpp>
+#include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
-#include <deque>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,22 +43,32 @@ struct InputSample {
   Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< in world [m]
 };
 
-/// Holds what has arrived until the step for which it is due, and the last valid values after that. All functions may
-/// be called from any thread.
+/// Holds what has arrived until the step for which it is due, and the last valid values after that.
+///
+/// One thread pushes, one thread takes steps. Neither waits for the other or asks for memory: samples go through a ring
+/// without a lock. push() belongs to the first thread, now() to any, all other functions to the second.
 class InputQueue {
  public:
   /// Samples that may wait in one channel; more means that a publisher stamps far into the future.
   static constexpr std::size_t kCapacity = 4096;
+  /// Samples of all channels between two calls of collect().
+  static constexpr std::size_t kInbox = 4 * kCapacity;
+
+  InputQueue();
 
   /// A sample with the stamp of one that still waits replaces it.
   /// @return false if the channel is full and the sample was not taken
   bool push(const InputSample& sample);
 
+  /// Takes in what was pushed. Functions that look at samples begin with it; without them, to be called now and
+  /// then.
+  void collect();
+
   /// Whether every channel of lock-step has delivered a sample stamped `stamp` or later: all that matters at that time
   /// is known.
-  bool knownUntil(std::int64_t stamp) const;
+  bool knownUntil(std::int64_t stamp);
   /// Names of the channels for which that is not so, for a message.
-  std::string missingAt(std::int64_t stamp) const;
+  std::string missingAt(std::int64_t stamp);
 
   /// Applies to `input` everything that is due at `stamp`, in the order of stamps; samples from the past count as of
   /// now, in the order of arrival. Targets of the tip become joints by the tool's inverse kinematics; a pull
@@ -84,15 +95,23 @@ class InputQueue {
 
  private:
   struct Queue {
-    std::deque<InputSample> waiting;  // ascending stamps
-    std::int64_t newest = 0;          // max stamp delivered so far
+    boost::circular_buffer<InputSample> waiting{kCapacity};  // ascending stamps
+    std::int64_t newest = 0;                                 // max stamp delivered so far
   };
-  mutable std::mutex mutex_;
+  // of the thread that pushes
+  std::array<std::int64_t, kInputChannelCount> last_pushed_{};  // stamp [ns]
+
+  // between the two
+  boost::lockfree::spsc_queue<InputSample> inbox_{kInbox};
+  std::array<std::atomic<std::size_t>, kInputChannelCount> taken_{};  // samples in the inbox and waiting, at most
+  std::atomic<std::int64_t> applied_until_{0};
+
+  // of the thread that steps
   std::array<Queue, kInputChannelCount> queues_;
-  std::int64_t applied_until_ = 0;
   std::array<std::int64_t, kInputChannelCount> last_{};  // time at which a sample of the channel was applied last
   std::array<std::optional<JointMove>, kInputChannelCount> moves_;
 
+  void insert(const InputSample& sample);
   std::string applySample(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand,
                           StepInput& input);
   std::string beginMove(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand);

@@ -54,11 +54,10 @@ void explainEnd(const vibe::MasterWatch& watch) {
   std::fflush(stdout);
 }
 
-/// The threads of ROS too, and those that come later: with a lower priority they would be interrupted while they hold a
-/// lock that the stepping thread needs. That one is a little above them.
+/// The threads of ROS too: with a lower priority they would be interrupted while they hold a lock that the stepping
+/// thread needs to send its messages. That one is a little above them.
 void runInRealTime(int priority) {
-  for (const std::string& sentence : {vibe::lockMemory(), vibe::takeRealtimePriorityForAll(std::max(1, priority - 1))})
-    if (!sentence.empty()) ROS_WARN_STREAM(sentence);
+  for (const std::string& sentence : vibe::runInRealTime(std::max(1, priority - 1))) ROS_WARN_STREAM(sentence);
 }
 
 int run() {

@@ -63,7 +63,7 @@ void Stepper::start() {
 
 void Stepper::stop() {
   {
-    std::lock_guard<std::mutex> lock(mutex_);
+    std::lock_guard<std::mutex> lock(mutex_);  // the thread is not just about to wait
     stopping_ = true;
   }
   changed_.notify_all();
@@ -71,10 +71,10 @@ void Stepper::stop() {
 }
 
 void Stepper::wake(InputChannel channel) {
+  if (channel == parameters_.follow) arrivals_.push(wallNow());
   {
-    std::lock_guard<std::mutex> lock(mutex_);
+    std::lock_guard<std::mutex> lock(mutex_);  // the thread is not just about to wait
     woken_ = true;
-    if (channel == parameters_.follow) lock_.arrive(wallNow());
   }
   changed_.notify_all();
 }
@@ -97,11 +97,8 @@ void Stepper::loop() {
   publishers_.wholeState(session_, status_);
   statistics_.begin(session_);
   restartPace(wallNow());
-  while (true) {
-    {
-      std::lock_guard<std::mutex> lock(mutex_);
-      if (stopping_) return;
-    }
+  while (!stopping_) {
+    hearArrivals();
     serveCommands();
     if (last_step_ > 0 && statistics_.steps >= last_step_) {
       outcome_ = Outcome::Finished;
@@ -133,10 +130,7 @@ Stepper::Hold Stepper::findDeadline() {
   const std::int64_t late = now - nextDeadline();
   if (late < -kClockJump) restartPace(now);
   if (late < 0 || now < nextBegin()) return Hold::Pace;
-  if (parameters_.follow) {
-    std::lock_guard<std::mutex> lock(mutex_);
-    if (lock_.awaits(nextDeadline(), now)) return Hold::Sample;
-  }
+  if (parameters_.follow && lock_.awaits(nextDeadline(), now)) return Hold::Sample;
   if (static_cast<double>(late) > 1e9 * session_.time.period()) ++statistics_.missed_deadlines;
   if (late > kMaxLag) {
     reportLag(1e-9 * static_cast<double>(late));
@@ -166,13 +160,14 @@ void Stepper::wait(Hold hold) {
     last_clock_ = now;
   }
   checkPatience(hold);
+  queue_.collect();
   std::unique_lock<std::mutex> lock(mutex_);
   std::chrono::nanoseconds duration = kIdle;
   if (hold == Hold::Pace) duration = std::min(duration, std::chrono::nanoseconds(nextBegin() - wallNow()));
   if (hold == Hold::Sample) duration = kSamplePoll;
   // inputs matter to a step only when it is due, so that their arrival ends no other wait
   const bool inputs_matter = hold == Hold::Inputs || hold == Hold::Sample;
-  changed_.wait_for(lock, duration, [&] { return stopping_ || !commands_.empty() || (inputs_matter && woken_); });
+  changed_.wait_for(lock, duration, [&] { return stopping_ || asked_ || (inputs_matter && woken_); });
   woken_ = false;
   // time spent waiting for others is not lag of the simulation
   if (hold == Hold::Inputs || hold == Hold::Recorder) restartPace(wallNow());
@@ -293,8 +288,12 @@ std::int64_t Stepper::inputTime(std::int64_t now) const {
   return now - due > inNanoseconds(session_.time.period()) ? std::max(due, queue_.now()) : now;
 }
 
+void Stepper::hearArrivals() {
+  arrivals_.consume_all([this](std::int64_t time) { lock_.arrive(time); });
+}
+
 void Stepper::followInput() {
-  std::lock_guard<std::mutex> lock(mutex_);
+  hearArrivals();
   follow_shift_ = lock_.correction(nextDeadline());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -36,7 +37,8 @@ enum class Outcome {
 
 /// The stepping thread: takes a step whenever time, pause and inputs allow, and serves commands between two steps.
 /// The session belongs to this thread alone, so that it needs no lock: other threads hand it work and wait for the
-/// answer.
+/// answer. From the inputs of a step to its state the thread takes no lock and, once the session has settled in, asks
+/// for no memory; sending messages does both, in roscpp.
 class Stepper {
  public:
   Stepper(const Parameters& parameters, const SceneModel& made, InputQueue& queue, Publishers& publishers);
@@ -48,7 +50,7 @@ class Stepper {
   bool isRunning() const { return running_; }
   Outcome outcome() const { return outcome_; }
 
-  /// A sample of the channel has arrived in the queue.
+  /// A sample of the channel has arrived in the queue. From the thread that pushes samples.
   void wake(InputChannel channel);
 
   // Commands, from any other thread; each returns when it is done.
@@ -94,6 +96,7 @@ class Stepper {
   Reply call(std::function<Reply()> work);
   Reply post(Command command);
   void serveCommands();
+  void hearArrivals();
   void rejectCommands();
   Reply changePause(bool paused);
   void answerSteps(const Reply& reply);
@@ -119,6 +122,7 @@ class Stepper {
   double last_lag_report_ = -1e9;             // steady time [s]
   double lag_report_period_ = 0;              // until the next [s]
   std::map<std::string, double> complaints_;  // about a topic, steady time of the last [s]
+  PhaseLock lock_;                            // to the samples of ~follow
   std::uint32_t steps_asked_ = 0;             // of a running takeSteps()
   std::uint32_t steps_left_ = 0;
   std::shared_ptr<Answer> steps_answer_;
@@ -127,10 +131,11 @@ class Stepper {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::pair<Command, std::shared_ptr<Answer>>> commands_;
-  bool woken_ = false;
-  PhaseLock lock_;  // to the samples of ~follow
-  bool stopping_ = false;
   bool accepting_ = true;
+  std::atomic<bool> asked_{false};  // commands_ may hold some
+  std::atomic<bool> woken_{false};  // by a sample
+  std::atomic<bool> stopping_{false};
+  boost::lockfree::spsc_queue<std::int64_t, boost::lockfree::capacity<256>> arrivals_;  // wall times of ~follow [ns]
   std::atomic<bool> running_{false};
   std::atomic<Outcome> outcome_{Outcome::Stopped};
   std::thread thread_;

@@ -28,6 +28,7 @@ Reply Stepper::post(Command command) {
     std::lock_guard<std::mutex> lock(mutex_);
     if (!accepting_) return kShuttingDown;
     commands_.emplace_back(std::move(command), answer);
+    asked_ = true;
   }
   changed_.notify_all();
   return reply.get();
@@ -44,7 +45,9 @@ Reply Stepper::call(std::function<Reply()> work) {
 }
 
 void Stepper::serveCommands() {
+  if (!asked_) return;
   std::unique_lock<std::mutex> lock(mutex_);
+  asked_ = false;  // whoever asks from now on sets it again
   while (!commands_.empty()) {
     const auto [command, answer] = std::move(commands_.front());
     commands_.pop_front();
@@ -160,10 +163,7 @@ Reply Stepper::loadScene(const std::string& address) {
     session_.replaceModel(made.model);
     session_.urdf = made.urdf;
     if (last_step_ > 0) last_step_ = statistics_.steps + stepsIn(left, session_.time.period());
-    {
-      std::lock_guard<std::mutex> lock(mutex_);
-      lock_ = PhaseLock(std::llround(1e9 * session_.time.period()));
-    }
+    lock_ = PhaseLock(std::llround(1e9 * session_.time.period()));
     publishers_.announceModel(session_);
     afterReplacement();
     session_.simulation.warmUp();

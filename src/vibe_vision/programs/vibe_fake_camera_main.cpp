@@ -16,7 +16,8 @@ namespace {
 
 std::atomic<bool> shall_stop{false};
 
-const std::string kBlink = "blink";  // a scene of its own: the helix jumps at random times
+// scenes of its own: the helix jumps at random times, or goes to and fro
+const std::string kBlink = "blink", kSway = "sway";
 
 struct Options {
   std::string scene = "moving", config;
@@ -47,11 +48,18 @@ std::vector<double> blinkTimes(const Options& options) {
   return times;
 }
 
+vibe::SyntheticScene sceneOf(const Options& options) {
+  if (options.scene == kBlink) return vibe::blinkScene(options.blink_jump);
+  if (options.scene == kSway) return vibe::swayScene();
+  return vibe::namedScene(options.scene);
+}
+
 void serve(Options options) {
   const bool blinks = options.scene == kBlink;
   if (!blinks && !options.camera.blink_file.empty()) throw vibe::Error("--blink-log goes with --scene blink; add it.");
-  const vibe::SyntheticScene scene = blinks ? vibe::blinkScene(options.blink_jump) : vibe::namedScene(options.scene);
+  const vibe::SyntheticScene scene = sceneOf(options);
   if (blinks) options.frames = 2;
+  if (options.scene == kSway) options.frames = vibe::kSwayFrames;
   if (!options.config.empty()) writeConfig(options.config, scene);
   std::cout << "vibe_fake_camera: draws " << options.scene << " ..." << std::endl;
   const auto ring = vibe::renderRing(scene, options.frames);
@@ -85,7 +93,7 @@ void addBlinkOptions(CLI::App& app, Options& options) {
 }
 
 void addOptions(CLI::App& app, Options& options) {
-  std::string names = kBlink;
+  std::string names = kBlink + ", " + kSway;
   for (const std::string& name : vibe::sceneNames()) names += ", " + name;
   app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
   app.add_option("--address", options.camera.address, "of a network interface of this computer")->capture_default_str();

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/lowest_priority.hpp"
 #include "vibe_core/common/fnv1a.hpp"
 
 namespace vibe {
@@ -76,17 +75,15 @@ Eigen::Map<Eigen::Matrix<double, static_cast<int>(N), 1>> asVector(std::array<do
 }  // namespace
 
 ImpedanceEstimator::ImpedanceEstimator(const ElasticBody& body, double step_period)
-    : body_(body), interval_(std::max(1, static_cast<int>(std::lround(kInterval / step_period)))) {
+    : body_(body),
+      interval_(std::max(1, static_cast<int>(std::lround(kInterval / step_period)))),
+      making_([this] { make(next_basis_, next_); }) {
   const auto pattern =
       std::make_shared<const BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups()));
   const auto plan = makeFactorPlan(*pattern);
   for (Made* made : {&rest_, &current_, &next_})
     made->stiffness = std::make_unique<StaticStiffness>(body, pattern, plan);
   rest_.usable = rest_.stiffness->make({});
-}
-
-ImpedanceEstimator::~ImpedanceEstimator() {
-  if (making_.valid()) making_.wait();
 }
 
 std::optional<ToolImpedance> ImpedanceEstimator::update(std::int64_t step, const ToolContactRows& touch,
@@ -179,17 +176,14 @@ void ImpedanceEstimator::provideAtRest(const ImpedanceBasis& basis) {
 }
 
 void ImpedanceEstimator::finishNext() {
-  if (making_.valid()) making_.get();
+  making_.finish();
 }
 
 void ImpedanceEstimator::makeInBackground(const ImpedanceBasis& basis) {
   finishNext();
   next_basis_ = basis;
   next_.id = basis.id;
-  making_ = std::async(std::launch::async, [this] {
-    takeLowestPriority();
-    make(next_basis_, next_);
-  });
+  making_.start();
 }
 
 void ImpedanceEstimator::make(const ImpedanceBasis& basis, Made& out) const {

@@ -2,11 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <cstdint>
-#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "common/background_worker.hpp"
 #include "haptics/slope_correction.hpp"
 #include "haptics/static_stiffness.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
@@ -39,7 +39,6 @@ class ImpedanceEstimator {
  public:
   /// Factors the stiffness at rest: costs tens of step times.
   ImpedanceEstimator(const ElasticBody& body, double step_period);
-  ~ImpedanceEstimator();
 
   /// One step in which the tool is near tissue.
   /// @param step           its number; after 0.25 s without a step near tissue a new touch begins
@@ -87,13 +86,13 @@ class ImpedanceEstimator {
   int interval_;                // steps
   Made rest_, current_, next_;  // `rest_` serves bases without positions
   Made* present_ = nullptr;     // of the memory's current basis; null: not usable
-  std::future<void> making_;    // of next_
   ImpedanceBasis next_basis_;   // read by `making_`
   ConstraintRows rows_;
   Eigen::MatrixXd motion_;               // (rows x kToolMotions)
   Eigen::MatrixXd solved_;               // force of each row per motion (rows x kToolMotions)
   Eigen::LDLT<Eigen::MatrixXd> factor_;  // of the rows' compliance
   std::vector<int> nodes_;
+  BackgroundWorker making_;  // of next_; the last member, because it works on the others
 };
 
 }  // namespace vibe

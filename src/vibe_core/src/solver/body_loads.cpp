@@ -15,15 +15,14 @@ void BodyLoads::clear() {
   couplings.clear();
 }
 
-std::vector<int> BodyLoads::nodes() const {
-  std::vector<int> all;
+void BodyLoads::findNodes(std::vector<int>& all) const {
+  all.clear();
   for (const LinearConstraint& constraint : constraints)
     all.insert(all.end(), constraint.node.begin(), constraint.node.end());
   for (const ContactConstraint& contact : contacts)
     all.insert(all.end(), contact.point.node.begin(), contact.point.node.begin() + contact.point.count);
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  return all;
 }
 
 std::size_t BodyLoads::addPoint(const std::vector<int>& node, const std::vector<double>& weight,

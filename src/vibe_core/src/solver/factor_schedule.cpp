@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "common/lowest_priority.hpp"
 #include "solver/coupling_blocks.hpp"
 #include "solver/thread_couplings.hpp"
 #include "vibe_core/common/error.hpp"
@@ -134,7 +133,7 @@ void FactorSchedule::factorSafely(const ElasticBody& body, const FactorPoint& po
 void FactorSchedule::provide(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
                              StepperScratch& scratch) const {
   if (scratch.factor_id != memory.linearization_id) {
-    if (scratch.making.valid()) scratch.making.get();
+    if (scratch.making) scratch.making->finish();
     if (scratch.next_id == memory.linearization_id) {
       scratch.factor.swap(scratch.next_factor);
       std::swap(scratch.columns, scratch.next_columns);
@@ -153,17 +152,25 @@ void FactorSchedule::provide(const ElasticBody& body, const BodyLoads& loads, co
 // With the columns of what is held and touched now, which most likely still is when the factor is used.
 void FactorSchedule::makeInBackground(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
                                       StepperScratch& scratch) const {
-  if (scratch.making.valid()) scratch.making.get();
+  if (!scratch.making) scratch.making = std::make_unique<BackgroundWorker>([&scratch] { makeNext(scratch); });
+  scratch.making->finish();
   scratch.next_id = memory.next_id;
-  scratch.making =
-      std::async(std::launch::async, [this, &body, &scratch, positions = memory.next, couplings = memory.next_couplings,
-                                      nodes = loads.nodes(), attachments = loads.attachments] {
-        takeLowestPriority();
-        factorSafely(body, {positions, couplings}, scratch.plan, scratch.matrix, *scratch.next_factor);
-        scratch.next_columns.reset();
-        scratch.next_columns.prepare(*scratch.next_factor, nodes, attachments);
-        return true;
-      });
+  FactorTask& task = scratch.task;
+  task.schedule = this;
+  task.body = &body;
+  task.positions = memory.next;
+  task.couplings = memory.next_couplings;
+  loads.findNodes(task.nodes);
+  task.attachments = loads.attachments;
+  scratch.making->start();
+}
+
+void FactorSchedule::makeNext(StepperScratch& scratch) {
+  const FactorTask& task = scratch.task;
+  task.schedule->factorSafely(*task.body, {task.positions, task.couplings}, scratch.plan, scratch.matrix,
+                              *scratch.next_factor);
+  scratch.next_columns.reset();
+  scratch.next_columns.prepare(*scratch.next_factor, task.nodes, task.attachments);
 }
 
 bool FactorSchedule::farFrom(const ElasticBody& body, const MotionView& motion, const std::vector<float>& about) const {

@@ -35,6 +35,8 @@ struct FactorSchedule {
   /// The factor that the memory names, and the columns of the spots about it.
   void provide(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
                StepperScratch& scratch) const;
+  /// What StepperScratch::task says, in the background.
+  static void makeNext(StepperScratch& scratch);
   /// The present positions, without couplings, from this step on.
   static void nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory);
 

@@ -256,7 +256,7 @@ void ImplicitStepper::startFromHere(const MotionView& motion, StepperScratch& sc
 
 StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, StepperScratch& scratch, double tolerance,
                                     int max_iterations) const {
-  if (scratch.making.valid()) scratch.making.get();
+  if (scratch.making) scratch.making->finish();
   scratch.factor_id = scratch.next_id = 0;
   startFromHere(motion, scratch);
   buildRows(loads, motion, scratch);

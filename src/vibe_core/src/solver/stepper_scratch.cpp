@@ -26,7 +26,7 @@ StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_position
 }
 
 StepperScratch::~StepperScratch() {
-  if (making.valid()) making.wait();
+  making.reset();  // it works on the other members
 }
 
 void StepperScratch::exchangeEvaluations() {

@@ -1,15 +1,27 @@
 #pragma once
 
 #include <cstdint>
-#include <future>
 #include <memory>
 #include <vector>
 
+#include "common/background_worker.hpp"
 #include "solver/constraint_schur.hpp"
 #include "solver/implicit_stepper.hpp"
 #include "solver/row_unknowns.hpp"
 
 namespace vibe {
+
+struct FactorSchedule;
+
+/// What the factor that is made in the background is to be about.
+struct FactorTask {
+  const FactorSchedule* schedule = nullptr;
+  const ElasticBody* body = nullptr;
+  std::vector<float> positions;  // (3 * nodes) [m]
+  std::vector<StiffnessCoupling> couplings;
+  std::vector<int> nodes;  // whose columns are prepared too
+  RowList<AttachmentPoint> attachments;
+};
 
 /// All memory of an ImplicitStepper. Node vectors are 4 numbers per node.
 class StepperScratch {
@@ -24,7 +36,8 @@ class StepperScratch {
   std::unique_ptr<Factor> factor, next_factor;
   BlockMatrix matrix;                        // of the factor that is being made
   std::uint64_t factor_id = 0, next_id = 0;  // what they are about; 0: nothing
-  std::future<bool> making;                  // of next_factor
+  FactorTask task;                           // of next_factor
+  std::unique_ptr<BackgroundWorker> making;  // of next_factor; null: none was ever made
   ColumnCache columns, next_columns;         // of `factor`, of `next_factor`
   ConstraintSchur schur;
   std::vector<double> rest;                     // positions [m]

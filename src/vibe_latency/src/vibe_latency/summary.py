@@ -32,13 +32,18 @@ def stage_statistics(traced):
     return {name: statistics(duration(traced, begin, end)) for name, begin, end in STAGES + TOTALS}
 
 
+def step_times(step):
+    """{"due", "begin", "solved", "published"} of all steps, from when the first was due [s]."""
+    return {k: 1e-9 * (step[k] - step["due"][0]) for k in ("due", "begin", "solved", "published")}
+
+
 def step_statistics(step, period):
     """How well steps kept their deadlines: a step misses its deadline when its state is published later than one period
     after the step was due."""
     if len(step["due"]) == 0:
         nothing = statistics(numpy.array([]))
         return {"count": 0, "missed": 0, "late begin": nothing, "solve": nothing, "step": nothing}
-    due, begin, solved, published = (1e-9 * (step[k] - step["due"][0]) for k in ("due", "begin", "solved", "published"))
+    due, begin, solved, published = step_times(step).values()
     return {
         "count": len(due),
         "missed": int((published - due > period).sum()),

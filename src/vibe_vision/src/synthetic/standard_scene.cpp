@@ -159,6 +159,16 @@ SyntheticScene blinkScene(double jump) {
   return scene;
 }
 
+SyntheticScene swayScene() {
+  SyntheticScene scene = standardScene();
+  hold(scene);
+  scene.instruments[0].motion.slide = [](double time) {
+    return kSwayMiddle - kSwayAmplitude * std::cos(2 * M_PI * kSwayRate * time);
+  };
+  scene.instruments[0].motion.rotation = [](double) { return 0.0; };
+  return scene;
+}
+
 SyntheticScene namedScene(const std::string& name) {
   std::string names;
   for (const auto& [known, change] : changes()) {

@@ -113,7 +113,7 @@ struct BodyLoads {
   /// Removes everything, the gas included.
   void clear();
   /// Nodes of the constraints and contacts, each once, ascending.
-  std::vector<int> nodes() const;
+  void findNodes(std::vector<int>& nodes) const;
   /// Three constraints that hold the weighted mean of nodes at a target, exactly or by a spring.
   /// @param compliance  of the spring; 0: exact [m/N]
   /// @returns the index of the first of the three, for pointForce()
