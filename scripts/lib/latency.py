@@ -50,6 +50,7 @@ def parse_arguments():
     parser.add_argument("--view", default="", help="a saved view of rviz")
     parser.add_argument("--mode", default="blinks", choices=("blinks", "steps", "sway"))
     parser.add_argument("--minutes", type=float, default=10.0, help="of the modes steps and sway")
+    parser.add_argument("--particles", type=int, default=0, help="0: as the scene has")
     parser.add_argument("--lead", type=float, default=0.0, help="of the predicted positions that steps take [ms]")
     arguments = parser.parse_args()
     if arguments.mode != "blinks":
@@ -114,6 +115,7 @@ class Measurement:
             "load": arguments.load,
             "realtime_priority": arguments.realtime,
             "periods": periods,
+            "particles": arguments.particles,
             "processor": processor(),
             "cores": os.cpu_count(),
         }
@@ -121,9 +123,11 @@ class Measurement:
             json.dump(setup, file, indent=1)
 
     def scene(self):
-        """The scene with another step period."""
+        """The scene with another step period, and perhaps another number of particles."""
         name = os.path.splitext(os.path.basename(self.arguments.scene))[0]
         scene = {"base": self.arguments.scene, "name": name, "step_period": "{:.9f} s".format(1 / self.arguments.rate)}
+        if self.arguments.particles:
+            scene["geometry"] = {"particles": self.arguments.particles}
         path = self.path("scene.yaml")
         with open(path, "w", encoding="utf-8") as file:
             yaml.safe_dump(scene, file)
