@@ -194,7 +194,8 @@ class Measurement:
         self.probe = self.graph.start("latency_probe", ["env", *settings, "rosrun", "vibe_latency", "latency_probe"])
 
     def start_camera(self):
-        command = ["rosrun", "vibe_vision", "vibe_fake_camera", "--config", self.path("rig.yaml")]
+        # like a device, a camera has hardware of its own
+        command = self.with_priority() + ["rosrun", "vibe_vision", "vibe_fake_camera", "--config", self.path("rig.yaml")]
         if self.arguments.mode == "sway":
             command += ["--scene", "sway", "--truth", self.path("truth.csv")]
         else:
@@ -204,6 +205,7 @@ class Measurement:
         self.graph.set_parameter("/vision_node/config", self.path("rig.yaml"))
         self.graph.set_parameter("/vision_node/source", "gige:127.0.0.1")
         self.graph.set_parameter("/vision_node/publish_images", False)
+        self.graph.set_parameter("/vision_node/realtime_priority", max(0, self.arguments.realtime - 1))
         self.graph.set_parameter("/vision_node/lead", 1e-3 * self.arguments.lead)
         self.graph.start("vision_node", ["rosrun", "vibe_vision", "vision_node"])
 
