@@ -7,7 +7,7 @@ import math
 
 from make_scope_urdf import (ARM_REACH, CAP_LENGTH, CAP_RADIUS, HELIX_PITCH, HELIX_RADIUS, HELIX_STEM, HELIX_TURNS,
                              HELIX_WIRE, NEEDLE_OPEN, SCOPE_RADIUS)
-from mesh_shapes import Mesh, along, arc, bezier, flat_bar, revolved, swept
+from mesh_shapes import Mesh, along, arc, bezier, flat_bar, revolved, subtract, swept
 
 CAP = 1000 * CAP_RADIUS       # [S]
 BACK = -1000 * CAP_LENGTH
@@ -50,11 +50,11 @@ def exchange():
 def add_clevis(mesh):
     """Two cheeks, the pin, and the link between them that carries the arm."""
     for right in (-0.55 - 0.6, 0.55):
-        mesh.add(flat_bar((-1.2, HINGE[1]), HINGE, 0.92, PLANE + right, PLANE + right + 0.6), "steel")
+        mesh.add(flat_bar((-1.2, HINGE[1]), HINGE, 0.92, PLANE + right, PLANE + right + 0.6, sides=24), "steel")
     pin = [(-1.3, 0), (-1.3, 0.4), (-1.2, 0.5), (1.2, 0.5), (1.3, 0.4), (1.3, 0)]
     turned = [tuple((HINGE[0] + b, PLANE + a, HINGE[1] + c) for a, b, c in t) for t in revolved(pin, 16)]
     mesh.add(turned, "steel_dark")
-    mesh.add(flat_bar(HINGE, SOCKET, 0.62, PLANE - 0.45, PLANE + 0.45), "steel_dark")
+    mesh.add(flat_bar(HINGE, SOCKET, 0.62, PLANE - 0.45, PLANE + 0.45, 0.25, 24), "steel")
 
 
 def cap():
@@ -118,11 +118,14 @@ def add_thread(mesh, path, at):
     """The thread leaves the middle of the needle, which so turns across when it is dropped, and runs along the arm."""
     start = next(k for k, s in enumerate(at) if s >= 1.7)
     points = []
-    for k in range(start, len(path)):
+    for k in range(start, len(path) - 2):
         away = min(1.0, (at[k] - at[start]) / 2.0)
         sag = 0.25 * math.sin(math.pi * min(1.0, (at[k] - at[start]) / 6.0))
         points.append((path[k][0], 0.2 + 0.38 * away + sag, path[k][2]))
     mesh.add(swept(points, IN_PLANE, [(THREAD_RADIUS,) * 2] * len(points), 8), "thread_blue")
+    clip = [along(points[-1], subtract(points[-1], points[-2]), share) for share in (-0.25, -0.2, 0.0, 0.05)]
+    clip = [(x, 0.3, z) for x, _, z in clip]
+    mesh.add(swept(clip, IN_PLANE, [(0.42, 0.3), (0.5, 0.4), (0.5, 0.4), (0.42, 0.3)], 14, 3), "steel_dark")
     knot = [along(path[start], IN_PLANE, y) for y in (-0.36, 0, 0.36)]
     mesh.add(swept(knot, (1, 0, 0), [(0.1, 0.1), (0.26, 0.26), (0.1, 0.1)], 8), "thread_blue")
 

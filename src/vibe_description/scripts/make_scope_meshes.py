@@ -21,12 +21,12 @@ MATERIALS = {
     "scope_black": ((0.045, 0.045, 0.050), 0.30, 40),    # polymer, matt gloss
     "scope_rubber": ((0.060, 0.060, 0.066), 0.18, 16),   # cover of the bending section
     "channel_dark": ((0.012, 0.012, 0.014), 0.02, 5),    # inside of a channel
-    "device_polymer": ((0.16, 0.18, 0.20), 0.25, 24),
-    "device_blue": ((0.05, 0.16, 0.42), 0.75, 60),       # anodised
-    "steel": ((0.52, 0.53, 0.55), 0.90, 70),
-    "steel_dark": ((0.30, 0.31, 0.33), 0.75, 50),
+    "device_polymer": ((0.20, 0.21, 0.22), 0.30, 24),
+    "device_blue": ((0.10, 0.19, 0.33), 0.78, 60),       # anodised
+    "steel": ((0.60, 0.60, 0.61), 0.90, 70),
+    "steel_dark": ((0.36, 0.36, 0.37), 0.80, 40),
     "needle_gold": ((0.66, 0.50, 0.20), 0.90, 80),
-    "thread_blue": ((0.10, 0.22, 0.62), 0.35, 30),
+    "thread_blue": ((0.10, 0.17, 0.32), 0.35, 30),
     "glass": ((0.03, 0.05, 0.11), 1.00, 110),
     "light_guide": ((0.95, 0.93, 0.80), 0.60, 60),
 }

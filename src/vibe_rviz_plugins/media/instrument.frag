@@ -9,13 +9,15 @@ varying vec3 view_position;
 varying vec3 view_normal;
 
 const float kAside = 0.00355;  // of the light guides from the lens [m], as in vibe_description
-const vec3 kWall = vec3(0.78, 0.36, 0.30);
+const vec3 kWall = vec3(0.66, 0.43, 0.39);
 
-// What a mirror sees in this direction: the wall around, darker ahead in the lumen, dark behind on the endoscope itself.
+// What a mirror sees in this direction: folds of the wall around, a darker lumen ahead, and behind the endoscope's own
+// face, black with its lamps.
 vec3 surroundings(vec3 direction) {
   float ahead = -direction.z;
-  float around = 1.0 - smoothstep(0.35, 1.0, abs(ahead + 0.15));
-  return kWall * mix(ahead > 0.0 ? 0.20 : 0.07, 0.85, around);
+  float near = smoothstep(-0.55, -0.05, ahead) * (1.0 - 0.55 * smoothstep(0.45, 1.0, ahead));
+  float folds = 0.75 + 0.25 * sin(7.0 * direction.x + 3.0 * direction.y) * sin(9.0 * direction.y - 4.0 * ahead);
+  return kWall * mix(0.05, folds, near);
 }
 
 void main() {
@@ -27,16 +29,17 @@ void main() {
   vec3 mirror = mix(vec3(0.04 + 0.06 * shine), colour, metal);
   mirror += (1.0 - mirror) * pow(1.0 - facing, 5.0) * mix(0.5, 1.0, metal) * shine;
 
-  vec3 light = colour * mix(0.16, 0.05, metal);  // of the wall, from everywhere
-  light += mirror * surroundings(reflect(-to_eye, normal)) * mix(shine, 1.0, metal);
+  vec3 light = colour * mix(0.20, 0.06, metal);  // of the wall, from everywhere
+  light += mirror * surroundings(reflect(-to_eye, normal)) * mix(shine, 0.9, metal);
   for (int side = 0; side < 2; ++side) {
     vec3 to_lamp = vec3(side == 0 ? kAside : -kAside, 0.0, 0.0) - view_position;
     float away = dot(to_lamp, to_lamp);
     to_lamp *= inversesqrt(away);
     float lamp = 1.0 / (1.0 + away / (reach * reach));
     float diffuse = max(dot(normal, to_lamp), 0.0);
-    float gloss = pow(max(dot(normal, normalize(to_lamp + to_eye)), 0.0), sharpness);
-    light += lamp * (colour * diffuse * mix(0.85, 0.30, metal) + mirror * gloss * mix(1.2 * shine, 1.4, metal));
+    float half_way = max(dot(normal, normalize(to_lamp + to_eye)), 0.0);
+    float gloss = pow(half_way, sharpness) * mix(shine, 1.6, metal) + pow(half_way, 0.12 * sharpness) * 0.45 * metal;
+    light += lamp * (colour * diffuse * mix(0.95, 0.42, metal) + mirror * gloss);
   }
   float brightest = max(max(light.r, light.g), max(light.b, 0.001));
   light *= (1.0 - exp(-1.5 * brightest)) / brightest;  // the same as in tissue.frag
