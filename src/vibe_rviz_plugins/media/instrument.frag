@@ -38,7 +38,7 @@ void main() {
     float lamp = 1.0 / (1.0 + away / (reach * reach));
     float diffuse = max(dot(normal, to_lamp), 0.0);
     float half_way = max(dot(normal, normalize(to_lamp + to_eye)), 0.0);
-    float gloss = pow(half_way, sharpness) * mix(shine, 1.6, metal) + pow(half_way, 0.12 * sharpness) * 0.45 * metal;
+    float gloss = pow(half_way, sharpness) * mix(shine, 1.6, metal) + pow(half_way, 0.12 * sharpness) * 0.8 * metal;
     light += lamp * (colour * diffuse * mix(0.95, 0.42, metal) + mirror * gloss);
   }
   float brightest = max(max(light.r, light.g), max(light.b, 0.001));
