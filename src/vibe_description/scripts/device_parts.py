@@ -14,7 +14,7 @@ BACK = -1000 * CAP_LENGTH
 POINT = tuple(1000 * v for v in NEEDLE_OPEN)
 PLANE = POINT[1]              # y of the plane in which the arm moves
 HINGE = (1.2, 6.0)            # [D] (x, z), within the cap's 15.8 mm
-SOCKET = (4.3, 6.7)           # [D] end of the link that the open arm sits in
+SOCKET = (4.3, 6.9)           # [D] end of the link that the open arm sits in
 EXCHANGE = (-2.5, -1.0)       # (y, z) where the needle's path ends, 4 mm before the face
 EXCHANGE_RADIUS = 1.0         # [D] fits the channel of 3.7 mm
 EXCHANGE_FRONT = 4.3          # [D] the closed needle's point is 0.3 mm inside
@@ -54,7 +54,7 @@ def add_clevis(mesh):
     pin = [(-1.3, 0), (-1.3, 0.4), (-1.2, 0.5), (1.2, 0.5), (1.3, 0.4), (1.3, 0)]
     turned = [tuple((HINGE[0] + b, PLANE + a, HINGE[1] + c) for a, b, c in t) for t in revolved(pin, 16)]
     mesh.add(turned, "steel_dark")
-    mesh.add(flat_bar(HINGE, SOCKET, 0.62, PLANE - 0.45, PLANE + 0.45, 0.25, 24), "steel")
+    mesh.add(flat_bar(HINGE, SOCKET, 0.54, PLANE - 0.45, PLANE + 0.45, 0.25, 24), "steel")
 
 
 def cap():
@@ -99,8 +99,8 @@ def mixed(value, table):
 def add_arm(mesh, path, at):
     """The arm: a slender bar that is higher than wide at its root and holds the needle in a round sleeve."""
     begin = next(k for k, s in enumerate(at) if s >= NEEDLE_LENGTH)
-    width = ((0, 0.34), (5, 0.36), (9, 0.42), (30, 0.42))
-    height = ((0, 0.34), (5, 0.38), (9, 0.5), (30, 0.55))
+    width = ((0, 0.34), (5, 0.36), (9, 0.42), (16, 0.42), (24, 0.32))
+    height = ((0, 0.34), (5, 0.38), (9, 0.5), (16, 0.5), (24, 0.32))
     sizes = [(mixed(s, width), mixed(s, height)) for s in at[begin:]]
     mesh.add(swept(path[begin:], IN_PLANE, sizes, 14, 3), "steel")
     sleeve = path[begin - 1:begin + 3]
