@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Writes the URDF of the endoscope with its suturing device to standard output.
 
-The URDF is plain XML that any tool reads; this program keeps its many repeated parts (eight segments, the coil of the
-helix) and the numbers behind them in one place. Usage: make_scope_urdf.py > ../urdf/scope.urdf
+The URDF is plain XML that any tool reads; this program keeps its many repeated parts (shaft, eight segments) and the
+numbers behind them in one place. What is drawn are the meshes of make_scope_meshes.py.
+Usage: make_scope_urdf.py > ../urdf/scope.urdf
 """
 import argparse
 import math
