@@ -23,11 +23,11 @@ vec3 surroundings(vec3 direction) {
 void main() {
   float distance = length(view_position);
   vec3 to_eye = -view_position / distance, normal = normalize(view_normal);
-  if (dot(normal, to_eye) < 0.0) normal = -normal;
-  float facing = dot(normal, to_eye);
+  float facing = max(dot(normal, to_eye), 0.0);
   float metal = smoothstep(0.6, 0.75, shine);
   vec3 mirror = mix(vec3(0.04 + 0.06 * shine), colour, metal);
-  mirror += (1.0 - mirror) * pow(1.0 - facing, 5.0) * mix(0.5, 1.0, metal) * shine;
+  float edge = (1.0 - facing) * (1.0 - facing);  // Schlick 1994
+  mirror += (1.0 - mirror) * edge * edge * (1.0 - facing) * mix(0.5, 1.0, metal) * shine;
 
   vec3 light = colour * mix(0.20, 0.06, metal);  // of the wall, from everywhere
   light += mirror * surroundings(reflect(-to_eye, normal)) * mix(shine, 0.9, metal);

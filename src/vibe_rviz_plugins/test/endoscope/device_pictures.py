@@ -83,6 +83,7 @@ class Studio:
             if camera:
                 poses["outside"] = looking(*camera)
             self.tf.publish(tf2_msgs.msg.TFMessage([transform(n, p, self.clock) for n, p in poses.items()]))
+            time.sleep(0.3)  # a part whose pose comes later than the camera's is not drawn
             self.particles.publish(tissue.particles(self.clock))
             image, _ = program.last(self.clock)
         wait_until(lambda: max(self.listeners()) == 0)
@@ -95,7 +96,7 @@ def save(pictures, columns, path):
     sheet = Image.new("RGB", (columns * width, -(-len(pictures) // columns) * height))
     for k, picture in enumerate(pictures):
         sheet.paste(picture, (k % columns * width, k // columns * height))
-    sheet.quantize(220).save(path, optimize=True)
+    sheet.save(path, optimize=True)
 
 
 def main():

@@ -53,8 +53,9 @@ class DeviceViewTest(unittest.TestCase):
         type(self).clock += rospy.Duration(1)
         publishers = (self.topology, self.particles, self.tf)
         self.assertTrue(wait_until(lambda: min(p.get_num_connections() for p in publishers) > 0))
-        frames = [self.transform(CAMERA, LENS, QUATERNION), self.transform("needle", needle)]
-        frames += [self.transform(frame, TIP) for frame in ("scope_tip", "device_cap")]
+        # the camera last: the image waits for its pose, and parts without a pose by then are not drawn
+        frames = [self.transform(frame, TIP) for frame in ("scope_tip", "device_cap")]
+        frames += [self.transform("needle", needle), self.transform(CAMERA, LENS, QUATERNION)]
         self.tf.publish(tf2_msgs.msg.TFMessage(frames))
         self.particles.publish(self.ball.particles(self.clock))
         image, _ = camera.last(self.clock)
