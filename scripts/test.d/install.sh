@@ -40,6 +40,17 @@ findsPlugins() {
 }
 check 'rviz finds the plugins' findsPlugins
 
+hasMeshes() {
+  local address
+  grep -o 'package://vibe_description/[^"]*' "$space/share/vibe_description/urdf/scope.urdf" | sort -u >"$scratch/meshes.txt"
+  [ -s "$scratch/meshes.txt" ] || { echo 'the URDF names no mesh'; return 1; }
+  while IFS= read -r address; do
+    [ -s "$space/share/vibe_description/${address#package://vibe_description/}" ] || { echo "$address"; return 1; }
+  done <"$scratch/meshes.txt"
+  [ -s "$space/share/vibe_description/meshes/scope.mtl" ]
+}
+check 'the meshes of the URDF are installed' hasMeshes
+
 helps() {
   local program
   for program in 'vibe_sim sim_node' 'vibe_sim vibe_replay' 'vibe_sim vibe_record' 'vibe_sim vibe_player' \

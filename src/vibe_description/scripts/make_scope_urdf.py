@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Writes the URDF of the endoscope with its suturing device to standard output.
 
-The URDF is plain XML that any tool reads; this program keeps its many repeated parts (eight segments, the coil of the
-helix) and the numbers behind them in one place. Usage: make_scope_urdf.py > ../urdf/scope.urdf
+The URDF is plain XML that any tool reads; this program keeps its many repeated parts (shaft, eight segments) and the
+numbers behind them in one place. What is drawn are the meshes of make_scope_meshes.py.
+Usage: make_scope_urdf.py > ../urdf/scope.urdf
 """
 import argparse
 import math
@@ -19,6 +20,11 @@ TIP_LENGTH = 0.016     # [D] rigid end of the endoscope that carries the cap
 CAP_RADIUS = 0.0079    # [S]
 CAP_LENGTH = 0.012     # [D]
 ARM_REACH = 0.0184     # [S] of the needle arm's bracket beyond the endoscope
+HELIX_TURNS = 3         # within the 2 to 4 that are used
+HELIX_PITCH = 0.0018    # [D]
+HELIX_RADIUS = 0.0010   # [D] of the wire's middle; passes through a channel of 2.8 mm
+HELIX_WIRE = 0.00025    # [D] radius of the wire
+HELIX_STEM = 0.028      # [D] still in the channel when the helix is out
 NEEDLE_OPEN = (0.0148, -0.0025, 0.0134)  # [D] the needle's point in scope_tip, within 23.3 mm of the whole device [S]
 SHAFT_PIECES = 6       # [D] of the part of the shaft that enters the lumen and bends there: 2 % more than that part
 SHAFT_PIECE = 0.034    # [D]
@@ -60,8 +66,7 @@ INPUTS = {
 # and torque [N m] per joint: design choice, far beyond what a hand causes.
 SHAFT_LIMIT = (1.5, 10.0, 5.0)
 
-COLOURS = {"scope_black": "0.06 0.06 0.07 1", "ring_grey": "0.22 0.22 0.24 1", "steel": "0.72 0.74 0.77 1",
-           "glass": "0.25 0.45 0.75 1", "needle_gold": "0.85 0.65 0.25 1"}
+MESHES = "package://vibe_description/meshes/"  # written by make_scope_meshes.py
 
 
 def number(value):
@@ -74,32 +79,33 @@ def vector(values):
     return " ".join(number(v) for v in values)
 
 
-# direction of a cylinder's axis (z in its own frame) -> roll pitch yaw
-ALONG = {"x": (0, math.pi / 2, 0), "z": (0, 0, 0)}
+ALONG_X = (0, math.pi / 2, 0)  # roll pitch yaw of a cylinder, whose axis is z in its own frame
 
 
 class Cylinder:
-    def __init__(self, radius, length, at, rpy=ALONG["x"], colour="scope_black"):
-        self.radius, self.length, self.at, self.rpy, self.colour = radius, length, at, rpy, colour
+    def __init__(self, radius, length, at, rpy=ALONG_X):
+        self.radius, self.length, self.at, self.rpy = radius, length, at, rpy
 
     def xml(self):
         return f'<cylinder radius="{number(self.radius)}" length="{number(self.length)}"/>'
 
 
 class Sphere:
-    def __init__(self, radius, at, colour="scope_black"):
-        self.radius, self.at, self.rpy, self.colour = radius, at, (0, 0, 0), colour
+    def __init__(self, radius, at):
+        self.radius, self.at, self.rpy = radius, at, (0, 0, 0)
 
     def xml(self):
         return f'<sphere radius="{number(self.radius)}"/>'
 
 
-class Box:
-    def __init__(self, size, at, colour="steel"):
-        self.size, self.at, self.rpy, self.colour = size, at, (0, 0, 0), colour
+class Mesh:
+    """A file in the folder of meshes, in the frame of the link and in metres."""
+
+    def __init__(self, name):
+        self.name, self.at, self.rpy = name, (0, 0, 0), (0, 0, 0)
 
     def xml(self):
-        return f'<box size="{vector(self.size)}"/>'
+        return f'<mesh filename="{MESHES}{self.name}.obj"/>'
 
 
 def capsule_x(start, end, radius):
@@ -138,14 +144,12 @@ class Urdf:
         self.add(2, f"<{tag}>")
         self.add(3, f'<origin xyz="{vector(shape.at)}" rpy="{vector(shape.rpy)}"/>')
         self.add(3, f"<geometry>{shape.xml()}</geometry>")
-        if tag == "visual":
-            self.add(3, f'<material name="{shape.colour}"/>')
         self.add(2, f"</{tag}>")
 
-    def link(self, name, body=None, visuals=(), collisions=(), note=""):
+    def link(self, name, body=None, mesh="", collisions=(), note=""):
         if note:
             self.add(1, f"<!-- {note} -->")
-        if not (body or visuals or collisions):
+        if not (body or mesh or collisions):
             self.add(1, f"<link name={quoteattr(name)}/>")
             return
         self.add(1, f"<link name={quoteattr(name)}>")
@@ -156,8 +160,8 @@ class Urdf:
             self.add(3, f'<mass value="{number(body.mass)}"/>')
             self.add(3, f'<inertia ixx="{ixx}" ixy="0" ixz="0" iyy="{iyy}" iyz="0" izz="{izz}"/>')
             self.add(2, "</inertial>")
-        for shape in visuals:
-            self.shape("visual", shape)
+        if mesh:
+            self.shape("visual", Mesh(mesh))
         for shape in collisions:
             self.shape("collision", shape)
         self.add(1, "</link>")
@@ -195,11 +199,6 @@ class Urdf:
         self.joint(f"{source}_{index}", "revolute", parent, child, at, extra=(f'<axis xyz="{axis}"/>', limit))
 
 
-def tube_x(start, end, radius):
-    """Visuals of a round bar along x that goes on at its end."""
-    return [Cylinder(radius, end - start, ((start + end) / 2, 0, 0)), Sphere(radius, (end, 0, 0))]
-
-
 def add_shaft(urdf):
     """The insertion tube. It turns behind its bends: a bent shaft that a hand turns keeps its shape in space."""
     carrier = Body.ball(SCOPE_DENSITY, CARRIER_RADIUS)
@@ -209,7 +208,7 @@ def add_shaft(urdf):
     bends = SHAFT_PIECES * SHAFT_PIECE
     urdf.joint("scope_shaft_mount", "fixed", "scope_slide", "scope_shaft", (-STRAIGHT_LENGTH - bends, 0, 0))
     back = -(SHAFT_LENGTH - bends)
-    urdf.link("scope_shaft", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, back, 0), tube_x(back, 0, SCOPE_RADIUS),
+    urdf.link("scope_shaft", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, back, 0), "shaft",
               capsule_x(back, 0, SCOPE_RADIUS), note="part of the insertion tube that stays in the oesophagus")
     for k in range(1, SHAFT_PIECES + 2):
         add_shaft_piece(urdf, k)
@@ -232,7 +231,7 @@ def add_shaft_piece(urdf, index):
         urdf.link(f"shaft_{index}", carrier)
         return
     urdf.link(f"shaft_{index}", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, 0, SHAFT_PIECE),
-              tube_x(0, SHAFT_PIECE, SCOPE_RADIUS), capsule_x(0, SHAFT_PIECE, SCOPE_RADIUS))
+              "shaft_piece", capsule_x(0, SHAFT_PIECE, SCOPE_RADIUS))
 
 
 def add_bending_section(urdf):
@@ -243,19 +242,13 @@ def add_bending_section(urdf):
         urdf.bend_joint(k, "tip_up_down", parent, f"ring_{k}", (SEGMENT_LENGTH if k > 1 else 0, 0, 0))
         urdf.link(f"ring_{k}", Body.ball(SCOPE_DENSITY, CARRIER_RADIUS))
         urdf.bend_joint(k, "tip_left_right", f"ring_{k}", f"segment_{k}", (0, 0, 0))
-        ring = Cylinder(SCOPE_RADIUS * 1.03, 0.0015, (length / 2, 0, 0), colour="ring_grey")
-        skin = [Cylinder(SCOPE_RADIUS, length, (length / 2, 0, 0)), Sphere(SCOPE_RADIUS, (0, 0, 0)), ring]
-        urdf.link(f"segment_{k}", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, 0, length), skin,
-                  capsule_x(0, length, SCOPE_RADIUS))
+        urdf.link(f"segment_{k}", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, 0, length),
+                  "segment" if k < SEGMENTS else "segment_end", capsule_x(0, length, SCOPE_RADIUS))
 
 
 def add_tip(urdf):
     urdf.joint("scope_tip_mount", "fixed", f"segment_{SEGMENTS}", "scope_tip", (SEGMENT_LENGTH / 2 + TIP_LENGTH, 0, 0))
-    visuals = [Cylinder(SCOPE_RADIUS, TIP_LENGTH, (-TIP_LENGTH / 2, 0, 0)),
-               Cylinder(0.0018, 0.0004, (0.0002, 0.0, 0.0025), colour="glass"),
-               Cylinder(0.0008, 0.0004, (0.0002, 0.0035, 0.0025), colour="needle_gold"),
-               Cylinder(0.0008, 0.0004, (0.0002, -0.0035, 0.0025), colour="needle_gold")]
-    urdf.link("scope_tip", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, -TIP_LENGTH, 0), visuals,
+    urdf.link("scope_tip", Body.bar_x(SCOPE_DENSITY, SCOPE_RADIUS, -TIP_LENGTH, 0), "tip",
               capsule_x(-TIP_LENGTH, -SCOPE_RADIUS, SCOPE_RADIUS), note="distal face, x along the viewing axis")
     # z forward, x right, y down (REP-103) out of x forward, y left, z up
     urdf.joint("scope_camera_mount", "fixed", "scope_tip", "scope_camera_optical", (0, 0, 0.0025),
@@ -265,68 +258,39 @@ def add_tip(urdf):
 
 def add_cap(urdf):
     """Ring around the tip with the bracket of the needle arm above the field of view."""
-    bracket_size = (ARM_REACH + CAP_LENGTH / 2, 0.006, 0.0016)
-    bracket_at = (ARM_REACH - bracket_size[0] / 2, 0, CAP_RADIUS - bracket_size[2] / 2)
+    bracket_size = (ARM_REACH + CAP_LENGTH / 2, 0.006, 0.0016)  # the steel of bracket and link as one bar
     shell = STEEL * math.pi * (CAP_RADIUS ** 2 - SCOPE_RADIUS ** 2) * CAP_LENGTH * 0.4  # 60 % of the ring is polymer, air
     mass = shell + STEEL * bracket_size[0] * bracket_size[1] * bracket_size[2]
     across = mass * (3 * (CAP_RADIUS ** 2 + SCOPE_RADIUS ** 2) + (CAP_LENGTH + ARM_REACH) ** 2) / 12
     body = Body(mass, (-CAP_LENGTH / 4, 0, 0.002), (mass * (CAP_RADIUS ** 2 + SCOPE_RADIUS ** 2) / 2, across, across))
     urdf.joint("device_cap_mount", "fixed", "scope_tip", "device_cap")
-    ring = Cylinder(CAP_RADIUS, CAP_LENGTH, (-CAP_LENGTH / 2, 0, 0), colour="steel")
-    face = Cylinder(SCOPE_RADIUS, 0.0002, (0.0001, 0, 0))
-    bracket = Box(bracket_size, bracket_at)
     # tissue is met at its particles, some 4 mm apart: the thin bracket would slip between them and has no collision shape
-    urdf.link("device_cap", body, [ring, face, bracket], capsule_x(-CAP_LENGTH, -CAP_RADIUS, CAP_RADIUS),
+    urdf.link("device_cap", body, "cap", capsule_x(-CAP_LENGTH, -CAP_RADIUS, CAP_RADIUS),
               note="suturing device: ring around the tip, bracket of the needle arm on the upper side")
-
-
-def coil(turns, radius, pitch, wire, pieces):
-    """Chain of short cylinders along a right-handed helix that ends at the origin and opens towards -x."""
-    def point(t):
-        return (pitch * turns * (t - 1), radius * math.cos(2 * math.pi * turns * t), radius * math.sin(2 * math.pi * turns * t))
-    return [bar_between(point(i / pieces), point((i + 1) / pieces), wire, "steel") for i in range(pieces)]
-
-
-def bar_between(start, end, radius, colour):
-    delta = [b - a for a, b in zip(start, end)]
-    length = math.sqrt(sum(d * d for d in delta))
-    pitch = math.acos(delta[2] / length)
-    yaw = math.atan2(delta[1], delta[0])
-    middle = tuple((a + b) / 2 for a, b in zip(start, end))
-    return Cylinder(radius, length, middle, (0, pitch, yaw), colour)
 
 
 def add_helix(urdf):
     """Tissue helix out of the second channel. No collision shape: it is made to pass through the wall."""
-    turns, pitch = 3, 0.0018  # 3 turns: within the 2 to 4 that are used; pitch: design choice
     carrier = Body.ball(STEEL, 0.001)
     urdf.input_joint("helix_advance", "scope_tip", "helix_carriage", (-0.002, 0.0028, -0.0022))
     urdf.link("helix_carriage", carrier)
     urdf.input_joint("helix_rotation", "helix_carriage", "helix")
-    wire = coil(turns, 0.0010, pitch, 0.00025, 36)
-    stem_end = -turns * pitch
-    visuals = wire + [Cylinder(0.0012, 0.028, (stem_end - 0.014, 0, 0), colour="ring_grey")]
-    urdf.link("helix", Body.bar_x(STEEL, 0.0009, stem_end - 0.028, 0), visuals,
+    back = -HELIX_TURNS * HELIX_PITCH - HELIX_STEM
+    urdf.link("helix", Body.bar_x(STEEL, 0.0009, back, 0), "helix",
               note="origin at the point of the wire; no collision shape, it penetrates the wall")
 
 
 def add_needle(urdf):
     """Needle on its curved arm. No collision shape: it is made to pass through the wall."""
     urdf.input_joint("needle_driver", "device_cap", "needle", NEEDLE_OPEN)
-    # half circle from the point of the needle (origin) outwards and back to the end of the bracket, where the open arm is
+    # as a body: half circle from the point of the needle (origin) outwards and back to the reach of the open arm
     end = (ARM_REACH - 0.0008 - NEEDLE_OPEN[0], CAP_RADIUS - 0.0008 - NEEDLE_OPEN[2])
-    radius, pieces = math.hypot(*end) / 2, 12
+    radius = math.hypot(*end) / 2
     outwards = (-end[1] / 2, end[0] / 2)  # across the chord
-
-    def point(t):
-        along, across = (1 - math.cos(math.pi * t)) / 2, math.sin(math.pi * t)
-        return (along * end[0] + across * outwards[0], 0.0, along * end[1] + across * outwards[1])
-    curve = [bar_between(point(i / pieces), point((i + 1) / pieces), 0.0003 + 0.0005 * i / pieces,
-                         "needle_gold" if i < 4 else "steel") for i in range(pieces)]
     mass = STEEL * math.pi * 0.0005 ** 2 * math.pi * radius
     centre = (end[0] / 2 + outwards[0] * 2 / math.pi, 0, end[1] / 2 + outwards[1] * 2 / math.pi)
     moment = mass * radius ** 2 / 2  # of a bent wire, about any axis to within a factor of two
-    urdf.link("needle", Body(mass, centre, (moment,) * 3), curve,
+    urdf.link("needle", Body(mass, centre, (moment,) * 3), "needle",
               note="origin at the point of the needle; no collision shape, it penetrates the wall")
 
 
@@ -335,8 +299,6 @@ def make_urdf():
     urdf.add(0, '<?xml version="1.0"?>')
     urdf.add(0, "<!-- Written by scripts/make_scope_urdf.py: change that program, not this file. SI units. -->")
     urdf.add(0, '<robot name="scope">')
-    for name, rgba in COLOURS.items():
-        urdf.add(1, f'<material name="{name}"><color rgba="{rgba}"/></material>')
     for part in (add_shaft, add_bending_section, add_tip, add_cap, add_helix, add_needle):
         part(urdf)
     urdf.add(0, "</robot>")

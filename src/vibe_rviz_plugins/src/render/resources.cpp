@@ -8,6 +8,8 @@
 #include <atomic>
 #include <stdexcept>
 
+#include "render/mesh_look.hpp"
+
 namespace vibe {
 
 const char* const kResourceGroup = "vibe_rviz_plugins";
@@ -23,6 +25,7 @@ void loadResources() {
   groups.createResourceGroup(kResourceGroup);
   groups.addResourceLocation(package + "/media", "FileSystem", kResourceGroup);
   groups.initialiseResourceGroup(kResourceGroup);
+  dressMeshesForEndoscope();
 }
 
 std::string uniqueName(const std::string& what) {
