@@ -48,6 +48,7 @@ struct Words {
 void describe(CLI::App& app, DatasetOptions& options, Words& words) {
   app.add_option("BAG", options.bag, "whole recording, as vibe_replay --fill writes it")->required();
   app.add_option("--output", options.output, "empty or new folder")->required();
+  app.add_flag("--check", options.check, "check the options and end");
   app.add_option("--name", options.name, "name of the recording, for the data sheet");
   app.add_option("--rate", options.rate, "images per second of simulated time; 0: every state")->check(CLI::Range(0., 1000.));
   app.add_option("--every", options.every, "of these images, one in this many")->check(CLI::Range(1, 100000));

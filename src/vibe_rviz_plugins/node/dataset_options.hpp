@@ -9,6 +9,7 @@ namespace vibe {
 
 /// Options of vibe_dataset.
 struct DatasetOptions {
+  bool check = false;  ///< only the options
   std::string bag;     ///< a whole recording
   std::string name;    ///< of the recording that it was made from, for the data sheet
   std::string output;  ///< folder; created, must be empty

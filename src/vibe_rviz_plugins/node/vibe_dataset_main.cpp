@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <stdexcept>
 
 #include "dataset_camera.hpp"
 #include "messages/image_due.hpp"
@@ -36,8 +37,9 @@ class Progress {
 void run(const vibe::DatasetOptions& options) {
   const std::string impossible = problemOf(options.sensor, options.round);
   if (!impossible.empty()) throw std::runtime_error("This seed and lens do not go together: " + impossible + ".");
-  vibe::DatasetFolder folder(options);
+  if (options.check) return;
   vibe::SessionFrames frames(options.bag);
+  vibe::DatasetFolder folder(options);
   vibe::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
