@@ -104,7 +104,8 @@ CameraOptions readCameraOptions(const ros::NodeHandle& node) {
   read.rejectOthers();
   options.round.field_of_view = degrees * kDegree;
   const std::string problem = problemOf(options.sensor, options.round);
-  if (!problem.empty()) throw std::runtime_error("The parameter '" + node.resolveName("distortion") + "': " + problem + ".");
+  if (!problem.empty())
+    throw std::runtime_error("The parameter '" + node.resolveName("distortion") + "': " + problem + ".");
   return options;
 }
 

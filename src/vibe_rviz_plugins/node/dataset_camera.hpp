@@ -26,8 +26,8 @@ class DatasetCamera {
  private:
   struct Eye {
     std::string folder;
-    double aside;                      // to the right of the camera frame [m]
-    std::optional<TruthView> before;   // from which the flow starts
+    double aside;                     // to the right of the camera frame [m]
+    std::optional<TruthView> before;  // from which the flow starts
   };
   std::string show(const SessionFrame& frame, const EndoscopeScene::PoseOf& poseOf, DatasetFolder& folder);
   void takeEye(Eye& eye, const Eigen::Isometry3d& camera, const ros::Time& stamp, DatasetFolder& folder);

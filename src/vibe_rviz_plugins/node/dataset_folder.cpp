@@ -61,11 +61,15 @@ DatasetFolder::DatasetFolder(const DatasetOptions& options) : options_(options) 
   for (const auto& entry : fs::directory_iterator(options.output))
     if (entry.path().filename().string()[0] != '.')
       throw std::runtime_error("The folder '" + options.output + "' is not empty; give another --output or remove it.");
-  const std::vector<std::string> lenses = options.stereo ? std::vector<std::string>{"left/", "right/"}
-                                                         : std::vector<std::string>{""};
+  const std::vector<std::string> lenses =
+      options.stereo ? std::vector<std::string>{"left/", "right/"} : std::vector<std::string>{""};
   for (const std::string& lens : lenses)
-    for (const auto& [kind, on] : {std::pair("image", true), {"depth", options.depth}, {"normals", options.normals},
-                                   {"labels", options.labels}, {"flow", options.flow}, {"flow_visible", options.flow}})
+    for (const auto& [kind, on] : {std::pair("image", true),
+                                   {"depth", options.depth},
+                                   {"normals", options.normals},
+                                   {"labels", options.labels},
+                                   {"flow", options.flow},
+                                   {"flow_visible", options.flow}})
       if (on) fs::create_directories(options.output + "/" + lens + kind);
   if (options.particles) fs::create_directories(options.output + "/particles");
   if (options.particles) fs::create_directories(options.output + "/topology");
@@ -73,8 +77,9 @@ DatasetFolder::DatasetFolder(const DatasetOptions& options) : options_(options) 
   times_.open(options.output + "/times.txt");
   poses_.open(options.output + "/poses.txt");
   times_ << "# number of the image, stamp [s]\n";
-  poses_ << "# stamp [s], tx ty tz [m], qx qy qz qw: pose of the camera (z forward, x right, y down) in the frame of the "
-            "particles\n";
+  poses_
+      << "# stamp [s], tx ty tz [m], qx qy qz qw: pose of the camera (z forward, x right, y down) in the frame of the "
+         "particles\n";
 }
 
 std::string DatasetFolder::fileOf(const std::string& lens, const char* kind, std::size_t number,
@@ -159,7 +164,8 @@ void DatasetFolder::writeText(const std::string& name, const std::string& text) 
   std::ofstream out(options_.output + "/" + name);
   out << text;
   out.close();
-  if (!out) throw std::runtime_error("'" + options_.output + "/" + name + "' cannot be written; make room on the disk.");
+  if (!out)
+    throw std::runtime_error("'" + options_.output + "/" + name + "' cannot be written; make room on the disk.");
 }
 
 std::string DatasetFolder::intrinsics() const {
@@ -188,29 +194,35 @@ std::string DatasetFolder::description(const vibe_msgs::SessionInfo& info, const
        << ",\n\"rate\": " << options_.rate << ",\n\"every\": " << options_.every << ",\n\"lens\": \""
        << (options_.round.lens == LensKind::Equidistant ? "equidistant" : "rectilinear")
        << "\",\n\"stereo\": " << (options_.stereo ? "true" : "false") << ",\n\"content\": [\"image\"";
-  for (const auto& [name, on] : {std::pair("depth", options_.depth), {"normals", options_.normals},
-                                 {"labels", options_.labels}, {"flow", options_.flow},
-                                 {"particles", options_.particles}, {"sutures", options_.sutures}})
+  for (const auto& [name, on] : {std::pair("depth", options_.depth),
+                                 {"normals", options_.normals},
+                                 {"labels", options_.labels},
+                                 {"flow", options_.flow},
+                                 {"particles", options_.particles},
+                                 {"sutures", options_.sutures}})
     if (on) text << ", \"" << name << "\"";
   text << "],\n\"seed\": " << options_.seed << ",\n\"mount\": {\"roll\": " << options_.roll
-       << ", \"pitch\": " << options_.pitch << ", \"yaw\": " << options_.yaw << "},\n\"sensor\": {\"exposure\": "
-       << s.exposure << ", \"red_gain\": " << s.red_gain << ", \"blue_gain\": " << s.blue_gain
-       << ", \"vignetting\": " << s.vignetting << ", \"blur\": " << s.blur << ", \"distortion\": " << s.distortion
-       << ", \"full_well\": " << s.full_well << ", \"read_noise\": " << s.read_noise << "},\n\"label_pixels\": {";
+       << ", \"pitch\": " << options_.pitch << ", \"yaw\": " << options_.yaw
+       << "},\n\"sensor\": {\"exposure\": " << s.exposure << ", \"red_gain\": " << s.red_gain
+       << ", \"blue_gain\": " << s.blue_gain << ", \"vignetting\": " << s.vignetting << ", \"blur\": " << s.blur
+       << ", \"distortion\": " << s.distortion << ", \"full_well\": " << s.full_well
+       << ", \"read_noise\": " << s.read_noise << "},\n\"label_pixels\": {";
   bool first = true;
   for (std::size_t k = 0; k < pixels_.size(); ++k)
     if (pixels_[k] > 0) text << (first ? "" : ", ") << "\"" << k << "\": " << pixels_[k], first = false;
   text << "},\n\"scene\": ";
   // the scene is text with line breaks
   std::string scene;
-  for (const char c : info.scene) scene += c == '\n' ? std::string("\\n") : c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+  for (const char c : info.scene)
+    scene += c == '\n' ? std::string("\\n") : c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
   return text.str() + "\"" + scene + "\"\n}\n";
 }
 
 void DatasetFolder::finish(const vibe_msgs::SessionInfo& info, const std::string& labels, const std::string& frame) {
   times_.close(), poses_.close();
   if (!times_ || !poses_)
-    throw std::runtime_error("times.txt or poses.txt in '" + options_.output + "' cannot be written; make room on the disk.");
+    throw std::runtime_error("times.txt or poses.txt in '" + options_.output +
+                             "' cannot be written; make room on the disk.");
   writeText("intrinsics.json", intrinsics());
   writeText("labels.json", labels);
   writeText("dataset.json", description(info, frame));

@@ -45,8 +45,8 @@ class DatasetFolder {
   DatasetOptions options_;
   std::ofstream times_, poses_;
   std::size_t images_ = 0;
-  double first_ = 0, last_ = 0;                // stamps [s]
-  std::array<std::uint64_t, 256> pixels_{};    // per label
+  double first_ = 0, last_ = 0;              // stamps [s]
+  std::array<std::uint64_t, 256> pixels_{};  // per label
 };
 
 }  // namespace vibe

@@ -32,8 +32,7 @@ std::string choose(const std::vector<std::string>& words, DatasetOptions& option
 
 void vary(DatasetOptions& options) {
   if (options.seed == 0) return;
-  const CameraVariation variation =
-      variationOf(static_cast<std::uint32_t>(options.seed), options.round.field_of_view);
+  const CameraVariation variation = variationOf(static_cast<std::uint32_t>(options.seed), options.round.field_of_view);
   options.round.field_of_view = variation.field_of_view;
   options.sensor = variation.sensor;
   options.roll = variation.roll, options.pitch = variation.pitch, options.yaw = variation.yaw;
@@ -50,7 +49,8 @@ void describe(CLI::App& app, DatasetOptions& options, Words& words) {
   app.add_option("--output", options.output, "empty or new folder")->required();
   app.add_flag("--check", options.check, "check the options and end");
   app.add_option("--name", options.name, "name of the recording, for the data sheet");
-  app.add_option("--rate", options.rate, "images per second of simulated time; 0: every state")->check(CLI::Range(0., 1000.));
+  app.add_option("--rate", options.rate, "images per second of simulated time; 0: every state")
+      ->check(CLI::Range(0., 1000.));
   app.add_option("--every", options.every, "of these images, one in this many")->check(CLI::Range(1, 100000));
   app.add_option("--from", options.from, "begin at this time [s]")->check(CLI::NonNegativeNumber);
   app.add_option("--to", options.to, "end at this time [s]")->check(CLI::NonNegativeNumber);
@@ -60,7 +60,8 @@ void describe(CLI::App& app, DatasetOptions& options, Words& words) {
   app.add_option("--field-of-view", words.degrees, "across the circle [degrees]")->check(CLI::Range(10., 170.));
   app.add_flag("--stereo", options.stereo, "a pair of lenses");
   app.add_option("--baseline", options.baseline, "between the lenses [m]")->check(CLI::Range(0.0001, 0.1));
-  app.add_option("--seed", options.seed, "of the variation of lens and sensor; 0: none")->check(CLI::Range(0, 2147483647));
+  app.add_option("--seed", options.seed, "of the variation of lens and sensor; 0: none")
+      ->check(CLI::Range(0, 2147483647));
   app.add_option("--content", words.content, "beside the images")->delimiter(',');
 }
 

@@ -26,8 +26,8 @@
 namespace vibe {
 
 /// Publishes what the endoscope sees as images, one or two per state of the tissue, and the truth beside them: depth,
-/// normals, labels, optical flow, pose. An image has the stamp of the tissue it shows, with everything else as it was at
-/// that time. Without subscribers it subscribes to nothing, and only what has subscribers is computed. Runs in the
+/// normals, labels, optical flow, pose. An image has the stamp of the tissue it shows, with everything else as it was
+/// at that time. Without subscribers it subscribes to nothing, and only what has subscribers is computed. Runs in the
 /// thread that calls ros::spin().
 class EndoscopeCamera {
  public:

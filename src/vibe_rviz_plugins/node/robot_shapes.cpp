@@ -59,8 +59,8 @@ void appendNode(const aiScene& scene, const aiNode& node, const aiMatrix4x4& par
 std::string appendMeshFile(const urdf::Mesh& mesh, const Eigen::Isometry3d& pose, ColouredShape& shape) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // as rviz
-  const aiScene* scene = importer.ReadFile(
-      fileOf(mesh.filename), aiProcess_SortByPType | aiProcess_GenNormals | aiProcess_Triangulate);
+  const aiScene* scene =
+      importer.ReadFile(fileOf(mesh.filename), aiProcess_SortByPType | aiProcess_GenNormals | aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
     return "The mesh '" + mesh.filename + "' of the robot description cannot be read (" + importer.GetErrorString() +
            ") and is missing in the truth; correct the path or install its package.";
@@ -91,7 +91,8 @@ std::vector<RobotShape> robotShapes(const std::string& description, std::vector<
   std::vector<RobotShape> shapes;
   urdf::Model model;
   if (description.empty() || !model.initString(description)) {
-    problems.push_back("The parameter 'robot_description' holds no URDF that can be read, so no instrument is in the truth.");
+    problems.push_back(
+        "The parameter 'robot_description' holds no URDF that can be read, so no instrument is in the truth.");
     return shapes;
   }
   for (const auto& [link_name, link] : model.links_) {

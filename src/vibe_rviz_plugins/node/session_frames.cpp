@@ -26,7 +26,8 @@ SessionFrames::SessionFrames(const std::string& file) {
   findTopics();
   rosbag::View infos(bag_, rosbag::TopicQuery(prefix_ + "session_info"));
   if (infos.size() == 0 || infos.begin()->instantiate<vibe_msgs::SessionInfo>()->urdf.empty())
-    throw std::runtime_error("'" + file + "' does not hold the URDF of the scope (topic session_info), so nothing tells " +
+    throw std::runtime_error("'" + file +
+                             "' does not hold the URDF of the scope (topic session_info), so nothing tells " +
                              "where the camera is; record the session with this release and a scope in the scene.");
   info_ = *infos.begin()->instantiate<vibe_msgs::SessionInfo>();
   poses_ = std::make_unique<JointTree>(info_.urdf);

@@ -17,8 +17,8 @@ namespace vibe {
 /// One state of a recorded session.
 struct SessionFrame {
   sensor_msgs::PointCloud2::ConstPtr particles;
-  vibe_msgs::SutureArray::ConstPtr sutures;       ///< the latest up to this state; null: none yet
-  vibe_msgs::TissueTopology::ConstPtr topology;   ///< of these particles
+  vibe_msgs::SutureArray::ConstPtr sutures;      ///< the latest up to this state; null: none yet
+  vibe_msgs::TissueTopology::ConstPtr topology;  ///< of these particles
 };
 
 /// The states of a whole recording, as `vibe_replay --fill` writes it, in the order of time, without a graph.

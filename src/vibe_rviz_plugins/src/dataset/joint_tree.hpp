@@ -8,8 +8,8 @@
 
 namespace vibe {
 
-/// Poses of the links of a robot from its joints, and of frames that stand still: what robot_state_publisher and tf tell
-/// in a running graph, without either.
+/// Poses of the links of a robot from its joints, and of frames that stand still: what robot_state_publisher and tf
+/// tell in a running graph, without either.
 class JointTree {
  public:
   /// @param description  URDF

@@ -25,8 +25,7 @@ class Draw {
 CameraVariation variationOf(std::uint32_t seed, double field_of_view) {
   Draw draw(seed);
   CameraVariation result;
-  result.field_of_view =
-      std::clamp(field_of_view + draw.between(-5, 5) * kDegree, kMinFieldOfView, kMaxFieldOfView);
+  result.field_of_view = std::clamp(field_of_view + draw.between(-5, 5) * kDegree, kMinFieldOfView, kMaxFieldOfView);
   result.roll = draw.between(-5, 5) * kDegree;
   result.pitch = draw.between(-2, 2) * kDegree, result.yaw = draw.between(-2, 2) * kDegree;
   SensorStyle& sensor = result.sensor;

@@ -23,7 +23,8 @@ double encoded(double light) {
 const std::array<float, 256>& decodingTable() {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> values{};
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = static_cast<float>(decoded(static_cast<double>(k) / 255));
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] = static_cast<float>(decoded(static_cast<double>(k) / 255));
     return values;
   }();
   return table;
@@ -86,7 +87,8 @@ double rimOf(const RoundCamera& camera) {
 }  // namespace
 
 bool SensorStyle::isPlain() const {
-  return exposure == 1 && red_gain == 1 && blue_gain == 1 && vignetting == 0 && blur == 0 && distortion == 0 && full_well == 0 && read_noise == 0;
+  return exposure == 1 && red_gain == 1 && blue_gain == 1 && vignetting == 0 && blur == 0 && distortion == 0 &&
+         full_well == 0 && read_noise == 0;
 }
 
 std::string problemOf(const SensorStyle& style, const RoundCamera& camera) {
@@ -123,8 +125,8 @@ SensorModel::SensorModel(const SensorStyle& style, const RoundCamera& camera) : 
     for (int x = 0; x < camera.width; ++x) {
       const double aside = (Eigen::Vector2d(x, y) - camera.middle()).norm() / camera.radius();
       const bool inside = aside <= 1 + 0.5 / camera.radius();  // with the soft rim of the drawn circle
-      share_.push_back(inside ? static_cast<float>(style.exposure * (1 - style.vignetting * std::min(1.0, aside * aside)))
-                              : 0.0F);
+      share_.push_back(
+          inside ? static_cast<float>(style.exposure * (1 - style.vignetting * std::min(1.0, aside * aside))) : 0.0F);
       if (style.distortion == 0) continue;
       const Eigen::Vector2d source = undistorted(style, camera, Eigen::Vector2d(x, y));
       source_.push_back(static_cast<float>(source.x())), source_.push_back(static_cast<float>(source.y()));
@@ -176,8 +178,8 @@ void SensorModel::blurLine(std::size_t first, std::size_t step, int count) {
     for (std::size_t c = 0; c < 3; ++c) {
       float sum = kernel_[0] * light_[first + step * k + c];
       for (int j = 1; j < static_cast<int>(kernel_.size()); ++j)
-        sum += kernel_[j] * (light_[first + step * std::max(0, k - j) + c] +
-                             light_[first + step * std::min(count - 1, k + j) + c]);
+        sum += kernel_[j] *
+               (light_[first + step * std::max(0, k - j) + c] + light_[first + step * std::min(count - 1, k + j) + c]);
       scratch_[first + step * k + c] = sum;
     }
 }

@@ -7,16 +7,16 @@
 namespace vibe {
 
 // Numbers of what a pixel shows. They are stable: a number is never given another meaning.
-constexpr std::uint8_t kLabelNothing = 0;      ///< outside of the circle, or nothing is there
-constexpr std::uint8_t kLabelWall = 1;         ///< first of 80: 1 + 20 * heat + 4 * region + wall
-constexpr std::uint8_t kLabelPlainWall = 81;   ///< first of 4: 81 + heat, where the topology tells no anatomy
-constexpr std::uint8_t kLabelOuterWall = 90;   ///< the wall seen from outside of the lumen
-constexpr std::uint8_t kLabelThread = 100;     ///< thread of a suture
-constexpr std::uint8_t kLabelTag = 101;        ///< T-tag
-constexpr std::uint8_t kLabelCinch = 102;      ///< cinch
-constexpr std::uint8_t kLabelBlood = 103;      ///< blood, fresh or clotted
-constexpr std::uint8_t kLabelInstrument = 128; ///< first part of the instrument; the others follow
-constexpr std::uint8_t kLabelLast = 254;       ///< last number of a part of the instrument
+constexpr std::uint8_t kLabelNothing = 0;       ///< outside of the circle, or nothing is there
+constexpr std::uint8_t kLabelWall = 1;          ///< first of 80: 1 + 20 * heat + 4 * region + wall
+constexpr std::uint8_t kLabelPlainWall = 81;    ///< first of 4: 81 + heat, where the topology tells no anatomy
+constexpr std::uint8_t kLabelOuterWall = 90;    ///< the wall seen from outside of the lumen
+constexpr std::uint8_t kLabelThread = 100;      ///< thread of a suture
+constexpr std::uint8_t kLabelTag = 101;         ///< T-tag
+constexpr std::uint8_t kLabelCinch = 102;       ///< cinch
+constexpr std::uint8_t kLabelBlood = 103;       ///< blood, fresh or clotted
+constexpr std::uint8_t kLabelInstrument = 128;  ///< first part of the instrument; the others follow
+constexpr std::uint8_t kLabelLast = 254;        ///< last number of a part of the instrument
 
 constexpr int kHeats = 4, kRegions = 5, kWalls = 4;
 
@@ -30,8 +30,8 @@ struct LabelEntry {
   std::uint8_t number = 0;
   std::string name;    ///< unique, "body posterior mark"
   std::string object;  ///< "nothing", "wall", "outer wall", "thread", "t-tag", "cinch", "blood", "instrument"
-  std::string region, wall, heat;       ///< of the wall; empty elsewhere
-  std::array<std::uint8_t, 3> colour{}; ///< for viewing: red, green, blue
+  std::string region, wall, heat;        ///< of the wall; empty elsewhere
+  std::array<std::uint8_t, 3> colour{};  ///< for viewing: red, green, blue
 };
 
 /// All labels, by number.

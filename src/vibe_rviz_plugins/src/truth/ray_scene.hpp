@@ -54,7 +54,8 @@ class RayScene {
   void commit();
 
   /// What each ray meets first.
-  void firstHits(const Eigen::Vector3f& origin, const std::vector<CameraRay>& rays, std::vector<SurfaceHit>& hits) const;
+  void firstHits(const Eigen::Vector3f& origin, const std::vector<CameraRay>& rays,
+                 std::vector<SurfaceHit>& hits) const;
   /// Whether each ray meets something: 1 or 0.
   void areBlocked(const Eigen::Vector3f& origin, const std::vector<CameraRay>& rays,
                   std::vector<std::uint8_t>& blocked) const;

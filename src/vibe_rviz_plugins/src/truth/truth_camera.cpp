@@ -61,8 +61,7 @@ std::vector<std::uint8_t> TruthCamera::labels(const TruthScene& scene, const Tru
   std::vector<std::uint8_t> image(pixelCount(), kLabelNothing);
   for (std::size_t k = 0; k < pixels_.size(); ++k)
     if (view.hits[k].any())
-      image[pixels_[k]] =
-          scene.labelOf(view.hits[k], -(view.pose.linear() * rays_[k].direction.cast<double>()));
+      image[pixels_[k]] = scene.labelOf(view.hits[k], -(view.pose.linear() * rays_[k].direction.cast<double>()));
   return image;
 }
 

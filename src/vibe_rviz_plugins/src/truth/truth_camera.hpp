@@ -58,8 +58,8 @@ class TruthCamera {
 
   RoundCamera round_;
   double near_, far_;
-  std::vector<std::uint32_t> pixels_;   // in the circle: row * width + column
-  std::vector<CameraRay> rays_;         // of these pixels, in the frame of the camera
+  std::vector<std::uint32_t> pixels_;  // in the circle: row * width + column
+  std::vector<CameraRay> rays_;        // of these pixels, in the frame of the camera
 };
 
 }  // namespace vibe

@@ -194,7 +194,8 @@ Eigen::Vector3d TruthScene::normalOf(const SurfaceHit& hit, const Eigen::Vector3
   // vertex normals point to the outside, whichever way the triangle is wound
   if (shaded.dot(flat) < 0) shaded = -shaded;
   shaded *= side;
-  return shaded.norm() > 1e-6 && shaded.dot(towards) > 0 ? Eigen::Vector3d(shaded.normalized()) : Eigen::Vector3d(side * flat);
+  return shaded.norm() > 1e-6 && shaded.dot(towards) > 0 ? Eigen::Vector3d(shaded.normalized())
+                                                         : Eigen::Vector3d(side * flat);
 }
 
 std::uint8_t TruthScene::labelOf(const SurfaceHit& hit, const Eigen::Vector3d& towards) const {

@@ -44,7 +44,9 @@ void WallLabels::setFrame(const TissueMesh& mesh, const TissueFrame& frame) {
   grade_ = frame.grade;
   heat_.assign(grade_.empty() ? 0 : mesh.vertex_count, 0.0F);
   for (std::size_t v = 0; v < heat_.size(); ++v)
-    forCarriers(mesh, v, [&](std::uint32_t particle, float weight) { heat_[v] += weight * static_cast<float>(grade_[particle]); });
+    forCarriers(mesh, v, [&](std::uint32_t particle, float weight) {
+      heat_[v] += weight * static_cast<float>(grade_[particle]);
+    });
 }
 
 std::uint8_t WallLabels::at(const std::uint32_t* corner, const std::array<float, 3>& weight) const {

@@ -42,9 +42,9 @@ TEST_P(TruthCameraTest, DepthAndNormalsOfASphereAreThoseOfItsEquation) {
   scene.setFrame(frame);
   scene.commit();
   const TruthCamera camera(test::smallCamera(GetParam()), kNear, kFar);
-  const TruthCamera other(test::smallCamera(GetParam() == LensKind::Equidistant ? LensKind::Rectilinear
-                                                                                : LensKind::Equidistant),
-                          kNear, kFar);
+  const TruthCamera other(
+      test::smallCamera(GetParam() == LensKind::Equidistant ? LensKind::Rectilinear : LensKind::Equidistant), kNear,
+      kFar);
   TruthView view, wrong;
   camera.look(scene, test::eye(), view);
   other.look(scene, test::eye(), wrong);
@@ -63,8 +63,8 @@ TEST_P(TruthCameraTest, DepthAndNormalsOfASphereAreThoseOfItsEquation) {
     controls.push_back(std::abs(double(control[k]) - expected));
     const Eigen::Vector3d place = test::eye() * Eigen::Vector3d(expected / ray.z() * ray);
     const Eigen::Vector3d normal = -(test::eye().linear().transpose() * place.normalized());
-    angles.push_back(std::acos(std::min(
-        1.0, normal.dot(Eigen::Map<const Eigen::Vector3f>(&normals[3 * k]).cast<double>()))));
+    angles.push_back(
+        std::acos(std::min(1.0, normal.dot(Eigen::Map<const Eigen::Vector3f>(&normals[3 * k]).cast<double>()))));
   }
   const double largest = *std::max_element(errors.begin(), errors.end());
   std::printf("depth: median %.2g m, max %.2g m; normal: max %.2g rad\n", median(errors), largest,
@@ -171,7 +171,7 @@ TEST_P(TruthCameraTest, LabelsAgreeWithTheGeometryInMoreThan999Of1000Pixels) {
   EXPECT_LT(same_as_neighbour, 0.97 * all);  // control
   EXPECT_GT(seen[128], 50);
   EXPECT_GT(seen[129], 50);
-  EXPECT_GT(std::count_if(seen.begin(), seen.begin() + 21, [](int n) { return n > 20; }), 5);  // walls and regions
+  EXPECT_GT(std::count_if(seen.begin(), seen.begin() + 21, [](int n) { return n > 20; }), 5);      // walls and regions
   EXPECT_GT(std::count_if(seen.begin() + 21, seen.begin() + 61, [](int n) { return n > 5; }), 0);  // heat
 }
 
@@ -195,7 +195,8 @@ TEST_P(TruthCameraTest, OuterWallAndWhatIsTooNearAreToldApart) {
   EXPECT_GE(inside[static_cast<std::size_t>(height / 2 * width + width / 2)], kLabelOuterWall);
   const TruthCamera deeper(test::smallCamera(GetParam()), 0.2, kFar);
   deeper.look(world.scene, outside, view);
-  const std::uint8_t far_wall = deeper.labels(world.scene, view)[static_cast<std::size_t>(height / 2 * width + width / 2)];
+  const std::uint8_t far_wall =
+      deeper.labels(world.scene, view)[static_cast<std::size_t>(height / 2 * width + width / 2)];
   EXPECT_GE(far_wall, kLabelWall);
   EXPECT_LT(far_wall, kLabelPlainWall);
 }

@@ -18,7 +18,7 @@ double threadTime() {
 }
 
 TEST(TruthCost, OfAnImageIsBelowTheBudget) {
-  constexpr double kBudget = 0.150;  // [s]
+  constexpr double kBudget = 0.150;   // [s]
   test::FoldedWorld world(120, 120);  // 28,800 triangles
   const TruthCamera camera(test::smallCamera(LensKind::Equidistant, 640, 480), test::kNear, test::kFar);
   TruthView view;

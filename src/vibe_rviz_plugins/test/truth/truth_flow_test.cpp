@@ -79,11 +79,13 @@ TEST_P(TruthFlowTest, LeadsFromThePixelToItsMaterialPointAndTellsWhetherItIsVisi
       hidden += flow.visible[k] == TruthFlow::kHiddenNext;
       wrong_visible += (flow.visible[k] == TruthFlow::kHiddenNext) != isHidden(place);
     }
-  std::printf("%d pixels: mean motion %.2f px, max error %.2g px; %d hidden, %d wrongly; %d on the other side of a silhouette\n", checked,
-              total / checked, largest, hidden, wrong_visible, elsewhere);
+  std::printf(
+      "%d pixels: mean motion %.2f px, max error %.2g px; %d hidden, %d wrongly; %d on the other side of a "
+      "silhouette\n",
+      checked, total / checked, largest, hidden, wrong_visible, elsewhere);
   EXPECT_GT(checked, 8000);
-  EXPECT_GT(total / checked, 1);   // there is something to tell
-  EXPECT_LT(largest, 0.01);        // required: 0.2
+  EXPECT_GT(total / checked, 1);  // there is something to tell
+  EXPECT_LT(largest, 0.01);       // required: 0.2
   EXPECT_LE(wrong_side, 8);
   EXPECT_LE(elsewhere, 3);
   EXPECT_GT(hidden, 20);
@@ -144,7 +146,8 @@ TEST_P(TruthFlowTest, OfACameraThatStandsStillBeforeWhatStandsStillIsZero) {
   for (std::size_t k = 0; k < flow.visible.size(); ++k) {
     if (flow.visible[k] == 0) continue;
     ++told, visible += flow.visible[k] == TruthFlow::kVisibleNext;
-    largest = std::max<double>({largest, std::abs(double(flow.motion[2 * k])), std::abs(double(flow.motion[2 * k + 1]))});
+    largest =
+        std::max<double>({largest, std::abs(double(flow.motion[2 * k])), std::abs(double(flow.motion[2 * k + 1]))});
   }
   EXPECT_LT(largest, 1e-3);
   EXPECT_GT(told, 8000);

@@ -67,7 +67,8 @@ inline Eigen::Isometry3d eye(double time = 0) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translate(Eigen::Vector3d(-0.012 + 0.002 * time, 0.004, -0.003 - 0.001 * time));
   Eigen::Matrix3d turn;
-  turn.col(0) = Eigen::Vector3d(0, -1, 0), turn.col(1) = Eigen::Vector3d(0, 0, -1), turn.col(2) = Eigen::Vector3d(1, 0, 0);
+  turn.col(0) = Eigen::Vector3d(0, -1, 0), turn.col(1) = Eigen::Vector3d(0, 0, -1),
+  turn.col(2) = Eigen::Vector3d(1, 0, 0);
   pose.linear() = Eigen::AngleAxisd(0.07 + 0.03 * time, Eigen::Vector3d(0.2, 0.3, 1).normalized()) * turn;
   return pose;
 }
@@ -164,7 +165,8 @@ struct PlainSurface {
                                    double end) const {
     std::optional<PlainHit> first;
     for (std::size_t t = 0; 3 * t < corners.size(); ++t) {
-      const Eigen::Vector3d a = corners[3 * t] - origin, b = corners[3 * t + 1] - origin, c = corners[3 * t + 2] - origin;
+      const Eigen::Vector3d a = corners[3 * t] - origin, b = corners[3 * t + 1] - origin,
+                            c = corners[3 * t + 2] - origin;
       const Eigen::Vector3d volume(ray.dot(b.cross(c)), ray.dot(c.cross(a)), ray.dot(a.cross(b)));
       if ((volume.array() < 0).any() && (volume.array() > 0).any()) continue;
       const double sum = volume.sum();
