@@ -13,7 +13,7 @@
 #include "render/shape_view.hpp"
 #include "render/tissue_visual.hpp"
 #include "render/virtual_display.hpp"
-#include "truth_worlds.hpp"
+#include "truth/truth_worlds.hpp"
 
 namespace vibe {
 namespace {
