@@ -66,6 +66,21 @@ class Reader {
   std::set<std::string> known_;
 };
 
+/// The parameters of the sensor.
+void readSensor(Reader& read, SensorStyle& sensor) {
+  int seed = 0;
+  read.number("exposure", 0.05, 20, sensor.exposure);
+  read.number("red_gain", 0.5, 2, sensor.red_gain);
+  read.number("blue_gain", 0.5, 2, sensor.blue_gain);
+  read.number("vignetting", 0, 1, sensor.vignetting);
+  read.number("blur", 0, 10, sensor.blur);
+  read.number("distortion", -0.2, 0.2, sensor.distortion);
+  read.number("full_well", 0, 1e6, sensor.full_well);
+  read.number("read_noise", 0, 0.5, sensor.read_noise);
+  read.whole("noise_seed", 0, 2147483647, seed);
+  sensor.seed = static_cast<std::uint32_t>(seed);
+}
+
 }  // namespace
 
 CameraOptions readCameraOptions(const ros::NodeHandle& node) {
@@ -85,8 +100,12 @@ CameraOptions readCameraOptions(const ros::NodeHandle& node) {
   read.text("frame_id", options.frame_id);
   options.right_frame_id = options.frame_id;
   read.text("right_frame_id", options.right_frame_id);
+  readSensor(read, options.sensor);
   read.rejectOthers();
   options.round.field_of_view = degrees * kDegree;
+  const std::string problem = problemOf(options.sensor, options.round);
+  if (!problem.empty())
+    throw std::runtime_error("The parameter '" + node.resolveName("distortion") + "': " + problem + ".");
   return options;
 }
 

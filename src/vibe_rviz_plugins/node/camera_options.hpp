@@ -4,6 +4,7 @@
 #include <string>
 
 #include "geometry/lens.hpp"
+#include "sensor/sensor_model.hpp"
 
 namespace vibe {
 
@@ -16,6 +17,7 @@ struct CameraOptions {
   double baseline = 0.004;                            ///< from the left lens to the right one [m]
   std::string camera_frame = "scope_camera_optical";  ///< where the camera is, the left one of a pair
   std::string frame_id, right_frame_id;               ///< in the headers; default: camera_frame
+  SensorStyle sensor;                                 ///< of the image; the truth is not touched
 };
 
 /// @param node  its private parameters are read

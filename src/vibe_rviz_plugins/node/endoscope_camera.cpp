@@ -3,8 +3,11 @@
 #include <ros/console.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/image_encodings.h>
+#include <std_msgs/String.h>
 
 #include <algorithm>
+
+#include "render/optical_frame.hpp"
 
 namespace vibe {
 namespace {
@@ -22,8 +25,10 @@ Eigen::Isometry3d poseOf(const geometry_msgs::Transform& transform) {
   return pose;
 }
 
-sensor_msgs::CameraInfo infoOf(const RoundCamera& round, double aside, const std::string& frame) {
-  const CameraNumbers numbers = numbersOf(round, aside);
+sensor_msgs::CameraInfo infoOf(const CameraOptions& options, double aside, const std::string& frame) {
+  const RoundCamera& round = options.round;
+  CameraNumbers numbers = numbersOf(round, aside);
+  numbers.d[0] = options.sensor.distortion;  // the first radial coefficient of both models
   sensor_msgs::CameraInfo info;
   info.header.frame_id = frame;
   info.width = static_cast<std::uint32_t>(round.width);
@@ -44,7 +49,15 @@ EndoscopeCamera::EndoscopeCamera(ros::NodeHandle node, const CameraOptions& opti
       options_(options),
       scene_(scene, description),
       camera_(scene, options.round, options.sharpness),
+      sensor_(options.sensor, options.round),
+      truth_(description),
+      truth_camera_(options.round, static_cast<double>(kScopeNearClip), static_cast<double>(kScopeFarClip)),
       due_(options.rate) {
+  for (const std::string& problem : truth_.problems()) ROS_WARN_STREAM(problem);
+  label_table_ = node_.advertise<std_msgs::String>("endoscope/label_table", 1, true);
+  std_msgs::String table;
+  table.data = truth_.labels();
+  label_table_.publish(table);
   eyes_.reserve(2);
   addEye(options.stereo ? "endoscope/left/" : "endoscope/", 0, options.frame_id);
   if (options.stereo) addEye("endoscope/right/", options.baseline, options.right_frame_id);
@@ -52,13 +65,13 @@ EndoscopeCamera::EndoscopeCamera(ros::NodeHandle node, const CameraOptions& opti
 
 void EndoscopeCamera::addEye(const std::string& name, double aside, const std::string& frame) {
   const ros::SubscriberStatusCallback changed = [this](const ros::SingleSubscriberPublisher&) { listenAsNeeded(); };
-  eyes_.push_back({aside, infoOf(options_.round, aside, frame), {}, {}});
+  eyes_.push_back({aside, infoOf(options_, aside, frame), {}, {}, TruthTopics(node_, name, changed)});
   eyes_.back().image = node_.advertise<sensor_msgs::Image>(name + "image_raw", 2, changed, changed);
   eyes_.back().info = node_.advertise<sensor_msgs::CameraInfo>(name + "camera_info", 2, changed, changed);
 }
 
 bool EndoscopeCamera::isWatched() const {
-  return std::any_of(eyes_.begin(), eyes_.end(), [](const Eye& eye) { return eye.listeners() > 0; });
+  return std::any_of(eyes_.begin(), eyes_.end(), [](const Eye& eye) { return eye.isWatched(); });
 }
 
 void EndoscopeCamera::listenAsNeeded() {
@@ -86,11 +99,13 @@ void EndoscopeCamera::stopListening() {
   transform_listener_.reset();
   transforms_.clear();
   recent_sutures_.clear();
+  for (Eye& eye : eyes_) eye.truth.forget();
 }
 
 void EndoscopeCamera::receiveTopology(const vibe_msgs::TissueTopology::ConstPtr& message) {
   const std::string problem = scene_.setTopology(*message);
   if (!problem.empty()) ROS_WARN_STREAM(problem);
+  truth_.setTopology(*message);  // the same checks
 }
 
 void EndoscopeCamera::receiveSutures(const vibe_msgs::SutureArray::ConstPtr& message) {
@@ -104,47 +119,75 @@ void EndoscopeCamera::receiveParticles(const sensor_msgs::PointCloud2::ConstPtr&
   const ros::Time stamp = message->header.stamp;
   if (!isWatched() || !due_.isDue(stamp)) return;
   const ros::WallTime begin = ros::WallTime::now();
-  const std::string problem = scene_.setParticles(*message);
-  if (!problem.empty()) {
-    ROS_WARN_STREAM_THROTTLE(kRepeatPeriod, problem);
-    return;
-  }
   const EndoscopeScene::PoseOf pose_of = [&](const std::string& frame) {
     return find(frame, message->header.frame_id, stamp);
   };
   const std::optional<Eigen::Isometry3d> camera = pose_of(options_.camera_frame);
   if (!camera) return;  // the filter has seen this transform; it can be missing only if time was set back since
-  drawSutures(stamp, pose_of);
-  scene_.placeInstrument(pose_of);
-  for (Eye& eye : eyes_) publish(eye, *camera, stamp);
+  std::string problem = draw(*message, pose_of);
+  if (problem.empty()) problem = drawTruth(*message, pose_of);
+  if (!problem.empty()) {
+    ROS_WARN_STREAM_THROTTLE(kRepeatPeriod, problem);
+    return;
+  }
+  for (Eye& eye : eyes_) publish(eye, *camera, message->header);
   ROS_DEBUG("%.1f ms for the state of %.3f s", 1e3 * (ros::WallTime::now() - begin).toSec(), stamp.toSec());
 }
 
-void EndoscopeCamera::drawSutures(const ros::Time& stamp, const EndoscopeScene::PoseOf& poseOf) {
+vibe_msgs::SutureArray::ConstPtr EndoscopeCamera::suturesAt(const ros::Time& stamp) const {
   vibe_msgs::SutureArray::ConstPtr latest;
   for (const auto& sutures : recent_sutures_)
     if (sutures->header.stamp <= stamp) latest = sutures;
-  if (!latest || latest == drawn_sutures_) return;
-  const std::string problem = scene_.setSutures(*latest, poseOf);
-  if (problem.empty())
-    drawn_sutures_ = latest;
-  else
-    ROS_WARN_STREAM_THROTTLE(kRepeatPeriod, problem);
+  return latest;
 }
 
-void EndoscopeCamera::publish(Eye& eye, const Eigen::Isometry3d& camera, const ros::Time& stamp) {
-  eye.numbers.header.stamp = stamp;
-  if (eye.image.getNumSubscribers() > 0) {
-    sensor_msgs::ImagePtr image = boost::make_shared<sensor_msgs::Image>();
-    image->header = eye.numbers.header;
-    image->width = eye.numbers.width;
-    image->height = eye.numbers.height;
-    image->encoding = sensor_msgs::image_encodings::RGB8;
-    image->step = 3 * image->width;
-    camera_.take(camera * Eigen::Translation3d(eye.aside, 0, 0), image->data);
-    eye.image.publish(image);
-  }
+/// What is wrong with the particles, in one sentence; empty: the scene shows this state.
+std::string EndoscopeCamera::draw(const sensor_msgs::PointCloud2& particles, const EndoscopeScene::PoseOf& pose_of) {
+  std::string problem = scene_.setParticles(particles);
+  if (!problem.empty()) return problem;
+  scene_.placeInstrument(pose_of);
+  const vibe_msgs::SutureArray::ConstPtr sutures = suturesAt(particles.header.stamp);
+  if (!sutures || sutures == drawn_sutures_) return "";
+  problem = scene_.setSutures(*sutures, pose_of);
+  if (problem.empty())
+    drawn_sutures_ = sutures;
+  else
+    ROS_WARN_STREAM_THROTTLE(kRepeatPeriod, problem);
+  return "";
+}
+
+/// The same for the truth, if somebody wants it.
+std::string EndoscopeCamera::drawTruth(const sensor_msgs::PointCloud2& particles,
+                                       const EndoscopeScene::PoseOf& pose_of) {
+  if (std::none_of(eyes_.begin(), eyes_.end(), [](const Eye& eye) { return eye.truth.needsRays(); })) return "";
+  const std::string problem = truth_.setParticles(particles);
+  if (!problem.empty()) return problem;
+  truth_.placeInstrument(pose_of);
+  const vibe_msgs::SutureArray::ConstPtr sutures = suturesAt(particles.header.stamp);
+  if (sutures && sutures != true_sutures_ && truth_.setSutures(*sutures, pose_of).empty()) true_sutures_ = sutures;
+  truth_.commit();
+  return "";
+}
+
+void EndoscopeCamera::publish(Eye& eye, const Eigen::Isometry3d& camera, const std_msgs::Header& particles) {
+  eye.numbers.header.stamp = particles.stamp;
+  const Eigen::Isometry3d pose = camera * Eigen::Translation3d(eye.aside, 0, 0);
+  if (eye.image.getNumSubscribers() > 0) publishImage(eye, pose);
   eye.info.publish(eye.numbers);
+  eye.truth.publish(truth_camera_, truth_.scene(), pose, eye.numbers.header, particles.frame_id);
+}
+
+void EndoscopeCamera::publishImage(Eye& eye, const Eigen::Isometry3d& pose) {
+  sensor_msgs::ImagePtr image = boost::make_shared<sensor_msgs::Image>();
+  image->header = eye.numbers.header;
+  image->width = eye.numbers.width;
+  image->height = eye.numbers.height;
+  image->encoding = sensor_msgs::image_encodings::RGB8;
+  image->step = 3 * image->width;
+  camera_.take(pose, image->data);
+  // the two lenses of a pair have noise of their own
+  sensor_.expose(image->data, 2 * image->header.stamp.toNSec() + (&eye == &eyes_.front() ? 0 : 1));
+  eye.image.publish(image);
 }
 
 std::optional<Eigen::Isometry3d> EndoscopeCamera::find(const std::string& frame, const std::string& target,

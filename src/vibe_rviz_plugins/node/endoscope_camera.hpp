@@ -18,12 +18,17 @@
 #include "endoscope_scene.hpp"
 #include "messages/image_due.hpp"
 #include "render/offscreen_camera.hpp"
+#include "sensor/sensor_model.hpp"
+#include "truth/truth_camera.hpp"
+#include "truth_topics.hpp"
+#include "truth_world.hpp"
 
 namespace vibe {
 
-/// Publishes what the endoscope sees as images, one or two per state of the tissue. An image has the stamp of the
-/// tissue it shows, with everything else as it was at that time. Without subscribers it subscribes to nothing. Runs in
-/// the thread that calls ros::spin().
+/// Publishes what the endoscope sees as images, one or two per state of the tissue, and the truth beside them: depth,
+/// normals, labels, optical flow, pose. An image has the stamp of the tissue it shows, with everything else as it was
+/// at that time. Without subscribers it subscribes to nothing, and only what has subscribers is computed. Runs in the
+/// thread that calls ros::spin().
 class EndoscopeCamera {
  public:
   /// @throws std::runtime_error  the graphics system does not support it
@@ -36,7 +41,8 @@ class EndoscopeCamera {
     double aside;  ///< distance to the right of the camera frame [m]
     sensor_msgs::CameraInfo numbers;
     ros::Publisher image, info;
-    std::size_t listeners() const { return image.getNumSubscribers() + info.getNumSubscribers(); }
+    TruthTopics truth;
+    bool isWatched() const { return image.getNumSubscribers() + info.getNumSubscribers() > 0 || truth.isWatched(); }
   };
   void addEye(const std::string& name, double aside, const std::string& frame);
   bool isWatched() const;
@@ -47,14 +53,21 @@ class EndoscopeCamera {
   void receiveTopology(const vibe_msgs::TissueTopology::ConstPtr& message);
   void receiveSutures(const vibe_msgs::SutureArray::ConstPtr& message);
   void receiveParticles(const sensor_msgs::PointCloud2::ConstPtr& message);
-  void drawSutures(const ros::Time& stamp, const EndoscopeScene::PoseOf& poseOf);
-  void publish(Eye& eye, const Eigen::Isometry3d& camera, const ros::Time& stamp);
+  vibe_msgs::SutureArray::ConstPtr suturesAt(const ros::Time& stamp) const;
+  std::string draw(const sensor_msgs::PointCloud2& particles, const EndoscopeScene::PoseOf& poseOf);
+  std::string drawTruth(const sensor_msgs::PointCloud2& particles, const EndoscopeScene::PoseOf& poseOf);
+  void publish(Eye& eye, const Eigen::Isometry3d& camera, const std_msgs::Header& particles);
+  void publishImage(Eye& eye, const Eigen::Isometry3d& camera);
   std::optional<Eigen::Isometry3d> find(const std::string& frame, const std::string& target, const ros::Time& stamp);
 
   ros::NodeHandle node_;
   CameraOptions options_;
   EndoscopeScene scene_;
   OffscreenCamera camera_;
+  SensorModel sensor_;
+  TruthWorld truth_;
+  TruthCamera truth_camera_;
+  ros::Publisher label_table_;
   std::vector<Eye> eyes_;
   ImageDue due_;
 
@@ -65,7 +78,7 @@ class EndoscopeCamera {
   message_filters::Subscriber<sensor_msgs::PointCloud2> particles_;
   std::unique_ptr<tf2_ros::MessageFilter<sensor_msgs::PointCloud2>> filter_;
   std::deque<vibe_msgs::SutureArray::ConstPtr> recent_sutures_;
-  vibe_msgs::SutureArray::ConstPtr drawn_sutures_;
+  vibe_msgs::SutureArray::ConstPtr drawn_sutures_, true_sutures_;
 };
 
 }  // namespace vibe

@@ -2,6 +2,7 @@
 """The program endoscope_camera in a hollow ball of tissue with one burnt spot, without a display: where the spot is in
 the picture must be where camera_info says."""
 
+import json
 import os
 import signal
 import subprocess
@@ -15,9 +16,10 @@ import numpy
 import rospy
 import rostest
 import tf2_msgs.msg
-from ball import FRAME, Ball
-from geometry_msgs.msg import TransformStamped
+from ball import FRAME, RADIUS, Ball
+from geometry_msgs.msg import PoseStamped, TransformStamped
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2
+from std_msgs.msg import String
 from vibe_msgs.msg import TissueTopology
 
 CAMERA = "scope_camera_optical"
@@ -127,6 +129,46 @@ class Program:
 
         assert wait_until(lambda: of_stamp(self.images[eye]) and of_stamp(self.infos[eye])), "no image in time"
         return of_stamp(self.images[eye])[0], of_stamp(self.infos[eye])[0]
+
+
+TRUTH = {  # topic, encoding, type and number of the values of a pixel
+    "depth/image_raw": ("32FC1", numpy.float32, 1),
+    "normals": ("32FC3", numpy.float32, 3),
+    "labels": ("8UC1", numpy.uint8, 1),
+    "flow": ("32FC2", numpy.float32, 2),
+    "flow_visible": ("8UC1", numpy.uint8, 1),
+}
+
+
+class Truth:
+    """What the program publishes beside the image."""
+
+    def __init__(self, base="endoscope/"):
+        self.messages = {topic: [] for topic in [*TRUTH, "pose"]}
+        self.subscribers = [rospy.Subscriber(base + topic, Image, self.messages[topic].append) for topic in TRUTH]
+        self.subscribers.append(rospy.Subscriber(base + "pose", PoseStamped, self.messages["pose"].append))
+
+    def of(self, topic, stamp):
+        def found():
+            return [message for message in self.messages[topic] if message.header.stamp == stamp]
+
+        assert wait_until(found), "no {} in time".format(topic)
+        return found()[0]
+
+    def values(self, topic, stamp):
+        message = self.of(topic, stamp)
+        encoding, kind, channels = TRUTH[topic]
+        assert (message.encoding, message.header.frame_id) == (encoding, CAMERA)
+        shape = (message.height, message.width) + ((channels,) if channels > 1 else ())
+        return numpy.frombuffer(message.data, kind).reshape(shape)
+
+    def __enter__(self):
+        assert wait_until(lambda: all(s.get_num_connections() > 0 for s in self.subscribers)), "no truth is published"
+        return self
+
+    def __exit__(self, *_):
+        for subscriber in self.subscribers:
+            subscriber.unregister()
 
 
 class EndoscopeCameraTest(unittest.TestCase):
@@ -248,6 +290,62 @@ class EndoscopeCameraTest(unittest.TestCase):
             self.check_spot(image, info, PLACE + ASIDE / 2)
             type(self).clock = end
 
+    def check_truth(self, truth, stamp, info, place):
+        pixel = numpy.round(project(info, in_camera(self.spot, place))).astype(int)
+        x, y = pixel
+        depth, labels = truth.values("depth/image_raw", stamp), truth.values("labels", stamp)
+        self.assertAlmostEqual(depth[y, x], in_camera(self.spot, place)[2], delta=0.0003)
+        outside = distance_from_middle(info) > 240.001
+        self.assertTrue(numpy.isnan(depth[outside]).all() and (labels[outside] == 0).all())
+        self.assertTrue(numpy.isfinite(depth[~outside]).all())
+        normal = truth.values("normals", stamp)[y, x]
+        self.assertLess(numpy.linalg.norm(normal + TURN.T @ self.spot / RADIUS), 0.03)
+        # the burnt spot of the labels is where it is drawn
+        rows, columns = numpy.nonzero(numpy.isin(labels, self.burnt))
+        self.assertLess(numpy.hypot(columns.mean() - x, rows.mean() - y), 2)
+        return pixel
+
+    def test_truth_has_stamp_size_and_geometry_of_the_image(self):
+        with Program(rate=0) as camera, Truth() as truth:
+            tables = []
+            rospy.Subscriber("endoscope/label_table", String, lambda message: tables.append(json.loads(message.data)))
+            self.assertTrue(wait_until(lambda: tables))
+            type(self).burnt = [row["number"] for row in tables[0] if row.get("heat") not in (None, "none")]
+            first, second = self.show(), None
+            _, info = camera.last(first)
+            before = self.check_truth(truth, first, info, PLACE)
+            # the flow of the first image comes with the second
+            self.assertEqual(truth.messages["flow"], [])
+            step = numpy.array([0, 0.001, 0.0005])
+            second = self.show(PLACE + step)
+            camera.last(second)
+            after = self.check_truth(truth, second, info, PLACE + step)
+            flow, visible = truth.values("flow", first), truth.values("flow_visible", first)
+            expected = project(info, in_camera(self.spot, PLACE + step)) - project(info, in_camera(self.spot, PLACE))
+            self.assertLess(numpy.linalg.norm(flow[before[1], before[0]] - expected), 0.2)
+            self.assertGreater(numpy.linalg.norm(expected), 2)
+            self.assertEqual(visible[before[1], before[0]], 255)
+            self.assertGreater(numpy.linalg.norm(after - before), 2)
+            pose = truth.of("pose", second)
+            self.assertEqual(pose.header.frame_id, FRAME)
+            found = [pose.pose.position.x, pose.pose.position.y, pose.pose.position.z]
+            numpy.testing.assert_allclose(found, PLACE + step, atol=1e-9)
+
+    def test_sensor_changes_the_image_and_not_the_truth(self):
+        shots = []
+        for parameters in ({}, {"exposure": 0.5, "read_noise": 0.05, "distortion": 0.02}):
+            self.wait_until_alone()
+            with Program(rate=0, **parameters) as camera, Truth() as truth:
+                stamp = self.show()
+                image, info = camera.last(stamp)
+                shots.append((pixels_of(image), info.D, truth.values("depth/image_raw", stamp)))
+        (plain, plain_d, depth), (noisy, noisy_d, same_depth) = shots
+        numpy.testing.assert_array_equal(depth, same_depth)
+        self.assertEqual((plain_d[0], noisy_d[0]), (0, 0.02))
+        inside = (slice(200, 280), slice(280, 360))
+        self.assertLess(noisy[inside].mean(), 0.85 * plain[inside].mean())
+        self.assertGreater(numpy.abs(numpy.diff(noisy[inside], axis=1)).mean(), 5)
+
     def test_twice_the_pixels_show_the_same(self):
         shots = []
         for size in (1, 2):
@@ -282,6 +380,8 @@ class EndoscopeCameraTest(unittest.TestCase):
             (["_lens:=fisheye"], None, 2, "equidistant or rectilinear"),
             (["_field_of_view:=180"], None, 2, "from 10 to 170"),
             (["_width:=lots"], None, 2, "whole number"),
+            (["_exposure:=0"], None, 2, "from 0.05 to 20"),
+            (["_lens:=rectilinear", "_distortion:=-0.1"], None, 2, "folds the image over"),
             ([], "/nowhere", 1, "apt-get install xvfb"),
         ]
         binary = program()

@@ -1,0 +1,79 @@
+// vibe_dataset: images with their truth from a whole recording, without a roscore and without a screen.
+
+#include <OgreRoot.h>
+#include <OgreSceneManager.h>
+#include <rviz/ogre_helpers/render_system.h>
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include "dataset_camera.hpp"
+#include "messages/image_due.hpp"
+#include "render/resources.hpp"
+#include "render/virtual_display.hpp"
+
+namespace {
+
+constexpr int kFailure = 1;
+constexpr auto kProgressPeriod = std::chrono::seconds(2);
+
+/// Prints how far it is, now and then.
+class Progress {
+ public:
+  void show(const vibe::SessionFrames& frames, std::size_t images) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < kProgressPeriod) return;
+    last_ = now;
+    std::printf("%3.0f %%  %zu images\n", 100 * frames.progress(), images);
+    std::fflush(stdout);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void run(const vibe::DatasetOptions& options) {
+  const std::string impossible = problemOf(options.sensor, options.round);
+  if (!impossible.empty()) throw std::runtime_error("This seed and lens do not go together: " + impossible + ".");
+  if (options.check) return;
+  vibe::SessionFrames frames(options.bag);
+  vibe::DatasetFolder folder(options);
+  vibe::provideDisplay();
+  rviz::RenderSystem::forceNoStereo();
+  Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
+  vibe::loadResources();
+  vibe::DatasetCamera camera(options, *scene, frames.info().urdf);
+  vibe::ImageDue due(options.rate);
+  vibe::SessionFrame frame;
+  Progress progress;
+  std::string world;
+  for (int turn = 0; frames.next(frame);) {
+    const ros::Time stamp = frame.particles->header.stamp;
+    if (stamp.toSec() > options.to) break;
+    if (stamp.toSec() < options.from || !due.isDue(stamp) || turn++ % options.every != 0) continue;
+    const std::string problem = camera.take(frame, frames.poses(), folder);
+    if (!problem.empty()) throw std::runtime_error(problem);
+    world = frame.particles->header.frame_id;
+    progress.show(frames, camera.images());
+  }
+  if (camera.images() == 0) throw std::runtime_error("The recording has no state between --from and --to.");
+  folder.finish(frames.info(), camera.labels(), world);
+  std::printf("%zu images in %s\n", camera.images(), options.output.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  vibe::DatasetOptions options;
+  const int status = vibe::readDatasetOptions(argc, argv, options);
+  if (status >= 0) return status;
+  try {
+    run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vibe_dataset: %s\n", error.what());
+    return kFailure;
+  }
+  return 0;
+}

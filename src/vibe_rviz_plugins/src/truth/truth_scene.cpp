@@ -1,0 +1,209 @@
+#include "truth/truth_scene.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "geometry/blood_shapes.hpp"
+#include "geometry/suture_shapes.hpp"
+
+namespace vibe {
+namespace {
+
+/// As the endoscope draws sutures: what is there, without symbols.
+SutureStyle plainStyle() {
+  SutureStyle style;
+  style.colouring = ThreadColour::One;
+  style.bites = style.corners = style.links = false;
+  return style;
+}
+
+/// A shape that goes on after the first vertices and triangles of `shape`, which it shares with `beginning`.
+ColouredShape without(const ColouredShape& beginning, const ColouredShape& shape) {
+  ColouredShape rest;
+  const std::size_t first = beginning.vertices.size();
+  rest.vertices.assign(shape.vertices.begin() + static_cast<std::ptrdiff_t>(first), shape.vertices.end());
+  rest.colours.assign(shape.colours.begin() + static_cast<std::ptrdiff_t>(first), shape.colours.end());
+  for (std::size_t k = beginning.triangles.size(); k < shape.triangles.size(); ++k)
+    rest.triangles.push_back(shape.triangles[k] - static_cast<std::uint32_t>(first));
+  return rest;
+}
+
+void append(const ColouredShape& from, ColouredShape& to) {
+  const auto first = static_cast<std::uint32_t>(to.vertices.size());
+  to.vertices.insert(to.vertices.end(), from.vertices.begin(), from.vertices.end());
+  to.colours.insert(to.colours.end(), from.colours.begin(), from.colours.end());
+  for (const std::uint32_t vertex : from.triangles) to.triangles.push_back(first + vertex);
+}
+
+struct SutureParts {
+  ColouredShape threads, tags, cinches;
+};
+
+/// The drawn triangles, told apart: those of a set begin with its threads, and the ends follow. The ends are drawn with
+/// their threads, because these give their direction.
+SutureParts partsOf(const SutureScene& sutures) {
+  const auto drawn = [](const SutureSet& set, bool ends) {
+    SutureStyle style = plainStyle();
+    style.ends = ends;
+    ColouredShape shape;
+    appendSutures({{set}, {}}, style, shape);
+    return shape;
+  };
+  SutureParts parts;
+  for (const SutureSet& set : sutures.sets) {
+    const ColouredShape thread = drawn(set, false);
+    SutureSet tagged = set, cinched = set;
+    tagged.has_cinch = false, cinched.has_t_tag = false;
+    append(thread, parts.threads);
+    append(without(thread, drawn(tagged, true)), parts.tags);
+    append(without(thread, drawn(cinched, true)), parts.cinches);
+  }
+  return parts;
+}
+
+ColouredShape bloodOf(const SutureScene& sutures, double time) {
+  BloodStyle style;
+  style.time = time;
+  ColouredShape shape;
+  appendBlood(sutures, style, shape);
+  return shape;
+}
+
+Eigen::Vector3d placeOf(const MovingVertex& vertex) {
+  return Eigen::Map<const Eigen::Vector3f>(vertex.position).cast<double>();
+}
+
+}  // namespace
+
+TruthScene::TruthScene() {
+  wall_ = addBody(kLabelNothing, rays_.addMoving());
+  thread_ = addBody(kLabelThread, rays_.addMoving());
+  tag_ = addBody(kLabelTag, rays_.addMoving());
+  cinch_ = addBody(kLabelCinch, rays_.addMoving());
+  blood_ = addBody(kLabelBlood, rays_.addMoving());
+}
+
+std::uint32_t TruthScene::addBody(std::uint8_t label, std::uint32_t number) {
+  if (number != bodies_.size()) throw std::runtime_error("Embree numbers its geometries in an order that is not ours.");
+  Body& body = bodies_.emplace_back();
+  body.label = label;
+  body.vertices = &body.own.vertices, body.triangles = &body.own.triangles;
+  return number;
+}
+
+void TruthScene::setMesh(const TissueMesh& mesh) {
+  mesh_ = mesh;
+  rays_.set(wall_, {}, {});
+  surface_ = std::make_unique<DeformableSurface>(mesh_);
+  wall_labels_.setMesh(mesh_);
+  Body& wall = bodies_[wall_];
+  wall.vertices = &surface_->vertices(), wall.triangles = &mesh_.triangles;
+  wall.shape_number = 0;  // until there is a frame
+}
+
+void TruthScene::setFrame(const TissueFrame& frame) {
+  Body& wall = bodies_[wall_];
+  const bool first = wall.shape_number == 0;
+  const bool moved = !surface_->update(frame.positions).empty();
+  wall_labels_.setFrame(mesh_, frame);
+  if (first) {
+    wall.shape_number = ++shapes_;
+    rays_.set(wall_, *wall.vertices, *wall.triangles);
+  } else if (moved) {
+    rays_.moved(wall_);
+  }
+}
+
+void TruthScene::setSutures(const SutureScene& sutures, double time, const Eigen::Isometry3d& pose) {
+  SutureParts parts = partsOf(sutures);
+  setShape(thread_, std::move(parts.threads), pose, true);
+  setShape(tag_, std::move(parts.tags), pose, true);
+  setShape(cinch_, std::move(parts.cinches), pose, true);
+  setShape(blood_, bloodOf(sutures, time), pose, false);
+}
+
+void TruthScene::setShape(std::uint32_t number, ColouredShape shape, const Eigen::Isometry3d& pose, bool material) {
+  Body& body = bodies_[number];
+  for (MovingVertex& vertex : shape.vertices) {
+    Eigen::Map<Eigen::Vector3f> place(vertex.position), normal(vertex.normal);
+    place = (pose * Eigen::Vector3d(place.cast<double>())).cast<float>();
+    normal = (pose.linear() * Eigen::Vector3d(normal.cast<double>())).cast<float>();
+  }
+  const bool same = shape.triangles == body.own.triangles && shape.vertices.size() == body.own.vertices.size();
+  if (!same || body.shape_number == 0) body.shape_number = material ? ++shapes_ : 0;
+  body.own = std::move(shape);
+  rays_.set(number, body.own.vertices, body.own.triangles, number == blood_ ? &body.own.colours : nullptr);
+}
+
+std::uint32_t TruthScene::addPart(const std::string& name, ColouredShape shape) {
+  const auto known = std::find(part_names_.begin(), part_names_.end(), name);
+  const auto which = static_cast<std::size_t>(known - part_names_.begin());
+  if (kLabelInstrument + which > kLabelLast)
+    throw std::runtime_error("The robot description has more than " +
+                             std::to_string(kLabelLast - kLabelInstrument + 1) +
+                             " visible parts, but there are no more labels; give visuals of a link the same name.");
+  if (known == part_names_.end()) part_names_.push_back(name);
+  Body& body = bodies_.emplace_back();
+  body.label = static_cast<std::uint8_t>(kLabelInstrument + which);
+  body.own = std::move(shape);
+  body.vertices = &body.own.vertices, body.triangles = &body.own.triangles;
+  body.shape_number = ++shapes_;
+  body.placed = false;
+  if (rays_.addRigid(*body.vertices, *body.triangles) + 1 != bodies_.size())
+    throw std::runtime_error("Embree numbers its geometries in an order that is not ours.");
+  return static_cast<std::uint32_t>(bodies_.size() - 1);
+}
+
+void TruthScene::placePart(std::uint32_t part, const std::optional<Eigen::Isometry3d>& pose) {
+  bodies_[part].placed = pose.has_value();
+  if (pose) bodies_[part].pose = *pose;
+  rays_.place(part, pose);
+}
+
+TruthScene::Corners TruthScene::cornersOf(const SurfaceHit& hit) const {
+  const Body& body = bodies_[hit.body];
+  Corners corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t vertex = (*body.triangles)[3 * hit.triangle + k];
+    corners[k] = vibe::placeOf((*body.vertices)[vertex]);
+  }
+  return corners;
+}
+
+Eigen::Vector3d TruthScene::placeOf(const SurfaceHit& hit) const {
+  const Corners corner = cornersOf(hit);
+  const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
+  return bodies_[hit.body].pose * ((1 - u - v) * corner[0] + u * corner[1] + v * corner[2]);
+}
+
+Eigen::Vector3d TruthScene::flatNormal(const SurfaceHit& hit) const {
+  const Corners corner = cornersOf(hit);
+  return bodies_[hit.body].pose.linear() * (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+}
+
+Eigen::Vector3d TruthScene::normalOf(const SurfaceHit& hit, const Eigen::Vector3d& towards) const {
+  const Body& body = bodies_[hit.body];
+  const std::uint32_t* corner = &(*body.triangles)[3 * hit.triangle];
+  const float weight[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (std::size_t k = 0; k < 3; ++k)
+    sum += weight[k] * Eigen::Map<const Eigen::Vector3f>((*body.vertices)[corner[k]].normal);
+  Eigen::Vector3d shaded = body.pose.linear() * sum.cast<double>();
+  const Eigen::Vector3d flat = flatNormal(hit);
+  const double side = flat.dot(towards) < 0 ? -1 : 1;
+  // vertex normals point to the outside, whichever way the triangle is wound
+  if (shaded.dot(flat) < 0) shaded = -shaded;
+  shaded *= side;
+  return shaded.norm() > 1e-6 && shaded.dot(towards) > 0 ? Eigen::Vector3d(shaded.normalized())
+                                                         : Eigen::Vector3d(side * flat);
+}
+
+std::uint8_t TruthScene::labelOf(const SurfaceHit& hit, const Eigen::Vector3d& towards) const {
+  if (!hit.any()) return kLabelNothing;
+  const Body& body = bodies_[hit.body];
+  if (hit.body != wall_) return body.label;
+  if (flatNormal(hit).dot(towards) > 0) return kLabelOuterWall;
+  return wall_labels_.at(&(*body.triangles)[3 * hit.triangle], {1 - hit.u - hit.v, hit.u, hit.v});
+}
+
+}  // namespace vibe
