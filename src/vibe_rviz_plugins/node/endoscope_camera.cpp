@@ -141,7 +141,11 @@ void EndoscopeCamera::publish(Eye& eye, const Eigen::Isometry3d& camera, const r
     image->height = eye.numbers.height;
     image->encoding = sensor_msgs::image_encodings::RGB8;
     image->step = 3 * image->width;
-    camera_.take(camera * Eigen::Translation3d(eye.aside, 0, 0), image->data);
+    const Eigen::Isometry3d lens = camera * Eigen::Translation3d(eye.aside, 0, 0);
+    if (options_.auto_exposure)
+      camera_.take(lens, stamp.toSec(), image->data);
+    else
+      camera_.take(lens, image->data);
     eye.image.publish(image);
   }
   eye.info.publish(eye.numbers);

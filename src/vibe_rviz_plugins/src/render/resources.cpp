@@ -8,6 +8,8 @@
 #include <atomic>
 #include <stdexcept>
 
+#include "render/mucosa_texture.hpp"
+
 namespace vibe {
 
 const char* const kResourceGroup = "vibe_rviz_plugins";
@@ -22,6 +24,7 @@ void loadResources() {
         "The package vibe_rviz_plugins is not in ROS_PACKAGE_PATH; source devel/setup.bash before rviz.");
   groups.createResourceGroup(kResourceGroup);
   groups.addResourceLocation(package + "/media", "FileSystem", kResourceGroup);
+  provideMucosaTexture();  // a material of the group reads it
   groups.initialiseResourceGroup(kResourceGroup);
 }
 
