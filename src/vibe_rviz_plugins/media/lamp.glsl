@@ -8,7 +8,8 @@ const float kAbove = 0.0012;  // [m]; design choice
 // `film` mirrors, tightly (y) and in a wide lobe (z): powers 256 and 32 of the cosine (Blinn 1977), multiplied out
 // because that is faster than pow().
 // soft: how far scattered light reaches around edges, 0 to 1.
-vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft) {
+// near: distance below which light does not grow any more [m].
+vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float near) {
   vec3 to_eye = normalize(-place);
   vec3 sum = vec3(0.0);
   for (int k = 0; k < 2; ++k) {
@@ -16,7 +17,7 @@ vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft) {
     float square = dot(to_lamp, to_lamp);
     to_lamp *= inversesqrt(square);
     // the guides shine less to the sides
-    float power = reach * reach / (square + 4e-6) * (0.15 + 0.35 * max(to_lamp.z, 0.0));
+    float power = reach * reach / (square + near * near) * (0.15 + 0.35 * max(to_lamp.z, 0.0));
     vec3 half_way = to_lamp + to_eye;
     float mirrored = max(dot(film, half_way), 0.0);
     float m = mirrored * mirrored / dot(half_way, half_way);  // power 2

@@ -80,12 +80,16 @@ void main() {
 
   float smooth_part = max(1.0 - gastric, 0.45 * anatomy.y);
   float pits = mix(0.8, areae.r, (1.0 - smooth_part) * smoothstep(0.25, 0.7, net.g + 0.3 * (broad.g - 0.5)));
-  height += relief * (0.36 * pits + 0.35 * areae.a * gastric + 0.5 * areae.g);
+  // what is finer than two pixels would glitter
+  float fine = 1.0 - smoothstep(0.0001, 0.00035, pixel), middling = 1.0 - smoothstep(0.0001, 0.0007, pixel);
+  float rough = relief * (middling * (0.36 * pits + 0.5 * areae.g) + 0.35 * fine * areae.a * gastric);
   float mucus = smoothstep(0.58, 0.72, broad.g + 0.25 * (net.g - 0.5)) * gastric;
 
   vec3 flat_normal = -normalize(view_normal);
-  vec3 normal = raised(flat_normal, height);
-  vec3 film = normalize(mix(normal, flat_normal, 0.25 + 0.45 * mucus));
+  vec3 normal = raised(flat_normal, height + rough);
+  // the film of mucus is smoother than what is below it
+  float followed = mix(0.75, 0.28, smoothstep(0.00005, 0.0003, pixel)) * (1.0 - 0.7 * mucus);
+  vec3 film = raised(flat_normal, height + followed * rough);
 
   vec3 base = linear(colour.rgb * tint.rgb);
   if (grain > 0.5) {
@@ -105,8 +109,8 @@ void main() {
   base = heated(base, heat);
 
   float dull = clamp(heat - 1.0, 0.0, 1.0);
-  vec3 light = lamp(view_position, normal, film, reach, 0.25);
+  vec3 light = lamp(view_position, normal, film, reach, 0.25, 0.002);
   float around_light = fill * 0.3 * reach * reach / (dot(view_position, view_position) + 4e-4);
-  vec3 radiance = base * (light.x + around_light) + wet * (5.0 * light.y + 0.18 * light.z) * (0.4 + 0.9 * net.g + 0.8 * mucus) * (1.0 - 0.8 * dull);
+  vec3 radiance = base * (light.x + around_light) + wet * (3.0 * light.y + 0.05 * light.z) * (0.2 + net.g * net.g * 1.8 + 0.8 * mucus) * (1.0 - dull);
   gl_FragColor = vec4(stored(radiance), 1.0);
 }

@@ -23,7 +23,7 @@ constexpr double kDense = 47, kCrowded = 80;
 
 // Share of the folds and of the look of the antrum: cardia, fundus, body, antrum, pylorus. The rugae are those of body
 // and fundus; the antrum is nearly smooth (Standring, Gray's Anatomy, 41st edition, chapter 64).
-constexpr std::array<double, 5> kFolded{0.25, 0.85, 1, 0.15, 0}, kAntral{0, 0, 0, 1, 1};
+constexpr std::array<double, 5> kFolded{0, 0.85, 1, 0.15, 0}, kAntral{0, 0, 0, 1, 1};
 
 // Stretch around the organ that uses up the folds. Body, fundus and antrum: what 95 % of the region exceed at 10 mmHg
 // in the default scene (docs/endoscope_look.md), so that the pressure of endoscopy makes them smooth. Others: design

@@ -114,16 +114,16 @@ TEST_F(EndoscopeLensTest, ShowsACircularImageOnBlackAndTheBallAtItsAngularSize) 
   EXPECT_NEAR(bright, kHeight * angle / (140 * kDegree), 2);
 }
 
-constexpr double kGain = 0.4;  // dark enough to tell distances near the lens
+constexpr double kGain = 0.7;  // dark enough to tell distances near the lens
 
 // What media/lamp.glsl, solid.frag and endoscope.frag show of a red wall that faces the lens: two light guides beside
 // it, whose light falls off with the square of the distance, what other walls send back, then the exposure of the
 // camera. Level of the red channel, 0 to 255.
 double redAt(double distance) {
-  const double reach = 0.06, gloss = 0.3, soft = 0.1, aside = 0.0035, above = 0.0012;
+  const double reach = 0.06, gloss = 0.3, soft = 0.1, near = 0.04, aside = 0.0035, above = 0.0012;
   const double square = aside * aside + above * above + distance * distance;
   const double cosine = distance / std::sqrt(square);
-  const double power = 2 * reach * reach / (square + 4e-6) * (0.15 + 0.35 * cosine);
+  const double power = 2 * reach * reach / (square + near * near) * (0.15 + 0.35 * cosine);
   const double halfway = std::sqrt((1 + cosine) / 2);
   const double light =
       power * ((cosine + soft) / (1 + soft) + gloss * (0.5 * std::pow(halfway, 256) + 0.5 * std::pow(halfway, 32)));
