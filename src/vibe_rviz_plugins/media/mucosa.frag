@@ -43,7 +43,7 @@ vec3 raised(vec3 normal, float height) {
 }
 
 vec3 heated(vec3 base, float heat) {
-  vec3 rim = vec3(0.30, 0.022, 0.016), mark = vec3(0.92, 0.85, 0.66), burn = vec3(0.18, 0.06, 0.016), deep = vec3(0.005, 0.003, 0.002);
+  vec3 rim = vec3(0.30, 0.022, 0.016), mark = vec3(0.98, 0.86, 0.74), burn = vec3(0.18, 0.06, 0.016), deep = vec3(0.005, 0.003, 0.002);
   base = mix(base, rim, 0.75 * smoothstep(0.05, 0.3, heat));  // reddened around
   base = mix(base, mark, smoothstep(0.4, 0.75, heat));
   base = mix(base, burn, smoothstep(1.2, 1.85, heat));

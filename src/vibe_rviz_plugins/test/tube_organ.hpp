@@ -41,7 +41,7 @@ struct TubeOrgan {
     for (std::uint32_t r = 0; r + 1 < rows; ++r)
       for (std::uint32_t a = 0; a < around; ++a) {
         const std::uint32_t b = (a + 1) % around, upper = r * around, lower = upper + around;
-        mesh.triangles.insert(mesh.triangles.end(), {upper + a, upper + b, lower + a, lower + a, upper + b, lower + b});
+        mesh.triangles.insert(mesh.triangles.end(), {upper + a, lower + a, upper + b, lower + a, lower + b, upper + b});
       }
     mesh.particle_triangles = mesh.triangles;
     mesh.region.assign(mesh.particle_count, region);

@@ -23,7 +23,9 @@ TEST(MucosaMapTest, AngleOfATubeIsThatAroundItsAxis) {
   ASSERT_EQ(map.of_vertex.size(), organ.rows * organ.around);
   // the tube is open, and its ends turn the angle a little; the quarters are half a particle off their middle
   const std::size_t first = organ.rows / 3 * organ.around, last = 2 * first;
-  const auto angleAt = [&](std::size_t v) { return std::atan2(map.of_vertex[v].around[1], map.of_vertex[v].around[0]); };
+  const auto angleAt = [&](std::size_t v) {
+    return std::atan2(map.of_vertex[v].around[1], map.of_vertex[v].around[0]);
+  };
   double worst = 0;
   for (std::size_t v = first; v < last; ++v) {
     const double expected = organ.angleOf(static_cast<std::uint32_t>(v) % organ.around);
@@ -46,7 +48,8 @@ TEST(MucosaMapTest, NothingJumpsBetweenNeighbours) {
   for (std::size_t k = mesh.particle_count / 2; k < mesh.particle_count; ++k) mesh.region[k] = 3;  // antrum
   const MucosaMap map = mapMucosa(mesh);
   for (std::size_t k = 0; k + 1 < mesh.triangles.size(); ++k) {
-    const MucosaVertex &a = map.of_vertex[mesh.triangles[k]], &b = map.of_vertex[mesh.triangles[k - k % 3 + (k + 1) % 3]];
+    const MucosaVertex &a = map.of_vertex[mesh.triangles[k]],
+                       &b = map.of_vertex[mesh.triangles[k - k % 3 + (k + 1) % 3]];
     EXPECT_LT(std::abs(a.folded - b.folded), 0.2F);
     EXPECT_LT(std::abs(a.antral - b.antral), 0.2F);
     EXPECT_LT(std::hypot(a.around[0] - b.around[0], a.around[1] - b.around[1]), 0.2F);
