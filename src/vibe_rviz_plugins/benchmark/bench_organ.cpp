@@ -108,6 +108,7 @@ TissueMesh benchOrgan(bool subdivided) {
   addTriangles(mesh.triangles);
   mesh.particle_triangles = mesh.triangles;
   mesh.particle_count = mesh.vertex_count = mesh.rest.size() / 3;
+  mesh.particle_rest = mesh.rest;
   if (subdivided) addRenderSurface(mesh);
   return mesh;
 }

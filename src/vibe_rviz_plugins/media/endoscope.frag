@@ -1,12 +1,13 @@
 #version 120
-// Applies the projection of the endoscope lens to a plane image; black outside of the circle.
-uniform sampler2D picture;        // the plane image
+// Applies the projection and the exposure of the endoscope to a plane image; black outside of the circle.
+uniform sampler2D picture;        // the plane image: square roots of radiances
 uniform vec2 picture_size;        // of the result [px]
 uniform float radius;             // of the circle [px]
 uniform float half_angle;         // between the axis and the circle [rad]
 uniform float equidistant;        // 1: radius = f theta, 0: radius = f tan theta
 uniform float source_half_width;  // tangent of the angle to the centre of an edge of the plane image
 uniform float source_size;        // edge of the plane image [px]
+uniform float gain;               // of the exposure, see src/geometry/auto_exposure.hpp
 
 varying vec2 place;  // in the result, 0 to 1
 
@@ -33,5 +34,8 @@ void main() {
     float along = tangent + step * ((float(k) + 0.5) / float(samples) - 0.5);
     light += texture2D(picture, 0.5 + 0.5 * direction * along / source_half_width).rgb;
   }
-  gl_FragColor = vec4(inside * light / float(samples), 1.0);
+  light /= float(samples);
+  // the sensor: a shoulder that keeps detail in bright areas, per channel, so that highlights become white
+  vec3 exposed = 1.0 - exp(-gain * light * light);
+  gl_FragColor = vec4(inside * pow(exposed, vec3(0.6)), 1.0);
 }

@@ -93,6 +93,7 @@ CameraOptions readCameraOptions(const ros::NodeHandle& node) {
   read.number("field_of_view", 10, 170, degrees);
   read.number("sharpness", 0.2, 2, options.sharpness);
   read.number("rate", 0, 1000, options.rate);
+  read.yesOrNo("auto_exposure", options.auto_exposure);
   read.yesOrNo("stereo", options.stereo);
   read.number("baseline", 0.0001, 0.1, options.baseline);
   read.text("camera_frame", options.camera_frame);

@@ -184,7 +184,10 @@ void EndoscopeCamera::publishImage(Eye& eye, const Eigen::Isometry3d& pose) {
   image->height = eye.numbers.height;
   image->encoding = sensor_msgs::image_encodings::RGB8;
   image->step = 3 * image->width;
-  camera_.take(pose, image->data);
+  if (options_.auto_exposure)
+    camera_.take(pose, image->header.stamp.toSec(), image->data);
+  else
+    camera_.take(pose, image->data);
   // the two lenses of a pair have noise of their own
   sensor_.expose(image->data, 2 * image->header.stamp.toNSec() + (&eye == &eyes_.front() ? 0 : 1));
   eye.image.publish(image);

@@ -32,6 +32,7 @@ inline TissueMesh ballMesh(std::uint32_t rows, std::uint32_t around) {
   }
   mesh.particle_triangles = mesh.triangles;
   mesh.particle_count = mesh.vertex_count = last + 1;
+  mesh.particle_rest = mesh.rest;
   return mesh;
 }
 

@@ -16,6 +16,7 @@ struct TissueMesh {
   std::vector<std::uint32_t> triangles;           ///< three vertices each, counter-clockwise seen from outside
   std::vector<std::uint32_t> particle_triangles;  ///< three particles each; the same without a render surface
   std::vector<float> rest;                        ///< x y z per vertex [m]
+  std::vector<float> particle_rest;               ///< x y z per particle [m]; the same without a render surface
 
   // Vertex v is the sum over k in [render_offsets[v], render_offsets[v + 1]) of render_weights[k] times particle
   // render_particles[k]. All empty without a render surface.
@@ -25,6 +26,7 @@ struct TissueMesh {
 
   // Per particle; empty if the topology does not tell.
   std::vector<std::uint8_t> region, wall;  ///< REGION_* and WALL_* of vibe_msgs/TissueTopology
+  std::vector<std::uint8_t> end;           ///< END_*
   std::vector<float> thickness;            ///< of the wall at rest [m]
 };
 

@@ -55,9 +55,10 @@ std::string checkPositions(const std::vector<double>& positions) {
 }
 
 std::string checkAnatomy(const vibe_msgs::TissueTopology& message, std::size_t count) {
-  for (const std::size_t length : {message.region.size(), message.wall.size(), message.thickness.size()})
+  for (const std::size_t length :
+       {message.region.size(), message.wall.size(), message.end.size(), message.thickness.size()})
     if (length != 0 && length != count)
-      return "region, wall or thickness of the topology do not have one entry per particle.";
+      return "region, wall, end or thickness of the topology do not have one entry per particle.";
   return {};
 }
 
@@ -73,17 +74,16 @@ std::string checkTopology(const vibe_msgs::TissueTopology& message) {
 }
 
 void takeRest(const std::vector<double>& positions, TissueMesh& mesh) {
+  mesh.particle_rest.resize(positions.size());
+  std::transform(positions.begin(), positions.end(), mesh.particle_rest.begin(),
+                 [](double p) { return static_cast<float>(p); });
+  mesh.rest = mesh.particle_rest;
+  if (!mesh.subdivided()) return;
   mesh.rest.assign(3 * mesh.vertex_count, 0.0F);
-  if (!mesh.subdivided()) {
-    std::transform(positions.begin(), positions.end(), mesh.rest.begin(),
-                   [](double p) { return static_cast<float>(p); });
-    return;
-  }
   for (std::size_t v = 0; v < mesh.vertex_count; ++v)
     for (std::uint32_t k = mesh.render_offsets[v]; k < mesh.render_offsets[v + 1]; ++k)
       for (std::size_t c = 0; c < 3; ++c)
-        mesh.rest[3 * v + c] +=
-            mesh.render_weights[k] * static_cast<float>(positions[3 * mesh.render_particles[k] + c]);
+        mesh.rest[3 * v + c] += mesh.render_weights[k] * mesh.particle_rest[3 * mesh.render_particles[k] + c];
 }
 
 bool arePositions(const float* values, std::size_t count, std::size_t& where) {
@@ -124,6 +124,7 @@ std::string readTopology(const vibe_msgs::TissueTopology& message, TissueMesh& m
   mesh.vertex_count = mesh.subdivided() ? mesh.render_offsets.size() - 1 : mesh.particle_count;
   mesh.region = message.region;
   mesh.wall = message.wall;
+  mesh.end = message.end;
   mesh.thickness = message.thickness;
   takeRest(message.rest_positions, mesh);
   return {};

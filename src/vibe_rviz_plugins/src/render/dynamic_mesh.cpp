@@ -8,12 +8,14 @@
 #include <OgreSubEntity.h>
 #include <OgreSubMesh.h>
 
+#include <cstddef>
+
 #include "render/resources.hpp"
 
 namespace vibe {
 namespace {
 
-enum Source : unsigned short { Vertices, Colours, Fixed };
+enum Source : unsigned short { Vertices, Colours, Fixed, Mucosa, Heights };
 
 template <class T>
 Ogre::HardwareVertexBufferSharedPtr vertexBuffer(std::size_t count, std::size_t size, const T* values, bool changes) {
@@ -46,18 +48,19 @@ void DynamicMesh::clear() {
   }
   if (mesh_) Ogre::MeshManager::getSingleton().remove(mesh_);
   mesh_.reset();
-  vertices_.reset(), colours_.reset();
+  vertices_.reset(), colours_.reset(), heights_.reset();
   vertex_count_ = triangle_count_ = 0;
 }
 
 void DynamicMesh::setTopology(const std::vector<std::uint32_t>& triangles, std::size_t vertex_count,
-                              const std::vector<float>& fixed) {
+                              const std::vector<float>& fixed, const std::vector<MucosaVertex>& mucosa) {
   clear();
   if (triangles.empty() || vertex_count == 0) return;
   vertex_count_ = vertex_count;
   triangle_count_ = triangles.size() / 3;
   mesh_ = Ogre::MeshManager::getSingleton().createManual(uniqueName("Mesh"), kResourceGroup);
   makeVertexData(fixed);
+  if (mucosa.size() == vertex_count) addMucosa(mucosa);
   makeIndexData(triangles);
   mesh_->_setBounds(Ogre::AxisAlignedBox::BOX_NULL);
   mesh_->load();
@@ -88,6 +91,18 @@ void DynamicMesh::makeVertexData(const std::vector<float>& fixed) {
   data->vertexBufferBinding->setBinding(Fixed, vertexBuffer(vertex_count_, 3 * sizeof(float), places.data(), false));
 }
 
+void DynamicMesh::addMucosa(const std::vector<MucosaVertex>& mucosa) {
+  Ogre::VertexDeclaration& layout = *mesh_->sharedVertexData->vertexDeclaration;
+  layout.addElement(Mucosa, 0, Ogre::VET_FLOAT2, Ogre::VES_TEXTURE_COORDINATES, 1);
+  layout.addElement(Mucosa, offsetof(MucosaVertex, folded), Ogre::VET_FLOAT4, Ogre::VES_TEXTURE_COORDINATES, 2);
+  layout.addElement(Heights, 0, Ogre::VET_FLOAT1, Ogre::VES_TEXTURE_COORDINATES, 3);
+  const std::vector<float> level(vertex_count_, 0.0F);
+  heights_ = vertexBuffer(vertex_count_, sizeof(float), level.data(), true);
+  Ogre::VertexBufferBinding& binding = *mesh_->sharedVertexData->vertexBufferBinding;
+  binding.setBinding(Mucosa, vertexBuffer(vertex_count_, sizeof(MucosaVertex), mucosa.data(), false));
+  binding.setBinding(Heights, heights_);
+}
+
 void DynamicMesh::makeIndexData(const std::vector<std::uint32_t>& triangles) {
   auto buffer = Ogre::HardwareBufferManager::getSingleton().createIndexBuffer(
       Ogre::HardwareIndexBuffer::IT_32BIT, triangles.size(), Ogre::HardwareBuffer::HBU_STATIC_WRITE_ONLY);
@@ -107,6 +122,10 @@ void DynamicMesh::setVertices(const MovingVertex* vertices, std::size_t first, s
 
 void DynamicMesh::setColours(const PackedColour* colours, std::size_t first, std::size_t count) {
   if (colours_ && count > 0) write(*colours_, colours, first, count);
+}
+
+void DynamicMesh::setHeights(const std::vector<float>& heights) {
+  if (heights_ && heights.size() == vertex_count_) write(*heights_, heights.data(), 0, vertex_count_);
 }
 
 void DynamicMesh::setBounds(const Ogre::AxisAlignedBox& bounds) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/mucosa_map.hpp"
 #include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
 namespace Ogre {
@@ -33,12 +34,15 @@ class DynamicMesh {
   /// @param triangles  three vertex numbers each, counter-clockwise seen from outside
   /// @param fixed      x y z per vertex that shaders read as texture coordinate, for example the place at rest, so that
   ///                   a texture moves with the surface; empty: zero
+  /// @param mucosa     one per vertex for the shader of the mucosa; empty: none, and no heights can be set
   void setTopology(const std::vector<std::uint32_t>& triangles, std::size_t vertex_count,
-                   const std::vector<float>& fixed = {});
+                   const std::vector<float>& fixed = {}, const std::vector<MucosaVertex>& mucosa = {});
   /// Sets the vertices from `first` on.
   void setVertices(const MovingVertex* vertices, std::size_t first, std::size_t count);
   /// Sets the colours of the vertices from `first` on.
   void setColours(const PackedColour* colours, std::size_t first, std::size_t count);
+  /// Sets the heights of the folds of all vertices [m]; now 0.
+  void setHeights(const std::vector<float>& heights);
   /// Sets the box around all vertices; anything outside may be culled.
   void setBounds(const Ogre::AxisAlignedBox& bounds);
 
@@ -51,13 +55,14 @@ class DynamicMesh {
  private:
   void clear();
   void makeVertexData(const std::vector<float>& fixed);
+  void addMucosa(const std::vector<MucosaVertex>& mucosa);
   void makeIndexData(const std::vector<std::uint32_t>& triangles);
 
   Ogre::SceneNode& parent_;
   std::vector<Ogre::MaterialPtr> materials_;
   Ogre::MeshPtr mesh_;
   Ogre::Entity* entity_ = nullptr;
-  Ogre::HardwareVertexBufferSharedPtr vertices_, colours_;
+  Ogre::HardwareVertexBufferSharedPtr vertices_, colours_, heights_;
   std::size_t vertex_count_ = 0, triangle_count_ = 0;
   bool visible_ = true;
 };

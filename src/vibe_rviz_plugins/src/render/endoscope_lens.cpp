@@ -5,13 +5,18 @@
 #include <OgreCompositionTargetPass.h>
 #include <OgreCompositionTechnique.h>
 #include <OgreCompositor.h>
+#include <OgreCompositorChain.h>
 #include <OgreCompositorManager.h>
+#include <OgreHardwarePixelBuffer.h>
 #include <OgreLight.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <OgreTechnique.h>
+#include <OgreTexture.h>
 #include <OgreViewport.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -23,6 +28,13 @@ namespace {
 constexpr int kMaxSource = 4096;  // what every graphics card can do [px]
 constexpr float kReach = 0.06f;   // of the lamp, as in media/vibe.material: distance of half intensity [m]
 const char* const kSource = "source";
+const char* const kMeter = "meter";
+constexpr int kMeterSize = 32;  // edge of the picture that measures the level [px]
+
+// Weight of a pixel at this share of the radius: centre-weighted metering, as video processors offer it.
+double weightAt(double share) {
+  return share > 1 ? 0 : 1 - 0.75 * share * share;
+}
 
 void drawScene(Ogre::CompositionTechnique& technique, std::uint32_t visibility) {
   Ogre::CompositionTargetPass& target = *technique.createTargetPass();
@@ -37,13 +49,19 @@ void drawScene(Ogre::CompositionTechnique& technique, std::uint32_t visibility) 
   target.createPass()->setType(Ogre::CompositionPass::PT_RENDERSCENE);
 }
 
-void drawBent(Ogre::CompositionTechnique& technique, const Ogre::MaterialPtr& material) {
-  Ogre::CompositionTargetPass& target = *technique.getOutputTargetPass();
+void drawBent(Ogre::CompositionTargetPass& target, const Ogre::MaterialPtr& material) {
   target.setInputMode(Ogre::CompositionTargetPass::IM_NONE);
   Ogre::CompositionPass& quad = *target.createPass();
   quad.setType(Ogre::CompositionPass::PT_RENDERQUAD);
   quad.setMaterial(material);
   quad.setInput(0, kSource);
+}
+
+void addTexture(Ogre::CompositionTechnique& technique, const char* name, int size, Ogre::PixelFormat format) {
+  auto& texture = *technique.createTextureDefinition(name);
+  texture.width = texture.height = static_cast<std::uint32_t>(size);
+  texture.formatList.push_back(format);
+  texture.fsaa = false;  // the lens blends neighbours anyway
 }
 
 }  // namespace
@@ -83,12 +101,38 @@ void EndoscopeLens::set(LensKind lens, double field_of_view, double sharpness) {
   lamp_->setPosition(eye->getDerivedPosition());
 }
 
+// Ogre draws with a copy of the material.
+void EndoscopeLens::notifyMaterialRender(Ogre::uint32, Ogre::MaterialPtr& material) {
+  const auto uniforms = material->getTechnique(0)->getPass(0)->getFragmentProgramParameters();
+  uniforms->setNamedConstant("gain", static_cast<Ogre::Real>(gain_));
+}
+
+std::optional<double> EndoscopeLens::level() const {
+  if (name_.empty() || viewport_ == nullptr) return std::nullopt;
+  auto& manager = Ogre::CompositorManager::getSingleton();
+  Ogre::CompositorInstance* drawn = manager.getCompositorChain(viewport_)->getCompositor(name_);
+  const Ogre::TexturePtr texture = drawn ? drawn->getTextureInstance(kMeter, 0) : nullptr;
+  if (!texture) return std::nullopt;
+  std::array<std::uint8_t, 3 * kMeterSize * kMeterSize> pixels;
+  texture->getBuffer()->blitToMemory(Ogre::PixelBox(kMeterSize, kMeterSize, 1, Ogre::PF_BYTE_RGB, pixels.data()));
+  double sum = 0, weights = 0;
+  for (int y = 0; y < kMeterSize; ++y)
+    for (int x = 0; x < kMeterSize; ++x) {
+      const double weight =
+          weightAt(std::hypot(x + 0.5 - 0.5 * kMeterSize, y + 0.5 - 0.5 * kMeterSize) / (0.5 * kMeterSize));
+      const std::uint8_t* pixel = &pixels[static_cast<std::size_t>(3 * (y * kMeterSize + x))];
+      sum += weight * (0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2]) / 255;  // ITU-R BT.601 luma
+      weights += weight;
+    }
+  return sum / weights;
+}
+
 void EndoscopeLens::remove() {
   if (name_.empty()) return;
   auto& manager = Ogre::CompositorManager::getSingleton();
   if (viewport_ != nullptr) manager.removeCompositor(viewport_, name_);
   manager.remove(name_, kResourceGroup);
-  dropMaterial(material_);
+  dropMaterial(material_), dropMaterial(meter_material_);
   name_.clear();
   Ogre::SceneManager* scene = lamp_->getCreator();
   scene->destroyLight(static_cast<Ogre::Light*>(lamp_->getAttachedObject(0)));
@@ -110,33 +154,38 @@ void EndoscopeLens::light() {
 void EndoscopeLens::make(const SquareSource& source) {
   auto& manager = Ogre::CompositorManager::getSingleton();
   material_ = copyMaterial("vibe/endoscope_lens");
-  setMaterial(source);
+  meter_material_ = copyMaterial("vibe/endoscope_lens");
+  setMaterial(material_, camera_.width, camera_.height);
+  setMaterial(meter_material_, kMeterSize, kMeterSize);
   name_ = uniqueName("Lens");
   Ogre::CompositionTechnique& technique = *manager.create(name_, kResourceGroup)->createTechnique();
-  auto& texture = *technique.createTextureDefinition(kSource);
-  texture.width = texture.height = static_cast<std::uint32_t>(source.size);
-  texture.formatList.push_back(Ogre::PF_BYTE_RGBA);
-  texture.fsaa = false;  // the lens blends neighbours anyway
+  addTexture(technique, kSource, source.size, Ogre::PF_FLOAT16_RGBA);  // brighter than white before the exposure
+  addTexture(technique, kMeter, kMeterSize, Ogre::PF_BYTE_RGBA);
   drawScene(technique, viewport_->getVisibilityMask());
-  drawBent(technique, material_);
-  if (manager.addCompositor(viewport_, name_) == nullptr) {
+  Ogre::CompositionTargetPass& meter = *technique.createTargetPass();
+  meter.setOutputName(kMeter);
+  drawBent(meter, meter_material_);
+  drawBent(*technique.getOutputTargetPass(), material_);
+  Ogre::CompositorInstance* drawn = manager.addCompositor(viewport_, name_);
+  if (drawn == nullptr) {
     manager.remove(name_, kResourceGroup);
     name_.clear();
     throw std::runtime_error("The graphics card cannot draw the endoscope's view; choose another view.");
   }
+  drawn->addListener(this);
   manager.setCompositorEnabled(viewport_, name_, true);
   light();
 }
 
-void EndoscopeLens::setMaterial(const SquareSource& source) {
+void EndoscopeLens::setMaterial(const Ogre::MaterialPtr& material, int width, int height) {
   auto real = [](double value) { return static_cast<Ogre::Real>(value); };
-  Ogre::GpuProgramParameters& uniforms = *material_->getTechnique(0)->getPass(0)->getFragmentProgramParameters();
-  uniforms.setNamedConstant("picture_size", Ogre::Vector2(real(camera_.width), real(camera_.height)));
-  uniforms.setNamedConstant("radius", real(camera_.radius()));
+  Ogre::GpuProgramParameters& uniforms = *material->getTechnique(0)->getPass(0)->getFragmentProgramParameters();
+  uniforms.setNamedConstant("picture_size", Ogre::Vector2(real(width), real(height)));
+  uniforms.setNamedConstant("radius", real(0.5 * std::min(width, height)));
   uniforms.setNamedConstant("half_angle", real(0.5 * camera_.field_of_view));
   uniforms.setNamedConstant("equidistant", real(camera_.lens == LensKind::Equidistant ? 1 : 0));
-  uniforms.setNamedConstant("source_half_width", real(source.half_width));
-  uniforms.setNamedConstant("source_size", real(source.size));
+  uniforms.setNamedConstant("source_half_width", real(source_.half_width));
+  uniforms.setNamedConstant("source_size", real(source_.size));
 }
 
 }  // namespace vibe

@@ -1,9 +1,12 @@
 #pragma once
+#include <OgreCompositorInstance.h>
 #include <OgreMaterial.h>
 #include <OgreViewport.h>
 
+#include <optional>
 #include <string>
 
+#include "geometry/auto_exposure.hpp"
 #include "geometry/lens.hpp"
 
 namespace Ogre {
@@ -16,7 +19,7 @@ namespace vibe {
 /// by its lamp (scheme kEndoscopeScheme for materials of this package, a light in the scene for other materials). The
 /// camera of the viewport must be at the lens; its angles are set here. The effect ends when this object or the
 /// viewport is deleted; rviz deletes its window before its views. The scene must outlive this object.
-class EndoscopeLens : private Ogre::Viewport::Listener {
+class EndoscopeLens : private Ogre::Viewport::Listener, private Ogre::CompositorInstance::Listener {
  public:
   explicit EndoscopeLens(Ogre::Viewport& viewport);
   ~EndoscopeLens() override;
@@ -29,22 +32,30 @@ class EndoscopeLens : private Ogre::Viewport::Listener {
   /// @throws std::runtime_error  the graphics card does not support it
   void set(LensKind lens, double field_of_view, double sharpness);
 
+  /// What the radiances of the next picture are multiplied with (AutoExposure::gain()).
+  void setGain(double gain) { gain_ = gain; }
+  /// Mean level of the last picture, weighted to its centre, 0 to 1; nothing before the first. It is read from the
+  /// graphics card, which takes a moment.
+  std::optional<double> level() const;
+
   /// The camera whose image the viewport shows, in pixels of the viewport, as of the last set().
   const RoundCamera& camera() const { return camera_; }
 
  private:
   void viewportDestroyed(Ogre::Viewport* viewport) override;
+  void notifyMaterialRender(Ogre::uint32 pass, Ogre::MaterialPtr& material) override;
   void remove();
   void light();
   void make(const SquareSource& source);
-  void setMaterial(const SquareSource& source);
+  void setMaterial(const Ogre::MaterialPtr& material, int width, int height);
 
   Ogre::Viewport* viewport_;  ///< null once it is gone
   RoundCamera camera_;
   double sharpness_ = 0;
   SquareSource source_;
-  std::string name_;  ///< of the compositor; empty: there is none
-  Ogre::MaterialPtr material_;
+  std::string name_;                             ///< of the compositor; empty: there is none
+  Ogre::MaterialPtr material_, meter_material_;  ///< of the picture, and of a small one that measures its level
+  double gain_ = AutoExposure::kFixedGain;
   Ogre::SceneNode* lamp_ = nullptr;
 };
 

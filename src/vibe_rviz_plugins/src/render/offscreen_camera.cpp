@@ -39,7 +39,7 @@ OffscreenCamera::~OffscreenCamera() {
   scene_.destroySceneNode(node);
 }
 
-void OffscreenCamera::take(const Eigen::Isometry3d& pose, std::vector<std::uint8_t>& pixels) {
+void OffscreenCamera::place(const Eigen::Isometry3d& pose) {
   auto real = [](double value) { return static_cast<Ogre::Real>(value); };
   const Eigen::Vector3d& place = pose.translation();
   const Eigen::Quaterniond turn(pose.linear());
@@ -47,10 +47,37 @@ void OffscreenCamera::take(const Eigen::Isometry3d& pose, std::vector<std::uint8
   camera_->getParentSceneNode()->setOrientation(
       Ogre::Quaternion(real(turn.w()), real(turn.x()), real(turn.y()), real(turn.z())) * opticalToOgre());
   lens_->set(round_.lens, round_.field_of_view, sharpness_);
+}
+
+void OffscreenCamera::draw(double gain) {
+  lens_->setGain(gain);
   picture_->getBuffer()->getRenderTarget()->update();
+}
+
+void OffscreenCamera::read(std::vector<std::uint8_t>& pixels) {
   const auto width = static_cast<Ogre::uint32>(round_.width), height = static_cast<Ogre::uint32>(round_.height);
   pixels.resize(std::size_t{3} * width * height);
   picture_->getBuffer()->blitToMemory(Ogre::PixelBox(width, height, 1, Ogre::PF_BYTE_RGB, pixels.data()));
+}
+
+void OffscreenCamera::take(const Eigen::Isometry3d& pose, std::vector<std::uint8_t>& pixels) {
+  place(pose);
+  draw(AutoExposure::kFixedGain);
+  read(pixels);
+}
+
+void OffscreenCamera::take(const Eigen::Isometry3d& pose, double time, std::vector<std::uint8_t>& pixels) {
+  place(pose);
+  const bool other_eye = time == time_;  // of a stereo pair: both are exposed alike
+  if (other_eye) draw(gain_);
+  for (bool lost = !other_eye; lost; lost = exposure_.isLost()) {
+    gain_ = exposure_.gain(), time_ = time;
+    draw(gain_);
+    const std::optional<double> level = lens_->level();
+    if (!level) break;
+    exposure_.see(*level, time);
+  }
+  read(pixels);
 }
 
 }  // namespace vibe

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "geometry/auto_exposure.hpp"
 #include "geometry/lens.hpp"
 
 namespace Ogre {
@@ -31,14 +32,25 @@ class OffscreenCamera {
   /// @param pose    of the optical frame (z forward, x right, y down) in the scene [m]
   /// @param pixels  result: red, green, blue of height rows of width pixels, from the top
   void take(const Eigen::Isometry3d& pose, std::vector<std::uint8_t>& pixels);
+  /// The same with automatic exposure.
+  /// @param time  of the picture; one after a gap, or after time was set back, is exposed anew, and one with the same
+  ///              time as the one before like it [s]
+  void take(const Eigen::Isometry3d& pose, double time, std::vector<std::uint8_t>& pixels);
+  double gain() const { return gain_; }  ///< of the last picture with automatic exposure
 
  private:
+  void place(const Eigen::Isometry3d& pose);
+  void draw(double gain);
+  void read(std::vector<std::uint8_t>& pixels);
+
   Ogre::SceneManager& scene_;
   RoundCamera round_;
   double sharpness_;
   Ogre::Camera* camera_;
   Ogre::TexturePtr picture_;
   std::unique_ptr<EndoscopeLens> lens_;
+  AutoExposure exposure_;
+  double gain_ = AutoExposure::kFixedGain, time_ = -1;  ///< of the last picture; time: [s]
 };
 
 }  // namespace vibe

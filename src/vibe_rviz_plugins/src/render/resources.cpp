@@ -8,7 +8,11 @@
 #include <atomic>
 #include <stdexcept>
 
+<<<<<<< HEAD
 #include "render/mesh_look.hpp"
+=======
+#include "render/mucosa_texture.hpp"
+>>>>>>> look
 
 namespace vibe {
 
@@ -24,6 +28,7 @@ void loadResources() {
         "The package vibe_rviz_plugins is not in ROS_PACKAGE_PATH; source devel/setup.bash before rviz.");
   groups.createResourceGroup(kResourceGroup);
   groups.addResourceLocation(package + "/media", "FileSystem", kResourceGroup);
+  provideMucosaTexture();  // a material of the group reads it
   groups.initialiseResourceGroup(kResourceGroup);
   dressMeshesForEndoscope();
 }

@@ -51,7 +51,7 @@ TissueVisual::~TissueVisual() {
 void TissueVisual::clear() {
   has_frame_ = false;
   mesh_ = {};
-  surface_.reset(), colours_.reset();
+  surface_.reset(), colours_.reset(), folds_.reset();
   drawn_.setTopology({}, 0), mesh_lines_.setTopology({}, 0);
   points_->clear();
 }
@@ -61,7 +61,9 @@ void TissueVisual::setMesh(const TissueMesh& mesh) {
   mesh_ = mesh;
   surface_ = std::make_unique<DeformableSurface>(mesh_);
   colours_ = std::make_unique<SurfaceColours>(mesh_);
-  drawn_.setTopology(mesh_.triangles, mesh_.vertex_count, mesh_.rest);
+  const MucosaMap map = mapMucosa(mesh_);
+  folds_ = std::make_unique<FoldHeight>(mesh_, map);
+  drawn_.setTopology(mesh_.triangles, mesh_.vertex_count, mesh_.rest, map.of_vertex);
   applyLook();
 }
 
@@ -80,6 +82,7 @@ void TissueVisual::sendSurface(const TissueFrame& frame) {
   if (!moved.empty()) {
     drawn_.setVertices(surface_->vertices().data() + moved.first, moved.first, moved.count());
     drawn_.setBounds(boxAround(surface_->bounds()));
+    drawn_.setHeights(folds_->update(frame.positions));
   }
   const VertexSpan coloured = colours_->update(frame);
   drawn_.setColours(colours_->colours().data() + coloured.first, coloured.first, coloured.count());
@@ -133,17 +136,18 @@ void TissueVisual::applySide(Ogre::MaterialPtr& material, const Ogre::ColourValu
     const bool transparent = outside && !endoscope && opacity < 1;
     setBlending(pass, transparent);
     auto parameters = pass.getFragmentProgramParameters();
+    const bool mucosa = endoscope && !outside;
     const Ogre::ColourValue tint = plain ? natural : Ogre::ColourValue::White;
     parameters->setNamedConstant("tint", Ogre::Vector4(tint.r, tint.g, tint.b, transparent ? opacity : 1));
-    parameters->setNamedConstant("edge_alpha",
-                                 transparent ? static_cast<float>(std::max(kEdgeAlpha, look_.outside_alpha)) : 1.0F);
+    const double edge_alpha = transparent ? std::max(kEdgeAlpha, look_.outside_alpha) : 1;
+    if (!mucosa) parameters->setNamedConstant("edge_alpha", static_cast<float>(edge_alpha));
     parameters->setNamedConstant("wet", static_cast<float>(look_.wetness *
                                                            (endoscope     ? 1.3
                                                             : transparent ? 0.6
                                                                           : 1) *
                                                            (plain ? 1 : 0.4)));
     parameters->setNamedConstant("relief", static_cast<float>(look_.relief));
-    parameters->setNamedConstant("grain", static_cast<float>(plain ? kGrain : 0));
+    parameters->setNamedConstant("grain", static_cast<float>(!plain ? 0 : mucosa ? 1 : kGrain));
     parameters->setNamedConstant("fill", plain ? kFill : kFillOfData);
     parameters->setNamedConstant("scars", look_.scars && (!outside || transparent) ? 1.0F : 0.0F);
   }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "geometry/deformable_surface.hpp"
+#include "geometry/fold_height.hpp"
 #include "geometry/surface_colours.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "render/dynamic_mesh.hpp"
@@ -72,6 +73,7 @@ class TissueVisual {
   bool has_frame_ = false;
   std::unique_ptr<DeformableSurface> surface_;
   std::unique_ptr<SurfaceColours> colours_;
+  std::unique_ptr<FoldHeight> folds_;
   DynamicMesh drawn_, mesh_lines_;
   std::vector<MovingVertex> mesh_vertices_;
   std::unique_ptr<rviz::PointCloud> points_;

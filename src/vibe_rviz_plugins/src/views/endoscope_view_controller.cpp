@@ -53,6 +53,8 @@ EndoscopeViewController::EndoscopeViewController() {
                               this);
   sharpness_->setMin(0.2f);
   sharpness_->setMax(2);
+  auto_exposure_ = new rviz::BoolProperty(
+      "Automatic exposure", true, "Whether the brightness follows the picture, as that of a video processor.", this);
   status_ = new rviz::StringProperty("Status", "", "Whether the view can follow the endoscope.", this);
   status_->setReadOnly(true);
   status_->setShouldBeSaved(false);
@@ -75,7 +77,8 @@ void EndoscopeViewController::onActivate() {
   bendPicture();
 }
 
-void EndoscopeViewController::update(float /*dt*/, float /*ros_dt*/) {
+void EndoscopeViewController::update(float dt, float /*ros_dt*/) {
+  expose(dt);
   updateScope();
   bendPicture();
 }
@@ -104,6 +107,14 @@ void EndoscopeViewController::bendPicture() {
   }
 }
 
+void EndoscopeViewController::expose(float passed) {
+  if (!picture_ || broken_) return;
+  time_ += static_cast<double>(passed);
+  const std::optional<double> level = auto_exposure_->getBool() ? picture_->level() : std::nullopt;
+  if (level) exposure_.see(*level, time_);
+  picture_->setGain(level ? exposure_.gain() : AutoExposure::kFixedGain);
+}
+
 void EndoscopeViewController::tell(const QString& text) {
   const bool changed = status_->getString() != text;
   if (changed) status_->setString(text);
@@ -121,6 +132,7 @@ void EndoscopeViewController::reset() {
   field_of_view_->setFloat(kFieldOfView);
   lens_->setString("Equidistant");
   sharpness_->setFloat(1);
+  auto_exposure_->setBool(true);
 }
 
 rviz::Property* EndoscopeViewController::subProp(const QString& name) {

@@ -6,6 +6,7 @@
 #include "render/endoscope_lens.hpp"
 
 namespace rviz {
+class BoolProperty;
 class EnumProperty;
 class StringProperty;
 class TfFrameProperty;
@@ -36,17 +37,21 @@ class EndoscopeViewController : public rviz::ViewController {
  private:
   void updateScope();
   void bendPicture();
+  void expose(float passed);
   void tell(const QString& text);
 
   rviz::TfFrameProperty* frame_;
   rviz::FloatProperty* field_of_view_;
   rviz::EnumProperty* lens_;
   rviz::FloatProperty* sharpness_;
+  rviz::BoolProperty* auto_exposure_;
   rviz::StringProperty* status_;
   std::unique_ptr<rviz::Property> stereo_;  ///< property of rviz that has no meaning here
   rviz::Property no_target_;                ///< target frame for other views
   std::unique_ptr<EndoscopeLens> picture_;  ///< only while this view is active
-  bool broken_ = false;                     ///< the graphics card cannot draw the lens; not tried again
+  AutoExposure exposure_;
+  double time_ = 0;      ///< that the view has been active, for the rate of the exposure [s]
+  bool broken_ = false;  ///< the graphics card cannot draw the lens; not tried again
 };
 
 }  // namespace vibe

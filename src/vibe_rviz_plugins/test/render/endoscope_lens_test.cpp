@@ -114,17 +114,27 @@ TEST_F(EndoscopeLensTest, ShowsACircularImageOnBlackAndTheBallAtItsAngularSize) 
   EXPECT_NEAR(bright, kHeight * angle / (140 * kDegree), 2);
 }
 
-// What media/solid.frag shows of red that faces the lamp: ambient light and the lamp, whose light falls off with the
-// square of the distance beyond its reach, then the exposure of the camera. Level of the red channel, 0 to 255.
+constexpr double kGain = 0.7;  // dark enough to tell distances near the lens
+
+// What media/lamp.glsl, solid.frag and endoscope.frag show of a red wall that faces the lens: two light guides beside
+// it, whose light falls off with the square of the distance, what other walls send back, then the exposure of the
+// camera. Level of the red channel, 0 to 255.
 double redAt(double distance) {
-  const double reach = 0.06, ambient = 0.22, diffuse = 0.78, gloss = 0.3, exposure = 1.5;
-  const double lamp = 2 / (1 + distance * distance / (reach * reach));
-  return 255 * (1 - std::exp(-exposure * (ambient + (diffuse + gloss) * lamp)));
+  const double reach = 0.06, gloss = 0.3, soft = 0.1, near = 0.04, aside = 0.0035, above = 0.0012;
+  const double square = aside * aside + above * above + distance * distance;
+  const double cosine = distance / std::sqrt(square);
+  const double power = 2 * reach * reach / (square + near * near) * (0.15 + 0.35 * cosine);
+  const double halfway = std::sqrt((1 + cosine) / 2);
+  const double light =
+      power * ((cosine + soft) / (1 + soft) + gloss * (0.5 * std::pow(halfway, 256) + 0.5 * std::pow(halfway, 32)));
+  const double radiance = light + 0.05 * reach * reach / (distance * distance + 4e-4);
+  return 255 * std::pow(1 - std::exp(-kGain * radiance), 0.6);
 }
 
 TEST_F(EndoscopeLensTest, LampOfTheEndoscopeFadesWithTheSquareOfTheDistance) {
   EndoscopeLens lens(*viewport_);
   lens.set(LensKind::Rectilinear, 60 * kDegree, 1);
+  lens.setGain(kGain);
   for (const double distance : {0.04, 0.06, 0.09, 0.14, 0.2, 0.29}) {
     showWall(distance);
     const int red = draw()[3 * (kHeight / 2 * kWidth + kWidth / 2)];

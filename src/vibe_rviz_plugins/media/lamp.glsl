@@ -1,0 +1,40 @@
+// The light of the endoscope: two light guides beside the lens. View coordinates of Ogre: x right, y up, z backward.
+// Radiances are linear, 1 for a white wall at the distance `reach` that faces the guides, before exposure.
+
+const float kAside = 0.0035;  // of a light guide from the lens: a tip of 9.8 mm holds lens, guides and channel [m]
+const float kAbove = 0.0012;  // [m]; design choice
+
+// What a surface at `place` with unit `normal` scatters (x) towards the lens, and what a film on it with the unit normal
+// `film` mirrors, tightly (y) and in a wide lobe (z): powers 256 and 32 of the cosine (Blinn 1977), multiplied out
+// because that is faster than pow().
+// soft: how far scattered light reaches around edges, 0 to 1.
+// near: distance below which light does not grow any more [m].
+vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float near) {
+  vec3 to_eye = normalize(-place);
+  vec3 sum = vec3(0.0);
+  for (int k = 0; k < 2; ++k) {
+    vec3 to_lamp = vec3(k == 0 ? kAside : -kAside, kAbove, 0.0) - place;
+    float square = dot(to_lamp, to_lamp);
+    to_lamp *= inversesqrt(square);
+    // the guides shine less to the sides
+    float power = reach * reach / (square + near * near) * (0.15 + 0.35 * max(to_lamp.z, 0.0));
+    vec3 half_way = to_lamp + to_eye;
+    float mirrored = max(dot(film, half_way), 0.0);
+    float m = mirrored * mirrored / dot(half_way, half_way);  // power 2
+    m *= m, m *= m, m *= m, m *= m;                           // 32
+    sum.x += power * max((dot(normal, to_lamp) + soft) / (1.0 + soft), 0.0);
+    sum.z += power * m;
+    m *= m, m *= m, m *= m;  // 256
+    sum.y += power * m;
+  }
+  return sum;
+}
+
+// Shades are stored as square roots, near to what a screen shows; media/endoscope.frag exposes them.
+vec3 stored(vec3 radiance) {
+  return sqrt(max(radiance, vec3(0.0)));
+}
+
+vec3 linear(vec3 shown) {
+  return shown * shown;
+}

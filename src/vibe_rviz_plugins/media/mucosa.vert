@@ -1,0 +1,23 @@
+#version 120
+// As surface.vert, and what the mucosa looks like at the vertex (src/geometry/mucosa_map.hpp, fold_height.hpp).
+uniform mat4 worldViewProj;
+uniform mat4 worldView;
+
+varying vec3 view_position;
+varying vec3 view_normal;
+varying vec4 colour;
+varying vec3 rest;
+varying vec2 around;
+varying vec4 anatomy;  // share of folds, of antrum; distance beyond Z line and pylorus [m]
+varying float fold;    // height of the rugae here [m]
+
+void main() {
+  gl_Position = worldViewProj * gl_Vertex;
+  view_position = (worldView * gl_Vertex).xyz;
+  view_normal = (worldView * vec4(gl_Normal, 0.0)).xyz;
+  colour = gl_Color;
+  rest = gl_MultiTexCoord0.xyz;
+  around = gl_MultiTexCoord1.xy;
+  anatomy = gl_MultiTexCoord2;
+  fold = gl_MultiTexCoord3.x;
+}

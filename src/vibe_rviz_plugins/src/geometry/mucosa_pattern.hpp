@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace vibe {
+
+/// A solid texture of four patterns that the shader of the mucosa cuts with the surface at rest. It repeats without a
+/// seam in x, y and z; the shader reads it at several scales in turned frames, so that no period is seen.
+struct MucosaPattern {
+  int size = 0;  ///< voxels along each edge
+  /// Four bytes per voxel, x fastest: height of polygonal areas between grooves (Worley 1996); smooth noise;
+  /// a net of thin lines with branches; fine noise.
+  std::vector<std::uint8_t> voxels;
+};
+
+constexpr int kPatternSize = 64;  ///< [voxels]
+constexpr int kPatternCells = 8;  ///< polygonal areas along an edge of the pattern
+
+/// The same for every process. Takes about 0.1 s.
+MucosaPattern makeMucosaPattern();
+
+/// The next coarser level: means of 2 x 2 x 2 voxels, which a surface far away shows instead of an alias.
+MucosaPattern halved(const MucosaPattern& pattern);
+
+}  // namespace vibe
