@@ -8,11 +8,8 @@
 #include <atomic>
 #include <stdexcept>
 
-<<<<<<< HEAD
 #include "render/mesh_look.hpp"
-=======
 #include "render/mucosa_texture.hpp"
->>>>>>> look
 
 namespace vibe {
 
