@@ -68,7 +68,7 @@ std::string DatasetCamera::show(const SessionFrame& frame, const EndoscopeScene:
 
 void DatasetCamera::takeEye(Eye& eye, const Eigen::Isometry3d& pose, const ros::Time& stamp, DatasetFolder& folder) {
   std::vector<std::uint8_t> pixels;
-  camera_.take(pose, pixels);
+  camera_.take(pose, stamp.toSec(), pixels);
   sensor_.expose(pixels, 2 * stamp.toNSec() + (eye.aside > 0 ? 1 : 0));
   folder.writeColour(eye.folder, images_, pixels);
   if (options_.flow && eye.before)
