@@ -1,15 +1,16 @@
 #version 120
+#include "lamp.glsl"
 // Metal, polymer and glass under the two light guides beside the lens, in a hollow of lit mucosa.
 uniform vec3 colour;      // of the material: diffuse, and what a metal reflects
 uniform float shine;      // strength of its highlights; from 0.7 on it is a metal
 uniform float sharpness;  // exponent of its highlights
-uniform float reach;      // of the lamps: distance of half intensity [m]
+uniform float reach;      // of the light, as in mucosa.frag [m]
 
 varying vec3 view_position;
 varying vec3 view_normal;
 
-const float kAside = 0.00355;  // of the light guides from the lens [m], as in vibe_description
-const vec3 kWall = vec3(0.66, 0.43, 0.39);
+const vec3 kWall = vec3(0.30, 0.13, 0.10);  // radiance of the wall around, half lit
+const float kNear = 0.04;                   // as in solid.frag [m]
 
 // What a mirror sees in this direction: folds of the wall around, a darker lumen ahead, and behind the endoscope's own
 // face, black with its lamps.
@@ -21,27 +22,18 @@ vec3 surroundings(vec3 direction) {
 }
 
 void main() {
-  float distance = length(view_position);
-  vec3 to_eye = -view_position / distance, normal = normalize(view_normal);
+  vec3 to_eye = normalize(-view_position), normal = normalize(view_normal);
   float facing = max(dot(normal, to_eye), 0.0);
   float metal = smoothstep(0.6, 0.75, shine);
-  vec3 mirror = mix(vec3(0.04 + 0.06 * shine), colour, metal);
+  vec3 base = linear(colour);
+  vec3 mirror = mix(vec3(0.04 + 0.06 * shine), base, metal);
   float edge = (1.0 - facing) * (1.0 - facing);  // Schlick 1994
   mirror += (1.0 - mirror) * edge * edge * (1.0 - facing) * mix(0.5, 1.0, metal) * shine;
 
-  vec3 light = colour * mix(0.20, 0.06, metal);  // of the wall, from everywhere
+  vec3 light = base * mix(0.08, 0.03, metal);  // of the wall, from everywhere
   light += mirror * surroundings(reflect(-to_eye, normal)) * mix(shine, 0.9, metal);
-  for (int side = 0; side < 2; ++side) {
-    vec3 to_lamp = vec3(side == 0 ? kAside : -kAside, 0.0, 0.0) - view_position;
-    float away = dot(to_lamp, to_lamp);
-    to_lamp *= inversesqrt(away);
-    float lamp = 1.0 / (1.0 + away / (reach * reach));
-    float diffuse = max(dot(normal, to_lamp), 0.0);
-    float half_way = max(dot(normal, normalize(to_lamp + to_eye)), 0.0);
-    float gloss = pow(half_way, sharpness) * mix(shine, 1.6, metal) + pow(half_way, 0.12 * sharpness) * 0.8 * metal;
-    light += lamp * (colour * diffuse * mix(0.95, 0.42, metal) + mirror * gloss);
-  }
-  float brightest = max(max(light.r, light.g), max(light.b, 0.001));
-  light *= (1.0 - exp(-1.5 * brightest)) / brightest;  // the same as in tissue.frag
-  gl_FragColor = vec4(light, 1.0);
+  vec3 lit = lamp(view_position, normal, normal, reach, 0.0, kNear);
+  float gloss = mix(lit.z, lit.y, smoothstep(30.0, 150.0, sharpness)) * mix(shine, 1.6, metal);
+  light += base * lit.x * mix(0.95, 0.42, metal) + mirror * (gloss + 0.4 * metal * lit.x);
+  gl_FragColor = vec4(stored(light), 1.0);
 }
