@@ -75,6 +75,19 @@ class Age(unittest.TestCase):
         self.assertAlmostEqual(numbers["age"], 0.020, delta=1e-3)
         self.assertAlmostEqual(numbers["error at age"], 1e-4, delta=2e-5)
 
+    def test_pauses_of_the_camera_do_not_count(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_session(folder, 0.012)
+            with open(os.path.join(folder, "truth.csv"), encoding="ascii") as file:
+                rows = file.readlines()
+            with open(os.path.join(folder, "truth.csv"), "w", encoding="ascii") as file:
+                file.writelines(rows[:600] + rows[615:])  # 0.1 s
+            numbers = Motion(Measurement(folder)).numbers()
+            self.assertAlmostEqual(numbers["age"], 0.012, delta=2e-4)
+            self.assertLess(numbers["error at age"], 3e-5)
+            self.assertAlmostEqual(numbers["left out"], 16, delta=2)
+            self.assertEqual(numbers_of(0.012)["left out"], 0)
+
     def test_a_wrong_truth_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             write_session(folder, 0.01)

@@ -7,6 +7,8 @@ import numpy
 
 RESOLUTION = 2e-4  # of the age [s]
 YOUNGEST, OLDEST = -0.02, 0.15  # that are looked at [s]
+GAP = 0.02  # between two frames: the camera has paused, and nobody knows where the hand was [s]
+AFTER_GAP = 0.05  # until steps have frames again [s]
 
 
 def published_positions(measurement):
@@ -28,7 +30,16 @@ class Motion:
         # setup's "from": before it the graph starts
         first = max(self.truth_times[0] + OLDEST, 1e-9 * (measurement.setup.get("from", 0) - truth["wall"][0]))
         inside = (times > first) & (times < self.truth_times[-1] + YOUNGEST)
-        self.times, self.positions = times[inside], positions[inside]
+        beside = inside & self.has_frames(times)
+        self.times, self.positions = times[beside], positions[beside]
+        self.left_out = int(inside.sum() - beside.sum())
+
+    def has_frames(self, times):
+        """Whether the camera has sent frames without a pause until each time."""
+        result = numpy.ones(len(times), dtype=bool)
+        for k in numpy.flatnonzero(numpy.diff(self.truth_times) > GAP):
+            result &= (times < self.truth_times[k]) | (times > self.truth_times[k + 1] + AFTER_GAP)
+        return result
 
     def error(self, age):
         """Of the published positions, if each were that of the hand so long ago, as root mean square [m]."""
@@ -42,13 +53,15 @@ class Motion:
 
     def numbers(self):
         """age: of the positions, the one for which they fit the hand best; error at once: from where the hand is at the
-        time of publishing; error at age: what remains with the age taken into account."""
+        time of publishing; error at age: what remains with the age taken into account; left out: positions published while
+        the camera paused."""
         if len(self.times) < 2:
             return {"count": len(self.times)}
         ages, errors = self.errors()
         best = int(numpy.argmin(errors))
         return {
             "count": len(self.times),
+            "left out": self.left_out,
             "age": float(ages[best]),
             "error at age": float(errors[best]),
             "error at once": self.error(0.0),
