@@ -2,8 +2,8 @@
 #include <dlfcn.h>
 #include <pthread.h>
 
-/// Counts the mutexes that the calling thread locks. For one source file of a program, with the GNU C library; sanitizers
-/// bring functions of their own and count nothing.
+/// Counts the mutexes that the calling thread locks. For one source file of a program, with the GNU C library;
+/// sanitizers bring functions of their own and count nothing.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
 #define VIBE_COUNTS_LOCKS 0
 #else

@@ -7,10 +7,10 @@
 
 namespace vibe {
 
-/// One thread that works ahead for steps to come, on one job at a time. Begin and end of a job ask for no memory and take
-/// no lock, so that the thread that steps may call them. Of that thread's real-time priority, if it has one, the worker
-/// gets the lowest: it must not take the processor just when the next step is due. While a step waits for the job, the
-/// worker has the priority of the waiting thread.
+/// One thread that works ahead for steps to come, on one job at a time. Begin and end of a job ask for no memory and
+/// take no lock, so that the thread that steps may call them. Of that thread's real-time priority, if it has one, the
+/// worker gets the lowest: it must not take the processor just when the next step is due. While a step waits for the
+/// job, the worker has the priority of the waiting thread.
 ///
 /// All functions are called from one thread.
 class BackgroundWorker {

@@ -18,8 +18,8 @@ namespace vibe {
 /// @return empty, or one sentence that says why not and what to do
 [[nodiscard]] std::string lockMemory();
 
-/// What a node with a real-time priority does first: locks its memory and gives the priority to all threads it has. Those
-/// that come later inherit it.
+/// What a node with a real-time priority does first: locks its memory and gives the priority to all threads it has.
+/// Those that come later inherit it.
 /// @return one sentence for each that is not permitted
 [[nodiscard]] std::vector<std::string> runInRealTime(int priority);
 

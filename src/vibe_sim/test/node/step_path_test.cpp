@@ -1,5 +1,5 @@
-// From the arrival of its inputs to its state, a step takes no lock, and asks for no memory once a session has settled in.
-// The measures of skill, which follow, and messages in roscpp do ask for memory.
+// From the arrival of its inputs to its state, a step takes no lock, and asks for no memory once a session has settled
+// in. The measures of skill, which follow, and messages in roscpp do ask for memory.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace vibe {
 namespace {
 
 constexpr double kRadius = 0.06;
-constexpr int kCycle = 60;                      // steps
+constexpr int kCycle = 60;                    // steps
 constexpr std::int64_t kPeriod = 10'000'000;  // of the steps [ns]
 
 struct Count {

@@ -81,12 +81,12 @@ constexpr double kBlinkSlide = 1e-3;  ///< of the helix before the jump of blink
 /// The instruments at rest; from the second frame on, the helix has slid by `jump` [m].
 SyntheticScene blinkScene(double jump);
 
-constexpr double kSwayMiddle = 0.010;    ///< of the helix in swayScene() [m]
+constexpr double kSwayMiddle = 0.010;     ///< of the helix in swayScene() [m]
 constexpr double kSwayAmplitude = 0.008;  ///< [m]
-constexpr double kSwayRate = 1.5;         ///< [Hz]; the peak speed of 75 mm/s is one that the simulated helix can follow
-constexpr int kSwayFrames = 50;           ///< at 147 Hz half a period, from turn to turn
-/// For measuring the age of positions: the helix goes to and fro as a sine. Shown forward and backward, its frames from 0
-/// to kSwayFrames are the whole motion.
+constexpr double kSwayRate = 1.5;  ///< [Hz]; the peak speed of 75 mm/s is one that the simulated helix can follow
+constexpr int kSwayFrames = 50;    ///< at 147 Hz half a period, from turn to turn
+/// For measuring the age of positions: the helix goes to and fro as a sine. Shown forward and backward, its frames from
+/// 0 to kSwayFrames are the whole motion.
 SyntheticScene swayScene();
 /// The degradations of the benchmark by name: "static", "moving" (1 ms), "long_exposure" (4 ms), "defocus", "light",
 /// "highlights", "occluder", "look_alike", "all", "tilt", "scale". @throws Error for another name, with those there are
