@@ -4,20 +4,25 @@
 const float kAside = 0.0035;  // of a light guide from the lens: a tip of 9.8 mm holds lens, guides and channel [m]
 const float kAbove = 0.0012;  // [m]; design choice
 
+vec3 guideAt(int k) {
+  return vec3(k == 0 ? kAside : -kAside, kAbove, 0.0);
+}
+
 // What a surface at `place` with unit `normal` scatters (x) towards the lens, and what a film on it with the unit normal
 // `film` mirrors, tightly (y) and in a wide lobe (z): powers 256 and 32 of the cosine (Blinn 1977), multiplied out
 // because that is faster than pow().
 // soft: how far scattered light reaches around edges, 0 to 1.
 // near: distance below which light does not grow any more [m].
-vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float near) {
+// reaching: the part of each guide's light that nothing hides, see shadow.glsl.
+vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float near, vec2 reaching) {
   vec3 to_eye = normalize(-place);
   vec3 sum = vec3(0.0);
   for (int k = 0; k < 2; ++k) {
-    vec3 to_lamp = vec3(k == 0 ? kAside : -kAside, kAbove, 0.0) - place;
+    vec3 to_lamp = guideAt(k) - place;
     float square = dot(to_lamp, to_lamp);
     to_lamp *= inversesqrt(square);
     // the guides shine less to the sides
-    float power = reach * reach / (square + near * near) * (0.15 + 0.35 * max(to_lamp.z, 0.0));
+    float power = (k == 0 ? reaching.x : reaching.y) * reach * reach / (square + near * near) * (0.15 + 0.35 * max(to_lamp.z, 0.0));
     vec3 half_way = to_lamp + to_eye;
     float mirrored = max(dot(film, half_way), 0.0);
     float m = mirrored * mirrored / dot(half_way, half_way);  // power 2
@@ -28,6 +33,10 @@ vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float nea
     sum.y += power * m;
   }
   return sum;
+}
+
+vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float near) {
+  return lamp(place, normal, film, reach, soft, near, vec2(1.0));
 }
 
 // Shades are stored as square roots, near to what a screen shows; media/endoscope.frag exposes them.

@@ -21,6 +21,7 @@ varying vec3 rest;
 varying vec2 around;
 varying vec4 anatomy;
 varying float fold;
+varying vec2 reaching;
 
 const float kAreae = 1.0 / 0.020;   // 2.5 mm per area [1/m]
 const float kBroad = 1.0 / 0.17;    // waves of 42 mm and less
@@ -109,7 +110,7 @@ void main() {
   base = heated(base, heat);
 
   float dull = clamp(heat - 1.0, 0.0, 1.0);
-  vec3 light = lamp(view_position, normal, film, reach, 0.25, 0.002);
+  vec3 light = lamp(view_position, normal, film, reach, 0.25, 0.002, reaching);
   float around_light = fill * 0.3 * reach * reach / (dot(view_position, view_position) + 4e-4);
   vec3 radiance = base * (light.x + around_light) + wet * (3.0 * light.y + 0.05 * light.z) * (0.2 + net.g * net.g * 1.8 + 0.8 * mucus) * (1.0 - dull);
   gl_FragColor = vec4(stored(radiance), 1.0);

@@ -1,4 +1,6 @@
 #version 120
+#include "lamp.glsl"
+#include "shadow.glsl"
 // As surface.vert, and what the mucosa looks like at the vertex (src/geometry/mucosa_map.hpp, fold_height.hpp).
 uniform mat4 worldViewProj;
 uniform mat4 worldView;
@@ -10,6 +12,7 @@ varying vec3 rest;
 varying vec2 around;
 varying vec4 anatomy;  // share of folds, of antrum; distance beyond Z line and pylorus [m]
 varying float fold;    // height of the rugae here [m]
+varying vec2 reaching; // part of each light guide that the device does not hide
 
 void main() {
   gl_Position = worldViewProj * gl_Vertex;
@@ -20,4 +23,5 @@ void main() {
   around = gl_MultiTexCoord1.xy;
   anatomy = gl_MultiTexCoord2;
   fold = gl_MultiTexCoord3.x;
+  reaching = lightReaching(view_position);
 }

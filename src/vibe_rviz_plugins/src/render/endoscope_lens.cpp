@@ -107,6 +107,13 @@ void EndoscopeLens::notifyMaterialRender(Ogre::uint32, Ogre::MaterialPtr& materi
   uniforms->setNamedConstant("gain", static_cast<Ogre::Real>(gain_));
 }
 
+// Of the scene, before each of its pictures, also those of other cameras.
+void EndoscopeLens::preFindVisibleObjects(Ogre::SceneManager* scene, Ogre::SceneManager::IlluminationRenderStage,
+                                          Ogre::Viewport* viewport) {
+  if (viewport->getMaterialScheme() != kEndoscopeScheme || viewport->getCamera() != viewport_->getCamera()) return;
+  shadow_.cast(*scene, *viewport->getCamera(), viewport->getVisibilityMask());
+}
+
 std::optional<double> EndoscopeLens::level() const {
   if (name_.empty() || viewport_ == nullptr) return std::nullopt;
   auto& manager = Ogre::CompositorManager::getSingleton();
@@ -137,6 +144,7 @@ void EndoscopeLens::remove() {
   Ogre::SceneManager* scene = lamp_->getCreator();
   scene->destroyLight(static_cast<Ogre::Light*>(lamp_->getAttachedObject(0)));
   scene->destroySceneNode(lamp_);
+  scene->removeListener(this);
   lamp_ = nullptr;
 }
 
@@ -149,6 +157,7 @@ void EndoscopeLens::light() {
   lamp->setAttenuation(1, 0.5f, 0, 0.5f / (kReach * kReach));
   lamp_ = scene->getRootSceneNode()->createChildSceneNode();
   lamp_->attachObject(lamp);
+  scene->addListener(this);
 }
 
 void EndoscopeLens::make(const SquareSource& source) {

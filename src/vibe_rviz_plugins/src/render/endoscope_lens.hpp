@@ -1,6 +1,7 @@
 #pragma once
 #include <OgreCompositorInstance.h>
 #include <OgreMaterial.h>
+#include <OgreSceneManager.h>
 #include <OgreViewport.h>
 
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include "geometry/auto_exposure.hpp"
 #include "geometry/lens.hpp"
+#include "render/device_shadow.hpp"
 
 namespace Ogre {
 class SceneNode;
@@ -19,7 +21,9 @@ namespace vibe {
 /// by its lamp (scheme kEndoscopeScheme for materials of this package, a light in the scene for other materials). The
 /// camera of the viewport must be at the lens; its angles are set here. The effect ends when this object or the
 /// viewport is deleted; rviz deletes its window before its views. The scene must outlive this object.
-class EndoscopeLens : private Ogre::Viewport::Listener, private Ogre::CompositorInstance::Listener {
+class EndoscopeLens : private Ogre::Viewport::Listener,
+                      private Ogre::CompositorInstance::Listener,
+                      private Ogre::SceneManager::Listener {
  public:
   explicit EndoscopeLens(Ogre::Viewport& viewport);
   ~EndoscopeLens() override;
@@ -44,6 +48,8 @@ class EndoscopeLens : private Ogre::Viewport::Listener, private Ogre::Compositor
  private:
   void viewportDestroyed(Ogre::Viewport* viewport) override;
   void notifyMaterialRender(Ogre::uint32 pass, Ogre::MaterialPtr& material) override;
+  void preFindVisibleObjects(Ogre::SceneManager* scene, Ogre::SceneManager::IlluminationRenderStage stage,
+                             Ogre::Viewport* viewport) override;
   void remove();
   void light();
   void make(const SquareSource& source);
@@ -57,6 +63,7 @@ class EndoscopeLens : private Ogre::Viewport::Listener, private Ogre::Compositor
   Ogre::MaterialPtr material_, meter_material_;  ///< of the picture, and of a small one that measures its level
   double gain_ = AutoExposure::kFixedGain;
   Ogre::SceneNode* lamp_ = nullptr;
+  DeviceShadow shadow_;
 };
 
 }  // namespace vibe

@@ -13,11 +13,6 @@ namespace {
 
 const char* const kLook = "vibe/instrument";
 
-/// rviz names the materials of a mesh by the address of its file and a number.
-bool isOfMesh(const Ogre::Material& material) {
-  return material.getName().find("://") != std::string::npos;
-}
-
 Ogre::Technique* dressed(Ogre::Material& material, const Ogre::Material& look) {
   const Ogre::Pass& plain = *material.getTechnique(0)->getPass(0);
   const Ogre::ColourValue colour = plain.getDiffuse();
@@ -37,13 +32,17 @@ class Wardrobe : public Ogre::MaterialManager::Listener {
  public:
   Ogre::Technique* handleSchemeNotFound(unsigned short, const Ogre::String&, Ogre::Material* material, unsigned short,
                                         const Ogre::Renderable*) override {
-    if (!isOfMesh(*material)) return nullptr;
+    if (!isMeshOfRobot(*material)) return nullptr;
     const Ogre::MaterialPtr look = Ogre::MaterialManager::getSingleton().getByName(kLook, kResourceGroup);
     return look ? dressed(*material, *look) : nullptr;
   }
 };
 
 }  // namespace
+
+bool isMeshOfRobot(const Ogre::Material& material) {
+  return material.getName().find("://") != std::string::npos;  // the address of its file and a number
+}
 
 void dressMeshesForEndoscope() {
   static Wardrobe wardrobe;

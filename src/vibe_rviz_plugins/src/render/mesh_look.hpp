@@ -1,6 +1,13 @@
 #pragma once
 
+namespace Ogre {
+class Material;
+}
+
 namespace vibe {
+
+/// Whether rviz has made the material for a mesh of a robot.
+bool isMeshOfRobot(const Ogre::Material& material);
 
 /// From now on the meshes of robots, which know only rviz's light, have the look of vibe/instrument where the endoscope
 /// sees them (scheme kEndoscopeScheme): in rviz's endoscope view as in the image of endoscope_camera. Colour,

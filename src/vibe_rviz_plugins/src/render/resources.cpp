@@ -8,6 +8,7 @@
 #include <atomic>
 #include <stdexcept>
 
+#include "render/device_shadow.hpp"
 #include "render/mesh_look.hpp"
 #include "render/mucosa_texture.hpp"
 
@@ -26,6 +27,7 @@ void loadResources() {
   groups.createResourceGroup(kResourceGroup);
   groups.addResourceLocation(package + "/media", "FileSystem", kResourceGroup);
   provideMucosaTexture();  // a material of the group reads it
+  DeviceShadow::provide();
   groups.initialiseResourceGroup(kResourceGroup);
   dressMeshesForEndoscope();
 }

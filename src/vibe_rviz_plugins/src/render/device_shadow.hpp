@@ -1,0 +1,32 @@
+#pragma once
+#include <map>
+#include <vector>
+
+#include "geometry/capsule_fit.hpp"
+
+namespace Ogre {
+class Camera;
+class Mesh;
+class SceneManager;
+}  // namespace Ogre
+
+namespace vibe {
+
+/// Tells the mucosa's shader what stands between the light guides and the wall: the meshes of robots before the lens,
+/// as capsules in view coordinates (media/shadow.glsl). The shader's parameters are shared by all materials; cast() is
+/// therefore to be called just before a picture is drawn.
+class DeviceShadow {
+ public:
+  /// Creates the shared parameters; to be called before the materials are loaded. For loadResources(), once.
+  static void provide();
+
+  /// @param visibility  mask of the viewport
+  void cast(Ogre::SceneManager& scene, const Ogre::Camera& camera, std::uint32_t visibility);
+
+ private:
+  const std::vector<Capsule>& capsulesOf(const Ogre::Mesh& mesh);
+
+  std::map<std::uint64_t, std::vector<Capsule>> known_;  // by the handle of the mesh
+};
+
+}  // namespace vibe
