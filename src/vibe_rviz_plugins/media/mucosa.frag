@@ -18,7 +18,7 @@ varying vec3 view_position;
 varying vec3 view_normal;
 varying vec4 colour;
 varying vec3 rest;
-varying vec2 around;
+varying vec3 around;
 varying vec4 anatomy;
 varying float fold;
 varying vec2 reaching;
@@ -64,11 +64,11 @@ void main() {
 
   // rugae: parallel folds that meander; two counts of them side by side, so that folds end and fork at the borders
   float angle = atan(around.y, around.x);
-  float bend = 16.0 * (broad.g - 0.5) + 2.0 * (net.g - 0.5);
+  float bend = around.z;
   float border = smoothstep(-0.45, 0.45, sin(5.0 * angle + 0.8 * bend + dot(rest, vec3(60.0, 45.0, 80.0))));
   float straight = mix(arch(30.0 * angle + bend), arch(25.0 * angle + bend + 1.5), border);
-  float tortuous = arch(55.0 * broad.g + 6.0 * net.g);  // where "around" is not defined
-  float ruga = mix(tortuous, straight, smoothstep(0.3, 0.9, length(around)));
+  float tortuous = arch(3.4 * bend);  // where "around" is not defined
+  float ruga = mix(tortuous, straight, smoothstep(0.3, 0.9, length(around.xy)));
   ruga = mix(ruga, 0.6, smoothstep(0.0025, 0.006, pixel));
   float height = fold * ruga * (0.7 + 0.6 * net.g);
 

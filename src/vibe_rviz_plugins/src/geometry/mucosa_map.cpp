@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/mucosa_pattern.hpp"
 #include "geometry/surface_graph.hpp"
 
 namespace vibe {
@@ -134,15 +135,17 @@ void normaliseDirections(const std::vector<double>& rate, Eigen::MatrixXd& value
   }
 }
 
-MucosaVertex entryOf(const Eigen::RowVectorXd& values) {
+/// @param rest  x y z [m]
+MucosaVertex entryOf(const Eigen::RowVectorXd& values, const float* rest) {
   const Eigen::RowVectorXf row = values.cast<float>();
-  return {{row[Cosine], row[Sine]}, row[FoldShare], row[AntrumShare], row[BeyondZ], row[BeyondRing]};
+  const float bend = foldBend(Eigen::Map<const Eigen::Vector3f>(rest));
+  return {{row[Cosine], row[Sine]}, bend, row[FoldShare], row[AntrumShare], row[BeyondZ], row[BeyondRing]};
 }
 
 MucosaMap entriesOf(const TissueMesh& mesh, const Eigen::MatrixXd& values) {
   MucosaMap map;
   for (Eigen::Index i = 0; i < values.rows(); ++i) {
-    map.of_particle.push_back(entryOf(values.row(i)));
+    map.of_particle.push_back(entryOf(values.row(i), &mesh.particle_rest[3 * static_cast<std::size_t>(i)]));
     map.smooth_stretch.push_back(static_cast<float>(values(i, Smooth)));
   }
   if (!mesh.subdivided()) map.of_vertex = map.of_particle;
@@ -150,7 +153,7 @@ MucosaMap entriesOf(const TissueMesh& mesh, const Eigen::MatrixXd& values) {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(kColumns);
     for (std::uint32_t k = mesh.render_offsets[v]; k < mesh.render_offsets[v + 1]; ++k)
       row += static_cast<double>(mesh.render_weights[k]) * values.row(mesh.render_particles[k]);
-    map.of_vertex.push_back(entryOf(row));
+    map.of_vertex.push_back(entryOf(row, &mesh.rest[3 * v]));
   }
   return map;
 }

@@ -17,6 +17,10 @@ constexpr float kLine = 0.075F;         // half width of a line of the net, in i
 constexpr float kBend = 0.22F;          // how far lines are bent, in cells
 constexpr int kSmooth = 4, kFine = 32;  // waves along an edge of the pattern
 
+// As in media/mucosa.frag: edges of the pattern where it is read as broad and as net [m], and the frame of the reading.
+constexpr float kBroadEdge = 0.17F, kNetEdge = 0.06F;
+constexpr float kBroadBend = 16, kNetBend = 2;  // [rad]
+
 /// Pseudo-random value from 0 to 1 (the finaliser of MurmurHash3).
 float randomAt(const Vector3i& cell, std::uint32_t which) {
   std::uint32_t h = static_cast<std::uint32_t>(cell.x()) * 0x8da6b343U ^
@@ -88,7 +92,18 @@ std::array<float, 4> patternAt(const Vector3f& unit) {
           0.7F * noiseAt(unit, kFine, 51) + 0.3F * noiseAt(unit, kFine / 2, 52)};
 }
 
+Vector3f turnedFrame(const Vector3f& rest) {
+  Eigen::Matrix3f turn;  // columns as in the shader
+  turn << 0.36F, -0.8F, 0.48F, 0.48F, 0.6F, 0.64F, -0.8F, 0.0F, 0.6F;
+  return turn * rest;
+}
+
 }  // namespace
+
+float foldBend(const Vector3f& rest) {
+  const Vector3f turned = turnedFrame(rest), rolled(turned.z(), turned.x(), turned.y());
+  return kBroadBend * (cloudAt(turned / kBroadEdge) - 0.5F) + kNetBend * (cloudAt(rolled / kNetEdge) - 0.5F);
+}
 
 MucosaPattern makeMucosaPattern() {
   MucosaPattern pattern;

@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,10 @@ constexpr int kPatternCells = 8;  ///< polygonal areas along an edge of the patt
 
 /// The same for every process. Takes about 0.1 s.
 MucosaPattern makeMucosaPattern();
+
+/// How far the phase of the rugae wanders at a place of the wall at rest, so that folds meander [rad]. It is smooth
+/// over 15 mm and is computed at the vertices: from the bytes of the texture, the steps of their slopes would be seen.
+float foldBend(const Eigen::Vector3f& rest);
 
 /// The next coarser level: means of 2 x 2 x 2 voxels, which a surface far away shows instead of an alias.
 MucosaPattern halved(const MucosaPattern& pattern);

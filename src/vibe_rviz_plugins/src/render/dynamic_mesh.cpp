@@ -93,7 +93,7 @@ void DynamicMesh::makeVertexData(const std::vector<float>& fixed) {
 
 void DynamicMesh::addMucosa(const std::vector<MucosaVertex>& mucosa) {
   Ogre::VertexDeclaration& layout = *mesh_->sharedVertexData->vertexDeclaration;
-  layout.addElement(Mucosa, 0, Ogre::VET_FLOAT2, Ogre::VES_TEXTURE_COORDINATES, 1);
+  layout.addElement(Mucosa, 0, Ogre::VET_FLOAT3, Ogre::VES_TEXTURE_COORDINATES, 1);
   layout.addElement(Mucosa, offsetof(MucosaVertex, folded), Ogre::VET_FLOAT4, Ogre::VES_TEXTURE_COORDINATES, 2);
   layout.addElement(Heights, 0, Ogre::VET_FLOAT1, Ogre::VES_TEXTURE_COORDINATES, 3);
   const std::vector<float> level(vertex_count_, 0.0F);
