@@ -126,6 +126,25 @@ TEST_F(MucosaViewTest, FoldsLoseTheirContrastAsTheOrganIsFilled) {
   EXPECT_LT(contrast(picture(along())), 1.5 * before);  // control: a region without folds
 }
 
+TEST_F(MucosaViewTest, NearFoldsHaveNoSpeckles) {
+  const test::TubeOrgan organ;
+  show(organ, organ.places(0.9));
+  Eigen::Isometry3d pose = across(0.008);
+  pose.rotate(Eigen::AngleAxisd(0.6, Eigen::Vector3d::UnitY()));  // at a slant, as a wall beside the tip is seen
+  const Pixels pixels = picture(pose);
+  const auto level = [&](int x, int y) { return int{pixels[static_cast<std::size_t>(3 * (y * kSize + x) + 1)]}; };
+  int dots = 0;
+  for (int y = kSize / 4; y < 3 * kSize / 4; ++y)
+    for (int x = kSize / 4; x < 3 * kSize / 4; ++x) {
+      int darkest = 255;  // of the neighbours
+      for (int k = 0; k < 9; ++k)
+        if (k != 4) darkest = std::min(darkest, level(x + k % 3 - 1, y + k / 3 - 1));
+      dots += level(x, y) < darkest - 8 ? 1 : 0;
+    }
+  std::printf("%d single dark pixels of %d\n", dots, kSize * kSize / 4);
+  EXPECT_LT(dots, kSize * kSize / 4 / 1000);
+}
+
 TEST_F(MucosaViewTest, PatternsBelongToTheTissue) {
   const test::TubeOrgan organ;
   show(organ, organ.places(1.03));
