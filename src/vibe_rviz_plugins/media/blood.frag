@@ -21,7 +21,7 @@ void main() {
   float edge = 1.0 - dot(normal, to_eye);
   float fresnel = 0.02 + 0.98 * edge * edge * edge * edge * edge;
   vec3 radiance = linear(colour.rgb) * (light.x + around_light);
-  vec3 mirrored = fresnel * kWall * around_light * 8.0 + 5.0 * light.y + 0.05 * light.z;
+  vec3 mirrored = fresnel * kWall * around_light * 8.0 + 2.5 * light.y + 0.05 * light.z;
   // what is mirrored covers what is behind, however thin the blood
   float shine = clamp(max(mirrored.r, max(mirrored.g, mirrored.b)), 0.0, 1.0);
   float alpha = colour.a + (1.0 - colour.a) * shine * smoothstep(0.1, 0.4, colour.a);

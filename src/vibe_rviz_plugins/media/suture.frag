@@ -20,7 +20,9 @@ void main() {
 
   // a mirror shows the wall to the sides, and the dark end of the endoscope where it faces the lens
   vec3 mirrored = kWall * smoothstep(1.0, 0.55, facing) * around_light * 6.0;
-  vec3 polymer = base * (light.x + around_light) + 0.25 * light.z + 2.0 * light.y;
-  vec3 steel = base * (0.30 * light.x + mirrored + 0.9 * light.z + 2.5 * light.y);
+  // on what is as thin as a pixel a tight highlight would glitter
+  float tight = 1.0 - smoothstep(0.3, 0.9, length(fwidth(view_normal)));
+  vec3 polymer = base * (light.x + around_light) + mix(0.10, 0.25, tight) * light.z + 2.0 * tight * light.y;
+  vec3 steel = base * (0.55 * light.x + mirrored + 0.9 * light.z + 2.5 * tight * light.y);
   gl_FragColor = vec4(stored(mix(polymer, steel, metal)), 1.0);
 }

@@ -2,15 +2,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <queue>
-#include <unordered_set>
 
 #include "geometry/descent.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kSameHeight = 1e-7, kSameLevel = 1e-6;  // [m]
+constexpr double kSameHeight = 1e-7, kSameLevel = 1e-7;  // [m]
 constexpr double kDeepest = 0.3;                         // [m]
 constexpr int kOverflows = 40;                           // of one pour; what is left then stays in the last hollow
 constexpr double kGrowth = 1.2;                          // of a flood between two looks at its volume
@@ -21,15 +21,27 @@ constexpr double kGrowth = 1.2;                          // of a flood between t
 struct Basins::Flood {
   using Entry = std::pair<double, std::uint32_t>;  // height, vertex
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> shore;
-  std::unordered_set<std::uint32_t> reached, wet;  // vertices, triangles
+  std::vector<bool> reached, wet;  // vertices, triangles
+  std::size_t count = 1;           // of reached vertices
+  std::vector<Column> columns;     // over the wet triangles
   double level;
 
-  Flood(std::uint32_t bottom, double height) : reached{bottom}, level(height) { shore.emplace(height, bottom); }
+  Flood(std::uint32_t bottom, double height, std::size_t vertices, std::size_t triangles)
+      : reached(vertices, false), wet(triangles, false), level(height) {
+    reached[bottom] = true;
+    shore.emplace(height, bottom);
+  }
+
+  double volumeBelow(double height) const {
+    double sum = 0;
+    for (const Column& column : columns)
+      if (column.low < height)
+        sum += volumeOnTriangle(column.projected, height - column.low, height - column.middle, height - column.high);
+    return sum;
+  }
 };
 
-double volumeOnTriangle(double projected, Eigen::Vector3d depth) {
-  std::sort(depth.data(), depth.data() + 3, std::greater<>());
-  const double a = depth[0], b = depth[1], c = depth[2];
+double volumeOnTriangle(double projected, double a, double b, double c) {
   if (a <= 0) return 0;
   if (c >= 0) return projected * (a + b + c) / 3;
   // the mean depth over the part below the level times its share of the area
@@ -39,27 +51,22 @@ double volumeOnTriangle(double projected, Eigen::Vector3d depth) {
 
 Basins::Basins(const WallSurface& wall, const Eigen::Vector3d& down) : wall_(wall), down_(down) {}
 
-double Basins::volumeBelow(double level, const std::vector<std::uint32_t>& triangles) const {
-  double sum = 0;
-  for (const std::uint32_t t : triangles) {
-    const std::uint32_t* corner = wall_.corners(t);
-    const Eigen::Vector3d &a = wall_.places()[corner[0]], &b = wall_.places()[corner[1]],
-                          &c = wall_.places()[corner[2]];
-    const double projected = 0.5 * (b - a).cross(c - a).dot(down_);  // outward is down on a floor
-    sum +=
-        volumeOnTriangle(projected, {level - height(corner[0]), level - height(corner[1]), level - height(corner[2])});
-  }
-  return sum;
+Basins::Column Basins::columnOver(std::uint32_t triangle) const {
+  const std::uint32_t* corner = wall_.corners(triangle);
+  const Eigen::Vector3d &a = wall_.places()[corner[0]], &b = wall_.places()[corner[1]], &c = wall_.places()[corner[2]];
+  std::array<double, 3> heights{height(corner[0]), height(corner[1]), height(corner[2])};
+  std::sort(heights.begin(), heights.end());
+  return {0.5 * (b - a).cross(c - a).dot(down_), heights[0], heights[1], heights[2]};  // outward is down on a floor
 }
 
 /// The level at which the volume is reached, above `low`; `low` where it never is, because the wall faces down.
-double Basins::levelOf(const Pool& pool, double low) const {
+double Basins::levelOf(double volume, const Flood& flood, double low) {
   double step = 1e-4, high = low, floor = low;
-  for (; step < kDeepest && volumeBelow(high, pool.triangles) < pool.volume; step *= 2) floor = high, high += step;
+  for (; step < kDeepest && flood.volumeBelow(high) < volume; step *= 2) floor = high, high += step;
   if (!(step < kDeepest)) return low;
   while (high - floor > kSameLevel) {
     const double middle = 0.5 * (floor + high);
-    (volumeBelow(middle, pool.triangles) < pool.volume ? floor : high) = middle;
+    (flood.volumeBelow(middle) < volume ? floor : high) = middle;
   }
   return high;
 }
@@ -90,17 +97,23 @@ bool Basins::joins(std::uint32_t bottom, double level, Pool& pool) {
 
 void Basins::wet(std::uint32_t vertex, Flood& flood, Pool& pool) const {
   for (const std::uint32_t* t = wall_.around().begin(vertex); t != wall_.around().end(vertex); ++t) {
-    if (flood.wet.insert(*t).second) pool.triangles.push_back(*t);
+    if (flood.wet[*t]) continue;
+    flood.wet[*t] = true;
+    pool.triangles.push_back(*t);
+    flood.columns.push_back(columnOver(*t));
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t next = wall_.corners(*t)[k];
-      if (flood.reached.insert(next).second) flood.shore.emplace(height(next), next);
+      if (flood.reached[next]) continue;
+      flood.reached[next] = true;
+      ++flood.count;
+      flood.shore.emplace(height(next), next);
     }
   }
 }
 
 /// Raises the level until the pool has its volume. @return false: it has run over at `brim`, and `rest` is too much
 bool Basins::fill(Pool& pool, std::uint32_t& brim, double& rest) {
-  Flood flood(pool.bottoms.front(), height(pool.bottoms.front()));
+  Flood flood(pool.bottoms.front(), height(pool.bottoms.front()), wall_.places().size(), wall_.triangleCount());
   double low = flood.level;
   std::size_t looked = 8;
   while (!flood.shore.empty()) {
@@ -109,11 +122,11 @@ bool Basins::fill(Pool& pool, std::uint32_t& brim, double& rest) {
     const std::uint32_t bottom =
         h < flood.level - kSameHeight ? bottomBelow(wall_, vertex, down_) : pool.bottoms.front();
     const bool over = std::find(pool.bottoms.begin(), pool.bottoms.end(), bottom) == pool.bottoms.end();
-    if (over || flood.reached.size() > looked) {
-      const double held = volumeBelow(flood.level, pool.triangles);
+    if (over || flood.count > looked) {
+      const double held = flood.volumeBelow(flood.level);
       if (held >= pool.volume) break;
       low = flood.level;
-      looked = static_cast<std::size_t>(kGrowth * static_cast<double>(flood.reached.size()));
+      looked = static_cast<std::size_t>(kGrowth * static_cast<double>(flood.count));
       if (over && !joins(bottom, flood.level, pool)) {
         rest = pool.volume - std::max(0.0, held);
         pool.volume -= rest, pool.level = flood.level;
@@ -125,7 +138,7 @@ bool Basins::fill(Pool& pool, std::uint32_t& brim, double& rest) {
     flood.level = std::max(flood.level, h);
     wet(vertex, flood, pool);
   }
-  pool.level = levelOf(pool, low);
+  pool.level = levelOf(pool.volume, flood, low);
   return true;
 }
 

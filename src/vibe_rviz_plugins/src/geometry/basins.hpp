@@ -37,13 +37,17 @@ class Basins {
 
  private:
   struct Flood;
+  /// What stands on a triangle: its signed horizontal area [m^2] and the heights of its corners [m].
+  struct Column {
+    double projected, low, middle, high;
+  };
   std::optional<std::size_t> poolAt(std::uint32_t bottom) const;
   void absorb(std::size_t pool, Pool& into);
   bool fill(Pool& pool, std::uint32_t& brim, double& rest);
   bool joins(std::uint32_t bottom, double level, Pool& pool);
   void wet(std::uint32_t vertex, Flood& flood, Pool& pool) const;
-  double volumeBelow(double level, const std::vector<std::uint32_t>& triangles) const;
-  double levelOf(const Pool& pool, double low) const;
+  Column columnOver(std::uint32_t triangle) const;
+  static double levelOf(double volume, const Flood& flood, double low);
 
   const WallSurface& wall_;
   Eigen::Vector3d down_;
@@ -53,7 +57,7 @@ class Basins {
 
 /// Volume over a triangle below a level: what stands on its horizontal projection. Negative where it faces down [m^3].
 /// @param projected  signed area of the projection [m^2]
-/// @param depth      of its corners below the level; negative above it [m]
-double volumeOnTriangle(double projected, Eigen::Vector3d depth);
+/// @param a, b, c    depth of its corners below the level, the deepest first; negative above it [m]
+double volumeOnTriangle(double projected, double a, double b, double c);
 
 }  // namespace vibe

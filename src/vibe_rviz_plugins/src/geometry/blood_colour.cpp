@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kBrown = 45;      // [s]
 constexpr double kHides = 0.1e-3;  // depth after which 1/e of what is below is seen [m]
-constexpr double kDark = 2e-3;     // the same for the red light that makes it bright [m]
+constexpr double kDark = 2.5e-3;   // the same for the red light that makes it bright [m]
 
 }  // namespace
 
@@ -27,7 +27,7 @@ double brownOf(const Wound& wound) {
 
 BloodShade layerOf(double depth, double brown) {
   depth = std::max(depth, 0.0);
-  BloodShade shade = mixed(kBrightBlood, kDarkBlood, 1 - std::exp(-depth / kDark));
+  BloodShade shade = mixed(kBrightBlood, kDeepBlood, 1 - std::exp(-depth / kDark));
   shade = mixed(shade, kClottedBlood, brown);
   shade.alpha *= 1 - std::exp(-depth / kHides);
   return shade;

@@ -9,10 +9,11 @@ struct BloodShade {
   double red, green, blue, alpha;
 };
 
-// Fresh in a jet or a thin layer, in a thick one, and clotted. Design choices: haemoglobin lets red light pass some ten
-// times farther than green (Roggan 1999, doi:10.1117/1.429919), so thin blood is bright and thick blood dark.
-constexpr BloodShade kBrightBlood{0.90, 0.03, 0.03, 0.97}, kDarkBlood{0.62, 0.012, 0.03, 0.95},
-    kClottedBlood{0.24, 0.06, 0.04, 0.62};
+// Fresh in a jet or a thin layer, in a drop, in a deep pool, and clotted. Design choices: haemoglobin lets red light
+// pass some ten times farther than green (Roggan 1999, doi:10.1117/1.429919), so thin blood is bright and thick blood
+// dark.
+constexpr BloodShade kBrightBlood{0.84, 0.03, 0.03, 0.97}, kDarkBlood{0.60, 0.012, 0.03, 0.95},
+    kDeepBlood{0.42, 0.006, 0.014, 0.97}, kClottedBlood{0.24, 0.06, 0.04, 0.62};
 
 BloodShade mixed(const BloodShade& a, const BloodShade& b, double part);
 PackedColour packedOf(const BloodShade& shade, double alpha = 1);

@@ -92,10 +92,21 @@ class FlowBuilder {
       flow_.rivulets.push_back(rivuletOf(source, 1, wall_, style_.down));
       ++flow_.passing;
     }
+    for (Rivulet& rivulet : flow_.rivulets) endAtPool(rivulet);
     return std::move(flow_);
   }
 
  private:
+  /// What is deep in a pool would shine through it.
+  void endAtPool(Rivulet& rivulet) const {
+    const auto isIn = [&](const WallPoint& point, const Pool& pool) {
+      return point.place.dot(-style_.down) < pool.level - rivulet.thickness &&
+             std::find(pool.triangles.begin(), pool.triangles.end(), point.triangle) != pool.triangles.end();
+    };
+    for (const Pool& pool : flow_.pools)
+      while (rivulet.line.size() > 2 && isIn(rivulet.line.back(), pool)) rivulet.line.pop_back();
+  }
+
   /// A film, a rivulet, and what is left at its end.
   /// @param goes_on  false: what is left stays at the source
   void addSource(const Source& source, bool goes_on, int falls = 0) {

@@ -18,8 +18,8 @@ struct BloodFilm {
 
 /// Blood that runs down the wall.
 struct Rivulet {
-  std::vector<WallPoint> line;      ///< as far as its head, at least two points
-  double length = 0;                ///< of the line [m]
+  std::vector<WallPoint> line;      ///< to its head, or into its pool; one point is none
+  double length = 0;                ///< from its start to its head [m]
   double width = 0, thickness = 0;  ///< of its parabolic section [m]
   double brown = 0;                 ///< 0 to 1
   bool arrived = false;             ///< the wall goes down no more

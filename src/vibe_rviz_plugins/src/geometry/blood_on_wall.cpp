@@ -66,26 +66,34 @@ double filmReach(const BloodFilm& film, double angle) {
 /// Offset of the middle of a rivulet, and factor of its width, at a distance from its start.
 double bend(const Rivulet& rivulet, double s) {
   const double a = kPi * wobble(rivulet.number, 11), b = kPi * wobble(rivulet.number, 12);
-  return std::min(1.0, s / kFade) * (0.65e-3 * std::sin(s / 2.3e-3 + a) + 0.35e-3 * std::sin(s / 1.1e-3 + b));
+  return std::min(1.0, s / kFade) * (0.5e-3 * std::sin(s / 4.3e-3 + a) + 0.3e-3 * std::sin(s / 1.9e-3 + b));
 }
 
 double widthAt(const Rivulet& rivulet, double s) {
   const double c = kPi * wobble(rivulet.number, 13);
-  const double wide = (0.6 + 0.4 * std::min(1.0, s / kFade)) * (1 + 0.15 * std::sin(s / 1.9e-3 + c));
+  const double wide = (0.6 + 0.4 * std::min(1.0, s / kFade)) *
+                      (1 + 0.18 * std::sin(s / 1.7e-3 + c) + 0.12 * std::sin(s / 3.1e-3 + 2 * c));
   const double head = 0.6 * rivulet.width, left = rivulet.length - s;  // the head is round
   if (left >= head) return wide;
   const double part = 1 - std::max(0.0, left) / head;
   return wide * std::sqrt(std::max(0.0, 1 - part * part));
 }
 
+/// Slope of the surface along a rivulet, which breaks its highlight.
+double rippleAt(const Rivulet& rivulet, double s) {
+  const double d = kPi * wobble(rivulet.number, 14);
+  return 0.2 * std::sin(s / 0.9e-3 + d) + 0.15 * std::sin(s / 1.47e-3 + 2 * d) + 0.15 * std::sin(s / 2.9e-3 + 3 * d);
+}
+
 void addRow(const Rivulet& rivulet, const WallPoint& at, const Vector3d& along, double s, const WallSurface& wall,
             ColouredShape& shape) {
   const Vector3d across = at.inward.cross(along).normalized();
   const double half = std::max(0.5 * rivulet.width * widthAt(rivulet, s), 1e-5), middle = bend(rivulet, s);
+  const double ripple = rippleAt(rivulet, s);
   for (const double u : kAcross) {
     const WallPoint under = wall.moved(at, (middle + half * u) * across);
     const double depth = rivulet.thickness * (1 - u * u) * std::min(1.0, half / (0.4 * rivulet.width));
-    const Vector3d normal = under.inward + 2 * u * rivulet.thickness / half * across;
+    const Vector3d normal = under.inward + 2 * u * rivulet.thickness / half * across + ripple * along.normalized();
     addVertex(under.place + (kRaised + depth) * under.inward, normal, layerOf(kRim + depth, rivulet.brown), shape);
   }
 }

@@ -1,5 +1,6 @@
 #include "geometry/wall_surface.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -106,6 +107,7 @@ WallPoint WallSurface::nearestAround(std::uint32_t triangle, const Vector3d& pla
   Vector3d weight(1, 0, 0);
   std::uint32_t best = triangle;
   tryTriangle(triangle, place, distance, best, weight);
+  if (weight.minCoeff() > 0) return at(best, weight);  // inside of it: nothing around is nearer on a smooth wall
   for (int round = 0; round < kRounds; ++round) {
     const std::uint32_t before = best;
     for (int k = 0; k < 3; ++k) {
@@ -113,7 +115,7 @@ WallPoint WallSurface::nearestAround(std::uint32_t triangle, const Vector3d& pla
       for (const std::uint32_t* t = around_.begin(vertex); t != around_.end(vertex); ++t)
         tryTriangle(*t, place, distance, best, weight);
     }
-    if (best == before) break;
+    if (best == before || weight.minCoeff() > 0) break;
   }
   return at(best, weight);
 }
@@ -146,9 +148,11 @@ std::vector<std::uint32_t> WallSurface::trianglesNear(const std::vector<Vector3d
   for (const Vector3d& point : line) box.extend(point);
   std::vector<std::uint32_t> near;
   for (std::uint32_t t = 0; 3 * std::size_t{t} < triangles_.size(); ++t) {
-    Eigen::AlignedBox3d own(places_[corners(t)[0]]);
-    own.extend(places_[corners(t)[1]]).extend(places_[corners(t)[2]]);
-    if (box.intersects(own)) near.push_back(t);
+    const Vector3d &a = places_[corners(t)[0]], &b = places_[corners(t)[1]], &c = places_[corners(t)[2]];
+    bool apart = false;
+    for (int k = 0; k < 3 && !apart; ++k)
+      apart = std::max({a[k], b[k], c[k]}) < box.min()[k] || std::min({a[k], b[k], c[k]}) > box.max()[k];
+    if (!apart) near.push_back(t);
   }
   return near;
 }

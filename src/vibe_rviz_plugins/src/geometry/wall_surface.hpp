@@ -46,6 +46,7 @@ class WallSurface {
 
   const std::vector<Eigen::Vector3d>& places() const { return places_; }    ///< of vertices [m]
   const std::vector<Eigen::Vector3d>& inwards() const { return inwards_; }  ///< unit, into the lumen, of vertices
+  std::size_t triangleCount() const { return triangles_.size() / 3; }
   const std::uint32_t* corners(std::uint32_t triangle) const { return &triangles_[3 * std::size_t{triangle}]; }
   /// Triangles around a vertex.
   const Incidence& around() const { return around_; }

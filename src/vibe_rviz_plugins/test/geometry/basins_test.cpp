@@ -28,14 +28,13 @@ double twoHollows(double x, double y) {
 }
 
 TEST(Basins, VolumeOnATriangleIsThatOfItsClippedPrism) {
-  EXPECT_DOUBLE_EQ(volumeOnTriangle(2, {3, 3, 3}), 6);
-  EXPECT_DOUBLE_EQ(volumeOnTriangle(2, {-1, -1, -0.5}), 0);
-  EXPECT_DOUBLE_EQ(volumeOnTriangle(1, {0, 3, 0}), 1);
-  EXPECT_DOUBLE_EQ(volumeOnTriangle(1, {1, -1, -1}), 1.0 / 12);           // a tetrahedron of a quarter of the area
-  EXPECT_DOUBLE_EQ(volumeOnTriangle(1, {1, 1, -1}), 1.0 / 3 + 1.0 / 12);  // its complement, from the difference of both
-  for (double z = -1; z <= 1; z += 0.01) {                                // the derivative is continuous
-    const double step =
-        volumeOnTriangle(1, {z + 0.01, z + 0.31, z - 0.19}) - volumeOnTriangle(1, {z, z + 0.3, z - 0.2});
+  EXPECT_DOUBLE_EQ(volumeOnTriangle(2, 3, 3, 3), 6);
+  EXPECT_DOUBLE_EQ(volumeOnTriangle(2, -0.5, -1, -1), 0);
+  EXPECT_DOUBLE_EQ(volumeOnTriangle(1, 3, 0, 0), 1);
+  EXPECT_DOUBLE_EQ(volumeOnTriangle(1, 1, -1, -1), 1.0 / 12);           // a tetrahedron of a quarter of the area
+  EXPECT_DOUBLE_EQ(volumeOnTriangle(1, 1, 1, -1), 1.0 / 3 + 1.0 / 12);  // its complement, from the difference of both
+  for (double z = -1; z <= 1; z += 0.01) {                              // the derivative is continuous
+    const double step = volumeOnTriangle(1, z + 0.31, z + 0.01, z - 0.19) - volumeOnTriangle(1, z + 0.3, z, z - 0.2);
     EXPECT_GE(step, 0);
     EXPECT_LE(step, 0.0101);
   }
