@@ -60,6 +60,7 @@ std::string DatasetCamera::show(const SessionFrame& frame, const EndoscopeScene:
     sutures_ = frame.sutures;
   }
   if (!problem.empty()) return problem;
+  drawn_.drawBlood();
   drawn_.placeInstrument(pose_of);
   truth_.placeInstrument(pose_of);
   truth_.commit();

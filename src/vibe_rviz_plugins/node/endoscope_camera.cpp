@@ -147,12 +147,14 @@ std::string EndoscopeCamera::draw(const sensor_msgs::PointCloud2& particles, con
   if (!problem.empty()) return problem;
   scene_.placeInstrument(pose_of);
   const vibe_msgs::SutureArray::ConstPtr sutures = suturesAt(particles.header.stamp);
-  if (!sutures || sutures == drawn_sutures_) return "";
-  problem = scene_.setSutures(*sutures, pose_of);
-  if (problem.empty())
-    drawn_sutures_ = sutures;
-  else
-    ROS_WARN_STREAM_THROTTLE(kRepeatPeriod, problem);
+  if (sutures && sutures != drawn_sutures_) {
+    problem = scene_.setSutures(*sutures, pose_of);
+    if (problem.empty())
+      drawn_sutures_ = sutures;
+    else
+      ROS_WARN_STREAM_THROTTLE(kRepeatPeriod, problem);
+  }
+  scene_.drawBlood();
   return "";
 }
 

@@ -3,21 +3,12 @@
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 
-#include "geometry/blood_shapes.hpp"
 #include "geometry/suture_shapes.hpp"
 #include "messages/suture_messages.hpp"
 #include "messages/tissue_messages.hpp"
 
 namespace vibe {
 namespace {
-
-/// Natural look: no data colours, no particles, no mesh.
-SutureStyle realStyle() {
-  SutureStyle style;
-  style.colouring = ThreadColour::One;
-  style.bites = style.corners = style.links = false;
-  return style;
-}
 
 void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
   const Eigen::Vector3f place = pose.translation().cast<float>();
@@ -43,6 +34,7 @@ std::string EndoscopeScene::setTopology(const vibe_msgs::TissueTopology& message
     tissue_.setMesh(mesh_);
   else
     tissue_.clear();
+  blood_.setMesh(has_mesh_ ? &mesh_ : nullptr);
   return problem;
 }
 
@@ -59,16 +51,19 @@ std::string EndoscopeScene::setSutures(const vibe_msgs::SutureArray& message, co
   if (!problem.empty()) return problem;
   const std::optional<Eigen::Isometry3d> pose = poseOf(message.header.frame_id);
   if (!pose) return "There is no transform to the frame '" + message.header.frame_id + "' of the sutures.";
+  suture_pose_ = *pose;
   setPose(*pose, suture_node_);
   shape_.clear();
-  appendSutures(seen, realStyle(), shape_);
+  appendSutures(seen, naturalSutures(), shape_);
   sutures_.showSolids(shape_);
-  shape_.clear();
   BloodStyle style;
   style.time = message.header.stamp.toSec();
-  appendBlood(seen, style, shape_);
-  sutures_.showBlood(shape_);
+  blood_.setWounds(seen, style);
   return "";
+}
+
+void EndoscopeScene::drawBlood() {
+  if (blood_.update(tissue_.vertices(), suture_pose_.inverse())) sutures_.showBlood(blood_.shape());
 }
 
 }  // namespace vibe

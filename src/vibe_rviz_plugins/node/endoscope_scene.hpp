@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "geometry/bleeding_shape.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "instrument.hpp"
 #include "render/suture_visual.hpp"
@@ -31,6 +32,8 @@ class EndoscopeScene {
   std::string setTopology(const vibe_msgs::TissueTopology& message);
   std::string setParticles(const sensor_msgs::PointCloud2& message);
   std::string setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf);
+  /// To be called after changes, before the picture is taken: blood follows the wall.
+  void drawBlood();
   void placeInstrument(const PoseOf& poseOf) { instrument_.place(poseOf); }
 
  private:
@@ -41,6 +44,8 @@ class EndoscopeScene {
   TissueMesh mesh_;
   TissueFrame frame_;
   bool has_mesh_ = false;
+  BleedingShape blood_;
+  Eigen::Isometry3d suture_pose_ = Eigen::Isometry3d::Identity();
   ColouredShape shape_;  ///< kept, so that a frame allocates little
 };
 

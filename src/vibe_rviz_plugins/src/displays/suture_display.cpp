@@ -10,6 +10,7 @@
 
 #include "messages/suture_messages.hpp"
 #include "render/legend.hpp"
+#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 
 namespace vibe {
 namespace {
@@ -27,6 +28,12 @@ bool pulses(const SutureScene& scene) {
   for (const Wound& wound : scene.wounds)
     if (wound.brisk && wound.rate > 0) return true;
   return false;
+}
+
+Eigen::Isometry3d eigenOf(const FramePose& pose) {
+  const Ogre::Quaternion& turn = pose.orientation;
+  const Eigen::Translation3d place(pose.position.x, pose.position.y, pose.position.z);
+  return place * Eigen::Quaterniond(turn.w, turn.x, turn.y, turn.z).normalized();
 }
 
 std::string contentOf(const SutureScene& scene) {
@@ -110,10 +117,13 @@ void SutureDisplay::addPartProperties() {
 }
 
 void SutureDisplay::addBleedingProperties() {
-  bleeding_property_ = new rviz::BoolProperty("Bleeding", true,
-                                              "Draws mild bleeding as a growing dark film, brisk bleeding as a "
-                                              "pulsing bright jet, and stopped bleeding in brown.",
-                                              this, SLOT(changeStyle()));
+  bleeding_property_ =
+      new rviz::BoolProperty("Bleeding", true,
+                             "Draws bleeding: a film and a rivulet that runs down the wall into a pool, a "
+                             "pulsing jet if it is brisk, brown when it has stopped. Blood follows "
+                             "the wall when tissue/topology and tissue/particles are there; otherwise "
+                             "it lies on a plane.",
+                             this, SLOT(changeStyle()));
   down_property_ = new rviz::VectorProperty("Down", Ogre::Vector3(-1, 0, 0),
                                             "Direction of gravity in the frame of the message; the default is for a "
                                             "patient in supine position.",
@@ -141,6 +151,8 @@ void SutureDisplay::onDisable() {
 
 void SutureDisplay::clear() {
   scene_ = {};
+  wall_.listen(update_nh_, false);
+  blood_.setMesh(nullptr), blood_.setWounds({}, blood_style_);
   visual_->clear();
   changeLegend();
   threads_changed_ = blood_changed_ = false;
@@ -198,11 +210,11 @@ MessageReport SutureDisplay::read(const vibe_msgs::SutureArray& message) {
 }
 
 bool SutureDisplay::draw() {
-  const bool changed = threads_changed_ || blood_changed_;
-  if (threads_changed_) drawThreads();
-  if (blood_changed_) drawBlood();
-  threads_changed_ = blood_changed_ = false;
-  return changed;
+  const bool threads = threads_changed_;
+  if (threads) drawThreads();
+  threads_changed_ = false;
+  const bool blood = drawBlood();
+  return threads || blood;
 }
 
 void SutureDisplay::drawThreads() {
@@ -224,10 +236,26 @@ void SutureDisplay::drawLabels() {
   visual_->showLabels(labels, height);
 }
 
-void SutureDisplay::drawBlood() {
-  shape_.clear();
-  if (bleeding_property_->getBool()) appendBlood(scene_, blood_style_, shape_);
-  visual_->showBlood(shape_);
+/// Of the frame of the wall in that of the message; none: one of them is not known.
+std::optional<Eigen::Isometry3d> SutureDisplay::poseOfWall() {
+  FramePose of_wall, of_message;
+  if (!lookUpFrame(*context_, wall_.frame(), ros::Time(), of_wall).empty() ||
+      !lookUpFrame(*context_, shown()->header.frame_id, ros::Time(), of_message).empty())
+    return std::nullopt;
+  return eigenOf(of_message).inverse() * eigenOf(of_wall);
+}
+
+/// Called for every picture, because the wall moves by itself. @return whether the blood has changed
+bool SutureDisplay::drawBlood() {
+  const bool wanted = bleeding_property_->getBool();
+  wall_.listen(update_nh_, wanted && !scene_.wounds.empty());
+  if (wall_.update()) blood_.setMesh(wall_.mesh());
+  if (blood_changed_) blood_.setWounds(wanted ? scene_ : SutureScene{}, blood_style_);
+  blood_changed_ = false;
+  const std::optional<Eigen::Isometry3d> pose = wall_.vertices() != nullptr ? poseOfWall() : std::nullopt;
+  const bool changed = blood_.update(pose ? wall_.vertices() : nullptr, pose.value_or(Eigen::Isometry3d::Identity()));
+  if (changed) visual_->showBlood(blood_.shape());
+  return changed;
 }
 
 }  // namespace vibe

@@ -2,8 +2,10 @@
 #include <vibe_msgs/SutureArray.h>
 
 #include <memory>
+#include <optional>
 
-#include "geometry/blood_shapes.hpp"
+#include "displays/wall_listener.hpp"
+#include "geometry/bleeding_shape.hpp"
 #include "geometry/suture_scene.hpp"
 #include "geometry/suture_shapes.hpp"
 #include "render/suture_visual.hpp"
@@ -47,7 +49,8 @@ class SutureDisplay : public MessageDisplay<vibe_msgs::SutureArray> {
   bool draw() override;
   void drawThreads();
   void drawLabels();
-  void drawBlood();
+  bool drawBlood();
+  std::optional<Eigen::Isometry3d> poseOfWall();
   bool showsTension() const { return style_.colouring == ThreadColour::Tension; }
 
   std::unique_ptr<SutureVisual> visual_;
@@ -55,6 +58,8 @@ class SutureDisplay : public MessageDisplay<vibe_msgs::SutureArray> {
   SutureScene scene_;
   SutureStyle style_;
   BloodStyle blood_style_;
+  WallListener wall_;
+  BleedingShape blood_;
   ColouredShape shape_;  // a member to reuse its memory
   bool threads_changed_ = false, blood_changed_ = false;
 

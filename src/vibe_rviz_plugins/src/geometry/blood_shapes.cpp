@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/blood_colour.hpp"
+#include "geometry/blood_on_wall.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
@@ -13,42 +15,15 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kGravity = 9.81;         // [m/s^2]
-constexpr double kHeartRate = 72 / 60.0;  // [1/s]
-constexpr double kMeanSpeed = 0.5;  // of blood leaving a small artery into gas [m/s]; rises some 13 mm; design choice
-constexpr double kPulse = 0.3;      // part of the speed that pulses
 constexpr double kFilm = 2.5e-3, kPool = 3.5e-3;                  // maximum height of blood on a wall, in a hollow [m]
 constexpr double kMaxFilmRadius = 11e-3, kMaxPoolRadius = 15e-3;  // beyond, a curved wall hides the rest [m]
 constexpr double kMinDrop = 8e-3, kMaxDrop = 50e-3;               // a jet falls this far below its wound [m]
 constexpr double kFromCeiling = 35e-3;  // and at least this far from a wall that is overhead [m]
 constexpr double kSteep = 0.5;          // cosine to gravity from which a wall is ceiling or floor
-constexpr double kMinJet = 0.55e-3;     // [m]
-constexpr double kBrown = 45;           // age at which stopped blood is half brown [s]
-constexpr int kJetPoints = 24;
 
-struct Shade {
-  double red, green, blue, alpha;
-};
-constexpr Shade kBright{0.86, 0.02, 0.03, 0.97}, kDark{0.50, 0.01, 0.03, 0.92}, kClot{0.24, 0.06, 0.04, 0.62};
-
-Shade mixed(const Shade& a, const Shade& b, double part) {
-  return {a.red + part * (b.red - a.red), a.green + part * (b.green - a.green), a.blue + part * (b.blue - a.blue),
-          a.alpha + part * (b.alpha - a.alpha)};
-}
-
-PackedColour packedOf(const Shade& shade, double alpha = 1) {
-  return packed(shade.red, shade.green, shade.blue, shade.alpha * alpha);
-}
-
-Shade shadeOf(const Wound& wound) {
-  if (wound.rate > 0) return wound.brisk ? kBright : kDark;
-  return mixed(kDark, kClot, 0.5 + 0.5 * wound.age / (wound.age + kBrown));
-}
-
-/// Pseudo-random value from -1 to 1 for the number of a wound, so that outlines differ.
-double wobble(int number, int which) {
-  const double value = std::sin(12.9898 * (number + 1) + 78.233 * (which + 1)) * 43758.5453;
-  return 2 * (value - std::floor(value)) - 1;
+BloodShade shadeOf(const Wound& wound) {
+  if (wound.rate > 0) return wound.brisk ? kBrightBlood : kDarkBlood;
+  return mixed(kDarkBlood, kClottedBlood, brownOf(wound));
 }
 
 constexpr int kPuddleSides = 32, kPuddleRings = 6;  // rings of each half
@@ -108,8 +83,8 @@ double dropBelow(const Wound& wound, const SutureScene& scene, const Vector3d& d
   return std::clamp(lowest, towards_floor < -kSteep ? 0.0 : kMinDrop, kMaxDrop);
 }
 
-void appendFilm(const Wound& wound, const BloodStyle& style, ColouredShape& shape) {
-  const Shade shade = shadeOf(wound);
+void appendFlatFilm(const Wound& wound, const BloodStyle& style, ColouredShape& shape) {
+  const BloodShade shade = shadeOf(wound);
   Puddle film;
   film.centre = wound.place;
   film.up = wound.inward.norm() > 0.5 ? wound.inward : Vector3d(-style.down);
@@ -123,8 +98,8 @@ void appendFilm(const Wound& wound, const BloodStyle& style, ColouredShape& shap
   appendPuddle(film, shape);
 }
 
-void appendPool(const Wound& wound, const Vector3d& landing, const BloodStyle& style, ColouredShape& shape) {
-  const Shade shade = mixed(kBright, kDark, 0.75);
+void appendFlatPool(const Wound& wound, const Vector3d& landing, const BloodStyle& style, ColouredShape& shape) {
+  const BloodShade shade = mixed(kBrightBlood, kDarkBlood, 0.75);
   Puddle pool;
   pool.centre = landing;
   pool.up = -style.down;
@@ -138,76 +113,30 @@ void appendPool(const Wound& wound, const Vector3d& landing, const BloodStyle& s
   appendPuddle(pool, shape);
 }
 
-/// The jet is continuous at first and breaks up into drops.
-void appendJet(const Wound& wound, const std::vector<Vector3d>& line, const BloodStyle& style, ColouredShape& shape) {
-  constexpr std::size_t kWhole = 15;
-  const double steady = std::sqrt(wound.rate / (kPi * kMeanSpeed));
-  const double radius = std::max(kMinJet, steady) * std::sqrt(style.emphasis);
-  std::vector<TubePoint> jet;
-  for (std::size_t k = 0; k < kWhole; ++k) {
-    const double swell = 1 + 0.35 * std::sin(2 * kPi * (0.19 * static_cast<double>(k) - style.time * 5));
-    jet.push_back({line[k], radius * swell * (1 - 0.3 * static_cast<double>(k) / kWhole), packedOf(kBright)});
-  }
-  appendTube(jet, 8, shape);
-  // drops differ in size and deviate from the path
-  for (std::size_t k = kWhole; k < line.size(); ++k) {
-    const auto number = static_cast<int>(3 * k);
-    const Vector3d stray(wobble(wound.number, number), wobble(wound.number, number + 1),
-                         wobble(wound.number, number + 2));
-    const double size = 0.95 + 0.5 * wobble(wound.number + 7, number);
-    appendBall(line[k] + 1.3 * radius * stray, radius * size, packedOf(kBright), 8, shape);
-  }
+/// Where the jet of a wound lands on the average of a beat.
+Vector3d landingOf(const Wound& wound, double duration, const BloodStyle& style) {
+  return jetPath(wound, duration, style).back();
 }
 
 void appendWound(const Wound& wound, const SutureScene& scene, const BloodStyle& style, ColouredShape& shape) {
-  if (!wound.brisk) return appendFilm(wound, style, shape);
-  const double drop = dropBelow(wound, scene, style.down);
-  appendPool(wound, jetLanding(wound, drop, style), style, shape);
+  if (!wound.brisk) return appendFlatFilm(wound, style, shape);
+  const double duration = jetDuration(wound, dropBelow(wound, scene, style.down), style);
+  appendFlatPool(wound, landingOf(wound, duration, style), style, shape);
   Wound source = wound;
   source.amount = std::min(wound.amount, 5e-8);  // what clings to the wall around it
-  appendFilm(source, style, shape);
-  if (wound.rate > 0) appendJet(wound, jetLine(wound, drop, style), style, shape);
+  appendFlatFilm(source, style, shape);
+  if (wound.rate > 0) appendJet(wound, jetLine(wound, duration, style), style, shape);
 }
 
-/// Path of blood with the mean initial speed, slightly oblique so that it does not fall back onto itself.
-struct Flight {
-  Vector3d leave;   // unit
-  double duration;  // until it lands [s]
-
-  Vector3d at(double t, double speed, const Vector3d& from, const Vector3d& down) const {
-    return from + speed * t * leave + 0.5 * kGravity * t * t * down;
-  }
-};
-
-Flight flightOf(const Wound& wound, double drop, const Vector3d& down) {
-  const Vector3d inward = wound.inward.norm() > 0.5 ? wound.inward : Vector3d(-down);
-  const Vector3d aside = Eigen::AngleAxisd(kPi * wobble(wound.number, 9), inward) * anyNormal(inward);
-  const Vector3d leave = (inward + 0.45 * aside).normalized();
-  const double rising = -kMeanSpeed * leave.dot(down);  // against gravity [m/s]
-  return {leave, (rising + std::sqrt(rising * rising + 2 * kGravity * drop)) / kGravity};
+/// Pools last: they cover the rivulets that run into them.
+void appendFlow(const BloodFlow& flow, const WallSurface& wall, const BloodStyle& style, ColouredShape& shape) {
+  for (const BloodFilm& film : flow.films) appendFilm(film, wall, style, shape);
+  for (const Rivulet& rivulet : flow.rivulets) appendRivulet(rivulet, wall, shape);
+  for (const Pool& pool : flow.pools) appendPool(pool, wall, style, shape);
+  for (const BloodJet& jet : flow.jets) appendJet(jet.wound, jetLine(jet.wound, jet.duration, style), style, shape);
 }
 
 }  // namespace
-
-double jetSpeed(double time) {
-  const double beat = time * kHeartRate, phase = 2 * kPi * (beat - std::floor(beat));
-  return kMeanSpeed * (1 + kPulse * (std::sin(phase) + 0.5 * std::sin(2 * phase)));
-}
-
-std::vector<Vector3d> jetLine(const Wound& wound, double drop, const BloodStyle& style) {
-  const Flight flight = flightOf(wound, drop, style.down);
-  std::vector<Vector3d> line;
-  for (int k = 0; k < kJetPoints; ++k) {
-    const double t = flight.duration * k / (kJetPoints - 1);
-    line.push_back(flight.at(t, jetSpeed(style.time - t), wound.place, style.down));
-  }
-  return line;
-}
-
-Vector3d jetLanding(const Wound& wound, double drop, const BloodStyle& style) {
-  const Flight flight = flightOf(wound, drop, style.down);
-  return flight.at(flight.duration, kMeanSpeed, wound.place, style.down);
-}
 
 double puddleRadius(const Puddle& puddle) {
   const double height = puddleHeight(puddle);
@@ -233,8 +162,14 @@ void appendPuddle(const Puddle& puddle, ColouredShape& shape) {
     }
 }
 
-void appendBlood(const SutureScene& scene, const BloodStyle& style, ColouredShape& shape) {
-  for (const Wound& wound : scene.wounds)
+void appendBlood(const SutureScene& scene, const BloodStyle& style, const WallSurface* wall, ColouredShape& shape) {
+  std::vector<Wound> without_wall = scene.wounds;
+  if (wall != nullptr) {
+    const BloodFlow flow = flowOf(scene.wounds, *wall, style);
+    appendFlow(flow, *wall, style, shape);
+    without_wall = flow.elsewhere;
+  }
+  for (const Wound& wound : without_wall)
     if (wound.amount > 0 || wound.rate > 0) appendWound(wound, scene, style, shape);
 }
 

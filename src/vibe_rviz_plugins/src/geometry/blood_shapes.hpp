@@ -2,22 +2,21 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "geometry/blood_jet.hpp"
+#include "geometry/blood_style.hpp"
 #include "geometry/suture_scene.hpp"
+#include "geometry/wall_surface.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {
 
-/// How bleeding is drawn. The shape depends on the message alone, including its time.
-struct BloodStyle {
-  Eigen::Vector3d down{-1, 0, 0};  ///< direction of gravity, unit; default: patient in supine position
-  double emphasis = 1;             ///< factor for the thickness of jets and drops
-  double time = 0;                 ///< of the message; phase of the pulse of brisk bleeding [s]
-};
-
-/// Appends all bleeding. Mild: a dark film that grows with the amount lost and creeps downwards. Brisk: a bright jet
-/// that pulses 72 times a minute, follows a ballistic path, breaks up into drops, and ends in a level pool. Stopped: no
-/// jet, and the rest turns brown and pale with age. The lowest bite determines where the jets end.
-void appendBlood(const SutureScene& scene, const BloodStyle& style, ColouredShape& shape);
+/// Appends all bleeding. On a wall: films, rivulets and pools as flowOf() finds them, and the pulsing jets of brisk
+/// wounds; a jet pulses 72 times a minute, follows a ballistic path, and breaks up into drops. Stopped: no jet, and the
+/// rest turns brown and pale with age.
+/// Without a wall: a dark film that grows with the amount lost and creeps downwards, and a jet that ends in a level
+/// pool at the height of the lowest bite.
+/// @param wall  null: not known. A wound with no wall near is drawn as without.
+void appendBlood(const SutureScene& scene, const BloodStyle& style, const WallSurface* wall, ColouredShape& shape);
 
 /// A film or pool of this volume [m^3] lying on a plane; what is drawn below the plane only closes the shape.
 struct Puddle {
@@ -34,15 +33,5 @@ void appendPuddle(const Puddle& puddle, ColouredShape& shape);
 
 /// Mean radius of a puddle's outline [m].
 double puddleRadius(const Puddle& puddle);
-
-/// Initial speed of the jet of a brisk wound [m/s].
-double jetSpeed(double time);
-
-/// Centre line of the jet from the wall to the height `drop` [m] below it: 24 points on the paths of blood that left
-/// one after another, each with the speed at that time.
-std::vector<Eigen::Vector3d> jetLine(const Wound& wound, double drop, const BloodStyle& style);
-
-/// Where the jet lands on the average of a beat [m].
-Eigen::Vector3d jetLanding(const Wound& wound, double drop, const BloodStyle& style);
 
 }  // namespace vibe

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "geometry/suture_ends.hpp"
 #include "geometry/suture_frame.hpp"
 #include "vibe_rviz_plugins/geometry/revolved.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
@@ -18,17 +19,13 @@ using Eigen::Vector3d;
 constexpr int kThreadSides = 8;
 constexpr int kSymbolSides = 16;
 
-// Sizes of the implants of a suturing device; design choices close to commercial devices.
-constexpr double kTagLength = 6.5e-3, kTagRadius = 0.45e-3;
-constexpr double kCinchLength = 6e-3, kCinchRadius = 1.3e-3;
+// Symbols [m].
 constexpr double kBiteRadius = 1.3e-3, kBiteThickness = 0.28e-3;
 constexpr double kPartialRadius = 0.75e-3;
 constexpr double kCornerRadius = 2.3e-3;
 
 constexpr PackedColour kFullBite = packed(0.55, 0.95, 0.55);
 constexpr PackedColour kPartialBite = packed(1.0, 0.55, 0.05);
-constexpr PackedColour kTag = packed(0.78, 0.82, 0.88);
-constexpr PackedColour kCinch = packed(0.95, 0.90, 0.72);
 constexpr PackedColour kCorner = packed(0.98, 0.20, 0.80);
 constexpr PackedColour kBroken = packed(0.35, 0.35, 0.38);
 constexpr double kBand = 2e-3;  // length of a band of slack thread [m]
@@ -75,7 +72,8 @@ std::vector<std::vector<Vector3d>> bandsOf(const std::vector<Vector3d>& line, do
 void appendPiece(const ThreadPiece& piece, std::size_t number, const SutureStyle& style, ColouredShape& shape) {
   if (piece.line.empty()) return;
   const PackedColour colour = pieceColour(piece, number, style);
-  if (piece.tension > 0) return appendTube(piece.line, style.threadRadius(), colour, kThreadSides, shape);
+  if (piece.tension > 0 || !style.slack_bands)
+    return appendTube(piece.line, style.threadRadius(), colour, kThreadSides, shape);
   const auto bands = bandsOf(piece.line, kBand * std::max(1.0, style.emphasis / 2));
   for (std::size_t k = 0; k < bands.size(); ++k)
     appendTube(bands[k], style.threadRadius(), k % 2 == 0 ? colour : darker(colour, 0.55), kThreadSides, shape);
@@ -95,16 +93,15 @@ void appendBite(const SutureSet& set, std::size_t number, bool held, double size
              kSymbolSides, shape);
 }
 
-void appendEnds(const SutureSet& set, double emphasis, ColouredShape& shape) {
-  if (set.has_t_tag) {
-    const Vector3d half = 0.5 * kTagLength * std::sqrt(emphasis) * tagAxis(set);
-    appendTube({set.t_tag - half, set.t_tag + half}, kTagRadius * emphasis, kTag, kThreadSides, shape);
-    appendTube({set.t_tag - 0.12 * half, set.t_tag + 0.12 * half}, 1.5 * kTagRadius * emphasis, darker(kTag, 0.7),
-               kThreadSides, shape);
-  }
-  if (set.has_cinch)
-    appendBobbin(set.cinch, cinchAxis(set), kCinchLength * std::sqrt(emphasis), kCinchRadius * emphasis, kCinch,
-                 kSymbolSides, shape);
+/// @param size  factor of the thickness of symbols
+void appendEnds(const SutureSet& set, std::size_t number, const SutureStyle& style, double size, ColouredShape& shape) {
+  const auto held = [&](bool last) {
+    const ThreadPiece none;
+    const ThreadPiece& piece = set.pieces.empty() ? none : last ? set.pieces.back() : set.pieces.front();
+    return HeldThread{pieceColour(piece, number, style), style.threadRadius()};
+  };
+  if (set.has_t_tag) appendTag(set, size, held(true), shape);
+  if (set.has_cinch) appendCinch(set, size, held(false), shape);
 }
 
 void appendSet(const SutureSet& set, std::size_t number, const SutureStyle& style, ColouredShape& shape) {
@@ -112,7 +109,7 @@ void appendSet(const SutureSet& set, std::size_t number, const SutureStyle& styl
   for (const ThreadPiece& piece : set.pieces) appendPiece(piece, number, style, shape);
   for (std::size_t k = 0; style.bites && k < set.bites.size(); ++k)
     appendBite(set, k, style.ends && isHeld(set, k), size, shape);
-  if (style.ends) appendEnds(set, size, shape);
+  if (style.ends) appendEnds(set, number, style, size, shape);
   for (std::size_t k = 0; style.corners && k < set.corners.size(); ++k)
     appendRing(set.bites[set.corners[k]].place, biteAxis(set, set.corners[k]), kCornerRadius * size,
                1.3 * kBiteThickness * size, kCorner, kSymbolSides, shape);
@@ -150,6 +147,14 @@ void appendLink(const SutureSet& set, std::size_t link, double width, ColouredSh
 }
 
 }  // namespace
+
+SutureStyle naturalSutures() {
+  SutureStyle style;
+  style.colouring = ThreadColour::One;
+  style.one_colour = packed(0.16, 0.36, 0.90);  // dyed polypropylene
+  style.bites = style.corners = style.links = style.slack_bands = false;
+  return style;
+}
 
 PackedColour sutureColour(std::size_t number) {
   // ColorBrewer "Paired" (Brewer 2003, Apache 2.0), the strong ones first

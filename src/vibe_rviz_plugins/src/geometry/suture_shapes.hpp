@@ -19,9 +19,13 @@ struct SutureStyle {
   PackedColour slack_colour = packed(0.93, 0.95, 1.0);
   PackedColour one_colour = packed(0.12, 0.30, 0.85);
   bool bites = true, ends = true, corners = true, links = true;
+  bool slack_bands = true;  ///< slack thread has bands
 
   double threadRadius() const { return 0.5 * thread_diameter * emphasis; }
 };
+
+/// What is there, as an endoscope sees it: no symbols, no data.
+SutureStyle naturalSutures();
 
 /// Colour of a suture; twelve consecutive sutures have different colours.
 PackedColour sutureColour(std::size_t number);

@@ -27,9 +27,9 @@ Ogre::MaterialPtr beforeGlass(Ogre::MaterialPtr material) {
 
 SutureVisual::SutureVisual(Ogre::SceneNode& parent)
     : parent_(parent),
-      solid_material_(copyMaterial("vibe/solid")),
+      solid_material_(copyMaterial("vibe/suture")),
       sign_material_(with(copyMaterial("vibe/solid"), "glow", 1)),
-      blood_material_(beforeGlass(with(copyMaterial("vibe/blood"), "gloss", 0.35F))),
+      blood_material_(beforeGlass(copyMaterial("vibe/blood"))),
       solids_(std::make_unique<ShapeView>(parent, solid_material_)),
       signs_(std::make_unique<ShapeView>(parent, sign_material_)),
       blood_(std::make_unique<ShapeView>(parent, blood_material_)) {}

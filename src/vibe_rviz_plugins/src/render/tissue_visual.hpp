@@ -56,6 +56,8 @@ class TissueVisual {
   void clear();
 
   bool hasFrame() const { return has_frame_; }
+  /// Drawn vertices of the last frame, as DeformableSurface has them; null: none yet.
+  const std::vector<MovingVertex>* vertices() const { return has_frame_ ? &surface_->vertices() : nullptr; }
   std::size_t vertexCount() const { return surface_ ? surface_->vertices().size() : 0; }
 
  private:

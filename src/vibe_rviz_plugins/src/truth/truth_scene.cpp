@@ -3,19 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "geometry/blood_shapes.hpp"
 #include "geometry/suture_shapes.hpp"
 
 namespace vibe {
 namespace {
-
-/// As the endoscope draws sutures: what is there, without symbols.
-SutureStyle plainStyle() {
-  SutureStyle style;
-  style.colouring = ThreadColour::One;
-  style.bites = style.corners = style.links = false;
-  return style;
-}
 
 /// A shape that goes on after the first vertices and triangles of `shape`, which it shares with `beginning`.
 ColouredShape without(const ColouredShape& beginning, const ColouredShape& shape) {
@@ -43,7 +34,7 @@ struct SutureParts {
 /// their threads, because these give their direction.
 SutureParts partsOf(const SutureScene& sutures) {
   const auto drawn = [](const SutureSet& set, bool ends) {
-    SutureStyle style = plainStyle();
+    SutureStyle style = naturalSutures();
     style.ends = ends;
     ColouredShape shape;
     appendSutures({{set}, {}}, style, shape);
@@ -59,14 +50,6 @@ SutureParts partsOf(const SutureScene& sutures) {
     append(without(thread, drawn(cinched, true)), parts.cinches);
   }
   return parts;
-}
-
-ColouredShape bloodOf(const SutureScene& sutures, double time) {
-  BloodStyle style;
-  style.time = time;
-  ColouredShape shape;
-  appendBlood(sutures, style, shape);
-  return shape;
 }
 
 Eigen::Vector3d placeOf(const MovingVertex& vertex) {
@@ -93,6 +76,7 @@ std::uint32_t TruthScene::addBody(std::uint8_t label, std::uint32_t number) {
 
 void TruthScene::setMesh(const TissueMesh& mesh) {
   mesh_ = mesh;
+  bleeding_.setMesh(&mesh_);
   rays_.set(wall_, {}, {});
   surface_ = std::make_unique<DeformableSurface>(mesh_);
   wall_labels_.setMesh(mesh_);
@@ -119,7 +103,10 @@ void TruthScene::setSutures(const SutureScene& sutures, double time, const Eigen
   setShape(thread_, std::move(parts.threads), pose, true);
   setShape(tag_, std::move(parts.tags), pose, true);
   setShape(cinch_, std::move(parts.cinches), pose, true);
-  setShape(blood_, bloodOf(sutures, time), pose, false);
+  BloodStyle style;
+  style.time = time;
+  bleeding_.setWounds(sutures, style);
+  suture_pose_ = pose;
 }
 
 void TruthScene::setShape(std::uint32_t number, ColouredShape shape, const Eigen::Isometry3d& pose, bool material) {
@@ -133,6 +120,13 @@ void TruthScene::setShape(std::uint32_t number, ColouredShape shape, const Eigen
   if (!same || body.shape_number == 0) body.shape_number = material ? ++shapes_ : 0;
   body.own = std::move(shape);
   rays_.set(number, body.own.vertices, body.own.triangles, number == blood_ ? &body.own.colours : nullptr);
+}
+
+void TruthScene::commit() {
+  const Body& wall = bodies_[wall_];
+  if (bleeding_.update(wall.shape_number > 0 ? wall.vertices : nullptr, suture_pose_.inverse()))
+    setShape(blood_, bleeding_.shape(), suture_pose_, false);
+  rays_.commit();
 }
 
 std::uint32_t TruthScene::addPart(const std::string& name, ColouredShape shape) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/bleeding_shape.hpp"
 #include "geometry/deformable_surface.hpp"
 #include "geometry/suture_scene.hpp"
 #include "geometry/tissue_mesh.hpp"
@@ -37,7 +38,7 @@ class TruthScene {
   /// @param part  as addPart() returned it; without a pose the part is not seen
   void placePart(std::uint32_t part, const std::optional<Eigen::Isometry3d>& pose);
   /// To be called after changes, before the scene is looked at.
-  void commit() { rays_.commit(); }
+  void commit();
 
   const RayScene& rays() const { return rays_; }
   const std::vector<std::string>& partNames() const { return part_names_; }
@@ -76,6 +77,8 @@ class TruthScene {
   TissueMesh mesh_;
   std::unique_ptr<DeformableSurface> surface_;
   WallLabels wall_labels_;
+  BleedingShape bleeding_;
+  Eigen::Isometry3d suture_pose_ = Eigen::Isometry3d::Identity();
   std::deque<Body> bodies_;  // a deque, because rays_ refers to the shapes
   std::uint32_t wall_, thread_, tag_, cinch_, blood_;
   std::vector<std::string> part_names_;

@@ -26,7 +26,7 @@ ColouredShape shapeOf(const Wound& wound, const BloodStyle& style = {}) {
   SutureScene scene;
   scene.wounds = {wound};
   ColouredShape shape;
-  appendBlood(scene, style, shape);
+  appendBlood(scene, style, nullptr, shape);
   EXPECT_TRUE(isSound(shape));
   return shape;
 }
@@ -147,9 +147,10 @@ TEST(Blood, JetFallsInTheDirectionOfGravity) {
   for (const Vector3d& down : {Vector3d(-1, 0, 0), Vector3d(0, 0, -1)}) {
     BloodStyle style;
     style.down = down;
-    const auto line = jetLine(wound, 0.04, style);
+    const double duration = jetDuration(wound, 0.04, style);
+    const auto line = jetLine(wound, duration, style);
     EXPECT_LT((line.front() - wound.place).norm(), 1e-12);
-    EXPECT_NEAR((jetLanding(wound, 0.04, style) - wound.place).dot(down), 0.04, 1e-9);
+    EXPECT_NEAR((jetPath(wound, duration, style).back() - wound.place).dot(down), 0.04, 1e-9);
     double shift = 0;
     for (std::size_t k = 1; k < line.size(); ++k) shift = std::max(shift, (line[k] - line[k - 1]).norm());
     EXPECT_LT(shift, 0.01);  // one stream
@@ -165,7 +166,8 @@ TEST(Blood, FountainRisesToTheBallisticHeight) {
   for (double time = 0; time < 1; time += 0.07) {
     style.time = time;
     double max = 0;
-    for (const Vector3d& point : jetLine(wound, 0, style)) max = std::max(max, (point - wound.place).x());
+    for (const Vector3d& point : jetLine(wound, jetDuration(wound, 0, style), style))
+      max = std::max(max, (point - wound.place).x());
     EXPECT_GT(max, 2e-3);
     EXPECT_LT(max, 1.4 * 1.4 * 0.5 * 0.5 / (2 * 9.81));
   }
@@ -221,7 +223,7 @@ TEST(Blood, JetEndsAtTheWallBelow) {
   scene.sets.resize(1);
   scene.sets[0].bites.push_back({scene.wounds[0].place + Vector3d(-0.045, 0, 0), true, Vector3d::UnitX()});
   ColouredShape known;
-  appendBlood(scene, {}, known);
+  appendBlood(scene, {}, nullptr, known);
   const double depth = extentAlong(known, Vector3d::UnitX());
   EXPECT_NEAR(depth, 0.045, 0.006);
   EXPECT_GT(depth, extentAlong(shapeOf(woundOf(true)), Vector3d::UnitX()) + 0.005);

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "geometry/suture_ends.hpp"
 #include "geometry/suture_frame.hpp"
 #include "shape_measures.hpp"
 
@@ -145,6 +146,44 @@ TEST(SutureShapes, PartsAreDrawnOnlyIfSelected) {
     style.*part = true;
     EXPECT_GT(shapeOf(set, style).vertices.size(), thread);
   }
+}
+
+/// Half of the extent of a shape along a direction, about a point.
+double reachOf(const ColouredShape& shape, const Vector3d& centre, const Vector3d& direction) {
+  double reach = 0;
+  for (std::size_t v = 0; v < shape.vertices.size(); ++v)
+    reach = std::max(reach, std::abs((placeOf(shape, v) - centre).dot(direction)));
+  return reach;
+}
+
+TEST(SutureShapes, TagAndCinchHaveTheirSizesAndLieOnTheWall) {
+  SutureSet set = corner();
+  set.bites.pop_back(), set.pieces.pop_back();  // along x, on the wall z = 0
+  set.t_tag = set.bites[1].place, set.cinch = set.bites[0].place;
+  ColouredShape tag, cinch;
+  appendTag(set, 1, {packed(0, 0, 1), 0.16e-3}, tag);
+  appendCinch(set, 1, {packed(0, 0, 1), 0.16e-3}, cinch);
+  ASSERT_TRUE(isSound(tag) && isSound(cinch));
+  EXPECT_NEAR(reachOf(tag, set.t_tag, Vector3d::UnitY()), 3.25e-3, 1e-6);    // across the thread
+  EXPECT_NEAR(reachOf(tag, set.t_tag, Vector3d::UnitX()), 0.55e-3, 0.1e-3);  // with its winding
+  EXPECT_NEAR(reachOf(cinch, set.cinch, Vector3d::UnitY()), 1.3e-3, 1e-5);   // the collar
+  double highest[2] = {0, 0}, farthest_out = 0;
+  for (std::size_t v = 0; v < tag.vertices.size(); ++v) highest[0] = std::max(highest[0], placeOf(tag, v).z());
+  for (std::size_t v = 0; v < cinch.vertices.size(); ++v) {
+    highest[1] = std::max(highest[1], placeOf(cinch, v).z());
+    farthest_out = std::max(farthest_out, -placeOf(cinch, v).x());
+  }
+  EXPECT_GT(highest[0], 0.7e-3);  // most of them is in the lumen
+  EXPECT_GT(highest[1], 1.7e-3);
+  EXPECT_GT(farthest_out, 4e-3);  // the cut end of the thread
+  EXPECT_GT(coloursOf(tag).size(), 1u);
+}
+
+TEST(SutureShapes, NaturalThreadHasOneColour) {
+  SutureSet set = corner();
+  set.pieces.erase(set.pieces.begin());
+  EXPECT_EQ(coloursOf(shapeOf(set, naturalSutures())).size(), 1u);
+  EXPECT_EQ(coloursOf(shapeOf(set, threadOnly())).size(), 2u);  // control: data have bands where it is slack
 }
 
 TEST(SutureShapes, LinksJoinTheirBites) {

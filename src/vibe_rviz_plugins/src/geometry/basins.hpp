@@ -1,0 +1,63 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "geometry/wall_surface.hpp"
+
+namespace vibe {
+
+/// A fluid at rest on a wall.
+struct Pool {
+  std::vector<std::uint32_t> bottoms;    ///< lowest vertices of the hollows it fills, at least one
+  double volume = 0;                     ///< [m^3]
+  double level = 0;                      ///< height of its surface, against gravity from the origin [m]
+  double brown = 0;                      ///< part of it that has clotted, 0 to 1
+  std::vector<std::uint32_t> triangles;  ///< all that are below the level in part, and some that are not
+};
+
+/// The hollows of a wall and what stands in them. A hollow that is full to its brim runs over into the next one, and
+/// two that are full to the same brim become one. Under a pool the wall is the whole of its lower boundary; the open
+/// edge of a surface holds like a vertical wall.
+class Basins {
+ public:
+  /// @param wall  must outlive this object and stay as it is
+  /// @param down  direction of gravity, unit
+  Basins(const WallSurface& wall, const Eigen::Vector3d& down);
+
+  /// @param vertex  the fluid runs down from there
+  void pour(std::uint32_t vertex, double volume, double brown);
+
+  const std::vector<Pool>& pools() const { return pools_; }
+  /// Where full hollows ran over: vertices from which the fluid went on.
+  const std::vector<std::uint32_t>& brims() const { return brims_; }
+
+  double height(std::uint32_t vertex) const { return -wall_.places()[vertex].dot(down_); }
+
+ private:
+  struct Flood;
+  /// What stands on a triangle: its signed horizontal area [m^2] and the heights of its corners [m].
+  struct Column {
+    double projected, low, middle, high;
+  };
+  std::optional<std::size_t> poolAt(std::uint32_t bottom) const;
+  void absorb(std::size_t pool, Pool& into);
+  bool fill(Pool& pool, std::uint32_t& brim, double& rest);
+  bool joins(std::uint32_t bottom, double level, Pool& pool);
+  void wet(std::uint32_t vertex, Flood& flood, Pool& pool) const;
+  Column columnOver(std::uint32_t triangle) const;
+  static double levelOf(double volume, const Flood& flood, double low);
+
+  const WallSurface& wall_;
+  Eigen::Vector3d down_;
+  std::vector<Pool> pools_;
+  std::vector<std::uint32_t> brims_;
+};
+
+/// Volume over a triangle below a level: what stands on its horizontal projection. Negative where it faces down [m^3].
+/// @param projected  signed area of the projection [m^2]
+/// @param a, b, c    depth of its corners below the level, the deepest first; negative above it [m]
+double volumeOnTriangle(double projected, double a, double b, double c);
+
+}  // namespace vibe

@@ -1,0 +1,32 @@
+#pragma once
+#include "geometry/suture_scene.hpp"
+#include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
+
+namespace vibe {
+
+/// Colour of blood and what it hides, 0 to 1.
+struct BloodShade {
+  double red, green, blue, alpha;
+};
+
+// Fresh in a jet or a thin layer, in a drop, in a deep pool, and clotted. Design choices: haemoglobin lets red light
+// pass some ten times farther than green (Roggan 1999, doi:10.1117/1.429919), so thin blood is bright and thick blood
+// dark.
+constexpr BloodShade kBrightBlood{0.84, 0.03, 0.03, 0.97}, kDarkBlood{0.60, 0.012, 0.03, 0.95},
+    kDeepBlood{0.42, 0.006, 0.014, 0.97}, kClottedBlood{0.24, 0.06, 0.04, 0.62};
+
+BloodShade mixed(const BloodShade& a, const BloodShade& b, double part);
+PackedColour packedOf(const BloodShade& shade, double alpha = 1);
+
+/// 0: fresh, as it bleeds. From 1/2 when it has stopped towards 1 with age: half of the rest in 45 s (design choice).
+double brownOf(const Wound& wound);
+
+/// Of a layer on the wall, by the law of Beer and Lambert.
+/// @param depth  seen along the normal of the wall [m]
+/// @param brown  0 to 1
+BloodShade layerOf(double depth, double brown);
+
+/// Pseudo-random value from -1 to 1 for the number of a wound, so that shapes differ.
+double wobble(int number, int which);
+
+}  // namespace vibe
