@@ -10,6 +10,7 @@ varying vec3 rest;
 varying vec2 around;
 varying vec4 anatomy;  // share of folds, of antrum; distance beyond Z line and pylorus [m]
 varying float fold;    // height of the rugae here [m]
+varying float browned;  // grade of heat times how brown its scar is (src/geometry/scar_age.hpp)
 
 void main() {
   gl_Position = worldViewProj * gl_Vertex;
@@ -20,4 +21,5 @@ void main() {
   around = gl_MultiTexCoord1.xy;
   anatomy = gl_MultiTexCoord2;
   fold = gl_MultiTexCoord3.x;
+  browned = gl_MultiTexCoord4.x;
 }
