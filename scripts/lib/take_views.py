@@ -40,7 +40,7 @@ VIEWS = [
     View("sutured", "states", 89.5),
     View("bleeding", "bleeding", 89.5),
     View("smoke", "eye", 48.4, followed=45.0),
-    View("scar", "eye", 413.0, followed=45.0),
+    View("scar", "eye", 332.0, followed=45.0),
 ]
 COLUMNS = 5  # of the sheet
 

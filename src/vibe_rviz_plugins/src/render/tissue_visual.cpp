@@ -7,11 +7,16 @@
 #include <OgreTechnique.h>
 #include <rviz/ogre_helpers/point_cloud.h>
 
+#include <limits>
+
 #include "render/resources.hpp"
 
 namespace vibe {
 namespace {
 
+// Frames may overtake each other on their way, in a filter that waits for transforms for instance. An overtaken one
+// tells nothing new; time that is set back goes back further.
+constexpr double kOvertaken = 1;    // [s]
 constexpr double kEdgeAlpha = 0.9;  // opacity of a wall at grazing angles
 constexpr double kGrain = 0.25;
 constexpr float kFill = 0.16F, kFillOfData = 0.5F;  // ambient light
@@ -52,6 +57,7 @@ TissueVisual::~TissueVisual() {
 
 void TissueVisual::clear() {
   has_frame_ = false;
+  followed_ = -std::numeric_limits<double>::infinity();
   mesh_ = {};
   surface_.reset(), colours_.reset(), folds_.reset(), smoke_.reset(), scars_.reset();
   seen_smoke_.set(0, 0);
@@ -83,6 +89,9 @@ void TissueVisual::setFrame(const TissueFrame& frame) {
 
 void TissueVisual::follow(const TissueFrame& frame) {
   if (!surface_) return;
+  const double late = followed_ - frame.time;
+  if (late > 0 && late < kOvertaken) return;
+  followed_ = frame.time;
   smoke_->see(frame);
   if (scars_->see(frame)) browned_sent_ = false;
 }

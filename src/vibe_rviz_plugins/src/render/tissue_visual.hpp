@@ -85,6 +85,7 @@ class TissueVisual {
   std::unique_ptr<FoldHeight> folds_;
   std::unique_ptr<Smoke> smoke_;
   std::unique_ptr<ScarAge> scars_;
+  double followed_ = 0;                             // time of the last frame that smoke_ and scars_ have seen [s]
   bool folds_sent_ = false, browned_sent_ = false;  // of the frame that is drawn
   SceneSmoke seen_smoke_;
   DynamicMesh drawn_, mesh_lines_;

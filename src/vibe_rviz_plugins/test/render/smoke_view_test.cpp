@@ -85,21 +85,29 @@ class SmokeViewTest : public ::testing::Test {
   }
 
   struct Ring {
-    double contrast, saturation;  // of green: root mean square difference to its mean; (red - blue) / red
+    double contrast, saturation;  // of green: see below; (red - blue) / red
   };
-  /// A circle around the picture's middle; along the tube this is the wall at one distance.
+  /// A circle around the picture's middle; along the tube this is the wall at one distance. Contrast is the root mean
+  /// square difference to the mean over 24 degrees, two folds, by the mean: wisps are broader.
   static Ring ringAt(const Pixels& pixels, double share) {
-    double sum[3] = {0, 0, 0}, squares = 0;
-    constexpr int kPoints = 720;
+    constexpr int kPoints = 720, kHalf = 24;
+    std::vector<double> green;
+    double sum[3] = {0, 0, 0};
     for (int k = 0; k < kPoints; ++k) {
       const double angle = 2 * M_PI * k / kPoints, r = share * kSize / 2;
       const int x = static_cast<int>(kSize / 2 + r * std::cos(angle)),
                 y = static_cast<int>(kSize / 2 + r * std::sin(angle));
       const std::uint8_t* pixel = &pixels[static_cast<std::size_t>(3 * (y * kSize + x))];
-      for (int c = 0; c < 3; ++c) sum[c] += pixel[c] / double{kPoints};
-      squares += pixel[1] * pixel[1] / double{kPoints};
+      for (int c = 0; c < 3; ++c) sum[c] += pixel[c];
+      green.push_back(pixel[1]);
     }
-    return {std::sqrt(squares - sum[1] * sum[1]) / sum[1], (sum[0] - sum[2]) / sum[0]};
+    double squares = 0;
+    for (int k = 0; k < kPoints; ++k) {
+      double around = 0;
+      for (int n = -kHalf; n <= kHalf; ++n) around += green[(k + n + kPoints) % kPoints] / (2 * kHalf + 1);
+      squares += (green[k] - around) * (green[k] - around);
+    }
+    return {std::sqrt(squares / kPoints) / (sum[1] / kPoints), (sum[0] - sum[2]) / sum[0]};
   }
 
   /// Mean of a square in the middle.
@@ -139,7 +147,7 @@ TEST_F(SmokeViewTest, FarWallLosesMoreContrastAndColourThanNearWall) {
   EXPECT_LT(hazy_far.contrast / far.contrast, 0.7 * hazy_near.contrast / near.contrast);
   EXPECT_LT(hazy_near.saturation, 0.95 * near.saturation);
   EXPECT_LT(hazy_far.saturation / far.saturation, 0.7 * hazy_near.saturation / near.saturation);
-  EXPECT_GT(hazy_near.contrast, 0.4 * near.contrast) << "the wall at 48 mm must be recognised";
+  EXPECT_GT(hazy_near.contrast, 0.25 * near.contrast) << "the wall at 48 mm must be recognised";
 }
 
 TEST_F(SmokeViewTest, IsGoneAfterSomeTime) {
@@ -185,6 +193,24 @@ TEST_F(SmokeViewTest, DoesNotDependOnWhichFramesAreDrawn) {
   frame_ = burnt;
   wait(20);
   EXPECT_LE(largestDifference(picture(along()), seldom), 1);
+}
+
+// A filter that waits for transforms gives messages away in another order than they came.
+TEST_F(SmokeViewTest, OvertakenFramesTellNothing) {
+  burn(6);
+  std::fill(frame_.grade.begin(), frame_.grade.end(), std::uint8_t{1});
+  wait(10);
+  const Pixels before = picture(along());
+  frame_.time -= 0.1;
+  frame_.dose.assign(frame_.dose.size(), 0);
+  tissue_->follow(frame_);
+  tissue_->setLook({});
+  EXPECT_TRUE(picture(along()) == before);
+  frame_.time -= 5;  // control: time is set back
+  tissue_->follow(frame_);
+  tissue_->setLook({});
+  EXPECT_FALSE(picture(along()) == before);
+  EXPECT_EQ(scene_->getFogDensity(), 0);
 }
 
 TEST_F(SmokeViewTest, SmokeOfSeveralOrgansAddsUpAndLeavesNothing) {
