@@ -1,4 +1,4 @@
-"""Pictures of the endoscope's eye: the image of endoscope_camera in eight states of three sessions.
+"""Pictures of the endoscope's eye: the image of endoscope_camera in ten states of three sessions.
 
 scripts/views has checked the arguments, built the workspace and sourced its environment. The simulator begins paused and
 is taken from picture to picture by its service `step`, so that a picture shows the same state on every machine.
@@ -16,14 +16,15 @@ import time
 import numpy
 import rospy
 from PIL import Image as Picture
-from sensor_msgs.msg import Image
+from sensor_msgs.msg import CameraInfo, Image
 
 from graph import GraphError
 from run_session import Interrupted, attempt, interrupt, session_defaults
 from rviz_window import wait_for
 from take_pictures import PictureSession
 
-View = collections.namedtuple("View", "name session seconds")
+View = collections.namedtuple("View", "name session seconds followed", defaults=(None,))
+# followed: from when on the camera listens, for what depends on the past: smoke, and the colour of marks
 SESSIONS = {  # script, and what differs from the default scene
     "eye": ("eye.yaml", {}),
     "states": ("five_states.yaml", {}),
@@ -38,8 +39,10 @@ VIEWS = [
     View("marked", "states", 48.0),
     View("sutured", "states", 89.5),
     View("bleeding", "bleeding", 89.5),
+    View("smoke", "eye", 48.4, followed=45.0),
+    View("scar", "eye", 332.0, followed=45.0),
 ]
-COLUMNS = 4  # of the sheet
+COLUMNS = 5  # of the sheet
 
 
 def parse_arguments():
@@ -76,6 +79,7 @@ class ViewSession(PictureSession):
         self.size = size
         self.images = {}
         self.subscriber = None
+        self.follower = None
 
     def start(self):
         graph = self.graph
@@ -101,6 +105,12 @@ class ViewSession(PictureSession):
         wait_for(self.is_watched, "the camera did not listen to the tissue (see {})".format(self.logs))
         time.sleep(1)  # for the connections, and for the transforms of before
 
+    def follow(self):
+        """Lets the camera listen to the simulator from now on without drawing: camera_info needs no image."""
+        self.follower = rospy.Subscriber("/endoscope/camera_info", CameraInfo, lambda _: None)
+        wait_for(self.is_watched, "the camera did not listen to the tissue (see {})".format(self.logs))
+        time.sleep(1)
+
     def is_watched(self):
         _, subscribers, _ = self.graph.master.getSystemState("/vibe_scripts")[2]
         return any(topic == "/tissue/particles" and nodes for topic, nodes in subscribers)
@@ -110,6 +120,9 @@ class ViewSession(PictureSession):
 
     def take(self, view, file):
         period = self.step_period()
+        if view.followed is not None and self.follower is None:
+            self.step_to(view.followed, period)
+            self.follow()
         self.step_to(view.seconds - 5 * period, period)
         self.look()
         for _ in range(5):  # one at a time: the last one has an image, and sutures of before

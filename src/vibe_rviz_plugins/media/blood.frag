@@ -4,6 +4,7 @@
 // (src/geometry/blood_colour.hpp). Its surface is a mirror: two tight highlights of the light guides, and towards grazing
 // angles the lit wall around (Schlick 1994).
 uniform float reach;  // as in mucosa.frag [m]
+uniform vec4 smoke;   // x: its extinction [1/m]
 
 varying vec3 view_position;
 varying vec3 view_normal;
@@ -25,5 +26,5 @@ void main() {
   // what is mirrored covers what is behind, however thin the blood
   float shine = clamp(max(mirrored.r, max(mirrored.g, mirrored.b)), 0.0, 1.0);
   float alpha = colour.a + (1.0 - colour.a) * shine * smoothstep(0.1, 0.4, colour.a);
-  gl_FragColor = vec4(stored(radiance + mirrored), alpha);
+  gl_FragColor = vec4(stored(smoked(radiance + mirrored, view_position, reach, smoke.x)), alpha);
 }

@@ -4,6 +4,7 @@
 uniform vec3 colour;      // of the material: diffuse, and what a metal reflects
 uniform float shine;      // strength of its highlights; from 0.7 on it is a metal
 uniform float sharpness;  // exponent of its highlights
+uniform vec4 smoke;       // x: its extinction [1/m]
 uniform float reach;      // of the light, as in mucosa.frag [m]
 
 varying vec3 view_position;
@@ -35,5 +36,5 @@ void main() {
   vec3 lit = lamp(view_position, normal, normal, reach, 0.0, kNear);
   float gloss = mix(lit.z, lit.y, smoothstep(30.0, 150.0, sharpness)) * mix(shine, 1.6, metal);
   light += base * lit.x * mix(0.95, 0.42, metal) + mirror * (gloss + 0.4 * metal * lit.x);
-  gl_FragColor = vec4(stored(light), 1.0);
+  gl_FragColor = vec4(stored(smoked(light, view_position, reach, smoke.x)), 1.0);
 }

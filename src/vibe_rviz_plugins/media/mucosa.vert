@@ -13,6 +13,7 @@ varying vec3 around;  // direction around the organ; by how much the phase of th
 varying vec4 anatomy;  // share of folds, of antrum; distance beyond Z line and pylorus [m]
 varying float fold;    // height of the rugae here [m]
 varying vec2 reaching; // part of each light guide that the device does not hide
+varying float browned;  // grade of heat times how brown its scar is (src/geometry/scar_age.hpp)
 
 void main() {
   gl_Position = worldViewProj * gl_Vertex;
@@ -24,4 +25,5 @@ void main() {
   anatomy = gl_MultiTexCoord2;
   fold = gl_MultiTexCoord3.x;
   reaching = lightReaching(view_position);
+  browned = gl_MultiTexCoord4.x;
 }

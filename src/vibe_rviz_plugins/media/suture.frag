@@ -2,6 +2,7 @@
 #include "lamp.glsl"
 // Thread, T-tag and cinch in the light of the endoscope, with vertex colours. Alpha 0.5: metal; 1: polymer.
 uniform float reach;  // as in mucosa.frag [m]
+uniform vec4 smoke;   // x: its extinction [1/m]
 
 varying vec3 view_position;
 varying vec3 view_normal;
@@ -24,5 +25,5 @@ void main() {
   float tight = 1.0 - smoothstep(0.3, 0.9, length(fwidth(view_normal)));
   vec3 polymer = base * (light.x + around_light) + mix(0.10, 0.25, tight) * light.z + 2.0 * tight * light.y;
   vec3 steel = base * (0.55 * light.x + mirrored + 0.9 * light.z + 2.5 * tight * light.y);
-  gl_FragColor = vec4(stored(mix(polymer, steel, metal)), 1.0);
+  gl_FragColor = vec4(stored(smoked(mix(polymer, steel, metal), view_position, reach, smoke.x)), 1.0);
 }

@@ -94,6 +94,7 @@ CameraOptions readCameraOptions(const ros::NodeHandle& node) {
   read.number("sharpness", 0.2, 2, options.sharpness);
   read.number("rate", 0, 1000, options.rate);
   read.yesOrNo("auto_exposure", options.auto_exposure);
+  read.yesOrNo("smoke", options.smoke);
   read.yesOrNo("stereo", options.stereo);
   read.number("baseline", 0.0001, 0.1, options.baseline);
   read.text("camera_frame", options.camera_frame);

@@ -14,6 +14,7 @@ struct CameraOptions {
   double sharpness = 1;  ///< as in sourceFor()
   double rate = 30;      ///< images per second of the stamps [Hz]; 0: one for every message of tissue/particles
   bool auto_exposure = true;
+  bool smoke = true;  ///< whether the argon beam makes smoke
   bool stereo = false;
   double baseline = 0.004;                            ///< from the left lens to the right one [m]
   std::string camera_frame = "scope_camera_optical";  ///< where the camera is, the left one of a pair

@@ -13,7 +13,7 @@ constexpr const char* kCameraFrame = "scope_camera_optical";
 
 DatasetCamera::DatasetCamera(const DatasetOptions& options, Ogre::SceneManager& scene, const std::string& description)
     : options_(options),
-      drawn_(scene, description),
+      drawn_(scene, description, options.smoke),
       truth_(description),
       camera_(scene, options.round, 1),
       truth_camera_(options.round, static_cast<double>(kScopeNearClip), static_cast<double>(kScopeFarClip)),
@@ -28,8 +28,10 @@ std::string DatasetCamera::take(const SessionFrame& frame, const JointTree& pose
   const EndoscopeScene::PoseOf pose_of = [&](const std::string& name) { return poses.pose(name, world); };
   const std::optional<Eigen::Isometry3d> mount = pose_of(kCameraFrame);
   if (!mount) return std::string("Nothing tells where the frame '") + kCameraFrame + "' is in '" + world + "'.";
-  const std::string problem = show(frame, pose_of, folder);
+  const std::string problem = show(frame, pose_of);
   if (!problem.empty()) return problem;
+  if (options_.particles && topology_ && topology_ != written_topology_) folder.writeTopology(*topology_);
+  written_topology_ = topology_;
   using Eigen::Vector3d;
   const Eigen::Isometry3d camera = *mount * Eigen::Isometry3d(Eigen::AngleAxisd(options_.yaw, Vector3d::UnitY()) *
                                                               Eigen::AngleAxisd(options_.pitch, Vector3d::UnitX()) *
@@ -43,16 +45,18 @@ std::string DatasetCamera::take(const SessionFrame& frame, const JointTree& pose
   return "";
 }
 
-std::string DatasetCamera::show(const SessionFrame& frame, const EndoscopeScene::PoseOf& pose_of,
-                                DatasetFolder& folder) {
-  std::string problem;
+std::string DatasetCamera::follow(const SessionFrame& frame) {
   if (frame.topology && frame.topology != topology_) {
-    problem = drawn_.setTopology(*frame.topology);
+    const std::string problem = drawn_.setTopology(*frame.topology);
     truth_.setTopology(*frame.topology);
-    if (problem.empty() && options_.particles) folder.writeTopology(*frame.topology);
     topology_ = frame.topology;
+    if (!problem.empty()) return problem;
   }
-  if (problem.empty()) problem = drawn_.setParticles(*frame.particles);
+  return drawn_.followParticles(*frame.particles);
+}
+
+std::string DatasetCamera::show(const SessionFrame& frame, const EndoscopeScene::PoseOf& pose_of) {
+  std::string problem = drawn_.setParticles(*frame.particles);
   if (problem.empty()) problem = truth_.setParticles(*frame.particles);
   if (problem.empty() && frame.sutures && frame.sutures != sutures_) {
     problem = drawn_.setSutures(*frame.sutures, pose_of);

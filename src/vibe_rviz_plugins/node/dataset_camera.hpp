@@ -17,6 +17,10 @@ class DatasetCamera {
   /// @throws std::runtime_error  the graphics system or Embree cannot be used
   DatasetCamera(const DatasetOptions& options, Ogre::SceneManager& scene, const std::string& description);
 
+  /// To be told of each state in order, taken or not, so that smoke and the age of marks do not depend on the choice.
+  /// @return one sentence if the state is wrong
+  std::string follow(const SessionFrame& frame);
+  /// Takes the state that follow() was told last.
   /// @return one sentence if the state is wrong; then nothing is written
   std::string take(const SessionFrame& frame, const JointTree& poses, DatasetFolder& folder);
 
@@ -29,7 +33,7 @@ class DatasetCamera {
     double aside;                     // to the right of the camera frame [m]
     std::optional<TruthView> before;  // from which the flow starts
   };
-  std::string show(const SessionFrame& frame, const EndoscopeScene::PoseOf& poseOf, DatasetFolder& folder);
+  std::string show(const SessionFrame& frame, const EndoscopeScene::PoseOf& poseOf);
   void takeEye(Eye& eye, const Eigen::Isometry3d& camera, const ros::Time& stamp, DatasetFolder& folder);
 
   DatasetOptions options_;
@@ -39,7 +43,7 @@ class DatasetCamera {
   TruthCamera truth_camera_;
   SensorModel sensor_;
   std::vector<Eye> eyes_;
-  vibe_msgs::TissueTopology::ConstPtr topology_;
+  vibe_msgs::TissueTopology::ConstPtr topology_, written_topology_;
   vibe_msgs::SutureArray::ConstPtr sutures_;
   std::size_t images_ = 0;
 };

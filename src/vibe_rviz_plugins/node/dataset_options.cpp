@@ -60,6 +60,7 @@ void describe(CLI::App& app, DatasetOptions& options, Words& words) {
   app.add_option("--field-of-view", words.degrees, "across the circle [degrees]")->check(CLI::Range(10., 170.));
   app.add_flag("--stereo", options.stereo, "a pair of lenses");
   app.add_option("--baseline", options.baseline, "between the lenses [m]")->check(CLI::Range(0.0001, 0.1));
+  app.add_flag("!--no-smoke", options.smoke, "no smoke of the argon beam");
   app.add_option("--seed", options.seed, "of the variation of lens and sensor; 0: none")
       ->check(CLI::Range(0, 2147483647));
   app.add_option("--content", words.content, "beside the images")->delimiter(',');

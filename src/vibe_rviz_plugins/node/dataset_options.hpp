@@ -19,6 +19,7 @@ struct DatasetOptions {
   double rate = 10;         ///< images per second of simulated time [Hz]; 0: every state
   int every = 1;            ///< of the images that `rate` gives, one in this many
   double from = 0, to = std::numeric_limits<double>::infinity();  ///< [s]
+  bool smoke = true;                                              ///< whether the argon beam makes smoke
   int seed = 0;                                                   ///< of the variation; 0: none
   bool depth = true, normals = true, labels = true, flow = true, particles = false, sutures = false;
   SensorStyle sensor;                   ///< as varied

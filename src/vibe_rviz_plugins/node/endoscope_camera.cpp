@@ -47,7 +47,7 @@ EndoscopeCamera::EndoscopeCamera(ros::NodeHandle node, const CameraOptions& opti
                                  const std::string& description)
     : node_(node),
       options_(options),
-      scene_(scene, description),
+      scene_(scene, description, options.smoke),
       camera_(scene, options.round, options.sharpness),
       sensor_(options.sensor, options.round),
       truth_(description),

@@ -19,11 +19,15 @@ void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
 
 }  // namespace
 
-EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description)
+EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke)
     : suture_node_(*scene.getRootSceneNode()->createChildSceneNode()),
       tissue_(*scene.getRootSceneNode()),
       sutures_(suture_node_),
-      instrument_(scene, description) {}
+      instrument_(scene, description) {
+  TissueLook look;
+  look.smoke = smoke;
+  tissue_.setLook(look);
+}
 
 EndoscopeScene::~EndoscopeScene() = default;
 
@@ -38,10 +42,20 @@ std::string EndoscopeScene::setTopology(const vibe_msgs::TissueTopology& message
   return problem;
 }
 
-std::string EndoscopeScene::setParticles(const sensor_msgs::PointCloud2& message) {
+std::string EndoscopeScene::read(const sensor_msgs::PointCloud2& message) {
   if (!has_mesh_) return "There is no usable tissue/topology yet, so tissue/particles cannot be drawn.";
-  const std::string problem = readParticles(message, mesh_, frame_);
+  return readParticles(message, mesh_, frame_);
+}
+
+std::string EndoscopeScene::setParticles(const sensor_msgs::PointCloud2& message) {
+  const std::string problem = read(message);
   if (problem.empty()) tissue_.setFrame(frame_);
+  return problem;
+}
+
+std::string EndoscopeScene::followParticles(const sensor_msgs::PointCloud2& message) {
+  const std::string problem = read(message);
+  if (problem.empty()) tissue_.follow(frame_);
   return problem;
 }
 

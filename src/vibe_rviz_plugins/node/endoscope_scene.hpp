@@ -26,17 +26,22 @@ class EndoscopeScene {
 
   /// @param description  URDF of the instrument
   /// @throws std::runtime_error  the package's media folder cannot be found
-  EndoscopeScene(Ogre::SceneManager& scene, const std::string& description);
+  /// @param smoke        whether the argon beam makes smoke
+  EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke);
   ~EndoscopeScene();
 
   std::string setTopology(const vibe_msgs::TissueTopology& message);
   std::string setParticles(const sensor_msgs::PointCloud2& message);
+  /// A state that is not to be drawn: smoke and the colour of marks depend on it (TissueVisual::follow()).
+  std::string followParticles(const sensor_msgs::PointCloud2& message);
   std::string setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf);
   /// To be called after changes, before the picture is taken: blood follows the wall.
   void drawBlood();
   void placeInstrument(const PoseOf& poseOf) { instrument_.place(poseOf); }
 
  private:
+  std::string read(const sensor_msgs::PointCloud2& message);
+
   Ogre::SceneNode& suture_node_;
   TissueVisual tissue_;
   SutureVisual sutures_;

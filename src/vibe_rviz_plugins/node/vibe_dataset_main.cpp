@@ -52,8 +52,9 @@ void run(const vibe::DatasetOptions& options) {
   for (int turn = 0; frames.next(frame);) {
     const ros::Time stamp = frame.particles->header.stamp;
     if (stamp.toSec() > options.to) break;
+    std::string problem = camera.follow(frame);
     if (stamp.toSec() < options.from || !due.isDue(stamp) || turn++ % options.every != 0) continue;
-    const std::string problem = camera.take(frame, frames.poses(), folder);
+    if (problem.empty()) problem = camera.take(frame, frames.poses(), folder);
     if (!problem.empty()) throw std::runtime_error(problem);
     world = frame.particles->header.frame_id;
     progress.show(frames, camera.images());

@@ -144,6 +144,9 @@ void TissueDisplay::addSurface() {
       "Show the effects of the argon beam on the inside: pale marks, brown burn scars, black where the "
       "muscularis is at risk.",
       surface_, SLOT(changeLook()), this);
+  smoke_ = new rviz::BoolProperty(
+      "Smoke", true, "In the view Endoscope, show the smoke of the argon beam, which clears within a minute.", surface_,
+      SLOT(changeLook()), this);
 }
 
 void TissueDisplay::addParts() {
@@ -304,6 +307,7 @@ void TissueDisplay::changeLook() {
   look.wetness = static_cast<double>(wetness_->getFloat());
   look.relief = static_cast<double>(relief_->getFloat());
   look.scars = scars_->getBool();
+  look.smoke = smoke_->getBool();
   look.particles = particles_->getBool();
   look.particle_size = static_cast<double>(particle_size_->getFloat());
   look.mesh = simulation_mesh_->getBool();

@@ -61,7 +61,7 @@ class TissueDisplay : public rviz::Display {
   rviz::RosTopicProperty *topology_topic_, *particles_topic_;
   rviz::EnumProperty *colouring_, *map_;
   rviz::FloatProperty *min_, *max_, *outside_alpha_, *wetness_, *relief_, *particle_size_;
-  rviz::BoolProperty *legend_shown_, *surface_, *scars_, *particles_, *simulation_mesh_;
+  rviz::BoolProperty *legend_shown_, *surface_, *scars_, *smoke_, *particles_, *simulation_mesh_;
   rviz::ColorProperty *inside_, *outside_;
 
   ros::Subscriber topology_subscriber_, particles_subscriber_;

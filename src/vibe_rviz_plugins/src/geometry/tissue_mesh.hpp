@@ -33,6 +33,7 @@ struct TissueMesh {
 /// The particles at one moment, as tissue/particles tells them.
 struct TissueFrame {
   std::uint32_t revision = 0;
+  double time = 0;               ///< of the sample [s]
   std::vector<float> positions;  ///< x y z per particle [m]
   std::vector<float> strain;     ///< mean in-plane stretch minus 1 [1]; empty if not given
   std::vector<std::uint8_t>

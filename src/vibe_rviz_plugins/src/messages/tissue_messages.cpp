@@ -146,6 +146,7 @@ std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueM
   if (count != mesh.particle_count)
     return "The cloud has " + number(count) + " particles and the topology " + number(mesh.particle_count) + ".";
   frame.revision = mesh.revision;
+  frame.time = message.header.stamp.toSec();
   frame.positions.resize(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
     frame.positions[3 * i] = x.at<float>(i);

@@ -2,6 +2,7 @@
 
 #include <OgreEntity.h>
 #include <OgreHardwareBufferManager.h>
+#include <OgreMaterialManager.h>
 #include <OgreMeshManager.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
@@ -15,7 +16,7 @@
 namespace vibe {
 namespace {
 
-enum Source : unsigned short { Vertices, Colours, Fixed, Mucosa, Heights };
+enum Source : unsigned short { Vertices, Colours, Fixed, Mucosa, Heights, Browned };
 
 template <class T>
 Ogre::HardwareVertexBufferSharedPtr vertexBuffer(std::size_t count, std::size_t size, const T* values, bool changes) {
@@ -48,7 +49,7 @@ void DynamicMesh::clear() {
   }
   if (mesh_) Ogre::MeshManager::getSingleton().remove(mesh_);
   mesh_.reset();
-  vertices_.reset(), colours_.reset(), heights_.reset();
+  vertices_.reset(), colours_.reset(), heights_.reset(), browned_.reset();
   vertex_count_ = triangle_count_ = 0;
 }
 
@@ -66,6 +67,7 @@ void DynamicMesh::setTopology(const std::vector<std::uint32_t>& triangles, std::
   mesh_->load();
   entity_ = parent_.getCreator()->createEntity(mesh_);
   entity_->setCastShadows(false);
+  entity_->setListener(this);
   entity_->setVisible(visible_);
   parent_.attachObject(entity_);
   setMaterials(materials_);
@@ -96,11 +98,14 @@ void DynamicMesh::addMucosa(const std::vector<MucosaVertex>& mucosa) {
   layout.addElement(Mucosa, 0, Ogre::VET_FLOAT3, Ogre::VES_TEXTURE_COORDINATES, 1);
   layout.addElement(Mucosa, offsetof(MucosaVertex, folded), Ogre::VET_FLOAT4, Ogre::VES_TEXTURE_COORDINATES, 2);
   layout.addElement(Heights, 0, Ogre::VET_FLOAT1, Ogre::VES_TEXTURE_COORDINATES, 3);
-  const std::vector<float> level(vertex_count_, 0.0F);
-  heights_ = vertexBuffer(vertex_count_, sizeof(float), level.data(), true);
+  layout.addElement(Browned, 0, Ogre::VET_FLOAT1, Ogre::VES_TEXTURE_COORDINATES, 4);
+  const std::vector<float> none(vertex_count_, 0.0F);
+  heights_ = vertexBuffer(vertex_count_, sizeof(float), none.data(), true);
+  browned_ = vertexBuffer(vertex_count_, sizeof(float), none.data(), true);
   Ogre::VertexBufferBinding& binding = *mesh_->sharedVertexData->vertexBufferBinding;
   binding.setBinding(Mucosa, vertexBuffer(vertex_count_, sizeof(MucosaVertex), mucosa.data(), false));
   binding.setBinding(Heights, heights_);
+  binding.setBinding(Browned, browned_);
 }
 
 void DynamicMesh::makeIndexData(const std::vector<std::uint32_t>& triangles) {
@@ -126,6 +131,17 @@ void DynamicMesh::setColours(const PackedColour* colours, std::size_t first, std
 
 void DynamicMesh::setHeights(const std::vector<float>& heights) {
   if (heights_ && heights.size() == vertex_count_) write(*heights_, heights.data(), 0, vertex_count_);
+}
+
+void DynamicMesh::setBrowned(const std::vector<float>& browned) {
+  if (browned_ && browned.size() == vertex_count_) write(*browned_, browned.data(), 0, vertex_count_);
+}
+
+// Ogre asks whether it may draw, for each camera that sees the box; by then the scheme of its viewport is set.
+bool DynamicMesh::objectRendering(const Ogre::MovableObject*, const Ogre::Camera*) {
+  if (before_endoscope_ && Ogre::MaterialManager::getSingleton().getActiveScheme() == kEndoscopeScheme)
+    before_endoscope_();
+  return true;
 }
 
 void DynamicMesh::setBounds(const Ogre::AxisAlignedBox& bounds) {

@@ -3,8 +3,10 @@
 #include <OgreHardwareVertexBuffer.h>
 #include <OgreMaterial.h>
 #include <OgreMesh.h>
+#include <OgreMovableObject.h>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "geometry/mucosa_map.hpp"
@@ -20,12 +22,12 @@ namespace vibe {
 /// Triangles with moving vertices in hardware buffers. Only what changes is sent to the graphics card; vertices and
 /// colours have separate buffers, so tissue that moves without changing colour sends only its vertices.
 /// To be used from the thread that renders.
-class DynamicMesh {
+class DynamicMesh : private Ogre::MovableObject::Listener {
  public:
   /// @param parent     parent node; must outlive this object
   /// @param materials  the triangles are drawn once with each material, from the same vertices; see resources.hpp
   DynamicMesh(Ogre::SceneNode& parent, std::vector<Ogre::MaterialPtr> materials);
-  ~DynamicMesh();
+  ~DynamicMesh() override;
   DynamicMesh(const DynamicMesh&) = delete;
   DynamicMesh& operator=(const DynamicMesh&) = delete;
 
@@ -43,6 +45,10 @@ class DynamicMesh {
   void setColours(const PackedColour* colours, std::size_t first, std::size_t count);
   /// Sets the heights of the folds of all vertices [m]; now 0.
   void setHeights(const std::vector<float>& heights);
+  /// Sets how brown the scars of all vertices are (ScarAge::browned()) [1]; now 0.
+  void setBrowned(const std::vector<float>& browned);
+  /// What to do each time before it is drawn for the endoscope, for values that only its materials read.
+  void beforeEndoscope(std::function<void()> prepare) { before_endoscope_ = std::move(prepare); }
   /// Sets the box around all vertices; anything outside may be culled.
   void setBounds(const Ogre::AxisAlignedBox& bounds);
 
@@ -53,6 +59,7 @@ class DynamicMesh {
   std::size_t triangleCount() const { return triangle_count_; }
 
  private:
+  bool objectRendering(const Ogre::MovableObject* object, const Ogre::Camera* camera) override;
   void clear();
   void makeVertexData(const std::vector<float>& fixed);
   void addMucosa(const std::vector<MucosaVertex>& mucosa);
@@ -62,7 +69,8 @@ class DynamicMesh {
   std::vector<Ogre::MaterialPtr> materials_;
   Ogre::MeshPtr mesh_;
   Ogre::Entity* entity_ = nullptr;
-  Ogre::HardwareVertexBufferSharedPtr vertices_, colours_, heights_;
+  Ogre::HardwareVertexBufferSharedPtr vertices_, colours_, heights_, browned_;
+  std::function<void()> before_endoscope_;
   std::size_t vertex_count_ = 0, triangle_count_ = 0;
   bool visible_ = true;
 };

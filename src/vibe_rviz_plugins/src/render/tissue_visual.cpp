@@ -7,11 +7,16 @@
 #include <OgreTechnique.h>
 #include <rviz/ogre_helpers/point_cloud.h>
 
+#include <limits>
+
 #include "render/resources.hpp"
 
 namespace vibe {
 namespace {
 
+// Frames may overtake each other on their way, in a filter that waits for transforms for instance. An overtaken one
+// tells nothing new; time that is set back goes back further.
+constexpr double kOvertaken = 1;    // [s]
 constexpr double kEdgeAlpha = 0.9;  // opacity of a wall at grazing angles
 constexpr double kGrain = 0.25;
 constexpr float kFill = 0.16F, kFillOfData = 0.5F;  // ambient light
@@ -34,11 +39,13 @@ TissueVisual::TissueVisual(Ogre::SceneNode& parent)
       inside_(copyMaterial("vibe/tissue_inside")),
       outside_(copyMaterial("vibe/tissue_outside")),
       wire_(copyMaterial("vibe/wire")),
+      seen_smoke_(*parent.getCreator()),
       drawn_(parent, {inside_, outside_}),
       mesh_lines_(parent, {wire_}),
       points_(std::make_unique<rviz::PointCloud>()) {
   points_->setRenderMode(rviz::PointCloud::RM_SPHERES);
   node_.attachObject(points_.get());
+  drawn_.beforeEndoscope([this] { sendForEndoscope(); });
   applyLook();
 }
 
@@ -50,8 +57,10 @@ TissueVisual::~TissueVisual() {
 
 void TissueVisual::clear() {
   has_frame_ = false;
+  followed_ = -std::numeric_limits<double>::infinity();
   mesh_ = {};
-  surface_.reset(), colours_.reset(), folds_.reset();
+  surface_.reset(), colours_.reset(), folds_.reset(), smoke_.reset(), scars_.reset();
+  seen_smoke_.set(0, 0);
   drawn_.setTopology({}, 0), mesh_lines_.setTopology({}, 0);
   points_->clear();
 }
@@ -63,18 +72,44 @@ void TissueVisual::setMesh(const TissueMesh& mesh) {
   colours_ = std::make_unique<SurfaceColours>(mesh_);
   const MucosaMap map = mapMucosa(mesh_);
   folds_ = std::make_unique<FoldHeight>(mesh_, map);
+  smoke_ = std::make_unique<Smoke>(mesh_);
+  scars_ = std::make_unique<ScarAge>(mesh_);
+  folds_sent_ = browned_sent_ = false;
   drawn_.setTopology(mesh_.triangles, mesh_.vertex_count, mesh_.rest, map.of_vertex);
   applyLook();
 }
 
 void TissueVisual::setFrame(const TissueFrame& frame) {
   if (!surface_) return;
+  follow(frame);
   frame_ = frame;
   has_frame_ = true;
+  draw();
+}
+
+void TissueVisual::follow(const TissueFrame& frame) {
+  if (!surface_) return;
+  const double late = followed_ - frame.time;
+  if (late > 0 && late < kOvertaken) return;
+  followed_ = frame.time;
+  smoke_->see(frame);
+  if (scars_->see(frame)) browned_sent_ = false;
+}
+
+void TissueVisual::draw() {
   drawn_.setVisible(look_.surface);
+  seen_smoke_.set(look_.smoke ? smoke_->extinction() : 0, frame_.time);
   if (look_.surface) sendSurface(frame_);
   if (look_.particles) sendParticles(frame_);
   if (look_.mesh) sendMesh(frame_);
+}
+
+// What only the shader of the mucosa reads. It may be long before an endoscope looks, so it waits until then.
+void TissueVisual::sendForEndoscope() {
+  if (!has_frame_) return;
+  if (!folds_sent_) drawn_.setHeights(folds_->update(frame_.positions));
+  if (!browned_sent_) drawn_.setBrowned(scars_->browned());
+  folds_sent_ = browned_sent_ = true;
 }
 
 void TissueVisual::sendSurface(const TissueFrame& frame) {
@@ -82,7 +117,7 @@ void TissueVisual::sendSurface(const TissueFrame& frame) {
   if (!moved.empty()) {
     drawn_.setVertices(surface_->vertices().data() + moved.first, moved.first, moved.count());
     drawn_.setBounds(boxAround(surface_->bounds()));
-    drawn_.setHeights(folds_->update(frame.positions));
+    folds_sent_ = false;
   }
   const VertexSpan coloured = colours_->update(frame);
   drawn_.setColours(colours_->colours().data() + coloured.first, coloured.first, coloured.count());
@@ -115,9 +150,7 @@ void TissueVisual::setLook(const TissueLook& look) {
   drawn_.setVisible(look_.surface);
   mesh_lines_.setVisible(look_.mesh);
   points_->setVisible(look_.particles);
-  if (!has_frame_) return;
-  const TissueFrame frame = frame_;
-  setFrame(frame);
+  if (has_frame_) draw();
 }
 
 void TissueVisual::applyLook() {

@@ -6,9 +6,12 @@
 
 #include "geometry/deformable_surface.hpp"
 #include "geometry/fold_height.hpp"
+#include "geometry/scar_age.hpp"
+#include "geometry/smoke.hpp"
 #include "geometry/surface_colours.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "render/dynamic_mesh.hpp"
+#include "render/scene_smoke.hpp"
 
 namespace Ogre {
 class SceneNode;
@@ -31,13 +34,15 @@ struct TissueLook {
   double wetness = 0.4;         ///< strength of highlights, 0 to 1
   double relief = 0.6e-3;       ///< height of the fine relief, which is shading only [m]
   bool scars = true;            ///< show marks and burn scars
+  bool smoke = true;            ///< under the light of the endoscope, show the smoke of the argon beam
   bool particles = false;
   double particle_size = 3e-3;  ///< diameter of their balls [m]
   bool mesh = false;            ///< edges of the simulation mesh, whose particles determine the render surface
 };
 
 /// An organ in a scene of Ogre. Set its mesh once, then a frame whenever it has moved. A frame costs work and transfer
-/// only for what has changed. To be used from the thread that renders.
+/// only for what has changed. Smoke and the colour of marks depend on the frames of before. To be used from the thread
+/// that renders.
 class TissueVisual {
  public:
   /// @param parent  frame of all positions; must outlive this object
@@ -51,6 +56,8 @@ class TissueVisual {
   void setMesh(const TissueMesh& mesh);
   /// @param frame  of this mesh, checked by readParticles()
   void setFrame(const TissueFrame& frame);
+  /// A frame that is not to be drawn, but smokes and lets marks age.
+  void follow(const TissueFrame& frame);
   void setLook(const TissueLook& look);
   /// Draws nothing until the next mesh.
   void clear();
@@ -63,6 +70,8 @@ class TissueVisual {
  private:
   void applyLook();
   void applySide(Ogre::MaterialPtr& material, const Ogre::ColourValue& natural, bool outside);
+  void draw();
+  void sendForEndoscope();
   void sendSurface(const TissueFrame& frame);
   void sendParticles(const TissueFrame& frame);
   void sendMesh(const TissueFrame& frame);
@@ -76,6 +85,11 @@ class TissueVisual {
   std::unique_ptr<DeformableSurface> surface_;
   std::unique_ptr<SurfaceColours> colours_;
   std::unique_ptr<FoldHeight> folds_;
+  std::unique_ptr<Smoke> smoke_;
+  std::unique_ptr<ScarAge> scars_;
+  double followed_ = 0;                             // time of the last frame that smoke_ and scars_ have seen [s]
+  bool folds_sent_ = false, browned_sent_ = false;  // of the frame that is drawn
+  SceneSmoke seen_smoke_;
   DynamicMesh drawn_, mesh_lines_;
   std::vector<MovingVertex> mesh_vertices_;
   std::unique_ptr<rviz::PointCloud> points_;

@@ -1,0 +1,58 @@
+#include "geometry/scar_age.hpp"
+
+#include <cmath>
+
+namespace vibe {
+namespace {
+
+bool anyFell(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if ((now.empty() ? 0 : now[i]) < before[i]) return true;
+  return false;
+}
+
+/// In steps that a picture of 8 bits can tell, so that few frames change anything.
+float stepped(double value) {
+  return static_cast<float>(std::round(256 * value) / 256);
+}
+
+}  // namespace
+
+double browning(double age) {
+  return 1 - std::exp2(-age / kTanAge);
+}
+
+ScarAge::ScarAge(const TissueMesh& mesh)
+    : render_offsets_(mesh.render_offsets),
+      render_particles_(mesh.render_particles),
+      render_weights_(mesh.render_weights),
+      grade_(mesh.particle_count, 0),
+      since_(mesh.particle_count, 0),
+      of_particle_(mesh.particle_count, 0) {}
+
+bool ScarAge::see(const TissueFrame& frame) {
+  const bool anew = frame.time < time_ || anyFell(grade_, frame.grade);
+  time_ = frame.time;
+  bool changed = false;
+  for (std::size_t i = 0; i < grade_.size(); ++i) {
+    const std::uint8_t grade = frame.grade.empty() ? std::uint8_t{0} : frame.grade[i];
+    if (grade == 0 && grade_[i] == 0) continue;
+    if (anew || grade > grade_[i]) since_[i] = time_;
+    grade_[i] = grade;
+    const float browned = static_cast<float>(grade) * stepped(browning(time_ - since_[i]));
+    changed = changed || browned != of_particle_[i];
+    of_particle_[i] = browned;
+  }
+  return changed;
+}
+
+std::vector<float> ScarAge::browned() const {
+  if (render_offsets_.empty()) return of_particle_;
+  std::vector<float> of_vertex(render_offsets_.size() - 1, 0);
+  for (std::size_t v = 0; v < of_vertex.size(); ++v)
+    for (std::uint32_t k = render_offsets_[v]; k < render_offsets_[v + 1]; ++k)
+      of_vertex[v] += render_weights_[k] * of_particle_[render_particles_[k]];
+  return of_vertex;
+}
+
+}  // namespace vibe
