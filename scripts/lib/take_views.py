@@ -6,6 +6,7 @@ is taken from picture to picture by its service `step`, so that a picture shows 
 
 import argparse
 import collections
+import json
 import os
 import re
 import signal
@@ -17,6 +18,7 @@ import numpy
 import rospy
 from PIL import Image as Picture
 from sensor_msgs.msg import CameraInfo, Image
+from std_msgs.msg import String
 
 from graph import GraphError
 from run_session import Interrupted, attempt, interrupt, session_defaults
@@ -49,6 +51,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(allow_abbrev=False)
     for name in ("--workspace", "--size", "--output"):
         parser.add_argument(name, required=True)
+    parser.add_argument("--truth", action="store_true")
     parser.add_argument("views", nargs="+", choices=[view.name for view in VIEWS])
     return parser.parse_args()
 
@@ -70,6 +73,13 @@ def scene_with(workspace, changes, folder):
     return changed
 
 
+def array_of(image):
+    """The values of an image message."""
+    kind, channels = {"rgb8": (numpy.uint8, 3), "8UC1": (numpy.uint8, 1), "32FC1": (numpy.float32, 1)}[image.encoding]
+    values = numpy.frombuffer(image.data, kind).reshape(image.height, image.width, channels)
+    return values if channels > 1 else values[..., 0]
+
+
 class ViewSession(PictureSession):
     """A session that stands still whenever nobody steps it, with the endoscope's camera instead of rviz."""
 
@@ -77,8 +87,12 @@ class ViewSession(PictureSession):
         arguments.pictures = []
         super().__init__(arguments)
         self.size = size
-        self.images = {}
-        self.subscriber = None
+        topics = {"image_raw": Image}
+        if arguments.truth:
+            topics.update({"labels": Image, "depth/image_raw": Image, "label_table": String})
+        self.topics = topics
+        self.messages = {}  # per topic: by stamp
+        self.subscribers = []
         self.follower = None
 
     def start(self):
@@ -100,8 +114,9 @@ class ViewSession(PictureSession):
 
     def look(self):
         """Listens to the camera, which then listens to the simulator, until an image shows a step that begins later."""
-        self.images.clear()
-        self.subscriber = rospy.Subscriber("/endoscope/image_raw", Image, self.keep)
+        self.messages = {topic: {} for topic in self.topics}
+        for topic, kind in self.topics.items():
+            self.subscribers.append(rospy.Subscriber("/endoscope/" + topic, kind, self.keep, topic))
         wait_for(self.is_watched, "the camera did not listen to the tissue (see {})".format(self.logs))
         time.sleep(1)  # for the connections, and for the transforms of before
 
@@ -115,8 +130,13 @@ class ViewSession(PictureSession):
         _, subscribers, _ = self.graph.master.getSystemState("/vibe_scripts")[2]
         return any(topic == "/tissue/particles" and nodes for topic, nodes in subscribers)
 
-    def keep(self, image):
-        self.images[image.header.stamp.to_sec()] = image
+    def keep(self, message, topic):
+        stamp = message.header.stamp if hasattr(message, "header") else rospy.Time()
+        self.messages[topic][stamp.to_nsec()] = message
+
+    def pictures(self):
+        """The stamps of which every image is there."""
+        return set.intersection(*(set(self.messages[t]) for t, kind in self.topics.items() if kind is Image))
 
     def take(self, view, file):
         period = self.step_period()
@@ -126,13 +146,25 @@ class ViewSession(PictureSession):
         self.step_to(view.seconds - 5 * period, period)
         self.look()
         for _ in range(5):  # one at a time: the last one has an image, and sutures of before
-            before = len(self.images)
+            before = len(self.pictures())
             self.step_to((self.steps_done + 1) * period, period)
-            wait_for(lambda known=before: len(self.images) > known, "the camera took no picture (see {})".format(self.logs))
-        image = self.images[max(self.images)]
-        self.subscriber.unregister()
-        pixels = numpy.frombuffer(image.data, numpy.uint8).reshape(image.height, image.width, 3)
-        Picture.fromarray(pixels).save(file)
+            wait_for(lambda n=before: len(self.pictures()) > n, "the camera took no picture (see {})".format(self.logs))
+        for subscriber in self.subscribers:
+            subscriber.unregister()
+        self.subscribers.clear()
+        self.save(max(self.pictures()), file)
+
+    def save(self, stamp, file):
+        """The picture, and its truth as FILE.npz: labels, depth, and the names of the labels by their numbers."""
+        images = {t: array_of(self.messages[t][stamp]) for t, kind in self.topics.items() if kind is Image}
+        Picture.fromarray(images["image_raw"]).save(file)
+        if "labels" in images:
+            table = json.loads(next(iter(self.messages["label_table"].values())).data)
+            names = numpy.full(256, "", dtype=object)
+            for row in table:
+                names[row["number"]] = row["name"]
+            numpy.savez_compressed(os.path.splitext(file)[0] + ".npz", labels=images["labels"],
+                                   depth=images["depth/image_raw"], names=names.astype(str))  # fmt: skip
 
 
 def take_session(arguments, name, views):
@@ -140,7 +172,7 @@ def take_session(arguments, name, views):
     script, changes = SESSIONS[name]
     failures = []
     session_arguments = session_defaults(fast=True)
-    session_arguments.workspace = arguments.workspace
+    session_arguments.workspace, session_arguments.truth = arguments.workspace, arguments.truth
     session_arguments.script = os.path.join(arguments.workspace, "src/vibe_core/trainees/demo", script)
     with tempfile.TemporaryDirectory(prefix="vibe-views-") as session_arguments.output:
         session = None

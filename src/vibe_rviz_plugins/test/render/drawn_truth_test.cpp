@@ -1,24 +1,21 @@
 // The image that is drawn and the truth that is cast show the same geometry: silhouettes of bodies on black, and of a
 // body before the wall, in the pixels of both. Needs no display.
 
-#include <OgreRoot.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <OgreTechnique.h>
 #include <gtest/gtest.h>
-#include <rviz/ogre_helpers/render_system.h>
 
+#include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/resources.hpp"
 #include "render/shape_view.hpp"
 #include "render/tissue_visual.hpp"
-#include "render/virtual_display.hpp"
 #include "truth/truth_worlds.hpp"
 
 namespace vibe {
 namespace {
 
-using Pixels = std::vector<std::uint8_t>;
+using test::Pixels;
 
 /// A body that shines by itself, so that every pixel of it is bright.
 Ogre::MaterialPtr shining() {
@@ -66,16 +63,8 @@ Comparison compare(const std::vector<std::uint8_t>& labels, const std::vector<bo
 
 class DrawnTruthTest : public ::testing::TestWithParam<LensKind> {
  protected:
-  static void SetUpTestSuite() {
-    if (scene_ != nullptr) return;
-    provideDisplay();
-    rviz::RenderSystem::forceNoStereo();
-    scene_ = rviz::RenderSystem::get()->root()->createSceneManager();
-    loadResources();
-  }
-
   Pixels draw() const {
-    OffscreenCamera camera(*scene_, round_, 1);
+    OffscreenCamera camera(test::graphicsScene(), round_, 1);
     Pixels pixels;
     camera.take(test::eye(), pixels);
     return pixels;
@@ -87,14 +76,12 @@ class DrawnTruthTest : public ::testing::TestWithParam<LensKind> {
     return camera.labels(scene, view);
   }
 
-  static Ogre::SceneManager* scene_;
   RoundCamera round_ = test::smallCamera(GetParam(), 320, 240);
 };
 
-Ogre::SceneManager* DrawnTruthTest::scene_ = nullptr;
-
 TEST_P(DrawnTruthTest, SilhouettesOfBodiesAgreeWithinOnePixel) {
-  ShapeView rod(*scene_->getRootSceneNode(), shining()), box(*scene_->getRootSceneNode(), shining());
+  ShapeView rod(*test::graphicsScene().getRootSceneNode(), shining()),
+      box(*test::graphicsScene().getRootSceneNode(), shining());
   rod.show(placed(test::rodShape(), test::rodPose(0), packed(1, 1, 1)));
   box.show(placed(test::boxShape(), test::boxPose(0), packed(1, 1, 1)));
   TruthScene truth;
@@ -122,10 +109,10 @@ TEST_P(DrawnTruthTest, BodyBehindTheFoldsOfTheWallIsHiddenInBoth) {
   const Eigen::Isometry3d place(Eigen::Translation3d(0.036, 0.014, 0.006));  // half of it is outside of the organ
   world.scene.placePart(world.scene.addPart("ball", ball), place);
   world.scene.commit();
-  TissueVisual wall(*scene_->getRootSceneNode());
+  TissueVisual wall(*test::graphicsScene().getRootSceneNode());
   wall.setMesh(world.mesh());
   wall.setFrame(world.frame);
-  ShapeView shown(*scene_->getRootSceneNode(), shining());
+  ShapeView shown(*test::graphicsScene().getRootSceneNode(), shining());
   shown.show(placed(ball, place, packed(0, 0, 1)));
   const Pixels pixels = draw();
   std::vector<bool> drawn;  // blue against red

@@ -7,26 +7,23 @@
 #include <OgreHardwarePixelBuffer.h>
 #include <OgreMaterialManager.h>
 #include <OgreRenderTexture.h>
-#include <OgreRoot.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <OgreTextureManager.h>
 #include <OgreViewport.h>
 #include <gtest/gtest.h>
-#include <rviz/ogre_helpers/render_system.h>
 
 #include <cmath>
 
+#include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/resources.hpp"
 #include "render/shape_view.hpp"
-#include "render/virtual_display.hpp"
 #include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
 namespace vibe {
 namespace {
 
-using Pixels = std::vector<std::uint8_t>;
+using test::Pixels;
 constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr int kWidth = 200, kHeight = 160;
 
@@ -34,10 +31,7 @@ constexpr int kWidth = 200, kHeight = 160;
 class EndoscopeLensTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    provideDisplay();
-    rviz::RenderSystem::forceNoStereo();
-    scene_ = rviz::RenderSystem::get()->root()->createSceneManager();
-    loadResources();
+    scene_ = &test::graphicsScene();
     ball_ = new ShapeView(*scene_->getRootSceneNode(), copyMaterial("vibe/solid"));
     showBall({0, 0, -0.05});
     camera_ = scene_->createCamera("eye");

@@ -4,18 +4,16 @@
 
 #include <OgreEntity.h>
 #include <OgreMaterialManager.h>
-#include <OgreRoot.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <OgreSubEntity.h>
 #include <OgreTechnique.h>
 #include <gtest/gtest.h>
 #include <rviz/mesh_loader.h>
-#include <rviz/ogre_helpers/render_system.h>
 
+#include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
 #include "render/resources.hpp"
-#include "render/virtual_display.hpp"
 
 namespace vibe {
 namespace {
@@ -27,10 +25,7 @@ constexpr int kSize = 120;
 class MeshLookTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    provideDisplay();
-    rviz::RenderSystem::forceNoStereo();
-    scene_ = rviz::RenderSystem::get()->root()->createSceneManager();
-    loadResources();
+    scene_ = &test::graphicsScene();
     const Ogre::MeshPtr mesh = rviz::loadMeshFromResource(kCap);
     ASSERT_TRUE(mesh);
     cap_ = scene_->createEntity(mesh);

@@ -1,39 +1,29 @@
 // What the endoscope shows inside of a straight organ: properties of pictures, not pictures. Needs no display.
-#include <OgreRoot.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <gtest/gtest.h>
-#include <rviz/ogre_helpers/render_system.h>
 
 #include <cmath>
 #include <memory>
 
+#include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/resources.hpp"
 #include "render/tissue_visual.hpp"
-#include "render/virtual_display.hpp"
 #include "tube_organ.hpp"
 
 namespace vibe {
 namespace {
 
-using Pixels = std::vector<std::uint8_t>;
+using test::Pixels;
 constexpr int kSize = 200;  // [px]
 
 class MucosaViewTest : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    provideDisplay();
-    rviz::RenderSystem::forceNoStereo();
-    scene_ = rviz::RenderSystem::get()->root()->createSceneManager();
-    loadResources();
-  }
-
   void SetUp() override {
     RoundCamera round;
     round.width = round.height = kSize;
-    camera_ = std::make_unique<OffscreenCamera>(*scene_, round, 1);
-    tissue_ = std::make_unique<TissueVisual>(*scene_->getRootSceneNode());
+    camera_ = std::make_unique<OffscreenCamera>(test::graphicsScene(), round, 1);
+    tissue_ = std::make_unique<TissueVisual>(*test::graphicsScene().getRootSceneNode());
   }
   void TearDown() override { tissue_.reset(), camera_.reset(); }
 
@@ -100,13 +90,10 @@ class MucosaViewTest : public ::testing::Test {
     return sum / static_cast<double>(a.size());
   }
 
-  static Ogre::SceneManager* scene_;
   std::unique_ptr<OffscreenCamera> camera_;
   std::unique_ptr<TissueVisual> tissue_;
   double time_ = 0;
 };
-
-Ogre::SceneManager* MucosaViewTest::scene_ = nullptr;
 
 TEST_F(MucosaViewTest, FoldsLoseTheirContrastAsTheOrganIsFilled) {
   const test::TubeOrgan organ;
@@ -187,7 +174,7 @@ TEST_F(MucosaViewTest, SameStampsGiveTheSamePictures) {
   show(organ, organ.places(1.02));
   const auto run = [&] {
     time_ = 0;
-    OffscreenCamera other(*scene_, RoundCamera{LensKind::Equidistant, 2.44, kSize, kSize}, 1);
+    OffscreenCamera other(test::graphicsScene(), RoundCamera{LensKind::Equidistant, 2.44, kSize, kSize}, 1);
     std::vector<Pixels> pictures;
     for (int k = 0; k < 4; ++k) {
       pictures.emplace_back();

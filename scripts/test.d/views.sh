@@ -1,0 +1,16 @@
+# What the endoscope's picture shows in the eight views of scripts/views: properties with their controls. It runs the
+# sessions, because pictures of the documentation would not notice a change.
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_rviz_plugins/endoscope_camera" ]; then
+  echo 'skipped what the endoscope shows (it needs the ordinary build)'
+  exit 0
+fi
+if ! /usr/bin/python3 -c 'import numpy, PIL, scipy' 2>/dev/null; then
+  echo 'not ok views need python3-numpy, python3-pil and python3-scipy; scripts/setup installs them'
+  exit 0
+fi
+
+takesTheViews() { "$root/scripts/views" --size 320x240 --truth --output "$scratch"; }
+check 'views: the eight pictures are taken, with their truth' takesTheViews
+/usr/bin/python3 "$root/scripts/lib/check_views.py" "$scratch" || true
