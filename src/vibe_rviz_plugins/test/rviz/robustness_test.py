@@ -151,7 +151,8 @@ class Robustness(unittest.TestCase):
             (good.topology(20, 20, revision=2), good.particles(20, 20, revision=2, change=set_all("x", 0.0))),
         ):
             self.show(topology, particles, message)
-        self.refuses(self.particles, good.particles(20, 20, revision=2, change=set_one("y", float("nan"))), "Particles", "")
+        wrong = good.particles(20, 20, revision=2, change=set_one("y", float("nan")))
+        self.refuses(self.particles, wrong, "Particles", "")
         message.bleedings = []
         self.sutures.publish(message)
         self.rviz.wait_for_status("Sutures", "Message", "Ok", "0 bleedings")
