@@ -152,7 +152,7 @@ void Basins::pour(std::uint32_t vertex, double volume, double brown) {
       absorb(*here, pool);
     }
     volume = 0;
-    if (!fill(pool, vertex, volume)) brims_.push_back(vertex);
+    if (!fill(pool, vertex, volume)) brims_.push_back({vertex, pool.brown});
     if (k == kOverflows) pool.volume += volume;
     pools_.push_back(std::move(pool));
   }

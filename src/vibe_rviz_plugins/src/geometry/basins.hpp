@@ -17,6 +17,12 @@ struct Pool {
   std::vector<std::uint32_t> triangles;  ///< all that are below the level in part, and some that are not
 };
 
+/// Where a full hollow has run over.
+struct Brim {
+  std::uint32_t vertex = 0;  ///< the fluid went on from here
+  double brown = 0;          ///< of what went over, as in Pool
+};
+
 /// The hollows of a wall and what stands in them. A hollow that is full to its brim runs over into the next one, and
 /// two that are full to the same brim become one. Under a pool the wall is the whole of its lower boundary; the open
 /// edge of a surface holds like a vertical wall.
@@ -30,8 +36,7 @@ class Basins {
   void pour(std::uint32_t vertex, double volume, double brown);
 
   const std::vector<Pool>& pools() const { return pools_; }
-  /// Where full hollows ran over: vertices from which the fluid went on.
-  const std::vector<std::uint32_t>& brims() const { return brims_; }
+  const std::vector<Brim>& brims() const { return brims_; }
 
   double height(std::uint32_t vertex) const { return -wall_.places()[vertex].dot(down_); }
 
@@ -52,7 +57,7 @@ class Basins {
   const WallSurface& wall_;
   Eigen::Vector3d down_;
   std::vector<Pool> pools_;
-  std::vector<std::uint32_t> brims_;
+  std::vector<Brim> brims_;
 };
 
 /// Volume over a triangle below a level: what stands on its horizontal projection. Negative where it faces down [m^3].

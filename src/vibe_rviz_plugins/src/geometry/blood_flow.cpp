@@ -87,8 +87,9 @@ class FlowBuilder {
 
   BloodFlow finished() {
     flow_.pools = basins_.pools();
-    for (const std::uint32_t brim : basins_.brims()) {
-      const Source source{wall_.atVertex(brim), 1, kFall / kMild.speed, kMild, 0, static_cast<int>(brim)};
+    for (const Brim& brim : basins_.brims()) {
+      const auto number = static_cast<int>(brim.vertex);
+      const Source source{wall_.atVertex(brim.vertex), 1, kFall / kMild.speed, kMild, brim.brown, number};
       flow_.rivulets.push_back(rivuletOf(source, 1, wall_, style_.down));
       ++flow_.passing;
     }

@@ -17,7 +17,7 @@ constexpr double kRaised = 0.08e-3;                        // the edge of blood 
 constexpr double kRim = 0.05e-3;                           // depth of blood at its edge [m]
 constexpr double kFilmHeight = 0.6e-3, kFilmSlope = 0.25;  // [m]; of a small drop, height to radius
 constexpr double kMaxFilmRadius = 9e-3;                    // beyond, blood is not drawn [m]
-constexpr int kSides = 28, kRings = 5;                     // of a film
+constexpr int kSides = 22, kRings = 4;                     // of a film
 constexpr double kFade = 6e-3;                             // a rivulet reaches its width on this way [m]
 constexpr std::array<double, 7> kAcross{-1, -0.8, -0.45, 0, 0.45, 0.8, 1};  // of the half-width
 constexpr std::uint32_t kPoints = kAcross.size();
@@ -113,6 +113,7 @@ PoolCorner between(const PoolCorner& a, const PoolCorner& b) {
 /// The part of a triangle that is below the level: 0, 3 or 4 corners (Sutherland, Hodgman 1974).
 std::vector<PoolCorner> belowLevel(const std::array<PoolCorner, 3>& corners) {
   std::vector<PoolCorner> part;
+  part.reserve(4);
   for (std::size_t k = 0; k < 3; ++k) {
     const PoolCorner &here = corners[k], &next = corners[(k + 1) % 3];
     if (here.depth >= 0) part.push_back(here);

@@ -41,6 +41,13 @@ Vector3d nearestWeight(const Vector3d& p, const Vector3d& a, const Vector3d& b, 
   return sum > 0 ? Vector3d(Vector3d(of_a, of_b, of_c) / sum) : Vector3d(1, 0, 0);
 }
 
+/// Whether a box and that of a triangle have nothing in common.
+bool apart(const Eigen::AlignedBox3d& box, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  for (int k = 0; k < 3; ++k)
+    if (std::max({a[k], b[k], c[k]}) < box.min()[k] || std::min({a[k], b[k], c[k]}) > box.max()[k]) return true;
+  return false;
+}
+
 /// Part of the way from `from` to `to` at which it passes through a triangle from its inside, and the weights there.
 std::optional<double> passage(const Vector3d& from, const Vector3d& to, const Vector3d& a, const Vector3d& b,
                               const Vector3d& c, Vector3d& weight) {
@@ -149,10 +156,7 @@ std::vector<std::uint32_t> WallSurface::trianglesNear(const std::vector<Vector3d
   std::vector<std::uint32_t> near;
   for (std::uint32_t t = 0; 3 * std::size_t{t} < triangles_.size(); ++t) {
     const Vector3d &a = places_[corners(t)[0]], &b = places_[corners(t)[1]], &c = places_[corners(t)[2]];
-    bool apart = false;
-    for (int k = 0; k < 3 && !apart; ++k)
-      apart = std::max({a[k], b[k], c[k]}) < box.min()[k] || std::min({a[k], b[k], c[k]}) > box.max()[k];
-    if (!apart) near.push_back(t);
+    if (!apart(box, a, b, c)) near.push_back(t);
   }
   return near;
 }
@@ -163,9 +167,12 @@ std::optional<WallPoint> WallSurface::landing(const std::vector<Vector3d>& line,
     double first = kInfinite;
     std::uint32_t triangle = 0;
     Vector3d weight = Vector3d::Zero(), candidate = weight;
+    Eigen::AlignedBox3d box(line[k - 1]);
+    box.extend(line[k]);
     for (const std::uint32_t t : near) {
-      const auto part = passage(line[k - 1], line[k], places_[corners(t)[0]], places_[corners(t)[1]],
-                                places_[corners(t)[2]], candidate);
+      const Vector3d &a = places_[corners(t)[0]], &b = places_[corners(t)[1]], &c = places_[corners(t)[2]];
+      if (apart(box, a, b, c)) continue;
+      const auto part = passage(line[k - 1], line[k], a, b, c, candidate);
       if (part && *part < first) first = *part, triangle = t, weight = candidate;
     }
     if (first > 1) continue;

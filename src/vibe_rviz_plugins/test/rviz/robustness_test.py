@@ -8,10 +8,10 @@ import unittest
 import rospkg
 import rospy
 import rostest
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import Point, TransformStamped
 from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
-from vibe_msgs.msg import SutureArray, TissueTopology
+from vibe_msgs.msg import Bleeding, SutureArray, TissueTopology
 
 import tissue_messages as good
 from rviz_under_test import RvizUnderTest
@@ -135,6 +135,28 @@ class Robustness(unittest.TestCase):
             spoil(message)
             self.refuses(self.sutures, message, "Message", "")
             self.setUp()
+
+    def test_bleeding_on_walls_that_come_change_and_are_wrong(self):
+        """Blood follows the wall of the newest valid messages, whatever else comes."""
+        message = good.sutures()
+        for place in (Point(0.0, 0.07, 0.0), Point(0.02, 0.07, 0.03), Point(5.0, 0.0, 0.0)):  # the last is far from it
+            message.bleedings.append(
+                Bleeding(suture=0, bite=0, brisk=True, position=place, rate=2.5e-7, amount=3e-6, begin=0.0)
+            )
+        self.sutures.publish(message)
+        self.rviz.wait_for_status("Sutures", "Message", "Ok", "3 bleedings")
+        for topology, particles in (
+            (good.topology(), good.particles()),
+            (good.topology(20, 20, revision=2), good.particles(20, 20, revision=2)),
+            (good.topology(20, 20, revision=2), good.particles(20, 20, revision=2, change=set_all("x", 0.0))),
+        ):
+            self.show(topology, particles, message)
+        wrong = good.particles(20, 20, revision=2, change=set_one("y", float("nan")))
+        self.refuses(self.particles, wrong, "Particles", "")
+        message.bleedings = []
+        self.sutures.publish(message)
+        self.rviz.wait_for_status("Sutures", "Message", "Ok", "0 bleedings")
+        self.rviz.wait_for_frames(FRAMES)
 
     def test_strain_that_is_not_finite(self):
         """Strain affects colours only, so there is no status, and rviz keeps running."""
