@@ -12,10 +12,6 @@ uniform float fill;    // ambient light; more for data colours
 uniform float scars;   // 1: show heat
 uniform float reach;   // distance at which the light of the guides is 1 [m]
 uniform vec2 window;   // size of the picture [px]
-#ifdef SMOKE
-uniform vec4 smoke;    // x: extinction [1/m], y: time [s] (render/scene_smoke.hpp)
-uniform vec3 eye;      // the lens in the frame of the organ [m]
-#endif
 uniform sampler3D pattern;
 
 varying vec3 view_position;
@@ -26,10 +22,13 @@ varying vec2 around;
 varying vec4 anatomy;
 varying float fold;
 varying float browned;
+#ifdef SMOKE
+uniform vec4 smoke;  // x: extinction [1/m] (render/scene_smoke.hpp)
+varying float wisp;
+#endif
 
 const float kAreae = 1.0 / 0.020;   // 2.5 mm per area [1/m]
 const float kBroad = 1.0 / 0.17;    // waves of 42 mm and less
-const float kWisps = 1.0 / 0.11;    // waves of 27 mm and less
 const float kVessels = 1.0 / 0.06;  // a net of 15 mm
 const mat3 kTurn = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);  // so that periods do not coincide
 
@@ -57,15 +56,6 @@ vec3 heated(vec3 base, float heat, float age) {
   base = mix(base, burn, smoothstep(1.2, 1.85, heat));
   return mix(base, deep, smoothstep(2.2, 2.9, heat));
 }
-
-#ifdef SMOKE
-// Smoke is not quite even: its wisps drift past. Seen where the ray has gone a third of its way, in the frame of the
-// organ at rest, which is near enough.
-float wisp() {
-  vec3 drift = smoke.y * vec3(0.004, 0.006, 0.005);  // [m]
-  return 0.1 + 1.8 * texture3D(pattern, kWisps * (mix(eye, rest, 0.35) + drift)).g;
-}
-#endif
 
 void main() {
   vec2 aside = 2.0 * gl_FragCoord.xy / window - 1.0;
@@ -130,7 +120,7 @@ void main() {
   float around_light = fill * 0.3 * reach * reach / (dot(view_position, view_position) + 4e-4);
   vec3 radiance = base * (light.x + around_light) + wet * (3.0 * light.y + 0.05 * light.z) * (0.2 + net.g * net.g * 1.8 + 0.8 * mucus) * (1.0 - dull);
 #ifdef SMOKE
-  radiance = smoked(radiance, view_position, reach, smoke.x * wisp());
+  radiance = smoked(radiance, view_position, reach, smoke.x * wisp);
 #endif
   gl_FragColor = vec4(stored(radiance), 1.0);
 }
