@@ -50,7 +50,8 @@ vec3 raised(vec3 normal, float height) {
 // age: of the mark, 0: white, 1/2: tan, 1: brown; its red rim fades with it
 vec3 heated(vec3 base, float heat, float age) {
   vec3 rim = vec3(0.30, 0.022, 0.016), mark = vec3(0.98, 0.86, 0.74), burn = vec3(0.18, 0.06, 0.016), deep = vec3(0.005, 0.003, 0.002);
-  mark = mix(mix(mark, vec3(0.57, 0.28, 0.14), min(2.0 * age, 1.0)), vec3(0.17, 0.062, 0.014), max(2.0 * age - 1.0, 0.0));
+  vec3 tan_mark = vec3(0.57, 0.28, 0.14), brown_mark = vec3(0.17, 0.062, 0.014);
+  mark = mix(mix(mark, tan_mark, min(2.0 * age, 1.0)), brown_mark, max(2.0 * age - 1.0, 0.0));
   base = mix(base, rim, (0.75 - 0.5 * age) * smoothstep(0.05, 0.3, heat));  // reddened around
   base = mix(base, mark, smoothstep(0.4, 0.75, heat));
   base = mix(base, burn, smoothstep(1.2, 1.85, heat));
