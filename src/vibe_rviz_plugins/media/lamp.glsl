@@ -43,17 +43,19 @@ vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float nea
 const float kSmokeNear = 0.025;
 const vec3 kSmokeColour = vec3(0.80, 0.86, 0.92);  // small particles scatter blue more; design choice
 
-// What comes to the lens from a surface of this radiance at `place`, through smoke with this extinction [1/m]. Its light
-// goes there and back, and on the way the smoke scatters light of the guides to the lens (once, to all sides alike):
+// What comes to the lens from a surface of this radiance at `place`, through smoke with this extinction [1/m]. Its
+// light goes there and back, and on the way smoke scatters light of the guides to the lens (once, to all sides alike):
 //   radiance exp(-2 s d) + colour s/4 integral_0^d reach^2 / (r^2 + near^2) exp(-2 s r) dr.
-// With r = near tan(u) the integral is one of exp() alone, taken at the middle of u. For all materials that lamp() lights;
-// the last thing before stored(). Without smoke it changes nothing.
+// With r = near tan(u) the integral is one of exp() alone, taken at the middle of u. For all materials that lamp()
+// lights, blood too: the last thing before stored(), with param_named_auto smoke fog_params in its program. Without
+// smoke it changes nothing.
 vec3 smoked(vec3 radiance, vec3 place, float reach, float extinction) {
   if (extinction <= 0.0) return radiance;
   float far = length(place);
   float middle = kSmokeNear * far / (kSmokeNear + sqrt(kSmokeNear * kSmokeNear + far * far));
   float lit = reach * reach / kSmokeNear * atan(far / kSmokeNear) * (0.3 - 0.7 * place.z / far);
-  return radiance * exp(-2.0 * extinction * far) + kSmokeColour * (0.25 * extinction * lit * exp(-2.0 * extinction * middle));
+  float scattered = 0.25 * extinction * lit * exp(-2.0 * extinction * middle);
+  return radiance * exp(-2.0 * extinction * far) + kSmokeColour * scattered;
 }
 
 // Shades are stored as square roots, near to what a screen shows; media/endoscope.frag exposes them.

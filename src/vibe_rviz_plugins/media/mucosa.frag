@@ -12,8 +12,6 @@ uniform float fill;    // ambient light; more for data colours
 uniform float scars;   // 1: show heat
 uniform float reach;   // distance at which the light of the guides is 1 [m]
 uniform vec2 window;   // size of the picture [px]
-uniform vec4 smoke;    // x: extinction [1/m], y: time [s] (render/scene_smoke.hpp)
-uniform vec3 eye;      // the lens in the frame of the organ [m]
 uniform sampler3D pattern;
 
 varying vec3 view_position;
@@ -25,10 +23,13 @@ varying vec4 anatomy;
 varying float fold;
 varying vec2 reaching;
 varying float browned;
+#ifdef SMOKE
+uniform vec4 smoke;  // x: extinction [1/m] (render/scene_smoke.hpp)
+varying float wisp;
+#endif
 
 const float kAreae = 1.0 / 0.020;   // 2.5 mm per area [1/m]
 const float kBroad = 1.0 / 0.17;    // waves of 42 mm and less
-const float kWisps = 1.0 / 0.11;    // waves of 27 mm and less
 const float kVessels = 1.0 / 0.06;  // a net of 15 mm
 const mat3 kTurn = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);  // so that periods do not coincide
 
@@ -50,18 +51,12 @@ vec3 raised(vec3 normal, float height) {
 // age: of the mark, 0: white, 1/2: tan, 1: brown; its red rim fades with it
 vec3 heated(vec3 base, float heat, float age) {
   vec3 rim = vec3(0.30, 0.022, 0.016), mark = vec3(0.98, 0.86, 0.74), burn = vec3(0.18, 0.06, 0.016), deep = vec3(0.005, 0.003, 0.002);
-  mark = mix(mix(mark, vec3(0.57, 0.28, 0.14), min(2.0 * age, 1.0)), vec3(0.17, 0.062, 0.014), max(2.0 * age - 1.0, 0.0));
+  vec3 tan_mark = vec3(0.57, 0.28, 0.14), brown_mark = vec3(0.17, 0.062, 0.014);
+  mark = mix(mix(mark, tan_mark, min(2.0 * age, 1.0)), brown_mark, max(2.0 * age - 1.0, 0.0));
   base = mix(base, rim, (0.75 - 0.5 * age) * smoothstep(0.05, 0.3, heat));  // reddened around
   base = mix(base, mark, smoothstep(0.4, 0.75, heat));
   base = mix(base, burn, smoothstep(1.2, 1.85, heat));
   return mix(base, deep, smoothstep(2.2, 2.9, heat));
-}
-
-// Smoke is not quite even: its wisps drift past. Seen where the ray has gone a third of its way, in the frame of the
-// organ at rest, which is near enough.
-float wisp() {
-  vec3 drift = smoke.y * vec3(0.004, 0.006, 0.005);  // [m]
-  return 0.1 + 1.8 * texture3D(pattern, kWisps * (mix(eye, rest, 0.35) + drift)).g;
 }
 
 void main() {
@@ -126,6 +121,8 @@ void main() {
   vec3 light = lamp(view_position, normal, film, reach, 0.25, 0.002, reaching);
   float around_light = fill * 0.3 * reach * reach / (dot(view_position, view_position) + 4e-4);
   vec3 radiance = base * (light.x + around_light) + wet * (3.0 * light.y + 0.05 * light.z) * (0.2 + net.g * net.g * 1.8 + 0.8 * mucus) * (1.0 - dull);
-  if (smoke.x > 0.0) radiance = smoked(radiance, view_position, reach, smoke.x * wisp());
+#ifdef SMOKE
+  radiance = smoked(radiance, view_position, reach, smoke.x * wisp);
+#endif
   gl_FragColor = vec4(stored(radiance), 1.0);
 }

@@ -4,6 +4,8 @@
 // As surface.vert, and what the mucosa looks like at the vertex (src/geometry/mucosa_map.hpp, fold_height.hpp).
 uniform mat4 worldViewProj;
 uniform mat4 worldView;
+uniform vec4 smoke;  // y: time [s] (src/render/scene_smoke.hpp)
+uniform vec3 eye;    // the lens in the frame of the organ [m]
 
 varying vec3 view_position;
 varying vec3 view_normal;
@@ -14,6 +16,14 @@ varying vec4 anatomy;  // share of folds, of antrum; distance beyond Z line and 
 varying float fold;    // height of the rugae here [m]
 varying vec2 reaching; // part of each light guide that the device does not hide
 varying float browned;  // grade of heat times how brown its scar is (src/geometry/scar_age.hpp)
+varying float wisp;    // density of smoke on the way to the lens, of its mean
+
+// Smoke is not quite even: wisps of some 40 mm drift past, seen where the ray has gone a third of its way.
+float wispAt(vec3 place) {
+  vec3 p = 150.0 * mix(eye, place, 0.35) + smoke.y * vec3(0.5, 0.7, 0.6);
+  p += 1.5 * sin(p.yzx) + 0.7 * sin(2.3 * p.zxy);
+  return 1.0 + 0.35 * sin(p.x) * sin(p.y) + 0.15 * sin(1.7 * p.z);
+}
 
 void main() {
   gl_Position = worldViewProj * gl_Vertex;
@@ -26,4 +36,5 @@ void main() {
   fold = gl_MultiTexCoord3.x;
   reaching = lightReaching(view_position);
   browned = gl_MultiTexCoord4.x;
+  wisp = wispAt(gl_Vertex.xyz);
 }

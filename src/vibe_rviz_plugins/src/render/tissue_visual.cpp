@@ -32,11 +32,22 @@ void setBlending(Ogre::Pass& pass, bool transparent) {
   pass.setDepthWriteEnabled(!transparent);
 }
 
+/// Another program, because a branch that is not taken costs as much time as one that is where there is no graphics
+/// card.
+Ogre::MaterialPtr withSmoke(Ogre::MaterialPtr material) {
+  for (Ogre::Technique* technique : material->getTechniques())
+    if (technique->getSchemeName() == kEndoscopeScheme)
+      technique->getPass(0)->setFragmentProgram("vibe/mucosa_smoke_fragment");
+  material->load();
+  return material;
+}
+
 }  // namespace
 
 TissueVisual::TissueVisual(Ogre::SceneNode& parent)
     : node_(parent),
       inside_(copyMaterial("vibe/tissue_inside")),
+      smoky_inside_(withSmoke(copyMaterial("vibe/tissue_inside"))),
       outside_(copyMaterial("vibe/tissue_outside")),
       wire_(copyMaterial("vibe/wire")),
       seen_smoke_(*parent.getCreator()),
@@ -52,7 +63,7 @@ TissueVisual::TissueVisual(Ogre::SceneNode& parent)
 TissueVisual::~TissueVisual() {
   node_.detachObject(points_.get());
   clear();
-  dropMaterial(inside_), dropMaterial(outside_), dropMaterial(wire_);
+  dropMaterial(inside_), dropMaterial(smoky_inside_), dropMaterial(outside_), dropMaterial(wire_);
 }
 
 void TissueVisual::clear() {
@@ -107,6 +118,9 @@ void TissueVisual::draw() {
 // What only the shader of the mucosa reads. It may be long before an endoscope looks, so it waits until then.
 void TissueVisual::sendForEndoscope() {
   if (!has_frame_) return;
+  const bool smoky = node_.getCreator()->getFogDensity() > 0;  // of any organ of the scene
+  if (smoky != smoky_) drawn_.setMaterials({smoky ? smoky_inside_ : inside_, outside_});
+  smoky_ = smoky;
   if (!folds_sent_) drawn_.setHeights(folds_->update(frame_.positions));
   if (!browned_sent_) drawn_.setBrowned(scars_->browned());
   folds_sent_ = browned_sent_ = true;
@@ -156,6 +170,7 @@ void TissueVisual::setLook(const TissueLook& look) {
 void TissueVisual::applyLook() {
   if (colours_) colours_->choose(look_.colouring, ColourMap(look_.map, look_.min, look_.max));
   applySide(inside_, look_.inside, false);
+  applySide(smoky_inside_, look_.inside, false);
   applySide(outside_, look_.outside, true);
 }
 

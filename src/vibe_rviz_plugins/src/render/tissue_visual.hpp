@@ -78,7 +78,7 @@ class TissueVisual {
 
   Ogre::SceneNode& node_;
   TissueLook look_;
-  Ogre::MaterialPtr inside_, outside_, wire_;
+  Ogre::MaterialPtr inside_, smoky_inside_, outside_, wire_;
   TissueMesh mesh_;
   TissueFrame frame_;
   bool has_frame_ = false;
@@ -88,6 +88,7 @@ class TissueVisual {
   std::unique_ptr<Smoke> smoke_;
   std::unique_ptr<ScarAge> scars_;
   double followed_ = 0;                             // time of the last frame that smoke_ and scars_ have seen [s]
+  bool smoky_ = false;                              // smoky_inside_ is drawn
   bool folds_sent_ = false, browned_sent_ = false;  // of the frame that is drawn
   SceneSmoke seen_smoke_;
   DynamicMesh drawn_, mesh_lines_;
