@@ -32,9 +32,15 @@ constexpr int kWarmUp = 5, kImages = 40;
 constexpr double kGoal = 150;  // for an image of 640 x 480 with all of its truth [ms]
 
 enum Part { Motion, Colour, TruthMotion, Flow, Rays, Depth, Normals, Labels, Truth, Whole, kPartCount };
-constexpr std::array<const char*, kPartCount> kPartNames{"motion of the picture", "colour",  "motion of the truth",
-                                                         "flow",                  "rays",    "depth",
-                                                         "normals",               "labels",  "truth",
+constexpr std::array<const char*, kPartCount> kPartNames{"motion of the picture",
+                                                         "colour",
+                                                         "motion of the truth",
+                                                         "flow",
+                                                         "rays",
+                                                         "depth",
+                                                         "normals",
+                                                         "labels",
+                                                         "truth",
                                                          "all"};
 using Samples = std::array<std::vector<double>, kPartCount>;  // [ms]
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <OgreCompositorInstance.h>
 #include <OgreMaterial.h>
+#include <OgreRenderTargetListener.h>
 #include <OgreViewport.h>
 
 #include <optional>
@@ -10,6 +11,7 @@
 #include "geometry/lens.hpp"
 
 namespace Ogre {
+class CompositionTechnique;
 class SceneNode;
 }  // namespace Ogre
 
@@ -19,7 +21,9 @@ namespace vibe {
 /// by its lamp (scheme kEndoscopeScheme for materials of this package, a light in the scene for other materials). The
 /// camera of the viewport must be at the lens; its angles are set here. The effect ends when this object or the
 /// viewport is deleted; rviz deletes its window before its views. The scene must outlive this object.
-class EndoscopeLens : private Ogre::Viewport::Listener, private Ogre::CompositorInstance::Listener {
+class EndoscopeLens : private Ogre::Viewport::Listener,
+                      private Ogre::CompositorInstance::Listener,
+                      private Ogre::RenderTargetListener {
  public:
   explicit EndoscopeLens(Ogre::Viewport& viewport);
   ~EndoscopeLens() override;
@@ -44,15 +48,20 @@ class EndoscopeLens : private Ogre::Viewport::Listener, private Ogre::Compositor
  private:
   void viewportDestroyed(Ogre::Viewport* viewport) override;
   void notifyMaterialRender(Ogre::uint32 pass, Ogre::MaterialPtr& material) override;
+  // The camera takes two pictures with two angles: around that of the middle it has another one.
+  void preRenderTargetUpdate(const Ogre::RenderTargetEvent&) override { setAngle(sources_.middle); }
+  void postRenderTargetUpdate(const Ogre::RenderTargetEvent&) override { setAngle(sources_.whole); }
+  void setAngle(const SquareSource& source);
   void remove();
   void light();
-  void make(const SquareSource& source);
+  void make();
+  void addTargets(Ogre::CompositionTechnique& technique);
   void setMaterial(const Ogre::MaterialPtr& material, int width, int height);
 
   Ogre::Viewport* viewport_;  ///< null once it is gone
   RoundCamera camera_;
   double sharpness_ = 0;
-  SquareSource source_;
+  LensSources sources_;
   std::string name_;                             ///< of the compositor; empty: there is none
   Ogre::MaterialPtr material_, meter_material_;  ///< of the picture, and of a small one that measures its level
   double gain_ = AutoExposure::kFixedGain;

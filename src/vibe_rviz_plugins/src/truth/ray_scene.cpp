@@ -10,7 +10,7 @@ namespace vibe {
 namespace {
 
 constexpr std::size_t kPacket = 8;  // rays that are cast together
-constexpr float kOpaque = 127.5F;    // alpha from which a translucent surface is met, of 255
+constexpr float kOpaque = 127.5F;   // alpha from which a translucent surface is met, of 255
 
 /// What the filter of a translucent body reads.
 struct Veil {
@@ -190,24 +190,26 @@ void RayScene::commit() {
 void RayScene::firstHits(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays,
                          std::vector<SurfaceHit>& hits) const {
   hits.resize(rays.size());
-  forPackets<RTCRayHit8>(camera, rays, [&](std::size_t first, std::size_t count, const int* valid,
-                                            RTCIntersectContext& context, RTCRayHit8& packet) {
-    std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
-    std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect8(valid, embree_->scene, &context, &packet);
-    for (std::size_t i = 0; i < count; ++i) hits[first + i] = hitOf(packet.hit, i);
-  });
+  forPackets<RTCRayHit8>(
+      camera, rays,
+      [&](std::size_t first, std::size_t count, const int* valid, RTCIntersectContext& context, RTCRayHit8& packet) {
+        std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
+        rtcIntersect8(valid, embree_->scene, &context, &packet);
+        for (std::size_t i = 0; i < count; ++i) hits[first + i] = hitOf(packet.hit, i);
+      });
 }
 
 void RayScene::areBlocked(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays,
                           std::vector<std::uint8_t>& blocked) const {
   blocked.resize(rays.size());
-  forPackets<RTCRay8>(camera, rays, [&](std::size_t first, std::size_t count, const int* valid,
-                                         RTCIntersectContext& context, RTCRay8& packet) {
-    rtcOccluded8(valid, embree_->scene, &context, &packet);
-    // Embree sets the end of a ray that meets something to minus infinity
-    for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
-  });
+  forPackets<RTCRay8>(
+      camera, rays,
+      [&](std::size_t first, std::size_t count, const int* valid, RTCIntersectContext& context, RTCRay8& packet) {
+        rtcOccluded8(valid, embree_->scene, &context, &packet);
+        // Embree sets the end of a ray that meets something to minus infinity
+        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
+      });
 }
 
 }  // namespace vibe

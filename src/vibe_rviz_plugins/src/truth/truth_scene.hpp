@@ -42,8 +42,8 @@ class TruthScene {
   const RayScene& rays() const { return rays_; }
   const std::vector<std::string>& partNames() const { return part_names_; }
 
-  // Of hits, in the frame of their body. The shapes of rigid parts stand still there; all others are in the frame of the
-  // scene.
+  // Of hits, in the frame of their body. The shapes of rigid parts stand still there; all others are in the frame of
+  // the scene.
 
   /// Where the point of a hit is now [m].
   Eigen::Vector3d pointOf(const SurfaceHit& hit) const;
