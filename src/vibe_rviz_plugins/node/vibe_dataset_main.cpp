@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 
 #include "dataset_camera.hpp"
@@ -39,7 +40,7 @@ void run(const vibe::DatasetOptions& options) {
   if (!impossible.empty()) throw std::runtime_error("This seed and lens do not go together: " + impossible + ".");
   if (options.check) return;
   vibe::SessionFrames frames(options.bag);
-  vibe::DatasetFolder folder(options);
+  std::optional<vibe::DatasetFolder> folder;  // made with the first image, so that a refusal leaves nothing
   vibe::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
@@ -53,13 +54,14 @@ void run(const vibe::DatasetOptions& options) {
     const ros::Time stamp = frame.particles->header.stamp;
     if (stamp.toSec() > options.to) break;
     if (stamp.toSec() < options.from || !due.isDue(stamp) || turn++ % options.every != 0) continue;
-    const std::string problem = camera.take(frame, frames.poses(), folder);
+    if (!folder) folder.emplace(options);
+    const std::string problem = camera.take(frame, frames.poses(), *folder);
     if (!problem.empty()) throw std::runtime_error(problem);
     world = frame.particles->header.frame_id;
     progress.show(frames, camera.images());
   }
   if (camera.images() == 0) throw std::runtime_error("The recording has no state between --from and --to.");
-  folder.finish(frames.info(), camera.labels(), world);
+  folder->finish(frames.info(), camera.labels(), world);
   std::printf("%zu images in %s\n", camera.images(), options.output.c_str());
 }
 
