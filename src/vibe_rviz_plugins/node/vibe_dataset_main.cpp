@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 
 #include "dataset_camera.hpp"
@@ -39,7 +40,7 @@ void run(const vibe::DatasetOptions& options) {
   if (!impossible.empty()) throw std::runtime_error("This seed and lens do not go together: " + impossible + ".");
   if (options.check) return;
   vibe::SessionFrames frames(options.bag);
-  vibe::DatasetFolder folder(options);
+  std::optional<vibe::DatasetFolder> folder;  // made with the first image, so that a refusal leaves nothing
   vibe::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
@@ -54,13 +55,14 @@ void run(const vibe::DatasetOptions& options) {
     if (stamp.toSec() > options.to) break;
     std::string problem = camera.follow(frame);
     if (stamp.toSec() < options.from || !due.isDue(stamp) || turn++ % options.every != 0) continue;
-    if (problem.empty()) problem = camera.take(frame, frames.poses(), folder);
+    if (!folder) folder.emplace(options);
+    if (problem.empty()) problem = camera.take(frame, frames.poses(), *folder);
     if (!problem.empty()) throw std::runtime_error(problem);
     world = frame.particles->header.frame_id;
     progress.show(frames, camera.images());
   }
   if (camera.images() == 0) throw std::runtime_error("The recording has no state between --from and --to.");
-  folder.finish(frames.info(), camera.labels(), world);
+  folder->finish(frames.info(), camera.labels(), world);
   std::printf("%zu images in %s\n", camera.images(), options.output.c_str());
 }
 

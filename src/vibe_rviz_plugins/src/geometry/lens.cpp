@@ -8,7 +8,18 @@ namespace vibe {
 namespace {
 
 constexpr int kMinPicture = 16, kMaxPicture = 4096;  // [px]
-constexpr int kBorder = 2;  // pixels of the source beyond the circle, so that its rim has neighbours to blend with
+constexpr int kBorder = 2;     // pixels of the source beyond the circle, so that its rim has neighbours to blend with
+constexpr double kWide = 1.2;  // half field of view above which a second source pays; its drawing costs too [rad]
+
+/// The square around a cone.
+/// @param edge  tangent of its half angle
+SquareSource squareAround(double edge, double focal_length, double sharpness, int max) {
+  const double wanted = 2 * edge * focal_length * sharpness;
+  SquareSource source;
+  source.size = static_cast<int>(std::clamp(std::ceil(wanted) + 2 * kBorder, 1.0 + 2 * kBorder, double(max)));
+  source.half_width = edge * source.size / (source.size - 2 * kBorder);
+  return source;
+}
 
 }  // namespace
 
@@ -54,12 +65,14 @@ Eigen::Vector3d rayOf(const RoundCamera& camera, const Eigen::Vector2d& pixel) {
 }
 
 SquareSource sourceFor(const RoundCamera& camera, double sharpness, int max) {
-  const double edge = std::tan(0.5 * camera.field_of_view);
-  const double wanted = 2 * edge * focalLength(camera) * sharpness;
-  SquareSource source;
-  source.size = static_cast<int>(std::clamp(std::ceil(wanted) + 2 * kBorder, 1.0 + 2 * kBorder, double(max)));
-  source.half_width = edge * source.size / (source.size - 2 * kBorder);
-  return source;
+  return squareAround(std::tan(0.5 * camera.field_of_view), focalLength(camera), sharpness, max);
+}
+
+LensSources sourcesFor(const RoundCamera& camera, double sharpness, int max) {
+  if (camera.lens != LensKind::Equidistant || 0.5 * camera.field_of_view < kWide)
+    return {sourceFor(camera, sharpness, max), {}};
+  return {sourceFor(camera, LensSources::kRimSharpness * sharpness, max),
+          squareAround(std::tan(LensSources::kMiddle), focalLength(camera), sharpness, max)};
 }
 
 CameraNumbers numbersOf(const RoundCamera& camera, double baseline) {

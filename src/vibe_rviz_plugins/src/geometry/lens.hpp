@@ -44,7 +44,7 @@ Eigen::Vector2d pixelOf(const RoundCamera& camera, const Eigen::Vector3d& point)
 /// Unit vector of the ray through a pixel, which may lie outside of the circle.
 Eigen::Vector3d rayOf(const RoundCamera& camera, const Eigen::Vector2d& pixel);
 
-/// The circular image is computed from a plane square image, which is what graphics cards draw.
+/// The circular image is computed from plane square images, which is what graphics cards draw.
 struct SquareSource {
   double half_width = 0;  ///< tangent of the angle between the axis and the middle of an edge [1]
   int size = 0;           ///< of an edge [px]
@@ -54,6 +54,21 @@ struct SquareSource {
 /// @param sharpness  pixels of the source per pixel of the image at the centre; 1: no detail is lost
 /// @param max        maximum edge, at the expense of sharpness [px]
 SquareSource sourceFor(const RoundCamera& camera, double sharpness, int max);
+
+/// The plane image of a wide equidistant lens is stretched towards its rim: at the angle theta, an image pixel is
+/// (1 + tan^2 theta) source pixels long and tan theta / theta wide. So the image is computed from two sources: the
+/// middle, and the whole with fewer pixels.
+struct LensSources {
+  static constexpr double kMiddle = 0.8;        ///< half angle of the middle [rad]; design choice
+  static constexpr double kRimSharpness = 0.6;  ///< of the whole; where it begins to show (media/endoscope.frag), 0.73
+                                                ///< source pixels per image pixel around, 1.06 along the radius; more
+                                                ///< beyond [1]; design choice
+  SquareSource whole;
+  SquareSource middle;  ///< size 0: there is none, and the whole has all the sharpness
+};
+
+/// @param sharpness, max  as above
+LensSources sourcesFor(const RoundCamera& camera, double sharpness, int max);
 
 /// Parameters of a sensor_msgs/CameraInfo.
 struct CameraNumbers {

@@ -9,6 +9,7 @@
 #include <OgreCompositorManager.h>
 #include <OgreHardwarePixelBuffer.h>
 #include <OgreLight.h>
+#include <OgreRenderTarget.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <OgreTechnique.h>
@@ -28,6 +29,7 @@ namespace {
 constexpr int kMaxSource = 4096;  // what every graphics card can do [px]
 constexpr float kReach = 0.06f;   // of the lamp, as in media/vibe.material: distance of half intensity [m]
 const char* const kSource = "source";
+const char* const kMiddle = "middle";
 const char* const kMeter = "meter";
 constexpr int kMeterSize = 32;  // edge of the picture that measures the level [px]
 
@@ -36,9 +38,9 @@ double weightAt(double share) {
   return share > 1 ? 0 : 1 - 0.75 * share * share;
 }
 
-void drawScene(Ogre::CompositionTechnique& technique, std::uint32_t visibility) {
+void drawScene(Ogre::CompositionTechnique& technique, const char* picture, std::uint32_t visibility) {
   Ogre::CompositionTargetPass& target = *technique.createTargetPass();
-  target.setOutputName(kSource);
+  target.setOutputName(picture);
   target.setInputMode(Ogre::CompositionTargetPass::IM_NONE);
   target.setMaterialScheme(kEndoscopeScheme);
   target.setVisibilityMask(visibility);
@@ -49,12 +51,13 @@ void drawScene(Ogre::CompositionTechnique& technique, std::uint32_t visibility) 
   target.createPass()->setType(Ogre::CompositionPass::PT_RENDERSCENE);
 }
 
-void drawBent(Ogre::CompositionTargetPass& target, const Ogre::MaterialPtr& material) {
+void drawBent(Ogre::CompositionTargetPass& target, const Ogre::MaterialPtr& material, const char* middle) {
   target.setInputMode(Ogre::CompositionTargetPass::IM_NONE);
   Ogre::CompositionPass& quad = *target.createPass();
   quad.setType(Ogre::CompositionPass::PT_RENDERQUAD);
   quad.setMaterial(material);
   quad.setInput(0, kSource);
+  quad.setInput(1, middle);
 }
 
 void addTexture(Ogre::CompositionTechnique& technique, const char* name, int size, Ogre::PixelFormat format) {
@@ -91,14 +94,19 @@ void EndoscopeLens::set(LensKind lens, double field_of_view, double sharpness) {
     remove();
     camera_ = wanted;
     sharpness_ = sharpness;
-    source_ = sourceFor(camera_, sharpness, kMaxSource);
-    make(source_);
+    sources_ = sourcesFor(camera_, sharpness, kMaxSource);
+    make();
   }
   // each time, because the owner of the viewport adapts the camera to the window
   Ogre::Camera* eye = viewport_->getCamera();
   eye->setAspectRatio(1);
-  eye->setFOVy(Ogre::Radian(static_cast<Ogre::Real>(2 * std::atan(source_.half_width))));
+  setAngle(sources_.whole);
   lamp_->setPosition(eye->getDerivedPosition());
+}
+
+void EndoscopeLens::setAngle(const SquareSource& source) {
+  if (viewport_ == nullptr) return;
+  viewport_->getCamera()->setFOVy(Ogre::Radian(static_cast<Ogre::Real>(2 * std::atan(source.half_width))));
 }
 
 // Ogre draws with a copy of the material.
@@ -160,21 +168,29 @@ void EndoscopeLens::light() {
   scene->addListener(this);
 }
 
-void EndoscopeLens::make(const SquareSource& source) {
+void EndoscopeLens::addTargets(Ogre::CompositionTechnique& technique) {
+  const bool two = sources_.middle.size > 0;
+  // brighter than white before the exposure
+  addTexture(technique, kSource, sources_.whole.size, Ogre::PF_FLOAT16_RGBA);
+  if (two) addTexture(technique, kMiddle, sources_.middle.size, Ogre::PF_FLOAT16_RGBA);
+  addTexture(technique, kMeter, kMeterSize, Ogre::PF_BYTE_RGBA);
+  drawScene(technique, kSource, viewport_->getVisibilityMask());
+  if (two) drawScene(technique, kMiddle, viewport_->getVisibilityMask());
+  Ogre::CompositionTargetPass& meter = *technique.createTargetPass();
+  meter.setOutputName(kMeter);
+  const char* const middle = two ? kMiddle : kSource;
+  drawBent(meter, meter_material_, middle);
+  drawBent(*technique.getOutputTargetPass(), material_, middle);
+}
+
+void EndoscopeLens::make() {
   auto& manager = Ogre::CompositorManager::getSingleton();
   material_ = copyMaterial("vibe/endoscope_lens");
   meter_material_ = copyMaterial("vibe/endoscope_lens");
   setMaterial(material_, camera_.width, camera_.height);
   setMaterial(meter_material_, kMeterSize, kMeterSize);
   name_ = uniqueName("Lens");
-  Ogre::CompositionTechnique& technique = *manager.create(name_, kResourceGroup)->createTechnique();
-  addTexture(technique, kSource, source.size, Ogre::PF_FLOAT16_RGBA);  // brighter than white before the exposure
-  addTexture(technique, kMeter, kMeterSize, Ogre::PF_BYTE_RGBA);
-  drawScene(technique, viewport_->getVisibilityMask());
-  Ogre::CompositionTargetPass& meter = *technique.createTargetPass();
-  meter.setOutputName(kMeter);
-  drawBent(meter, meter_material_);
-  drawBent(*technique.getOutputTargetPass(), material_);
+  addTargets(*manager.create(name_, kResourceGroup)->createTechnique());
   Ogre::CompositorInstance* drawn = manager.addCompositor(viewport_, name_);
   if (drawn == nullptr) {
     manager.remove(name_, kResourceGroup);
@@ -183,6 +199,7 @@ void EndoscopeLens::make(const SquareSource& source) {
   }
   drawn->addListener(this);
   manager.setCompositorEnabled(viewport_, name_, true);
+  if (sources_.middle.size > 0) drawn->getRenderTarget(kMiddle)->addListener(this);
   light();
 }
 
@@ -193,8 +210,10 @@ void EndoscopeLens::setMaterial(const Ogre::MaterialPtr& material, int width, in
   uniforms.setNamedConstant("radius", real(0.5 * std::min(width, height)));
   uniforms.setNamedConstant("half_angle", real(0.5 * camera_.field_of_view));
   uniforms.setNamedConstant("equidistant", real(camera_.lens == LensKind::Equidistant ? 1 : 0));
-  uniforms.setNamedConstant("source_half_width", real(source_.half_width));
-  uniforms.setNamedConstant("source_size", real(source_.size));
+  uniforms.setNamedConstant("source_half_width", real(sources_.whole.half_width));
+  uniforms.setNamedConstant("source_size", real(sources_.whole.size));
+  uniforms.setNamedConstant("middle_half_width", real(sources_.middle.half_width));
+  uniforms.setNamedConstant("middle_size", real(sources_.middle.size));
 }
 
 }  // namespace vibe

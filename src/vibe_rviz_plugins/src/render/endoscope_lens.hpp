@@ -1,6 +1,7 @@
 #pragma once
 #include <OgreCompositorInstance.h>
 #include <OgreMaterial.h>
+#include <OgreRenderTargetListener.h>
 #include <OgreSceneManager.h>
 #include <OgreViewport.h>
 
@@ -12,6 +13,7 @@
 #include "render/device_shadow.hpp"
 
 namespace Ogre {
+class CompositionTechnique;
 class SceneNode;
 }  // namespace Ogre
 
@@ -23,7 +25,8 @@ namespace vibe {
 /// viewport is deleted; rviz deletes its window before its views. The scene must outlive this object.
 class EndoscopeLens : private Ogre::Viewport::Listener,
                       private Ogre::CompositorInstance::Listener,
-                      private Ogre::SceneManager::Listener {
+                      private Ogre::SceneManager::Listener,
+                      private Ogre::RenderTargetListener {
  public:
   explicit EndoscopeLens(Ogre::Viewport& viewport);
   ~EndoscopeLens() override;
@@ -50,15 +53,20 @@ class EndoscopeLens : private Ogre::Viewport::Listener,
   void notifyMaterialRender(Ogre::uint32 pass, Ogre::MaterialPtr& material) override;
   void preFindVisibleObjects(Ogre::SceneManager* scene, Ogre::SceneManager::IlluminationRenderStage stage,
                              Ogre::Viewport* viewport) override;
+  // The camera takes two pictures with two angles: around that of the middle it has another one.
+  void preRenderTargetUpdate(const Ogre::RenderTargetEvent&) override { setAngle(sources_.middle); }
+  void postRenderTargetUpdate(const Ogre::RenderTargetEvent&) override { setAngle(sources_.whole); }
+  void setAngle(const SquareSource& source);
   void remove();
   void light();
-  void make(const SquareSource& source);
+  void make();
+  void addTargets(Ogre::CompositionTechnique& technique);
   void setMaterial(const Ogre::MaterialPtr& material, int width, int height);
 
   Ogre::Viewport* viewport_;  ///< null once it is gone
   RoundCamera camera_;
   double sharpness_ = 0;
-  SquareSource source_;
+  LensSources sources_;
   std::string name_;                             ///< of the compositor; empty: there is none
   Ogre::MaterialPtr material_, meter_material_;  ///< of the picture, and of a small one that measures its level
   double gain_ = AutoExposure::kFixedGain;

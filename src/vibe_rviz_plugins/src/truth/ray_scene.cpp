@@ -45,14 +45,40 @@ void setTriangles(RTCGeometry geometry, const std::vector<MovingVertex>& vertice
 }
 
 /// Up to kPacket rays; the rest of the packet is switched off.
-void fill(const Eigen::Vector3f& origin, const CameraRay* rays, std::size_t count, RTCRay8& packet, int* valid) {
+void fill(const Eigen::Isometry3f& camera, const CameraRay* rays, std::size_t count, RTCRay8& packet, int* valid) {
+  const Eigen::Matrix3f turn = camera.linear();
+  const Eigen::Vector3f origin = camera.translation();
   for (std::size_t i = 0; i < kPacket; ++i) {
     const CameraRay& ray = rays[std::min(i, count - 1)];
+    const Eigen::Vector3f direction = turn * ray.direction;
     valid[i] = i < count ? -1 : 0;
     packet.org_x[i] = origin.x(), packet.org_y[i] = origin.y(), packet.org_z[i] = origin.z();
-    packet.dir_x[i] = ray.direction.x(), packet.dir_y[i] = ray.direction.y(), packet.dir_z[i] = ray.direction.z();
+    packet.dir_x[i] = direction.x(), packet.dir_y[i] = direction.y(), packet.dir_z[i] = direction.z();
     packet.tnear[i] = ray.begin, packet.tfar[i] = ray.end;
     packet.time[i] = 0, packet.mask[i] = 0xffffffffU, packet.id[i] = 0, packet.flags[i] = 0;
+  }
+}
+
+RTCRay8& raysOf(RTCRay8& packet) {
+  return packet;
+}
+RTCRay8& raysOf(RTCRayHit8& packet) {
+  return packet.ray;
+}
+
+/// Calls `cast(first, count, valid, context, packet)` for all rays, packet by packet.
+template <class Packet, class Cast>
+void forPackets(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays, Cast cast) {
+  const Eigen::Isometry3f single = camera.cast<float>();
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  alignas(64) Packet packet;
+  alignas(64) int valid[kPacket];
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const std::size_t count = std::min(kPacket, rays.size() - first);
+    fill(single, &rays[first], count, raysOf(packet), valid);
+    cast(first, count, valid, context, packet);
   }
 }
 
@@ -161,39 +187,29 @@ void RayScene::commit() {
   rtcCommitScene(embree_->scene);
 }
 
-void RayScene::firstHits(const Eigen::Vector3f& origin, const std::vector<CameraRay>& rays,
+void RayScene::firstHits(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays,
                          std::vector<SurfaceHit>& hits) const {
   hits.resize(rays.size());
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  alignas(32) RTCRayHit8 packet;
-  alignas(32) int valid[kPacket];
-  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
-    const std::size_t count = std::min(kPacket, rays.size() - first);
-    fill(origin, &rays[first], count, packet.ray, valid);
-    std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
-    std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect8(valid, embree_->scene, &context, &packet);
-    for (std::size_t i = 0; i < count; ++i) hits[first + i] = hitOf(packet.hit, i);
-  }
+  forPackets<RTCRayHit8>(
+      camera, rays,
+      [&](std::size_t first, std::size_t count, const int* valid, RTCIntersectContext& context, RTCRayHit8& packet) {
+        std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
+        rtcIntersect8(valid, embree_->scene, &context, &packet);
+        for (std::size_t i = 0; i < count; ++i) hits[first + i] = hitOf(packet.hit, i);
+      });
 }
 
-void RayScene::areBlocked(const Eigen::Vector3f& origin, const std::vector<CameraRay>& rays,
+void RayScene::areBlocked(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays,
                           std::vector<std::uint8_t>& blocked) const {
   blocked.resize(rays.size());
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  alignas(32) RTCRay8 packet;
-  alignas(32) int valid[kPacket];
-  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
-    const std::size_t count = std::min(kPacket, rays.size() - first);
-    fill(origin, &rays[first], count, packet, valid);
-    rtcOccluded8(valid, embree_->scene, &context, &packet);
-    // Embree sets the end of a ray that meets something to minus infinity
-    for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
-  }
+  forPackets<RTCRay8>(
+      camera, rays,
+      [&](std::size_t first, std::size_t count, const int* valid, RTCIntersectContext& context, RTCRay8& packet) {
+        rtcOccluded8(valid, embree_->scene, &context, &packet);
+        // Embree sets the end of a ray that meets something to minus infinity
+        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
+      });
 }
 
 }  // namespace vibe

@@ -18,9 +18,9 @@ struct SurfaceHit {
   bool any() const { return body != kNothing; }
 };
 
-/// A half-line from the common origin, cut to what a camera draws.
+/// A half-line from the lens, cut to what a camera draws.
 struct CameraRay {
-  Eigen::Vector3f direction;  ///< unit
+  Eigen::Vector3f direction;  ///< unit, in the frame of the camera
   float begin, end;           ///< distance from the origin [m]
 };
 
@@ -53,11 +53,12 @@ class RayScene {
   /// To be called after changes and before rays are cast.
   void commit();
 
-  /// What each ray meets first.
-  void firstHits(const Eigen::Vector3f& origin, const std::vector<CameraRay>& rays,
+  /// What each ray meets first. Neighbours in the list should be neighbours in space: they are cast together.
+  /// @param camera  pose of the frame of the rays
+  void firstHits(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays,
                  std::vector<SurfaceHit>& hits) const;
   /// Whether each ray meets something: 1 or 0.
-  void areBlocked(const Eigen::Vector3f& origin, const std::vector<CameraRay>& rays,
+  void areBlocked(const Eigen::Isometry3d& camera, const std::vector<CameraRay>& rays,
                   std::vector<std::uint8_t>& blocked) const;
 
  private:

@@ -11,7 +11,7 @@ namespace vibe {
 /// What a camera has seen at one moment: for each pixel in the circle the point of a surface, as material coordinates.
 struct TruthView {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the optical frame in the frame of the scene [m]
-  std::vector<SurfaceHit> hits;                            ///< one per pixel in the circle, in the order of the rows
+  std::vector<SurfaceHit> hits;                            ///< one per pixel in the circle, in an order of the camera
   std::vector<std::uint64_t> shapes;                       ///< shape number per body, as TruthScene tells it
 };
 
@@ -52,13 +52,14 @@ class TruthCamera {
 
  private:
   bool isInside(const Eigen::Vector2d& pixel) const;
+  void addPixel(int x, int y);
   std::size_t pixelCount() const { return static_cast<std::size_t>(round_.width) * round_.height; }
   void hide(const std::vector<std::uint32_t>& pixels, const std::vector<CameraRay>& rays, const TruthScene& scene,
-            const Eigen::Vector3d& origin, std::vector<std::uint8_t>& visible) const;
+            const Eigen::Isometry3d& pose, std::vector<std::uint8_t>& visible) const;
 
   RoundCamera round_;
   double near_, far_;
-  std::vector<std::uint32_t> pixels_;  // in the circle: row * width + column
+  std::vector<std::uint32_t> pixels_;  // in the circle: row * width + column; tile by tile
   std::vector<CameraRay> rays_;        // of these pixels, in the frame of the camera
 };
 

@@ -1,6 +1,7 @@
 #include "truth/truth_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "geometry/suture_shapes.hpp"
@@ -53,7 +54,13 @@ SutureParts partsOf(const SutureScene& sutures) {
 }
 
 Eigen::Vector3d placeOf(const MovingVertex& vertex) {
-  return Eigen::Map<const Eigen::Vector3f>(vertex.position).cast<double>();
+  return {double{vertex.position[0]}, double{vertex.position[1]}, double{vertex.position[2]}};
+}
+
+/// Across the triangle, of any length.
+Eigen::Vector3d across(const MovingVertex& a, const MovingVertex& b, const MovingVertex& c) {
+  const Eigen::Vector3d begin = placeOf(a);
+  return (placeOf(b) - begin).cross(placeOf(c) - begin);
 }
 
 }  // namespace
@@ -154,50 +161,38 @@ void TruthScene::placePart(std::uint32_t part, const std::optional<Eigen::Isomet
   rays_.place(part, pose);
 }
 
-TruthScene::Corners TruthScene::cornersOf(const SurfaceHit& hit) const {
+Eigen::Vector3d TruthScene::pointOf(const SurfaceHit& hit) const {
   const Body& body = bodies_[hit.body];
-  Corners corners;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t vertex = (*body.triangles)[3 * hit.triangle + k];
-    corners[k] = vibe::placeOf((*body.vertices)[vertex]);
-  }
-  return corners;
-}
-
-Eigen::Vector3d TruthScene::placeOf(const SurfaceHit& hit) const {
-  const Corners corner = cornersOf(hit);
-  const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
-  return bodies_[hit.body].pose * ((1 - u - v) * corner[0] + u * corner[1] + v * corner[2]);
-}
-
-Eigen::Vector3d TruthScene::flatNormal(const SurfaceHit& hit) const {
-  const Corners corner = cornersOf(hit);
-  return bodies_[hit.body].pose.linear() * (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+  const std::uint32_t* corner = &(*body.triangles)[3 * hit.triangle];
+  const MovingVertex* vertices = body.vertices->data();
+  const double u = double{hit.u}, v = double{hit.v};
+  return (1 - u - v) * placeOf(vertices[corner[0]]) + u * placeOf(vertices[corner[1]]) +
+         v * placeOf(vertices[corner[2]]);
 }
 
 Eigen::Vector3d TruthScene::normalOf(const SurfaceHit& hit, const Eigen::Vector3d& towards) const {
   const Body& body = bodies_[hit.body];
   const std::uint32_t* corner = &(*body.triangles)[3 * hit.triangle];
-  const float weight[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (std::size_t k = 0; k < 3; ++k)
-    sum += weight[k] * Eigen::Map<const Eigen::Vector3f>((*body.vertices)[corner[k]].normal);
-  Eigen::Vector3d shaded = body.pose.linear() * sum.cast<double>();
-  const Eigen::Vector3d flat = flatNormal(hit);
-  const double side = flat.dot(towards) < 0 ? -1 : 1;
+  const MovingVertex &a = (*body.vertices)[corner[0]], &b = (*body.vertices)[corner[1]],
+                     &c = (*body.vertices)[corner[2]];
+  const float w = 1 - hit.u - hit.v;
+  Eigen::Vector3d shaded;
+  for (int k = 0; k < 3; ++k) shaded[k] = double{w * a.normal[k] + hit.u * b.normal[k] + hit.v * c.normal[k]};
+  Eigen::Vector3d flat = across(a, b, c);
+  if (flat.dot(towards) < 0) flat = -flat;
   // vertex normals point to the outside, whichever way the triangle is wound
   if (shaded.dot(flat) < 0) shaded = -shaded;
-  shaded *= side;
-  return shaded.norm() > 1e-6 && shaded.dot(towards) > 0 ? Eigen::Vector3d(shaded.normalized())
-                                                         : Eigen::Vector3d(side * flat);
+  const double square = shaded.squaredNorm();
+  return square > 1e-12 && shaded.dot(towards) > 0 ? Eigen::Vector3d(shaded / std::sqrt(square)) : flat.normalized();
 }
 
 std::uint8_t TruthScene::labelOf(const SurfaceHit& hit, const Eigen::Vector3d& towards) const {
-  if (!hit.any()) return kLabelNothing;
   const Body& body = bodies_[hit.body];
   if (hit.body != wall_) return body.label;
-  if (flatNormal(hit).dot(towards) > 0) return kLabelOuterWall;
-  return wall_labels_.at(&(*body.triangles)[3 * hit.triangle], {1 - hit.u - hit.v, hit.u, hit.v});
+  const std::uint32_t* corner = &(*body.triangles)[3 * hit.triangle];
+  const MovingVertex* vertices = body.vertices->data();
+  if (across(vertices[corner[0]], vertices[corner[1]], vertices[corner[2]]).dot(towards) > 0) return kLabelOuterWall;
+  return wall_labels_.at(corner, {1 - hit.u - hit.v, hit.u, hit.v});
 }
 
 }  // namespace vibe

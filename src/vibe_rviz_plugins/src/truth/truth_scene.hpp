@@ -43,14 +43,20 @@ class TruthScene {
   const RayScene& rays() const { return rays_; }
   const std::vector<std::string>& partNames() const { return part_names_; }
 
-  /// Where the point of a hit is now, in the frame of the scene [m].
-  Eigen::Vector3d placeOf(const SurfaceHit& hit) const;
+  // Of hits, in the frame of their body. The shapes of rigid parts stand still there; all others are in the frame of
+  // the scene.
+
+  /// Where the point of a hit is now [m].
+  Eigen::Vector3d pointOf(const SurfaceHit& hit) const;
   /// Unit normal as it is shaded: interpolated between the corners, on the side of `towards`. The plane of the triangle
   /// takes its place where it would point away.
+  /// @param towards  from the point to the camera, of any length
   Eigen::Vector3d normalOf(const SurfaceHit& hit, const Eigen::Vector3d& towards) const;
-  /// @param towards  from the point to the camera
+  /// @param towards  as above
   std::uint8_t labelOf(const SurfaceHit& hit, const Eigen::Vector3d& towards) const;
 
+  /// Pose of the frame of a body in the frame of the scene.
+  const Eigen::Isometry3d& poseOf(std::uint32_t body) const { return bodies_[body].pose; }
   /// Changes whenever the triangles of a body do: a hit belongs to the same material point only while it is the same.
   /// 0: points of this body are not material (blood), or it is not there.
   std::uint64_t shapeNumber(std::uint32_t body) const { return bodies_[body].placed ? bodies_[body].shape_number : 0; }
@@ -66,12 +72,9 @@ class TruthScene {
     std::uint64_t shape_number = 0;
     bool placed = true;
   };
-  using Corners = std::array<Eigen::Vector3d, 3>;
 
   std::uint32_t addBody(std::uint8_t label, std::uint32_t number);
   void setShape(std::uint32_t body, ColouredShape shape, const Eigen::Isometry3d& pose, bool material);
-  Corners cornersOf(const SurfaceHit& hit) const;
-  Eigen::Vector3d flatNormal(const SurfaceHit& hit) const;
 
   RayScene rays_;
   TissueMesh mesh_;

@@ -21,9 +21,9 @@ class WallLabels {
   std::uint8_t at(const std::uint32_t* corner, const std::array<float, 3>& weight) const;
 
  private:
-  std::vector<std::int8_t> region_, wall_;  // per vertex; -1: unknown
-  std::vector<std::uint8_t> grade_;         // per particle, of the last frame
-  std::vector<float> heat_;                 // per vertex; empty: no heat anywhere
+  std::vector<std::uint8_t> cold_;   // per vertex: its label without heat
+  std::vector<std::uint8_t> grade_;  // per particle, of the last frame
+  std::vector<float> heat_;          // per vertex; empty: no heat anywhere
 };
 
 }  // namespace vibe

@@ -227,6 +227,7 @@ class DatasetTest(unittest.TestCase):
             sentences = [line for line in result.stderr.splitlines() if line.startswith("vibe_dataset: ")]
             self.assertEqual((result.returncode, len(sentences)), (status, 1), result.stderr)
             self.assertIn(words, sentences[0])
+            self.assertFalse(os.path.exists(new), words)  # nothing is left of a call that was refused
 
 
 if __name__ == "__main__":

@@ -127,5 +127,36 @@ TEST(Lens, ProblemNamesTheQuantityAndItsRange) {
   }
 }
 
+/// Pixels of a source per pixel of the image at this angle: around the axis, and along the radius.
+Eigen::Vector2d densityAt(const RoundCamera& camera, const SquareSource& source, double angle) {
+  const double pixels = 0.5 * source.size / source.half_width, tangent = std::tan(angle);
+  return {pixels * tangent / radiusAt(camera, angle), pixels * (1 + tangent * tangent) / focalLength(camera)};
+}
+
+TEST(LensSources, OfAWideLensHaveEnoughPixelsEverywhereAndFewerThanOne) {
+  const RoundCamera camera;
+  const LensSources two = sourcesFor(camera, 1, 4096);
+  const double begin = std::atan(0.85 * two.middle.half_width);  // of the whole, in media/endoscope.frag
+  for (double angle = 0.01; angle < 0.5 * camera.field_of_view; angle += 0.01) {
+    const Eigen::Vector2d density = densityAt(camera, angle < begin ? two.middle : two.whole, angle);
+    EXPECT_GE(density[0], angle < begin ? 1 : 0.72) << angle;
+    EXPECT_GE(density[1], 1) << angle;
+  }
+  EXPECT_LT(densityAt(camera, two.whole, 0.1).maxCoeff(), 0.65);  // it alone would not do
+  const SquareSource one = sourceFor(camera, 1, 4096);
+  EXPECT_LT(two.whole.size * two.whole.size + two.middle.size * two.middle.size, 0.55 * one.size * one.size);
+}
+
+TEST(LensSources, OfOtherLensesAreOnePlane) {
+  RoundCamera narrow, straight;
+  narrow.field_of_view = 1.6, straight.lens = LensKind::Rectilinear;
+  for (const RoundCamera& camera : {narrow, straight}) {
+    const LensSources sources = sourcesFor(camera, 1, 4096);
+    EXPECT_EQ(sources.middle.size, 0);
+    EXPECT_EQ(sources.whole.size, sourceFor(camera, 1, 4096).size);
+  }
+  EXPECT_GT(sourcesFor(RoundCamera(), 1, 4096).middle.size, 0);
+}
+
 }  // namespace
 }  // namespace vibe
