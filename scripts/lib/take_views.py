@@ -118,7 +118,9 @@ class ViewSession(PictureSession):
         for topic, kind in self.topics.items():
             self.subscribers.append(rospy.Subscriber("/endoscope/" + topic, kind, self.keep, topic))
         wait_for(self.is_watched, "the camera did not listen to the tissue (see {})".format(self.logs))
-        time.sleep(1)  # for the connections, and for the transforms of before
+        connected = lambda: all(subscriber.get_num_connections() > 0 for subscriber in self.subscribers)
+        wait_for(connected, "the camera does not publish all of {} (see {})".format(", ".join(self.topics), self.logs))
+        time.sleep(1)  # for its side of the connections, and for the transforms of before
 
     def follow(self):
         """Lets the camera listen to the simulator from now on without drawing: camera_info needs no image."""

@@ -77,9 +77,8 @@ TEST_P(TruthCameraTest, DepthAndNormalsOfASphereAreThoseOfItsEquation) {
 /// Depth along the axis by the independent caster; NaN where nothing is hit.
 double plainDepth(const PlainSurface& surface, const RoundCamera& round, const Eigen::Isometry3d& pose,
                   const Eigen::Vector2d& pixel) {
-  const Eigen::Vector3d ray = rayOf(round, pixel);
-  const auto hit = surface.firstHit(pose.translation(), pose.linear() * ray, kNear / ray.z(), kFar / ray.z());
-  return hit ? hit->distance * ray.z() : std::numeric_limits<double>::quiet_NaN();
+  const auto hit = test::plainHit(surface, round, pose, pixel);
+  return hit ? hit->distance * rayOf(round, pixel).z() : std::numeric_limits<double>::quiet_NaN();
 }
 
 TEST_P(TruthCameraTest, DepthIsThatOfTheIndependentCasterAndSilhouettesAreWithinHalfAPixel) {
@@ -159,8 +158,7 @@ TEST_P(TruthCameraTest, LabelsAgreeWithTheGeometryInMoreThan999Of1000Pixels) {
     for (int x = 0; x < round.width; ++x) {
       const std::uint8_t label = labels[static_cast<std::size_t>(y * round.width + x)];
       if (label == kLabelNothing) continue;
-      const Eigen::Vector3d ray = rayOf(round, {x, y});
-      const auto hit = surface.firstHit(test::eye().translation(), test::eye().linear() * ray, kNear / ray.z(), kFar);
+      const auto hit = test::plainHit(surface, round, test::eye(), {x, y});
       const std::uint8_t expected = hit ? plainLabel(world, *hit) : kLabelNothing;
       ++all, ++seen[label];
       same += label == expected;

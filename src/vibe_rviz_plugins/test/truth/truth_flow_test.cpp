@@ -13,7 +13,6 @@ namespace {
 using test::FoldedWorld;
 using test::kFar;
 using test::kNear;
-using test::PlainHit;
 using test::PlainSurface;
 
 constexpr double kStep = 0.6;  // of the time of the folded world from image to image; moves the image by 1 to 2 px
@@ -32,11 +31,6 @@ class TruthFlowTest : public ::testing::TestWithParam<LensKind> {
     return camera_.flow(view_, world_.scene, test::eye(kStep));
   }
 
-  std::optional<PlainHit> plainHit(const PlainSurface& surface, const Eigen::Isometry3d& pose,
-                                   const Eigen::Vector2d& pixel) const {
-    const Eigen::Vector3d ray = rayOf(round_, pixel);
-    return surface.firstHit(pose.translation(), pose.linear() * ray, kNear / ray.z(), kFar / ray.z());
-  }
   /// Where the material of a triangle is after the step.
   Eigen::Vector3d materialAfter(std::size_t triangle, const Eigen::Vector3d& weight) const {
     return weight[0] * after_.corners[3 * triangle] + weight[1] * after_.corners[3 * triangle + 1] +
@@ -67,7 +61,7 @@ TEST_P(TruthFlowTest, LeadsFromThePixelToItsMaterialPointAndTellsWhetherItIsVisi
       const auto k = static_cast<std::size_t>(y * round_.width + x);
       const Eigen::Vector2d motion = Eigen::Map<const Eigen::Vector2f>(&flow.motion[2 * k]).cast<double>();
       EXPECT_EQ(motion.allFinite(), flow.visible[k] != 0);
-      const auto hit = isInside({x, y}) ? plainHit(before_, test::eye(0), {x, y}) : std::nullopt;
+      const auto hit = isInside({x, y}) ? test::plainHit(before_, round_, test::eye(0), {x, y}) : std::nullopt;
       if (!hit) continue;
       const Eigen::Vector3d place = materialAfter(hit->triangle, hit->weight);
       const Eigen::Vector2d there = pixelOf(round_, test::eye(kStep).inverse() * place);
@@ -108,7 +102,7 @@ TEST_P(TruthFlowTest, WarpsFreePointsOfTheWallWithinAFifthOfAPixel) {
     for (int c = 0; c < 3; ++c) place += weight[c] * before_.corners[3 * triangle + static_cast<std::size_t>(c)];
     const Eigen::Vector2d from = pixelOf(round_, test::eye(0).inverse() * place);
     if (!isInside(from, 2)) continue;
-    const auto seen = plainHit(before_, test::eye(0), from);
+    const auto seen = test::plainHit(before_, round_, test::eye(0), from);
     if (!seen || (seen->place - place).norm() > 1e-6) continue;
     const Eigen::Vector2d to = pixelOf(round_, test::eye(kStep).inverse() * materialAfter(triangle, weight));
     const auto x = static_cast<int>(from.x()), y = static_cast<int>(from.y());
@@ -119,7 +113,7 @@ TEST_P(TruthFlowTest, WarpsFreePointsOfTheWallWithinAFifthOfAPixel) {
       const auto k = static_cast<std::size_t>(row * round_.width + column);
       const double part = (1 - std::abs(from.x() - column)) * (1 - std::abs(from.y() - row));
       motion += part * Eigen::Map<const Eigen::Vector2f>(&flow.motion[2 * k]).cast<double>();
-      const auto hit = plainHit(before_, test::eye(0), {column, row});
+      const auto hit = test::plainHit(before_, round_, test::eye(0), {column, row});
       visible = visible && flow.visible[k] == TruthFlow::kVisibleNext && hit && hit->triangle < wall &&
                 std::abs(hit->distance - seen->distance) < 0.003;
     }

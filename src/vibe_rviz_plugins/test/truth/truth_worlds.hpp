@@ -181,6 +181,13 @@ struct PlainSurface {
   }
 };
 
+/// What a pixel of a camera sees, by the independent caster.
+inline std::optional<PlainHit> plainHit(const PlainSurface& surface, const RoundCamera& round,
+                                        const Eigen::Isometry3d& pose, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector3d ray = rayOf(round, pixel);
+  return surface.firstHit(pose.translation(), pose.linear() * ray, kNear / ray.z(), kFar / ray.z());
+}
+
 /// Everything in the FoldedWorld at a time; the organ first, then the rod, the box, and with `sutures` the thread.
 inline PlainSurface plainWorld(const FoldedWorld& world, double time, bool sutures = true) {
   PlainSurface surface;
