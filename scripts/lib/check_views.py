@@ -5,13 +5,13 @@ same function of pictures that do not have the property, most often those of the
 was measured.
 
 Usage: check_views.py FOLDER
-Prints `ok NAME: VALUES` or `not ok NAME: VALUES` for each property and each control. Status 0: all as they should be.
+Prints `ok NAME (VIEWS: VALUES)` or `not ok ...` for each property and each control, as scripts/test counts them. Status 0
+unless something could not be measured.
 """
 
 import argparse
 import collections
 import os
-import sys
 
 import numpy
 from PIL import Image
@@ -209,7 +209,6 @@ def check(views, names, measure, expected):
     holds, values = measure(*wanted)
     title = "{}: {}".format("views" if expected else "control, must fail", measure.__doc__.strip())
     print("{} {} ({}: {})".format("ok" if holds == expected else "not ok", title, names, values))
-    return holds == expected
 
 
 def main():
@@ -217,11 +216,10 @@ def main():
     parser.add_argument("folder")
     folder = parser.parse_args().folder
     views = {name: View(folder, name) for name in VIEWS}
-    results = []
     for of in PROPERTIES:
-        results.append(check(views, of.views, of.measure, True))
-        results += [check(views, names, of.measure, False) for names in of.controls]
-    sys.exit(0 if all(results) else 1)
+        check(views, of.views, of.measure, True)
+        for names in of.controls:
+            check(views, names, of.measure, False)
 
 
 if __name__ == "__main__":

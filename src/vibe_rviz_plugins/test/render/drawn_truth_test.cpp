@@ -63,6 +63,8 @@ Comparison compare(const std::vector<std::uint8_t>& labels, const std::vector<bo
 
 class DrawnTruthTest : public ::testing::TestWithParam<LensKind> {
  protected:
+  static void SetUpTestSuite() { test::graphicsScene(); }  // before any material is made
+
   Pixels draw() const {
     OffscreenCamera camera(test::graphicsScene(), round_, 1);
     Pixels pixels;
