@@ -63,7 +63,7 @@ std::array<Moment, 2> momentsAfter(SessionFrames& frames, double seconds) {
 class Bench {
  public:
   Bench(Ogre::SceneManager& scene, const std::string& urdf)
-      : drawn_(scene, urdf),
+      : drawn_(scene, urdf, true),
         truth_(urdf),
         camera_(scene, {}, 1),
         truth_camera_({}, static_cast<double>(kScopeNearClip), static_cast<double>(kScopeFarClip)) {}
