@@ -9,7 +9,7 @@
 #include <OgreCompositorManager.h>
 #include <OgreHardwarePixelBuffer.h>
 #include <OgreLight.h>
-#include <OgreRenderTarget.h>
+#include <OgreRenderTexture.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <OgreTechnique.h>
@@ -118,7 +118,8 @@ void EndoscopeLens::notifyMaterialRender(Ogre::uint32, Ogre::MaterialPtr& materi
 // Of the scene, before each of its pictures, also those of other cameras.
 void EndoscopeLens::preFindVisibleObjects(Ogre::SceneManager* scene, Ogre::SceneManager::IlluminationRenderStage,
                                           Ogre::Viewport* viewport) {
-  if (viewport->getMaterialScheme() != kEndoscopeScheme || viewport->getCamera() != viewport_->getCamera()) return;
+  if (viewport_ == nullptr || viewport->getMaterialScheme() != kEndoscopeScheme) return;
+  if (viewport->getCamera() != viewport_->getCamera()) return;
   shadow_.cast(*scene, *viewport->getCamera(), viewport->getVisibilityMask());
 }
 
@@ -144,6 +145,9 @@ std::optional<double> EndoscopeLens::level() const {
 
 void EndoscopeLens::remove() {
   if (name_.empty()) return;
+  // the texture may outlive this object, because materials hold it
+  if (middle_) middle_->getBuffer()->getRenderTarget()->removeListener(this);
+  middle_.reset();
   auto& manager = Ogre::CompositorManager::getSingleton();
   if (viewport_ != nullptr) manager.removeCompositor(viewport_, name_);
   manager.remove(name_, kResourceGroup);
@@ -199,7 +203,10 @@ void EndoscopeLens::make() {
   }
   drawn->addListener(this);
   manager.setCompositorEnabled(viewport_, name_, true);
-  if (sources_.middle.size > 0) drawn->getRenderTarget(kMiddle)->addListener(this);
+  if (sources_.middle.size > 0) {
+    middle_ = drawn->getTextureInstance(kMiddle, 0);
+    middle_->getBuffer()->getRenderTarget()->addListener(this);
+  }
   light();
 }
 

@@ -3,6 +3,7 @@
 #include <OgreMaterial.h>
 #include <OgreRenderTargetListener.h>
 #include <OgreSceneManager.h>
+#include <OgreTexture.h>
 #include <OgreViewport.h>
 
 #include <optional>
@@ -69,6 +70,7 @@ class EndoscopeLens : private Ogre::Viewport::Listener,
   LensSources sources_;
   std::string name_;                             ///< of the compositor; empty: there is none
   Ogre::MaterialPtr material_, meter_material_;  ///< of the picture, and of a small one that measures its level
+  Ogre::TexturePtr middle_;                      ///< tells this object when it is drawn; null: there is none
   double gain_ = AutoExposure::kFixedGain;
   Ogre::SceneNode* lamp_ = nullptr;
   DeviceShadow shadow_;
