@@ -10,8 +10,8 @@ struct BloodShade {
 };
 
 // Fresh in a jet or a thin layer, in a drop, in a deep pool, and clotted. Design choices: haemoglobin lets red light
-// pass some ten times farther than green (Bosschaart 2014, doi:10.1007/s10103-013-1446-7), so thin blood is bright and thick blood
-// dark.
+// pass some ten times farther than green (Bosschaart 2014, doi:10.1007/s10103-013-1446-7), so thin blood is bright and
+// thick blood dark.
 constexpr BloodShade kBrightBlood{0.84, 0.03, 0.03, 0.97}, kDarkBlood{0.60, 0.012, 0.03, 0.95},
     kDeepBlood{0.42, 0.006, 0.014, 0.97}, kClottedBlood{0.24, 0.06, 0.04, 0.62};
 

@@ -16,7 +16,7 @@ import tf2_msgs.msg
 from ball import FRAME, Ball
 from endoscope_camera_test import CAMERA, QUATERNION, Program, distance_from_middle, pixels_of, wait_until
 from geometry_msgs.msg import TransformStamped
-from sensor_msgs.msg import PointCloud2
+from sensor_msgs.msg import Image, PointCloud2
 from vibe_msgs.msg import TissueTopology
 
 TIP = numpy.array([-0.02, 0, 0])  # of the endoscope in the ball, which looks along x [m]
@@ -24,6 +24,7 @@ LENS = TIP + (0, 0, 0.0025)  # scope_camera_mount
 NEEDLE_OPEN = TIP + (0.0148, -0.0025, 0.0134)
 CLOSING = numpy.array([-0.0108, 0, -0.0144])  # the way of needle_driver
 STRAIGHT = (0, 0, 0, 1)
+FIRST_PART = 128  # label of the instrument
 
 
 def description():
@@ -59,23 +60,32 @@ class DeviceViewTest(unittest.TestCase):
         self.tf.publish(tf2_msgs.msg.TFMessage(frames))
         self.particles.publish(self.ball.particles(self.clock))
         image, _ = camera.last(self.clock)
-        return pixels_of(image), distance_from_middle(image)
+        of_stamp = lambda: [m for m in camera.labels if m.header.stamp == self.clock]
+        self.assertTrue(wait_until(of_stamp), "no labels in time")
+        labels = numpy.frombuffer(of_stamp()[0].data, numpy.uint8).reshape(image.height, image.width)
+        return pixels_of(image), distance_from_middle(image), labels >= FIRST_PART
 
     def shot(self, urdf, needle=NEEDLE_OPEN):
         rospy.set_param("/robot_description", urdf)
-        with Program(rate=0, width=320, height=320) as camera:
+        program = Program(rate=0, width=320, height=320)
+        program.labels = []
+        program.subscribers.append(rospy.Subscriber("endoscope/labels", Image, program.labels.append))
+        with program as camera:
             found = self.picture(camera, needle)
         publishers = (self.topology, self.particles, self.tf)
         wait_until(lambda: max(p.get_num_connections() for p in publishers) == 0)
         return found
 
     def test_device_is_at_the_edge_and_shines(self):
-        empty, aside = self.shot("<robot name='none'><link name='none'/></robot>")
+        empty, aside, device = self.shot("<robot name='none'><link name='none'/></robot>")
+        self.assertFalse(device.any())
         inside = aside < 158
         shares = {}
         for name, needle in (("open", NEEDLE_OPEN), ("closed", NEEDLE_OPEN + CLOSING)):
-            picture, _ = self.shot(description(), needle)
-            covered = (abs(picture - empty).max(axis=2) > 12) & inside
+            picture, _, device = self.shot(description(), needle)
+            covered = device & inside  # not what differs: the device casts shadows
+            differs = abs(picture - empty).max(axis=2) > 12
+            self.assertGreater(differs[covered].mean(), 0.9, name + ": it is drawn where the labels say")
             shares[name] = covered.sum() / inside.sum()
             print(f"{name}: {100 * shares[name]:.1f} % of the picture")
             self.assertGreater(shares[name], 0.06, name)
@@ -95,8 +105,8 @@ class DeviceViewTest(unittest.TestCase):
 
     def test_a_mesh_that_is_missing_is_left_out(self):
         rest = description()
-        broken, aside = self.shot(rest.replace("meshes/cap.obj", "meshes/nowhere.obj"))
-        whole, _ = self.shot(rest)
+        broken, aside, _ = self.shot(rest.replace("meshes/cap.obj", "meshes/nowhere.obj"))
+        whole, _, _ = self.shot(rest)
         gone = (abs(whole - broken).max(axis=2) > 12) & (aside < 158)
         self.assertGreater(gone.mean(), 0.03, "the cap is not drawn, the rest is")
 

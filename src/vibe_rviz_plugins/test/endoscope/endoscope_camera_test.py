@@ -127,7 +127,9 @@ class Program:
         def of_stamp(messages):
             return [message for message in messages if message.header.stamp == stamp]
 
-        assert wait_until(lambda: of_stamp(self.images[eye]) and of_stamp(self.infos[eye])), "no image in time"
+        arrived = wait_until(lambda: of_stamp(self.images[eye]) and of_stamp(self.infos[eye]))
+        assert arrived, "no image in time; the program {}".format(
+            "runs" if self.process.poll() is None else "ended with status {}".format(self.process.poll()))
         return of_stamp(self.images[eye])[0], of_stamp(self.infos[eye])[0]
 
 
