@@ -8,10 +8,12 @@ namespace vibe {
 // Design choices: nothing is published on the smoke of argon plasma coagulation in a stomach.
 constexpr double kSmokeLife =
     15;  ///< mean time that smoke stays: long enough to wait for, short against a mark's way [s]
-/// Extinction of the smoke of one joule. A mark of 1.5 s at 40 W leaves 55 J on the wall: then half of the light comes
-/// back from a wall at 40 mm and 15 % from one at 100 mm, veiled, but recognisable [1/(m J)].
-constexpr double kSmokePerJoule = 0.17;
-constexpr double kDensestSmoke = 25;  ///< limit: 14 % of the light comes back from a wall at 40 mm [1/m]
+/// Extinction of the smoke of one joule. A mark of 1.5 s at 40 W leaves 55 J on the wall: then 74 % of the light comes
+/// back from a wall at 40 mm and 46 % from one at 100 mm, veiled, but recognisable [1/(m J)].
+constexpr double kSmokePerJoule = 0.07;
+/// Limit: 53 % of the light comes back from a wall at 40 mm, so that a row of marks does not blind a trainee, who has
+/// no suction to clear it [1/m].
+constexpr double kDensestSmoke = 8;
 constexpr double kSpotRadius = 4e-3;  ///< of the footprint that doses refer to, the default of scenes [m]
 
 /// Smoke of the tissue that the argon beam burns. The lumen is well mixed, so one number tells all; it grows with the
