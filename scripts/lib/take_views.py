@@ -22,7 +22,7 @@ from std_msgs.msg import String
 
 from graph import GraphError
 from run_session import Interrupted, attempt, interrupt, session_defaults
-from rviz_window import wait_for
+from rviz_window import PATIENCE, wait_for
 from take_pictures import PictureSession
 
 View = collections.namedtuple("View", "name session seconds followed", defaults=(None,))
@@ -147,10 +147,15 @@ class ViewSession(PictureSession):
             self.follow()
         self.step_to(view.seconds - 5 * period, period)
         self.look()
-        for _ in range(5):  # one at a time: the last one has an image, and sutures of before
+        for left in reversed(range(5)):  # one at a time: the last one has an image, and sutures of before
             before = len(self.pictures())
             self.step_to((self.steps_done + 1) * period, period)
-            wait_for(lambda n=before: len(self.pictures()) > n, "the camera took no picture (see {})".format(self.logs))
+            # the first steps may be over before a busy machine has connected the camera
+            deadline = time.monotonic() + (5 if left > 0 else PATIENCE)
+            while len(self.pictures()) == before and time.monotonic() < deadline:
+                time.sleep(0.05)
+        if len(self.pictures()) == before:
+            raise GraphError("the camera took no picture (see {})".format(self.logs))
         for subscriber in self.subscribers:
             subscriber.unregister()
         self.subscribers.clear()
