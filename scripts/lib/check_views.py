@@ -19,6 +19,7 @@ from scipy import ndimage
 
 VIEWS = ("rest", "5mmhg", "10mmhg", "antrum", "retroflexed", "marked", "sutured", "bleeding")
 MARK_SIZE = 12  # a mark of fewer pixels is not judged: its rim and its middle are the same pixels
+GLARE = 0.65  # blue to red of a wall that mirrors light; without that it is 0.4 to 0.5
 RIM = 5  # how far around a thing the wall is its surroundings [px]
 
 
@@ -151,9 +152,14 @@ def place_of_blob(view, mark):
     return numpy.array(ndimage.center_of_mass(weight)) if weight.sum() > 0 else numpy.full(2, numpy.inf)
 
 
+def in_highlight(view, mark):
+    """Whether the film of mucus mirrors the light around a mark: what it mirrors is as white as a mark."""
+    return ratio(view, surroundings(view, mark), 2) > GLARE
+
+
 def marks_are_white(view, fewest=3):
     """Every mark of the truth that stands free in the picture is whiter than the wall around, at its place."""
-    marks = [m for m in parts(view.where("mark")) if stands_free(view, m)]
+    marks = [m for m in parts(view.where("mark")) if stands_free(view, m) and not in_highlight(view, m)]
     good, farthest = 0, 0.0
     for mark in marks:
         whiter = ratio(view, mark, 2) > 1.3 * ratio(view, surroundings(view, mark), 2)
