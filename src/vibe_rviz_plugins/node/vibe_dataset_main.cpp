@@ -55,8 +55,10 @@ void run(const vibe::DatasetOptions& options) {
     if (stamp.toSec() > options.to) break;
     std::string problem = camera.follow(frame);
     if (stamp.toSec() < options.from || !due.isDue(stamp) || turn++ % options.every != 0) continue;
-    if (!folder) folder.emplace(options);
-    if (problem.empty()) problem = camera.take(frame, frames.poses(), *folder);
+    if (problem.empty()) {
+      if (!folder) folder.emplace(options);
+      problem = camera.take(frame, frames.poses(), *folder);
+    }
     if (!problem.empty()) throw std::runtime_error(problem);
     world = frame.particles->header.frame_id;
     progress.show(frames, camera.images());

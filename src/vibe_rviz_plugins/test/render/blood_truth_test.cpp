@@ -1,25 +1,22 @@
 // Bleeding in the image of the endoscope and in its truth: the picture is redder where blood has run, and the label
 // says blood where the picture has changed. Needs no display.
 
-#include <OgreRoot.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <gtest/gtest.h>
-#include <rviz/ogre_helpers/render_system.h>
 
 #include "geometry/bleeding_shape.hpp"
+#include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/resources.hpp"
 #include "render/suture_visual.hpp"
 #include "render/tissue_visual.hpp"
-#include "render/virtual_display.hpp"
 #include "truth/truth_worlds.hpp"
 
 namespace vibe {
 namespace {
 
 using Eigen::Vector3d;
-using Pixels = std::vector<std::uint8_t>;
+using test::Pixels;
 
 const Vector3d kDown = -Vector3d::UnitZ();  // in the scene, and in the picture
 
@@ -53,23 +50,16 @@ SutureScene bleeding(bool brisk, double amount) {
 
 class BloodTruthTest : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    provideDisplay();
-    rviz::RenderSystem::forceNoStereo();
-    scene_ = rviz::RenderSystem::get()->root()->createSceneManager();
-    loadResources();
-  }
-
   BloodTruthTest() : mesh_(test::ballMesh(48, 96)) {
     frame_.revision = mesh_.revision;
     for (const float p : mesh_.rest) frame_.positions.push_back(0.05F * p);
   }
 
   Pixels draw(const SutureScene& sutures) {
-    TissueVisual wall(*scene_->getRootSceneNode());
+    TissueVisual wall(*test::graphicsScene().getRootSceneNode());
     wall.setMesh(mesh_);
     wall.setFrame(frame_);
-    Ogre::SceneNode& node = *scene_->getRootSceneNode()->createChildSceneNode();
+    Ogre::SceneNode& node = *test::graphicsScene().getRootSceneNode()->createChildSceneNode();
     const Eigen::Quaternionf turn(sutureFrame().linear().cast<float>());
     node.setOrientation(turn.w(), turn.x(), turn.y(), turn.z());
     Pixels pixels;
@@ -80,10 +70,10 @@ class BloodTruthTest : public ::testing::Test {
       blood.setWounds(sutures, BloodStyle());
       blood.update(wall.vertices(), sutureFrame().inverse());
       drawn.showBlood(blood.shape());
-      OffscreenCamera eye(*scene_, round_, 1);
+      OffscreenCamera eye(test::graphicsScene(), round_, 1);
       eye.take(camera(), pixels);
     }
-    scene_->destroySceneNode(&node);
+    test::graphicsScene().destroySceneNode(&node);
     return pixels;
   }
 
@@ -125,13 +115,10 @@ class BloodTruthTest : public ::testing::Test {
     return {both / blood, both / changed};
   }
 
-  static Ogre::SceneManager* scene_;
   RoundCamera round_ = test::smallCamera(LensKind::Equidistant, 320, 320);
   TissueMesh mesh_;
   TissueFrame frame_;
 };
-
-Ogre::SceneManager* BloodTruthTest::scene_ = nullptr;
 
 TEST_F(BloodTruthTest, PictureIsRedderWhereBloodHasRunAndTheLabelSaysSo) {
   for (const bool brisk : {false, true}) {

@@ -1,16 +1,13 @@
 // What the device hides from the light guides: a rod between lens and wall. Needs no display.
 #include <OgreEntity.h>
-#include <OgreRoot.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <gtest/gtest.h>
 #include <rviz/mesh_loader.h>
-#include <rviz/ogre_helpers/render_system.h>
 
+#include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/resources.hpp"
 #include "render/tissue_visual.hpp"
-#include "render/virtual_display.hpp"
 #include "tube_organ.hpp"
 
 namespace vibe {
@@ -33,16 +30,9 @@ int shadowOf(double guide) {
 
 class DeviceShadowTest : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    provideDisplay();
-    rviz::RenderSystem::forceNoStereo();
-    scene_ = rviz::RenderSystem::get()->root()->createSceneManager();
-    loadResources();
-  }
-
   void SetUp() override {
     organ_.radius = 0.06;
-    tissue_ = std::make_unique<TissueVisual>(*scene_->getRootSceneNode());
+    tissue_ = std::make_unique<TissueVisual>(*test::graphicsScene().getRootSceneNode());
     tissue_->setMesh(organ_.mesh());
     TissueFrame frame;
     frame.revision = 1;
@@ -54,16 +44,16 @@ class DeviceShadowTest : public ::testing::Test {
   }
   void TearDown() override {
     tissue_.reset();
-    scene_->destroyEntity(rod_);
-    scene_->destroySceneNode(node_);
+    test::graphicsScene().destroyEntity(rod_);
+    test::graphicsScene().destroySceneNode(node_);
   }
 
   /// 6.4 mm along y, 2 mm thick: a piece of the shaft, much smaller.
   void addRod(const Eigen::Vector3d& from) {
     const Ogre::MeshPtr mesh = rviz::loadMeshFromResource("package://vibe_description/meshes/shaft_piece.obj");
     ASSERT_TRUE(mesh);
-    rod_ = scene_->createEntity(mesh);
-    node_ = scene_->getRootSceneNode()->createChildSceneNode();
+    rod_ = test::graphicsScene().createEntity(mesh);
+    node_ = test::graphicsScene().getRootSceneNode()->createChildSceneNode();
     node_->attachObject(rod_);
     node_->setScale(0.16F, 0.16F, 0.16F);
     node_->setOrientation(Ogre::Quaternion(Ogre::Degree(90), Ogre::Vector3::UNIT_Z));
@@ -72,7 +62,7 @@ class DeviceShadowTest : public ::testing::Test {
 
   std::vector<std::uint8_t> picture(bool with_rod) {
     rod_->setVisible(with_rod);
-    OffscreenCamera camera(*scene_, {LensKind::Rectilinear, 2 * kHalfAngle, kSize, kSize}, 1);
+    OffscreenCamera camera(test::graphicsScene(), {LensKind::Rectilinear, 2 * kHalfAngle, kSize, kSize}, 1);
     std::vector<std::uint8_t> pixels;
     camera.take(camera_pose_, pixels);
     return pixels;
@@ -90,7 +80,6 @@ class DeviceShadowTest : public ::testing::Test {
     return sum / 20;
   }
 
-  static inline Ogre::SceneManager* scene_ = nullptr;
   test::TubeOrgan organ_;
   std::unique_ptr<TissueVisual> tissue_;
   Eigen::Isometry3d camera_pose_ = Eigen::Isometry3d::Identity();

@@ -2,45 +2,35 @@
 #include <OgreCamera.h>
 #include <OgreHardwarePixelBuffer.h>
 #include <OgreRenderTexture.h>
-#include <OgreRoot.h>
 #include <OgreSceneManager.h>
 #include <OgreSceneNode.h>
 #include <OgreTechnique.h>
 #include <OgreTextureManager.h>
 #include <gtest/gtest.h>
-#include <rviz/ogre_helpers/render_system.h>
 
 #include <cmath>
 #include <memory>
 
+#include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/resources.hpp"
 #include "render/shape_view.hpp"
 #include "render/tissue_visual.hpp"
-#include "render/virtual_display.hpp"
 #include "tube_organ.hpp"
 #include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
 namespace vibe {
 namespace {
 
-using Pixels = std::vector<std::uint8_t>;
+using test::Pixels;
 constexpr int kSize = 200;  // [px]
 
 class SmokeViewTest : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    provideDisplay();
-    rviz::RenderSystem::forceNoStereo();
-    scene_ = rviz::RenderSystem::get()->root()->createSceneManager();
-    loadResources();
-  }
-
   void SetUp() override {
     RoundCamera round;
     round.width = round.height = kSize;
-    camera_ = std::make_unique<OffscreenCamera>(*scene_, round, 1);
-    tissue_ = std::make_unique<TissueVisual>(*scene_->getRootSceneNode());
+    camera_ = std::make_unique<OffscreenCamera>(test::graphicsScene(), round, 1);
+    tissue_ = std::make_unique<TissueVisual>(*test::graphicsScene().getRootSceneNode());
     tissue_->setMesh(organ_.mesh());
     frame_.positions = organ_.places(1.06);
     frame_.grade.assign(organ_.mesh().particle_count, 0);
@@ -128,7 +118,6 @@ class SmokeViewTest : public ::testing::Test {
     return largest;
   }
 
-  static inline Ogre::SceneManager* scene_ = nullptr;
   bool is_bluish_ = false;
   test::TubeOrgan organ_;
   TissueFrame frame_;
@@ -166,7 +155,7 @@ TEST_F(SmokeViewTest, IsGoneAfterSomeTime) {
 
 TEST_F(SmokeViewTest, NoSmokeChangesNoPixel) {
   const Pixels clear = picture(along());
-  EXPECT_EQ(scene_->getFogDensity(), 0);
+  EXPECT_EQ(test::graphicsScene().getFogDensity(), 0);
   burn(6);
   EXPECT_FALSE(picture(along()) == clear);  // control
   TissueLook look;
@@ -213,17 +202,17 @@ TEST_F(SmokeViewTest, OvertakenFramesTellNothing) {
   tissue_->follow(frame_);
   tissue_->setLook({});
   EXPECT_FALSE(picture(along()) == before);
-  EXPECT_EQ(scene_->getFogDensity(), 0);
+  EXPECT_EQ(test::graphicsScene().getFogDensity(), 0);
 }
 
 TEST_F(SmokeViewTest, SmokeOfSeveralOrgansAddsUpAndLeavesNothing) {
-  SceneSmoke one(*scene_), other(*scene_);
+  SceneSmoke one(test::graphicsScene()), other(test::graphicsScene());
   one.set(0.1, 0), other.set(0.7, 0);
-  EXPECT_NEAR(scene_->getFogDensity(), 0.8, 0.005);
+  EXPECT_NEAR(test::graphicsScene().getFogDensity(), 0.8, 0.005);
   one.set(0, 0);
-  EXPECT_NEAR(scene_->getFogDensity(), 0.7, 0.005);
+  EXPECT_NEAR(test::graphicsScene().getFogDensity(), 0.7, 0.005);
   other.set(0, 0);
-  EXPECT_EQ(scene_->getFogDensity(), 0);
+  EXPECT_EQ(test::graphicsScene().getFogDensity(), 0);
 }
 
 /// Radiance in the middle of the picture of a ball on the axis, whose nearest point has this distance:
@@ -236,7 +225,7 @@ double SmokeViewTest::ofBall(double distance, double grey) {
   Ogre::MaterialPtr material = copyMaterial("vibe/solid");
   for (Ogre::Technique* technique : material->getTechniques())
     technique->getPass(0)->getFragmentProgramParameters()->setNamedConstant("gloss", 0.0F);
-  auto ball = std::make_unique<ShapeView>(*scene_->getRootSceneNode(), material);
+  auto ball = std::make_unique<ShapeView>(*test::graphicsScene().getRootSceneNode(), material);
   ball->show(shape);
   const Eigen::Vector3d colour = middle<2>(picture(along()));
   ball.reset();
@@ -254,7 +243,7 @@ TEST_F(SmokeViewTest, DimsAndVeilsBodiesByTheEquationOfSingleScattering) {
     const double clear = ofBall(distance, 0.5), dark = ofBall(distance, 0);
     EXPECT_LT(dark, 1e-3);
     burn(6);
-    const double extinction = scene_->getFogDensity();
+    const double extinction = test::graphicsScene().getFogDensity();
     ASSERT_NEAR(extinction, 6, 0.01);
     const double veil = ofBall(distance, 0), veiled = ofBall(distance, 0.5);
     EXPECT_TRUE(is_bluish_);
@@ -312,7 +301,8 @@ TEST_F(SmokeViewTest, FoldsFollowEachFrameThatIsLookedAt) {
 
 TEST_F(SmokeViewTest, ValuesForTheEndoscopeAreAskedForOnlyByItsScheme) {
   Ogre::MaterialPtr material = copyMaterial("vibe/tissue_inside");
-  auto mesh = std::make_unique<DynamicMesh>(*scene_->getRootSceneNode(), std::vector<Ogre::MaterialPtr>{material});
+  auto mesh = std::make_unique<DynamicMesh>(*test::graphicsScene().getRootSceneNode(),
+                                            std::vector<Ogre::MaterialPtr>{material});
   const TissueMesh tube = organ_.mesh();
   mesh->setTopology(tube.triangles, tube.vertex_count, tube.rest);
   mesh->setBounds(Ogre::AxisAlignedBox::BOX_INFINITE);
@@ -320,8 +310,8 @@ TEST_F(SmokeViewTest, ValuesForTheEndoscopeAreAskedForOnlyByItsScheme) {
   mesh->beforeEndoscope([&] { ++asked; });
   const Ogre::TexturePtr texture = Ogre::TextureManager::getSingleton().createManual(
       uniqueName("Plain"), kResourceGroup, Ogre::TEX_TYPE_2D, 32, 32, 0, Ogre::PF_BYTE_RGB, Ogre::TU_RENDERTARGET);
-  Ogre::Camera* plain = scene_->createCamera(uniqueName("Plain"));
-  scene_->getRootSceneNode()->createChildSceneNode()->attachObject(plain);
+  Ogre::Camera* plain = test::graphicsScene().createCamera(uniqueName("Plain"));
+  test::graphicsScene().getRootSceneNode()->createChildSceneNode()->attachObject(plain);
   Ogre::RenderTarget& target = *texture->getBuffer()->getRenderTarget();
   target.addViewport(plain);
   target.update();
@@ -329,7 +319,7 @@ TEST_F(SmokeViewTest, ValuesForTheEndoscopeAreAskedForOnlyByItsScheme) {
   picture(along());
   EXPECT_GT(asked, 0);  // control
   target.removeAllViewports();
-  scene_->destroyCamera(plain);
+  test::graphicsScene().destroyCamera(plain);
   Ogre::TextureManager::getSingleton().remove(texture);
   mesh.reset();
   dropMaterial(material);
