@@ -171,7 +171,7 @@ def marks_are_white(view, fewest=3):
 
 
 def thread_is_blue(view):
-    """Where the truth has thread many pixels are blue: a slack thread is banded and thinner than a pixel."""
+    """Where the truth has thread many pixels are blue: it is thinner than a pixel."""
     thread = view.where("thread")
     if thread.sum() < 20:
         return False, "{} px of thread".format(thread.sum())
