@@ -14,15 +14,13 @@ uniform float gain;               // of the exposure, see src/geometry/auto_expo
 
 varying vec2 place;  // in the result, 0 to 1
 
-const int kMaxSamples = 12;
-
 // Mean over one pixel of the result along the radius; near the rim that is several pixels of the plane image.
 // tangent, step: distance from the centre, and to radial neighbours, in units of source_half_width
 vec3 mean(sampler2D plane, float half_width, float size, vec2 direction, float tangent, float step) {
-  int samples = int(clamp(ceil(step / half_width * 0.5 * size - 0.25), 1.0, float(kMaxSamples)));
+  int samples = int(max(ceil(step / half_width * 0.5 * size - 0.25), 1.0));
   vec3 light = vec3(0.0);
-  for (int k = 0; k < kMaxSamples; ++k) {
-    if (k >= samples) break;
+  // not up to a constant with a break: without a graphics card such a loop is unrolled, and all of it is computed always
+  for (int k = 0; k < samples; ++k) {
     float along = tangent + step * ((float(k) + 0.5) / float(samples) - 0.5);
     light += texture2D(plane, 0.5 + 0.5 * direction * along / half_width).rgb;
   }

@@ -12,13 +12,14 @@ uniform float fill;    // ambient light; more for data colours
 uniform float scars;   // 1: show heat
 uniform float reach;   // distance at which the light of the guides is 1 [m]
 uniform vec2 window;   // size of the picture [px]
+uniform float unseen;  // share of half the picture within which nothing of it is shown (src/render/endoscope_lens.cpp)
 uniform sampler3D pattern;
 
 varying vec3 view_position;
 varying vec3 view_normal;
 varying vec4 colour;
 varying vec3 rest;
-varying vec3 around;
+varying vec4 around;
 varying vec4 anatomy;
 varying float fold;
 varying vec2 reaching;
@@ -29,7 +30,6 @@ varying float wisp;
 #endif
 
 const float kAreae = 1.0 / 0.020;   // 2.5 mm per area [1/m]
-const float kBroad = 1.0 / 0.17;    // waves of 42 mm and less
 const float kVessels = 1.0 / 0.06;  // a net of 15 mm
 const mat3 kTurn = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);  // so that periods do not coincide
 
@@ -61,13 +61,13 @@ vec3 heated(vec3 base, float heat, float age) {
 
 void main() {
   vec2 aside = 2.0 * gl_FragCoord.xy / window - 1.0;
-  if (dot(aside, aside) > 1.02) discard;  // outside of the circle that the lens shows
+  // outside of the circle that the lens shows, or where it shows its other picture
+  if (dot(aside, aside) > 1.02 || dot(aside, aside) < unseen * unseen) discard;
 
   float heat = scars * 3.0 * (1.0 - colour.a);
-  vec3 turned = kTurn * rest;
   vec4 areae = texture3D(pattern, kAreae * rest);
-  vec4 broad = texture3D(pattern, kBroad * turned);
-  vec4 net = texture3D(pattern, kVessels * turned.zxy);
+  float broad = around.w;
+  vec4 net = texture3D(pattern, kVessels * (kTurn * rest).zxy);
   float pixel = length(fwidth(rest));
 
   // rugae: parallel folds that meander; two counts of them side by side, so that folds end and fork at the borders
@@ -88,11 +88,11 @@ void main() {
   float gastric = smoothstep(-0.0005, 0.0005, anatomy.z + 0.012 * (net.g - 0.5) + 0.003 * (areae.g - 0.5));
 
   float smooth_part = max(1.0 - gastric, 0.45 * anatomy.y);
-  float pits = mix(0.8, areae.r, (1.0 - smooth_part) * smoothstep(0.25, 0.7, net.g + 0.3 * (broad.g - 0.5)));
+  float pits = mix(0.8, areae.r, (1.0 - smooth_part) * smoothstep(0.25, 0.7, net.g + 0.3 * (broad - 0.5)));
   // what is finer than two pixels would glitter
   float fine = 1.0 - smoothstep(0.0001, 0.00035, pixel), middling = 1.0 - smoothstep(0.0001, 0.0007, pixel);
   float rough = relief * (middling * (0.36 * pits + 0.5 * areae.g) + 0.35 * fine * areae.a * gastric);
-  float mucus = smoothstep(0.58, 0.72, broad.g + 0.25 * (net.g - 0.5)) * gastric;
+  float mucus = smoothstep(0.58, 0.72, broad + 0.25 * (net.g - 0.5)) * gastric;
 
   vec3 flat_normal = -normalize(view_normal);
   vec3 normal = raised(flat_normal, height + rough);
@@ -102,13 +102,13 @@ void main() {
 
   vec3 base = linear(colour.rgb * tint.rgb);
   if (grain > 0.5) {
-    float blotch = 0.6 * broad.g + 0.4 * net.g + 0.25 * (areae.g - 0.5) - 0.5;
+    float blotch = 0.6 * broad + 0.4 * net.g + 0.25 * (areae.g - 0.5) - 0.5;
     base *= vec3(1.0, 0.94, 0.85);
     base = mix(base, vec3(0.80, 0.42, 0.31), 0.55 * anatomy.y);
     base *= vec3(1.0) + blotch * vec3(0.5, 0.9, 0.9);
     base *= mix(vec3(0.95, 0.85, 0.84), vec3(1.0), pits);
     float stretched = 1.0 - smoothstep(0.0, 0.0025, fold);
-    base = mix(base, vec3(0.30, 0.05, 0.06), net.b * gastric * (0.10 + 0.22 * stretched * (1.0 - anatomy.y)) * smoothstep(0.4, 0.6, broad.g + 0.2));
+    base = mix(base, vec3(0.30, 0.05, 0.06), net.b * gastric * (0.10 + 0.22 * stretched * (1.0 - anatomy.y)) * smoothstep(0.4, 0.6, broad + 0.2));
     float deep = fold / 0.003 * (1.0 - ruga);  // light is lost, and red, between folds
     base *= mix(vec3(1.0), vec3(0.50, 0.30, 0.28), clamp(deep, 0.0, 1.0));
     base = mix(base, vec3(0.86, 0.48, 0.37) + 0.2 * (net.g - 0.5), 1.0 - gastric);

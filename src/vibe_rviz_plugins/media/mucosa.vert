@@ -11,7 +11,7 @@ varying vec3 view_position;
 varying vec3 view_normal;
 varying vec4 colour;
 varying vec3 rest;
-varying vec3 around;  // direction around the organ; by how much the phase of the folds wanders [rad]
+varying vec4 around;  // direction around the organ; by how much the phase of the folds wanders [rad]; blotches
 varying vec4 anatomy;  // share of folds, of antrum; distance beyond Z line and pylorus [m]
 varying float fold;    // height of the rugae here [m]
 varying vec2 reaching; // part of each light guide that the device does not hide
@@ -31,7 +31,7 @@ void main() {
   view_normal = (worldView * vec4(gl_Normal, 0.0)).xyz;
   colour = gl_Color;
   rest = gl_MultiTexCoord0.xyz;
-  around = gl_MultiTexCoord1.xyz;
+  around = gl_MultiTexCoord1;
   anatomy = gl_MultiTexCoord2;
   fold = gl_MultiTexCoord3.x;
   reaching = lightReaching(view_position);

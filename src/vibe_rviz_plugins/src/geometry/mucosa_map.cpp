@@ -138,8 +138,9 @@ void normaliseDirections(const std::vector<double>& rate, Eigen::MatrixXd& value
 /// @param rest  x y z [m]
 MucosaVertex entryOf(const Eigen::RowVectorXd& values, const float* rest) {
   const Eigen::RowVectorXf row = values.cast<float>();
-  const float bend = foldBend(Eigen::Map<const Eigen::Vector3f>(rest));
-  return {{row[Cosine], row[Sine]}, bend, row[FoldShare], row[AntrumShare], row[BeyondZ], row[BeyondRing]};
+  const Eigen::Map<const Eigen::Vector3f> place(rest);
+  const float bend = foldBend(place), broad = broadPattern(place);
+  return {{row[Cosine], row[Sine]}, bend, broad, row[FoldShare], row[AntrumShare], row[BeyondZ], row[BeyondRing]};
 }
 
 MucosaMap entriesOf(const TissueMesh& mesh, const Eigen::MatrixXd& values) {

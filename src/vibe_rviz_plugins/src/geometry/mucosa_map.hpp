@@ -11,13 +11,14 @@ struct MucosaVertex {
   float around[2];  ///< cosine and sine of the angle around the organ, 0: anterior, pi/2: greater curvature, times how
                     ///< well it is defined, 0 to 1: at the apex of the fundus it is not [1]
   float bend;       ///< by which the phase of the folds wanders, see foldBend() [rad]
+  float broad;      ///< blotches of 42 mm and less, see broadPattern(), 0 to 1
   float folded;     ///< how much of the rugae this region has: 1 body and fundus, 0 oesophagus and pylorus [1]
   float antral;     ///< 1: antrum and pylorus, paler and smoother [1]
   float beyond_z;   ///< distance from the Z line, positive on the side of the stomach; 1 m without an oesophagus [m]
   float beyond_ring;  ///< distance from the narrowest place of the pylorus, positive towards the duodenum; -1 m without
                       ///< one [m]
 };
-static_assert(sizeof(MucosaVertex) == 28, "the vertex buffer has no gaps");
+static_assert(sizeof(MucosaVertex) == 32, "the vertex buffer has no gaps");
 
 struct MucosaMap {
   std::vector<MucosaVertex> of_particle, of_vertex;

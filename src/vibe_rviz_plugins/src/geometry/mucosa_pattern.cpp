@@ -17,7 +17,7 @@ constexpr float kLine = 0.075F;         // half width of a line of the net, in i
 constexpr float kBend = 0.22F;          // how far lines are bent, in cells
 constexpr int kSmooth = 4, kFine = 32;  // waves along an edge of the pattern
 
-// As in media/mucosa.frag: edges of the pattern where it is read as broad and as net [m], and the frame of the reading.
+// Edges of the pattern where it is read as broad, and as net as in media/mucosa.frag [m]; the frame is that of the net.
 constexpr float kBroadEdge = 0.17F, kNetEdge = 0.06F;
 constexpr float kBroadBend = 16, kNetBend = 2;  // [rad]
 
@@ -100,9 +100,13 @@ Vector3f turnedFrame(const Vector3f& rest) {
 
 }  // namespace
 
+float broadPattern(const Vector3f& rest) {
+  return cloudAt(turnedFrame(rest) / kBroadEdge);
+}
+
 float foldBend(const Vector3f& rest) {
   const Vector3f turned = turnedFrame(rest), rolled(turned.z(), turned.x(), turned.y());
-  return kBroadBend * (cloudAt(turned / kBroadEdge) - 0.5F) + kNetBend * (cloudAt(rolled / kNetEdge) - 0.5F);
+  return kBroadBend * (broadPattern(rest) - 0.5F) + kNetBend * (cloudAt(rolled / kNetEdge) - 0.5F);
 }
 
 MucosaPattern makeMucosaPattern() {

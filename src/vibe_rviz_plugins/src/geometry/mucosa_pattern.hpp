@@ -20,6 +20,10 @@ constexpr int kPatternCells = 8;  ///< polygonal areas along an edge of the patt
 /// The same for every process. Takes about 0.1 s.
 MucosaPattern makeMucosaPattern();
 
+/// Smooth noise at a place of the wall at rest [m], 0 to 1, with waves of 42, 21 and 11 mm: wide enough to be
+/// interpolated between vertices.
+float broadPattern(const Eigen::Vector3f& rest);
+
 /// How far the phase of the rugae wanders at a place of the wall at rest, so that folds meander [rad]. It is smooth
 /// over 15 mm and is computed at the vertices: from the bytes of the texture, the steps of their slopes would be seen.
 float foldBend(const Eigen::Vector3f& rest);

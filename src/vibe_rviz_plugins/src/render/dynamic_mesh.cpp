@@ -11,6 +11,7 @@
 
 #include <cstddef>
 
+#include "geometry/triangle_order.hpp"
 #include "render/resources.hpp"
 
 namespace vibe {
@@ -62,7 +63,7 @@ void DynamicMesh::setTopology(const std::vector<std::uint32_t>& triangles, std::
   mesh_ = Ogre::MeshManager::getSingleton().createManual(uniqueName("Mesh"), kResourceGroup);
   makeVertexData(fixed);
   if (mucosa.size() == vertex_count) addMucosa(mucosa);
-  makeIndexData(triangles);
+  makeIndexData(sortedInSpace(triangles, fixed));
   mesh_->_setBounds(Ogre::AxisAlignedBox::BOX_NULL);
   mesh_->load();
   entity_ = parent_.getCreator()->createEntity(mesh_);
@@ -95,7 +96,7 @@ void DynamicMesh::makeVertexData(const std::vector<float>& fixed) {
 
 void DynamicMesh::addMucosa(const std::vector<MucosaVertex>& mucosa) {
   Ogre::VertexDeclaration& layout = *mesh_->sharedVertexData->vertexDeclaration;
-  layout.addElement(Mucosa, 0, Ogre::VET_FLOAT3, Ogre::VES_TEXTURE_COORDINATES, 1);
+  layout.addElement(Mucosa, 0, Ogre::VET_FLOAT4, Ogre::VES_TEXTURE_COORDINATES, 1);
   layout.addElement(Mucosa, offsetof(MucosaVertex, folded), Ogre::VET_FLOAT4, Ogre::VES_TEXTURE_COORDINATES, 2);
   layout.addElement(Heights, 0, Ogre::VET_FLOAT1, Ogre::VES_TEXTURE_COORDINATES, 3);
   layout.addElement(Browned, 0, Ogre::VET_FLOAT1, Ogre::VES_TEXTURE_COORDINATES, 4);

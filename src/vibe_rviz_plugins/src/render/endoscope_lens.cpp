@@ -7,6 +7,7 @@
 #include <OgreCompositor.h>
 #include <OgreCompositorChain.h>
 #include <OgreCompositorManager.h>
+#include <OgreGpuProgramManager.h>
 #include <OgreHardwarePixelBuffer.h>
 #include <OgreLight.h>
 #include <OgreRenderTexture.h>
@@ -32,6 +33,18 @@ const char* const kSource = "source";
 const char* const kMiddle = "middle";
 const char* const kMeter = "meter";
 constexpr int kMeterSize = 32;  // edge of the picture that measures the level [px]
+
+const char* const kParameters = "vibe_lens";  // as in media/vibe.program
+constexpr double kFirstBlend = 0.85;          // as in media/endoscope.frag
+
+/// Share of half of the picture of the whole within which only that of the middle is shown, also in the picture of the
+/// meter, where a pixel is the mean of a longer line.
+double unseenShare(const RoundCamera& camera, const LensSources& sources) {
+  if (sources.middle.size == 0) return 0;
+  const double edge = kFirstBlend * sources.middle.half_width;
+  const double line = (1 + edge * edge) * camera.field_of_view / kMeterSize;
+  return std::max(0.0, edge - line) / sources.whole.half_width;
+}
 
 // Weight of a pixel at this share of the radius: centre-weighted metering, as video processors offer it.
 double weightAt(double share) {
@@ -68,6 +81,11 @@ void addTexture(Ogre::CompositionTechnique& technique, const char* name, int siz
 }
 
 }  // namespace
+
+void EndoscopeLens::provide() {
+  const auto shared = Ogre::GpuProgramManager::getSingleton().createSharedParameters(kParameters);
+  shared->addConstantDefinition("unseen", Ogre::GCT_FLOAT1);
+}
 
 EndoscopeLens::EndoscopeLens(Ogre::Viewport& viewport) : viewport_(&viewport) {
   viewport_->addListener(this);
@@ -121,6 +139,9 @@ void EndoscopeLens::preFindVisibleObjects(Ogre::SceneManager* scene, Ogre::Scene
   if (viewport_ == nullptr || viewport->getMaterialScheme() != kEndoscopeScheme) return;
   if (viewport->getCamera() != viewport_->getCamera()) return;
   shadow_.cast(*scene, *viewport->getCamera(), viewport->getVisibilityMask());
+  const bool of_middle = middle_ && viewport->getTarget() == middle_->getBuffer()->getRenderTarget();
+  const auto shared = Ogre::GpuProgramManager::getSingleton().getSharedParameters(kParameters);
+  shared->setNamedConstant("unseen", static_cast<Ogre::Real>(of_middle ? 0 : unseenShare(camera_, sources_)));
 }
 
 std::optional<double> EndoscopeLens::level() const {

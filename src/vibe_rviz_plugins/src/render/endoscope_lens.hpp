@@ -29,6 +29,9 @@ class EndoscopeLens : private Ogre::Viewport::Listener,
                       private Ogre::SceneManager::Listener,
                       private Ogre::RenderTargetListener {
  public:
+  /// Makes the parameters that shaders share; before a material that refers to them is loaded.
+  static void provide();
+
   explicit EndoscopeLens(Ogre::Viewport& viewport);
   ~EndoscopeLens() override;
   EndoscopeLens(const EndoscopeLens&) = delete;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace vibe {
 namespace {
@@ -51,6 +52,28 @@ TEST(MucosaPatternTest, CoarserLevelsKeepTheMean) {
   EXPECT_NEAR(mean(pattern), whole, 2);
   EXPECT_GT(whole, 30);
   EXPECT_LT(whole, 225);
+}
+
+/// Largest error of a linear interpolation between the ends of 1,000 edges of this length [m], in their middle.
+float interpolationError(float length) {
+  std::mt19937 random(1);
+  const auto vector = [&random] {
+    const auto coordinate = [&random] { return static_cast<float>(random()) / 4294967296.0F - 0.5F; };
+    const float x = coordinate(), y = coordinate();
+    return Eigen::Vector3f(x, y, coordinate());
+  };
+  float worst = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const Eigen::Vector3f middle = 0.3F * vector(), half = 0.5F * length * vector().normalized();
+    const float ends = 0.5F * (broadPattern(middle + half) + broadPattern(middle - half));
+    worst = std::max(worst, std::abs(broadPattern(middle) - ends));
+  }
+  return worst;
+}
+
+TEST(MucosaPatternTest, BlotchesAreWideEnoughToBeInterpolatedBetweenVertices) {
+  EXPECT_LT(interpolationError(2e-3F), 0.02F);   // edges of the drawn wall; a byte of colour is 0.004
+  EXPECT_GT(interpolationError(10e-3F), 0.05F);  // control
 }
 
 }  // namespace

@@ -185,6 +185,21 @@ TEST_F(MucosaViewTest, SameStampsGiveTheSamePictures) {
   EXPECT_TRUE(run() == run());
 }
 
+TEST_F(MucosaViewTest, NothingIsLeftOutWhereThePlanePicturesMeet) {
+  const test::TubeOrgan organ;
+  show(organ, organ.places(1.15));
+  const Pixels pixels = picture(across(0.035));
+  std::vector<double> rings(kSize / 2), counts(kSize / 2);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const auto ring = static_cast<std::size_t>(std::hypot(x + 0.5 - kSize / 2, y + 0.5 - kSize / 2));
+      if (ring >= rings.size()) continue;
+      rings[ring] += pixels[static_cast<std::size_t>(3 * (y * kSize + x) + 1)], ++counts[ring];
+    }
+  for (std::size_t k = 10; k < rings.size() - 2; ++k)
+    EXPECT_NEAR(rings[k] / counts[k], rings[k - 1] / counts[k - 1], 0.1 * rings[k - 1] / counts[k - 1]) << k;
+}
+
 TEST_F(MucosaViewTest, AntrumIsPalerThanTheBody) {
   double paleness[2];
   for (const int region : {2, 3}) {
