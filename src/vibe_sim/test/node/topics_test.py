@@ -213,7 +213,7 @@ class TopicsTest(unittest.TestCase):
         self.command((0.02, 0, 0, 0), closed)
         self.drawn()
         self.command((0.02, 0, 0, 0), closed, pressed=(2,))
-        self.assertIsNotNone(self.events.find(lambda m: m.kind == ProcedureEvent.NEEDLE_EXCHANGED))
+        self.assertIsNotNone(self.events.find(lambda m: m.kind == ProcedureEvent.BITE))  # outside of the balloon is deep
         self.command((0.02, 0, 0, 0), opened)
         held = self.drawn()
         self.assertEqual((held["needle_driver"], held["needle_slide"]), (0, 0.018))
