@@ -27,6 +27,7 @@ from vibe_msgs.msg import TissueTopology
 HELD = {"needle_slide": 0.018, "needle_draw": 0.0012, "needle_turn": 0.4189}  # the needle in the anchor exchange
 HELIX = {"helix_advance": 0.018, "helix_rotation": 2.0}
 PROBE = {"argon_probe": 0.010}
+OUTSIDE_EXPOSURE = 1.0  # for the steel near the lamp; the automatic one is for the wall behind it
 # way of the needle [m], other joints
 LENS = [(0, {}), (0.012, {}), (0.018, {}), (0, HELD), (0, HELIX), (0, PROBE)]
 # the same, where the camera is and what it looks at from scope_tip, radius of the ball [m]
@@ -80,6 +81,7 @@ class Studio:
         options = {"rate": 0, "width": 640, "height": 640}
         if camera:
             options.update(lens="rectilinear", field_of_view=44, camera_frame="outside", width=900, height=900)
+            options.update(auto_exposure=False, exposure=OUTSIDE_EXPOSURE)
         with Program(**options) as program:
             assert wait_until(lambda: min(self.listeners()) > 0)
             self.clock += rospy.Duration(1)
@@ -97,12 +99,12 @@ class Studio:
 
 
 def save(pictures, columns, path):
-    """Pictures of one size side by side."""
+    """Pictures of one size side by side, in 256 colours."""
     width, height = pictures[0].size
     sheet = Image.new("RGB", (columns * width, -(-len(pictures) // columns) * height))
     for k, picture in enumerate(pictures):
         sheet.paste(picture, (k % columns * width, k // columns * height))
-    sheet.save(path, optimize=True)
+    sheet.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=3).save(path, optimize=True)
 
 
 def main():
