@@ -32,10 +32,9 @@ NEEDLE_OPEN = (0.0148, -0.0025, 0.0134)  # [D] the needle's point in scope_tip, 
 HINGE = (0.0014, -0.00445, 0.0053)  # of the arm
 ARM_LENGTH = 0.0108                 # from the hinge to the pin of the hook
 HOOK_LENGTH = 0.0054                # from that pin to the needle's point
-NEEDLE_IN_EXCHANGE = (0.0012, 0.4189)  # how deep [m], and how far turned to lie along the bore [rad]
-NEEDLE_GONE = 0.018                 # [m] as deep: within the rigid end of the endoscope
-PROBE_IN = -0.005                   # [m] of the argon probe's end before the face; out: marking.probe_length
-PROBE_REACH = 0.015                 # [m] beyond it the rear end of the drawn piece would show
+NEEDLE_IN_EXCHANGE = (0.0012, 0.4189)  # how deep, and how far turned to lie along the bore [rad]
+NEEDLE_GONE = 0.018                 # as deep: within the rigid end of the endoscope
+PROBE_IN, PROBE_REACH = -0.005, 0.015  # of its end before the face; beyond, the rear end of the drawn piece would show
 
 SHAFT_PIECES = 6       # [D] of the part of the shaft that enters the lumen and bends there: 2 % more than that part
 SHAFT_PIECE = 0.034    # [D]
@@ -93,10 +92,9 @@ def turn_between(a, b):
 
 
 PIN_OPEN, PIN_CLOSED = arm_pin(0.0), arm_pin(NEEDLE_WAY)
-POINT_CLOSED = tuple(NEEDLE_OPEN[k] + NEEDLE_WAY * NEEDLE_PATH[k] for k in range(3))
-ARM_TURN = turn_between(*((pin[0] - HINGE[0], pin[1] - HINGE[2]) for pin in (PIN_OPEN, PIN_CLOSED)))
-HOOK_TURN = turn_between(*((pin[0] - point[0], pin[1] - point[2])
-                           for pin, point in ((PIN_OPEN, NEEDLE_OPEN), (PIN_CLOSED, POINT_CLOSED))))
+ARM_TURN = turn_between(*((x - HINGE[0], z - HINGE[2]) for x, z in (PIN_OPEN, PIN_CLOSED)))
+HOOK_TURN = turn_between(*((x - NEEDLE_OPEN[0] - way * NEEDLE_PATH[0], z - NEEDLE_OPEN[2] - way * NEEDLE_PATH[2])
+                           for (x, z), way in ((PIN_OPEN, 0.0), (PIN_CLOSED, NEEDLE_WAY))))
 
 # The joints of what is only drawn: axis, lower, upper, multiplier and offset of needle_driver, why. They mimic
 # needle_driver roughly, for who knows the inputs only; joint_states has their exact values, which come first.
@@ -107,8 +105,7 @@ DRAWN = {
     "needle_draw": ("prismatic", "-1 0 0", 0.0, NEEDLE_GONE, 0.0, 0.0,
                     "0: on the arm; else in the anchor exchange, or at its upper end gone as T-tag"),
     "needle_slide": ("prismatic", "-0.6 0 -0.8", 0.0, NEEDLE_WAY, 1.0, 0.0, "as needle_driver while it is on the arm"),
-    "needle_turn": ("revolute", "0 1 0", -1.6, 1.6, HOOK_TURN / NEEDLE_WAY, 0.0,
-                    "as needle_hook_turn while it is on the arm"),
+    "needle_turn": ("revolute", "0 1 0", -1.6, 1.6, HOOK_TURN / NEEDLE_WAY, 0.0, "as the hook while it is on the arm"),
     "argon_probe": ("prismatic", "1 0 0", PROBE_IN, PROBE_REACH, 0.0, PROBE_IN,
                     "of its end before the distal face; out while the argon pedal is down"),
 }
@@ -359,8 +356,8 @@ def add_drawn_arm(urdf):
     carrier = Body.ball(STEEL, 0.001)
     urdf.drawn_joint("needle_arm_hinge", "device_cap", "needle_arm", HINGE)
     urdf.link("needle_arm", carrier, "needle_arm", note="only drawn, as all that follows; origin at the hinge of the arm")
-    urdf.joint("needle_arm_pin_mount", "fixed", "needle_arm", "needle_arm_pin",
-               (PIN_OPEN[0] - HINGE[0], 0, PIN_OPEN[1] - HINGE[2]))
+    pin = (PIN_OPEN[0] - HINGE[0], 0, PIN_OPEN[1] - HINGE[2])
+    urdf.joint("needle_arm_pin_mount", "fixed", "needle_arm", "needle_arm_pin", pin)
     urdf.link("needle_arm_pin")
     urdf.drawn_joint("needle_hook_turn", "needle", "needle_hook")
     urdf.link("needle_hook", carrier, "needle_hook", note="holds the needle; origin at the needle's point")

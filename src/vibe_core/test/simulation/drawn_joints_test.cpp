@@ -1,5 +1,5 @@
-// Joints of what is only drawn: an arm whose bars stay joined, a needle that is where the procedure has it, a probe that
-// comes out with the pedal.
+// Joints of what is only drawn: an arm whose bars stay joined, a needle that is where the procedure has it, a probe
+// that comes out with the pedal.
 #include "vibe_core/simulation/drawn_joints.hpp"
 
 #include <gtest/gtest.h>
@@ -158,8 +158,8 @@ TEST(DrawnProbe, IsOutWhileThePedalIsDownAndEndsWhereTheBeamBegins) {
   bench.hold(ApcPedal);
   EXPECT_EQ(end(), scene.marking->apc.probe_length);
   std::map<std::string, double> at = drawnOf(bench.model(), bench.state());
-  const Eigen::Vector3d begin = poseOf(*bench.model().tool, "scope_tip", at) *
-                                Eigen::Vector3d(scene.marking->apc.probe_length, 0, 0);
+  const Eigen::Vector3d begin =
+      poseOf(*bench.model().tool, "scope_tip", at) * Eigen::Vector3d(scene.marking->apc.probe_length, 0, 0);
   EXPECT_LT((poseOf(*bench.model().tool, "argon_probe", at).translation() - begin).norm(), 1e-12);
   bench.hold(ApcPedal, false);
   EXPECT_NEAR(end(), -0.005, 1e-12);

@@ -178,8 +178,9 @@ class TopicsTest(unittest.TestCase):
         self.assertAlmostEqual(after.x - before.x, 0.005, delta=1e-9)
         self.assertAlmostEqual(after.y - before.y, 0, delta=1e-9)
 
-    def wait_for_frames(self):
-        """Until the transforms are those of the present joints."""
+    def test_tf_agrees_with_the_published_poses(self):
+        self.command((0.05, 0.4, 0.6, -0.2))
+        self.step(60)
         arrived = self.now()
         self.tf.clear()  # tests before this one left transforms with later stamps, since a reset sets the time back
         for attempt in range(50):  # robot_state_publisher limits its rate in simulated time
@@ -189,42 +190,6 @@ class TopicsTest(unittest.TestCase):
                 # what it sent before the tip was there may be all that there is yet
                 if self.tf.lookup_transform("world", "scope_tip", rospy.Time(0)).header.stamp.to_nsec() >= arrived:
                     break
-
-    def distance(self, frame, other):
-        place = self.tf.lookup_transform(frame, other, rospy.Time(0)).transform.translation
-        return math.hypot(place.x, place.y, place.z)
-
-    def drawn(self):
-        """The joints that only a picture needs, after a while in which the arm comes where it is sent."""
-        self.step(60)
-        message = self.recorders["joint_states"].messages[-1]
-        return dict(zip(message.name, message.position))
-
-    def test_the_drawn_needle_goes_into_the_exchange_and_stays_there(self):
-        opened, closing, closed = (0, 0, 0), (0, 0, 0.012), (0, 0, 0.018)
-        self.command((0.02, 0, 0, 0), closing)
-        on_arm = self.drawn()
-        self.assertEqual(on_arm["needle_slide"], on_arm["needle_driver"])
-        self.assertEqual((on_arm["needle_draw"], on_arm["needle_turn"]), (0, on_arm["needle_hook_turn"]))
-        self.wait_for_frames()
-        self.assertLess(self.distance("needle", "suture_needle"), 1e-6)
-        # the positions of their own, not what the joints mimic: half way the bars would be millimetres apart
-        self.assertLess(self.distance("needle_arm_pin", "needle_hook_pin"), 1e-6)
-        self.command((0.02, 0, 0, 0), closed)
-        self.drawn()
-        self.command((0.02, 0, 0, 0), closed, pressed=(2,))
-        self.assertIsNotNone(self.events.find(lambda m: m.kind == ProcedureEvent.BITE))  # outside of the balloon is deep
-        self.command((0.02, 0, 0, 0), opened)
-        held = self.drawn()
-        self.assertEqual((held["needle_driver"], held["needle_slide"]), (0, 0.018))
-        self.assertEqual(held["needle_draw"], 0.0012)
-        self.wait_for_frames()
-        self.assertAlmostEqual(self.distance("needle", "suture_needle"), math.hypot(0.0108 + 0.0012, 0.0144), delta=1e-6)
-
-    def test_tf_agrees_with_the_published_poses(self):
-        self.command((0.05, 0.4, 0.6, -0.2))
-        self.step(60)
-        self.wait_for_frames()
         for frame, topic in (("scope_tip", "scope/measured_cp"), ("helix", "overstitch/helix/measured_cp")):
             with self.subTest(frame=frame):
                 transform = self.tf.lookup_transform("world", frame, rospy.Time(0)).transform.translation
