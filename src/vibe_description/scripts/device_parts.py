@@ -1,26 +1,26 @@
-"""Meshes of the suturing device: cap, needle arm with its needle, helix. Millimetres, in the frames of the links.
+"""Meshes of the suturing device: cap with hinge and anchor exchange, helix, argon probe. Millimetres, in the frames of
+the links. The needle arm is in needle_parts.py.
 
-Sources as in make_scope_urdf.py: [S] SAGES Manual of Flexible Endoscopy (OverStitch: 15.8 mm closed, 23.3 mm open,
-18.4 mm beyond the endoscope), [U] USP <861> (2-0 suture: 0.300 to 0.339 mm), [D] design choice.
+Sources as in make_scope_urdf.py: [S] SAGES Manual of Flexible Endoscopy (OverStitch: 15.8 mm closed), [D] design choice.
 """
 import math
 
-from make_scope_urdf import (ARM_REACH, CAP_LENGTH, CAP_RADIUS, HELIX_PITCH, HELIX_RADIUS, HELIX_STEM, HELIX_TURNS,
-                             HELIX_WIRE, NEEDLE_OPEN, SCOPE_RADIUS)
-from mesh_shapes import Mesh, along, arc, bezier, flat_bar, revolved, subtract, swept
+from make_scope_urdf import (CAP_LENGTH, CAP_RADIUS, HELIX_PITCH, HELIX_RADIUS, HELIX_STEM, HELIX_TURNS, HELIX_WIRE,
+                             SCOPE_RADIUS)
+from mesh_shapes import Mesh, along, arc, bezier, cross, flat_bar, revolved, subtract, swept, unit
+from needle_parts import ARM_HALF, HINGE_MM, disc, needle_meshes
+from scope_parts import HELIX_CHANNEL
 
 CAP = 1000 * CAP_RADIUS       # [S]
 BACK = -1000 * CAP_LENGTH
-POINT = tuple(1000 * v for v in NEEDLE_OPEN)
-PLANE = POINT[1]              # y of the plane in which the arm moves
-HINGE = (1.2, 6.0)            # [D] (x, z), within the cap's 15.8 mm
-SOCKET = (4.3, 6.9)           # [D] end of the link that the open arm sits in
 EXCHANGE = (-2.5, -1.0)       # (y, z) where the needle's path ends, 4 mm before the face
 EXCHANGE_RADIUS = 1.0         # [D] fits the channel of 3.7 mm
 EXCHANGE_FRONT = 4.3          # [D] the closed needle's point is 0.3 mm inside
-THREAD_RADIUS = 0.16          # [U]
-NEEDLE_LENGTH = 3.6           # [D] of the detachable needle that stays behind as T-tag
-IN_PLANE = (0, 1, 0)
+CHEEK = 0.34                  # [D] thickness of the cheeks beside the arm
+PROBE_RADIUS = 1.15           # probes of 2.3 mm pass channels of 2.8 mm
+PROBE_LENGTH = 0.010          # of marking.probe_length, for which the probe passes the middle of its channel's mouth
+PROBE_REAR = 6.0              # [D] behind that mouth
+PROBE_TIP = 2.0               # [D] of ceramic
 
 
 def cap_ring():
@@ -47,14 +47,12 @@ def exchange():
     return [(t, "channel_dark" if k >= len(outer) - dark else "steel") for k, t in enumerate(outer)]
 
 
-def add_clevis(mesh):
-    """Two cheeks, the pin, and the link between them that carries the arm."""
-    for right in (-0.55 - 0.6, 0.55):
-        mesh.add(flat_bar((-1.2, HINGE[1]), HINGE, 0.92, PLANE + right, PLANE + right + 0.6, sides=24), "steel")
-    pin = [(-1.3, 0), (-1.3, 0.4), (-1.2, 0.5), (1.2, 0.5), (1.3, 0.4), (1.3, 0)]
-    turned = [tuple((HINGE[0] + b, PLANE + a, HINGE[1] + c) for a, b, c in t) for t in revolved(pin, 16)]
-    mesh.add(turned, "steel_dark")
-    mesh.add(flat_bar(HINGE, SOCKET, 0.54, PLANE - 0.45, PLANE + 0.45, 0.25, 24), "steel")
+def add_hinge(mesh):
+    """Two cheeks and the pin, between which the arm turns."""
+    x, y, z = HINGE_MM
+    for right in (y - ARM_HALF - 0.06 - CHEEK, y + ARM_HALF + 0.06):
+        mesh.add(flat_bar((-1.2, z), (x, z), 0.7, right, right + CHEEK, 0.1, 24), "steel")
+    mesh.add(disc(x, z, 0.38, y - 0.78, y + 0.78, 16), "steel_dark")
 
 
 def cap():
@@ -63,82 +61,42 @@ def cap():
     mesh.add(ring, "steel")
     mesh.add(collar, "device_polymer")
     mesh.add_painted(exchange())
-    add_clevis(mesh)
+    add_hinge(mesh)
     return mesh
 
 
-def arm_curve():
-    """(x, z) of the arm from the needle's point to the link that carries it. The point is driven along (-0.6, -0.8)."""
-    foremost = (1000 * ARM_REACH - POINT[0] - 0.4, -0.9)
-    bend = (-0.6, -4.1)
-    root = (SOCKET[0] - 0.4 - POINT[0], SOCKET[1] - 0.05 - POINT[2])
-    length = math.dist(bend, root)
-    back = ((root[0] - bend[0]) / length, (root[1] - bend[1]) / length)
-    first = bezier((0, 0), (1.98, 2.64), (foremost[0], 1.9), foremost, 14)
-    second = bezier(foremost, (foremost[0], -2.8), (bend[0] - 2.0 * back[0], bend[1] - 2.0 * back[1]), bend, 10)
-    third = bezier(bend, (bend[0] + length / 3 * back[0], bend[1] + length / 3 * back[1]),
-                   (root[0] - length / 3 * back[0], root[1] - length / 3 * back[1]), root, 4)
-    return first + second + third + [root]
-
-
-def lengths_of(path):
-    total = [0.0]
-    for a, b in zip(path, path[1:]):
-        total.append(total[-1] + math.dist(a, b))
-    return total
-
-
-def mixed(value, table):
-    """Linear between the rows (position, value) of a table."""
-    for (a, fa), (b, fb) in zip(table, table[1:]):
-        if value <= b:
-            return fa + (fb - fa) * (value - a) / (b - a)
-    return table[-1][1]
-
-
-def add_arm(mesh, path, at):
-    """The arm: a slender bar that is higher than wide at its root and holds the needle in a round sleeve."""
-    begin = next(k for k, s in enumerate(at) if s >= NEEDLE_LENGTH)
-    width = ((0, 0.34), (5, 0.36), (9, 0.42), (16, 0.42), (24, 0.32))
-    height = ((0, 0.34), (5, 0.38), (9, 0.5), (16, 0.5), (24, 0.32))
-    sizes = [(mixed(s, width), mixed(s, height)) for s in at[begin:]]
-    mesh.add(swept(path[begin:], IN_PLANE, sizes, 14, 3), "steel")
-    sleeve = path[begin - 1:begin + 3]
-    mesh.add(swept(sleeve, IN_PLANE, [(0.4, 0.4), (0.47, 0.47), (0.47, 0.47), (0.42, 0.42)], 14), "device_blue")
-
-
-def add_needle(mesh, path, at):
-    end = next(k for k, s in enumerate(at) if s >= NEEDLE_LENGTH) + 1
-    radius = ((0, 0.0), (0.9, 0.19), (2.2, 0.29), (NEEDLE_LENGTH + 2, 0.29))
-    sizes = [(0, 0)] + [(mixed(s, radius),) * 2 for s in at[1:end]]
-    mesh.add(swept(path[:end], IN_PLANE, sizes), "needle_gold")
-
-
-def add_thread(mesh, path, at):
-    """The thread leaves the middle of the needle, which so turns across when it is dropped, and runs along the arm."""
-    start = next(k for k, s in enumerate(at) if s >= 1.7)
-    points = []
-    for k in range(start, len(path) - 2):
-        away = min(1.0, (at[k] - at[start]) / 2.0)
-        sag = 0.25 * math.sin(math.pi * min(1.0, (at[k] - at[start]) / 6.0))
-        points.append((path[k][0], 0.2 + 0.38 * away + sag, path[k][2]))
-    mesh.add(swept(points, IN_PLANE, [(THREAD_RADIUS,) * 2] * len(points), 8), "thread_blue")
-    clip = [along(points[-1], subtract(points[-1], points[-2]), share) for share in (-0.25, -0.2, 0.0, 0.05)]
-    clip = [(x, 0.3, z) for x, _, z in clip]
-    mesh.add(swept(clip, IN_PLANE, [(0.42, 0.3), (0.5, 0.4), (0.5, 0.4), (0.42, 0.3)], 14, 3), "steel_dark")
-    knot = [along(path[start], IN_PLANE, y) for y in (-0.36, 0, 0.36)]
-    mesh.add(swept(knot, (1, 0, 0), [(0.1, 0.1), (0.26, 0.26), (0.1, 0.1)], 8), "thread_blue")
-
-
-def needle():
-    """Frame: the needle's point."""
+def argon_probe():
+    """Frame: the end of the probe. It leaves the channel of the helix and leans to the middle, where the beam begins."""
     mesh = Mesh()
-    path = [(x, 0.0, z) for x, z in arm_curve()]
-    at = lengths_of(path)
-    add_arm(mesh, path, at)
-    add_needle(mesh, path, at)
-    add_thread(mesh, path, at)
+    mouth = (-1000 * PROBE_LENGTH, *HELIX_CHANNEL)
+    ahead = unit(subtract((0, 0, 0), mouth))
+    straight = along(mouth, ahead, 1.7)
+    rear = (1.04 * mouth[1], 1.04 * mouth[2])  # in the channel, parallel to it
+    turn = bezier((mouth[0] - 1.2, *rear), (mouth[0] - 0.2, *rear), along(straight, ahead, -1.5), straight, 8)
+    path = [(mouth[0] - PROBE_REAR, *rear)] + turn + [along((0, 0, 0), ahead, -PROBE_TIP)]
+    mesh.add(swept(path, (0, 0, 1), [(PROBE_RADIUS,) * 2] * len(path), 20), "probe_polymer")
+    for x in (3.6, 6.4):
+        ring = [along((0, 0, 0), ahead, -x - w) for w in (0.7, 0.65, 0.05, 0)]
+        mesh.add(swept(ring, (0, 0, 1), [(r, r) for r in (1.1, 1.17, 1.17, 1.1)], 20), "scope_black")
+    mesh.add_painted([(tuple(turned(p, ahead) for p in t), m) for t, m in probe_tip()])
     return mesh
+
+
+def probe_tip():
+    """Ceramic tube along x that ends at the origin, with the bore that the argon leaves."""
+    sides, bore = 20, 0.5
+    outside = [(-PROBE_TIP - 0.3, 0), (-PROBE_TIP - 0.3, 1.0), (-PROBE_TIP, PROBE_RADIUS), (-0.25, PROBE_RADIUS),
+               (0, PROBE_RADIUS - 0.25), (0, bore)]
+    shape = revolved(outside + [(-1.2, bore), (-1.2, 0)], sides)
+    return [(t, "channel_dark" if k >= len(shape) - 3 * sides else "ceramic") for k, t in enumerate(shape)]
+
+
+def turned(point, ahead):
+    """The point after the turn that takes the x axis to `ahead`, without twist (Rodrigues)."""
+    axis = (0.0, -ahead[2], ahead[1])
+    spin, share = cross(axis, point), 1 / (1 + ahead[0])
+    twice = cross(axis, spin)
+    return tuple(p + s + share * t for p, s, t in zip(point, spin, twice))
 
 
 def coil():
@@ -175,4 +133,4 @@ def helix():
 
 def device_meshes():
     """Name of the file and its mesh."""
-    return {"cap": cap(), "needle": needle(), "helix": helix()}
+    return {"cap": cap(), "helix": helix(), "argon_probe": argon_probe(), **needle_meshes()}

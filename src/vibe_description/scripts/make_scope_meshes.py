@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Writes the meshes of the endoscope with its suturing device into a folder, one OBJ file for each link that is drawn.
 
-The URDF shows them; its collision shapes stay primitives. Shapes and numbers are in scope_parts.py and device_parts.py,
-the dimensions that joints and collision shapes share with them in make_scope_urdf.py. The same program writes the same
-bytes. Usage: make_scope_meshes.py ../meshes
+The URDF shows them; its collision shapes stay primitives. Shapes and numbers are in scope_parts.py, device_parts.py and
+needle_parts.py, the dimensions that joints and collision shapes share with them in make_scope_urdf.py. The same program
+writes the same bytes. Usage: make_scope_meshes.py ../meshes
 """
 import argparse
 import os
@@ -29,6 +29,8 @@ MATERIALS = {
     "thread_blue": ((0.10, 0.17, 0.32), 0.35, 30),
     "glass": ((0.03, 0.05, 0.11), 1.00, 110),
     "light_guide": ((0.95, 0.93, 0.80), 0.60, 60),
+    "probe_polymer": ((0.07, 0.19, 0.34), 0.35, 30),
+    "ceramic": ((0.80, 0.78, 0.72), 0.45, 50),
 }
 
 

@@ -26,6 +26,16 @@ HELIX_RADIUS = 0.0010   # [D] of the wire's middle; passes through a channel of 
 HELIX_WIRE = 0.00025    # [D] radius of the wire
 HELIX_STEM = 0.028      # [D] still in the channel when the helix is out
 NEEDLE_OPEN = (0.0148, -0.0025, 0.0134)  # [D] the needle's point in scope_tip, within 23.3 mm of the whole device [S]
+
+# What is only drawn: the needle arm as two bars with two pins that turn, so that the needle's point stays on its path;
+# the needle, which leaves the arm; the argon probe. In scope_tip; all [D].
+HINGE = (0.0014, -0.00445, 0.0053)  # of the arm
+ARM_LENGTH = 0.0108                 # from the hinge to the pin of the hook
+HOOK_LENGTH = 0.0054                # from that pin to the needle's point
+NEEDLE_IN_EXCHANGE = (0.0012, 0.4189)  # how deep, and how far turned to lie along the bore [rad]
+NEEDLE_GONE = 0.018                 # as deep: within the rigid end of the endoscope
+PROBE_IN, PROBE_REACH = -0.005, 0.015  # of its end before the face; beyond, the rear end of the drawn piece would show
+
 SHAFT_PIECES = 6       # [D] of the part of the shaft that enters the lumen and bends there: 2 % more than that part
 SHAFT_PIECE = 0.034    # [D]
 SEGMENT_LENGTH = BEND_LENGTH / SEGMENTS
@@ -60,6 +70,44 @@ INPUTS = {
     "needle_driver": ("prismatic", "-0.6 0 -0.8", 0.0, 0.018, 0.10, 8.0,
                       "chord of the curved needle's path, 0 with the arm open, upper end with the needle in the anchor "
                       "exchange (design choice); velocity: closed in 0.2 s (design choice)"),
+}
+
+NEEDLE_PATH = (-0.6, 0.0, -0.8)  # axis of needle_driver
+NEEDLE_WAY = INPUTS["needle_driver"][3]
+
+
+def arm_pin(way):
+    """(x, z) of the pin between arm and hook when the needle has gone this way: two circles meet there."""
+    point = [NEEDLE_OPEN[k] + way * NEEDLE_PATH[k] for k in (0, 2)]
+    x, z = point[0] - HINGE[0], point[1] - HINGE[2]
+    distance = math.hypot(x, z)
+    along = (ARM_LENGTH ** 2 + distance ** 2 - HOOK_LENGTH ** 2) / (2 * distance)
+    beside = math.sqrt(ARM_LENGTH ** 2 - along ** 2)
+    return HINGE[0] + (along * x + beside * z) / distance, HINGE[2] + (along * z - beside * x) / distance
+
+
+def turn_between(a, b):
+    """From a to b about +y, which turns z towards x [rad]."""
+    return math.atan2(a[1] * b[0] - a[0] * b[1], a[0] * b[0] + a[1] * b[1])
+
+
+PIN_OPEN, PIN_CLOSED = arm_pin(0.0), arm_pin(NEEDLE_WAY)
+ARM_TURN = turn_between(*((x - HINGE[0], z - HINGE[2]) for x, z in (PIN_OPEN, PIN_CLOSED)))
+HOOK_TURN = turn_between(*((x - NEEDLE_OPEN[0] - way * NEEDLE_PATH[0], z - NEEDLE_OPEN[2] - way * NEEDLE_PATH[2])
+                           for (x, z), way in ((PIN_OPEN, 0.0), (PIN_CLOSED, NEEDLE_WAY))))
+
+# The joints of what is only drawn: axis, lower, upper, multiplier and offset of needle_driver, why. They mimic
+# needle_driver roughly, for who knows the inputs only; joint_states has their exact values, which come first.
+DRAWN = {
+    "needle_arm_hinge": ("revolute", "0 1 0", 0.0, 2.2, ARM_TURN / NEEDLE_WAY, 0.0, "the arm turns about its hinge"),
+    "needle_hook_turn": ("revolute", "0 1 0", -1.6, 1.6, HOOK_TURN / NEEDLE_WAY, 0.0,
+                         "the hook turns about the needle's point, so that its pin stays at the end of the arm"),
+    "needle_draw": ("prismatic", "-1 0 0", 0.0, NEEDLE_GONE, 0.0, 0.0,
+                    "0: on the arm; else in the anchor exchange, or at its upper end gone as T-tag"),
+    "needle_slide": ("prismatic", "-0.6 0 -0.8", 0.0, NEEDLE_WAY, 1.0, 0.0, "as needle_driver while it is on the arm"),
+    "needle_turn": ("revolute", "0 1 0", -1.6, 1.6, HOOK_TURN / NEEDLE_WAY, 0.0, "as the hook while it is on the arm"),
+    "argon_probe": ("prismatic", "1 0 0", PROBE_IN, PROBE_REACH, 0.0, PROBE_IN,
+                    "of its end before the distal face; out while the argon pedal is down"),
 }
 
 # Joints of the shaft that no input drives: the simulator bends the shaft under load. Largest angle [rad], speed [rad/s]
@@ -182,6 +230,15 @@ class Urdf:
                  f'effort="{number(effort)}"/>')
         self.joint(name, kind, parent, child, at, extra=(f'<axis xyz="{axis}"/>', limit))
 
+    def drawn_joint(self, name, parent, child, at=(0, 0, 0)):
+        kind, axis, lower, upper, multiplier, offset, why = DRAWN[name]
+        self.add(1, f"<!-- drawn {name}: {why} -->")
+        speed, effort = INPUTS["needle_driver"][4:6]
+        limit = (f'<limit lower="{number(lower)}" upper="{number(upper)}" velocity="{number(speed)}" '
+                 f'effort="{number(effort)}"/>')
+        mimic = f'<mimic joint="needle_driver" multiplier="{number(multiplier)}" offset="{number(offset)}"/>'
+        self.joint(name, kind, parent, child, at, extra=(f'<axis xyz="{axis}"/>', limit, mimic))
+
     def bend_joint(self, index, source, parent, child, at):
         """One of the equal parts of a total bend."""
         _, axis, lower, upper, velocity, effort, _ = INPUTS[source]
@@ -290,8 +347,40 @@ def add_needle(urdf):
     mass = STEEL * math.pi * 0.0005 ** 2 * math.pi * radius
     centre = (end[0] / 2 + outwards[0] * 2 / math.pi, 0, end[1] / 2 + outwards[1] * 2 / math.pi)
     moment = mass * radius ** 2 / 2  # of a bent wire, about any axis to within a factor of two
-    urdf.link("needle", Body(mass, centre, (moment,) * 3), "needle",
+    urdf.link("needle", Body(mass, centre, (moment,) * 3),
               note="origin at the point of the needle; no collision shape, it penetrates the wall")
+
+
+def add_drawn_arm(urdf):
+    """Arm and hook in place of the body of the link needle, which has no mesh: only drawn, no weight of their own."""
+    carrier = Body.ball(STEEL, 0.001)
+    urdf.drawn_joint("needle_arm_hinge", "device_cap", "needle_arm", HINGE)
+    urdf.link("needle_arm", carrier, "needle_arm", note="only drawn, as all that follows; origin at the hinge of the arm")
+    pin = (PIN_OPEN[0] - HINGE[0], 0, PIN_OPEN[1] - HINGE[2])
+    urdf.joint("needle_arm_pin_mount", "fixed", "needle_arm", "needle_arm_pin", pin)
+    urdf.link("needle_arm_pin")
+    urdf.drawn_joint("needle_hook_turn", "needle", "needle_hook")
+    urdf.link("needle_hook", carrier, "needle_hook", note="holds the needle; origin at the needle's point")
+    urdf.joint("needle_hook_pin_mount", "fixed", "needle_hook", "needle_hook_pin",
+               (PIN_OPEN[0] - NEEDLE_OPEN[0], HINGE[1] - NEEDLE_OPEN[1], PIN_OPEN[1] - NEEDLE_OPEN[2]))
+    urdf.link("needle_hook_pin", note="where needle_arm_pin is")
+
+
+def add_drawn_needle(urdf):
+    """The needle that leaves the arm, on three joints from the cap: in the exchange, it stays where it is."""
+    carrier = Body.ball(STEEL, 0.001)
+    urdf.drawn_joint("needle_draw", "device_cap", "needle_depth", NEEDLE_OPEN)
+    urdf.link("needle_depth", carrier)
+    urdf.drawn_joint("needle_slide", "needle_depth", "needle_carriage")
+    urdf.link("needle_carriage", carrier)
+    urdf.drawn_joint("needle_turn", "needle_carriage", "suture_needle")
+    urdf.link("suture_needle", carrier, "suture_needle", note="origin at its point")
+
+
+def add_drawn_probe(urdf):
+    """The argon probe out of the channel of the helix, its end in the middle before the face, where the beam begins."""
+    urdf.drawn_joint("argon_probe", "scope_tip", "argon_probe")
+    urdf.link("argon_probe", Body.ball(STEEL, 0.001), "argon_probe", note="origin at the end of the probe")
 
 
 def make_urdf():
@@ -299,7 +388,8 @@ def make_urdf():
     urdf.add(0, '<?xml version="1.0"?>')
     urdf.add(0, "<!-- Written by scripts/make_scope_urdf.py: change that program, not this file. SI units. -->")
     urdf.add(0, '<robot name="scope">')
-    for part in (add_shaft, add_bending_section, add_tip, add_cap, add_helix, add_needle):
+    for part in (add_shaft, add_bending_section, add_tip, add_cap, add_helix, add_needle, add_drawn_arm,
+                 add_drawn_needle, add_drawn_probe):
         part(urdf)
     urdf.add(0, "</robot>")
     return "\n".join(urdf.lines) + "\n"

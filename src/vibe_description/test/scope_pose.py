@@ -38,8 +38,9 @@ class Scope:
         self.parent_joint = {joint.find("child").get("link"): joint for joint in self.joints.values()}
 
     def value(self, joint, inputs):
+        """Its own position where it has one, as robot_state_publisher does, else that of the joint it mimics."""
         mimic = joint.find("mimic")
-        if mimic is None:
+        if mimic is None or joint.get("name") in inputs:
             return inputs.get(joint.get("name"), 0.0)
         return float(mimic.get("multiplier")) * inputs.get(mimic.get("joint"), 0.0) + float(mimic.get("offset", 0))
 
@@ -54,6 +55,22 @@ class Scope:
         elif joint.get("type") == "revolute":
             moved[:3, :3] = turned(numbers(joint.find("axis"), "xyz"), self.value(joint, inputs))
         return self.pose_of(joint.find("parent").get("link"), inputs) @ origin_of(joint.find("origin")) @ moved
+
+    def arm(self, way):
+        """Joints of needle arm and needle, on the arm, where the needle has gone this way [m]: two circles meet."""
+        place = lambda joint: numbers(self.joints[joint].find("origin"), "xyz")[[0, 2]]
+        hinge, opened = place("needle_arm_hinge"), place("needle_driver")
+        bars = place("needle_arm_pin_mount"), place("needle_hook_pin_mount")
+        point = opened + way * numbers(self.joints["needle_driver"].find("axis"), "xyz")[[0, 2]]
+        across = point - hinge
+        lengths, distance = [numpy.linalg.norm(bar) for bar in bars], numpy.linalg.norm(across)
+        along = (lengths[0] ** 2 - lengths[1] ** 2 + distance**2) / (2 * distance)
+        ahead = across / distance
+        pin = hinge + along * ahead + numpy.sqrt(lengths[0] ** 2 - along**2) * numpy.array([ahead[1], -ahead[0]])
+        about_y = lambda a, b: numpy.arctan2(a[1] * b[0] - a[0] * b[1], a @ b)
+        hook = about_y(bars[1], pin - point)
+        return {"needle_driver": way, "needle_arm_hinge": about_y(bars[0], pin - hinge), "needle_hook_turn": hook,
+                "needle_slide": way, "needle_turn": hook}  # fmt: skip
 
     def poses(self, inputs, tip):
         """Pose of every link where scope_tip has the pose `tip`."""

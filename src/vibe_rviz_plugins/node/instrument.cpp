@@ -5,40 +5,15 @@
 #include <OgreSceneNode.h>
 #include <ros/console.h>
 #include <rviz/mesh_loader.h>
-#include <urdf/model.h>
 
+#include <algorithm>
+
+#include "geometry/append_shape.hpp"
 #include "render/resources.hpp"
-#include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
+#include "robot_visuals.hpp"
 
 namespace vibe {
 namespace {
-
-Eigen::Isometry3d poseOf(const urdf::Pose& origin) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(Eigen::Vector3d(origin.position.x, origin.position.y, origin.position.z));
-  double x, y, z, w;
-  origin.rotation.getQuaternion(x, y, z, w);
-  pose.rotate(Eigen::Quaterniond(w, x, y, z).normalized());
-  return pose;
-}
-
-PackedColour colourOf(const urdf::Visual& visual) {
-  if (!visual.material) return packed(0.6, 0.6, 0.62);
-  const urdf::Color& colour = visual.material->color;
-  return packed(colour.r, colour.g, colour.b);
-}
-
-/// @return whether the visual is a simple body
-bool appendVisual(const urdf::Visual& visual, ColouredShape& shape) {
-  const Eigen::Isometry3d pose = poseOf(visual.origin);
-  if (const auto* ball = dynamic_cast<const urdf::Sphere*>(visual.geometry.get()))
-    return appendSphere(pose, ball->radius, colourOf(visual), shape), true;
-  if (const auto* rod = dynamic_cast<const urdf::Cylinder*>(visual.geometry.get()))
-    return appendCylinder(pose, rod->radius, rod->length, colourOf(visual), shape), true;
-  if (const auto* box = dynamic_cast<const urdf::Box*>(visual.geometry.get()))
-    return appendBox(pose, {box->dim.x, box->dim.y, box->dim.z}, colourOf(visual), shape), true;
-  return false;
-}
 
 void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
   auto real = [](double value) { return static_cast<Ogre::Real>(value); };
@@ -51,13 +26,16 @@ void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
 
 Instrument::Instrument(Ogre::SceneManager& scene, const std::string& description)
     : scene_(scene), material_(copyMaterial("vibe/solid")) {
-  urdf::Model model;
-  if (description.empty() || !model.initString(description)) {
+  const std::optional<std::vector<RobotVisual>> visuals = robotVisuals(description);
+  if (!visuals) {
     ROS_WARN("The parameter 'robot_description' holds no URDF that can be read, so no instrument is in the image.");
     return;
   }
-  for (const auto& [name, link] : model.links_)
-    if (!link->visual_array.empty()) addLink(*link);
+  for (auto begin = visuals->begin(); begin != visuals->end();) {
+    const auto end = std::find_if(begin, visuals->end(), [&](const RobotVisual& v) { return v.link != begin->link; });
+    addLink({begin, end});
+    begin = end;
+  }
 }
 
 Instrument::~Instrument() {
@@ -70,28 +48,28 @@ Instrument::~Instrument() {
   dropMaterial(material_);
 }
 
-void Instrument::addLink(const urdf::Link& link) {
+void Instrument::addLink(const std::vector<RobotVisual>& visuals) {
   ColouredShape shape;
   Ogre::SceneNode* node = scene_.getRootSceneNode()->createChildSceneNode();
-  for (const auto& visual : link.visual_array)
-    if (visual && visual->geometry && !appendVisual(*visual, shape)) addMesh(*visual, *node);
+  for (const RobotVisual& visual : visuals) {
+    appendShape(visual.body, shape);
+    if (!visual.mesh.empty()) addMesh(visual, *node);
+  }
   auto view = std::make_unique<ShapeView>(*node, material_);
   view->show(shape);
-  parts_.push_back({link.name, node, std::move(view)});
+  parts_.push_back({visuals.front().link, node, std::move(view)});
 }
 
-void Instrument::addMesh(const urdf::Visual& visual, Ogre::SceneNode& node) {
-  const auto* mesh = dynamic_cast<const urdf::Mesh*>(visual.geometry.get());
-  if (mesh == nullptr) return;
-  const Ogre::MeshPtr loaded = rviz::loadMeshFromResource(mesh->filename);
+void Instrument::addMesh(const RobotVisual& visual, Ogre::SceneNode& node) {
+  const Ogre::MeshPtr loaded = rviz::loadMeshFromResource(visual.mesh);
   if (!loaded) {
-    ROS_WARN_STREAM("The mesh '" << mesh->filename << "' of the robot description cannot be read and is not drawn.");
+    ROS_WARN_STREAM("The mesh '" << visual.mesh << "' of the robot description cannot be read and is not drawn.");
     return;
   }
   Ogre::SceneNode* place = node.createChildSceneNode();
-  setPose(poseOf(visual.origin), *place);
-  place->setScale(static_cast<Ogre::Real>(mesh->scale.x), static_cast<Ogre::Real>(mesh->scale.y),
-                  static_cast<Ogre::Real>(mesh->scale.z));
+  setPose(visual.pose, *place);
+  const Eigen::Vector3f scale = visual.scale.cast<float>();
+  place->setScale(scale.x(), scale.y(), scale.z());
   place->attachObject(scene_.createEntity(loaded));
 }
 

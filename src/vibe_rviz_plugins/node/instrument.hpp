@@ -13,12 +13,10 @@ class Entity;
 class SceneManager;
 class SceneNode;
 }  // namespace Ogre
-namespace urdf {
-class Link;
-class Visual;
-}  // namespace urdf
 
 namespace vibe {
+
+struct RobotVisual;
 
 /// The visible parts of a robot description: the endoscope with its suturing device.
 class Instrument {
@@ -38,8 +36,9 @@ class Instrument {
     Ogre::SceneNode* node;
     std::unique_ptr<ShapeView> shape;
   };
-  void addLink(const urdf::Link& link);
-  void addMesh(const urdf::Visual& visual, Ogre::SceneNode& node);
+  /// @param visuals  of one link, at least one
+  void addLink(const std::vector<RobotVisual>& visuals);
+  void addMesh(const RobotVisual& visual, Ogre::SceneNode& node);
 
   Ogre::SceneManager& scene_;
   Ogre::MaterialPtr material_;

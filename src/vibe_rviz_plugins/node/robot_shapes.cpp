@@ -3,24 +3,15 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <ros/package.h>
-#include <urdf/model.h>
 
 #include <assimp/Importer.hpp>
 #include <map>
 
-#include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
+#include "geometry/append_shape.hpp"
+#include "robot_visuals.hpp"
 
 namespace vibe {
 namespace {
-
-Eigen::Isometry3d poseOf(const urdf::Pose& origin) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(Eigen::Vector3d(origin.position.x, origin.position.y, origin.position.z));
-  double x, y, z, w;
-  origin.rotation.getQuaternion(x, y, z, w);
-  pose.rotate(Eigen::Quaterniond(w, x, y, z).normalized());
-  return pose;
-}
 
 /// The file of an address; package:// and file:// are understood.
 std::string fileOf(const std::string& address) {
@@ -56,32 +47,17 @@ void appendNode(const aiScene& scene, const aiNode& node, const aiMatrix4x4& par
 }
 
 /// @return one sentence if the mesh cannot be read
-std::string appendMeshFile(const urdf::Mesh& mesh, const Eigen::Isometry3d& pose, ColouredShape& shape) {
+std::string appendMeshFile(const RobotVisual& visual, ColouredShape& shape) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // as rviz
   const aiScene* scene =
-      importer.ReadFile(fileOf(mesh.filename), aiProcess_SortByPType | aiProcess_GenNormals | aiProcess_Triangulate);
+      importer.ReadFile(fileOf(visual.mesh), aiProcess_SortByPType | aiProcess_GenNormals | aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr)
-    return "The mesh '" + mesh.filename + "' of the robot description cannot be read (" + importer.GetErrorString() +
+    return "The mesh '" + visual.mesh + "' of the robot description cannot be read (" + importer.GetErrorString() +
            ") and is missing in the truth; correct the path or install its package.";
-  Eigen::Affine3d place = pose;
-  place.scale(Eigen::Vector3d(mesh.scale.x, mesh.scale.y, mesh.scale.z));
+  Eigen::Affine3d place(visual.pose);
+  place.scale(visual.scale);
   appendNode(*scene, *scene->mRootNode, aiMatrix4x4(), place, shape);
-  return "";
-}
-
-/// @return one sentence if the visual cannot be read
-std::string appendVisual(const urdf::Visual& visual, ColouredShape& shape) {
-  const Eigen::Isometry3d pose = poseOf(visual.origin);
-  const PackedColour grey = packed(0.6, 0.6, 0.62);
-  if (const auto* ball = dynamic_cast<const urdf::Sphere*>(visual.geometry.get()))
-    appendSphere(pose, ball->radius, grey, shape);
-  else if (const auto* rod = dynamic_cast<const urdf::Cylinder*>(visual.geometry.get()))
-    appendCylinder(pose, rod->radius, rod->length, grey, shape);
-  else if (const auto* box = dynamic_cast<const urdf::Box*>(visual.geometry.get()))
-    appendBox(pose, {box->dim.x, box->dim.y, box->dim.z}, grey, shape);
-  else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(visual.geometry.get()))
-    return appendMeshFile(*mesh, pose, shape);
   return "";
 }
 
@@ -89,23 +65,21 @@ std::string appendVisual(const urdf::Visual& visual, ColouredShape& shape) {
 
 std::vector<RobotShape> robotShapes(const std::string& description, std::vector<std::string>& problems) {
   std::vector<RobotShape> shapes;
-  urdf::Model model;
-  if (description.empty() || !model.initString(description)) {
+  const std::optional<std::vector<RobotVisual>> visuals = robotVisuals(description);
+  if (!visuals) {
     problems.push_back(
         "The parameter 'robot_description' holds no URDF that can be read, so no instrument is in the truth.");
     return shapes;
   }
-  for (const auto& [link_name, link] : model.links_) {
-    std::map<std::string, ColouredShape> parts;
-    for (const auto& visual : link->visual_array) {
-      if (!visual || !visual->geometry) continue;
-      const std::string name = visual->name.empty() ? link_name : link_name + "/" + visual->name;
-      const std::string problem = appendVisual(*visual, parts[name]);
-      if (!problem.empty()) problems.push_back(problem);
-    }
-    for (auto& [name, shape] : parts)
-      if (!shape.triangles.empty()) shapes.push_back({link_name, name, std::move(shape)});
+  std::map<std::pair<std::string, std::string>, ColouredShape> parts;  // by link and part
+  for (const RobotVisual& visual : *visuals) {
+    ColouredShape& shape = parts[{visual.link, visual.part}];
+    const std::string problem = visual.mesh.empty() ? "" : appendMeshFile(visual, shape);
+    if (!problem.empty()) problems.push_back(problem);
+    appendShape(visual.body, shape);
   }
+  for (auto& [name, shape] : parts)
+    if (!shape.triangles.empty()) shapes.push_back({name.first, name.second, std::move(shape)});
   return shapes;
 }
 

@@ -8,6 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/simulation/drawn_joints.hpp"
 
 namespace vibe {
 namespace {
@@ -248,13 +249,18 @@ StepInput readStepInput(const vibe_msgs::StepInput& message) {
   return input;
 }
 
-sensor_msgs::JointState makeJointState(const ToolModel& tool, const State& state, std::int64_t stamp) {
+sensor_msgs::JointState makeJointState(const Model& model, const State& state, std::int64_t stamp) {
+  const ToolModel& tool = *model.tool;
   sensor_msgs::JointState message = makeJoints(toolJoints(state), {0, kJointCount}, stamp);
   const ShaftBend bend = tool.shaftBend(state.joints, state.tool_displacement);
   for (const ToolJoint& joint : tool.joints()) {
     if (joint.station < 0) continue;
     message.name.push_back(joint.name);
     message.position.push_back(bend.angle(joint.station, joint.direction));
+  }
+  for (const DrawnJoint& joint : drawnJoints(model, state)) {
+    message.name.push_back(joint.name);
+    message.position.push_back(joint.position);
   }
   return message;
 }

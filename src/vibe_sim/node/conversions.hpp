@@ -61,8 +61,9 @@ vibe_msgs::StepInput makeStepInput(const StepInput& input, std::int64_t step, st
 StepInput readStepInput(const vibe_msgs::StepInput& message);
 
 /// All joints that the tool really has, for robot_state_publisher, which works out those that mimic them: those of its
-/// inputs, displaced where a scope gives way, then those of the shaft.
-sensor_msgs::JointState makeJointState(const ToolModel& tool, const State& state, std::int64_t stamp);
+/// inputs, displaced where a scope gives way, then those of the shaft, then those that are only drawn (drawnJoints()).
+/// @param model  with a tool
+sensor_msgs::JointState makeJointState(const Model& model, const State& state, std::int64_t stamp);
 /// Where the hand holds the scope's joints, and with what effort.
 sensor_msgs::JointState makeHandJoints(const State& state, std::int64_t stamp);
 geometry_msgs::PoseStamped makePose(const Eigen::Isometry3d& pose, const std::string& frame, std::int64_t stamp);

@@ -181,7 +181,7 @@ void Publishers::tool(const Session& session, bool continues, std::int64_t stamp
   scope_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
   helix_pose_.publish(makePose(model.tool_base * link_poses_[model.helix_link], kWorldFrame, stamp));
   wrench_.publish(makeWrench(session.state, stamp));
-  joint_states_.publish(makeJointState(*model.tool, session.state, stamp));
+  joint_states_.publish(makeJointState(model, session.state, stamp));
   hand_joints_.publish(makeHandJoints(session.state, stamp));
   arms_.place(session, continues, stamp);
 }

@@ -32,6 +32,10 @@ std::string outputOf(const std::string& command) {
   return output;
 }
 
+// The simulation knows nothing of them.
+const std::set<std::string> kDrawn = {"needle_arm",   "needle_arm_pin",  "needle_hook",   "needle_hook_pin",
+                                      "needle_depth", "needle_carriage", "suture_needle", "argon_probe"};
+
 TEST(ScopeUrdf, IsWhatItsProgramWrites) {
   const std::string program = std::string(VIBE_DESCRIPTION_DIR) + "/scripts/make_scope_urdf.py";
   EXPECT_EQ(outputOf("/usr/bin/python3 -B '" + program + "'"), scopeText())
@@ -45,6 +49,7 @@ TEST(ScopeUrdf, HasTheLinksThatOthersNeed) {
   std::set<std::string> expected = {
       "scope_base", "scope_slide",      "scope_shaft",    "up_down_wheel", "scope_tip", "scope_camera_optical",
       "device_cap", "left_right_wheel", "helix_carriage", "helix",         "needle",    "scope_neck"};
+  expected.insert(kDrawn.begin(), kDrawn.end());
   for (int k = 1; k <= 7; ++k) {
     expected.insert("shaft_yoke_" + std::to_string(k));
     expected.insert("shaft_" + std::to_string(k));
@@ -72,6 +77,10 @@ TEST(ScopeUrdf, JointsAreInputsOrMimicThemOrBelongToTheShaft) {
     }
     if (!joint.mimic) {
       EXPECT_EQ(inputs.erase(joint.name), 1u) << joint.name;
+      continue;
+    }
+    if (kDrawn.count(joint.child_link_name) != 0) {
+      EXPECT_EQ(joint.mimic->joint_name, "needle_driver") << joint.name << ": an input that no scope gives way in";
       continue;
     }
     ++mimicking;
@@ -118,6 +127,19 @@ TEST(ScopeUrdf, EveryPartThatCanTouchTheWallHasACollisionShape) {
   for (const char* name : {"helix", "needle"})
     EXPECT_TRUE(scope->links_.at(name)->collision_array.empty()) << name << " penetrates the wall";
   EXPECT_EQ(loadScope().shapes().size(), 17u) << "capsules of shaft and its pieces, segments, tip and device";
+}
+
+TEST(ScopeUrdf, WhatIsOnlyDrawnTouchesNothingAndCarriesNothingElse) {
+  const auto scope = parsedScope();
+  std::size_t meshes = 0;
+  for (const std::string& name : kDrawn) {
+    const urdf::Link& link = *scope->links_.at(name);
+    EXPECT_TRUE(link.collision_array.empty()) << name;
+    meshes += link.visual_array.size();
+    for (const auto& child : link.child_links) EXPECT_EQ(kDrawn.count(child->name), 1U) << child->name;
+  }
+  EXPECT_EQ(meshes, 4u) << "arm, hook, needle, probe";
+  EXPECT_TRUE(scope->links_.at("needle")->visual_array.empty());
 }
 
 // 15.8 mm with the arm closed (SAGES Manual of Flexible Endoscopy); the shapes end at the distal face, the bracket has

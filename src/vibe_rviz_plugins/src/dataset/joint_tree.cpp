@@ -19,8 +19,11 @@ JointTree::JointTree(const std::string& description) {
     origin.rotation.getQuaternion(x, y, z, w);
     joint.origin = Eigen::Translation3d(origin.position.x, origin.position.y, origin.position.z) *
                    Eigen::Isometry3d(Eigen::Quaterniond(w, x, y, z).normalized());
-    joint.name = from->mimic ? from->mimic->joint_name : name;
-    if (from->mimic) joint.factor = from->mimic->multiplier, joint.offset = from->mimic->offset;
+    joint.name = name;
+    if (from->mimic) {
+      joint.mimicked = from->mimic->joint_name;
+      joint.factor = from->mimic->multiplier, joint.offset = from->mimic->offset;
+    }
     joint.axis = Eigen::Vector3d(from->axis.x, from->axis.y, from->axis.z);
     if (from->type == urdf::Joint::REVOLUTE || from->type == urdf::Joint::CONTINUOUS) joint.motion = Motion::Turn;
     if (from->type == urdf::Joint::PRISMATIC) joint.motion = Motion::Slide;
@@ -38,13 +41,19 @@ void JointTree::setJoints(const std::vector<std::string>& names, const std::vect
   for (std::size_t k = 0; k < std::min(names.size(), positions.size()); ++k) positions_[names[k]] = positions[k];
 }
 
+std::optional<double> JointTree::positionOf(const Joint& joint) const {
+  if (const auto own = positions_.find(joint.name); own != positions_.end()) return own->second;
+  const auto source = positions_.find(joint.mimicked);
+  if (source == positions_.end()) return std::nullopt;
+  return joint.factor * source->second + joint.offset;
+}
+
 std::optional<Eigen::Isometry3d> JointTree::step(const Joint& joint) const {
   if (joint.motion == Motion::None) return joint.origin;
-  const auto found = positions_.find(joint.name);
-  if (found == positions_.end()) return std::nullopt;
-  const double position = joint.factor * found->second + joint.offset;
-  if (joint.motion == Motion::Slide) return joint.origin * Eigen::Translation3d(position * joint.axis);
-  return joint.origin * Eigen::Isometry3d(Eigen::AngleAxisd(position, joint.axis));
+  const std::optional<double> position = positionOf(joint);
+  if (!position) return std::nullopt;
+  if (joint.motion == Motion::Slide) return joint.origin * Eigen::Translation3d(*position * joint.axis);
+  return joint.origin * Eigen::Isometry3d(Eigen::AngleAxisd(*position, joint.axis));
 }
 
 std::optional<std::pair<std::string, Eigen::Isometry3d>> JointTree::toRoot(std::string frame) const {

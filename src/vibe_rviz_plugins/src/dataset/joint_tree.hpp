@@ -18,7 +18,8 @@ class JointTree {
 
   /// A frame that stands still in another one.
   void setFixed(const std::string& frame, const std::string& parent, const Eigen::Isometry3d& pose);
-  /// @param positions  of the joints with these names [m, rad]; others stay
+  /// @param positions  of the joints with these names [m, rad]; others stay. A joint that mimics another one and has a
+  ///                   position of its own follows that, as with robot_state_publisher
   void setJoints(const std::vector<std::string>& names, const std::vector<double>& positions);
 
   /// Pose of a frame in another one; empty if they are not connected, or a joint between them has no position yet.
@@ -31,9 +32,11 @@ class JointTree {
     Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
     Motion motion = Motion::None;
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-    std::string name;  ///< whose position moves it: its own, or that of the joint it mimics
-    double factor = 1, offset = 0;
+    std::string name;
+    std::string mimicked;           ///< the joint that moves it while it has no position of its own; empty: none
+    double factor = 1, offset = 0;  ///< of that joint's position
   };
+  std::optional<double> positionOf(const Joint& joint) const;
   std::optional<Eigen::Isometry3d> step(const Joint& joint) const;
   /// The root above a frame, and the pose in it.
   std::optional<std::pair<std::string, Eigen::Isometry3d>> toRoot(std::string frame) const;

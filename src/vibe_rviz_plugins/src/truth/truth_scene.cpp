@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "geometry/append_shape.hpp"
 #include "geometry/suture_shapes.hpp"
 
 namespace vibe {
@@ -18,13 +19,6 @@ ColouredShape without(const ColouredShape& beginning, const ColouredShape& shape
   for (std::size_t k = beginning.triangles.size(); k < shape.triangles.size(); ++k)
     rest.triangles.push_back(shape.triangles[k] - static_cast<std::uint32_t>(first));
   return rest;
-}
-
-void append(const ColouredShape& from, ColouredShape& to) {
-  const auto first = static_cast<std::uint32_t>(to.vertices.size());
-  to.vertices.insert(to.vertices.end(), from.vertices.begin(), from.vertices.end());
-  to.colours.insert(to.colours.end(), from.colours.begin(), from.colours.end());
-  for (const std::uint32_t vertex : from.triangles) to.triangles.push_back(first + vertex);
 }
 
 struct SutureParts {
@@ -46,9 +40,9 @@ SutureParts partsOf(const SutureScene& sutures) {
     const ColouredShape thread = drawn(set, false);
     SutureSet tagged = set, cinched = set;
     tagged.has_cinch = false, cinched.has_t_tag = false;
-    append(thread, parts.threads);
-    append(without(thread, drawn(tagged, true)), parts.tags);
-    append(without(thread, drawn(cinched, true)), parts.cinches);
+    appendShape(thread, parts.threads);
+    appendShape(without(thread, drawn(tagged, true)), parts.tags);
+    appendShape(without(thread, drawn(cinched, true)), parts.cinches);
   }
   return parts;
 }

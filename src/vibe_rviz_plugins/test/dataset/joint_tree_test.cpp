@@ -34,6 +34,19 @@ TEST(JointTree, PosesAreThoseOfTheChainOfJoints) {
   EXPECT_TRUE((*back * *pose).isApprox(Eigen::Isometry3d::Identity(), 1e-9));
 }
 
+// robot_state_publisher does the same: the suturing device of vibe_description needs it
+TEST(JointTree, AJointThatMimicsFollowsItsOwnPositionWhereItHasOne) {
+  JointTree tree(kArm);
+  const auto angle = [&] {
+    const Eigen::Vector3d across = tree.pose("follower", "turn")->linear().col(0);
+    return std::atan2(across.y(), across.x());
+  };
+  tree.setJoints({"push", "bend"}, {0, 1.2});
+  EXPECT_NEAR(angle(), -0.5, 1e-9) << "-0.5 x 1.2 + 0.1";
+  tree.setJoints({"push", "bend", "mimic"}, {0, 1.2, 0.3});
+  EXPECT_NEAR(angle(), 0.3, 1e-9);
+}
+
 TEST(JointTree, UnknownFramesAndBadDescriptionsAreTold) {
   JointTree tree(kArm);
   tree.setJoints({"push", "bend"}, {0, 0});

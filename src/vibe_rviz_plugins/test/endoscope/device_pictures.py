@@ -24,14 +24,20 @@ from scope_pose import Scope, pose
 from sensor_msgs.msg import PointCloud2
 from vibe_msgs.msg import TissueTopology
 
-CLOSED = {"needle_driver": 0.018}
-LENS = [({}, None, 0.05), (CLOSED, None, 0.05), ({"helix_advance": 0.018, "helix_rotation": 2.0}, None, 0.05)]
-# joints, where the camera is and what it looks at from scope_tip, radius of the ball [m]
+HELD = {"needle_slide": 0.018, "needle_draw": 0.0012, "needle_turn": 0.4189}  # the needle in the anchor exchange
+HELIX = {"helix_advance": 0.018, "helix_rotation": 2.0}
+PROBE = {"argon_probe": 0.010}
+OUTSIDE_EXPOSURE = 1.0  # for the steel near the lamp; the automatic one is for the wall behind it
+# way of the needle [m], other joints
+LENS = [(0, {}), (0.012, {}), (0.018, {}), (0, HELD), (0, HELIX), (0, PROBE)]
+# the same, where the camera is and what it looks at from scope_tip, radius of the ball [m]
 OUTSIDE = [
-    ({"helix_advance": 0.006}, ((0.055, -0.022, 0.022), (0.002, 0, 0.0035)), 0.09),
-    ({"helix_advance": 0.012}, ((0.035, 0.045, 0.025), (0, 0, 0.003)), 0.09),
-    ({"helix_advance": 0.012, **CLOSED}, ((0.03, -0.05, 0.02), (0, 0, 0)), 0.09),
-    ({"helix_advance": 0.01, "tip_up_down": 1.6}, ((0.03, -0.095, 0.025), (-0.012, 0, 0.012)), 0.14),
+    (0, {"helix_advance": 0.006}, ((0.055, -0.022, 0.022), (0.002, 0, 0.0035)), 0.09),
+    (0.008, {}, ((0.030, -0.05, 0.02), (0.002, 0, 0.003)), 0.09),
+    (0.018, {}, ((0.030, -0.05, 0.02), (0.002, 0, 0.001)), 0.09),
+    (0, HELD, ((0.030, -0.05, 0.02), (0.004, 0, 0.003)), 0.09),
+    (0, PROBE, ((0.035, 0.045, 0.025), (0.002, 0, 0.003)), 0.09),
+    (0, {"helix_advance": 0.01, "tip_up_down": 1.6}, ((0.03, -0.095, 0.025), (-0.012, 0, 0.012)), 0.14),
 ]
 
 
@@ -67,13 +73,15 @@ class Studio:
     def listeners(self):
         return [publisher.get_num_connections() for publisher in (self.topology, self.particles, self.tf)]
 
-    def shoot(self, joints, camera, radius):
+    def shoot(self, way, joints, camera=None, radius=0.05):
         """A picture from the lens, or from outside with a camera."""
+        joints = {**self.scope.arm(way), **joints}
         ball.RADIUS, ball.REVISION = radius, ball.REVISION + 1
         tissue = ball.Ball(4)
         options = {"rate": 0, "width": 640, "height": 640}
         if camera:
             options.update(lens="rectilinear", field_of_view=44, camera_frame="outside", width=900, height=900)
+            options.update(auto_exposure=False, exposure=OUTSIDE_EXPOSURE)
         with Program(**options) as program:
             assert wait_until(lambda: min(self.listeners()) > 0)
             self.clock += rospy.Duration(1)
@@ -91,12 +99,12 @@ class Studio:
 
 
 def save(pictures, columns, path):
-    """Pictures of one size side by side."""
+    """Pictures of one size side by side, in 256 colours."""
     width, height = pictures[0].size
     sheet = Image.new("RGB", (columns * width, -(-len(pictures) // columns) * height))
     for k, picture in enumerate(pictures):
         sheet.paste(picture, (k % columns * width, k // columns * height))
-    sheet.save(path, optimize=True)
+    sheet.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=3).save(path, optimize=True)
 
 
 def main():
