@@ -13,6 +13,11 @@ uniform float scars;   // 1: show heat
 uniform float reach;   // distance at which the light of the guides is 1 [m]
 uniform vec2 window;   // size of the picture [px]
 uniform sampler3D pattern;
+// What differs from stomach to stomach (src/geometry/mucosa_look.hpp)
+uniform float areae_count;  // of the pattern of areae gastricae, 8 areae wide, in a metre [1/m]
+uniform vec3 hue;           // of the gastric mucosa, 1: as usual
+uniform vec2 vessels;       // strength of their net, and how much more on a stretched wall
+uniform float more_mucus;
 
 varying vec3 view_position;
 varying vec3 view_normal;
@@ -28,7 +33,6 @@ uniform vec4 smoke;  // x: extinction [1/m] (render/scene_smoke.hpp)
 varying float wisp;
 #endif
 
-const float kAreae = 1.0 / 0.020;   // 2.5 mm per area [1/m]
 const float kBroad = 1.0 / 0.17;    // waves of 42 mm and less
 const float kVessels = 1.0 / 0.06;  // a net of 15 mm
 const mat3 kTurn = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);  // so that periods do not coincide
@@ -65,7 +69,7 @@ void main() {
 
   float heat = scars * 3.0 * (1.0 - colour.a);
   vec3 turned = kTurn * rest;
-  vec4 areae = texture3D(pattern, kAreae * rest);
+  vec4 areae = texture3D(pattern, areae_count * rest);
   vec4 broad = texture3D(pattern, kBroad * turned);
   vec4 net = texture3D(pattern, kVessels * turned.zxy);
   float pixel = length(fwidth(rest));
@@ -92,7 +96,7 @@ void main() {
   // what is finer than two pixels would glitter
   float fine = 1.0 - smoothstep(0.0001, 0.00035, pixel), middling = 1.0 - smoothstep(0.0001, 0.0007, pixel);
   float rough = relief * (middling * (0.36 * pits + 0.5 * areae.g) + 0.35 * fine * areae.a * gastric);
-  float mucus = smoothstep(0.58, 0.72, broad.g + 0.25 * (net.g - 0.5)) * gastric;
+  float mucus = smoothstep(0.58, 0.72, broad.g + 0.25 * (net.g - 0.5) + more_mucus) * gastric;
 
   vec3 flat_normal = -normalize(view_normal);
   vec3 normal = raised(flat_normal, height + rough);
@@ -105,10 +109,10 @@ void main() {
     float blotch = 0.6 * broad.g + 0.4 * net.g + 0.25 * (areae.g - 0.5) - 0.5;
     base *= vec3(1.0, 0.94, 0.85);
     base = mix(base, vec3(0.80, 0.42, 0.31), 0.55 * anatomy.y);
-    base *= vec3(1.0) + blotch * vec3(0.5, 0.9, 0.9);
+    base *= hue + blotch * vec3(0.5, 0.9, 0.9);
     base *= mix(vec3(0.95, 0.85, 0.84), vec3(1.0), pits);
     float stretched = 1.0 - smoothstep(0.0, 0.0025, fold);
-    base = mix(base, vec3(0.30, 0.05, 0.06), net.b * gastric * (0.10 + 0.22 * stretched * (1.0 - anatomy.y)) * smoothstep(0.4, 0.6, broad.g + 0.2));
+    base = mix(base, vec3(0.30, 0.05, 0.06), net.b * gastric * (vessels.x + vessels.y * stretched * (1.0 - anatomy.y)) * smoothstep(0.4, 0.6, broad.g + 0.2));
     float deep = fold / 0.003 * (1.0 - ruga);  // light is lost, and red, between folds
     base *= mix(vec3(1.0), vec3(0.50, 0.30, 0.28), clamp(deep, 0.0, 1.0));
     base = mix(base, vec3(0.86, 0.48, 0.37) + 0.2 * (net.g - 0.5), 1.0 - gastric);

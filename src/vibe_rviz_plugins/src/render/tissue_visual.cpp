@@ -7,8 +7,10 @@
 #include <OgreTechnique.h>
 #include <rviz/ogre_helpers/point_cloud.h>
 
+#include <cmath>
 #include <limits>
 
+#include "geometry/mucosa_pattern.hpp"
 #include "render/resources.hpp"
 
 namespace vibe {
@@ -19,7 +21,8 @@ namespace {
 constexpr double kOvertaken = 1;    // [s]
 constexpr double kEdgeAlpha = 0.9;  // opacity of a wall at grazing angles
 constexpr double kGrain = 0.25;
-constexpr float kFill = 0.16F, kFillOfData = 0.5F;  // ambient light
+constexpr float kFill = 0.16F, kFillOfData = 0.5F;           // ambient light
+constexpr double kVessels = 0.10, kVesselsStretched = 0.22;  // strength of their net, and more on a stretched wall
 
 Ogre::AxisAlignedBox boxAround(const Eigen::AlignedBox3f& bounds) {
   if (bounds.isEmpty()) return Ogre::AxisAlignedBox::BOX_NULL;
@@ -44,8 +47,9 @@ Ogre::MaterialPtr withSmoke(Ogre::MaterialPtr material) {
 
 }  // namespace
 
-TissueVisual::TissueVisual(Ogre::SceneNode& parent)
+TissueVisual::TissueVisual(Ogre::SceneNode& parent, const MucosaLook& mucosa)
     : node_(parent),
+      mucosa_(mucosa),
       inside_(copyMaterial("vibe/tissue_inside")),
       smoky_inside_(withSmoke(copyMaterial("vibe/tissue_inside"))),
       outside_(copyMaterial("vibe/tissue_outside")),
@@ -81,7 +85,7 @@ void TissueVisual::setMesh(const TissueMesh& mesh) {
   mesh_ = mesh;
   surface_ = std::make_unique<DeformableSurface>(mesh_);
   colours_ = std::make_unique<SurfaceColours>(mesh_);
-  const MucosaMap map = mapMucosa(mesh_);
+  const MucosaMap map = mapMucosa(mesh_, mucosa_.shift);
   folds_ = std::make_unique<FoldHeight>(mesh_, map);
   smoke_ = std::make_unique<Smoke>(mesh_);
   scars_ = std::make_unique<ScarAge>(mesh_);
@@ -193,12 +197,27 @@ void TissueVisual::applySide(Ogre::MaterialPtr& material, const Ogre::ColourValu
                                                            (endoscope     ? 1.3
                                                             : transparent ? 0.6
                                                                           : 1) *
-                                                           (plain ? 1 : 0.4)));
+                                                           (plain ? 1 : 0.4) * (mucosa ? mucosa_.wetness : 1)));
     parameters->setNamedConstant("relief", static_cast<float>(look_.relief));
     parameters->setNamedConstant("grain", static_cast<float>(!plain ? 0 : mucosa ? 1 : kGrain));
     parameters->setNamedConstant("fill", plain ? kFill : kFillOfData);
     parameters->setNamedConstant("scars", look_.scars && (!outside || transparent) ? 1.0F : 0.0F);
+    if (mucosa) applyMucosa(pass);
   }
+}
+
+void TissueVisual::applyMucosa(Ogre::Pass& pass) const {
+  const auto real = [](double value) { return static_cast<float>(value); };
+  const Eigen::Vector3f& shift = mucosa_.shift;
+  pass.getVertexProgramParameters()->setNamedConstant("pattern_shift", Ogre::Vector3(shift.x(), shift.y(), shift.z()));
+  Ogre::GpuProgramParameters& parameters = *pass.getFragmentProgramParameters();
+  parameters.setNamedConstant("areae_count", real(1 / (kPatternCells * mucosa_.areae_size)));
+  const double yellow = std::sqrt(mucosa_.yellowness);
+  parameters.setNamedConstant("hue",
+                              Ogre::Vector3(1, real(mucosa_.paleness * yellow), real(mucosa_.paleness / yellow)));
+  parameters.setNamedConstant("vessels",
+                              real(mucosa_.vessels) * Ogre::Vector2(real(kVessels), real(kVesselsStretched)));
+  parameters.setNamedConstant("more_mucus", real(mucosa_.mucus));
 }
 
 }  // namespace vibe

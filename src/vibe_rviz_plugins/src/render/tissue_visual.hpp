@@ -6,6 +6,7 @@
 
 #include "geometry/deformable_surface.hpp"
 #include "geometry/fold_height.hpp"
+#include "geometry/mucosa_look.hpp"
 #include "geometry/scar_age.hpp"
 #include "geometry/smoke.hpp"
 #include "geometry/surface_colours.hpp"
@@ -14,6 +15,7 @@
 #include "render/scene_smoke.hpp"
 
 namespace Ogre {
+class Pass;
 class SceneNode;
 }  // namespace Ogre
 namespace rviz {
@@ -46,8 +48,9 @@ struct TissueLook {
 class TissueVisual {
  public:
   /// @param parent  frame of all positions; must outlive this object
+  /// @param mucosa  of this stomach, as an endoscope sees it
   /// @throws std::runtime_error  the package's materials are not found
-  explicit TissueVisual(Ogre::SceneNode& parent);
+  explicit TissueVisual(Ogre::SceneNode& parent, const MucosaLook& mucosa = {});
   ~TissueVisual();
   TissueVisual(const TissueVisual&) = delete;
   TissueVisual& operator=(const TissueVisual&) = delete;
@@ -70,6 +73,7 @@ class TissueVisual {
  private:
   void applyLook();
   void applySide(Ogre::MaterialPtr& material, const Ogre::ColourValue& natural, bool outside);
+  void applyMucosa(Ogre::Pass& pass) const;
   void draw();
   void sendForEndoscope();
   void sendSurface(const TissueFrame& frame);
@@ -77,6 +81,7 @@ class TissueVisual {
   void sendMesh(const TissueFrame& frame);
 
   Ogre::SceneNode& node_;
+  MucosaLook mucosa_;
   TissueLook look_;
   Ogre::MaterialPtr inside_, smoky_inside_, outside_, wire_;
   TissueMesh mesh_;
