@@ -1,14 +1,22 @@
 // The light of the endoscope: two light guides beside the lens. View coordinates of Ogre: x right, y up, z backward.
 // Radiances are linear, 1 for a white wall at the distance `reach` that faces the guides, before exposure.
 //
-// The uniforms are shared by all materials that this file lights (src/render/endoscope_lamp.hpp): their programs say
-// shared_params_ref vibe_lamp.
-uniform vec4 guides[2];     // places of the light guides [m]; w: what each shines at right angles
-uniform vec2 lamp_ahead;    // how much more each shines ahead
-uniform vec3 lamp_colour;   // of the light, on a sensor whose white is balanced
+// The numbers are shared by all materials that this file lights (src/render/endoscope_lamp.hpp): their programs say
+// shared_params_ref vibe_lamp. Programs that define USUAL have the defaults as constants, which is faster where there is
+// no graphics card.
+#ifdef USUAL
+const vec4 right_guide = vec4(0.0035, 0.0012, 0.0, 0.15), left_guide = vec4(-0.0035, 0.0012, 0.0, 0.15);
+const vec2 lamp_ahead = vec2(0.35, 0.35);
+const vec3 lamp_colour = vec3(1.0, 1.0, 1.0);
+#else
+uniform vec4 right_guide;  // place of the light guide [m]; w: what it shines at right angles
+uniform vec4 left_guide;
+uniform vec2 lamp_ahead;   // how much more each shines ahead
+uniform vec3 lamp_colour;  // of the light, on a sensor whose white is balanced
+#endif
 
 vec3 guideAt(int k) {
-  return guides[k].xyz;
+  return vec3(k == 0 ? right_guide.xy : left_guide.xy, 0.0);
 }
 
 // What a surface at `place` with unit `normal` scatters (x) towards the lens, and what a film on it with the unit normal
@@ -25,7 +33,7 @@ vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float nea
     float square = dot(to_lamp, to_lamp);
     to_lamp *= inversesqrt(square);
     // the guides shine less to the sides
-    float power = (k == 0 ? reaching.x : reaching.y) * reach * reach / (square + near * near) * (guides[k].w + (k == 0 ? lamp_ahead.x : lamp_ahead.y) * max(to_lamp.z, 0.0));
+    float power = (k == 0 ? reaching.x : reaching.y) * reach * reach / (square + near * near) * ((k == 0 ? right_guide.w : left_guide.w) + (k == 0 ? lamp_ahead.x : lamp_ahead.y) * max(to_lamp.z, 0.0));
     vec3 half_way = to_lamp + to_eye;
     float mirrored = max(dot(film, half_way), 0.0);
     float m = mirrored * mirrored / dot(half_way, half_way);  // power 2
@@ -56,7 +64,7 @@ vec3 smoked(vec3 radiance, vec3 place, float reach, float extinction) {
   if (extinction <= 0.0) return radiance;
   float far = length(place);
   float middle = kSmokeNear * far / (kSmokeNear + sqrt(kSmokeNear * kSmokeNear + far * far));
-  float lit = reach * reach / kSmokeNear * atan(far / kSmokeNear) * (guides[0].w + guides[1].w - (lamp_ahead.x + lamp_ahead.y) * place.z / far);
+  float lit = reach * reach / kSmokeNear * atan(far / kSmokeNear) * (right_guide.w + left_guide.w - (lamp_ahead.x + lamp_ahead.y) * place.z / far);
   float scattered = 0.25 * extinction * lit * exp(-2.0 * extinction * middle);
   return radiance * exp(-2.0 * extinction * far) + kSmokeColour * scattered;
 }

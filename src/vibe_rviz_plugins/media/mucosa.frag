@@ -14,10 +14,16 @@ uniform float reach;   // distance at which the light of the guides is 1 [m]
 uniform vec2 window;   // size of the picture [px]
 uniform sampler3D pattern;
 // What differs from stomach to stomach (src/geometry/mucosa_look.hpp)
+#ifdef USUAL
+const float areae_count = 50.0, more_mucus = 0.0;
+const vec3 hue = vec3(1.0);
+const vec2 vessels = vec2(0.10, 0.22);
+#else
 uniform float areae_count;  // of the pattern of areae gastricae, 8 areae wide, in a metre [1/m]
 uniform vec3 hue;           // of the gastric mucosa, 1: as usual
 uniform vec2 vessels;       // strength of their net, and how much more on a stretched wall
 uniform float more_mucus;
+#endif
 
 varying vec3 view_position;
 varying vec3 view_normal;

@@ -13,6 +13,14 @@ struct MucosaLook {
   double vessels = 1;              ///< factor of the strength of the net of vessels, 0 to 3
   double wetness = 1;              ///< factor of the strength of highlights
   double mucus = 0;  ///< added to the noise that lays a film of mucus where it is above 0.58 to 0.72: more of it
+
+  /// Whether it is the default, for which shaders may use constants.
+  bool isUsual() const {
+    const MucosaLook usual;
+    return shift == usual.shift && areae_size == usual.areae_size && paleness == usual.paleness &&
+           yellowness == usual.yellowness && vessels == usual.vessels && wetness == usual.wetness &&
+           mucus == usual.mucus;
+  }
 };
 
 }  // namespace vibe

@@ -16,6 +16,9 @@ void provideLamp();
 /// From the next picture on everything is lit by this light. To be called after loadResources().
 void setLamp(const EndoscopeLight& light);
 
+/// Whether the light is the default, for which shaders may use constants.
+bool isUsualLamp();
+
 /// Where the guides are now, in view coordinates of Ogre [m].
 std::array<Ogre::Vector3, 2> guidePlaces();
 

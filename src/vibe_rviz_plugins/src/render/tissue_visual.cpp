@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "geometry/mucosa_pattern.hpp"
+#include "render/endoscope_lamp.hpp"
 #include "render/resources.hpp"
 
 namespace vibe {
@@ -35,14 +36,10 @@ void setBlending(Ogre::Pass& pass, bool transparent) {
   pass.setDepthWriteEnabled(!transparent);
 }
 
-/// Another program, because a branch that is not taken costs as much time as one that is where there is no graphics
-/// card.
-Ogre::MaterialPtr withSmoke(Ogre::MaterialPtr material) {
-  for (Ogre::Technique* technique : material->getTechniques())
-    if (technique->getSchemeName() == kEndoscopeScheme)
-      technique->getPass(0)->setFragmentProgram("vibe/mucosa_smoke_fragment");
-  material->load();
-  return material;
+void setEndoscopeProgram(Ogre::Material& material, const char* program) {
+  for (Ogre::Technique* technique : material.getTechniques())
+    if (technique->getSchemeName() == kEndoscopeScheme) technique->getPass(0)->setFragmentProgram(program);
+  material.load();
 }
 
 }  // namespace
@@ -51,7 +48,7 @@ TissueVisual::TissueVisual(Ogre::SceneNode& parent, const MucosaLook& mucosa)
     : node_(parent),
       mucosa_(mucosa),
       inside_(copyMaterial("vibe/tissue_inside")),
-      smoky_inside_(withSmoke(copyMaterial("vibe/tissue_inside"))),
+      smoky_inside_(copyMaterial("vibe/tissue_inside")),
       outside_(copyMaterial("vibe/tissue_outside")),
       wire_(copyMaterial("vibe/wire")),
       seen_smoke_(*parent.getCreator()),
@@ -61,13 +58,22 @@ TissueVisual::TissueVisual(Ogre::SceneNode& parent, const MucosaLook& mucosa)
   points_->setRenderMode(rviz::PointCloud::RM_SPHERES);
   node_.attachObject(points_.get());
   drawn_.beforeEndoscope([this] { sendForEndoscope(); });
-  applyLook();
+  choosePrograms();
 }
 
 TissueVisual::~TissueVisual() {
   node_.detachObject(points_.get());
   clear();
   dropMaterial(inside_), dropMaterial(smoky_inside_), dropMaterial(outside_), dropMaterial(wire_);
+}
+
+/// Other programs, because where there is no graphics card a branch that is not taken costs as much time as one that
+/// is, and a number that may change costs more than a constant.
+void TissueVisual::choosePrograms() {
+  varied_ = !mucosa_.isUsual() || !isUsualLamp();
+  setEndoscopeProgram(*inside_, varied_ ? "vibe/mucosa_varied_fragment" : "vibe/mucosa_fragment");
+  setEndoscopeProgram(*smoky_inside_, varied_ ? "vibe/mucosa_varied_smoke_fragment" : "vibe/mucosa_smoke_fragment");
+  applyLook();
 }
 
 void TissueVisual::clear() {
@@ -122,6 +128,7 @@ void TissueVisual::draw() {
 // What only the shader of the mucosa reads. It may be long before an endoscope looks, so it waits until then.
 void TissueVisual::sendForEndoscope() {
   if (!has_frame_) return;
+  if (varied_ != (!mucosa_.isUsual() || !isUsualLamp())) choosePrograms();
   const bool smoky = node_.getCreator()->getFogDensity() > 0;  // of any organ of the scene
   if (smoky != smoky_) drawn_.setMaterials({smoky ? smoky_inside_ : inside_, outside_});
   smoky_ = smoky;
@@ -210,6 +217,7 @@ void TissueVisual::applyMucosa(Ogre::Pass& pass) const {
   const auto real = [](double value) { return static_cast<float>(value); };
   const Eigen::Vector3f& shift = mucosa_.shift;
   pass.getVertexProgramParameters()->setNamedConstant("pattern_shift", Ogre::Vector3(shift.x(), shift.y(), shift.z()));
+  if (!varied_) return;
   Ogre::GpuProgramParameters& parameters = *pass.getFragmentProgramParameters();
   parameters.setNamedConstant("areae_count", real(1 / (kPatternCells * mucosa_.areae_size)));
   const double yellow = std::sqrt(mucosa_.yellowness);

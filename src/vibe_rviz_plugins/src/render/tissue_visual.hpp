@@ -74,6 +74,7 @@ class TissueVisual {
   void applyLook();
   void applySide(Ogre::MaterialPtr& material, const Ogre::ColourValue& natural, bool outside);
   void applyMucosa(Ogre::Pass& pass) const;
+  void choosePrograms();
   void draw();
   void sendForEndoscope();
   void sendSurface(const TissueFrame& frame);
@@ -93,6 +94,7 @@ class TissueVisual {
   std::unique_ptr<Smoke> smoke_;
   std::unique_ptr<ScarAge> scars_;
   double followed_ = 0;                             // time of the last frame that smoke_ and scars_ have seen [s]
+  bool varied_ = false;                             // mucosa or light are not the usual ones
   bool smoky_ = false;                              // smoky_inside_ is drawn
   bool folds_sent_ = false, browned_sent_ = false;  // of the frame that is drawn
   SceneSmoke seen_smoke_;

@@ -289,6 +289,8 @@ class DatasetTest(unittest.TestCase):
             ([self.bag, "--output", new, "--from", "100.31", "--to", "100.35"], 1, "no state between"),
             ([self.bag, "--output", new, "--from", "3", "--to", "2"], 2, "--from is later than --to"),
             ([self.bag, "--output", new, "--vary", "light"], 2, "give a seed"),
+            ([self.bag, "--output", new, "--rate", "-1"], 2, "--rate"),
+            ([self.bag, "--output", new, "--lens", "rectilinear", "--field-of-view", "170", "--seed", "1"], 1, "another seed"),
             ([self.bag, "--output", new, "--seed", "1", "--vary", "lens,organ"], 2, "organ"),
             ([self.bag, "--output", new, "--lens", "fisheye"], 2, "fisheye"),
             ([self.bag, "--output", new, "--content", "depth,colour"], 2, "colour"),

@@ -66,6 +66,15 @@ TEST(MucosaLook, ShiftOfPatternsIsAMoveOfTheCameraAlongTheTube) {
   }
 }
 
+TEST(MucosaLook, ConstantsOfTheUsualShaderAreTheDefaults) {
+  MucosaLook nearly;
+  nearly.yellowness += 1e-12;  // another program, the same numbers
+  ASSERT_FALSE(nearly.isUsual());
+  EXPECT_TRUE(picture(nearly) == picture({}));
+  nearly.yellowness += 1e-2;  // control
+  EXPECT_FALSE(picture(nearly) == picture({}));
+}
+
 /// Changes between brighter and darker than the mean around, per row of the picture's middle.
 double changes(const Pixels& pixels) {
   constexpr int kHalf = 16;
