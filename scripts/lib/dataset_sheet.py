@@ -132,16 +132,31 @@ def label_rows(data, table):
     return rows + ["| of the wall: marked or burnt | {} |".format(percent(marked, whole))]
 
 
-def variation(data):
+# what a seed varies: key of dataset.json, and words for it
+VARIED = {
+    "lens": ("mount", "Lens in its mount [rad]"),
+    "sensor": ("sensor", "Sensor"),
+    "mucosa": ("mucosa", "Mucosa [lengths in m]"),
+    "light": ("light", "Light [m, K]"),
+}
+
+
+def variation(data, degrees):
     if data["seed"] == 0:
-        return "None (`--seed 0`): ideal lens and sensor."
-    numbers = ", ".join("{} {:.4g}".format(name.replace("_", " "), value) for name, value in data["sensor"].items())
-    mount = ", ".join("{} {:.4g}".format(name, value) for name, value in data["mount"].items())
-    return (
-        "Seed {}. Sensor: {}. Lens in its mount [rad]: {}. The images are distorted as `distortion_of_image` in"
-        " `intrinsics.json` says; **the truth is that of the undistorted lens**, so undistort an image before it is laid"
-        " over it.".format(data["seed"], numbers, mount)
-    )
+        return "None (`--seed 0`): ideal lens and sensor, and the usual mucosa and light."
+    sentences = ["Seed {}, of: {}.".format(data["seed"], ", ".join(data["varied"]))]
+    for what in data["varied"]:
+        key, words = VARIED[what]
+        numbers = ", ".join("{} {:.4g}".format(name.replace("_", " "), value) for name, value in data[key].items())
+        sentences.append("{}: {}.".format(words, numbers))
+    if "lens" in data["varied"]:
+        sentences.append("Field of view: {:.2f} degrees.".format(degrees))
+    if "sensor" in data["varied"]:
+        sentences.append(
+            "The images are distorted as `distortion_of_image` in `intrinsics.json` says; **the truth is that of the"
+            " undistorted lens**, so undistort an image before it is laid over it."
+        )
+    return " ".join(sentences + ["The ranges are in docs/ground_truth.md of the simulator."])
 
 
 def sheet(data, intrinsics, table, replayed):
@@ -207,7 +222,7 @@ these images say nothing about patients.
         degrees=intrinsics["field_of_view"], labels="\n".join(label_rows(data, table)), replayed=replayed,
         version=data["version"], arithmetic=data["arithmetic"], scene_hash=data["scene_hash"],
         urdf_hash=data["urdf_hash"], model_hash=data["model_hash"], rate=data["rate"], every=data["every"],
-        variation=variation(data),
+        variation=variation(data, intrinsics["field_of_view"]),
     )  # fmt: skip
 
 

@@ -1,11 +1,22 @@
 // The light of the endoscope: two light guides beside the lens. View coordinates of Ogre: x right, y up, z backward.
 // Radiances are linear, 1 for a white wall at the distance `reach` that faces the guides, before exposure.
-
-const float kAside = 0.0035;  // of a light guide from the lens: a tip of 9.8 mm holds lens, guides and channel [m]
-const float kAbove = 0.0012;  // [m]; design choice
+//
+// The numbers are shared by all materials that this file lights (src/render/endoscope_lamp.hpp): their programs say
+// shared_params_ref vibe_lamp. Programs that define USUAL have the defaults as constants, which is faster where there is
+// no graphics card.
+#ifdef USUAL
+const vec4 right_guide = vec4(0.0035, 0.0012, 0.0, 0.15), left_guide = vec4(-0.0035, 0.0012, 0.0, 0.15);
+const vec2 lamp_ahead = vec2(0.35, 0.35);
+const vec3 lamp_colour = vec3(1.0, 1.0, 1.0);
+#else
+uniform vec4 right_guide;  // place of the light guide [m]; w: what it shines at right angles
+uniform vec4 left_guide;
+uniform vec2 lamp_ahead;   // how much more each shines ahead
+uniform vec3 lamp_colour;  // of the light, on a sensor whose white is balanced
+#endif
 
 vec3 guideAt(int k) {
-  return vec3(k == 0 ? kAside : -kAside, kAbove, 0.0);
+  return vec3(k == 0 ? right_guide.xy : left_guide.xy, 0.0);
 }
 
 // What a surface at `place` with unit `normal` scatters (x) towards the lens, and what a film on it with the unit normal
@@ -22,7 +33,7 @@ vec3 lamp(vec3 place, vec3 normal, vec3 film, float reach, float soft, float nea
     float square = dot(to_lamp, to_lamp);
     to_lamp *= inversesqrt(square);
     // the guides shine less to the sides
-    float power = (k == 0 ? reaching.x : reaching.y) * reach * reach / (square + near * near) * (0.15 + 0.35 * max(to_lamp.z, 0.0));
+    float power = (k == 0 ? reaching.x : reaching.y) * reach * reach / (square + near * near) * ((k == 0 ? right_guide.w : left_guide.w) + (k == 0 ? lamp_ahead.x : lamp_ahead.y) * max(to_lamp.z, 0.0));
     vec3 half_way = to_lamp + to_eye;
     float mirrored = max(dot(film, half_way), 0.0);
     float m = mirrored * mirrored / dot(half_way, half_way);  // power 2
@@ -53,14 +64,15 @@ vec3 smoked(vec3 radiance, vec3 place, float reach, float extinction) {
   if (extinction <= 0.0) return radiance;
   float far = length(place);
   float middle = kSmokeNear * far / (kSmokeNear + sqrt(kSmokeNear * kSmokeNear + far * far));
-  float lit = reach * reach / kSmokeNear * atan(far / kSmokeNear) * (0.3 - 0.7 * place.z / far);
+  float lit = reach * reach / kSmokeNear * atan(far / kSmokeNear) * (right_guide.w + left_guide.w - (lamp_ahead.x + lamp_ahead.y) * place.z / far);
   float scattered = 0.25 * extinction * lit * exp(-2.0 * extinction * middle);
   return radiance * exp(-2.0 * extinction * far) + kSmokeColour * scattered;
 }
 
-// Shades are stored as square roots, near to what a screen shows; media/endoscope.frag exposes them.
+// Shades are stored as square roots, near to what a screen shows; media/endoscope.frag exposes them. All light comes from
+// the lamp, so its colour is that of all radiances.
 vec3 stored(vec3 radiance) {
-  return sqrt(max(radiance, vec3(0.0)));
+  return sqrt(max(radiance * lamp_colour, vec3(0.0)));
 }
 
 vec3 linear(vec3 shown) {

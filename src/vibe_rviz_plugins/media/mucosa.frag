@@ -14,6 +14,17 @@ uniform float reach;   // distance at which the light of the guides is 1 [m]
 uniform vec2 window;   // size of the picture [px]
 uniform float unseen;  // share of half the picture within which nothing of it is shown (src/render/endoscope_lens.cpp)
 uniform sampler3D pattern;
+// What differs from stomach to stomach (src/geometry/mucosa_look.hpp)
+#ifdef USUAL
+const float areae_count = 50.0, more_mucus = 0.0;
+const vec3 hue = vec3(1.0);
+const vec2 vessels = vec2(0.10, 0.22);
+#else
+uniform float areae_count;  // of the pattern of areae gastricae, 8 areae wide, in a metre [1/m]
+uniform vec3 hue;           // of the gastric mucosa, 1: as usual
+uniform vec2 vessels;       // strength of their net, and how much more on a stretched wall
+uniform float more_mucus;
+#endif
 
 varying vec3 view_position;
 varying vec3 view_normal;
@@ -29,7 +40,6 @@ uniform vec4 smoke;  // x: extinction [1/m] (render/scene_smoke.hpp)
 varying float wisp;
 #endif
 
-const float kAreae = 1.0 / 0.020;   // 2.5 mm per area [1/m]
 const float kVessels = 1.0 / 0.06;  // a net of 15 mm
 const mat3 kTurn = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);  // so that periods do not coincide
 
@@ -65,7 +75,7 @@ void main() {
   if (dot(aside, aside) > 1.02 || dot(aside, aside) < unseen * unseen) discard;
 
   float heat = scars * 3.0 * (1.0 - colour.a);
-  vec4 areae = texture3D(pattern, kAreae * rest);
+  vec4 areae = texture3D(pattern, areae_count * rest);
   float broad = around.w;
   vec4 net = texture3D(pattern, kVessels * (kTurn * rest).zxy);
   float pixel = length(fwidth(rest));
@@ -92,7 +102,7 @@ void main() {
   // what is finer than two pixels would glitter
   float fine = 1.0 - smoothstep(0.0001, 0.00035, pixel), middling = 1.0 - smoothstep(0.0001, 0.0007, pixel);
   float rough = relief * (middling * (0.36 * pits + 0.5 * areae.g) + 0.35 * fine * areae.a * gastric);
-  float mucus = smoothstep(0.58, 0.72, broad + 0.25 * (net.g - 0.5)) * gastric;
+  float mucus = smoothstep(0.58, 0.72, broad + 0.25 * (net.g - 0.5) + more_mucus) * gastric;
 
   vec3 flat_normal = -normalize(view_normal);
   vec3 normal = raised(flat_normal, height + rough);
@@ -105,12 +115,12 @@ void main() {
     float blotch = 0.6 * broad + 0.4 * net.g + 0.25 * (areae.g - 0.5) - 0.5;
     base *= vec3(1.0, 0.94, 0.85);
     base = mix(base, vec3(0.80, 0.42, 0.31), 0.55 * anatomy.y);
-    base *= vec3(1.0) + blotch * vec3(0.5, 0.9, 0.9);
+    base *= hue + blotch * vec3(0.5, 0.9, 0.9);
     base *= mix(vec3(0.95, 0.85, 0.84), vec3(1.0), pits);
     float stretched = 1.0 - smoothstep(0.0, 0.0025, fold);
-    base = mix(base, vec3(0.30, 0.05, 0.06), net.b * gastric * (0.10 + 0.22 * stretched * (1.0 - anatomy.y)) * smoothstep(0.4, 0.6, broad + 0.2));
+    base = mix(base, vec3(0.30, 0.05, 0.06), net.b * gastric * (vessels.x + vessels.y * stretched * (1.0 - anatomy.y)) * smoothstep(0.4, 0.6, broad + 0.2));
     float deep = fold / 0.003 * (1.0 - ruga);  // light is lost, and red, between folds
-    base *= mix(vec3(1.0), vec3(0.50, 0.30, 0.28), clamp(deep, 0.0, 1.0));
+    base *= mix(vec3(1.0), vec3(0.47, 0.32, 0.30), clamp(deep, 0.0, 1.0));
     base = mix(base, vec3(0.86, 0.48, 0.37) + 0.2 * (net.g - 0.5), 1.0 - gastric);
     base = mix(base, vec3(0.78, 0.36, 0.27), 0.6 * ring);
     base = mix(base, vec3(0.85, 0.62, 0.44), 0.10 * mucus);

@@ -6,6 +6,7 @@ uniform mat4 worldViewProj;
 uniform mat4 worldView;
 uniform vec4 smoke;  // y: time [s] (src/render/scene_smoke.hpp)
 uniform vec3 eye;    // the lens in the frame of the organ [m]
+uniform vec3 pattern_shift;  // of the patterns (src/geometry/mucosa_look.hpp) [m]
 
 varying vec3 view_position;
 varying vec3 view_normal;
@@ -30,7 +31,7 @@ void main() {
   view_position = (worldView * gl_Vertex).xyz;
   view_normal = (worldView * vec4(gl_Normal, 0.0)).xyz;
   colour = gl_Color;
-  rest = gl_MultiTexCoord0.xyz;
+  rest = gl_MultiTexCoord0.xyz + pattern_shift;
   around = gl_MultiTexCoord1;
   anatomy = gl_MultiTexCoord2;
   fold = gl_MultiTexCoord3.x;

@@ -2,6 +2,7 @@
 
 #include <ros/console.h>
 
+#include "render/endoscope_lamp.hpp"
 #include "render/optical_frame.hpp"
 
 namespace vibe {
@@ -13,11 +14,12 @@ constexpr const char* kCameraFrame = "scope_camera_optical";
 
 DatasetCamera::DatasetCamera(const DatasetOptions& options, Ogre::SceneManager& scene, const std::string& description)
     : options_(options),
-      drawn_(scene, description, options.smoke),
+      drawn_(scene, description, options.smoke, options.mucosa),
       truth_(description),
       camera_(scene, options.round, 1),
       truth_camera_(options.round, static_cast<double>(kScopeNearClip), static_cast<double>(kScopeFarClip)),
       sensor_(options.sensor, options.round) {
+  setLamp(options.light);
   for (const std::string& problem : truth_.problems()) ROS_WARN_STREAM(problem);
   eyes_.push_back({options.stereo ? "left/" : "", 0, {}});
   if (options.stereo) eyes_.push_back({"right/", options.baseline, {}});

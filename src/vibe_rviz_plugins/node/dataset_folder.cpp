@@ -49,17 +49,76 @@ std::string sutureText(const vibe_msgs::Suture& suture) {
   return text.str() + "]}";
 }
 
+/// What begins with a dot is of the script that calls this program.
+bool isOfDataSet(const std::filesystem::path& path) {
+  return path.filename().string()[0] != '.';
+}
+
+using Values = std::vector<std::pair<const char*, double>>;
+
+std::string textOf(const Values& values) {
+  std::ostringstream text;
+  text << std::setprecision(kDigits);
+  for (const auto& [name, value] : values) text << (text.tellp() > 0 ? ", \"" : "{\"") << name << "\": " << value;
+  return text.str() + "}";
+}
+
+std::string textOf(const SensorStyle& s) {
+  return textOf(Values{{"exposure", s.exposure},
+                       {"red_gain", s.red_gain},
+                       {"blue_gain", s.blue_gain},
+                       {"vignetting", s.vignetting},
+                       {"blur", s.blur},
+                       {"distortion", s.distortion},
+                       {"full_well", s.full_well},
+                       {"read_noise", s.read_noise}});
+}
+
+std::string textOf(const MucosaLook& m) {
+  return textOf(Values{{"shift_x", m.shift.x()},
+                       {"shift_y", m.shift.y()},
+                       {"shift_z", m.shift.z()},
+                       {"areae_size", m.areae_size},
+                       {"paleness", m.paleness},
+                       {"yellowness", m.yellowness},
+                       {"vessels", m.vessels},
+                       {"wetness", m.wetness},
+                       {"mucus", m.mucus}});
+}
+
+std::string textOf(const EndoscopeLight& light) {
+  const auto& [right, left] = light.guides;
+  return textOf(Values{{"right_guide_x", right.right},
+                       {"right_guide_y", right.up},
+                       {"right_guide_strength", right.strength},
+                       {"left_guide_x", left.right},
+                       {"left_guide_y", left.up},
+                       {"left_guide_strength", left.strength},
+                       {"sideward", light.sideward},
+                       {"temperature", light.temperature}});
+}
+
+std::string variedText(const DatasetOptions& options) {
+  std::string text;
+  for (const auto& [name, on] : {std::pair("lens", options.vary_lens),
+                                 {"sensor", options.vary_sensor},
+                                 {"mucosa", options.vary_mucosa},
+                                 {"light", options.vary_light}})
+    if (on && options.seed != 0) text += (text.empty() ? "\"" : ", \"") + std::string(name) + "\"";
+  return "[" + text + "]";
+}
+
 }  // namespace
 
 DatasetFolder::DatasetFolder(const DatasetOptions& options) : options_(options) {
   namespace fs = std::filesystem;
   std::error_code problem;
+  is_new_ = !fs::exists(options.output, problem);
   fs::create_directories(options.output, problem);
   if (problem || !fs::is_directory(options.output))
     throw std::runtime_error("The folder '" + options.output + "' cannot be made; give another --output.");
-  // what begins with a dot is of the script that calls this program
   for (const auto& entry : fs::directory_iterator(options.output))
-    if (entry.path().filename().string()[0] != '.')
+    if (isOfDataSet(entry.path()))
       throw std::runtime_error("The folder '" + options.output + "' is not empty; give another --output or remove it.");
   const std::vector<std::string> lenses =
       options.stereo ? std::vector<std::string>{"left/", "right/"} : std::vector<std::string>{""};
@@ -80,6 +139,18 @@ DatasetFolder::DatasetFolder(const DatasetOptions& options) : options_(options) 
   poses_
       << "# stamp [s], tx ty tz [m], qx qy qz qw: pose of the camera (z forward, x right, y down) in the frame of the "
          "particles\n";
+}
+
+DatasetFolder::~DatasetFolder() {
+  if (is_finished_) return;
+  namespace fs = std::filesystem;
+  times_.close(), poses_.close();
+  std::error_code ignored;
+  std::vector<fs::path> ours;
+  for (const auto& entry : fs::directory_iterator(options_.output, ignored))
+    if (isOfDataSet(entry.path())) ours.push_back(entry.path());
+  for (const fs::path& path : ours) fs::remove_all(path, ignored);
+  if (is_new_) fs::remove(options_.output, ignored);  // if nothing else is in it
 }
 
 std::string DatasetFolder::fileOf(const std::string& lens, const char* kind, std::size_t number,
@@ -184,7 +255,6 @@ std::string DatasetFolder::intrinsics() const {
 }
 
 std::string DatasetFolder::description(const vibe_msgs::SessionInfo& info, const std::string& frame) const {
-  const SensorStyle& s = options_.sensor;
   std::ostringstream text;
   text << std::setprecision(kDigits) << "{\n\"recording\": " << quoted(options_.name)
        << ",\n\"version\": " << quoted(info.version) << ",\n\"arithmetic\": " << quoted(info.arithmetic)
@@ -201,12 +271,11 @@ std::string DatasetFolder::description(const vibe_msgs::SessionInfo& info, const
                                  {"particles", options_.particles},
                                  {"sutures", options_.sutures}})
     if (on) text << ", \"" << name << "\"";
-  text << "],\n\"seed\": " << options_.seed << ",\n\"mount\": {\"roll\": " << options_.roll
-       << ", \"pitch\": " << options_.pitch << ", \"yaw\": " << options_.yaw
-       << "},\n\"sensor\": {\"exposure\": " << s.exposure << ", \"red_gain\": " << s.red_gain
-       << ", \"blue_gain\": " << s.blue_gain << ", \"vignetting\": " << s.vignetting << ", \"blur\": " << s.blur
-       << ", \"distortion\": " << s.distortion << ", \"full_well\": " << s.full_well
-       << ", \"read_noise\": " << s.read_noise << "},\n\"label_pixels\": {";
+  text << "],\n\"seed\": " << options_.seed << ",\n\"varied\": " << variedText(options_)
+       << ",\n\"mount\": {\"roll\": " << options_.roll << ", \"pitch\": " << options_.pitch
+       << ", \"yaw\": " << options_.yaw << "},\n\"sensor\": " << textOf(options_.sensor)
+       << ",\n\"mucosa\": " << textOf(options_.mucosa) << ",\n\"light\": " << textOf(options_.light)
+       << ",\n\"label_pixels\": {";
   bool first = true;
   for (std::size_t k = 0; k < pixels_.size(); ++k)
     if (pixels_[k] > 0) text << (first ? "" : ", ") << "\"" << k << "\": " << pixels_[k], first = false;
@@ -226,6 +295,7 @@ void DatasetFolder::finish(const vibe_msgs::SessionInfo& info, const std::string
   writeText("intrinsics.json", intrinsics());
   writeText("labels.json", labels);
   writeText("dataset.json", description(info, frame));
+  is_finished_ = true;
 }
 
 }  // namespace vibe

@@ -21,6 +21,10 @@ class DatasetFolder {
   /// Creates the folder.
   /// @throws std::runtime_error  it is there and not empty, or cannot be made
   explicit DatasetFolder(const DatasetOptions& options);
+  /// Removes everything again unless finish() has written all of it: half a data set is none.
+  ~DatasetFolder();
+  DatasetFolder(const DatasetFolder&) = delete;
+  DatasetFolder& operator=(const DatasetFolder&) = delete;
 
   /// Starts an image: a line in times.txt and in poses.txt.
   /// @param camera  pose of the (left) lens in the frame of the particles
@@ -43,6 +47,7 @@ class DatasetFolder {
   std::string description(const vibe_msgs::SessionInfo& info, const std::string& frame) const;
 
   DatasetOptions options_;
+  bool is_new_ = false, is_finished_ = false;
   std::ofstream times_, poses_;
   std::size_t images_ = 0;
   double first_ = 0, last_ = 0;              // stamps [s]

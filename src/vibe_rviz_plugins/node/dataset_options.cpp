@@ -1,9 +1,9 @@
 #include "dataset_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
-#include <map>
-#include <set>
+#include <utility>
 #include <vector>
 
 #include "dataset/variation.hpp"
@@ -14,17 +14,17 @@ namespace {
 constexpr int kUsage = 2;
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
-/// Switches on what is listed and the rest off.
+using Switches = std::vector<std::pair<std::string, bool*>>;
+
+/// Switches on what is listed and the rest off; without a list, nothing changes.
 /// @return a sentence if a word is unknown
-std::string choose(const std::vector<std::string>& words, DatasetOptions& options) {
-  const std::map<std::string, bool*> known{{"depth", &options.depth},         {"normals", &options.normals},
-                                           {"labels", &options.labels},       {"flow", &options.flow},
-                                           {"particles", &options.particles}, {"sutures", &options.sutures}};
-  for (const auto& [name, on] : known) *on = false;
+std::string choose(const std::string& option, const std::vector<std::string>& words, const Switches& known) {
+  if (words.empty()) return "";
+  std::string names;
+  for (const auto& [name, on] : known) *on = false, names += (names.empty() ? "" : ", ") + name;
   for (const std::string& word : words) {
-    const auto found = known.find(word);
-    if (found == known.end())
-      return "--content knows depth, normals, labels, flow, particles and sutures, not '" + word + "'.";
+    const auto found = std::find_if(known.begin(), known.end(), [&](const auto& entry) { return entry.first == word; });
+    if (found == known.end()) return option + " knows " + names + ", not '" + word + "'";
     *found->second = true;
   }
   return "";
@@ -32,16 +32,20 @@ std::string choose(const std::vector<std::string>& words, DatasetOptions& option
 
 void vary(DatasetOptions& options) {
   if (options.seed == 0) return;
-  const CameraVariation variation = variationOf(static_cast<std::uint32_t>(options.seed), options.round.field_of_view);
-  options.round.field_of_view = variation.field_of_view;
-  options.sensor = variation.sensor;
-  options.roll = variation.roll, options.pitch = variation.pitch, options.yaw = variation.yaw;
+  const Variation drawn = variationOf(static_cast<std::uint32_t>(options.seed), options.round.field_of_view);
+  if (options.vary_lens) {
+    options.round.field_of_view = drawn.field_of_view;
+    options.roll = drawn.roll, options.pitch = drawn.pitch, options.yaw = drawn.yaw;
+  }
+  if (options.vary_sensor) options.sensor = drawn.sensor;
+  if (options.vary_mucosa) options.mucosa = drawn.mucosa;
+  if (options.vary_light) options.light = drawn.light;
 }
 
 struct Words {
   std::string lens = "equidistant";
   double degrees = 140;
-  std::vector<std::string> content;
+  std::vector<std::string> content, varied;
 };
 
 void describe(CLI::App& app, DatasetOptions& options, Words& words) {
@@ -61,9 +65,31 @@ void describe(CLI::App& app, DatasetOptions& options, Words& words) {
   app.add_flag("--stereo", options.stereo, "a pair of lenses");
   app.add_option("--baseline", options.baseline, "between the lenses [m]")->check(CLI::Range(0.0001, 0.1));
   app.add_flag("!--no-smoke", options.smoke, "no smoke of the argon beam");
-  app.add_option("--seed", options.seed, "of the variation of lens and sensor; 0: none")
+  app.add_option("--seed", options.seed, "of the variation of lens, sensor, mucosa and light; 0: none")
       ->check(CLI::Range(0, 2147483647));
+  app.add_option("--vary", words.varied, "what the seed varies, of: lens, sensor, mucosa, light")->delimiter(',');
   app.add_option("--content", words.content, "beside the images")->delimiter(',');
+}
+
+/// Reads the lists, and looks at what several options say together.
+std::string problemOf(const Words& words, DatasetOptions& options) {
+  std::string problem = choose("--content", words.content,
+                               {{"depth", &options.depth},
+                                {"normals", &options.normals},
+                                {"labels", &options.labels},
+                                {"flow", &options.flow},
+                                {"particles", &options.particles},
+                                {"sutures", &options.sutures}});
+  if (problem.empty())
+    problem = choose("--vary", words.varied,
+                     {{"lens", &options.vary_lens},
+                      {"sensor", &options.vary_sensor},
+                      {"mucosa", &options.vary_mucosa},
+                      {"light", &options.vary_light}});
+  if (!problem.empty()) return problem;
+  if (options.from > options.to) return "--from is later than --to; exchange them";
+  if (!words.varied.empty() && options.seed == 0) return "--vary without --seed varies nothing; give a seed from 1 on";
+  return "";
 }
 
 }  // namespace
@@ -81,9 +107,9 @@ int readDatasetOptions(int argc, char** argv, DatasetOptions& options) {
     std::fprintf(stderr, "vibe_dataset: %s (--help lists what there is)\n", error.what());
     return kUsage;
   }
-  const std::string problem = words.content.empty() ? "" : choose(words.content, options);
+  const std::string problem = problemOf(words, options);
   if (!problem.empty()) {
-    std::fprintf(stderr, "vibe_dataset: %s\n", problem.c_str());
+    std::fprintf(stderr, "vibe_dataset: %s (--help lists what there is)\n", problem.c_str());
     return kUsage;
   }
   options.round.lens = words.lens == "rectilinear" ? LensKind::Rectilinear : LensKind::Equidistant;

@@ -2,7 +2,9 @@
 #include <limits>
 #include <string>
 
+#include "geometry/endoscope_light.hpp"
 #include "geometry/lens.hpp"
+#include "geometry/mucosa_look.hpp"
 #include "sensor/sensor_model.hpp"
 
 namespace vibe {
@@ -21,9 +23,12 @@ struct DatasetOptions {
   double from = 0, to = std::numeric_limits<double>::infinity();  ///< [s]
   bool smoke = true;                                              ///< whether the argon beam makes smoke
   int seed = 0;                                                   ///< of the variation; 0: none
+  bool vary_lens = true, vary_sensor = true, vary_mucosa = true, vary_light = true;  ///< with a seed
   bool depth = true, normals = true, labels = true, flow = true, particles = false, sutures = false;
   SensorStyle sensor;                   ///< as varied
   double roll = 0, pitch = 0, yaw = 0;  ///< of the lens in its mount, as varied [rad]
+  MucosaLook mucosa;                    ///< as varied
+  EndoscopeLight light;                 ///< as varied
 };
 
 /// @return the status with which the program ends at once: help was asked for, or the call is wrong; -1: go on

@@ -19,9 +19,10 @@ void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
 
 }  // namespace
 
-EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke)
+EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke,
+                               const MucosaLook& mucosa)
     : suture_node_(*scene.getRootSceneNode()->createChildSceneNode()),
-      tissue_(*scene.getRootSceneNode()),
+      tissue_(*scene.getRootSceneNode(), mucosa),
       sutures_(suture_node_),
       instrument_(scene, description) {
   TissueLook look;

@@ -25,9 +25,10 @@ class EndoscopeScene {
   using PoseOf = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame)>;
 
   /// @param description  URDF of the instrument
-  /// @throws std::runtime_error  the package's media folder cannot be found
   /// @param smoke        whether the argon beam makes smoke
-  EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke);
+  /// @param mucosa       what it looks like
+  /// @throws std::runtime_error  the package's media folder cannot be found
+  EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke, const MucosaLook& mucosa = {});
   ~EndoscopeScene();
 
   std::string setTopology(const vibe_msgs::TissueTopology& message);

@@ -85,6 +85,10 @@ void SessionFrames::take(const rosbag::MessageInstance& message) {
   if (const auto particles = message.instantiate<sensor_msgs::PointCloud2>()) pending_.particles = particles;
 }
 
+double SessionFrames::end() const {
+  return rosbag::View(bag_).getEndTime().toSec();
+}
+
 double SessionFrames::progress() const {
   const double whole = (view_->getEndTime() - view_->getBeginTime()).toSec();
   return whole > 0 ? (now_ - view_->getBeginTime()).toSec() / whole : 1;

@@ -36,6 +36,8 @@ class SessionFrames {
   const vibe_msgs::SessionInfo& info() const { return info_; }
   /// Poses of all frames at the state that next() gave last.
   const JointTree& poses() const { return *poses_; }
+  /// Time of the last message of the file [s].
+  double end() const;
   /// Part of the recording that has been read, 0 to 1.
   double progress() const;
 

@@ -35,11 +35,28 @@ class Progress {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+std::string timeText(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", seconds);
+  return text;
+}
+
+std::runtime_error wrongState(const vibe::DatasetOptions& options, const ros::Time& stamp, const std::string& problem) {
+  const std::string what = problem.substr(0, problem.find(';'));  // then: what a display does about it
+  return std::runtime_error("The state at " + timeText(stamp.toSec()) + " s of '" + options.name +
+                            "' cannot be used; end before it with --to, or record again: " + what);
+}
+
 void run(const vibe::DatasetOptions& options) {
   const std::string impossible = problemOf(options.sensor, options.round);
-  if (!impossible.empty()) throw std::runtime_error("This seed and lens do not go together: " + impossible + ".");
-  if (options.check) return;
+  if (!impossible.empty())
+    throw std::runtime_error("--seed " + std::to_string(options.seed) + " does not go with this lens: " + impossible +
+                             ", or give another seed.");
   vibe::SessionFrames frames(options.bag);
+  if (options.from > frames.end())
+    throw std::runtime_error("--from: '" + options.name + "' ends at " + timeText(frames.end()) +
+                             " s; give a time before that.");
+  if (options.check) return;
   std::optional<vibe::DatasetFolder> folder;  // made with the first image, so that a refusal leaves nothing
   vibe::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
@@ -53,17 +70,20 @@ void run(const vibe::DatasetOptions& options) {
   for (int turn = 0; frames.next(frame);) {
     const ros::Time stamp = frame.particles->header.stamp;
     if (stamp.toSec() > options.to) break;
+    // also a state that is not taken: smoke and the age of marks depend on all
     std::string problem = camera.follow(frame);
-    if (stamp.toSec() < options.from || !due.isDue(stamp) || turn++ % options.every != 0) continue;
-    if (problem.empty()) {
+    const bool taken = stamp.toSec() >= options.from && due.isDue(stamp) && turn++ % options.every == 0;
+    if (problem.empty() && taken) {
       if (!folder) folder.emplace(options);
       problem = camera.take(frame, frames.poses(), *folder);
     }
-    if (!problem.empty()) throw std::runtime_error(problem);
+    if (!problem.empty()) throw wrongState(options, stamp, problem);
+    if (!taken) continue;
     world = frame.particles->header.frame_id;
     progress.show(frames, camera.images());
   }
-  if (camera.images() == 0) throw std::runtime_error("The recording has no state between --from and --to.");
+  if (camera.images() == 0)
+    throw std::runtime_error("'" + options.name + "' has no state between --from and --to; give other times.");
   folder->finish(frames.info(), camera.labels(), world);
   std::printf("%zu images in %s\n", camera.images(), options.output.c_str());
 }

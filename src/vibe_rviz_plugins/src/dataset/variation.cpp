@@ -20,11 +20,36 @@ class Draw {
   std::mt19937 random_;
 };
 
+MucosaLook drawMucosa(Draw& draw) {
+  MucosaLook mucosa;
+  for (int axis = 0; axis < 3; ++axis) mucosa.shift[axis] = static_cast<float>(draw.between(0, 0.5));
+  mucosa.areae_size = draw.between(2e-3, 5e-3);
+  mucosa.paleness = draw.factor(0.8, 1.25);
+  mucosa.yellowness = draw.factor(0.92, 1.09);
+  mucosa.vessels = draw.factor(0.3, 2);
+  mucosa.wetness = draw.factor(0.6, 1.6);
+  mucosa.mucus = draw.between(-0.06, 0.08);
+  return mucosa;
+}
+
+EndoscopeLight drawLight(Draw& draw) {
+  EndoscopeLight light;
+  for (LightGuide& guide : light.guides) {
+    guide.right = std::copysign(draw.between(2.8e-3, 4.2e-3), guide.right);
+    guide.up = draw.between(0, 2.4e-3);
+  }
+  const double ratio = draw.factor(0.6, 1.67);
+  light.guides[0].strength = 2 * ratio / (1 + ratio), light.guides[1].strength = 2 / (1 + ratio);
+  light.sideward = draw.between(0.15, 0.45);
+  light.temperature = draw.between(4800, 7000);
+  return light;
+}
+
 }  // namespace
 
-CameraVariation variationOf(std::uint32_t seed, double field_of_view) {
+Variation variationOf(std::uint32_t seed, double field_of_view) {
   Draw draw(seed);
-  CameraVariation result;
+  Variation result;
   result.field_of_view = std::clamp(field_of_view + draw.between(-5, 5) * kDegree, kMinFieldOfView, kMaxFieldOfView);
   result.roll = draw.between(-5, 5) * kDegree;
   result.pitch = draw.between(-2, 2) * kDegree, result.yaw = draw.between(-2, 2) * kDegree;
@@ -37,6 +62,9 @@ CameraVariation variationOf(std::uint32_t seed, double field_of_view) {
   sensor.full_well = draw.factor(2000, 12000);
   sensor.read_noise = draw.between(0.001, 0.006);
   sensor.seed = seed;
+  // last, so that what came before is as in data sets of earlier versions
+  result.mucosa = drawMucosa(draw);
+  result.light = drawLight(draw);
   return result;
 }
 

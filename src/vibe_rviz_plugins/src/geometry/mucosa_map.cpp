@@ -136,17 +136,17 @@ void normaliseDirections(const std::vector<double>& rate, Eigen::MatrixXd& value
 }
 
 /// @param rest  x y z [m]
-MucosaVertex entryOf(const Eigen::RowVectorXd& values, const float* rest) {
+MucosaVertex entryOf(const Eigen::RowVectorXd& values, const float* rest, const Eigen::Vector3f& shift) {
   const Eigen::RowVectorXf row = values.cast<float>();
-  const Eigen::Map<const Eigen::Vector3f> place(rest);
+  const Eigen::Vector3f place = Eigen::Map<const Eigen::Vector3f>(rest) + shift;
   const float bend = foldBend(place), broad = broadPattern(place);
   return {{row[Cosine], row[Sine]}, bend, broad, row[FoldShare], row[AntrumShare], row[BeyondZ], row[BeyondRing]};
 }
 
-MucosaMap entriesOf(const TissueMesh& mesh, const Eigen::MatrixXd& values) {
+MucosaMap entriesOf(const TissueMesh& mesh, const Eigen::MatrixXd& values, const Eigen::Vector3f& shift) {
   MucosaMap map;
   for (Eigen::Index i = 0; i < values.rows(); ++i) {
-    map.of_particle.push_back(entryOf(values.row(i), &mesh.particle_rest[3 * static_cast<std::size_t>(i)]));
+    map.of_particle.push_back(entryOf(values.row(i), &mesh.particle_rest[3 * static_cast<std::size_t>(i)], shift));
     map.smooth_stretch.push_back(static_cast<float>(values(i, Smooth)));
   }
   if (!mesh.subdivided()) map.of_vertex = map.of_particle;
@@ -154,14 +154,14 @@ MucosaMap entriesOf(const TissueMesh& mesh, const Eigen::MatrixXd& values) {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(kColumns);
     for (std::uint32_t k = mesh.render_offsets[v]; k < mesh.render_offsets[v + 1]; ++k)
       row += static_cast<double>(mesh.render_weights[k]) * values.row(mesh.render_particles[k]);
-    map.of_vertex.push_back(entryOf(row, &mesh.rest[3 * v]));
+    map.of_vertex.push_back(entryOf(row, &mesh.rest[3 * v], shift));
   }
   return map;
 }
 
 }  // namespace
 
-MucosaMap mapMucosa(const TissueMesh& mesh) {
+MucosaMap mapMucosa(const TissueMesh& mesh, const Eigen::Vector3f& shift) {
   const Eigen::Map<const Eigen::Matrix3Xf> place(mesh.particle_rest.data(), 3,
                                                  static_cast<Eigen::Index>(mesh.particle_count));
   const SurfaceGraph graph(mesh.particle_triangles, mesh.particle_rest);
@@ -174,7 +174,7 @@ MucosaMap mapMucosa(const TissueMesh& mesh) {
   // the oesophagus and the duodenum have no rugae
   for (Eigen::Index i = 0; i < values.rows(); ++i)
     values(i, FoldShare) *= std::clamp(values(i, BeyondZ) / 10e-3, 0.0, 1.0);
-  return entriesOf(mesh, values);
+  return entriesOf(mesh, values, shift);
 }
 
 }  // namespace vibe

@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <vector>
 
 #include "geometry/tissue_mesh.hpp"
@@ -29,6 +30,7 @@ struct MucosaMap {
 /// Folds of the gastric mucosa run along the organ, so the coordinate that counts them goes around it. It is found from
 /// the walls of the topology, four sectors of equal angle, by diffusion over the surface at rest (implicit Euler).
 /// Without regions the organ has no folds.
-MucosaMap mapMucosa(const TissueMesh& mesh);
+/// @param shift  of the patterns, see MucosaLook [m]
+MucosaMap mapMucosa(const TissueMesh& mesh, const Eigen::Vector3f& shift = {0, 0, 0});
 
 }  // namespace vibe

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 
+#include "render/endoscope_lamp.hpp"
 #include "render/mesh_look.hpp"
 
 namespace vibe {
@@ -21,7 +22,6 @@ const char* const kParameters = "vibe_device_shadow";  // as in media/vibe.progr
 constexpr std::size_t kMaxCapsules = 12;               // as in media/shadow.glsl
 // Parts nearer than this to the lens hold the lens and the guides themselves, or stand behind them [m].
 constexpr float kBehind = 0.0005F;
-constexpr float kGuideAside = 0.0035F, kGuideAbove = 0.0012F;  // as in media/lamp.glsl [m]
 
 struct ViewCapsule {
   Ogre::Vector3 from, to;
@@ -60,8 +60,8 @@ float distanceTo(const ViewCapsule& capsule, const Ogre::Vector3& place) {
 /// Whether it can stand between the guides and what they light.
 bool casts(const ViewCapsule& capsule) {
   if (std::min(capsule.from.z, capsule.to.z) > -kBehind) return false;
-  for (const float aside : {-kGuideAside, kGuideAside})
-    if (distanceTo(capsule, {aside, kGuideAbove, 0}) < capsule.radius + kBehind) return false;
+  for (const Ogre::Vector3& guide : guidePlaces())
+    if (distanceTo(capsule, guide) < capsule.radius + kBehind) return false;
   return true;
 }
 

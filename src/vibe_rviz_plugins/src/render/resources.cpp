@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "render/device_shadow.hpp"
+#include "render/endoscope_lamp.hpp"
 #include "render/endoscope_lens.hpp"
 #include "render/mesh_look.hpp"
 #include "render/mucosa_texture.hpp"
@@ -28,6 +29,7 @@ void loadResources() {
   groups.createResourceGroup(kResourceGroup);
   groups.addResourceLocation(package + "/media", "FileSystem", kResourceGroup);
   provideMucosaTexture();  // a material of the group reads it
+  provideLamp();
   DeviceShadow::provide();
   EndoscopeLens::provide();
   groups.initialiseResourceGroup(kResourceGroup);

@@ -7,8 +7,11 @@
 #include <OgreTechnique.h>
 #include <rviz/ogre_helpers/point_cloud.h>
 
+#include <cmath>
 #include <limits>
 
+#include "geometry/mucosa_pattern.hpp"
+#include "render/endoscope_lamp.hpp"
 #include "render/resources.hpp"
 
 namespace vibe {
@@ -19,7 +22,8 @@ namespace {
 constexpr double kOvertaken = 1;    // [s]
 constexpr double kEdgeAlpha = 0.9;  // opacity of a wall at grazing angles
 constexpr double kGrain = 0.25;
-constexpr float kFill = 0.16F, kFillOfData = 0.5F;  // ambient light
+constexpr float kFill = 0.16F, kFillOfData = 0.5F;           // ambient light
+constexpr double kVessels = 0.10, kVesselsStretched = 0.22;  // strength of their net, and more on a stretched wall
 
 Ogre::AxisAlignedBox boxAround(const Eigen::AlignedBox3f& bounds) {
   if (bounds.isEmpty()) return Ogre::AxisAlignedBox::BOX_NULL;
@@ -32,22 +36,19 @@ void setBlending(Ogre::Pass& pass, bool transparent) {
   pass.setDepthWriteEnabled(!transparent);
 }
 
-/// Another program, because a branch that is not taken costs as much time as one that is where there is no graphics
-/// card.
-Ogre::MaterialPtr withSmoke(Ogre::MaterialPtr material) {
-  for (Ogre::Technique* technique : material->getTechniques())
-    if (technique->getSchemeName() == kEndoscopeScheme)
-      technique->getPass(0)->setFragmentProgram("vibe/mucosa_smoke_fragment");
-  material->load();
-  return material;
+void setEndoscopeProgram(Ogre::Material& material, const char* program) {
+  for (Ogre::Technique* technique : material.getTechniques())
+    if (technique->getSchemeName() == kEndoscopeScheme) technique->getPass(0)->setFragmentProgram(program);
+  material.load();
 }
 
 }  // namespace
 
-TissueVisual::TissueVisual(Ogre::SceneNode& parent)
+TissueVisual::TissueVisual(Ogre::SceneNode& parent, const MucosaLook& mucosa)
     : node_(parent),
+      mucosa_(mucosa),
       inside_(copyMaterial("vibe/tissue_inside")),
-      smoky_inside_(withSmoke(copyMaterial("vibe/tissue_inside"))),
+      smoky_inside_(copyMaterial("vibe/tissue_inside")),
       outside_(copyMaterial("vibe/tissue_outside")),
       wire_(copyMaterial("vibe/wire")),
       seen_smoke_(*parent.getCreator()),
@@ -57,13 +58,22 @@ TissueVisual::TissueVisual(Ogre::SceneNode& parent)
   points_->setRenderMode(rviz::PointCloud::RM_SPHERES);
   node_.attachObject(points_.get());
   drawn_.beforeEndoscope([this] { sendForEndoscope(); });
-  applyLook();
+  choosePrograms();
 }
 
 TissueVisual::~TissueVisual() {
   node_.detachObject(points_.get());
   clear();
   dropMaterial(inside_), dropMaterial(smoky_inside_), dropMaterial(outside_), dropMaterial(wire_);
+}
+
+/// Other programs, because where there is no graphics card a branch that is not taken costs as much time as one that
+/// is, and a number that may change costs more than a constant.
+void TissueVisual::choosePrograms() {
+  varied_ = !mucosa_.isUsual() || !isUsualLamp();
+  setEndoscopeProgram(*inside_, varied_ ? "vibe/mucosa_varied_fragment" : "vibe/mucosa_fragment");
+  setEndoscopeProgram(*smoky_inside_, varied_ ? "vibe/mucosa_varied_smoke_fragment" : "vibe/mucosa_smoke_fragment");
+  applyLook();
 }
 
 void TissueVisual::clear() {
@@ -81,7 +91,7 @@ void TissueVisual::setMesh(const TissueMesh& mesh) {
   mesh_ = mesh;
   surface_ = std::make_unique<DeformableSurface>(mesh_);
   colours_ = std::make_unique<SurfaceColours>(mesh_);
-  const MucosaMap map = mapMucosa(mesh_);
+  const MucosaMap map = mapMucosa(mesh_, mucosa_.shift);
   folds_ = std::make_unique<FoldHeight>(mesh_, map);
   smoke_ = std::make_unique<Smoke>(mesh_);
   scars_ = std::make_unique<ScarAge>(mesh_);
@@ -118,6 +128,7 @@ void TissueVisual::draw() {
 // What only the shader of the mucosa reads. It may be long before an endoscope looks, so it waits until then.
 void TissueVisual::sendForEndoscope() {
   if (!has_frame_) return;
+  if (varied_ != (!mucosa_.isUsual() || !isUsualLamp())) choosePrograms();
   const bool smoky = node_.getCreator()->getFogDensity() > 0;  // of any organ of the scene
   if (smoky != smoky_) drawn_.setMaterials({smoky ? smoky_inside_ : inside_, outside_});
   smoky_ = smoky;
@@ -193,12 +204,28 @@ void TissueVisual::applySide(Ogre::MaterialPtr& material, const Ogre::ColourValu
                                                            (endoscope     ? 1.3
                                                             : transparent ? 0.6
                                                                           : 1) *
-                                                           (plain ? 1 : 0.4)));
+                                                           (plain ? 1 : 0.4) * (mucosa ? mucosa_.wetness : 1)));
     parameters->setNamedConstant("relief", static_cast<float>(look_.relief));
     parameters->setNamedConstant("grain", static_cast<float>(!plain ? 0 : mucosa ? 1 : kGrain));
     parameters->setNamedConstant("fill", plain ? kFill : kFillOfData);
     parameters->setNamedConstant("scars", look_.scars && (!outside || transparent) ? 1.0F : 0.0F);
+    if (mucosa) applyMucosa(pass);
   }
+}
+
+void TissueVisual::applyMucosa(Ogre::Pass& pass) const {
+  const auto real = [](double value) { return static_cast<float>(value); };
+  const Eigen::Vector3f& shift = mucosa_.shift;
+  pass.getVertexProgramParameters()->setNamedConstant("pattern_shift", Ogre::Vector3(shift.x(), shift.y(), shift.z()));
+  if (!varied_) return;
+  Ogre::GpuProgramParameters& parameters = *pass.getFragmentProgramParameters();
+  parameters.setNamedConstant("areae_count", real(1 / (kPatternCells * mucosa_.areae_size)));
+  const double yellow = std::sqrt(mucosa_.yellowness);
+  parameters.setNamedConstant("hue",
+                              Ogre::Vector3(1, real(mucosa_.paleness * yellow), real(mucosa_.paleness / yellow)));
+  parameters.setNamedConstant("vessels",
+                              real(mucosa_.vessels) * Ogre::Vector2(real(kVessels), real(kVesselsStretched)));
+  parameters.setNamedConstant("more_mucus", real(mucosa_.mucus));
 }
 
 }  // namespace vibe

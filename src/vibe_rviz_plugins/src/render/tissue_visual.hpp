@@ -6,6 +6,7 @@
 
 #include "geometry/deformable_surface.hpp"
 #include "geometry/fold_height.hpp"
+#include "geometry/mucosa_look.hpp"
 #include "geometry/scar_age.hpp"
 #include "geometry/smoke.hpp"
 #include "geometry/surface_colours.hpp"
@@ -14,6 +15,7 @@
 #include "render/scene_smoke.hpp"
 
 namespace Ogre {
+class Pass;
 class SceneNode;
 }  // namespace Ogre
 namespace rviz {
@@ -46,8 +48,9 @@ struct TissueLook {
 class TissueVisual {
  public:
   /// @param parent  frame of all positions; must outlive this object
+  /// @param mucosa  of this stomach, as an endoscope sees it
   /// @throws std::runtime_error  the package's materials are not found
-  explicit TissueVisual(Ogre::SceneNode& parent);
+  explicit TissueVisual(Ogre::SceneNode& parent, const MucosaLook& mucosa = {});
   ~TissueVisual();
   TissueVisual(const TissueVisual&) = delete;
   TissueVisual& operator=(const TissueVisual&) = delete;
@@ -70,6 +73,8 @@ class TissueVisual {
  private:
   void applyLook();
   void applySide(Ogre::MaterialPtr& material, const Ogre::ColourValue& natural, bool outside);
+  void applyMucosa(Ogre::Pass& pass) const;
+  void choosePrograms();
   void draw();
   void sendForEndoscope();
   void sendSurface(const TissueFrame& frame);
@@ -77,6 +82,7 @@ class TissueVisual {
   void sendMesh(const TissueFrame& frame);
 
   Ogre::SceneNode& node_;
+  MucosaLook mucosa_;
   TissueLook look_;
   Ogre::MaterialPtr inside_, smoky_inside_, outside_, wire_;
   TissueMesh mesh_;
@@ -88,6 +94,7 @@ class TissueVisual {
   std::unique_ptr<Smoke> smoke_;
   std::unique_ptr<ScarAge> scars_;
   double followed_ = 0;                             // time of the last frame that smoke_ and scars_ have seen [s]
+  bool varied_ = false;                             // mucosa or light are not the usual ones
   bool smoky_ = false;                              // smoky_inside_ is drawn
   bool folds_sent_ = false, browned_sent_ = false;  // of the frame that is drawn
   SceneSmoke seen_smoke_;

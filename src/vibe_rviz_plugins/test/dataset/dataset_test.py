@@ -5,6 +5,7 @@ import filecmp
 import json
 import os
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -41,7 +42,8 @@ def place_of(state):
     return START + (0, SPEED * state, 0)
 
 
-def write_recording(file, ball, with_frames=True, urdf=URDF):
+def write_recording(file, ball, with_frames=True, urdf=URDF, spoil=lambda state, particles: None):
+    """spoil: changes the message of a state."""
     with rosbag.Bag(file, "w") as bag:
         begin = rospy.Time(100)
         if with_frames:
@@ -55,7 +57,9 @@ def write_recording(file, ball, with_frames=True, urdf=URDF):
         bag.write("/tissue/topology", ball.topology(begin), begin)
         for state in range(STATES):
             stamp = begin + rospy.Duration(PERIOD * (state + 1))
-            bag.write("/tissue/particles", ball.particles(stamp), stamp)
+            particles = ball.particles(stamp)
+            spoil(state, particles)
+            bag.write("/tissue/particles", particles, stamp)
             joints = JointState(name=["slide"], position=[SPEED * state])
             joints.header.stamp = stamp
             bag.write("/joint_states", joints, stamp)
@@ -188,6 +192,69 @@ class DatasetTest(unittest.TestCase):
         depth = numpy.load(os.path.join(first, "depth", "000000.npy"))
         self.assertLess(numpy.nanmedian(numpy.abs(numpy.diff(depth, 2, axis=1))), 2e-5)
 
+    def test_texture_and_light_change_the_image_and_no_truth(self):
+        usual = self.make("usual")
+        varied = self.make("varied", "--seed", "5", "--vary", "mucosa,light")
+        other = self.make("other_look", "--seed", "6", "--vary", "mucosa,light")
+        lens = self.make("lens", "--seed", "5", "--vary", "lens")
+        truth = [name for name in files_below(usual) if name.split("/")[0] in ("depth", "normals", "labels", "flow", "flow_visible")]
+        self.assertGreater(len(truth), 4 * STATES)
+        for folder in (varied, other):
+            _, different, wrong = filecmp.cmpfiles(usual, folder, truth + ["poses.txt", "intrinsics.json"], shallow=False)
+            self.assertEqual((different, wrong), ([], []))
+        _, different, _ = filecmp.cmpfiles(usual, lens, truth, shallow=False)  # control
+        self.assertIn("depth/000000.npy", different)
+        images = [numpy.asarray(Image.open(os.path.join(folder, "image", "000003.png")), float) for folder in (usual, varied, other)]
+        for a, b in ((0, 1), (0, 2), (1, 2)):
+            difference = numpy.abs(images[a] - images[b]).mean()
+            print("images of two looks differ by {:.1f} levels".format(difference))
+            self.assertGreater(difference, 2)
+
+    def test_values_of_a_seed_are_told(self):
+        one, other, part, none = (
+            json_of(self.make(name, "--rate", "2", *options), "dataset.json")
+            for name, options in (
+                ("told", ("--seed", "8")),
+                ("told_other", ("--seed", "9")),
+                ("told_part", ("--seed", "8", "--vary", "light")),
+                ("told_none", ()),
+            )
+        )
+        self.assertEqual(one["varied"], ["lens", "sensor", "mucosa", "light"])
+        self.assertEqual((part["varied"], none["varied"]), (["light"], []))
+        for group in ("mount", "sensor", "mucosa", "light"):
+            self.assertGreater(len(one[group]), 2)
+            for name, value in one[group].items():
+                self.assertNotEqual(value, other[group][name], name)
+            self.assertEqual(part[group], (one if group == "light" else none)[group])
+        self.assertEqual(none["mucosa"]["areae_size"], 0.0025)
+        self.assertEqual(none["light"]["left_guide_x"], -0.0035)
+
+    def test_a_wrong_state_is_told_also_where_none_is_taken(self):
+        def nan(state, particles):
+            if state == 1:
+                particles.data = struct.pack("<f", float("nan")) + particles.data[4:]
+
+        def short(state, particles):
+            if state == 1:
+                particles.data, particles.width = particles.data[: -particles.point_step], particles.width - 1
+                particles.row_step -= particles.point_step
+
+        for name, spoil, words in (("nan", nan, "not finite"), ("short", short, "particles and the topology")):
+            bag = os.path.join(self.folder, name + ".bag")
+            write_recording(bag, self.ball, spoil=spoil)
+            output = os.path.join(self.folder, "of_" + name)
+            # before the first image, between two images, and as an image
+            for options in (("--from", "100.45"), ("--every", "3", "--rate", "0"), ("--rate", "0")):
+                result = call(bag, "--output", output, "--width", "64", "--height", "48", *options)
+                self.assertEqual(result.returncode, 1, options)
+                self.assertEqual(result.stderr.count("vibe_dataset: "), 1, result.stderr)
+                for part in (words, "100.200 s", bag, "--to"):
+                    self.assertIn(part, result.stderr)
+                self.assertFalse(os.path.exists(output), options)
+            ended = call(bag, "--output", output, "--width", "64", "--height", "48", "--rate", "0", "--to", "100.15")
+            self.assertEqual(ended.returncode, 0, ended.stderr)  # control: as the sentence says
+
     def test_a_pair_agrees_with_its_disparity(self):
         folder = self.make("pair", "--stereo", "--lens", "rectilinear", "--field-of-view", "90", "--baseline", "0.005",
                            "--rate", "5")  # fmt: skip
@@ -218,7 +285,13 @@ class DatasetTest(unittest.TestCase):
             (["/dev/null", "--output", new], 1, "cannot be read as a recording"),
             ([no_frames, "--output", new], 1, "/tf_static"),
             ([no_scope, "--output", new], 1, "session_info"),
-            ([self.bag, "--output", new, "--from", "500"], 1, "no state between"),
+            ([self.bag, "--output", new, "--from", "500"], 1, "ends at 100.600 s"),
+            ([self.bag, "--output", new, "--from", "100.31", "--to", "100.35"], 1, "no state between"),
+            ([self.bag, "--output", new, "--from", "3", "--to", "2"], 2, "--from is later than --to"),
+            ([self.bag, "--output", new, "--vary", "light"], 2, "give a seed"),
+            ([self.bag, "--output", new, "--rate", "-1"], 2, "--rate"),
+            ([self.bag, "--output", new, "--lens", "rectilinear", "--field-of-view", "170", "--seed", "1"], 1, "another seed"),
+            ([self.bag, "--output", new, "--seed", "1", "--vary", "lens,organ"], 2, "organ"),
             ([self.bag, "--output", new, "--lens", "fisheye"], 2, "fisheye"),
             ([self.bag, "--output", new, "--content", "depth,colour"], 2, "colour"),
         ]
@@ -226,6 +299,8 @@ class DatasetTest(unittest.TestCase):
             result = call(*arguments)
             sentences = [line for line in result.stderr.splitlines() if line.startswith("vibe_dataset: ")]
             self.assertEqual((result.returncode, len(sentences)), (status, 1), result.stderr)
+            others = [line for line in result.stderr.splitlines() if "rospack]" not in line]  # of Debian's rviz
+            self.assertEqual(others, sentences)
             self.assertIn(words, sentences[0])
             self.assertFalse(os.path.exists(new), words)  # nothing is left of a call that was refused
 

@@ -6,6 +6,7 @@
 #include <rviz/mesh_loader.h>
 
 #include "graphics_scene.hpp"
+#include "render/endoscope_lamp.hpp"
 #include "render/offscreen_camera.hpp"
 #include "render/tissue_visual.hpp"
 #include "tube_organ.hpp"
@@ -43,6 +44,7 @@ class DeviceShadowTest : public ::testing::Test {
     addRod(camera_pose_ * Eigen::Vector3d(kRodAside, -0.0045, kRod));
   }
   void TearDown() override {
+    setLamp({});
     tissue_.reset();
     test::graphicsScene().destroyEntity(rod_);
     test::graphicsScene().destroySceneNode(node_);
@@ -97,6 +99,16 @@ TEST_F(DeviceShadowTest, EachGuideThrowsAHalfShadowWhereItShould) {
   }
   for (const int column : {30, 60, 100, shadowOf(-kGuideAside) + 22})  // control: beside the shadows
     EXPECT_NEAR(part(column), 1, 0.02) << column;
+}
+
+TEST_F(DeviceShadowTest, ShadowsFollowTheGuides) {
+  EndoscopeLight lamp;
+  lamp.guides[0].right = 0.0065, lamp.guides[1].right = -0.0075;
+  setLamp(lamp);
+  const std::vector<std::uint8_t> lit = picture(false), shaded = picture(true);
+  const auto part = [&](int column) { return light(shaded, column) / light(lit, column); };
+  for (const LightGuide& guide : lamp.guides) EXPECT_NEAR(part(shadowOf(guide.right)), 0.55, 0.12) << guide.right;
+  EXPECT_NEAR(part(shadowOf(-kGuideAside)), 1, 0.1);  // control: where the usual guide would throw it
 }
 
 TEST_F(DeviceShadowTest, RodBehindTheGuidesThrowsNone) {
