@@ -120,15 +120,33 @@ def antrum_is_smooth(antrum, body):
     return values[0] < 0.7 * values[1], "contrast {:.3f} and {:.3f}".format(*values)
 
 
-def pylorus_is_deep(view):
-    """The pylorus is in the picture, farther away than the antrum and darker."""
+def levels_across_edges(view, mask):
+    """Level just behind each edge of depth within the mask, as a part of the level just before it."""
+    depth, level = numpy.nan_to_num(view.depth), view.picture.mean(axis=2)
+    inside = ndimage.binary_erosion(mask, iterations=3)
+    slope = numpy.stack(numpy.gradient(depth), axis=-1)
+    steep = numpy.linalg.norm(slope, axis=-1)
+    parts = []
+    for pixel in numpy.argwhere(inside & (steep > 0.08 * depth)):
+        aside = 4 * slope[tuple(pixel)] / steep[tuple(pixel)]
+        behind, before = (tuple(numpy.rint(pixel + sign * aside).astype(int)) for sign in (1, -1))
+        if inside[behind] and inside[before]:
+            parts.append(level[behind] / level[before])
+    return parts
+
+
+def pylorus_is_an_opening(view):
+    """The pylorus is farther away than the antrum, and it is dark behind the edge of its opening."""
     pylorus, antrum = view.where("pylorus"), view.where("antrum")
     if pylorus.sum() < 500 or antrum.sum() < 500:
         return False, "{} px of pylorus".format(pylorus.sum())
-    light = [numpy.median(view.picture[mask].mean(axis=1)) for mask in (pylorus, antrum)]
     depth = [numpy.nanmedian(view.depth[mask]) for mask in (pylorus, antrum)]
-    words = "level {:.0f} and {:.0f}, depth {:.0f} and {:.0f} mm"
-    return light[0] < 0.85 * light[1] and depth[0] > 1.2 * depth[1], words.format(*light, *(1e3 * d for d in depth))
+    parts = levels_across_edges(view, pylorus)
+    if len(parts) < 30:
+        return False, "{} px of edge".format(len(parts))
+    words = "depth {:.0f} and {:.0f} mm, behind the edge {:.2f} of the level ({} px)"
+    return depth[0] > 1.2 * depth[1] and numpy.median(parts) < 0.75, words.format(
+        *(1e3 * d for d in depth), numpy.median(parts), len(parts))
 
 
 def shaft_enters_at_the_cardia(view):
@@ -199,7 +217,7 @@ PROPERTIES = [
     Property(folds_flatten, "rest 5mmhg 10mmhg", ["5mmhg 5mmhg 10mmhg", "rest 10mmhg 10mmhg"]),
     Property(antrum_is_paler, "antrum 10mmhg", ["10mmhg/antrum 10mmhg"]),
     Property(antrum_is_smooth, "antrum 5mmhg", ["rest 5mmhg", "antrum 10mmhg"]),
-    Property(pylorus_is_deep, "antrum", ["10mmhg", "10mmhg/antrum"]),
+    Property(pylorus_is_an_opening, "antrum", ["10mmhg", "10mmhg/antrum"]),
     Property(shaft_enters_at_the_cardia, "retroflexed", ["antrum", "marked/retroflexed"]),
     Property(marks_are_white, "marked", ["10mmhg", "10mmhg/marked", "sutured/marked"]),
     Property(thread_is_blue, "sutured", ["marked", "marked/sutured"]),

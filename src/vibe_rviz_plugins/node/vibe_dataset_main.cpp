@@ -14,6 +14,7 @@
 #include "messages/image_due.hpp"
 #include "render/resources.hpp"
 #include "render/virtual_display.hpp"
+#include "robot_shapes.hpp"
 
 namespace {
 
@@ -47,6 +48,14 @@ std::runtime_error wrongState(const vibe::DatasetOptions& options, const ros::Ti
                             "' cannot be used; end before it with --to, or record again: " + what);
 }
 
+/// A part that is not there would be missing in image and truth.
+void refuseMissingMeshes(const std::string& urdf, const std::string& recording) {
+  std::vector<std::string> problems;
+  vibe::robotShapes(urdf, problems);
+  if (!problems.empty())
+    throw std::runtime_error("The instrument of '" + recording + "' cannot be shown whole: " + problems.front());
+}
+
 void run(const vibe::DatasetOptions& options) {
   const std::string impossible = problemOf(options.sensor, options.round);
   if (!impossible.empty())
@@ -56,6 +65,7 @@ void run(const vibe::DatasetOptions& options) {
   if (options.from > frames.end())
     throw std::runtime_error("--from: '" + options.name + "' ends at " + timeText(frames.end()) +
                              " s; give a time before that.");
+  refuseMissingMeshes(frames.info().urdf, options.name);
   if (options.check) return;
   std::optional<vibe::DatasetFolder> folder;  // made with the first image, so that a refusal leaves nothing
   vibe::provideDisplay();

@@ -125,6 +125,8 @@ TEST_F(DrawnNeedle, IsOnTheArmUntilTheExchangeTakesIt) {
   ASSERT_FALSE(bench_.procedure().needle_on_arm);
   const Place held = place();
   EXPECT_NEAR(held.needle_point, 1.2e-3, 1e-12) << "drawn into the bore";
+  EXPECT_NEAR(drawnOf(bench_.model(), bench_.state()).at("needle_turn"), 24 * 3.14159265358979 / 180, 1e-4)
+      << "along the bore, see make_scope_urdf.py";
   bench_.openArm();
   EXPECT_GT(place().needle_point, 0.017) << "the arm opens without it";
   EXPECT_EQ(place().draw, held.draw);

@@ -35,8 +35,8 @@ MucosaLook drawMucosa(Draw& draw) {
 EndoscopeLight drawLight(Draw& draw) {
   EndoscopeLight light;
   for (LightGuide& guide : light.guides) {
-    guide.right = std::copysign(draw.between(2.8e-3, 4.2e-3), guide.right);
-    guide.up = draw.between(0, 2.4e-3);
+    guide.right = std::copysign(draw.between(2.8e-3, 3.8e-3), guide.right);
+    guide.up = draw.between(0, 1.25e-3);
   }
   const double ratio = draw.factor(0.6, 1.67);
   light.guides[0].strength = 2 * ratio / (1 + ratio), light.guides[1].strength = 2 / (1 + ratio);

@@ -38,11 +38,11 @@ const char* const kParameters = "vibe_lens";  // as in media/vibe.program
 constexpr double kFirstBlend = 0.85;          // as in media/endoscope.frag
 
 /// Share of half of the picture of the whole within which only that of the middle is shown, also in the picture of the
-/// meter, where a pixel is the mean of a longer line.
+/// meter, and in small ones, where a pixel is the mean of a longer line.
 double unseenShare(const RoundCamera& camera, const LensSources& sources) {
   if (sources.middle.size == 0) return 0;
   const double edge = kFirstBlend * sources.middle.half_width;
-  const double line = (1 + edge * edge) * camera.field_of_view / kMeterSize;
+  const double line = (1 + edge * edge) * camera.field_of_view / std::min({kMeterSize, camera.width, camera.height});
   return std::max(0.0, edge - line) / sources.whole.half_width;
 }
 

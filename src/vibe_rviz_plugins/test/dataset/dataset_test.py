@@ -277,6 +277,9 @@ class DatasetTest(unittest.TestCase):
         no_frames, no_scope = (os.path.join(self.folder, name) for name in ("no_frames.bag", "no_scope.bag"))
         write_recording(no_frames, self.ball, with_frames=False)
         write_recording(no_scope, self.ball, urdf="")
+        broken = os.path.join(self.folder, "broken.bag")
+        mesh = '<visual><geometry><mesh filename="package://vibe_description/meshes/nowhere.obj"/></geometry></visual>'
+        write_recording(broken, self.ball, urdf=URDF.replace('<link name="tip"/>', '<link name="tip">' + mesh + "</link>"))
         full = os.path.join(self.folder, "full")
         os.makedirs(os.path.join(full, "holiday"))
         new = os.path.join(self.folder, "new")
@@ -285,6 +288,7 @@ class DatasetTest(unittest.TestCase):
             (["/dev/null", "--output", new], 1, "cannot be read as a recording"),
             ([no_frames, "--output", new], 1, "/tf_static"),
             ([no_scope, "--output", new], 1, "session_info"),
+            ([broken, "--output", new], 1, "nowhere.obj"),
             ([self.bag, "--output", new, "--from", "500"], 1, "ends at 100.600 s"),
             ([self.bag, "--output", new, "--from", "100.31", "--to", "100.35"], 1, "no state between"),
             ([self.bag, "--output", new, "--from", "3", "--to", "2"], 2, "--from is later than --to"),

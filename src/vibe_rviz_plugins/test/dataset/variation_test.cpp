@@ -47,10 +47,10 @@ std::vector<Quantity> quantitiesOf(std::uint32_t seed) {
           {"vessels", m.vessels, 0.3, 2},
           {"wetness", m.wetness, 0.6, 1.6},
           {"mucus", m.mucus, -0.06, 0.08},
-          {"right guide x", right.right, 2.8e-3, 4.2e-3},
-          {"right guide y", right.up, 0, 2.4e-3},
-          {"left guide x", left.right, -4.2e-3, -2.8e-3},
-          {"left guide y", left.up, 0, 2.4e-3},
+          {"right guide x", right.right, 2.8e-3, 3.8e-3},
+          {"right guide y", right.up, 0, 1.25e-3},
+          {"left guide x", left.right, -3.8e-3, -2.8e-3},
+          {"left guide y", left.up, 0, 1.25e-3},
           {"guides", right.strength / left.strength, 0.6, 1.67},
           {"sideward", v.light.sideward, 0.15, 0.45},
           {"temperature", v.light.temperature, 4800, 7000}};
@@ -120,6 +120,16 @@ TEST(Variation, LensAndSensorAreDrawnFirst) {
   random.discard(10);
   EXPECT_NEAR(drawn.sensor.read_noise, between(0.001, 0.006), 1e-12);
   EXPECT_GT(std::abs(drawn.sensor.read_noise - between(0.001, 0.006)), 1e-6);  // control: the next number
+}
+
+// The lens is 2.5 mm above the axis of an endoscope of 12.6 mm, and a guide is 1.9 mm wide (docs/device.md).
+TEST(Variation, GuidesFitIntoTheTipBesideTheLens) {
+  const auto farthest = [](const LightGuide& guide) { return std::hypot(guide.right, guide.up + 2.5e-3) + 0.95e-3; };
+  for (std::uint32_t seed = 1; seed <= 2000; ++seed)
+    for (const LightGuide& guide : variationOf(seed, kLens).light.guides) {
+      EXPECT_LT(farthest(guide), 6.3e-3) << seed;
+      EXPECT_GT(std::abs(guide.right) - 0.95e-3, 1.4e-3) << seed << ": beside the lens of 2.8 mm";
+    }
 }
 
 TEST(Variation, GuidesTogetherAreAsStrongAsEver) {
