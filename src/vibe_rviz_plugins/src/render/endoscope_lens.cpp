@@ -195,9 +195,9 @@ void EndoscopeLens::light() {
 
 void EndoscopeLens::addTargets(Ogre::CompositionTechnique& technique) {
   const bool two = sources_.middle.size > 0;
-  // brighter than white before the exposure
-  addTexture(technique, kSource, sources_.whole.size, Ogre::PF_FLOAT16_RGBA);
-  if (two) addTexture(technique, kMiddle, sources_.middle.size, Ogre::PF_FLOAT16_RGBA);
+  // brighter than white before the exposure; 32 bits, because without a graphics card the way to 16 and back takes 4 ms
+  addTexture(technique, kSource, sources_.whole.size, Ogre::PF_FLOAT32_RGBA);
+  if (two) addTexture(technique, kMiddle, sources_.middle.size, Ogre::PF_FLOAT32_RGBA);
   addTexture(technique, kMeter, kMeterSize, Ogre::PF_BYTE_RGBA);
   drawScene(technique, kSource, viewport_->getVisibilityMask());
   if (two) drawScene(technique, kMiddle, viewport_->getVisibilityMask());
