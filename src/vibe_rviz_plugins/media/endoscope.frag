@@ -14,10 +14,12 @@ uniform float gain;               // of the exposure, see src/geometry/auto_expo
 
 varying vec2 place;  // in the result, 0 to 1
 
+const int kMaxSamples = 12;
+
 // Mean over one pixel of the result along the radius; near the rim that is several pixels of the plane image.
 // tangent, step: distance from the centre, and to radial neighbours, in units of source_half_width
 vec3 mean(sampler2D plane, float half_width, float size, vec2 direction, float tangent, float step) {
-  int samples = int(max(ceil(step / half_width * 0.5 * size - 0.25), 1.0));
+  int samples = int(clamp(ceil(step / half_width * 0.5 * size - 0.25), 1.0, float(kMaxSamples)));
   vec3 light = vec3(0.0);
   // not up to a constant with a break: without a graphics card such a loop is unrolled, and all of it is computed always
   for (int k = 0; k < samples; ++k) {

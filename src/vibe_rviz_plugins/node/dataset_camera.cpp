@@ -1,7 +1,5 @@
 #include "dataset_camera.hpp"
 
-#include <ros/console.h>
-
 #include "render/endoscope_lamp.hpp"
 #include "render/optical_frame.hpp"
 
@@ -20,7 +18,6 @@ DatasetCamera::DatasetCamera(const DatasetOptions& options, Ogre::SceneManager& 
       truth_camera_(options.round, static_cast<double>(kScopeNearClip), static_cast<double>(kScopeFarClip)),
       sensor_(options.sensor, options.round) {
   setLamp(options.light);
-  for (const std::string& problem : truth_.problems()) ROS_WARN_STREAM(problem);
   eyes_.push_back({options.stereo ? "left/" : "", 0, {}});
   if (options.stereo) eyes_.push_back({"right/", options.baseline, {}});
 }
