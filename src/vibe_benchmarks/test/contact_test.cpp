@@ -12,7 +12,7 @@
 #include "contact_scene.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::contact_test {
 namespace {
 
 using test::coarseStomach;
@@ -139,4 +139,4 @@ TEST(Contact, ChecksSeeAWallThatCrossesAndAToolThatPassesThrough) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::contact_test

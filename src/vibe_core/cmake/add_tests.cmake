@@ -1,28 +1,10 @@
-# Tests may look inside: they see src/ as well as include/.
-file(GLOB TEST_SOURCES CONFIGURE_DEPENDS test/*/*_test.cpp)
-if(NOT VIBE_CORE_IN_CATKIN)
-  enable_testing()
-  find_package(GTest REQUIRED)
-endif()
-foreach(source ${TEST_SOURCES})
-  get_filename_component(test ${source} NAME_WE)
-  if(VIBE_CORE_IN_CATKIN)
-    catkin_add_gtest(${test} ${source} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/test TIMEOUT 600)
-    target_link_libraries(${test} gtest_main)
-  else()
-    add_executable(${test} ${source})
-    target_link_libraries(${test} GTest::gtest_main)
-    add_test(NAME ${test} COMMAND ${test} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/test)
-  endif()
-  target_include_directories(${test} PRIVATE test src)
-  target_include_directories(${test} SYSTEM PRIVATE ${BULLET_INCLUDE_DIRS})
-  target_compile_definitions(${test} PRIVATE VIBE_CORE_DIR="${CMAKE_CURRENT_SOURCE_DIR}"
-                                             VIBE_DESCRIPTION_DIR="${CMAKE_CURRENT_SOURCE_DIR}/../vibe_description")
-  target_link_libraries(${test} vibe_core vibe_core_options ${BULLET_LIBRARIES} PkgConfig::URDFDOM)
-endforeach()
-
-# CHOLMOD checks the sparse factor; only this test links it
+# Tests may look inside: they see src/ as well as include/. CHOLMOD checks the sparse factor; only its test links it.
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
-target_include_directories(cholmod_test SYSTEM PRIVATE ${CHOLMOD_INCLUDE_DIR})
-target_link_libraries(cholmod_test ${CHOLMOD_LIBRARY})
+vibe_tests(LINK vibe_core ${BULLET_LIBRARIES} PkgConfig::URDFDOM
+           INCLUDE src ${BULLET_INCLUDE_DIRS}
+           DEFINITIONS VIBE_CORE_DIR="${CMAKE_CURRENT_SOURCE_DIR}"
+                       VIBE_DESCRIPTION_DIR="${CMAKE_CURRENT_SOURCE_DIR}/../vibe_description"
+           ISOLATED allocation_test arithmetic_test cholmod_test)
+target_include_directories(vibe_core_cholmod_test SYSTEM PRIVATE ${CHOLMOD_INCLUDE_DIR})
+target_link_libraries(vibe_core_cholmod_test ${CHOLMOD_LIBRARY})

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kButtonInterval = 0.1;  // between messages that change nothing [s]
 constexpr double kHintInterval = 3;      // between hints [s]
-constexpr std::uint32_t kQueue = 10;
+constexpr std::uint32_t kPadQueue = 10;
 
 /// What to do first, in the words of the mapping.
 std::string firstSteps(const PadMapping& mapping) {
@@ -38,9 +38,9 @@ GamepadNode::GamepadNode(ros::NodeHandle handle, const GamepadParameters& parame
       mapping_(loadPadMapping(resolveAddress(parameters.mapping), limits_)),
       feedback_(mapping_),
       link_(makePadLink(parameters)),
-      scope_(handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kQueue)),
-      overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue)),
-      buttons_(handle.advertise<sensor_msgs::Joy>("scope/buttons", kQueue)),
+      scope_(handle.advertise<sensor_msgs::JointState>("scope/servo_jp", kPadQueue)),
+      overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kPadQueue)),
+      buttons_(handle.advertise<sensor_msgs::Joy>("scope/buttons", kPadQueue)),
       updater_(handle) {
   if (!parameters_.record.empty()) PadRecorder::checkFile(parameters_.record);
   updater_.setHardwareID("none");
@@ -53,10 +53,10 @@ GamepadNode::GamepadNode(ros::NodeHandle handle, const GamepadParameters& parame
 
 void GamepadNode::subscribe(ros::NodeHandle& handle) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  subscribers_ = {handle.subscribe("joint_states", kQueue, &GamepadNode::onJoints, this, hints),
-                  handle.subscribe("scope/measured_cf", kQueue, &GamepadNode::onForce, this, hints),
+  subscribers_ = {handle.subscribe("joint_states", kPadQueue, &GamepadNode::onJoints, this, hints),
+                  handle.subscribe("scope/measured_cf", kPadQueue, &GamepadNode::onForce, this, hints),
                   handle.subscribe("procedure/events", 100, &GamepadNode::onEvent, this, hints),
-                  handle.subscribe("haptic/parameters", kQueue, &GamepadNode::onParameters, this, hints)};
+                  handle.subscribe("haptic/parameters", kPadQueue, &GamepadNode::onParameters, this, hints)};
 }
 
 void GamepadNode::tick(const ros::WallTimerEvent&) {

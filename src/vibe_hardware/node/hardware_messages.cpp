@@ -13,7 +13,7 @@ const ros::Duration kLeast(0, 1000);  // between stamps
 const ros::Duration kSetBack(1);      // more than this is a clock that was set
 
 /// Where a name stands in a message. @throws Error if it is missing or there twice
-std::size_t indexOf(const std::vector<std::string>& names, const std::string& name) {
+std::size_t placeOf(const std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) throw Error("joint '" + name + "' is missing; send all joints.");
   if (std::find(found + 1, names.end(), name) != names.end()) {
@@ -27,7 +27,7 @@ void checkFinite(double value, const std::string& what) {
 }
 
 JointSpring readSpring(const vibe_msgs::HapticParameters& message, const std::string& joint) {
-  const std::size_t i = indexOf(message.joint_name, joint);
+  const std::size_t i = placeOf(message.joint_name, joint);
   if (i >= message.joint_position.size()) throw Error("joint '" + joint + "' has no values; send four joints.");
   JointSpring spring;
   spring.position = message.joint_position[i];
@@ -107,7 +107,7 @@ OverstitchDrive::Positions readOverstitchJoints(const sensor_msgs::JointState& m
   OverstitchDrive::Positions positions{};
   for (std::size_t j = 0; j < positions.size(); ++j) {
     const std::string name = kJointNames[kScopeJointCount + j];
-    positions[j] = message.position[indexOf(message.name, name)];
+    positions[j] = message.position[placeOf(message.name, name)];
     checkFinite(positions[j], "the position of " + name);
   }
   return positions;

@@ -13,7 +13,7 @@ constexpr double kCameraPatience = 1;      // a camera that is silent for longer
 constexpr double kComplaintPeriod = 1;     // [s]
 constexpr double kTimerPeriod = 0.02;      // [s]
 constexpr double kAfterHoming = 0.1;       // in which parameters belong to the positions before [s]
-constexpr std::uint32_t kQueue = 100;
+constexpr std::uint32_t kDeviceQueue = 100;
 
 /// The drivers of both devices say the same about a bus that does not work.
 void log(Severity severity, const std::string& sentence) {
@@ -75,14 +75,14 @@ DeviceDriver::Callbacks HardwareNode::callbacksOf(DeviceKind kind) {
 
 void HardwareNode::advertise(ros::NodeHandle& handle) {
   using sensor_msgs::JointState;
-  scope_publisher_ = handle.advertise<JointState>("scope/measured_js", kQueue);
-  button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kQueue);
-  haptic_publisher_ = handle.advertise<JointState>("haptic/measured_js", kQueue);
+  scope_publisher_ = handle.advertise<JointState>("scope/measured_js", kDeviceQueue);
+  button_publisher_ = handle.advertise<sensor_msgs::Joy>("scope/buttons", kDeviceQueue);
+  haptic_publisher_ = handle.advertise<JointState>("haptic/measured_js", kDeviceQueue);
   state_publisher_ = handle.advertise<vibe_msgs::OperatingState>("haptic/operating_state", 1, true);
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
   parameters_subscriber_ = handle.subscribe("haptic/parameters", 1, &HardwareNode::onParameters, this, no_delay);
   if (overstitch_) {
-    overstitch_publisher_ = handle.advertise<JointState>("overstitch/measured_js", kQueue);
+    overstitch_publisher_ = handle.advertise<JointState>("overstitch/measured_js", kDeviceQueue);
     overstitch_subscriber_ = handle.subscribe("overstitch/measured_js", 1, &HardwareNode::onOverstitch, this);
   }
   updater_.setHardwareID("none");

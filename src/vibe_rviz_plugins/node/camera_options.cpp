@@ -5,10 +5,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "degree.hpp"
+
 namespace vibe {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 /// Reads parameters and remembers their names, so that any other parameter is an error.
 class Reader {

@@ -8,12 +8,12 @@
 #include <stdexcept>
 
 #include "dataset/npy_file.hpp"
+#include "degree.hpp"
 #include "messages/cloud_field.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr int kDigits = 17;  // of a double that is read back exactly
 
 void savePng(const std::string& file, const std::uint8_t* pixels, int width, int height, QImage::Format format) {

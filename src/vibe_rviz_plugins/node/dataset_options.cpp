@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "dataset/variation.hpp"
+#include "degree.hpp"
 
 namespace vibe {
 namespace {
 
 constexpr int kUsage = 2;
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 using Switches = std::vector<std::pair<std::string, bool*>>;
 
@@ -72,7 +72,7 @@ void describe(CLI::App& app, DatasetOptions& options, Words& words) {
 }
 
 /// Reads the lists, and looks at what several options say together.
-std::string problemOf(const Words& words, DatasetOptions& options) {
+std::string readWords(const Words& words, DatasetOptions& options) {
   std::string problem = choose("--content", words.content,
                                {{"depth", &options.depth},
                                 {"normals", &options.normals},
@@ -107,7 +107,7 @@ int readDatasetOptions(int argc, char** argv, DatasetOptions& options) {
     std::fprintf(stderr, "vibe_dataset: %s (--help lists what there is)\n", error.what());
     return kUsage;
   }
-  const std::string problem = problemOf(words, options);
+  const std::string problem = readWords(words, options);
   if (!problem.empty()) {
     std::fprintf(stderr, "vibe_dataset: %s (--help lists what there is)\n", problem.c_str());
     return kUsage;

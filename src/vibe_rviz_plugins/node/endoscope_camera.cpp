@@ -17,7 +17,7 @@ constexpr unsigned kWaiting =
 constexpr std::size_t kSutures = 240;  // messages kept to find the one that belongs to a state
 constexpr double kRepeatPeriod = 5;    // of the warning about a fault that lasts [s of wall time]
 
-Eigen::Isometry3d poseOf(const geometry_msgs::Transform& transform) {
+Eigen::Isometry3d toIsometry(const geometry_msgs::Transform& transform) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translate(Eigen::Vector3d(transform.translation.x, transform.translation.y, transform.translation.z));
   const auto& turn = transform.rotation;
@@ -198,7 +198,7 @@ void EndoscopeCamera::publishImage(Eye& eye, const Eigen::Isometry3d& pose) {
 std::optional<Eigen::Isometry3d> EndoscopeCamera::find(const std::string& frame, const std::string& target,
                                                        const ros::Time& stamp) {
   try {
-    return vibe::poseOf(transforms_.lookupTransform(target, frame, stamp).transform);
+    return toIsometry(transforms_.lookupTransform(target, frame, stamp).transform);
   } catch (const tf2::TransformException&) {
     return std::nullopt;
   }

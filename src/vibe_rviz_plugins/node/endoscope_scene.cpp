@@ -8,16 +8,6 @@
 #include "messages/tissue_messages.hpp"
 
 namespace vibe {
-namespace {
-
-void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
-  const Eigen::Vector3f place = pose.translation().cast<float>();
-  const Eigen::Quaternionf turn(pose.linear().cast<float>());
-  node.setPosition(place.x(), place.y(), place.z());
-  node.setOrientation(turn.w(), turn.x(), turn.y(), turn.z());
-}
-
-}  // namespace
 
 EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke,
                                const MucosaLook& mucosa)
@@ -67,7 +57,10 @@ std::string EndoscopeScene::setSutures(const vibe_msgs::SutureArray& message, co
   const std::optional<Eigen::Isometry3d> pose = poseOf(message.header.frame_id);
   if (!pose) return "There is no transform to the frame '" + message.header.frame_id + "' of the sutures.";
   suture_pose_ = *pose;
-  setPose(*pose, suture_node_);
+  const Eigen::Vector3f place = pose->translation().cast<float>();
+  const Eigen::Quaternionf turn(pose->linear().cast<float>());
+  suture_node_.setPosition(place.x(), place.y(), place.z());
+  suture_node_.setOrientation(turn.w(), turn.x(), turn.y(), turn.z());
   shape_.clear();
   appendSutures(seen, naturalSutures(), shape_);
   sutures_.showSolids(shape_);

@@ -7,7 +7,7 @@
 namespace vibe {
 namespace {
 
-Eigen::Isometry3d poseOf(const urdf::Pose& origin) {
+Eigen::Isometry3d toPose(const urdf::Pose& origin) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translate(Eigen::Vector3d(origin.position.x, origin.position.y, origin.position.z));
   double x, y, z, w;
@@ -26,7 +26,7 @@ RobotVisual readVisual(const std::string& link, const urdf::Visual& visual) {
   RobotVisual result;
   result.link = link;
   result.part = visual.name.empty() ? link : link + "/" + visual.name;
-  result.pose = poseOf(visual.origin);
+  result.pose = toPose(visual.origin);
   const PackedColour colour = colourOf(visual);
   if (const auto* ball = dynamic_cast<const urdf::Sphere*>(visual.geometry.get())) {
     appendSphere(result.pose, ball->radius, colour, result.body);

@@ -5,19 +5,15 @@
 #include "arm_message.hpp"
 
 namespace vibe {
-namespace {
-
-constexpr std::uint32_t kQueue = 10000;  // as of all small topics: a recorder may be busy for a moment
-
-}  // namespace
 
 ArmPublishers::ArmPublishers(OutletSource& outlets)
-    : scope_(outlets.advertise<sensor_msgs::JointState>("scope/simulated/measured_js", kQueue)),
-      overstitch_(outlets.advertise<sensor_msgs::JointState>("overstitch/simulated/measured_js", kQueue)),
-      jacobian_(outlets.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kQueue)),
-      wall_(outlets.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kQueue)),
-      scope_state_(outlets.advertise<vibe_msgs::OperatingState>("scope/operating_state", kQueue, true)),
-      overstitch_state_(outlets.advertise<vibe_msgs::OperatingState>("overstitch/operating_state", kQueue, true)) {}
+    : scope_(outlets.advertise<sensor_msgs::JointState>("scope/simulated/measured_js", kSmallQueue)),
+      overstitch_(outlets.advertise<sensor_msgs::JointState>("overstitch/simulated/measured_js", kSmallQueue)),
+      jacobian_(outlets.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kSmallQueue)),
+      wall_(outlets.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kSmallQueue)),
+      scope_state_(outlets.advertise<vibe_msgs::OperatingState>("scope/operating_state", kSmallQueue, true)),
+      overstitch_state_(outlets.advertise<vibe_msgs::OperatingState>("overstitch/operating_state", kSmallQueue, true)) {
+}
 
 void ArmPublishers::place(const Session& session, bool continues, std::int64_t stamp) {
   const JointArray joints = toolJoints(session.state);

@@ -14,10 +14,6 @@ namespace vibe {
 namespace {
 
 // The numbers on the wire are those of the library.
-template <typename Enum>
-constexpr bool same(Enum ours, std::uint8_t wire) {
-  return static_cast<std::uint8_t>(ours) == wire;
-}
 using Wire = vibe_msgs::ProcedureEvent;
 static_assert(
     same(Event::Kind::Grab, Wire::GRAB) && same(Event::Kind::GrabMissed, Wire::GRAB_MISSED) &&

@@ -31,6 +31,18 @@ constexpr const char* kTissueFrame = "stomach";
 constexpr const char* kScopeBaseFrame = "scope_base";
 constexpr const char* kScopeTipFrame = "scope_tip";
 
+/// Whether a value has its number in a message.
+template <typename Enum>
+constexpr bool same(Enum ours, std::uint8_t wire) {
+  return static_cast<std::uint8_t>(ours) == wire;
+}
+
+/// @param Message  geometry_msgs::Point or Vector3
+template <typename Message>
+Eigen::Vector3d toVector(const Message& message) {
+  return {message.x, message.y, message.z};
+}
+
 /// Messages cannot carry times before 0; such a stamp becomes 0.
 ros::Time toRosTime(std::int64_t nanoseconds);
 std::int64_t fromRosTime(const ros::Time& time);

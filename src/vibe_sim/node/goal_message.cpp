@@ -16,24 +16,24 @@ namespace vibe {
 namespace {
 
 /// What the goals of a kind have.
-struct Kind {
+struct GoalKind {
   const char* name;
   bool has_place;
   const char* time;   ///< key of the protocol for `time`; nullptr: none
   const char* needs;  ///< sections of the scene, separated by a space
 };
-constexpr std::array<Kind, 8> kKinds = {{{"insufflate", false, "patience", "gas"},
-                                         {"inspect", true, "for", ""},
-                                         {"mark", true, "for", "marking"},
-                                         {"bite", true, nullptr, "helix suture"},
-                                         {"suture_set", true, nullptr, "helix suture"},
-                                         {"cinch", false, nullptr, "helix suture"},
-                                         {"withdraw", false, nullptr, ""},
-                                         {"wait", false, "for", ""}}};
+constexpr std::array<GoalKind, 8> kKinds = {{{"insufflate", false, "patience", "gas"},
+                                             {"inspect", true, "for", ""},
+                                             {"mark", true, "for", "marking"},
+                                             {"bite", true, nullptr, "helix suture"},
+                                             {"suture_set", true, nullptr, "helix suture"},
+                                             {"cinch", false, nullptr, "helix suture"},
+                                             {"withdraw", false, nullptr, ""},
+                                             {"wait", false, "for", ""}}};
 
-const Kind* findKind(const std::string& name) {
+const GoalKind* findKind(const std::string& name) {
   const auto found =
-      std::find_if(kKinds.begin(), kKinds.end(), [&name](const Kind& kind) { return name == kind.name; });
+      std::find_if(kKinds.begin(), kKinds.end(), [&name](const GoalKind& kind) { return name == kind.name; });
   return found == kKinds.end() ? nullptr : &*found;
 }
 
@@ -75,7 +75,7 @@ void addPlace(const vibe_msgs::TraineeGoal& message, YAML::Emitter& out) {
 // The language of protocols has one reader, with its ranges, defaults and sentences.
 std::string toProtocol(const vibe_msgs::TraineeGoal& message) {
   YAML::Emitter out;
-  const Kind* kind = findKind(message.kind);
+  const GoalKind* kind = findKind(message.kind);
   out << YAML::Flow << YAML::BeginMap << YAML::Key << "name" << YAML::Value << "message" << YAML::Key << "goals"
       << YAML::Value << YAML::BeginSeq << YAML::BeginMap << YAML::Key << message.kind << YAML::Value << YAML::BeginMap;
   if (kind && kind->has_place) addPlace(message, out);
@@ -125,7 +125,7 @@ Goal readGoal(const vibe_msgs::TraineeGoal& message) {
 }
 
 std::string refusalIn(const Model& model, const vibe_msgs::TraineeGoal& message, const Goal& goal) {
-  const Kind* kind = findKind(message.kind);
+  const GoalKind* kind = findKind(message.kind);
   if (!kind) return "";
   for (const char* section : {"gas", "marking", "helix", "suture"})
     if (std::string(kind->needs).find(section) != std::string::npos && !hasSection(model.scene, section))

@@ -14,8 +14,7 @@
 namespace vibe {
 namespace {
 
-constexpr std::uint32_t kQueue = 10000;  // of small messages: none may be lost
-constexpr double kResendAfter = 0.5;     // time stands still: something may have been lost [s]
+constexpr std::uint32_t kResultQueue = 10000;  // of small messages: none may be lost
 
 bool isPressed(const StepInput& input) {
   return std::any_of(input.buttons.begin(), input.buttons.end(), [](std::uint8_t b) { return b != 0; });
@@ -32,7 +31,7 @@ GoalPlayer::GoalPlayer(ros::NodeHandle handle, Protocol protocol, bool lockstep,
       queue_(lockstep) {
   const ros::TransportHints no_delay = ros::TransportHints().tcpNoDelay();
   scene_ = handle.subscribe("scene", 10, &GoalPlayer::onScene, this);
-  result_ = handle.subscribe("step_result", kQueue, &GoalPlayer::onResult, this, no_delay);
+  result_ = handle.subscribe("step_result", kResultQueue, &GoalPlayer::onResult, this, no_delay);
   particles_ = handle.subscribe("tissue/particles", lockstep ? 10 : 1, &GoalPlayer::onParticles, this, no_delay);
   if (lockstep) timer_ = handle.createWallTimer(ros::WallDuration(0.1), &GoalPlayer::resend, this);
 }

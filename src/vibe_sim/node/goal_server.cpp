@@ -11,15 +11,15 @@
 namespace vibe {
 namespace {
 
-constexpr std::uint32_t kQueue = 1000;
+constexpr std::uint32_t kGoalQueue = 1000;
 
 }  // namespace
 
 GoalServer::GoalServer(ros::NodeHandle handle, const std::string& skill)
     : skill_(skill),
-      progress_(handle.advertise<vibe_msgs::TraineeProgress>("trainee/progress", kQueue, true)),
-      goal_(handle.subscribe("trainee/goal", kQueue, &GoalServer::onGoal, this)),
-      cancel_(handle.subscribe("trainee/cancel", kQueue, &GoalServer::onCancel, this)),
+      progress_(handle.advertise<vibe_msgs::TraineeProgress>("trainee/progress", kGoalQueue, true)),
+      goal_(handle.subscribe("trainee/goal", kGoalQueue, &GoalServer::onGoal, this)),
+      cancel_(handle.subscribe("trainee/cancel", kGoalQueue, &GoalServer::onCancel, this)),
       service_(handle.advertiseService("trainee/goal", &GoalServer::onCall, this)) {
   publish();
 }

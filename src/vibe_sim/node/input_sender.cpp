@@ -5,14 +5,14 @@
 namespace vibe {
 namespace {
 
-constexpr std::uint32_t kQueue = 1000;
+constexpr std::uint32_t kSenderQueue = 1000;
 
 }  // namespace
 
 InputSender::InputSender(ros::NodeHandle handle)
-    : scope_(handle.advertise<sensor_msgs::JointState>("scope/measured_js", kQueue)),
-      overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kQueue)),
-      buttons_(handle.advertise<sensor_msgs::Joy>("scope/buttons", kQueue)) {}
+    : scope_(handle.advertise<sensor_msgs::JointState>("scope/measured_js", kSenderQueue)),
+      overstitch_(handle.advertise<sensor_msgs::JointState>("overstitch/measured_js", kSenderQueue)),
+      buttons_(handle.advertise<sensor_msgs::Joy>("scope/buttons", kSenderQueue)) {}
 
 bool InputSender::hasListeners() const {
   return scope_.getNumSubscribers() > 0 && overstitch_.getNumSubscribers() > 0 && buttons_.getNumSubscribers() > 0;

@@ -7,6 +7,9 @@
 
 namespace vibe {
 
+/// Time that stands still for so long shows that something that was sent may have been lost [s].
+constexpr double kResendAfter = 0.5;
+
 /// Publishes inputs on the topics of the devices.
 class InputSender {
  public:

@@ -8,9 +8,8 @@
 namespace vibe {
 namespace {
 
-constexpr double kOwnerPatience = 2;     // a source that is silent for longer has given the topic up [s]
-constexpr double kComplaintPeriod = 1;   // [s]
-constexpr std::uint32_t kQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
+constexpr double kOwnerPatience = 2;          // a source that is silent for longer has given the topic up [s]
+constexpr std::uint32_t kInputQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
 
 }  // namespace
 
@@ -57,7 +56,7 @@ void Inputs::listen(const std::string& name, std::function<InputSample(const Mes
     receive(name, event.getPublisherName(), [&] { return read(*event.getMessage()); });
   };
   ros::SubscribeOptions options;
-  options.template initByFullCallbackType<const Arrival&>(name, kQueue, callback);
+  options.template initByFullCallbackType<const Arrival&>(name, kInputQueue, callback);
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   topics_[name].subscriber = handle_.subscribe(options);
 }

@@ -12,6 +12,10 @@
 
 namespace vibe {
 
+/// Queue of a topic of small messages: long, because a simulation that runs faster than the wall clock must not lose
+/// messages to a recorder that is busy for a moment.
+constexpr std::uint32_t kSmallQueue = 10000;
+
 /// A bag that messages are written to, at a time that its owner sets.
 struct BagTarget {
   rosbag::Bag& bag;

@@ -17,7 +17,7 @@ constexpr double kStatusPeriod = 0.1;      // [s]
 constexpr double kHeartbeatPeriod = 0.08;  // of the clock while time stands still [s]
 constexpr double kWholePeriod = 1;         // of the procedure's state then, as the simulator sends it [s]
 constexpr double kBurst = 0.05;            // of steps before commands are looked at again [s]
-constexpr double kMaxLag = 0.25;           // after which lost time is given up [s]
+constexpr double kMaxReplayLag = 0.25;     // after which lost time is given up [s]
 constexpr double kMinRate = 0.01, kMaxRate = 100;
 
 }  // namespace
@@ -96,7 +96,7 @@ void Player::playDueSteps() {
   while (message_.playing && !replay_.done() && steadyTime() - begin < kBurst) {
     const double due = pace_begin_ + (replay_.time() - pace_time_) / message_.rate;
     if (steadyTime() < due) break;
-    if (steadyTime() - due > kMaxLag) restartPace();
+    if (steadyTime() - due > kMaxReplayLag) restartPace();
     attempt([this] { replay_.step(); });
   }
   if (replay_.done()) {

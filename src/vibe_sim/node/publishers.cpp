@@ -26,10 +26,7 @@ constexpr double kHapticRate = 100;                       // of haptic/parameter
 constexpr std::int64_t kSnapshotPeriod = 10'000'000'000;  // of simulated time [ns]
 constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure and sutures when nothing happens [ns]
 
-// Queues are long because a simulation that runs faster than the wall clock must not lose messages to a recorder that
-// is busy for a moment; of the large clouds as many as fit into some 60 MB.
-constexpr std::uint32_t kSmallQueue = 10000;
-constexpr std::uint32_t kCloudQueue = 600;
+constexpr std::uint32_t kCloudQueue = 600;  // of large clouds, as many as fit into some 60 MB
 
 int hapticInterval(double step_period) {
   return static_cast<int>(std::ceil(1 / (kHapticRate * step_period) - 1e-6));

@@ -17,6 +17,9 @@
 
 namespace vibe {
 
+/// Between warnings about the same [s].
+constexpr double kComplaintPeriod = 1;
+
 /// Every topic that the simulator sends. Only warn() may be called from any thread; the rest belongs to the stepping
 /// thread.
 class Publishers {

@@ -13,21 +13,21 @@
 namespace vibe {
 namespace {
 
-using Message = vibe_msgs::ProcedureEvent;
+using EventMessage = vibe_msgs::ProcedureEvent;
 
 // Empty for kinds that are too frequent to be marked.
-std::string nameOf(const Message& event) {
-  static const std::map<int, std::string> names = {{Message::MARK, "mark"},
-                                                   {Message::BURN, "burn"},
-                                                   {Message::BITE, "bite"},
-                                                   {Message::SLIP, "slip"},
-                                                   {Message::T_TAG_DROPPED, "T-tag"},
-                                                   {Message::CINCHED, "cinched"},
-                                                   {Message::TEAR_OUT, "tear-out"},
-                                                   {Message::CINCH_LOOSE, "loose"},
-                                                   {Message::THREAD_BROKE, "thread broke"},
-                                                   {Message::BLEEDING_BRISK, "bleeding"}};
-  if (event.kind == Message::PHASE_CHANGED)
+std::string nameOf(const EventMessage& event) {
+  static const std::map<int, std::string> names = {{EventMessage::MARK, "mark"},
+                                                   {EventMessage::BURN, "burn"},
+                                                   {EventMessage::BITE, "bite"},
+                                                   {EventMessage::SLIP, "slip"},
+                                                   {EventMessage::T_TAG_DROPPED, "T-tag"},
+                                                   {EventMessage::CINCHED, "cinched"},
+                                                   {EventMessage::TEAR_OUT, "tear-out"},
+                                                   {EventMessage::CINCH_LOOSE, "loose"},
+                                                   {EventMessage::THREAD_BROKE, "thread broke"},
+                                                   {EventMessage::BLEEDING_BRISK, "bleeding"}};
+  if (event.kind == EventMessage::PHASE_CHANGED)
     return std::string("phase ") + toString(static_cast<Phase>(static_cast<int>(event.value)));
   const auto found = names.find(event.kind);
   return found == names.end() ? "" : found->second;
@@ -41,7 +41,7 @@ std::vector<ReplayMark> readMarks(const Recording& recording) {
   try {
     for (const rosbag::MessageInstance& message :
          rosbag::View(recording.bag(), rosbag::TopicQuery(recording.prefix() + "procedure/events"))) {
-      const auto event = message.instantiate<Message>();
+      const auto event = message.instantiate<EventMessage>();
       if (!event) continue;
       const std::string name = nameOf(*event);
       if (!name.empty()) marks.push_back({1e-9 * static_cast<double>(fromRosTime(event->header.stamp) - origin), name});

@@ -14,9 +14,9 @@ const std::string kReads = "this build reads versions 1 to " + std::to_string(kS
                            "; replay it with the release that recorded it.";
 
 /// The fields of one message.
-class Message {
+class InputFields {
  public:
-  Message(const MessageLayout& layout, const std::uint8_t* bytes, std::size_t size)
+  InputFields(const MessageLayout& layout, const std::uint8_t* bytes, std::size_t size)
       : bytes_(bytes), fields_(layout.locate(bytes, size)) {}
 
   bool has(const std::string& name) const { return find(name) != nullptr; }
@@ -41,7 +41,7 @@ class Message {
 };
 
 // Messages from before there was the field `version` differ by the pull spring.
-std::uint32_t versionOf(const Message& message) {
+std::uint32_t versionOf(const InputFields& message) {
   if (!message.has("version")) return message.has("pull_particle") ? 2 : 1;
   std::uint32_t version = 0;
   message.get("version", "uint32", 1, &version);
@@ -51,7 +51,7 @@ std::uint32_t versionOf(const Message& message) {
 }  // namespace
 
 RecordedStep StepInputReader::read(const std::uint8_t* bytes, std::size_t size) const {
-  const Message message(layout_, bytes, size);
+  const InputFields message(layout_, bytes, size);
   const std::uint32_t version = versionOf(message);
   if (version < 1 || version > kStepInputVersion)
     throw Error("its vibe_msgs/StepInput is of version " + std::to_string(version) + ", but " + kReads);

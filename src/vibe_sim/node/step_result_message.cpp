@@ -10,14 +10,6 @@
 namespace vibe {
 namespace {
 
-Eigen::Vector3d toVector(const geometry_msgs::Point& p) {
-  return {p.x, p.y, p.z};
-}
-
-Eigen::Vector3d toVector(const geometry_msgs::Vector3& v) {
-  return {v.x, v.y, v.z};
-}
-
 geometry_msgs::Pose toPose(const Eigen::Vector3d& position, const Eigen::Quaterniond& turn) {
   geometry_msgs::Pose pose;
   pose.position.x = position.x(), pose.position.y = position.y(), pose.position.z = position.z();
@@ -33,7 +25,7 @@ void addTool(const Observation& seen, const Session& session, vibe_msgs::StepRes
   message.wrench = makeWrench(session.state, 0).wrench;
 }
 
-void addProcedure(const Observation& seen, const State& state, vibe_msgs::StepResult& message) {
+void addSituation(const Observation& seen, const State& state, vibe_msgs::StepResult& message) {
   message.pressure = seen.pressure;
   message.pressure_reached = seen.pressure_reached;
   message.held_particles = static_cast<std::uint32_t>(state.grip.size());
@@ -66,7 +58,7 @@ vibe_msgs::StepResult makeStepResult(const Session& session, bool whole) {
   message.revision = session.revision;
   message.has_particles = whole || !seen.wall.empty();
   addTool(seen, session, message);
-  addProcedure(seen, session.state, message);
+  addSituation(seen, session.state, message);
   for (const Event& event : session.events)
     if (event.kind != Event::Kind::Warning) message.events.push_back(makeEvent(event, session.now()));
   return message;

@@ -15,12 +15,11 @@
 namespace vibe {
 namespace {
 
-constexpr std::int64_t kMaxLag = 250'000'000;       // behind the wall clock before time is given up [ns]
+constexpr std::int64_t kMaxStepLag = 250'000'000;   // behind the wall clock before time is given up [ns]
 constexpr std::int64_t kClockJump = 1'000'000'000;  // ahead of it: somebody has set the wall clock back [ns]
 constexpr double kClockHeartbeat = 0.08;            // while time stands still [s]
 constexpr double kRecorderPatience = 30;            // [s]
 constexpr double kRecorderSettling = 0.3;           // [s]
-constexpr double kComplaintPeriod = 1;              // [s]
 constexpr double kLagReportPeriod = 5;              // at first; doubled while the lag goes on [s]
 constexpr double kLagReportPeriodMax = 60;          // [s]
 constexpr std::chrono::milliseconds kIdle(40);
@@ -132,7 +131,7 @@ Stepper::Hold Stepper::findDeadline() {
   if (late < 0 || now < nextBegin()) return Hold::Pace;
   if (parameters_.follow && lock_.awaits(nextDeadline(), now)) return Hold::Sample;
   if (static_cast<double>(late) > 1e9 * session_.time.period()) ++statistics_.missed_deadlines;
-  if (late > kMaxLag) {
+  if (late > kMaxStepLag) {
     reportLag(1e-9 * static_cast<double>(late));
     restartPace(now);
   }

@@ -15,18 +15,15 @@ namespace {
 constexpr int kSlackPieces = 12;  // straight pieces that a catenary is drawn with
 
 // The numbers on the wire are those of the library.
-using Wire = vibe_msgs::Suture;
-template <typename Enum>
-constexpr bool same(Enum ours, std::uint8_t wire) {
-  return static_cast<std::uint8_t>(ours) == wire;
-}
-static_assert(same(Suture::Stage::Open, Wire::OPEN) && same(Suture::Stage::Tagged, Wire::TAGGED) &&
-              same(Suture::Stage::Cinching, Wire::CINCHING) && same(Suture::Stage::Cinched, Wire::CINCHED) &&
-              same(Suture::Stage::Broken, Wire::BROKEN));
-static_assert(same(Technique::Other, Wire::TECHNIQUE_OTHER) && same(Technique::U, Wire::TECHNIQUE_U) &&
-              same(Technique::Z, Wire::TECHNIQUE_Z) && same(Technique::Triangular, Wire::TECHNIQUE_TRIANGULAR) &&
-              same(Technique::Square, Wire::TECHNIQUE_SQUARE) && same(Technique::Running, Wire::TECHNIQUE_RUNNING) &&
-              same(Technique::C, Wire::TECHNIQUE_C));
+using WireSuture = vibe_msgs::Suture;
+static_assert(same(Suture::Stage::Open, WireSuture::OPEN) && same(Suture::Stage::Tagged, WireSuture::TAGGED) &&
+              same(Suture::Stage::Cinching, WireSuture::CINCHING) &&
+              same(Suture::Stage::Cinched, WireSuture::CINCHED) && same(Suture::Stage::Broken, WireSuture::BROKEN));
+static_assert(same(Technique::Other, WireSuture::TECHNIQUE_OTHER) && same(Technique::U, WireSuture::TECHNIQUE_U) &&
+              same(Technique::Z, WireSuture::TECHNIQUE_Z) &&
+              same(Technique::Triangular, WireSuture::TECHNIQUE_TRIANGULAR) &&
+              same(Technique::Square, WireSuture::TECHNIQUE_SQUARE) &&
+              same(Technique::Running, WireSuture::TECHNIQUE_RUNNING) && same(Technique::C, WireSuture::TECHNIQUE_C));
 static_assert(kTechniqueCount == 7);
 
 geometry_msgs::Point toPoint(const Eigen::Vector3d& v) {
@@ -35,10 +32,6 @@ geometry_msgs::Point toPoint(const Eigen::Vector3d& v) {
   point.y = v.y();
   point.z = v.z();
   return point;
-}
-
-Eigen::Vector3d toVector(const geometry_msgs::Point& p) {
-  return {p.x, p.y, p.z};
 }
 
 int heaviest(const Bite& bite) {

@@ -11,7 +11,6 @@ namespace vibe {
 namespace {
 
 constexpr std::int64_t kStepsAhead = 8;
-constexpr double kResendAfter = 0.5;                // the clock stands still: something may have been lost [s]
 constexpr std::int64_t kSamplePeriod = 10'000'000;  // 100 Hz [ns]
 constexpr std::int64_t kButtonInterval = 10;        // samples between buttons that do not change
 constexpr std::int64_t kMaxBacklog = 100;           // samples; more are skipped

@@ -10,8 +10,6 @@
 namespace vibe {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// The usual simple tracker of a printed mark: threshold half way between the darkest and the brightest pixel,
 /// connected components, gates for size and for touching the border, then the centroid weighted by darkness. It looks
 /// around the last position, extrapolated, and where that fails along the whole axis in the same frame.
@@ -23,7 +21,7 @@ class Centroid {
     const double scale = instrument_.axis.pixels_per_metre;
     half_ = 0.5 * ring.side * scale + 10;
     diameter_ = ring.outer_diameter * scale;
-    area_ = kPi / 4 * scale * scale *
+    area_ = M_PI / 4 * scale * scale *
             (ring.outer_diameter * ring.outer_diameter - ring.inner_diameter * ring.inner_diameter);
   }
 

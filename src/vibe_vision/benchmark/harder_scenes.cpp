@@ -7,8 +7,6 @@
 namespace vibe {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// On a square sensor, where the axes fit in every direction.
 void turnAxes(SyntheticScene& scene, double angle) {
   enlarge(scene, std::max(scene.camera.width, scene.camera.height), std::max(scene.camera.width, scene.camera.height));
@@ -147,7 +145,7 @@ void cutOut(const SyntheticScene&, RenderedFrame& frame) {
 std::vector<HarderScene> makeScenes() {
   using Scene = SyntheticScene;
   using Seed = std::uint64_t;
-  const auto turned = [](double degrees) { return [=](Scene& s, Seed) { turnAxes(s, degrees * kPi / 180); }; };
+  const auto turned = [](double degrees) { return [=](Scene& s, Seed) { turnAxes(s, degrees * M_PI / 180); }; };
   return {
       {"vertical", "moving", turned(90), {}},
       {"oblique", "moving", turned(30), {}},

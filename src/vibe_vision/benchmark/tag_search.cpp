@@ -39,7 +39,7 @@ Eigen::Vector2d centreOf(const CameraModel& camera, const Corners& corners, cons
   return centre;
 }
 
-Estimate toEstimate(const CameraModel& camera, const SlideAxis& axis, const Eigen::Vector2d& shift,
+Estimate nearestTag(const CameraModel& camera, const SlideAxis& axis, const Eigen::Vector2d& shift,
                     const std::vector<Corners>& tags) {
   Estimate estimate;
   double nearest = std::numeric_limits<double>::infinity();
@@ -69,7 +69,7 @@ MethodRun runTagDetector(const BenchScene& scene, std::size_t instrument, const 
     const std::vector<Corners> tags =
         window.view.width > 8 && window.view.height > 8 ? detector(window.view) : std::vector<Corners>();
     times.push_back(threadCpuTime() - begin);
-    estimates.push_back(toEstimate(scene.scene.camera, axis, window.corner, tags));
+    estimates.push_back(nearestTag(scene.scene.camera, axis, window.corner, tags));
   };
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const Frame& frame = frames[i].frame;

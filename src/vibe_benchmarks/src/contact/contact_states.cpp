@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "contact/free_hand.hpp"
+#include "contact/scope_motion.hpp"
 #include "suture/set_layout.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
@@ -12,21 +13,16 @@
 namespace vibe {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
-constexpr double kPull = 0.02;         // [m]
-constexpr double kMotion = 0.5;        // time of a motion, at constant speed [s]
-constexpr double kHold = 0.5;          // after it [s]
-constexpr double kApproach = 0.05;     // speed of the scope until it touches [m/s]
-constexpr double kTouch = 0.2;         // force that shows that the tip presses the far wall, not the entry [N]
-constexpr double kClearance = 2e-3;    // of the scope before it presses [m]
-constexpr double kPress = 18.5e-3;     // deeper than at first contact [m]
-constexpr std::size_t kFoldSet = 2;    // of six
-constexpr double kFoldPull = 0.015;    // before the wound fold is measured [m]
-constexpr double kFoldTurn = kPi / 4;  // likewise [rad]
-constexpr double kMorePull = 0.01;     // while it is measured [m]
-constexpr double kMoreTurn = kPi / 6;  // likewise [rad]
-constexpr double kCinch = 3.5;         // longer than a set here needs [s]
+constexpr double kPull = 0.02;           // [m]
+constexpr double kMotion = 0.5;          // time of a motion, at constant speed [s]
+constexpr double kHold = 0.5;            // after it [s]
+constexpr double kPressDepth = 18.5e-3;  // deeper than at first contact [m]
+constexpr std::size_t kFoldSet = 2;      // of six
+constexpr double kFoldPull = 0.015;      // before the wound fold is measured [m]
+constexpr double kFoldTurn = M_PI / 4;   // likewise [rad]
+constexpr double kMorePull = 0.01;       // while it is measured [m]
+constexpr double kMoreTurn = M_PI / 6;   // likewise [rad]
+constexpr double kCinch = 3.5;           // longer than a set here needs [s]
 
 /// Part of a motion that is done at a time.
 double part(double time, double duration) {
@@ -36,13 +32,6 @@ double part(double time, double duration) {
 void startClock(State& state) {
   state.step = 0;
   state.time = 0;
-}
-
-StepInput holdAt(const State& state) {
-  StepInput input;
-  input.joints = state.joints;
-  input.buttons[Insufflate] = 1;
-  return input;
 }
 
 /// Steps with an input that may depend on the time since now.
@@ -155,7 +144,7 @@ ContactCase ContactStates::pressed() const {
   one.start = simulation.state();
   one.input = [input](double end) {
     StepInput now = input;
-    now.joints[Insertion] += (kClearance + kPress) * part(end, kMotion);
+    now.joints[Insertion] += (kClearance + kPressDepth) * part(end, kMotion);
     return now;
   };
   return one;

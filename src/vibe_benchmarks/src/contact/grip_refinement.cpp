@@ -15,13 +15,13 @@
 namespace vibe {
 namespace {
 
-constexpr double kPull = 0.02;          // [m]
+constexpr double kGripPull = 0.02;      // [m]
 constexpr double kPullTime = 1;         // [s]
 constexpr double kLongestWait = 3;      // until it rests [s]
 constexpr double kStill = 2e-4;         // [m/s]
 constexpr double kSiteDistance = 3e-3;  // [m]
-constexpr double kFastFlow = 5e-4;      // of the insufflator: full within a second [m^3/s]
-constexpr double kReach = 0.02;         // of the helix, which is in the wall wherever the next particle is [m]
+constexpr double kFillFlow = 5e-4;      // of the insufflator: full within a second [m^3/s]
+constexpr double kHelixReach = 0.02;    // of the helix, which is in the wall wherever the next particle is [m]
 constexpr int kCorrections = 4;         // of the target of the spring
 
 struct Site {
@@ -62,10 +62,10 @@ class Mesh {
  public:
   Mesh(Scene scene, int particles) {
     scene.geometry.particles = particles;
-    scene.gas->flow_limit = kFastFlow;
+    scene.gas->flow_limit = kFillFlow;
     scene.render_surface = false;
     holdByHand({0, 0, 1}, {0, 0, 1}, scene);  // far away; every site moves the base
-    scene.helix->reach = kReach;
+    scene.helix->reach = kHelixReach;
     model_ = buildModel(scene, freeHandUrdf());
     SutureSession session(model_);
     session.settle();
@@ -88,7 +88,7 @@ class Mesh {
     input.buttons[HelixGrab] = 1;
     const int steps = static_cast<int>(kPullTime / simulation.stepPeriod());
     for (int k = 1; k <= steps; ++k) {
-      input.joints[Insertion] = kHandStart + kPull * k / steps;
+      input.joints[Insertion] = kHandStart + kGripPull * k / steps;
       simulation.step(input);
     }
     rest(input, simulation);
@@ -96,7 +96,7 @@ class Mesh {
     if (state.grip.empty()) throw Error("The helix of the study of refinement does not reach the wall.");
     RefinementRow row;
     row.held = static_cast<int>(state.grip.size());
-    row.distance = kPull;
+    row.distance = kGripPull;
     row.force = std::abs(state.tool_force.x());  // along the pull, which is the x axis of the tip
     return row;
   }
@@ -109,13 +109,13 @@ class Mesh {
     input.pull_target = {settled_.x[at(site.particle)], settled_.y[at(site.particle)], settled_.z[at(site.particle)]};
     simulation.step(input);
     const Eigen::Vector3d start = heldPosition(simulation.state());
-    double target = kPull;
+    double target = kGripPull;
     RefinementRow row;
-    for (int k = 0; k < kCorrections; ++k) {  // until what is held, not the end of the spring, has moved by kPull
+    for (int k = 0; k < kCorrections; ++k) {  // until what is held, not the end of the spring, has moved by kGripPull
       input.pull_target = start + target * site.inwards;
       rest(input, simulation);
       row.distance = (heldPosition(simulation.state()) - start).dot(site.inwards);
-      target += kPull - row.distance;
+      target += kGripPull - row.distance;
     }
     row.held = static_cast<int>(simulation.state().pull.node.size());
     row.force = simulation.state().pull.force.dot(site.inwards);

@@ -161,6 +161,14 @@ class Runner {
 
 }  // namespace
 
+HardPhase still(const std::string& name, double duration, const StepInput& input) {
+  HardPhase phase;
+  phase.name = name;
+  phase.duration = duration;
+  phase.input = [input](double) { return input; };
+  return phase;
+}
+
 HardResult runHardCase(const HardCase& hard, const HardOutput& output) {
   return Runner(hard, output).run();
 }

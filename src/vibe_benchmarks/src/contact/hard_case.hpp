@@ -22,6 +22,9 @@ struct HardPhase {
   std::function<void(Simulation&)> prepare = {};  ///< called before the first step; empty: nothing
 };
 
+/// A phase in which the command stays.
+HardPhase still(const std::string& name, double duration, const StepInput& input);
+
 /// Something a simulator of contact has to survive.
 struct HardCase {
   std::string name;

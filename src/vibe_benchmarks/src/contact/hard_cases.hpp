@@ -9,6 +9,8 @@
 
 namespace vibe {
 
+constexpr double kStrongTissue = 100;  ///< holds bites that do not tear out [N]
+
 /// Names of the hard cases.
 const std::vector<std::string>& hardCaseNames();
 

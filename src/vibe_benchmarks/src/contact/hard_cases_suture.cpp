@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "contact/hard_cases.hpp"
+#include "contact/scope_motion.hpp"
 #include "suture/set_layout.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
@@ -10,33 +11,17 @@
 namespace vibe {
 namespace {
 
-constexpr double kMercury = 133.322;   // [Pa/mmHg]
-constexpr double kCinchTime = 3.5;     // longer than most sets need to their tension [s]
-constexpr double kAfter = 1;           // between two sets [s]
-constexpr double kApart = 0.15;        // of the bites of the case across [m]
-constexpr double kAcrossTension = 8;   // [N]
-constexpr double kAcrossTime = 12;     // of its cinch [s]
-constexpr double kStrongTissue = 100;  // bites that do not tear out [N]
-constexpr double kFastFlow = 5e-3;     // of an insufflator that changes the pressure within a second [m^3/s]
-
-StepInput holdAt(const State& state) {
-  StepInput input;
-  input.joints = state.joints;
-  input.buttons[Insufflate] = 1;
-  return input;
-}
+constexpr double kMercury = 133.322;    // [Pa/mmHg]
+constexpr double kCinchTime = 3.5;      // longer than most sets need to their tension [s]
+constexpr double kAfter = 1;            // between two sets [s]
+constexpr double kApart = 0.15;         // of the bites of the case across [m]
+constexpr double kAcrossTension = 8;    // [N]
+constexpr double kAcrossTime = 12;      // of its cinch [s]
+constexpr double kPressureFlow = 5e-3;  // of an insufflator that changes the pressure within a second [m^3/s]
 
 StepInput pressing(Button button, StepInput input) {
   input.buttons[button] = 1;
   return input;
-}
-
-HardPhase still(const std::string& name, double duration, const StepInput& input) {
-  HardPhase phase;
-  phase.name = name;
-  phase.duration = duration;
-  phase.input = [input](double) { return input; };
-  return phase;
 }
 
 double distanceOf(const WallSpot& a, const WallSpot& b, const SurfaceView& wall) {
@@ -136,7 +121,7 @@ HardCase HardCases::pressureSteps() const {
   Scene low = model_->scene, high = model_->scene;
   low.gas->regulated_pressure = 5 * kMercury;
   high.gas->regulated_pressure = 45 * kMercury;
-  low.gas->flow_limit = high.gas->flow_limit = kFastFlow;
+  low.gas->flow_limit = high.gas->flow_limit = kPressureFlow;
   const auto low_model = withScene(low, urdf_), high_model = withScene(high, urdf_);
   const StepInput hold = holdAt(hard.start);
   for (int k = 0; k < (brief_ ? 1 : 5); ++k) {
@@ -148,7 +133,7 @@ HardCase HardCases::pressureSteps() const {
   hard.phases.push_back(still("5 mmHg", 1, hold));
   hard.phases.back().model = low_model;
   Scene back = model_->scene;
-  back.gas->flow_limit = kFastFlow;
+  back.gas->flow_limit = kPressureFlow;
   hard.phases.push_back(still("rest", brief_ ? 1 : 3, hold));
   hard.phases.back().model = withScene(back, urdf_);
   return hard;

@@ -7,36 +7,25 @@
 #include "common/random.hpp"
 #include "contact/hard_cases.hpp"
 #include "contact/joint_limits.hpp"
+#include "contact/scope_motion.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kApproach = 0.05;      // speed of the scope until it touches [m/s]
-constexpr double kTouch = 0.2;          // force that shows that the tip presses the far wall, not the entry [N]
-constexpr double kClearance = 2e-3;     // of the scope before it rams [m]
-constexpr double kRam = 0.06;           // deeper than at first contact [m]
-constexpr double kWithdraw = 0.1;       // speed [m/s]
-constexpr double kTurns = 20;           // of the helix
-constexpr double kWindPull = 0.06;      // [m]
-constexpr double kAdvanceStep = 5e-4;   // of the helix in the search for the wall [m]
-constexpr double kReach = 8e-3;         // of it, so that it takes hold on coarse meshes too [m]
-constexpr double kSleeveTension = 8;    // [N]
-constexpr double kSleeveSpeed = 0.06;   // of the cinch [m/s]
-constexpr double kSleeveWidth = 0.085;  // half, along the wall: beyond the scope [m]
-constexpr double kSleeveLength = 0.15;  // over the length of the body; half of it where there are three [1]
-constexpr double kStrongTissue = 100;   // bites that do not tear out [N]
-constexpr double kSleeveTime = 8;       // of a cinch [s]
+constexpr double kRam = 0.06;                      // deeper than at first contact [m]
+constexpr double kWithdraw = 0.1;                  // speed [m/s]
+constexpr double kTurns = 20;                      // of the helix
+constexpr double kWindPull = 0.06;                 // [m]
+constexpr double kAdvanceStep = 5e-4;              // of the helix in the search for the wall [m]
+constexpr double kWindReach = 8e-3;                // of it, so that it takes hold on coarse meshes too [m]
+constexpr double kSleeveTension = 8;               // [N]
+constexpr double kSleeveSpeed = 0.06;              // of the cinch [m/s]
+constexpr double kSleeveWidth = 0.085;             // half, along the wall: beyond the scope [m]
+constexpr double kSleeveLength = 0.15;             // over the length of the body; half of it where there are three [1]
+constexpr double kSleeveTime = 8;                  // of a cinch [s]
 constexpr double kShortest = 0.3, kLongest = 1.5;  // time of a random motion [s]
-constexpr double kPress = 0.3;                     // probability that a button changes with a motion [1]
-
-StepInput holdAt(const State& state) {
-  StepInput input;
-  input.joints = state.joints;
-  input.buttons[Insufflate] = 1;
-  return input;
-}
+constexpr double kPressProbability = 0.3;          // probability that a button changes with a motion [1]
 
 HardPhase phaseOf(const std::string& name, double duration, std::function<StepInput(double)> input) {
   HardPhase phase;
@@ -44,10 +33,6 @@ HardPhase phaseOf(const std::string& name, double duration, std::function<StepIn
   phase.duration = duration;
   phase.input = std::move(input);
   return phase;
-}
-
-HardPhase still(const std::string& name, double duration, const StepInput& input) {
-  return phaseOf(name, duration, [input](double) { return input; });
 }
 
 /// From one command to another, all joints in the same time.
@@ -89,7 +74,7 @@ class RandomDrive {
       to_.joints[j] = from_.joints[j] + std::clamp(place - from_.joints[j], -farthest, farthest);
     }
     for (const Button button : {HelixGrab, Needle, TTag, Cinch})
-      if (nextUniform(random_) < kPress) to_.buttons[button] ^= 1;
+      if (nextUniform(random_) < kPressProbability) to_.buttons[button] ^= 1;
     end_ = begin_ + duration;
   }
 
@@ -187,9 +172,9 @@ HardCase HardCases::random(std::uint64_t seed) const {
 HardCase HardCases::wind() const {
   HardCase hard = begin();
   JointLimits limits = model_->tool->limits()[HelixRotation];
-  limits.upper = std::max(limits.upper, 2 * kPi * (kTurns + 1));
+  limits.upper = std::max(limits.upper, 2 * M_PI * (kTurns + 1));
   Scene scene = model_->scene;
-  scene.helix->reach = std::max(scene.helix->reach, kReach);
+  scene.helix->reach = std::max(scene.helix->reach, kWindReach);
   hard.model = withScene(scene, withJointLimits(urdf_, "helix_rotation", limits));
   insertionAtContact(hard.model, hard.start);
   Simulation simulation(hard.model, SimulationSettings::study(1));
@@ -205,15 +190,15 @@ HardCase HardCases::wind() const {
   hard.start.time = 0;
   const double turns = brief_ ? 4 : kTurns;
   StepInput wound = input, turned, pulled;
-  wound.joints[HelixRotation] += 2 * kPi * turns;
+  wound.joints[HelixRotation] += 2 * M_PI * turns;
   turned = wound;
-  turned.joints[Rotation] += turned.joints[Rotation] > 0 ? -kPi : kPi;
+  turned.joints[Rotation] += turned.joints[Rotation] > 0 ? -M_PI : M_PI;
   pulled = turned;
   pulled.joints[Insertion] -= kWindPull;
   StepInput released = pulled;
   released.buttons[HelixGrab] = 0;
   released.joints[HelixAdvance] = 0;
-  hard.phases.push_back(move("wind", 2 * kPi * turns / (0.95 * limits.velocity), input, wound));
+  hard.phases.push_back(move("wind", 2 * M_PI * turns / (0.95 * limits.velocity), input, wound));
   hard.phases.push_back(move("turn", 1.5, wound, turned));
   hard.phases.push_back(move("pull", 1, turned, pulled));
   hard.phases.push_back(still("hold", 0.5, pulled));

@@ -9,6 +9,9 @@
 
 namespace vibe {
 
+/// Bound of quantities of which any size makes sense, in their unit.
+constexpr double kHuge = 1e12;
+
 /// Typed access to the maps of a case file. Every key must be known to the reader of its map.
 class CaseReader {
  public:

@@ -8,8 +8,6 @@
 namespace vibe {
 namespace {
 
-constexpr double kHuge = 1e12;
-
 void readMaterial(const CaseReader& reader, const YamlField& field, FemCase& out) {
   std::vector<std::string> laws;
   for (const Choice& choice : choicesOf("tissue.law")) laws.push_back(choice.word);

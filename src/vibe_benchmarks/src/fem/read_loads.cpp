@@ -3,8 +3,6 @@
 namespace vibe {
 namespace {
 
-constexpr double kHuge = 1e12;
-
 void readMotion(const CaseReader& reader, const YamlField& field, FemCase& out) {
   SetMotion motion;
   const YamlSource& source = reader.source();

@@ -5,8 +5,6 @@
 namespace vibe {
 namespace {
 
-constexpr double kHuge = 1e12;
-
 void readStatic(const CaseReader& reader, const YamlField& field, FemCase& out) {
   StaticRun run;
   reader.readMap(

@@ -7,7 +7,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kSettling = 10;  // damping until the inflated start is reached [1/s]
+constexpr double kSettlingDamping = 10;  // damping until the inflated start is reached [1/s]
 
 btVector3 toBullet(const Eigen::Vector3d& p) {
   return {static_cast<btScalar>(p.x()), static_cast<btScalar>(p.y()), static_cast<btScalar>(p.z())};
@@ -61,7 +61,7 @@ Trajectory runBullet(const BenchWall& wall, const Pull& pull, int steps_per_fram
   world.air_density = 0;
   world.m_sparsesdf.Initialize();
   const auto body = makeSoftBody(wall, world, iterations);
-  for (int i = 0; i < 120 * steps_per_frame; ++i) advance(wall, step, kSettling, *body);
+  for (int i = 0; i < 120 * steps_per_frame; ++i) advance(wall, step, kSettlingDamping, *body);
   Trajectory trajectory;
   trajectory.frames.push_back(read(wall, *body));
   std::vector<btVector3> from;

@@ -8,10 +8,10 @@
 namespace vibe {
 namespace {
 
-constexpr double kFoundation = 5e3;  // [Pa/m] of the default scene
-constexpr double kExact = 1e-7;      // [m]
-constexpr int kRepeats = 20;         // of each timed operation
-constexpr double kFarthest = 1e3;    // [m] beyond any wall
+constexpr double kFoundation = 5e3;    // [Pa/m] of the default scene
+constexpr double kTolerance = 1e-7;    // [m]
+constexpr int kOperationRepeats = 20;  // of each timed operation
+constexpr double kFarthest = 1e3;      // [m] beyond any wall
 
 /// The disc first, then the held nodes of the body inside the patch.
 std::vector<int> handlesOf(const BenchWall& wall, const std::vector<int>& patch) {
@@ -64,7 +64,7 @@ ResultRow pokeByGradient(const BenchWall& wall, const BodyMotion& start, const B
   GradientWall patch(wall, start, choice);
   BodyMotion motion = start;
   std::vector<double> times;
-  for (int i = 0; i < kRepeats; ++i) {
+  for (int i = 0; i < kOperationRepeats; ++i) {
     const double before = threadMilliseconds();
     patch.move(distance, motion);
     times.push_back(threadMilliseconds() - before);
@@ -98,13 +98,13 @@ std::vector<ResultRow> runPokes(int nodes, std::ostream& log) {
   BenchWall wall = makeWall(nodes);
   for (const double area : vertexAreas(wall.mesh)) wall.body.foundation.push_back(kFoundation * area);
   wall.pull_direction = -wall.pull_direction;
-  const BodyMotion start = inflate(wall, kExact);
+  const BodyMotion start = inflate(wall, kTolerance);
   std::vector<ResultRow> rows;
   for (const double distance : {0.005, 0.010}) {
     log << "wall: poke by " << 1000 * distance << " mm in a foundation\n";
     double force = 0;
     const double before = threadMilliseconds();
-    const BodyMotion equilibrium = pulledEquilibrium(wall, start, distance, kExact, force);
+    const BodyMotion equilibrium = pulledEquilibrium(wall, start, distance, kTolerance, force);
     rows.push_back(pokeRow(distance, nodes, "implicit", "settled"));
     setTimes({threadMilliseconds() - before}, rows.back());
     rows.back().static_error = 0;

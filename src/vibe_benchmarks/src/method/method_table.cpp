@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kParticles = 3618;  // as in the stomach of the paper
 constexpr double kExact = 1e-8;   // [m]
-constexpr int kRepeats = 5;       // of each timed run; the fastest counts
+constexpr int kRunRepeats = 5;    // of each timed run; the fastest counts
 
 // two, three and four iterations first: the goals refer to these
 constexpr StepChoice kChoices[] = {
@@ -106,7 +106,7 @@ void addSettings(const BenchWall& wall, const Truth& truth, bool quick, std::ost
     if (quick && !inQuick(choice)) continue;
     log << "wall: " << choice.name << "\n";
     Trajectory trajectory = update(wall, truth.start, truth.pull, choice);
-    for (int again = 1; again < (quick ? 1 : kRepeats); ++again)
+    for (int again = 1; again < (quick ? 1 : kRunRepeats); ++again)
       keepQuicker(update(wall, truth.start, truth.pull, choice), trajectory);
     addPull(trajectory, truth, "implicit", choice.name, rows);
     rows.back().energy_drift = energyDrift(wall, truth.start, truth.let_go, choice);
@@ -171,7 +171,7 @@ void addGrowth(bool quick, std::ostream& log, std::vector<ResultRow>& rows) {
     const BenchWall wall = makeWall(particles);
     const BodyMotion start = inflate(wall, 1e-6);
     Trajectory trajectory = update(wall, start, Pull{}, kThree, 20);
-    for (int again = 1; again < (quick || particles > 20000 ? 1 : kRepeats); ++again)
+    for (int again = 1; again < (quick || particles > 20000 ? 1 : kRunRepeats); ++again)
       keepQuicker(update(wall, start, Pull{}, kThree, 20), trajectory);
     rows.push_back(rowOf("growth", "implicit", kThree.name, particles));
     setTimes(trajectory.times, rows.back());

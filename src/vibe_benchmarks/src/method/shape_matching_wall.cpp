@@ -10,7 +10,7 @@ namespace vibe {
 namespace {
 
 constexpr int kStepsPerFrame = 17;
-constexpr double kSettling = 2;  // time to reach the inflated start [s]
+constexpr double kSettlingTime = 2;  // time to reach the inflated start [s]
 
 std::shared_ptr<const Model> makeModel(const BenchWall& wall, bool tool_held) {
   auto model = std::make_shared<Model>();
@@ -105,7 +105,7 @@ class MatchedWall {
 
 Trajectory runShapeMatching(const BenchWall& wall, const Pull& pull, int& substeps) {
   MatchedWall body(wall);
-  for (int s = 0; s < static_cast<int>(kSettling / kFrame) * kStepsPerFrame; ++s) body.step(0);
+  for (int s = 0; s < static_cast<int>(kSettlingTime / kFrame) * kStepsPerFrame; ++s) body.step(0);
   Trajectory trajectory;
   trajectory.frames.push_back(body.motion());
   body.holdTool();

@@ -13,9 +13,8 @@
 namespace vibe {
 namespace {
 
-constexpr double kMillimetreOfMercury = 133.322;  // [Pa]
-constexpr double kFlow = 5e-4;                    // of the insufflator: full within seconds [m^3/s]
-constexpr double kLongest = 60;                   // of waiting for equilibrium [s]
+constexpr double kFlow = 5e-4;   // of the insufflator: full within seconds [m^3/s]
+constexpr double kLongest = 60;  // of waiting for equilibrium [s]
 
 std::shared_ptr<const Model> modelFor(Scene scene, const OutcomeTrial& trial, double pressure) {
   scene.geometry.particles = trial.particles;

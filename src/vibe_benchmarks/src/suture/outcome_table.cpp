@@ -3,13 +3,6 @@
 #include "suture/outcome_study.hpp"
 
 namespace vibe {
-namespace {
-
-double percentLess(std::optional<double> before, std::optional<double> now) {
-  return 100 * reduction(before, now).value_or(0);
-}
-
-}  // namespace
 
 void printOutcome(const OutcomeRow& row, std::ostream& out) {
   char line[400];

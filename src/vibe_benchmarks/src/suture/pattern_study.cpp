@@ -11,8 +11,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kMillimetreOfMercury = 133.322;  // [Pa]
-constexpr double kLongestWait = 10;               // [s]
+constexpr double kLongestWait = 10;  // [s]
 constexpr double kLoaded = 15 * kMillimetreOfMercury;
 
 double meanStress(const Model& model, const State& state) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -8,6 +9,8 @@
 #include "vibe_core/scene/scene.hpp"
 
 namespace vibe {
+
+constexpr double kMillimetreOfMercury = 133.322;  ///< [Pa]
 
 /// The stomach at one moment, at equilibrium at a pressure.
 struct PatternMeasures {
@@ -45,6 +48,11 @@ PatternRow runPattern(Scene scene, const SetLayout& layout, double pressure, dou
 /// pressure of the scene, narrow and wide, then the patterns with other tensions and wider. Each row is printed when it
 /// is complete.
 std::vector<PatternRow> studyPatterns(const Scene& scene, bool quick, std::ostream& log);
+
+/// reduction() for a table: 0 where there is none [%].
+inline double percentLess(std::optional<double> before, std::optional<double> now) {
+  return 100 * reduction(before, now).value_or(0);
+}
 
 void printPatterns(const std::vector<PatternRow>& rows, std::ostream& out);
 void writePatterns(const std::vector<PatternRow>& rows, std::ostream& out);  ///< CSV

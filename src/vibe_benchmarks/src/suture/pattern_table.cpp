@@ -4,13 +4,6 @@
 #include "suture/pattern_study.hpp"
 
 namespace vibe {
-namespace {
-
-double percentLess(std::optional<double> before, std::optional<double> now) {
-  return 100 * reduction(before, now).value_or(0);
-}
-
-}  // namespace
 
 void printPatterns(const std::vector<PatternRow>& rows, std::ostream& out) {
   char line[400];
@@ -23,8 +16,8 @@ void printPatterns(const std::vector<PatternRow>& rows, std::ostream& out) {
         line, sizeof line,
         "%-7s %dx%d %5.1f %4.1f %6.0f    | %5.0f %5.0f %5.2f %% | %8.2f %% %9.2f %% | %6.2f %% %6.1f %% | %4.1f to "
         "%4.1f %% %5.1f %% | %4.1f to %4.1f | %4.2f N %4.0f mm | %d torn, %d broken, %d loose, %d recovered%s%s\n",
-        row.layout.pattern.c_str(), row.layout.sets, row.layout.bites, row.pressure / 133.322, row.cinch_tension,
-        1e3 * row.layout.half_width, 1e6 * a.volume, 1e6 * b.volume, percentLess(a.volume, b.volume),
+        row.layout.pattern.c_str(), row.layout.sets, row.layout.bites, row.pressure / kMillimetreOfMercury,
+        row.cinch_tension, 1e3 * row.layout.half_width, 1e6 * a.volume, 1e6 * b.volume, percentLess(a.volume, b.volume),
         percentLess(a.length, b.length), percentLess(a.greater_curvature, b.greater_curvature),
         percentLess(a.mean_area, b.mean_area), percentLess(a.min_area, b.min_area), 100 * row.before.mean_strain,
         100 * row.after.mean_strain, 100 * row.after.high_strain, 1e-3 * row.before.mean_stress,

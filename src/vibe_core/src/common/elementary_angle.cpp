@@ -22,7 +22,7 @@ constexpr Double2 kArc[] = {{0, 0},
                             {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55}};
 
 /// (atan(t) - t) / t, z = t^2 <= 1/256
-double tail(double z) {
+double arctangentTail(double z) {
   const double z2 = z * z;
   return z * (((-1.0 / 3 + z * (1.0 / 5)) + z2 * (-1.0 / 7 + z * (1.0 / 9))) +
               z2 * z2 * ((-1.0 / 11 + z * (1.0 / 13)) + z2 * (-1.0 / 15)));
@@ -37,7 +37,7 @@ Double2 octant(const Double2& a, const Double2& b) {
   const Double2 t = quotient({above.high, above.low - part.low + (a.low - c * b.low)},
                              {below.high, below.low + more.low + (b.low + c * a.low)});
   const Double2 arc = kArc[i.number], sum = fastSum(arc.high, t.high);
-  return fastSum(sum.high, sum.low + (t.low + arc.low + t.high * tail(t.high * t.high)));
+  return fastSum(sum.high, sum.low + (t.low + arc.low + t.high * arctangentTail(t.high * t.high)));
 }
 
 Double2 minus(double high, double low, const Double2& x) {

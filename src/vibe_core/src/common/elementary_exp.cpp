@@ -13,14 +13,14 @@ struct Reduced {
   int exponent;
 };
 
-Reduced reduced(double x) {
+Reduced reducedByLn2(double x) {
   const Rounded n = nearest(x * 0x1.71547652b82fep+0);
   const double start = x - n.value * kLn2High, rest = n.value * kLn2Low, high = start - rest;
   return {high, (start - high) - rest, static_cast<int>(n.number)};
 }
 
 /// exp(r) - 1 - r - r^2 / 2, |r| <= 0.35
-double tail(double r) {
+double exponentialTail(double r) {
   const double r2 = r * r, r4 = r2 * r2;
   const double low = (1.0 / 6 + r * (1.0 / 24)) + r2 * (1.0 / 120 + r * (1.0 / 720));
   const double middle = (1.0 / 5040 + r * (1.0 / 40320)) + r2 * (1.0 / 362880 + r * (1.0 / 3628800));
@@ -41,11 +41,12 @@ struct Growth {
 };
 
 Growth growth(double x) {
-  const Reduced r = reduced(x);
+  const Reduced r = reducedByLn2(x);
   const Double2 one = exactSum(1, r.exponent < 100 ? -powerOfTwo(-r.exponent) : 0);
   const double upper = split(r.high).high;  // its square has no rounding error
   const Double2 start = fastSum(one.high, r.high), next = fastSum(start.high, 0.5 * upper * upper);
-  const double rest = one.low + 0.5 * (r.high - upper) * (r.high + upper) + (r.low * (1 + r.high) + tail(r.high));
+  const double rest =
+      one.low + 0.5 * (r.high - upper) * (r.high + upper) + (r.low * (1 + r.high) + exponentialTail(r.high));
   return {fastSum(next.high, next.low + (start.low + rest)), r.exponent};
 }
 
@@ -57,9 +58,9 @@ double exp(double x) {
     if (x > 709.79) return std::numeric_limits<double>::infinity();
     if (x < -745.2) return 0;
   }
-  const Reduced r = reduced(x);
+  const Reduced r = reducedByLn2(x);
   const Double2 start = fastSum(1, r.high);
-  const double rest = 0.5 * r.high * r.high + tail(r.high);
+  const double rest = 0.5 * r.high * r.high + exponentialTail(r.high);
   return timesPower(start.high + (start.low + (r.low * start.high + rest)), r.exponent);
 }
 

@@ -10,7 +10,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The terms of log((1 + s) / (1 - s)) / s from the second on, of z = s^2 <= 0.0295
-double tail(double z) {
+double logarithmTail(double z) {
   const double z2 = z * z, z4 = z2 * z2;
   const double low = (2.0 / 3 + z * (2.0 / 5)) + z2 * (2.0 / 7 + z * (2.0 / 9));
   const double middle = (2.0 / 11 + z * (2.0 / 13)) + z2 * (2.0 / 15 + z * (2.0 / 17));
@@ -19,14 +19,15 @@ double tail(double z) {
 }
 
 /// log(x 2^more); x.high is positive and normal. With f = m - 1 for x = m 2^k and s = f / (2 + f), log(1 + f) is f -
-/// f^2/2 + s (f^2/2 + tail). f^2/2 is formed from the upper half of f without error.
+/// f^2/2 + s (f^2/2 + logarithmTail). f^2/2 is formed from the upper half of f without error.
 double logOf(const Double2& x, int more = 0) {
   const Scaled m = scaledToOne(x.high);
   const double f = m.factor - 1, upper = split(f).high, half = 0.5 * upper * upper;
   const double rest = 0.5 * (f - upper) * (f + upper), s = f / (2 + f), k = m.exponent + more;
   const Double2 start = fastSum(f, -half), sum = exactSum(k * kLn2High, start.high);
   const double added = x.low == 0 ? 0 : x.low / x.high;
-  return sum.high + (sum.low + (k * kLn2Low + (start.low + (added + (s * (half + rest + tail(s * s)) - rest)))));
+  return sum.high +
+         (sum.low + (k * kLn2Low + (start.low + (added + (s * (half + rest + logarithmTail(s * s)) - rest)))));
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ std::uint64_t bitsFrom(int bit) {
 
 /// x = m 2^e with an integer m. Bits of 2/pi whose product with x is a multiple of 4 do not matter; the next 192 bits
 /// times m, modulo 2^192, are the quadrant (2 bits) and its fraction (190 bits, an error of 2^-137).
-Angle reducedHuge(double x) {
+Angle reducedHugeByHalfPi(double x) {
   const std::uint64_t bits = bitsOf(x);
   const int e = static_cast<int>(bits >> 52 & 0x7ff) - 1075, first = 64 + e - 2;
   const std::uint64_t m = (bits & 0x000fffffffffffff) | 0x0010000000000000;
@@ -76,9 +76,9 @@ Angle reducedHuge(double x) {
 }
 
 /// pi/2 in four parts, the first three of 33 bits: their products with the quadrant are exact.
-Angle reduced(double x) {
+Angle reducedByHalfPi(double x) {
   if (std::abs(x) < 0.785) return {{x, 0}, 0};
-  if (std::abs(x) > 1.6e6) return reducedHuge(x);
+  if (std::abs(x) > 1.6e6) return reducedHugeByHalfPi(x);
   const Rounded n = nearest(x * 0x1.45f306dc9c883p-1);
   const Double2 a = exactSum(x - n.value * 0x1.921fb54400000p+0, -(n.value * 0x1.0b4611a600000p-34));
   const Double2 b = exactSum(a.high, -(n.value * 0x1.3198a2e000000p-69));
@@ -119,7 +119,7 @@ double notANumber(double x) {
 
 /// The sine of an angle `quadrants` later.
 double sineOf(double x, int quadrants) {
-  const Angle angle = reduced(x);
+  const Angle angle = reducedByHalfPi(x);
   const int quadrant = angle.quadrant + quadrants;
   const double value = (quadrant & 1) == 0 ? sine(angle.r).high : cosine(angle.r).high;
   return (quadrant & 2) == 0 ? value : -value;
@@ -139,7 +139,7 @@ double cos(double x) {
 double tan(double x) {
   if (!(std::abs(x) < std::numeric_limits<double>::infinity())) return notANumber(x);
   if (std::abs(x) < 0x1p-27) return x;
-  const Angle angle = reduced(x);
+  const Angle angle = reducedByHalfPi(x);
   const Double2 s = sine(angle.r), c = cosine(angle.r);
   return (angle.quadrant & 1) == 0 ? quotient(s, c).high : -quotient(c, s).high;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/cinching.hpp"
 #include "suture/index_groups.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
@@ -14,14 +15,10 @@ namespace {
 // Of the mean side of a triangle: rays between particles that are evenly spread meet them.
 constexpr double kRayRadius = 0.6;
 
-Eigen::Vector3d placeOf(int i, const State& state) {
-  return {state.x[i], state.y[i], state.z[i]};
-}
-
 double meanSide(const SurfaceMesh& surface, const State& state) {
   double sum = 0;
   for (const auto& t : surface.triangles)
-    for (std::size_t k = 0; k < 3; ++k) sum += (placeOf(t[(k + 1) % 3], state) - placeOf(t[k], state)).norm();
+    for (std::size_t k = 0; k < 3; ++k) sum += (particleAt(t[(k + 1) % 3], state) - particleAt(t[k], state)).norm();
   return sum / (3 * static_cast<double>(surface.triangles.size()));
 }
 
@@ -50,7 +47,7 @@ void findGroup(const Model& model, const State& state, Suture& suture) {
     group.particle.insert(group.particle.end(), particles.begin(), particles.end());
   std::sort(group.particle.begin(), group.particle.end());
   const Eigen::Vector3d middle = middleOf(places);
-  for (int i : group.particle) group.offset.emplace_back(placeOf(i, state) - middle);
+  for (int i : group.particle) group.offset.emplace_back(particleAt(i, state) - middle);
   suture.group = std::move(group);
 }
 
@@ -61,7 +58,7 @@ double groupStrain(const Model& model, const State& state, const TissueGroup& gr
     if (!holds(group, t[0]) && !holds(group, t[1]) && !holds(group, t[2])) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3];
-      const double now = (placeOf(b, state) - placeOf(a, state)).norm();
+      const double now = (particleAt(b, state) - particleAt(a, state)).norm();
       max = std::max(max, std::abs(now / (rest[b] - rest[a]).norm() - 1));
     }
   }
@@ -80,14 +77,15 @@ double drawGroup(double amount, Suture& suture) {
 
 Eigen::Vector3d middleOf(const TissueGroup& group, const State& state) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < group.middle.size(); ++k) sum += group.weight[k] * placeOf(group.middle[k], state);
+  for (std::size_t k = 0; k < group.middle.size(); ++k) sum += group.weight[k] * particleAt(group.middle[k], state);
   return sum;
 }
 
 void slackenGroup(const State& state, TissueGroup& group) {
   if (group.empty()) return;
   const Eigen::Vector3d middle = middleOf(group, state);
-  for (std::size_t k = 0; k < group.particle.size(); ++k) group.offset[k] = placeOf(group.particle[k], state) - middle;
+  for (std::size_t k = 0; k < group.particle.size(); ++k)
+    group.offset[k] = particleAt(group.particle[k], state) - middle;
   group.drawn = 0;
 }
 

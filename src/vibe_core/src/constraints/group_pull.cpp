@@ -1,5 +1,6 @@
 #include "constraints/group_pull.hpp"
 #include "common/turn.hpp"
+#include "constraints/cinching.hpp"
 #include "constraints/group_draw.hpp"
 
 #include <Eigen/Geometry>
@@ -12,10 +13,6 @@ namespace {
 constexpr int kTurns = 4;           // improvements of a rotation; from step to step it changes little
 constexpr double kMaxTurn = 0.5;    // of one improvement [rad]
 constexpr double kMinTurn = 1e-12;  // rounding, not motion [rad]
-
-Eigen::Vector3d placeOf(int i, const State& state) {
-  return {state.x[i], state.y[i], state.z[i]};
-}
 
 // Mueller, Bender, Chentanez, Macklin 2016, "A robust method to extract the rotational part of deformations": also for
 // groups on a line, about which nothing turns.
@@ -43,7 +40,7 @@ void prepareGroup(const Model& model, State& state, int number, PulledGroup& pul
   pulled.from.resize(count);
   pulled.stiffness.resize(count);
   const Eigen::Vector3d middle = middleOf(group, state);
-  for (std::size_t k = 0; k < count; ++k) pulled.from[k] = placeOf(group.particle[k], state) - middle;
+  for (std::size_t k = 0; k < count; ++k) pulled.from[k] = particleAt(group.particle[k], state) - middle;
   turnWith(pulled.from, group.offset);
   for (std::size_t k = 0; k < count; ++k) {
     pulled.goal[k] = (1 - group.drawn) * group.offset[k];
@@ -99,7 +96,7 @@ void GroupPull::report(State& state) const {
     const Eigen::Vector3d middle = middleOf(suture.group, state);
     double sum = 0;
     for (std::size_t k = 0; k < pulled.goal.size(); ++k) {
-      const Eigen::Vector3d now = placeOf(suture.group.particle[k], state) - middle;
+      const Eigen::Vector3d now = particleAt(suture.group.particle[k], state) - middle;
       const Eigen::Vector3d half_way = 0.5 * (pulled.from[k] + now) - pulled.goal[k];
       state.energy.thread_work -= pulled.stiffness[k] * half_way.dot(now - pulled.from[k]);
       sum += pulled.stiffness[k] * (now - pulled.goal[k]).norm();

@@ -1,4 +1,5 @@
 #include "constraints/xpbd_pull.hpp"
+#include "constraints/cinching.hpp"
 #include "constraints/group_draw.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 
@@ -9,10 +10,6 @@ namespace vibe {
 namespace {
 
 constexpr double kShortest = 1e-6;  // segment that has a direction [m]
-
-Eigen::Vector3d placeOf(int i, const State& state) {
-  return {state.x[i], state.y[i], state.z[i]};
-}
 
 // A displacement imposed on a particle is an impulse.
 void shift(int i, const Eigen::Vector3d& by, double substep, State& state) {
@@ -105,7 +102,7 @@ void XpbdPull::applyGroup(const Model& model, int number, double substep, State&
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of the forces on the particles if the middle stayed
   double stiffness = 0, mobility = 0;
   for (std::size_t k = 0; k < group.particle.size(); ++k) {
-    sum += softened(k) * (pulled.goal[k] + middle - placeOf(group.particle[k], state));
+    sum += softened(k) * (pulled.goal[k] + middle - particleAt(group.particle[k], state));
     stiffness += softened(k);
   }
   for (std::size_t k = 0; k < group.middle.size(); ++k)
@@ -114,7 +111,7 @@ void XpbdPull::applyGroup(const Model& model, int number, double substep, State&
   sum += stiffness * back;
   for (std::size_t k = 0; k < group.particle.size(); ++k) {
     const int i = group.particle[k];
-    const Eigen::Vector3d force = softened(k) * (pulled.goal[k] + middle + back - placeOf(i, state));
+    const Eigen::Vector3d force = softened(k) * (pulled.goal[k] + middle + back - particleAt(i, state));
     shift(i, h2 * model.inverse_mass[i] * force, substep, state);
   }
   for (std::size_t k = 0; k < group.middle.size(); ++k)

@@ -10,16 +10,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/bullet_vectors.hpp"
+
 namespace vibe {
 
 namespace {
 
 constexpr double kNoDirection = 1e-15;  // a shorter vector is rounding error and has no direction [m]
-constexpr double kGjkSize = 100;        // diagonal to which a shape is scaled for GJK [Bullet's units]
-
-Eigen::Vector3d toEigen(const btVector3& v) {
-  return {v.x(), v.y(), v.z()};
-}
 
 }  // namespace
 

@@ -29,7 +29,7 @@ constexpr double kFriction = 0.05;
 constexpr double kSlidingSpeed = 5e-3;
 // Stretch of an edge in a step because one of its nodes stops earlier than the other on its path. Design choice: a
 // tenth, which a step can resolve [1].
-constexpr double kStretch = 0.1;
+constexpr double kStretchByStop = 0.1;
 constexpr double kFewer = 1e-3;  // part of it that is not worth another change
 constexpr int kSweeps = 100;     // over the triangles, while stops spread
 // Searches of fast paths until all moves are given up, and those before nodes that still collide are stopped in place.
@@ -74,7 +74,7 @@ double longestEdge(const SurfaceMesh& mesh) {
   return std::sqrt(longest2);
 }
 
-Eigen::Vector3d at(const double* positions4, int node) {
+Eigen::Vector3d nodeOf(const double* positions4, int node) {
   const double* p = positions4 + 4 * static_cast<std::size_t>(node);
   return {p[0], p[1], p[2]};
 }
@@ -311,7 +311,7 @@ void SelfContact::addStiffness(const double* positions4, std::vector<StiffnessCo
 Eigen::Vector3d SelfContact::awayAt(const Pair& pair, const double* positions4) {
   Eigen::Vector3d away = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < 4; ++k)
-    if (pair.node[k] >= 0) away += pair.weight[k] * at(positions4, pair.node[k]);
+    if (pair.node[k] >= 0) away += pair.weight[k] * nodeOf(positions4, pair.node[k]);
   return away;
 }
 
@@ -378,7 +378,7 @@ void SelfContact::spreadStops() {
         int slow = n[k], fast = n[(k + 1) % 3];
         if (m.part[slow] > m.part[fast]) std::swap(slow, fast);
         const double late = m.length[fast] * (m.part[fast] - m.part[slow]);
-        const double allowed = kStretch * (m.position[fast] - m.position[slow]).norm();
+        const double allowed = kStretchByStop * (m.position[fast] - m.position[slow]).norm();
         if (late <= allowed * (1 + kFewer)) continue;
         m.part[fast] = m.part[slow] + allowed / m.length[fast];
         m.move[fast] = m.part[fast] * m.whole[fast];

@@ -8,26 +8,9 @@
 
 namespace vibe {
 
-namespace {
+namespace self_contact {
 
-// Balls, in slacks. Design choice: vertices that move together fast are searched anew once in about ten steps.
-constexpr double kSteps = 5;     // a ball holds for about twice so many steps [1]
-constexpr double kFarthest = 3;  // radius for such a time
-constexpr double kSpare = 0.5;   // of a ball around a faster path: it may end so much farther
-constexpr double kLead = 0.8;    // of a ball ahead of its vertex, in radii
-constexpr double kWide = 1.9;    // radius of a ball that is made smaller, over the one for its vertex now
-// Width of the cones. Design choice: walls whose normals differ by less than a right angle are not compared although
-// both cones are taken off the least cosine of walls that face each other [1].
-constexpr double kTurn = 0.1;
-constexpr double kCoarseTurn = 0.3;  // where cones cannot tell walls apart anyway
-constexpr double kWideTurn = 1.5;    // of a cone that is made smaller in each step, in usual widths
-constexpr float kRounding = 1e-5F;   // of a cosine in single precision: positions to 1e-8 m, edges of millimetres [1]
-constexpr double kSteepest = 0.5;    // sine of a turn below which its chord is at most kChord times as long
-constexpr double kChord = 1.04;
 constexpr std::size_t kGroup = 8;  // triangles
-
-constexpr Eigen::Index kBlock = 128;  // vertices: most blocks of so many need nothing
-using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBlock, 1>;
 using Group = Eigen::Array<float, kGroup, 1>;
 
 struct Vectors {
@@ -38,11 +21,38 @@ struct Vectors {
   Vectors cross(const Vectors& b) const { return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x}; }
 };
 
+}  // namespace self_contact
+
+namespace {
+
+using self_contact::Group;
+using self_contact::kGroup;
+using self_contact::Vectors;
+
+// Balls, in slacks. Design choice: vertices that move together fast are searched anew once in about ten steps.
+constexpr double kSteps = 5;        // a ball holds for about twice so many steps [1]
+constexpr double kFarthest = 3;     // radius for such a time
+constexpr double kFastSpare = 0.5;  // of a ball around a faster path: it may end so much farther
+constexpr double kLead = 0.8;       // of a ball ahead of its vertex, in radii
+constexpr double kWide = 1.9;       // radius of a ball that is made smaller, over the one for its vertex now
+// Width of the cones. Design choice: walls whose normals differ by less than a right angle are not compared although
+// both cones are taken off the least cosine of walls that face each other [1].
+constexpr double kTurn = 0.1;
+constexpr double kCoarseTurn = 0.3;  // where cones cannot tell walls apart anyway
+constexpr double kWideTurn = 1.5;    // of a cone that is made smaller in each step, in usual widths
+constexpr float kCosineRounding =
+    1e-5F;                         // of a cosine in single precision: positions to 1e-8 m, edges of millimetres [1]
+constexpr double kSteepest = 0.5;  // sine of a turn below which its chord is at most kChord times as long
+constexpr double kChord = 1.04;
+
+constexpr Eigen::Index kBlock = 128;  // vertices: most blocks of so many need nothing
+using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBlock, 1>;
+
 Group cosine(const Vectors& area, const Vectors& normal) {
   return area.dot(normal) / area.dot(area).sqrt();
 }
 
-Eigen::Vector3d at(const SelfContactBounds::NodeVectors& x, int vertex) {
+Eigen::Vector3d vectorOf(const SelfContactBounds::NodeVectors& x, int vertex) {
   return {x[0][vertex], x[1][vertex], x[2][vertex]};
 }
 
@@ -66,7 +76,7 @@ void pack(const SelfContactBounds::NodeVectors& x, std::vector<float>& packed) {
 
 /// Of a group of triangles: two edges and their product.
 struct SelfContactBounds::Area {
-  Vectors ab, ac, product;
+  self_contact::Vectors ab, ac, product;
 };
 
 SelfContactBounds::SelfContactBounds(const std::vector<std::array<int, 3>>& triangles, std::vector<int> part,
@@ -109,7 +119,7 @@ bool SelfContactBounds::adapt(const NodeVectors& start, const NodeVectors& end) 
   if (holdAll(end)) return true;
   if (start != end)
     for (const int i : wide_)
-      if (radius_[i] > kWide * radiusFor((at(end, i) - at(start, i)).norm())) square_[i] = -1;
+      if (radius_[i] > kWide * radiusFor((vectorOf(end, i) - vectorOf(start, i)).norm())) square_[i] = -1;
   if (!adaptBalls(start, end)) {
     reset();
     return false;
@@ -177,14 +187,14 @@ void SelfContactBounds::addNeighbours(const NodeVectors& start, const NodeVector
     const int i = static_cast<int>(k);
     if (part_moves_[part_[k]] == 0 || (count > 0 && std::binary_search(moved_.begin(), moved_.begin() + count, i)))
       continue;
-    const Eigen::Vector3d to = at(end, i);
-    if ((to - centre_[k]).dot(to - at(start, i)) > 0) moved_.push_back(i);
+    const Eigen::Vector3d to = vectorOf(end, i);
+    if ((to - centre_[k]).dot(to - vectorOf(start, i)) > 0) moved_.push_back(i);
   }
 }
 
 // Ahead of the vertex, so that it stays in the ball for long.
 void SelfContactBounds::moveBall(int vertex, const NodeVectors& start, const NodeVectors& end) {
-  const Eigen::Vector3d from = at(start, vertex), way = at(end, vertex) - from;
+  const Eigen::Vector3d from = vectorOf(start, vertex), way = vectorOf(end, vertex) - from;
   const double length = way.norm();
   Eigen::Vector3d& centre = centre_[vertex];
   double& radius = radius_[vertex];
@@ -198,7 +208,7 @@ void SelfContactBounds::moveBall(int vertex, const NodeVectors& start, const Nod
 
 // Around a path of a length.
 double SelfContactBounds::radiusFor(double length) const {
-  return std::max(std::clamp(kSteps * length, slack_, kFarthest * slack_), 0.5 * length + kSpare * slack_);
+  return std::max(std::clamp(kSteps * length, slack_, kFarthest * slack_), 0.5 * length + kFastSpare * slack_);
 }
 
 SelfContactBounds::Area SelfContactBounds::areaOf(std::size_t first, const std::vector<float>& at) const {
@@ -241,7 +251,7 @@ void SelfContactBounds::adaptCones(const NodeVectors& start, const NodeVectors& 
     const Vectors bc = to.ac - to.ab;
     const Group longest = to.ab.dot(to.ab).max(to.ac.dot(to.ac)).max(bc.dot(bc));
     const Group height = (to.product.dot(to.product) / longest).sqrt();
-    const Group rest = load(turn_) - (2 - 2 * last + kRounding).max(0).sqrt();
+    const Group rest = load(turn_) - (2 - 2 * last + kCosineRounding).max(0).sqrt();
     const Group spare = height * rest.min(static_cast<float>(kSteepest)) / static_cast<float>(2 * kChord);
     const auto held = least >= load(cosine_);
     still = held.select(still.min(spare), still);
@@ -257,9 +267,9 @@ void SelfContactBounds::adaptCones(const NodeVectors& start, const NodeVectors& 
 // @returns how far its vertices may move then, in heights
 float SelfContactBounds::turnCone(int triangle, const NodeVectors& start, const NodeVectors& end) {
   const auto& t = triangles_[triangle];
-  const Eigen::Vector3d a = at(start, t[0]), d = at(end, t[0]);
-  const Eigen::Vector3d ab = at(start, t[1]) - a, ac = at(start, t[2]) - a, de = at(end, t[1]) - d,
-                        df = at(end, t[2]) - d;
+  const Eigen::Vector3d a = vectorOf(start, t[0]), d = vectorOf(end, t[0]);
+  const Eigen::Vector3d ab = vectorOf(start, t[1]) - a, ac = vectorOf(start, t[2]) - a, de = vectorOf(end, t[1]) - d,
+                        df = vectorOf(end, t[2]) - d;
   const Eigen::Vector3d from = ab.cross(ac).normalized(), to = de.cross(df).normalized(),
                         middle = (ab.cross(df) + de.cross(ac)).normalized();
   const Eigen::Vector3d normal = (from + to).normalized();
@@ -271,7 +281,7 @@ float SelfContactBounds::turnCone(int triangle, const NodeVectors& start, const 
   cone_[triangle] = {normal.cast<float>(), static_cast<float>(turn)};
   for (int k = 0; k < 3; ++k) normal_[k][triangle] = static_cast<float>(normal[k]);
   turn_[triangle] = static_cast<float>(turn);
-  cosine_[triangle] = static_cast<float>(1 - 0.5 * turn * turn) + kRounding;
+  cosine_[triangle] = static_cast<float>(1 - 0.5 * turn * turn) + kCosineRounding;
   if (turn > kWideTurn * usual) {
     any_wide_cone_ = true;
     cosine_[triangle] = 2;

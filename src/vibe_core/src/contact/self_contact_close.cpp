@@ -19,10 +19,6 @@ bool isSame(const ClosePoints& a, const ClosePoints& b) {
   return a.split == b.split && a.node == b.node;
 }
 
-bool has(const std::array<int, 3>& triangle, int vertex) {
-  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
-}
-
 }  // namespace
 
 const std::vector<ClosePoints>& SelfContactClose::find(const std::vector<Pair>& pairs,
@@ -63,7 +59,7 @@ void SelfContactClose::addVertices(int of, int triangle) {
   std::array<int, 3> n = triangles_[triangle];
   std::sort(n.begin(), n.end());
   for (const int v : triangles_[of]) {
-    if (has(n, v)) continue;
+    if (hasVertex(n, v)) continue;
     const TriangleFoot foot = triangleFoot(at(v), at(n[0]), at(n[1]), at(n[2]));
     if (!(foot.away.squaredNorm() < distance_ * distance_)) continue;
     ClosePoints close{{v, kNone, kNone, kNone}, 1, {1, 0, 0, 0}, foot.away, 1, false};
@@ -116,7 +112,7 @@ bool SelfContactClose::isNearest(const ClosePoints& place) const {
   bool nearest = true;
   rings_.visit(place.node[1], [&](int t) {
     const auto& n = triangles_[t];
-    if (!nearest || (place.node[2] != kNone && !has(n, place.node[2]))) return;
+    if (!nearest || (place.node[2] != kNone && !hasVertex(n, place.node[2]))) return;
     nearest = triangleFoot(vertex, at(n[0]), at(n[1]), at(n[2])).away.squaredNorm() >= least;
   });
   return nearest;

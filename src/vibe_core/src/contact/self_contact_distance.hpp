@@ -2,8 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 
 namespace vibe {
+
+inline bool hasVertex(const std::array<int, 3>& triangle, int vertex) {
+  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+}
 
 /// The point of a triangle nearest to p.
 struct TriangleFoot {

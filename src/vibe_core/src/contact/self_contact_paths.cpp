@@ -9,15 +9,15 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRounds = 5;        // of shortening, before nodes that still collide are stopped in place
-constexpr int kStops = 200;       // rounds of stopping, before all nodes are stopped
-constexpr int kAdvances = 30;     // steps towards a collision
-constexpr double kEnough = 1e-3;  // part of a path below which an advance is the last
-constexpr double kNearest = 0.9;  // remaining fraction of a distance below the floor
-constexpr double kLeast = 1e-6;   // distance that never gets smaller: far above rounding [m]
+constexpr int kRounds = 5;               // of shortening, before nodes that still collide are stopped in place
+constexpr int kStopRounds = 200;         // rounds of stopping, before all nodes are stopped
+constexpr int kCollisionSteps = 30;      // steps towards a collision
+constexpr double kEnough = 1e-3;         // part of a path below which an advance is the last
+constexpr double kKeptShare = 0.9;       // remaining fraction of a distance below the floor
+constexpr double kLeastDistance = 1e-6;  // distance that never gets smaller: far above rounding [m]
 // Distance of parts of one wall. Design choice: so small that a part without overhang does not come so near to itself
 // unless its triangles degenerate, and need not be searched [m].
-constexpr double kLeastInWall = 1e-5;
+constexpr double kLeastDistanceInWall = 1e-5;
 constexpr double kTouching = 1e-10;  // nearer parts touch from the start, and are let go [m]
 
 using Points = std::array<Eigen::Vector3d, 4>;
@@ -30,15 +30,11 @@ double volume6(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::
   return (b - a).cross(c - a).dot(d - a);
 }
 
-bool pierces(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-             const Eigen::Vector3d& c) {
+bool piercesTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& a,
+                     const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   if (volume6(a, b, c, p) * volume6(a, b, c, q) >= 0) return false;
   const double ab = volume6(p, q, a, b), bc = volume6(p, q, b, c), ca = volume6(p, q, c, a);
   return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
-}
-
-bool has(const std::array<int, 3>& triangle, int vertex) {
-  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
 }
 
 }  // namespace
@@ -56,7 +52,7 @@ bool SelfContactPaths::shorten(const std::vector<Eigen::Vector3d>& start, const 
   news_.assign(start.size(), 1);
   next_news_.assign(start.size(), 0);
   bool any = false;
-  for (int round = 0; round < kRounds + kStops; ++round) {
+  for (int round = 0; round < kRounds + kStopRounds; ++round) {
     bool shortened = false;
     for (const auto& [one, other] : pairs_)
       if ((isNews(one) || isNews(other)) && !keepsApart(one, other))
@@ -131,7 +127,9 @@ bool SelfContactPaths::crosses(int one, int other) const {
   const auto anyEdge = [&](const std::array<int, 3>& edges, const std::array<int, 3>& face) {
     for (int k = 0; k < 3; ++k) {
       const int p = edges[k], q = edges[(k + 1) % 3];
-      if (!has(face, p) && !has(face, q) && pierces(at[p], at[q], at[face[0]], at[face[1]], at[face[2]])) return true;
+      if (!hasVertex(face, p) && !hasVertex(face, q) &&
+          piercesTriangle(at[p], at[q], at[face[0]], at[face[1]], at[face[2]]))
+        return true;
     }
     return false;
   };
@@ -148,8 +146,8 @@ bool SelfContactPaths::shortenPair(int one, int other, bool stop) {
   const std::array<int, 3>&a = triangles_[one], &b = triangles_[other];
   bool any = false;
   for (int k = 0; k < 3; ++k) {
-    if (!has(b, a[k])) any = shortenPrimitive({{a[k], b[0], b[1], b[2]}, 1}, stop) || any;
-    if (!has(a, b[k])) any = shortenPrimitive({{b[k], a[0], a[1], a[2]}, 1}, stop) || any;
+    if (!hasVertex(b, a[k])) any = shortenPrimitive({{a[k], b[0], b[1], b[2]}, 1}, stop) || any;
+    if (!hasVertex(a, b[k])) any = shortenPrimitive({{b[k], a[0], a[1], a[2]}, 1}, stop) || any;
     const int p = a[k], q = a[(k + 1) % 3];
     for (int l = 0; l < 3; ++l) {
       const int r = b[l], s = b[(l + 1) % 3];
@@ -182,10 +180,10 @@ double SelfContactPaths::freePart(const Primitive& primitive) const {
   Eigen::Vector3d away = connection(at, primitive.split);
   double distance = away.norm();
   if (distance < kTouching) return 1;
-  const double least = isOneWall(primitive) ? kLeastInWall : std::max(kLeast, floor_);
-  const double floor = std::min(distance, std::max(kLeast, std::min(least, kNearest * distance)));
+  const double least = isOneWall(primitive) ? kLeastDistanceInWall : std::max(kLeastDistance, floor_);
+  const double floor = std::min(distance, std::max(kLeastDistance, std::min(least, kKeptShare * distance)));
   double part = 0;
-  for (int advance = 0; advance < kAdvances; ++advance) {
+  for (int advance = 0; advance < kCollisionSteps; ++advance) {
     double next = 2;
     for (int i = 0; i < primitive.split; ++i)
       for (int j = primitive.split; j < 4; ++j) {

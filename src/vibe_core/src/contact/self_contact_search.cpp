@@ -12,7 +12,7 @@ namespace {
 
 // Distance for which near vertices are listed, over the one that is asked for, and how much shorter the latter may get.
 // Design choice: the distance changes with the speed of the walls, and a new list costs much.
-constexpr double kSpare = 1.05, kTooFar = 0.3;
+constexpr double kListedOverAsked = 1.05, kTooFar = 0.3;
 // Entries of a list for which there is memory from the start. Design choice: those of a surface with a few folds.
 constexpr std::size_t kPerTriangle = 4;
 constexpr float kRoundedDown = 1 - 1e-6F, kRoundedUp = 1 + 1e-6F;  // of a distance in single precision
@@ -61,7 +61,7 @@ bool SelfContactSearch::adapt(const NodeVectors& start, const NodeVectors& end, 
     return false;
   }
   if (bounds_.moved().empty() && bounds_.turned().empty()) return true;
-  if (all) distance_ = kSpare * distance;
+  if (all) distance_ = kListedOverAsked * distance;
   ++count_;
   tree_.adapt(bounds_, all);
   tree_.visitChanges([this](int t) { bounds_.setCoarse(t, tree_.isRough(t)); });

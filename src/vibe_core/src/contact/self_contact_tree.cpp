@@ -16,12 +16,12 @@ constexpr int kLargestGraph = 64;  // triangles of a part that may count as free
                                    // wide as the part of the surface that counts as one wall
 constexpr float kLeastHeight = 0.1F;  // smallest cosine between normals and the direction without overhangs
 
-constexpr int kPart = 64;             // triangles of a part that is renewed together. Design choice: about 10 mm wide
-constexpr float kRounding = 2.4e-7F;  // of a position in single precision, twice over [1]
+constexpr int kPartTriangles = 64;  // triangles of a part that is renewed together. Design choice: about 10 mm wide
+constexpr float kPositionRounding = 2.4e-7F;  // of a position in single precision, twice over [1]
 
-using Box = SelfContactTree::Box;
+using TreeBox = SelfContactTree::Box;
 
-Box joinBoxes(const Box& a, const Box& b) {
+TreeBox joinBoxes(const TreeBox& a, const TreeBox& b) {
   return {a.low.min(b.low), a.minus_high.min(b.minus_high)};
 }
 
@@ -117,7 +117,7 @@ std::vector<int> SelfContactTree::parts() const {
   int count = 0;
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     const Node& node = nodes_[n];
-    if (node.count > kPart || (n > 0 && nodes_[parent_[n]].count <= kPart)) continue;
+    if (node.count > kPartTriangles || (n > 0 && nodes_[parent_[n]].count <= kPartTriangles)) continue;
     for (int i = node.first; i < node.first + node.count; ++i)
       for (const int v : triangles_[order_[i]]) part[v] = count;
     ++count;
@@ -165,13 +165,13 @@ void SelfContactTree::mark(int triangle, char change) {
 
 void SelfContactTree::encloseTriangle(int triangle, const SelfContactBounds& bounds) {
   if ((changed_[triangle] & kBox) != 0) {
-    Box& box = box_[triangle];
+    TreeBox& box = box_[triangle];
     for (std::size_t k = 0; k < 3; ++k) {
       const int v = triangles_[triangle][k];
       Eigen::Array4f centre = Eigen::Array4f::Zero(), radius = Eigen::Array4f::Zero();
       centre.head<3>() = bounds.centre()[v].cast<float>().array();
-      radius.head<3>() = kRounding * centre.head<3>().abs() + static_cast<float>(bounds.radius(v));
-      const Box ball{centre - radius, -centre - radius};
+      radius.head<3>() = kPositionRounding * centre.head<3>().abs() + static_cast<float>(bounds.radius(v));
+      const TreeBox ball{centre - radius, -centre - radius};
       box = k == 0 ? ball : joinBoxes(box, ball);
     }
   }

@@ -12,16 +12,16 @@ namespace {
 // Points between vertices are as dense as it takes to keep the mid-surface farther from the shape than this share of
 // half the wall while they touch. Design choice: far from crossing, and a scope in a stomach of a few thousand
 // particles needs none [1].
-constexpr double kLeast = 0.25;
+constexpr double kKeptBetweenVertices = 0.25;
 // Where a triangle is nearer than this share of half the wall, its nearest point is a contact as well, which keeps
-// kLeast. Design choice: what points between vertices are meant to keep, and more than what the guard of the tool does
-// (tool_guard) [1].
+// kKeptBetweenVertices. Design choice: what points between vertices are meant to keep, and more than what the guard of
+// the tool does (tool_guard) [1].
 constexpr double kNearestPoint = 0.5;
 // Least weight of vertices that can give way at such a point [1].
 constexpr double kGivesWay = 0.1;
 // Stretch of the wall for which that is so at least, so that edges have the same points from step to step; points are
 // added where the wall is stretched more. Design choice: that of an insufflated stomach [1].
-constexpr double kStretch = 1.15;
+constexpr double kUsualStretch = 1.15;
 // Parts of a triangle through which a shape already passes, because it was put there: points within are pushed aside.
 constexpr int kPierced = 4;
 // Most parts into which an edge is divided. Design choice: a needle of half a millimetre in a mesh of 10 mm.
@@ -30,7 +30,7 @@ constexpr int kMaxParts = 8;
 // has none. Design choice [1].
 constexpr double kDeepest = 0.5;
 // The same where a shape has no radius, over half the thickness of the wall [1].
-constexpr double kNearest = 0.5;
+constexpr double kDeepestInWall = 0.5;
 // Cosine of the angle between normals of two shapes at one place above which the deeper contact replaces the other.
 // Design choice: 45 degrees [1].
 constexpr double kSameSide = 0.7;
@@ -131,7 +131,8 @@ void SurfaceContacts::followPairs(const SurfacePath& path, double margin, std::s
     const auto [shape, t] = near_[k];
     const std::array<int, 3>& n = triangles_[t];
     const double radius = tool_.radius(shape);
-    const double floor = std::max(kDeepest * radius, kNearest * halfThickness(n, Eigen::Vector3d::Constant(1. / 3)));
+    const double floor =
+        std::max(kDeepest * radius, kDeepestInWall * halfThickness(n, Eigen::Vector3d::Constant(1. / 3)));
     const Pair pair{t, approach(tool_, shape, path, n, floor)};
     if (pair.approach.fraction == 1 && pair.approach.nearest - radius - max_half_thickness_ > margin) continue;
     pair_of_[t] = static_cast<int>(pairs_.size());
@@ -165,7 +166,7 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
     for (std::size_t k = 0; k < 3; ++k) {
       const double length = (path.start(n[(k + 1) % 3]) - path.start(n[k])).norm();
       const int parts =
-          partsOf(shape, std::max(length, kStretch * length_[static_cast<std::size_t>(pair.triangle)][k]));
+          partsOf(shape, std::max(length, kUsualStretch * length_[static_cast<std::size_t>(pair.triangle)][k]));
       most = std::max(most, parts);
       const int across = neighbour_[pair.triangle][k];
       if (isDrawnIn(shape, {n[k], n[(k + 1) % 3]}, excluded)) continue;
@@ -188,7 +189,7 @@ void SurfaceContacts::addNearest(int shape, const std::vector<char>& excluded) {
     for (std::size_t k = 0; k < 3; ++k)
       if (excluded[n[k]] == 0) gives_way += gap.weight[static_cast<int>(k)];
     if (gives_way < kGivesWay) continue;
-    add({3, n, {gap.weight[0], gap.weight[1], gap.weight[2]}}, shape, 0, gap, kLeast * half);
+    add({3, n, {gap.weight[0], gap.weight[1], gap.weight[2]}}, shape, 0, gap, kKeptBetweenVertices * half);
   }
 }
 
@@ -196,7 +197,7 @@ void SurfaceContacts::addNearest(int shape, const std::vector<char>& excluded) {
 // touching^2 - sum over edges of w_j w_k length^2, because the square of the distance from a convex set grows no faster
 // than that from a point. In the middle of an even triangle the sum is length^2 / 3.
 int SurfaceContacts::partsOf(int shape, double length) const {
-  const double radius = tool_.radius(shape), touching = radius + half_, least = radius + kLeast * half_;
+  const double radius = tool_.radius(shape), touching = radius + half_, least = radius + kKeptBetweenVertices * half_;
   const double spacing = std::sqrt(3 * (touching * touching - least * least));
   return std::clamp(static_cast<int>(std::ceil(length / spacing)), 1, kMaxParts);
 }

@@ -7,10 +7,10 @@ namespace vibe {
 
 namespace {
 
-constexpr int kAdvances = 40;     // steps towards a contact; each takes nine tenths of what is free
-constexpr double kAdvance = 0.9;  // of the distance above the floor per step [1]
-constexpr double kKept = 0.1;     // of that distance at the start, at which an approach ends [1]
-constexpr double kAim = 0.5;      // of that, at which steps along straight lines aim [1]
+constexpr int kApproachSteps = 40;      // steps towards a contact; each takes nine tenths of what is free
+constexpr double kApproachShare = 0.9;  // of the distance above the floor per step [1]
+constexpr double kKeptAtEnd = 0.1;      // of that distance at the start, at which an approach ends [1]
+constexpr double kAim = 0.5;            // of that, at which steps along straight lines aim [1]
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
@@ -36,7 +36,7 @@ double freeUntil(const SweptTool& tool, int shape, const SurfacePath& path, cons
   const double left = 1 - now.fraction;
   if (!tool.hasSegment(shape)) {
     const double free = now.gap.distance - floor, speed = closingDistance(tool, shape, path, triangle);
-    return free >= left * speed ? 1 : std::min(1.0, now.fraction + kAdvance * free / speed);
+    return free >= left * speed ? 1 : std::min(1.0, now.fraction + kApproachShare * free / speed);
   }
   const auto from = tool.segment(shape, now.fraction), to = tool.segment(shape, 1);
   double part = 1;
@@ -61,8 +61,8 @@ ToolApproach approach(const SweptTool& tool, int shape, const SurfacePath& path,
   result.gap = tool.gap(shape, 0, triangleAt(path, triangle, 0));
   result.start = result.gap;
   result.nearest = result.gap.distance;
-  const double kept = kKept * (result.gap.distance - floor);
-  for (int advance = 0; advance < kAdvances && result.fraction < 1; ++advance) {
+  const double kept = kKeptAtEnd * (result.gap.distance - floor);
+  for (int advance = 0; advance < kApproachSteps && result.fraction < 1; ++advance) {
     const double free = result.gap.distance - floor;
     if (free <= 0 || (advance > 0 && free < kept)) break;
     const double next = freeUntil(tool, shape, path, triangle, result, floor, floor + kAim * kept);

@@ -13,7 +13,7 @@ bool isInside(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper, double
   return x >= lower.x() && x <= upper.x() && y >= lower.y() && y <= upper.y() && z >= lower.z() && z <= upper.z();
 }
 
-btTransform toBullet(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {
+btTransform bulletTransform(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {
   const Eigen::Matrix<btScalar, 3, 3> r = rotation.cast<btScalar>();
   const Eigen::Matrix<btScalar, 3, 1> t = translation.cast<btScalar>();
   return btTransform(btMatrix3x3(r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)),
@@ -44,7 +44,7 @@ ToolCollision::Box ToolCollision::placeBoxes(double reach) {
     PlacedShape& placed = placed_[s];
     btVector3 lower, upper;
     // around the origin, then moved in double precision: Bullet's scalar may be a float
-    const btTransform turned = toBullet(placed.rotation, Eigen::Vector3d::Zero());
+    const btTransform turned = bulletTransform(placed.rotation, Eigen::Vector3d::Zero());
     model_->shapes()[s].shape->getAabb(turned, lower, upper);
     const double grown = reach + 1e-6 * (upper - lower).length();  // more than the rounding error of a float
     placed.box.lower = placed.translation + Eigen::Vector3d(lower.x(), lower.y(), lower.z());

@@ -9,17 +9,17 @@ namespace {
 
 // Share of the wall's thickness that stays between a shape and the mid-surface. Design choice: far below what
 // contacts keep, far above rounding and what a joint's path differs from a straight one [1].
-constexpr double kKept = 0.05;
+constexpr double kKeptThickness = 0.05;
 // What is nearer already may come nearer by a tenth in a step, and never meets [1].
 constexpr double kNearer = 0.9;
 // Where less than this share of the thickness is left, only rounding may bring the two nearer: a distance that shrinks
 // by a part of itself in every step would become too small to get free from [1].
-constexpr double kLeast = 1e-3, kHardlyNearer = 1 - 1e-6;
+constexpr double kLeastThickness = 1e-3, kHardlyNearer = 1 - 1e-6;
 // Attempts to stop the tool on its way before it stays where it was. Design choice: each costs a search.
-constexpr int kStops = 4;
+constexpr int kStopAttempts = 4;
 // Share of the free part of the way that the tool takes. Design choice: leaves a distance from which the next step can
 // go on [1].
-constexpr double kPart = 0.9;
+constexpr double kTakenShare = 0.9;
 // Parts of what is left of its way that a joint tries. Design choice: each costs a search [1].
 constexpr std::array<double, 2> kJointParts{1, 0.25};
 
@@ -35,8 +35,8 @@ double ToolGuard::keepApart(ToolPoses& poses, ToolMotion& motion, const SurfaceP
   double free = freePart(poses, motion, path);
   if (free == 1) return 1;
   const ToolMotion wanted = motion;
-  for (int stop = 1; free < 1 && stop <= kStops; ++stop) {
-    motion.stop(stop < kStops ? kPart * free : 0);
+  for (int stop = 1; free < 1 && stop <= kStopAttempts; ++stop) {
+    motion.stop(stop < kStopAttempts ? kTakenShare * free : 0);
     free = freePart(poses, motion, path);
   }
   SurfacePath rest = path;
@@ -63,7 +63,7 @@ void ToolGuard::moveJoints(ToolPoses& poses, const ToolMotion& wanted, const Sur
 double ToolGuard::freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path) {
   motion.linkPoses(1, poses.end);
   tool_.place(poses.start, poses.end);
-  near_.find(tool_, path, kKept * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
+  near_.find(tool_, path, kKeptThickness * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
   double part = 1;
   for (const NearTriangles::Pair& pair : pairs_)
     if (!isDrawnIn(pair)) part = std::min(part, freePart(pair, path));
@@ -83,8 +83,9 @@ double ToolGuard::freePart(const NearTriangles::Pair& pair, const SurfacePath& p
   const TriangleGap gap = tool_.gap(pair.shape, 0, {path.start(n[0]), path.start(n[1]), path.start(n[2])});
   const double thinnest = std::min({thickness_[n[0]], thickness_[n[1]], thickness_[n[2]]});
   if (gap.distance == 0) return 1;  // they crossed before
-  const double outside = gap.distance - radius, nearer = outside > kLeast * thinnest ? kNearer : kHardlyNearer;
-  const double floor = outside > 0 ? radius + std::min(kKept * thinnest, nearer * outside) : kNearer * gap.distance;
+  const double outside = gap.distance - radius, nearer = outside > kLeastThickness * thinnest ? kNearer : kHardlyNearer;
+  const double floor =
+      outside > 0 ? radius + std::min(kKeptThickness * thinnest, nearer * outside) : kNearer * gap.distance;
   return approach(tool_, pair.shape, path, n, floor).fraction;
 }
 

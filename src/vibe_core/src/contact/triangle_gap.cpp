@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/bullet_vectors.hpp"
 #include "contact/self_contact_distance.hpp"
 
 namespace vibe {
@@ -18,8 +19,7 @@ namespace {
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
-constexpr double kNoDirection = 1e-12;  // a shorter vector is rounding error and has no direction [m]
-constexpr double kGjkSize = 100;        // diagonal to which shapes are scaled for GJK, see PointDistance::byGjk()
+constexpr double kNoSeparation = 1e-12;  // a shorter vector is rounding error and has no direction [m]
 
 struct Nearest {
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();
@@ -63,7 +63,7 @@ TriangleGap gapOf(const Nearest& nearest) {
   gap.weight = nearest.weight;
   gap.core = nearest.core;
   gap.distance = std::sqrt(nearest.distance2);
-  if (gap.distance > kNoDirection)
+  if (gap.distance > kNoSeparation)
     gap.normal = nearest.away / gap.distance;
   else
     gap.distance = 0;
@@ -85,15 +85,6 @@ bool pierces(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Triangle&
   gap.weight = {1 - v - w, v, w};
   gap.core = a + s * u;
   return true;
-}
-
-btVector3 toBullet(const Eigen::Vector3d& p, double scale) {
-  return {static_cast<btScalar>(scale * p.x()), static_cast<btScalar>(scale * p.y()),
-          static_cast<btScalar>(scale * p.z())};
-}
-
-Eigen::Vector3d toEigen(const btVector3& v) {
-  return {v.x(), v.y(), v.z()};
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ constexpr double kMostCells = 4e6;
 
 // A point nearer to the plane of a triangle than this share of the size is in it. Design choice: above the rounding
 // error of coordinates that are a hundred times as large, and far below a nanometre [1].
-constexpr double kRounding = 1e-12;
+constexpr double kInPlane = 1e-12;
 
 /// Six times the signed volume of a tetrahedron [m^3].
 double volumeOf(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
@@ -42,7 +42,7 @@ bool shareVertex(const std::array<int, 3>& a, const std::array<int, 3>& b) {
 bool segmentPierces(const Eigen::Vector3d& begin, const Eigen::Vector3d& end,
                     const std::array<Eigen::Vector3d, 3>& triangle) {
   const auto& [a, b, c] = triangle;
-  const double rounding = kRounding * (b - a).norm() * (c - a).norm() * (end - begin).norm();
+  const double rounding = kInPlane * (b - a).norm() * (c - a).norm() * (end - begin).norm();
   const double from = volumeOf(a, b, c, begin), to = volumeOf(a, b, c, end);
   if (!(std::min(from, to) < -rounding && std::max(from, to) > rounding)) return false;
   const double ab = volumeOf(begin, end, a, b), bc = volumeOf(begin, end, b, c), ca = volumeOf(begin, end, c, a);

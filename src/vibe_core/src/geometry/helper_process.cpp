@@ -63,22 +63,22 @@ pid_t spawn(const std::filesystem::path& program, const std::vector<std::string>
   return child;
 }
 
-enum class Reading { Complete, TooLong, TooLarge };
+enum class ReadResult { Complete, TooLong, TooLarge };
 
 /// Appends to `bytes` until the program closes its end of the pipe or a limit is reached.
-Reading readAll(int pipe, const WorkLimits& limits, std::string& bytes) {
+ReadResult readAll(int pipe, const WorkLimits& limits, std::string& bytes) {
   const auto end = Clock::now() + std::chrono::seconds(limits.seconds);
   std::array<char, 1 << 16> part;
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
-    if (left <= 0) return Reading::TooLong;
+    if (left <= 0) return ReadResult::TooLong;
     pollfd waiting{pipe, POLLIN, 0};
     if (poll(&waiting, 1, static_cast<int>(std::min<long>(left, 1000))) <= 0) continue;
     const ssize_t count = read(pipe, part.data(), part.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return Reading::Complete;
+    if (count <= 0) return ReadResult::Complete;
     bytes.append(part.data(), static_cast<std::size_t>(count));
-    if (bytes.size() > limits.memory) return Reading::TooLarge;
+    if (bytes.size() > limits.memory) return ReadResult::TooLarge;
   }
 }
 
@@ -105,12 +105,12 @@ std::string runHelper(const std::filesystem::path& program, const std::vector<st
   }
   close(ends[1]);
   std::string answer;
-  const Reading reading = readAll(ends[0], limits, answer);
+  const ReadResult reading = readAll(ends[0], limits, answer);
   close(ends[0]);
-  if (reading != Reading::Complete) kill(child, SIGKILL);
+  if (reading != ReadResult::Complete) kill(child, SIGKILL);
   const int status = waitFor(child);
-  if (reading == Reading::TooLong) throw Error("it takes more than " + std::to_string(limits.seconds) + " s");
-  if (reading == Reading::TooLarge)
+  if (reading == ReadResult::TooLong) throw Error("it takes more than " + std::to_string(limits.seconds) + " s");
+  if (reading == ReadResult::TooLarge)
     throw Error("its surface needs more than " + std::to_string(limits.memory) + " bytes");
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw Error("its content stops the reader");
   return answer;

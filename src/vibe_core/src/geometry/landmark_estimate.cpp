@@ -35,7 +35,7 @@ double ramp(double value, double nothing, double all) {
   return std::clamp((value - nothing) / (all - nothing), 0.0, 1.0);
 }
 
-std::vector<int> verticesWithin(const SurfaceMesh& mesh, const Eigen::Vector3d& centre, double radius) {
+std::vector<int> verticesInBall(const SurfaceMesh& mesh, const Eigen::Vector3d& centre, double radius) {
   std::vector<int> list;
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v)
     if ((mesh.vertices[v] - centre).norm() <= radius) list.push_back(v);
@@ -52,7 +52,7 @@ std::vector<double> lumenWidths(const SurfaceMesh& mesh, double around) {
     across.push_back(tree.firstHit(mesh.vertices[v] - kOffWall * around * normals[v], -normals[v]));
   for (const Eigen::Vector3d& centre : mesh.vertices) {
     std::vector<double> near;
-    for (int v : verticesWithin(mesh, centre, around)) near.push_back(across[v]);
+    for (int v : verticesInBall(mesh, centre, around)) near.push_back(across[v]);
     const auto quarter = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 4);
     std::nth_element(near.begin(), quarter, near.end());
     widths.push_back(*quarter);
@@ -70,8 +70,8 @@ class Reading {
         apex_(highest(mesh, width, size_)),
         far_(farthest(mesh, apex_, width)),
         far_width_(width[far_]),
-        axis_(mesh, verticesWithin(mesh, mesh.vertices[apex_], kPatch * size_),
-              verticesWithin(mesh, mesh.vertices[far_], kPatch * size_), std::vector<bool>(mesh.vertices.size()),
+        axis_(mesh, verticesInBall(mesh, mesh.vertices[apex_], kPatch * size_),
+              verticesInBall(mesh, mesh.vertices[far_], kPatch * size_), std::vector<bool>(mesh.vertices.size()),
               Eigen::Vector3d::UnitX()) {
     findLesserCurvature();
   }

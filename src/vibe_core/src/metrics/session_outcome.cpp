@@ -19,8 +19,8 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-// 17 digits give back the same bits; JSON has no word for what is not a number.
-std::string number(const std::optional<double>& value) {
+// 17 digits give back the same bits; JSON has no word for what is not a jsonNumber.
+std::string jsonNumber(const std::optional<double>& value) {
   if (!value) return "null";
   char text[32];
   std::snprintf(text, sizeof text, "%.17g", *value);
@@ -30,7 +30,7 @@ std::string number(const std::optional<double>& value) {
 std::string measureLines(const std::vector<Measure>& measures) {
   std::string text;
   for (const Measure& m : measures)
-    text += (text.empty() ? "\n    " : ",\n    ") + quoted(m.name) + ": {\"value\": " + number(m.value) +
+    text += (text.empty() ? "\n    " : ",\n    ") + quoted(m.name) + ": {\"value\": " + jsonNumber(m.value) +
             ", \"unit\": " + quoted(m.unit) + "}";
   return text;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/constants.hpp"
 #include "common/elementary.hpp"
 #include "geometry/triangle_tree.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 constexpr int kSamples = 64;        // of the path; 0.2 mm apart on that of the needle; design choice
 constexpr double kOnEdge = 1e-6;    // barycentric coordinate below which a point lies on an edge
 constexpr double kTouching = 1e-9;  // [m]
-constexpr double kPi = 3.14159265358979323846;
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 

@@ -3,7 +3,6 @@
 namespace vibe {
 namespace {
 
-constexpr const char* kChoice = "design choice";
 constexpr const char* kNoRate = "design choice, no rate is published";
 
 std::vector<SchemaRow> helixRows() {

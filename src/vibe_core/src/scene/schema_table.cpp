@@ -9,7 +9,6 @@ constexpr double kLargestSeed = 9007199254740991;  // 2^53 - 1: exact in every Y
 constexpr auto kStomach = GeometryScene::Kind::Stomach;
 constexpr auto kMesh = GeometryScene::Kind::Mesh;
 constexpr auto kSphere = GeometryScene::Kind::Sphere;
-constexpr const char* kChoice = "design choice";
 constexpr const char* kFlexural =
     "\"Flexural and torsional rigidity of colonoscopes at room and body temperatures\": 260 to 400 N cm^2 along an "
     "Olympus "

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <string_view>
 
+#include "common/constants.hpp"
 #include "scene/printable.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr Dimension kNone{};
 constexpr Dimension kLength{1, 0, 0, 0};
 constexpr Dimension kVolume{3, 0, 0, 0};

@@ -47,7 +47,7 @@ constexpr double kArrived = 0.5;
 // what a step may leave anyway [1].
 constexpr double kNearlyArrived = 0.1;
 // The same over the rounding error of a position. Design choice: in some directions energies are less certain [1].
-constexpr double kRoundings = 10;
+constexpr double kPositionRoundings = 10;
 // Iterations of a static solve between two factors. Design choice: a factor costs about as much as ten iterations; six
 // is the history that a new factor discards.
 constexpr int kRefactorEvery = 6;
@@ -241,8 +241,9 @@ void ImplicitStepper::iterate(QuasiNewton& newton, const StepperScratch& scratch
     outcome.converged = newton.directionLength() < std::max(settings_.tolerance, newton.resolution());
   }
   memory.usual_length += kUsualShare * (first_length - memory.usual_length);
-  const double enough = newton.failed() ? std::max(kNearlyArrived * first_length, kRoundings * newton.resolution())
-                                        : kArrived * first_length;
+  const double enough = newton.failed()
+                            ? std::max(kNearlyArrived * first_length, kPositionRoundings * newton.resolution())
+                            : kArrived * first_length;
   outcome.arrived = outcome.converged || done || newton.directionLength() < enough;
   outcome.residual = std::max(newton.residual(), scratch.schur.violation());
   outcome.evaluations = newton.evaluations();

@@ -20,7 +20,7 @@ constexpr double kShortest = 0.1, kLongest = 0.5;
 // Rounding errors of a value that may hide a decrease; then the slope decides (approximate Wolfe condition: Hager,
 // Zhang 2005, doi 10.1137/030601880, equation 2.4). Design choice: the errors of many elements seldom add up to more
 // [1].
-constexpr double kRoundings = 10;
+constexpr double kEnergyRoundings = 10;
 // Trials along a direction before it counts as useless. Design choice: at the shortest, a part of 1e-4 of a direction,
 // which is below what a step can use.
 constexpr int kMaxTrials = 5;
@@ -370,7 +370,8 @@ double QuasiNewton::search(double part) {
     if (prescribed != 0) break;  // the volume is held: no energy to compare
     const double change = to + lagrangian(part) - from;
     if (std::isfinite(to) && change <= kSufficientDecrease * part * slope + potential_.noise()) break;
-    if (change <= kRoundings * potential_.noise() && slopeAtTrial(part) <= (2 * kSufficientDecrease - 1) * slope) break;
+    if (change <= kEnergyRoundings * potential_.noise() && slopeAtTrial(part) <= (2 * kSufficientDecrease - 1) * slope)
+      break;
     if (trial == kMaxTrials || exhausted()) {
       failed_ = true;
       s.exchangeEvaluations();

@@ -19,7 +19,7 @@ using namespace detail;
 constexpr double kTolerance = 1e-9;
 constexpr int kMaxSweeps = 300;
 
-void check(bool right, const char* what, const char* remedy) {
+void checkCapstan(bool right, const char* what, const char* remedy) {
   if (!right) throw Error(std::string("A thread through eyelets was given ") + what + ": " + remedy + ".");
 }
 
@@ -191,15 +191,16 @@ void checkProblem(const Eigen::Ref<const Eigen::VectorXd>& residual,
                   const Eigen::Ref<const Eigen::MatrixXd>& compliance,
                   const Eigen::Ref<const Eigen::VectorXd>& factor) {
   const Eigen::Index m = residual.size();
-  check(m >= 1 && m <= kMaxThreadSegments, "no segments or more than 64",
-        "give 1 to 64, and divide a longer thread at a point that holds it");
-  check(compliance.rows() == m && compliance.cols() == m && factor.size() == m - 1, "sizes that do not fit each other",
-        "give a square compliance of that size and a capstan factor per eyelet between two segments");
-  check(residual.allFinite() && compliance.allFinite(), "lengths or compliances that are not finite",
-        "check the positions of the eyelets and the stiffness of the tissue");
-  check((compliance.diagonal().array() > 0).all() && compliance.sum() > 0, "a compliance that is not positive",
-        "a segment must give when it is pulled, at least by the stretch of its thread");
-  check((factor.array() >= 1).all(), "a capstan factor that is not 1 or more", "take it from capstanFactor()");
+  checkCapstan(m >= 1 && m <= kMaxThreadSegments, "no segments or more than 64",
+               "give 1 to 64, and divide a longer thread at a point that holds it");
+  checkCapstan(compliance.rows() == m && compliance.cols() == m && factor.size() == m - 1,
+               "sizes that do not fit each other",
+               "give a square compliance of that size and a capstan factor per eyelet between two segments");
+  checkCapstan(residual.allFinite() && compliance.allFinite(), "lengths or compliances that are not finite",
+               "checkCapstan the positions of the eyelets and the stiffness of the tissue");
+  checkCapstan((compliance.diagonal().array() > 0).all() && compliance.sum() > 0, "a compliance that is not positive",
+               "a segment must give when it is pulled, at least by the stretch of its thread");
+  checkCapstan((factor.array() >= 1).all(), "a capstan factor that is not 1 or more", "take it from capstanFactor()");
 }
 
 }  // namespace

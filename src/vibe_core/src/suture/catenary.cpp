@@ -53,7 +53,7 @@ Eigen::Vector3d anyDirectionSquareTo(const Eigen::Vector3d& vector) {
   return (direction - unit * unit.dot(direction)).normalized();
 }
 
-void check(bool right, const char* what, const char* remedy) {
+void checkCatenary(bool right, const char* what, const char* remedy) {
   if (!right) throw Error(std::string("A hanging thread was given ") + what + ": " + remedy + ".");
 }
 
@@ -106,12 +106,13 @@ Eigen::Vector3d Catenary::lowestPoint() const {
 Catenary hang(const Eigen::Vector3d& first, const Eigen::Vector3d& last, double length, double weight_per_length,
               const Eigen::Vector3d& gravity_direction) {
   const Eigen::Vector3d between = last - first;
-  check(first.allFinite() && last.allFinite() && between.allFinite(), "an end that is not a finite position",
-        "check what holds the thread");
-  check(std::isfinite(length) && length >= 0, "a length that is not a number from 0 on", "give metres");
-  check(std::isfinite(weight_per_length) && weight_per_length >= 0, "a weight that is not a number from 0 on",
-        "give newtons per metre");
-  check(gravity_direction.allFinite(), "a direction of gravity that is not finite", "give three finite numbers");
+  checkCatenary(first.allFinite() && last.allFinite() && between.allFinite(), "an end that is not a finite position",
+                "checkCatenary what holds the thread");
+  checkCatenary(std::isfinite(length) && length >= 0, "a length that is not a number from 0 on", "give metres");
+  checkCatenary(std::isfinite(weight_per_length) && weight_per_length >= 0, "a weight that is not a number from 0 on",
+                "give newtons per metre");
+  checkCatenary(gravity_direction.allFinite(), "a direction of gravity that is not finite",
+                "give three finite numbers");
 
   const double gravity = gravity_direction.stableNorm();
   const double distance = between.stableNorm();

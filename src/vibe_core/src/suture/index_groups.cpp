@@ -19,7 +19,8 @@ bool allFinite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-void check(const ParticlePositions& p, const std::vector<Eigen::Vector3d>& bites, const IndexGroupSettings& settings) {
+void checkBites(const ParticlePositions& p, const std::vector<Eigen::Vector3d>& bites,
+                const IndexGroupSettings& settings) {
   if (p.x.empty() || p.y.size() != p.x.size() || p.z.size() != p.x.size())
     throw Error("Index groups need x, y and z of the same particles, at least one, not " + std::to_string(p.x.size()) +
                 ", " + std::to_string(p.y.size()) + " and " + std::to_string(p.z.size()) +
@@ -85,7 +86,7 @@ void collect(TechniqueRays& rays, const Ray& ray, int bends_left, std::vector<in
 
 std::vector<std::vector<int>> indexGroups(const ParticlePositions& particles, const std::vector<Eigen::Vector3d>& bites,
                                           const TechniqueResult& technique, const IndexGroupSettings& settings) {
-  check(particles, bites, settings);
+  checkBites(particles, bites, settings);
   const bool limited = technique.technique != Technique::U && technique.technique != Technique::Z;
   TechniqueRays rays(particles.x, particles.y, particles.z, settings.ray_radius);
   std::vector<char> taken(particles.x.size(), 0);

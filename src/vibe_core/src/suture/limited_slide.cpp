@@ -10,7 +10,7 @@ namespace {
 // missing are found in the next step.
 constexpr int kProblems = 4;
 // Rounding of a slide [m].
-constexpr double kRounding = 1e-10;
+constexpr double kSpareRounding = 1e-10;
 }  // namespace
 
 void LimitedSlide::solve(const Eigen::Ref<const Eigen::VectorXd>& residual,
@@ -35,7 +35,7 @@ bool LimitedSlide::exhaust(const Eigen::Ref<const Eigen::VectorXd>& spare, const
   bool found = false;
   for (int k = 0; k < count_; ++k) {
     const double next = k + 1 < count_ ? result.slide[k] : 0, before = k > 0 ? -result.slide[k - 1] : 0;
-    if (exhausted_[k] || next + before <= spare[k] + kRounding) continue;
+    if (exhausted_[k] || next + before <= spare[k] + kSpareRounding) continue;
     exhausted_[k] = found = true;
     giveAway(k, spare[k], next > before ? 1 : -1);
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "common/constants.hpp"
 #include "common/elementary.hpp"
 #include "common/random.hpp"
 #include "vibe_core/common/error.hpp"
@@ -13,9 +14,6 @@ namespace vibe {
 namespace {
 
 using Flat = std::vector<Eigen::Vector2d>;  // x around the organ, y along it
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180;
 
 class Random {
  public:
@@ -164,7 +162,7 @@ Eigen::Vector3d onCylinder(const Eigen::Vector2d& bite, double radius) {
   return {radius * math::cos(angle), radius * math::sin(angle), bite.y()};
 }
 
-void check(Technique technique, int bite_count, double noise) {
+void checkRequest(Technique technique, int bite_count, double noise) {
   if (technique == Technique::Other) throw Error("A pattern of technique 'other' cannot be drawn; name another.");
   if (bite_count < fewestBites(technique) || bite_count > kTechniqueMaxBites)
     throw Error("A pattern '" + std::string(toString(technique)) + "' cannot have " + std::to_string(bite_count) +
@@ -187,7 +185,7 @@ int fewestBites(Technique technique) {
 
 TechniquePattern drawTechniquePattern(Technique technique, int bite_count, double noise, std::uint64_t seed,
                                       const PatternRanges& ranges) {
-  check(technique, bite_count, noise);
+  checkRequest(technique, bite_count, noise);
   Random random(seed);
   Flat flat = draw(random, technique, bite_count - 1);
   distort(random, ranges, technique != Technique::Running, flat);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/constants.hpp"
 #include "common/elementary.hpp"
 
 namespace vibe {
@@ -13,7 +14,6 @@ using Points = std::vector<Complex>;
 
 constexpr int kMaxUneven = 6;         // largest ratio of the numbers of bite vectors on two sides of a polygon
 constexpr double kAlongShare = 0.25;  // share of drawings with evenly spaced bites and corners anywhere
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 /// A leg of a drawing: direction [rad], length, number of bite vectors.
 struct Leg {

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/constants.hpp"
 #include "common/elementary.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kAxisSteps = 4;  // axes of candidate cylinders about 20 degrees apart
 constexpr double kMaxWrap = 1.1 * kPi;
 

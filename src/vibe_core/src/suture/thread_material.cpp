@@ -1,9 +1,9 @@
 #include "vibe_core/suture/thread_material.hpp"
+#include "common/constants.hpp"
 
 namespace vibe {
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kNewtonsPerKilogramForce = 9.80665;
 }  // namespace
 

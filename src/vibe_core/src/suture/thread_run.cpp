@@ -10,7 +10,7 @@ namespace vibe::detail {
 namespace {
 
 /// Rates of change below this fraction of the largest one are rounding errors.
-constexpr double kRounding = 1e-13;
+constexpr double kResidualRounding = 1e-13;
 
 bool slides(Eyelet eyelet) {
   return eyelet != Eyelet::Sticks;
@@ -98,12 +98,12 @@ class Path {
       const double sign = eyelets_[k] == Eyelet::Forward ? 1 : -1;
       base = sign * slide_(k, 0);
       c.rate = sign * slide_(k, 1);
-      c.rounding = kRounding * residual_scale_;
+      c.rounding = kResidualRounding * residual_scale_;
     } else {
       const int less = change == Eyelet::Forward ? k : k + 1, more = change == Eyelet::Forward ? k + 1 : k;
       base = factor_[k] * tension_(less, 0) - tension_(more, 0);
       c.rate = factor_[k] * tension_(less, 1) - tension_(more, 1);
-      c.rounding = kRounding * factor_[k] * tension_.cwiseAbs().maxCoeff();
+      c.rounding = kResidualRounding * factor_[k] * tension_.cwiseAbs().maxCoeff();
     }
     c.value = base + place_ * c.rate;
     return c;

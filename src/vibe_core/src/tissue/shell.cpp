@@ -10,8 +10,8 @@
 namespace vibe {
 namespace {
 
-constexpr int kElementsPerPiece = 2000;  // with fewer, a second thread does not pay off
-constexpr int kPieces = 8;
+constexpr int kTrianglesPerPiece = 2000;  // with fewer, a second thread does not pay off
+constexpr int kTrianglePieces = 8;
 constexpr int kReferenceSteps = 12;  // of Newton's method for the stretch across the wall, in double precision
 
 }  // namespace
@@ -37,7 +37,7 @@ void ShellElements::makeBatches() {
     groups[2 * static_cast<std::size_t>(materialOf(e)) + (atBoundary(e) ? 1 : 0)].push_back(static_cast<int>(e));
   for (std::size_t g = 0; g < groups.size(); ++g)
     if (!groups[g].empty()) addRun(groups[g], static_cast<int>(g / 2), g % 2 == 1);
-  piece_count_ = static_cast<int>(mesh_.triangles.size()) > kElementsPerPiece ? kPieces : 1;
+  piece_count_ = static_cast<int>(mesh_.triangles.size()) > kTrianglesPerPiece ? kTrianglePieces : 1;
 }
 
 // Elements adjacent in the mesh are adjacent in its order. They are placed in the same lane of successive batches, not

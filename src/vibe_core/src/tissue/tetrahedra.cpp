@@ -11,8 +11,8 @@
 namespace vibe {
 namespace {
 
-constexpr int kElementsPerPiece = 2000;  // with fewer, a second thread does not pay off
-constexpr int kPieces = 8;
+constexpr int kTetrahedraPerPiece = 2000;  // with fewer, a second thread does not pay off
+constexpr int kTetrahedraPieces = 8;
 
 // Derivatives of the position with respect to barycentric coordinates 1, 2, 3, minus that of coordinate 0, at an
 // integration point; in columns.
@@ -120,7 +120,7 @@ void TetElements<Nodes>::makeBatches() {
     addBatches(elements);
     if (batch_count_ > first) runs_.push_back({first, batch_count_, static_cast<int>(m)});
   }
-  piece_count_ = static_cast<int>(mesh_.elements.size()) > kElementsPerPiece ? kPieces : 1;
+  piece_count_ = static_cast<int>(mesh_.elements.size()) > kTetrahedraPerPiece ? kTetrahedraPieces : 1;
 }
 
 // Elements adjacent in the mesh are adjacent in its order. They are placed in the same lane of successive batches, not

@@ -32,7 +32,7 @@ struct Tangent {
   Eigen::Vector3d swap;     // entry rc, cr by the third axis
 };
 
-Eigen::Matrix3d withoutNegative(const Eigen::Matrix3d& symmetric) {
+Eigen::Matrix3d withoutNegativeEigenvalues(const Eigen::Matrix3d& symmetric) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric);
   if (solver.eigenvalues()[0] >= 0) return symmetric;
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
@@ -52,7 +52,7 @@ Tangent tangent(const Eigen::Vector3d& s, const LawAt<double>& w) {
     out.shear[k] = (flip + twist) / 2;
     out.swap[k] = (flip - twist) / 2;
   }
-  out.scaling = withoutNegative(a);
+  out.scaling = withoutNegativeEigenvalues(a);
   return out;
 }
 

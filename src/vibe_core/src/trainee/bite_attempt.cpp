@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kHelixHome = 2e-3;      // [m]
 constexpr double kStandOff = 10e-3;      // gap between helix and wall before contact [m]
-constexpr double kNear = 3e-3;           // gap within reach of the helix, with a margin [m]
+constexpr double kHelixReach = 3e-3;     // gap within reach of the helix, with a margin [m]
 constexpr double kAside = 1.5e-3;        // of the helix from its aim along the wall, good enough [m]
 constexpr double kPushed = 10e-3;        // of the device towards the wall, where not enough of it comes [m]
 constexpr double kArmClosed = 18e-3;     // needle_driver [m]
@@ -108,7 +108,7 @@ bool BiteAttempt::grab() {
   if (std::isfinite(seen.cost)) plan_.held = seen.held, plan_.drawn = seen.drawn;
   for (const double more : {1, 1, 2, 2, 3, 4}) {  // the wall yields
     if (!approach(more * kHelixDepth, 0.3)) break;
-    if (gap() < kNear && aside_ < kAside) break;
+    if (gap() < kHelixReach && aside_ < kAside) break;
   }
   before_ = me_.view();
   hand_.press(HelixGrab);

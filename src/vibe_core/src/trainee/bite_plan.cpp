@@ -13,7 +13,7 @@ namespace vibe {
 namespace {
 
 constexpr int kRolls = 12;                               // positions of the device around its axis that are considered
-constexpr int kRounds = 4;                               // of aiming beside the target
+constexpr int kAimingRounds = 4;                         // of aiming beside the target
 constexpr double kDrawn[] = {14e-3, 10e-3, 6e-3, 2e-3};  // helix_advance at the end that is considered [m]
 constexpr double kBeside = 2e-3;                         // variations of a plan: of the place of the helix [m]
 constexpr double kLessFollows = 0.4;                     // and of ImaginedDraw::follows [1]
@@ -92,7 +92,7 @@ class Planner {
  private:
   BitePlan aimed(const Eigen::Quaterniond& turn, WallPoint held, double drawn) const {
     BitePlan best;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kAimingRounds; ++round) {
       const std::optional<NeedleView> needle =
           imagineNeedle(me_.model(), me_.view(), {held, turn, kHelixOut, drawn, me_.follows});
       if (!needle) break;

@@ -10,7 +10,7 @@ namespace vibe {
 
 namespace {
 
-constexpr int kRounds = 10;  // of iteration: the tip turns with the joints, and the target point with it
+constexpr int kIkRounds = 10;  // of iteration: the tip turns with the joints, and the target point with it
 constexpr int kDirectedRounds =
     5;  // of these, aiming the direction too; then the direction is kept, so that the point is reached
 constexpr double kMissWeight = 1 / 2e-3;  // a miss of 2 mm costs as much as half a radian of turn
@@ -38,7 +38,7 @@ IkSolution aimFrom(const Model& model, const Eigen::Vector3d& point, const Eigen
   const Eigen::Isometry3d to_base = model.tool_base.inverse();
   std::vector<Eigen::Isometry3d> poses;
   IkSolution aim{start};
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kIkRounds; ++round) {
     tool.forwardKinematics(aim.joints, poses);
     Eigen::Isometry3d target = poses[model.tip_link];
     const Eigen::Vector3d ahead = to_base.linear() * direction;

@@ -7,9 +7,9 @@ namespace vibe {
 
 namespace {
 
-constexpr double kBeamGap = 3e-3;  // from the probe to the wall [m]
-constexpr double kNear = 2e-3;     // of the beam from its target, and of the probe from its distance [m]
-constexpr int kCorrections = 3;    // of the tip, before the pedal is pressed
+constexpr double kBeamGap = 3e-3;   // from the probe to the wall [m]
+constexpr double kAimed = 2e-3;  // of the beam from its target, and of the probe from its distance [m]
+constexpr int kCorrections = 3;     // of the tip, before the pedal is pressed
 
 // Brings the probe before the wall; what the last motion missed is added to the next.
 bool approach(const WallPoint& target, double distance, Operator& me) {
@@ -22,7 +22,7 @@ bool approach(const WallPoint& target, double distance, Operator& me) {
     const View view = viewOf(place, me.view());
     const Eigen::Vector3d miss =
         place - (me.view().tip + view.distance * (me.view().tip_turn * Eigen::Vector3d::UnitX()));
-    if (miss.norm() < kNear && std::abs(view.distance - distance) < kNear) return true;
+    if (miss.norm() < kAimed && std::abs(view.distance - distance) < kAimed) return true;
     correction += miss + (view.distance - distance) * me.outward(target);
   }
   return true;

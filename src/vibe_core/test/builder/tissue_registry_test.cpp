@@ -9,7 +9,7 @@
 #include "vibe_core/scene/choices.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
-namespace vibe {
+namespace vibe::tissue_registry_test {
 namespace {
 
 Scene sphere(const std::string& tissue) {
@@ -69,4 +69,4 @@ TEST(TissueRegistry, TheSceneOfAModelIsWhatTheUserWrote) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tissue_registry_test

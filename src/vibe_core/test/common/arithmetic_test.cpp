@@ -15,7 +15,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/machine_info.hpp"
 
-namespace vibe {
+namespace vibe::arithmetic_test {
 namespace {
 
 std::string inUse() {
@@ -119,4 +119,4 @@ TEST(MultiplyAdd, EmulationRoundsOnce) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::arithmetic_test

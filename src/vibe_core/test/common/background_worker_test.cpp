@@ -11,7 +11,7 @@
 
 #include "allocation_count.hpp"
 
-namespace vibe {
+namespace vibe::background_worker_test {
 namespace {
 
 int priorityHere() {
@@ -124,4 +124,4 @@ TEST(BackgroundWorker, HasTheLowestPriorityUntilSomebodyWaits) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::background_worker_test

@@ -7,7 +7,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::command_line_test {
 namespace {
 
 /// A program with one option of each kind.
@@ -89,4 +89,4 @@ TEST(CommandLine, printsTheErrorOfTheWork) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::command_line_test

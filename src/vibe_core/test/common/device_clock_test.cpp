@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace vibe {
+namespace vibe::device_clock_test {
 namespace {
 
 constexpr double kPeriod = 0.01;
@@ -144,4 +144,4 @@ TEST(DeviceClock, ABacklogThatIsReadSlowlyIsNoStep) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::device_clock_test

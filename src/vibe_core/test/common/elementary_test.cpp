@@ -12,7 +12,7 @@
 
 // References are the long double functions of the C library, whose 64 bits are enough to measure an error.
 
-namespace vibe {
+namespace vibe::elementary_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -166,4 +166,4 @@ TEST(Elementary, BitsAreThoseOfEveryBuild) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::elementary_test

@@ -11,7 +11,7 @@
 #include "temporary_folder.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::package_path_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,4 +104,4 @@ TEST(OwnPlace, leadsToTheProgramsOfThisLibrary) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::package_path_test

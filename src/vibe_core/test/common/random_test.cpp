@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::random_test {
 namespace {
 
 // The first numbers of the authors' reference implementation (splitmix64.c of Vigna, 2015) for the seed 1234567.
@@ -39,4 +39,4 @@ TEST(Random, UniformNumbersAreUniform) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::random_test

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace vibe {
+namespace vibe::step_timer_test {
 namespace {
 
 TEST(DurationHistogram, quantilesOfKnownDistributionAreWithinOnePercent) {
@@ -83,4 +83,4 @@ TEST(StepTimer, workTakesCpuTimeAndTheWindowClearsAlone) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::step_timer_test

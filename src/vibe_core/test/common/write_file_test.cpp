@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 
-namespace vibe {
+namespace vibe::write_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,4 +50,4 @@ TEST(WriteFile, WritesToWhatIsNoFile) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::write_file_test

@@ -11,7 +11,7 @@
 #include "solver/sum_term.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
-namespace vibe {
+namespace vibe::group_pull_test {
 namespace {
 
 using test::PulledSheet;
@@ -192,4 +192,4 @@ TEST(GroupPull, IsAbsentWhereNothingPullsByGroups) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::group_pull_test

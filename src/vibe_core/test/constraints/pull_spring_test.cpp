@@ -13,7 +13,7 @@
 #include "vibe_core/simulation/snapshot.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::pull_spring_test {
 namespace {
 
 using test::icosphere;
@@ -237,4 +237,4 @@ TEST(PullSpring, keepsTheSolverWhileTheBeamIsOn) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::pull_spring_test

@@ -10,7 +10,7 @@
 #include "vibe_core/solver/energy_term.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::registered_block_test {
 namespace {
 
 using test::icosphere;
@@ -200,4 +200,4 @@ TEST_F(RegisteredBlock, aSolverWithoutBlocksRejectsIt) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::registered_block_test

@@ -4,7 +4,7 @@
 #include "solver/pulled_sheet.hpp"
 #include "suture/capstan.hpp"
 
-namespace vibe {
+namespace vibe::shell_thread_test {
 namespace {
 
 using test::PulledSheet;
@@ -89,4 +89,4 @@ TEST(ShellThread, WhatTheWorkspaceRemembersDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shell_thread_test

@@ -3,7 +3,7 @@
 
 #include "solver/pulled_sheet.hpp"
 
-namespace vibe {
+namespace vibe::xpbd_pull_test {
 namespace {
 
 using test::PulledSheet;
@@ -85,4 +85,4 @@ TEST(XpbdPull, EqualRunsHaveEqualBits) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::xpbd_pull_test

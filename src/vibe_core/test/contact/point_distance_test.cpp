@@ -14,7 +14,7 @@
 #include <random>
 #include <vector>
 
-namespace vibe {
+namespace vibe::point_distance_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -214,4 +214,4 @@ TEST(PointDistance, AlwaysHasAFiniteUnitNormal) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::point_distance_test

@@ -6,7 +6,7 @@
 #include "contact/scope_fixture.hpp"
 #include "contact/tool_jacobian.hpp"
 
-namespace vibe {
+namespace vibe::scope_springs_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -191,4 +191,4 @@ TEST(ScopeSprings, UrdfWithoutJointsOfTheShaftHasAStraightOne) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::scope_springs_test

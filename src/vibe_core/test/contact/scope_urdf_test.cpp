@@ -11,7 +11,7 @@
 
 #include "contact/scope_fixture.hpp"
 
-namespace vibe {
+namespace vibe::scope_urdf_test {
 namespace {
 
 urdf::ModelInterfaceSharedPtr parsedScope() {
@@ -164,4 +164,4 @@ TEST(ScopeUrdf, IsAsWideAsTheRealDevice) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::scope_urdf_test

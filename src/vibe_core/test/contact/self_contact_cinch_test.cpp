@@ -10,7 +10,7 @@
 #include "solver/implicit_stepper.hpp"
 #include "tissue/shell_worlds.hpp"
 
-namespace vibe {
+namespace vibe::self_contact_cinch_test {
 namespace {
 
 constexpr double kStep = 1.0 / 60, kWall = 2.3e-3, kModulus = 1.1e5;
@@ -313,4 +313,4 @@ TEST(SelfContactCinch, DependsOnNothingButTheState) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::self_contact_cinch_test

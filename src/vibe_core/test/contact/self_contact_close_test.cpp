@@ -9,7 +9,7 @@
 #include "solver/implicit_stepper.hpp"
 #include "tissue/shell.hpp"
 
-namespace vibe {
+namespace vibe::self_contact_close_test {
 namespace {
 
 using namespace test;
@@ -150,4 +150,4 @@ TEST(SelfContactClose, EdgesThatCrossComeToRestBeforeTheyAreStopped) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::self_contact_close_test

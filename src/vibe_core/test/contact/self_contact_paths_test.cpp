@@ -8,7 +8,7 @@
 
 #include "contact/self_contact_worlds.hpp"
 
-namespace vibe {
+namespace vibe::self_contact_paths_test {
 namespace {
 
 using namespace test;
@@ -158,4 +158,4 @@ TEST(SelfContactPaths, NothingCrossesAtAnyTimeOfRandomMoves) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::self_contact_paths_test

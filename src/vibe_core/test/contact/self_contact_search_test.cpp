@@ -13,7 +13,7 @@
 #include "contact/self_contact_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::self_contact_search_test {
 namespace {
 
 using namespace test;
@@ -208,4 +208,4 @@ TEST(SelfContactSearch, CostsLittleWhereNothingIsNear) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::self_contact_search_test

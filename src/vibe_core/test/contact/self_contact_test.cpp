@@ -7,7 +7,7 @@
 
 #include "contact/self_contact_worlds.hpp"
 
-namespace vibe {
+namespace vibe::self_contact_test {
 namespace {
 
 using namespace test;
@@ -182,4 +182,4 @@ TEST(SelfContact, SlowSlidingIsViscousWhateverTheStep) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::self_contact_test

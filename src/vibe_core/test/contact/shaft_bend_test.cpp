@@ -6,7 +6,7 @@
 #include "contact/scope_fixture.hpp"
 #include "contact/tool_jacobian.hpp"
 
-namespace vibe {
+namespace vibe::shaft_bend_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -96,4 +96,4 @@ TEST(ShaftBend, DisplacementsAreAddedToTheInputsAndStraightScopesStay) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shaft_bend_test

@@ -10,7 +10,7 @@
 #include "contact/tool_guard.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::surface_contacts_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -326,4 +326,4 @@ TEST_F(StuckTool, GetsFreeHoweverLongItHasBeenPushed) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::surface_contacts_test

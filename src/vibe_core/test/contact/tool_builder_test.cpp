@@ -7,7 +7,7 @@
 
 #include "contact/scope_fixture.hpp"
 
-namespace vibe {
+namespace vibe::tool_builder_test {
 namespace {
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -288,4 +288,4 @@ TEST(ToolBuilder, TwoEndSpheresMakeACapsuleAndOneDoesNot) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tool_builder_test

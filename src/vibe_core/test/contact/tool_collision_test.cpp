@@ -8,7 +8,7 @@
 
 #include "contact/scope_fixture.hpp"
 
-namespace vibe {
+namespace vibe::tool_collision_test {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -235,4 +235,4 @@ TEST(ToolCollision, EveryContactHasAUnitNormalAwayFromItsShape) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tool_collision_test

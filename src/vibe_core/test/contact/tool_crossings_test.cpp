@@ -4,7 +4,7 @@
 
 #include "contact/scope_fixture.hpp"
 
-namespace vibe {
+namespace vibe::tool_crossings_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -109,4 +109,4 @@ TEST(ToolCrossings, OpenEndsLetTheToolPass) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tool_crossings_test

@@ -4,7 +4,7 @@
 
 #include "contact/scope_fixture.hpp"
 
-namespace vibe {
+namespace vibe::tool_jacobian_test {
 namespace {
 
 TEST(ToolJacobian, IsHowPointsOfEveryLinkMove) {
@@ -58,4 +58,4 @@ TEST(ToolJacobian, YieldForceIsThePowerPerMotion) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tool_jacobian_test

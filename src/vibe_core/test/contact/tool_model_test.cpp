@@ -23,7 +23,7 @@ static long allocations = 0;
   std::free(memory);
 }
 
-namespace vibe {
+namespace vibe::tool_model_test {
 namespace {
 
 using Eigen::AngleAxisd;
@@ -220,4 +220,4 @@ TEST(ToolModel, InverseKinematicsKeepsWhatIsAlreadyThere) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tool_model_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe {
+namespace vibe::wall_crossings_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -130,4 +130,4 @@ TEST(WallCrossings, PositionsThatAreNotFiniteCrossNothing) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::wall_crossings_test

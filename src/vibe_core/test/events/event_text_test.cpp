@@ -12,7 +12,7 @@
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/suture/technique.hpp"
 
-namespace vibe {
+namespace vibe::event_text_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -181,4 +181,4 @@ TEST(EventText, AnEventWithoutItsDetailShowsItsName) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::event_text_test

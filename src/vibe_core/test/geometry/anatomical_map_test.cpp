@@ -13,7 +13,7 @@
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
-namespace vibe {
+namespace vibe::anatomical_map_test {
 namespace {
 
 const Organ& stomach() {
@@ -180,4 +180,4 @@ TEST(AnatomicalMap, AnOrganWithoutEndsHasNoCoordinates) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::anatomical_map_test

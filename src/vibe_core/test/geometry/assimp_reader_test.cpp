@@ -19,7 +19,7 @@
 #include "geometry/test_surfaces.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::assimp_reader_test {
 namespace {
 
 using test::EnvironmentVariable;
@@ -191,4 +191,4 @@ TEST(MeshStream, refusesBytesThatAreTooManyOrTooFew) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::assimp_reader_test

@@ -13,7 +13,7 @@
 #include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::landmark_estimate_test {
 namespace {
 
 const Organ& stomach(const std::string& shape) {
@@ -126,4 +126,4 @@ TEST(LandmarkEstimate, RefusesWhatIsNoStomach) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::landmark_estimate_test

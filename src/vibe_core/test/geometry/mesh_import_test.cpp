@@ -16,7 +16,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
 
-namespace vibe {
+namespace vibe::mesh_import_test {
 namespace {
 
 using test::makeBox;
@@ -261,4 +261,4 @@ TEST(MeshImportFuzz, garbledFilesEndInAnErrorOrASurface) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::mesh_import_test

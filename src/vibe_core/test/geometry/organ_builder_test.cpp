@@ -13,7 +13,7 @@
 #include "geometry/triangle_tree.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::organ_builder_test {
 namespace {
 
 const Organ& defaultStomach() {
@@ -295,4 +295,4 @@ TEST(OrganBuilder, refusesNumbersOutOfRange) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::organ_builder_test

@@ -16,7 +16,7 @@
 #include "vibe_core/scene/schema.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::organ_shapes_test {
 namespace {
 
 Scene shipped(const std::string& name) {
@@ -158,4 +158,4 @@ TEST(OrganShapes, TheSchemaHasTheirWords) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::organ_shapes_test

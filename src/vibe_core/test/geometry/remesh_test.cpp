@@ -9,7 +9,7 @@
 #include "geometry/test_surfaces.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::remesh_test {
 namespace {
 
 using test::makeBox;
@@ -103,4 +103,4 @@ TEST(Remesh, refusesTooFewVertices) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::remesh_test

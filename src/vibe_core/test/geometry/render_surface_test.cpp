@@ -5,7 +5,7 @@
 #include "geometry/test_surfaces.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::render_surface_test {
 namespace {
 
 using test::makeUvSphere;
@@ -63,4 +63,4 @@ TEST(RenderSurface, refusesAnEdgeWithThreeTriangles) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::render_surface_test

@@ -9,7 +9,7 @@
 #include "geometry/test_surfaces.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::surface_check_test {
 namespace {
 
 using test::join;
@@ -182,4 +182,4 @@ TEST(SurfaceCheck, refusesEveryDamageWithOneSentence) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::surface_check_test

@@ -6,7 +6,7 @@
 
 #include "geometry/test_surfaces.hpp"
 
-namespace vibe {
+namespace vibe::surface_mesh_test {
 namespace {
 
 using test::makeBox;
@@ -68,4 +68,4 @@ TEST(SurfaceMesh, emptyMeshHasNothing) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::surface_mesh_test

@@ -9,7 +9,7 @@
 
 #include "geometry/test_surfaces.hpp"
 
-namespace vibe {
+namespace vibe::triangle_tree_test {
 namespace {
 
 using test::makeBox;
@@ -82,4 +82,4 @@ TEST(TriangleTree, emptySurfaceHasNoNearestPoint) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::triangle_tree_test

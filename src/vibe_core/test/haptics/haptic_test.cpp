@@ -10,7 +10,7 @@
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
-namespace vibe {
+namespace vibe::haptic_test {
 namespace {
 
 using test::openBall;
@@ -355,4 +355,4 @@ TEST(Kilohertz, ASnapshotContinuesToTheBit) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::haptic_test

@@ -6,7 +6,7 @@
 #include "haptics/impedance_estimator.hpp"
 #include "solver/implicit_worlds.hpp"
 
-namespace vibe {
+namespace vibe::tool_impedance_test {
 namespace {
 
 using namespace test;
@@ -191,4 +191,4 @@ TEST(SlopeCorrection, StaysSymmetricAndPositiveSemidefiniteWhateverIsSeen) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tool_impedance_test

@@ -7,7 +7,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::force_measures_test {
 namespace {
 
 constexpr double kDt = 1e-3;
@@ -77,4 +77,4 @@ TEST(ForceMeasures, refuseWhatIsNoForce) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::force_measures_test

@@ -8,7 +8,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::measures_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -255,4 +255,4 @@ TEST(Measures, areThoseOfTheSummary) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::measures_test

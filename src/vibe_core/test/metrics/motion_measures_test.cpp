@@ -11,7 +11,7 @@
 #include "trainee/minimum_jerk.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::motion_measures_test {
 namespace {
 
 using test::publishedBell;
@@ -251,4 +251,4 @@ TEST(MotionRecorder, asksForNoMemoryInASessionOfTenMinutes) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::motion_measures_test

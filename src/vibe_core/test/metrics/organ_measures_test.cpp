@@ -12,7 +12,7 @@
 #include "vibe_core/common/error.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::organ_measures_test {
 namespace {
 
 using test::icosphere;
@@ -253,4 +253,4 @@ TEST(OrganMeasures, costNoMemory) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::organ_measures_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace vibe {
+namespace vibe::peak_counter_test {
 namespace {
 
 int count(const std::vector<double>& speed, double threshold = 0.1) {
@@ -47,4 +47,4 @@ TEST(PeakCounter, findsTwoPeaksPerCycleOfASine) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::peak_counter_test

@@ -9,7 +9,7 @@
 #include "vibe_core/common/error.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::session_csv_test {
 namespace {
 
 std::vector<std::string> cells(const std::string& line) {
@@ -72,4 +72,4 @@ TEST(SessionCsv, tellsWhereTheProcedureStands) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::session_csv_test

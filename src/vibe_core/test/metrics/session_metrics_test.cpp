@@ -5,7 +5,7 @@
 #include "procedure/procedure_bench.hpp"
 #include "vibe_core/metrics/run_summary.hpp"
 
-namespace vibe {
+namespace vibe::session_metrics_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -105,4 +105,4 @@ TEST_F(SessionMetricsTest, theSummaryEndsWithTheHash) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::session_metrics_test

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-namespace vibe {
+namespace vibe::session_outcome_test {
 namespace {
 
 SessionOutcome outcome() {
@@ -55,4 +55,4 @@ TEST(SessionOutcome, ofNothingIsJsonToo) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::session_outcome_test

@@ -4,7 +4,7 @@
 
 #include "metrics/organs.hpp"
 
-namespace vibe {
+namespace vibe::skill_marks_test {
 namespace {
 
 /// A tube whose walls are its quarters; 20 rings of 40 particles, after the cap at z = 0.
@@ -91,4 +91,4 @@ TEST_F(MarkSkillTest, aSceneWithoutMarkingHasNone) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::skill_marks_test

@@ -6,7 +6,7 @@
 #include "procedure/procedure_bench.hpp"
 #include "vibe_core/metrics/session_metrics.hpp"
 
-namespace vibe {
+namespace vibe::skill_metrics_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -179,4 +179,4 @@ TEST_F(SkillMetricsTest, asksForNoMemoryInQuietSteps) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::skill_metrics_test

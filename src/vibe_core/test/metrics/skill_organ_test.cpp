@@ -6,7 +6,7 @@
 
 #include "metrics/organs.hpp"
 
-namespace vibe {
+namespace vibe::skill_organ_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -132,4 +132,4 @@ TEST_F(OrganSkillTest, withoutARulerSaysWhy) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::skill_organ_test

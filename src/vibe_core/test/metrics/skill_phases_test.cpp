@@ -7,7 +7,7 @@
 
 #include "metrics/motions.hpp"
 
-namespace vibe {
+namespace vibe::skill_phases_test {
 namespace {
 
 constexpr double kPeriod = 1.0 / 60;
@@ -99,4 +99,4 @@ TEST(PhaseSkill, withoutAToolHasTimesButNoMotion) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::skill_phases_test

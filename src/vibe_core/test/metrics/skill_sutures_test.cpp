@@ -4,7 +4,7 @@
 
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::skill_sutures_test {
 namespace {
 
 /// A wall whose particles lie on a line, one per centimetre, and sets on it.
@@ -154,4 +154,4 @@ TEST_F(SutureSkill, followsThreadsFromStepToStep) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::skill_sutures_test

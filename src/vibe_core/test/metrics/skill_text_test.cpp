@@ -7,7 +7,7 @@
 
 #include "vibe_core/metrics/session_metrics.hpp"
 
-namespace vibe {
+namespace vibe::skill_text_test {
 namespace {
 
 std::vector<std::string> lines(const std::string& text) {
@@ -139,4 +139,4 @@ TEST(SkillText, saysWhyAnOrganIsNotMeasured) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::skill_text_test

@@ -8,7 +8,7 @@
 #include "allocation_count.hpp"
 #include "metrics/motions.hpp"
 
-namespace vibe {
+namespace vibe::spectral_arc_length_test {
 namespace {
 
 using test::publishedBell;
@@ -114,4 +114,4 @@ TEST(SpectralArcLength, asksForNoMemoryOnceMade) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::spectral_arc_length_test

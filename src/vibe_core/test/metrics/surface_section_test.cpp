@@ -9,7 +9,7 @@
 #include "vibe_core/common/error.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::surface_section_test {
 namespace {
 
 using test::icosphere;
@@ -96,4 +96,4 @@ TEST(SurfaceSection, refusesAnOpenSurface) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::surface_section_test

@@ -4,7 +4,7 @@
 
 #include "procedure/procedure_bench.hpp"
 
-namespace vibe {
+namespace vibe::bleeding_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -141,4 +141,4 @@ TEST(Bleeding, KeepsItsPlaceWhenABiteTearsOut) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::bleeding_test

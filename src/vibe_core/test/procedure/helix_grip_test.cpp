@@ -6,7 +6,7 @@
 #include "vibe_core/common/package_path.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::helix_grip_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -116,4 +116,4 @@ TEST(HoldingForce, IsAllOfItAlwaysWithoutTurnsToHold) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::helix_grip_test

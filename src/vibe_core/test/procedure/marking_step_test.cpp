@@ -10,7 +10,7 @@
 #include "procedure/procedure_bench.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
-namespace vibe {
+namespace vibe::marking_step_test {
 namespace {
 
 using test::World;
@@ -370,4 +370,4 @@ TEST(MarkingGradient, GasStaysInAndIsCompressed) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::marking_step_test

@@ -7,7 +7,7 @@
 
 #include "procedure/procedure_bench.hpp"
 
-namespace vibe {
+namespace vibe::needle_test {
 namespace {
 
 using test::Bench;
@@ -205,4 +205,4 @@ TEST(BiteAround, LeavesTheWallOppositeAlone) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::needle_test

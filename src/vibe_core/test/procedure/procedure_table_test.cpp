@@ -9,7 +9,7 @@
 
 #include "procedure/procedure_bench.hpp"
 
-namespace vibe {
+namespace vibe::procedure_table_test {
 namespace {
 
 using test::Bench;
@@ -203,4 +203,4 @@ TEST(ProcedureTable, TheHelixGrabsOrMissesOncePerPress) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::procedure_table_test

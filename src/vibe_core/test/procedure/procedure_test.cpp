@@ -11,7 +11,7 @@
 #include "procedure/procedure_bench.hpp"
 #include "vibe_core/suture/technique.hpp"
 
-namespace vibe {
+namespace vibe::procedure_test {
 namespace {
 
 using test::Bench;
@@ -392,4 +392,4 @@ TEST(Procedure, TheWholeSimulatorBearsCommandsThatAreNoNumbers) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::procedure_test

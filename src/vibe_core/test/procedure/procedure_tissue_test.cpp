@@ -3,7 +3,7 @@
 
 #include "procedure/procedure_bench.hpp"
 
-namespace vibe {
+namespace vibe::procedure_tissue_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -126,4 +126,4 @@ TEST_F(ProcedureTissue, TheCinchDrawsTheBitesTogetherAndKeepsThem) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::procedure_tissue_test

@@ -8,7 +8,7 @@
 #include "vibe_core/simulation/simulation.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::set_point_test {
 namespace {
 
 constexpr double kSetPoint = 1300;  // [Pa]
@@ -80,4 +80,4 @@ TEST(SetPoint, IsReachedAgainAfterGasWasLost) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::set_point_test

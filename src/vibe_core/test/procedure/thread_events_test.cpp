@@ -4,7 +4,7 @@
 
 #include "procedure/procedure_bench.hpp"
 
-namespace vibe {
+namespace vibe::thread_events_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -212,4 +212,4 @@ TEST(ThreadEvents, PutBackToRestAllThreadsAreSlack) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::thread_events_test

@@ -6,7 +6,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
 
-namespace vibe {
+namespace vibe::choices_test {
 namespace {
 
 TEST(Choices, TyposAreAnsweredWithLineAndNearestWord) {
@@ -33,4 +33,4 @@ TEST(Choices, UnusableWordsAreRejected) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::choices_test

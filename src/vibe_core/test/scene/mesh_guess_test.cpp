@@ -10,7 +10,7 @@
 #include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::mesh_guess_test {
 namespace {
 
 Organ stomach() {
@@ -102,4 +102,4 @@ TEST_F(MeshGuess, SaysWhatIsWrongWithTheFile) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::mesh_guess_test

@@ -9,7 +9,7 @@
 #include "scene/expect_error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
-namespace vibe {
+namespace vibe::mesh_override_test {
 namespace {
 
 class MeshOverride : public ::testing::Test {
@@ -105,4 +105,4 @@ TEST_F(MeshOverride, SidecarIsCheckedLikeAScene) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::mesh_override_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe {
+namespace vibe::nearest_key_test {
 namespace {
 
 const std::vector<std::string> kKeys{"stiffness", "density", "thickness", "model", "flow_limit"};
@@ -40,4 +40,4 @@ TEST(NearestKey, IsFastForAbsurdWords) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::nearest_key_test

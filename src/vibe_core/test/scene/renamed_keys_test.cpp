@@ -9,7 +9,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
 
-namespace vibe {
+namespace vibe::renamed_keys_test {
 namespace {
 
 class EveryRenamedKey : public ::testing::TestWithParam<RenamedKey> {};
@@ -53,4 +53,4 @@ TEST(RenamedKeys, OtherUnknownKeysKeepTheHint) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::renamed_keys_test

@@ -9,7 +9,7 @@
 
 #include "scene/expect_error.hpp"
 
-namespace vibe {
+namespace vibe::scene_parser_test {
 namespace {
 
 const std::string kScenes = std::string(VIBE_CORE_DIR) + "/scenes/";
@@ -223,4 +223,4 @@ TEST(SceneParser, SharesValuesThroughAliasesAndMerges) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::scene_parser_test

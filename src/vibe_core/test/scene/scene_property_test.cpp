@@ -11,7 +11,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
 
-namespace vibe {
+namespace vibe::scene_property_test {
 namespace {
 
 /// Puts a random allowed value where a row lives.
@@ -148,4 +148,4 @@ TEST(SceneProperty, DamagedScenesGiveASceneOrAnErrorWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::scene_property_test

@@ -18,6 +18,9 @@ void PrintTo(const SchemaRow& row, std::ostream* out) {
   *out << row.key;
 }
 
+}  // namespace vibe
+
+namespace vibe::schema_test {
 namespace {
 
 template <typename T>
@@ -178,4 +181,4 @@ TEST(Schema, CommittedDocumentationIsTheGeneratedTable) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::schema_test

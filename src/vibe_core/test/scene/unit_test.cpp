@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::unit_test {
 namespace {
 
 struct Example {
@@ -92,4 +92,4 @@ TEST(Unit, EveryMeasuredSiUnitIsItselfAUnitOfFactorOne) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::unit_test

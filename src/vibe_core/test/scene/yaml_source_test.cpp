@@ -6,7 +6,7 @@
 
 #include "scene/expect_error.hpp"
 
-namespace vibe {
+namespace vibe::yaml_source_test {
 namespace {
 
 YamlSource parsed(const std::string& text) {
@@ -154,4 +154,4 @@ TEST(ShowQuantity, IsShortAndReadsBack) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::yaml_source_test

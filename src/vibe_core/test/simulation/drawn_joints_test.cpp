@@ -11,7 +11,7 @@
 #include "contact/needle_linkage.hpp"
 #include "procedure/procedure_bench.hpp"
 
-namespace vibe {
+namespace vibe::drawn_joints_test {
 namespace {
 
 using test::Bench;
@@ -183,4 +183,4 @@ TEST(DrawnJoints, AreThoseThatTheUrdfHas) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::drawn_joints_test

@@ -10,7 +10,7 @@
 #include "vibe_core/input/step_input_fields.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
-namespace vibe {
+namespace vibe::simulation_test {
 namespace {
 
 constexpr double kRadius = 0.05;
@@ -157,4 +157,4 @@ TEST(Simulation, LoadsAShippedScene) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::simulation_test

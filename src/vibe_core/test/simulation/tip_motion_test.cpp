@@ -7,7 +7,7 @@
 
 #include "scope_worlds.hpp"
 
-namespace vibe {
+namespace vibe::tip_motion_test {
 namespace {
 
 using test::World;
@@ -85,4 +85,4 @@ TEST(TipMotion, SeesNothingWhereThereIsNoWall) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tip_motion_test

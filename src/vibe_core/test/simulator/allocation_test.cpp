@@ -7,7 +7,7 @@
 
 #include "scope_worlds.hpp"
 
-namespace vibe {
+namespace vibe::allocation_test {
 namespace {
 
 using test::World;
@@ -90,4 +90,4 @@ TEST_F(Allocation, SettledStepsHaveNone) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::allocation_test

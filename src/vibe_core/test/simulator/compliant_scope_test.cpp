@@ -6,7 +6,7 @@
 #include "scope_worlds.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
-namespace vibe {
+namespace vibe::compliant_scope_test {
 namespace {
 
 using test::World;
@@ -204,4 +204,4 @@ TEST(CompliantScope, StateCarriesAllOfIt) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::compliant_scope_test

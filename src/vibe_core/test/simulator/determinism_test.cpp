@@ -10,7 +10,7 @@
 #include "vibe_core/state/state_fields.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::determinism_test {
 namespace {
 
 using test::bareScene;
@@ -191,4 +191,4 @@ TEST(Recovery, AThrowAtAbsurdSpeedIsLimitedAndReported) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::determinism_test

@@ -11,7 +11,7 @@
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
-namespace vibe {
+namespace vibe::energy_test {
 namespace {
 
 constexpr double kBound = 0.01;  // of the work put in
@@ -118,4 +118,4 @@ TEST(Energy, AccountOfChangesOfPressureIsClosed) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::energy_test

@@ -4,7 +4,7 @@
 #include "vibe_core/model/accounting.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::free_body_test {
 namespace {
 
 using test::bareScene;
@@ -150,4 +150,4 @@ TEST(Attachment, HeldParticlesDoNotMove) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::free_body_test

@@ -8,7 +8,7 @@
 #include "vibe_core/model/accounting.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::gas_test {
 namespace {
 
 using test::bareScene;
@@ -144,4 +144,4 @@ TEST(Gas, LawsOnPaper) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::gas_test

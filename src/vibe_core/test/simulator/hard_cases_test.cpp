@@ -8,7 +8,7 @@
 #include "scope_worlds.hpp"
 #include "vibe_core/builder/tissue_registry.hpp"
 
-namespace vibe {
+namespace vibe::hard_cases_test {
 namespace {
 
 using test::icosphere;
@@ -319,4 +319,4 @@ TEST(Hard, ToolThroughTheWallInOneFrame) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::hard_cases_test

@@ -8,7 +8,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::hard_stomach_test {
 namespace {
 
 Scene stomachScene() {
@@ -185,4 +185,4 @@ TEST(HardStomach, PressureBeyondTheLimitPoint) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::hard_stomach_test

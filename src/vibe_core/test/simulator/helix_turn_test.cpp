@@ -3,7 +3,7 @@
 
 #include "scope_worlds.hpp"
 
-namespace vibe {
+namespace vibe::helix_turn_test {
 namespace {
 
 using test::World;
@@ -64,4 +64,4 @@ TEST_P(HelixTurn, WhereTheWholeScopeTurnsItTakesThePatchAlong) {
 INSTANTIATE_TEST_SUITE_P(Models, HelixTurn, ::testing::Values("shell", "shape_matching"));
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::helix_turn_test

@@ -8,7 +8,7 @@
 #include "vibe_core/model/accounting.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::numerical_damping_test {
 namespace {
 
 using test::icosphere;
@@ -92,4 +92,4 @@ TEST(NumericalDamping, FreeMotionNeverGainsEnergy) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::numerical_damping_test

@@ -7,7 +7,7 @@
 #include "solver/pulled_sheet.hpp"
 #include "vibe_core/common/arithmetic.hpp"
 
-namespace vibe {
+namespace vibe::same_bits_test {
 namespace {
 
 using test::World;
@@ -78,4 +78,4 @@ TEST(SameBits, PlainArithmeticHasItsOwn) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::same_bits_test

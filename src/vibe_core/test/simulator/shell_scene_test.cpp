@@ -8,7 +8,7 @@
 #include "vibe_core/simulation/snapshot.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::shell_scene_test {
 namespace {
 
 using test::icosphere;
@@ -170,4 +170,4 @@ TEST(ShellScene, TheBedCarriesTheWeight) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shell_scene_test

@@ -10,7 +10,7 @@
 #include "vibe_core/simulation/snapshot.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::snapshot_procedure_test {
 namespace {
 
 using test::World;
@@ -249,4 +249,4 @@ TEST_F(ProcedureSnapshot, belongsToScenesWithTheSameParts) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::snapshot_procedure_test

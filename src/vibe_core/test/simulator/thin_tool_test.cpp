@@ -9,7 +9,7 @@
 #include "contact/triangle_gap.hpp"
 #include "scope_worlds.hpp"
 
-namespace vibe {
+namespace vibe::thin_tool_test {
 namespace {
 
 using test::World;
@@ -112,4 +112,4 @@ TEST(ScopeOnWall, FollowsTheHandWhileItPresses) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::thin_tool_test

@@ -8,7 +8,7 @@
 #include "scope_worlds.hpp"
 #include "vibe_core/model/accounting.hpp"
 
-namespace vibe {
+namespace vibe::tool_test {
 namespace {
 
 using test::bareScene;
@@ -184,4 +184,4 @@ TEST(LimitedMotion, GoesNoFasterThanTheLimit) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tool_test

@@ -5,7 +5,7 @@
 
 #include "solver/implicit_worlds.hpp"
 
-namespace vibe {
+namespace vibe::bounded_step_test {
 namespace {
 
 using namespace test;
@@ -82,4 +82,4 @@ TEST(BoundedStep, ASmallDisturbanceTakesTheUsualWork) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::bounded_step_test

@@ -7,7 +7,7 @@
 
 #include "sparse/closed_mesh.hpp"
 
-namespace vibe {
+namespace vibe::column_cache_test {
 namespace {
 
 struct System {
@@ -87,4 +87,4 @@ TEST(ColumnCache, ForgetsWhatHasChangedAndKeepsTheRest) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::column_cache_test

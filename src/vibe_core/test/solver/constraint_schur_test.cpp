@@ -9,7 +9,7 @@
 
 #include "sparse/closed_mesh.hpp"
 
-namespace vibe {
+namespace vibe::constraint_schur_test {
 namespace {
 
 using test::closedMesh;
@@ -306,4 +306,4 @@ TEST(ConstraintSchur, APrescribedVolumeIsAnEquation) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::constraint_schur_test

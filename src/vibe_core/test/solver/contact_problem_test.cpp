@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-namespace vibe {
+namespace vibe::contact_problem_test {
 namespace {
 
 constexpr double kLength = 1e-9;  // tolerance of the solver [m]
@@ -128,4 +128,4 @@ TEST(ContactProblem, TellsWhichRowsHold) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::contact_problem_test

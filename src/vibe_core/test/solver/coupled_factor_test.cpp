@@ -7,7 +7,7 @@
 #include "solver/step_rows.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 
-namespace vibe {
+namespace vibe::coupled_factor_test {
 namespace {
 
 using namespace test;
@@ -207,4 +207,4 @@ TEST(CoupledFactor, FixedNodesAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::coupled_factor_test

@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-namespace vibe {
+namespace vibe::dense_lu_test {
 namespace {
 
 TEST(DenseLu, SolvesMatricesThatNeedPivots) {
@@ -36,4 +36,4 @@ TEST(DenseLu, RefusesASingularMatrix) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::dense_lu_test

@@ -5,7 +5,7 @@
 
 #include "solver/implicit_worlds.hpp"
 
-namespace vibe {
+namespace vibe::factor_schedule_test {
 namespace {
 
 using namespace test;
@@ -130,4 +130,4 @@ TEST(FactorSchedule, AttachmentColumnsFollowTheirFactor) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::factor_schedule_test

@@ -5,7 +5,7 @@
 
 #include "solver/balloon.hpp"
 
-namespace vibe {
+namespace vibe::few_iterations_test {
 namespace {
 
 using namespace test;
@@ -160,4 +160,4 @@ TEST(FewIterationsWithGas, FindThePressureWhereNodesAreFixed) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::few_iterations_test

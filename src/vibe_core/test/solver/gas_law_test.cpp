@@ -7,7 +7,7 @@
 
 #include "solver/balloon.hpp"
 
-namespace vibe {
+namespace vibe::gas_law_test {
 namespace {
 
 using test::Ball;
@@ -107,4 +107,4 @@ TEST(GasLaw, IterationsFindThePieceThatActs) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::gas_law_test

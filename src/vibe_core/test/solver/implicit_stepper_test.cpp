@@ -5,7 +5,7 @@
 
 #include "solver/implicit_worlds.hpp"
 
-namespace vibe {
+namespace vibe::implicit_stepper_test {
 namespace {
 
 using namespace test;
@@ -247,4 +247,4 @@ TEST(Settle, IsWhereTheStepsEnd) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::implicit_stepper_test

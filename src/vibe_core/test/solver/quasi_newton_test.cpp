@@ -9,7 +9,7 @@
 #include "solver/step_rows.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 
-namespace vibe {
+namespace vibe::quasi_newton_test {
 namespace {
 
 using namespace test;
@@ -152,4 +152,4 @@ TEST(QuasiNewton, AConstraintIsMetAtTheMinimum) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::quasi_newton_test

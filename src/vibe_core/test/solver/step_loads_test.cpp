@@ -3,7 +3,7 @@
 
 #include "solver/balloon.hpp"
 
-namespace vibe {
+namespace vibe::step_loads_test {
 namespace {
 
 using namespace test;
@@ -309,4 +309,4 @@ TEST(Replay, WithoutTheMemoryTheBitsDiffer) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::step_loads_test

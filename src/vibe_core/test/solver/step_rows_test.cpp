@@ -7,7 +7,7 @@
 #include "solver/implicit_worlds.hpp"
 #include "suture/capstan.hpp"
 
-namespace vibe {
+namespace vibe::step_rows_test {
 namespace {
 
 using namespace test;
@@ -210,4 +210,4 @@ TEST(StepRows, AsMuchThreadAsAFoldNeedsStaysBetweenTwoBites) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::step_rows_test

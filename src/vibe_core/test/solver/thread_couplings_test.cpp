@@ -6,7 +6,7 @@
 #include "solver/implicit_worlds.hpp"
 #include "solver/step_rows.hpp"
 
-namespace vibe {
+namespace vibe::thread_couplings_test {
 namespace {
 
 using namespace test;
@@ -75,4 +75,4 @@ TEST(ThreadCouplings, ARowHasWhatTheFactorLacks) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::thread_couplings_test

@@ -3,7 +3,7 @@
 
 #include "solver/balloon.hpp"
 
-namespace vibe {
+namespace vibe::tool_yield_test {
 namespace {
 
 using namespace test;
@@ -166,4 +166,4 @@ TEST(ToolYield, TakesAsManyIterationsAsARigidTool) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tool_yield_test

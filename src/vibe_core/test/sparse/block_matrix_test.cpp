@@ -6,7 +6,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::block_matrix_test {
 namespace {
 
 Eigen::MatrixXd dense(const BlockMatrix& matrix) {
@@ -135,4 +135,4 @@ TEST_F(BlockMatrixTest, CoupledPairsAreBlocksBesideThePattern) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::block_matrix_test

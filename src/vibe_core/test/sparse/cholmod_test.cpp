@@ -8,7 +8,7 @@
 #include "sparse/eigen_matrix.hpp"
 #include "sparse/stiffness_worlds.hpp"
 
-namespace vibe {
+namespace vibe::cholmod_test {
 namespace {
 
 using test::eigenMatrix;
@@ -72,4 +72,4 @@ TEST(CholmodComparison, ABlockOfTetrahedra) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::cholmod_test

@@ -10,7 +10,7 @@
 #include "sparse/factor_plan.hpp"
 #include "sparse/order_repair.hpp"
 
-namespace vibe {
+namespace vibe::coupled_plan_test {
 namespace {
 
 using test::closedMesh;
@@ -130,4 +130,4 @@ TEST(CoupledPlan, FillStaysNearThatOfANewOrder) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::coupled_plan_test

@@ -12,7 +12,7 @@
 #include "sparse/eigen_matrix.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::factor_test {
 namespace {
 
 using test::closedMesh;
@@ -266,4 +266,4 @@ TEST(FactorTest, RefusesAMatrixOfAnotherPattern) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::factor_test

@@ -15,7 +15,7 @@
 #include "sparse/front_elimination.hpp"
 #include "sparse/panel_pack.hpp"
 
-namespace vibe {
+namespace vibe::panel_kernel_test {
 namespace {
 
 bool haveAvx2() {
@@ -232,4 +232,4 @@ TYPED_TEST(DensePrecisionTest, LeavesTheInverseAndTheSchurComplement) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::panel_kernel_test

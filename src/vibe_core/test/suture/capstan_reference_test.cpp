@@ -8,7 +8,7 @@
 #include "suture/thread_problems.hpp"
 #include "suture/thread_reference.hpp"
 
-namespace vibe {
+namespace vibe::capstan_reference_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -114,4 +114,4 @@ TEST(CapstanReference, FrictionKeepsTheFarEyeletOfTheReferenceBack) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::capstan_reference_test

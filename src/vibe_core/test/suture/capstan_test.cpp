@@ -10,7 +10,7 @@
 #include "suture/thread_problems.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::capstan_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -259,4 +259,4 @@ TEST(Capstan, RefusesWhatIsNoThread) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::capstan_test

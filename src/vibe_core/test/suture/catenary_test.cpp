@@ -9,7 +9,7 @@
 #include "suture/thread_reference.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::catenary_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -179,4 +179,4 @@ TEST(Catenary, RefusesWhatIsNoThread) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::catenary_test

@@ -9,7 +9,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::index_groups_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -203,4 +203,4 @@ TEST(MiddleOf, IsTheMeanOfTheBites) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::index_groups_test

@@ -8,7 +8,7 @@
 #include "allocation_count.hpp"
 #include "suture/thread_problems.hpp"
 
-namespace vibe {
+namespace vibe::limited_slide_test {
 namespace {
 
 using namespace test;
@@ -84,4 +84,4 @@ TEST(LimitedSlide, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::limited_slide_test

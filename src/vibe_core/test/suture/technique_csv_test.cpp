@@ -8,7 +8,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::technique_csv_test {
 namespace {
 
 std::vector<std::vector<Eigen::Vector3d>> read(const std::string& text) {
@@ -77,4 +77,4 @@ TEST(TechniqueCsv, SurvivesAnyBytes) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::technique_csv_test

@@ -9,7 +9,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::technique_patterns_test {
 namespace {
 
 double meanSpacing(const std::vector<Eigen::Vector3d>& bites) {
@@ -81,4 +81,4 @@ TEST(Shuffled, KeepsTheBites) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::technique_patterns_test

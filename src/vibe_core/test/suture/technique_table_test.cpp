@@ -4,7 +4,7 @@
 
 #include "vibe_core/suture/technique_patterns.hpp"
 
-namespace vibe {
+namespace vibe::technique_table_test {
 namespace {
 
 constexpr int kPerCell = 60;
@@ -68,4 +68,4 @@ TEST(TechniqueTable, ReportShowsBothRules) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::technique_table_test

@@ -10,7 +10,7 @@
 
 #include "vibe_core/suture/technique_patterns.hpp"
 
-namespace vibe {
+namespace vibe::technique_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -217,4 +217,4 @@ INSTANTIATE_TEST_SUITE_P(Technique, EveryTechnique, testing::Range(1, kTechnique
                          [](const auto& p) { return std::string(toString(static_cast<Technique>(p.param))); });
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::technique_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe {
+namespace vibe::thread_material_test {
 namespace {
 
 TEST(ThreadMaterial, IsWithinThePharmacopoeia) {
@@ -28,4 +28,4 @@ TEST(ThreadMaterial, BreaksBelowItsStraightStrength) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::thread_material_test

@@ -6,7 +6,7 @@
 
 #include "scene/expect_error.hpp"
 
-namespace vibe {
+namespace vibe::apc_parameters_test {
 namespace {
 
 TEST(ApcParameters, SayWhatIsOutOfRange) {
@@ -23,4 +23,4 @@ TEST(ApcParameters, SayWhatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::apc_parameters_test

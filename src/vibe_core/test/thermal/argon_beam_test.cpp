@@ -10,7 +10,7 @@
 #include "geometry/test_surfaces.hpp"
 #include "procedure/marking_worlds.hpp"
 
-namespace vibe {
+namespace vibe::argon_beam_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -211,4 +211,4 @@ TEST(ArgonBeam, DoesNotAllocateAfterItsFirstUse) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::argon_beam_test

@@ -9,7 +9,7 @@
 #include "procedure/marking_worlds.hpp"
 #include "vibe_core/builder/organ_builder.hpp"
 
-namespace vibe {
+namespace vibe::mark_zones_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -183,4 +183,4 @@ TEST(MarkZones, AreaIsThatOfTheMarkedParticles) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::mark_zones_test

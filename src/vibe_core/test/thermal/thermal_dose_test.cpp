@@ -9,7 +9,7 @@
 #include "procedure/marking_worlds.hpp"
 #include "scene/expect_error.hpp"
 
-namespace vibe {
+namespace vibe::thermal_dose_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -242,4 +242,4 @@ TEST(ThermalDose, NamesArraysOfAnotherSize) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::thermal_dose_test

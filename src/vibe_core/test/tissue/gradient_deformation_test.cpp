@@ -12,7 +12,7 @@
 #include "scene/expect_error.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::gradient_deformation_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -306,4 +306,4 @@ TEST(GradientDeformation, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::gradient_deformation_test

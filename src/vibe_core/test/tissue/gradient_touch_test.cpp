@@ -8,7 +8,7 @@
 
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::gradient_touch_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -124,4 +124,4 @@ TEST(GradientTouch, DoesNotAllocateWhileTheSameIsTouched) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::gradient_touch_test

@@ -10,7 +10,7 @@
 #include "tissue/shell_worlds.hpp"
 #include "vibe_core/scene/choices.hpp"
 
-namespace vibe {
+namespace vibe::material_registry_test {
 namespace {
 
 using namespace test;
@@ -99,4 +99,4 @@ TEST(MaterialRegistry, LawsThatBreakARuleAreRejected) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::material_registry_test

@@ -8,7 +8,7 @@
 #include "tissue/material_law.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::material_test {
 namespace {
 
 constexpr double kE = 3e4, kNu = 0.45;
@@ -197,4 +197,4 @@ TEST(Material, RefusesWhatHasNoPositiveEnergy) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::material_test

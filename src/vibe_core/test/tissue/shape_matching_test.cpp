@@ -10,7 +10,7 @@
 #include "vibe_core/model/accounting.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::shape_matching_test {
 namespace {
 
 using test::bareScene;
@@ -250,4 +250,4 @@ TEST(ShapeMatching, RefusesAnOpenSurface) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shape_matching_test

@@ -3,7 +3,7 @@
 #include "tissue/shell_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::shell_fibres_test {
 namespace {
 
 using namespace test;
@@ -187,4 +187,4 @@ TEST(ShellFibres, AreRefusedOutOfRange) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shell_fibres_test

@@ -7,7 +7,7 @@
 
 #include "tissue/shell_worlds.hpp"
 
-namespace vibe {
+namespace vibe::shell_kernel_test {
 namespace {
 
 using namespace test;
@@ -146,4 +146,4 @@ TEST(ShellKernel, SqueezedSheetIsPushedBack) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shell_kernel_test

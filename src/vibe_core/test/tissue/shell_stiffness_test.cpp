@@ -2,7 +2,7 @@
 
 #include "tissue/shell_worlds.hpp"
 
-namespace vibe {
+namespace vibe::shell_stiffness_test {
 namespace {
 
 using namespace test;
@@ -79,4 +79,4 @@ TEST(ShellStiffness, PatchMayMeetANodeTwice) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shell_stiffness_test

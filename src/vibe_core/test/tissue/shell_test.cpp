@@ -8,7 +8,7 @@
 #include "tissue/shell_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::shell_test {
 namespace {
 
 using namespace test;
@@ -313,4 +313,4 @@ TEST(Shell, BadMeshIsAnErrorThatNamesTheTriangle) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shell_test

@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "worlds.hpp"
 
-namespace vibe {
+namespace vibe::shell_tissue_test {
 namespace {
 
 using test::icosphere;
@@ -127,4 +127,4 @@ TEST(ShellTissue, StomachHasFibresAlongItsAxisOfUnitLength) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shell_tissue_test

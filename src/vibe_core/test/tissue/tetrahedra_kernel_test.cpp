@@ -6,7 +6,7 @@
 
 #include "tissue/tetrahedra_worlds.hpp"
 
-namespace vibe {
+namespace vibe::tetrahedra_kernel_test {
 namespace {
 
 using namespace test;
@@ -165,4 +165,4 @@ TEST(TetrahedraKernel, InvertedElementReturns) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tetrahedra_kernel_test

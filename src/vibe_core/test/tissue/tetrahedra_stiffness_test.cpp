@@ -2,7 +2,7 @@
 
 #include "tissue/tetrahedra_worlds.hpp"
 
-namespace vibe {
+namespace vibe::tetrahedra_stiffness_test {
 namespace {
 
 using namespace test;
@@ -76,4 +76,4 @@ TEST(TetrahedraStiffness, SecondDerivativeItselfIsIndefiniteWhenCompressed) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tetrahedra_stiffness_test

@@ -9,7 +9,7 @@
 #include "tissue/tetrahedra_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::tetrahedra_test {
 namespace {
 
 using namespace test;
@@ -278,4 +278,4 @@ TEST(Tetrahedra, BadMeshIsAnErrorThatNamesTheElement) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tetrahedra_test

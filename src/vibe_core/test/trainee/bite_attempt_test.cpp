@@ -5,7 +5,7 @@
 
 #include "onlooker.hpp"
 
-namespace vibe {
+namespace vibe::bite_attempt_test {
 namespace {
 
 GoalResult attemptUnder(double force, Hand::Joints& joints) {
@@ -33,4 +33,4 @@ TEST(BiteAttempt, GoesOnUnderAForceThatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::bite_attempt_test

@@ -8,7 +8,7 @@
 #include "trainee/ik_solution.hpp"
 #include "trainee/imagined_draw.hpp"
 
-namespace vibe {
+namespace vibe::bite_plan_test {
 namespace {
 
 Hand::Joints jointsOnWall(const Onlooker& at, const WallPoint& place) {
@@ -128,4 +128,4 @@ TEST(PlanBite, WithoutForesightTheNeedleIsTakenToPassBesideTheHelix) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::bite_plan_test

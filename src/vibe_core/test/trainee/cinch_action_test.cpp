@@ -5,7 +5,7 @@
 
 #include "onlooker.hpp"
 
-namespace vibe {
+namespace vibe::cinch_action_test {
 namespace {
 
 struct Cinched {
@@ -55,4 +55,4 @@ TEST(Cinch, AThreadThatStaysLooseIsAReason) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::cinch_action_test

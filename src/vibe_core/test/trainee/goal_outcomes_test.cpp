@@ -6,7 +6,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::goal_outcomes_test {
 namespace {
 
 std::shared_ptr<const Model> stomach() {
@@ -56,4 +56,4 @@ TEST(GoalOutcomes, withoutATraineeHaveNamesButNoValues) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::goal_outcomes_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe {
+namespace vibe::minimum_jerk_test {
 namespace {
 
 constexpr double kStep = 1e-4;
@@ -43,4 +43,4 @@ TEST(MinimumJerk, PeakSpeedIsFifteenEighthsOfTheMean) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::minimum_jerk_test

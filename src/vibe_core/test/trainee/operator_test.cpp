@@ -8,7 +8,7 @@
 
 #include "onlooker.hpp"
 
-namespace vibe {
+namespace vibe::operator_test {
 namespace {
 
 /// Distances from the target of points that are aimed at in its stead [m].
@@ -38,4 +38,4 @@ TEST(Operator, AimsAtTheTargetWhereTheErrorLeavesTheOrgan) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::operator_test

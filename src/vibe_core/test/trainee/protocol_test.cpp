@@ -8,7 +8,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::protocol_test {
 namespace {
 
 Protocol parse(const std::string& goals) {
@@ -138,4 +138,4 @@ TEST(Protocol, EveryMistakeIsNamedWithItsPlaceAndRemedy) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::protocol_test

@@ -8,7 +8,7 @@
 #include "scene/expect_error.hpp"
 #include "scene/mutation.hpp"
 
-namespace vibe {
+namespace vibe::script_reader_test {
 namespace {
 
 /// The actions begin on line 3.
@@ -138,4 +138,4 @@ TEST(ScriptReader, DamagedScriptsGiveAScriptOrAnErrorWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::script_reader_test

@@ -8,7 +8,7 @@
 #include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
-namespace vibe {
+namespace vibe::shipped_scripts_test {
 namespace {
 
 const std::array<JointLimits, kJointCount>& toolLimits() {
@@ -65,4 +65,4 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScript,
                                            "demo/five_states.yaml"));
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::shipped_scripts_test

@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/suture/technique_patterns.hpp"
 
-namespace vibe {
+namespace vibe::suture_pattern_test {
 namespace {
 
 std::vector<Eigen::Vector3d> onCylinder(const std::vector<Eigen::Vector2d>& places, double radius) {
@@ -48,4 +48,4 @@ TEST(SuturePattern, SaysWhatDoesNotExist) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::suture_pattern_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace vibe {
+namespace vibe::timeline_test {
 namespace {
 
 TEST(Timeline, EmptyOneRests) {
@@ -53,4 +53,4 @@ TEST(Timeline, EdgesAndPhasesHoldUntilTheNext) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::timeline_test

@@ -5,7 +5,7 @@
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 
-namespace vibe {
+namespace vibe::trainee_cancel_test {
 namespace {
 
 std::shared_ptr<const Model> coarseStomach() {
@@ -101,4 +101,4 @@ TEST(TraineeCancel, WhatHasEndedStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::trainee_cancel_test

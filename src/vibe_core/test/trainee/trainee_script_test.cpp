@@ -9,7 +9,7 @@
 
 #include "scene/expect_error.hpp"
 
-namespace vibe {
+namespace vibe::trainee_script_test {
 namespace {
 
 const std::string kScripts = std::string(VIBE_CORE_DIR) + "/trainees/";
@@ -181,4 +181,4 @@ TEST(TraineeScript, LongScriptsAreFine) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::trainee_script_test

@@ -9,7 +9,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::trainee_test {
 namespace {
 
 std::shared_ptr<const Model> stomach() {
@@ -166,4 +166,4 @@ TEST(Skill, ALineFromExpertToNovice) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::trainee_test

@@ -6,7 +6,7 @@
 #include <complex>
 #include <vector>
 
-namespace vibe {
+namespace vibe::tremor_test {
 namespace {
 
 constexpr double kRate = 100;  // samples per second: far above twice the band
@@ -98,4 +98,4 @@ TEST(Tremor, NoneByDefault) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tremor_test

@@ -6,8 +6,8 @@
 namespace vibe_firmware {
 namespace {
 
-constexpr auto kDevice = deviceDescriptor(kHapticProductId);
-constexpr auto kConfiguration = vibe_firmware::configurationDescriptor(sizeof kHapticReportDescriptor);
+constexpr auto kHapticDevice = deviceDescriptor(kHapticProductId);
+constexpr auto kHapticConfiguration = vibe_firmware::configurationDescriptor(sizeof kHapticReportDescriptor);
 
 }  // namespace
 
@@ -48,10 +48,10 @@ StatusReport HapticFunction::status() const {
 }
 
 Bytes HapticFunction::deviceDescriptor() const {
-  return {kDevice.data(), kDevice.size()};
+  return {kHapticDevice.data(), kHapticDevice.size()};
 }
 Bytes HapticFunction::configurationDescriptor() const {
-  return {kConfiguration.data(), kConfiguration.size()};
+  return {kHapticConfiguration.data(), kHapticConfiguration.size()};
 }
 Bytes HapticFunction::reportDescriptor() const {
   return {kHapticReportDescriptor, sizeof kHapticReportDescriptor};

@@ -7,8 +7,8 @@
 namespace vibe_firmware {
 namespace {
 
-constexpr auto kDevice = deviceDescriptor(kInputProductId);
-constexpr auto kConfiguration = vibe_firmware::configurationDescriptor(sizeof kInputReportDescriptor);
+constexpr auto kInputDevice = deviceDescriptor(kInputProductId);
+constexpr auto kInputConfiguration = vibe_firmware::configurationDescriptor(sizeof kInputReportDescriptor);
 
 }  // namespace
 
@@ -42,10 +42,10 @@ StatusReport InputFunction::status() const {
 }
 
 Bytes InputFunction::deviceDescriptor() const {
-  return {kDevice.data(), kDevice.size()};
+  return {kInputDevice.data(), kInputDevice.size()};
 }
 Bytes InputFunction::configurationDescriptor() const {
-  return {kConfiguration.data(), kConfiguration.size()};
+  return {kInputConfiguration.data(), kInputConfiguration.size()};
 }
 Bytes InputFunction::reportDescriptor() const {
   return {kInputReportDescriptor, sizeof kInputReportDescriptor};

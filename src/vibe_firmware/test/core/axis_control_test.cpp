@@ -7,7 +7,7 @@
 
 #include "vibe_firmware/core/passivity.hpp"
 
-namespace vibe_firmware {
+namespace vibe_firmware::axis_control_test {
 namespace {
 
 AxisParameters spring(float stiffness, float damping, float position = 0, float torque = 0) {
@@ -248,4 +248,4 @@ TEST_F(Axis, ObserverBooksTheExactWorkOfTheHeldTorque) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::axis_control_test

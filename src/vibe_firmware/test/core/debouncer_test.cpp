@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe_firmware {
+namespace vibe_firmware::debouncer_test {
 namespace {
 
 TEST(Debouncer, ChangesInTheTickInWhichTheContactHasBeenStillLongEnough) {
@@ -45,4 +45,4 @@ TEST(Debouncer, OneTickAndNoneFollowAtOnce) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::debouncer_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe_firmware {
+namespace vibe_firmware::encoder_test {
 namespace {
 
 constexpr std::int64_t kMask[] = {0xFF, 0xFFFF, 0xFFFFFFFF};
@@ -104,4 +104,4 @@ TEST(Encoder, IndexFarFromWhereItShouldBeIsAFault) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::encoder_test

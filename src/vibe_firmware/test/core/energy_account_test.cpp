@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe_firmware {
+namespace vibe_firmware::energy_account_test {
 namespace {
 
 TEST(EnergyAccount, AMillionSmallAmountsAreNotLost) {
@@ -31,4 +31,4 @@ TEST(EnergyAccount, NeverHoldsMoreThanItsCapacity) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::energy_account_test

@@ -15,7 +15,7 @@
 // b it loses at least b (p^2/t_d + r^2/(T - t_d)), and gains F_k r_k + F_(k-1) p_k. At each frequency both are
 // quadratic forms in p and r; the friction that is needed is their largest generalised eigenvalue.
 
-namespace vibe_firmware {
+namespace vibe_firmware::frequency_sweep_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -156,4 +156,4 @@ TEST(FrequencySweep, RealFunctionIsPumpedBelowTheConditionAndNotAbove) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::frequency_sweep_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe_firmware {
+namespace vibe_firmware::haptic_device_test {
 namespace {
 
 ParameterReport springs(float stiffness, float damping, float position, float torque = 0) {
@@ -138,4 +138,4 @@ TEST_F(HapticDevice, ReportShowsSampleAndState) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::haptic_device_test

@@ -11,7 +11,7 @@
 // A host that sends what it likes, 100 times a second, together with a hand that wants energy. Whatever they do, an
 // axis gives the hand no more than its capacity beyond what the hand has put in since.
 
-namespace vibe_firmware {
+namespace vibe_firmware::hostile_host_test {
 namespace {
 
 constexpr int kTicks = 1000000;
@@ -301,4 +301,4 @@ TEST(HostileHost, WithoutObserverEveryoneGetsMore) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::hostile_host_test

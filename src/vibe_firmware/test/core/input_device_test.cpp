@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe_firmware {
+namespace vibe_firmware::input_device_test {
 namespace {
 
 TEST(InputDevice, ReportsCountsAxesButtonsAndTime) {
@@ -65,4 +65,4 @@ TEST(InputDevice, SequenceNumberWraps) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::input_device_test

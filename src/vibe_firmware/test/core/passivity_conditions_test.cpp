@@ -5,7 +5,7 @@
 
 #include "vibe_firmware/core/passivity.hpp"
 
-namespace vibe_firmware {
+namespace vibe_firmware::passivity_conditions_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -111,4 +111,4 @@ TEST(PassivityConditions, VerdictNamesTheAxis) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::passivity_conditions_test

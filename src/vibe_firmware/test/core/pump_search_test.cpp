@@ -11,7 +11,7 @@
 // Worst-case search over the real control function: no hand gains energy from accepted parameters, some hand does 5 %
 // outside. Safety factor 1, no output delay: the limits themselves.
 
-namespace vibe_firmware {
+namespace vibe_firmware::pump_search_test {
 namespace {
 
 struct Hardware {
@@ -170,4 +170,4 @@ TEST(PumpSearch, GainAgreesWithTheFormulaOfTheWorstMotion) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::pump_search_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe_firmware {
+namespace vibe_firmware::velocity_filter_test {
 namespace {
 
 TEST(VelocityFilter, StepResponseIsTheGeometricOne) {
@@ -26,4 +26,4 @@ TEST(VelocityFilter, AlternatingMotionIsReducedByTheFactorOfThePassivityConditio
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::velocity_filter_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe_firmware {
+namespace vibe_firmware::watchdog_test {
 namespace {
 
 TEST(Watchdog, FadesTickByTick) {
@@ -33,4 +33,4 @@ TEST(Watchdog, DeviceStartsSilent) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::watchdog_test

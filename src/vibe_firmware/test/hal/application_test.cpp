@@ -9,7 +9,7 @@
 #include "vibe_firmware/protocol/haptic_function.hpp"
 #include "vibe_firmware/protocol/input_function.hpp"
 
-namespace vibe_firmware {
+namespace vibe_firmware::application_test {
 namespace {
 
 class FakeBoard : public Board {
@@ -179,4 +179,4 @@ TEST(InputApplication, WritesNoTorque) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::application_test

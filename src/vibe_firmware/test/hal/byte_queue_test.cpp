@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vibe_firmware {
+namespace vibe_firmware::byte_queue_test {
 namespace {
 
 template <std::size_t kCapacity>
@@ -41,4 +41,4 @@ TEST(ByteQueue, WrapsAround) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::byte_queue_test

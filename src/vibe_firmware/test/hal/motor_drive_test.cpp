@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe_firmware {
+namespace vibe_firmware::motor_drive_test {
 namespace {
 
 constexpr std::uint32_t kPeriod = 4320;
@@ -69,4 +69,4 @@ TEST(SlowDecay, FullDutyDrivesTheWholePeriod) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::motor_drive_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe_firmware {
+namespace vibe_firmware::tick_monitor_test {
 namespace {
 
 TEST(TickMonitor, FirstTickIsNeverLate) {
@@ -26,4 +26,4 @@ TEST(TickMonitor, ClockMayWrap) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::tick_monitor_test

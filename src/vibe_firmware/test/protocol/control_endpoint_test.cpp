@@ -10,7 +10,7 @@
 #include "vibe_firmware/protocol/haptic_function.hpp"
 #include "vibe_firmware/protocol/input_function.hpp"
 
-namespace vibe_firmware {
+namespace vibe_firmware::control_endpoint_test {
 namespace {
 
 using ByteVector = std::vector<std::uint8_t>;
@@ -183,4 +183,4 @@ TEST(InputFunctionReports, HaveNoParameters) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::control_endpoint_test

@@ -4,7 +4,7 @@
 
 #include "protocol/hid_items.hpp"
 
-namespace vibe_firmware {
+namespace vibe_firmware::descriptors_test {
 namespace {
 
 HidItems haptic() {
@@ -90,4 +90,4 @@ TEST(DeviceDescriptor, TellsTheDevicesApart) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::descriptors_test

@@ -4,7 +4,7 @@
 
 #include "vibe_firmware/protocol/published.hpp"
 
-namespace vibe_firmware {
+namespace vibe_firmware::mailbox_test {
 namespace {
 
 /// A value that is interrupted in the middle of being copied, as by a control interrupt.
@@ -65,4 +65,4 @@ TEST(Published, ReadsAgainWhenTheInterruptComesInBetween) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::mailbox_test

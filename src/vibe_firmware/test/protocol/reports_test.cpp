@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace vibe_firmware {
+namespace vibe_firmware::reports_test {
 namespace {
 
 using ByteVector = std::vector<std::uint8_t>;
@@ -137,4 +137,4 @@ TEST(Reports, NotANumberTravelsUnchanged) {
 }
 
 }  // namespace
-}  // namespace vibe_firmware
+}  // namespace vibe_firmware::reports_test

@@ -5,7 +5,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of times [s]
+constexpr double kTimeRounding = 1e-6;  // of times [s]
 
 vibe_firmware::AxisParameters scaled(vibe_firmware::AxisParameters spring, double gain) {
   const auto factor = static_cast<float>(gain);
@@ -43,7 +43,7 @@ double HapticLink::gain(double now) const {
 
 std::optional<vibe_firmware::ParameterReport> HapticLink::next(double now) {
   if (touching_ && now - target_time_ > kTimeout) release(now);
-  const double since = now - last_sent_ + kRounding;
+  const double since = now - last_sent_ + kTimeRounding;
   const double present = gain(now);
   const bool fading = !touching_ && (present > 0 || changed_);
   const double period = changed_ || fading ? kMinPeriod : kHeartbeat;

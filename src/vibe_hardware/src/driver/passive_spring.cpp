@@ -12,7 +12,7 @@ using vibe_firmware::AxisConfig;
 using vibe_firmware::AxisParameters;
 using vibe_firmware::Refusal;
 
-constexpr float kRounding = 0.9999F;  // the limits are exclusive, and the device computes with floats
+constexpr float kBelowLimit = 0.9999F;  // the limits are exclusive, and the device computes with floats
 
 /// Moves the point about which the spring is stated along its own line to where the torque equals the limit.
 void limitTorque(double limit, double& position, double& torque, double stiffness) {
@@ -25,7 +25,7 @@ void limitTorque(double limit, double& position, double& torque, double stiffnes
 
 PassiveSpring passiveSpring(const AxisConfig& axis, const JointSpring& spring) {
   const auto lower = [](double wanted, float limit) {
-    return wanted <= static_cast<double>(limit) ? wanted : static_cast<double>(kRounding * limit);
+    return wanted <= static_cast<double>(limit) ? wanted : static_cast<double>(kBelowLimit * limit);
   };
   PassiveSpring result;
   const double stiffness = lower(spring.stiffness, vibe_firmware::maxStiffness(axis, 0));
@@ -47,9 +47,9 @@ PassiveSpring passiveSpring(const AxisConfig& axis, const JointSpring& spring) {
   if (vibe_firmware::validate(axis, p).refusal == Refusal::None) return result;
   // What remains is rounding at the border, or a position that no encoder reaches: a spring that far away is no spring.
   result.clamped = true;
-  p.stiffness *= kRounding;
-  p.damping *= kRounding;
-  p.torque *= kRounding;
+  p.stiffness *= kBelowLimit;
+  p.damping *= kBelowLimit;
+  p.torque *= kBelowLimit;
   if (vibe_firmware::validate(axis, p).refusal != Refusal::None) p = {};
   return result;
 }

@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-std::FILE* open(const std::string& file, const char* mode) {
+std::FILE* openFile(const std::string& file, const char* mode) {
   std::FILE* result = std::fopen(file.c_str(), mode);
   if (result == nullptr) throw Error("Cannot write the pad recording '" + file + "'; check its folder.");
   return result;
@@ -18,14 +18,15 @@ std::FILE* open(const std::string& file, const char* mode) {
 
 }  // namespace
 
-PadRecorder::PadRecorder(const std::string& file, const PadInfo& info, const PadState& state) : file_(open(file, "w")) {
+PadRecorder::PadRecorder(const std::string& file, const PadInfo& info, const PadState& state)
+    : file_(openFile(file, "w")) {
   writeHeader(info, state);
 }
 
 void PadRecorder::checkFile(const std::string& file) {
   std::error_code unknown;
   const bool is_new = !std::filesystem::exists(file, unknown);
-  std::fclose(open(file, "a"));
+  std::fclose(openFile(file, "a"));
   if (is_new) std::filesystem::remove(file, unknown);
 }
 

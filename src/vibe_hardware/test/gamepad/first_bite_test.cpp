@@ -12,7 +12,7 @@
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 
-namespace vibe {
+namespace vibe::first_bite_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -53,4 +53,4 @@ TEST(FirstBite, TutorialSessionInsufflatesGrabsAndBites) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::first_bite_test

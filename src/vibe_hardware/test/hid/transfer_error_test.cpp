@@ -6,7 +6,7 @@
 
 #include "vibe_hardware/hid/hid_port.hpp"
 
-namespace vibe {
+namespace vibe::transfer_error_test {
 namespace {
 
 TEST(TransferError, ATimeoutIsNoAnswerAndNoRejection) {
@@ -30,4 +30,4 @@ TEST(TransferError, NamesDeviceReportAndReason) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::transfer_error_test

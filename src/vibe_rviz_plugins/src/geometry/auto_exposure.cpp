@@ -6,8 +6,8 @@
 namespace vibe {
 namespace {
 
-constexpr double kNear = 0.04;   // of the target: close enough to show the first picture [1]
-constexpr int kTries = 4;        // of the first picture
+constexpr double kCloseEnough = 0.04;  // of the target: close enough to show the first picture [1]
+constexpr int kTries = 4;              // of the first picture
 constexpr double kFollow = 0.3;  // of what is missing, at most, from picture to picture; all of it would overshoot
 
 /// Stops that are missing. The level is about the square root of the exposure below the shoulder.
@@ -25,7 +25,7 @@ void AutoExposure::see(double level, double time) {
   double stops = missing(level);
   if (!fresh) stops = std::clamp(kFollow * stops, -kRate * passed, kRate * passed);
   gain_ = std::clamp(gain_ * std::exp2(stops), kMinGain, kMaxGain);
-  lost_ = fresh && tries_ + 1 < kTries && std::abs(level / kTarget - 1) > kNear;
+  lost_ = fresh && tries_ + 1 < kTries && std::abs(level / kTarget - 1) > kCloseEnough;
   begun_ = true;
   time_ = time;
 }

@@ -13,13 +13,13 @@ namespace {
 using Eigen::Vector3d;
 
 // Design choices, so that a bleeding looks as it is described: a red streak and a pool.
-constexpr double kNear = 8e-3;                        // farthest wall that a wound can belong to [m]
-constexpr double kFilm = 8e-9, kCeilingFilm = 25e-9;  // what clings to a wall, and to one overhead [m^3]
-constexpr double kCling = 60e-9;                      // of a brisk wound, that does not leave with the jet [m^3]
-constexpr double kFlatCeiling = 0.94;                 // cosine to gravity from which blood does not run
-constexpr double kFall = 0.3, kClear = 1e-3;          // longest fall, and where it begins before the wall [m]
-constexpr int kFalls = 3;                             // from fold to fold
-constexpr int kOtherNumbers = 100;                    // so that blood that has landed differs in shape
+constexpr double kFarthestWall = 8e-3;                            // farthest wall that a wound can belong to [m]
+constexpr double kFilmVolume = 8e-9, kCeilingFilmVolume = 25e-9;  // what clings to a wall, and to one overhead [m^3]
+constexpr double kCling = 60e-9;              // of a brisk wound, that does not leave with the jet [m^3]
+constexpr double kFlatCeiling = 0.94;         // cosine to gravity from which blood does not run
+constexpr double kFall = 0.3, kClear = 1e-3;  // longest fall, and where it begins before the wall [m]
+constexpr int kFalls = 3;                     // from fold to fold
+constexpr int kOtherNumbers = 100;            // so that blood that has landed differs in shape
 
 /// How blood of a wound runs.
 struct Run {
@@ -38,14 +38,14 @@ struct Source {
   int number;
 };
 
-double lengthOf(const std::vector<WallPoint>& line) {
+double lengthOnWall(const std::vector<WallPoint>& line) {
   double length = 0;
   for (std::size_t k = 1; k < line.size(); ++k) length += (line[k].place - line[k - 1].place).norm();
   return length;
 }
 
 /// Cuts a line on a wall; the last point is between two of its points.
-std::vector<WallPoint> beginning(const std::vector<WallPoint>& line, double length, const WallSurface& wall) {
+std::vector<WallPoint> beginningOnWall(const std::vector<WallPoint>& line, double length, const WallSurface& wall) {
   std::vector<WallPoint> cut(1, line.front());
   for (std::size_t k = 1; k < line.size() && length > 0; ++k) {
     const Vector3d way = line[k].place - line[k - 1].place;
@@ -62,10 +62,10 @@ Rivulet rivuletOf(const Source& source, double volume, const WallSurface& wall, 
   rivulet.width = source.run.width, rivulet.thickness = source.run.thickness;
   rivulet.brown = source.brown, rivulet.number = source.number;
   const std::vector<WallPoint> whole = steepestDescent(wall, source.at, down);
-  const double path = lengthOf(whole), section = 2.0 / 3 * rivulet.width * rivulet.thickness;
+  const double path = lengthOnWall(whole), section = 2.0 / 3 * rivulet.width * rivulet.thickness;
   rivulet.length = std::min({path, source.run.speed * std::max(0.0, source.age), volume / section});
   rivulet.arrived = rivulet.length >= path;
-  rivulet.line = rivulet.arrived ? whole : beginning(whole, rivulet.length, wall);
+  rivulet.line = rivulet.arrived ? whole : beginningOnWall(whole, rivulet.length, wall);
   return rivulet;
 }
 
@@ -75,7 +75,7 @@ class FlowBuilder {
       : wall_(wall), style_(style), basins_(wall, style.down) {}
 
   void add(const Wound& wound) {
-    const auto at = wall_.nearest(wound.place, wound.inward, kNear);
+    const auto at = wall_.nearest(wound.place, wound.inward, kFarthestWall);
     if (!at) {
       flow_.elsewhere.push_back(wound);
       return;
@@ -112,7 +112,8 @@ class FlowBuilder {
   /// @param goes_on  false: what is left stays at the source
   void addSource(const Source& source, bool goes_on, int falls = 0) {
     const bool overhead = source.at.inward.dot(style_.down) > kFlatCeiling;
-    BloodFilm film{source.at, std::min(source.volume, overhead ? kCeilingFilm : kFilm), source.brown, source.number};
+    BloodFilm film{source.at, std::min(source.volume, overhead ? kCeilingFilmVolume : kFilmVolume), source.brown,
+                   source.number};
     double rest = source.volume - film.volume;
     WallPoint end = source.at;
     bool arrived = true;

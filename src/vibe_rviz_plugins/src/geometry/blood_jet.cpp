@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kGravity = 9.81;         // [m/s^2]
 constexpr double kHeartRate = 72 / 60.0;  // [1/s]
 constexpr double kMeanSpeed = 0.5;   // of blood leaving a small artery into gas [m/s]; rises some 13 mm; design choice
@@ -31,14 +30,14 @@ struct Flight {
 
 Flight flightOf(const Wound& wound, const Vector3d& down) {
   const Vector3d inward = wound.inward.norm() > 0.5 ? wound.inward : Vector3d(-down);
-  const Vector3d aside = Eigen::AngleAxisd(kPi * wobble(wound.number, 9), inward) * anyNormal(inward);
+  const Vector3d aside = Eigen::AngleAxisd(M_PI * wobble(wound.number, 9), inward) * anyNormal(inward);
   return {(inward + 0.45 * aside).normalized()};
 }
 
 }  // namespace
 
 double jetSpeed(double time) {
-  const double beat = time * kHeartRate, phase = 2 * kPi * (beat - std::floor(beat));
+  const double beat = time * kHeartRate, phase = 2 * M_PI * (beat - std::floor(beat));
   return kMeanSpeed * (1 + kPulse * (std::sin(phase) + 0.5 * std::sin(2 * phase)));
 }
 
@@ -67,11 +66,11 @@ std::vector<Vector3d> jetLine(const Wound& wound, double duration, const BloodSt
 
 void appendJet(const Wound& wound, const std::vector<Vector3d>& line, const BloodStyle& style, ColouredShape& shape) {
   constexpr std::size_t kWhole = 15;
-  const double steady = std::sqrt(wound.rate / (kPi * kMeanSpeed));
+  const double steady = std::sqrt(wound.rate / (M_PI * kMeanSpeed));
   const double radius = std::max(kMinJet, steady) * std::sqrt(style.emphasis);
   std::vector<TubePoint> jet;
   for (std::size_t k = 0; k < kWhole; ++k) {
-    const double swell = 1 + 0.35 * std::sin(2 * kPi * (0.19 * static_cast<double>(k) - style.time * 5));
+    const double swell = 1 + 0.35 * std::sin(2 * M_PI * (0.19 * static_cast<double>(k) - style.time * 5));
     jet.push_back({line[k], radius * swell * (1 - 0.3 * static_cast<double>(k) / kWhole), packedOf(kBrightBlood)});
   }
   appendTube(jet, 8, shape);

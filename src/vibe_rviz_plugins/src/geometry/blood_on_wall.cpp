@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/append_shape.hpp"
 #include "geometry/blood_colour.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
@@ -12,12 +13,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kRaised = 0.08e-3;                        // the edge of blood over the wall [m]
-constexpr double kRim = 0.05e-3;                           // depth of blood at its edge [m]
+constexpr double kRimDepth = 0.05e-3;                      // depth of blood at its edge [m]
 constexpr double kFilmHeight = 0.6e-3, kFilmSlope = 0.25;  // [m]; of a small drop, height to radius
-constexpr double kMaxFilmRadius = 9e-3;                    // beyond, blood is not drawn [m]
-constexpr int kSides = 22, kRings = 4;                     // of a film
+constexpr double kMaxDrawnRadius = 9e-3;                   // beyond, blood is not drawn [m]
+constexpr int kFilmSides = 22, kFilmRings = 4;             // of a film
 constexpr double kFade = 6e-3;                             // a rivulet reaches its width on this way [m]
 constexpr std::array<double, 7> kAcross{-1, -0.8, -0.45, 0, 0.45, 0.8, 1};  // of the half-width
 constexpr std::uint32_t kPoints = kAcross.size();
@@ -27,15 +27,6 @@ void addVertex(const Vector3d& place, const Vector3d& normal, const BloodShade& 
   const Eigen::Vector3f p = place.cast<float>(), n = normal.normalized().cast<float>();
   shape.vertices.push_back({{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}});
   shape.colours.push_back(packedOf(shade));
-}
-
-/// Two rows of vertices as a band of triangles.
-void addBand(std::uint32_t upper, std::uint32_t lower, std::uint32_t count, bool closed, ColouredShape& shape) {
-  for (std::uint32_t k = 0; k < (closed ? count : count - 1); ++k) {
-    const std::uint32_t next = (k + 1) % count;
-    shape.triangles.insert(shape.triangles.end(), {upper + k, lower + k, lower + next});
-    shape.triangles.insert(shape.triangles.end(), {upper + k, lower + next, upper + next});
-  }
 }
 
 Vector3d alongWall(const Vector3d& v, const WallPoint& at) {
@@ -52,25 +43,25 @@ Vector3d downhill(const WallPoint& at, const WallSurface& wall, const Vector3d& 
 }
 
 double filmRadius(double volume) {
-  const double small = std::cbrt(2 * volume / (kPi * kFilmSlope)), flat = std::sqrt(2 * volume / (kPi * kFilmHeight));
-  return std::min(kMaxFilmRadius, std::max(small, flat));
+  const double small = std::cbrt(2 * volume / (M_PI * kFilmSlope)), flat = std::sqrt(2 * volume / (M_PI * kFilmHeight));
+  return std::min(kMaxDrawnRadius, std::max(small, flat));
 }
 
 double filmReach(const BloodFilm& film, double angle) {
   double reach = 1 + 0.15 * std::max(0.0, std::cos(angle));
   for (int k = 0; k < 3; ++k)
-    reach += 0.06 * wobble(film.number, k) * std::cos((k + 2) * angle + kPi * wobble(film.number, k + 3));
+    reach += 0.06 * wobble(film.number, k) * std::cos((k + 2) * angle + M_PI * wobble(film.number, k + 3));
   return reach;
 }
 
 /// Offset of the middle of a rivulet, and factor of its width, at a distance from its start.
 double bend(const Rivulet& rivulet, double s) {
-  const double a = kPi * wobble(rivulet.number, 11), b = kPi * wobble(rivulet.number, 12);
+  const double a = M_PI * wobble(rivulet.number, 11), b = M_PI * wobble(rivulet.number, 12);
   return std::min(1.0, s / kFade) * (0.5e-3 * std::sin(s / 4.3e-3 + a) + 0.3e-3 * std::sin(s / 1.9e-3 + b));
 }
 
 double widthAt(const Rivulet& rivulet, double s) {
-  const double c = kPi * wobble(rivulet.number, 13);
+  const double c = M_PI * wobble(rivulet.number, 13);
   const double wide = (0.6 + 0.4 * std::min(1.0, s / kFade)) *
                       (1 + 0.18 * std::sin(s / 1.7e-3 + c) + 0.12 * std::sin(s / 3.1e-3 + 2 * c));
   const double head = 0.6 * rivulet.width, left = rivulet.length - s;  // the head is round
@@ -81,7 +72,7 @@ double widthAt(const Rivulet& rivulet, double s) {
 
 /// Slope of the surface along a rivulet, which breaks its highlight.
 double rippleAt(const Rivulet& rivulet, double s) {
-  const double d = kPi * wobble(rivulet.number, 14);
+  const double d = M_PI * wobble(rivulet.number, 14);
   return 0.2 * std::sin(s / 0.9e-3 + d) + 0.15 * std::sin(s / 1.47e-3 + 2 * d) + 0.15 * std::sin(s / 2.9e-3 + 3 * d);
 }
 
@@ -94,7 +85,7 @@ void addRow(const Rivulet& rivulet, const WallPoint& at, const Vector3d& along, 
     const WallPoint under = wall.moved(at, (middle + half * u) * across);
     const double depth = rivulet.thickness * (1 - u * u) * std::min(1.0, half / (0.4 * rivulet.width));
     const Vector3d normal = under.inward + 2 * u * rivulet.thickness / half * across + ripple * along.normalized();
-    addVertex(under.place + (kRaised + depth) * under.inward, normal, layerOf(kRim + depth, rivulet.brown), shape);
+    addVertex(under.place + (kRaised + depth) * under.inward, normal, layerOf(kRimDepth + depth, rivulet.brown), shape);
   }
 }
 
@@ -126,29 +117,31 @@ void addPoolCorner(const PoolCorner& corner, double brown, const Vector3d& down,
   const Vector3d outside = -(corner.inward - corner.inward.dot(down) * down);  // uphill, to the shore
   const double tilt = kShoreTilt * std::exp(-corner.depth / kShore);
   const Vector3d normal = -down + (outside.norm() > 1e-3 ? Vector3d(tilt * outside.normalized()) : Vector3d::Zero());
-  addVertex(corner.place - corner.depth * down, normal, layerOf(kRim + corner.depth, brown), shape);
+  addVertex(corner.place - corner.depth * down, normal, layerOf(kRimDepth + corner.depth, brown), shape);
 }
 
 }  // namespace
 
 void appendFilm(const BloodFilm& film, const WallSurface& wall, const BloodStyle& style, ColouredShape& shape) {
-  const double radius = filmRadius(film.volume), height = 2 * film.volume / (kPi * radius * radius);
+  const double radius = filmRadius(film.volume), height = 2 * film.volume / (M_PI * radius * radius);
   const Vector3d first = downhill(film.at, wall, style.down), second = film.at.inward.cross(first);
   const auto base = static_cast<std::uint32_t>(shape.vertices.size());
-  std::vector<WallPoint> at(kSides, film.at);
-  for (int ring = 0; ring <= kRings; ++ring) {
-    const double part = static_cast<double>(ring) / kRings, depth = std::min(height, kFilmHeight) * (1 - part * part);
-    for (int k = 0; k < kSides; ++k) {
-      const double angle = 2 * kPi * k / kSides, reach = radius * filmReach(film, angle);
+  std::vector<WallPoint> at(kFilmSides, film.at);
+  for (int ring = 0; ring <= kFilmRings; ++ring) {
+    const double part = static_cast<double>(ring) / kFilmRings,
+                 depth = std::min(height, kFilmHeight) * (1 - part * part);
+    for (int k = 0; k < kFilmSides; ++k) {
+      const double angle = 2 * M_PI * k / kFilmSides, reach = radius * filmReach(film, angle);
       const Vector3d out = std::cos(angle) * first + std::sin(angle) * second;
-      if (ring > 0) at[static_cast<std::size_t>(k)] = wall.moved(at[static_cast<std::size_t>(k)], reach / kRings * out);
+      if (ring > 0)
+        at[static_cast<std::size_t>(k)] = wall.moved(at[static_cast<std::size_t>(k)], reach / kFilmRings * out);
       const WallPoint& under = at[static_cast<std::size_t>(k)];
       addVertex(under.place + (kRaised + depth) * under.inward,
                 under.inward + 2 * part * std::min(height, kFilmHeight) / reach * out,
-                layerOf(kRim + depth, film.brown), shape);
+                layerOf(kRimDepth + depth, film.brown), shape);
     }
-    const auto row = static_cast<std::uint32_t>(base + ring * kSides);
-    if (ring > 0) addBand(row - kSides, row, kSides, true, shape);
+    const auto row = static_cast<std::uint32_t>(base + ring * kFilmSides);
+    if (ring > 0) joinRows(row - kFilmSides, row, kFilmSides, true, shape);
   }
 }
 
@@ -162,7 +155,7 @@ void appendRivulet(const Rivulet& rivulet, const WallSurface& wall, ColouredShap
     const Vector3d along = alongWall(rivulet.line[after].place - rivulet.line[before].place, at);
     const auto row = static_cast<std::uint32_t>(shape.vertices.size());
     addRow(rivulet, at, along.norm() > 1e-9 ? along : anyNormal(at.inward), s, wall, shape);
-    if (k > 0) addBand(row - kPoints, row, kPoints, false, shape);
+    if (k > 0) joinRows(row - kPoints, row, kPoints, false, shape);
   }
 }
 

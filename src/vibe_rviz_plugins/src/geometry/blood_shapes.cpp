@@ -14,10 +14,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kFilm = 2.5e-3, kPool = 3.5e-3;                  // maximum height of blood on a wall, in a hollow [m]
-constexpr double kMaxFilmRadius = 11e-3, kMaxPoolRadius = 15e-3;  // beyond, a curved wall hides the rest [m]
-constexpr double kMinDrop = 8e-3, kMaxDrop = 50e-3;               // a jet falls this far below its wound [m]
+constexpr double kMaxFilmHeight = 2.5e-3, kMaxPoolHeight = 3.5e-3;  // of blood on a wall, in a hollow [m]
+constexpr double kMaxFilmRadius = 11e-3, kMaxPoolRadius = 15e-3;    // beyond, a curved wall hides the rest [m]
+constexpr double kMinDrop = 8e-3, kMaxDrop = 50e-3;                 // a jet falls this far below its wound [m]
 constexpr double kFromCeiling = 35e-3;  // and at least this far from a wall that is overhead [m]
 constexpr double kSteep = 0.5;          // cosine to gravity from which a wall is ceiling or floor
 
@@ -38,10 +37,10 @@ struct Outline {
 Outline outlineOf(const Puddle& puddle) {
   const Vector3d first = anyNormal(puddle.up), second = puddle.up.cross(first);
   std::array<double, 3> size, turn;
-  for (int k = 0; k < 3; ++k) size[k] = 0.07 * wobble(puddle.number, k), turn[k] = kPi * wobble(puddle.number, k + 3);
+  for (int k = 0; k < 3; ++k) size[k] = 0.07 * wobble(puddle.number, k), turn[k] = M_PI * wobble(puddle.number, k + 3);
   Outline outline;
   for (std::size_t s = 0; s < kPuddleSides; ++s) {
-    const double angle = 2 * kPi * static_cast<double>(s) / kPuddleSides;
+    const double angle = 2 * M_PI * static_cast<double>(s) / kPuddleSides;
     outline.direction[s] = std::cos(angle) * first + std::sin(angle) * second;
     const double towards = std::max(0.0, puddle.creep.dot(outline.direction[s]));  // 0 to 1
     outline.reach[s] = 1 + 0.9 * towards * towards - 0.25 * puddle.creep.norm();
@@ -54,18 +53,18 @@ Outline outlineOf(const Puddle& puddle) {
 double areaOf(const Outline& outline) {
   double sum = 0;
   for (std::size_t k = 0; k < kPuddleSides; ++k) sum += outline.reach[k] * outline.reach[(k + 1) % kPuddleSides];
-  return 0.5 * sum * std::sin(2 * kPi / kPuddleSides);
+  return 0.5 * sum * std::sin(2 * M_PI / kPuddleSides);
 }
 
 double puddleHeight(const Puddle& puddle) {
-  return std::min(puddle.max_height, std::cbrt(puddle.volume * 3 / (2 * kPi)));
+  return std::min(puddle.max_height, std::cbrt(puddle.volume * 3 / (2 * M_PI)));
 }
 
 void addPuddleVertex(const Puddle& puddle, const Vector3d& out, double reach, double part, double height,
                      ColouredShape& shape) {
   // half an ellipsoid: part is the angle from the pole, 1 the outline; below it a flatter half that reaches into the
   // wall, so that a rim that stands off shows no hollow
-  const double flat = std::sin(part * kPi / 2), up = std::cos(part * kPi / 2);
+  const double flat = std::sin(part * M_PI / 2), up = std::cos(part * M_PI / 2);
   if (part > 1) height *= kUnderside;
   const Eigen::Vector3f p = (puddle.centre + reach * flat * out + height * up * puddle.up).cast<float>();
   const Eigen::Vector3f n = (flat / reach * out + up / height * puddle.up).normalized().cast<float>();
@@ -90,7 +89,7 @@ void appendFlatFilm(const Wound& wound, const BloodStyle& style, ColouredShape& 
   film.up = wound.inward.norm() > 0.5 ? wound.inward : Vector3d(-style.down);
   film.creep = style.down - style.down.dot(film.up) * film.up;
   film.volume = wound.amount;
-  film.max_height = kFilm;
+  film.max_height = kMaxFilmHeight;
   film.max_radius = kMaxFilmRadius;
   film.number = wound.number;
   film.middle = packedOf(shade);
@@ -105,7 +104,7 @@ void appendFlatPool(const Wound& wound, const Vector3d& landing, const BloodStyl
   pool.up = -style.down;
   pool.creep = Vector3d::Zero();
   pool.volume = wound.amount;
-  pool.max_height = kPool;
+  pool.max_height = kMaxPoolHeight;
   pool.max_radius = kMaxPoolRadius;
   pool.number = wound.number + 100;
   pool.middle = packedOf(wound.rate > 0 ? shade : shadeOf(wound));

@@ -8,16 +8,17 @@ namespace vibe {
 namespace {
 
 constexpr int kMinPicture = 16, kMaxPicture = 4096;  // [px]
-constexpr int kBorder = 2;     // pixels of the source beyond the circle, so that its rim has neighbours to blend with
-constexpr double kWide = 1.2;  // half field of view above which a second source pays; its drawing costs too [rad]
+constexpr int kSourceBorder = 2;  // pixels of it beyond the circle, so that its rim has neighbours to blend with
+constexpr double kWide = 1.2;     // half field of view above which a second source pays; its drawing costs too [rad]
 
 /// The square around a cone.
 /// @param edge  tangent of its half angle
 SquareSource squareAround(double edge, double focal_length, double sharpness, int max) {
   const double wanted = 2 * edge * focal_length * sharpness;
   SquareSource source;
-  source.size = static_cast<int>(std::clamp(std::ceil(wanted) + 2 * kBorder, 1.0 + 2 * kBorder, double(max)));
-  source.half_width = edge * source.size / (source.size - 2 * kBorder);
+  source.size =
+      static_cast<int>(std::clamp(std::ceil(wanted) + 2 * kSourceBorder, 1.0 + 2 * kSourceBorder, double(max)));
+  source.half_width = edge * source.size / (source.size - 2 * kSourceBorder);
   return source;
 }
 

@@ -14,10 +14,10 @@ namespace {
 enum Region : std::uint8_t { Cardia, Fundus, Body, Antrum, Pylorus };
 enum End : std::uint8_t { Oesophagus = 1, Duodenum = 2 };
 
-constexpr double kTurn = 30e-3;    // blurs the walls: about the radius of the body, which leaves the first harmonic [m]
-constexpr double kBorder = 8e-3;   // blurs borders of regions [m]
-constexpr double kCardia = 20e-3;  // reach of the region cardia beyond the junction, as the simulator labels it [m]
-constexpr double kRing = 3e-3;     // length of the sections of which the narrowest is the pylorus [m]
+constexpr double kTurn = 30e-3;  // blurs the walls: about the radius of the body, which leaves the first harmonic [m]
+constexpr double kRegionBlur = 8e-3;   // blurs borders of regions [m]
+constexpr double kCardia = 20e-3;      // reach of the region cardia beyond the junction, as the simulator labels it [m]
+constexpr double kRing = 3e-3;         // length of the sections of which the narrowest is the pylorus [m]
 constexpr double kWellDefined = 0.12;  // length of the blurred direction from which on the angle is fully used [1]
 // Where 30 folds around would be less than 4.5 mm wide the angle is used less, below 2.6 mm not at all [rad/m].
 constexpr double kDense = 47, kCrowded = 80;
@@ -168,7 +168,7 @@ MucosaMap mapMucosa(const TissueMesh& mesh, const Eigen::Vector3f& shift) {
   Eigen::MatrixXd values(static_cast<Eigen::Index>(mesh.particle_count), kColumns);
   values.leftCols(2) = graph.blurred(wallDirections(mesh), kTurn);
   normaliseDirections(turnRate(mesh, values, place), values);
-  values.middleCols(FoldShare, 3) = graph.blurred(regionShares(mesh), kBorder);
+  values.middleCols(FoldShare, 3) = graph.blurred(regionShares(mesh), kRegionBlur);
   values.col(BeyondZ) = beyondZLine(mesh, graph);
   values.col(BeyondRing) = beyondPylorus(mesh, graph, place);
   // the oesophagus and the duodenum have no rugae

@@ -9,7 +9,8 @@ namespace vibe {
 
 namespace {
 
-constexpr double kRim = 1e-9;  // tolerance of triangle edges, so that a ray does not pass between two triangles [1]
+constexpr double kEdgeTolerance =
+    1e-9;  // tolerance of triangle edges, so that a ray does not pass between two triangles [1]
 constexpr double kMinDistance = 1e-6;  // hits closer to the origin are ignored [m]
 constexpr double kMinSlope = 1e-9;     // between a ray and a plane that meet [1]
 
@@ -33,7 +34,7 @@ double distanceTo(const Ray& ray, const Corners& corners) {
   if (volume == 0) return -1;
   const Eigen::Vector3d from = ray.origin - corners[0], q = from.cross(a);
   const double u = from.dot(p) / volume, v = ray.direction.dot(q) / volume;
-  return u < -kRim || v < -kRim || u + v > 1 + kRim ? -1 : b.dot(q) / volume;
+  return u < -kEdgeTolerance || v < -kEdgeTolerance || u + v > 1 + kEdgeTolerance ? -1 : b.dot(q) / volume;
 }
 
 std::uint32_t nearestCorner(const Corners& corners, const std::uint32_t* triangle, const Eigen::Vector3d& place) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/append_shape.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe {
@@ -11,8 +12,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Of the profile at point k: the mean of the normals of the pieces around it. To the right of the way.
 Vector2d profileNormal(const std::vector<ProfilePoint>& profile, std::size_t k, bool closed) {
@@ -34,7 +33,7 @@ std::vector<Vector3d> around(const Vector3d& axis, int sides) {
   const Vector3d first = anyNormal(axis), second = axis.cross(first);
   std::vector<Vector3d> directions;
   for (int k = 0; k < sides; ++k)
-    directions.emplace_back(std::cos(2 * kPi * k / sides) * first + std::sin(2 * kPi * k / sides) * second);
+    directions.emplace_back(std::cos(2 * M_PI * k / sides) * first + std::sin(2 * M_PI * k / sides) * second);
   return directions;
 }
 
@@ -45,14 +44,6 @@ void addCircle(const ProfilePoint& point, const Vector2d& normal, const Vector3d
     const Eigen::Vector3f n = (normal.x() * axis + normal.y() * out).cast<float>();
     shape.vertices.push_back({{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}});
     shape.colours.push_back(colour);
-  }
-}
-
-void addBand(std::uint32_t upper, std::uint32_t lower, int sides, std::vector<std::uint32_t>& triangles) {
-  for (int k = 0; k < sides; ++k) {
-    const auto here = static_cast<std::uint32_t>(k), beside = static_cast<std::uint32_t>((k + 1) % sides);
-    triangles.insert(triangles.end(), {upper + here, lower + here, lower + beside});
-    triangles.insert(triangles.end(), {upper + here, lower + beside, upper + beside});
   }
 }
 
@@ -67,7 +58,8 @@ void appendRevolved(const std::vector<ProfilePoint>& profile, const Vector3d& or
   for (std::size_t k = 0; k < profile.size(); ++k) {
     const auto first = static_cast<std::uint32_t>(shape.vertices.size());
     addCircle(profile[k], profileNormal(profile, k, closed), origin, axis, directions, colour, shape);
-    if (k > 0) addBand(first - static_cast<std::uint32_t>(sides), first, sides, shape.triangles);
+    if (k > 0)
+      joinRows(first - static_cast<std::uint32_t>(sides), first, static_cast<std::uint32_t>(sides), true, shape);
   }
 }
 
@@ -76,7 +68,7 @@ void appendRing(const Vector3d& centre, const Vector3d& axis, double radius, dou
   constexpr int kAround = 8;
   std::vector<ProfilePoint> profile;
   for (int k = 0; k < kAround; ++k) {
-    const double angle = 2 * kPi * k / kAround;
+    const double angle = 2 * M_PI * k / kAround;
     profile.emplace_back(thickness * std::cos(angle), radius + thickness * std::sin(angle));
   }
   profile.push_back(profile.front());

@@ -5,7 +5,7 @@
 namespace vibe {
 namespace {
 
-bool anyFell(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
+bool anyGradeFell(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
   for (std::size_t i = 0; i < before.size(); ++i)
     if ((now.empty() ? 0 : now[i]) < before[i]) return true;
   return false;
@@ -31,7 +31,7 @@ ScarAge::ScarAge(const TissueMesh& mesh)
       of_particle_(mesh.particle_count, 0) {}
 
 bool ScarAge::see(const TissueFrame& frame) {
-  const bool anew = frame.time < time_ || anyFell(grade_, frame.grade);
+  const bool anew = frame.time < time_ || anyGradeFell(grade_, frame.grade);
   time_ = frame.time;
   bool changed = false;
   for (std::size_t i = 0; i < grade_.size(); ++i) {

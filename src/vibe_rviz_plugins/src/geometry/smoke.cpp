@@ -7,9 +7,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
-bool anyFell(const std::vector<float>& before, const std::vector<float>& now) {
+bool anyDoseFell(const std::vector<float>& before, const std::vector<float>& now) {
   for (std::size_t i = 0; i < now.size(); ++i)
     if (now[i] < before[i]) return true;
   return false;
@@ -27,14 +25,14 @@ Smoke::Smoke(const TissueMesh& mesh) : share_(mesh.particle_count, 0) {
   for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
     const auto place = [&](std::size_t k) { return Eigen::Vector3f(&mesh.particle_rest[3 * corners[t + k]]); };
     const double area = 0.5 * static_cast<double>((place(1) - place(0)).cross(place(2) - place(0)).norm());
-    for (std::size_t k = 0; k < 3; ++k) share_[corners[t + k]] += area / 3 / (kPi * kSpotRadius * kSpotRadius);
+    for (std::size_t k = 0; k < 3; ++k) share_[corners[t + k]] += area / 3 / (M_PI * kSpotRadius * kSpotRadius);
   }
 }
 
 void Smoke::see(const TissueFrame& frame) {
   const double passed = frame.time - time_;
   time_ = frame.time;
-  const bool follows = dose_.size() == frame.dose.size() && passed >= 0 && !anyFell(dose_, frame.dose);
+  const bool follows = dose_.size() == frame.dose.size() && passed >= 0 && !anyDoseFell(dose_, frame.dose);
   double burnt = 0;
   for (std::size_t i = 0; follows && i < dose_.size(); ++i)
     burnt += share_[i] * static_cast<double>(frame.dose[i] - dose_[i]);

@@ -7,8 +7,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr int kSides = 32, kRings = 16;
+constexpr int kSolidSides = 32, kSphereRings = 16;
 
 void appendFace(const Eigen::Isometry3d& pose, const Eigen::Vector3d& size, int axis, double sign, PackedColour colour,
                 ColouredShape& shape) {
@@ -29,11 +28,11 @@ void appendFace(const Eigen::Isometry3d& pose, const Eigen::Vector3d& size, int 
 
 void appendSphere(const Eigen::Isometry3d& pose, double radius, PackedColour colour, ColouredShape& shape) {
   std::vector<ProfilePoint> profile;
-  for (int k = 0; k <= kRings; ++k) {
-    const double angle = kPi * k / kRings;
-    profile.emplace_back(radius * std::cos(angle), k % kRings == 0 ? 0 : radius * std::sin(angle));
+  for (int k = 0; k <= kSphereRings; ++k) {
+    const double angle = M_PI * k / kSphereRings;
+    profile.emplace_back(radius * std::cos(angle), k % kSphereRings == 0 ? 0 : radius * std::sin(angle));
   }
-  appendRevolved(profile, pose.translation(), pose.linear().col(2), colour, kSides, shape);
+  appendRevolved(profile, pose.translation(), pose.linear().col(2), colour, kSolidSides, shape);
 }
 
 void appendCylinder(const Eigen::Isometry3d& pose, double radius, double length, PackedColour colour,
@@ -44,7 +43,7 @@ void appendCylinder(const Eigen::Isometry3d& pose, double radius, double length,
   for (const std::vector<ProfilePoint>& profile : {std::vector<ProfilePoint>{{end, 0}, {end, radius}},
                                                    {{end, radius}, {-end, radius}},
                                                    {{-end, radius}, {-end, 0}}})
-    appendRevolved(profile, pose.translation(), axis, colour, kSides, shape);
+    appendRevolved(profile, pose.translation(), axis, colour, kSolidSides, shape);
 }
 
 void appendBox(const Eigen::Isometry3d& pose, const Eigen::Vector3d& size, PackedColour colour, ColouredShape& shape) {

@@ -15,8 +15,7 @@ using Eigen::Vector3d;
 // Sizes of the implants of a suturing device; design choices close to commercial devices.
 constexpr double kTagLength = 6.5e-3, kTagRadius = 0.45e-3;
 constexpr double kCinchLength = 6e-3, kCinchRadius = 1.3e-3;
-constexpr int kSides = 20;
-constexpr int kThreadSides = 8;
+constexpr int kImplantSides = 20;
 
 constexpr PackedColour kSteel = packed(0.80, 0.82, 0.85, kMetal);
 constexpr PackedColour kPolymer = packed(0.93, 0.89, 0.76), kBore = packed(0.10, 0.09, 0.08);
@@ -51,21 +50,22 @@ Vector3d offWall(const SutureSet& set, bool last, const Vector3d& axis) {
 void appendTag(const SutureSet& set, double size, const HeldThread& thread, ColouredShape& shape) {
   const double length = kTagLength * std::sqrt(size), radius = kTagRadius * size;
   const Vector3d axis = tagAxis(set), off = offWall(set, true, axis), centre = set.t_tag + 0.6 * radius * off;
-  appendRevolved(scaled(kPin, length, radius), centre, axis, kSteel, kSides, shape);
+  appendRevolved(scaled(kPin, length, radius), centre, axis, kSteel, kImplantSides, shape);
   const double winding = std::max(thread.radius, 0.25 * radius);
   for (const double at : {-0.035, 0.035})
-    appendRing(centre + at * length * axis, axis, 0.72 * radius + 0.4 * winding, winding, thread.colour, kSides, shape);
+    appendRing(centre + at * length * axis, axis, 0.72 * radius + 0.4 * winding, winding, thread.colour, kImplantSides,
+               shape);
   appendBall(centre + (0.9 * radius + winding) * off, 1.5 * winding, thread.colour, kThreadSides, shape);  // the knot
 }
 
 void appendCinch(const SutureSet& set, double size, const HeldThread& thread, ColouredShape& shape) {
   const double length = kCinchLength * std::sqrt(size), radius = kCinchRadius * size;
   const Vector3d axis = cinchAxis(set), off = offWall(set, false, axis), centre = set.cinch + 0.4 * radius * off;
-  appendRevolved(scaled(kSleeve, length, radius), centre, axis, kPolymer, kSides, shape);
+  appendRevolved(scaled(kSleeve, length, radius), centre, axis, kPolymer, kImplantSides, shape);
   for (const double end : {0.44, -0.44}) {
     const Vector3d out = end > 0 ? axis : Vector3d(-axis);
-    appendRevolved({{std::abs(end) * length, 0}, {std::abs(end) * length, 0.27 * radius}}, centre, out, kBore, kSides,
-                   shape);
+    appendRevolved({{std::abs(end) * length, 0}, {std::abs(end) * length, 0.27 * radius}}, centre, out, kBore,
+                   kImplantSides, shape);
   }
   const Vector3d tip = centre - 0.5 * length * axis;
   appendTube({centre - 0.4 * length * axis, tip, tip - 0.2 * length * axis + 0.05 * length * off,

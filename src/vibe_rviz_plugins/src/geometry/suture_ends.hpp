@@ -7,6 +7,8 @@ namespace vibe {
 /// Opacity of vertices of metal, which media/suture.frag tells from polymer by it; bodies are drawn opaque.
 constexpr double kMetal = 0.5;
 
+constexpr int kThreadSides = 8;  ///< of the tube that is a thread
+
 /// The thread that an implant holds.
 struct HeldThread {
   PackedColour colour;

@@ -16,7 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kThreadSides = 8;
 constexpr int kSymbolSides = 16;
 
 // Symbols [m].

@@ -9,12 +9,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kCoincident = 1e-3;  // of the radius
 constexpr double kSharpTurn =
-    20 * kPi / 180;  // sharper joints are swept instead of mitred, because a mitre would stick out
-constexpr double kSweepStep = 23 * kPi / 180;  // of a swept joint, and of a round end
-constexpr double kReversal = 1e-6;             // sine below which a turn has no plane
+    20 * M_PI / 180;  // sharper joints are swept instead of mitred, because a mitre would stick out
+constexpr double kSweepStep = 23 * M_PI / 180;  // of a swept joint, and of a round end
+constexpr double kReversal = 1e-6;              // sine below which a turn has no plane
 
 /// A ring of vertices is a ring of directions at right angles to `along`; from the first, the others follow.
 struct Frame {
@@ -38,7 +37,8 @@ Vector3d turnAxis(const Frame& frame, const Vector3d& to) {
 class TubeBuilder {
  public:
   TubeBuilder(int sides, ColouredShape& shape) : sides_(sides), shape_(shape) {
-    for (int k = 0; k < sides; ++k) circle_.emplace_back(std::cos(2 * kPi * k / sides), std::sin(2 * kPi * k / sides));
+    for (int k = 0; k < sides; ++k)
+      circle_.emplace_back(std::cos(2 * M_PI * k / sides), std::sin(2 * M_PI * k / sides));
   }
 
   /// Directions of a ring, each taken along `slide` into the plane at right angles to `facing`, which mitres it.
@@ -67,12 +67,12 @@ class TubeBuilder {
     add(at.place - at.radius * frame.along, -frame.along, at.colour);
     rings_ = 0;
     const int steps = capSteps();
-    for (int k = 1; k <= steps; ++k) circle(at, frame, (k - steps) * kPi / (2 * steps));
+    for (int k = 1; k <= steps; ++k) circle(at, frame, (k - steps) * M_PI / (2 * steps));
   }
 
   void finish(const TubePoint& at, const Frame& frame) {
     const int steps = capSteps();
-    for (int k = 1; k < steps; ++k) circle(at, frame, k * kPi / (2 * steps));
+    for (int k = 1; k < steps; ++k) circle(at, frame, k * M_PI / (2 * steps));
     const std::uint32_t last = next() - static_cast<std::uint32_t>(sides_), pole = next();
     add(at.place + at.radius * frame.along, frame.along, at.colour);
     for (int k = 0; k < sides_; ++k) triangle(last + side(k), last + side(k + 1), pole);
@@ -115,7 +115,7 @@ class TubeBuilder {
   std::uint32_t pole_ = 0;
 };
 
-std::vector<TubePoint> apart(const std::vector<TubePoint>& points) {
+std::vector<TubePoint> withoutCoincident(const std::vector<TubePoint>& points) {
   std::vector<TubePoint> kept;
   for (const TubePoint& point : points) {
     const bool same = !kept.empty() && (point.place - kept.back().place).norm() <= kCoincident * point.radius;
@@ -169,7 +169,7 @@ Vector3d anyNormal(const Vector3d& direction) {
 }
 
 void appendTube(const std::vector<TubePoint>& points, int sides, ColouredShape& shape) {
-  const std::vector<TubePoint> kept = apart(points);
+  const std::vector<TubePoint> kept = withoutCoincident(points);
   if (kept.empty()) return;
   std::vector<Vector3d> directions = directionsOf(kept);
   if (directions.empty()) directions.push_back(Vector3d::UnitZ());

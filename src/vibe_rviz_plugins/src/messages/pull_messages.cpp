@@ -1,11 +1,12 @@
 #include "messages/pull_messages.hpp"
 
+#include "messages/max_coordinate.hpp"
+
 namespace vibe {
 
 namespace {
 
-constexpr double kMaxCoordinate = 1e6;  // [m]
-constexpr double kMaxForce = 1e6;       // [N]
+constexpr double kMaxForce = 1e6;  // [N]
 
 template <class Message>
 bool read(const Message& message, double max, Eigen::Vector3d& result) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "messages/max_coordinate.hpp"
+
 namespace vibe {
 namespace {
 
@@ -13,12 +15,6 @@ using vibe_msgs::Suture;
 using Topology = vibe_msgs::TissueTopology;
 
 constexpr std::size_t kMaxSutures = 10'000, kMaxPoints = 1'000'000;  // more is a mistake
-constexpr double kMaxCoordinate = 1e6;                               // [m]
-
-template <class Count>
-std::string number(Count value) {
-  return std::to_string(value);
-}
 
 Vector3d vectorOf(const geometry_msgs::Point& point) {
   return {point.x, point.y, point.z};
@@ -34,12 +30,13 @@ bool isAmount(double value) {
 
 const std::string kInvalidPosition = " is invalid (not finite, or beyond 1000 km); the last valid message is shown.";
 
-std::string checkPositions(const Suture& suture, const std::string& which) {
+std::string checkSuturePositions(const Suture& suture, const std::string& which) {
   for (std::size_t k = 0; k < suture.bites.size(); ++k)
     if (!isValidPosition(suture.bites[k].position))
-      return "The position of bite " + number(k) + which + kInvalidPosition;
+      return "The position of bite " + std::to_string(k) + which + kInvalidPosition;
   for (std::size_t k = 0; k < suture.thread.size(); ++k)
-    if (!isValidPosition(suture.thread[k])) return "Point " + number(k) + " of thread" + which + kInvalidPosition;
+    if (!isValidPosition(suture.thread[k]))
+      return "Point " + std::to_string(k) + " of thread" + which + kInvalidPosition;
   if (suture.has_t_tag && !isValidPosition(suture.t_tag)) return "t_tag" + which + kInvalidPosition;
   if (suture.has_cinch && !isValidPosition(suture.cinch)) return "cinch" + which + kInvalidPosition;
   return {};
@@ -48,12 +45,12 @@ std::string checkPositions(const Suture& suture, const std::string& which) {
 std::string checkOffsets(const Suture& suture, const std::string& which) {
   const auto& offsets = suture.thread_offsets;
   if (offsets.size() != suture.bites.size())
-    return "thread_offsets" + which + " has " + number(offsets.size()) + " entries for " + number(suture.bites.size()) +
-           " bites; send one per bite.";
+    return "thread_offsets" + which + " has " + std::to_string(offsets.size()) + " entries for " +
+           std::to_string(suture.bites.size()) + " bites; send one per bite.";
   if (offsets.front() != 0 || offsets.back() + std::size_t{1} != suture.thread.size() ||
       !std::is_sorted(offsets.begin(), offsets.end()))
-    return "thread_offsets" + which + " does not run from 0 to the last of its " + number(suture.thread.size()) +
-           " points; send the number of each bite's point, in order.";
+    return "thread_offsets" + which + " does not run from 0 to the last of its " +
+           std::to_string(suture.thread.size()) + " points; send the number of each bite's point, in order.";
   return {};
 }
 
@@ -66,7 +63,7 @@ std::string checkThread(const Suture& suture, const std::string& which) {
   if (!wrong.empty()) return wrong;
   const std::size_t pieces = suture.bites.size() - 1;
   if (suture.tension.size() != pieces || suture.length.size() != pieces)
-    return "tension and length" + which + " do not have one entry for each of " + number(pieces) +
+    return "tension and length" + which + " do not have one entry for each of " + std::to_string(pieces) +
            " pieces of thread; send one per piece.";
   for (const double tension : suture.tension)
     if (!isAmount(tension)) return "A tension" + which + " is negative or not finite; send newtons.";
@@ -79,37 +76,37 @@ std::string checkTransitions(const Suture& suture, const std::string& which) {
     // a list that was never set is all zero
     const bool unset = suture.technique == Suture::TECHNIQUE_OTHER && suture.taken.empty() && transition == 0;
     if (!unset && transition != -1 && (transition < 0 || transition + 1 > last))
-      return "transitions" + which + " refers to bite " + number(transition) + ", but the pattern has " +
-             number(suture.taken.size()) + " bites; send -1 where there is none.";
+      return "transitions" + which + " refers to bite " + std::to_string(transition) + ", but the pattern has " +
+             std::to_string(suture.taken.size()) + " bites; send -1 where there is none.";
   }
   return {};
 }
 
 std::string checkSuture(const Suture& suture, std::size_t k) {
-  const std::string which = " of suture " + number(k);
+  const std::string which = " of suture " + std::to_string(k);
   if (suture.stage > Suture::BROKEN)
-    return "The stage" + which + " is " + number(+suture.stage) + ", which does not exist.";
+    return "The stage" + which + " is " + std::to_string(+suture.stage) + ", which does not exist.";
   if (suture.technique > Suture::TECHNIQUE_C)
-    return "The technique" + which + " is " + number(+suture.technique) + ", which does not exist.";
+    return "The technique" + which + " is " + std::to_string(+suture.technique) + ", which does not exist.";
   if (!(suture.technique_margin >= 0 && suture.technique_margin <= 1))
     return "technique_margin" + which + " is not between 0 and 1.";
-  std::string wrong = checkPositions(suture, which);
+  std::string wrong = checkSuturePositions(suture, which);
   if (wrong.empty()) wrong = checkThread(suture, which);
   return wrong.empty() ? checkTransitions(suture, which) : wrong;
 }
 
 std::string checkBleeding(const vibe_msgs::Bleeding& bleeding, const vibe_msgs::SutureArray& message, std::size_t k) {
-  const std::string which = " of bleeding " + number(k);
+  const std::string which = " of bleeding " + std::to_string(k);
   if (!isValidPosition(bleeding.position)) return "The position" + which + kInvalidPosition;
   if (!isAmount(bleeding.rate) || !isAmount(bleeding.amount) || !std::isfinite(bleeding.begin))
     return "rate, amount or begin" + which + " is negative or not finite; send m^3/s, m^3 and s.";
   if (bleeding.suture < 0 || static_cast<std::size_t>(bleeding.suture) >= message.sutures.size())
-    return "The suture" + which + " is " + number(bleeding.suture) + ", but there are " +
-           number(message.sutures.size()) + "; send a number from 0.";
+    return "The suture" + which + " is " + std::to_string(bleeding.suture) + ", but there are " +
+           std::to_string(message.sutures.size()) + "; send a number from 0.";
   const std::size_t bites = message.sutures[static_cast<std::size_t>(bleeding.suture)].bites.size();
   if (bleeding.bite < -1 || (bleeding.bite >= 0 && static_cast<std::size_t>(bleeding.bite) >= bites))
-    return "The bite" + which + " is " + number(bleeding.bite) + ", but its suture has " + number(bites) +
-           "; send -1 where it tore out.";
+    return "The bite" + which + " is " + std::to_string(bleeding.bite) + ", but its suture has " +
+           std::to_string(bites) + "; send -1 where it tore out.";
   return {};
 }
 

@@ -6,27 +6,23 @@
 #include <limits>
 
 #include "messages/cloud_field.hpp"
+#include "messages/max_coordinate.hpp"
 
 namespace vibe {
 namespace {
 
 constexpr std::size_t kMaxParticles = 10'000'000;  // more is a mistake
 constexpr std::uint8_t kMaxGrade = 3;
-constexpr double kMaxCoordinate = 1e6;  // [m]; graphics libraries abort on bounding boxes that are not finite
-constexpr float kMaxWeight = 1000.0F;   // of a particle in a vertex of the render surface [1]
-
-std::string number(std::size_t value) {
-  return std::to_string(value);
-}
+constexpr float kMaxWeight = 1000.0F;  // of a particle in a vertex of the render surface [1]
 
 std::string checkTriangles(const std::vector<std::uint32_t>& triangles, std::size_t count, const char* array) {
   if (triangles.size() % 3 != 0)
-    return std::string(array) + " of the topology has " + number(triangles.size()) +
+    return std::string(array) + " of the topology has " + std::to_string(triangles.size()) +
            " entries, which is not a multiple of 3.";
   for (const std::uint32_t corner : triangles)
     if (corner >= count)
-      return std::string(array) + " of the topology refers to vertex " + number(corner) + ", but there are only " +
-             number(count) + " vertices.";
+      return std::string(array) + " of the topology refers to vertex " + std::to_string(corner) +
+             ", but there are only " + std::to_string(count) + " vertices.";
   return {};
 }
 
@@ -44,7 +40,7 @@ std::string checkRenderSurface(const vibe_msgs::TissueTopology& message, std::si
   return {};
 }
 
-std::string checkPositions(const std::vector<double>& positions) {
+std::string checkRestPositions(const std::vector<double>& positions) {
   if (positions.size() % 3 != 0) return "The length of rest_positions of the topology is not a multiple of 3.";
   if (positions.empty()) return "The topology has no particles.";
   if (positions.size() / 3 > kMaxParticles) return "The topology has more than ten million particles.";
@@ -63,7 +59,7 @@ std::string checkAnatomy(const vibe_msgs::TissueTopology& message, std::size_t c
 }
 
 std::string checkTopology(const vibe_msgs::TissueTopology& message) {
-  std::string wrong = checkPositions(message.rest_positions);
+  std::string wrong = checkRestPositions(message.rest_positions);
   const std::size_t count = message.rest_positions.size() / 3;
   if (wrong.empty()) wrong = checkTriangles(message.triangles, count, "triangles");
   if (wrong.empty()) wrong = checkAnatomy(message, count);
@@ -95,8 +91,8 @@ bool arePositions(const float* values, std::size_t count, std::size_t& where) {
 std::string checkRevision(const CloudField& field, std::size_t count, std::uint32_t revision) {
   for (std::size_t i = 0; i < count; ++i)
     if (field.at<std::uint32_t>(i) != revision)
-      return "The particles belong to topology revision " + number(field.at<std::uint32_t>(i)) +
-             ", but the topology has revision " + number(revision) + "; waiting for the matching one.";
+      return "The particles belong to topology revision " + std::to_string(field.at<std::uint32_t>(i)) +
+             ", but the topology has revision " + std::to_string(revision) + "; waiting for the matching one.";
   return {};
 }
 
@@ -144,7 +140,8 @@ std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueM
   if (wrong.empty()) wrong = checkRevision(revision, count, mesh.revision);
   if (!wrong.empty()) return wrong;
   if (count != mesh.particle_count)
-    return "The cloud has " + number(count) + " particles and the topology " + number(mesh.particle_count) + ".";
+    return "The cloud has " + std::to_string(count) + " particles and the topology " +
+           std::to_string(mesh.particle_count) + ".";
   frame.revision = mesh.revision;
   frame.time = message.header.stamp.toSec();
   frame.positions.resize(3 * count);
@@ -155,7 +152,7 @@ std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueM
   }
   std::size_t where = 0;
   if (!arePositions(frame.positions.data(), 3 * count, where))
-    return "The position of particle " + number(where / 3) +
+    return "The position of particle " + std::to_string(where / 3) +
            " is invalid (not finite, or beyond 1000 km); the last valid frame is shown.";
   take(strain, count, frame.strain);
   take(grade, count, frame.grade);

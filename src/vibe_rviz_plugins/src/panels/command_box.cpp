@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kColumns = 2;
+constexpr int kButtonColumns = 2;
 
 }  // namespace
 
@@ -28,15 +28,15 @@ CommandBox::CommandBox(Actions actions, QWidget* parent)
   sentence_->setObjectName("control sentence");
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
-  grid->addWidget(control_, 0, 0, 1, kColumns);
+  grid->addWidget(control_, 0, 0, 1, kButtonColumns);
   for (int button = 0; button < kCommandCount; ++button) {
     makeButton(button);
-    grid->addWidget(buttons_[static_cast<std::size_t>(button)], 1 + button / kColumns, button % kColumns);
+    grid->addWidget(buttons_[static_cast<std::size_t>(button)], 1 + button / kButtonColumns, button % kButtonColumns);
   }
   // below the buttons and at least two lines high, so that a changing sentence does not move the buttons
   sentence_->setMinimumHeight(2 * sentence_->fontMetrics().lineSpacing());
   sentence_->setAlignment(Qt::AlignTop);
-  grid->addWidget(sentence_, 1 + (kCommandCount + kColumns - 1) / kColumns, 0, 1, kColumns);
+  grid->addWidget(sentence_, 1 + (kCommandCount + kButtonColumns - 1) / kButtonColumns, 0, 1, kButtonColumns);
   // clicked, not toggled: reacts to the user only, not to display()
   QObject::connect(control_, &QPushButton::clicked, this, [this](bool on) { actions_.control(on); });
 }

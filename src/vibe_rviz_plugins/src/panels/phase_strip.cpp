@@ -13,7 +13,7 @@ namespace {
 constexpr double kGap = 3;          // between two steps [px]
 constexpr double kRound = 4;        // radius of corners [px]
 constexpr double kSmallest = 0.75;  // of the font, where the dock is narrow
-constexpr int kMargin = 10;         // of a step's height besides its text [px]
+constexpr int kStepMargin = 10;     // of a step's height besides its text [px]
 constexpr int kSideMargin = 4;      // left and right of a step's text [px]
 
 QFont bold(QFont font) {
@@ -48,7 +48,7 @@ double PhaseStrip::minWidth(const QFont& face) const {
 }
 
 QSize PhaseStrip::sizeHint() const {
-  return {static_cast<int>(minWidth(font())) + 1, QFontMetrics(bold(font())).height() + kMargin};
+  return {static_cast<int>(minWidth(font())) + 1, QFontMetrics(bold(font())).height() + kStepMargin};
 }
 
 QSize PhaseStrip::minimumSizeHint() const {

@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-constexpr int kMargin = 8;           // at both ends, for the handle [px]
+constexpr int kHandleMargin = 8;     // at both ends, for the handle [px]
 constexpr int kTop = 22, kBar = 10;  // below the names of the phases; height of the bar [px]
 constexpr int kNear = 4;             // of a mark, for its text [px]
 
@@ -29,19 +29,19 @@ void ReplaySlider::display(double time, double duration, std::vector<Mark> marks
 }
 
 double ReplaySlider::timeAt(int x) const {
-  const double share = static_cast<double>(x - kMargin) / std::max(1, width() - 2 * kMargin);
+  const double share = static_cast<double>(x - kHandleMargin) / std::max(1, width() - 2 * kHandleMargin);
   return std::clamp(share, 0.0, 1.0) * duration_;
 }
 
 int ReplaySlider::placeOf(double time) const {
   const double share = duration_ > 0 ? std::clamp(time / duration_, 0.0, 1.0) : 0;
-  return kMargin + static_cast<int>(std::lround(share * (width() - 2 * kMargin)));
+  return kHandleMargin + static_cast<int>(std::lround(share * (width() - 2 * kHandleMargin)));
 }
 
 void ReplaySlider::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
-  const QRect bar(kMargin, kTop, width() - 2 * kMargin, kBar);
+  const QRect bar(kHandleMargin, kTop, width() - 2 * kHandleMargin, kBar);
   painter.setPen(Qt::NoPen);
   painter.setBrush(palette().color(QPalette::Mid));
   painter.drawRoundedRect(bar, 3, 3);

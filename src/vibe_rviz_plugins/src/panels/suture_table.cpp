@@ -17,7 +17,7 @@ struct Column {
   const char* title;
   const char* help;
 };
-constexpr std::array<Column, 7> kColumns = {{
+constexpr std::array<Column, 7> kTableColumns = {{
     {"#", "Number of the set, in the order of first bites."},
     {"Bites", "Bites that hold; torn-out bites in brackets."},
     {"Plan", "Technique that the goal of a trainee asks for (trainee/progress)."},
@@ -30,10 +30,10 @@ constexpr std::array<Column, 7> kColumns = {{
 
 }  // namespace
 
-SutureTable::SutureTable(QWidget* parent) : QTableWidget(0, static_cast<int>(kColumns.size()), parent) {
-  for (std::size_t column = 0; column < kColumns.size(); ++column) {
-    auto* title = new QTableWidgetItem(kColumns[column].title);
-    title->setToolTip(kColumns[column].help);
+SutureTable::SutureTable(QWidget* parent) : QTableWidget(0, static_cast<int>(kTableColumns.size()), parent) {
+  for (std::size_t column = 0; column < kTableColumns.size(); ++column) {
+    auto* title = new QTableWidgetItem(kTableColumns[column].title);
+    title->setToolTip(kTableColumns[column].help);
     setHorizontalHeaderItem(static_cast<int>(column), title);
   }
   makeSmaller(*this);

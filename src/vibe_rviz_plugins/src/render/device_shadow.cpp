@@ -18,8 +18,8 @@
 namespace vibe {
 namespace {
 
-const char* const kParameters = "vibe_device_shadow";  // as in media/vibe.program
-constexpr std::size_t kMaxCapsules = 12;               // as in media/shadow.glsl
+const char* const kShadowParameters = "vibe_device_shadow";  // as in media/vibe.program
+constexpr std::size_t kMaxCapsules = 12;                     // as in media/shadow.glsl
 // Parts nearer than this to the lens hold the lens and the guides themselves, or stand behind them [m].
 constexpr float kBehind = 0.0005F;
 
@@ -84,7 +84,7 @@ void send(const std::vector<ViewCapsule>& capsules) {
   float* value = values.data();
   for (const ViewCapsule& c : capsules)
     for (const float number : {c.from.x, c.from.y, c.from.z, c.radius, c.to.x, c.to.y, c.to.z, 0.0F}) *value++ = number;
-  const auto shared = Ogre::GpuProgramManager::getSingleton().getSharedParameters(kParameters);
+  const auto shared = Ogre::GpuProgramManager::getSingleton().getSharedParameters(kShadowParameters);
   shared->setNamedConstant("capsules", values.data(), values.size());
   shared->setNamedConstant("capsule_count", static_cast<float>(capsules.size()));
 }
@@ -92,7 +92,7 @@ void send(const std::vector<ViewCapsule>& capsules) {
 }  // namespace
 
 void DeviceShadow::provide() {
-  const auto shared = Ogre::GpuProgramManager::getSingleton().createSharedParameters(kParameters);
+  const auto shared = Ogre::GpuProgramManager::getSingleton().createSharedParameters(kShadowParameters);
   shared->addConstantDefinition("capsules", Ogre::GCT_FLOAT4, 2 * kMaxCapsules);
   shared->addConstantDefinition("capsule_count", Ogre::GCT_FLOAT1);
   send({});

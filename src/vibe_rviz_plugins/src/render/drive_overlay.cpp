@@ -13,7 +13,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kPanelWidth = 196, kStateWidth = 186, kMargin = 8, kRow = 18, kCapSize = 15,
+constexpr double kPanelWidth = 196, kStateWidth = 186, kPlateMargin = 8, kRow = 18, kCapSize = 15,
                  kGap = 5;                      // [pixels at scale 1]
 constexpr double kText = 11, kBannerText = 14;  // heights of fonts
 constexpr double kCapColumn = 68;               // where the texts of the keys begin
@@ -21,7 +21,7 @@ constexpr double kMillimetresOfMercury = 133.322;
 constexpr double kHighForce = 8;  // "almost 8 N at most" in the reference of kPullingForce [N]
 
 const QColor kPlate(14, 18, 24, 178), kInk(236, 240, 244), kFaint(150, 162, 174), kCap(52, 62, 74);
-const QColor kLit(255, 196, 64), kLitInk(40, 26, 0), kTrack(60, 70, 82), kFill(96, 176, 232),
+const QColor kLit(255, 196, 64), kLitInk(40, 26, 0), kTrack(60, 70, 82), kBarFill(96, 176, 232),
     kTrouble(120, 44, 30, 215);
 const QColor kGood(86, 196, 108), kWarning(240, 196, 64), kBad(232, 78, 62);
 
@@ -88,7 +88,7 @@ bool isChosen(const DriveHud& hud, int key) {
 }
 
 void drawKeyRow(const DriveHud& hud, const KeyRow& row, double y, Plate& plate) {
-  double x = kMargin;
+  double x = kPlateMargin;
   for (const KeyRow::Cap& cap : row.caps) {
     const bool lit = isDown(hud, cap.key) || isChosen(hud, cap.key);
     const QString label = toQt(cap.label);
@@ -97,7 +97,7 @@ void drawKeyRow(const DriveHud& hud, const KeyRow& row, double y, Plate& plate) 
     plate.text({x, y + 1.5, width, kCapSize}, Qt::AlignCenter, label, lit ? kLitInk : kInk);
     x += width + 1.5;
   }
-  const double left = kCapColumn + kMargin;
+  const double left = kCapColumn + kPlateMargin;
   plate.text({left, y, kPanelWidth - left, kRow}, Qt::AlignVCenter, toQt(row.text), kInk);
 }
 
@@ -115,11 +115,11 @@ constexpr std::array<JointRow, kJointCount> kJointRows = {{{"Insertion", 1e-3, "
                                                            {"Helix turns", kTurn, ""},
                                                            {"Arm closed", 1e-3, " mm"}}};
 
-constexpr double kNameWidth = 68, kBarLeft = kMargin + kNameWidth, kBarWidth = 34;
+constexpr double kNameWidth = 68, kBarLeft = kPlateMargin + kNameWidth, kBarWidth = 34;
 
 void drawRow(const QString& name, const QString& value, double y, Plate& plate) {
-  plate.text({kMargin, y, kNameWidth, kRow}, Qt::AlignVCenter, name, kFaint);
-  plate.text({kBarLeft + kBarWidth, y, kStateWidth - kMargin - kBarLeft - kBarWidth, kRow},
+  plate.text({kPlateMargin, y, kNameWidth, kRow}, Qt::AlignVCenter, name, kFaint);
+  plate.text({kBarLeft + kBarWidth, y, kStateWidth - kPlateMargin - kBarLeft - kBarWidth, kRow},
              Qt::AlignVCenter | Qt::AlignRight, value, kInk);
 }
 
@@ -141,7 +141,7 @@ void drawJoint(const DriveHud& hud, std::size_t joint, double y, Plate& plate) {
   drawRow(row.name, toQt(number) + (number == kNoValue ? "" : row.suffix), y, plate);
   const double zero = std::clamp(0.0, limit.lower, limit.upper);
   const bool known = std::isfinite(hud.joints[joint]);
-  drawBar(share(zero), share(known ? hud.joints[joint] : zero), y, known ? kFill : kTrack, plate);
+  drawBar(share(zero), share(known ? hud.joints[joint] : zero), y, known ? kBarFill : kTrack, plate);
 }
 
 QColor colourOfForce(double force) {
@@ -158,21 +158,21 @@ void drawPressure(double pressure, double y, Plate& plate) {
   constexpr double kBarEnd = 25;  // as in the panel [mmHg]
   const double value = pressure / kMillimetresOfMercury;
   drawRow("Gas", std::isfinite(value) ? toQt(quantityText(value, 1, "mmHg")) : "-", y, plate);
-  if (std::isfinite(value)) drawBar(0, value / kBarEnd, y, kFill, plate);
+  if (std::isfinite(value)) drawBar(0, value / kBarEnd, y, kBarFill, plate);
 }
 
 void drawWords(const QString& name, const std::string& words, double y, Plate& plate) {
-  plate.text({kMargin, y, kNameWidth, kRow}, Qt::AlignVCenter, name, kFaint);
-  plate.text({kBarLeft, y, kStateWidth - kMargin - kBarLeft, kRow}, Qt::AlignVCenter | Qt::AlignRight, toQt(words),
+  plate.text({kPlateMargin, y, kNameWidth, kRow}, Qt::AlignVCenter, name, kFaint);
+  plate.text({kBarLeft, y, kStateWidth - kPlateMargin - kBarLeft, kRow}, Qt::AlignVCenter | Qt::AlignRight, toQt(words),
              kInk);
 }
 
 void drawButtons(const DriveHud& hud, double y, Plate& plate) {
   const std::array<const char*, 6> names = {"APC", "Grab", "Needle", "T-tag", "Cinch", "Gas"};
-  const double width = (kStateWidth - 2 * kMargin) / 3;
+  const double width = (kStateWidth - 2 * kPlateMargin) / 3;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double row = static_cast<double>(i / 3), column = static_cast<double>(i % 3);
-    const QRectF place(kMargin + width * column, y + row * kRow + 1, width - 2, kRow - 3);
+    const QRectF place(kPlateMargin + width * column, y + row * kRow + 1, width - 2, kRow - 3);
     plate.box(place, 3, hud.buttons[i] ? kLit : kCap);
     plate.text(place, Qt::AlignCenter, names[i], hud.buttons[i] ? kLitInk : kFaint);
   }
@@ -184,8 +184,8 @@ QImage drawnKeys(const DriveHud& hud, double scale) {
   const auto& rows = keyRows();
   const auto gaps = std::count_if(rows.begin(), rows.end(), [](const KeyRow& row) { return row.ends_group; });
   const double height = kRow * static_cast<double>(rows.size()) + kGap * static_cast<double>(gaps);
-  Plate plate(kPanelWidth, 2 * kMargin - 4 + height, scale, kPlate);
-  double y = kMargin - 2;
+  Plate plate(kPanelWidth, 2 * kPlateMargin - 4 + height, scale, kPlate);
+  double y = kPlateMargin - 2;
   for (const KeyRow& row : rows) {
     drawKeyRow(hud, row, y, plate);
     y += row.ends_group ? kRow + kGap : kRow;
@@ -195,8 +195,8 @@ QImage drawnKeys(const DriveHud& hud, double scale) {
 
 QImage drawnState(const DriveHud& hud, double scale) {
   constexpr double kRows = kJointCount + 7;  // two bars, three texts, two rows of buttons
-  Plate plate(kStateWidth, 2 * (kMargin + kGap) - 2 + kRow * kRows, scale, kPlate);
-  double y = kMargin - 2;
+  Plate plate(kStateWidth, 2 * (kPlateMargin + kGap) - 2 + kRow * kRows, scale, kPlate);
+  double y = kPlateMargin - 2;
   for (std::size_t joint = 0; joint < hud.joints.size(); ++joint, y += kRow) drawJoint(hud, joint, y, plate);
   y += kGap;
   drawForce(hud.force, y, plate);
@@ -214,16 +214,16 @@ QImage drawnBanner(const DriveHud& hud, double scale, int width) {
   const QString words = toQt(trouble ? hud.trouble : hud.step.text);
   QFont font;
   font.setPixelSize(static_cast<int>(kBannerText));
-  const double badge = 22, most = width / scale - 3 * kMargin - badge;
+  const double badge = 22, most = width / scale - 3 * kPlateMargin - badge;
   const QRectF text = QFontMetricsF(font).boundingRect(QRectF(0, 0, most, 200), Qt::TextWordWrap, words);
-  const double height = std::max(badge, text.height()) + kMargin;
-  Plate plate(std::ceil(text.width()) + 3 * kMargin + badge, height, scale, trouble ? kTrouble : kPlate);
-  const QRectF place(kMargin, (height - badge) / 2, badge, badge);
+  const double height = std::max(badge, text.height()) + kPlateMargin;
+  Plate plate(std::ceil(text.width()) + 3 * kPlateMargin + badge, height, scale, trouble ? kTrouble : kPlate);
+  const QRectF place(kPlateMargin, (height - badge) / 2, badge, badge);
   plate.box(place, badge / 2, trouble ? kBad : kLit);
   plate.setFont(kBannerText, true);
   plate.text(place, Qt::AlignCenter, number, trouble ? kInk : kLitInk);
   plate.setFont(kBannerText, false);
-  plate.text({2 * kMargin + badge, 0, text.width() + 2, height}, Qt::AlignVCenter | Qt::TextWordWrap, words, kInk);
+  plate.text({2 * kPlateMargin + badge, 0, text.width() + 2, height}, Qt::AlignVCenter | Qt::TextWordWrap, words, kInk);
   return plate.finish();
 }
 

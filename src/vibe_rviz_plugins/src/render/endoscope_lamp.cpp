@@ -8,11 +8,11 @@
 namespace vibe {
 namespace {
 
-const char* const kParameters = "vibe_lamp";  // as in media/*.program
+const char* const kLampParameters = "vibe_lamp";  // as in media/*.program
 constexpr std::array<const char*, 2> kGuides{"right_guide", "left_guide"};
 
 Ogre::GpuSharedParametersPtr shared() {
-  return Ogre::GpuProgramManager::getSingleton().getSharedParameters(kParameters);
+  return Ogre::GpuProgramManager::getSingleton().getSharedParameters(kLampParameters);
 }
 
 const float* valuesOf(const char* name) {
@@ -24,7 +24,7 @@ const float* valuesOf(const char* name) {
 }  // namespace
 
 void provideLamp() {
-  const auto parameters = Ogre::GpuProgramManager::getSingleton().createSharedParameters(kParameters);
+  const auto parameters = Ogre::GpuProgramManager::getSingleton().createSharedParameters(kLampParameters);
   for (const char* guide : kGuides) parameters->addConstantDefinition(guide, Ogre::GCT_FLOAT4);
   parameters->addConstantDefinition("lamp_ahead", Ogre::GCT_FLOAT2);
   parameters->addConstantDefinition("lamp_colour", Ogre::GCT_FLOAT3);

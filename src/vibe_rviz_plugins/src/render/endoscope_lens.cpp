@@ -34,8 +34,8 @@ const char* const kMiddle = "middle";
 const char* const kMeter = "meter";
 constexpr int kMeterSize = 32;  // edge of the picture that measures the level [px]
 
-const char* const kParameters = "vibe_lens";  // as in media/vibe.program
-constexpr double kFirstBlend = 0.85;          // as in media/endoscope.frag
+const char* const kLensParameters = "vibe_lens";  // as in media/vibe.program
+constexpr double kFirstBlend = 0.85;              // as in media/endoscope.frag
 
 /// Share of half of the picture of the whole within which only that of the middle is shown, also in the picture of the
 /// meter, and in small ones, where a pixel is the mean of a longer line.
@@ -83,7 +83,7 @@ void addTexture(Ogre::CompositionTechnique& technique, const char* name, int siz
 }  // namespace
 
 void EndoscopeLens::provide() {
-  const auto shared = Ogre::GpuProgramManager::getSingleton().createSharedParameters(kParameters);
+  const auto shared = Ogre::GpuProgramManager::getSingleton().createSharedParameters(kLensParameters);
   shared->addConstantDefinition("unseen", Ogre::GCT_FLOAT1);
 }
 
@@ -140,7 +140,7 @@ void EndoscopeLens::preFindVisibleObjects(Ogre::SceneManager* scene, Ogre::Scene
   if (viewport->getCamera() != viewport_->getCamera()) return;
   shadow_.cast(*scene, *viewport->getCamera(), viewport->getVisibilityMask());
   const bool of_middle = middle_ && viewport->getTarget() == middle_->getBuffer()->getRenderTarget();
-  const auto shared = Ogre::GpuProgramManager::getSingleton().getSharedParameters(kParameters);
+  const auto shared = Ogre::GpuProgramManager::getSingleton().getSharedParameters(kLensParameters);
   shared->setNamedConstant("unseen", static_cast<Ogre::Real>(of_middle ? 0 : unseenShare(camera_, sources_)));
 }
 

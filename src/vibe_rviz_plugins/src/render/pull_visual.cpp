@@ -20,7 +20,7 @@ constexpr float kBall = 5e-3F;        // diameter [m]
 constexpr float kShaft = 1.8e-3F;     // diameter [m]
 constexpr float kHead = 4.5e-3F;      // diameter [m]
 constexpr float kHeadLength = 7e-3F;  // at most, and half of the arrow [m]
-constexpr float kLine = 6e-4F;        // width [m]
+constexpr float kLineWidth = 6e-4F;   // width [m]
 constexpr float kLetter = 1e-2F;      // height [m]
 constexpr double kTextGap = 9e-3;     // from the arrow's tip [m]
 constexpr double kMinArrow = 5e-4;    // shorter ones are not drawn [m]
@@ -41,7 +41,7 @@ PullVisual::PullVisual(Ogre::SceneManager& scene)
       text_(std::make_unique<rviz::MovableText>("0.00 N", "Liberation Sans", kLetter, Ogre::ColourValue::White)) {
   ball_->setScale(Ogre::Vector3(kBall));
   ball_->setColor(1, 0.85F, 0.2F, 1);
-  line_->setLineWidth(kLine);
+  line_->setLineWidth(kLineWidth);
   arrow_->setColor(0.1F, 0.9F, 0.35F, 1);
   text_->setTextAlignment(rviz::MovableText::H_CENTER, rviz::MovableText::V_CENTER);
   text_->showOnTop();

@@ -22,8 +22,8 @@ namespace {
 constexpr double kOvertaken = 1;    // [s]
 constexpr double kEdgeAlpha = 0.9;  // opacity of a wall at grazing angles
 constexpr double kGrain = 0.25;
-constexpr float kFill = 0.16F, kFillOfData = 0.5F;           // ambient light
-constexpr double kVessels = 0.10, kVesselsStretched = 0.22;  // strength of their net, and more on a stretched wall
+constexpr float kFillLight = 0.16F, kFillLightOfData = 0.5F;  // ambient light
+constexpr double kVessels = 0.10, kVesselsStretched = 0.22;   // strength of their net, and more on a stretched wall
 
 Ogre::AxisAlignedBox boxAround(const Eigen::AlignedBox3f& bounds) {
   if (bounds.isEmpty()) return Ogre::AxisAlignedBox::BOX_NULL;
@@ -207,7 +207,7 @@ void TissueVisual::applySide(Ogre::MaterialPtr& material, const Ogre::ColourValu
                                                            (plain ? 1 : 0.4) * (mucosa ? mucosa_.wetness : 1)));
     parameters->setNamedConstant("relief", static_cast<float>(look_.relief));
     parameters->setNamedConstant("grain", static_cast<float>(!plain ? 0 : mucosa ? 1 : kGrain));
-    parameters->setNamedConstant("fill", plain ? kFill : kFillOfData);
+    parameters->setNamedConstant("fill", plain ? kFillLight : kFillLightOfData);
     parameters->setNamedConstant("scars", look_.scars && (!outside || transparent) ? 1.0F : 0.0F);
     if (mucosa) applyMucosa(pass);
   }

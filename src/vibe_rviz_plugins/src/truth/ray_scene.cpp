@@ -7,16 +7,17 @@
 #include <stdexcept>
 
 namespace vibe {
-namespace {
-
-constexpr std::size_t kPacket = 8;  // rays that are cast together
-constexpr float kOpaque = 127.5F;   // alpha from which a translucent surface is met, of 255
 
 /// What the filter of a translucent body reads.
 struct Veil {
   const std::vector<std::uint32_t>* triangles = nullptr;
   const std::vector<PackedColour>* colours = nullptr;
 };
+
+namespace {
+
+constexpr std::size_t kPacket = 8;  // rays that are cast together
+constexpr float kOpaque = 127.5F;   // alpha from which a translucent surface is met, of 255
 
 float alphaAt(const Veil& veil, std::uint32_t triangle, float u, float v) {
   const float weight[3] = {1 - u - v, u, v};

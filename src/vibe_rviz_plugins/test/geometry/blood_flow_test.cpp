@@ -8,7 +8,7 @@
 #include "shape_measures.hpp"
 #include "walls.hpp"
 
-namespace vibe {
+namespace vibe::blood_flow_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -251,4 +251,4 @@ TEST(BleedingShape, IsMadeAgainOnlyIfSomethingHasChanged) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::blood_flow_test

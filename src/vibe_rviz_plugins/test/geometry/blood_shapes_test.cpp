@@ -4,7 +4,7 @@
 
 #include "shape_measures.hpp"
 
-namespace vibe {
+namespace vibe::blood_shapes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -245,4 +245,4 @@ TEST(Blood, UnknownWallsAndAnyDirectionOfGravityAreDrawn) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::blood_shapes_test

@@ -4,7 +4,7 @@
 
 #include "walls.hpp"
 
-namespace vibe {
+namespace vibe::descent_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -91,4 +91,4 @@ TEST(Descent, TrianglesWithoutAreaDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::descent_test

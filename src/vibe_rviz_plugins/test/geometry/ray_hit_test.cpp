@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe {
+namespace vibe::ray_hit_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -96,4 +96,4 @@ TEST(MeetPlane, ParallelAndRecedingRaysMeetNothing) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::ray_hit_test

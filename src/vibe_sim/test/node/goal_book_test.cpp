@@ -5,7 +5,7 @@
 
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::goal_book_test {
 namespace {
 
 using Entry = vibe_msgs::GoalProgress;
@@ -139,4 +139,4 @@ TEST(GoalBook, ABiteTellsWhichSutureIsThatOfTheGoal) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::goal_book_test

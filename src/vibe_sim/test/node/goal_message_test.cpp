@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::goal_message_test {
 namespace {
 
 vibe_msgs::TraineeGoal message(const std::string& kind) {
@@ -157,4 +157,4 @@ TEST(GoalMessage, WhatASceneLacksIsARefusal) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::goal_message_test

@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace vibe {
+namespace vibe::sim_time_test {
 namespace {
 
 TEST(SimTime, stampsAreIntegerNanosecondsWithoutDrift) {
@@ -58,4 +58,4 @@ TEST(TimeLine, shiftMovesEveryStamp) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::sim_time_test

@@ -9,7 +9,7 @@
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 
-namespace vibe {
+namespace vibe::step_result_message_test {
 namespace {
 
 std::shared_ptr<const Model> smallStomach() {
@@ -113,4 +113,4 @@ TEST(StepResultMessage, AnotherKindOfCloudIsRefused) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::step_result_message_test

@@ -2,35 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "calibrate/least_squares.hpp"
+#include "calibrate/median.hpp"
+#include "calibrate/straight_line.hpp"
 #include "calibrate/student_t.hpp"
+#include "calibrate/with_decimals.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kShortestPath = 20;  // [px]
 constexpr double kSignificance = 0.01;
 constexpr double kDistinctSlides = 1e-6;  // [m]
 constexpr double kNoisyStop = 0.5;        // residual that deserves a warning [px]
 
-std::string withDecimals(double value, int decimals) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-void check(const std::vector<AxisStop>& stops) {
+void checkStops(const std::vector<AxisStop>& stops) {
   std::set<long long> slides;
   for (const AxisStop& stop : stops) {
     if (!std::isfinite(stop.slide) || !stop.pixel.allFinite()) {
@@ -240,7 +229,7 @@ class Fitter {
 }  // namespace
 
 AxisFit fitAxis(const std::vector<AxisStop>& stops) {
-  check(stops);
+  checkStops(stops);
   return Fitter(stops).run();
 }
 

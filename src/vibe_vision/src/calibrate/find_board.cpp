@@ -3,6 +3,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "calibrate/median.hpp"
 #include "vibe_vision/calibrate/lens_calibration.hpp"
 
 namespace vibe {
@@ -13,12 +14,6 @@ constexpr double kWindow = 0.22;       // half the window of the refinement, of 
 constexpr int kSmallestWindow = 2, kLargestWindow = 15;
 
 using Corners = std::vector<cv::Point2f>;
-
-float median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The corners as a grid.
 class CornerGrid {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/calib3d.hpp>
 #include <set>
 
+#include "calibrate/with_decimals.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -20,12 +20,6 @@ constexpr double kEnoughCoverage = 0.6;
 constexpr double kLargeResidual = 0.5;  // [px]
 constexpr double kFocalUncertainty = 0.01;
 constexpr double kBadView = 3;  // times the median residual
-
-std::string withDecimals(double value, int decimals) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
 
 std::vector<cv::Point3f> boardPoints(const BoardSpec& board) {
   std::vector<cv::Point3f> points;
@@ -153,7 +147,7 @@ CameraModel cameraOf(const Fit& fit, int width, int height) {
   return camera;
 }
 
-void check(const std::vector<BoardView>& views, const BoardSpec& board) {
+void checkViews(const std::vector<BoardView>& views, const BoardSpec& board) {
   if (views.size() < 3) {
     throw Error("a chessboard of " + std::to_string(board.columns) + "x" + std::to_string(board.rows) +
                 " inner corners was found in " + std::to_string(views.size()) +
@@ -171,7 +165,7 @@ void check(const std::vector<BoardView>& views, const BoardSpec& board) {
 }  // namespace
 
 LensCalibration calibrateLens(const std::vector<BoardView>& views, const BoardSpec& board, int width, int height) {
-  check(views, board);
+  checkViews(views, board);
   std::vector<std::vector<cv::Point2f>> images;
   for (const BoardView& view : views) {
     images.emplace_back();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate/median.hpp"
 #include "calibrate/straight_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/track/tracker.hpp"
@@ -26,12 +27,6 @@ void checkSizes(const VisionConfig& config, const std::vector<Frame>& images) {
                 std::to_string(config.camera.height) +
                 "; take the images with the calibrated camera and the same region");
   }
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The search of whole images.

@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "calibrate/least_squares.hpp"
+#include "calibrate/median.hpp"
 #include "calibrate/straight_line.hpp"
+#include "calibrate/with_decimals.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
 
@@ -11,18 +12,6 @@ namespace vibe {
 namespace {
 
 constexpr std::size_t kFewestSamples = 5;
-
-std::string withDecimals(double value, int decimals) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Size of the marker as a function of its place, from the first sample.
 LinearFit fitSize(const std::vector<MotionSample>& samples, const StraightLine& line) {
@@ -35,7 +24,7 @@ LinearFit fitSize(const std::vector<MotionSample>& samples, const StraightLine& 
   return solveLinear(a, b);
 }
 
-void check(const std::vector<MotionSample>& samples) {
+void checkSamples(const std::vector<MotionSample>& samples) {
   if (samples.size() < kFewestSamples) {
     throw Error("the marker was found in " + std::to_string(samples.size()) + " images, " +
                 std::to_string(kFewestSamples) + " are needed at the least; take more images along the whole range");
@@ -58,7 +47,7 @@ bool pointsBackwards(const std::vector<MotionSample>& samples, const StraightLin
 
 MotionFit fitMotion(const std::vector<MotionSample>& samples, const ScaleTrust& trust,
                     const Eigen::Vector2d& direction) {
-  check(samples);
+  checkSamples(samples);
   std::vector<Eigen::Vector2d> points;
   for (const MotionSample& sample : samples) points.push_back(sample.pixel);
   Eigen::Matrix2d across;

@@ -5,20 +5,14 @@
 #include <cstdio>
 
 #include "calibrate/least_squares.hpp"
+#include "calibrate/median.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kShortestPath = 20;     // [px]
 constexpr double kFar = 5 * 1.4826;      // times the median distance: 5 standard deviations
 constexpr double kSmallestLimit = 0.02;  // nearer points always count [px]
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double medianDistance(const StraightLine& line, const std::vector<Eigen::Vector2d>& points) {
   std::vector<double> distances;

@@ -4,6 +4,9 @@
 
 namespace vibe {
 
+/// By which a marker must move to show a direction [px].
+constexpr double kShortestPath = 20;
+
 /// A line in the image.
 struct StraightLine {
   Eigen::Vector2d point = Eigen::Vector2d::Zero();

@@ -9,10 +9,10 @@
 namespace vibe {
 namespace {
 
-constexpr double kSilence = 1;        // without any packet after which a camera is opened again [s]
-constexpr double kSilentPeriods = 4;  // the same, for cameras of less than 4 Hz
-constexpr double kForgiveness = 1;    // without a fault after which it is no longer told [s]
-constexpr double kPatience = 0.1;     // between looks at whether the control channel is lost [s]
+constexpr double kSilence = 1;           // without any packet after which a camera is opened again [s]
+constexpr double kSilentPeriods = 4;     // the same, for cameras of less than 4 Hz
+constexpr double kForgiveness = 1;       // without a fault after which it is no longer told [s]
+constexpr double kPacketPatience = 0.1;  // between looks at whether the control channel is lost [s]
 
 constexpr bool isCode(PixelFormat format, guint32 code) {
   return static_cast<guint32>(format) == code;
@@ -46,7 +46,7 @@ ReadResult AravisSource::read(Frame& frame, double timeout) {
   const double deadline = steadyTime() + timeout;
   const double silence = std::max(kSilence, kSilentPeriods / std::max(camera_->facts().rate, 1e-3));
   do {
-    ArvBuffer* buffer = camera_->pop(std::min(kPatience, deadline - steadyTime()));
+    ArvBuffer* buffer = camera_->pop(std::min(kPacketPatience, deadline - steadyTime()));
     const double now = steadyTime();
     if (buffer) {
       last_sign_ = now;

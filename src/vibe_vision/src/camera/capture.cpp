@@ -10,7 +10,7 @@
 namespace vibe {
 namespace {
 
-constexpr double kPatience = 0.1;  // of one read: after this the thread sees whether it shall stop [s]
+constexpr double kReadPatience = 0.1;  // of one read: after this the thread sees whether it shall stop [s]
 
 }  // namespace
 
@@ -42,7 +42,7 @@ struct Capture::Impl {
 
   bool step() {
     Frame frame;
-    const ReadResult result = source->read(frame, kPatience);
+    const ReadResult result = source->read(frame, kReadPatience);
     {
       const std::lock_guard<std::mutex> lock(mutex);
       state = result;

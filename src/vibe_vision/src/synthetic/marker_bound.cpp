@@ -9,12 +9,12 @@
 namespace vibe {
 namespace {
 
-constexpr double kShift = 0.05;       // half width of a difference [px]
-constexpr double kTurn = 0.01;        // [rad]
-constexpr float kWhole = 0.999F;      // share of a flat marker in a pixel that counts
-constexpr float kCut = 0.5F;          // by which a sleeve is lengthened to find its ends [px]
-constexpr float kNone = 1e-3F;        // change of a pixel that does not see them [DN]
-constexpr float kSaturated = 254.0F;  // [DN]
+constexpr double kShift = 0.05;          // half width of a difference [px]
+constexpr double kRotationShift = 0.01;  // [rad]
+constexpr float kWhole = 0.999F;         // share of a flat marker in a pixel that counts
+constexpr float kCut = 0.5F;             // by which a sleeve is lengthened to find its ends [px]
+constexpr float kNone = 1e-3F;           // change of a pixel that does not see them [DN]
+constexpr float kSaturated = 254.0F;     // [DN]
 
 using Picture = std::vector<float>;
 
@@ -136,7 +136,7 @@ MarkerBound cramerRaoBound(const SyntheticScene& scene, std::size_t instrument, 
   ChangedPictures pictures(scene, instrument, index);
   std::vector<Picture> derivatives = {pictures.derivative(step, 0, 0, kShift), pictures.derivative(0, step, 0, kShift),
                                       pictures.inkDerivative(1, 0), pictures.inkDerivative(0, 1)};
-  if (turns) derivatives.push_back(pictures.derivative(0, 0, kTurn, kTurn));
+  if (turns) derivatives.push_back(pictures.derivative(0, 0, kRotationShift, kRotationShift));
   const Eigen::MatrixXd bound = boundOf(derivatives, pictures.draw(), pictures.mask(), scene.degradation.noise);
   return {std::sqrt(bound(0, 0)), turns ? std::sqrt(bound(4, 4)) : 0};
 }

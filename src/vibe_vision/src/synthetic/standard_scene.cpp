@@ -32,7 +32,7 @@ SlideAxis axisAt(double x, double y, double angle, double perspective) {
 }
 
 /// A sine with the given peak speed.
-std::function<double(double)> sine(double amplitude, double peak_speed, double phase) {
+std::function<double(double)> sineMotion(double amplitude, double peak_speed, double phase) {
   return [=](double time) { return amplitude * std::sin(peak_speed / amplitude * time + phase); };
 }
 
@@ -45,8 +45,8 @@ SyntheticInstrument standardHelix() {
   helix.nominal.upper = 0.027;
   helix.nominal.slide_joint = "helix_advance";
   helix.nominal.rotation_joint = "helix_rotation";
-  helix.motion.slide = sine(0.025, kPeakSpeed, 0.3);
-  helix.motion.rotation = sine(2.5, 30, 1.1);
+  helix.motion.slide = sineMotion(0.025, kPeakSpeed, 0.3);
+  helix.motion.rotation = sineMotion(2.5, 30, 1.1);
   helix.lateral = 1e-4;
   return helix;
 }
@@ -59,7 +59,7 @@ SyntheticInstrument standardNeedleDriver() {
   driver.nominal.lower = -0.025;
   driver.nominal.upper = 0.025;
   driver.nominal.slide_joint = "needle_driver";
-  driver.motion.slide = sine(0.022, kPeakSpeed, 2.0);
+  driver.motion.slide = sineMotion(0.022, kPeakSpeed, 2.0);
   driver.motion.rotation = [](double) { return 0.0; };
   driver.lateral = -1.5e-4;
   return driver;

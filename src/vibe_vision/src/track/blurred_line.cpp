@@ -6,14 +6,14 @@
 namespace vibe {
 namespace {
 
-constexpr double kReach = 6;  // standard deviations after which a step is over
+constexpr double kStepReach = 6;  // standard deviations after which a step is over
 
 /// Adds a step from 0 to `sign` at distance 0, blurred. The area of a pixel has a negative fourth cumulant, -w^4 / 120,
 /// the first term of the Edgeworth series (Kendall's Advanced Theory of Statistics, volume 1, 6.18).
 void addStep(double distance, double sign, double deviation, double cumulant, std::array<double, 4>& sum) {
   const double z = distance / deviation;
-  if (z <= -kReach) return;
-  if (z >= kReach) {
+  if (z <= -kStepReach) return;
+  if (z >= kStepReach) {
     sum[0] += sign * distance;
     sum[1] += sign;
     return;
@@ -34,7 +34,7 @@ BlurredLine::BlurredLine(const std::vector<Interval>& black, double period, doub
       inverse_period_(period > 0 ? static_cast<float>(1 / period) : 0.0F),
       first_step_(stepOf(static_cast<float>(min_variance))),
       last_step_(stepOf(kMaxVariance)) {
-  const double reach = kReach * std::sqrt(kMaxVariance);
+  const double reach = kStepReach * std::sqrt(kMaxVariance);
   const double begin = period > 0 ? 0 : std::floor(black.front().begin - reach);
   const double end = period > 0 ? period : std::ceil(black.back().end + reach);
   begin_ = static_cast<float>(begin);
@@ -56,7 +56,7 @@ BlurredLine::Entry BlurredLine::entryAt(const std::vector<Interval>& black, doub
   const double deviation = std::sqrt(variance);
   const double cumulant = variance > 1.5 * pixel_variance ? -1.2 * pixel_variance * pixel_variance : 0;
   // the same for all variances: integrals of different tables must go together
-  const double copies = period_ > 0 ? std::ceil((kReach * std::sqrt(kMaxVariance) + kMargin) / period_) + 1 : 0;
+  const double copies = period_ > 0 ? std::ceil((kStepReach * std::sqrt(kMaxVariance) + kMargin) / period_) + 1 : 0;
   std::array<double, 4> sum{};
   for (double copy = -copies; copy <= copies; ++copy)
     for (const Interval& interval : black) {

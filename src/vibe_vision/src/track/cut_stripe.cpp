@@ -6,9 +6,6 @@
 namespace vibe {
 namespace {
 
-constexpr float kReach = 3.4F;   // standard deviations
-constexpr float kCorner = 3.1F;  // standard deviations between cut and edge from which they do not disturb each other
-
 // Midpoint rule over the blur across the axis, in standard deviations: the integrand has kinks.
 constexpr std::size_t kNodes = 9;
 constexpr float kSpacing = 0.62F;
@@ -45,8 +42,9 @@ float CutStripe::edgeBefore(float phase, bool black) const {
 }
 
 CutStripe::Entry CutStripe::at(float y, float phase, float variance, float cut_variance, float full_variance) const {
-  const float deviation = std::sqrt(variance), reach = kReach * deviation;
-  if (edgeDistance(phase) > kCorner * std::sqrt(full_variance)) return farFromEdges(y, phase, deviation, full_variance);
+  const float deviation = std::sqrt(variance), reach = kEdgeReach * deviation;
+  if (edgeDistance(phase) > kCornerReach * std::sqrt(full_variance))
+    return farFromEdges(y, phase, deviation, full_variance);
   if (y < -reach) {
     const BlurredLine::Entry e = line_.at(phase + y, full_variance);
     return {e.integral + mean_ * y, e.value, e.slope, e.value - mean_};
@@ -85,7 +83,7 @@ CutStripe::Entry CutStripe::nearCut(float y, float phase, float deviation, float
   const float spread = kSpread * cut_deviation;
   const bool is_black = std::abs(place) < half_black_;
   const float last = edgeBefore(place, is_black);
-  if (last + spread < y - kReach * deviation && edgeDistance(phase) > spread) {
+  if (last + spread < y - kEdgeReach * deviation && edgeDistance(phase) > spread) {
     if (!is_black) return {0, 0, 0, 0};
     return {deviation * cut.integral, cut.value, -inverse * cut.density, 0};
   }

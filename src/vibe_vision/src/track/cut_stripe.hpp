@@ -6,6 +6,10 @@
 
 namespace vibe {
 
+/// Standard deviations of the blur after which an edge is over, and between cut and edge of a stripe from which they do
+/// not disturb each other.
+constexpr float kEdgeReach = 3.4F, kCornerReach = 3.1F;
+
 /// A periodic stripe that stops at a straight cut across the axis, seen along one line parallel to the axis and blurred
 /// in both directions. The two kinds of edges are not at right angles; where they meet, the picture is the mean over
 /// the blur across the axis of pictures along it.

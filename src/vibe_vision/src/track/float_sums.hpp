@@ -9,6 +9,7 @@ namespace vibe {
 /// Four floats of a vector register; compilers without the instructions take several. Sums below are always taken in
 /// the same order, and nothing is fused: the same bits on every machine.
 using Four [[gnu::vector_size(16)]] = float;
+constexpr std::size_t kFourSize = 4;
 
 inline Four loadFour(const float* p) {
   Four v;
@@ -28,8 +29,7 @@ inline Four squareRoot(Four v) {
   return root;
 }
 
-inline double total(Four a, Four b) {
-  const Four s = a + b;
+inline double total(Four s) {
   return (static_cast<double>(s[0]) + s[1]) + (static_cast<double>(s[2]) + s[3]);
 }
 
@@ -37,7 +37,7 @@ inline double total(Four a, Four b) {
 inline double total(const float* p, std::size_t count) {
   Four a{}, b{};
   for (std::size_t i = 0; i < count; i += kLanes) a += loadFour(p + i), b += loadFour(p + i + 4);
-  return total(a, b);
+  return total(a + b);
 }
 
 inline double dot(const float* p, const float* q, std::size_t count) {
@@ -46,7 +46,7 @@ inline double dot(const float* p, const float* q, std::size_t count) {
     a += loadFour(p + i) * loadFour(q + i);
     b += loadFour(p + i + 4) * loadFour(q + i + 4);
   }
-  return total(a, b);
+  return total(a + b);
 }
 
 }  // namespace vibe

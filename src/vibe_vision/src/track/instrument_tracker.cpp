@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "track/square.hpp"
+
 namespace vibe {
 namespace {
 
@@ -27,13 +29,9 @@ constexpr double kNearbyVisible = 0.5;                 // where the place is kno
 constexpr double kKnownPlace = 3;                      // greatest deviation of a prediction that tells them apart [px]
 constexpr double kKnownRotation = 0.3;  // greatest deviation of a prediction that a fit may start from [rad]
 constexpr double kNear = 3;             // deviations of a prediction
-constexpr double kReach = 2.5;          // the same
+constexpr double kNearbyReach = 2.5;    // the same
 constexpr double kSearchDoubt = 0.1;    // about size, tilt and blur that a search found
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-double square(double x) {
-  return x * x;
-}
 
 double bandHalfWidth(const MarkerPattern& pattern, const InstrumentConfig& config) {
   return 1.1 * pattern.maxWindow().norm() + config.lateral_tolerance * config.axis.pixels_per_metre + 4;
@@ -172,7 +170,7 @@ bool InstrumentTracker::searchNearby(const Frame& frame, const Prediction& predi
   const double motion = std::abs(motionAt(prediction.slide, frame.exposure));
   const bool known_rotation = prediction.rotation.deviation() < kKnownRotation;
   const MarkerFit fit = fitter_.acquire(map_, frame, startAt(slide, prior, prediction), prior, motion,
-                                        fastestMotion(frame), known_rotation, kReach * deviation);
+                                        fastestMotion(frame), known_rotation, kNearbyReach * deviation);
   if (gates_.judge(fit, slow_.nominal(slide)) != LostReason::None || fit.visible < kNearbyVisible) return false;
   if (!isNear(fit, prediction)) return false;
   accept(frame, fit, prediction, true);

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "track/square.hpp"
+
 namespace vibe {
 namespace {
 
@@ -13,10 +15,6 @@ constexpr double kPlace = 0.3, kPlaceWalk = 1e-3;
 constexpr double kAmplitude = 0.03, kAmplitudeWalk = 2e-4;
 constexpr double kModel = 1e-3;  // what the model leaves unexplained, relative
 constexpr double kLongest = 60;  // after which phases are counted anew [s]
-
-double square(double x) {
-  return x * x;
-}
 
 /// Mean of t sin(w t) over an exposure, relative to the mean of cos(w t): what a flicker's slope moves the middle by.
 double lever(double frequency, double exposure) {

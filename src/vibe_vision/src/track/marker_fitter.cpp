@@ -12,7 +12,7 @@ constexpr std::size_t kMinPixels = 48;
 constexpr double kConverged = 0.03;         // a step after which the next would change nothing that matters [px]
 constexpr double kMaxStep = 3;              // [px]
 constexpr double kMotionTrial = 2;          // [px]
-constexpr double kLongMotion = 6;           // from which what is seen where edges meet tells the motion [px]
+constexpr double kTellingMotion = 6;        // from which what is seen where edges meet tells the motion [px]
 constexpr double kMotionUncertainty = 0.3;  // of the edges while it is tried [px]
 constexpr double kMinUncertainty = 0.3;     // of a prediction [px]
 constexpr double kCoarseBlur = 2.4, kMiddleBlur = 0.9;  // more than the camera's [px]
@@ -24,7 +24,7 @@ constexpr double kPrepareBlur = 0.05, kPrepareScale = 0.01;  // changes after wh
 constexpr double kPlaceTrial = 1.5;                          // [px]
 constexpr double kSeenAsWhole = 0.9;                         // visible share of a marker that nothing covers
 constexpr double kCoverShift = 0.12, kCoverTurn = 0.02;      // by what covers a sleeve [px], [rad]
-constexpr double kWhole = 0.9;  // share of a marker that is seen, from which a quarter of the pixels show where it is
+constexpr double kQuarterEnough = 0.9;  // seen share of a marker from which a quarter of the pixels show where it is
 constexpr int kFollowSteps = 12, kAcquireSteps = 14;  // a covered marker needs many
 // A fit that still moves that far [px] with step 1, 2, ... is on something else: markers are well below half of it.
 constexpr std::array<double, 4> kWandering = {1e9, 4, 1.5, 0.8};
@@ -53,7 +53,7 @@ MarkerFit MarkerFitter::follow(AxisMap& map, const Frame& frame, const FitVector
   fit.motion = motion;
   if (!read(map, frame, fit)) return fit;
   pattern_->prepare(poseOf(fit.x), motion);
-  seen_ > kWhole ? useQuarter() : useHalf();
+  seen_ > kQuarterEnough ? useQuarter() : useHalf();
   fit_.evaluate(fit.x, pixels_);
   fit_.startLevels(pixels_, fit.x);
   const FitStep step = fit_.step(fit.x, prior, pixels_, {std::max(uncertainty, kMinUncertainty), FitScope::Position});
@@ -165,7 +165,7 @@ void MarkerFitter::chooseMotion(MarkerFit& fit, const FitPrior& prior, double ma
   for (int k = 0; k < 3; ++k) {
     MarkerFit trial = fit;
     trial.motion = middle + (k - 1) * kMotionTrial;
-    pattern_->prepare(poseOf(trial.x), trial.motion, middle < kLongMotion);
+    pattern_->prepare(poseOf(trial.x), trial.motion, middle < kTellingMotion);
     for (int i = 0; i < 2; ++i) {
       fit_.evaluate(trial.x, pixels_);
       const FitStep step = fit_.step(trial.x, prior, pixels_, {kMotionUncertainty, FitScope::Shape});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "track/square.hpp"
+
 namespace vibe {
 namespace {
 
@@ -14,10 +16,6 @@ constexpr double kJerkTime = 1e-3;  // [s]
 constexpr double kLearning = 0.05, kLeast = 0.02, kMost = 4;
 constexpr double kSurprise = 9;  // of this, at most, is learnt from one innovation
 constexpr double kBreak = 100;   // squared normalised innovation of another motion
-
-double square(double x) {
-  return x * x;
-}
 
 }  // namespace
 

@@ -1,29 +1,18 @@
 #include "track/moving_line.hpp"
 
-#include "track/lanes.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "track/float_sums.hpp"
+#include "track/lanes.hpp"
 
 namespace vibe {
 namespace {
 
-using Four [[gnu::vector_size(16)]] = float;
 using Order [[gnu::vector_size(16)]] = int;
-constexpr std::size_t kWidth = 4;
-constexpr float kLevelRatio = 0.12F;  // of the variances' step to the variance that needs no more levels
-constexpr int kStride = 2;            // of the table against that of the line
+constexpr float kVarianceStepRatio = 0.12F;  // of the variances' step to the variance that needs no more levels
+constexpr int kStride = 2;                   // of the table against that of the line
 constexpr float kPerPixel = BlurredLine::kPerPixel / kStride;
-
-Four load(const float* p) {
-  Four v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-
-void store(Four v, float* p) {
-  __builtin_memcpy(p, &v, sizeof v);
-}
 
 /// Elements n to the front, zeros behind.
 Four shifted1(Four v) {
@@ -58,17 +47,17 @@ MovingLine::MovingLine(const BlurredLine& line, int levels)
     : line_(line),
       max_levels_(levels),
       size_(static_cast<std::size_t>(line.length() * kPerPixel) + 2),
-      table_(size_ * static_cast<std::size_t>(levels) * kWidth) {}
+      table_(size_ * static_cast<std::size_t>(levels) * kFourSize) {}
 
 void MovingLine::compose(float low, float high, float half_motion) {
   low_ = low;
   const float range = std::max(high - low, 1e-3F);
-  levels_ = std::clamp(1 + static_cast<int>(std::ceil(range / (kLevelRatio * low))), 2, max_levels_);
+  levels_ = std::clamp(1 + static_cast<int>(std::ceil(range / (kVarianceStepRatio * low))), 2, max_levels_);
   step_ = range / static_cast<float>(levels_ - 1);
   half_motion_ = std::min(half_motion, kMaxHalfMotion);
   for (int level = 0; level < levels_; ++level)
     composeLevel(low_ + static_cast<float>(level) * step_,
-                 table_.data() + static_cast<std::size_t>(level) * size_ * kWidth);
+                 table_.data() + static_cast<std::size_t>(level) * size_ * kFourSize);
 }
 
 void MovingLine::composeLevel(float variance, float* table) const {
@@ -79,9 +68,9 @@ void MovingLine::composeLevel(float variance, float* table) const {
       right_drift{right.first[0] * mean, 0, 0, 0}, base{mean, 0, 0, 0};
   for (std::size_t i = 0; i < size_; ++i) {
     const int place = static_cast<int>(i) * kStride;
-    const Four a = left.of(load(line_.entry(level, place + left.steps))) - left_drift;
-    const Four b = right.of(load(line_.entry(level, place + right.steps))) - right_drift;
-    store((b - a) * factor + base, table + i * kWidth);
+    const Four a = left.of(loadFour(line_.entry(level, place + left.steps))) - left_drift;
+    const Four b = right.of(loadFour(line_.entry(level, place + right.steps))) - right_drift;
+    store(table + i * kFourSize, (b - a) * factor + base);
   }
 }
 
@@ -106,19 +95,19 @@ VIBE_LANES void MovingLine::look(const Places& places, std::size_t count, const 
     d[i] = (place - p) / kPerPixel;
     s[i] = 0.5F * (all - low - l * step + d[i] * d[i]);
   }
-  for (std::size_t i = 0; i < count; i += kWidth) {
-    Four e[kWidth];
-    for (std::size_t k = 0; k < kWidth; ++k) {
-      const Four entry = load(table_.data() + static_cast<std::size_t>(index[i + k]) * kWidth);
+  for (std::size_t i = 0; i < count; i += kFourSize) {
+    Four e[kFourSize];
+    for (std::size_t k = 0; k < kFourSize; ++k) {
+      const Four entry = loadFour(table_.data() + static_cast<std::size_t>(index[i + k]) * kFourSize);
       e[k] = entry + d[i + k] * shifted1(entry) + s[i + k] * shifted2(entry);
     }
     const Four ab = __builtin_shuffle(e[0], e[1], Order{0, 4, 1, 5});
     const Four cd = __builtin_shuffle(e[2], e[3], Order{0, 4, 1, 5});
     const Four bends = __builtin_shuffle(__builtin_shuffle(e[0], e[1], Order{2, 6, 3, 7}),
                                          __builtin_shuffle(e[2], e[3], Order{2, 6, 3, 7}), Order{0, 1, 4, 5});
-    store(__builtin_shuffle(ab, cd, Order{0, 1, 4, 5}), result.value + i);
-    store(__builtin_shuffle(ab, cd, Order{2, 3, 6, 7}), result.slope + i);
-    store(bends, result.bend + i);
+    store(result.value + i, __builtin_shuffle(ab, cd, Order{0, 1, 4, 5}));
+    store(result.slope + i, __builtin_shuffle(ab, cd, Order{2, 3, 6, 7}));
+    store(result.bend + i, bends);
   }
 }
 

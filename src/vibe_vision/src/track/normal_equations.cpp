@@ -8,7 +8,7 @@
 namespace vibe {
 namespace {
 
-constexpr std::size_t kPart = 256;  // rows summed in single precision before they are added in double precision
+constexpr std::size_t kRowsAtATime = 256;  // rows summed in single precision before they are added in double precision
 
 using Eight [[gnu::vector_size(32), gnu::aligned(4), gnu::may_alias]] = float;
 constexpr std::size_t kTogether = 4;  // columns
@@ -44,9 +44,9 @@ void NormalEquations::start(int columns) {
 }
 
 void NormalEquations::sum(std::size_t count) {
-  for (std::size_t begin = 0; begin < count; begin += kPart)
+  for (std::size_t begin = 0; begin < count; begin += kRowsAtATime)
     for (int a = 0; a < count_; ++a)
-      for (int b = a; b <= count_; b += kTogether) sumGroup(a, b, begin, std::min(kPart, count - begin));
+      for (int b = a; b <= count_; b += kTogether) sumGroup(a, b, begin, std::min(kRowsAtATime, count - begin));
 }
 
 /// Column a with column b and those behind it; column count_ stands for the residual.

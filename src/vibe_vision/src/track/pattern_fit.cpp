@@ -20,7 +20,6 @@ constexpr double kMeanSquare = 1 - 6 / kCut + 15 / (kCut * kCut);
 constexpr double kScoreSquare = 1 - 12 / kCut + 90 / (kCut * kCut) - 420 / (kCut * kCut * kCut);
 constexpr double kVarianceFactor = kScoreSquare * kMeanWeight / (kMeanSquare * kMeanSquare);
 
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitParameters, kFitParameters>;
 using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kFitParameters, 1>;
 
 /// Median of the pixels that have at least, or at most, this reflectance.
@@ -204,7 +203,7 @@ VIBE_LANES void PatternFit::fillColumns(const FitVector& x, const PixelBlock& pi
 }
 
 void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& result) const {
-  Square h(columns_, columns_);
+  FitSubmatrix h(columns_, columns_);
   Column g(columns_);
   for (int a = 0; a < columns_; ++a) {
     g[a] = equations_.gradient(a);
@@ -213,11 +212,11 @@ void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& resul
       g[a] += prior.information(parameter_[a], parameter_[b]) * (prior.mean[parameter_[b]] - x[parameter_[b]]);
     }
   }
-  const Eigen::LDLT<Square> factors(h);
+  const Eigen::LDLT<FitSubmatrix> factors(h);
   result.valid = factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0;
   if (!result.valid) return;
   const Column change = factors.solve(g);
-  const Square inverse = factors.solve(Square::Identity(columns_, columns_)) * kVarianceFactor;
+  const FitSubmatrix inverse = factors.solve(FitSubmatrix::Identity(columns_, columns_)) * kVarianceFactor;
   result.valid = change.allFinite();
   for (int a = 0; a < columns_; ++a) {
     result.change[parameter_[a]] = change[a];

@@ -12,6 +12,8 @@ constexpr int kFitParameters = kPoseParameters + 4;
 enum FitIndex { kBlack = kPoseParameters, kContrast, kSlopeAlong, kSlopeLateral };
 using FitVector = Eigen::Matrix<double, kFitParameters, 1>;
 using FitMatrix = Eigen::Matrix<double, kFitParameters, kFitParameters>;
+/// Of some of the parameters; on the stack.
+using FitSubmatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitParameters, kFitParameters>;
 
 MarkerPose poseOf(const FitVector& x);
 void setPose(const MarkerPose& pose, FitVector& x);

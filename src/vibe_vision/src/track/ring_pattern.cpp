@@ -5,27 +5,26 @@
 
 #include "track/float_sums.hpp"
 #include "track/lanes.hpp"
+#include "track/pixel_area.hpp"
 
 namespace vibe {
 namespace {
 
-constexpr double kPixelVariance = 1.0 / 12;  // of the area of a pixel [px^2]
-constexpr double kMaxMotion = 48;            // during the exposure [px]
-constexpr double kTail = 3;                  // standard deviations of the blur that an edge reaches
-constexpr double kMaxScale = 1.3;            // of the marker's size
-constexpr std::size_t kPart = 64;            // pixels at a time: all of it stays in the first cache
+constexpr double kMaxMotion = 48;  // during the exposure [px]
+constexpr double kBlurTail = 3;    // standard deviations of the blur that an edge reaches
+constexpr double kMaxScale = 1.3;  // of the marker's size
 
 /// Four values of one pixel and four of the next.
-using Eight [[gnu::vector_size(32)]] = float;
+using TwoFours [[gnu::vector_size(32)]] = float;
 using Places [[gnu::vector_size(32)]] = int;
 
 /// Weights of the cubic B-spline and their derivatives at a fraction f of one pixel, g of the next.
 struct Spline {
-  Eight weight, first, second;
+  TwoFours weight, first, second;
   [[gnu::always_inline]] Spline(float f, float g) {
-    const Eight c0{1.F / 6, 2.F / 3, 1.F / 6, 0, 1.F / 6, 2.F / 3, 1.F / 6, 0};
-    const Eight c1{-0.5F, 0, 0.5F, 0, -0.5F, 0, 0.5F, 0}, c2{0.5F, -1, 0.5F, 0, 0.5F, -1, 0.5F, 0};
-    const Eight c3{-1.F / 6, 0.5F, -0.5F, 1.F / 6, -1.F / 6, 0.5F, -0.5F, 1.F / 6}, h{f, f, f, f, g, g, g, g};
+    const TwoFours c0{1.F / 6, 2.F / 3, 1.F / 6, 0, 1.F / 6, 2.F / 3, 1.F / 6, 0};
+    const TwoFours c1{-0.5F, 0, 0.5F, 0, -0.5F, 0, 0.5F, 0}, c2{0.5F, -1, 0.5F, 0, 0.5F, -1, 0.5F, 0};
+    const TwoFours c3{-1.F / 6, 0.5F, -0.5F, 1.F / 6, -1.F / 6, 0.5F, -0.5F, 1.F / 6}, h{f, f, f, f, g, g, g, g};
     weight = c0 + h * (c1 + h * (c2 + h * c3));
     first = c1 + h * (2 * c2 + (3 * h) * c3);
     second = 2 * c2 + (6 * h) * c3;
@@ -55,18 +54,19 @@ struct TableFrame {
 };
 
 double reach(double outer, double half_side) {
-  return std::min(half_side, outer + kTail * RingTable::kMaxBlur);
+  return std::min(half_side, outer + kBlurTail * RingTable::kMaxBlur);
 }
 
 }  // namespace
 
 /// All in the table's pixels, relative to the marker's centre; x, y: in the image's.
 struct RingPattern::Part {
-  alignas(16) float x[kPart], y[kPart];
-  alignas(16) float row[kPart], column[kPart];  // in steps of the table, not below 0
-  alignas(16) float sign_u[kPart], sign_v[kPart];
-  alignas(16) float u[kPart], v[kPart];
-  alignas(16) float value[kPart], by_u[kPart], by_v[kPart], laplacian[kPart];
+  static constexpr std::size_t kSize = 64;  ///< all of it stays in the first cache
+  alignas(16) float x[kSize], y[kSize];
+  alignas(16) float row[kSize], column[kSize];  // in steps of the table, not below 0
+  alignas(16) float sign_u[kSize], sign_v[kSize];
+  alignas(16) float u[kSize], v[kSize];
+  alignas(16) float value[kSize], by_u[kSize], by_v[kSize], laplacian[kSize];
   std::size_t count;  ///< of pixels, a multiple of kLanes
 };
 
@@ -84,7 +84,7 @@ std::array<bool, kPoseParameters> RingPattern::observes() const {
 }
 
 Eigen::Vector2d RingPattern::window(const MarkerPose& pose, double motion) const {
-  const double blur = std::sqrt(pose.blur * pose.blur + kPixelVariance) * kTail;
+  const double blur = std::sqrt(pose.blur * pose.blur + kPixelVariance) * kBlurTail;
   const double size_v = std::exp(pose.log_scale), size_u = size_v * std::exp(pose.log_aspect);
   const double travel = std::min(std::abs(motion), kMaxMotion) / 2;
   const double u = std::min(outer_ * size_u + blur + travel, half_side_ * size_u - blur - travel);
@@ -99,7 +99,7 @@ Eigen::Vector2d RingPattern::maxWindow() const {
 /// Keeps what lies near one of the two edges at some time during the exposure.
 void RingPattern::select(const MarkerPose& pose, double motion, PixelBlock& pixels) const {
   const double size_v = std::exp(pose.log_scale), size_u = size_v * std::exp(pose.log_aspect);
-  const double width = kTail * std::sqrt(pose.blur * pose.blur + kPixelVariance) / size_v;
+  const double width = kBlurTail * std::sqrt(pose.blur * pose.blur + kPixelVariance) / size_v;
   const auto square = [](double x) { return static_cast<float>(x * std::abs(x)); };
   const float inner_begin = square(inner_ - width), inner_end = square(inner_ + width);
   const float outer_begin = square(outer_ - width), outer_end = square(outer_ + width);
@@ -127,7 +127,7 @@ void RingPattern::prepare(const MarkerPose& pose, double motion, bool /*rough*/)
 
 void RingPattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, PatternValues& values) {
   Part part;
-  for (std::size_t begin = 0; begin < pixels.padded(); begin += kPart) {
+  for (std::size_t begin = 0; begin < pixels.padded(); begin += Part::kSize) {
     place(pose, pixels, begin, part);
     readTable(part);
     chain(pose, begin, part, values);
@@ -136,7 +136,7 @@ void RingPattern::evaluate(const MarkerPose& pose, const PixelBlock& pixels, Pat
 
 VIBE_LANES void RingPattern::place(const MarkerPose& pose, const PixelBlock& pixels, std::size_t begin,
                                    Part& part) const {
-  const std::size_t count = part.count = std::min(kPart, pixels.padded() - begin);
+  const std::size_t count = part.count = std::min(Part::kSize, pixels.padded() - begin);
   const TableFrame frame(pose);
   const auto along = static_cast<float>(pose.along), lateral = static_cast<float>(pose.lateral);
   const auto keystone = static_cast<float>(pose.keystone);
@@ -170,9 +170,9 @@ VIBE_LANES void RingPattern::readTable(Part& part) const {
     const Spline u(part.row[i] - static_cast<float>(r), part.row[i + 1] - static_cast<float>(s));
     const Spline v(part.column[i] - static_cast<float>(c), part.column[i + 1] - static_cast<float>(d));
     const float *p = table + (r - 1) * stride + (c - 1), *q = table + (s - 1) * stride + (d - 1);
-    Eight mean{}, slope{}, bend{};
+    TwoFours mean{}, slope{}, bend{};
     for (int k = 0; k < 4; ++k, p += stride, q += stride) {
-      const Eight row{p[0], p[1], p[2], p[3], q[0], q[1], q[2], q[3]};
+      const TwoFours row{p[0], p[1], p[2], p[3], q[0], q[1], q[2], q[3]};
       const Places all{k, k, k, k, k + 4, k + 4, k + 4, k + 4};
       mean += __builtin_shuffle(u.weight, all) * row;
       slope += __builtin_shuffle(u.first, all) * row;
@@ -180,11 +180,12 @@ VIBE_LANES void RingPattern::readTable(Part& part) const {
     }
     const Places low{0, 8, 1, 9, 4, 12, 5, 13}, high{2, 10, 3, 11, 6, 14, 7, 15};
     const Places front{0, 1, 8, 9, 4, 5, 12, 13}, back{2, 3, 10, 11, 6, 7, 14, 15};
-    const Eight value = mean * v.weight, by_v = mean * v.first, by_u = slope * v.weight;
-    const Eight laplacian = bend * v.weight + mean * v.second;
-    const Eight x = __builtin_shuffle(value, by_v, low) + __builtin_shuffle(value, by_v, high);
-    const Eight y = __builtin_shuffle(by_u, laplacian, low) + __builtin_shuffle(by_u, laplacian, high);
-    const Eight sums = __builtin_shuffle(x, y, front) + __builtin_shuffle(x, y, back);  // value, by_v, by_u, Laplacian
+    const TwoFours value = mean * v.weight, by_v = mean * v.first, by_u = slope * v.weight;
+    const TwoFours laplacian = bend * v.weight + mean * v.second;
+    const TwoFours x = __builtin_shuffle(value, by_v, low) + __builtin_shuffle(value, by_v, high);
+    const TwoFours y = __builtin_shuffle(by_u, laplacian, low) + __builtin_shuffle(by_u, laplacian, high);
+    const TwoFours sums =
+        __builtin_shuffle(x, y, front) + __builtin_shuffle(x, y, back);  // value, by_v, by_u, Laplacian
     part.value[i] = sums[0], part.by_v[i] = sums[1], part.by_u[i] = sums[2], part.laplacian[i] = sums[3];
     part.value[i + 1] = sums[4], part.by_v[i + 1] = sums[5], part.by_u[i + 1] = sums[6],
                    part.laplacian[i + 1] = sums[7];

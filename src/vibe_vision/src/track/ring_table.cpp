@@ -8,10 +8,10 @@
 namespace vibe {
 namespace {
 
-constexpr double kLevelRatio = 1.25;       // of the blur from one level to the next
+constexpr double kBlurRatio = 1.25;        // of the blur from one level to the next
 constexpr double kProfileStep = 1.0 / 32;  // of the radial profile [px]
-constexpr double kTail = 6.5;              // standard deviations of a Gaussian that count
-constexpr double kMinMotion = 0.05;        // below it the picture is that of 0.05 px [px]
+constexpr double kGaussTail = 6.5;         // standard deviations of a Gaussian that count
+constexpr double kMinRingMotion = 0.05;    // below it the picture is that of 0.05 px [px]
 constexpr float kPole = -0.26794919F;      // of the cubic B-spline: sqrt(3) - 2
 
 double gauss(double x) {
@@ -23,10 +23,10 @@ double cumulative(double x) {
 
 /// Gaussian blur of a disc at distance r from its centre: sum over its chords v = radius sin(angle).
 double blurredDisc(double r, double radius, double blur) {
-  if (r < radius - kTail * blur) return 1;
-  if (r > radius + kTail * blur) return 0;
+  if (r < radius - kGaussTail * blur) return 1;
+  if (r > radius + kGaussTail * blur) return 0;
   constexpr int kIntervals = 96;  // of Simpson's rule
-  const double limit = std::asin(std::min(1.0, kTail * blur / radius));
+  const double limit = std::asin(std::min(1.0, kGaussTail * blur / radius));
   double sum = 0;
   for (int i = 0; i <= kIntervals; ++i) {
     const double angle = limit * i / kIntervals;
@@ -88,7 +88,7 @@ RingTable::RingTable(double inner, double outer, double reach_u, double reach_v,
   rows_ = steps(reach_u) + kMargin;
   columns_ = (steps(reach_v) + kMargin + 3) / 4 * 4;
   integral_rows_ = rows_ + steps(max_motion / 2) + 10;  // the filter needs some to settle
-  for (double blur = kMinBlur; blur < kMaxBlur * kLevelRatio; blur *= kLevelRatio) levels_.push_back({blur, {}});
+  for (double blur = kMinBlur; blur < kMaxBlur * kBlurRatio; blur *= kBlurRatio) levels_.push_back({blur, {}});
   for (Level& level : levels_) buildLevel(level);
   mixed_.resize(static_cast<std::size_t>(integral_rows_) * columns_);
   table_.resize(static_cast<std::size_t>(rows_) * columns_);
@@ -134,7 +134,7 @@ void RingTable::prefilterIntegral(std::vector<float>& integral) const {
 
 void RingTable::compose(double blur, double motion) {
   blur_ = std::clamp(blur, kMinBlur, kMaxBlur);
-  motion_ = std::clamp(std::abs(motion), kMinMotion, max_motion_);
+  motion_ = std::clamp(std::abs(motion), kMinRingMotion, max_motion_);
   mixLevels();
   spreadMotion();
   prefilter([&](int i) { return table_.data() + static_cast<std::ptrdiff_t>(i + kMargin) * columns_; }, rows_ - kMargin,
@@ -145,7 +145,7 @@ void RingTable::compose(double blur, double motion) {
 
 /// Quadratic interpolation in the logarithm of the blur.
 void RingTable::mixLevels() {
-  const double place = std::log(blur_ / kMinBlur) / std::log(kLevelRatio);
+  const double place = std::log(blur_ / kMinBlur) / std::log(kBlurRatio);
   const auto last = static_cast<std::ptrdiff_t>(levels_.size()) - 2;
   const auto middle = std::clamp(static_cast<std::ptrdiff_t>(std::lround(place)), std::ptrdiff_t{1}, last);
   const double f = place - static_cast<double>(middle);

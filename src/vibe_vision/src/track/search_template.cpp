@@ -7,23 +7,9 @@
 #include <functional>
 #include <numeric>
 
+#include "track/float_sums.hpp"
+
 namespace vibe {
-namespace {
-
-using Lanes [[gnu::vector_size(16)]] = float;
-constexpr std::size_t kWidth = 4;
-
-Lanes load(const float* p) {
-  Lanes v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-
-double total(Lanes a) {
-  return (static_cast<double>(a[0]) + a[1]) + (static_cast<double>(a[2]) + a[3]);
-}
-
-}  // namespace
 
 AxisSamples::AxisSamples(std::size_t size)
     : values_(size + kSpare, 0), seen_(size + 1, 0), sum_(size + 1, 0), squares_(size + 1, 0) {}
@@ -50,7 +36,7 @@ SearchTemplate::SearchTemplate(const MarkerPattern& pattern, double motion, doub
     for (int j = 0; j <= k; ++j)
       products(j, k) = products(k, j) = std::inner_product(p.begin(), p.end(), profiles_[j].begin(), 0.0, std::plus<>(),
                                                            [](double a, double b) { return a * b; });
-    p.resize((p.size() + kWidth - 1) / kWidth * kWidth, 0);
+    p.resize((p.size() + kFourSize - 1) / kFourSize * kFourSize, 0);
   }
   inverse_ = products.inverse();
 }
@@ -59,14 +45,14 @@ SearchTemplate::Match SearchTemplate::match(const AxisSamples& samples, std::siz
   const std::size_t begin = place - static_cast<std::size_t>(half_), end = place + static_cast<std::size_t>(half_) + 1;
   const double n = 2 * half_ + 1;
   if (samples.seen(begin, end) < 2 * half_ + 1) return matchPart(samples, begin);
-  Lanes sums[3] = {};
+  Four sums[3] = {};
   const float* f = samples.data() + begin;
-  for (std::size_t i = 0; i < profiles_[0].size(); i += kWidth) {
-    const Lanes value = load(f + i);
-    sums[0] += value * load(profiles_[0].data() + i);
+  for (std::size_t i = 0; i < profiles_[0].size(); i += kFourSize) {
+    const Four value = loadFour(f + i);
+    sums[0] += value * loadFour(profiles_[0].data() + i);
     if (count_ == 1) continue;
-    sums[1] += value * load(profiles_[1].data() + i);
-    sums[2] += value * load(profiles_[2].data() + i);
+    sums[1] += value * loadFour(profiles_[1].data() + i);
+    sums[2] += value * loadFour(profiles_[2].data() + i);
   }
   const Eigen::Vector3d products(total(sums[0]), total(sums[1]), total(sums[2]));
   const double sum = samples.sum(begin, end);

@@ -3,16 +3,10 @@
 #include "track/sleeve_part.hpp"
 
 namespace vibe {
-namespace {
-
-constexpr float kReach = 3.4F;        // standard deviations after which an edge is over
-constexpr float kCornerReach = 3.1F;  // the same between the end of the helix and an edge of the stripe
-
-}  // namespace
 
 /// Near an end of the helix.
 void SleevePattern::cutAt(std::size_t i, Part& part) const {
-  const float reach = kReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i], u = part.u[i];
+  const float reach = kEdgeReach * std::sqrt(part.bar_variance[i]) + part.half_motion[i], u = part.u[i];
   const bool near_begin = u - reach <= helix_begin_, near_end = u + reach >= helix_end_;
   const float cut = near_end ? helix_end_ : helix_begin_, phase = part.w[i] - u + cut;
   Blackness black;

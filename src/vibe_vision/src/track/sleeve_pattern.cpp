@@ -1,20 +1,19 @@
 #include "track/sleeve_part.hpp"
 
-#include "track/lanes.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "track/lanes.hpp"
+#include "track/pixel_area.hpp"
+
 namespace vibe {
 namespace {
 
-constexpr double kPixelVariance = 1.0 / 12;        // of the area of a pixel [px^2]
 constexpr double kMinBlur = 0.25, kMaxBlur = 3.5;  // of the optics [px]
-constexpr double kMinMotion = 0.5;  // shorter ones are replaced by this, and their variance taken off the blur [px]
-constexpr double kRim = 0.88;       // of the radius: beyond, the print is seen too obliquely
-constexpr float kReach = 3.4F;      // standard deviations after which an edge is over
-constexpr float kMaxSine = 0.97F;   // of the angle around the rod: keeps derivatives finite
+constexpr double kMinSleeveMotion = 0.5;  // replaces shorter ones, and their variance is taken off the blur [px]
+constexpr double kRim = 0.88;             // of the radius: beyond, the print is seen too obliquely
+constexpr float kMaxSine = 0.97F;         // of the angle around the rod: keeps derivatives finite
 constexpr int kBarLevels = 4, kStripeLevels = 5;  // variances from the middle of the rod to the rim
 constexpr float kTurn = 6.28318530718F;
 
@@ -86,7 +85,7 @@ Eigen::Vector2d SleevePattern::printWindow(const MarkerPose& pose, double motion
   const double scale = std::exp(pose.log_scale), blur = std::sqrt(pose.blur * pose.blur + kPixelVariance);
   const double side = radius_ * scale;
   const double lean = pose.slant + (pose.along - view_.principal_along) / view_.focal_length;  // bends the ends
-  const double end = half_length_ * scale * std::cos(pose.slant) - side * std::abs(std::sin(lean)) - kReach * blur -
+  const double end = half_length_ * scale * std::cos(pose.slant) - side * std::abs(std::sin(lean)) - kEdgeReach * blur -
                      std::abs(motion) / 2;
   return {std::max(end, 0.3 * half_length_), std::max(std::min(kRim * side, side - 2.9 * blur), 0.4 * side)};
 }
@@ -137,7 +136,7 @@ SleevePattern::View SleevePattern::viewOf(const MarkerPose& pose, double motion_
   view.principal_x = static_cast<float>(principal.x() / scale);
   view.across = static_cast<float>(slope.y() * cosine);
   view.turn = static_cast<float>(std::atan(slope.y() / (cosine - slope.x() * sine)) - std::atan(slope.y() * cosine));
-  const double motion = std::max(motion_length, kMinMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
+  const double motion = std::max(motion_length, kMinSleeveMotion), blur = std::clamp(pose.blur, kMinBlur, kMaxBlur);
   const double variance = blur * blur + kPixelVariance - (motion * motion - motion_length * motion_length) / 12;
   view.half_motion = static_cast<float>(motion / 2 / scale);
   view.variance = static_cast<float>(variance / (scale * scale));
@@ -230,7 +229,8 @@ VIBE_LANES void SleevePattern::spread(const View& pose, Part& __restrict part) c
     const float stretch = part.stretch[i], lean = part.lean[i], turn = part.turn[i], swing = lean - turn;
     const float half_motion = view.half_motion * (view.tilt_cosine * stretch - view.tilt_sine * lean);
     const float variance = view.variance * (stretch * stretch + lean * lean);
-    const float reach = kReach * std::sqrt(variance) + half_motion, low = part.u[i] - reach, high = part.u[i] + reach;
+    const float reach = kEdgeReach * std::sqrt(variance) + half_motion, low = part.u[i] - reach,
+                high = part.u[i] + reach;
     part.half_motion[i] = half_motion;
     part.stripe_half_motion[i] = half_motion + view.half_motion * view.tilt_sine * turn;
     part.bar_variance[i] = variance;

@@ -7,9 +7,8 @@ namespace vibe {
 namespace {
 
 constexpr float kTellReach = 2.7F;    // standard deviations from an edge within which a pixel tells something
-constexpr float kCornerReach = 3.1F;  // the same between the end of the helix and an edge of the stripe
 constexpr float kMaxUneven = 0.15F;   // of the motions of bars and stripe at an end of the helix [px]
-constexpr float kLongMotion = 4;      // half of one that leaves few pixels that are not near a corner [px]
+constexpr float kLongHalfMotion = 4;  // half of one that leaves few pixels that are not near a corner [px]
 
 }  // namespace
 
@@ -53,7 +52,7 @@ VIBE_LANES void SleevePattern::mark(Part& __restrict part) const {
     const int bar = edge[i] < kTellReach * std::sqrt(part.bar_variance[i]) + half + 0.5F ? 1 : 0;
     const int stripe = stripe_edges.edgeDistance(w) < kTellReach * deviation + stripe_half ? 1 : 0;
     const int corner = stripe_edges.edgeDistance(phase) < kCornerReach * deviation ? 1 : 0;
-    const int black = stripe_edges.isBlack(phase) ? 1 : 0, is_long = half > kLongMotion ? 1 : 0;
+    const int black = stripe_edges.isBlack(phase) ? 1 : 0, is_long = half > kLongHalfMotion ? 1 : 0;
     const int even = std::abs(stripe_half - half) < kMaxUneven ? 1 : 0;  // on a tilted rod; not exact here
     const int inside = part.inside[i] > 0 ? 1 : 0, outside = part.outside[i] > 0 ? 1 : 0;
     const int mixed = (corner & bar & is_long) | ((1 - corner) & even & (bar | stripe | black));

@@ -19,8 +19,6 @@ constexpr double kLateralDrift = 3e-3;                    // [px]
 constexpr double kLeastAspect = 0.01;                     // from which the direction of the slant can be told
 constexpr double kSlopePrior = 2e-3, kSlopeDrift = 4e-6;  // of the light [1/px], and per pixel of travel
 
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kFitParameters, kFitParameters>;
-
 }  // namespace
 
 SlowState::SlowState(const VisionConfig& config, const InstrumentConfig& instrument,
@@ -102,10 +100,10 @@ void SlowState::update(const FitVector& x, const FitMatrix& covariance, double s
 FitPrior SlowState::prior(double slide) const {
   FitPrior prior;
   prior.mean = nominal(slide) + mean_;
-  Square covariance(count_, count_);
+  FitSubmatrix covariance(count_, count_);
   for (int i = 0; i < count_; ++i)
     for (int j = 0; j < count_; ++j) covariance(i, j) = covariance_(index_[i], index_[j]);
-  const Square inverse = covariance.llt().solve(Square::Identity(count_, count_));
+  const FitSubmatrix inverse = covariance.llt().solve(FitSubmatrix::Identity(count_, count_));
   for (int i = 0; i < count_; ++i)
     for (int j = 0; j < count_; ++j) prior.information(index_[i], index_[j]) = inverse(i, j);
   if (initial_deviation_[kLateral] == 0)

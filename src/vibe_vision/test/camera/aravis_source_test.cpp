@@ -13,7 +13,7 @@
 #include "camera/retry_timer.hpp"
 #include "vibe_vision/camera/capture.hpp"
 
-using namespace vibe;
+namespace vibe::aravis_source_test {
 
 namespace {
 
@@ -302,3 +302,5 @@ TEST(FakeCamera, AnAddressOfAnotherComputerIsRefused) {
   options.address = "192.0.2.1";
   EXPECT_THROW(FakeCamera(gradientRing(), options), Error);
 }
+
+}  // namespace vibe::aravis_source_test

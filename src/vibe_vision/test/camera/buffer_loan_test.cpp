@@ -8,7 +8,7 @@
 #include "camera/fake_rig.hpp"
 #include "camera/own_network.hpp"
 
-using namespace vibe;
+namespace vibe::buffer_loan_test {
 
 namespace {
 
@@ -40,3 +40,5 @@ TEST(BufferLoan, LendsSomeAndTakesThemBack) {
     camera.giveBack(buffer);
   }
 }
+
+}  // namespace vibe::buffer_loan_test

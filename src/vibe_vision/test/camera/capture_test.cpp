@@ -9,7 +9,7 @@
 
 #include "camera/host_time.hpp"
 
-using namespace vibe;
+namespace vibe::capture_test {
 
 namespace {
 
@@ -100,3 +100,5 @@ TEST(Capture, AnExceptionOfTheSourceEndsItWithTheMessage) {
   EXPECT_EQ(capture.take(frame, 10), ReadResult::End);
   EXPECT_EQ(capture.status(), "the disk is gone");
 }
+
+}  // namespace vibe::capture_test

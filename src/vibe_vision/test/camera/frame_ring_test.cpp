@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
-using namespace vibe;
+namespace vibe::frame_ring_test {
 
 TEST(FrameRing, GoesForwardAndBackward) {
   FrameRing ring;
@@ -56,3 +56,5 @@ TEST(FrameRing, AnAbsurdNumberOfFramesIsRefused) {
   EXPECT_THROW(renderRing(standardScene(), 0), Error);
   EXPECT_THROW(renderRing(standardScene(), 1 << 30), Error);
 }
+
+}  // namespace vibe::frame_ring_test

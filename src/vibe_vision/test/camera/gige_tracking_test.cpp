@@ -11,7 +11,7 @@
 #include "vibe_vision/camera/capture.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
-using namespace vibe;
+namespace vibe::gige_tracking_test {
 
 namespace {
 
@@ -101,3 +101,5 @@ TEST(GigeTracking, PositionsFromPacketsAreThoseOfTheScene) {
     EXPECT_LT(std::sqrt(squares / std::max(tracked, 1)), 5e-6) << name;  // 0.05 px
   }
 }
+
+}  // namespace vibe::gige_tracking_test

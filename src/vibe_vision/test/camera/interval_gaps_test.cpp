@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-using vibe::IntervalGaps;
+namespace vibe::interval_gaps_test {
 
 TEST(IntervalGaps, CountsFramesThatAreLeftOut) {
   IntervalGaps gaps(0.01);
@@ -28,3 +28,5 @@ TEST(IntervalGaps, AClockThatIsSetIsNoGap) {
   EXPECT_EQ(gaps.advance(1.7e9), 0U);
   EXPECT_EQ(gaps.advance(10), 0U);
 }
+
+}  // namespace vibe::interval_gaps_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-using namespace vibe;
+namespace vibe::pixel_format_test {
 
 namespace {
 
@@ -98,3 +98,5 @@ TEST(PixelFormat, AnUnknownCodeIsNamedAndNotRead) {
   EXPECT_TRUE(isReadable(PixelFormat::Mono12p));
   EXPECT_EQ(sizeOf(PixelFormat::Mono8, -1, 4), 0U);
 }
+
+}  // namespace vibe::pixel_format_test

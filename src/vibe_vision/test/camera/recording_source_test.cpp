@@ -11,7 +11,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
-using namespace vibe;
+namespace vibe::recording_source_test {
 namespace fs = std::filesystem;
 
 namespace {
@@ -299,3 +299,5 @@ TEST(ImageList, NumbersCountByTheirValue) {
   EXPECT_FALSE(isBefore("x", "x"));
   EXPECT_NE(isBefore("x01", "x1"), isBefore("x1", "x01"));
 }
+
+}  // namespace vibe::recording_source_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-using vibe::SequenceCounter;
+namespace vibe::sequence_counter_test {
 
 TEST(SequenceCounter, CountsGaps) {
   SequenceCounter counter;
@@ -46,3 +46,5 @@ TEST(SequenceCounter, NumbersThatGoBackAreNoGap) {
   EXPECT_EQ(counter.advance(3).skipped, 0U);
   EXPECT_EQ(counter.advance(4).sequence, 502U);
 }
+
+}  // namespace vibe::sequence_counter_test

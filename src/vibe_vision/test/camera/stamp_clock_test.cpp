@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-using namespace vibe;
+namespace vibe::stamp_clock_test {
 
 namespace {
 
@@ -119,3 +119,5 @@ TEST(StampClock, PtpWithStampsFromTheFutureIsNotBelieved) {
   EXPECT_LT(camera.run(clock, kUnix, 10, 5), 5e-4);
   EXPECT_FALSE(clock.isHostTime());
 }
+
+}  // namespace vibe::stamp_clock_test

@@ -12,7 +12,7 @@
 #include "camera/host_time.hpp"
 #include "camera/v4l2_device.hpp"
 
-using namespace vibe;
+namespace vibe::v4l2_source_test {
 
 namespace {
 
@@ -82,3 +82,5 @@ TEST(V4l2Source, FormatsOfTheDriverAreKnown) {
   EXPECT_EQ(v4l2Format(codeOf("Y12 ")), PixelFormat::Mono12);
   EXPECT_FALSE(isReadable(v4l2Format(codeOf("MJPG"))));  // OpenCV decodes it
 }
+
+}  // namespace vibe::v4l2_source_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe {
+namespace vibe::program_options_test {
 namespace {
 
 template <class Function>
@@ -49,4 +49,4 @@ TEST(ProgramOptions, NumbersAreFiniteAndWithinTheirLimits) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::program_options_test

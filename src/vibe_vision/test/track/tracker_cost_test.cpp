@@ -8,7 +8,7 @@
 
 #include "track/ring_scene.hpp"
 
-namespace vibe {
+namespace vibe::tracker_cost_test {
 namespace {
 
 using test::ringScene;
@@ -77,4 +77,4 @@ TEST(TrackerCost, IndependentOfTheSensor) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::tracker_cost_test

@@ -1,0 +1,97 @@
+# What every C++ package of ViBE does in the same way: settings, libraries, programs. Needs no ROS. The functions make
+# plain CMake targets, so that a package adds include folders and libraries with CMake's own commands.
+
+set(VIBE_CMAKE_DIR ${CMAKE_CURRENT_LIST_DIR})
+
+# vibe_package(): settings of the package, and the interface library <package>_options with its compiler flags.
+#   VIBE_SANITIZE=ON      sanitizers, those of VIBE_SANITIZERS
+#   VIBE_UNITY_BUILD=OFF  compiles every source by itself: finds missing includes, takes three times as long
+macro(vibe_package)
+  set(CMAKE_CXX_STANDARD 17)
+  set(CMAKE_CXX_STANDARD_REQUIRED ON)
+  set(CMAKE_CXX_EXTENSIONS OFF)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+  set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+  if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release)
+  endif()
+  option(VIBE_SANITIZE "Build with sanitizers" OFF)
+  set(VIBE_SANITIZERS address,undefined CACHE STRING "What VIBE_SANITIZE builds with; or thread")
+  option(VIBE_UNITY_BUILD "Compile the sources of a folder as one file" ON)
+
+  add_library(${PROJECT_NAME}_options INTERFACE)
+  target_compile_options(${PROJECT_NAME}_options INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
+  if(VIBE_SANITIZE)
+    target_compile_options(${PROJECT_NAME}_options INTERFACE
+      -fsanitize=${VIBE_SANITIZERS} -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g)
+    target_link_options(${PROJECT_NAME}_options INTERFACE -fsanitize=${VIBE_SANITIZERS})
+  endif()
+endmacro()
+
+# vibe_sources(VARIABLE PATTERN...): the sources that match, without those of programs (*_main.cpp).
+function(vibe_sources variable)
+  file(GLOB sources CONFIGURE_DEPENDS ${ARGN})
+  list(FILTER sources EXCLUDE REGEX "_main\\.cpp$")
+  set(${variable} ${sources} PARENT_SCOPE)
+endfunction()
+
+# vibe_unity(TARGET [SOURCE...]): compiles these sources (all of the target if none is named) folder by folder, each
+# folder as one file. Sources with flags of their own stay alone, and so do those that a package takes out by setting
+# their property SKIP_UNITY_BUILD_INCLUSION.
+function(vibe_unity target)
+  if(NOT VIBE_UNITY_BUILD)
+    return()
+  endif()
+  set(sources ${ARGN})
+  if(NOT sources)
+    get_target_property(sources ${target} SOURCES)
+  endif()
+  foreach(source ${sources})
+    if(source MATCHES "\\.cpp$")
+      get_filename_component(folder ${source} DIRECTORY)
+      get_filename_component(folder ${folder} NAME)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# vibe_library(NAME [STATIC|SHARED] PATTERN...): a library of the sources that match, with the options of the package.
+function(vibe_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC;SHARED" "" "")
+  vibe_sources(sources ${arg_UNPARSED_ARGUMENTS})
+  if(arg_STATIC)
+    add_library(${name} STATIC ${sources})
+  elseif(arg_SHARED)
+    add_library(${name} SHARED ${sources})
+  else()
+    add_library(${name} ${sources})
+  endif()
+  target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_NAME}_options>)
+  vibe_unity(${name})
+endfunction()
+
+# vibe_programs(PATTERN... LINK LIBRARY... [DESTINATION FOLDER] [NAMES VARIABLE]): a program for every source that
+# matches, named after it without `_main`, and installed. VARIABLE gets the names.
+function(vibe_programs)
+  cmake_parse_arguments(arg "" "DESTINATION;NAMES" "LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${arg_UNPARSED_ARGUMENTS})
+  set(names "")
+  foreach(source ${sources})
+    get_filename_component(name ${source} NAME_WE)
+    string(REGEX REPLACE "_main$" "" name ${name})
+    add_executable(${name} ${source})
+    target_link_libraries(${name} ${arg_LINK} ${PROJECT_NAME}_options)
+    list(APPEND names ${name})
+  endforeach()
+  if(NOT arg_DESTINATION)
+    set(arg_DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+  endif()
+  if(names)
+    install(TARGETS ${names} RUNTIME DESTINATION ${arg_DESTINATION})
+  endif()
+  if(arg_NAMES)
+    set(${arg_NAMES} ${names} PARENT_SCOPE)
+  endif()
+endfunction()

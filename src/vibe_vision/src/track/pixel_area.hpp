@@ -1,0 +1,8 @@
+#pragma once
+
+namespace vibe {
+
+/// Of the area of a pixel [px^2].
+constexpr double kPixelVariance = 1.0 / 12;
+
+}  // namespace vibe
