@@ -1,4 +1,6 @@
 # The examples build against the workspace as packages of their own, their tests pass, and CONTRIBUTING.md shows them.
+# kind: computing
+# cost: 300
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 examples=$root/examples

@@ -9,6 +9,10 @@
 #   // units: 100                                  that it must execute at least, if not 1000
 # Every file may include public headers of all packages, and those of the src and fuzz folders of its own. A source that
 # several programs name is compiled once.
+# kind: computing
+# units: 4
+# cost: 400
+# timeout: 3600
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ]; then

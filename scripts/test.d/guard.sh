@@ -1,4 +1,6 @@
 # Nothing that runs under scripts/lib/guard.py outlives it.
+# kind: waiting
+# cost: 20
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 guard() { /usr/bin/python3 "$root/scripts/lib/guard.py" "$@"; }

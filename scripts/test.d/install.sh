@@ -1,4 +1,6 @@
 # The workspace works from its install space (catkin_make install), and packages of others build against that alone.
+# kind: computing
+# cost: 250
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ] || [ ! -d "$root/build/vibe_core" ]; then

@@ -1,5 +1,8 @@
 # The core without ROS: plain CMake builds and installs a copy of it in an empty environment, a program outside the
 # workspace links it, and both give the same states as the catkin build.
+# kind: computing
+# cost: 120
+# timeout: 3600
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 catkin_build=$root/build${VIBE_VARIANT:-}

@@ -1,5 +1,8 @@
 # The same bits everywhere: the library calls no elementary function of the C library, and sessions have the same hash
 # with g++ and clang++, with every instruction set, and with a C library that uses other code.
+# kind: computing
+# cost: 120
+# timeout: 3600
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 devel=$root/devel${VIBE_VARIANT:-}
