@@ -1,7 +1,7 @@
 """Runs the tests of a workspace that is built; called by scripts/test.
 
-Tests that compute and tests that wait run side by side. What fails there is run once more, alone. Tests that judge times
-run after them, one after the other. See 'Tests' in CONTRIBUTING.md.
+Tests that compute and tests that wait run side by side. What fails there is run once more, alone. Tests that judge
+times run after them, one after the other. See 'Tests' in CONTRIBUTING.md.
 """
 
 import argparse

@@ -1,7 +1,7 @@
-"""The tests of a workspace: those that ctest knows in a build folder, and the scripts of a folder such as scripts/test.d.
+"""The tests of a workspace: those that ctest knows in a build folder, and the scripts of a folder like scripts/test.d.
 
-A test of a package says what it is by properties of ctest: LABELS (its kind), COST, RESOURCE_LOCK, TIMEOUT. A script says
-it in its first lines: `# kind: computing`, `# cost: 40`, `# units: 4`, `# alone-with: NAME`, `# timeout: 3600`.
+A test of a package says what it is by properties of ctest: LABELS (its kind), COST, RESOURCE_LOCK, TIMEOUT. A script
+says it in its first lines: `# kind: computing`, `# cost: 40`, `# units: 4`, `# alone-with: NAME`, `# timeout: 3600`.
 """
 
 import concurrent.futures
@@ -42,13 +42,13 @@ class Test:
         return any(OUTPUT_OPTION in word for word in self.command)
 
     def with_option(self, option):
-        """The command with one more option of its gtest program. Catkin's wrapper takes the program as one shell line."""
+        """The command with one more option of its gtest program, which catkin's wrapper takes as one shell line."""
         words = []
         for word in self.command:
             if word.startswith(OUTPUT_OPTION):
-                words.append(option)
-            words.append(word if word.startswith(OUTPUT_OPTION) else word.replace(
-                OUTPUT_OPTION, "'{}' {}".format(option, OUTPUT_OPTION), 1))
+                words += [option, word]
+            else:
+                words.append(word.replace(OUTPUT_OPTION, "'{}' {}".format(option, OUTPUT_OPTION), 1))
         return words
 
 
@@ -72,7 +72,7 @@ def kind_of(name, command, labels):
 def package_of(test, graph, build):
     """The folder of the CMakeLists.txt in which the test is declared, however deep the call of add_test() is."""
     node = test.get("backtrace")
-    while node is not None and "parent" in graph["nodes"][node] and "file" in graph["nodes"][graph["nodes"][node]["parent"]]:
+    while node is not None and "parent" in graph["nodes"][node]:
         node = graph["nodes"][node]["parent"]
     file = build if node is None else graph["files"][graph["nodes"][node]["file"]]
     inside = re.search(r"/src/([^/]+)/", file)
@@ -97,18 +97,25 @@ def package_tests(build):
     return tests
 
 
+def check_declaration(path, single):
+    """What a script declares, key by key, must be complete and of the right kind."""
+    if single.get("kind") not in KINDS:
+        found = "the kind '{}'".format(single["kind"]) if "kind" in single else "no kind"
+        raise DeclarationError("{} declares {} in its first {} lines; add a line `# kind: WORD` with one of {}".format(
+            path, found, HEADER_LINES, ", ".join(KINDS)))
+    for key in ("cost", "units", "timeout"):
+        if not re.fullmatch("[1-9][0-9]*", single.get(key, "1")):
+            raise DeclarationError("{} declares the {} '{}'; write a whole number above zero".format(
+                path, key, single[key]))
+
+
 def script_test(path, environment):
     """The test of one script, as its first lines declare it."""
     with open(path, encoding="utf-8") as lines:
         head = [line.rstrip("\n") for _, line in zip(range(HEADER_LINES), lines)]
     said = [found.groups() for found in map(HEADER.fullmatch, head) if found]
     single = dict(said)
-    if single.get("kind") not in KINDS:
-        raise DeclarationError("{} declares {} in its first {} lines; add a line `# kind: WORD` with one of {}".format(
-            path, "the kind '{}'".format(single["kind"]) if "kind" in single else "no kind", HEADER_LINES, ", ".join(KINDS)))
-    for key in ("cost", "units", "timeout"):
-        if not re.fullmatch("[1-9][0-9]*", single.get(key, "1")):
-            raise DeclarationError("{} declares the {} '{}'; write a whole number above zero".format(path, key, single[key]))
+    check_declaration(path, single)
     numbers = {key: single[key] for key in ("cost", "units", "timeout") if key in single}
     return Test(os.path.basename(path)[: -len(".sh")], ["bash", path], "scripts", kind=single["kind"], is_script=True,
                 locks=[value for key, value in said if key == "alone-with"], environment=environment, **numbers)

@@ -62,8 +62,9 @@ class Run:
             os.remove(self.test.result_file)
         with open(self.log, "wb") as log:
             try:
-                return subprocess.Popen(self.test.command, cwd=self.test.folder, env=self.environment(), start_new_session=True,
-                                        stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
+                return subprocess.Popen(
+                    self.test.command, cwd=self.test.folder, env=self.environment(), start_new_session=True,
+                    stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
             except OSError as error:
                 log.write("{} cannot be started: {}\n".format(self.test.command[0], error.strerror).encode())
             except IndexError:  # ctest names no command for a program that is not there
@@ -161,7 +162,8 @@ class Pool:
     def tell_progress(self):
         if time.monotonic() - self.spoken > PROGRESS and self.running:
             self.spoken = time.monotonic()
-            self.say("          running: " + ", ".join("{} {:.0f} s".format(r.test.name, r.seconds()) for r in self.running))
+            words = ["{} {:.0f} s".format(run.test.name, run.seconds()) for run in self.running]
+            self.say("          running: " + ", ".join(words))
 
     def stop(self):
         """Ends everything that runs."""

@@ -99,7 +99,7 @@ def skipped_sentences(results):
 
 
 def show_summary(outcomes, failures, unstable, runs):
-    """Everything but the closing line. `outcomes` are the results that count, `runs` all runs, repeated ones included."""
+    """Everything but the closing line. `outcomes` are the results that count, `runs` all runs, also repeated ones."""
     show_list("Skipped:", skipped_sentences(outcomes))
     if runs:
         show_times(runs)

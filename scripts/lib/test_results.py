@@ -1,8 +1,8 @@
 """What a finished test has shown: its cases, as its result file or its lines tell them.
 
 A result file is that of gtest or of catkin's rostests. A test that failed without a failed case in it (a crash, a
-timeout) counts as one failure, and so does a test that passed without any case. A test without a result file is one case.
-A script prints `ok NAME`, `not ok NAME` and `skipped SENTENCE`.
+timeout) counts as one failure, and so does a test that passed without any case. A test without a result file is one
+case. A script prints `ok NAME`, `not ok NAME` and `skipped SENTENCE`.
 """
 
 import re

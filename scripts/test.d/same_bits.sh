@@ -1,7 +1,7 @@
 # The same bits everywhere: the library calls no elementary function of the C library, and sessions have the same hash
-# with g++ and clang++, with every instruction set, and with a C library that uses other code. clang++ compiles the kernels
-# that such a session uses, which are linked with what g++ has compiled; VIBE_SLOW_TESTS has it compile the whole library,
-# which takes minutes.
+# with g++ and clang++, with every instruction set, and with a C library that uses other code. clang++ compiles the
+# kernels that such a session uses, which are linked with what g++ has compiled; VIBE_SLOW_TESTS has it compile the whole
+# library, which takes minutes.
 # kind: computing
 # cost: 120
 # timeout: 3600
