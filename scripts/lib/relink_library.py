@@ -8,9 +8,7 @@ usage: relink_library.py BUILD TARGET COMPILER OUTPUT PATTERN
   BUILD has compile_commands.json, TARGET is the name of the library in CMake, PATTERN a regular expression for files
 """
 
-import concurrent.futures
 import json
-import os
 import pathlib
 import re
 import shlex
@@ -58,12 +56,9 @@ def main():
         return 1
     output.parent.mkdir(parents=True, exist_ok=True)
     replaced = {made: output.parent / f'{number}.o' for number, made in enumerate(chosen)}
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
-        jobs = [threads.submit(compile_with, compiler, words, folder, replaced[made])
-                for made, (_, folder, words) in chosen.items()]
-        for job in jobs:
-            job.result()
-    link(next(iter(chosen.values()))[1], target, replaced, output)
+    for made, (_, folder, words) in chosen.items():
+        compile_with(compiler, words, folder, replaced[made])
+    link(folder, target, replaced, output)
     print(f'{len(chosen)} of {len(known)} files were compiled by {compiler}')
     return 0
 

@@ -118,7 +118,7 @@ def fresh_logs(logs):
 
 
 def selected_tests(options):
-    """The tests to run; what no one has declared costs what it took the last time."""
+    """The tests to run: all of them, or those that the filter selects."""
     tests = test_list.all_tests(options.build, options.scripts, {"VIBE_VARIANT": options.variant})
     return test_list.select(tests, options.filter) if options.filter else tests
 
@@ -128,7 +128,8 @@ def run_all(options, scratch):
     tests = selected_tests(options)
     times = fresh_logs(logs)
     for test in tests:
-        test.cost = test.cost or times.get(test.name, 0)
+        test.cost = times.get(test.name, test.cost)
+    say("{} tests on {} cores; the output of each is kept in {}".format(len(tests), options.cores, logs))
     pool = Pool(UNITS_OF_A_CORE * options.cores, logs, scratch, say)
     suite = Suite(pool, len(tests), os.environ.get("VIBE_TEST_RETRY") != "0", options.verbose)
     try:

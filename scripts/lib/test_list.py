@@ -81,6 +81,8 @@ def package_of(test, graph, build):
 
 def package_tests(build):
     """Every test that ctest knows in a build folder."""
+    if not os.path.isdir(build):
+        raise DeclarationError("there is no build folder {}; run scripts/build --tests".format(build))
     said = subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, check=True, stdout=subprocess.PIPE).stdout
     listing = json.loads(said)
     tests = []

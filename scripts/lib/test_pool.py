@@ -66,7 +66,7 @@ class Run:
                     self.test.command, cwd=self.test.folder, env=self.environment(), start_new_session=True,
                     stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
             except OSError as error:
-                log.write("{} cannot be started: {}\n".format(self.test.command[0], error.strerror).encode())
+                log.write("{} cannot be started: {}\n".format(self.test.command[0], error).encode())
             except IndexError:  # ctest names no command for a program that is not there
                 log.write(b"The program of this test is not built; run scripts/build --tests.\n")
         self.status = 127

@@ -17,7 +17,6 @@ source=$scratch/source/vibe_core
 build=$scratch/build
 prefix=$scratch/first_place
 moved=$scratch/second_place
-jobs=$(nproc)
 mkdir -p "$scratch/source"
 cp -r "$root/src/vibe_core" "$root/src/vibe_description" "$scratch/source/"
 
@@ -42,7 +41,7 @@ configures() {
 builds() {
   [ -n "${VIBE_SLOW_TESTS:-}" ] ||
     /usr/bin/python3 "$root/scripts/lib/reuse_objects.py" "$catkin_build" "$root/src/vibe_core" "$build" "$source"
-  bare cmake --build "$build" -j "$jobs"
+  bare cmake --build "$build" -j1
 }
 
 linksNoRos() {

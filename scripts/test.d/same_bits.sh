@@ -88,7 +88,7 @@ builds() {
   ! command -v ccache >/dev/null || launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   env CCACHE_NOHASHDIR=1 cmake -S "$root/src/vibe_core" -B "$build" -DCMAKE_DISABLE_FIND_PACKAGE_catkin=ON \
     -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF "${launcher[@]}" &&
-    env CCACHE_NOHASHDIR=1 cmake --build "$build" --target vibe_headless -j "$(nproc)"
+    env CCACHE_NOHASHDIR=1 cmake --build "$build" --target vibe_headless -j1
 }
 
 check 'the library calls no elementary function of the C library' callsNoInexactFunction "$devel/lib/libvibe_core.so"
