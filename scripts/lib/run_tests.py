@@ -20,6 +20,7 @@ from test_results import result_of
 
 UNITS_OF_A_CORE = 2
 MOST_UNSTABLE = 3
+MOST_REPEATED = 10  # where more fail, the reason is no accident, and to run them one by one would take long
 TIMES = "seconds.json"  # in the folder of the logs: how long each test took when it last passed
 
 
@@ -59,7 +60,9 @@ class Suite:
 
     def phase(self, tests, alone):
         failed = self.first_time(tests, alone)
-        if failed and self.retry:
+        if len(failed) > MOST_REPEATED and self.retry:
+            say("{} tests failed, too many to run them again".format(len(failed)))
+        elif failed and self.retry:
             say("Once more, alone: " + ", ".join(run.test.name for run in failed))
             self.second_time(failed)
 

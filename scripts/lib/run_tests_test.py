@@ -228,6 +228,14 @@ class RunnerTest(unittest.TestCase):
         self.assertIn("Failed:\n  4 tests are unstable, more than 3: ", said)
         self.closes(said, "5 passed, 1 failed")
 
+    def test_many_failures_are_not_repeated(self):
+        for k in range(11):
+            self.test("bad{}".format(k), "exit 1")
+        said = self.run_it("--cores", "4", status=1)
+        self.assertIn("\n11 tests failed, too many to run them again\n", said)
+        self.assertNotIn("[again]", said)
+        self.closes(said, "1 passed, 11 failed")
+
     # --- filters
 
     def test_the_name_is_filtered(self):

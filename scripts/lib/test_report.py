@@ -68,9 +68,9 @@ def show_table(title, runs, key):
     for run in runs:
         groups.setdefault(key(run), []).append(run)
     say("{:<24} {:>6} {:>12} {:>14}".format(title, "tests", "wall time", "test seconds"))
-    for name in sorted(groups):
-        spans = [(run.begin, run.end) for run in groups[name]]
-        tests = len({run.test.name for run in groups[name]})
+    for name, members in sorted(groups.items()) + [("all", runs)]:
+        spans = [(run.begin, run.end) for run in members]
+        tests = len({run.test.name for run in members})
         say("  {:<22} {:>6} {:>10.1f} s {:>12.1f} s".format(name, tests, covered(spans), sum(b - a for a, b in spans)))
 
 

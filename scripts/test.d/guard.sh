@@ -49,7 +49,7 @@ passesStatus() {
 check 'guard ends with the status of its command' passesStatus
 
 endsAfterNormalEnd() {
-  startFamily 2 && wait "$guard_pid" && nobodyLeft 0
+  startFamily 5 && wait "$guard_pid" && nobodyLeft 0
 }
 check 'nothing is left when the command has ended' endsAfterNormalEnd
 
