@@ -1,4 +1,5 @@
 # vibe_cohort as a lab meets it: a row per trainee, the same rows for the same seeds, one sentence for bad input.
+# kind: computing
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 program=$root/devel${VIBE_VARIANT:-}/lib/vibe_core/vibe_cohort

@@ -1,5 +1,7 @@
 # scripts/dataset: data sets of a short session, and what is refused. What the numbers of the files are is tested in
 # src/vibe_rviz_plugins/test/dataset, with a recording of which everything is known.
+# kind: computing
+# cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_rviz_plugins/vibe_dataset" ]; then

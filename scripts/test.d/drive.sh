@@ -1,4 +1,7 @@
 # scripts/run --drive: who drives in wall time, what goes with whom, and that such a session is recorded and repeats.
+# kind: computing
+# cost: 120
+# alone-with: fake-camera
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 unset DISPLAY

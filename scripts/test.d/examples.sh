@@ -1,4 +1,6 @@
 # The examples build against the workspace as packages of their own, their tests pass, and CONTRIBUTING.md shows them.
+# kind: computing
+# cost: 300
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 examples=$root/examples
@@ -48,9 +50,9 @@ build() {
   ln -s "$examples/$1" "$space/src/$1"
   cmake -S "$space/src" -B "$space/build" -DCATKIN_DEVEL_PREFIX="$space/devel" -DCMAKE_BUILD_TYPE=Release \
     -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 || return 1
-  cmake --build "$space/build" -j2 || return 1
+  cmake --build "$space/build" -j1 || return 1
   ! grep -q '^tests:' <(cmake --build "$space/build" --target help | sed -E 's/^\.\.\. ([a-z]+).*/\1:/') ||
-    cmake --build "$space/build" --target tests -j2
+    cmake --build "$space/build" --target tests -j1
 }
 
 runTests() {

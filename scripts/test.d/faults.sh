@@ -1,4 +1,8 @@
 # What is around the nodes breaks: programs, master, peers, devices, clocks. Figures: the table that is printed.
+# kind: timed
+# cost: 200
+# timeout: 2400
+# alone-with: fake-camera
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 for program in vibe_sim/sim_node vibe_hardware/hardware_node vibe_vision/vision_node; do

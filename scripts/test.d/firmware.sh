@@ -1,5 +1,8 @@
 # The firmware images: what they contain, and how they run in QEMU against a simulated motor. docs/hardware.md states the
 # figures.
+# kind: computing
+# cost: 120
+# alone-with: build-firmware
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 for tool in arm-none-eabi-g++ qemu-system-arm; do

@@ -1,6 +1,11 @@
 # Fuzzes what reads bytes from outside: every src/PACKAGE/fuzz/NAME_fuzz.cpp becomes a libFuzzer program with the address
-# and undefined-behaviour sanitizers and runs for VIBE_FUZZ_SECONDS (10 by default), two at once. It starts from the
-# files in src/PACKAGE/fuzz/corpus/NAME/, if there are any: examples, and what it once found.
+# and undefined-behaviour sanitizers and runs for VIBE_FUZZ_SECONDS, two at once: 15 s by default, 60 s with
+# VIBE_SLOW_TESTS. It starts from the files in src/PACKAGE/fuzz/corpus/NAME/, if there are any: examples, and what it
+# once found.
+# kind: computing
+# units: 4
+# cost: 400
+# timeout: 3600
 #
 # A program consists of its file, the sources of vibe_firmware that need no board, and what the file names itself:
 #   // sources: src/driver/report_reader.cpp ...   relative to its package, patterns allowed
@@ -22,7 +27,7 @@ if ! clang++ -fsanitize=fuzzer,address,undefined "$scratch/empty.cpp" -o "$scrat
   exit 0
 fi
 
-seconds=${VIBE_FUZZ_SECONDS:-10}
+seconds=${VIBE_FUZZ_SECONDS:-$([ -n "${VIBE_SLOW_TESTS:-}" ] && echo 60 || echo 15)}
 flags=(-std=c++17 -gline-tables-only -O1 -fno-sanitize-recover=all
   -fsanitize=fuzzer,address,undefined,float-cast-overflow)
 fuzz_files=("$root"/src/*/fuzz/*_fuzz.cpp)

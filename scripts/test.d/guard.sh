@@ -1,4 +1,6 @@
 # Nothing that runs under scripts/lib/guard.py outlives it.
+# kind: waiting
+# cost: 20
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 guard() { /usr/bin/python3 "$root/scripts/lib/guard.py" "$@"; }
@@ -47,7 +49,7 @@ passesStatus() {
 check 'guard ends with the status of its command' passesStatus
 
 endsAfterNormalEnd() {
-  startFamily 2 && wait "$guard_pid" && nobodyLeft 0
+  startFamily 5 && wait "$guard_pid" && nobodyLeft 0
 }
 check 'nothing is left when the command has ended' endsAfterNormalEnd
 

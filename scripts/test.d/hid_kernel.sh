@@ -1,4 +1,8 @@
 # Debian's kernel in a virtual machine: enumeration, hidraw, gamepad, parameters, unplugging, the node with real hidraw.
+# kind: computing
+# units: 4
+# cost: 120
+# alone-with: build-firmware
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 check 'hid_kernel refuses a timeout in words' refuses 2 "not 'soon'" "$root/scripts/hid_kernel" --timeout soon

@@ -1,4 +1,6 @@
 # The workspace works from its install space (catkin_make install), and packages of others build against that alone.
+# kind: computing
+# cost: 250
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ] || [ ! -d "$root/build/vibe_core" ]; then
@@ -74,7 +76,7 @@ build() {
   cp -r "$root/examples/$1" "$mine/src/$1"
   inSpace cmake -S "$mine/src" -B "$mine/build" -DCATKIN_DEVEL_PREFIX="$mine/devel" -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_INSTALL_PREFIX="$mine/install" -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 &&
-    inSpace cmake --build "$mine/build" -j2 && inSpace cmake --build "$mine/build" -j2 --target tests &&
+    inSpace cmake --build "$mine/build" -j1 && inSpace cmake --build "$mine/build" -j1 --target tests &&
     inSpace env --chdir="$mine/build" ctest --output-on-failure --no-tests=error --timeout 600
 }
 for name in law constraint lab; do

@@ -1,4 +1,7 @@
 # scripts/latency: what it refuses, and that it follows a jump of the hand through all stages, up to the pixel.
+# kind: timed
+# cost: 120
+# alone-with: fake-camera
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin # python3 of Debian, which has numpy
 

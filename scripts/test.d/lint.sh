@@ -1,4 +1,6 @@
 # The form of the code is a test like any other.
+# kind: computing
+# cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 for name in format door rooms launch bash python; do

@@ -1,4 +1,5 @@
 # What every script promises: help, one clear line on a wrong call, and that it runs from any folder.
+# kind: computing
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 helps() {

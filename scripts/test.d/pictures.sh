@@ -1,4 +1,6 @@
 # What rviz shows in five states of the procedure, against the pictures of the documentation; no display has an error.
+# kind: computing
+# cost: 90
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 references=$root/docs/pictures

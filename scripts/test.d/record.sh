@@ -1,4 +1,5 @@
 # scripts/record and scripts/replay refuse what they cannot do.
+# kind: computing
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 export ROS_MASTER_URI=http://localhost:1

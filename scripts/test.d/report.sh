@@ -1,4 +1,5 @@
 # scripts/report refuses what it cannot do; the rest is tested in src/vibe_sessions/test.
+# kind: computing
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 check 'report asks for a recording' refuses 2 'which recording' "$root/scripts/report"

@@ -1,4 +1,6 @@
 # scripts/run as a user meets it: it ends well, says why when it does not, and leaves nothing behind.
+# kind: computing
+# cost: 100
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ]; then

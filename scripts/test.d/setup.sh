@@ -1,4 +1,6 @@
 # scripts/setup reads package.xml files without Python and says what it does not understand.
+# kind: computing
+# cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 setup=$root/scripts/setup

@@ -1,4 +1,6 @@
 # Half an hour of a session, played through rviz: its memory does not grow. Minutes long: it is played ten times as fast.
+# kind: computing
+# timeout: 3600
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 # A megabyte a minute is growth, noise of ten megabytes around one value is none.

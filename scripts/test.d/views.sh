@@ -1,5 +1,7 @@
 # What the endoscope's picture shows in the eight views of scripts/views: properties with their controls. It runs the
 # sessions, because pictures of the documentation would not notice a change.
+# kind: computing
+# cost: 200
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_rviz_plugins/endoscope_camera" ]; then

@@ -87,13 +87,23 @@ function(vibe_add_test_program program)
   endif()
 endfunction()
 
-# vibe_rostests(PATTERN... DEPENDENCIES TARGET...): the .test files that match. They wait for nodes most of the time.
+# vibe_rostests(PATTERN... [DEPENDENCIES TARGET...] [COMPUTING TEST...] [TIMED TEST...]): the .test files that match. They
+# wait for nodes most of the time, unless they are named COMPUTING or TIMED.
 function(vibe_rostests)
-  cmake_parse_arguments(arg "" "" "DEPENDENCIES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "DEPENDENCIES;COMPUTING;TIMED" ${ARGN})
   find_package(rostest REQUIRED)
-  file(GLOB files CONFIGURE_DEPENDS ${arg_UNPARSED_ARGUMENTS})
+  file(GLOB files RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS ${arg_UNPARSED_ARGUMENTS})
   foreach(file ${files})
     add_rostest(${file} DEPENDENCIES ${arg_DEPENDENCIES})
+    get_filename_component(name ${file} NAME_WE)
+    string(REPLACE "/" "_" test ${file})
+    set(kind waiting)
+    if(name IN_LIST arg_COMPUTING)
+      set(kind computing)
+    elseif(name IN_LIST arg_TIMED)
+      set(kind timed)
+    endif()
+    set_tests_properties(_ctest_${PROJECT_NAME}_rostest_${test} PROPERTIES LABELS ${kind})
   endforeach()
 endfunction()
 

@@ -1,0 +1,306 @@
+"""Tests of run_tests.py with made-up tests; called by scripts/test.d/test_runner.sh."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+RUNNER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "run_tests.py")
+SUITE_FILE = "<testsuites>{}</testsuites>"
+GOOD, BAD = '<testcase classname="S" name="good"/>', '<testcase classname="S" name="bad"><failure/></testcase>'
+SKIPPED = '<testcase classname="S" name="left"><skipped message="x.cpp:1&#x0A;no board"/></testcase>'
+
+# A program with the options of gtest and the cases A.one, A.two and B.one, of which B.one fails.
+PROGRAM = r"""#!/bin/bash
+for word; do case $word in
+  --gtest_list_tests) printf 'A.\n  one\n  two  # GetParam() = 2\nB.\n  one\n'; exit 0 ;;
+  --gtest_filter=*) filter=${word#*=} ;;
+  --gtest_output=xml:*) file=${word#*xml:} ;;
+esac; done
+{ echo '<testsuites>'
+  for name in ${filter//:/ }; do echo "<testcase classname='${name%.*}' name='${name#*.}'/>"; done
+  echo '</testsuites>'; } >"$file"
+"""
+
+# Fails if another test is in the same place at the same time.
+NARROW = "mkdir narrow && sleep 0.4 && rmdir narrow"
+
+
+class RunnerTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory(prefix="vibe_runner.")
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+        os.mkdir(self.path("scripts"))
+        os.makedirs(self.path("build", "test_results"))
+        self.declared = []
+        self.test("fine", "true")
+
+    def path(self, *names):
+        return os.path.join(self.folder, *names)
+
+    def write(self, name, text, mode=0o644):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(self.path(name), mode)
+        return self.path(name)
+
+    def command(self, name, words, **properties):
+        """A test of a package, as CMake declares it."""
+        self.declared.append("add_test({} {})".format(name, " ".join("[==[{}]==]".format(word) for word in words)))
+        properties.update(WORKING_DIRECTORY=self.folder, _BACKTRACE_TRIPLES="/w/src/pack/CMakeLists.txt;1;add_test;"
+                          "/w/src/pack/CMakeLists.txt;0;")
+        pairs = " ".join('{} "{}"'.format(*pair) for pair in properties.items())
+        self.declared.append("set_tests_properties({} PROPERTIES {})".format(name, pairs))
+
+    def test(self, name, line, **properties):
+        self.command(name, ["sh", "-c", line], **properties)
+
+    def with_file(self, name, cases, line="true", **properties):
+        """A test that writes a result file."""
+        file = self.path("build", "test_results", name + ".xml")
+        self.write(name + ".cases", SUITE_FILE.format(cases))
+        self.command(name, ["sh", "-c", "cp {}.cases $0; {}".format(name, line), file], **properties)
+        return file
+
+    def script(self, name, text):
+        self.write("scripts/{}.sh".format(name), text)
+
+    def arguments(self, *options):
+        self.write("build/CTestTestfile.cmake", "\n".join(self.declared))
+        return [sys.executable, "-B", RUNNER, "--build", self.path("build"), "--scripts", self.path("scripts"),
+                "--cores", "1", *options]
+
+    def run_it(self, *options, status=0, **environment):
+        """Runs the tests; returns what was said."""
+        environment = dict(os.environ, **environment)
+        ended = subprocess.run(self.arguments(*options), env=environment, text=True, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, timeout=60)
+        self.assertEqual(ended.returncode, status, ended.stdout)
+        return ended.stdout
+
+    def closes(self, said, line):
+        self.assertEqual(said.splitlines()[-1], line, said)
+
+    def order(self):
+        with open(self.path("order"), encoding="utf-8") as file:
+            return file.read().split()
+
+    # --- what counts
+
+    def test_counts_the_cases_of_files_and_scripts(self):
+        self.with_file("_ctest_cases", GOOD + GOOD + SKIPPED)
+        self.script("words", "# Words.\n# kind: waiting\necho 'ok one'; echo 'skipped two (later)'; echo 'figure 7'\n")
+        said = self.run_it()
+        self.assertRegex(said, r"(?m)^\[[123]/3\] ok +cases  \d\.\d s  \(3 cases, 1 skipped\)$")
+        self.assertIn("Skipped:\n  no board\n  two (later)\n", said)
+        self.assertNotIn("figure", said)
+        self.assertRegex(said, r"(?m)^  pack +2 .* s .* s$")
+        self.assertRegex(said, r"(?m)^  scripts +1 .* s .* s$")
+        self.assertRegex(said, r"(?m)^  waiting +1 .* s .* s$")
+        self.closes(said, "4 passed, 0 failed, 2 skipped")
+        self.assertIn("          figure 7\n", self.run_it("--verbose"))
+
+    def test_names_what_failed_and_shows_the_end_of_its_output(self):
+        self.with_file("wrong", GOOD + BAD, "seq 1 1000; exit 1")
+        said = self.run_it(status=1, VIBE_TEST_RETRY="0")
+        self.assertIn("Failed:\n  wrong: S.bad\n2 passed, 1 failed\n", said)
+        self.assertIn("\n601\n", said)
+        self.assertNotIn("\n600\n", said)
+        with open(re.search("all of it in (.*)", said).group(1), encoding="utf-8") as log:
+            self.assertEqual(len(log.readlines()), 1000)
+
+    def test_a_crash_is_one_failure(self):
+        self.with_file("crash", GOOD, "kill -SEGV $$")
+        self.test("_ctest_missing", "true")
+        self.declared[-2] = "add_test(_ctest_missing /nowhere/program)"
+        said = self.run_it(status=1, VIBE_TEST_RETRY="0")
+        self.assertIn("  crash: was ended by SIGSEGV\n", said)
+        self.assertIn("  missing: ended with status 127\n", said)
+        self.closes(said, "2 passed, 2 failed")
+
+    def test_a_passed_file_without_a_case_is_a_failure_even_if_an_old_one_is_there(self):
+        os.rename(self.write("old", SUITE_FILE.format(GOOD)), self.with_file("empty", ""))
+        self.declared[-2] = self.declared[-2].replace("cp empty.cases $0; ", "")
+        self.assertIn("Failed:\n  empty: no case in it\n1 passed, 1 failed\n", self.run_it(status=1))
+
+    def test_scripts_that_fail(self):
+        self.script("silent", "# kind: computing\ntrue\n")
+        self.script("ends", "# kind: computing\necho 'ok one'; exit 3\n")
+        self.script("says", "# kind: computing\necho 'not ok one thing'\n")
+        said = self.run_it(status=1, VIBE_TEST_RETRY="0")
+        for line in "silent: ended with status 0 without a check", "ends: ended with status 3", "says: one thing":
+            self.assertIn("  {}\n".format(line), said)
+        self.closes(said, "2 passed, 3 failed")
+
+    def test_nothing_ran(self):
+        self.closes(self.run_it("--filter", "no_such", status=1), "0 passed, 0 failed")
+        self.assertIn("test: no test ran; does anything match 'no_such'?", self.run_it("--filter", "no_such", status=1))
+        self.declared.clear()
+        self.script("good", "# kind: waiting\necho 'ok one'\n")
+        said = self.run_it(status=1)
+        self.assertIn("Failed:\n  no test of any package ran\n1 passed, 1 failed\n", said)
+        self.closes(self.run_it("--filter", "go+d"), "1 passed, 0 failed")
+
+    def test_wrong_declarations(self):
+        wrong = {"": "no kind", "# kind: idle\n": "the kind 'idle'", "# kind: timed\n# units: two\n": "the units 'two'"}
+        for head, problem in wrong.items():
+            self.script("lost", head + "echo 'ok one'\n")
+            said = self.run_it(status=1)
+            self.assertRegex(said, r"^test: .*/lost.sh declares .*{}.*\n$".format(problem))
+
+    # --- when tests run
+
+    def test_computing_tests_take_a_core_each(self):
+        for k in range(3):
+            self.test("narrow{}".format(k), NARROW)
+        self.closes(self.run_it(VIBE_TEST_RETRY="0"), "4 passed, 0 failed")
+        self.assertIn("FAILED", self.run_it("--cores", "2", status=1, VIBE_TEST_RETRY="0"))  # control
+
+    def test_waiting_tests_share_a_core(self):
+        meet = "touch {0}; for k in $(seq 100); do [ ! -e {1} ] || exit 0; sleep 0.05; done; exit 1"
+        self.test("romeo", meet.format("romeo", "juliet"), LABELS="waiting")
+        self.test("rostest_juliet", meet.format("juliet", "romeo"))
+        self.closes(self.run_it("--filter", "romeo|juliet", VIBE_TEST_RETRY="0"), "2 passed, 0 failed")
+
+    def test_a_lock_keeps_tests_apart(self):
+        self.test("one", NARROW, LABELS="waiting", RESOURCE_LOCK="other;narrow")
+        head = "# kind: waiting\n# alone-with: narrow\n"
+        self.script("two", head + "cd {}; {} && echo 'ok two'".format(self.folder, NARROW))
+        self.closes(self.run_it(VIBE_TEST_RETRY="0"), "3 passed, 0 failed")
+
+    def test_more_units_than_there_are_take_all(self):
+        self.script("wide", "# kind: computing\n# units: 8\necho 'ok one'\n")
+        self.closes(self.run_it(), "2 passed, 0 failed")
+
+    def test_timed_tests_run_alone_at_the_end_after_what_is_repeated(self):
+        note = "echo {} >>order; "
+        for name in "timed1", "timed2":
+            self.test(name, note.format(name) + NARROW, LABELS="timed")
+        self.test("slow", "sleep 0.6;" + note.format("slow"), LABELS="waiting")
+        self.test("bad", note.format("bad") + "exit 1", LABELS="waiting")
+        self.run_it("--cores", "4", status=1)
+        self.assertEqual(self.order(), ["bad", "slow", "bad", "timed1", "timed2"])
+
+    def test_the_longest_is_first(self):
+        for name, cost in ("brief", 1), ("long", 9), ("middle", 5):
+            self.test(name, "echo {} >>order".format(name), COST=cost)
+        self.run_it("--filter", "brief|long|middle")
+        self.assertEqual(self.order(), ["long", "middle", "brief"])
+
+    def test_each_has_folders_of_its_own(self):
+        for name in "one", "two":
+            self.test(name, "[ -d $ROS_HOME ] && [ -d $XDG_RUNTIME_DIR ] && echo $ROS_HOME >>order")
+        self.run_it()
+        self.assertEqual(len(set(self.order())), 2)
+        self.assertFalse([folder for folder in self.order() if os.path.exists(folder)])
+
+    # --- a second run
+
+    def fails_first(self, name):
+        line = "[ -e {0}.was ] || {{ touch {0}.was; echo first words; exit 1; }}; echo second words"
+        self.test(name, line.format(name))
+
+    def test_what_passes_alone_is_unstable(self):
+        self.fails_first("shaky")
+        said = self.run_it()
+        self.assertIn("first words", said)
+        self.assertRegex(said, r"(?m)^\[again\] unstable +shaky ")
+        self.assertRegex(said, r"(?m)^Unstable:\n  shaky: failed, and passed when it ran again alone ")
+        self.assertRegex(said, r" \(/.*/shaky.log, shaky.again.log\)\n")
+        self.closes(said, "2 passed, 0 failed")
+        for name, words in ("shaky", "first"), ("shaky.again", "second"):
+            with open(self.path("build", "test_logs", name + ".log"), encoding="utf-8") as log:
+                self.assertEqual(log.read(), words + " words\n")
+
+    def test_no_second_run_on_demand(self):
+        self.fails_first("shaky")
+        self.closes(self.run_it(status=1, VIBE_TEST_RETRY="0"), "1 passed, 1 failed")
+
+    def test_four_unstable_tests_are_a_failure(self):
+        for k in range(4):
+            self.fails_first("shaky{}".format(k))
+        said = self.run_it(status=1)
+        self.assertIn("Failed:\n  4 tests are unstable, more than 3: ", said)
+        self.closes(said, "5 passed, 1 failed")
+
+    def test_many_failures_are_not_repeated(self):
+        for k in range(11):
+            self.test("bad{}".format(k), "exit 1")
+        said = self.run_it("--cores", "4", status=1)
+        self.assertIn("\n11 tests failed, too many to run them again\n", said)
+        self.assertNotIn("[again]", said)
+        self.closes(said, "1 passed, 11 failed")
+
+    # --- filters
+
+    def test_the_name_is_filtered(self):
+        self.test("_ctest_other", "exit 1")
+        self.closes(self.run_it("--filter", "^f.ne$"), "1 passed, 0 failed")
+        self.closes(self.run_it("--filter", "^other", status=1), "0 passed, 1 failed")
+
+    def test_cases_are_filtered_where_no_name_matches(self):
+        program = self.write("program", PROGRAM, 0o755)
+        files = [self.path("build", "test_results", name) for name in ("a.xml", "b.xml")]
+        self.command("plain", ["env", program, "--only_file=a_test.cpp", "--gtest_output=xml:" + files[0]])
+        # catkin's wrapper
+        line = "{} --gtest_output=xml:{}".format(program, files[1])
+        self.command("wrapped", ["sh", "-c", 'eval "$1"', files[1], line])
+        self.closes(self.run_it("--filter", "^A"), "4 passed, 0 failed")
+        self.closes(self.run_it("--filter", r"^B\.one|A.two$"), "4 passed, 0 failed")
+        self.closes(self.run_it("--filter", "^C", status=1), "0 passed, 0 failed")
+
+    # --- nothing is left
+
+    def alive(self, mark):
+        found = []
+        for name in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                with open("/proc/{}/environ".format(name), "rb") as words:
+                    found += [name] if mark.encode() in words.read() else []
+            except OSError:
+                pass
+        return found
+
+    # Processes of other sessions, some of which have lost their parent or do not hear SIGTERM.
+    FAMILY = "export LEFT={0}; (trap '' TERM; setsid sleep 301 &) ; setsid sleep 302 & touch {0}; "
+
+    def test_a_test_that_does_not_end_is_stopped_with_all_that_it_started(self):
+        self.test("endless", self.FAMILY.format(self.path("begun")) + "sleep 303", TIMEOUT=1)
+        said = self.run_it(status=1, VIBE_TEST_RETRY="0")
+        self.assertIn("  endless: did not end within 1 s and was stopped\n", said)
+        self.assertTrue(os.path.exists(self.path("begun")))
+        self.assertEqual(self.alive("LEFT=" + self.path("begun")), [])
+
+    def test_a_test_that_ends_leaves_nothing(self):
+        self.test("careless", self.FAMILY.format(self.path("begun")))
+        self.closes(self.run_it(), "2 passed, 0 failed")
+        self.assertEqual(self.alive("LEFT=" + self.path("begun")), [])
+
+    def test_an_interrupted_run_leaves_nothing(self):
+        self.test("endless", self.FAMILY.format(self.path("begun")) + "sleep 303")
+        with subprocess.Popen(self.arguments(), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as runner:
+            deadline = time.monotonic() + 20
+            while not os.path.exists(self.path("begun")) and time.monotonic() < deadline:
+                time.sleep(0.05)
+            self.assertNotEqual(self.alive("LEFT=" + self.path("begun")), [])
+            runner.send_signal(signal.SIGINT)
+            said = runner.communicate(timeout=30)[0]
+        self.assertEqual(runner.returncode, 128 + signal.SIGINT, said)
+        self.assertRegex(said, "test: interrupted by signal 2 after [01] of 2 tests\n$")
+        self.assertEqual(self.alive("LEFT=" + self.path("begun")), [])
+
+    def test_signs_of_life(self):
+        self.test("long", "sleep 1.5")
+        program = "import sys, test_pool, run_tests; test_pool.PROGRESS = 0.4; sys.exit(run_tests.main())"
+        words = [sys.executable, "-B", "-c", program, *self.arguments()[3:]]
+        said = subprocess.run(words, text=True, stdout=subprocess.PIPE, cwd=os.path.dirname(RUNNER), timeout=60).stdout
+        self.assertRegex(said, r"(?m)^ +running: long \d s$")
+
+
+if __name__ == "__main__":
+    unittest.main()
