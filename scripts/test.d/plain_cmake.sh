@@ -1,7 +1,9 @@
-# The core without ROS: plain CMake builds and installs a copy of it in an empty environment, a program outside the
-# workspace links it, and both give the same states as the catkin build.
+# The core without ROS: plain CMake and clang++ build and install a copy of it in an empty environment, and a program
+# outside the workspace links it. The same bits everywhere: the library calls no elementary function of the C library, and
+# sessions have the same hash in this build and in that of catkin and g++, with every instruction set, and with a C library
+# that uses other code.
 # kind: computing
-# cost: 120
+# cost: 300
 # timeout: 3600
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
@@ -11,6 +13,10 @@ if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$catkin_devel/lib/vibe_core/vibe_headle
   echo 'skipped plain CMake (needs the Release build; scripts/build makes it)'
   exit 0
 fi
+if ! command -v clang++ >/dev/null; then
+  echo 'skipped plain CMake (needs clang++; scripts/setup installs it)'
+  exit 0
+fi
 
 scratch=$(readlink -f -- "$scratch")
 source=$scratch/source/vibe_core
@@ -18,7 +24,7 @@ build=$scratch/build
 prefix=$scratch/first_place
 moved=$scratch/second_place
 mkdir -p "$scratch/source"
-cp -r "$root/src/vibe_core" "$root/src/vibe_description" "$scratch/source/"
+cp -r "$root"/src/vibe_{cmake,core,description} "$scratch/source/"
 
 # bare COMMAND...: without ROS, without CMake's search paths, from a folder where nothing lies
 bare() {
@@ -33,16 +39,11 @@ namesNoRos() {
 }
 
 configures() {
-  bare cmake -S "$source" -B "$build" -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_DISABLE_FIND_PACKAGE_catkin=ON
+  bare cmake -S "$source" -B "$build" -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_DISABLE_FIND_PACKAGE_catkin=ON \
+    -DCMAKE_CXX_COMPILER=clang++
 }
 
-# Compiling everything again takes five minutes. What catkin has compiled from equal files with equal commands is taken
-# over; VIBE_SLOW_TESTS compiles all of it.
-builds() {
-  [ -n "${VIBE_SLOW_TESTS:-}" ] ||
-    /usr/bin/python3 "$root/scripts/lib/reuse_objects.py" "$catkin_build" "$root/src/vibe_core" "$build" "$source"
-  bare cmake --build "$build" -j1
-}
+builds() { bare cmake --build "$build" -j1; }
 
 linksNoRos() {
   local file
@@ -96,6 +97,57 @@ YAML
     --scene package://vibe_core/scenes/sphere.yaml --mesh meshes/ball.obj)
 }
 
+# --- functions of the C library that are exact to the last bit, and those that only look at a number
+exact='sqrt|fma|nan|floor|ceil|round|l?lround|l?lrint|rint|nearbyint|trunc|fabs|fmod|remainder|copysign|ldexp|frexp|scalbl?n|modf|nextafter|fmin|fmax|logb|ilogb'
+
+# callsNoInexactFunction LIBRARY: fails with the functions of libm that it calls, apart from these
+callsNoInexactFunction() {
+  local libm
+  libm=$(ldconfig -p | sed -n 's/.*libm\.so\.6.*=> //p' | head -n 1)
+  nm -D --defined-only "$libm" | awk '{ print $3 }' | sed 's/@.*//' | sort -u >"$scratch/offered"
+  nm -D --undefined-only "$1" | awk '{ print $2 }' | sed 's/@.*//' | sort -u >"$scratch/wanted"
+  [ "$(wc -l <"$scratch/offered")" -gt 100 ] && [ -s "$scratch/wanted" ] || { echo 'no symbols were read'; return 1; }
+  ! comm -12 "$scratch/offered" "$scratch/wanted" | grep -vxE "($exact)[fl]?"
+}
+
+noticesACall() {
+  echo '#include <cmath>
+double f(double x) { return std::sqrt(x) + std::exp(x); }' >"$scratch/calls.cpp"
+  g++ -shared -fPIC -o "$scratch/calls.so" "$scratch/calls.cpp" -lm
+  ! callsNoInexactFunction "$scratch/calls.so" >"$scratch/names" && grep -x exp "$scratch/names" && ! grep -x sqrt "$scratch/names"
+}
+
+# --- hashes
+# of HEADLESS [NAME=VALUE...]: the hash of a few seconds in which the trainee touches the wall and grabs it
+of() {
+  local headless=$1
+  shift
+  env ROS_PACKAGE_PATH="$root/src" "$@" "$headless" --quiet --duration "$seconds" \
+    --script package://vibe_core/trainees/demo/grabs.yaml
+}
+
+# agrees HEADLESS NAME=VALUE...: this hash is that of the g++ build with the widest instruction set
+agrees() {
+  local found
+  found=$(of "$@") || return 1
+  printf 'expected %s\nfound    %s\n' "$(<"$scratch/expected")" "$found"
+  [ "$found" = "$(<"$scratch/expected")" ] && [[ $found =~ ^'state hash: '[0-9a-f]+$ ]]
+}
+
+differs() { ! agrees "$@"; }
+
+# what exp and sin of the C library give for many numbers, as a hash
+bitsOfTheCLibrary() {
+  env "$@" /usr/bin/python3 -c '
+import hashlib, math, struct
+print(hashlib.sha256(b"".join(struct.pack("3d", math.exp(x), math.sin(x), math.pow(x, 0.3))
+                              for x in (k * 0.001 + 1e-5 for k in range(200000)))).hexdigest())'
+}
+
+cLibraryHasOtherBits() {
+  bitsOfTheCLibrary "$other_code" >"$scratch/other" && bitsOfTheCLibrary X=1 >"$scratch/usual" && ! cmp -s "$scratch/other" "$scratch/usual"
+}
+
 check 'plain CMake configures the core in an empty environment' configures
 grep -v '^CMAKE_DISABLE_FIND_PACKAGE_catkin:' "$build/CMakeCache.txt" >"$scratch/cache"
 check 'plain CMake names no part of ROS when it compiles' namesNoRos "$build/compile_commands.json" "$scratch/cache"
@@ -124,3 +176,34 @@ unknownPackage() {
   refuses 2 "There is no package 'vibe_elsewhere'" bare "$moved/bin/vibe_headless" --scene package://vibe_elsewhere/a.yaml
 }
 check 'control: a package that is not installed is not found' unknownPackage
+
+# --- the same bits
+seconds=2
+gcc=$catkin_devel/lib/vibe_core/vibe_headless clang=$moved/bin/vibe_headless
+of "$gcc" X=1 >"$scratch/expected"
+# without FMA and AVX2, the C library of Debian 12 uses other code for exp, log, sin, cos, tan, pow and atan
+other_code=GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX2_Usable,-FMA_Usable,-FMA4_Usable
+flags=" $(grep -m 1 '^flags' /proc/cpuinfo) "
+sets=(sse2)
+case $flags in *' avx2 '*) case $flags in *' fma '*) sets+=(avx2) ;; esac ;; esac
+case $flags in *' avx512vl '*) case $flags in *' avx512dq '*) sets+=(avx512) ;; esac ;; esac
+
+check 'the library calls no elementary function of the C library' callsNoInexactFunction "$catkin_devel/lib/libvibe_core.so"
+check 'what clang++ builds calls none either' callsNoInexactFunction "$build/libvibe_core.so"
+check 'control: such a call is noticed' noticesACall
+for compiler in gcc clang; do
+  headless=${!compiler}
+  check "$compiler: the same hash" agrees "$headless" X=1
+  for set in "${sets[@]}"; do
+    check "$compiler: the same hash with $set" agrees "$headless" VIBE_INSTRUCTIONS="$set"
+  done
+  check "$compiler: the same hash with other code of the C library" agrees "$headless" "$other_code"
+done
+if [ "${#sets[@]}" -gt 1 ]; then
+  check 'control: the C library does use other code' cLibraryHasOtherBits
+  check 'control: plain arithmetic has another hash' differs "$gcc" VIBE_ARITHMETIC=plain
+  of "$gcc" VIBE_ARITHMETIC=plain >"$scratch/expected"
+  check 'clang: the same hash with plain arithmetic' agrees "$clang" VIBE_ARITHMETIC=plain
+fi
+check 'an unknown instruction set is refused' refuses 2 'VIBE_INSTRUCTIONS is' of "$gcc" VIBE_INSTRUCTIONS=mmx
+check 'an unknown arithmetic is refused' refuses 2 'VIBE_ARITHMETIC is' of "$gcc" VIBE_ARITHMETIC=exact
