@@ -7,7 +7,8 @@ import tempfile
 
 from . import cli, places
 
-VALUES = ("rate", "every", "from", "to", "content", "lens", "field_of_view", "width", "height", "baseline", "seed", "vary")
+VALUES = ("rate", "every", "from", "to", "content", "lens", "field_of_view", "width", "height", "baseline", "seed",
+          "vary")  # fmt: skip
 FLAGS = ("stereo", "no_smoke")
 DESCRIPTION = """\
 Repeats a recorded session and writes what the endoscope sees: colour images, and the truth of each pixel: depth,
@@ -23,7 +24,8 @@ def parser():
     cli.add_recording(made)
     add = made.options.add_argument
     add("--output", metavar="DIR", help="folder to write to; new or empty")
-    add("--rate", metavar="HZ", help="images per second of simulated time (default: 10; 0: every state of the simulator)")
+    add("--rate", metavar="HZ", help="images per second of simulated time (default: 10; 0: every state of the "
+        "simulator)")  # fmt: skip
     add("--every", metavar="N", help="of these images, one in N (default: 1)")
     add("--from", metavar="S", help="begin (default: that of the recording)")
     add("--to", metavar="S", help="end (default: that of the recording)")

@@ -1,4 +1,4 @@
-"""A ROS graph: a master of its own on a free port, or the user's, and nodes that end with this process. No ROS in here."""
+"""A ROS graph: a master of its own on a free port, or the user's, and nodes that end with this process. No ROS here."""
 
 import ctypes
 import os

@@ -32,7 +32,8 @@ def parser():
         "their deadlines, without rviz, while the hand presses the tip into the wall")  # fmt: skip
     add("--sway", dest="mode", action="store_const", const="sway", help="no jumps: how old positions are while an "
         "instrument goes to and fro in front of the simulated camera")  # fmt: skip
-    add("--minutes", metavar="M", type=cli.positive(), default=10, help="for --steps and --sway (default: %(default)s)")
+    add("--minutes", metavar="M", type=cli.positive(), default=10, help="for --steps and --sway (default: "
+        "%(default)s)")  # fmt: skip
     add("--lead", metavar="MS", type=lead, default=0, help="for --sway: the simulator takes the positions that the "
         "tracker predicts so far ahead (default: 0, off)")  # fmt: skip
     add("--blinks", metavar="N", type=cli.whole("a whole number above zero", 6), default=1000, help="how many jumps "
@@ -40,9 +41,11 @@ def parser():
     add("--rate", metavar="HZ", type=cli.positive(), default=100, help="of steps, at most 100, or 1000 with --steps "
         "(default: %(default)s)")  # fmt: skip
     add("--free", action="store_true", help="steps follow the wall clock only, not the reports of the device")
-    add("--camera", action="store_true", help="the jumps are those of an instrument in front of a simulated GigE camera")
+    add("--camera", action="store_true", help="the jumps are those of an instrument in front of a simulated GigE "
+        "camera")  # fmt: skip
     add("--headless", action="store_true", help="without rviz: up to the published state")
-    add("--view", metavar="NAME", default="", help="a saved view of rviz, such as Endoscope (default: as a session opens)")
+    add("--view", metavar="NAME", default="", help="a saved view of rviz, such as Endoscope (default: as a session "
+        "opens)")  # fmt: skip
     add("--scene", metavar="FILE", type=cli.file, default=places.SCENE, help="what is simulated (default: %(default)s)")
     add("--particles", metavar="N", type=cli.matching(r"\d{1,6}", "a whole number", int), default=0, help="of the tissue "
         "(default: as many as the scene has)")  # fmt: skip

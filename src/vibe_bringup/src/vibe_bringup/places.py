@@ -32,7 +32,7 @@ def find(address):
 
 
 def output_folder(name):
-    """Where a program writes by default: in the workspace when it was started by scripts/*, else in the present folder."""
+    """Where a program writes by default: in the workspace if scripts/* started it, else in the present folder."""
     return os.path.join(os.environ.get("VIBE_WORKSPACE", ""), name)
 
 

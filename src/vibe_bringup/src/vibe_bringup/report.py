@@ -27,10 +27,11 @@ def parse(words):
 def take_picture(page, picture):
     """What a browser shows of the top of a page; whether it could."""
     with tempfile.TemporaryDirectory() as profile:
-        command = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1100,1650",
-                   "--user-data-dir=" + profile, "--screenshot=" + picture, "file://" + os.path.realpath(page)]  # fmt: skip
-        done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode == 0
-    if done and os.path.exists(picture) and os.path.getsize(picture) > 0:
+        command = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+                   "--window-size=1100,1650", "--user-data-dir=" + profile, "--screenshot=" + picture,
+                   "file://" + os.path.realpath(page)]  # fmt: skip
+        status = subprocess.run(command, capture_output=True, check=False).returncode
+    if status == 0 and os.path.exists(picture) and os.path.getsize(picture) > 0:
         return True
     print("report: chromium could not write '{}'".format(picture), file=sys.stderr)
     return False

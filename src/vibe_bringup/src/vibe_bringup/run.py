@@ -9,11 +9,14 @@ from . import cli, places
 
 DRIVERS = ("trainee", "device", "emulator", "gamepad", "keyboard")
 GRABS = "package://vibe_core/trainees/demo/grabs.yaml"
+OWNERS = {"script": "trainee", "hand": "emulator", "config": "emulator", "pad": "gamepad", "mapping": "gamepad",
+          "replay_pad": "gamepad"}  # fmt: skip
 PADS = "package://vibe_hardware/config/gamepads"
 DESCRIPTION = """\
 Runs a session: the simulator, somebody who drives it, robot_state_publisher, a recorder and, with a display, rviz,
 around a ROS master of their own (or yours, see --master). Prints one line a second, then the summary."""
-EPILOG = "Ends with status 0 when the session went through or was interrupted, 1 when something failed, 2 on a wrong call."
+EPILOG = """\
+Ends with status 0 when the session went through or was interrupted, 1 when something failed, 2 on a wrong call."""
 
 
 # --- types of values
@@ -117,11 +120,8 @@ def check_drive(arguments, fail):
     drive = arguments.drive
     if arguments.fast and drive != "trainee":
         fail("--fast goes with --drive trainee only: '{}' drives in wall time; remove one of them".format(drive))
-    owners = {"script": "trainee", "hand": "emulator", "pad": "gamepad", "mapping": "gamepad", "replay_pad": "gamepad"}
-    if drive != "device":
-        owners["config"] = "emulator"
-    for option, owner in owners.items():
-        if getattr(arguments, option) is not None and drive != owner:
+    for option, owner in OWNERS.items():
+        if getattr(arguments, option) is not None and drive != owner and (option, drive) != ("config", "device"):
             words = "--{} goes with --drive {}, not with --drive {}; remove one of them"
             fail(words.format(option.replace("_", "-"), owner, drive))
     check_instruments(arguments, fail)
@@ -154,7 +154,8 @@ def check_display(arguments, fail):
     if arguments.headless:
         fail("--drive keyboard needs the window of rviz; remove --headless")
     if not os.environ.get("DISPLAY"):
-        fail("--drive keyboard needs the window of rviz, but DISPLAY is not set; run it on a desktop or use --drive gamepad")
+        fail("--drive keyboard needs the window of rviz, but DISPLAY is not set; run it on a desktop or use "
+             "--drive gamepad")  # fmt: skip
 
 
 def fill_in(arguments):
@@ -170,7 +171,7 @@ def fill_in(arguments):
 def defaults(**values):
     """The arguments of a session that other programs begin."""
     arguments = parser().parse_args([])
-    arguments.duration = 0
+    arguments.duration = 0.0
     return argparse.Namespace(**{**vars(arguments), **values})
 
 
@@ -190,7 +191,7 @@ def run(arguments):
 
     arguments.headless = arguments.headless or not os.environ.get("DISPLAY")
     if arguments.duration is None:
-        arguments.duration = 0
+        arguments.duration = 0.0
         if arguments.drive == "trainee":  # a script has a length; goals take as long as they take
             command = ["rosrun", "vibe_core", "vibe_headless", "--script", arguments.script, "--script-length"]
             asked = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)

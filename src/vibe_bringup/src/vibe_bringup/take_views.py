@@ -150,7 +150,7 @@ def become_node(graph):
 
 
 def take_session(arguments, name, views):
-    """Runs one session in a process of its own, because a ROS client cannot change its master. Returns the exit status."""
+    """One session in a process of its own, because a ROS client cannot change its master. Returns the exit status."""
     script, changes = SESSIONS[name]
     failures = []
     with tempfile.TemporaryDirectory(prefix="vibe-views-") as folder:
