@@ -60,7 +60,7 @@ class OptionsTest(unittest.TestCase):
 
 class EveryProgram(OptionsTest):
     def test_there_are_nine(self):
-        self.assertEqual(NAMES, ["cohort", "dataset", "latency", "picture", "record", "replay", "report", "run", "views"])
+        self.assertEqual(" ".join(NAMES), "cohort dataset latency picture record replay report run views")
 
     def test_help(self):
         for name in NAMES:
@@ -79,7 +79,7 @@ class EveryProgram(OptionsTest):
         self.assertTrue(call("run", "--help")[2].startswith("Usage: scripts/run [options]"))
 
     def test_a_check_imports_no_ros(self):
-        code = "import sys\nfrom vibe_bringup import {}\nassert not set(sys.modules) & {{'rospy', 'rosbag', 'numpy', 'yaml'}}"
+        code = "import sys, vibe_bringup.{}; sys.exit({{'rospy', 'rosbag', 'numpy', 'yaml'}} & set(sys.modules) or 0)"
         for name in NAMES:
             subprocess.run([sys.executable, "-B", "-c", code.format(name)], check=True)
 

@@ -1,5 +1,5 @@
-"""What the programs share on the command line: help, and one clear line on a wrong call. Standard library only: scripts/*
-check a call (--check) before anything is installed or built.
+"""What the programs share on the command line: help, and one clear line on a wrong call. Standard library only:
+scripts/* check a call (--check) before anything is installed or built.
 
 A program NAME is a module with two functions: parse(words) returns its arguments, or ends it; run(arguments) returns its
 exit status and imports what is more than the standard library.

@@ -99,8 +99,8 @@ def add_options_of_drivers(made):
         "it, buttons move them")  # fmt: skip
     add("--camera", metavar="CAMERA", help="gige:, gige:ADDRESS, v4l2:DEVICE, video:FILE, images:PATTERN; or fake, a "
         "simulated GigE camera whose instruments move by themselves (default: gige:, the first one found)")  # fmt: skip
-    add("--vision-config", metavar="FILE", type=cli.file, help="its calibration, of vibe_calibrate; not with --camera fake, which has "
-        "its own")  # fmt: skip
+    add("--vision-config", metavar="FILE", type=cli.file, help="its calibration, of vibe_calibrate; not with --camera "
+        "fake, which has its own")  # fmt: skip
     add = made.add_argument_group("With --drive emulator").add_argument
     add("--hand", metavar="HAND", type=hand, help="who moves the devices: script:FILE (a trainee script), "
         "recorded:FILE or random (default: script:{})".format(GRABS))  # fmt: skip
