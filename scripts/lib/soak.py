@@ -3,7 +3,7 @@
 import sys
 import tempfile
 
-from vibe_bringup.session import Interrupted, attempt, interruptible, tell
+from vibe_bringup.session import carry_out
 
 
 def slope(samples):
@@ -17,15 +17,7 @@ def slope(samples):
 def run(make, arguments):
     """Starts and watches what `make(arguments, folder)` returns, and stops it in any case. Ends this program with status 1
     if something failed."""
-    failures = []
     with tempfile.TemporaryDirectory(prefix="vibe-soak-") as folder:
         soak = make(arguments, folder)
-        try:
-            with interruptible():
-                attempt(soak.start, failures)
-                if not failures:
-                    attempt(soak.watch, failures)
-        except Interrupted as reason:
-            failures.append("stopped by {}".format(reason))
-        attempt(soak.stop, failures)
-    sys.exit(tell("soak", failures))
+        status = carry_out("soak", [soak.start, soak.watch], soak.stop)
+    sys.exit(status)

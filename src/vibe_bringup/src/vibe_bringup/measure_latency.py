@@ -14,7 +14,7 @@ import yaml
 from . import places
 from .graph import Graph, GraphError
 from .rviz_window import RvizWindow
-from .session import Interrupted, attempt, interruptible, tell
+from .session import carry_out
 
 HAND = "package://vibe_hardware/config/hands/steady.yaml"
 DEVICE_CLOCK_ERROR = 300  # so that the phase between device and host drifts through whole periods [ppm]
@@ -259,15 +259,6 @@ class Measurement:
 def measure(arguments):
     """Returns the exit status."""
     measurement = Measurement(arguments)
-    failures = []
-    try:
-        with interruptible():
-            attempt(measurement.start, failures)
-            if not failures:
-                attempt(measurement.watch, failures)
-    except Interrupted as reason:
-        failures.append("stopped by {}".format(reason))
-    measurement.stop()
-    if failures:
-        return tell("latency", failures)
-    return subprocess.run(["rosrun", "vibe_latency", "latency_report", arguments.output], check=False).returncode
+    report = ["rosrun", "vibe_latency", "latency_report", arguments.output]
+    status = carry_out("latency", [measurement.start, measurement.watch], measurement.stop)
+    return status or subprocess.run(report, check=False).returncode

@@ -156,8 +156,20 @@ def interruptible():
             signal.signal(number, signal.SIG_IGN)
 
 
-def tell(name, failures):
-    """The exit status."""
+def carry_out(name, parts, stop, may_be_interrupted=False):
+    """Parts of a program one after the other until one fails, then `stop` in any case. Returns the exit status."""
+    failures = []
+    try:
+        with interruptible():
+            for part in parts:
+                if not failures:
+                    attempt(part, failures)
+    except Interrupted as reason:
+        if may_be_interrupted:
+            print("\nStopping after {}...".format(reason), flush=True)
+        else:
+            failures.append("stopped by {}".format(reason))
+    attempt(stop, failures)
     for failure in failures:
         print("{}: {}".format(name, failure), file=sys.stderr)
     return 1 if failures else 0
@@ -166,14 +178,11 @@ def tell(name, failures):
 def perform(arguments):
     """A whole session; returns the exit status."""
     session = Session(arguments)
-    failures = []
-    try:
-        with interruptible():
-            attempt(session.start, failures)
-            if not failures:
-                attempt(session.watch, failures)
-    except Interrupted as reason:
-        print("\nStopping after {}...".format(reason), flush=True)
-    attempt(session.stop, failures)
-    session.report()
-    return tell("run", failures)
+
+    def end():
+        try:
+            session.stop()
+        finally:
+            session.report()
+
+    return carry_out("run", [session.start, session.watch], end, may_be_interrupted=True)

@@ -12,7 +12,7 @@ import tempfile
 from .graph import GraphError
 from .run import defaults
 from .rviz_window import RvizWindow, wait_for
-from .session import Interrupted, Session, attempt, interruptible, tell
+from .session import Session, carry_out
 
 
 class PictureSession(Session):
@@ -79,18 +79,9 @@ class PictureSession(Session):
 def take_all(arguments):
     """Returns the exit status."""
     os.makedirs(arguments.output, exist_ok=True)
-    failures = []
     with tempfile.TemporaryDirectory(prefix="vibe-picture-") as folder:
         session = PictureSession(
             defaults(scene=arguments.scene, script=arguments.script, fast=True, output=folder),
             arguments.pictures, arguments.config, arguments.program, arguments.colours,
         )  # fmt: skip
-        try:
-            with interruptible():
-                attempt(session.start, failures)
-                if not failures:
-                    attempt(lambda: session.take(arguments.output), failures)
-        except Interrupted as reason:
-            failures.append("stopped by {}".format(reason))
-        attempt(session.stop, failures)
-    return tell("picture", failures)
+        return carry_out("picture", [session.start, lambda: session.take(arguments.output)], session.stop)

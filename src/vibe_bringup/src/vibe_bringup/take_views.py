@@ -4,6 +4,7 @@ The simulator begins paused and is taken from picture to picture by its service 
 state on every machine.
 """
 
+import functools
 import json
 import os
 import re
@@ -21,7 +22,7 @@ from . import places
 from .graph import GraphError
 from .run import defaults, trainee
 from .rviz_window import PATIENCE, wait_for
-from .session import Interrupted, attempt, interruptible, tell
+from .session import Interrupted, carry_out, interruptible
 from .take_pictures import PictureSession
 from .views import SESSIONS, VIEWS
 
@@ -55,15 +56,19 @@ def array_of(image):
 class ViewSession(PictureSession):
     """A session that stands still whenever nobody steps it, with the endoscope's camera instead of rviz."""
 
-    def __init__(self, arguments, size, truth):
+    def __init__(self, arguments, changes, wanted):
         super().__init__(arguments)
-        self.size = size
+        self.changes, self.size, self.pictures_folder = changes, wanted.size, wanted.output
         self.topics = {"image_raw": Image}
-        if truth:
+        if wanted.truth:
             self.topics.update({"labels": Image, "depth/image_raw": Image, "label_table": String})
         self.messages = {}  # per topic: by stamp
         self.subscribers = []
         self.follower = None
+
+    def set_parameters(self):
+        super().set_parameters()
+        self.graph.set_parameter("/sim_node/scene", scene_with(self.changes, self.output))
 
     def start(self):
         graph = self.graph
@@ -76,6 +81,10 @@ class ViewSession(PictureSession):
         graph.start_node("vibe_sim", "vibe_trainee")
         self.sim = graph.start_node("vibe_sim", "sim_node", patience=30.0)
         wait_for(self.is_ready, "the simulator and the camera did not begin (see {})".format(self.logs))
+
+    def become_node(self):
+        os.environ.update({k: self.graph.env[k] for k in ("ROS_MASTER_URI", "ROS_HOSTNAME")})
+        rospy.init_node("views", anonymous=True, disable_signals=True)
 
     def is_ready(self):
         publishers, _, services = self.graph.master.getSystemState("/vibe_scripts")[2]
@@ -110,7 +119,7 @@ class ViewSession(PictureSession):
         """The stamps of which every image is there."""
         return set.intersection(*(set(self.messages[t]) for t, kind in self.topics.items() if kind is Image))
 
-    def take(self, view, file):
+    def take(self, view):
         period = self.step_period()
         if view.followed is not None and self.follower is None:
             self.step_to(view.followed, period)
@@ -129,7 +138,7 @@ class ViewSession(PictureSession):
         for subscriber in self.subscribers:
             subscriber.unregister()
         self.subscribers.clear()
-        self.save(max(self.pictures()), file)
+        self.save(max(self.pictures()), os.path.join(self.pictures_folder, "eye_{}.png".format(view.name)))
 
     def save(self, stamp, file):
         """The picture, and its truth as FILE.npz: labels, depth, and the names of the labels by their numbers."""
@@ -144,34 +153,13 @@ class ViewSession(PictureSession):
                                    depth=images["depth/image_raw"], names=names.astype(str))  # fmt: skip
 
 
-def become_node(graph):
-    os.environ.update({k: graph.env[k] for k in ("ROS_MASTER_URI", "ROS_HOSTNAME")})
-    rospy.init_node("views", anonymous=True, disable_signals=True)
-
-
 def take_session(arguments, name, views):
     """One session in a process of its own, because a ROS client cannot change its master. Returns the exit status."""
     script, changes = SESSIONS[name]
-    failures = []
     with tempfile.TemporaryDirectory(prefix="vibe-views-") as folder:
-        session = None
-        try:
-            scene = scene_with(changes, folder)
-            session_arguments = defaults(scene=scene, script=trainee(script), fast=True, output=folder)
-            session = ViewSession(session_arguments, arguments.size, arguments.truth)
-            with interruptible():
-                attempt(session.start, failures)
-                if not failures:
-                    become_node(session.graph)
-                for view in views:
-                    file = os.path.join(arguments.output, "eye_{}.png".format(view.name))
-                    if not failures:
-                        attempt(lambda view=view, file=file: session.take(view, file), failures)
-        except (GraphError, Interrupted) as reason:
-            failures.append(str(reason))
-        if session is not None:
-            attempt(session.stop, failures)
-    return tell("views", failures)
+        session = ViewSession(defaults(script=trainee(script), fast=True, output=folder), changes, arguments)
+        takes = [functools.partial(session.take, view) for view in views]
+        return carry_out("views", [session.start, session.become_node, *takes], session.stop)
 
 
 def make_sheet(arguments):

@@ -7,7 +7,7 @@ import time
 
 from . import places
 from .graph import Graph, GraphError
-from .session import Interrupted, attempt, interruptible, tell
+from .session import carry_out
 
 
 def rviz_config(folder):
@@ -40,13 +40,6 @@ def show(graph, bag, folder):
 
 def view(bag):
     """Returns the exit status."""
-    failures = []
     with tempfile.TemporaryDirectory(prefix="vibe_replay_") as folder:
         graph = Graph(folder)
-        try:
-            with interruptible():
-                attempt(lambda: show(graph, bag, folder), failures)
-        except Interrupted:
-            print()
-        graph.stop_all()
-    return tell("replay", failures)
+        return carry_out("replay", [lambda: show(graph, bag, folder)], graph.stop_all, may_be_interrupted=True)
