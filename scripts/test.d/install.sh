@@ -67,7 +67,7 @@ sessionRuns() {
   inSpace rosrun vibe_bringup run --headless --fast --duration 2 --output "$scratch/session" >"$scratch/session.txt" 2>&1 ||
     { cat "$scratch/session.txt"; return 1; }
   cat "$scratch/session.txt"
-  grep -q '^state hash: ' "$scratch/session/summary.txt" && ! grep -rF "$root/" "$scratch/session/log" &&
+  grep -q '^state hash: ' "$scratch/session/summary.txt" && grep -qF "scene = $space/share/" "$scratch/session.txt" &&
     inSpace rosrun vibe_bringup replay "$scratch/session/session.bag" | grep '^the same: all 120 steps'
 }
 check 'a session runs, is recorded and repeats' sessionRuns
