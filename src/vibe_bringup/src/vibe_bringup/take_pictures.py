@@ -21,7 +21,7 @@ class PictureSession(Session):
     def __init__(self, arguments, pictures=(), config="", program="", colours=0):
         super().__init__(arguments)
         self.steps_done = 0
-        self.pictures, self.program = pictures, program.split()
+        self.wanted, self.program = pictures, program.split()
         views = sorted({picture.view for picture in pictures})
         self.windows = {view: RvizWindow(self.graph, self.output, config, view, colours) for view in views}
 
@@ -71,7 +71,7 @@ class PictureSession(Session):
 
     def take(self, folder):
         period = self.step_period()
-        for picture in self.pictures:
+        for picture in self.wanted:
             self.step_to(picture.seconds, period)
             self.windows[picture.view].shoot(os.path.join(folder, picture.name + ".png"))
 
