@@ -6,20 +6,23 @@ source "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/common.sh"
 name=$(basename -- "$(readlink -f -- "$0")")
 export VIBE_WORKSPACE=$vibe_root # where the program writes by default
 
-# checkCall OPTION...: prints nothing if the call is right, or the help. Works without ROS and before there is a build.
+# checkCall OPTION...: prints the help, or `needs: PART...` for a call that is right. Works without ROS and before there is
+# a build.
 checkCall() {
   PYTHONPATH=$vibe_root/src/vibe_bringup/src:$vibe_root/src/vibe_sessions/src ROS_PACKAGE_PATH=$vibe_root/src \
     /usr/bin/python3 -B "$vibe_root/src/vibe_bringup/programs/$name" --check "$@"
 }
 
 main() {
-  local said
-  /usr/bin/python3 -c 'import argparse' 2>/dev/null || installMissing # a bare Debian has no Python
+  local said parts part flags=()
+  /usr/bin/python3 -c 'import argparse' 2>/dev/null || installMissing session # a bare Debian has no Python
   said=$(checkCall "$@") || exit $?
-  if [ -n "$said" ]; then printf '%s\n' "$said"; exit 0; fi
-  installMissing
+  if [[ $said != 'needs: '* ]]; then printf '%s\n' "$said"; exit 0; fi
+  read -ra parts <<<"${said#needs: }"
+  installMissing "${parts[@]}"
   runGuarded "$@"
-  "$vibe_root/scripts/build" --quiet
+  for part in "${parts[@]}"; do flags+=(--part "$part"); done
+  "$vibe_root/scripts/build" --quiet "${flags[@]}"
   sourceWorkspace "$vibe_root/devel"
   exec "$vibe_root/devel/lib/vibe_bringup/$name" "$@"
 }

@@ -86,7 +86,9 @@ class EveryProgram(OptionsTest):
     def test_a_check_ends_before_the_program(self):
         program = [sys.executable, "-B", os.path.join(PROGRAMS, "run"), "--check"]
         done = subprocess.run([*program, "--fast"], capture_output=True, check=False)
-        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, b"", b""))
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, b"needs: session\n", b""))
+        done = subprocess.run([*program, "--drive", "gamepad"], capture_output=True, check=False)
+        self.assertEqual(done.stdout, b"needs: session devices\n")
         self.assertEqual(subprocess.run([*program, "--fats"], capture_output=True, check=False).returncode, 2)
 
 

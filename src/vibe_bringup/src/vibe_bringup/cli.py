@@ -2,7 +2,8 @@
 scripts/* check a call (--check) before anything is installed or built.
 
 A program NAME is a module with two functions: parse(words) returns its arguments, or ends it; run(arguments) returns its
-exit status and imports what is more than the standard library.
+exit status and imports what is more than the standard library. parts(arguments), if there is one, returns the parts of the
+workspace that it needs.
 """
 
 import argparse
@@ -153,10 +154,13 @@ def become(command):
 
 
 def start(name):
-    """The program NAME; with --check before its words it ends after these are found to be right, without a word."""
+    """The program NAME; with --check before its words it ends after these are found to be right, and prints which parts
+    of the workspace it needs (scripts/lib/parts.sh)."""
     words = sys.argv[1:]
     only_check = words[:1] == ["--check"]
     module = importlib.import_module("vibe_bringup." + name)
     arguments = module.parse(words[only_check:])
-    if not only_check:
-        sys.exit(module.run(arguments))
+    if only_check:
+        print("needs:", *(module.parts(arguments) if hasattr(module, "parts") else ["session"]))
+        return
+    sys.exit(module.run(arguments))

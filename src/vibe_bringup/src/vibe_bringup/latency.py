@@ -82,6 +82,10 @@ def parse(words):
     return arguments
 
 
+def parts(_):
+    return ["session", "devices", "vision", "measurements"]
+
+
 def run(arguments):
     from .measure_latency import measure
 

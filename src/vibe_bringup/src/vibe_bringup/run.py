@@ -186,6 +186,15 @@ def parse(words):
     return arguments
 
 
+def parts(arguments):
+    wanted = ["session"]
+    if arguments.drive in ("device", "emulator", "gamepad"):
+        wanted.append("devices")
+    if arguments.instruments:
+        wanted.append("vision")
+    return wanted
+
+
 def run(arguments):
     from .session import perform
 
