@@ -24,8 +24,8 @@ void visitCases(Visit visit) {
   }
 }
 
-/// The cases of a file, as a filter of gtest; empty if there are none, or if a case stands in a file that is no test: it
-/// would run with no file.
+/// The cases of a file, as a filter of gtest; empty if there are none, or if a case stands in a file that is no test:
+/// it would run with no file.
 std::string filterOf(const std::string& file) {
   std::string filter;
   bool lost = false;

@@ -5,8 +5,8 @@
 
 namespace vibe {
 
-/// Diagonal to which a shape is scaled for Bullet's GJK, whose margins and tolerances are absolute: a tool shape of 1 cm
-/// had an error of 4 mm; scaled it does not [Bullet's units].
+/// Diagonal to which a shape is scaled for Bullet's GJK, whose margins and tolerances are absolute: a tool shape of 1
+/// cm had an error of 4 mm; scaled it does not [Bullet's units].
 constexpr double kGjkSize = 100;
 
 inline Eigen::Vector3d toEigen(const btVector3& v) {

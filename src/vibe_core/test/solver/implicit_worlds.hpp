@@ -48,7 +48,7 @@ struct Body {
   Eigen::Vector3d velocity(int i) const { return {motion.v[0][i], motion.v[1][i], motion.v[2][i]}; }
   int nodes() const { return stepper.body().nodeCount(); }
 
-  Evaluation elastic() const {
+  TetEvaluation elastic() const {
     Eigen::VectorXd u(3 * nodes());
     for (int i = 0; i < nodes(); ++i) u.segment<3>(3 * i) = position(i) - stepper.body().rest[i];
     return inDouble(*stepper.body().elements, u);

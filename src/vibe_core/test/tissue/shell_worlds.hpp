@@ -13,19 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "tissue/element_worlds.hpp"
 #include "tissue/shell.hpp"
 
 /// Walls and displacements for the tests of shells.
 namespace vibe::test {
 
-inline constexpr double kE = 3e4, kNu = 0.45, kSide = 0.01, kThickness = 0.003;
-#define VIBE_LAW(name, word, formula) Law::name,
-inline const std::vector<Law> kLaws = {VIBE_MATERIAL_LAWS(VIBE_LAW)};  // every law of the list
-#undef VIBE_LAW
-
-inline Material material(Law law) {
-  return {law, kE, kNu, 0.8};
-}
+inline constexpr double kThickness = 0.003;
 
 inline void finish(ShellMesh& mesh, Law law) {
   mesh.materials = {material(law)};
@@ -105,14 +99,6 @@ inline ShellMesh patchwork(Law law) {
   return mesh;
 }
 
-inline Eigen::VectorXd randomDisplacement(int nodes, double amount, unsigned seed = 5) {
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<double> uniform(-amount, amount);
-  Eigen::VectorXd u(3 * nodes);
-  for (double& value : u) value = uniform(generator);
-  return u;
-}
-
 /// x -> place(x)
 inline Eigen::VectorXd displaced(const ShellMesh& mesh,
                                  const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& place) {
@@ -123,10 +109,6 @@ inline Eigen::VectorXd displaced(const ShellMesh& mesh,
 }
 inline Eigen::VectorXd affine(const ShellMesh& mesh, const Eigen::Matrix3d& deformation) {
   return displaced(mesh, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return deformation * x; });
-}
-
-inline Eigen::Matrix3d someRotation() {
-  return Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
 }
 
 struct Evaluation {
@@ -141,12 +123,6 @@ inline Evaluation inDouble(const ShellElements& elements, const Eigen::VectorXd&
   return out;
 }
 
-inline std::vector<float> fourFloats(const Eigen::VectorXd& u) {
-  std::vector<float> out(static_cast<std::size_t>(u.size() / 3 * 4), 0.0f);
-  for (Eigen::Index i = 0; i < u.size(); ++i)
-    out[static_cast<std::size_t>(i / 3 * 4 + i % 3)] = static_cast<float>(u[i]);
-  return out;
-}
 inline Eigen::VectorXd threeDoubles(const std::vector<float>& v) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(v.size() / 4 * 3));
   for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = v[static_cast<std::size_t>(i / 3 * 4 + i % 3)];
@@ -162,21 +138,6 @@ inline Evaluation inSingle(const ShellElements& elements, const Eigen::VectorXd&
     out.energy += elements.evaluate(piece, in.data(), gradient.data(), volume_gradient.data(), out.volume);
   out.gradient = threeDoubles(gradient);
   out.volume_gradient = threeDoubles(volume_gradient);
-  return out;
-}
-
-inline Eigen::MatrixXd denseStiffness(const ElasticElements& elements, const Eigen::VectorXd& u) {
-  const auto pattern = std::make_shared<BlockPattern>(blockPattern(elements.nodeCount(), elements.nodeGroups()));
-  BlockMatrix stiffness(pattern);
-  stiffness.setZero();
-  elements.addStiffness(u.data(), stiffness);
-  Eigen::MatrixXd out(u.size(), u.size());
-  Eigen::VectorXd unit = Eigen::VectorXd::Zero(u.size());
-  for (Eigen::Index i = 0; i < u.size(); ++i) {
-    unit[i] = 1;
-    stiffness.multiply(unit.data(), out.col(i).data());
-    unit[i] = 0;
-  }
   return out;
 }
 

@@ -16,7 +16,7 @@ void expectSingleIsDouble(TetKernel kernel) {
       [](const ElasticElements& elements, const auto&) {
         for (const double amount : {1e-6, 1e-3, 0.1}) {
           const Eigen::VectorXd u = randomDisplacement(elements.nodeCount(), amount * kSide);
-          const Evaluation d = inDouble(elements, u), f = inSingle(elements, u);
+          const TetEvaluation d = inDouble(elements, u), f = inSingle(elements, u);
           EXPECT_LT((d.gradient - f.gradient).norm(), 1e-5 * d.gradient.norm()) << amount;
           EXPECT_NEAR(f.energy, d.energy, 1e-5 * d.energy) << amount;
         }
@@ -42,7 +42,7 @@ void expectPathsAgree(const TetMesh<Nodes>& mesh) {
   const TetElements<Nodes> narrow(mesh, tetKernelSse2()), wide(mesh, tetKernelAvx2());
   for (const double amount : {1e-4, 0.1, 3.0}) {
     const Eigen::VectorXd u = randomDisplacement(narrow.nodeCount(), amount * kSide);
-    const Evaluation a = inSingle(narrow, u), b = inSingle(wide, u);
+    const TetEvaluation a = inSingle(narrow, u), b = inSingle(wide, u);
     EXPECT_LT((a.gradient - b.gradient).norm(), 1e-5 * a.gradient.norm()) << amount;
     EXPECT_NEAR(a.energy, b.energy, 1e-5 * a.energy) << amount;
   }
@@ -62,7 +62,7 @@ void expectFusedPathsGiveTheSameBits(const TetMesh<Nodes>& mesh) {
       plain(mesh, tetKernelSse2());
   for (const double amount : {1e-4, 0.1, 3.0}) {
     const Eigen::VectorXd u = randomDisplacement(narrow.nodeCount(), amount * kSide);
-    const Evaluation a = inSingle(narrow, u), b = inSingle(wide, u);
+    const TetEvaluation a = inSingle(narrow, u), b = inSingle(wide, u);
     EXPECT_EQ(a.energy, b.energy) << amount;
     EXPECT_EQ(a.gradient, b.gradient) << amount;
     EXPECT_NE(a.gradient, inSingle(plain, u).gradient) << "plain arithmetic";
@@ -103,7 +103,7 @@ TEST(TetrahedraKernel, PiecesDependOnNoThread) {
   const std::vector<double> alone = outputs(elements, in, 1);
   EXPECT_EQ(alone, outputs(elements, in, 3));
   EXPECT_EQ(alone, outputs(elements, in, 8));
-  const Evaluation whole = inDouble(elements, u);
+  const TetEvaluation whole = inDouble(elements, u);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(u.size());
   for (std::size_t k = 8; k < alone.size(); ++k) {
     const std::size_t number = (k - 8) % in.size();
@@ -128,10 +128,10 @@ TEST(TetrahedraKernel, SeveralMaterialsAreTheSumOfTheirParts) {
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(u.size(), u.size());
   for (const auto& part : parts) {
     const TetElements<4> elements(part);
-    const Evaluation e = inDouble(elements, u);
+    const TetEvaluation e = inDouble(elements, u);
     energy += e.energy, gradient += e.gradient, stiffness += denseStiffness(elements, u);
   }
-  const Evaluation ours = inSingle(whole, u);
+  const TetEvaluation ours = inSingle(whole, u);
   EXPECT_NEAR(ours.energy, energy, 1e-5 * energy);
   EXPECT_LT((ours.gradient - gradient).norm(), 1e-5 * gradient.norm());
   EXPECT_LT((denseStiffness(whole, u) - stiffness).norm(), 1e-12 * stiffness.norm());
@@ -141,7 +141,7 @@ TEST(TetrahedraKernel, GarbageHasFiniteEnergyAndForce) {
   const double metre_per_side = 1 / kSide;
   forAllElements([&](const ElasticElements& elements, const std::vector<Eigen::Vector3d>& nodes) {
     for (const double amount : {1.0, 30.0, 10 * metre_per_side}) {
-      const Evaluation e = inSingle(elements, randomDisplacement(elements.nodeCount(), amount * kSide));
+      const TetEvaluation e = inSingle(elements, randomDisplacement(elements.nodeCount(), amount * kSide));
       EXPECT_TRUE(std::isfinite(e.energy) && e.gradient.allFinite()) << amount;
     }
     for (const Eigen::Vector3d& f : {Eigen::Vector3d(-1, 1, 1), Eigen::Vector3d(1, 1, 0), Eigen::Vector3d(1, 0, 0),
@@ -149,7 +149,7 @@ TEST(TetrahedraKernel, GarbageHasFiniteEnergyAndForce) {
       Eigen::VectorXd u(3 * elements.nodeCount());
       for (std::size_t i = 0; i < nodes.size(); ++i)
         u.segment<3>(3 * static_cast<Eigen::Index>(i)) = f.cwiseProduct(nodes[i]) - nodes[i];
-      const Evaluation e = inSingle(elements, u);
+      const TetEvaluation e = inSingle(elements, u);
       EXPECT_TRUE(std::isfinite(e.energy) && e.gradient.allFinite()) << f.transpose();
       EXPECT_TRUE(denseStiffness(elements, u).allFinite()) << f.transpose();
     }

@@ -67,7 +67,7 @@ struct SlidingBlock {
   // Newton's method with halved steps.
   Eigen::VectorXd solve(Eigen::VectorXd u) const {
     for (int step = 0; step < 60; ++step) {
-      const Evaluation now = inDouble(elements, u);
+      const TetEvaluation now = inDouble(elements, u);
       const Eigen::VectorXd residual = now.gradient(free);
       if (residual.norm() < 1e-12) break;
       const Eigen::VectorXd change = denseStiffness(elements, u)(free, free).ldlt().solve(-residual);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tissue/element_worlds.hpp"
 #include "tissue/tetrahedra.hpp"
 
 /// Solids and displacements for the tests of tetrahedra.
@@ -53,14 +54,6 @@ TetMesh<Nodes> shaken(TetMesh<Nodes> mesh, double amount, unsigned seed = 3) {
   return mesh;
 }
 
-inline Eigen::VectorXd randomDisplacement(int nodes, double amount, unsigned seed = 5) {
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<double> uniform(-amount, amount);
-  Eigen::VectorXd u(3 * nodes);
-  for (double& value : u) value = uniform(generator);
-  return u;
-}
-
 /// x -> F x
 template <int Nodes>
 Eigen::VectorXd affine(const TetMesh<Nodes>& mesh, const Eigen::Matrix3d& deformation) {
@@ -70,60 +63,26 @@ Eigen::VectorXd affine(const TetMesh<Nodes>& mesh, const Eigen::Matrix3d& deform
   return u;
 }
 
-inline Eigen::Matrix3d someRotation() {
-  return Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
-}
-
-struct Evaluation {
+struct TetEvaluation {
   double energy;
   Eigen::VectorXd gradient;
 };
 
-inline Evaluation inDouble(const ElasticElements& elements, const Eigen::VectorXd& u) {
-  Evaluation out{0, Eigen::VectorXd(u.size())};
+inline TetEvaluation inDouble(const ElasticElements& elements, const Eigen::VectorXd& u) {
+  TetEvaluation out{0, Eigen::VectorXd(u.size())};
   out.energy = elements.evaluate(u.data(), out.gradient.data());
   return out;
 }
 
-inline std::vector<float> fourFloats(const Eigen::VectorXd& u) {
-  std::vector<float> out(static_cast<std::size_t>(u.size() / 3 * 4), 0.0f);
-  for (Eigen::Index i = 0; i < u.size(); ++i)
-    out[static_cast<std::size_t>(i / 3 * 4 + i % 3)] = static_cast<float>(u[i]);
-  return out;
-}
-
 /// All pieces into one output.
-inline Evaluation inSingle(const ElasticElements& elements, const Eigen::VectorXd& u) {
+inline TetEvaluation inSingle(const ElasticElements& elements, const Eigen::VectorXd& u) {
   const std::vector<float> in = fourFloats(u);
   std::vector<float> gradient(in.size(), 0.0f);
-  Evaluation out{0, Eigen::VectorXd(u.size())};
+  TetEvaluation out{0, Eigen::VectorXd(u.size())};
   for (int piece = 0; piece < elements.pieceCount(); ++piece)
     out.energy += elements.evaluate(piece, in.data(), gradient.data());
   for (Eigen::Index i = 0; i < u.size(); ++i) out.gradient[i] = gradient[static_cast<std::size_t>(i / 3 * 4 + i % 3)];
   return out;
-}
-
-inline Eigen::MatrixXd denseStiffness(const ElasticElements& elements, const Eigen::VectorXd& u) {
-  const auto pattern = std::make_shared<BlockPattern>(blockPattern(elements.nodeCount(), elements.nodeGroups()));
-  BlockMatrix stiffness(pattern);
-  stiffness.setZero();
-  elements.addStiffness(u.data(), stiffness);
-  Eigen::MatrixXd out(u.size(), u.size());
-  Eigen::VectorXd unit = Eigen::VectorXd::Zero(u.size());
-  for (Eigen::Index i = 0; i < u.size(); ++i) {
-    unit[i] = 1;
-    stiffness.multiply(unit.data(), out.col(i).data());
-    unit[i] = 0;
-  }
-  return out;
-}
-
-inline constexpr double kE = 3e4, kNu = 0.45, kSide = 0.01;
-inline const std::vector<Law> kLaws = {
-    Law::NeoHookean, Law::StableNeoHookean, Law::MacklinMueller, Law::Fung, Law::Gent, Law::Yeoh};
-
-inline Material material(Law law) {
-  return {law, kE, kNu, 0.8};
 }
 
 inline TetMesh<4> linearMesh(Law law, std::array<int, 3> cubes = {2, 1, 1}) {

@@ -1,0 +1,57 @@
+#pragma once
+#include <Eigen/Dense>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "tissue/elastic_elements.hpp"
+#include "vibe_core/scene/material_law_list.hpp"
+#include "vibe_core/tissue/material.hpp"
+
+/// Materials and displacements for the tests of shells and of tetrahedra.
+namespace vibe::test {
+
+inline constexpr double kE = 3e4, kNu = 0.45, kSide = 0.01;
+#define VIBE_LAW(name, word, formula) Law::name,
+inline const std::vector<Law> kLaws = {VIBE_MATERIAL_LAWS(VIBE_LAW)};  // every law of the list
+#undef VIBE_LAW
+
+inline Material material(Law law) {
+  return {law, kE, kNu, 0.8};
+}
+
+inline Eigen::VectorXd randomDisplacement(int nodes, double amount, unsigned seed = 5) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> uniform(-amount, amount);
+  Eigen::VectorXd u(3 * nodes);
+  for (double& value : u) value = uniform(generator);
+  return u;
+}
+
+inline Eigen::Matrix3d someRotation() {
+  return Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+}
+
+inline std::vector<float> fourFloats(const Eigen::VectorXd& u) {
+  std::vector<float> out(static_cast<std::size_t>(u.size() / 3 * 4), 0.0f);
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    out[static_cast<std::size_t>(i / 3 * 4 + i % 3)] = static_cast<float>(u[i]);
+  return out;
+}
+
+inline Eigen::MatrixXd denseStiffness(const ElasticElements& elements, const Eigen::VectorXd& u) {
+  const auto pattern = std::make_shared<BlockPattern>(blockPattern(elements.nodeCount(), elements.nodeGroups()));
+  BlockMatrix stiffness(pattern);
+  stiffness.setZero();
+  elements.addStiffness(u.data(), stiffness);
+  Eigen::MatrixXd out(u.size(), u.size());
+  Eigen::VectorXd unit = Eigen::VectorXd::Zero(u.size());
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    unit[i] = 1;
+    stiffness.multiply(unit.data(), out.col(i).data());
+    unit[i] = 0;
+  }
+  return out;
+}
+
+}  // namespace vibe::test
