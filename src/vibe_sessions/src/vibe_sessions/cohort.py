@@ -6,9 +6,10 @@ import signal
 import sys
 
 from vibe_sessions.cohort_local import run_local
-from vibe_sessions.cohort_plan import CohortError, Plan
+from vibe_sessions.cohort_plan import Plan
 from vibe_sessions.cohort_progress import Progress
 from vibe_sessions.cohort_store import Store
+from vibe_sessions.headless import SessionError
 
 DEFAULTS = {"script": "package://vibe_core/trainees/first.yaml", "scene": ["package://vibe_core/scenes/stomach.yaml"],
             "mesh": [], "count": 20, "first_seed": 1, "novice": [0.0, 1.0], "duration": 0.0}
@@ -140,7 +141,7 @@ def main(arguments):
     signal.signal(signal.SIGTERM, _interrupt)
     try:
         return plot(options) if options.plot else run(options)
-    except CohortError as error:
+    except SessionError as error:
         sys.stderr.write(f"cohort: {error}\n")
         return 2
     except KeyboardInterrupt:
