@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/random.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/random.hpp"
 
 namespace vibe {
 
