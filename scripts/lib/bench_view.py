@@ -3,8 +3,8 @@
 import sys
 import tempfile
 
-from graph import Graph, GraphError
-from rviz_window import RvizWindow
+from vibe_bringup.graph import Graph, GraphError
+from vibe_bringup.rviz_window import RvizWindow
 
 
 def main():

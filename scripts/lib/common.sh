@@ -48,10 +48,12 @@ isBuilt() {
   [ "${VIBE_WORKSPACE_IS_BUILT:-}" = "$vibe_root" ]
 }
 
-# Installs what is missing, without a word and without sudo when nothing is.
+# installMissing [PART...]: installs what these parts of the workspace need (none: everything) and is missing, without a
+# word and without sudo when nothing is.
 installMissing() {
-  local missing
+  local missing flags=() part
   ! isBuilt || return 0
-  missing=$("$vibe_root/scripts/setup" --missing) || exit 1
-  [ -z "$missing" ] || "$vibe_root/scripts/setup" || exit 1
+  for part in "$@"; do flags+=(--part "$part"); done
+  missing=$("$vibe_root/scripts/setup" --missing "${flags[@]}") || exit 1
+  [ -z "$missing" ] || "$vibe_root/scripts/setup" "${flags[@]}" || exit 1
 }

@@ -8,7 +8,7 @@ import threading
 import time
 
 import rospy
-from graph import Graph
+from vibe_bringup.graph import Graph
 
 STEPS_PER_SECOND = 60  # of light.yaml
 DECORATION = re.compile(r"\x1b\[[0-9;]*m(\[ *[A-Z]+\] \[[0-9., ]+\]: )?|^\[ *[A-Z]+\] \[[0-9., ]+\]: ")  # of roscpp

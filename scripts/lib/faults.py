@@ -6,15 +6,15 @@ scripts/test.d/faults.sh has sourced the environment.
 """
 
 import argparse
-import signal
 import subprocess
 import sys
 import tempfile
 import traceback
 
+from vibe_bringup.graph import GraphError
+from vibe_bringup.session import Interrupted, interruptible
+
 from fault_bench import Bench, Failure
-from graph import GraphError
-from run_session import Interrupted, interrupt
 
 
 def groups():
@@ -57,8 +57,6 @@ def attempt(arguments, name, check):
 
 def main():
     arguments = parse_arguments()
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, interrupt)
     with tempfile.TemporaryDirectory(prefix="vibe-faults-") as folder:
         bench = Bench(arguments.workspace, folder)
         if arguments.list:
@@ -67,10 +65,11 @@ def main():
             return
         group = groups()[arguments.group](bench)
         try:
-            group.prepare()
-            for name, check in group.faults():
-                if arguments.only in name:
-                    attempt(arguments, name, check)
+            with interruptible():
+                group.prepare()
+                for name, check in group.faults():
+                    if arguments.only in name:
+                        attempt(arguments, name, check)
         except (Failure, GraphError, Interrupted) as error:
             sys.exit("faults: {}".format(error))
         finally:

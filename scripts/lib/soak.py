@@ -1,10 +1,9 @@
 """What the programs that look for growing memory share."""
 
-import signal
 import sys
 import tempfile
 
-from run_session import Interrupted, attempt, interrupt
+from vibe_bringup.session import carry_out
 
 
 def slope(samples):
@@ -18,18 +17,7 @@ def slope(samples):
 def run(make, arguments):
     """Starts and watches what `make(arguments, folder)` returns, and stops it in any case. Ends this program with status 1
     if something failed."""
-    failures = []
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, interrupt)
     with tempfile.TemporaryDirectory(prefix="vibe-soak-") as folder:
         soak = make(arguments, folder)
-        try:
-            attempt(soak.start, failures)
-            if not failures:
-                attempt(soak.watch, failures)
-        except Interrupted as reason:
-            failures.append("stopped by {}".format(reason))
-        attempt(soak.stop, failures)
-    for failure in failures:
-        print("soak: " + failure, file=sys.stderr)
-    sys.exit(1 if failures else 0)
+        status = carry_out("soak", [soak.start, soak.watch], soak.stop)
+    sys.exit(status)

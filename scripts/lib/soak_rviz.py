@@ -10,8 +10,9 @@ import json
 import os
 import time
 
-from graph import Graph, GraphError
-from rviz_window import RvizWindow, wait_for
+from vibe_bringup.graph import Graph, GraphError
+from vibe_bringup.rviz_window import RvizWindow, wait_for
+
 from soak import run, slope
 
 INTERVAL = 2.0  # between two samples [s]
@@ -21,7 +22,7 @@ HALF_HOUR = 1800.0  # [s]
 
 def parse_arguments():
     parser = argparse.ArgumentParser(allow_abbrev=False, description=__doc__.split("\n\n", maxsplit=1)[0])
-    for name in ("--program", "--bag", "--config", "--urdf"):
+    for name in ("--program", "--bag", "--config"):
         parser.add_argument(name, required=True)
     parser.add_argument("--minutes", type=float, default=30.0, help="of the session")
     parser.add_argument("--rate", type=float, default=10.0, help="how much faster than real time it is played")
@@ -41,11 +42,9 @@ class Soak:
     def start(self):
         self.graph.start_master()
         self.graph.set_parameter("/use_sim_time", True)
-        with open(self.arguments.urdf, encoding="utf-8") as urdf:
-            self.graph.set_parameter("/robot_description", urdf.read())
-        self.graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
+        self.graph.start_robot()
         self.window.start([self.arguments.program, self.report_file])
-        wait_for(lambda: self.window.check_alive() and self.report()["frames"] > 0, "rviz drew nothing")
+        wait_for(lambda: self.graph.check_alive() and self.report()["frames"] > 0, "rviz drew nothing")
         rate = "{:g}".format(self.arguments.rate)
         self.graph.start("rosbag", ["rosrun", "rosbag", "play", "--loop", "--quiet", "--rate", rate, self.arguments.bag])
 
@@ -62,7 +61,7 @@ class Soak:
         samples = []
         while time.monotonic() - begin < end:
             time.sleep(INTERVAL)
-            self.window.check_alive()
+            self.graph.check_alive()
             samples.append((self.arguments.rate * (time.monotonic() - begin), self.report()["memory"] / 1e6))
         self.judge(samples, end)
 

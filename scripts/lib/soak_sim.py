@@ -11,9 +11,10 @@ import socket
 import time
 import xmlrpc.client
 
+from vibe_bringup.graph import Graph, GraphError
+
 from fault_bench import simulated_time
 from fault_peers import Listener, Victim
-from graph import Graph, GraphError
 from soak import run, slope
 
 INTERVAL = 1.0  # between two samples [s of wall time]
@@ -88,15 +89,10 @@ class Soak:
                 victim = Victim(self.graph.env["ROS_MASTER_URI"], "/sim_node")
                 return [Listener(victim, "/" + topic) for topic in HEARD]
             except (OSError, AssertionError, TypeError, ValueError, xmlrpc.client.Error):
-                self.check_alive()
+                self.graph.check_alive()
                 if time.monotonic() > deadline:
                     raise GraphError("sim_node does not begin; it said:\n" + self.sim.last_words())
                 time.sleep(0.2)
-
-    def check_alive(self):
-        dead = self.graph.dead()
-        if dead is not None:
-            raise GraphError("{} died with status {}; it said:\n{}".format(dead.name, dead.status(), dead.last_words()))
 
     def resident(self):
         """[MB]"""
@@ -108,7 +104,7 @@ class Soak:
         samples, progress = [], begin
         while not samples or samples[-1][0] < end:
             time.sleep(INTERVAL)
-            self.check_alive()
+            self.graph.check_alive()
             now = simulated_time(self.sim.log)
             if not samples or now > samples[-1][0]:
                 samples.append((now, self.resident()))

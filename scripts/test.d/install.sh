@@ -56,12 +56,23 @@ check 'the meshes of the URDF are installed' hasMeshes
 helps() {
   local program
   for program in 'vibe_sim sim_node' 'vibe_sim vibe_replay' 'vibe_sim vibe_record' 'vibe_sim vibe_player' \
-    'vibe_sessions report' 'vibe_sessions cohort' 'vibe_sessions regression' 'vibe_benchmarks vibe_bench'; do
+    'vibe_sessions report' 'vibe_sessions cohort' 'vibe_sessions regression' 'vibe_bringup record' \
+    'vibe_bringup report' 'vibe_bringup picture' 'vibe_bringup views' 'vibe_bringup latency' 'vibe_bringup dataset' \
+    'vibe_benchmarks vibe_bench'; do
     # shellcheck disable=SC2086
     inSpace rosrun $program --help >"$scratch/help.txt" 2>&1 || { echo "$program"; cat "$scratch/help.txt"; return 1; }
   done
 }
 check 'its programs start' helps
+
+sessionRuns() {
+  inSpace rosrun vibe_bringup run --headless --fast --duration 2 --output "$scratch/session" >"$scratch/session.txt" 2>&1 ||
+    { cat "$scratch/session.txt"; return 1; }
+  cat "$scratch/session.txt"
+  grep -q '^state hash: ' "$scratch/session/summary.txt" && grep -qF "scene = $space/share/" "$scratch/session.txt" &&
+    inSpace rosrun vibe_bringup replay "$scratch/session/session.bag" | grep '^the same: all 120 steps'
+}
+check 'a session runs, is recorded and repeats' sessionRuns
 
 aRegressionPasses() {
   inSpace rosrun vibe_sessions regression "$space/share/vibe_sessions/regressions/sphere.regression.yaml"

@@ -5,7 +5,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 # A megabyte a minute is growth, noise of ten megabytes around one value is none.
 growthIsSeen() {
-  PYTHONPATH=$root/scripts/lib PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 - <<'PYTHON'
+  PYTHONPATH=$root/scripts/lib:$root/src/vibe_bringup/src PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 - <<'PYTHON'
 from soak_rviz import HALF_HOUR, slope
 leak = [(time, 300 + time / 60) for time in range(0, 1800, 20)]
 noise = [(time, 300 + 10 * (k % 2)) for k, time in enumerate(range(0, 1800, 20))]
@@ -27,7 +27,7 @@ record() {
 soak() {
   (set +u && source "$root/devel/setup.bash" && /usr/bin/python3 "$root/scripts/lib/soak_rviz.py" --program "$program" \
     --bag "$scratch/session/session.bag" --config "$root/src/vibe_description/rviz/vibe.rviz" \
-    --urdf "$root/src/vibe_description/urdf/scope.urdf" --minutes 30 --rate 10 "$@")
+    --minutes 30 --rate 10 "$@")
 }
 check 'a session is recorded' record
 check 'rviz shows it for half an hour, and its memory does not grow' soak

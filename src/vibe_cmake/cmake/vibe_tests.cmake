@@ -3,14 +3,14 @@
 # The programs of this many test files and more are compiled in several pieces: a test that changes compiles soon.
 set(VIBE_TESTS_PER_PIECE 8)
 
-# vibe_tests(LINK LIBRARY... [INCLUDE FOLDER...] [DEFINITIONS NAME=VALUE...] [ISOLATED TEST...] [WAITING TEST...]
-#            [TIMED TEST...]):
+# vibe_tests(LINK LIBRARY... [INCLUDE FOLDER...] [SYSTEM FOLDER...] [DEFINITIONS NAME=VALUE...] [ISOLATED TEST...]
+#            [WAITING TEST...] [TIMED TEST...]):
 # one gtest program <package>_<folder>_tests of all test/<folder>/*_test.cpp (<package>_tests of test/*_test.cpp), and a
 # ctest test for every file, which runs the cases of this file. ISOLATED files change what is global to a process and get
 # a program <package>_<file> of their own. A test computes all the time unless it is WAITING (for other processes, or for
 # time to pass) or TIMED (it judges wall time, and runs alone).
 function(vibe_tests)
-  cmake_parse_arguments(arg "" "" "LINK;INCLUDE;DEFINITIONS;ISOLATED;WAITING;TIMED" ${ARGN})
+  cmake_parse_arguments(arg "" "" "LINK;INCLUDE;SYSTEM;DEFINITIONS;ISOLATED;WAITING;TIMED" ${ARGN})
   if(NOT COMMAND catkin_package)
     enable_testing()
     find_package(GTest REQUIRED)
@@ -41,6 +41,7 @@ function(vibe_tests)
   foreach(program ${programs})
     vibe_add_test_program(${program} ${sources_of_${program}})
     target_include_directories(${program} PRIVATE test ${arg_INCLUDE})
+    target_include_directories(${program} SYSTEM PRIVATE ${arg_SYSTEM})
     target_compile_definitions(${program} PRIVATE ${arg_DEFINITIONS})
     target_link_libraries(${program} ${arg_LINK})
   endforeach()

@@ -2,7 +2,8 @@
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 vibe_tests(LINK vibe_core ${BULLET_LIBRARIES} PkgConfig::URDFDOM
-           INCLUDE src ${BULLET_INCLUDE_DIRS}
+           INCLUDE src
+           SYSTEM ${BULLET_INCLUDE_DIRS}
            DEFINITIONS VIBE_CORE_DIR="${CMAKE_CURRENT_SOURCE_DIR}"
                        VIBE_DESCRIPTION_DIR="${CMAKE_CURRENT_SOURCE_DIR}/../vibe_description"
            ISOLATED allocation_test arithmetic_test cholmod_test)

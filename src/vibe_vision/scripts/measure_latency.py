@@ -11,13 +11,10 @@ import csv
 import os
 import socket
 import struct
-import sys
 import tempfile
 import time
 
-HERE = os.path.dirname(os.path.realpath(__file__))
-sys.path.insert(0, os.path.join(HERE, "..", "..", "..", "scripts", "lib"))
-from graph import Graph  # noqa: E402  scripts/lib, without ROS
+from vibe_bringup.graph import Graph
 
 HEADER = struct.Struct("<4sHBxIfQdff")
 STAGES = ["half_exposure", "transport", "wait", "track", "predict_and_send"]

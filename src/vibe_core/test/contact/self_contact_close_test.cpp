@@ -26,9 +26,9 @@ SurfaceMesh roofs(double gap) {
 }
 
 TEST(SelfContactClose, EdgesThatCrossPushEachOtherApart) {
-  World world(roofs(20e-3));
+  ContactWorld world(roofs(20e-3));
   for (std::size_t i = 4; i < 8; ++i)
-    world.set(i, world.rest.vertices[i] - Eigen::Vector3d(0, 0, 20e-3 - 0.2 * kThickness));
+    world.set(i, world.rest.vertices[i] - Eigen::Vector3d(0, 0, 20e-3 - 0.2 * kWallThickness));
   world.detect(0.5e-3);
   ASSERT_GT(world.evaluate(), 0);
   const Eigen::Vector3d up = world.totalForce(4, 8), down = world.totalForce(0, 4);
@@ -64,7 +64,7 @@ SurfaceMesh plate() {
 }
 
 /// Folds it flat about the y axis.
-void fold(double gap, World& world) {
+void fold(double gap, ContactWorld& world) {
   for (std::size_t i = 0; i < world.count(); ++i) {
     const Eigen::Vector3d& p = world.rest.vertices[i];
     if (p.x() > 0) world.set(i, {-p.x(), p.y(), gap});
@@ -74,14 +74,14 @@ void fold(double gap, World& world) {
 }
 
 /// Bars between places that are one wall.
-std::size_t countInWall(const World& world) {
-  constexpr double kBar = 0.3 * kThickness * (1 + 1e-9);
+std::size_t countInWall(const ContactWorld& world) {
+  constexpr double kBar = 0.3 * kWallThickness * (1 + 1e-9);
   std::size_t count = 0;
   for (const SelfContact::Pair& pair : world.contact.pairs()) {
     Eigen::Vector3d at_rest = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < 4; ++k)
       if (pair.node[k] >= 0) at_rest += pair.weight[k] * world.rest.vertices[static_cast<std::size_t>(pair.node[k])];
-    if (pair.thickness > kBar || at_rest.norm() > 1.55 * kThickness) continue;
+    if (pair.thickness > kBar || at_rest.norm() > 1.55 * kWallThickness) continue;
     ++count;
   }
   return count;
@@ -89,26 +89,26 @@ std::size_t countInWall(const World& world) {
 
 // Two sides of a fold that are one wall, because they are near along the surface, push each other apart.
 TEST(SelfContactClose, BarsActWithinASharpFold) {
-  World sharp(plate()), wide(plate());
-  fold(0.1 * kThickness, sharp);
+  ContactWorld sharp(plate()), wide(plate());
+  fold(0.1 * kWallThickness, sharp);
   EXPECT_GT(countInWall(sharp), 10U);
   for (std::size_t i = 0; i < sharp.count(); ++i) {
     const Eigen::Vector3d& p = sharp.rest.vertices[i];
     if (std::abs(p.x() - 2e-3) > 1e-6 || std::abs(p.y()) > 5e-3) continue;
     EXPECT_GT(sharp.force(i).z(), 0) << i;
   }
-  fold(0.6 * kThickness, wide);
+  fold(0.6 * kWallThickness, wide);
   EXPECT_EQ(countInWall(wide), 0U);
 }
 
 // The upper roof is heavy, and only moves up and down.
 TEST(SelfContactClose, EdgesThatCrossComeToRestBeforeTheyAreStopped) {
-  constexpr double kGap = 1.5 * kThickness, kWeight = 0.05;  // [m], [N]
+  constexpr double kGap = 1.5 * kWallThickness, kWeight = 0.05;  // [m], [N]
   const SurfaceMesh rest = roofs(kGap);
   ShellMesh mesh;
   mesh.nodes = rest.vertices;
   mesh.triangles = rest.triangles;
-  mesh.thickness.assign(rest.triangles.size(), kThickness);
+  mesh.thickness.assign(rest.triangles.size(), kWallThickness);
   mesh.materials = {Material{Law::NeoHookean, kModulus, 0.45, 0}};
   ElasticBody body;
   body.elements = std::make_shared<const ShellElements>(mesh);
@@ -132,7 +132,7 @@ TEST(SelfContactClose, EdgesThatCrossComeToRestBeforeTheyAreStopped) {
       constraint.coefficient = {Eigen::Vector3d::Unit(k)};
       constraint.target = rest.vertices[v][k];
     }
-  SelfContact contact(rest, std::vector<double>(8, kThickness), kModulus);
+  SelfContact contact(rest, std::vector<double>(8, kWallThickness), kModulus);
   const MotionView view = motion.view();
   std::size_t stopped = 0;
   double before = 0;
@@ -144,8 +144,8 @@ TEST(SelfContactClose, EdgesThatCrossComeToRestBeforeTheyAreStopped) {
     stopped += contact.resolvePenetrations(view, kStep).size();
   }
   EXPECT_EQ(stopped, 0U) << "in the last second";
-  EXPECT_GT(view.x[2][4], 0.05 * kThickness);
-  EXPECT_LT(view.x[2][4], 0.375 * kThickness) << "the edges touch";
+  EXPECT_GT(view.x[2][4], 0.05 * kWallThickness);
+  EXPECT_LT(view.x[2][4], 0.375 * kWallThickness) << "the edges touch";
   EXPECT_NEAR(view.x[2][4], before, 1e-6) << "at rest";
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-double minGap(const World& world, int cells) {
+double minGap(const ContactWorld& world, int cells) {
   const int upper = plateSize(cells);
   double min = std::numeric_limits<double>::infinity();
   for (int i = 0; i < upper; ++i) min = std::min(min, world.get(upper + i).z() - world.get(i).z());
@@ -22,8 +22,8 @@ double minGap(const World& world, int cells) {
 
 double pressAtRandom(bool limited, double size) {
   const int cells = 8;
-  World world(plates(cells, cells));
-  world.bring(plateSize(cells), 0.8 * kThickness, {0, 0});
+  ContactWorld world(plates(cells, cells));
+  world.bring(plateSize(cells), 0.8 * kWallThickness, {0, 0});
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   double min = std::numeric_limits<double>::infinity();
@@ -56,7 +56,7 @@ TEST(SelfContactPaths, EdgesDoNotPassThroughEdges) {
   mesh.vertices = {{-0.02, 0, 0.01}, {0.02, 0, 0.01}, {0, 0, 0.05},    // an edge along x with its triangle above
                    {0, -0.02, 0},    {0, 0.02, 0},    {0, 0, -0.04}};  // an edge along y with its triangle below
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
-  World world(mesh);
+  ContactWorld world(mesh);
   world.detect(1e-3);
   std::vector<double> move(world.at.size(), 0.0);
   for (std::size_t i = 0; i < 3; ++i) move[4 * i + 2] = -0.03;
@@ -68,8 +68,8 @@ TEST(SelfContactPaths, EdgesDoNotPassThroughEdges) {
 }
 
 TEST(SelfContactPaths, WhatMeetsNothingIsLeftToTheBit) {
-  World world(plates(8, 6));
-  world.bring(plateSize(8), 0.8 * kThickness);
+  ContactWorld world(plates(8, 6));
+  world.bring(plateSize(8), 0.8 * kWallThickness);
   for (const double size : {0.1e-3, 50e-3}) {  // together, however fast
     world.detect(1e-3);
     const std::vector<double> before = world.at;
@@ -86,7 +86,7 @@ TEST(SelfContactPaths, WhatMeetsNothingIsLeftToTheBit) {
 std::size_t crossingsOfFold(bool limited) {
   SurfaceMesh mesh;
   addPlate(8, 2.5e-3, 0, true, mesh);
-  World world(mesh);
+  ContactWorld world(mesh);
   const auto foldTo = [&](double degrees, double twist) {
     std::vector<double> move = world.at;
     for (std::size_t i = 0; i < world.count(); ++i) {
@@ -119,7 +119,7 @@ TEST(SelfContactPaths, NeighboursInASharpFoldDoNotCross) {
 }
 
 TEST(SelfContactPaths, WhatCrossesAtTheStartCanComeApart) {
-  World world(plates(8, 6));
+  ContactWorld world(plates(8, 6));
   for (std::size_t i = plateSize(8); i < world.count(); ++i) {
     const Eigen::Vector3d& p = world.rest.vertices[i];
     world.set(i, {p.x() + 0.4e-3, p.y() + 0.7e-3, 0.3 * p.x()});
@@ -137,7 +137,7 @@ TEST(SelfContactPaths, WhatCrossesAtTheStartCanComeApart) {
 // A sphere is thrown about node by node; every node may go anywhere within 3 mm, or 20 mm, in a step.
 TEST(SelfContactPaths, NothingCrossesAtAnyTimeOfRandomMoves) {
   for (const double size : {3e-3, 20e-3}) {
-    World world(sphere(0.03, 8)), control(sphere(0.03, 8));
+    ContactWorld world(sphere(0.03, 8)), control(sphere(0.03, 8));
     std::mt19937 random(11);
     std::normal_distribution<double> normal(0, size);
     std::size_t without = 0;

@@ -19,7 +19,7 @@ namespace {
 using namespace test;
 
 TEST(SelfContactSearch, SphereMeetsItselfOnlyWhenFlattened) {
-  World world(sphere(0.05, 19));
+  ContactWorld world(sphere(0.05, 19));
   ASSERT_EQ(world.count(), 3612U);
   for (const double scale : {1.0, 2.0}) {
     for (std::size_t i = 0; i < world.count(); ++i) world.set(i, scale * world.rest.vertices[i]);
@@ -38,7 +38,7 @@ TEST(SelfContactSearch, SphereMeetsItselfOnlyWhenFlattened) {
 }
 
 TEST(SelfContactSearch, NeighboursAlongTheSurfaceNeverCount) {
-  World world(sphere(0.05, 12));
+  ContactWorld world(sphere(0.05, 12));
   for (std::size_t i = 0; i < world.count(); ++i) world.set(i, 0.1 * world.rest.vertices[i]);
   world.shake(2e-3, 9);
   world.detect(2e-3);
@@ -49,12 +49,12 @@ TEST(SelfContactSearch, NeighboursAlongTheSurfaceNeverCount) {
       for (std::size_t l = 0; l < 4; ++l)
         if (pair.weight[k] > 0 && pair.weight[l] < 0)  // of the two points
           min = std::min(min, (world.rest.vertices[pair.node[k]] - world.rest.vertices[pair.node[l]]).norm());
-  EXPECT_GT(min, 2 * kThickness);
+  EXPECT_GT(min, 2 * kWallThickness);
 }
 
 TEST(SelfContactSearch, ResultDoesNotDependOnHistory) {
   PressedPlates fresh;
-  World old(plates(8, 6));
+  ContactWorld old(plates(8, 6));
   for (const double gap : {0.05, 0.01, 4e-3, 3e-3, -1e-3}) {
     old.bring(plateSize(8), gap);
     old.detect(gap > 5e-3 ? 2e-3 : 0.5e-3);
@@ -67,7 +67,7 @@ TEST(SelfContactSearch, ResultDoesNotDependOnHistory) {
 }
 
 /// A sphere that is flattened while a part of it is pushed about fast, and all of it shaken.
-std::vector<double> pushAbout(const World& world, int step, std::mt19937& random) {
+std::vector<double> pushAbout(const ContactWorld& world, int step, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::vector<double> move(world.at.size(), 0.0);
   const Eigen::Vector3d push(3e-3 * std::sin(0.7 * step), 2e-3 * std::cos(0.4 * step), step % 9 < 5 ? -4e-3 : 5e-3);
@@ -81,11 +81,11 @@ std::vector<double> pushAbout(const World& world, int step, std::mt19937& random
 }
 
 TEST(SelfContactSearch, RenewsAllThatMatters) {
-  World old(sphere(0.03, 9));
+  ContactWorld old(sphere(0.03, 9));
   std::mt19937 random(5);
   std::size_t pairs = 0, stopped = 0;
   for (int step = 0; step < 40; ++step) {
-    World fresh(old.rest);
+    ContactWorld fresh(old.rest);
     fresh.at = old.at;
     const double reach = step % 7 == 3 ? 2e-3 : 0.5e-3;
     old.detect(reach);
@@ -105,7 +105,7 @@ TEST(SelfContactSearch, RenewsAllThatMatters) {
 }
 
 TEST(SelfContactSearch, SearchesOnlyWhenSomethingCanHaveComeNear) {
-  World world(plates(8, 6));
+  ContactWorld world(plates(8, 6));
   world.detect(1e-3);
   world.detect(1e-3);
   EXPECT_EQ(world.contact.searchCount(), 1);
@@ -115,7 +115,7 @@ TEST(SelfContactSearch, SearchesOnlyWhenSomethingCanHaveComeNear) {
     world.bring(plateSize(8), gap, {0, 0});
     world.detect(1e-3);
   }
-  EXPECT_NEAR(gap, 1.25 * kThickness + 1e-3, 0.11e-3);
+  EXPECT_NEAR(gap, 1.25 * kWallThickness + 1e-3, 0.11e-3);
   EXPECT_LT(world.contact.searchCount(), 320);
 }
 
@@ -131,7 +131,7 @@ TEST(SelfContactSearch, PositionsThatAreNotFiniteMeetNothing) {
 
 TEST(SelfContactSearch, RejectsWhatItCannotUse) {
   const SurfaceMesh mesh = plates(2, 2);
-  std::vector<double> thickness(mesh.vertices.size(), kThickness);
+  std::vector<double> thickness(mesh.vertices.size(), kWallThickness);
   EXPECT_NO_THROW(SelfContact(mesh, thickness, kModulus));
   EXPECT_THROW(SelfContact(mesh, thickness, 0), Error);
   thickness[3] = 0;
@@ -140,7 +140,7 @@ TEST(SelfContactSearch, RejectsWhatItCannotUse) {
   EXPECT_THROW(SelfContact(mesh, thickness, kModulus), Error);
   SurfaceMesh broken = mesh;
   broken.triangles[1][2] = 99;
-  EXPECT_THROW(SelfContact(broken, std::vector<double>(mesh.vertices.size(), kThickness), kModulus), Error);
+  EXPECT_THROW(SelfContact(broken, std::vector<double>(mesh.vertices.size(), kWallThickness), kModulus), Error);
 }
 
 double threadTime() {
@@ -150,7 +150,7 @@ double threadTime() {
 }
 
 // `moved` of the nodes between calls; median and least time of a step's calls [ms]
-std::pair<double, double> measure(World& world, double moved) {
+std::pair<double, double> measure(ContactWorld& world, double moved) {
   std::array<std::vector<double>, 3> x;
   std::vector<double> v(world.count()), times;
   for (std::size_t i = 0; i < world.count(); ++i)
@@ -169,7 +169,7 @@ std::pair<double, double> measure(World& world, double moved) {
 }
 
 // Least time to find which vertex is farthest from where it was [ms], as a unit that machines share.
-double passOverVertices(const World& world) {
+double passOverVertices(const ContactWorld& world) {
   const std::vector<double> before = world.at;
   double least = 1;
   for (int trial = 0; trial < 50; ++trial) {
@@ -186,9 +186,9 @@ double passOverVertices(const World& world) {
 }
 
 TEST(SelfContactSearch, CostsLittleWhereNothingIsNear) {
-  World world(sphere(0.05, 19));
+  ContactWorld world(sphere(0.05, 19));
   const auto still = measure(world, 1e-7), moving = measure(world, 5e-3);
-  World pinched(sphere(0.05, 19));  // pinched about its axis until the poles meet
+  ContactWorld pinched(sphere(0.05, 19));  // pinched about its axis until the poles meet
   for (std::size_t i = 0; i < pinched.count(); ++i) {
     const double off = std::hypot(pinched.at[4 * i], pinched.at[4 * i + 1]);
     pinched.at[4 * i + 2] *= std::clamp((off - 0.012) / 0.028, 0.025, 1.0);

@@ -88,9 +88,9 @@ TEST(SelfContact, MomentumAndMomentAreConserved) {
 
 // Strain of a plate that a larger one carries under a load, by bisection.
 double strainUnder(double load) {
-  World world(plates(46, 40));
+  ContactWorld world(plates(46, 40));
   const int first = plateSize(46);
-  double low = 0.2 * kThickness, high = 1.1 * kThickness;
+  double low = 0.2 * kWallThickness, high = 1.1 * kWallThickness;
   for (int i = 0; i < 20; ++i) {
     const double gap = 0.5 * (low + high);
     world.bring(first, gap);
@@ -98,7 +98,7 @@ double strainUnder(double load) {
     world.evaluate();
     (world.totalForce(first, world.count()).z() > load ? low : high) = gap;
   }
-  return 1 - low / kThickness;
+  return 1 - low / kWallThickness;
 }
 
 TEST(SelfContact, PlateOnPlateCarriesTheForceOfTheSqueezedWall) {
@@ -110,10 +110,10 @@ TEST(SelfContact, PlateOnPlateCarriesTheForceOfTheSqueezedWall) {
 }
 
 TEST(SelfContact, ForceIsZeroBeyondOnsetGrowsWithoutJumpAndStaysFinite) {
-  World world(plates(8, 6));
+  ContactWorld world(plates(8, 6));
   double last = 0, largest_change = 0;
   for (double s = 1.4; s > 0.3; s -= 1e-3) {
-    world.bring(plateSize(8), s * kThickness);
+    world.bring(plateSize(8), s * kWallThickness);
     world.detect(1e-3);
     const double energy = world.evaluate();
     const double force = world.totalForce(plateSize(8), world.count()).z();
@@ -126,7 +126,7 @@ TEST(SelfContact, ForceIsZeroBeyondOnsetGrowsWithoutJumpAndStaysFinite) {
   }
   EXPECT_LT(largest_change, 0.05);
   world.detect(1e-3);
-  world.bring(plateSize(8), -0.4 * kThickness);  // through: pushed back to the side where it was
+  world.bring(plateSize(8), -0.4 * kWallThickness);  // through: pushed back to the side where it was
   EXPECT_TRUE(std::isfinite(world.evaluate()));
   EXPECT_GT(world.totalForce(plateSize(8), world.count()).z(), last);
 }
@@ -135,7 +135,7 @@ TEST(SelfContact, BothSidesAreTreatedAlike) {
   PressedPlates world;
   SurfaceMesh inside_out = world.rest;
   for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);
-  World other(inside_out);
+  ContactWorld other(inside_out);
   other.at = world.at;
   other.detect(1e-3);
   const double energy = world.evaluate();
@@ -146,8 +146,9 @@ TEST(SelfContact, BothSidesAreTreatedAlike) {
 
 TEST(SelfContact, WallsNearAtRestTouchThere) {
   SurfaceMesh mesh = plates(8, 6);
-  for (int i = plateSize(8); i < static_cast<int>(mesh.vertices.size()); ++i) mesh.vertices[i].z() = 0.5 * kThickness;
-  World world(mesh);
+  for (int i = plateSize(8); i < static_cast<int>(mesh.vertices.size()); ++i)
+    mesh.vertices[i].z() = 0.5 * kWallThickness;
+  ContactWorld world(mesh);
   world.detect(1e-3);
   ASSERT_FALSE(world.contact.pairs().empty());
   EXPECT_LT(world.evaluate(), 1e-30);
@@ -157,9 +158,9 @@ TEST(SelfContact, WallsNearAtRestTouchThere) {
 
 /// Tangential over normal force on a plate that slides over a larger one; without its edge, where pairs are oblique.
 double frictionOver(double way, double lead) {
-  World world(plates(46, 40));
+  ContactWorld world(plates(46, 40));
   const int first = plateSize(46);
-  world.bring(first, 0.6 * kThickness);
+  world.bring(first, 0.6 * kWallThickness);
   world.detect(1e-3, lead);
   for (std::size_t i = first; i < world.count(); ++i) world.at[4 * i] += way;
   world.evaluate();

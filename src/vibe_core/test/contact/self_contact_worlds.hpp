@@ -15,7 +15,7 @@
 
 namespace vibe::test {
 
-constexpr double kThickness = 3e-3, kModulus = 5e4, kStep = 1.0 / 60;
+constexpr double kWallThickness = 3e-3, kModulus = 5e4, kStep = 1.0 / 60;
 
 /// A square grid of cells x cells squares about the z axis at height z, its normals up or down.
 inline void addPlate(int cells, double spacing, double z, bool up, SurfaceMesh& mesh) {
@@ -54,8 +54,8 @@ inline SurfaceMesh sphere(double radius, int cuts) {
   return mesh;
 }
 
-struct World {
-  explicit World(SurfaceMesh rest_mesh, double thickness = kThickness)
+struct ContactWorld {
+  explicit ContactWorld(SurfaceMesh rest_mesh, double thickness = kWallThickness)
       : rest(std::move(rest_mesh)),
         contact(rest, std::vector<double>(rest.vertices.size(), thickness), kModulus),
         at(4 * rest.vertices.size()),
@@ -135,9 +135,9 @@ struct World {
   std::vector<float> gradient;
 };
 
-struct PressedPlates : World {
-  PressedPlates() : World(plates(8, 6)) {
-    bring(plateSize(8), 0.6 * kThickness);
+struct PressedPlates : ContactWorld {
+  PressedPlates() : ContactWorld(plates(8, 6)) {
+    bring(plateSize(8), 0.6 * kWallThickness);
     shake(0.2e-3, 1);
     detect(1e-3);
   }

@@ -1,6 +1,5 @@
-"""Command line of the reports."""
+"""Reports of some recordings: finding them, and the work on each."""
 
-import argparse
 import contextlib
 import fnmatch
 import glob
@@ -9,56 +8,10 @@ import sys
 import tempfile
 import time
 
+from .options import KEYS, check, parser
 from .output import Output
 from .session_work import Task, names_of, page_names, report_on
 from .workers import run_all
-
-KEYS = ("folder", "scene", "skill", "driver", "version")
-DESCRIPTION = """\
-Writes a report of recorded sessions: a page (HTML, in one file), all numbers (sessions.json) and one row per session
-(sessions.csv). One recording gives one page; several give a page with a table and distributions, and one page each."""
-EPILOG = """\
-A recording that was cut off (session.bag.active of a killed recorder) is read as far as it goes. Ends with status 0 if
-all recordings could be read, 1 if some could not, 2 on a wrong call."""
-
-
-class Parser(argparse.ArgumentParser):
-    """Errors in the words of the other scripts."""
-
-    def error(self, message):
-        print("report: {} (scripts/report --help lists what there is)".format(message), file=sys.stderr)
-        sys.exit(2)
-
-
-def parser():
-    made = Parser(
-        prog="scripts/report", usage="scripts/report [options] BAG...", description=DESCRIPTION, epilog=EPILOG,
-        allow_abbrev=False, add_help=False, formatter_class=argparse.RawDescriptionHelpFormatter,
-    )  # fmt: skip
-    made.add_argument("bags", nargs="*", metavar="BAG", help="a recording, or a folder with recordings below it")
-    made.add_argument("--output", metavar="DIR", help="folder to write to (default: NAME_report beside the only "
-                      "recording, else report in the present folder)")  # fmt: skip
-    made.add_argument("--group", action="append", default=[], metavar="GROUP", help="how to group sessions: folder "
-                      "(the first below the folder that all share), scene, skill, driver or version; or NAME=PATTERN for "
-                      "the recordings whose path fits the pattern, may be repeated")  # fmt: skip
-    made.add_argument("--no-pages", action="store_true", help="no page per session, which is faster")
-    made.add_argument("--jobs", type=int, default=0, metavar="N", help="worker processes (default: one per core)")
-    made.add_argument("--namespace", metavar="NS", help="of the session, for recordings of several simulators")
-    made.add_argument("--help", action="help", help="print this text and end")
-    return made
-
-
-def check(arguments, fail):
-    if not arguments.bags:
-        fail("which recording?")
-    if arguments.jobs < 0:
-        fail("--jobs needs a number above zero, not '{}'".format(arguments.jobs))
-    keys = [group for group in arguments.group if "=" not in group]
-    for key in keys:
-        if key not in KEYS:
-            fail("--group: '{}' is neither {} nor NAME=PATTERN".format(key, ", ".join(KEYS)))
-    if keys and len(arguments.group) > 1:
-        fail("--group: give one of {}, or any number of NAME=PATTERN, not both".format(", ".join(KEYS)))
 
 
 def find_bags(arguments, fail):
@@ -164,24 +117,32 @@ def run_in(arguments, paths, folder):
         return not output.failures
 
 
-def main(words=None):
-    made = parser()
-    arguments = made.parse_args(words)
-    check(arguments, made.error)
-    paths = find_bags(arguments, made.error)
+def report(arguments, fail):
+    """Returns the exit status, and what to look at, or None."""
+    paths = find_bags(arguments, fail)
     folder = arguments.output or default_output(paths)
     try:
         os.makedirs(folder, exist_ok=True)
         if not os.access(folder, os.W_OK):
             raise PermissionError
     except OSError:
-        made.error("--output: cannot write to '{}'".format(folder))
+        fail("--output: cannot write to '{}'".format(folder))
     try:
         good = run(arguments, paths, folder)
     except KeyboardInterrupt:
         print("\nreport: interrupted; the pages that are finished are in {}".format(folder), file=sys.stderr)
-        return 130
+        return 130, None
     shown = os.path.join(folder, "index.html")
-    if good or len(paths) > 1:
-        print(shown if os.path.exists(shown) else os.path.join(folder, "sessions.csv"))
-    return 0 if good else 1
+    if not os.path.exists(shown):
+        shown = os.path.join(folder, "sessions.csv")
+    return (0 if good else 1), (shown if good or len(paths) > 1 else None)
+
+
+def main(words=None):
+    made = parser()
+    arguments = made.parse_args(words)
+    check(arguments, made.error)
+    status, shown = report(arguments, made.error)
+    if shown:
+        print(shown)
+    return status

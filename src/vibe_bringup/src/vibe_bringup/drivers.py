@@ -5,7 +5,8 @@ import shutil
 import tempfile
 import time
 
-from graph import GraphError
+from . import places
+from .graph import GraphError
 
 PATIENCE = 20.0  # for the emulator to offer its devices [s]
 TUTORIAL = "docs/tutorials/drive_by_hand.md"
@@ -15,7 +16,7 @@ class Driver:
     """Somebody who drives in wall time. The simulator publishes no /clock and waits for nobody."""
 
     simulated_time = False
-    rviz_config = "src/vibe_description/rviz/vibe.rviz"
+    rviz_config = places.RVIZ_CONFIG
     needs_rviz = False
     first_words = ""
 
@@ -57,7 +58,7 @@ class Trainee(Driver):
         put("/vibe_trainee/exit_when_done", True)
 
     def start(self, graph):
-        self.node = graph.start("vibe_trainee", ["rosrun", "vibe_sim", "vibe_trainee"], visible=True)
+        self.node = graph.start_node("vibe_sim", "vibe_trainee", visible=True)
 
     def is_done(self):
         return self.node.status() == 0
@@ -76,10 +77,9 @@ class Device(Driver):
             put("/hardware_node/config", self.arguments.config)
 
     def start(self, graph):
-        command = ["rosrun", "vibe_hardware", "hardware_node"]
-        if self.arguments.camera:  # the simulator obeys one node only: the camera's, also while an instrument is lost
-            command.append("overstitch/measured_js:=overstitch/buttons_js")
-        self.senders = [graph.start("hardware_node", command, visible=True)]
+        # the simulator obeys one node only: the camera's, also while an instrument is lost
+        remapped = ["overstitch/measured_js:=overstitch/buttons_js"] if self.arguments.camera else []
+        self.senders = [graph.start_node("vibe_hardware", "hardware_node", *remapped, visible=True)]
 
 
 class Emulator(Device):
@@ -97,10 +97,9 @@ class Emulator(Device):
         put("/hardware_node/bus", self.sockets)
 
     def start(self, graph):
-        emulator = ["rosrun", "vibe_hardware", "vibe_emulator", "--folder", self.sockets]
-        emulator += ["--config", self.arguments.config] if self.arguments.config else []
-        emulator += ["--hand"] + self.arguments.hand.split(":", 1)
-        self.wait_for_devices(graph.start("vibe_emulator", emulator))
+        options = ["--folder", self.sockets, "--hand", *self.arguments.hand.split(":", 1)]
+        options += ["--config", self.arguments.config] if self.arguments.config else []
+        self.wait_for_devices(graph.start_node("vibe_hardware", "vibe_emulator", *options))
         super().start(graph)
 
     def wait_for_devices(self, emulator):
@@ -122,18 +121,18 @@ class Gamepad(Driver):
 
     def set_parameters(self, put):
         put("/gamepad_node/mapping", self.arguments.mapping)
-        put("/gamepad_node/pad", self.arguments.pad)
-        put("/gamepad_node/replay", self.arguments.replay_pad)
+        put("/gamepad_node/pad", self.arguments.pad or "")
+        put("/gamepad_node/replay", self.arguments.replay_pad or "")
         put("/gamepad_node/record", os.path.join(self.arguments.output, "pad.evemu"))
 
     def start(self, graph):
-        self.senders = [graph.start("gamepad_node", ["rosrun", "vibe_hardware", "gamepad_node"], visible=True)]
+        self.senders = [graph.start_node("vibe_hardware", "gamepad_node", visible=True)]
 
 
 class Keyboard(Driver):
     """The tool 'Drive scope' of rviz, which is active from the start."""
 
-    rviz_config = "src/vibe_description/rviz/drive.rviz"
+    rviz_config = "package://vibe_description/rviz/drive.rviz"
     needs_rviz = True
     first_words = (
         "Driving with keys and mouse: click into the view of rviz. The view shows the keys and the next step;\n"

@@ -3,7 +3,7 @@
 import os
 import time
 
-from graph import GraphError
+from .graph import GraphError
 
 PATIENCE = 120.0  # for the simulated camera to draw its scene [s]
 FAKE_ADDRESS = "127.0.0.1"
@@ -30,12 +30,12 @@ class Vision:
         graph.set_parameter("/vision_node/config", self.config)
         graph.set_parameter("/vision_node/source", self.source)
         graph.set_parameter("/vision_node/publish_images", False)  # the recorder would take all of them: 58 MB/s
-        driver.senders.append(graph.start("vision_node", ["rosrun", "vibe_vision", "vision_node"], visible=True))
+        driver.senders.append(graph.start_node("vibe_vision", "vision_node", visible=True))
 
     def start_fake(self, graph):
         """Waits until it serves frames: it draws them first."""
-        command = ["rosrun", "vibe_vision", "vibe_fake_camera", "--address", FAKE_ADDRESS, "--config", self.config]
-        camera = graph.start("vibe_fake_camera", command)
+        options = ["--address", FAKE_ADDRESS, "--config", self.config]
+        camera = graph.start_node("vibe_vision", "vibe_fake_camera", *options)
         deadline = time.monotonic() + PATIENCE
         while not serves(camera.log):
             if camera.status() is not None or time.monotonic() > deadline:

@@ -1,16 +1,14 @@
 """Pictures of the endoscope's eye: the image of endoscope_camera in ten states of three sessions.
 
-scripts/views has checked the arguments, built the workspace and sourced its environment. The simulator begins paused and
-is taken from picture to picture by its service `step`, so that a picture shows the same state on every machine.
+The simulator begins paused and is taken from picture to picture by its service `step`, so that a picture shows the same
+state on every machine.
 """
 
-import argparse
-import collections
+import functools
 import json
 import os
 import re
 import signal
-import sys
 import tempfile
 import time
 
@@ -20,45 +18,20 @@ from PIL import Image as Picture
 from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import String
 
-from graph import GraphError
-from run_session import Interrupted, attempt, interrupt, session_defaults
-from rviz_window import PATIENCE, wait_for
-from take_pictures import PictureSession
+from . import places
+from .graph import GraphError
+from .run import defaults, trainee
+from .rviz_window import PATIENCE, wait_for
+from .session import Interrupted, carry_out, interruptible
+from .take_pictures import PictureSession
+from .views import SESSIONS, VIEWS
 
-View = collections.namedtuple("View", "name session seconds followed", defaults=(None,))
-# followed: from when on the camera listens, for what depends on the past: smoke, and the colour of marks
-SESSIONS = {  # script, and what differs from the default scene
-    "eye": ("eye.yaml", {}),
-    "states": ("five_states.yaml", {}),
-    "bleeding": ("five_states.yaml", {"mild_probability": 1.0, "brisk_probability": 0.0}),
-}
-VIEWS = [
-    View("rest", "eye", 1.9),
-    View("5mmhg", "eye", 5.6),
-    View("10mmhg", "eye", 16.0),
-    View("antrum", "eye", 21.5),
-    View("retroflexed", "eye", 35.5),
-    View("marked", "states", 48.0),
-    View("sutured", "states", 89.5),
-    View("bleeding", "bleeding", 89.5),
-    View("smoke", "eye", 48.4, followed=45.0),
-    View("scar", "eye", 332.0, followed=45.0),
-]
 COLUMNS = 5  # of the sheet
 
 
-def parse_arguments():
-    parser = argparse.ArgumentParser(allow_abbrev=False)
-    for name in ("--workspace", "--size", "--output"):
-        parser.add_argument(name, required=True)
-    parser.add_argument("--truth", action="store_true")
-    parser.add_argument("views", nargs="+", choices=[view.name for view in VIEWS])
-    return parser.parse_args()
-
-
-def scene_with(workspace, changes, folder):
+def scene_with(changes, folder):
     """The default scene, with other values of some keys."""
-    file = os.path.join(workspace, "src/vibe_core/scenes/stomach.yaml")
+    file = places.find(places.SCENE)
     if not changes:
         return file
     with open(file, encoding="utf-8") as scene:
@@ -83,17 +56,19 @@ def array_of(image):
 class ViewSession(PictureSession):
     """A session that stands still whenever nobody steps it, with the endoscope's camera instead of rviz."""
 
-    def __init__(self, arguments, size):
-        arguments.pictures = []
+    def __init__(self, arguments, changes, wanted):
         super().__init__(arguments)
-        self.size = size
-        topics = {"image_raw": Image}
-        if arguments.truth:
-            topics.update({"labels": Image, "depth/image_raw": Image, "label_table": String})
-        self.topics = topics
+        self.changes, self.size, self.pictures_folder = changes, wanted.size, wanted.output
+        self.topics = {"image_raw": Image}
+        if wanted.truth:
+            self.topics.update({"labels": Image, "depth/image_raw": Image, "label_table": String})
         self.messages = {}  # per topic: by stamp
         self.subscribers = []
         self.follower = None
+
+    def set_parameters(self):
+        super().set_parameters()
+        self.graph.set_parameter("/sim_node/scene", scene_with(self.changes, self.output))
 
     def start(self):
         graph = self.graph
@@ -101,11 +76,15 @@ class ViewSession(PictureSession):
         self.set_parameters()
         width, height = self.size.split("x")
         options = ["_width:=" + width, "_height:=" + height, "_rate:=0"]
-        graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
-        graph.start("endoscope_camera", ["rosrun", "vibe_rviz_plugins", "endoscope_camera", *options])
-        graph.start("vibe_trainee", ["rosrun", "vibe_sim", "vibe_trainee"])
-        self.sim = graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"], patience=30.0)
+        graph.start_robot()
+        graph.start_node("vibe_rviz_plugins", "endoscope_camera", *options)
+        graph.start_node("vibe_sim", "vibe_trainee")
+        self.sim = graph.start_node("vibe_sim", "sim_node", patience=30.0)
         wait_for(self.is_ready, "the simulator and the camera did not begin (see {})".format(self.logs))
+
+    def become_node(self):
+        os.environ.update({k: self.graph.env[k] for k in ("ROS_MASTER_URI", "ROS_HOSTNAME")})
+        rospy.init_node("views", anonymous=True, disable_signals=True)
 
     def is_ready(self):
         publishers, _, services = self.graph.master.getSystemState("/vibe_scripts")[2]
@@ -140,7 +119,7 @@ class ViewSession(PictureSession):
         """The stamps of which every image is there."""
         return set.intersection(*(set(self.messages[t]) for t, kind in self.topics.items() if kind is Image))
 
-    def take(self, view, file):
+    def take(self, view):
         period = self.step_period()
         if view.followed is not None and self.follower is None:
             self.step_to(view.followed, period)
@@ -159,7 +138,7 @@ class ViewSession(PictureSession):
         for subscriber in self.subscribers:
             subscriber.unregister()
         self.subscribers.clear()
-        self.save(max(self.pictures()), file)
+        self.save(max(self.pictures()), os.path.join(self.pictures_folder, "eye_{}.png".format(view.name)))
 
     def save(self, stamp, file):
         """The picture, and its truth as FILE.npz: labels, depth, and the names of the labels by their numbers."""
@@ -175,32 +154,12 @@ class ViewSession(PictureSession):
 
 
 def take_session(arguments, name, views):
-    """Runs one session in a process of its own, because a ROS client cannot change its master."""
+    """One session in a process of its own, because a ROS client cannot change its master. Returns the exit status."""
     script, changes = SESSIONS[name]
-    failures = []
-    session_arguments = session_defaults(fast=True)
-    session_arguments.workspace, session_arguments.truth = arguments.workspace, arguments.truth
-    session_arguments.script = os.path.join(arguments.workspace, "src/vibe_core/trainees/demo", script)
-    with tempfile.TemporaryDirectory(prefix="vibe-views-") as session_arguments.output:
-        session = None
-        try:
-            session_arguments.scene = scene_with(arguments.workspace, changes, session_arguments.output)
-            session = ViewSession(session_arguments, arguments.size)
-            attempt(session.start, failures)
-            if not failures:
-                os.environ.update({k: session.graph.env[k] for k in ("ROS_MASTER_URI", "ROS_HOSTNAME")})
-                rospy.init_node("views", anonymous=True, disable_signals=True)
-            for view in views:
-                file = os.path.join(arguments.output, "eye_{}.png".format(view.name))
-                if not failures:
-                    attempt(lambda view=view, file=file: session.take(view, file), failures)
-        except (GraphError, Interrupted) as reason:
-            failures.append(str(reason))
-        if session is not None:
-            attempt(session.stop, failures)
-    for failure in failures:
-        print("views: " + failure, file=sys.stderr)
-    return not failures
+    with tempfile.TemporaryDirectory(prefix="vibe-views-") as folder:
+        session = ViewSession(defaults(script=trainee(script), fast=True, output=folder), changes, arguments)
+        takes = [functools.partial(session.take, view) for view in views]
+        return carry_out("views", [session.start, session.become_node, *takes], session.stop)
 
 
 def make_sheet(arguments):
@@ -215,21 +174,23 @@ def make_sheet(arguments):
     sheet.save(os.path.join(arguments.output, "eye_views.png"))
 
 
-def main():
-    arguments = parse_arguments()
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, interrupt)
+def take_all(arguments):
+    """Returns the exit status."""
+    os.makedirs(arguments.output, exist_ok=True)
     for name in SESSIONS:
-        views = sorted((v for v in VIEWS if v.session == name and v.name in arguments.views), key=lambda v: v.seconds)
+        views = sorted((view for view in arguments.views if view.session == name), key=lambda view: view.seconds)
         if not views:
             continue
         child = os.fork()
         if child == 0:
-            os._exit(0 if take_session(arguments, name, views) else 1)
-        if os.waitpid(child, 0)[1] != 0:
-            sys.exit(1)
+            os._exit(take_session(arguments, name, views))
+        try:
+            with interruptible():
+                status = os.waitpid(child, 0)[1]
+        except Interrupted:
+            os.kill(child, signal.SIGTERM)
+            status = os.waitpid(child, 0)[1]
+        if status != 0:
+            return 1
     make_sheet(arguments)
-
-
-if __name__ == "__main__":
-    main()
+    return 0

@@ -1,5 +1,4 @@
-"""A ROS graph: a master of its own on a free port, or the user's, and nodes that end with this process. Standard library
-only."""
+"""A ROS graph: a master of its own on a free port, or the user's, and nodes that end with this process. No ROS here."""
 
 import ctypes
 import os
@@ -9,6 +8,8 @@ import subprocess
 import threading
 import time
 import xmlrpc.client
+
+from . import places
 
 PR_SET_PDEATHSIG = 1
 TAIL_LINES = 15
@@ -170,6 +171,23 @@ class Graph:
         process = Process(name, command, log, self.env, patience, essential, visible)
         self.processes.append(process)
         return process
+
+    def start_node(self, package, name, *options, **settings):
+        return self.start(name, ["rosrun", package, name, *options], **settings)
+
+    def start_robot(self):
+        """The endoscope, and the transforms of its links."""
+        with open(places.find(places.ROBOT), encoding="utf-8") as urdf:
+            self.set_parameter("/robot_description", urdf.read())
+        # else every second step of the simulator has no tf
+        self.set_parameter("/robot_state_publisher/publish_frequency", 200.0)
+        self.start_node("robot_state_publisher", "robot_state_publisher")
+
+    def check_alive(self):
+        dead = self.dead()
+        if dead is not None:
+            raise GraphError("{} died; the last it said:\n{}".format(dead.name, dead.last_words()))
+        return True
 
     def has_node(self, name):
         try:

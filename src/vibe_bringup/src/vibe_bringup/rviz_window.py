@@ -6,13 +6,12 @@ import time
 
 import yaml
 
-from graph import GraphError
+from .graph import GraphError
 
 SIZE = "1280x720"
 PATIENCE = 180.0  # for a program to be ready or for rviz to draw, software rendering on a busy machine [s]
 EQUAL_SHOTS = 3  # so many in a row without a difference: rviz has drawn the last message
 SHOT_INTERVAL = 1.0  # [s]
-FEWEST_COLOURS = 5000  # the scene is black before the first frame, has few without the organ, some 30,000 with it
 LIVELY_PIXELS = 2000  # figures in panels change all the time, the frame rate in the corner too
 
 
@@ -36,9 +35,10 @@ def with_view(config, name):
 
 
 class RvizWindow:
-    """One rviz: `view` is one of the saved views, or empty for the configuration as it is."""
+    """One rviz: `view` is one of the saved views, or empty for the configuration as it is. What has fewer colours is no
+    picture yet."""
 
-    def __init__(self, graph, folder, config, view="", fewest_colours=FEWEST_COLOURS):
+    def __init__(self, graph, folder, config, view="", fewest_colours=0):
         self.graph, self.view = graph, view
         self.name = "rviz" + ("_" + "".join(c if c.isalnum() else "_" for c in view) if view else "")
         self.folder = os.path.join(folder, self.name)
@@ -66,15 +66,9 @@ class RvizWindow:
         command = 'exec Xvfb -displayfd 7 -screen 0 "$1"x24 -nolisten tcp 7>"$2"'
         open(number, "wb").close()
         self.graph.start(self.name + "_xvfb", ["sh", "-c", command, "sh", SIZE, number])
-        wait_for(lambda: self.check_alive() and os.path.getsize(number) > 1, "Xvfb named no display")
+        wait_for(lambda: self.graph.check_alive() and os.path.getsize(number) > 1, "Xvfb named no display")
         with open(number, encoding="ascii") as text:
             self.display = ":" + text.read().strip()
-
-    def check_alive(self):
-        dead = self.graph.dead()
-        if dead is not None:
-            raise GraphError("{} died; the last it said:\n{}".format(dead.name, dead.last_words()))
-        return True
 
     def ask(self, command, accepted=(0,)):
         """What a program says, on its standard output or on its standard error."""
@@ -86,7 +80,7 @@ class RvizWindow:
         return words
 
     def grab(self, file):
-        self.check_alive()
+        self.graph.check_alive()
         self.ask(["import", "-window", "root", file])
         return int(self.ask(["identify", "-format", "%k", file])) >= self.fewest_colours
 

@@ -1,22 +1,24 @@
 """One session: master, robot_state_publisher, simulator, who drives it, recorder and, with a display, rviz.
 
-scripts/run has checked the arguments, built the workspace and sourced its environment. The simulator ends by itself
-after the duration, if there is one, and decides how the session ended. A person ends a session by closing rviz, too.
+The simulator ends by itself after the duration, if there is one, and decides how the session ended. A person ends a
+session by closing rviz, too.
 """
 
-import argparse
+import contextlib
 import glob
 import os
 import signal
 import sys
 import time
 
-from drivers import DRIVERS
-from graph import Graph, GraphError
-from vision import Vision
+from . import places
+from .drivers import DRIVERS
+from .graph import Graph, GraphError
+from .vision import Vision
 
 SETTLE = 1.0  # for the recorder to receive what the simulator sent last [s]
 RECORDER_PATIENCE = 600.0  # for the recorder to write what it holds in memory [s]
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # that end a program
 
 
 class Interrupted(Exception):
@@ -25,38 +27,9 @@ class Interrupted(Exception):
 
 def interrupt(number, _frame):
     # a second Ctrl-C must not break off the orderly end that the first one began
-    for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for each in SIGNALS:
         signal.signal(each, signal.SIG_IGN)
     raise Interrupted(signal.Signals(number).name)
-
-
-def session_parser():
-    parser = argparse.ArgumentParser(allow_abbrev=False)
-    parser.add_argument("--workspace", required=True)
-    parser.add_argument("--scene", required=True)
-    parser.add_argument("--drive", choices=DRIVERS, default="trainee")
-    parser.add_argument("--script", default="")
-    parser.add_argument("--config", default="")
-    parser.add_argument("--hand", default="")
-    parser.add_argument("--pad", default="")
-    parser.add_argument("--mapping", default="")
-    parser.add_argument("--replay-pad", default="")
-    parser.add_argument("--camera", default="", help="that watches the instruments; empty: none")
-    parser.add_argument("--vision-config", default="")
-    parser.add_argument("--mesh", default="")
-    parser.add_argument("--output", required=True)
-    parser.add_argument("--duration", type=float, required=True, help="0: no end")
-    parser.add_argument("--fast", action="store_true")
-    parser.add_argument("--record-all", action="store_true", help="every message of every topic")
-    parser.add_argument("--headless", action="store_true")
-    parser.add_argument("--master", action="store_true", help="use the master of ROS_MASTER_URI")
-    return parser
-
-
-def session_defaults(**values):
-    """All arguments of a session with their defaults, for programs that begin one with arguments of their own."""
-    required = ["--workspace", "", "--scene", "", "--output", "", "--duration", "0"]
-    return argparse.Namespace(**{**vars(session_parser().parse_args(required)), **values})
 
 
 class Session:
@@ -77,8 +50,8 @@ class Session:
         graph.start_master()
         print(graph.how_to_attach(), flush=True)
         self.set_parameters()
-        graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
-        self.sim = graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"], visible=True, patience=30.0)
+        graph.start_robot()
+        self.sim = graph.start_node("vibe_sim", "sim_node", visible=True, patience=30.0)
         if self.driver.first_words:
             print(self.driver.first_words, flush=True)
         self.driver.start(graph)
@@ -86,19 +59,16 @@ class Session:
             self.vision.start(graph, self.driver)
         # the simulator begins when somebody listens to applied_input: by then every other topic must be connected
         whole = ["--all"] if self.arguments.record_all else []
-        record = ["rosrun", "vibe_sim", "vibe_record", *whole, "--last", "applied_input", self.bag]
-        self.recorder = graph.start("vibe_record", record, patience=RECORDER_PATIENCE)
+        record = [*whole, "--last", "applied_input", self.bag]
+        self.recorder = graph.start_node("vibe_sim", "vibe_record", *record, patience=RECORDER_PATIENCE)
         if not self.arguments.headless:
-            config = os.path.join(self.arguments.workspace, self.driver.rviz_config)
-            self.rviz = graph.start("rviz", ["rosrun", "rviz", "rviz", "-d", config], essential=False)
+            config = places.find(self.driver.rviz_config)
+            self.rviz = graph.start_node("rviz", "rviz", "-d", config, essential=False)
 
     def set_parameters(self):
         arguments, put = self.arguments, self.graph.set_parameter
         simulated = self.driver.simulated_time
         put("/use_sim_time", simulated)  # before any node starts: each reads it once
-        with open(os.path.join(arguments.workspace, "src/vibe_description/urdf/scope.urdf"), encoding="utf-8") as urdf:
-            put("/robot_description", urdf.read())
-        put("/robot_state_publisher/publish_frequency", 200.0)  # else every second step of the simulator has no tf
         put("/sim_node/scene", arguments.scene)
         if arguments.mesh:
             put("/sim_node/mesh", arguments.mesh)
@@ -174,25 +144,45 @@ def attempt(action, failures):
         failures.append("{}: {}".format(type(error).__name__, error))
 
 
-def main():
-    session = Session(session_parser().parse_args())
-    failures = []
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+@contextlib.contextmanager
+def interruptible():
+    """In here, signals that end a program raise Interrupted; afterwards they are ignored, so that the end is orderly."""
+    for number in SIGNALS:
         signal.signal(number, interrupt)
     try:
-        attempt(session.start, failures)
-        if not failures:
-            attempt(session.watch, failures)
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        yield
+    finally:
+        for number in SIGNALS:
             signal.signal(number, signal.SIG_IGN)
+
+
+def carry_out(name, parts, stop, may_be_interrupted=False):
+    """Parts of a program one after the other until one fails, then `stop` in any case. Returns the exit status."""
+    failures = []
+    try:
+        with interruptible():
+            for part in parts:
+                if not failures:
+                    attempt(part, failures)
     except Interrupted as reason:
-        print("\nStopping after {}...".format(reason), flush=True)
-    attempt(session.stop, failures)
-    session.report()
+        if may_be_interrupted:
+            print("\nStopping after {}...".format(reason), flush=True)
+        else:
+            failures.append("stopped by {}".format(reason))
+    attempt(stop, failures)
     for failure in failures:
-        print("run: " + failure, file=sys.stderr)
-    sys.exit(1 if failures else 0)
+        print("{}: {}".format(name, failure), file=sys.stderr)
+    return 1 if failures else 0
 
 
-if __name__ == "__main__":
-    main()
+def perform(arguments):
+    """A whole session; returns the exit status."""
+    session = Session(arguments)
+
+    def end():
+        try:
+            session.stop()
+        finally:
+            session.report()
+
+    return carry_out("run", [session.start, session.watch], end, may_be_interrupted=True)

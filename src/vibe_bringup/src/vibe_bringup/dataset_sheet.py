@@ -5,7 +5,6 @@ The questions are those of Gebru et al. 2021, Datasheets for Datasets (doi:10.11
 
 import json
 import os
-import sys
 
 import numpy
 from PIL import Image
@@ -226,14 +225,10 @@ these images say nothing about patients.
     )  # fmt: skip
 
 
-def main():
-    folder, replayed = sys.argv[1], sys.argv[2]
+def describe(folder, replayed):
+    """Describes the data set in a folder; `replayed` says how well the recording repeated."""
     data, intrinsics, table = (read(folder, name) for name in ("dataset.json", "intrinsics.json", "labels.json"))
     with open(os.path.join(folder, "README.md"), "w", encoding="utf-8") as file:
         file.write(sheet(data, intrinsics, table, replayed))
     first_lens = os.path.join(folder, "left") if data["stereo"] else folder
     strip(first_lens, liveliest(first_lens, data["images"]), table).save(os.path.join(folder, "preview.png"))
-
-
-if __name__ == "__main__":
-    main()

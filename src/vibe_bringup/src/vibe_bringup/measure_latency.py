@@ -1,24 +1,20 @@
 """One measurement of latency: emulated devices or a simulated camera, simulator and rviz on a virtual display, while the
-hand blinks; see docs/latency.md.
+hand blinks; see docs/latency.md."""
 
-scripts/latency has checked the arguments, built the workspace and sourced its environment.
-"""
-
-import argparse
 import json
 import os
 import platform
 import shutil
-import signal
 import subprocess
-import sys
 import tempfile
 import time
 
 import yaml
 
-from graph import Graph, GraphError
-from rviz_window import RvizWindow
+from . import places
+from .graph import Graph, GraphError
+from .rviz_window import RvizWindow
+from .session import carry_out
 
 HAND = "package://vibe_hardware/config/hands/steady.yaml"
 DEVICE_CLOCK_ERROR = 300  # so that the phase between device and host drifts through whole periods [ppm]
@@ -28,35 +24,6 @@ CAMERA_JUMP = 1e-4  # of the helix: crosses its middle in one step [m]
 SHORTEST, LONGEST, BEFORE = 0.25, 0.5, 17.0  # between blinks; time of the hand before the first one [s]
 WARM_UP = 12.0  # of the graph, until the hand is at its place and the tissue has followed [s]
 LAMP = {"Class": "vibe_rviz_plugins/LatencyLamp", "Enabled": True, "Name": "Lamp", "Value": True}
-
-
-class Interrupted(Exception):
-    """Somebody wants it to end."""
-
-
-def parse_arguments():
-    parser = argparse.ArgumentParser(allow_abbrev=False)
-    parser.add_argument("--workspace", required=True)
-    parser.add_argument("--scene", required=True)
-    parser.add_argument("--output", required=True)
-    parser.add_argument("--blinks", type=int, required=True)
-    parser.add_argument("--rate", type=float, required=True, help="of steps [Hz]")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--free", action="store_true", help="steps follow the wall clock only")
-    parser.add_argument("--camera", action="store_true", help="blinks of an instrument in front of a simulated camera")
-    parser.add_argument("--headless", action="store_true", help="without rviz")
-    parser.add_argument("--load", action="store_true", help="keep one core busy with stress-ng")
-    parser.add_argument("--realtime", type=int, default=0, help="priority of the stepping thread")
-    parser.add_argument("--view", default="", help="a saved view of rviz")
-    parser.add_argument("--mode", default="blinks", choices=("blinks", "steps", "sway"))
-    parser.add_argument("--minutes", type=float, default=10.0, help="of the modes steps and sway")
-    parser.add_argument("--particles", type=int, default=0, help="0: as the scene has")
-    parser.add_argument("--lead", type=float, default=0.0, help="of the predicted positions that steps take [ms]")
-    arguments = parser.parse_args()
-    if arguments.mode != "blinks":
-        arguments.headless = arguments.free = True
-        arguments.camera = arguments.mode == "sway"
-    return arguments
 
 
 def processor():
@@ -136,9 +103,6 @@ class Measurement:
     def set_parameters(self):
         put, source = self.graph.set_parameter, "overstitch" if self.arguments.camera else "scope"
         put("/use_sim_time", False)
-        with open(os.path.join(self.arguments.workspace, "src/vibe_description/urdf/scope.urdf"), encoding="utf-8") as urdf:
-            put("/robot_description", urdf.read())
-        put("/robot_state_publisher/publish_frequency", 200.0)
         put("/sim_node/scene", self.scene())
         put("/sim_node/summary_file", self.path("summary.txt"))
         put("/sim_node/follow", self.follow)
@@ -158,9 +122,9 @@ class Measurement:
         print("tables, numbers and figure: " + self.output, flush=True)
         print(graph.how_to_attach(), flush=True)
         self.set_parameters()
-        graph.start("robot_state_publisher", ["rosrun", "robot_state_publisher", "robot_state_publisher"])
+        graph.start_robot()
         remapped = ["overstitch/measured_js:=overstitch/predicted_js"] if self.arguments.lead > 0 else []
-        graph.start("sim_node", ["rosrun", "vibe_sim", "sim_node"] + remapped, patience=30.0)
+        graph.start_node("vibe_sim", "sim_node", *remapped, patience=30.0)
         if not self.arguments.headless:
             self.start_rviz()
         else:
@@ -179,7 +143,7 @@ class Measurement:
 
     def rviz_config(self):
         """The configuration of sessions with the lamp."""
-        with open(os.path.join(self.arguments.workspace, "src/vibe_description/rviz/vibe.rviz"), encoding="utf-8") as file:
+        with open(places.find(places.RVIZ_CONFIG), encoding="utf-8") as file:
             config = yaml.safe_load(file)
         topic = "overstitch/simulated/measured_js" if self.arguments.camera else "scope/setpoint_js"
         lamp = dict(LAMP, Joint=self.joint, Threshold=self.base + 0.5 * self.jump, Topic=topic)
@@ -207,7 +171,7 @@ class Measurement:
         self.graph.set_parameter("/vision_node/publish_images", False)
         self.graph.set_parameter("/vision_node/realtime_priority", max(0, self.arguments.realtime - 1))
         self.graph.set_parameter("/vision_node/lead", 1e-3 * self.arguments.lead)
-        self.graph.start("vision_node", ["rosrun", "vibe_vision", "vision_node"])
+        self.graph.start_node("vibe_vision", "vision_node")
 
     def start_devices(self):
         arguments = self.arguments
@@ -219,8 +183,8 @@ class Measurement:
         command += ["--hand", "blink", HAND] + self.blink_options() if blinks else ["--hand", "script", HAND]
         emulator = self.graph.start("vibe_emulator", command)
         self.wait_for(emulator, "input", "the emulator offers no devices")
-        node = ["rosrun", "vibe_hardware", "hardware_node"]
-        self.graph.start("hardware_node", node + (["overstitch/measured_js:=buttons_js"] if arguments.camera else []))
+        remapped = ["overstitch/measured_js:=buttons_js"] if arguments.camera else []
+        self.graph.start_node("vibe_hardware", "hardware_node", *remapped)
 
     def blink_options(self):
         options = ["--blinks", str(self.arguments.blinks), "--seed", str(self.arguments.seed)]
@@ -242,15 +206,10 @@ class Measurement:
             with open(process.log, encoding="utf-8", errors="replace") as text:
                 if words in text.read():
                     return
-            self.check_alive()
+            self.graph.check_alive()
             if time.monotonic() > deadline:
                 raise GraphError("{} within {:.0f} s; see {}".format(problem, seconds, process.log))
             time.sleep(0.1)
-
-    def check_alive(self):
-        dead = self.graph.dead()
-        if dead is not None:
-            raise GraphError("{} died; the last it said:\n{}".format(dead.name, dead.last_words()))
 
     def blinked(self):
         if not os.path.exists(self.path("blinks.csv")):
@@ -269,7 +228,7 @@ class Measurement:
         begin = told = time.monotonic()
         end = begin + WARM_UP + 60 * self.arguments.minutes
         while time.monotonic() < end:
-            self.check_alive()
+            self.graph.check_alive()
             if self.begin == 0 and time.monotonic() > begin + WARM_UP:
                 self.begin = time.time_ns()
                 self.write_setup()
@@ -283,7 +242,7 @@ class Measurement:
         count, patience = self.arguments.blinks, BEFORE + 60 + LONGEST * self.arguments.blinks
         begin = told = time.monotonic()
         while self.blinked() < count:
-            self.check_alive()
+            self.graph.check_alive()
             if time.monotonic() - begin > patience:
                 raise GraphError("only {} of {} blinks within {:.0f} s".format(self.blinked(), count, patience))
             if time.monotonic() - told > 10:
@@ -297,30 +256,9 @@ class Measurement:
         shutil.rmtree(self.sockets, ignore_errors=True)
 
 
-def interrupt(number, _frame):
-    for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(each, signal.SIG_IGN)
-    raise Interrupted(signal.Signals(number).name)
-
-
-def main():
-    arguments = parse_arguments()
+def measure(arguments):
+    """Returns the exit status."""
     measurement = Measurement(arguments)
-    failure = ""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, interrupt)
-    try:
-        measurement.start()
-        measurement.watch()
-    except (GraphError, OSError, ValueError) as error:
-        failure = str(error)
-    except Interrupted as reason:
-        failure = "stopped by " + str(reason)
-    measurement.stop()
-    if failure:
-        sys.exit("latency: " + failure)
-    sys.exit(subprocess.run(["rosrun", "vibe_latency", "latency_report", arguments.output], check=False).returncode)
-
-
-if __name__ == "__main__":
-    main()
+    report = ["rosrun", "vibe_latency", "latency_report", arguments.output]
+    status = carry_out("latency", [measurement.start, measurement.watch], measurement.stop)
+    return status or subprocess.run(report, check=False).returncode

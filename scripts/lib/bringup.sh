@@ -1,0 +1,30 @@
+# The program of vibe_bringup that bears the name of the script that sources this file, in this workspace: a wrong call
+# and --help are answered at once; then what is missing is installed and built, and the program starts.
+set -euo pipefail
+source "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/common.sh"
+
+name=$(basename -- "$(readlink -f -- "$0")")
+export VIBE_WORKSPACE=$vibe_root # where the program writes by default
+
+# checkCall OPTION...: prints the help, or `needs: PART...` for a call that is right. Works without ROS and before there is
+# a build.
+checkCall() {
+  PYTHONPATH=$vibe_root/src/vibe_bringup/src:$vibe_root/src/vibe_sessions/src ROS_PACKAGE_PATH=$vibe_root/src \
+    /usr/bin/python3 -B "$vibe_root/src/vibe_bringup/programs/$name" --check "$@"
+}
+
+main() {
+  local said parts part flags=()
+  /usr/bin/python3 -c 'import argparse' 2>/dev/null || installMissing session # a bare Debian has no Python
+  said=$(checkCall "$@") || exit $?
+  if [[ $said != 'needs: '* ]]; then printf '%s\n' "$said"; exit 0; fi
+  read -ra parts <<<"${said#needs: }"
+  installMissing "${parts[@]}"
+  runGuarded "$@"
+  for part in "${parts[@]}"; do flags+=(--part "$part"); done
+  "$vibe_root/scripts/build" --quiet "${flags[@]}"
+  sourceWorkspace "$vibe_root/devel"
+  exec "$vibe_root/devel/lib/vibe_bringup/$name" "$@"
+}
+
+main "$@"

@@ -1,0 +1,28 @@
+# The parts of the workspace: what is installed and built when it is first asked for. Sourced, never run.
+
+# packagesOf PART: the packages of a part; they need no package of another part but those of `session`.
+packagesOf() {
+  case $1 in
+    session) echo vibe_cmake vibe_msgs vibe_core vibe_description vibe_node vibe_sim vibe_rviz_plugins vibe_sessions vibe_bringup ;;
+    devices) echo vibe_firmware vibe_hardware ;;
+    vision) echo vibe_vision ;;
+    measurements) echo vibe_latency vibe_benchmarks ;;
+    *) return 1 ;;
+  esac
+}
+
+# keysOf PART: the lines of apt_packages.txt, besides those of dependencies, that a part needs
+keysOf() {
+  case $1 in
+    session) echo @build @run ;;
+    firmware) echo @firmware ;;
+    tests) echo @test @lint ;;
+  esac
+}
+
+parts=(session devices vision measurements firmware tests)
+
+# checkPart PART: ends the script if there is no such part
+checkPart() {
+  [[ " ${parts[*]} " == *" $1 "* ]] || usageError "--part: there is no part '$1'; choose one of ${parts[*]}"
+}

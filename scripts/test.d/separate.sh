@@ -1,0 +1,11 @@
+# Every source includes what it uses: each is compiled by itself, not with the others of its folder. Minutes long.
+# kind: computing
+# units: 4
+# timeout: 7200
+source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
+
+if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
+  echo 'skipped sources one by one (scripts/test --slow compiles them)'
+  exit 0
+fi
+check 'every source compiles by itself' "$root/scripts/build" --separate --tests

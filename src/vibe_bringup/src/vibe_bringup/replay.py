@@ -1,0 +1,46 @@
+"""A recorded session goes through the simulator again, or into rviz. The command line; see view_replay.py."""
+
+import argparse
+import os
+
+from . import cli
+
+DESCRIPTION = """\
+Feeds the inputs that a recorded session used, step by step, through the simulator, without a ROS master, compares every
+step with the recording, and prints the summary of the session."""
+EPILOG = """\
+Ends with status 0 if all steps are the same, 1 if one differs, 2 if the recording cannot be repeated, 3 if it could not
+be checked, or not all of it."""
+
+
+def new_file(text):
+    if os.path.exists(text):
+        raise argparse.ArgumentTypeError("'{}' is there already".format(text))
+    return os.path.realpath(text)
+
+
+def parse(words):
+    made = cli.Parser("replay", "[options] BAG", DESCRIPTION, EPILOG)
+    add = made.options.add_argument
+    cli.add_recording(made)
+    add("--from", metavar="S", help="begin at the last snapshot before S seconds")
+    add("--to", metavar="S", help="end after S seconds")
+    add("--fill", metavar="FILE", type=new_file, help="also write a bag with every message of every topic that the "
+        "simulator sent")  # fmt: skip
+    add("--view", action="store_true", help="show the session in rviz instead, with a bar to go to any time")
+    arguments = made.parse(words)
+    arguments.bag = cli.recording(made, arguments)
+    arguments.words = cli.words_of(arguments, "from", "to", "fill")
+    if arguments.view and arguments.words:
+        made.error("--view goes without {}".format(arguments.words[0]))
+    if arguments.view and not os.environ.get("DISPLAY"):
+        made.error("--view needs a display, but DISPLAY is not set")
+    return arguments
+
+
+def run(arguments):
+    if arguments.view:
+        from .view_replay import view
+
+        return view(arguments.bag)
+    return cli.become(["rosrun", "vibe_sim", "vibe_replay", *arguments.words, arguments.bag])

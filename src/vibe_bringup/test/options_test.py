@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""Command lines: what is refused and in which words, defaults, and that a check leaves nothing behind."""
+
+import contextlib
+import importlib
+import io
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+from vibe_bringup import dataset, places, run
+
+PROGRAMS = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "programs")
+NAMES = sorted(os.listdir(PROGRAMS))
+
+
+def call(name, *words):
+    """(arguments or None, exit status or None, standard output, standard error) of a command line."""
+    said, complained = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
+        try:
+            return importlib.import_module("vibe_bringup." + name).parse(list(words)), None, "", ""
+        except SystemExit as end:
+            return None, end.code, said.getvalue(), complained.getvalue()
+
+
+class OptionsTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory(prefix="vibe-options-")
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        self.file = os.path.join(self.folder, "file.yaml")
+        with open(self.file, "w", encoding="utf-8") as file:
+            file.write("name: file\n")
+        environment = mock.patch.dict(os.environ)
+        environment.start()
+        self.addCleanup(environment.stop)
+        for name in ("VIBE_WORKSPACE", "DISPLAY"):
+            os.environ.pop(name, None)
+
+    def refuses(self, sentence, name, *words):
+        arguments, status, said, complained = call(name, *words)
+        self.assertIsNone(arguments, words)
+        self.assertEqual((status, said, complained.count("\n")), (2, "", 1), complained)
+        self.assertTrue(complained.startswith(name + ": "), complained)
+        self.assertIn(sentence, complained)
+        self.assertIn("(rosrun vibe_bringup {} --help lists what there is)".format(name), complained)
+
+    def accepts(self, name, *words):
+        arguments, _, _, complained = call(name, *words)
+        self.assertIsNotNone(arguments, complained)
+        self.assertEqual(os.listdir(self.folder), ["file.yaml"])  # a check leaves nothing behind
+        return arguments
+
+
+class EveryProgram(OptionsTest):
+    def test_there_are_nine(self):
+        self.assertEqual(" ".join(NAMES), "cohort dataset latency picture record replay report run views")
+
+    def test_help(self):
+        for name in NAMES:
+            _, status, said, complained = call(name, "--help")
+            self.assertEqual((status, complained), (0, ""))
+            self.assertTrue(said.startswith("Usage: rosrun vibe_bringup " + name), said)
+            self.assertLessEqual(max(map(len, said.splitlines())), 120)
+
+    def test_unknown_options(self):
+        for name in NAMES:
+            self.refuses("unknown option '--no-such-option'", name, "--no-such-option")
+
+    def test_the_name_of_the_script_is_said_in_a_workspace(self):
+        os.environ["VIBE_WORKSPACE"] = "/somewhere"
+        self.assertIn("(scripts/run --help lists", call("run", "--foo")[3])
+        self.assertTrue(call("run", "--help")[2].startswith("Usage: scripts/run [options]"))
+
+    def test_a_check_imports_no_ros(self):
+        code = "import sys, vibe_bringup.{}; sys.exit({{'rospy', 'rosbag', 'numpy', 'yaml'}} & set(sys.modules) or 0)"
+        for name in NAMES:
+            subprocess.run([sys.executable, "-B", "-c", code.format(name)], check=True)
+
+    def test_a_check_ends_before_the_program(self):
+        program = [sys.executable, "-B", os.path.join(PROGRAMS, "run"), "--check"]
+        done = subprocess.run([*program, "--fast"], capture_output=True, check=False)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, b"needs: session\n", b""))
+        done = subprocess.run([*program, "--drive", "gamepad"], capture_output=True, check=False)
+        self.assertEqual(done.stdout, b"needs: session devices\n")
+        self.assertEqual(subprocess.run([*program, "--fats"], capture_output=True, check=False).returncode, 2)
+
+
+class Run(OptionsTest):
+    def test_defaults(self):
+        arguments = self.accepts("run")
+        self.assertEqual(arguments.scene, os.path.realpath(places.find(places.SCENE)))
+        self.assertTrue(arguments.script.endswith("vibe_core/trainees/first.yaml"), arguments.script)
+        self.assertEqual((arguments.drive, arguments.fast, arguments.duration), ("trainee", False, None))
+        self.assertTrue(arguments.output.startswith(os.path.realpath("sessions")), arguments.output)
+
+    def test_output_lies_in_the_workspace(self):
+        os.environ["VIBE_WORKSPACE"] = self.folder + "/workspace"
+        self.assertIn("/workspace/sessions/", self.accepts("run").output)
+
+    def test_values(self):
+        arguments = self.accepts("run", "--fast", "--realtime", "--fast", "--duration", ".5", "--script", "grabs")
+        self.assertEqual((arguments.fast, arguments.duration), (True, 0.5))
+        self.assertTrue(arguments.script.endswith("vibe_core/trainees/demo/grabs.yaml"), arguments.script)
+        self.assertEqual(self.accepts("run", "--mesh", "file.yaml").mesh, os.path.realpath(self.file))
+        self.assertTrue(self.accepts("run", "--drive", "emulator").hand.endswith("demo/grabs.yaml"))
+        self.assertEqual(self.accepts("run", "--drive", "emulator", "--hand", "random").hand, "random")
+        self.assertTrue(self.accepts("run", "--drive", "gamepad").mapping.endswith("gamepads/two_stick.yaml"))
+
+    def test_defaults_for_other_programs(self):
+        arguments = run.defaults(fast=True, output="x")
+        self.assertEqual((arguments.fast, arguments.output, arguments.duration), (True, "x", 0))
+
+    def test_wrong_values(self):
+        for sentence, words in (
+            ("--mesh needs a value", "--mesh"),
+            ("--script needs a value", "--script --fast"),
+            ("--scene: there is no file 'nowhere.yaml'", "--scene nowhere.yaml"),
+            ("no file 'package://vibe_core/no.yaml'", "--scene package://vibe_core/no.yaml"),
+            ("--duration needs a number of seconds above zero, not 'long'", "--duration long"),
+            ("not '0.0'", "--duration 0.0"),
+            ("--drive: nobody is called 'walk'; choose one of trainee device", "--drive walk"),
+            ("'left' is not known; write script:FILE", "--drive emulator --hand left"),
+            ("cannot write to '/proc/session'", "--output /proc/session"),
+            ("unknown option 'foo'", "foo"),
+        ):
+            self.refuses(sentence, "run", *words.split())
+
+    def test_what_goes_with_what(self):
+        for sentence, words in (
+            ("'device' drives in wall time", "--drive device --fast"),
+            ("--script goes with --drive trainee, not with --drive gamepad", "--drive gamepad --script first"),
+            ("--replay-pad goes with --drive gamepad", "--replay-pad file.yaml"),
+            ("--config goes with --drive emulator", "--config file.yaml"),
+            ("exclude each other", "--drive gamepad --pad X --replay-pad file.yaml"),
+            ("go with --instruments camera; add it", "--drive emulator --camera gige:"),
+            ("'trainee' moves the instruments itself", "--instruments camera"),
+            ("add --vision-config FILE", "--drive emulator --instruments camera"),
+            ("remove one of them", "--drive device --instruments camera --camera fake --vision-config file.yaml"),
+            ("DISPLAY is not set", "--drive keyboard"),
+            ("remove --headless", "--drive keyboard --headless"),
+        ):
+            self.refuses(sentence, "run", *words.split())
+        self.accepts("run", "--drive", "device", "--config", "file.yaml")
+
+    def test_a_session_is_not_recorded_over(self):
+        os.mkdir("old")
+        open("old/session.bag", "wb").close()
+        self.refuses("'old' already holds a session", "run", "--output", "old")
+
+
+class OthersTest(OptionsTest):
+    def test_recordings(self):
+        for name in ("replay", "dataset"):
+            self.refuses("which recording?", name)
+            self.refuses("there is no file 'no.bag'", name, "no.bag")
+            self.refuses("one recording at a time, not 'b' as well", name, "file.yaml", "--to", "3", "b")
+        arguments = self.accepts("replay", "--from", "0", "file.yaml", "--to", "3")
+        self.assertEqual(arguments.words, ["--from", "0", "--to", "3"])
+        self.refuses("--view goes without --from", "replay", "file.yaml", "--view", "--from", "3")
+        self.refuses("is there already", "replay", "--fill", "file.yaml", "file.yaml")
+
+    def test_dataset(self):
+        self.refuses("where to? --output DIR", "dataset", "file.yaml")
+        self.refuses("is not empty", "dataset", "file.yaml", "--output", self.folder)
+        self.refuses("is not a folder", "dataset", "file.yaml", "--output", self.file)
+        arguments = self.accepts("dataset", "file.yaml", "--output", "a/b", "--no-smoke", "--field-of-view", "90")
+        self.assertEqual(arguments.words, ["--field-of-view", "90", "--no-smoke"])
+        known = {action.dest for action in dataset.parser()._actions}
+        self.assertEqual(known - set(dataset.VALUES + dataset.FLAGS), {"bags", "output"})
+
+    def test_record(self):
+        self.refuses("whole seconds above zero, not '0.5'", "record", "--duration", "0.5")
+        self.refuses("is there already", "record", "--output", "file.yaml")
+        self.assertEqual(self.accepts("record", "--duration", "5").duration, 5)
+
+    def test_pictures(self):
+        pictures = self.accepts("picture", "b=2", "--view", "V", "a=1.5@W").pictures
+        self.assertEqual([tuple(picture) for picture in pictures], [("a", 1.5, "W"), ("b", 2.0, "V")])
+        self.assertEqual(len(self.accepts("picture").pictures), 5)
+        for words in ("rest", "rest=0", "rest=x"):
+            self.refuses("NAME=SECONDS[@VIEW] with seconds above zero, not '{}'".format(words), "picture", words)
+        self.refuses("there is no view 'foo'", "views", "foo")
+        self.refuses("--size needs WIDTHxHEIGHT in pixels, not '3'", "views", "--size", "3")
+        self.assertEqual([view.name for view in self.accepts("views", "scar").views], ["scar"])
+        self.assertEqual(len(self.accepts("views").views), 10)
+
+    def test_latency(self):
+        self.refuses("--blinks needs a whole number above zero, not '0'", "latency", "--blinks", "0")
+        self.refuses("at most 100 Hz, not '1000'", "latency", "--rate", "1000")
+        self.refuses("--lead needs 0 to 200 ms, not '201'", "latency", "--sway", "--lead", "201")
+        self.refuses("goes with --sway", "latency", "--lead", "10")
+        self.refuses("from 0 to 98", "latency", "--realtime", "99")
+        self.refuses("is there already", "latency", "--output", self.folder)
+        arguments = self.accepts("latency", "--sway")
+        self.assertTrue(arguments.headless and arguments.free and arguments.camera)
+        self.assertEqual(self.accepts("latency", "--steps", "--rate", "1000").rate, 1000)
+
+    def test_sessions(self):
+        self.refuses("which recording?", "report")
+        self.refuses("--jobs needs a number above zero, not '0'", "report", "--jobs", "0", "a.bag")
+        self.refuses("--group: 'x' is neither", "report", "--group", "x", "a.bag")
+        self.refuses("either --output DIR or --plot DIR", "cohort")
+        self.assertEqual(self.accepts("cohort", "--output", "a", "--novice", "0", "1", "--count", "2").novice, [0, 1])
+
+
+if __name__ == "__main__":
+    unittest.main()
