@@ -4,7 +4,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
 devel=$root/devel${VIBE_VARIANT:-}
-if [ ! -x "$devel/lib/vibe_core/vibe_cohort" ] || [ ! -e "$devel/lib/vibe_sessions/cohort" ]; then
+if [ ! -x "$devel/lib/vibe_core/vibe_headless" ] || [ ! -e "$devel/lib/vibe_sessions/cohort" ]; then
   echo 'skipped cohorts (not built; scripts/build builds them)'
   exit 0
 fi
@@ -31,11 +31,23 @@ aRowPerSession() {
     'novice,seed 0,1 0,2 1,1 1,2 ' ]
 }
 
-# The numbers are those of vibe_cohort.
-theRowsOfTheProgram() {
-  inWorkspace "$devel/lib/vibe_core/vibe_cohort" --script "$scratch/short.yaml" --count 1 --first-seed 2 --novice 1 \
-    >"$scratch/row.csv"
-  [ "$(tail -n 1 "$scratch/row.csv")" = "$(tail -n 1 "$scratch/local/cohort.csv" | cut -d, -f 3-)" ]
+headless() {
+  inWorkspace "$devel/lib/vibe_core/vibe_headless" --quiet "$@"
+}
+
+# Names and numbers are those of vibe_headless; another seed is another state.
+theMeasuresOfHeadless() {
+  headless --script "$scratch/short.yaml" --seed 2 --novice 1 --measures "$scratch/measures.json" &&
+    /usr/bin/python3 - "$scratch" <<'PYTHON'
+import csv, json, sys
+outcome = json.load(open(sys.argv[1] + "/measures.json"))
+values = {name: measure["value"] for name, measure in outcome["measures"].items()}
+*_, other, row = csv.DictReader(open(sys.argv[1] + "/local/cohort.csv"))
+assert list(row) == ["scene", "mesh", "novice", "seed", *values, "state_hash"], list(row)
+wrong = {n: row[n] for n, v in values.items() if row[n] != ("" if v is None else f"{v:.6g}")}
+assert not wrong and values["goals"] == 1, wrong
+assert row["state_hash"] == outcome["state_hash"] != other["state_hash"], (row, other)
+PYTHON
 }
 
 # What is done is not done again: rows keep their times.
@@ -84,9 +96,15 @@ drawsACurve() {
 
 startDask
 check 'cohorts: a row per session' aRowPerSession
-check 'cohorts: the rows of vibe_cohort' theRowsOfTheProgram
+check 'cohorts: the measures of vibe_headless' theMeasuresOfHeadless
 check 'cohorts: go on where they ended' goesOn
 check 'cohorts: through Dask the same table' throughDaskTheSame
 check 'cohorts: a bad scene is listed, the others go on' aBadSceneIsListed
 check 'cohorts: a learning curve' drawsACurve
 check 'cohorts: another plan is refused' refuses 2 'another plan: count was 2, not 3' cohort local --count 3
+check 'vibe_headless: a skill that is none' refuses 2 '--novice' headless --novice 1.5
+check 'vibe_headless: a skill without a protocol' refuses 2 '--novice' headless --novice 1
+check 'vibe_headless: no such protocol' refuses 2 'none.yaml' headless --script "$scratch/none.yaml"
+check 'vibe_headless: no such surface' refuses 2 'none.obj' headless --mesh "$scratch/none.obj"
+check 'vibe_headless: no such folder' refuses 2 'none/a.json' \
+  headless --script "$scratch/short.yaml" --measures "$scratch/none/a.json"

@@ -1,7 +1,5 @@
 // Compares the times of the sparse factor with those of CHOLMOD (supernodal), on the stiffness of a stomach and of a
 // block.
-#include <time.h>
-
 #include <Eigen/CholmodSupport>
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +10,7 @@
 #include "sparse/stiffness_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/step_timer.hpp"
 
 namespace {
 
@@ -28,19 +27,13 @@ const char kHelp[] =
 
 constexpr int kRepeats = 15;  // design choice: the median of this many runs is reproducible to a few percent
 
-double threadTime() {  // [s]
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 void print(const std::string& matrix, const std::string& method, const std::string& part,
            const std::function<void()>& work) {
   std::vector<double> times;
   for (int i = 0; i < kRepeats; ++i) {
-    const double begin = threadTime();
+    const double begin = threadCpuTime();
     work();
-    times.push_back(1e3 * (threadTime() - begin));
+    times.push_back(1e3 * (threadCpuTime() - begin));
   }
   std::sort(times.begin(), times.end());
   std::printf("%-8s %-14s %-8s %9.3f %9.3f\n", matrix.c_str(), method.c_str(), part.c_str(), times.front(),

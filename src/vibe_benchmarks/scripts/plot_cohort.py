@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the measures of virtual trainees by skill, from the table that `vibe_cohort` writes, with published values.
+"""Draws the measures of virtual trainees by skill, from `cohort.csv` of scripts/cohort, with published values.
 Prints the same as a Markdown table: mean and standard deviation per skill, and how often an expert is the better one
 of an expert and a novice (1: always, 0.5: no difference).
 
@@ -17,14 +17,14 @@ Measure = collections.namedtuple("Measure", "column title scale better published
 MEASURES = [
     Measure("bites_per_5_min", "bites in 5 minutes of suturing", 1, 1, ((13.1, 5.2), (3.0, 0.8)),
             "endoscopic suturing simulator"),
-    Measure("time [s]", "time [s]", 1, -1, None, "colonoscope task: 31.5 and 101.5 s"),
+    Measure("time", "time [s]", 1, -1, None, "colonoscope task: 31.5 and 101.5 s"),
     Measure("movements", "movements", 1, -1, None, "colonoscope task: 21.5 and 62"),
-    Measure("path_length [m]", "path of the tip [m]", 1, -1, None, "hand motion, D'Angelo 2015"),
+    Measure("path_length", "path of the tip [m]", 1, -1, None, "hand motion, D'Angelo 2015"),
     Measure("spectral_arc_length", "smoothness, SPARC", 1, 1, None, "endovascular tool tip"),
     Measure("log_dimensionless_jerk", "smoothness, LDLJ", 1, 1, None, "hand motion, direction only"),
     Measure("area_reduction", "area of the body reduced by [%]", 100, 1, None, "sleeve: 34.6 and 9.4 %"),
-    Measure("max_force [N]", "max force on the tool [N]", 1, -1, None, ""),
-    Measure("cinch_tension_mean [N]", "tension of the cinch [N]", 1, 1, None, ""),
+    Measure("max_force", "max force on the tool [N]", 1, -1, None, ""),
+    Measure("cinch_tension_mean", "tension of the cinch [N]", 1, 1, None, ""),
 ]
 NAMES = {0.0: "expert", 1.0: "novice"}
 
@@ -94,10 +94,10 @@ def legend(figure):
 
 
 def main(options, table, pictures):
-    rows = read_table(table, "novice", "vibe_cohort --csv")
+    rows = read_table(table, "novice", "scripts/cohort")
     missing = [measure.column for measure in MEASURES if measure.column not in rows[0]]
     if missing:
-        sys.exit(f"{table}: has no column '{missing[0]}'; write it with vibe_cohort --csv")
+        sys.exit(f"{table}: has no column '{missing[0]}'; write it with scripts/cohort")
     skills = sorted({float(row["novice"]) for row in rows})
     print_table(rows, skills)
     figure, axes = plt.subplots(3, 3, figsize=(11, 10))

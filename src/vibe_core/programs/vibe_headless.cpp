@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,7 @@ struct Options {
   std::string script, mesh, csv, measures, snapshot;
   double duration = 0;
   int threads = 1;
+  std::optional<double> novice;
   std::optional<std::uint64_t> seed;
   bool quiet = false;
   bool script_length = false, list_measures = false;
@@ -48,7 +50,7 @@ void addOptions(CLI::App& app, Options& o) {
       ->type_name("FILE");
   app.add_option("--mesh", o.mesh, "surface of the organ instead of the scene's")->type_name("FILE");
   app.add_option("--duration", o.duration,
-                 "simulated seconds (default: length of the script, until the goals of a protocol have ended, else 10)")
+                 "simulated seconds (default: length of the script, else 10); a protocol ends before if its goals have")
       ->type_name("S")
       ->check(finiteFrom(0));
   app.add_option("--csv", o.csv, "write one row per step there (- for standard output)")->type_name("FILE");
@@ -57,7 +59,10 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--threads", o.threads, "threads inside a step (default: 1); the result is the same")
       ->type_name("N")
       ->check(wholeFrom(1, 1024));
-  app.add_option("--seed", o.seed, "seed of random numbers instead of the scene's")
+  app.add_option("--novice", o.novice, "skill of the trainee instead of the protocol's, 0: expert to 1: novice")
+      ->type_name("PART")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--seed", o.seed, "seed of random numbers instead of the scene's and the protocol's")
       ->type_name("N")
       ->check(finiteFrom(0));
   app.add_flag("--quiet", o.quiet, "print the state hash only");
@@ -84,9 +89,13 @@ std::unique_ptr<TraineeScript> loadScript(const Options& o) {
 }
 
 std::unique_ptr<Trainee> loadTrainee(const Options& o, const std::shared_ptr<const Model>& model) {
-  if (o.script.empty() || !isProtocol(resolveAddress(o.script))) return nullptr;
+  if (o.script.empty() || !isProtocol(resolveAddress(o.script))) {
+    if (o.novice) throw Error("--novice is the skill of a protocol of goals; name one with --script.");
+    return nullptr;
+  }
   const Protocol protocol = Protocol::load(resolveAddress(o.script));
-  auto trainee = std::make_unique<Trainee>(model, protocol.skill, protocol.seed);
+  const Skill skill = o.novice ? between(Skill::expert(), Skill::novice(), *o.novice) : protocol.skill;
+  auto trainee = std::make_unique<Trainee>(model, skill, o.seed.value_or(protocol.seed));
   for (const Goal& goal : protocol.goals) trainee->add(goal);
   return trainee;
 }
@@ -167,10 +176,8 @@ void run(const Options& o) {
     const std::string doing = trainee ? trainee->activity() : script ? script->phaseAt(s.time()) : "";
     if (show && s.stepCount() % 30 == 1) printProgress(s.time(), duration, doing);
   };
-  if (duration > 0)
-    simulation.run(std::lround(duration / simulation.stepPeriod()), inputAt, observer);
-  else
-    while (!trainee->done()) simulation.run(1, inputAt, observer);
+  long left = duration > 0 ? std::lround(duration / simulation.stepPeriod()) : std::numeric_limits<long>::max();
+  while (left-- > 0 && !(trainee && trainee->done())) simulation.run(1, inputAt, observer);
   if (csv) csv->finish();
   if (show) std::fprintf(stderr, "\r%-60s\r", "");
   if (!o.snapshot.empty()) simulation.saveSnapshot(o.snapshot);

@@ -11,6 +11,7 @@
 #include "option_checks.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/emulator/blink_hand.hpp"
 #include "vibe_hardware/emulator/blink_log.hpp"
 #include "vibe_hardware/emulator/emulator.hpp"
@@ -123,12 +124,6 @@ std::int64_t wallClock() {
   return 1'000'000'000LL * time.tv_sec + time.tv_nsec;
 }
 
-double monotonic() {
-  timespec time{};
-  ::clock_gettime(CLOCK_MONOTONIC, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 void sleepUntil(double when) {
   timespec time{};
   time.tv_sec = static_cast<time_t>(when);
@@ -142,10 +137,10 @@ class Session {
   explicit Session(const Options& options) : Session(options, setupOf(options)) {}
 
   void run() {
-    const double start = monotonic();
+    const double start = steadyTime();
     TickSchedule schedule(start, 1e-6 * options_.clock_error);
     while (stopped == 0 && (options_.duration == 0 || emulator_.time() < options_.duration)) {
-      const int due = schedule.due(monotonic());
+      const int due = schedule.due(steadyTime());
       for (int i = 0; i < due; ++i) {
         tick();
       }

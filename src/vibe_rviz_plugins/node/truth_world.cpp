@@ -26,7 +26,7 @@ std::string TruthWorld::setParticles(const sensor_msgs::PointCloud2& message) {
 }
 
 std::string TruthWorld::setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf) {
-  SutureScene seen;
+  SutureDrawing seen;
   const std::string problem = readSutures(message, seen);
   if (!problem.empty()) return problem;
   const std::optional<Eigen::Isometry3d> pose = poseOf(message.header.frame_id);

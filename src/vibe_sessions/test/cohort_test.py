@@ -17,10 +17,11 @@ import warnings
 from unittest import mock
 
 from vibe_sessions import cohort
-from vibe_sessions.cohort_plan import CohortError, Plan
+from vibe_sessions.cohort_plan import Plan
 from vibe_sessions.cohort_plot import organ_names
 from vibe_sessions.cohort_progress import Progress
 from vibe_sessions.cohort_session import check_files
+from vibe_sessions.headless import SessionError
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -31,7 +32,7 @@ class CohortTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
         programs = os.path.join(self.folder, "prefix", "lib", "vibe_core")
         os.makedirs(programs)
-        shutil.copy(os.path.join(HERE, "fake_cohort.py"), os.path.join(programs, "vibe_cohort"))
+        shutil.copy(os.path.join(HERE, "fake_headless.py"), os.path.join(programs, "vibe_headless"))
         self.marks = os.path.join(self.folder, "marks")
         os.makedirs(self.marks)
         self.before = dict(os.environ)
@@ -122,7 +123,7 @@ class LocalTest(CohortTest):
 
     def test_another_build_is_refused(self):
         self.call(*self.arguments("a"))
-        with open(os.path.join(self.folder, "prefix/lib/vibe_core/vibe_cohort"), "a", encoding="utf-8") as stream:
+        with open(os.path.join(self.folder, "prefix/lib/vibe_core/vibe_headless"), "a", encoding="utf-8") as stream:
             stream.write("# another build\n")
         status, said = self.call("--output", os.path.join(self.folder, "a"))
         self.assertEqual(status, 2)
@@ -229,7 +230,7 @@ class WorkerTest(CohortTest):
         session = next(iter(Plan.load(os.path.join(self.folder, "a", "cohort.yaml")).sessions()))
         check_files(session)
         other = dataclasses.replace(session, versions=tuple((name, "other") for name, _ in session.versions))
-        with self.assertRaisesRegex(CohortError, "is .* here and other in the plan"):
+        with self.assertRaisesRegex(SessionError, "is .* here and other in the plan"):
             check_files(other)
 
 

@@ -12,8 +12,8 @@ from unittest import mock
 import xml.etree.ElementTree as ElementTree
 
 from vibe_sessions import regression, regression_units
-from vibe_sessions.regression_file import RegressionError, read_regression
-from vibe_sessions.regression_run import find_program
+from vibe_sessions.headless import SessionError, find_program
+from vibe_sessions.regression_file import read_regression
 from vibe_sessions.regression_verdict import judge, table
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -26,7 +26,7 @@ KNOWN = {"max_force": "N", "volume": "m^3", "bites": "1", "area_reduction": "1",
 def headless():
     try:
         return find_program()
-    except RegressionError:
+    except SessionError:
         return None
 
 
@@ -48,7 +48,7 @@ class FileTest(unittest.TestCase):
         return read_regression(self.expecting(lines), KNOWN).expect[0]
 
     def refused(self, file, line, *words):
-        with self.assertRaises(RegressionError) as caught:
+        with self.assertRaises(SessionError) as caught:
             read_regression(file, KNOWN)
         sentence = str(caught.exception)
         self.assertTrue(sentence.startswith(f"{file}:{line}: ") if line else sentence.startswith(file), sentence)

@@ -1,18 +1,11 @@
 #include "cpu_clock.hpp"
 
 #include <sched.h>
-#include <time.h>
 
 #include <algorithm>
 #include <limits>
 
 namespace vibe {
-
-double threadCpuTime() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 bool pinThread() {
   const int processor = sched_getcpu();

@@ -1,10 +1,10 @@
 #pragma once
 #include <vector>
 
+#include "vibe_core/common/step_timer.hpp"  // threadCpuTime()
+
 namespace vibe {
 
-/// Processor time of the calling thread so far [s].
-double threadCpuTime();
 /// Keeps the calling thread on the processor it runs on. @return false where the system does not allow it
 bool pinThread();
 

@@ -12,6 +12,7 @@
 
 #include "program_options.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/step_timer.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 #include "vibe_vision/record/annotation.hpp"
 #include "vibe_vision/record/track_table.hpp"
@@ -45,12 +46,6 @@ void addOptions(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--roi-x", options.source.roi_x, "Where the recording was cut from the sensor [px]");
   app.add_option("--roi-y", options.source.roi_y, "The same, rows [px]");
-}
-
-double threadTime() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 /// Draws the results into a video or a folder.
@@ -153,9 +148,9 @@ int run(Options options) {
     while ((result = source->read(frame, kTimeout)) == vibe::ReadResult::Frame) {
       completeSize(config, options, frame);
       if (summary.frames() == 0) requireSize(config, frame);
-      const double begin = threadTime();
+      const double begin = vibe::threadCpuTime();
       const vibe::Measurements& measurements = tracker.track(frame);
-      summary.add(measurements, threadTime() - begin);
+      summary.add(measurements, vibe::threadCpuTime() - begin);
       table.add(frame, measurements);
       annotator.add(config, frame, measurements);
       progress.show(summary.frames());

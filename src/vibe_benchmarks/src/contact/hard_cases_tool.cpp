@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "common/random.hpp"
 #include "contact/hard_cases.hpp"
 #include "contact/joint_limits.hpp"
 #include "contact/scope_motion.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/random.hpp"
 
 namespace vibe {
 namespace {

@@ -1,11 +1,11 @@
 #include "output/result_row.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <cstring>
+
+#include "vibe_core/common/step_timer.hpp"
 
 namespace vibe {
 namespace {
@@ -91,9 +91,7 @@ std::uint64_t hashNumbers(const double* values, std::size_t count, std::uint64_t
 }
 
 double threadMilliseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+  return 1e3 * threadCpuTime();
 }
 
 }  // namespace vibe

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "common/random.hpp"
 #include "events/emit_event.hpp"
+#include "vibe_core/common/random.hpp"
 
 namespace vibe {
 

@@ -7,8 +7,8 @@
 
 #include "common/constants.hpp"
 #include "common/elementary.hpp"
-#include "common/random.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/random.hpp"
 
 namespace vibe {
 namespace {

@@ -81,7 +81,8 @@ double BiteAttempt::gap() const {
 // Moves the helix to its aim at a depth below the mucosa; what the last motion missed is added to the next.
 bool BiteAttempt::approach(double into, double min) {
   const Eigen::Vector3d outward = me_.outward(plan_.held), wanted = me_.position(plan_.held) + into * outward;
-  const Hand::Joints joints = reachFor(me_.model(), wanted + correction_, helixInTip(kHelixOut), plan_.joints).joints;
+  const TraineeHand::Joints joints =
+      reachFor(me_.model(), wanted + correction_, helixInTip(kHelixOut), plan_.joints).joints;
   const bool arrived = hand_.moveTo(joints, min, [this] { return hand_.feelsTooMuch(); });
   settle();
   const Eigen::Vector3d miss = wanted - me_.view().helix;
@@ -157,7 +158,7 @@ void BiteAttempt::pushOn() {
   std::vector<Eigen::Isometry3d> poses;
   me_.model().tool->forwardKinematics(hand_.joints(), poses);
   const Eigen::Isometry3d tip = me_.model().tool_base * poses[me_.model().tip_link];
-  const Hand::Joints joints =
+  const TraineeHand::Joints joints =
       reachFor(me_.model(), tip * Eigen::Vector3d(kPushed, 0, 0), Eigen::Vector3d::Zero(), hand_.joints()).joints;
   hand_.moveTo(joints, 0.8, [this] { return isDeep() || hand_.feelsTooMuch(); });
   settle();
@@ -233,7 +234,7 @@ GoalResult BiteAttempt::exchange() {
 
 void BiteAttempt::letGo() {
   hand_.release(HelixGrab);
-  Hand::Joints joints = hand_.joints();
+  TraineeHand::Joints joints = hand_.joints();
   joints[HelixAdvance] = kHelixHome;
   joints[HelixRotation] = 0;
   joints[Insertion] = std::max(0.0, joints[Insertion] - 8e-3);

@@ -42,7 +42,7 @@ class BiteAttempt {
   const int number_;
   const bool last_;
   Operator& me_;
-  Hand& hand_;
+  TraineeHand& hand_;
   BitePlan plan_;
   Observation before_;                                    // of the draw
   Eigen::Vector3d correction_ = Eigen::Vector3d::Zero();  // what the last motions of the helix missed [m]

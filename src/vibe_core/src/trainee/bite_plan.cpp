@@ -27,7 +27,7 @@ constexpr double kMissCost = 1e3, kShallowCost = 2e3, kPressCost = 0.5e3, kMotio
 // Where the closed arm's needle passes, from the drawn-in helix, in scope_tip [m].
 const Eigen::Vector3d kNeedleFromHelix(0, -5.3e-3, 5e-3);
 
-Eigen::Quaterniond turnOf(const Model& model, const Hand::Joints& joints) {
+Eigen::Quaterniond turnOf(const Model& model, const TraineeHand::Joints& joints) {
   std::vector<Eigen::Isometry3d> poses;
   model.tool->forwardKinematics(joints, poses);
   return Eigen::Quaterniond((model.tool_base * poses[model.tip_link]).linear());
@@ -51,7 +51,7 @@ class Planner {
     return best;
   }
 
-  BitePlan withRoll(const Hand::Joints& rolled) const {
+  BitePlan withRoll(const TraineeHand::Joints& rolled) const {
     BitePlan plan = aimed(turnOf(me_.model(), rolled), target_);
     if (!std::isfinite(plan.cost)) return plan;
     const IkSolution reached = reachHeld(plan.held, rolled);
@@ -64,7 +64,7 @@ class Planner {
   }
 
   /// Of infinite cost where a way along the wall leaves the organ.
-  BitePlan withRollOnTheOrgan(const Hand::Joints& rolled) const {
+  BitePlan withRollOnTheOrgan(const TraineeHand::Joints& rolled) const {
     try {
       return withRoll(rolled);
     } catch (const Error&) {
@@ -74,7 +74,7 @@ class Planner {
 
   BitePlan anyRoll() const {
     const Eigen::Vector3d at = me_.position(target_), outward = me_.outward(target_);
-    Hand::Joints joints = aimAt(me_.model(), at, outward, helixInTip(kHelixOut), me_.hand.joints()).joints;
+    TraineeHand::Joints joints = aimAt(me_.model(), at, outward, helixInTip(kHelixOut), me_.hand.joints()).joints;
     joints[HelixAdvance] = kHelixOut;
     BitePlan best;
     const int considered = 1 + static_cast<int>(std::lround(me_.skill().foresight * (kRolls - 1)));
@@ -142,7 +142,7 @@ class Planner {
     return kMissCost * miss + kShallowCost * std::max(0.0, kGoodDepth - depth) + kPressCost * pressed;
   }
 
-  IkSolution reachHeld(const WallPoint& held, const Hand::Joints& start) const {
+  IkSolution reachHeld(const WallPoint& held, const TraineeHand::Joints& start) const {
     return reachFor(me_.model(), me_.position(held) + kHelixDepth * me_.outward(held), helixInTip(kHelixOut), start);
   }
 

@@ -9,11 +9,11 @@ namespace vibe {
 /// How to take a bite: where the helix is to hold the wall and how the device is to lie, so that the needle passes
 /// through the target once the wall has been drawn in.
 struct BitePlan {
-  WallPoint held;       ///< by the helix
-  Hand::Joints joints;  ///< with the helix on the wall
-  double drawn = 0;     ///< helix_advance to which the wall is to be drawn [m]
-  double miss = 0;      ///< of the needle from the target along the wall, as imagined [m]
-  double depth = 0;     ///< of the needle, as imagined [m]
+  WallPoint held;              ///< by the helix
+  TraineeHand::Joints joints;  ///< with the helix on the wall
+  double drawn = 0;            ///< helix_advance to which the wall is to be drawn [m]
+  double miss = 0;             ///< of the needle from the target along the wall, as imagined [m]
+  double depth = 0;            ///< of the needle, as imagined [m]
   double cost = std::numeric_limits<double>::infinity();
 };
 

@@ -7,16 +7,16 @@ namespace vibe {
 
 namespace {
 
-constexpr double kBeamGap = 3e-3;   // from the probe to the wall [m]
-constexpr double kAimed = 2e-3;  // of the beam from its target, and of the probe from its distance [m]
-constexpr int kCorrections = 3;     // of the tip, before the pedal is pressed
+constexpr double kBeamGap = 3e-3;  // from the probe to the wall [m]
+constexpr double kAimed = 2e-3;    // of the beam from its target, and of the probe from its distance [m]
+constexpr int kCorrections = 3;    // of the tip, before the pedal is pressed
 
 // Brings the probe before the wall; what the last motion missed is added to the next.
 bool approach(const WallPoint& target, double distance, Operator& me) {
   Eigen::Vector3d correction = Eigen::Vector3d::Zero();
   for (int k = 0; k < kCorrections; ++k) {
     const Eigen::Vector3d place = me.position(target);
-    const Hand::Joints joints = bestView(place + correction, me.outward(target), distance, me);
+    const TraineeHand::Joints joints = bestView(place + correction, me.outward(target), distance, me);
     if (!travel(joints, me)) return false;
     me.hand.wait(me.skill().reaction_time + 0.1);
     const View view = viewOf(place, me.view());

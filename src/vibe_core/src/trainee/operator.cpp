@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/random.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/random.hpp"
 
 namespace vibe {
 
@@ -42,7 +42,7 @@ WallPoint find(const Place& place, const AnatomicalMap& map) {
 }
 
 void stepBack(Operator& me) {
-  Hand::Joints joints = me.hand.joints();
+  TraineeHand::Joints joints = me.hand.joints();
   joints[Insertion] = std::min(joints[Insertion], 0.05);
   joints[TipUpDown] = joints[TipLeftRight] = 0;
   joints[HelixAdvance] = 2e-3;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "trainee/hand.hpp"
+#include "trainee/trainee_hand.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
 #include "vibe_core/trainee/goal.hpp"
 
@@ -15,7 +15,7 @@ namespace vibe {
 
 /// What the actions of a trainee share: hands, knowledge of the organ, random errors, and how to say what is going on.
 struct Operator {
-  Hand& hand;
+  TraineeHand& hand;
   std::uint64_t random;                         ///< state of the generator of errors
   std::function<void(const std::string&)> say;  ///< what is being done
 

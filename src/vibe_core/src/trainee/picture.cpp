@@ -19,7 +19,7 @@ View viewFrom(const Eigen::Vector3d& place, const Eigen::Vector3d& tip, const Ei
   return {way.norm(), math::acos(std::clamp(way.normalized().dot(ahead), -1.0, 1.0))};
 }
 
-View viewWith(const Hand::Joints& joints, const Eigen::Vector3d& place, const Model& model) {
+View viewWith(const TraineeHand::Joints& joints, const Eigen::Vector3d& place, const Model& model) {
   std::vector<Eigen::Isometry3d> poses;
   model.tool->forwardKinematics(joints, poses);
   const Eigen::Isometry3d tip = model.tool_base * poses[model.tip_link];
@@ -32,9 +32,10 @@ View viewOf(const Eigen::Vector3d& place, const Observation& seen) {
   return viewFrom(place, seen.tip, seen.tip_turn * Eigen::Vector3d::UnitX());
 }
 
-Hand::Joints bestView(const Eigen::Vector3d& place, const Eigen::Vector3d& outward, double distance, Operator& me) {
+TraineeHand::Joints bestView(const Eigen::Vector3d& place, const Eigen::Vector3d& outward, double distance,
+                             Operator& me) {
   const Eigen::Vector3d side = outward.unitOrthogonal(), other = outward.cross(side);
-  Hand::Joints best = me.hand.joints();
+  TraineeHand::Joints best = me.hand.joints();
   double min = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& tilt : {Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0),
                                       Eigen::Vector2d(0, 1), Eigen::Vector2d(0, -1)}) {

@@ -15,6 +15,7 @@ View viewOf(const Eigen::Vector3d& place, const Observation& seen);
 /// else obliquely.
 /// @param outward   of the wall at the place
 /// @param distance  of the tip from the place [m]
-Hand::Joints bestView(const Eigen::Vector3d& place, const Eigen::Vector3d& outward, double distance, Operator& me);
+TraineeHand::Joints bestView(const Eigen::Vector3d& place, const Eigen::Vector3d& outward, double distance,
+                             Operator& me);
 
 }  // namespace vibe

@@ -35,7 +35,7 @@ class Stall {
 }  // namespace
 
 GoalResult perform(const CinchGoal&, Operator& me) {
-  Hand& hand = me.hand;
+  TraineeHand& hand = me.hand;
   hand.forget();
   hand.hold(TTag, 0.15);
   if (!hand.await([&] { return hand.happened(Event::Kind::TTagDropped); }, 1))

@@ -105,7 +105,7 @@ struct Trainee::Impl {
   std::shared_ptr<const Model> model;
   Skill skill;
   Tremor tremor;
-  Hand hand;
+  TraineeHand hand;
   Operator me;
   Trainee& trainee;
   long delay;

@@ -10,15 +10,15 @@ namespace {
 constexpr double kLeastInsertion = 0.05;  // with which the scope turns, straight, in the entry; design choice [m]
 constexpr double kSmallTurn = 0.5;        // of a joint, up to which the way is direct; design choice [rad]
 
-double turnBetween(const Hand::Joints& a, const Hand::Joints& b) {
+double turnBetween(const TraineeHand::Joints& a, const TraineeHand::Joints& b) {
   double turn = 0;
   for (int j = Rotation; j <= TipLeftRight; ++j) turn = std::max(turn, std::abs(a[j] - b[j]));
   return turn;
 }
 
 // Straight, in the entry: from there every place is reached on the way on which the scope comes back as well.
-Hand::Joints straight(const Hand::Joints& joints) {
-  Hand::Joints out = joints;
+TraineeHand::Joints straight(const TraineeHand::Joints& joints) {
+  TraineeHand::Joints out = joints;
   out[Insertion] = std::min(joints[Insertion], kLeastInsertion);
   out[TipUpDown] = out[TipLeftRight] = 0;
   return out;
@@ -31,7 +31,7 @@ void retreat(Operator& me) {
   me.hand.wait(me.skill().reaction_time);
 }
 
-bool travel(const Hand::Joints& joints, Operator& me) {
+bool travel(const TraineeHand::Joints& joints, Operator& me) {
   const auto tooMuch = [&me] { return me.hand.feelsTooMuch(); };
   if (tooMuch() || turnBetween(me.hand.joints(), joints) > kSmallTurn) {
     retreat(me);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/elementary.hpp"
-#include "common/random.hpp"
+#include "vibe_core/common/random.hpp"
 
 namespace vibe {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "common/kernel_path.hpp"
 #include "common/multiply_add.hpp"
-#include "common/random.hpp"
 #include "environment_variable.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/machine_info.hpp"
+#include "vibe_core/common/random.hpp"
 
 namespace vibe::arithmetic_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/random.hpp"
+#include "vibe_core/common/random.hpp"
 
 // References are the long double functions of the C library, whose 64 bits are enough to measure an error.
 

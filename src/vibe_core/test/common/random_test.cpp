@@ -1,4 +1,4 @@
-#include "common/random.hpp"
+#include "vibe_core/common/random.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,7 @@ TEST(Random, IsTheReferenceStream) {
   for (const std::uint64_t expected : {6457827717110365317ULL, 3203168211198807973ULL, 9817491932198370423ULL,
                                        4593380528125082431ULL, 16408922859458223821ULL})
     EXPECT_EQ(nextInteger(state), expected);
+  EXPECT_EQ(mixed(1234567), 6457827717110365317ULL);
 }
 
 TEST(Random, UniformNumbersAreTheUpperBitsOfTheIntegers) {

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "allocation_count.hpp"
-#include "common/random.hpp"
 #include "procedure/procedure_bench.hpp"
+#include "vibe_core/common/random.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe::procedure_test {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "common/random.hpp"
 #include "suture/capstan.hpp"
+#include "vibe_core/common/random.hpp"
 
 namespace vibe::test {
 

@@ -8,7 +8,7 @@
 namespace vibe::bite_attempt_test {
 namespace {
 
-GoalResult attemptUnder(double force, Hand::Joints& joints) {
+GoalResult attemptUnder(double force, TraineeHand::Joints& joints) {
   Onlooker at(Skill::expert(), [force](Observation& seen) { seen.force = {force, 0, 0}; });
   const GoalResult result = BiteAttempt(at.me.seen_map->at(0.5, 0.3), 0, at.me).make();
   joints = at.hand.joints();
@@ -16,7 +16,7 @@ GoalResult attemptUnder(double force, Hand::Joints& joints) {
 }
 
 TEST(BiteAttempt, DrawsTheScopeBackWhereTheWayIsBlocked) {
-  Hand::Joints joints;
+  TraineeHand::Joints joints;
   const GoalResult blocked = attemptUnder(2 * Skill::expert().force_limit, joints);
   EXPECT_FALSE(blocked.reached);
   EXPECT_EQ(blocked.reason, "the way to the wall is blocked");
@@ -26,7 +26,7 @@ TEST(BiteAttempt, DrawsTheScopeBackWhereTheWayIsBlocked) {
 }
 
 TEST(BiteAttempt, GoesOnUnderAForceThatIsAllowed) {
-  Hand::Joints joints;
+  TraineeHand::Joints joints;
   const GoalResult result = attemptUnder(0.5 * Skill::expert().force_limit, joints);
   EXPECT_EQ(result.reason, "the helix got no hold of the wall") << "nothing is simulated";
   EXPECT_GT(joints[Insertion], 0.05);

@@ -11,13 +11,13 @@
 namespace vibe::bite_plan_test {
 namespace {
 
-Hand::Joints jointsOnWall(const Onlooker& at, const WallPoint& place) {
+TraineeHand::Joints jointsOnWall(const Onlooker& at, const WallPoint& place) {
   const Eigen::Vector3d outward = at.me.outward(place), point = at.me.position(place) + kHelixDepth * outward;
-  Hand::Joints joints = aimAt(*smallStomach(), point, outward, helixInTip(kHelixOut), at.hand.joints()).joints;
+  TraineeHand::Joints joints = aimAt(*smallStomach(), point, outward, helixInTip(kHelixOut), at.hand.joints()).joints;
   return reachFor(*smallStomach(), point, helixInTip(kHelixOut), joints).joints;
 }
 
-Eigen::Isometry3d tipAt(const Hand::Joints& joints) {
+Eigen::Isometry3d tipAt(const TraineeHand::Joints& joints) {
   std::vector<Eigen::Isometry3d> poses;
   smallStomach()->tool->forwardKinematics(joints, poses);
   return smallStomach()->tool_base * poses[smallStomach()->tip_link];
@@ -26,7 +26,7 @@ Eigen::Isometry3d tipAt(const Hand::Joints& joints) {
 TEST(ReachFor, BringsThePointThereWithLittleMotion) {
   const Onlooker at;
   const WallPoint place = at.me.seen_map->at(0.5, 0.3);
-  const Hand::Joints start = jointsOnWall(at, place);
+  const TraineeHand::Joints start = jointsOnWall(at, place);
   const Eigen::Vector3d offset = helixInTip(kHelixOut);
   const Eigen::Vector3d target = tipAt(start) * offset + Eigen::Vector3d(4e-3, -6e-3, 5e-3);
   const IkSolution reached = reachFor(*smallStomach(), target, offset, start);
@@ -39,7 +39,7 @@ TEST(ReachFor, BringsThePointThereWithLittleMotion) {
 
 TEST(Rolled, TurnsTheTipAroundItsAxisWhereItIs) {
   const Onlooker at;
-  const Hand::Joints start = jointsOnWall(at, at.me.seen_map->at(0.5, 0.3));
+  const TraineeHand::Joints start = jointsOnWall(at, at.me.seen_map->at(0.5, 0.3));
   int found = 0;
   for (const double angle : {-0.6, 0.4, 0.8}) {
     const auto joints = rolled(*smallStomach(), start, angle);

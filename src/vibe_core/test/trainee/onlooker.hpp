@@ -42,7 +42,7 @@ struct Onlooker {
   Observation seen = observe(Simulation(smallStomach()));
   Skill skill;
   int steps = 0;  // that the hand has let pass
-  Hand hand;
+  TraineeHand hand;
   Operator me{hand, 1, [](const std::string&) {}, {}};
 };
 

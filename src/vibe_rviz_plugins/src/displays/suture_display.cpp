@@ -24,7 +24,7 @@ Ogre::Vector3 ogreOf(const Eigen::Vector3d& v) {
 }
 
 /// The shape of blood depends on the time of the message only if it pulses.
-bool pulses(const SutureScene& scene) {
+bool pulses(const SutureDrawing& scene) {
   for (const Wound& wound : scene.wounds)
     if (wound.brisk && wound.rate > 0) return true;
   return false;
@@ -36,7 +36,7 @@ Eigen::Isometry3d eigenOf(const FramePose& pose) {
   return place * Eigen::Quaterniond(turn.w, turn.x, turn.y, turn.z).normalized();
 }
 
-std::string contentOf(const SutureScene& scene) {
+std::string contentOf(const SutureDrawing& scene) {
   std::size_t bites = 0;
   for (const SutureSet& set : scene.sets) bites += set.bites.size();
   return std::to_string(scene.sets.size()) + " sutures, " + std::to_string(bites) + " bites, " +
@@ -195,7 +195,7 @@ void SutureDisplay::changeLegend() {
 
 /// Compares the message with the one before, so that only what has changed is drawn again.
 MessageReport SutureDisplay::read(const vibe_msgs::SutureArray& message) {
-  SutureScene scene;
+  SutureDrawing scene;
   const std::string wrong = readSutures(message, scene);
   if (!wrong.empty()) return {wrong, false};
   const bool threads_same = shown() != nullptr && shown()->sutures == message.sutures;
@@ -250,7 +250,7 @@ bool SutureDisplay::drawBlood() {
   const bool wanted = bleeding_property_->getBool();
   wall_.listen(update_nh_, wanted && !scene_.wounds.empty());
   if (wall_.update()) blood_.setMesh(wall_.mesh());
-  if (blood_changed_) blood_.setWounds(wanted ? scene_ : SutureScene{}, blood_style_);
+  if (blood_changed_) blood_.setWounds(wanted ? scene_ : SutureDrawing{}, blood_style_);
   blood_changed_ = false;
   const std::optional<Eigen::Isometry3d> pose = wall_.vertices() != nullptr ? poseOfWall() : std::nullopt;
   const bool changed = blood_.update(pose ? wall_.vertices() : nullptr, pose.value_or(Eigen::Isometry3d::Identity()));

@@ -6,7 +6,7 @@
 
 #include "displays/wall_listener.hpp"
 #include "geometry/bleeding_shape.hpp"
-#include "geometry/suture_scene.hpp"
+#include "geometry/suture_drawing.hpp"
 #include "geometry/suture_shapes.hpp"
 #include "render/suture_visual.hpp"
 #include "vibe_rviz_plugins/display_base/message_display.hpp"
@@ -55,7 +55,7 @@ class SutureDisplay : public MessageDisplay<vibe_msgs::SutureArray> {
 
   std::unique_ptr<SutureVisual> visual_;
   std::unique_ptr<Legend> legend_;
-  SutureScene scene_;
+  SutureDrawing scene_;
   SutureStyle style_;
   BloodStyle blood_style_;
   WallListener wall_;

@@ -8,7 +8,7 @@ void BleedingShape::setMesh(const TissueMesh* mesh) {
   changed_ = changed_ || !scene_.wounds.empty();
 }
 
-void BleedingShape::setWounds(const SutureScene& scene, const BloodStyle& style) {
+void BleedingShape::setWounds(const SutureDrawing& scene, const BloodStyle& style) {
   changed_ = changed_ || !scene.wounds.empty() || !scene_.wounds.empty();
   scene_ = scene;
   style_ = style;

@@ -13,7 +13,7 @@ class BleedingShape {
   /// The organ; null: none. It must stay where it is until the next call.
   void setMesh(const TissueMesh* mesh);
   /// Wounds and positions of bites, of one message.
-  void setWounds(const SutureScene& scene, const BloodStyle& style);
+  void setWounds(const SutureDrawing& scene, const BloodStyle& style);
 
   /// @param wall  vertices of the drawn surface as DeformableSurface has them; null: not known yet
   /// @param pose  of the frame of the wall in that of the wounds
@@ -23,7 +23,7 @@ class BleedingShape {
   const ColouredShape& shape() const { return shape_; }  ///< in the frame of the wounds
 
  private:
-  SutureScene scene_;
+  SutureDrawing scene_;
   BloodStyle style_;
   const TissueMesh* mesh_ = nullptr;
   std::unique_ptr<WallSurface> wall_;  // made when the first wound needs it

@@ -30,7 +30,7 @@ constexpr Run kMild{2.2e-3, 0.40e-3, 8e-3}, kBrisk{3.8e-3, 0.60e-3, 40e-3};
 
 /// Some blood of a wound at a point of the wall.
 struct Source {
-  WallPoint at;
+  WallPlace at;
   double volume;  // [m^3]
   double age;     // since it has been there [s]
   Run run;
@@ -38,15 +38,15 @@ struct Source {
   int number;
 };
 
-double lengthOnWall(const std::vector<WallPoint>& line) {
+double lengthOnWall(const std::vector<WallPlace>& line) {
   double length = 0;
   for (std::size_t k = 1; k < line.size(); ++k) length += (line[k].place - line[k - 1].place).norm();
   return length;
 }
 
 /// Cuts a line on a wall; the last point is between two of its points.
-std::vector<WallPoint> beginningOnWall(const std::vector<WallPoint>& line, double length, const WallSurface& wall) {
-  std::vector<WallPoint> cut(1, line.front());
+std::vector<WallPlace> beginningOnWall(const std::vector<WallPlace>& line, double length, const WallSurface& wall) {
+  std::vector<WallPlace> cut(1, line.front());
   for (std::size_t k = 1; k < line.size() && length > 0; ++k) {
     const Vector3d way = line[k].place - line[k - 1].place;
     const double step = way.norm();
@@ -61,7 +61,7 @@ Rivulet rivuletOf(const Source& source, double volume, const WallSurface& wall, 
   Rivulet rivulet;
   rivulet.width = source.run.width, rivulet.thickness = source.run.thickness;
   rivulet.brown = source.brown, rivulet.number = source.number;
-  const std::vector<WallPoint> whole = steepestDescent(wall, source.at, down);
+  const std::vector<WallPlace> whole = steepestDescent(wall, source.at, down);
   const double path = lengthOnWall(whole), section = 2.0 / 3 * rivulet.width * rivulet.thickness;
   rivulet.length = std::min({path, source.run.speed * std::max(0.0, source.age), volume / section});
   rivulet.arrived = rivulet.length >= path;
@@ -100,7 +100,7 @@ class FlowBuilder {
  private:
   /// What is deep in a pool would shine through it.
   void endAtPool(Rivulet& rivulet) const {
-    const auto isIn = [&](const WallPoint& point, const Pool& pool) {
+    const auto isIn = [&](const WallPlace& point, const Pool& pool) {
       return point.place.dot(-style_.down) < pool.level - rivulet.thickness &&
              std::find(pool.triangles.begin(), pool.triangles.end(), point.triangle) != pool.triangles.end();
     };
@@ -115,7 +115,7 @@ class FlowBuilder {
     BloodFilm film{source.at, std::min(source.volume, overhead ? kCeilingFilmVolume : kFilmVolume), source.brown,
                    source.number};
     double rest = source.volume - film.volume;
-    WallPoint end = source.at;
+    WallPlace end = source.at;
     bool arrived = true;
     double since = source.age;
     if (!overhead && rest > 0) {
@@ -147,7 +147,7 @@ class FlowBuilder {
     return 0;
   }
 
-  void addJet(const Wound& wound, const WallPoint& at, double volume) {
+  void addJet(const Wound& wound, const WallPlace& at, double volume) {
     Wound source = wound;
     source.place = at.place, source.inward = at.inward;
     const double longest = jetDuration(source, kFall, style_);

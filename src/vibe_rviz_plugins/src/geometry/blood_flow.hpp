@@ -3,14 +3,14 @@
 
 #include "geometry/basins.hpp"
 #include "geometry/blood_style.hpp"
-#include "geometry/suture_scene.hpp"
+#include "geometry/suture_drawing.hpp"
 #include "geometry/wall_surface.hpp"
 
 namespace vibe {
 
 /// Blood that lies around a point of the wall.
 struct BloodFilm {
-  WallPoint at;
+  WallPlace at;
   double volume = 0;  ///< [m^3]
   double brown = 0;   ///< 0 to 1
   int number = 0;     ///< of the outline
@@ -18,7 +18,7 @@ struct BloodFilm {
 
 /// Blood that runs down the wall.
 struct Rivulet {
-  std::vector<WallPoint> line;      ///< to its head, or into its pool; one point is none
+  std::vector<WallPlace> line;      ///< to its head, or into its pool; one point is none
   double length = 0;                ///< from its start to its head [m]
   double width = 0, thickness = 0;  ///< of its parabolic section [m]
   double brown = 0;                 ///< 0 to 1

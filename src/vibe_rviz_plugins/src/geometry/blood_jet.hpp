@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "geometry/blood_style.hpp"
-#include "geometry/suture_scene.hpp"
+#include "geometry/suture_drawing.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {

@@ -29,12 +29,12 @@ void addVertex(const Vector3d& place, const Vector3d& normal, const BloodShade& 
   shape.colours.push_back(packedOf(shade));
 }
 
-Vector3d alongWall(const Vector3d& v, const WallPoint& at) {
+Vector3d alongWall(const Vector3d& v, const WallPlace& at) {
   return v - v.dot(at.inward) * at.inward;
 }
 
 /// Downhill on the wall; where it is level, along its triangle, so that the direction moves with the wall.
-Vector3d downhill(const WallPoint& at, const WallSurface& wall, const Vector3d& down) {
+Vector3d downhill(const WallPlace& at, const WallSurface& wall, const Vector3d& down) {
   const Vector3d slope = alongWall(down, at);
   if (slope.norm() > 1e-3) return slope.normalized();
   const std::uint32_t* corner = wall.corners(at.triangle);
@@ -76,13 +76,13 @@ double rippleAt(const Rivulet& rivulet, double s) {
   return 0.2 * std::sin(s / 0.9e-3 + d) + 0.15 * std::sin(s / 1.47e-3 + 2 * d) + 0.15 * std::sin(s / 2.9e-3 + 3 * d);
 }
 
-void addRow(const Rivulet& rivulet, const WallPoint& at, const Vector3d& along, double s, const WallSurface& wall,
+void addRow(const Rivulet& rivulet, const WallPlace& at, const Vector3d& along, double s, const WallSurface& wall,
             ColouredShape& shape) {
   const Vector3d across = at.inward.cross(along).normalized();
   const double half = std::max(0.5 * rivulet.width * widthAt(rivulet, s), 1e-5), middle = bend(rivulet, s);
   const double ripple = rippleAt(rivulet, s);
   for (const double u : kAcross) {
-    const WallPoint under = wall.moved(at, (middle + half * u) * across);
+    const WallPlace under = wall.moved(at, (middle + half * u) * across);
     const double depth = rivulet.thickness * (1 - u * u) * std::min(1.0, half / (0.4 * rivulet.width));
     const Vector3d normal = under.inward + 2 * u * rivulet.thickness / half * across + ripple * along.normalized();
     addVertex(under.place + (kRaised + depth) * under.inward, normal, layerOf(kRimDepth + depth, rivulet.brown), shape);
@@ -126,7 +126,7 @@ void appendFilm(const BloodFilm& film, const WallSurface& wall, const BloodStyle
   const double radius = filmRadius(film.volume), height = 2 * film.volume / (M_PI * radius * radius);
   const Vector3d first = downhill(film.at, wall, style.down), second = film.at.inward.cross(first);
   const auto base = static_cast<std::uint32_t>(shape.vertices.size());
-  std::vector<WallPoint> at(kFilmSides, film.at);
+  std::vector<WallPlace> at(kFilmSides, film.at);
   for (int ring = 0; ring <= kFilmRings; ++ring) {
     const double part = static_cast<double>(ring) / kFilmRings,
                  depth = std::min(height, kFilmHeight) * (1 - part * part);
@@ -135,7 +135,7 @@ void appendFilm(const BloodFilm& film, const WallSurface& wall, const BloodStyle
       const Vector3d out = std::cos(angle) * first + std::sin(angle) * second;
       if (ring > 0)
         at[static_cast<std::size_t>(k)] = wall.moved(at[static_cast<std::size_t>(k)], reach / kFilmRings * out);
-      const WallPoint& under = at[static_cast<std::size_t>(k)];
+      const WallPlace& under = at[static_cast<std::size_t>(k)];
       addVertex(under.place + (kRaised + depth) * under.inward,
                 under.inward + 2 * part * std::min(height, kFilmHeight) / reach * out,
                 layerOf(kRimDepth + depth, film.brown), shape);
@@ -151,7 +151,7 @@ void appendRivulet(const Rivulet& rivulet, const WallSurface& wall, ColouredShap
   for (std::size_t k = 0; k < rivulet.line.size(); ++k) {
     const std::size_t before = k > 0 ? k - 1 : 0, after = std::min(k + 1, rivulet.line.size() - 1);
     if (k > 0) s += (rivulet.line[k].place - rivulet.line[k - 1].place).norm();
-    const WallPoint& at = rivulet.line[k];
+    const WallPlace& at = rivulet.line[k];
     const Vector3d along = alongWall(rivulet.line[after].place - rivulet.line[before].place, at);
     const auto row = static_cast<std::uint32_t>(shape.vertices.size());
     addRow(rivulet, at, along.norm() > 1e-9 ? along : anyNormal(at.inward), s, wall, shape);

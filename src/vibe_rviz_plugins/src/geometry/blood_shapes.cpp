@@ -73,7 +73,7 @@ void addPuddleVertex(const Puddle& puddle, const Vector3d& out, double reach, do
 }
 
 /// How far the blood of a wound falls: to the lowest known position of the wall.
-double dropBelow(const Wound& wound, const SutureScene& scene, const Vector3d& down) {
+double dropBelow(const Wound& wound, const SutureDrawing& scene, const Vector3d& down) {
   double lowest = 0;
   for (const SutureSet& set : scene.sets)
     for (const SutureBite& bite : set.bites) lowest = std::max(lowest, down.dot(bite.place - wound.place));
@@ -117,7 +117,7 @@ Vector3d landingOf(const Wound& wound, double duration, const BloodStyle& style)
   return jetPath(wound, duration, style).back();
 }
 
-void appendWound(const Wound& wound, const SutureScene& scene, const BloodStyle& style, ColouredShape& shape) {
+void appendWound(const Wound& wound, const SutureDrawing& scene, const BloodStyle& style, ColouredShape& shape) {
   if (!wound.brisk) return appendFlatFilm(wound, style, shape);
   const double duration = jetDuration(wound, dropBelow(wound, scene, style.down), style);
   appendFlatPool(wound, landingOf(wound, duration, style), style, shape);
@@ -161,7 +161,7 @@ void appendPuddle(const Puddle& puddle, ColouredShape& shape) {
     }
 }
 
-void appendBlood(const SutureScene& scene, const BloodStyle& style, const WallSurface* wall, ColouredShape& shape) {
+void appendBlood(const SutureDrawing& scene, const BloodStyle& style, const WallSurface* wall, ColouredShape& shape) {
   std::vector<Wound> without_wall = scene.wounds;
   if (wall != nullptr) {
     const BloodFlow flow = flowOf(scene.wounds, *wall, style);

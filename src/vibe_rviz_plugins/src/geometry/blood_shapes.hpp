@@ -4,7 +4,7 @@
 
 #include "geometry/blood_jet.hpp"
 #include "geometry/blood_style.hpp"
-#include "geometry/suture_scene.hpp"
+#include "geometry/suture_drawing.hpp"
 #include "geometry/wall_surface.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
@@ -16,7 +16,7 @@ namespace vibe {
 /// Without a wall: a dark film that grows with the amount lost and creeps downwards, and a jet that ends in a level
 /// pool at the height of the lowest bite.
 /// @param wall  null: not known. A wound with no wall near is drawn as without.
-void appendBlood(const SutureScene& scene, const BloodStyle& style, const WallSurface* wall, ColouredShape& shape);
+void appendBlood(const SutureDrawing& scene, const BloodStyle& style, const WallSurface* wall, ColouredShape& shape);
 
 /// A film or pool of this volume [m^3] lying on a plane; what is drawn below the plane only closes the shape.
 struct Puddle {

@@ -14,14 +14,14 @@ constexpr double kGain = 0.02;  // of the expected loss of height, below which a
 
 }  // namespace
 
-std::vector<WallPoint> steepestDescent(const WallSurface& wall, const WallPoint& start, const Vector3d& down) {
-  std::vector<WallPoint> line(1, start);
+std::vector<WallPlace> steepestDescent(const WallSurface& wall, const WallPlace& start, const Vector3d& down) {
+  std::vector<WallPlace> line(1, start);
   double step = kStep;
   while (line.size() <= kSteps && step > kShortest) {
-    const WallPoint& here = line.back();
+    const WallPlace& here = line.back();
     const Vector3d slope = down - down.dot(here.inward) * here.inward;
     if (!(slope.norm() > kFlat)) break;
-    const WallPoint next = wall.moved(here, step * slope.normalized());
+    const WallPlace next = wall.moved(here, step * slope.normalized());
     const double lost = (next.place - here.place).dot(down);
     if (lost > kGain * step * slope.norm()) {
       line.push_back(next);
@@ -46,7 +46,7 @@ std::uint32_t bottomBelow(const WallSurface& wall, std::uint32_t vertex, const V
   }
 }
 
-std::uint32_t bottomBelow(const WallSurface& wall, const WallPoint& point, const Vector3d& down) {
+std::uint32_t bottomBelow(const WallSurface& wall, const WallPlace& point, const Vector3d& down) {
   std::uint32_t lowest = wall.corners(point.triangle)[0];
   for (int k = 1; k < 3; ++k) {
     const std::uint32_t other = wall.corners(point.triangle)[k];

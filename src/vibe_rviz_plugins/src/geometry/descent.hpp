@@ -10,11 +10,11 @@ namespace vibe {
 /// 400 steps. The same wall and start give the same line.
 /// @param down  direction of gravity, unit
 /// @return  from the start on; at least the start
-std::vector<WallPoint> steepestDescent(const WallSurface& wall, const WallPoint& start, const Eigen::Vector3d& down);
+std::vector<WallPlace> steepestDescent(const WallSurface& wall, const WallPlace& start, const Eigen::Vector3d& down);
 
 /// The vertex that is reached from a point by going to the lowest neighbour until there is none: the bottom of a
 /// hollow.
-std::uint32_t bottomBelow(const WallSurface& wall, const WallPoint& point, const Eigen::Vector3d& down);
+std::uint32_t bottomBelow(const WallSurface& wall, const WallPlace& point, const Eigen::Vector3d& down);
 std::uint32_t bottomBelow(const WallSurface& wall, std::uint32_t vertex, const Eigen::Vector3d& down);
 
 }  // namespace vibe

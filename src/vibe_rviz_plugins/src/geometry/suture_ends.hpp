@@ -1,5 +1,5 @@
 #pragma once
-#include "geometry/suture_scene.hpp"
+#include "geometry/suture_drawing.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe {

@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "geometry/suture_scene.hpp"
+#include "geometry/suture_drawing.hpp"
 
 namespace vibe {
 

@@ -164,11 +164,11 @@ PackedColour sutureColour(std::size_t number) {
   return kColours[number % kColours.size()];
 }
 
-void appendSutures(const SutureScene& scene, const SutureStyle& style, ColouredShape& shape) {
+void appendSutures(const SutureDrawing& scene, const SutureStyle& style, ColouredShape& shape) {
   for (std::size_t k = 0; k < scene.sets.size(); ++k) appendSet(scene.sets[k], k, style, shape);
 }
 
-void appendLinks(const SutureScene& scene, const SutureStyle& style, ColouredShape& shape) {
+void appendLinks(const SutureDrawing& scene, const SutureStyle& style, ColouredShape& shape) {
   if (!style.links) return;
   for (const SutureSet& set : scene.sets)
     for (std::size_t k = 0; k < set.links.size(); ++k)

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "geometry/suture_scene.hpp"
+#include "geometry/suture_drawing.hpp"
 #include "vibe_rviz_plugins/geometry/colour_map.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
@@ -32,10 +32,10 @@ PackedColour sutureColour(std::size_t number);
 
 /// Appends threads, bites, T-tags, cinches and corners. Slack thread has bands of its colour and a darker one, so that
 /// it differs from taut thread without relying on colour.
-void appendSutures(const SutureScene& scene, const SutureStyle& style, ColouredShape& shape);
+void appendSutures(const SutureDrawing& scene, const SutureStyle& style, ColouredShape& shape);
 
 /// Appends the index groups: a flat dashed band along each link.
-void appendLinks(const SutureScene& scene, const SutureStyle& style, ColouredShape& shape);
+void appendLinks(const SutureDrawing& scene, const SutureStyle& style, ColouredShape& shape);
 
 /// Label of a set: its number from 1, the name of the technique with its margin, and faults.
 std::string labelOf(const SutureSet& set, std::size_t number);

@@ -86,8 +86,8 @@ bool WallSurface::move(const std::vector<MovingVertex>& vertices, const Eigen::I
   return true;
 }
 
-WallPoint WallSurface::at(std::uint32_t triangle, const Vector3d& weight) const {
-  WallPoint point;
+WallPlace WallSurface::at(std::uint32_t triangle, const Vector3d& weight) const {
+  WallPlace point;
   point.triangle = triangle;
   point.weight = weight;
   Vector3d inward = Vector3d::Zero();
@@ -109,7 +109,7 @@ void WallSurface::tryTriangle(std::uint32_t triangle, const Vector3d& place, dou
   if (square < distance) distance = square, best = triangle, weight = w;
 }
 
-WallPoint WallSurface::nearestAround(std::uint32_t triangle, const Vector3d& place) const {
+WallPlace WallSurface::nearestAround(std::uint32_t triangle, const Vector3d& place) const {
   double distance = kInfinite;
   Vector3d weight(1, 0, 0);
   std::uint32_t best = triangle;
@@ -127,7 +127,7 @@ WallPoint WallSurface::nearestAround(std::uint32_t triangle, const Vector3d& pla
   return at(best, weight);
 }
 
-std::optional<WallPoint> WallSurface::nearest(const Vector3d& place, const Vector3d& inward, double reach) const {
+std::optional<WallPlace> WallSurface::nearest(const Vector3d& place, const Vector3d& inward, double reach) const {
   double min = reach * reach;
   std::optional<std::size_t> nearest;
   for (std::size_t v = 0; v < places_.size(); ++v) {
@@ -139,11 +139,11 @@ std::optional<WallPoint> WallSurface::nearest(const Vector3d& place, const Vecto
   return nearestAround(*around_.begin(*nearest), place);
 }
 
-WallPoint WallSurface::moved(const WallPoint& from, const Vector3d& way) const {
+WallPlace WallSurface::moved(const WallPlace& from, const Vector3d& way) const {
   return nearestAround(from.triangle, from.place + way);
 }
 
-WallPoint WallSurface::atVertex(std::uint32_t vertex) const {
+WallPlace WallSurface::atVertex(std::uint32_t vertex) const {
   const std::uint32_t triangle = *around_.begin(vertex);
   int k = 0;
   while (corners(triangle)[k] != vertex) ++k;
@@ -161,7 +161,7 @@ std::vector<std::uint32_t> WallSurface::trianglesNear(const std::vector<Vector3d
   return near;
 }
 
-std::optional<WallPoint> WallSurface::landing(const std::vector<Vector3d>& line, double& along) const {
+std::optional<WallPlace> WallSurface::landing(const std::vector<Vector3d>& line, double& along) const {
   const std::vector<std::uint32_t> near = trianglesNear(line);
   for (std::size_t k = 1; k < line.size(); ++k) {
     double first = kInfinite;

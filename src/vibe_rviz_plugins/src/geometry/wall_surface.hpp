@@ -11,7 +11,7 @@
 namespace vibe {
 
 /// A point on a wall.
-struct WallPoint {
+struct WallPlace {
   std::uint32_t triangle = 0;
   Eigen::Vector3d weight = Eigen::Vector3d::UnitX();  ///< barycentric
   Eigen::Vector3d place = Eigen::Vector3d::Zero();    ///< [m]
@@ -33,16 +33,16 @@ class WallSurface {
   /// The point nearest to a place among the triangles around the nearest vertex; none: nothing is near.
   /// @param inward  approximate direction into the lumen; walls that face the other way are passed over. Zero: unknown
   /// @param reach   of the nearest vertex [m]
-  std::optional<WallPoint> nearest(const Eigen::Vector3d& place, const Eigen::Vector3d& inward, double reach) const;
+  std::optional<WallPlace> nearest(const Eigen::Vector3d& place, const Eigen::Vector3d& inward, double reach) const;
 
   /// The point that is reached by going a short way (less than a triangle is best) and back to the wall.
-  WallPoint moved(const WallPoint& from, const Eigen::Vector3d& way) const;
+  WallPlace moved(const WallPlace& from, const Eigen::Vector3d& way) const;
 
   /// Where a line meets the wall from the lumen for the first time; none: nowhere.
   /// @param along  set to the place on the line: the number of the point before and the part of the way to the next
-  std::optional<WallPoint> landing(const std::vector<Eigen::Vector3d>& line, double& along) const;
+  std::optional<WallPlace> landing(const std::vector<Eigen::Vector3d>& line, double& along) const;
 
-  WallPoint atVertex(std::uint32_t vertex) const;
+  WallPlace atVertex(std::uint32_t vertex) const;
 
   const std::vector<Eigen::Vector3d>& places() const { return places_; }    ///< of vertices [m]
   const std::vector<Eigen::Vector3d>& inwards() const { return inwards_; }  ///< unit, into the lumen, of vertices
@@ -52,9 +52,9 @@ class WallSurface {
   const Incidence& around() const { return around_; }
 
  private:
-  WallPoint at(std::uint32_t triangle, const Eigen::Vector3d& weight) const;
+  WallPlace at(std::uint32_t triangle, const Eigen::Vector3d& weight) const;
   std::vector<std::uint32_t> trianglesNear(const std::vector<Eigen::Vector3d>& line) const;
-  WallPoint nearestAround(std::uint32_t triangle, const Eigen::Vector3d& place) const;
+  WallPlace nearestAround(std::uint32_t triangle, const Eigen::Vector3d& place) const;
   void tryTriangle(std::uint32_t triangle, const Eigen::Vector3d& place, double& distance, std::uint32_t& best,
                    Eigen::Vector3d& weight) const;
 

@@ -9,64 +9,64 @@ using Event = vibe_msgs::ProcedureEvent;
 
 struct Kind {
   const char* title;
-  Severity severity;
+  EventSeverity severity;
 };
 
 // by number of kind
 constexpr std::array<Kind, 32> kKinds = {{
-    {"Grab", Severity::Note},
-    {"Grab missed", Severity::Warning},
-    {"Release", Severity::Note},
-    {"Slip", Severity::Warning},
-    {"Contact begins", Severity::Note},
-    {"Contact ends", Severity::Note},
-    {"Pressure reached", Severity::Note},
-    {"Warning", Severity::Warning},
-    {"Recovery", Severity::Warning},
-    {"Rejected", Severity::Warning},
-    {"Mark", Severity::Note},
-    {"Burn", Severity::Warning},
-    {"Deep burn", Severity::Harm},
-    {"Helix turned", Severity::Note},
-    {"Bite", Severity::Success},
-    {"Bite missed", Severity::Warning},
-    {"Bite withdrawn", Severity::Warning},
-    {"Needle exchanged", Severity::Note},
-    {"Mild bleeding", Severity::Bleeding},
-    {"Brisk bleeding", Severity::Bleeding},
-    {"Bleeding stopped", Severity::Success},
-    {"Bleeding overdue", Severity::Bleeding},
-    {"Technique", Severity::Note},
-    {"T-tag", Severity::Note},
-    {"Cinch pulls", Severity::Note},
-    {"Cinched", Severity::Success},
-    {"Cinch loose", Severity::Warning},
-    {"Tear-out", Severity::Harm},
-    {"Thread broke", Severity::Harm},
-    {"Phase", Severity::Note},
-    {"Pierced", Severity::Note},
-    {"Arm closed", Severity::Note},
+    {"Grab", EventSeverity::Note},
+    {"Grab missed", EventSeverity::Warning},
+    {"Release", EventSeverity::Note},
+    {"Slip", EventSeverity::Warning},
+    {"Contact begins", EventSeverity::Note},
+    {"Contact ends", EventSeverity::Note},
+    {"Pressure reached", EventSeverity::Note},
+    {"Warning", EventSeverity::Warning},
+    {"Recovery", EventSeverity::Warning},
+    {"Rejected", EventSeverity::Warning},
+    {"Mark", EventSeverity::Note},
+    {"Burn", EventSeverity::Warning},
+    {"Deep burn", EventSeverity::Harm},
+    {"Helix turned", EventSeverity::Note},
+    {"Bite", EventSeverity::Success},
+    {"Bite missed", EventSeverity::Warning},
+    {"Bite withdrawn", EventSeverity::Warning},
+    {"Needle exchanged", EventSeverity::Note},
+    {"Mild bleeding", EventSeverity::Bleeding},
+    {"Brisk bleeding", EventSeverity::Bleeding},
+    {"Bleeding stopped", EventSeverity::Success},
+    {"Bleeding overdue", EventSeverity::Bleeding},
+    {"Technique", EventSeverity::Note},
+    {"T-tag", EventSeverity::Note},
+    {"Cinch pulls", EventSeverity::Note},
+    {"Cinched", EventSeverity::Success},
+    {"Cinch loose", EventSeverity::Warning},
+    {"Tear-out", EventSeverity::Harm},
+    {"Thread broke", EventSeverity::Harm},
+    {"Phase", EventSeverity::Note},
+    {"Pierced", EventSeverity::Note},
+    {"Arm closed", EventSeverity::Note},
 }};
 static_assert(Event::ARM_CLOSED == kKinds.size() - 1);
 static_assert(Event::REJECTED == 9 && Event::BITE == 14 && Event::BLEEDING_OVERDUE == 21 && Event::TEAR_OUT == 27);
 
 }  // namespace
 
-Severity severityOf(std::uint8_t kind) {
-  return kind < kKinds.size() ? kKinds[kind].severity : Severity::Note;
+EventSeverity severityOf(std::uint8_t kind) {
+  return kind < kKinds.size() ? kKinds[kind].severity : EventSeverity::Note;
 }
 
-std::string severityName(Severity severity) {
+std::string severityName(EventSeverity severity) {
   switch (severity) {
-    case Severity::Note:
+    case EventSeverity::Note:
       return "note";
-    case Severity::Success:
+    case EventSeverity::Success:
       return "success";
-    case Severity::Warning:
+    case EventSeverity::Warning:
       return "warning";
-    case Severity::Bleeding:
+    case EventSeverity::Bleeding:
       return "bleeding";
-    case Severity::Harm:
+    case EventSeverity::Harm:
       return "harm";
   }
   return {};

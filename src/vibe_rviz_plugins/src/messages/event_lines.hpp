@@ -6,13 +6,13 @@
 namespace vibe {
 
 /// How an event is shown. Every one has a symbol of its own, so that nothing depends on seeing colours.
-enum class Severity { Note, Success, Warning, Bleeding, Harm };
+enum class EventSeverity { Note, Success, Warning, Bleeding, Harm };
 
 /// Kinds that are not known yet, from a newer simulator, are notes.
-Severity severityOf(std::uint8_t kind);
+EventSeverity severityOf(std::uint8_t kind);
 
 /// "warning": what the symbol means.
-std::string severityName(Severity severity);
+std::string severityName(EventSeverity severity);
 
 /// False for touching and letting go, which come so often that they would push all else out of the list; what the tool
 /// does now is told elsewhere.

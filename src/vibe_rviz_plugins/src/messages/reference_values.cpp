@@ -85,7 +85,7 @@ const char* const kForces =
     "Trejos et al., Surg Endosc 2011;25:186: in two pigs the instrument's tip was above 5 N in 1.6 % of the samples of "
     "transgastric procedures, and at almost 8 N at most.";
 
-std::vector<Measure> procedureMeasures() {
+std::vector<ShownMeasure> procedureMeasures() {
   return {
       {"Sutures", "", 0, sutures, "Threads with at least one bite.",
        "6 to 8: Kumbhari et al., VideoGIE 2017, 10.1016/j.vgie.2017.01.002. Other series used 5 to 6 (Turjman, BJSTR "
@@ -104,7 +104,7 @@ std::vector<Measure> procedureMeasures() {
   };
 }
 
-std::vector<Measure> organMeasures() {
+std::vector<ShownMeasure> organMeasures() {
   return {
       {"Area reduction", "%", 1, areaReduction,
        "How much smaller the mean cross-section of the body is than before anything was done to it.",
@@ -120,7 +120,7 @@ std::vector<Measure> organMeasures() {
   };
 }
 
-std::vector<Measure> handMeasures() {
+std::vector<ShownMeasure> handMeasures() {
   return {
       {"Max force", "N", 1, maxForce, "Greatest force of the tissue on the tool so far.", kForces, 0, 8, 12, false},
       {"Time above 5 N", "%", 1, shareAbove, "Share of the time with a force of the tissue on the tool above 5 N.",
@@ -136,23 +136,23 @@ std::vector<Measure> handMeasures() {
   };
 }
 
-std::vector<Measure> allMeasures() {
-  std::vector<Measure> all = procedureMeasures();
+std::vector<ShownMeasure> allMeasures() {
+  std::vector<ShownMeasure> all = procedureMeasures();
   for (const auto& part : {organMeasures(), handMeasures()}) all.insert(all.end(), part.begin(), part.end());
   return all;
 }
 
 }  // namespace
 
-const std::vector<Measure>& measures() {
-  static const std::vector<Measure> all = allMeasures();
+const std::vector<ShownMeasure>& measures() {
+  static const std::vector<ShownMeasure> all = allMeasures();
   return all;
 }
 
-const Measure kPullingForce = {"Pull",  "N", 1, nullptr, "Force of the tissue on the tool now.",
-                               kForces, 0,   5, 10,      false};
+const ShownMeasure kPullingForce = {"Pull",  "N", 1, nullptr, "Force of the tissue on the tool now.",
+                                    kForces, 0,   5, 10,      false};
 
-Rating rate(const Measure& measure, double value, bool done) {
+Rating rate(const ShownMeasure& measure, double value, bool done) {
   if (!std::isfinite(value)) return Rating::NoValue;
   if (measure.source.empty()) return Rating::NoReference;
   if (value >= measure.low && value <= measure.high) return Rating::Within;
@@ -175,7 +175,7 @@ std::string ratingText(Rating rating) {
   return {};
 }
 
-std::string rangeText(const Measure& measure) {
+std::string rangeText(const ShownMeasure& measure) {
   if (measure.source.empty()) return {};
   const std::string low = quantityText(measure.low, measure.decimals, measure.unit);
   const std::string high = quantityText(measure.high, measure.decimals, measure.unit);
@@ -185,12 +185,12 @@ std::string rangeText(const Measure& measure) {
   return numberText(measure.low, measure.decimals) + " to " + high;
 }
 
-std::string explain(const Measure& measure) {
+std::string explain(const ShownMeasure& measure) {
   if (measure.source.empty()) return measure.meaning + "\nNo reference is published.";
   return measure.meaning + "\nReference: " + rangeText(measure) + ".\nSource: " + measure.source;
 }
 
-BarShape barShape(const Measure& measure, double value) {
+BarShape barShape(const ShownMeasure& measure, double value) {
   BarShape shape;
   const auto place = [&measure](double v) { return std::max(0.0, std::min(1.0, v / measure.bar_end)); };
   if (!measure.source.empty()) {

@@ -17,7 +17,7 @@ struct SessionMessages {
 
 /// A measure as it is shown, with the published figures it can be held against, if there are any. Definitions of the
 /// measures: docs/metrics.md.
-struct Measure {
+struct ShownMeasure {
   std::string label;
   std::string unit;  ///< of everything below; empty: a count
   int decimals = 0;
@@ -30,22 +30,22 @@ struct Measure {
 };
 
 /// Measures in the order in which they are shown.
-const std::vector<Measure>& measures();
+const std::vector<ShownMeasure>& measures();
 
 /// How a value stands to its reference.
 enum class Rating { NoReference, NoValue, NotYet, Within, Outside };
 
 /// @param done  the procedure is done: what still grows has no excuse any more
-Rating rate(const Measure& measure, double value, bool done);
+Rating rate(const ShownMeasure& measure, double value, bool done);
 
 /// "within the published range", for those who do not see colours.
 std::string ratingText(Rating rating);
 
 /// "6 to 9", "at most 5 N", "at least 34.6 %"; empty without a reference.
-std::string rangeText(const Measure& measure);
+std::string rangeText(const ShownMeasure& measure);
 
 /// Meaning, range and source, one below the other: the tool tip.
-std::string explain(const Measure& measure);
+std::string explain(const ShownMeasure& measure);
 
 /// Where to draw, as shares of the bar's length from 0 to 1.
 struct BarShape {
@@ -54,9 +54,9 @@ struct BarShape {
   double value = 0;     ///< clamped to the bar
   bool beyond = false;  ///< the value lies outside the bar
 };
-BarShape barShape(const Measure& measure, double value);
+BarShape barShape(const ShownMeasure& measure, double value);
 
 /// Force of tissue on the tool [N] that is published as seldom: the limit of "too hard".
-extern const Measure kPullingForce;
+extern const ShownMeasure kPullingForce;
 
 }  // namespace vibe

@@ -204,7 +204,7 @@ Wound takeBleeding(const vibe_msgs::Bleeding& bleeding, const vibe_msgs::SutureA
 
 }  // namespace
 
-std::string readSutures(const vibe_msgs::SutureArray& message, SutureScene& scene) {
+std::string readSutures(const vibe_msgs::SutureArray& message, SutureDrawing& scene) {
   const std::string wrong = check(message);
   if (!wrong.empty()) return wrong;
   scene = {};

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "geometry/suture_scene.hpp"
+#include "geometry/suture_drawing.hpp"
 
 namespace vibe {
 
@@ -16,6 +16,6 @@ namespace vibe {
 /// The direction into the lumen follows from wall and region of a bite and the axes of the world frame (x anterior, y
 /// to the patient's left, z to the head): from the anterior wall to posterior, from the greater curvature of the body
 /// to the right and up, and so on. It is accurate to about 30 degrees for a stomach in normal position.
-std::string readSutures(const vibe_msgs::SutureArray& message, SutureScene& scene);
+std::string readSutures(const vibe_msgs::SutureArray& message, SutureDrawing& scene);
 
 }  // namespace vibe

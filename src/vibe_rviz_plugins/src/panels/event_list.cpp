@@ -32,9 +32,10 @@ EventList::EventList(QWidget* parent) : QListWidget(parent) {
 
 void EventList::add(const vibe_msgs::ProcedureEvent& event, double origin) {
   if (!isListed(event)) return;
-  const Severity severity = severityOf(event.kind);
+  const EventSeverity severity = severityOf(event.kind);
   const std::string sentence = eventText(event);
-  if (severity == Severity::Note && sentence == newest_ && count() > 0) delete takeItem(0);  // it comes again and again
+  if (severity == EventSeverity::Note && sentence == newest_ && count() > 0)
+    delete takeItem(0);  // it comes again and again
   newest_ = sentence;
   auto* entry = new QListWidgetItem(symbolOf(severity, palette()), toQt(timeText(event, origin) + sentence));
   entry->setForeground(colourOf(severity, palette()));

@@ -18,7 +18,7 @@ MeasuresView::MeasuresView(QWidget* parent) : QWidget(parent) {
   grid->setVerticalSpacing(2);
   grid->setHorizontalSpacing(6);
   grid->setColumnStretch(2, 1);
-  for (const Measure& measure : measures()) {
+  for (const ShownMeasure& measure : measures()) {
     const int line = grid->rowCount();
     const QString help = toQt(explain(measure));
     auto* name = new QLabel(toQt(measure.label));
@@ -40,7 +40,7 @@ MeasuresView::MeasuresView(QWidget* parent) : QWidget(parent) {
 
 void MeasuresView::display(const PanelMessages& messages) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const Measure& measure = measures()[i];
+    const ShownMeasure& measure = measures()[i];
     double value = std::numeric_limits<double>::quiet_NaN();
     if (messages.state && messages.skill)
       value = measure.value({*messages.state, *messages.skill, messages.sutures.get()});

@@ -72,16 +72,16 @@ QColor quietColour(const QPalette& palette) {
   return isDark(palette) ? QColor(160, 160, 160) : QColor(110, 110, 110);
 }
 
-QColor colourOf(Severity severity, const QPalette& palette) {
+QColor colourOf(EventSeverity severity, const QPalette& palette) {
   switch (severity) {
-    case Severity::Success:
+    case EventSeverity::Success:
       return goodColour(palette);
-    case Severity::Warning:
+    case EventSeverity::Warning:
       return warningColour(palette);
-    case Severity::Bleeding:
-    case Severity::Harm:
+    case EventSeverity::Bleeding:
+    case EventSeverity::Harm:
       return dangerColour(palette);
-    case Severity::Note:
+    case EventSeverity::Note:
       break;
   }
   return palette.color(QPalette::Text);
@@ -92,18 +92,18 @@ QColor colourOf(Rating rating, const QPalette& palette) {
   return rating == Rating::Outside ? warningColour(palette) : quietColour(palette);
 }
 
-QIcon symbolOf(Severity severity, const QPalette& palette) {
+QIcon symbolOf(EventSeverity severity, const QPalette& palette) {
   const QColor colour = colourOf(severity, palette);
   switch (severity) {
-    case Severity::Success:
+    case EventSeverity::Success:
       return drawn(colour, drawTick);
-    case Severity::Warning:
+    case EventSeverity::Warning:
       return drawn(colour, drawTriangle);
-    case Severity::Bleeding:
+    case EventSeverity::Bleeding:
       return drawn(colour, drawDrop);
-    case Severity::Harm:
+    case EventSeverity::Harm:
       return drawn(colour, drawCross);
-    case Severity::Note:
+    case EventSeverity::Note:
       break;
   }
   return drawn(quietColour(palette), [](QPainter& painter) { painter.drawEllipse(10, 10, 12, 12); });

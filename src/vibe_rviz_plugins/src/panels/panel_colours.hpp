@@ -16,11 +16,11 @@ QColor warningColour(const QPalette& palette);
 QColor dangerColour(const QPalette& palette);
 QColor quietColour(const QPalette& palette);
 
-QColor colourOf(Severity severity, const QPalette& palette);
+QColor colourOf(EventSeverity severity, const QPalette& palette);
 QColor colourOf(Rating rating, const QPalette& palette);
 
 /// Circle: note; tick: success; triangle: warning; drop: bleeding; cross in a square: harm.
-QIcon symbolOf(Severity severity, const QPalette& palette);
+QIcon symbolOf(EventSeverity severity, const QPalette& palette);
 
 /// A lamp, filled while it is on.
 QIcon lamp(bool on, const QPalette& palette);

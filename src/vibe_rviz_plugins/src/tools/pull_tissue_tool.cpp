@@ -156,7 +156,7 @@ bool PullTissueTool::framePose(Eigen::Isometry3d& pose) {
   return true;
 }
 
-Ray PullTissueTool::rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below) const {
+MouseRay PullTissueTool::rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below) const {
   const Ogre::Ray ray = viewRay(event, event.x, event.y + below);
   const Eigen::Isometry3d inverse = frame.inverse();
   return {inverse * toEigen(ray.getOrigin()), (inverse.linear() * toEigen(ray.getDirection())).normalized()};

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "geometry/ray_hit.hpp"
+#include "geometry/mouse_ray.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "messages/pull_messages.hpp"
 #endif
@@ -63,7 +63,7 @@ class PullTissueTool : public rviz::Tool {
   std::string findTissue();
   bool framePose(Eigen::Isometry3d& pose);
   /// Ray through the mouse, or this number of pixels below it.
-  Ray rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below = 0) const;
+  MouseRay rayOf(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame, int below = 0) const;
   Eigen::Vector3d viewDirection(const rviz::ViewportMouseEvent& event, const Eigen::Isometry3d& frame) const;
   void take(const rviz::ViewportMouseEvent& event);
   void drag(rviz::ViewportMouseEvent& event);

@@ -27,7 +27,7 @@ struct SutureParts {
 
 /// The drawn triangles, told apart: those of a set begin with its threads, and the ends follow. The ends are drawn with
 /// their threads, because these give their direction.
-SutureParts partsOf(const SutureScene& sutures) {
+SutureParts partsOf(const SutureDrawing& sutures) {
   const auto drawn = [](const SutureSet& set, bool ends) {
     SutureStyle style = naturalSutures();
     style.ends = ends;
@@ -99,7 +99,7 @@ void TruthScene::setFrame(const TissueFrame& frame) {
   }
 }
 
-void TruthScene::setSutures(const SutureScene& sutures, double time, const Eigen::Isometry3d& pose) {
+void TruthScene::setSutures(const SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose) {
   SutureParts parts = partsOf(sutures);
   setShape(thread_, std::move(parts.threads), pose, true);
   setShape(tag_, std::move(parts.tags), pose, true);

@@ -10,7 +10,7 @@
 
 #include "geometry/bleeding_shape.hpp"
 #include "geometry/deformable_surface.hpp"
-#include "geometry/suture_scene.hpp"
+#include "geometry/suture_drawing.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "truth/label_table.hpp"
 #include "truth/ray_scene.hpp"
@@ -31,7 +31,7 @@ class TruthScene {
   void setFrame(const TissueFrame& frame);
   /// @param time  of the message: bleeding pulses [s]
   /// @param pose  of the frame of the sutures in that of the scene
-  void setSutures(const SutureScene& sutures, double time, const Eigen::Isometry3d& pose);
+  void setSutures(const SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose);
   /// Adds a rigid part of the instrument; parts with the same name have the same label.
   /// @throws std::runtime_error  there are more names than labels
   std::uint32_t addPart(const std::string& name, ColouredShape shape);

@@ -44,7 +44,7 @@ double volumeOf(const BloodFlow& flow) {
 }
 
 ColouredShape shapeOf(const std::vector<Wound>& wounds, const WallSurface& wall, const BloodStyle& style) {
-  SutureScene scene;
+  SutureDrawing scene;
   scene.wounds = wounds;
   ColouredShape shape;
   appendBlood(scene, style, &wall, shape);
@@ -208,7 +208,7 @@ TEST(BloodFlow, WoundWithoutAWallIsDrawnAsBefore) {
   const WallSurface wall = bowlWall().surface();
   Wound wound = woundAt(0.02, 0.01, 1e-7);
   wound.place.z() += 0.1;
-  SutureScene scene;
+  SutureDrawing scene;
   scene.wounds = {wound};
   ColouredShape far, none;
   appendBlood(scene, upright(), &wall, far);
@@ -234,7 +234,7 @@ TEST(BleedingShape, IsMadeAgainOnlyIfSomethingHasChanged) {
   BleedingShape blood;
   blood.setMesh(&mesh);
   EXPECT_FALSE(blood.update(&vertices, pose));
-  SutureScene scene;
+  SutureDrawing scene;
   scene.wounds = {woundAt(0.02, 0.01, 1e-7)};
   blood.setWounds(scene, upright());
   EXPECT_TRUE(blood.update(&vertices, pose));

@@ -23,7 +23,7 @@ Wound woundOf(bool brisk) {
 }
 
 ColouredShape shapeOf(const Wound& wound, const BloodStyle& style = {}) {
-  SutureScene scene;
+  SutureDrawing scene;
   scene.wounds = {wound};
   ColouredShape shape;
   appendBlood(scene, style, nullptr, shape);
@@ -218,7 +218,7 @@ TEST(Blood, StoppedBleedingIsBrownPaleAndConstant) {
 }
 
 TEST(Blood, JetEndsAtTheWallBelow) {
-  SutureScene scene;
+  SutureDrawing scene;
   scene.wounds = {woundOf(true)};
   scene.sets.resize(1);
   scene.sets[0].bites.push_back({scene.wounds[0].place + Vector3d(-0.045, 0, 0), true, Vector3d::UnitX()});

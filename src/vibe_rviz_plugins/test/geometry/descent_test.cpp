@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 const Vector3d kDown = -Vector3d::UnitZ();
 
 /// Largest angle of a step to a direction [rad].
-double worstAngle(const std::vector<WallPoint>& line, const Vector3d& direction) {
+double worstAngle(const std::vector<WallPlace>& line, const Vector3d& direction) {
   double worst = 0;
   for (std::size_t k = 1; k < line.size(); ++k) {
     const Vector3d step = line[k].place - line[k - 1].place;
@@ -27,12 +27,12 @@ TEST(Descent, FollowsTheLineOfSteepestDescentOfAPlane) {
   const WallSurface wall = plane.surface();
   const auto start = wall.nearest({0.02, -0.01, 0.5 * 0.02 + 0.3 * 0.01}, Vector3d::UnitZ(), 0.01);
   ASSERT_TRUE(start);
-  const std::vector<WallPoint> line = steepestDescent(wall, *start, kDown);
+  const std::vector<WallPlace> line = steepestDescent(wall, *start, kDown);
   const Vector3d steepest = Vector3d(-a, -b, -(a * a + b * b)).normalized();
   ASSERT_GT(line.size(), 20U);
   // until the edge of the wall, along which it would go on
-  std::vector<WallPoint> inside;
-  for (const WallPoint& point : line)
+  std::vector<WallPlace> inside;
+  for (const WallPlace& point : line)
     if (point.place.head<2>().cwiseAbs().maxCoeff() < 0.0385) inside.push_back(point);
   std::printf("largest angle to the steepest descent %.2g rad over %zu steps\n", worstAngle(inside, steepest),
               inside.size() - 1);
@@ -48,7 +48,7 @@ TEST(Descent, EndsAtTheBottomOfABowlWithinATriangle) {
   for (const Vector3d& place : {Vector3d(0.02, 0.005, 0.006), Vector3d(-0.015, 0.021, 0.009), Vector3d(0.004, 0, 0)}) {
     const auto start = wall.nearest(place, Vector3d::UnitZ(), 0.01);
     ASSERT_TRUE(start);
-    const std::vector<WallPoint> line = steepestDescent(wall, *start, kDown);
+    const std::vector<WallPlace> line = steepestDescent(wall, *start, kDown);
     EXPECT_LT(line.back().place.norm(), triangle);
     for (std::size_t k = 1; k < line.size(); ++k) EXPECT_LT(line[k].place.z(), line[k - 1].place.z());
     const std::uint32_t bottom = bottomBelow(wall, line.back(), kDown);
@@ -84,7 +84,7 @@ TEST(Descent, TrianglesWithoutAreaDoNoHarm) {
   const WallSurface wall = form.surface();
   const auto start = wall.nearest({0.02, 0.005, 0.006}, Vector3d::UnitZ(), 0.01);
   ASSERT_TRUE(start);
-  for (const WallPoint& point : steepestDescent(wall, *start, kDown)) {
+  for (const WallPlace& point : steepestDescent(wall, *start, kDown)) {
     EXPECT_TRUE(point.place.allFinite());
     EXPECT_NEAR(point.inward.norm(), 1, 1e-9);
   }

@@ -23,8 +23,8 @@ SutureSet corner() {
   return set;
 }
 
-SutureScene sceneOf(const SutureSet& set) {
-  SutureScene scene;
+SutureDrawing sceneOf(const SutureSet& set) {
+  SutureDrawing scene;
   scene.sets.push_back(set);
   return scene;
 }
@@ -108,7 +108,7 @@ TEST(SutureShapes, EverySutureHasItsColour) {
   std::set<PackedColour> seen;
   for (std::size_t k = 0; k < 12; ++k) seen.insert(sutureColour(k));
   EXPECT_EQ(seen.size(), 12u);
-  SutureScene scene = sceneOf(corner());
+  SutureDrawing scene = sceneOf(corner());
   scene.sets.push_back(corner());
   SutureStyle style = threadOnly();
   style.colouring = ThreadColour::PerSuture;

@@ -16,19 +16,19 @@ Event makeEvent(std::uint8_t kind, const std::string& text) {
 
 TEST(EventLines, severities) {
   for (const std::uint8_t kind : {Event::WARNING, Event::REJECTED, Event::SLIP, Event::CINCH_LOOSE, Event::BITE_MISSED})
-    EXPECT_EQ(severityOf(kind), Severity::Warning) << int{kind};
+    EXPECT_EQ(severityOf(kind), EventSeverity::Warning) << int{kind};
   for (const std::uint8_t kind : {Event::BLEEDING_MILD, Event::BLEEDING_BRISK, Event::BLEEDING_OVERDUE})
-    EXPECT_EQ(severityOf(kind), Severity::Bleeding) << int{kind};
+    EXPECT_EQ(severityOf(kind), EventSeverity::Bleeding) << int{kind};
   for (const std::uint8_t kind : {Event::TEAR_OUT, Event::THREAD_BROKE, Event::DEEP_BURN})
-    EXPECT_EQ(severityOf(kind), Severity::Harm) << int{kind};
+    EXPECT_EQ(severityOf(kind), EventSeverity::Harm) << int{kind};
   for (const std::uint8_t kind : {Event::BITE, Event::CINCHED, Event::BLEEDING_STOPPED})
-    EXPECT_EQ(severityOf(kind), Severity::Success) << int{kind};
+    EXPECT_EQ(severityOf(kind), EventSeverity::Success) << int{kind};
   for (const std::uint8_t kind : {Event::GRAB, Event::PHASE_CHANGED, Event::MARK})
-    EXPECT_EQ(severityOf(kind), Severity::Note) << int{kind};
+    EXPECT_EQ(severityOf(kind), EventSeverity::Note) << int{kind};
 }
 
 TEST(EventLines, aKindFromTheFutureIsANote) {
-  EXPECT_EQ(severityOf(200), Severity::Note);
+  EXPECT_EQ(severityOf(200), EventSeverity::Note);
   EXPECT_EQ(eventText(makeEvent(200, "Something new.")), "Something new.");
 }
 

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-const Measure& find(const std::string& label) {
+const ShownMeasure& find(const std::string& label) {
   const auto& all = measures();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Measure& m) { return m.label == label; });
+  const auto found = std::find_if(all.begin(), all.end(), [&](const ShownMeasure& m) { return m.label == label; });
   if (found == all.end()) throw std::runtime_error("no measure " + label);
   return *found;
 }
@@ -34,7 +34,7 @@ vibe_msgs::Suture makeSet(std::uint8_t stage, std::size_t bites, std::uint32_t t
 
 TEST(ReferenceValues, everyMeasureIsComplete) {
   std::set<std::string> labels;
-  for (const Measure& measure : measures()) {
+  for (const ShownMeasure& measure : measures()) {
     SCOPED_TRACE(measure.label);
     EXPECT_TRUE(labels.insert(measure.label).second) << "twice";
     EXPECT_NE(measure.value, nullptr);
@@ -91,7 +91,7 @@ TEST(ReferenceValues, openSetsAreNotAveraged) {
 }
 
 TEST(ReferenceValues, ratesEachSideOfARange) {
-  const Measure& bites = find("Bites per set");
+  const ShownMeasure& bites = find("Bites per set");
   EXPECT_EQ(rate(bites, 5.9, false), Rating::Outside);
   EXPECT_EQ(rate(bites, 6, false), Rating::Within);
   EXPECT_EQ(rate(bites, 9, false), Rating::Within);
@@ -101,7 +101,7 @@ TEST(ReferenceValues, ratesEachSideOfARange) {
 }
 
 TEST(ReferenceValues, whatGrowsHasTimeUntilTheEnd) {
-  const Measure& area = find("Area reduction");
+  const ShownMeasure& area = find("Area reduction");
   EXPECT_EQ(rate(area, 9.4, false), Rating::NotYet);
   EXPECT_EQ(rate(area, 9.4, true), Rating::Outside);
   EXPECT_EQ(rate(area, 34.6, false), Rating::Within);
@@ -124,7 +124,7 @@ TEST(ReferenceValues, rangesInWords) {
 }
 
 TEST(ReferenceValues, barsStayWithinThemselves) {
-  const Measure& bites = find("Bites per set");  // 6 to 9 of 14
+  const ShownMeasure& bites = find("Bites per set");  // 6 to 9 of 14
   const BarShape shape = barShape(bites, 7);
   EXPECT_TRUE(shape.has_range && shape.has_value && !shape.beyond);
   EXPECT_NEAR(shape.range_begin, 6.0 / 14, 1e-12);

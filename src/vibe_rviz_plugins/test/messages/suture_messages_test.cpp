@@ -17,14 +17,14 @@ using Links = std::vector<std::pair<std::size_t, std::size_t>>;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-SutureScene sceneOf(const SutureArray& message) {
-  SutureScene scene;
+SutureDrawing sceneOf(const SutureArray& message) {
+  SutureDrawing scene;
   EXPECT_EQ(readSutures(message, scene), "");
   return scene;
 }
 
 TEST(SutureMessages, ReadsAWholeSession) {
-  const SutureScene scene = sceneOf(session());
+  const SutureDrawing scene = sceneOf(session());
   ASSERT_EQ(scene.sets.size(), 2u);
   const SutureSet& set = scene.sets[0];
   EXPECT_EQ(set.stage, SutureStage::Cinched);
@@ -43,7 +43,7 @@ TEST(SutureMessages, ReadsAWholeSession) {
 }
 
 TEST(SutureMessages, ReadsBleeding) {
-  const SutureScene scene = sceneOf(session());
+  const SutureDrawing scene = sceneOf(session());
   ASSERT_EQ(scene.wounds.size(), 3u);
   EXPECT_FALSE(scene.wounds[0].brisk);
   EXPECT_TRUE(scene.wounds[1].brisk);
@@ -53,7 +53,7 @@ TEST(SutureMessages, ReadsBleeding) {
 }
 
 TEST(SutureMessages, EmptySessionIsValid) {
-  SutureScene scene = sceneOf(session());
+  SutureDrawing scene = sceneOf(session());
   EXPECT_EQ(readSutures({}, scene), "");
   EXPECT_TRUE(scene.sets.empty() && scene.wounds.empty());
 }
@@ -78,7 +78,7 @@ TEST(SutureMessages, LinksFollowTheTechnique) {
 TEST(SutureMessages, AfterATearOutThereAreNoCornersAndLinks) {
   SutureArray message = session();
   message.sutures[0].taken.push_back(pointOf(0, 0, 0));
-  const SutureScene scene = sceneOf(message);
+  const SutureDrawing scene = sceneOf(message);
   EXPECT_TRUE(scene.sets[0].corners.empty());
   EXPECT_TRUE(scene.sets[0].links.empty());
   EXPECT_EQ(scene.sets[0].technique, "u");
@@ -135,7 +135,7 @@ TEST(SutureMessages, EveryFaultIsReportedInOneSentence) {
   for (const Fault& fault : faults()) {
     SutureArray message = session();
     fault.make(message);
-    SutureScene scene;
+    SutureDrawing scene;
     const std::string said = readSutures(message, scene);
     EXPECT_NE(said.find(fault.named), std::string::npos) << "'" << fault.named << "' is not in: " << said;
     EXPECT_EQ(said.empty() ? '\0' : said.back(), '.');
@@ -144,7 +144,7 @@ TEST(SutureMessages, EveryFaultIsReportedInOneSentence) {
 }
 
 TEST(SutureMessages, FaultLeavesTheLastValidScene) {
-  SutureScene scene = sceneOf(session());
+  SutureDrawing scene = sceneOf(session());
   SutureArray message = session();
   message.sutures.resize(1);
   message.bleedings[0].position.x = kNan;
@@ -172,7 +172,7 @@ TEST(SutureMessages, UsualStatesAreValid) {
   for (std::size_t k = 0; k < usual.size(); ++k) {
     SutureArray message = session();
     usual[k](message);
-    SutureScene scene;
+    SutureDrawing scene;
     EXPECT_EQ(readSutures(message, scene), "") << "state " << k;
   }
 }
@@ -211,7 +211,7 @@ TEST(SutureMessages, RandomNumbersDoNotCrash) {
     SutureArray message = session();
     vibe_msgs::Suture& suture = message.sutures[random() % 2];
     for (int k = 0; k < 2; ++k) spoils()[random() % spoils().size()](message, suture, random);
-    SutureScene scene;
+    SutureDrawing scene;
     if (!readSutures(message, scene).empty()) continue;
     for (const SutureSet& set : scene.sets)
       for (const std::size_t corner : set.corners) ASSERT_LT(corner, set.bites.size());

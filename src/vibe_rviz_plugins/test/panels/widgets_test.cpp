@@ -116,7 +116,7 @@ TEST_F(Widgets, nothingKnownIsNoZero) {
     EXPECT_EQ(textOf(view, name), "\u2013") << name;
   MeasuresView measures_view;
   measures_view.display({});
-  for (const Measure& measure : measures())
+  for (const ShownMeasure& measure : measures())
     EXPECT_EQ(textOf(measures_view, QString::fromStdString(measure.label)), "\u2013") << measure.label;
 }
 
@@ -215,8 +215,8 @@ TEST_F(Widgets, aBarTellsByShapeToo) {
 TEST_F(Widgets, symbolsDifferByShape) {
   const QPalette palette;
   std::vector<QImage> shapes;
-  for (const Severity severity :
-       {Severity::Note, Severity::Success, Severity::Warning, Severity::Bleeding, Severity::Harm})
+  for (const EventSeverity severity : {EventSeverity::Note, EventSeverity::Success, EventSeverity::Warning,
+                                       EventSeverity::Bleeding, EventSeverity::Harm})
     shapes.push_back(symbolOf(severity, palette).pixmap(32, 32).toImage().convertToFormat(QImage::Format_Alpha8));
   for (std::size_t i = 0; i < shapes.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) EXPECT_NE(shapes[i], shapes[k]) << i << " and " << k;

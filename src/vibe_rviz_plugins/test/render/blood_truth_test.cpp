@@ -34,7 +34,7 @@ Eigen::Isometry3d camera() {
 }
 
 /// A wound on the wall ahead, in the frame of the sutures.
-SutureScene bleeding(bool brisk, double amount) {
+SutureDrawing bleeding(bool brisk, double amount) {
   Wound wound;
   const Vector3d place = 0.05 * Vector3d(0.95, 0.1, 0.2).normalized();
   wound.place = sutureFrame().inverse() * place;
@@ -43,7 +43,7 @@ SutureScene bleeding(bool brisk, double amount) {
   wound.rate = brisk ? 2.5e-7 : 1e-8;
   wound.amount = amount;
   wound.age = amount / wound.rate;
-  SutureScene scene;
+  SutureDrawing scene;
   scene.wounds = {wound};
   return scene;
 }
@@ -55,7 +55,7 @@ class BloodTruthTest : public ::testing::Test {
     for (const float p : mesh_.rest) frame_.positions.push_back(0.05F * p);
   }
 
-  Pixels draw(const SutureScene& sutures) {
+  Pixels draw(const SutureDrawing& sutures) {
     TissueVisual wall(*test::graphicsScene().getRootSceneNode());
     wall.setMesh(mesh_);
     wall.setFrame(frame_);
@@ -77,7 +77,7 @@ class BloodTruthTest : public ::testing::Test {
     return pixels;
   }
 
-  std::vector<std::uint8_t> labels(const SutureScene& sutures) const {
+  std::vector<std::uint8_t> labels(const SutureDrawing& sutures) const {
     TruthScene truth;
     truth.setMesh(mesh_);
     truth.setFrame(frame_);
@@ -122,7 +122,7 @@ class BloodTruthTest : public ::testing::Test {
 
 TEST_F(BloodTruthTest, PictureIsRedderWhereBloodHasRunAndTheLabelSaysSo) {
   for (const bool brisk : {false, true}) {
-    const SutureScene wound = bleeding(brisk, brisk ? 3e-6 : 5e-7);
+    const SutureDrawing wound = bleeding(brisk, brisk ? 3e-6 : 5e-7);
     const Pixels before = draw({}), after = draw(wound);
     const std::vector<std::uint8_t> seen = labels(wound);
     const auto pixels = std::count(seen.begin(), seen.end(), kLabelBlood);

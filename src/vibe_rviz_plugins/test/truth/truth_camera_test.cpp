@@ -202,7 +202,7 @@ TEST_P(TruthCameraTest, OuterWallAndWhatIsTooNearAreToldApart) {
 TEST_P(TruthCameraTest, ThreadsAndTagsHaveTheirLabelsAndThinBloodIsTransparent) {
   FoldedWorld world(24, 48, false);
   world.show(0);
-  SutureScene sutures = test::thread(0);
+  SutureDrawing sutures = test::thread(0);
   sutures.wounds.push_back({{0.035, 0.008, -0.004}, -Eigen::Vector3d::UnitX(), false, 1e-8, 4e-7, 3, 0});
   world.scene.setSutures(sutures, 1, Eigen::Isometry3d::Identity());
   world.scene.commit();

@@ -158,7 +158,7 @@ TEST_P(TruthFlowTest, IsNotToldOfWhatIsGoneOrHasOtherTriangles) {
   camera_.look(world_.scene, test::eye(), view_);
   const std::vector<std::uint8_t> labels = camera_.labels(world_.scene, view_);
   world_.scene.placePart(5, std::nullopt);  // the rod
-  SutureScene other = test::thread(0);
+  SutureDrawing other = test::thread(0);
   other.sets[0].pieces[0].line.insert(other.sets[0].pieces[0].line.begin() + 1, {0.0245, 0.0015, 0.0128});
   world_.scene.setSutures(other, 0, Eigen::Isometry3d::Identity());
   world_.scene.commit();

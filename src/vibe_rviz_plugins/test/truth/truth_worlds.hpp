@@ -93,8 +93,8 @@ inline Eigen::Isometry3d boxPose(double time) {
 }
 
 /// One thread with a T-tag; without blood.
-inline SutureScene thread(double time) {
-  SutureScene scene;
+inline SutureDrawing thread(double time) {
+  SutureDrawing scene;
   SutureSet& set = scene.sets.emplace_back();
   const Eigen::Vector3d bites[2] = {{0.025, 0.004, 0.012}, {0.028, -0.006, 0.010 + 0.001 * time}};
   for (const Eigen::Vector3d& place : bites) set.bites.push_back({place, true, -Eigen::Vector3d::UnitX()});

@@ -7,9 +7,10 @@ import sys
 
 from vibe_sessions.cohort_local import run_local
 from vibe_sessions.cohort_options import DEFAULTS, parse
-from vibe_sessions.cohort_plan import CohortError, Plan
+from vibe_sessions.cohort_plan import Plan
 from vibe_sessions.cohort_progress import Progress
 from vibe_sessions.cohort_store import Store
+from vibe_sessions.headless import SessionError
 
 
 def plan_for(options, store):
@@ -96,7 +97,7 @@ def perform(options):
     signal.signal(signal.SIGTERM, _interrupt)
     try:
         return plot(options) if options.plot else run(options)
-    except CohortError as error:
+    except SessionError as error:
         sys.stderr.write(f"cohort: {error}\n")
         return 2
     except KeyboardInterrupt:

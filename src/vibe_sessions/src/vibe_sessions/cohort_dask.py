@@ -7,8 +7,8 @@ import uuid
 from distributed import Client, as_completed, get_worker
 from distributed.scheduler import KilledWorker
 
-from vibe_sessions.cohort_plan import CohortError
-from vibe_sessions.cohort_session import Killed, perform
+from vibe_sessions.cohort_session import perform
+from vibe_sessions.headless import Killed, SessionError
 
 ATTEMPTS = 3  # the first and two more
 PATIENCE = 30  # for the scheduler and for the first worker [s]
@@ -25,10 +25,10 @@ def perform_on_worker(session):
 
     try:
         return perform(session, stopped), "", None
-    except CohortError as error:
-        return None, str(error), None
     except Killed as death:
         return None, str(death), worker.address
+    except SessionError as error:
+        return None, str(error), None
 
 
 def hush():
@@ -43,12 +43,12 @@ def connect(address):
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError):
-        raise CohortError(f"No Dask scheduler answers at '{address}'; start one with `dask-scheduler`.") from None
+        raise SessionError(f"No Dask scheduler answers at '{address}'; start one with `dask-scheduler`.") from None
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
     except Exception:  # the type differs between versions of Dask
         client.close()
-        raise CohortError(f"The scheduler at '{address}' has no worker; start one: `dask-worker {address}`.") from None
+        raise SessionError(f"The scheduler at '{address}' has no worker; start one: `dask-worker {address}`.") from None
     return client
 
 
@@ -77,8 +77,8 @@ class _Flight:
 
     def _outcome(self, future):
         if future.status == "cancelled":
-            raise CohortError("The connection to the Dask scheduler was lost; what is done is kept, start the "
-                              "scheduler and call again.")
+            raise SessionError("The connection to the Dask scheduler was lost; what is done is kept, start the "
+                               "scheduler and call again.")
         try:
             return future.result()
         except KilledWorker:

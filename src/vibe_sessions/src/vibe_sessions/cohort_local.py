@@ -2,8 +2,8 @@
 import queue
 import threading
 
-from vibe_sessions.cohort_plan import CohortError
-from vibe_sessions.cohort_session import Killed, Stopped, perform
+from vibe_sessions.cohort_session import perform
+from vibe_sessions.headless import Killed, SessionError, Stopped
 
 ATTEMPTS = 3  # the first and two more
 
@@ -15,7 +15,7 @@ def perform_patiently(session, stopped):
             return perform(session, stopped)
         except Killed as death:
             if attempt == ATTEMPTS - 1:
-                raise CohortError(f"{death} Tried {ATTEMPTS} times.") from None
+                raise SessionError(f"{death} Tried {ATTEMPTS} times.") from None
 
 
 class _Crew:
@@ -35,7 +35,7 @@ class _Crew:
                 break
             try:
                 self._results.put((session, perform_patiently(session, self._halt.is_set), ""))
-            except CohortError as error:
+            except SessionError as error:
                 self._results.put((session, None, str(error)))
             except Stopped:
                 break

@@ -7,13 +7,11 @@ import os
 import rospkg
 import yaml
 
-FORMAT = 1  # of cohort.yaml
+from vibe_sessions.headless import SessionError, find_program
+
+FORMAT = 2  # of cohort.yaml
 SCOPE = "package://vibe_description/urdf/scope.urdf"  # of scenes that name none
 KEYS = {"versions", "script", "scenes", "meshes", "novice", "first_seed", "count", "duration", "digests"}
-
-
-class CohortError(Exception):
-    """One sentence for the user."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,7 +37,7 @@ def resolve(address):
     try:
         return os.path.join(rospkg.RosPack().get_path(package), path)
     except rospkg.ResourceNotFound:
-        raise CohortError(f"There is no package '{package}' for '{address}'; source its workspace.") from None
+        raise SessionError(f"There is no package '{package}' for '{address}'; source its workspace.") from None
 
 
 def absolute(address):
@@ -63,7 +61,7 @@ def files_of(path):
         others = [content.get("base"), geometry.get("file"), urdf]
         for other in (resolve(other) for other in others if isinstance(other, str)):
             yield from files_of(os.path.join(os.path.dirname(path), other))
-    except (OSError, ValueError, AttributeError, yaml.YAMLError, RecursionError, CohortError):
+    except (OSError, ValueError, AttributeError, yaml.YAMLError, RecursionError, SessionError):
         return  # the session itself says what is wrong
 
 
@@ -74,18 +72,9 @@ def digest(address):
         for path in files_of(resolve(address)):
             with open(path, "rb") as stream:
                 total.update(stream.read())
-    except (OSError, CohortError):
+    except (OSError, SessionError):
         return "unreadable"
     return total.hexdigest()
-
-
-def find_program():
-    """The program that performs one session: vibe_cohort of the sourced workspace."""
-    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
-        program = os.path.join(prefix, "lib", "vibe_core", "vibe_cohort")
-        if prefix and os.access(program, os.X_OK):
-            return program
-    raise CohortError("There is no vibe_cohort; build vibe_core and source its workspace.")
 
 
 def versions():
@@ -135,7 +124,7 @@ class Plan:
         except (OSError, ValueError, yaml.YAMLError):
             content = None
         if not isinstance(content, dict) or content.get("format") != FORMAT or not KEYS <= content.keys():
-            raise CohortError(f"'{file}' is not the plan of a cohort of this version; name another folder.")
+            raise SessionError(f"'{file}' is not the plan of a cohort of this version; name another folder.")
         return cls(content)
 
     def text(self):

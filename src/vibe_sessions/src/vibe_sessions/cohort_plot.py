@@ -10,7 +10,7 @@ matplotlib.use("Agg")
 matplotlib.rcParams["text.parse_math"] = False  # names are of the user
 import matplotlib.pyplot as plt  # noqa: E402
 
-from vibe_sessions.cohort_plan import CohortError  # noqa: E402
+from vibe_sessions.headless import SessionError  # noqa: E402
 
 # bands: (mean, standard deviation, who); note: what was measured, where a band would not be the same task. Sources:
 # docs/protocols.md, "Skill" and "Expert and novice".
@@ -30,8 +30,8 @@ def share(part, whole):
 PANELS = [
     Panel("Pace of suturing", "bites in 5 minutes", column("bites_per_5_min"),
           [(13.1, 5.2, "experienced"), (5.7, 2.8, "intermediate"), (3.0, 0.8, "novices")], ""),
-    Panel("Time", "s", column("time [s]"), [], "colonoscope task: 101.5 → 31.5 s"),
-    Panel("Path of the tip", "m", column("path_length [m]"), [], "shorter: D'Angelo 2015"),
+    Panel("Time", "s", column("time"), [], "colonoscope task: 101.5 → 31.5 s"),
+    Panel("Path of the tip", "m", column("path_length"), [], "shorter: D'Angelo 2015"),
     Panel("Smoothness", "SPARC", column("spectral_arc_length"), [], "smoother: endovascular tool tip"),
     Panel("Bites through the whole wall", "%", share("bites_full_thickness", "bites"), [], ""),
     Panel("Area of the body", "reduced by, %", column("area_reduction", 100), [], "whole sleeve: 9.4 → 34.6 %"),
@@ -43,9 +43,9 @@ def read(file):
         with open(file, newline="", encoding="utf-8") as stream:
             rows = list(csv.DictReader(stream))
     except OSError as error:
-        raise CohortError(f"Cannot read '{file}': {error.strerror}; finish the cohort first.") from None
+        raise SessionError(f"Cannot read '{file}': {error.strerror}; finish the cohort first.") from None
     if not rows or "novice" not in rows[0]:
-        raise CohortError(f"'{file}' has no rows with a skill; finish the cohort first.")
+        raise SessionError(f"'{file}' has no rows with a skill; finish the cohort first.")
     return rows
 
 
@@ -154,4 +154,4 @@ def draw(table, picture):
     try:
         figure.savefig(picture, dpi=110)
     except (OSError, ValueError) as error:
-        raise CohortError(f"Cannot write '{picture}': {error}.") from None
+        raise SessionError(f"Cannot write '{picture}': {error}.") from None

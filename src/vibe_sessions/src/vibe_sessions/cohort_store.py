@@ -5,7 +5,8 @@ import io
 import json
 import os
 
-from vibe_sessions.cohort_plan import CohortError, Plan
+from vibe_sessions.cohort_plan import Plan
+from vibe_sessions.headless import SessionError
 
 
 def write_whole(path, text):
@@ -18,7 +19,7 @@ def write_whole(path, text):
             os.fsync(stream.fileno())
         os.replace(part, path)
     except OSError as error:
-        raise CohortError(f"Cannot write '{path}': {error.strerror}.") from None
+        raise SessionError(f"Cannot write '{path}': {error.strerror}.") from None
 
 
 class Store:
@@ -30,11 +31,12 @@ class Store:
             os.makedirs(os.path.join(folder, "rows"), exist_ok=True)
             self._lock = open(os.path.join(folder, ".lock"), "w", encoding="utf-8")
         except OSError as error:
-            raise CohortError(f"Cannot write into '{folder}': {error.strerror}.") from None
+            raise SessionError(f"Cannot write into '{folder}': {error.strerror}.") from None
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            raise CohortError(f"Another cohort is at work in '{folder}'; wait for it or name another folder.") from None
+            raise SessionError(f"Another cohort is at work in '{folder}'; wait for it or name another "
+                               "folder.") from None
 
     def close(self):
         self._lock.close()
@@ -48,14 +50,14 @@ class Store:
     def adopt(self, plan):
         """The folder gets this plan, or has it already.
 
-        Raises CohortError if it has another one.
+        Raises SessionError if it has another one.
         """
         if not self.has_plan():
             write_whole(self.path("cohort.yaml"), plan.text())
             return
         difference = plan.difference(Plan.load(self.path("cohort.yaml")))
         if difference:
-            raise CohortError(f"'{self.folder}' has a cohort with another plan: {difference}; name another folder.")
+            raise SessionError(f"'{self.folder}' has a cohort with another plan: {difference}; name another folder.")
 
     def has(self, session):
         return os.path.exists(self.path(f"rows/{session.key}.json"))
@@ -71,7 +73,7 @@ class Store:
                 row = json.load(stream)
             return row["columns"], row["values"]
         except (OSError, ValueError, KeyError, TypeError):
-            raise CohortError(f"'{path}' cannot be read; remove it and call again.") from None
+            raise SessionError(f"'{path}' cannot be read; remove it and call again.") from None
 
     def write_table(self, plan):
         """The rows of all finished sessions, in the order of the plan, one at a time in memory."""
@@ -84,7 +86,7 @@ class Store:
                     writer.writerow(columns)
                     names = columns
                 if columns != names:
-                    raise CohortError(f"The row of {session.key} has other columns; remove it and call again.")
+                    raise SessionError(f"The row of {session.key} has other columns; remove it and call again.")
                 writer.writerow(values)
         os.replace(part, self.path("cohort.csv"))
 

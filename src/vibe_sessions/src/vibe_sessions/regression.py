@@ -4,7 +4,8 @@ import sys
 import time
 import xml.etree.ElementTree as ElementTree
 
-from vibe_sessions.regression_file import RegressionError, read_regression
+from vibe_sessions.headless import SessionError
+from vibe_sessions.regression_file import read_regression
 from vibe_sessions.regression_run import known_measures, perform
 from vibe_sessions.regression_units import show
 from vibe_sessions.regression_verdict import judge, table
@@ -38,7 +39,7 @@ def updated(regression, values, state_hash):
         if e.digest:
             new = f'"{state_hash}"'
         elif values[e.name][0] is None:
-            raise RegressionError(f"{regression.file}: '{e.name}' has no value in this session; remove it.")
+            raise SessionError(f"{regression.file}: '{e.name}' has no value in this session; remove it.")
         else:
             new = show(values[e.name][0], e.unit, 5) if e.tolerance else f"{values[e.name][0]:.0f}"
         text = text[:begin] + new + text[end:]
@@ -53,7 +54,7 @@ def write_update(regression, values, state_hash):
             stream.write(text)
         os.replace(part, regression.file)
     except OSError as error:
-        raise RegressionError(f"{regression.file}: cannot be written: {error.strerror}.") from None
+        raise SessionError(f"{regression.file}: cannot be written: {error.strerror}.") from None
 
 
 def run_one(file, known, update):
@@ -64,7 +65,7 @@ def run_one(file, known, update):
         result.verdicts = judge(regression, values, state_hash)
         if update:
             write_update(regression, values, state_hash)
-    except RegressionError as error:
+    except SessionError as error:
         result.error = str(error)
     result.seconds = time.monotonic() - start
     return result
@@ -132,7 +133,7 @@ def main(arguments):
     results = []
     try:
         known = known_measures()
-    except RegressionError as error:
+    except SessionError as error:
         print(f"regression: {error}", file=sys.stderr)
         return 2
     for file in files:

@@ -8,13 +8,10 @@ import re
 import yaml
 
 from vibe_sessions import regression_units as units
+from vibe_sessions.headless import SessionError
 
 KEYS = ("scene", "script", "mesh", "seed", "duration", "expect")
 LIMITS = ("value", "tolerance", "min", "max")
-
-
-class RegressionError(Exception):
-    """One sentence with file and line."""
 
 
 @dataclasses.dataclass
@@ -59,21 +56,21 @@ class _Reader:
                 self.text = stream.read()
             self.root = yaml.compose(self.text, Loader=yaml.SafeLoader)
         except OSError as error:
-            raise RegressionError(f"{file}: cannot be read: {error.strerror}.") from None
+            raise SessionError(f"{file}: cannot be read: {error.strerror}.") from None
         except RecursionError:
-            raise RegressionError(f"{file}: this is not a regression: its lists or maps are nested too deeply.") from None
+            raise SessionError(f"{file}: this is not a regression: its lists or maps are nested too deeply.") from None
         except yaml.reader.ReaderError as error:
             line = self.text.count("\n", 0, error.position) + 1
-            raise RegressionError(f"{file}:{line}: this is not YAML: {error.reason}.") from None
+            raise SessionError(f"{file}:{line}: this is not YAML: {error.reason}.") from None
         except (yaml.YAMLError, UnicodeDecodeError) as error:
             mark = getattr(error, "problem_mark", None)
             line = f":{mark.line + 1}" if mark else ""
             problem = getattr(error, "problem", "not UTF-8")
-            raise RegressionError(f"{file}{line}: this is not YAML: {problem}.") from None
+            raise SessionError(f"{file}{line}: this is not YAML: {problem}.") from None
 
     def fail(self, node, sentence):
         line = node.start_mark.line + 1 if node is not None else 1
-        raise RegressionError(f"{self.file}:{line}: {sentence}")
+        raise SessionError(f"{self.file}:{line}: {sentence}")
 
     def items(self, node, what):
         """(key, key node, value node) of a map, each key once."""
@@ -210,5 +207,5 @@ class _Reader:
 
 
 def read_regression(file, known):
-    """Raises RegressionError: one sentence with file and line."""
+    """Raises SessionError: one sentence with file and line."""
     return _Reader(file, known).read()

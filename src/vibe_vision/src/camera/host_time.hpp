@@ -2,16 +2,13 @@
 #include <chrono>
 #include <thread>
 
+#include "vibe_core/common/step_timer.hpp"  // steadyTime()
+
 namespace vibe {
 
 /// Unix time [s].
 inline double hostTime() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-/// Time that never jumps, from an arbitrary start [s].
-inline double steadyTime() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 inline void sleepFor(double duration) {

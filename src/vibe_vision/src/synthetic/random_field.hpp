@@ -2,6 +2,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "vibe_core/common/random.hpp"
+
 namespace vibe {
 
 /// Random numbers by counter: number i of a stream is a function of its seed and i alone, with integer arithmetic and
@@ -9,7 +11,7 @@ namespace vibe {
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t stream) {
-    const std::uint64_t key = mix64(mix64(seed) ^ (stream * 0x9E3779B97F4A7C15ULL));
+    const std::uint64_t key = mixed(mixed(seed) ^ (stream * 0x9E3779B97F4A7C15ULL));
     first_ = static_cast<std::uint32_t>(key);
     second_ = static_cast<std::uint32_t>(key >> 32);
   }
@@ -19,12 +21,6 @@ class RandomStream {
   float uniform(std::uint32_t i) const { return (static_cast<float>(bits(i) >> 9) + 0.5F) * (1.0F / 8388608.0F); }
 
  private:
-  static std::uint64_t mix64(std::uint64_t z) {  // splitmix64 (Steele, Lea, Flood, OOPSLA 2014)
-    z += 0x9E3779B97F4A7C15ULL;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31);
-  }
   static std::uint32_t mix32(std::uint32_t x) {  // two multiplications, full avalanche
     x = (x ^ (x >> 16)) * 0x7FEB352DU;
     x = (x ^ (x >> 15)) * 0x846CA68BU;

@@ -4,20 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <ctime>
 
 #include "track/ring_scene.hpp"
+#include "vibe_core/common/step_timer.hpp"
 
 namespace vibe::tracker_cost_test {
 namespace {
 
 using test::ringScene;
-
-double threadTime() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 TEST(TrackerCost, NoMemoryPerFrame) {
   if (!VIBE_COUNTS_ALLOCATIONS) GTEST_SKIP() << "a sanitizer brings its own memory";
@@ -60,9 +54,9 @@ double cost(const SyntheticScene& scene, bool search) {
     tracker.reset();
     for (const RenderedFrame& rendered : frames) {
       if (search) tracker.reset();
-      const double start = threadTime();
+      const double start = threadCpuTime();
       const bool found = tracker.track(rendered.frame)[0].reacquired;
-      if (found == search) least = std::min(least, threadTime() - start);
+      if (found == search) least = std::min(least, threadCpuTime() - start);
     }
   }
   return least;

@@ -131,7 +131,7 @@ def path_length(points):
 
 
 def bites_per_five_minutes(sutures):
-    """As vibe_cohort: from the first to the last bite of each set, with one bite less."""
+    """As the measure of vibe_core: from the first to the last bite of each set, with one bite less."""
     seconds = bites = 0
     for suture in sutures.sutures if sutures is not None else ():
         if len(suture.bites) > 1:

@@ -13,6 +13,11 @@ inline std::uint64_t nextInteger(std::uint64_t& state) {
   return z ^ (z >> 31);
 }
 
+/// The first number of the seed `x`: well mixed bits, as of a counter.
+inline std::uint64_t mixed(std::uint64_t x) {
+  return nextInteger(x);
+}
+
 /// Uniform in [0, 1), a multiple of 2^-53.
 inline double nextUniform(std::uint64_t& state) {
   return static_cast<double>(nextInteger(state) >> 11) * 0x1.0p-53;

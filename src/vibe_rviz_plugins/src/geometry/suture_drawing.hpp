@@ -53,7 +53,7 @@ struct Wound {
 };
 
 /// All threads and bleeding of one message, with positions in its frame.
-struct SutureScene {
+struct SutureDrawing {
   std::vector<SutureSet> sets;
   std::vector<Wound> wounds;
 };

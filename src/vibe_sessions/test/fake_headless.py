@@ -1,13 +1,14 @@
 #!/usr/bin/python3 -SE
-"""Stands in for vibe_cohort: a row that follows from the options. What it is to suffer stands in the name of the scene
-or in files of the folder VIBE_FAKE."""
+"""Stands in for vibe_headless: measures that follow from the options. What it is to suffer stands in the name of the
+scene or in files of the folder VIBE_FAKE."""
+import json
 import os
 import signal
 import sys
 import time
 
 options = dict(zip(sys.argv[1::2], sys.argv[2::2]))
-folder, seed, novice = os.environ["VIBE_FAKE"], options["--first-seed"], float(options["--novice"])
+folder, seed, novice = os.environ["VIBE_FAKE"], options["--seed"], float(options["--novice"])
 
 
 def once(name):
@@ -21,7 +22,7 @@ def once(name):
 
 once(f"began-{novice:g}-{seed}-{os.getpid()}")
 if "bad" in options["--scene"]:
-    sys.exit("vibe_cohort: bad.yaml:3: unknown key 'colour'; remove it.")
+    sys.exit("vibe_headless: bad.yaml:3: unknown key 'colour'; remove it.")
 if os.path.exists(os.path.join(folder, f"kill-{seed}")) and once(f"killed-{seed}-{novice:g}"):
     os.kill(os.getpid(), signal.SIGKILL)
 if os.path.exists(os.path.join(folder, f"always-kill-{seed}")):
@@ -30,5 +31,6 @@ if os.path.exists(os.path.join(folder, "slow")):
     time.sleep(0.5)
 if os.path.exists(os.path.join(folder, "hang")):
     time.sleep(600)
-print("novice,seed,time [s],share_above_5_N,state_hash")
-print(f"{novice:g},{seed},{100 + 500 * novice + int(seed) / 7:.6g},,{int(seed) * 2654435761 % 2**32:016x}")
+measures = {"time": {"value": 100 + 500 * novice + int(seed) / 7}, "share_above": {"value": None}}
+with open(options["--measures"], "w", encoding="utf-8") as stream:
+    json.dump({"measures": measures, "state_hash": f"{int(seed) * 2654435761 % 2**32:016x}"}, stream)

@@ -1,4 +1,4 @@
-#include "geometry/ray_hit.hpp"
+#include "geometry/mouse_ray.hpp"
 
 #include <Eigen/Geometry>
 #include <array>
@@ -27,7 +27,7 @@ bool readCorners(const std::vector<float>& positions, const std::uint32_t* trian
 }
 
 // Moeller, Trumbore 1997. Negative: not met.
-double distanceTo(const Ray& ray, const Corners& corners) {
+double distanceTo(const MouseRay& ray, const Corners& corners) {
   const Eigen::Vector3d a = corners[1] - corners[0], b = corners[2] - corners[0];
   const Eigen::Vector3d p = ray.direction.cross(b);
   const double volume = a.dot(p);
@@ -46,9 +46,9 @@ std::uint32_t nearestCorner(const Corners& corners, const std::uint32_t* triangl
 
 }  // namespace
 
-std::optional<RayHit> firstHit(const Ray& ray, const std::vector<float>& positions,
-                               const std::vector<std::uint32_t>& triangles) {
-  RayHit hit;
+std::optional<MouseHit> firstHit(const MouseRay& ray, const std::vector<float>& positions,
+                                 const std::vector<std::uint32_t>& triangles) {
+  MouseHit hit;
   hit.distance = std::numeric_limits<double>::infinity();
   Corners corners;
   for (std::size_t t = 0; 3 * t + 2 < triangles.size(); ++t) {
@@ -64,7 +64,8 @@ std::optional<RayHit> firstHit(const Ray& ray, const std::vector<float>& positio
   return hit;
 }
 
-std::optional<Eigen::Vector3d> meetPlane(const Ray& ray, const Eigen::Vector3d& place, const Eigen::Vector3d& normal) {
+std::optional<Eigen::Vector3d> meetPlane(const MouseRay& ray, const Eigen::Vector3d& place,
+                                         const Eigen::Vector3d& normal) {
   const double slope = normal.dot(ray.direction);
   if (std::abs(slope) < kMinSlope * normal.norm()) return std::nullopt;
   const double distance = normal.dot(place - ray.origin) / slope;

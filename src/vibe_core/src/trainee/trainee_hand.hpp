@@ -11,12 +11,12 @@ namespace vibe {
 
 /// The hands of a trainee: elementary motions, each of which lasts some steps and perceives what happens meanwhile.
 /// Calls return when the motion has ended.
-class Hand {
+class TraineeHand {
  public:
   using Joints = std::array<double, kJointCount>;
 
   /// @param next  ends the present step and returns when the next one has been perceived
-  Hand(const Model& model, const Skill& skill, std::function<void()> next);
+  TraineeHand(const Model& model, const Skill& skill, std::function<void()> next);
 
   /// Called before the coroutine goes on.
   void perceive(const Observation& seen);

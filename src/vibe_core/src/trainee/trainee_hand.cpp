@@ -1,4 +1,4 @@
-#include "trainee/hand.hpp"
+#include "trainee/trainee_hand.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,27 +10,27 @@
 
 namespace vibe {
 
-Hand::Hand(const Model& model, const Skill& skill, std::function<void()> next)
+TraineeHand::TraineeHand(const Model& model, const Skill& skill, std::function<void()> next)
     : model_(model), skill_(skill), next_(std::move(next)) {}
 
-void Hand::perceive(const Observation& seen) {
+void TraineeHand::perceive(const Observation& seen) {
   if (view_ == nullptr) command_.joints = seen.joints;
   view_ = &seen;
   events_.insert(events_.end(), seen.events.begin(), seen.events.end());
 }
 
-void Hand::wait(double seconds) {
+void TraineeHand::wait(double seconds) {
   const long steps = std::lround(seconds / model_.scene.step_period);
   for (long k = 0; k < steps; ++k) next_();
 }
 
-bool Hand::await(const std::function<bool()>& condition, double patience) {
+bool TraineeHand::await(const std::function<bool()>& condition, double patience) {
   const long steps = std::lround(patience / model_.scene.step_period);
   for (long k = 0; k < steps && !condition(); ++k) next_();
   return condition();
 }
 
-bool Hand::moveTo(const Joints& joints, double min, const std::function<bool()>& stop) {
+bool TraineeHand::moveTo(const Joints& joints, double min, const std::function<bool()>& stop) {
   const Joints from = command_.joints;
   Joints to = from;
   for (int j = 0; j < kJointCount; ++j)
@@ -46,21 +46,21 @@ bool Hand::moveTo(const Joints& joints, double min, const std::function<bool()>&
   return true;
 }
 
-bool Hand::move(Joint joint, double position, double min, const std::function<bool()>& stop) {
+bool TraineeHand::move(Joint joint, double position, double min, const std::function<bool()>& stop) {
   Joints joints;
   joints.fill(std::numeric_limits<double>::quiet_NaN());
   joints[joint] = position;
   return moveTo(joints, min, stop);
 }
 
-void Hand::hold(Button button, double seconds) {
+void TraineeHand::hold(Button button, double seconds) {
   press(button);
   wait(seconds);
   release(button);
   wait(0.1);  // so that the next press is one of its own
 }
 
-const Event* Hand::find(Event::Kind kind) const {
+const Event* TraineeHand::find(Event::Kind kind) const {
   const auto found =
       std::find_if(events_.begin(), events_.end(), [kind](const Event& event) { return event.kind == kind; });
   return found == events_.end() ? nullptr : &*found;

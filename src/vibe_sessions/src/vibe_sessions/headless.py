@@ -1,0 +1,71 @@
+"""Runs vibe_headless, which performs a session and writes its measures by name."""
+import json
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+
+POLL = 0.2  # between looks whether the session is still wanted [s]
+
+
+class SessionError(Exception):
+    """One sentence for the user."""
+
+
+class Killed(SessionError):
+    """A signal ended the program: the session may succeed elsewhere."""
+
+
+class Stopped(Exception):
+    """The session was no longer wanted."""
+
+
+def find_program():
+    """vibe_headless of the sourced workspace."""
+    for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":"):
+        program = os.path.join(prefix, "lib", "vibe_core", "vibe_headless")
+        if prefix and os.access(program, os.X_OK):
+            return program
+    raise SessionError("There is no vibe_headless; build vibe_core and source its workspace.")
+
+
+def _wait(child, stopped):
+    while True:
+        try:
+            return child.communicate(timeout=POLL)
+        except subprocess.TimeoutExpired:
+            if stopped():
+                raise Stopped from None
+
+
+def call(arguments, stopped=lambda: False):
+    """What it printed.
+
+    Raises SessionError with the sentence that it said, Killed if a signal ended it, Stopped on demand.
+    """
+    # the child ends with the process that waits for it, even if that is killed
+    guard = ["setpriv", "--pdeathsig", "KILL"] if shutil.which("setpriv") else []
+    child = subprocess.Popen(guard + [find_program(), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                             stderr=subprocess.PIPE, text=True, errors="replace", process_group=0)
+    try:
+        output, said = _wait(child, stopped)
+    finally:
+        if child.poll() is None:
+            child.kill()
+            child.communicate()
+    if child.returncode < 0:
+        raise Killed(f"vibe_headless was ended by the signal {signal.Signals(-child.returncode).name}.")
+    if child.returncode > 0:
+        lines = said.strip().splitlines() or [f"vibe_headless ended with status {child.returncode}."]
+        raise SessionError(lines[-1].removeprefix("vibe_headless: "))
+    return output
+
+
+def perform(arguments, stopped=lambda: False):
+    """Performs the session of these arguments: {"measures": {name: {"value", "unit"}}, "events", "state_hash", ...}."""
+    with tempfile.TemporaryDirectory(prefix="vibe_session_") as folder:
+        file = os.path.join(folder, "measures.json")
+        call([*arguments, "--measures", file, "--quiet"], stopped)
+        with open(file, encoding="utf-8") as stream:
+            return json.load(stream)
