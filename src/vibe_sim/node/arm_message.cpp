@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "conversions.hpp"
+#include "vibe_core/common/rotation.hpp"
 
 namespace vibe {
 namespace {
@@ -64,7 +65,7 @@ std_msgs::Float64MultiArray makeJacobian(const TipJacobian& jacobian) {
 }
 
 geometry_msgs::PoseStamped makeWallPose(const WallSight& sight, std::int64_t stamp) {
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), sight.normal);
+  const Eigen::Quaterniond turn = rotationBetween(Eigen::Vector3d::UnitX(), sight.normal);
   return makePose(Eigen::Translation3d(sight.point) * turn, kWorldFrame, stamp);
 }
 

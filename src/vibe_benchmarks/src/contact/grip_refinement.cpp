@@ -10,6 +10,7 @@
 #include "contact/free_hand.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/rotation.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 
 namespace vibe {
@@ -80,7 +81,7 @@ class Mesh {
 
   RefinementRow byHelix(const Site& site) const {
     auto model = std::make_shared<Model>(*model_);
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), site.inwards);
+    const Eigen::Quaterniond turn = rotationBetween(Eigen::Vector3d::UnitX(), site.inwards);
     model->tool_base = Eigen::Translation3d(site.place - kHandStart * site.inwards) * turn;
     Simulation simulation(model, SimulationSettings::study(1));
     simulation.replaceState(settled_);

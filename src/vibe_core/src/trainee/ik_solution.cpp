@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/elementary.hpp"
+#include "vibe_core/common/rotation.hpp"
 
 namespace vibe {
 
@@ -43,8 +44,7 @@ IkSolution aimFrom(const Model& model, const Eigen::Vector3d& point, const Eigen
     Eigen::Isometry3d target = poses[model.tip_link];
     const Eigen::Vector3d ahead = to_base.linear() * direction;
     if (round < kDirectedRounds)
-      target.linear() =
-          Eigen::Quaterniond::FromTwoVectors(target.linear().col(0), ahead).toRotationMatrix() * target.linear();
+      target.linear() = rotationBetween(target.linear().col(0), ahead).toRotationMatrix() * target.linear();
     target.translation() = to_base * point - poses[model.tip_link].linear() * offset;
     aim.joints = tool.inverseKinematics(target, aim.joints);
   }

@@ -8,6 +8,7 @@
 
 #include "procedure/marking.hpp"
 #include "procedure/procedure_bench.hpp"
+#include "vibe_core/common/rotation.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
 namespace vibe::marking_step_test {
@@ -162,7 +163,7 @@ TEST(MarkingStep, SleepingTissueIsMarkedAndCools) {
 void beamAt(Stage& stage, const Eigen::Vector3d& direction, double seconds) {
   std::vector<Eigen::Isometry3d> poses(stage.model->tool->linkCount(), Eigen::Isometry3d::Identity());
   Eigen::Isometry3d& tip = poses[stage.model->tip_link];
-  tip.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), direction).toRotationMatrix();
+  tip.linear() = rotationBetween(Eigen::Vector3d::UnitX(), direction).toRotationMatrix();
   tip.translation() = (kRadius - kWall / 2 - kGap - ApcParameters{}.probe_length) * direction;
   const long steps = std::lround(seconds * 60);
   for (long k = 0; k < steps; ++k)

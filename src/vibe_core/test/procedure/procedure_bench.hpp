@@ -7,6 +7,7 @@
 #include "procedure/needle.hpp"
 #include "procedure/procedure.hpp"
 #include "scope_worlds.hpp"
+#include "vibe_core/common/rotation.hpp"
 
 namespace vibe::test {
 
@@ -50,7 +51,7 @@ struct Bench {
     model().tool->forwardKinematics(world.state.joints, poses);
     const auto [begin, end] = needlePath(model(), poses);
     Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
-    base.linear() = Eigen::Quaterniond::FromTwoVectors(begin - end, site).toRotationMatrix();
+    base.linear() = rotationBetween(begin - end, site).toRotationMatrix();
     base.translation() = (kBenchRadius + beyond) * site - base.linear() * begin;
     for (Eigen::Isometry3d& pose : poses) pose = base * pose;
     return poses;
