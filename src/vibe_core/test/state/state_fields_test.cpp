@@ -9,7 +9,7 @@
 #include "vibe_core/input/step_input_fields.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 
-namespace vibe::state_fields_test {
+namespace vibe {  // not one of its own: VIBE_FIELDS describes a struct in this namespace
 namespace {
 
 // One item in every list, so that the fields of its items exist.
@@ -156,4 +156,4 @@ TEST(Fields, AnotherListOfFieldsHasAnotherVersion) {
 }
 
 }  // namespace
-}  // namespace vibe::state_fields_test
+}  // namespace vibe
