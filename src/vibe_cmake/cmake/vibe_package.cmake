@@ -83,6 +83,8 @@ function(vibe_programs)
     string(REGEX REPLACE "_main$" "" name ${name})
     add_executable(${name} ${source})
     target_link_libraries(${name} ${arg_LINK} ${PROJECT_NAME}_options)
+    # programs read options and call libraries; this compiles by a third faster
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
     list(APPEND names ${name})
   endforeach()
   if(NOT arg_DESTINATION)
