@@ -11,19 +11,21 @@
 
 namespace vibe_example {
 
-class PullSpringDisplay : public vibe::MessageShapeDisplay<vibe_msgs::TissuePullState> {
+using namespace vibe::rviz_plugins;
+
+class PullSpringDisplay : public MessageShapeDisplay<vibe_msgs::TissuePullState> {
  public:
   PullSpringDisplay() : MessageShapeDisplay("tissue/pull_state") {
     diameter_ = new rviz::FloatProperty("Diameter", 0.002F, "Diameter of the spring in metres.", this, SLOT(redraw()));
     diameter_->setMin(1e-4F);
   }
 
-  std::string makeShape(const vibe_msgs::TissuePullState& message, vibe::ColouredShape& shape) const override {
+  std::string makeShape(const vibe_msgs::TissuePullState& message, ColouredShape& shape) const override {
     if (message.particle < 0) return "";  // released: nothing to draw
     const Eigen::Vector3d from(message.position.x, message.position.y, message.position.z);
     const Eigen::Vector3d to(message.target.x, message.target.y, message.target.z);
     if (!from.allFinite() || !to.allFinite()) return "The position or the target of the pull spring is not finite.";
-    vibe::appendTube({from, to}, 0.5 * diameter_->getFloat(), vibe::packed(1, 0.8, 0.2), 24, shape);
+    appendTube({from, to}, 0.5 * diameter_->getFloat(), packed(1, 0.8, 0.2), 24, shape);
     return "";
   }
 

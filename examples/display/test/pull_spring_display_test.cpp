@@ -13,7 +13,8 @@
 
 namespace {
 
-using PullDisplay = vibe::MessageShapeDisplay<vibe_msgs::TissuePullState>;
+using vibe::rviz_plugins::ColouredShape;
+using PullDisplay = vibe::rviz_plugins::MessageShapeDisplay<vibe_msgs::TissuePullState>;
 constexpr double kPi = 3.14159265358979323846;
 
 class PullSpringDisplayTest : public testing::Test {
@@ -37,12 +38,12 @@ vibe_msgs::TissuePullState pullOf(double length) {
   return message;
 }
 
-Eigen::Vector3d cornerOf(const vibe::ColouredShape& shape, std::size_t k) {
+Eigen::Vector3d cornerOf(const ColouredShape& shape, std::size_t k) {
   const float* p = shape.vertices[shape.triangles[k]].position;
   return {p[0], p[1], p[2]};
 }
 
-double areaOf(const vibe::ColouredShape& shape) {
+double areaOf(const ColouredShape& shape) {
   double area = 0;
   for (std::size_t k = 0; k + 2 < shape.triangles.size(); k += 3) {
     const Eigen::Vector3d a = cornerOf(shape, k);
@@ -54,12 +55,12 @@ double areaOf(const vibe::ColouredShape& shape) {
 TEST_F(PullSpringDisplayTest, SpringIsATubeWithRoundEnds) {
   ASSERT_NE(display_, nullptr);
   const double radius = 0.001, length = 0.03;
-  vibe::ColouredShape shape;
+  ColouredShape shape;
   EXPECT_EQ(display_->makeShape(pullOf(length), shape), "");
-  EXPECT_EQ(vibe::problemOf(shape), "");
+  EXPECT_EQ(vibe::rviz_plugins::problemOf(shape), "");
   const double area = 2 * kPi * radius * length + 4 * kPi * radius * radius;
   EXPECT_NEAR(areaOf(shape), area, 0.01 * area);  // a prism with 24 sides has 0.3 % less than the cylinder
-  vibe::ColouredShape longer;
+  ColouredShape longer;
   display_->makeShape(pullOf(1.1 * length), longer);
   EXPECT_GT(areaOf(longer), 1.05 * area);  // control: the length is seen in the area
 }
@@ -67,7 +68,7 @@ TEST_F(PullSpringDisplayTest, SpringIsATubeWithRoundEnds) {
 TEST_F(PullSpringDisplayTest, ReleasedSpringDrawsNothing) {
   vibe_msgs::TissuePullState message = pullOf(0.03);
   message.particle = -1;
-  vibe::ColouredShape shape;
+  ColouredShape shape;
   EXPECT_EQ(display_->makeShape(message, shape), "");
   EXPECT_TRUE(shape.vertices.empty());
 }
@@ -75,16 +76,16 @@ TEST_F(PullSpringDisplayTest, ReleasedSpringDrawsNothing) {
 TEST_F(PullSpringDisplayTest, PositionThatIsNotFiniteIsReported) {
   vibe_msgs::TissuePullState message = pullOf(0.03);
   message.target.y = std::numeric_limits<double>::quiet_NaN();
-  vibe::ColouredShape shape;
+  ColouredShape shape;
   EXPECT_EQ(display_->makeShape(message, shape), "The position or the target of the pull spring is not finite.");
 }
 
 TEST_F(PullSpringDisplayTest, EveryPropertyHasHelp) {
-  const vibe::PropertyHelp help = vibe::checkPropertyHelp(*plugin_, "PullSpring");
+  const vibe::rviz_plugins::PropertyHelp help = vibe::rviz_plugins::checkPropertyHelp(*plugin_, "PullSpring");
   EXPECT_EQ(help.count, 2);  // topic and diameter
   EXPECT_TRUE(help.missing.empty());
   rviz::Property silent("Silent", 1, "", plugin_.get());
-  EXPECT_EQ(vibe::checkPropertyHelp(*plugin_, "PullSpring").missing.size(), 1u);  // control
+  EXPECT_EQ(vibe::rviz_plugins::checkPropertyHelp(*plugin_, "PullSpring").missing.size(), 1u);  // control
 }
 
 }  // namespace

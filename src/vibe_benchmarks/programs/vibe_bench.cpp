@@ -18,6 +18,7 @@
 namespace {
 
 using namespace vibe;
+using namespace vibe::benchmarks;
 
 struct Options {
   std::vector<std::string> cases;

@@ -15,6 +15,7 @@
 namespace {
 
 using namespace vibe;
+using namespace vibe::benchmarks;
 
 struct Options {
   std::string csv, scene = "package://vibe_core/scenes/stomach.yaml";

@@ -14,6 +14,7 @@
 namespace {
 
 using namespace vibe;
+using namespace vibe::benchmarks;
 
 const char kAbout[] =
     "Sews whole procedures of sutures.\n"

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// A temporary case file in the folder of the test, removed with the object.
 class CaseFile {
@@ -42,4 +42,4 @@ inline std::string stretchLoads() {
          "    - {set: x_max, held: [x], translation: [20 mm, 0, 0]}\n";
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -5,7 +5,7 @@
 
 #include "case_file.hpp"
 
-namespace vibe::case_runner_test {
+namespace vibe::benchmarks::case_runner_test {
 namespace {
 
 std::vector<ResultRow> run(const std::string& text, std::string* log = nullptr) {
@@ -109,4 +109,4 @@ TEST(CaseRunner, hashesTheLastState) {
 }
 
 }  // namespace
-}  // namespace vibe::case_runner_test
+}  // namespace vibe::benchmarks::case_runner_test

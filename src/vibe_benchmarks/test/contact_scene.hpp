@@ -4,7 +4,7 @@
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
-namespace vibe::test {
+namespace vibe::benchmarks::test {
 
 /// The default stomach with 900 particles and gas that fills it within a second.
 inline Scene coarseStomach() {
@@ -19,4 +19,4 @@ inline std::string scopeUrdf() {
   return readTextFile(VIBE_DESCRIPTION_DIR "/urdf/scope.urdf", "URDF");
 }
 
-}  // namespace vibe::test
+}  // namespace vibe::benchmarks::test

@@ -12,7 +12,7 @@
 #include "contact_scene.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::contact_test {
+namespace vibe::benchmarks::contact_test {
 namespace {
 
 using test::coarseStomach;
@@ -139,4 +139,4 @@ TEST(Contact, ChecksSeeAWallThatCrossesAndAToolThatPassesThrough) {
 }
 
 }  // namespace
-}  // namespace vibe::contact_test
+}  // namespace vibe::benchmarks::contact_test

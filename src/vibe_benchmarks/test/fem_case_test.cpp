@@ -6,7 +6,7 @@
 #include "scene/expect_error.hpp"
 #include "vibe_core/scene/choices.hpp"
 
-namespace vibe::fem_case_test {
+namespace vibe::benchmarks::fem_case_test {
 namespace {
 
 const char kRun[] =
@@ -100,4 +100,4 @@ TEST(FemCase, shippedCasesAreReadable) {
 }
 
 }  // namespace
-}  // namespace vibe::fem_case_test
+}  // namespace vibe::benchmarks::fem_case_test

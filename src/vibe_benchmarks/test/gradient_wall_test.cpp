@@ -6,7 +6,7 @@
 #include <memory>
 #include <sstream>
 
-namespace vibe::gradient_wall_test {
+namespace vibe::benchmarks::gradient_wall_test {
 namespace {
 
 constexpr int kNodes = 800;
@@ -84,4 +84,4 @@ TEST(GradientWall, pokesInABedHaveARowPerSetting) {
 }
 
 }  // namespace
-}  // namespace vibe::gradient_wall_test
+}  // namespace vibe::benchmarks::gradient_wall_test

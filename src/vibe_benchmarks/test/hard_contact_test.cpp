@@ -9,7 +9,7 @@
 #include "contact/hard_cases.hpp"
 #include "contact_scene.hpp"
 
-namespace vibe::hard_contact_test {
+namespace vibe::benchmarks::hard_contact_test {
 namespace {
 
 constexpr int kMostIterations = 40;  // of a step
@@ -83,4 +83,4 @@ TEST(HardSession, TheShippedSessionsCrossNothingEither) {
 }
 
 }  // namespace
-}  // namespace vibe::hard_contact_test
+}  // namespace vibe::benchmarks::hard_contact_test

@@ -11,7 +11,7 @@
 #include "fem/oscillation.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
-namespace vibe::mesh_generators_test {
+namespace vibe::benchmarks::mesh_generators_test {
 namespace {
 
 double volumeOf(const BenchMesh& mesh, const std::array<int, 4>& t) {
@@ -86,4 +86,4 @@ TEST(Oscillation, measuresADampedSine) {
 }
 
 }  // namespace
-}  // namespace vibe::mesh_generators_test
+}  // namespace vibe::benchmarks::mesh_generators_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-namespace vibe::result_row_test {
+namespace vibe::benchmarks::result_row_test {
 namespace {
 
 TEST(ResultRow, writesTheAgreedColumns) {
@@ -44,4 +44,4 @@ TEST(ResultRow, hashesEveryBit) {
 }
 
 }  // namespace
-}  // namespace vibe::result_row_test
+}  // namespace vibe::benchmarks::result_row_test

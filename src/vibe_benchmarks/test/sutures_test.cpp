@@ -13,7 +13,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/suture/technique.hpp"
 
-namespace vibe::sutures_test {
+namespace vibe::benchmarks::sutures_test {
 namespace {
 
 Scene coarseStomach() {
@@ -183,4 +183,4 @@ TEST(Sutures, CrossingWallsAreSeen) {
 }
 
 }  // namespace
-}  // namespace vibe::sutures_test
+}  // namespace vibe::benchmarks::sutures_test

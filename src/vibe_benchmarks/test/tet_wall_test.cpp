@@ -4,7 +4,7 @@
 
 #include "tissue/tetrahedra.hpp"
 
-namespace vibe::tet_wall_test {
+namespace vibe::benchmarks::tet_wall_test {
 namespace {
 
 constexpr double kStep = 1e-5;  // [m]
@@ -51,4 +51,4 @@ TEST(TetWall, pushesWithTheSlopeOfItsPressureEnergy) {
 }
 
 }  // namespace
-}  // namespace vibe::tet_wall_test
+}  // namespace vibe::benchmarks::tet_wall_test

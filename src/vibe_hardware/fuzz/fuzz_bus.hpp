@@ -11,7 +11,7 @@
 #include "vibe_firmware/protocol/descriptors.hpp"
 #include "vibe_hardware/hid/hid_port.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 inline void require(bool condition) {
   if (!condition) std::abort();
@@ -149,4 +149,4 @@ class FuzzBus : public HidBus {
   FuzzInput& input_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

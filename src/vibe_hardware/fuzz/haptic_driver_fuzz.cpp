@@ -15,6 +15,7 @@
 namespace {
 
 using namespace vibe;
+using namespace vibe::hardware;
 
 void requirePassive(const vibe_firmware::ParameterReport& report,
                     const std::array<vibe_firmware::AxisConfig, 2>& axes) {

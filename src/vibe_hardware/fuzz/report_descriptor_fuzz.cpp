@@ -5,6 +5,8 @@
 
 #include "vibe_core/common/error.hpp"
 
+namespace hardware = vibe::hardware;
+
 // Any bytes as a HID report descriptor: an Error with its sentence, or a layout whose reports fit the kernel's buffers.
 
 namespace {
@@ -15,9 +17,9 @@ void require(bool condition) {
 
 void parse(const std::uint8_t* data, std::size_t size) {
   try {
-    const vibe::ReportLayout layout = vibe::parseReportDescriptor(data, size);
+    const hardware::ReportLayout layout = hardware::parseReportDescriptor(data, size);
     require(layout.reports.size() <= 3 * 256);
-    for (const vibe::ReportSize& report : layout.reports) {
+    for (const hardware::ReportSize& report : layout.reports) {
       require(report.bytes <= 4097 && layout.sizeOf(report.kind, report.id) == report.bytes);
     }
   } catch (const vibe::Error& error) {
@@ -29,10 +31,10 @@ void parse(const std::uint8_t* data, std::size_t size) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   parse(data, size);
-  for (const vibe::DeviceKind kind : {vibe::DeviceKind::Haptic, vibe::DeviceKind::Input}) {
+  for (const hardware::DeviceKind kind : {hardware::DeviceKind::Haptic, hardware::DeviceKind::Input}) {
     try {
-      vibe::checkReportDescriptor(data, size, kind);
-      require(vibe::parseReportDescriptor(data, size).usage == 5);
+      hardware::checkReportDescriptor(data, size, kind);
+      require(hardware::parseReportDescriptor(data, size).usage == 5);
     } catch (const vibe::Error&) {
     }
   }

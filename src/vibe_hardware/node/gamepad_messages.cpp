@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 sensor_msgs::JointState jointMessage(const DriveState& drive, const ros::Time& stamp, int first, int last) {
@@ -78,4 +78,4 @@ std::optional<PadPulse> pulseOf(const vibe_msgs::ProcedureEvent& event) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -11,7 +11,7 @@
 #include "vibe_hardware/gamepad/pad_drive.hpp"
 #include "vibe_hardware/gamepad/pad_feedback.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// For scope/servo_jp: the joints of the scope as a command.
 sensor_msgs::JointState scopeCommand(const DriveState& drive, const ros::Time& stamp);
@@ -27,4 +27,4 @@ JointSprings readJointSprings(const vibe_msgs::HapticParameters& message);
 /// What an event feels like; nothing for those that are not felt.
 std::optional<PadPulse> pulseOf(const vibe_msgs::ProcedureEvent& event);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kButtonInterval = 0.1;  // between messages that change nothing [s]
@@ -194,4 +194,4 @@ void GamepadNode::onParameters(const vibe_msgs::HapticParameters& message) {
   feedback_.setSprings(steadyTime(), readJointSprings(message));
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -16,7 +16,7 @@
 #include "vibe_hardware/gamepad/pad_feedback.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A gamepad as topics: docs/interfaces.md. All work is done in the callbacks of one thread.
 class GamepadNode {
@@ -67,4 +67,4 @@ class GamepadNode {
   void onParameters(const vibe_msgs::HapticParameters& message);
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -18,10 +18,10 @@ int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // the player reads what to press first, also through a pipe
   try {
     ros::init(argc, argv, "gamepad_node");
-    vibe::waitForMaster(kMasterPatience);
+    vibe::node::waitForMaster(kMasterPatience);
     ros::NodeHandle handle;
-    const vibe::GamepadParameters parameters = vibe::readGamepadParameters(ros::NodeHandle("~"));
-    const vibe::GamepadNode node(handle, parameters);
+    const vibe::hardware::GamepadParameters parameters = vibe::hardware::readGamepadParameters(ros::NodeHandle("~"));
+    const vibe::hardware::GamepadNode node(handle, parameters);
     ros::spin();
     return 0;
   } catch (const std::exception& error) {

@@ -7,10 +7,10 @@
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 #include "vibe_node/parameter_reader.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 GamepadParameters readGamepadParameters(const ros::NodeHandle& private_handle) {
-  ParameterReader reader(private_handle);
+  node::ParameterReader reader(private_handle);
   GamepadParameters parameters;
   reader.read("mapping", parameters.mapping);
   reader.read("pad", parameters.pad);
@@ -42,4 +42,4 @@ PadLink makePadLink(const GamepadParameters& parameters) {
   });
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

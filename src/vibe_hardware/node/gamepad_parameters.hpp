@@ -6,7 +6,7 @@
 #include "vibe_hardware/gamepad/pad_link.hpp"
 #include "vibe_hardware/gamepad/pad_mapping.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Private parameters of gamepad_node.
 struct GamepadParameters {
@@ -26,4 +26,4 @@ ToolLimits toolLimitsOf(const ros::NodeHandle& handle);
 /// The pad, or the recording, that the parameters ask for. @throws Error for a recording that cannot be read
 PadLink makePadLink(const GamepadParameters& parameters);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

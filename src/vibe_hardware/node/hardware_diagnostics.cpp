@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -84,4 +84,4 @@ void fillDiagnostics(const DeviceStatistics& device, const HapticStatistics* hap
   addParameters(*haptic, rejected, status);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

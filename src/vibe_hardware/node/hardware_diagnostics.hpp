@@ -4,7 +4,7 @@
 #include "vibe_hardware/driver/device_driver.hpp"
 #include "vibe_hardware/driver/haptic_driver.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// What a device's entry on /diagnostics compares with its last one.
 struct DiagnosticMemory {
@@ -19,4 +19,4 @@ struct DiagnosticMemory {
 void fillDiagnostics(const DeviceStatistics& device, const HapticStatistics* haptic, std::uint64_t rejected,
                      DiagnosticMemory& memory, diagnostic_updater::DiagnosticStatusWrapper& status);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -6,7 +6,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 const ros::Duration kLeast(0, 1000);  // between stamps
@@ -120,4 +120,4 @@ std::string operatingState(const DeviceStatistics& device, const HapticStatistic
   return haptic.in_force ? "ENABLED" : "PAUSED";
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

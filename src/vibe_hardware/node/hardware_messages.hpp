@@ -11,7 +11,7 @@
 #include "vibe_hardware/driver/overstitch_drive.hpp"
 #include "vibe_hardware/driver/scope_joints.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Times of the host's steady clock as stamps of ROS. The stamps of one topic never go back and never repeat, unless
 /// the system clock is set back by more than a second.
@@ -39,4 +39,4 @@ OverstitchDrive::Positions readOverstitchJoints(const sensor_msgs::JointState& m
 /// As CRTK has it: DISABLED, ENABLED, PAUSED or FAULT.
 std::string operatingState(const DeviceStatistics& device, const HapticStatistics& haptic);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kWait = 0.004;            // for a report; parameters wait as long at most [s]
@@ -222,4 +222,4 @@ void HardwareNode::onOverstitch(const ros::MessageEvent<const sensor_msgs::Joint
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

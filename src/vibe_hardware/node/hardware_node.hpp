@@ -11,7 +11,7 @@
 #include "vibe_hardware/driver/polling_thread.hpp"
 #include "vibe_hardware/driver/silence_watch.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Both devices as topics: docs/interfaces.md. One thread per device; callbacks of ROS come from one thread of a
 /// spinner, which must have been stopped before stop() or the end.
@@ -69,4 +69,4 @@ class HardwareNode {
   void onOverstitch(const ros::MessageEvent<const sensor_msgs::JointState>& event);
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

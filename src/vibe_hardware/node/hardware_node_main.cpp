@@ -23,10 +23,11 @@ void onSignal(int number) {
 
 void run() {
   ros::NodeHandle handle;
-  const vibe::HardwareParameters parameters = vibe::readHardwareParameters(ros::NodeHandle("~"));
+  const vibe::hardware::HardwareParameters parameters = vibe::hardware::readHardwareParameters(ros::NodeHandle("~"));
   if (parameters.realtime_priority > 0)
-    for (const std::string& sentence : vibe::runInRealTime(parameters.realtime_priority)) ROS_WARN_STREAM(sentence);
-  vibe::HardwareNode node(handle, parameters);
+    for (const std::string& sentence : vibe::node::runInRealTime(parameters.realtime_priority))
+      ROS_WARN_STREAM(sentence);
+  vibe::hardware::HardwareNode node(handle, parameters);
   ros::AsyncSpinner spinner(1);
   spinner.start();
   while (ros::ok() && !stop_signal) ros::WallDuration(0.02).sleep();
@@ -42,7 +43,7 @@ int main(int argc, char** argv) {
     ros::init(argc, argv, "hardware_node", ros::init_options::NoSigintHandler);
     signal(SIGINT, onSignal);
     signal(SIGTERM, onSignal);
-    if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 0;
+    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 0;
     run();
     ros::shutdown();
     return 0;

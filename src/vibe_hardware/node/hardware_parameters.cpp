@@ -7,7 +7,7 @@
 #include "vibe_hardware/hid/socket_bus.hpp"
 #include "vibe_node/parameter_reader.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr const char* kHidraw = "hidraw";
@@ -15,7 +15,7 @@ constexpr const char* kHidraw = "hidraw";
 }  // namespace
 
 HardwareParameters readHardwareParameters(const ros::NodeHandle& private_handle) {
-  ParameterReader reader(private_handle);
+  node::ParameterReader reader(private_handle);
   HardwareParameters parameters;
   reader.read("config", parameters.config);
   reader.read("bus", parameters.bus);
@@ -40,4 +40,4 @@ std::unique_ptr<HidBus> makeBus(const std::string& bus) {
               "'; set it to hidraw or to the folder of an emulator's sockets, with a '/'.");
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

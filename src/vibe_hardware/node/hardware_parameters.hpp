@@ -6,7 +6,7 @@
 
 #include "vibe_hardware/hid/hid_port.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Private parameters of hardware_node.
 struct HardwareParameters {
@@ -21,4 +21,4 @@ HardwareParameters readHardwareParameters(const ros::NodeHandle& private_handle)
 /// @param bus  "hidraw", or a folder
 std::unique_ptr<HidBus> makeBus(const std::string& bus);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

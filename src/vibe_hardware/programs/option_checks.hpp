@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Accepts finite numbers of at least 0.
 inline CLI::Validator notNegative() {
@@ -35,4 +35,4 @@ inline CLI::Validator wholeNumber() {
   return CLI::Validator(check, "");
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -26,6 +26,7 @@
 namespace {
 
 using namespace vibe;
+using namespace vibe::hardware;
 
 volatile std::sig_atomic_t stopped = 0, toggled = 0;
 

@@ -17,6 +17,8 @@
 #include "vibe_hardware/gamepad/pad_link.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 
+namespace hardware = vibe::hardware;
+
 namespace {
 
 constexpr double kPeriod = 0.01;        // of sampling [s]
@@ -47,15 +49,15 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_option("--replay", options.replay, "Play such a file instead of a gamepad");
   app.add_option("--folder", options.folder, "Folder of the event devices");
   app.add_option("--duration", options.duration, "End after these seconds (default: at Ctrl-C)")
-      ->check(vibe::notNegative());
+      ->check(hardware::notNegative());
 }
 
 void pause(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
-void printDevice(const vibe::PadListing& listing) {
-  const vibe::PadInfo& info = listing.info;
+void printDevice(const hardware::PadListing& listing) {
+  const hardware::PadInfo& info = listing.info;
   if (!listing.problem.empty()) {
     std::printf("%s: %s\n", info.path.c_str(), listing.problem.c_str());
     return;
@@ -66,18 +68,18 @@ void printDevice(const vibe::PadListing& listing) {
               info.has_spring ? ", spring" : "");
   if (!listing.is_pad) return;
   for (const auto& [code, axis] : listing.state.axes)
-    std::printf("  axis %s from %d to %d, now %d\n", vibe::eventCodeName(EV_ABS, code).c_str(), axis.minimum,
+    std::printf("  axis %s from %d to %d, now %d\n", hardware::eventCodeName(EV_ABS, code).c_str(), axis.minimum,
                 axis.maximum, axis.value);
   std::printf("  buttons");
   for (const auto& [code, button] : listing.state.buttons)
-    std::printf(" %s%s", vibe::eventCodeName(EV_KEY, code).c_str(), button.down ? "(down)" : "");
+    std::printf(" %s%s", hardware::eventCodeName(EV_KEY, code).c_str(), button.down ? "(down)" : "");
   std::printf("\n");
 }
 
 int listDevices(const Options& options) {
-  const std::vector<vibe::PadListing> listings = vibe::listInputDevices(options.folder);
+  const std::vector<hardware::PadListing> listings = hardware::listInputDevices(options.folder);
   if (listings.empty()) std::printf("There is no input device in %s.\n", options.folder.c_str());
-  for (const vibe::PadListing& listing : listings) printDevice(listing);
+  for (const hardware::PadListing& listing : listings) printDevice(listing);
   return 0;
 }
 
@@ -91,13 +93,13 @@ bool tryMotor(const char* what, bool accepted) {
 
 int testMotors(const Options& options) {
   std::string why;
-  const std::unique_ptr<vibe::PadSource> pad = vibe::openPad(options.pad, why, options.folder);
+  const std::unique_ptr<hardware::PadSource> pad = hardware::openPad(options.pad, why, options.folder);
   if (!pad) {
     std::fprintf(stderr, "vibe_gamepad: %s\n", why.c_str());
     return 1;
   }
   std::printf("'%s' at %s\n", pad->info().name.c_str(), pad->info().path.c_str());
-  vibe::PadMotors* motors = pad->motors();
+  hardware::PadMotors* motors = pad->motors();
   bool good = true;
   if (motors != nullptr && motors->hasRumble()) {
     good = tryMotor("strong motor", motors->rumble(1, 0)) && good;
@@ -115,10 +117,10 @@ int testMotors(const Options& options) {
   return good ? 0 : 1;
 }
 
-void printCommand(const vibe::DriveState& drive) {
+void printCommand(const hardware::DriveState& drive) {
   for (int i = 0; i < vibe::kJointCount; ++i) {
     const auto joint = static_cast<std::size_t>(i);
-    const bool length = vibe::jointUnit(i) == std::string("m");
+    const bool length = hardware::jointUnit(i) == std::string("m");
     std::printf("%s %.1f %s  ", vibe::kJointNames[joint], drive.joints[joint] * (length ? 1e3 : 57.29577951308232),
                 length ? "mm" : "deg");
   }
@@ -128,11 +130,12 @@ void printCommand(const vibe::DriveState& drive) {
   std::fflush(stdout);
 }
 
-vibe::PadLink makeLink(const Options& options) {
+hardware::PadLink makeLink(const Options& options) {
   if (options.replay.empty())
-    return vibe::PadLink([&options](std::string& why) { return vibe::openPad(options.pad, why, options.folder); });
-  auto recording = std::make_shared<vibe::PadRecording>(vibe::loadPadRecording(options.replay));
-  return vibe::PadLink([recording](std::string&) { return vibe::playPadRecording(*recording); });
+    return hardware::PadLink(
+        [&options](std::string& why) { return hardware::openPad(options.pad, why, options.folder); });
+  auto recording = std::make_shared<hardware::PadRecording>(hardware::loadPadRecording(options.replay));
+  return hardware::PadLink([recording](std::string&) { return hardware::playPadRecording(*recording); });
 }
 
 /// Shows what the mapping makes of the pad, from joints at zero.
@@ -140,11 +143,11 @@ class LiveView {
  public:
   explicit LiveView(const Options& options)
       : options_(options),
-        limits_(vibe::loadToolLimits(options.urdf)),
-        mapping_(vibe::loadPadMapping(vibe::resolveAddress(options.mapping), limits_)),
+        limits_(hardware::loadToolLimits(options.urdf)),
+        mapping_(hardware::loadPadMapping(vibe::resolveAddress(options.mapping), limits_)),
         link_(makeLink(options)),
-        drive_(vibe::startDrive({}, mapping_, {})) {
-    if (!options.record.empty()) vibe::PadRecorder::checkFile(options.record);
+        drive_(hardware::startDrive({}, mapping_, {})) {
+    if (!options.record.empty()) hardware::PadRecorder::checkFile(options.record);
   }
 
   int run() {
@@ -157,7 +160,8 @@ class LiveView {
       if (!sentence.empty()) std::printf("%s\n", sentence.c_str());
       if (!had && link_.pad() != nullptr) begins();
       if (had && link_.pad() == nullptr && ends()) return 0;
-      if (link_.pad() != nullptr) drive_ = vibe::advance(mapping_, limits_, link_.pad()->state(), drive_, now - last);
+      if (link_.pad() != nullptr)
+        drive_ = hardware::advance(mapping_, limits_, link_.pad()->state(), drive_, now - last);
       last = now;
       print(now);
       pause(kPeriod);
@@ -167,16 +171,16 @@ class LiveView {
 
  private:
   void begins() {
-    const std::string missing = vibe::missingControls(mapping_, link_.pad()->state());
+    const std::string missing = hardware::missingControls(mapping_, link_.pad()->state());
     if (!missing.empty()) std::printf("%s\n", missing.c_str());
     if (options_.record.empty() || recorder_) return;
-    recorder_ = std::make_unique<vibe::PadRecorder>(options_.record, link_.pad()->info(), link_.pad()->state());
-    link_.pad()->setListener([this](const vibe::PadEvent& event) { recorder_->add(event); });
+    recorder_ = std::make_unique<hardware::PadRecorder>(options_.record, link_.pad()->info(), link_.pad()->state());
+    link_.pad()->setListener([this](const hardware::PadEvent& event) { recorder_->add(event); });
   }
 
   /// @return whether that was all
   bool ends() {
-    drive_ = vibe::releaseDrive(drive_);
+    drive_ = hardware::releaseDrive(drive_);
     printCommand(drive_);
     return !options_.replay.empty();
   }
@@ -190,11 +194,11 @@ class LiveView {
   }
 
   const Options& options_;
-  vibe::ToolLimits limits_;
-  vibe::PadMapping mapping_;
-  std::unique_ptr<vibe::PadRecorder> recorder_;
-  vibe::PadLink link_;
-  vibe::DriveState drive_, shown_;
+  hardware::ToolLimits limits_;
+  hardware::PadMapping mapping_;
+  std::unique_ptr<hardware::PadRecorder> recorder_;
+  hardware::PadLink link_;
+  hardware::DriveState drive_, shown_;
   double last_print_ = -1e9;
 };
 

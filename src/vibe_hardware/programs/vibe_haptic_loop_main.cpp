@@ -15,6 +15,7 @@
 namespace {
 
 using namespace vibe;
+using namespace vibe::hardware;
 
 struct Options {
   std::string scene = "package://vibe_core/scenes/stomach.yaml", script, csv;

@@ -4,7 +4,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::latency {
 
 EventTable::EventTable(const std::string& file, const std::string& columns) : file_(file), out_(file) {
   out_ << columns << '\n' << std::setprecision(17) << std::flush;
@@ -39,4 +39,4 @@ void EventTable::check() {
   if (!out_) throw Error("Cannot write to '" + file_ + "'; check the folder and whether the disk is full.");
 }
 
-}  // namespace vibe
+}  // namespace vibe::latency

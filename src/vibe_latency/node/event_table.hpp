@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::latency {
 
 /// A table of times and values that grows while somebody measures: add() only copies, flush() writes.
 class EventTable {
@@ -33,4 +33,4 @@ class EventTable {
   void check();
 };
 
-}  // namespace vibe
+}  // namespace vibe::latency

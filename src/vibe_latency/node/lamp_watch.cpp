@@ -9,7 +9,7 @@
 #include "vibe_core/common/error.hpp"
 #include "wall_time.hpp"
 
-namespace vibe {
+namespace vibe::latency {
 namespace {
 
 constexpr unsigned long kLit = 0x00ff00, kDark = 0xff00ff;
@@ -99,4 +99,4 @@ std::optional<bool> LampWatch::readLamp() {
   return lampState(XGetPixel(image.get(), 0, 0));
 }
 
-}  // namespace vibe
+}  // namespace vibe::latency

@@ -7,7 +7,7 @@
 
 struct _XDisplay;  // of Xlib, whose macros must not meet Eigen
 
-namespace vibe {
+namespace vibe::latency {
 
 /// State of a pixel of the display LatencyLamp: green is lit, magenta is not; any other colour is no lamp.
 /// @param pixel  0xRRGGBB
@@ -41,4 +41,4 @@ class LampWatch {
   std::optional<bool> readLamp();
 };
 
-}  // namespace vibe
+}  // namespace vibe::latency

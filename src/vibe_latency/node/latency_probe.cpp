@@ -7,7 +7,7 @@
 #include "vibe_node/parameter_reader.hpp"
 #include "wall_time.hpp"
 
-namespace vibe {
+namespace vibe::latency {
 namespace {
 
 constexpr std::uint32_t kQueue = 10000;
@@ -25,7 +25,7 @@ std::size_t indexOf(const std::string& joint) {
 }  // namespace
 
 ProbeParameters readProbeParameters(const ros::NodeHandle& private_handle) {
-  ParameterReader reader(private_handle);
+  node::ParameterReader reader(private_handle);
   ProbeParameters parameters;
   parameters.folder = reader.required("folder", "a folder for the tables");
   reader.read("joint", parameters.joint);
@@ -94,4 +94,4 @@ void LatencyProbe::flush() {
   for (EventTable* table : {&device_, &input_, &step_, &state_, &display_, &pixel_}) table->flush();
 }
 
-}  // namespace vibe
+}  // namespace vibe::latency

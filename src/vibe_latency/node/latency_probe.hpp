@@ -11,7 +11,7 @@
 #include "event_table.hpp"
 #include "lamp_watch.hpp"
 
-namespace vibe {
+namespace vibe::latency {
 
 /// What to watch, from private parameters.
 struct ProbeParameters {
@@ -47,4 +47,4 @@ class LatencyProbe {
   void addJoint(EventTable& table, const sensor_msgs::JointState& message) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::latency

@@ -23,7 +23,7 @@ volatile sig_atomic_t stop_signal = 0;
 
 void run() {
   ros::NodeHandle handle;
-  vibe::LatencyProbe probe(handle, vibe::readProbeParameters(ros::NodeHandle("~")));
+  vibe::latency::LatencyProbe probe(handle, vibe::latency::readProbeParameters(ros::NodeHandle("~")));
   ros::AsyncSpinner spinner(1);
   spinner.start();
   bool told = false;
@@ -43,12 +43,12 @@ void run() {
 int main(int argc, char** argv) {
   try {
     ros::init(argc, argv, "latency_probe", ros::init_options::NoSigintHandler);
-    if (vibe::asksForHelp(argc, argv)) {
+    if (vibe::node::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;
     }
     for (const int number : {SIGINT, SIGTERM}) signal(number, [](int) { stop_signal = 1; });
-    if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 1;
+    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return 1;
     run();
     ros::shutdown();
     return 0;

@@ -8,7 +8,7 @@
 #include "lamp_watch.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::probe_test {
+namespace vibe::latency::probe_test {
 namespace {
 
 std::string contentOf(const std::string& file) {
@@ -42,4 +42,4 @@ TEST(EventTable, AFolderThatIsNotThereIsSaid) {
 }
 
 }  // namespace
-}  // namespace vibe::probe_test
+}  // namespace vibe::latency::probe_test

@@ -10,7 +10,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::node {
 
 bool waitForMaster(double patience, const std::function<bool()>& stopped) {
   const ros::WallTime begin = ros::WallTime::now();
@@ -31,4 +31,4 @@ bool asksForHelp(int argc, const char* const* argv) {
                      [](const char* word) { return std::string(word) == "--help" || std::string(word) == "-h"; });
 }
 
-}  // namespace vibe
+}  // namespace vibe::node

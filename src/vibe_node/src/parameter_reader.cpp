@@ -10,7 +10,7 @@
 #include "vibe_core/scene/nearest_key.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
-namespace vibe {
+namespace vibe::node {
 
 using XmlRpc::XmlRpcValue;
 
@@ -85,4 +85,4 @@ void ParameterReader::tell() const {
   ROS_INFO_STREAM("Parameters in " << handle_.getNamespace() << ": " << given.str() << ".");
 }
 
-}  // namespace vibe
+}  // namespace vibe::node

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
-namespace vibe {
+namespace vibe::node {
 namespace {
 
 // Limits of a user are raised in limits.conf(5).
@@ -67,4 +67,4 @@ std::vector<std::string> runInRealTime(int priority) {
   return refusals;
 }
 
-}  // namespace vibe
+}  // namespace vibe::node

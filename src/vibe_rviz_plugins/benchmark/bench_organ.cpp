@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::uint32_t kRows = 113, kAround = 32;  // and two poles
@@ -132,4 +132,4 @@ sensor_msgs::PointCloud2 benchCloud(const TissueMesh& mesh, Motion motion, int f
   return cloud;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

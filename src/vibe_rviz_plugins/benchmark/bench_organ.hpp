@@ -3,7 +3,7 @@
 
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What moves from one frame to the next.
 enum class Motion { Nothing, Patch, Everything };
@@ -16,4 +16,4 @@ TissueMesh benchOrgan(bool subdivided);
 /// of 5 % of the particles around one place bulges; strain changes where particles move.
 sensor_msgs::PointCloud2 benchCloud(const TissueMesh& mesh, Motion motion, int frame);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,7 +1,7 @@
 #pragma once
 #include <time.h>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Time that this thread has had of a processor [s]: other programs on the machine lengthen it little.
 inline double threadTime() {
@@ -17,4 +17,4 @@ inline double processTime() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

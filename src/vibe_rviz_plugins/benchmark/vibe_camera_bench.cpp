@@ -27,6 +27,7 @@
 namespace {
 
 using namespace vibe;
+using namespace vibe::rviz_plugins;
 
 constexpr int kWarmUp = 5, kImages = 40;
 constexpr double kGoal = 150;  // for an image of 640 x 480 with all of its truth [ms]

@@ -28,6 +28,7 @@
 namespace {
 
 using namespace vibe;
+using namespace vibe::rviz_plugins;
 
 constexpr int kWarmUp = 10, kFrames = 100;
 constexpr double kGoal = 0.5;  // for geometry and upload [ms]

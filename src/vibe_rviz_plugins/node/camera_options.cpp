@@ -7,7 +7,7 @@
 
 #include "degree.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 /// Reads parameters and remembers their names, so that any other parameter is an error.
@@ -111,4 +111,4 @@ CameraOptions readCameraOptions(const ros::NodeHandle& node) {
   return options;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

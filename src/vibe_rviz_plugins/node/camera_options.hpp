@@ -6,7 +6,7 @@
 #include "geometry/lens.hpp"
 #include "sensor/sensor_model.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Parameters of endoscope_camera.
 struct CameraOptions {
@@ -26,4 +26,4 @@ struct CameraOptions {
 /// @throws std::runtime_error  one is unknown, of the wrong type or out of range, in one sentence
 CameraOptions readCameraOptions(const ros::NodeHandle& node);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

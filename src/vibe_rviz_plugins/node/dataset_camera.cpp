@@ -3,7 +3,7 @@
 #include "render/endoscope_lamp.hpp"
 #include "render/optical_frame.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr const char* kCameraFrame = "scope_camera_optical";
@@ -83,4 +83,4 @@ void DatasetCamera::takeEye(Eye& eye, const Eigen::Isometry3d& pose, const ros::
   eye.before = std::move(view);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -9,7 +9,7 @@
 #include "sensor/sensor_model.hpp"
 #include "truth_world.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Takes the images of a data set: what is drawn, and the truth, at chosen states of a session.
 class DatasetCamera {
@@ -48,4 +48,4 @@ class DatasetCamera {
   std::size_t images_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

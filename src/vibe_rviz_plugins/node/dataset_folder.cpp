@@ -11,7 +11,7 @@
 #include "degree.hpp"
 #include "messages/cloud_field.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kDigits = 17;  // of a double that is read back exactly
@@ -298,4 +298,4 @@ void DatasetFolder::finish(const vibe_msgs::SessionInfo& info, const std::string
   is_finished_ = true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

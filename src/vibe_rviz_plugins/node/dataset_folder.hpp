@@ -10,7 +10,7 @@
 #include "session_frames.hpp"
 #include "truth/truth_camera.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The files of a data set. All functions throw std::runtime_error, in one sentence, if a file cannot be written.
 ///
@@ -54,4 +54,4 @@ class DatasetFolder {
   std::array<std::uint64_t, 256> pixels_{};  // per label
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

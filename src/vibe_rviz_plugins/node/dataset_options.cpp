@@ -9,7 +9,7 @@
 #include "dataset/variation.hpp"
 #include "degree.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kUsage = 2;
@@ -119,4 +119,4 @@ int readDatasetOptions(int argc, char** argv, DatasetOptions& options) {
   return -1;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 #include "geometry/mucosa_look.hpp"
 #include "sensor/sensor_model.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Options of vibe_dataset.
 struct DatasetOptions {
@@ -34,4 +34,4 @@ struct DatasetOptions {
 /// @return the status with which the program ends at once: help was asked for, or the call is wrong; -1: go on
 int readDatasetOptions(int argc, char** argv, DatasetOptions& options);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,8 +1,8 @@
 #pragma once
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 constexpr double kDegree = M_PI / 180;  ///< [rad]
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

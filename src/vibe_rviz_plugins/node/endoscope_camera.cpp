@@ -9,7 +9,7 @@
 
 #include "render/optical_frame.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr unsigned kWaiting =
@@ -204,4 +204,4 @@ std::optional<Eigen::Isometry3d> EndoscopeCamera::find(const std::string& frame,
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -23,7 +23,7 @@
 #include "truth_topics.hpp"
 #include "truth_world.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Publishes what the endoscope sees as images, one or two per state of the tissue, and the truth beside them: depth,
 /// normals, labels, optical flow, pose. An image has the stamp of the tissue it shows, with everything else as it was
@@ -81,4 +81,4 @@ class EndoscopeCamera {
   vibe_msgs::SutureArray::ConstPtr drawn_sutures_, true_sutures_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

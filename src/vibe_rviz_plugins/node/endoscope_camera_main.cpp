@@ -13,6 +13,8 @@
 #include "render/resources.hpp"
 #include "render/virtual_display.hpp"
 
+namespace rviz_plugins = vibe::rviz_plugins;
+
 namespace {
 
 constexpr int kFailure = 1;
@@ -23,15 +25,15 @@ int fail(const std::exception& error, int status) {
   return status;
 }
 
-void run(const vibe::CameraOptions& options) {
-  vibe::provideDisplay();
+void run(const rviz_plugins::CameraOptions& options) {
+  rviz_plugins::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
-  vibe::loadResources();
+  rviz_plugins::loadResources();
   ros::NodeHandle node;
   std::string description;
   node.getParam("robot_description", description);
-  vibe::EndoscopeCamera camera(node, options, *scene, description);
+  rviz_plugins::EndoscopeCamera camera(node, options, *scene, description);
   ros::spin();
 }
 
@@ -39,9 +41,9 @@ void run(const vibe::CameraOptions& options) {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "endoscope_camera");
-  vibe::CameraOptions options;
+  rviz_plugins::CameraOptions options;
   try {
-    options = vibe::readCameraOptions(ros::NodeHandle("~"));
+    options = rviz_plugins::readCameraOptions(ros::NodeHandle("~"));
   } catch (const std::exception& error) {
     return fail(error, kUsage);
   }

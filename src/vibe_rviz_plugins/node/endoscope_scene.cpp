@@ -7,7 +7,7 @@
 #include "messages/suture_messages.hpp"
 #include "messages/tissue_messages.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke,
                                const MucosaLook& mucosa)
@@ -74,4 +74,4 @@ void EndoscopeScene::drawBlood() {
   if (blood_.update(tissue_.vertices(), suture_pose_.inverse())) sutures_.showBlood(blood_.shape());
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -14,7 +14,7 @@
 #include "render/suture_visual.hpp"
 #include "render/tissue_visual.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Everything that an endoscope sees, in a scene of Ogre: tissue, sutures, blood, instrument. Its frame is that of the
 /// particles. Functions that take a message return one sentence if it is wrong, and the scene stays as it is; otherwise
@@ -55,4 +55,4 @@ class EndoscopeScene {
   ColouredShape shape_;  ///< kept, so that a frame allocates little
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -12,7 +12,7 @@
 #include "render/resources.hpp"
 #include "robot_visuals.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
@@ -81,4 +81,4 @@ void Instrument::place(const std::function<std::optional<Eigen::Isometry3d>(cons
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

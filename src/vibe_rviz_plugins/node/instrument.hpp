@@ -14,7 +14,7 @@ class SceneManager;
 class SceneNode;
 }  // namespace Ogre
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 struct RobotVisual;
 
@@ -45,4 +45,4 @@ class Instrument {
   std::vector<Part> parts_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

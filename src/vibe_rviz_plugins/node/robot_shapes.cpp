@@ -10,7 +10,7 @@
 #include "geometry/append_shape.hpp"
 #include "robot_visuals.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 /// The file of an address; package:// and file:// are understood.
@@ -83,4 +83,4 @@ std::vector<RobotShape> robotShapes(const std::string& description, std::vector<
   return shapes;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A visible part of a robot description.
 struct RobotShape {
@@ -19,4 +19,4 @@ struct RobotShape {
 /// @param problems  one sentence for each mesh that cannot be read, and for a description that cannot
 std::vector<RobotShape> robotShapes(const std::string& description, std::vector<std::string>& problems);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 
 #include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 Eigen::Isometry3d toPose(const urdf::Pose& origin) {
@@ -53,4 +53,4 @@ std::optional<std::vector<RobotVisual>> robotVisuals(const std::string& descript
   return visuals;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

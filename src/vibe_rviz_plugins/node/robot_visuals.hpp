@@ -6,7 +6,7 @@
 
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// One <visual> of a robot description.
 struct RobotVisual {
@@ -24,4 +24,4 @@ struct RobotVisual {
 /// @return empty if it cannot be read
 std::optional<std::vector<RobotVisual>> robotVisuals(const std::string& description);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 Eigen::Isometry3d poseOf(const geometry_msgs::Transform& from) {
@@ -94,4 +94,4 @@ double SessionFrames::progress() const {
   return whole > 0 ? (now_ - view_->getBeginTime()).toSec() / whole : 1;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

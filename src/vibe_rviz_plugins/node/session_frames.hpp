@@ -12,7 +12,7 @@
 
 #include "dataset/joint_tree.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// One state of a recorded session.
 struct SessionFrame {
@@ -56,4 +56,4 @@ class SessionFrames {
   SessionFrame pending_;  // its particles are null after they were given away
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

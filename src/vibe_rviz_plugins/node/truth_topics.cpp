@@ -7,7 +7,7 @@
 #include <array>
 #include <cstring>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 namespace encodings = sensor_msgs::image_encodings;
@@ -85,4 +85,4 @@ void TruthTopics::publishFlow(const TruthCamera& camera, const TruthScene& scene
   flow_visible_.publish(imageOf(before_->header, camera.round(), encodings::TYPE_8UC1, flow.visible));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

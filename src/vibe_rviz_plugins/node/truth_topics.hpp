@@ -8,7 +8,7 @@
 
 #include "truth/truth_camera.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The truth of one lens as topics: depth, normals, labels, optical flow, pose. Only what has subscribers is computed.
 class TruthTopics {
@@ -43,4 +43,4 @@ class TruthTopics {
   std::optional<Before> before_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

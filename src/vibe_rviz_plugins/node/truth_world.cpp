@@ -4,7 +4,7 @@
 #include "messages/tissue_messages.hpp"
 #include "robot_shapes.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 TruthWorld::TruthWorld(const std::string& description) {
   for (RobotShape& part : robotShapes(description, problems_))
@@ -39,4 +39,4 @@ void TruthWorld::placeInstrument(const PoseOf& poseOf) {
   for (const Part& part : parts_) scene_.placePart(part.body, poseOf(part.frame));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

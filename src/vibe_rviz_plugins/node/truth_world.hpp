@@ -11,7 +11,7 @@
 #include "geometry/tissue_mesh.hpp"
 #include "truth/truth_scene.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The scene of the truth from the messages that the endoscope's image is drawn from. Its frame is that of the
 /// particles. Functions that take a message return one sentence if it is wrong, and the scene stays as it is.
@@ -49,4 +49,4 @@ class TruthWorld {
   bool has_mesh_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

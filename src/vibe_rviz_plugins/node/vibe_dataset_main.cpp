@@ -16,6 +16,8 @@
 #include "render/virtual_display.hpp"
 #include "robot_shapes.hpp"
 
+namespace rviz_plugins = vibe::rviz_plugins;
+
 namespace {
 
 constexpr int kFailure = 1;
@@ -24,7 +26,7 @@ constexpr auto kProgressPeriod = std::chrono::seconds(2);
 /// Prints how far it is, now and then.
 class Progress {
  public:
-  void show(const vibe::SessionFrames& frames, std::size_t images) {
+  void show(const rviz_plugins::SessionFrames& frames, std::size_t images) {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < kProgressPeriod) return;
     last_ = now;
@@ -42,7 +44,8 @@ std::string timeText(double seconds) {
   return text;
 }
 
-std::runtime_error wrongState(const vibe::DatasetOptions& options, const ros::Time& stamp, const std::string& problem) {
+std::runtime_error wrongState(const rviz_plugins::DatasetOptions& options, const ros::Time& stamp,
+                              const std::string& problem) {
   const std::string what = problem.substr(0, problem.find(';'));  // then: what a display does about it
   return std::runtime_error("The state at " + timeText(stamp.toSec()) + " s of '" + options.name +
                             "' cannot be used; end before it with --to, or record again: " + what);
@@ -51,30 +54,30 @@ std::runtime_error wrongState(const vibe::DatasetOptions& options, const ros::Ti
 /// A part that is not there would be missing in image and truth.
 void refuseMissingMeshes(const std::string& urdf, const std::string& recording) {
   std::vector<std::string> problems;
-  vibe::robotShapes(urdf, problems);
+  rviz_plugins::robotShapes(urdf, problems);
   if (!problems.empty())
     throw std::runtime_error("The instrument of '" + recording + "' cannot be shown whole: " + problems.front());
 }
 
-void run(const vibe::DatasetOptions& options) {
+void run(const rviz_plugins::DatasetOptions& options) {
   const std::string impossible = problemOf(options.sensor, options.round);
   if (!impossible.empty())
     throw std::runtime_error("--seed " + std::to_string(options.seed) + " does not go with this lens: " + impossible +
                              ", or give another seed.");
-  vibe::SessionFrames frames(options.bag);
+  rviz_plugins::SessionFrames frames(options.bag);
   if (options.from > frames.end())
     throw std::runtime_error("--from: '" + options.name + "' ends at " + timeText(frames.end()) +
                              " s; give a time before that.");
   refuseMissingMeshes(frames.info().urdf, options.name);
   if (options.check) return;
-  std::optional<vibe::DatasetFolder> folder;  // made with the first image, so that a refusal leaves nothing
-  vibe::provideDisplay();
+  std::optional<rviz_plugins::DatasetFolder> folder;  // made with the first image, so that a refusal leaves nothing
+  rviz_plugins::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
-  vibe::loadResources();
-  vibe::DatasetCamera camera(options, *scene, frames.info().urdf);
-  vibe::ImageDue due(options.rate);
-  vibe::SessionFrame frame;
+  rviz_plugins::loadResources();
+  rviz_plugins::DatasetCamera camera(options, *scene, frames.info().urdf);
+  rviz_plugins::ImageDue due(options.rate);
+  rviz_plugins::SessionFrame frame;
   Progress progress;
   std::string world;
   for (int turn = 0; frames.next(frame);) {
@@ -101,8 +104,8 @@ void run(const vibe::DatasetOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  vibe::DatasetOptions options;
-  const int status = vibe::readDatasetOptions(argc, argv, options);
+  rviz_plugins::DatasetOptions options;
+  const int status = rviz_plugins::readDatasetOptions(argc, argv, options);
   if (status >= 0) return status;
   try {
     run(options);

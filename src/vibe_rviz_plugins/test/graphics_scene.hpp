@@ -9,7 +9,7 @@
 #include "render/resources.hpp"
 #include "render/virtual_display.hpp"
 
-namespace vibe::test {
+namespace vibe::rviz_plugins::test {
 
 /// Red, green, blue of rows from the top.
 using Pixels = std::vector<std::uint8_t>;
@@ -26,4 +26,4 @@ inline Ogre::SceneManager& graphicsScene() {
   return *scene;
 }
 
-}  // namespace vibe::test
+}  // namespace vibe::rviz_plugins::test

@@ -5,7 +5,7 @@
 #include <QWidget>
 #include <cstdlib>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The one application of a test program, without a display.
 inline QApplication& offscreenApplication() {
@@ -31,4 +31,4 @@ inline QImage pictureOf(QWidget& widget) {
   return image;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

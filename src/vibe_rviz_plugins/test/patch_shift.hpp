@@ -2,7 +2,7 @@
 #include <Eigen/Dense>
 #include <optional>
 
-namespace vibe::test {
+namespace vibe::rviz_plugins::test {
 
 /// Levels of an image, row y and column x; not a number where it has none.
 using Levels = Eigen::MatrixXd;
@@ -64,4 +64,4 @@ inline std::optional<Eigen::Vector2d> patchShift(const Levels& before, const Lev
   return Eigen::Vector2d(x - kSearch, y - kSearch) - bend.inverse() * slope;
 }
 
-}  // namespace vibe::test
+}  // namespace vibe::rviz_plugins::test

@@ -10,7 +10,7 @@
 
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // What is measured of shapes in tests.
 
@@ -64,4 +64,4 @@ inline double distanceToLine(const Eigen::Vector3d& p, const std::vector<Eigen::
   return min;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

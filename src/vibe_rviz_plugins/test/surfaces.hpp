@@ -5,7 +5,7 @@
 
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe::test {
+namespace vibe::rviz_plugins::test {
 
 /// A ball of radius 1 m: rows of latitude with `around` particles each, and two poles. Outward triangles, no render
 /// surface.
@@ -54,4 +54,4 @@ inline TissueMesh subdividedBall(std::uint32_t rows, std::uint32_t around) {
   return mesh;
 }
 
-}  // namespace vibe::test
+}  // namespace vibe::rviz_plugins::test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // Messages with sutures as a simulator sends them, for tests.
 
@@ -63,4 +63,4 @@ inline vibe_msgs::SutureArray session() {
   return message;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

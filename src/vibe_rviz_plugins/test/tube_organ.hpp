@@ -5,7 +5,7 @@
 
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe::test {
+namespace vibe::rviz_plugins::test {
 
 /// A straight organ along x: a tube of 200 mm without ends, triangles outward. Angle 0 is at z ("anterior"), a quarter
 /// turn towards y is the greater curvature.
@@ -52,4 +52,4 @@ struct TubeOrgan {
   }
 };
 
-}  // namespace vibe::test
+}  // namespace vibe::rviz_plugins::test

@@ -7,7 +7,7 @@
 
 #include "geometry/wall_surface.hpp"
 
-namespace vibe::test {
+namespace vibe::rviz_plugins::test {
 
 /// A wall that is a height over a square: the lumen is above, so triangles are counter-clockwise seen from below.
 struct HeightWall {
@@ -59,4 +59,4 @@ inline double capHeight(double volume, double radius = kBowlRadius) {
   return low;
 }
 
-}  // namespace vibe::test
+}  // namespace vibe::rviz_plugins::test

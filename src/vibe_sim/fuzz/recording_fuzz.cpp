@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t begin = std::min(definition.size() + 1, size);
   const std::vector<std::uint8_t> message(data + begin, data + size);  // a copy, so that the sanitizer sees its end
   try {
-    vibe::StepInputReader(definition).read(message.data(), message.size());
+    vibe::sim::StepInputReader(definition).read(message.data(), message.size());
   } catch (const vibe::Error& error) {
     require(error.what()[0] != '\0');
   }

@@ -5,7 +5,7 @@
 #include "conversions.hpp"
 #include "vibe_core/common/rotation.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 sensor_msgs::JointState makeMeasured(const State& state, const JointArray& velocity, int first, int count,
@@ -69,4 +69,4 @@ geometry_msgs::PoseStamped makeWallPose(const WallSight& sight, std::int64_t sta
   return makePose(Eigen::Translation3d(sight.point) * turn, kWorldFrame, stamp);
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

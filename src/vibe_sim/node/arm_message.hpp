@@ -12,7 +12,7 @@
 
 // Scope and suturing device as robots of the CRTK convention: messages about where they really are.
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Positions of all inputs where the tool really is, displaced where a scope gives way [m], [rad].
 JointArray toolJoints(const State& state);
@@ -32,4 +32,4 @@ std_msgs::Float64MultiArray makeJacobian(const TipJacobian& jacobian);
 /// Position: the place; x axis: normal of the wall, to the side of the scope.
 geometry_msgs::PoseStamped makeWallPose(const WallSight& sight, std::int64_t stamp);
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -4,7 +4,7 @@
 
 #include "arm_message.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 ArmPublishers::ArmPublishers(OutletSource& outlets)
     : scope_(outlets.advertise<sensor_msgs::JointState>("scope/simulated/measured_js", kSmallQueue)),
@@ -44,4 +44,4 @@ bool ArmPublishers::hasListener() const {
   return std::any_of(all.begin(), all.end(), [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

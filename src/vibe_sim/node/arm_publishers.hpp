@@ -7,7 +7,7 @@
 #include "run_status.hpp"
 #include "session.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// What a robot of the CRTK convention says of itself, for the scope and the suturing device, and what a controller of
 /// the tip needs. Belongs to the stepping thread.
@@ -28,4 +28,4 @@ class ArmPublishers {
   std::string last_state_;  // of both, to see a change
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

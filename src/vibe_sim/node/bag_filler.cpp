@@ -8,7 +8,7 @@
 #include "recording_rules.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 bool isReplayed(const std::string& topic, const std::string& prefix) {
@@ -99,4 +99,4 @@ void BagFiller::finish(const Session& session) {
   std::filesystem::rename(file_ + ".active", file_);
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -10,7 +10,7 @@
 #include "publishers.hpp"
 #include "replay.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Makes a whole recording of a thinned one: what the recorder kept whole is copied, and what a replay computes
 /// (recordingRules()) is written anew, message by message as the simulator sent it. Beside the listener's calls:
@@ -52,4 +52,4 @@ class BagFiller : public Replay::Listener {
   std::uint64_t count_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -10,7 +10,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/drawn_joints.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 // The numbers on the wire are those of the library.
@@ -393,4 +393,4 @@ const char* toolStateOf(const State& state, const StepInput& input) {
   return state.in_contact ? "contact" : "free";
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -24,7 +24,7 @@
 // Messages <-> library, without any ROS graph. Functions that read a message throw vibe::Error with one sentence if the
 // message cannot be used.
 
-namespace vibe {
+namespace vibe::sim {
 
 constexpr const char* kWorldFrame = "world";
 constexpr const char* kTissueFrame = "stomach";
@@ -97,4 +97,4 @@ vibe_msgs::StageTime makeStageTime(const std::string& name, const DurationHistog
 /// What the tool does to the organ at the moment: "grip", "insufflation", "contact" or "free".
 const char* toolStateOf(const State& state, const StepInput& input);
 
-}  // namespace vibe
+}  // namespace vibe::sim

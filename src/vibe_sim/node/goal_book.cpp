@@ -4,7 +4,7 @@
 
 #include "goal_message.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 using Entry = vibe_msgs::GoalProgress;
@@ -111,4 +111,4 @@ bool GoalBook::takeChange() {
   return changed;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

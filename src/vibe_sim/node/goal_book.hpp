@@ -8,7 +8,7 @@
 #include "vibe_core/trainee/goal.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// All goals of a trainee's node with what has become of them, through all sessions of the node: what trainee/progress
 /// says.
@@ -48,4 +48,4 @@ class GoalBook {
   void fail(const std::string& reason, vibe_msgs::GoalProgress& entry);
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

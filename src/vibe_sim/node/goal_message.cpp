@@ -12,7 +12,7 @@
 #include "vibe_core/geometry/anatomical_map.hpp"
 #include "vibe_core/trainee/protocol.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 /// What the goals of a kind have.
@@ -147,4 +147,4 @@ std::string patternOf(const Goal& goal) {
   return set ? toString(set->pattern) : "";
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -6,7 +6,7 @@
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/trainee/goal.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// The goal of a message, with the ranges and defaults of a protocol.
 /// @throws Error with one sentence if it is no goal: an unknown kind or pattern, a value that is not finite or out of
@@ -21,4 +21,4 @@ std::string refusalIn(const Model& model, const vibe_msgs::TraineeGoal& message,
 /// Pattern of a suture set; empty for other goals.
 std::string patternOf(const Goal& goal);
 
-}  // namespace vibe
+}  // namespace vibe::sim

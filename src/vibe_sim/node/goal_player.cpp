@@ -11,7 +11,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr std::uint32_t kResultQueue = 10000;  // of small messages: none may be lost
@@ -126,4 +126,4 @@ void GoalPlayer::resend(const ros::WallTimerEvent&) {
   sender_.send(last_sent_, last_stamp_);
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -12,7 +12,7 @@
 #include "vibe_core/trainee/protocol.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Performs the goals of a protocol, and those that other nodes send, by what the simulator publishes. It answers the
 /// end of every step with the input of the next, so that in lock-step a session has the bits of vibe_headless. When the
@@ -56,4 +56,4 @@ class GoalPlayer {
   double last_send_ = 0;          // steady time [s]
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -8,7 +8,7 @@
 #include "goal_message.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr std::uint32_t kGoalQueue = 1000;
@@ -88,4 +88,4 @@ void GoalServer::publish() {
   progress_.publish(message);
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

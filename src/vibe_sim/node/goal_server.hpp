@@ -9,7 +9,7 @@
 
 #include "goal_book.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Takes goals from other nodes (topic and service trainee/goal, topic trainee/cancel) and says what becomes of all of
 /// them (topic trainee/progress).
@@ -45,4 +45,4 @@ class GoalServer {
   std::int64_t stamp_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -6,7 +6,7 @@
 
 #include "vibe_core/state/pull_spring.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr double kReached = 5e-3;  // of the tip from its target: close enough to say nothing [m]
@@ -239,4 +239,4 @@ const char* toString(InputChannel channel) {
   return "";
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

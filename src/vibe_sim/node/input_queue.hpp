@@ -13,7 +13,7 @@
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/model/model.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Where an input comes from. Each has its own queue, because each has its own rate.
 enum class InputChannel { Scope, Overstitch, Buttons, Pull };
@@ -122,4 +122,4 @@ class InputQueue {
 
 const char* toString(InputChannel channel);
 
-}  // namespace vibe
+}  // namespace vibe::sim

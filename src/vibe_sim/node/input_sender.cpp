@@ -2,7 +2,7 @@
 
 #include "conversions.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr std::uint32_t kSenderQueue = 1000;
@@ -28,4 +28,4 @@ void InputSender::sendButtons(const StepInput& input, std::int64_t stamp) {
   buttons_.publish(makeButtons(input, stamp));
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

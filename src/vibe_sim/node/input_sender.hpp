@@ -5,7 +5,7 @@
 
 #include "vibe_core/input/step_input.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Time that stands still for so long shows that something that was sent may have been lost [s].
 constexpr double kResendAfter = 0.5;
@@ -26,4 +26,4 @@ class InputSender {
   ros::Publisher scope_, overstitch_, buttons_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

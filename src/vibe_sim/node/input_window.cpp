@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-namespace vibe {
+namespace vibe::sim {
 
 std::string faultOf(std::int64_t stamp, std::int64_t now, const InputWindow& window) {
   if (stamp == 0) return "";
@@ -17,4 +17,4 @@ std::string faultOf(std::int64_t stamp, std::int64_t now, const InputWindow& win
   return text;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

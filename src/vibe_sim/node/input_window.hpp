@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string>
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Which stamps a message of an input may have, compared with the simulator's time at its arrival. A node whose clock
 /// is wrong is told so; its messages neither wait nor count.
@@ -19,4 +19,4 @@ struct InputWindow {
 /// empty: nothing. Stamp 0, "as soon as possible", is always right.
 std::string faultOf(std::int64_t stamp, std::int64_t now, const InputWindow& window);
 
-}  // namespace vibe
+}  // namespace vibe::sim

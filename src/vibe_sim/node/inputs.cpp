@@ -5,7 +5,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr double kOwnerPatience = 2;          // a source that is silent for longer has given the topic up [s]
@@ -105,4 +105,4 @@ void Inputs::complain(Topic& topic, const std::string& sentence) {
   publishers_.warn(sentence);
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -16,7 +16,7 @@
 #include "input_window.hpp"
 #include "publishers.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Every topic that the simulator listens to. Valid messages go to the queue; an invalid message is reported in one
 /// sentence in the log and on procedure/events, at most once a second per topic, and has no other effect.
@@ -56,4 +56,4 @@ class Inputs {
   void complain(Topic& topic, const std::string& sentence);
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

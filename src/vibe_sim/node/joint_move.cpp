@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr double kPeakSpeed = 1.875;  // of the path, over its mean speed
@@ -31,4 +31,4 @@ void JointMove::apply(std::int64_t stamp, JointArray& joints) const {
   for (int j = first_; j < first_ + count_; ++j) joints[j] = start_[j] + leastJerk(s) * way_[j];
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

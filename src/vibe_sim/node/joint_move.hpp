@@ -5,7 +5,7 @@
 #include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/input/step_input.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 using JointArray = std::array<double, kJointCount>;
 
@@ -30,4 +30,4 @@ class JointMove {
   std::int64_t begin_, duration_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

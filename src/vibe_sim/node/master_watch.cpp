@@ -7,7 +7,7 @@
 
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 namespace {
 
@@ -67,4 +67,4 @@ void MasterWatch::lookForRivalClock() {
   rival_ = others;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -7,7 +7,7 @@
 
 #include "publishers.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Notices when another node publishes /clock too, which makes time jump, and when the ROS master is gone. Connections
 /// between nodes outlive it, so the simulation continues until no listener is connected either.
@@ -31,4 +31,4 @@ class MasterWatch {
   ros::WallTimer timer_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

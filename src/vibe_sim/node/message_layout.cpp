@@ -6,7 +6,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr int kMaxDepth = 16;     // of messages in messages
@@ -120,4 +120,4 @@ std::vector<MessageLayout::Field> MessageLayout::locate(const std::uint8_t* byte
   return fields;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

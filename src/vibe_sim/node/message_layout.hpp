@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Where the fields of a serialised ROS message are, from the text of its definition. For messages of other releases,
 /// which the generated classes cannot read.
@@ -34,4 +34,4 @@ class MessageLayout {
   std::vector<Field> fields_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -3,7 +3,7 @@
 #include "conversions.hpp"
 #include "step_result_message.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr std::size_t kMaxResults = 10000;  // of a simulation that goes on although its particles do not come
@@ -48,4 +48,4 @@ std::optional<Sight> ObservationQueue::next() {
   return {};
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -7,7 +7,7 @@
 
 #include "vibe_core/trainee/observation.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// What a trainee perceived after one step, and when.
 struct Sight {
@@ -39,4 +39,4 @@ class ObservationQueue {
   std::vector<Eigen::Vector3d> takeWall();
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

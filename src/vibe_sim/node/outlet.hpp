@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Queue of a topic of small messages: long, because a simulation that runs faster than the wall clock must not lose
 /// messages to a recorder that is busy for a moment.
@@ -79,4 +79,4 @@ class OutletSource {
   BagTarget* target_ = nullptr;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

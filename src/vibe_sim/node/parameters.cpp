@@ -5,10 +5,10 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_node/parameter_reader.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
-TimeSource readTimeSource(ParameterReader& reader) {
+TimeSource readTimeSource(node::ParameterReader& reader) {
   std::string word = "wall";
   reader.read("time_source", word);
   if (word == "wall") return TimeSource::Wall;
@@ -16,7 +16,7 @@ TimeSource readTimeSource(ParameterReader& reader) {
   throw Error("Parameter ~time_source is '" + word + "'; set it to wall or sim.");
 }
 
-std::optional<InputChannel> readFollow(ParameterReader& reader) {
+std::optional<InputChannel> readFollow(node::ParameterReader& reader) {
   std::string topic;
   reader.read("follow", topic);
   if (topic.empty()) return std::nullopt;
@@ -25,14 +25,14 @@ std::optional<InputChannel> readFollow(ParameterReader& reader) {
   throw Error("Parameter ~follow is '" + topic + "'; set it to scope/measured_js or overstitch/measured_js.");
 }
 
-std::optional<std::uint64_t> readSeed(ParameterReader& reader) {
+std::optional<std::uint64_t> readSeed(node::ParameterReader& reader) {
   int seed = -1;
   reader.read("seed", seed, 0, 2147483647);
   if (seed < 0) return std::nullopt;
   return static_cast<std::uint64_t>(seed);
 }
 
-InputWindow readInputWindow(ParameterReader& reader, TimeSource source) {
+InputWindow readInputWindow(node::ParameterReader& reader, TimeSource source) {
   InputWindow window = source == TimeSource::Sim ? InputWindow::ofSimulatedTime() : InputWindow::ofWallClock();
   double look_ahead = -1, staleness = -1;
   reader.read("input_look_ahead", look_ahead, 0, 1e6, "s");
@@ -71,7 +71,7 @@ void checkCombination(const Parameters& parameters) {
 }  // namespace
 
 Parameters readParameters(const ros::NodeHandle& private_handle) {
-  ParameterReader reader(private_handle);
+  node::ParameterReader reader(private_handle);
   Parameters parameters;
   parameters.scene = reader.required("scene", "a scene file or package:// address");
   reader.read("mesh", parameters.mesh);
@@ -95,4 +95,4 @@ Parameters readParameters(const ros::NodeHandle& private_handle) {
   return parameters;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

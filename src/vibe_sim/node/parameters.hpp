@@ -8,7 +8,7 @@
 #include "input_queue.hpp"
 #include "input_window.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 enum class TimeSource {
   Wall,  ///< stamps follow the wall clock, no /clock
@@ -39,4 +39,4 @@ struct Parameters {
 ///         or do not fit /use_sim_time
 Parameters readParameters(const ros::NodeHandle& private_handle);
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -5,7 +5,7 @@
 
 #include "conversions.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 /// One point on the wire.
@@ -86,4 +86,4 @@ void ParticleCloud::updateMarks(const ProcedureState& procedure) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

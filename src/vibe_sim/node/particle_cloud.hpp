@@ -7,7 +7,7 @@
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// The moving tissue as a point cloud that every ROS tool can read. Per particle, packed in 28 bytes:
 ///   x, y, z   FLOAT32  position [m]
@@ -31,4 +31,4 @@ class ParticleCloud {
   void updateMarks(const ProcedureState& procedure);
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 // Between gaps that are almost as wide, the deadline stays where it is: two devices of the same rate leave two.
@@ -65,4 +65,4 @@ std::optional<PhaseLock::Gap> PhaseLock::findGap(std::int64_t phase, std::int64_
   return best;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

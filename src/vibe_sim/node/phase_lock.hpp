@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Lets steps begin just after the samples of an input arrive, instead of up to a period later.
 ///
@@ -54,4 +54,4 @@ class PhaseLock {
   std::optional<Gap> findGap(std::int64_t phase, std::int64_t now) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

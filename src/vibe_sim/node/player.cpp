@@ -10,7 +10,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr double kStatusPeriod = 0.1;      // [s]
@@ -134,4 +134,4 @@ void Player::spinOnce() {
   publishStatus(false);
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

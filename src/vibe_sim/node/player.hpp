@@ -10,7 +10,7 @@
 #include "publishers.hpp"
 #include "replay.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Plays a recording into the graph as the simulator would: all of its topics, computed again, at the recorded pace or
 /// another one. Goes to any time on command; stamps only go forward, so that listeners need not be set back.
@@ -48,4 +48,4 @@ class Player : private Replay::Listener {
   double last_status_ = 0, last_heartbeat_ = 0, last_whole_ = 0;  // steady time [s]
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

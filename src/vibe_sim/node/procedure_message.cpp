@@ -8,7 +8,7 @@
 #include "vibe_core/suture/technique.hpp"
 #include "vibe_core/thermal/thermal_dose.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 /// Particles whose grade is this or worse.
@@ -191,4 +191,4 @@ std::string kindOf(const Session& session, const RunStatus& status) {
          std::to_string(countWithoutContact(session.metrics().events));
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

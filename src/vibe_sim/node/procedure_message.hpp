@@ -7,7 +7,7 @@
 #include "publishers.hpp"
 #include "session.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Where the procedure stands, from the present state.
 vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunStatus& status);
@@ -18,4 +18,4 @@ vibe_msgs::SkillMetrics makeSkillMetrics(const Session& session);
 /// Changes with whatever must be published at once: scene, pause, tool state, held particles, any event but contact.
 std::string kindOf(const Session& session, const RunStatus& status);
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -19,7 +19,7 @@
 #include "vibe_core/procedure/helix_grip.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr double kHapticRate = 100;                       // of haptic/parameters at most, in simulated time [Hz]
@@ -223,4 +223,4 @@ void Publishers::clock(std::int64_t stamp) {
   clock_.publish(message);
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

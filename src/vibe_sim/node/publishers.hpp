@@ -15,7 +15,7 @@
 #include "run_status.hpp"
 #include "session.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Between warnings about the same [s].
 constexpr double kComplaintPeriod = 1;
@@ -93,4 +93,4 @@ class Publishers {
   void clock(std::int64_t stamp);
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

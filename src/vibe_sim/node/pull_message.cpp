@@ -4,7 +4,7 @@
 #include "conversions.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 namespace {
 
@@ -44,4 +44,4 @@ vibe_msgs::TissuePullState makePullState(const State& state, std::int64_t stamp)
   return message;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

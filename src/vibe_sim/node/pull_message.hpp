@@ -7,7 +7,7 @@
 #include "input_queue.hpp"
 #include "vibe_core/state/state.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// A pull at the tissue, with its target in the frame world or stomach, which are the same.
 /// @throws Error with one sentence if the message cannot be used
@@ -16,4 +16,4 @@ InputSample readPull(const vibe_msgs::TissuePull& message);
 /// The pull spring after a step. Without a pull the particle is -1 and everything else is 0.
 vibe_msgs::TissuePullState makePullState(const State& state, std::int64_t stamp);
 
-}  // namespace vibe
+}  // namespace vibe::sim

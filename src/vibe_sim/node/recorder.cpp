@@ -14,7 +14,7 @@
 #include "recording_rules.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr std::uint32_t kUnlimited = 0;
@@ -230,4 +230,4 @@ void Recorder::close() {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

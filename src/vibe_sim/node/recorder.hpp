@@ -12,7 +12,7 @@
 #include <set>
 #include <string>
 
-namespace vibe {
+namespace vibe::sim {
 
 /// How much of the graph is recorded.
 enum class RecordingDepth {
@@ -84,4 +84,4 @@ class Recorder {
   ros::SteadyTime last_chunk_ = ros::SteadyTime::now();
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

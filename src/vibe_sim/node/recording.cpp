@@ -13,7 +13,7 @@
 #include "recording_rules.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 template <class M>
@@ -159,4 +159,4 @@ std::string Recording::snapshot(const RecordedRun& run, std::uint64_t step) cons
               " cannot be read.");
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

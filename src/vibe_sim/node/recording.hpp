@@ -11,7 +11,7 @@
 
 #include "step_input_reader.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// The part of a session from one start, reset or load to the next.
 struct RecordedRun {
@@ -71,4 +71,4 @@ class Recording {
   std::string prefix_ = "/";
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

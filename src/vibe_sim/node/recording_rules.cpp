@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::sim {
 
 // The periods keep enough to look at a session with rosbag play and to plot it without a replay.
 const std::vector<RecordingRule>& recordingRules() {
@@ -53,4 +53,4 @@ const RecordingRule* recordingRule(const std::string& topic, const std::string& 
   return found == rules.end() ? nullptr : &*found;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::sim {
 
 /// How much of a topic a recording keeps. What a replay computes again is thinned or left out.
 struct RecordingRule {
@@ -27,4 +27,4 @@ const RecordingRule* recordingRule(const std::string& topic, const std::string& 
 /// Whether a topic's whole name is `name` in any namespace.
 bool isTopic(const std::string& topic, const std::string& name);
 
-}  // namespace vibe
+}  // namespace vibe::sim

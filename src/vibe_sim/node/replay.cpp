@@ -13,7 +13,7 @@
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 namespace {
 
@@ -224,4 +224,4 @@ void Replay::differ(const std::string& what, const std::string& cause) {
   result_.difference = {run().number, run().steps[index].step, timeOf(run_, run().steps[index].stamp), what, cause};
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -11,7 +11,7 @@
 #include "session.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Where a replay first differs from its recording.
 struct ReplayDifference {
@@ -105,4 +105,4 @@ class Replay {
   ReplayResult result_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -3,7 +3,7 @@
 #include "vibe_core/common/machine_info.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 // "compiler (recorded: GCC 12.2, here: Clang 14)"; empty if they are equal.
@@ -46,4 +46,4 @@ std::string causeOfState(const vibe_msgs::SessionInfo& info) {
          "please report it";
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

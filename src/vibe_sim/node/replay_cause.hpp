@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace vibe {
+namespace vibe::sim {
 
 /// What of the information was edited after the recording, such as "the scene"; empty if nothing was.
 std::string findEdit(const vibe_msgs::SessionInfo& info);
@@ -14,4 +14,4 @@ std::string causeOfModel(const vibe_msgs::SessionInfo& info);
 /// Why the state differs although model and inputs are the recorded ones: another version, machine or arithmetic.
 std::string causeOfState(const vibe_msgs::SessionInfo& info);
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -10,7 +10,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/state/procedure_state.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 using EventMessage = vibe_msgs::ProcedureEvent;
@@ -53,4 +53,4 @@ std::vector<ReplayMark> readMarks(const Recording& recording) {
   return marks;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

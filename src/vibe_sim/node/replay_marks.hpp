@@ -4,7 +4,7 @@
 
 #include "recording.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// A moment of a recording that is worth going to.
 struct ReplayMark {
@@ -16,4 +16,4 @@ struct ReplayMark {
 /// @throws Error if the bag cannot be read
 std::vector<ReplayMark> readMarks(const Recording& recording);
 
-}  // namespace vibe
+}  // namespace vibe::sim

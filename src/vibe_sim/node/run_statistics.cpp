@@ -7,7 +7,7 @@
 #include "vibe_core/metrics/run_summary.hpp"
 #include "vibe_core/scene/mesh_guess.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr double kWindow = 1.0;  // [s]
@@ -102,4 +102,4 @@ std::string RunStatistics::summary(const Session& session) const {
                                                            steadyTime() - begin_, session.simulation.hash());
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

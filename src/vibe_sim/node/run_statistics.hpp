@@ -8,7 +8,7 @@
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// How long the work takes and whether it keeps up with time. The times of the steps themselves are those of
 /// Simulation::timer(). Belongs to the stepping thread.
@@ -49,4 +49,4 @@ class RunStatistics {
   vibe_msgs::SolverStatistics message(const Session& session, DurationHistogram DurationRecord::*which) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace vibe {
+namespace vibe::sim {
 
 /// What the messages of a step say in addition to the session.
 struct RunStatus {
@@ -9,4 +9,4 @@ struct RunStatus {
   bool overstitch_moves = false;  ///< overstitch/move_jp is under way
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -9,7 +9,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 SceneModel build(const Scene& scene, std::string urdf) {
@@ -36,4 +36,4 @@ SceneModel modelOfText(const std::string& text, const std::string& place, const 
   return build(parseScene(text, place), urdf);
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

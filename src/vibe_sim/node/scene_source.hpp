@@ -4,7 +4,7 @@
 
 #include "vibe_core/model/model.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// A model with the text of the URDF that its tool was made from; empty without a tool.
 struct SceneModel {
@@ -23,4 +23,4 @@ SceneModel loadModel(const std::string& scene_address, const std::string& mesh_a
 /// @throws Error
 SceneModel modelOfText(const std::string& text, const std::string& place, const std::string& urdf = "");
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -6,7 +6,7 @@
 #include <vibe_msgs/Snapshot.h>
 #include <vibe_msgs/Step.h>
 
-namespace vibe {
+namespace vibe::sim {
 
 template <typename Service, typename Work>
 void Services::offer(const std::string& name, Work work) {
@@ -42,4 +42,4 @@ Services::~Services() {
   spinner_->stop();
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -9,7 +9,7 @@
 
 #include "stepping.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// The services of the simulator. Each answers when the work is done. They have threads of their own, because a call
 /// may wait for steps that need inputs.
@@ -28,4 +28,4 @@ class Services {
   void offer(const std::string& name, Work work);
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

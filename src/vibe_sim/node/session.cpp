@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 SimulationSettings makeSettings(std::uint64_t seed, int threads) {
@@ -44,4 +44,4 @@ void Session::replaceModel(std::shared_ptr<const Model> new_model) {
   ++run;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -7,7 +7,7 @@
 #include "sim_time.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// The node's simulation with the time on its stamps. Belongs to the stepping thread and is touched by no other.
 class Session {
@@ -40,4 +40,4 @@ class Session {
   const std::vector<Event>& events;  ///< of the last step
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

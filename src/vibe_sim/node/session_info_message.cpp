@@ -6,7 +6,7 @@
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 vibe_msgs::SessionInfo makeSessionInfo(const Session& session) {
   const Model& model = *session.model;
@@ -42,4 +42,4 @@ vibe_msgs::StateSnapshot makeStateSnapshot(const Session& session) {
   return message;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

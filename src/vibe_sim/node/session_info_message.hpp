@@ -4,11 +4,11 @@
 
 #include "session.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// What a session was made with.
 vibe_msgs::SessionInfo makeSessionInfo(const Session& session);
 
 vibe_msgs::StateSnapshot makeStateSnapshot(const Session& session);
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -18,6 +18,8 @@
 #include "vibe_node/realtime.hpp"
 #include "wall_clock.hpp"
 
+namespace sim = vibe::sim;
+
 namespace {
 
 constexpr int kFailure = 1;
@@ -39,12 +41,12 @@ void onSignal(int number) {
   stop_signal = number;
 }
 
-void waitForEnd(const vibe::Stepper& stepper, const vibe::MasterWatch& watch) {
+void waitForEnd(const sim::Stepper& stepper, const sim::MasterWatch& watch) {
   while (ros::ok() && !stop_signal && stepper.isRunning() && !watch.isHopeless()) ros::WallDuration(0.02).sleep();
 }
 
 /// The sentence that says why the node ends, unless the stepping has said so itself.
-void explainEnd(const vibe::MasterWatch& watch) {
+void explainEnd(const sim::MasterWatch& watch) {
   if (stop_signal) {
     std::puts("Stopped by a signal.");
   } else if (!ros::ok() && !watch.isHopeless()) {
@@ -57,30 +59,30 @@ void explainEnd(const vibe::MasterWatch& watch) {
 /// The threads of ROS too: with a lower priority they would be interrupted while they hold a lock that the stepping
 /// thread needs to send its messages. That one is a little above them.
 void runInRealTime(int priority) {
-  for (const std::string& sentence : vibe::runInRealTime(std::max(1, priority - 1))) ROS_WARN_STREAM(sentence);
+  for (const std::string& sentence : vibe::node::runInRealTime(std::max(1, priority - 1))) ROS_WARN_STREAM(sentence);
 }
 
 int run() {
   ros::NodeHandle handle;
-  const vibe::Parameters parameters = vibe::readParameters(ros::NodeHandle("~"));
+  const sim::Parameters parameters = sim::readParameters(ros::NodeHandle("~"));
   if (parameters.realtime_priority > 0) runInRealTime(parameters.realtime_priority);
-  const vibe::SceneModel made = vibe::loadModel(parameters.scene, parameters.mesh);
+  const sim::SceneModel made = sim::loadModel(parameters.scene, parameters.mesh);
   const vibe::Model* model = made.model.get();
   // Not only for people: the first log message makes roscpp register a parameter at the master, and if that were the
   // message about our own shutdown, the master would take us for the newest node of this name and stop the real one.
   ROS_INFO_STREAM("Simulating '" << model->scene.name << "' with " << model->particle_count << " particles.");
-  vibe::ParameterReader(ros::NodeHandle("~")).tell();
-  vibe::InputQueue queue;
-  vibe::Publishers publishers(handle, parameters.time_source == vibe::TimeSource::Sim);
-  vibe::Stepper stepper(parameters, made, queue, publishers);
+  vibe::node::ParameterReader(ros::NodeHandle("~")).tell();
+  sim::InputQueue queue;
+  sim::Publishers publishers(handle, parameters.time_source == sim::TimeSource::Sim);
+  sim::Stepper stepper(parameters, made, queue, publishers);
   ros::AsyncSpinner spinner(1);
-  vibe::MasterWatch watch(handle, publishers, parameters.master_timeout);
+  sim::MasterWatch watch(handle, publishers, parameters.master_timeout);
   {
-    vibe::Inputs inputs(
+    sim::Inputs inputs(
         handle, queue, publishers, parameters.input_window,
-        [&] { return parameters.time_source == vibe::TimeSource::Wall ? vibe::wallNow() : queue.now(); },
-        [&stepper](vibe::InputChannel channel) { stepper.wake(channel); });
-    vibe::Services services(handle, stepper);
+        [&] { return parameters.time_source == sim::TimeSource::Wall ? sim::wallNow() : queue.now(); },
+        [&stepper](sim::InputChannel channel) { stepper.wake(channel); });
+    sim::Services services(handle, stepper);
     stepper.start();
     spinner.start();
     waitForEnd(stepper, watch);
@@ -90,8 +92,8 @@ int run() {
   const bool has_end = parameters.duration > 0;
   if (has_end || !parameters.summary_file.empty()) stepper.finish();
   if (ros::ok() && publishers.hasListener()) ros::WallDuration(kDelivery).sleep();
-  if (stepper.outcome() == vibe::Outcome::Finished) return 0;
-  const bool failed = stepper.outcome() == vibe::Outcome::Failed || watch.isHopeless();
+  if (stepper.outcome() == sim::Outcome::Finished) return 0;
+  const bool failed = stepper.outcome() == sim::Outcome::Failed || watch.isHopeless();
   return failed || has_end ? kFailure : 0;
 }
 
@@ -100,13 +102,13 @@ int run() {
 int main(int argc, char** argv) {
   try {
     ros::init(argc, argv, "sim_node", ros::init_options::NoSigintHandler);
-    if (vibe::asksForHelp(argc, argv)) {
+    if (vibe::node::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;
     }
     signal(SIGINT, onSignal);
     signal(SIGTERM, onSignal);
-    if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
+    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
     const int result = run();
     ros::shutdown();
     return result;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::sim {
 
 std::int64_t stampOf(std::int64_t origin, std::int64_t step, double period) {
   return origin + std::llround(static_cast<double>(step) * period * 1e9);
@@ -26,4 +26,4 @@ void TimeLine::continueWith(std::int64_t old_step, std::int64_t new_step, double
   shift_ = -new_step;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

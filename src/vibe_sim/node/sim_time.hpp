@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Stamp of the first step when time is simulated: one second, because stamp 0 means "invalid" [ns].
 constexpr std::int64_t kEpoch = 1'000'000'000;
@@ -42,4 +42,4 @@ class TimeLine {
   std::int64_t shift_ = 0;  // clock step minus state step
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

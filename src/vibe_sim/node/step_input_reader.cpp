@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 const std::string kReads = "this build reads versions 1 to " + std::to_string(kStepInputVersion) +
@@ -78,4 +78,4 @@ RecordedStep StepInputReader::read(const std::uint8_t* bytes, std::size_t size) 
   return result;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

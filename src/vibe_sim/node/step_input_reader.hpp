@@ -6,7 +6,7 @@
 #include "message_layout.hpp"
 #include "vibe_core/input/step_input.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// One message of the topic applied_input.
 struct RecordedStep {
@@ -34,4 +34,4 @@ class StepInputReader {
   MessageLayout layout_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

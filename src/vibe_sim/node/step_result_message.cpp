@@ -7,7 +7,7 @@
 #include "conversions.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 geometry_msgs::Pose toPose(const Eigen::Vector3d& position, const Eigen::Quaterniond& turn) {
@@ -110,4 +110,4 @@ std::vector<Eigen::Vector3d> readWall(const sensor_msgs::PointCloud2& cloud) {
   return wall;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -7,7 +7,7 @@
 #include "session.hpp"
 #include "vibe_core/trainee/observation.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// @param whole  the state is the first of a session or a new one, so that its particles are published in any case
 vibe_msgs::StepResult makeStepResult(const Session& session, bool whole);
@@ -19,4 +19,4 @@ Observation readStepResult(const vibe_msgs::StepResult& message);
 /// @throws Error if it is another kind of cloud
 std::vector<Eigen::Vector3d> readWall(const sensor_msgs::PointCloud2& cloud);
 
-}  // namespace vibe
+}  // namespace vibe::sim

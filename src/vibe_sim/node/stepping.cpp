@@ -12,7 +12,7 @@
 #include "vibe_node/realtime.hpp"
 #include "wall_clock.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr std::int64_t kMaxStepLag = 250'000'000;   // behind the wall clock before time is given up [ns]
@@ -80,7 +80,7 @@ void Stepper::wake(InputChannel channel) {
 
 void Stepper::run() {
   const std::string refusal =
-      parameters_.realtime_priority > 0 ? takeRealtimePriority(parameters_.realtime_priority) : "";
+      parameters_.realtime_priority > 0 ? node::takeRealtimePriority(parameters_.realtime_priority) : "";
   if (!refusal.empty()) ROS_WARN_STREAM_ONCE(refusal);
   try {
     loop();
@@ -336,4 +336,4 @@ void Stepper::finish() {
   if (!parameters_.summary_file.empty()) writeFile(parameters_.summary_file, summary, "The summary");
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

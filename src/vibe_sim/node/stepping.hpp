@@ -20,7 +20,7 @@
 #include "scene_source.hpp"
 #include "session.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Answer to a service call.
 struct Reply {
@@ -141,4 +141,4 @@ class Stepper {
   std::thread thread_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

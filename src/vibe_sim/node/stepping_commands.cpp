@@ -8,7 +8,7 @@
 
 // The commands of Stepper: what other threads ask for, and how the stepping thread does it between two steps.
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 const Reply kShuttingDown{false, "The simulator is shutting down."};
@@ -173,4 +173,4 @@ Reply Stepper::loadScene(const std::string& address) {
   });
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -9,7 +9,7 @@
 #include "vibe_core/suture/technique.hpp"
 #include "vibe_core/suture/thread_material.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr int kSlackPieces = 12;  // straight pieces that a catenary is drawn with
@@ -163,4 +163,4 @@ std::uint64_t kindOf(const ProcedureState& procedure) {
   return kind;
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

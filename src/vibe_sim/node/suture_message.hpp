@@ -6,7 +6,7 @@
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// All threads and bleeding bites, in the frame world.
 vibe_msgs::SutureArray makeSutures(const Model& model, const State& state, std::int64_t stamp);
@@ -15,4 +15,4 @@ vibe_msgs::SutureArray makeSutures(const Model& model, const State& state, std::
 /// depend on positions and tensions.
 std::uint64_t kindOf(const ProcedureState& procedure);
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -7,7 +7,7 @@
 #include "sim_time.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 namespace {
 
 constexpr std::int64_t kStepsAhead = 8;
@@ -94,4 +94,4 @@ void TraineePlayer::sayPhase(double script_time) {
   std::fflush(stdout);
 }
 
-}  // namespace vibe
+}  // namespace vibe::sim

@@ -9,7 +9,7 @@
 #include "input_sender.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
-namespace vibe {
+namespace vibe::sim {
 
 /// Plays a trainee's script on the ordinary input topics, as a device would. After the script's end it holds its last
 /// position.
@@ -48,4 +48,4 @@ class TraineePlayer {
   StepInput last_sent_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::sim

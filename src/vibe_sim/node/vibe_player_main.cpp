@@ -28,7 +28,7 @@ void onSignal(int number) {
 }
 
 void play() {
-  vibe::ParameterReader reader(ros::NodeHandle("~"));
+  vibe::node::ParameterReader reader(ros::NodeHandle("~"));
   const std::string file = reader.required("recording", "the bag to play");
   bool plays = true;
   double rate = 1;
@@ -38,8 +38,8 @@ void play() {
   bool use_sim_time = false;
   if (!ros::param::get("/use_sim_time", use_sim_time) || !use_sim_time)
     throw vibe::Error("/use_sim_time is not true; run 'rosparam set /use_sim_time true' before any node starts.");
-  const vibe::Recording recording(file);
-  vibe::Player player(recording, ros::NodeHandle(), plays, rate);
+  const vibe::sim::Recording recording(file);
+  vibe::sim::Player player(recording, ros::NodeHandle(), plays, rate);
   while (ros::ok() && !stop_signal) {
     player.spinOnce();
     ros::WallDuration(kIdle).sleep();
@@ -51,13 +51,13 @@ void play() {
 int main(int argc, char** argv) {
   try {
     ros::init(argc, argv, "vibe_player", ros::init_options::NoSigintHandler);
-    if (vibe::asksForHelp(argc, argv)) {
+    if (vibe::node::asksForHelp(argc, argv)) {
       std::fputs(kHelp, stdout);
       return 0;
     }
     std::signal(SIGINT, onSignal);
     std::signal(SIGTERM, onSignal);
-    if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
+    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
     play();
     ros::shutdown();
     return 0;

@@ -28,7 +28,7 @@ void onSignal(int number) {
 struct Options {
   std::string file;
   std::string last_topic = "applied_input";
-  vibe::RecordingDepth depth = vibe::RecordingDepth::Replayable;
+  vibe::sim::RecordingDepth depth = vibe::sim::RecordingDepth::Replayable;
 };
 
 /// @throws Error
@@ -38,7 +38,7 @@ Options readOptions(const std::vector<std::string>& words) {
     if (words[i] == "--last" && i + 1 < words.size()) {
       options.last_topic = words[++i];
     } else if (words[i] == "--all") {
-      options.depth = vibe::RecordingDepth::Everything;
+      options.depth = vibe::sim::RecordingDepth::Everything;
     } else if (words[i].rfind('-', 0) != 0 && options.file.empty()) {
       options.file = words[i];
     } else {
@@ -51,7 +51,7 @@ Options readOptions(const std::vector<std::string>& words) {
 }
 
 /// @throws Error
-void recordUntilStopped(vibe::Recorder& recorder) {
+void recordUntilStopped(vibe::sim::Recorder& recorder) {
   double silence = 0;
   while (!stop_signal && ros::ok()) {
     const bool answers = recorder.findTopics();
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
   bool running = false;
   try {
     ros::init(argc, argv, "vibe_record", ros::init_options::NoSigintHandler | ros::init_options::AnonymousName);
-    if (vibe::asksForHelp(argc, argv)) {
+    if (vibe::node::asksForHelp(argc, argv)) {
       std::puts(
           "vibe_record: records the graph to a bag until Ctrl-C: inputs, events and all that a replay cannot compute\n"
           "again; of the rest enough to look at it.\n"
@@ -88,8 +88,8 @@ int main(int argc, char** argv) {
     const Options options = readOptions({argv, argv + argc});
     std::signal(SIGINT, onSignal);
     std::signal(SIGTERM, onSignal);
-    if (!vibe::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
-    vibe::Recorder recorder(options.file, options.last_topic, options.depth);
+    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
+    vibe::sim::Recorder recorder(options.file, options.last_topic, options.depth);
     running = true;
     recordUntilStopped(recorder);
     recorder.close();

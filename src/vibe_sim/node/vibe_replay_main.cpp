@@ -16,6 +16,7 @@
 namespace {
 
 using namespace vibe;
+using namespace vibe::sim;
 
 constexpr int kSame = 0, kDiffers = 1, kUsage = 2, kNotChecked = 3;
 constexpr int kProgressSteps = 120;

@@ -31,7 +31,7 @@ struct Parameters {
 
 Parameters readParameters() {
   Parameters parameters;
-  vibe::ParameterReader reader(ros::NodeHandle("~"));
+  vibe::node::ParameterReader reader(ros::NodeHandle("~"));
   reader.read("script", parameters.script);
   reader.read("skill", parameters.skill);
   reader.read("seed", parameters.seed, 0, std::numeric_limits<int>::max());
@@ -47,7 +47,7 @@ Parameters readParameters() {
 void playScript(const Parameters& parameters) {
   const vibe::TraineeScript script = vibe::TraineeScript::load(parameters.script);
   ROS_INFO_STREAM("Playing '" << script.name() << "', " << script.duration() << " s.");
-  vibe::TraineePlayer player(ros::NodeHandle(), script, parameters.lockstep);
+  vibe::sim::TraineePlayer player(ros::NodeHandle(), script, parameters.lockstep);
   ros::spin();
 }
 
@@ -62,7 +62,7 @@ vibe::Protocol noProtocol(const Parameters& parameters) {
 
 void performGoals(const vibe::Protocol& protocol, const Parameters& parameters) {
   ROS_INFO_STREAM("Performing '" << protocol.name << "', " << protocol.goals.size() << " goals.");
-  vibe::GoalPlayer player(ros::NodeHandle(), protocol, parameters.lockstep, parameters.exit_when_done);
+  vibe::sim::GoalPlayer player(ros::NodeHandle(), protocol, parameters.lockstep, parameters.exit_when_done);
   ros::spin();
 }
 
@@ -71,11 +71,11 @@ void performGoals(const vibe::Protocol& protocol, const Parameters& parameters) 
 int main(int argc, char** argv) {
   try {
     ros::init(argc, argv, "vibe_trainee");
-    if (vibe::asksForHelp(argc, argv)) {
+    if (vibe::node::asksForHelp(argc, argv)) {
       std::puts(kHelp);
       return 0;
     }
-    vibe::waitForMaster(kMasterPatience);
+    vibe::node::waitForMaster(kMasterPatience);
     const Parameters parameters = readParameters();
     if (parameters.script.empty()) {
       performGoals(noProtocol(parameters), parameters);

@@ -4,7 +4,7 @@
 #include "method.hpp"
 #include "tag_search.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 struct Family {
@@ -73,4 +73,4 @@ std::unique_ptr<Method> makeAprilTag(bool refine_edges) {
   return std::make_unique<AprilTagMethod>(refine_edges);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 #include "method.hpp"
 #include "tag_search.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr int kBits = 4;
@@ -65,4 +65,4 @@ std::unique_ptr<Method> makeAruco() {
   return std::make_unique<ArucoMethod>();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

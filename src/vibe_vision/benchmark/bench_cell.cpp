@@ -7,7 +7,7 @@
 #include "harder_scenes.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 using Frames = std::vector<RenderedFrame>;
@@ -104,4 +104,4 @@ CellResult runCell(const Cell& cell, const BenchOptions& options) {
   return result;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -1,7 +1,7 @@
 #pragma once
 #include "report.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 struct BenchOptions {
   int frames = 200;  ///< per seed
@@ -18,4 +18,4 @@ void writeTraceHeader(std::ostream& out);
 /// Renders the frames of a cell, seed by seed, and lets all methods look at the same ones.
 CellResult runCell(const Cell& cell, const BenchOptions& options);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -6,10 +6,12 @@
 #include "bench_cell.hpp"
 #include "vibe_core/common/error.hpp"
 
+namespace vision = vibe::vision;
+
 namespace {
 
 struct Options {
-  vibe::BenchOptions bench;
+  vision::BenchOptions bench;
   std::vector<std::string> scenes;
   std::vector<double> markers, exposures;
   double speed = 0.5;
@@ -37,15 +39,15 @@ void addOptions(CLI::App& app, Options& options) {
 }
 
 /// What the options name, or without any everything that docs/vision.md shows.
-std::vector<vibe::Cell> cellsOf(const Options& options) {
-  std::vector<vibe::Cell> cells;
-  vibe::Cell cell;
+std::vector<vision::Cell> cellsOf(const Options& options) {
+  std::vector<vision::Cell> cells;
+  vision::Cell cell;
   cell.speed = options.speed;
   if (!options.sensor.empty()) cell.width = options.sensor[0], cell.height = options.sensor[1];
   const bool chosen = !options.scenes.empty() || !options.markers.empty() || !options.exposures.empty();
   std::vector<std::string> scenes = options.scenes;
   if (scenes.empty() && chosen) scenes = {"moving"};
-  if (scenes.empty()) scenes = vibe::sceneNames();
+  if (scenes.empty()) scenes = vision::sceneNames();
   for (const std::string& scene : scenes)
     for (const double marker : options.markers.empty() ? std::vector<double>{40} : options.markers)
       for (const double exposure : options.exposures.empty() ? std::vector<double>{0} : options.exposures) {
@@ -55,7 +57,7 @@ std::vector<vibe::Cell> cellsOf(const Options& options) {
         cells.push_back(cell);
       }
   if (chosen || options.quick) return cells;
-  const std::vector<vibe::Cell> more = vibe::furtherCells();
+  const std::vector<vision::Cell> more = vision::furtherCells();
   cells.insert(cells.end(), more.begin(), more.end());
   return cells;
 }
@@ -70,24 +72,24 @@ std::ofstream openOutput(const std::string& option, const std::string& path) {
 
 int run(const Options& options) {
   if (options.list) {
-    for (const std::string& name : vibe::sceneNames()) std::cout << name << "\n";
-    for (const std::string& name : vibe::harderSceneNames()) std::cout << name << "\n";
+    for (const std::string& name : vision::sceneNames()) std::cout << name << "\n";
+    for (const std::string& name : vision::harderSceneNames()) std::cout << name << "\n";
     return 0;
   }
   std::ofstream csv = openOutput("--csv", options.csv), trace = openOutput("--trace", options.trace);
-  vibe::BenchOptions bench = options.bench;
+  vision::BenchOptions bench = options.bench;
   if (trace.is_open()) {
     bench.trace = &trace;
-    vibe::writeTraceHeader(trace);
+    vision::writeTraceHeader(trace);
   }
-  if (!vibe::pinThread()) std::cerr << "The thread cannot be pinned to one processor: times may vary more.\n";
-  vibe::printHeader(std::cout, options.bench.limits);
-  std::vector<vibe::CellResult> results;
-  for (const vibe::Cell& cell : cellsOf(options)) {
-    results.push_back(vibe::runCell(cell, bench));
-    vibe::printCell(std::cout, results.back());
+  if (!vision::pinThread()) std::cerr << "The thread cannot be pinned to one processor: times may vary more.\n";
+  vision::printHeader(std::cout, options.bench.limits);
+  std::vector<vision::CellResult> results;
+  for (const vision::Cell& cell : cellsOf(options)) {
+    results.push_back(vision::runCell(cell, bench));
+    vision::printCell(std::cout, results.back());
   }
-  if (csv.is_open()) vibe::writeCsv(csv, results);
+  if (csv.is_open()) vision::writeCsv(csv, results);
   return 0;
 }
 

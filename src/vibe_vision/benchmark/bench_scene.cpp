@@ -5,7 +5,7 @@
 
 #include "harder_scenes.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kNominalMarker = 40;                      // [px]
@@ -127,4 +127,4 @@ std::vector<Cell> furtherCells() {
   return cells;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

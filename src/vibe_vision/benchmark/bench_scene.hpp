@@ -6,7 +6,7 @@
 
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What to measure: a scene and how it differs from the standard one.
 struct Cell {
@@ -38,4 +38,4 @@ std::vector<Cell> furtherCells();
 SyntheticTag arucoTag(double side);
 SyntheticTag aprilTag(double side);
 
-}  // namespace vibe
+}  // namespace vibe::vision

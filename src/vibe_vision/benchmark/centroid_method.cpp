@@ -7,7 +7,7 @@
 #include "method.hpp"
 #include "vibe_vision/image/camera_model.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 /// The usual simple tracker of a printed mark: threshold half way between the darkest and the brightest pixel,
@@ -157,4 +157,4 @@ std::unique_ptr<Method> makeCentroid() {
   return std::make_unique<CentroidMethod>();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace vibe {
+namespace vibe::vision {
 
 bool pinThread() {
   const int processor = sched_getcpu();
@@ -23,4 +23,4 @@ TimeSummary summarise(std::vector<double> times) {
   return {times.front(), times[times.size() / 2]};
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

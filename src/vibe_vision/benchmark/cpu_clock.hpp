@@ -3,7 +3,7 @@
 
 #include "vibe_core/common/step_timer.hpp"  // threadCpuTime()
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Keeps the calling thread on the processor it runs on. @return false where the system does not allow it
 bool pinThread();
@@ -14,4 +14,4 @@ struct TimeSummary {
 };
 TimeSummary summarise(std::vector<double> times);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 /// On a square sensor, where the axes fit in every direction.
@@ -200,4 +200,4 @@ std::vector<std::string> harderSceneNames() {
   return names;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

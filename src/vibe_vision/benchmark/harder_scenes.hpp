@@ -6,7 +6,7 @@
 #include "bench_scene.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A scene beyond the standard ones: one of those, changed. `seed` varies what a scene may vary.
 struct HarderScene {
@@ -20,4 +20,4 @@ const std::vector<HarderScene>& harderScenes();
 /// @return null for a standard scene
 const HarderScene* findHarderScene(const std::string& name);
 
-}  // namespace vibe
+}  // namespace vibe::vision

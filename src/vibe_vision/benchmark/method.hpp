@@ -8,7 +8,7 @@
 #include "vibe_vision/synthetic/renderer.hpp"
 #include "vibe_vision/track/measurement.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// By how much the consumer's picture is later than the frame [s].
 constexpr double kLead = 14e-3;
@@ -48,4 +48,4 @@ std::unique_ptr<Method> makeAruco();
 std::unique_ptr<Method> makeAprilTag(bool refine_edges);
 std::vector<std::unique_ptr<Method>> allMethods();
 
-}  // namespace vibe
+}  // namespace vibe::vision

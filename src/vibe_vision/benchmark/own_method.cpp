@@ -5,7 +5,7 @@
 #include "vibe_vision/predict/predictor.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 Estimate toEstimate(const SlideAxis& axis, const Measurement& measurement) {
@@ -96,4 +96,4 @@ std::vector<std::unique_ptr<Method>> allMethods() {
   return methods;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

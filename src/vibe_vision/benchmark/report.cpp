@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <functional>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
@@ -117,4 +117,4 @@ void writeCsv(std::ostream& out, const std::vector<CellResult>& results) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

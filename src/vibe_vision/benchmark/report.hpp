@@ -5,7 +5,7 @@
 #include "bench_scene.hpp"
 #include "score.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 struct CellResult {
   Cell cell;
@@ -19,4 +19,4 @@ void printCell(std::ostream& out, const CellResult& result);
 /// One row per cell and method, SI units except pixels.
 void writeCsv(std::ostream& out, const std::vector<CellResult>& results);
 
-}  // namespace vibe
+}  // namespace vibe::vision

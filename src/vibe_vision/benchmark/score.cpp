@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kTurn = 2 * 3.14159265358979323846;
@@ -105,4 +105,4 @@ Score Scorer::score() const {
   return score;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 #include "cpu_clock.hpp"
 #include "method.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What counts as visible and as wrong.
 struct ScoreLimits {
@@ -62,4 +62,4 @@ class Scorer {
   std::vector<double> track_times_, search_times_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

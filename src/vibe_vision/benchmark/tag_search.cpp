@@ -7,7 +7,7 @@
 #include "cpu_clock.hpp"
 #include "vibe_vision/image/camera_model.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::size_t kFramesPerSearch = 20;
@@ -81,4 +81,4 @@ MethodRun runTagDetector(const BenchScene& scene, std::size_t instrument, const 
   return run;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 
 #include "method.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 using Corners = std::array<Eigen::Vector2d, 4>;  ///< pixels of the picture that was searched, centres are integers
 /// Finds the corners of all tags with the number that is looked for.
@@ -17,4 +17,4 @@ using TagDetector = std::function<std::vector<Corners>(const ImageView&)>;
 MethodRun runTagDetector(const BenchScene& scene, std::size_t instrument, const std::vector<RenderedFrame>& frames,
                          const TagDetector& detector);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -26,7 +26,8 @@ void readFrames(const std::string& text) {
   const int file = memfd_create("table", 0);
   require(file >= 0 && write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
   try {
-    const vibe::FrameTable table = vibe::FrameTable::load("/proc/self/fd/" + std::to_string(file), 1e-3);
+    const vibe::vision::FrameTable table =
+        vibe::vision::FrameTable::load("/proc/self/fd/" + std::to_string(file), 1e-3);
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
       require(std::isfinite(table.rows[i].stamp) && std::isfinite(table.rows[i].exposure));
       require(i == 0 || table.rows[i].stamp > table.rows[i - 1].stamp);
@@ -39,9 +40,9 @@ void readFrames(const std::string& text) {
 
 void readStops(const std::string& text) {
   try {
-    const std::vector<vibe::StopImage> stops = vibe::parseStopList(text, "folder/stops.csv");
+    const std::vector<vibe::vision::StopImage> stops = vibe::vision::parseStopList(text, "folder/stops.csv");
     require(!stops.empty());
-    for (const vibe::StopImage& stop : stops) require(std::abs(stop.slide) <= 1 && !stop.image.empty());
+    for (const vibe::vision::StopImage& stop : stops) require(std::abs(stop.slide) <= 1 && !stop.image.empty());
   } catch (const vibe::Error& error) {
     require(error.what()[0] != '\0');
   }

@@ -10,6 +10,8 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
+namespace vision = vibe::vision;
+
 // Any text as the configuration of a rig: an Error with its sentence, or a configuration that is written and read back
 // to the same text and has no number that is not finite.
 
@@ -44,39 +46,39 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-void check(const vibe::VisionConfig& config) {
+void check(const vision::VisionConfig& config) {
   require(!config.instruments.empty() && config.instruments.size() <= 8);
   require(config.camera.width > 0 && config.camera.fx > 0);
-  for (const vibe::InstrumentConfig& instrument : config.instruments) {
+  for (const vision::InstrumentConfig& instrument : config.instruments) {
     require(instrument.lower < instrument.upper);
-    const double along = vibe::alongOf(instrument.axis, instrument.upper);
+    const double along = vision::alongOf(instrument.axis, instrument.upper);
     require(!instrument.axis.isCalibrated() || std::isfinite(along));
     require(std::abs(instrument.axis.direction.norm() - 1) < 1e-8);
   }
 }
 
-void parse(const std::string& text, vibe::AxisRule rule) {
+void parse(const std::string& text, vision::AxisRule rule) {
   std::string written;
   try {
-    const vibe::VisionConfig config = vibe::VisionConfig::parse(text, "fuzz.yaml", rule);
+    const vision::VisionConfig config = vision::VisionConfig::parse(text, "fuzz.yaml", rule);
     check(config);
-    written = vibe::toYaml(config);
+    written = vision::toYaml(config);
   } catch (const vibe::Error& error) {
     require(error.what()[0] != '\0');
     return;
   }
-  require(vibe::toYaml(vibe::VisionConfig::parse(written, "written.yaml", rule)) == written);
+  require(vision::toYaml(vision::VisionConfig::parse(written, "written.yaml", rule)) == written);
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(data, data + size);
-  parse(text, vibe::AxisRule::Optional);
+  parse(text, vision::AxisRule::Optional);
   if (size < 3) return 0;
   std::string rig = kRig;
   const std::size_t at = (static_cast<std::size_t>(data[0]) << 8 | data[1]) % rig.size();
   const std::size_t length = std::min<std::size_t>(data[2] & 31, rig.size() - at);
-  parse(rig.replace(at, length, text.substr(3)), vibe::AxisRule::Required);
+  parse(rig.replace(at, length, text.substr(3)), vision::AxisRule::Required);
   return 0;
 }

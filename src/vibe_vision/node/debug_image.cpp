@@ -5,7 +5,7 @@
 
 #include "vibe_vision/record/annotation.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 std::string describe(const InstrumentConfig& instrument, const Measurement& measurement, const JointSample& sample) {
@@ -32,4 +32,4 @@ cv::Mat drawDebugImage(const VisionConfig& config, const Frame& frame, const Mea
   return annotate(config, frame, measurements, texts);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 
 #include "vibe_vision/camera/capture.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What the node gets frames from: a camera of its own or a topic. The newest frame wins.
 class FrameInput {
@@ -30,4 +30,4 @@ class CameraInput : public FrameInput {
   Capture capture_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kSetBack = 1;  // more than this is a clock that was set, or a recording that begins again [s]
@@ -74,4 +74,4 @@ void FramePipeline::send() {
   sender_->send(encode(datagram));
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -9,7 +9,7 @@
 #include "vibe_vision/track/tracker.hpp"
 #include "vision_messages.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Everything about one frame.
 struct FrameResult {
@@ -59,4 +59,4 @@ class FramePipeline {
   void send();
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

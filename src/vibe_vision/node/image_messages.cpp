@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vision_messages.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 namespace encodings = sensor_msgs::image_encodings;
@@ -108,4 +108,4 @@ Frame makeFrame(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::Came
   return frame;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

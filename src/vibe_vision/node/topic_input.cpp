@@ -3,7 +3,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vision_messages.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kComplaintPeriod = 1;  // [s]
@@ -76,4 +76,4 @@ std::string TopicInput::status() const {
   return "No image with its camera_info has arrived on " + topic_ + "; remap 'image' to the topic of the camera.";
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 #include "frame_input.hpp"
 #include "vision_parameters.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Images of another node, from the topic `image` with its camera_info. In a nodelet they are shared, not copied.
 class TopicInput : public FrameInput {
@@ -37,4 +37,4 @@ class TopicInput : public FrameInput {
   void put(Frame&& frame);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -104,4 +104,4 @@ void fillInstrumentDiagnostics(const InstrumentDiagnostics& instrument, Instrume
   memory = instrument;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

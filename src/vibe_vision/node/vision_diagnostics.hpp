@@ -9,7 +9,7 @@
 #include "vibe_vision/datagram/udp_sender.hpp"
 #include "vibe_vision/predict/instrument_predictor.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What the entry of the camera on /diagnostics reports. The owner adds times and counts; the window begins with the
 /// last entry.
@@ -54,4 +54,4 @@ struct InstrumentDiagnostics {
 void fillInstrumentDiagnostics(const InstrumentDiagnostics& instrument, InstrumentDiagnostics& memory,
                                diagnostic_updater::DiagnosticStatusWrapper& status);
 
-}  // namespace vibe
+}  // namespace vibe::vision

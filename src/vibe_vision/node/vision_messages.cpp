@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -152,4 +152,4 @@ TrackDatagram makeDatagram(const Frame& frame, const Measurements& measurements,
   return datagram;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -14,7 +14,7 @@
 #include "vibe_vision/predict/instrument_predictor.hpp"
 #include "vibe_vision/track/measurement.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Where the time of one frame went [s]; fields as in vibe_msgs/InstrumentTrackArray.
 struct StageTimes {
@@ -57,4 +57,4 @@ sensor_msgs::ImagePtr makeImage(const Frame& frame, const std::string& frame_id)
 Frame makeFrame(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfo& info, double exposure,
                 bool start_stamped);
 
-}  // namespace vibe
+}  // namespace vibe::vision

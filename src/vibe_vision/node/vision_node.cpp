@@ -5,7 +5,7 @@
 #include "topic_input.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kWait = 0.05;           // for a frame [s]
@@ -145,4 +145,4 @@ bool VisionNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Respons
   return true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

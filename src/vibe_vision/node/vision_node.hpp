@@ -15,7 +15,7 @@
 #include "vision_parameters.hpp"
 #include "vision_publisher.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Camera or image topic in, joints of the instruments out: docs/interfaces.md, "vision_node". One thread takes the
 /// newest frame, tracks, sends the datagram and publishes; callbacks come from the threads of the handle's queue.
@@ -59,4 +59,4 @@ class VisionNode {
   bool onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -23,11 +23,11 @@ void onSignal(int) {
 int main(int argc, char** argv) {
   try {
     ros::init(argc, argv, "vision_node");
-    vibe::waitForMaster(kMasterPatience);
+    vibe::node::waitForMaster(kMasterPatience);
     ros::NodeHandle handle, private_handle("~");
-    const vibe::VisionParameters parameters = vibe::readVisionParameters(private_handle);
+    const vibe::vision::VisionParameters parameters = vibe::vision::readVisionParameters(private_handle);
     signal(SIGTERM, onSignal);
-    vibe::VisionNode node(handle, private_handle, ros::this_node::getName(), parameters);
+    vibe::vision::VisionNode node(handle, private_handle, ros::this_node::getName(), parameters);
     ros::spin();
     return 0;
   } catch (const std::exception& error) {

@@ -7,7 +7,7 @@
 
 #include "vision_node.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 class VisionNodelet : public nodelet::Nodelet {
  private:
@@ -24,6 +24,6 @@ class VisionNodelet : public nodelet::Nodelet {
   }
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision
 
-PLUGINLIB_EXPORT_CLASS(vibe::VisionNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(vibe::vision::VisionNodelet, nodelet::Nodelet)

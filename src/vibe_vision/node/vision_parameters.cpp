@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_node/parameter_reader.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr int kMaxPixels = 20000;  // per side of a sensor
@@ -15,7 +15,7 @@ constexpr StampPoint kPoints[] = {StampPoint::ExposureStart, StampPoint::Exposur
 constexpr CameraClock kClocks[] = {CameraClock::Auto, CameraClock::Free, CameraClock::Host};
 
 /// One of some words. @return its index; the first is the default
-std::size_t readChoice(ParameterReader& reader, const std::string& name, const std::vector<std::string>& words) {
+std::size_t readChoice(node::ParameterReader& reader, const std::string& name, const std::vector<std::string>& words) {
   std::string word = words.front();
   reader.read(name, word);
   std::string all;
@@ -26,7 +26,7 @@ std::size_t readChoice(ParameterReader& reader, const std::string& name, const s
   throw Error("Parameter ~" + name + " is '" + word + "'; set it to " + all + ".");
 }
 
-void readCamera(ParameterReader& reader, SourceOptions& options) {
+void readCamera(node::ParameterReader& reader, SourceOptions& options) {
   reader.read("exposure", options.exposure, 1e-6, 1, "s");
   reader.read("rate", options.rate, 0.1, 10000, "Hz");
   reader.read("gain", options.gain, -1, 100, "dB");
@@ -60,7 +60,7 @@ bool VisionParameters::recorded() const {
 }
 
 VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
-  ParameterReader reader(private_handle);
+  node::ParameterReader reader(private_handle);
   VisionParameters parameters;
   parameters.config = reader.required("config", "the configuration of the rig, a file or package:// address");
   parameters.source =
@@ -82,4 +82,4 @@ VisionParameters readVisionParameters(const ros::NodeHandle& private_handle) {
   return parameters;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 
 #include "vibe_vision/camera/frame_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Private parameters of the vision node and nodelet: docs/interfaces.md.
 struct VisionParameters {
@@ -27,4 +27,4 @@ struct VisionParameters {
 /// @throws Error for a parameter that is unknown or wrong
 VisionParameters readVisionParameters(const ros::NodeHandle& private_handle);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -6,7 +6,7 @@
 #include "debug_image.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::uint32_t kQueue = 10;
@@ -71,4 +71,4 @@ void VisionPublisher::publishDebug(const FrameResult& result) {
   debug_.publish(picture.toImageMsg());
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

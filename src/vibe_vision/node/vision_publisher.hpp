@@ -5,7 +5,7 @@
 #include "frame_pipeline.hpp"
 #include "vision_parameters.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Publishes what is known about a frame: docs/interfaces.md, "Topics of the camera". Images only if somebody listens.
 class VisionPublisher {
@@ -33,4 +33,4 @@ class VisionPublisher {
   void publishDebug(const FrameResult& result);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

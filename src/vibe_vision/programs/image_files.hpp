@@ -9,7 +9,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/image/frame.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Files of a pattern such as 'folder/*.png' in the order of their names. @throws Error if there are none
 inline std::vector<std::string> filesOf(const std::string& pattern) {
@@ -35,4 +35,4 @@ inline Frame readGrey(const std::string& file) {
   return frame;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -11,7 +11,7 @@
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_vision/sheet/marker_sheet.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// "5 mm" or "0.005" as metres. @throws Error that names the option
 inline double lengthOption(const std::string& option, const std::string& text) {
@@ -74,4 +74,4 @@ inline int runProgram(const char* name, CLI::App& app, int argc, char** argv, co
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

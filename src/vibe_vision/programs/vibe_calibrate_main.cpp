@@ -13,6 +13,8 @@
 #include "vibe_vision/calibrate/marker_locator.hpp"
 #include "vibe_vision/calibrate/stop_list.hpp"
 
+namespace vision = vibe::vision;
+
 namespace {
 
 constexpr double kDegree = M_PI / 180;
@@ -61,26 +63,26 @@ void printWarnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) std::printf("Warning: %s.\n", warning.c_str());
 }
 
-void save(const vibe::VisionConfig& config, const std::string& file) {
-  vibe::writeFile(file, vibe::toYaml(config), "The configuration");
+void save(const vision::VisionConfig& config, const std::string& file) {
+  vibe::writeFile(file, vision::toYaml(config), "The configuration");
   std::printf("Written to %s.\n", file.c_str());
 }
 
-void requireOneSize(const std::string& name, const vibe::Frame& frame, const vibe::Frame& first) {
+void requireOneSize(const std::string& name, const vision::Frame& frame, const vision::Frame& first) {
   if (frame.image.width == first.image.width && frame.image.height == first.image.height) return;
   throw vibe::Error(name + ": has " + std::to_string(frame.image.width) + " x " + std::to_string(frame.image.height) +
                     " px, the first image has " + std::to_string(first.image.width) + " x " +
                     std::to_string(first.image.height) + "; take all with the same camera and region");
 }
 
-std::vector<vibe::BoardView> findBoards(const std::vector<std::string>& files, const vibe::BoardSpec& board,
-                                        vibe::Frame& first) {
-  std::vector<vibe::BoardView> views;
+std::vector<vision::BoardView> findBoards(const std::vector<std::string>& files, const vision::BoardSpec& board,
+                                          vision::Frame& first) {
+  std::vector<vision::BoardView> views;
   for (const std::string& file : files) {
-    const vibe::Frame frame = vibe::readGrey(file);
+    const vision::Frame frame = vision::readGrey(file);
     if (first.image.empty()) first = frame;
     requireOneSize(file, frame, first);
-    if (const auto corners = vibe::findBoard(frame.image, board)) {
+    if (const auto corners = vision::findBoard(frame.image, board)) {
       views.push_back({file, *corners});
     } else {
       std::printf("%s: no whole chessboard of %dx%d inner corners; left out\n", file.c_str(), board.columns,
@@ -90,11 +92,11 @@ std::vector<vibe::BoardView> findBoards(const std::vector<std::string>& files, c
   return views;
 }
 
-void printLens(const vibe::LensCalibration& lens) {
-  for (const vibe::BoardFit& view : lens.views) {
+void printLens(const vision::LensCalibration& lens) {
+  for (const vision::BoardFit& view : lens.views) {
     std::printf("%s: residual %.3f px, tilt %.0f deg\n", view.name.c_str(), view.rms, view.tilt / kDegree);
   }
-  const vibe::CameraModel& c = lens.camera;
+  const vision::CameraModel& c = lens.camera;
   std::printf("focal length %.2f +- %.2f, %.2f +- %.2f px\n", c.fx, lens.deviation[0], c.fy, lens.deviation[1]);
   std::printf("centre %.2f +- %.2f, %.2f +- %.2f px\n", c.cx, lens.deviation[2], c.cy, lens.deviation[3]);
   const char* const kNames[] = {"k1", "k2", "p1", "p2", "k3"};
@@ -108,16 +110,16 @@ void printLens(const vibe::LensCalibration& lens) {
 }
 
 int calibrateLens(const Options& options) {
-  vibe::VisionConfig config = vibe::VisionConfig::load(options.config, vibe::AxisRule::Optional);
-  const vibe::BoardSpec board = vibe::boardOption(options.board, options.square);
-  vibe::Frame first;
-  const std::vector<vibe::BoardView> views = findBoards(vibe::filesOf(options.images), board, first);
-  const vibe::LensCalibration lens = vibe::calibrateLens(views, board, first.image.width, first.image.height);
+  vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
+  const vision::BoardSpec board = vision::boardOption(options.board, options.square);
+  vision::Frame first;
+  const std::vector<vision::BoardView> views = findBoards(vision::filesOf(options.images), board, first);
+  const vision::LensCalibration lens = vision::calibrateLens(views, board, first.image.width, first.image.height);
   printLens(lens);
   printWarnings(lens.warnings);
   config.camera = lens.camera;
   bool had_axes = false;
-  for (vibe::InstrumentConfig& instrument : config.instruments) {
+  for (vision::InstrumentConfig& instrument : config.instruments) {
     had_axes = had_axes || instrument.axis.isCalibrated();
     instrument.axis = {};
   }
@@ -126,7 +128,7 @@ int calibrateLens(const Options& options) {
   return 0;
 }
 
-void printAxis(const vibe::SlideAxis& axis) {
+void printAxis(const vision::SlideAxis& axis) {
   const auto deviation = [&axis](int i) { return std::sqrt(axis.covariance(i, i)); };
   std::printf("origin %.3f, %.3f px; +- %.3f along, %.3f across\n", axis.origin.x(), axis.origin.y(), deviation(0),
               deviation(1));
@@ -137,12 +139,12 @@ void printAxis(const vibe::SlideAxis& axis) {
   std::printf("\n");
 }
 
-vibe::MarkerSearch searchOf(const Options& options) {
+vision::MarkerSearch searchOf(const Options& options) {
   return {1e3 * options.lowest_scale, 1e3 * options.highest_scale};
 }
 
 /// A sleeve that is glued the other way round would be tracked nowhere.
-void requireSleeveForwards(const vibe::LocatedMarkers& located, const vibe::SlideAxis& axis) {
+void requireSleeveForwards(const vision::LocatedMarkers& located, const vision::SlideAxis& axis) {
   if (located.direction.dot(axis.direction) >= 0) return;
   throw vibe::Error(
       "the sleeve points to negative slide; glue it the other way round, or give the slides with the other sign and "
@@ -154,13 +156,13 @@ void sayWhatTakesTime(std::size_t images) {
   std::fflush(stdout);
 }
 
-vibe::SlideAxis axisFromStops(const Options& options, const vibe::VisionConfig& config, std::size_t instrument) {
-  const std::vector<vibe::StopImage> list = vibe::loadStopList(options.stops);
-  std::vector<vibe::Frame> images;
-  for (const vibe::StopImage& stop : list) images.push_back(vibe::readGrey(stop.image));
+vision::SlideAxis axisFromStops(const Options& options, const vision::VisionConfig& config, std::size_t instrument) {
+  const std::vector<vision::StopImage> list = vision::loadStopList(options.stops);
+  std::vector<vision::Frame> images;
+  for (const vision::StopImage& stop : list) images.push_back(vision::readGrey(stop.image));
   sayWhatTakesTime(images.size());
-  const vibe::LocatedMarkers located = vibe::locateMarkers(config, instrument, images, searchOf(options));
-  std::vector<vibe::AxisStop> stops;
+  const vision::LocatedMarkers located = vision::locateMarkers(config, instrument, images, searchOf(options));
+  std::vector<vision::AxisStop> stops;
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (located.markers[i].found) {
       stops.push_back({list[i].image, list[i].slide, located.markers[i].pixel});
@@ -168,11 +170,11 @@ vibe::SlideAxis axisFromStops(const Options& options, const vibe::VisionConfig& 
       std::printf("%s: left out, %s\n", list[i].image.c_str(), located.markers[i].problem.c_str());
     }
   }
-  const vibe::AxisFit fit = vibe::fitAxis(stops);
+  const vision::AxisFit fit = vision::fitAxis(stops);
   for (std::size_t i = 0; i < stops.size(); ++i) {
     std::printf("%s: slide %.3f mm, residual %.3f px along (%.4f mm), %.3f px across%s\n", stops[i].name.c_str(),
                 1e3 * stops[i].slide, fit.stops[i].along,
-                1e3 * fit.stops[i].along / vibe::pixelsPerMetre(fit.axis, stops[i].slide), fit.stops[i].across,
+                1e3 * fit.stops[i].along / vision::pixelsPerMetre(fit.axis, stops[i].slide), fit.stops[i].across,
                 fit.stops[i].left_out ? ", left out" : "");
   }
   printAxis(fit.axis);
@@ -190,20 +192,20 @@ std::vector<std::string> thinnedOut(const std::vector<std::string>& files) {
   return some;
 }
 
-vibe::SlideAxis axisFromMotion(const Options& options, const vibe::VisionConfig& config, std::size_t instrument) {
-  std::vector<vibe::Frame> images;
-  for (const std::string& file : thinnedOut(vibe::filesOf(options.images))) images.push_back(vibe::readGrey(file));
+vision::SlideAxis axisFromMotion(const Options& options, const vision::VisionConfig& config, std::size_t instrument) {
+  std::vector<vision::Frame> images;
+  for (const std::string& file : thinnedOut(vision::filesOf(options.images))) images.push_back(vision::readGrey(file));
   sayWhatTakesTime(images.size());
-  const vibe::LocatedMarkers located = vibe::locateMarkers(config, instrument, images, searchOf(options));
+  const vision::LocatedMarkers located = vision::locateMarkers(config, instrument, images, searchOf(options));
   if (!located.markers.front().found) {
     throw vibe::Error("the marker was not found in the first image, where slide 0 is (" +
                       located.markers.front().problem + "); begin with an image that shows it");
   }
-  std::vector<vibe::MotionSample> samples;
-  for (const vibe::LocatedMarker& marker : located.markers)
+  std::vector<vision::MotionSample> samples;
+  for (const vision::LocatedMarker& marker : located.markers)
     if (marker.found) samples.push_back({marker.pixel, marker.pixels_per_metre});
-  const vibe::ScaleTrust trust{options.print_tolerance / 100, options.slant_tolerance * kDegree};
-  const vibe::MotionFit fit = vibe::fitMotion(samples, trust, located.direction);
+  const vision::ScaleTrust trust{options.print_tolerance / 100, options.slant_tolerance * kDegree};
+  const vision::MotionFit fit = vision::fitMotion(samples, trust, located.direction);
   std::printf("marker found in %zu of %zu images\n", samples.size(), images.size());
   printAxis(fit.axis);
   std::printf("residual %.3f px across; scale from the size of the print, uncertain by %.2f %%\n", fit.rms_across,
@@ -214,7 +216,7 @@ vibe::SlideAxis axisFromMotion(const Options& options, const vibe::VisionConfig&
 }
 
 int calibrateAxis(const Options& options) {
-  vibe::VisionConfig config = vibe::VisionConfig::load(options.config, vibe::AxisRule::Optional);
+  vision::VisionConfig config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
   const std::size_t instrument = config.indexOf(options.instrument);
   if (options.highest_scale < options.lowest_scale)
     throw vibe::Error("--highest-scale is below --lowest-scale; exchange them");
@@ -233,6 +235,6 @@ int main(int argc, char** argv) {
   CLI::App* axis = app.add_subcommand("axis", "Axis, direction and scale of an instrument from images of its motion");
   app.require_subcommand(1);
   addOptions(*lens, *axis, options);
-  return vibe::runProgram("vibe_calibrate", app, argc, argv,
-                          [&] { return lens->parsed() ? calibrateLens(options) : calibrateAxis(options); });
+  return vision::runProgram("vibe_calibrate", app, argc, argv,
+                            [&] { return lens->parsed() ? calibrateLens(options) : calibrateAxis(options); });
 }

@@ -12,12 +12,14 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/camera/capture.hpp"
 
+namespace vision = vibe::vision;
+
 namespace {
 
 struct Options {
   std::string source, csv;
   double duration = 5;
-  vibe::SourceOptions camera;
+  vision::SourceOptions camera;
 };
 
 struct Times {
@@ -39,8 +41,8 @@ void printStage(const char* name, std::vector<double> delays) {
   std::printf("%-34s min %7.3f  median %7.3f  p99 %7.3f  max %7.3f ms\n", name, at(0), at(0.5), at(0.99), at(1));
 }
 
-void printReport(const std::vector<Times>& times, const vibe::Capture& capture, double cpu, bool recorded) {
-  const vibe::SourceStatistics s = capture.statistics();
+void printReport(const std::vector<Times>& times, const vision::Capture& capture, double cpu, bool recorded) {
+  const vision::SourceStatistics s = capture.statistics();
   std::printf("frames %zu, lost %llu, incomplete %llu, unreadable %llu, dropped %llu, reconnections %llu\n",
               times.size(), static_cast<unsigned long long>(s.lost), static_cast<unsigned long long>(s.incomplete),
               static_cast<unsigned long long>(s.unreadable), static_cast<unsigned long long>(capture.dropped()),
@@ -69,16 +71,16 @@ void writeTable(const std::string& file, const std::vector<Times>& times) {
 }
 
 bool check(const Options& options) {
-  vibe::Capture capture(vibe::openSource(options.source, options.camera));
+  vision::Capture capture(vision::openSource(options.source, options.camera));
   std::vector<Times> times;
   std::string status;
-  vibe::Frame frame;
+  vision::Frame frame;
   const double end = clockTime(CLOCK_REALTIME) + options.duration;
   const double cpu = clockTime(CLOCK_PROCESS_CPUTIME_ID);
-  vibe::ReadResult result = vibe::ReadResult::Timeout;
-  while (result != vibe::ReadResult::End && clockTime(CLOCK_REALTIME) < end) {
+  vision::ReadResult result = vision::ReadResult::Timeout;
+  while (result != vision::ReadResult::End && clockTime(CLOCK_REALTIME) < end) {
     result = capture.take(frame, 0.1);
-    if (result == vibe::ReadResult::Frame) {
+    if (result == vision::ReadResult::Frame) {
       times.push_back({frame.sequence, frame.stamp, frame.arrival, clockTime(CLOCK_REALTIME)});
     }
     if (capture.status() == status) continue;
@@ -100,7 +102,7 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option("source", options.source, "gige:ADDRESS, v4l2:/dev/video0, video:FILE or images:GLOB")->required();
   app.add_option("--duration", options.duration, "time to look [s]")
-      ->check(vibe::finiteIn(0.1, 1e5))
+      ->check(vision::finiteIn(0.1, 1e5))
       ->capture_default_str();
   app.add_option("--rate", options.camera.rate, "frames per second to ask for")->capture_default_str();
   app.add_option("--exposure", options.camera.exposure, "exposure to ask for [s]")->capture_default_str();
@@ -110,5 +112,5 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--paced", options.camera.paced, "recordings: in real time");
   app.add_option("--csv", options.csv, "file for sequence, stamp, arrival and taken [s] of each frame");
-  return vibe::runProgram("vibe_camera_check", app, argc, argv, [&options] { return check(options) ? 0 : 1; });
+  return vision::runProgram("vibe_camera_check", app, argc, argv, [&options] { return check(options) ? 0 : 1; });
 }

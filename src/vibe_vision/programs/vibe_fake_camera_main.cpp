@@ -12,6 +12,8 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/camera/fake_camera.hpp"
 
+namespace vision = vibe::vision;
+
 namespace {
 
 std::atomic<bool> shall_stop{false};
@@ -26,12 +28,12 @@ struct Options {
   int blinks = 1000;
   double blink_after = 5, blink_jump = 1e-4;
   std::uint64_t seed = 1;
-  vibe::FakeCameraOptions camera;
+  vision::FakeCameraOptions camera;
 };
 
-void writeConfig(const std::string& file, const vibe::SyntheticScene& scene) {
+void writeConfig(const std::string& file, const vision::SyntheticScene& scene) {
   std::ofstream stream(file);
-  stream << vibe::toYaml(vibe::nominalConfig(scene));
+  stream << vision::toYaml(vision::nominalConfig(scene));
   if (!stream.flush()) throw vibe::Error(file + ": cannot be written; check the folder.");
 }
 
@@ -48,23 +50,23 @@ std::vector<double> blinkTimes(const Options& options) {
   return times;
 }
 
-vibe::SyntheticScene sceneOf(const Options& options) {
-  if (options.scene == kBlink) return vibe::blinkScene(options.blink_jump);
-  if (options.scene == kSway) return vibe::swayScene();
-  return vibe::namedScene(options.scene);
+vision::SyntheticScene sceneOf(const Options& options) {
+  if (options.scene == kBlink) return vision::blinkScene(options.blink_jump);
+  if (options.scene == kSway) return vision::swayScene();
+  return vision::namedScene(options.scene);
 }
 
 void serve(Options options) {
   const bool blinks = options.scene == kBlink;
   if (!blinks && !options.camera.blink_file.empty()) throw vibe::Error("--blink-log goes with --scene blink; add it.");
-  const vibe::SyntheticScene scene = sceneOf(options);
+  const vision::SyntheticScene scene = sceneOf(options);
   if (blinks) options.frames = 2;
-  if (options.scene == kSway) options.frames = vibe::kSwayFrames;
+  if (options.scene == kSway) options.frames = vision::kSwayFrames;
   if (!options.config.empty()) writeConfig(options.config, scene);
   std::cout << "vibe_fake_camera: draws " << options.scene << " ..." << std::endl;
-  const auto ring = vibe::renderRing(scene, options.frames);
+  const auto ring = vision::renderRing(scene, options.frames);
   if (blinks) options.camera.blinks = blinkTimes(options);
-  const vibe::FakeCamera camera(ring, options.camera);
+  const vision::FakeCamera camera(ring, options.camera);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { shall_stop = true; });
   std::cout << "vibe_fake_camera: gige:" << options.camera.address << " serves " << options.scene << ", "
             << scene.camera.width << " x " << scene.camera.height << " at " << scene.rate << " Hz; end with Ctrl-C"
@@ -83,10 +85,10 @@ void addBlinkOptions(CLI::App& app, Options& options) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_option("--blink-after", options.blink_after, "time before the first jump [s]")
-      ->check(vibe::finiteIn(0, 1e6))
+      ->check(vision::finiteIn(0, 1e6))
       ->capture_default_str();
   app.add_option("--blink-jump", options.blink_jump, "by how much it jumps [m]")
-      ->check(vibe::finiteIn(-0.02, 0.02))
+      ->check(vision::finiteIn(-0.02, 0.02))
       ->capture_default_str();
   app.add_option("--blink-log", options.camera.blink_file, "file for when each jump happened and was exposed");
   app.add_option("--seed", options.seed, "of the times of the jumps")->capture_default_str();
@@ -94,7 +96,7 @@ void addBlinkOptions(CLI::App& app, Options& options) {
 
 void addOptions(CLI::App& app, Options& options) {
   std::string names = kBlink + ", " + kSway;
-  for (const std::string& name : vibe::sceneNames()) names += ", " + name;
+  for (const std::string& name : vision::sceneNames()) names += ", " + name;
   app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
   app.add_option("--address", options.camera.address, "of a network interface of this computer")->capture_default_str();
   app.add_option("--serial", options.camera.serial, "serial number")->capture_default_str();
@@ -106,16 +108,16 @@ void addOptions(CLI::App& app, Options& options) {
   addBlinkOptions(app, options);
   app.add_option("--config", options.config, "file for the configuration of the scene, for the tracker");
   app.add_option("--lost-ratio", options.camera.lost_ratio, "share of the packets that are not sent")
-      ->check(vibe::finiteIn(0, 1))
+      ->check(vision::finiteIn(0, 1))
       ->capture_default_str();
   app.add_option("--clock-ahead", options.camera.clock_ahead, "camera's clock less Unix time [s]")
-      ->check(vibe::finiteIn(-1e9, 1e9))
+      ->check(vision::finiteIn(-1e9, 1e9))
       ->capture_default_str();
   app.add_option("--clock-drift", options.camera.clock_drift, "by which the camera's clock is fast, such as 2e-5")
-      ->check(vibe::finiteIn(-1e-2, 1e-2))
+      ->check(vision::finiteIn(-1e-2, 1e-2))
       ->capture_default_str();
   app.add_option("--duration", options.duration, "time after which it ends [s]; 0: runs until it is stopped")
-      ->check(vibe::finiteIn(0, 1e6))
+      ->check(vision::finiteIn(0, 1e6))
       ->capture_default_str();
 }
 
@@ -128,7 +130,7 @@ int main(int argc, char** argv) {
       "drawn frames forward and backward in turn.");
   Options options;
   addOptions(app, options);
-  return vibe::runProgram("vibe_fake_camera", app, argc, argv, [&options] {
+  return vision::runProgram("vibe_fake_camera", app, argc, argv, [&options] {
     serve(options);
     return 0;
   });

@@ -9,6 +9,8 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/sheet/marker_sheet.hpp"
 
+namespace vision = vibe::vision;
+
 namespace {
 
 constexpr double kPreview = 300 / 25.4e-3;  // pixels per metre
@@ -41,23 +43,23 @@ void addOptions(CLI::App& app, Options& options) {
   app.add_flag("--no-markers", options.no_markers, "No pages with markers");
 }
 
-vibe::SheetOptions sheetOptions(const Options& options) {
-  vibe::SheetOptions sheet;
-  sheet.paper = options.paper == "a4" ? vibe::Paper::A4 : vibe::Paper::Letter;
+vision::SheetOptions sheetOptions(const Options& options) {
+  vision::SheetOptions sheet;
+  sheet.paper = options.paper == "a4" ? vision::Paper::A4 : vision::Paper::Letter;
   sheet.copies = options.copies;
-  sheet.paper_thickness = vibe::lengthOption("--thickness", options.thickness);
-  sheet.overlap = vibe::lengthOption("--overlap", options.overlap);
+  sheet.paper_thickness = vision::lengthOption("--thickness", options.thickness);
+  sheet.overlap = vision::lengthOption("--overlap", options.overlap);
   sheet.markers = !options.no_markers;
   sheet.board = !options.no_board;
-  sheet.board_spec = vibe::boardOption(options.board, options.square);
+  sheet.board_spec = vision::boardOption(options.board, options.square);
   return sheet;
 }
 
-void writePng(const vibe::MarkerSheet& sheet, const std::string& file) {
+void writePng(const vision::MarkerSheet& sheet, const std::string& file) {
   const std::string stem = file.size() > 4 ? file.substr(0, file.size() - 4) : "";
   if (stem + ".png" != file) throw vibe::Error(file + ": does not end in .png; give a file name that does");
   for (std::size_t i = 0; i < sheet.pages().size(); ++i) {
-    vibe::SheetRaster raster = sheet.raster(i, kPreview);
+    vision::SheetRaster raster = sheet.raster(i, kPreview);
     const cv::Mat image(raster.height, raster.width, CV_8U, raster.value.data());
     const std::string name = stem + "-" + std::to_string(i + 1) + ".png";
     if (!cv::imwrite(name, image)) {
@@ -71,9 +73,9 @@ int run(const Options& options) {
   if (options.pdf.empty() && options.svg.empty() && options.png.empty()) {
     throw vibe::Error("nothing is written; give --pdf FILE, --svg FILE or --png FILE");
   }
-  vibe::VisionConfig config;
-  if (!options.no_markers) config = vibe::VisionConfig::load(options.config, vibe::AxisRule::Optional);
-  const vibe::MarkerSheet sheet(config, sheetOptions(options));
+  vision::VisionConfig config;
+  if (!options.no_markers) config = vision::VisionConfig::load(options.config, vision::AxisRule::Optional);
+  const vision::MarkerSheet sheet(config, sheetOptions(options));
   if (!options.pdf.empty()) {
     sheet.writePdf(options.pdf);
     std::printf("%s\n", options.pdf.c_str());
@@ -92,5 +94,5 @@ int main(int argc, char** argv) {
   CLI::App app("Writes the markers of a configuration and a chessboard at their true size, to be printed.");
   Options options;
   addOptions(app, options);
-  return vibe::runProgram("vibe_marker_sheet", app, argc, argv, [&options] { return run(options); });
+  return vision::runProgram("vibe_marker_sheet", app, argc, argv, [&options] { return run(options); });
 }

@@ -11,6 +11,8 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
+namespace vision = vibe::vision;
+
 namespace {
 
 struct Options {
@@ -22,7 +24,7 @@ struct Options {
 /// Where the pixels go.
 class Recording {
  public:
-  Recording(const Options& options, const vibe::SyntheticScene& scene) : folder_(options.out) {
+  Recording(const Options& options, const vision::SyntheticScene& scene) : folder_(options.out) {
     if (options.format != "video") return;
     const std::string file = folder_ / "video.mkv";
     const cv::Size size(scene.camera.width, scene.camera.height);
@@ -32,8 +34,8 @@ class Recording {
       throw vibe::Error(file + ": cannot be written as FFV1 video; check the folder, or use --format images.");
   }
 
-  void add(const vibe::Frame& frame) {
-    const vibe::ImageView& view = frame.image;
+  void add(const vision::Frame& frame) {
+    const vision::ImageView& view = frame.image;
     const cv::Mat image(view.height, view.width, CV_8U, const_cast<std::uint8_t*>(view.data),
                         static_cast<std::size_t>(view.stride));
     if (video_.isOpened()) return video_.write(image);
@@ -56,9 +58,9 @@ std::ofstream openTable(const std::filesystem::path& file) {
   return table;
 }
 
-void writeTruth(std::ostream& table, const vibe::RenderedFrame& rendered, const vibe::SyntheticScene& scene) {
+void writeTruth(std::ostream& table, const vision::RenderedFrame& rendered, const vision::SyntheticScene& scene) {
   for (std::size_t i = 0; i < rendered.truth.size(); ++i) {
-    const vibe::SyntheticTruth& t = rendered.truth[i];
+    const vision::SyntheticTruth& t = rendered.truth[i];
     table << rendered.frame.sequence << ',' << rendered.frame.stamp << ',' << scene.instruments[i].nominal.name << ','
           << t.slide << ',' << t.rotation << ',' << t.along << ',' << t.lateral << ',' << t.pixel.x() << ','
           << t.pixel.y() << ',' << t.velocity << ',' << t.visible << '\n';
@@ -66,21 +68,21 @@ void writeTruth(std::ostream& table, const vibe::RenderedFrame& rendered, const 
 }
 
 void render(const Options& options) {
-  const vibe::SyntheticScene scene = vibe::namedScene(options.scene);
+  const vision::SyntheticScene scene = vision::namedScene(options.scene);
   std::error_code failed;
   std::filesystem::create_directories(options.out, failed);
   if (failed) throw vibe::Error(options.out + ": the folder cannot be made: " + failed.message() + ".");
   const std::filesystem::path folder(options.out);
   std::ofstream stamps = openTable(options.format == "video" ? folder / "video.mkv.csv" : folder / "frames.csv");
   std::ofstream truth = openTable(folder / "truth.csv");
-  openTable(folder / "config.yaml") << vibe::toYaml(vibe::nominalConfig(scene));
+  openTable(folder / "config.yaml") << vision::toYaml(vision::nominalConfig(scene));
   stamps << "sequence,stamp,exposure\n";
   truth << "sequence,stamp,instrument,slide,rotation,along,lateral,x,y,velocity,visible\n";
 
-  const vibe::Renderer renderer(scene);
+  const vision::Renderer renderer(scene);
   Recording recording(options, scene);
   for (std::uint64_t k = options.first; k < options.first + options.frames; ++k) {
-    const vibe::RenderedFrame rendered = renderer.render(k, options.start);
+    const vision::RenderedFrame rendered = renderer.render(k, options.start);
     recording.add(rendered.frame);
     stamps << rendered.frame.sequence << ',' << rendered.frame.stamp << ',' << rendered.frame.exposure << '\n';
     writeTruth(truth, rendered, scene);
@@ -96,20 +98,20 @@ int main(int argc, char** argv) {
       "with slide [m], rotation [rad] and places [px] of each instrument; config.yaml for vibe_track.");
   Options options;
   std::string names;
-  for (const std::string& name : vibe::sceneNames()) names += (names.empty() ? "" : ", ") + name;
+  for (const std::string& name : vision::sceneNames()) names += (names.empty() ? "" : ", ") + name;
   app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
   app.add_option("--frames", options.frames, "number of frames; 147 are one second")
       ->check(CLI::Range(1, 10000000))
       ->capture_default_str();
   app.add_option("--first", options.first, "number of the first frame")->capture_default_str();
   app.add_option("--start", options.start, "stamp of frame 0, Unix time [s]")
-      ->check(vibe::finiteIn(0, 1e10))
+      ->check(vision::finiteIn(0, 1e10))
       ->capture_default_str();
   app.add_option("--out", options.out, "folder, made if it is not there")->required();
   app.add_option("--format", options.format, "images or video")
       ->check(CLI::IsMember({"images", "video"}))
       ->capture_default_str();
-  return vibe::runProgram("vibe_render", app, argc, argv, [&options] {
+  return vision::runProgram("vibe_render", app, argc, argv, [&options] {
     render(options);
     return 0;
   });

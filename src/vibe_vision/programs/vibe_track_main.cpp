@@ -18,6 +18,8 @@
 #include "vibe_vision/record/track_table.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
+namespace vision = vibe::vision;
+
 namespace {
 
 constexpr double kTimeout = 5;         // [s]; a recording answers at once
@@ -25,7 +27,7 @@ constexpr double kProgressPeriod = 1;  // [s]
 
 struct Options {
   std::string video, images, config, csv, annotate;
-  vibe::SourceOptions source;
+  vision::SourceOptions source;
   std::uint64_t frames = 0;
 };
 
@@ -60,9 +62,9 @@ class Annotator {
     if (failed) fail();
   }
 
-  void add(const vibe::VisionConfig& config, const vibe::Frame& frame, const vibe::Measurements& measurements) {
+  void add(const vision::VisionConfig& config, const vision::Frame& frame, const vision::Measurements& measurements) {
     if (target_.empty()) return;
-    const cv::Mat picture = vibe::annotate(config, frame, measurements);
+    const cv::Mat picture = vision::annotate(config, frame, measurements);
     if (is_video_) return addToVideo(picture);
     char name[40];
     std::snprintf(name, sizeof name, "/frame_%06llu.png", static_cast<unsigned long long>(count_++));
@@ -87,13 +89,13 @@ class Annotator {
 };
 
 /// A recording that was cut from the sensor does not tell how large that was.
-void completeSize(const vibe::VisionConfig& config, const Options& options, vibe::Frame& frame) {
+void completeSize(const vision::VisionConfig& config, const Options& options, vision::Frame& frame) {
   if (options.source.roi_x == 0 && options.source.roi_y == 0) return;
   if (frame.sensor_width <= config.camera.width) frame.sensor_width = config.camera.width;
   if (frame.sensor_height <= config.camera.height) frame.sensor_height = config.camera.height;
 }
 
-void requireSize(const vibe::VisionConfig& config, const vibe::Frame& frame) {
+void requireSize(const vision::VisionConfig& config, const vision::Frame& frame) {
   if (frame.sensor_width == config.camera.width && frame.sensor_height == config.camera.height) return;
   throw vibe::Error("the recording has " + std::to_string(frame.sensor_width) + " x " +
                     std::to_string(frame.sensor_height) + " px, the configuration is for " +
@@ -133,30 +135,30 @@ void requireOtherFile(const Options& options) {
 
 int run(Options options) {
   requireOtherFile(options);
-  const vibe::VisionConfig config = vibe::VisionConfig::load(options.config);
-  vibe::Tracker tracker(config);
+  const vision::VisionConfig config = vision::VisionConfig::load(options.config);
+  vision::Tracker tracker(config);
   options.source.roi_width = options.source.roi_height = 0;
-  const std::unique_ptr<vibe::FrameSource> source =
-      vibe::openSource(options.video.empty() ? "images:" + options.images : "video:" + options.video, options.source);
-  vibe::TrackTable table(options.csv, config);
-  vibe::TrackSummary summary(config);
+  const std::unique_ptr<vision::FrameSource> source =
+      vision::openSource(options.video.empty() ? "images:" + options.images : "video:" + options.video, options.source);
+  vision::TrackTable table(options.csv, config);
+  vision::TrackSummary summary(config);
   Annotator annotator(options.annotate, options.source.rate);
   {
     Progress progress;
-    vibe::Frame frame;
-    vibe::ReadResult result = vibe::ReadResult::Frame;
-    while ((result = source->read(frame, kTimeout)) == vibe::ReadResult::Frame) {
+    vision::Frame frame;
+    vision::ReadResult result = vision::ReadResult::Frame;
+    while ((result = source->read(frame, kTimeout)) == vision::ReadResult::Frame) {
       completeSize(config, options, frame);
       if (summary.frames() == 0) requireSize(config, frame);
       const double begin = vibe::threadCpuTime();
-      const vibe::Measurements& measurements = tracker.track(frame);
+      const vision::Measurements& measurements = tracker.track(frame);
       summary.add(measurements, vibe::threadCpuTime() - begin);
       table.add(frame, measurements);
       annotator.add(config, frame, measurements);
       progress.show(summary.frames());
       if (summary.frames() == options.frames) break;
     }
-    if (result != vibe::ReadResult::End && result != vibe::ReadResult::Frame) throw vibe::Error(source->status());
+    if (result != vision::ReadResult::End && result != vision::ReadResult::Frame) throw vibe::Error(source->status());
   }
   table.close();
   if (summary.frames() == 0) throw vibe::Error(source->status() + "; it has no frame, give another recording");
@@ -172,5 +174,5 @@ int main(int argc, char** argv) {
   CLI::App app("Tracks the instruments in a video or in images and writes their slides and rotations.");
   Options options;
   addOptions(app, options);
-  return vibe::runProgram("vibe_track", app, argc, argv, [&options] { return run(options); });
+  return vision::runProgram("vibe_track", app, argc, argv, [&options] { return run(options); });
 }

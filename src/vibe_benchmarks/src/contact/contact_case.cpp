@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 std::shared_ptr<const Model> modelAt(const ContactCase& one, const ContactSetting& setting) {
   auto model = std::make_shared<Model>();
@@ -15,4 +15,4 @@ std::shared_ptr<const Model> modelAt(const ContactCase& one, const ContactSettin
   return model;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -8,7 +8,7 @@
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Force that a case compares.
 enum class ContactSignal { ToolForce, ThreadTension };
@@ -36,4 +36,4 @@ struct ContactSetting {
 /// The model of the case with another setting.
 std::shared_ptr<const Model> modelAt(const ContactCase& one, const ContactSetting& setting);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

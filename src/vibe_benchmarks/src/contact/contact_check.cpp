@@ -1,6 +1,6 @@
 #include "contact/contact_check.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 ContactCheck::ContactCheck(const Model& model) : model_(model) {
   for (const End end : model.organ.end) open_.push_back(end != End::None ? 1 : 0);
@@ -19,4 +19,4 @@ ToolCrossing ContactCheck::tool(const State& state) {
   return findToolCrossing(*model_.tool, poses_, {model_.organ.surface.triangles, state.x, state.y, state.z}, passes_);
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -7,7 +7,7 @@
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Looks for walls and tools that pass through each other, with none of the solver's own contact.
 class ContactCheck {
@@ -27,4 +27,4 @@ class ContactCheck {
   std::vector<Eigen::Isometry3d> poses_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -9,7 +9,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/model/accounting.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr int kFramesPerSecond = 60;
@@ -135,4 +135,4 @@ ContactErrors compareContact(const ContactTrace& trace, const ContactTrace& refe
   return errors;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

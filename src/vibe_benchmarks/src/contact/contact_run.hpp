@@ -6,7 +6,7 @@
 
 #include "contact/contact_case.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Record of a case at one setting.
 struct ContactTrace {
@@ -41,4 +41,4 @@ struct ContactErrors {
 };
 ContactErrors compareContact(const ContactTrace& trace, const ContactTrace& reference);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -10,7 +10,7 @@
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kPull = 0.02;           // [m]
@@ -207,4 +207,4 @@ ContactCase ContactStates::cinch(int sets_before) const {
   return one;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

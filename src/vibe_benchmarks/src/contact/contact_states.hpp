@@ -5,7 +5,7 @@
 #include "contact/contact_case.hpp"
 #include "suture/wall_plan.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Names of the cases in the order in which they are measured; the first is the free pull.
 const std::vector<std::string>& contactStateNames();
@@ -36,4 +36,4 @@ class ContactStates {
   std::ostream& log_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

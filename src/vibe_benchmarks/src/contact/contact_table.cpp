@@ -6,7 +6,7 @@
 
 #include "contact/contact_states.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 std::string textOf(const ContactSetting& setting) {
@@ -134,4 +134,4 @@ void writeContactRows(const std::vector<ContactRow>& rows, std::ostream& out) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -7,7 +7,7 @@
 #include "contact/contact_run.hpp"
 #include "suture/set_scenario.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// One case at one setting.
 struct ContactRow {
@@ -36,4 +36,4 @@ void printContactHeader(std::ostream& out);
 void printContactRow(const ContactRow& row, std::ostream& out);
 void writeContactRows(const std::vector<ContactRow>& rows, std::ostream& out);  ///< CSV
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

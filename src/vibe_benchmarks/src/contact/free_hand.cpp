@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kAnyForce = 1e6;  // [N]
@@ -60,4 +60,4 @@ Eigen::Vector3d inwardsAt(const SurfaceView& wall, const Eigen::Vector3d& place)
   return -normal.normalized();
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

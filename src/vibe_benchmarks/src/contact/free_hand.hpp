@@ -5,7 +5,7 @@
 #include "vibe_core/geometry/surface_view.hpp"
 #include "vibe_core/scene/scene.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// A tool without collision shapes that holds the wall with its helix: URDF text. The joint `insertion` moves the tip
 /// along the x axis of the base, `rotation` turns it about that axis. Nothing limits its speed or the helix.
@@ -22,4 +22,4 @@ void holdByHand(const Eigen::Vector3d& tip, const Eigen::Vector3d& direction, Sc
 /// Mean unit normal into the lumen of the wall within 20 mm of a place.
 Eigen::Vector3d inwardsAt(const SurfaceView& wall, const Eigen::Vector3d& place);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

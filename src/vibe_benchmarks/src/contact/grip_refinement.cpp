@@ -13,7 +13,7 @@
 #include "vibe_core/common/rotation.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kGripPull = 0.02;      // [m]
@@ -193,4 +193,4 @@ void writeRefinement(const std::vector<RefinementRow>& rows, std::ostream& out) 
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -5,7 +5,7 @@
 
 #include "vibe_core/scene/scene.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Force of one pull on one mesh.
 struct RefinementRow {
@@ -36,4 +36,4 @@ std::vector<RefinementMean> meansOf(const std::vector<RefinementRow>& rows);
 void printRefinement(const std::vector<RefinementRow>& rows, std::ostream& out);
 void writeRefinement(const std::vector<RefinementRow>& rows, std::ostream& out);  ///< CSV
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

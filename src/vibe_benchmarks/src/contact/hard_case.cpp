@@ -9,7 +9,7 @@
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 /// The fields of the account, in order.
@@ -223,4 +223,4 @@ void writeHardStepHeader(std::ostream& out) {
          "speed_m_s\n";
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -10,7 +10,7 @@
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// A stretch of a hard case.
 struct HardPhase {
@@ -78,4 +78,4 @@ void printHardResult(const HardResult& result, std::ostream& out);
 void writeHardResults(const std::vector<HardResult>& results, std::ostream& out);  ///< CSV
 void writeHardStepHeader(std::ostream& out);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

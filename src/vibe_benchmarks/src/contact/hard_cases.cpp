@@ -9,7 +9,7 @@
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 const std::vector<std::string>& hardCaseNames() {
   static const std::vector<std::string> kNames{"ram_0.15", "ram_0.3", "ram_0.5",    "ram_1",   "random",
@@ -102,4 +102,4 @@ std::shared_ptr<const Model> HardCases::withScene(const Scene& scene, const std:
   return model;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

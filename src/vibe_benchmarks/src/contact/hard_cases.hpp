@@ -7,7 +7,7 @@
 #include "contact/hard_case.hpp"
 #include "suture/wall_plan.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 constexpr double kStrongTissue = 100;  ///< holds bites that do not tear out [N]
 
@@ -57,4 +57,4 @@ class HardCases {
   bool brief_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -8,7 +8,7 @@
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kMercury = 133.322;    // [Pa/mmHg]
@@ -139,4 +139,4 @@ HardCase HardCases::pressureSteps() const {
   return hard;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -10,7 +10,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/random.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kRam = 0.06;                      // deeper than at first contact [m]
@@ -247,4 +247,4 @@ HardCase HardCases::sleeve() const {
   return hard;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

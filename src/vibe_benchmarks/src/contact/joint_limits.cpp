@@ -4,7 +4,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 void setAttribute(const std::string& name, double value, std::size_t from, std::size_t to, std::string& text) {
@@ -32,4 +32,4 @@ std::string withJointLimits(std::string urdf, const std::string& joint, const Jo
   return urdf;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

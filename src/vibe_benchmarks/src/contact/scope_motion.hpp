@@ -1,7 +1,7 @@
 #pragma once
 #include "vibe_core/state/state.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 constexpr double kApproach = 0.05;   ///< speed of the scope until it touches [m/s]
 constexpr double kTouch = 0.2;       ///< force that shows that the tip presses the far wall, not the entry [N]
@@ -15,4 +15,4 @@ inline StepInput holdAt(const State& state) {
   return input;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

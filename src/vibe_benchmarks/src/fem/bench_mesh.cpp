@@ -10,7 +10,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 std::string placeOf(const std::string& file, int line) {
@@ -128,4 +128,4 @@ NumberTable readTable(const std::string& file) {
   return table;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

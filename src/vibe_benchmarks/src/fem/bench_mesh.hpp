@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// The mesh of a case: either tetrahedra or triangles, with named groups of nodes.
 struct BenchMesh {
@@ -37,4 +37,4 @@ struct NumberTable {
 };
 NumberTable readTable(const std::string& file);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -8,7 +8,7 @@
 #include "tissue/tetrahedra.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 CaseModel::CaseModel(const FemCase& bench_case, Hold hold) : case_(bench_case), hold_(hold), mesh_(bench_case.mesh) {
   build();
@@ -228,4 +228,4 @@ double enclosedVolume(const std::vector<std::array<int, 3>>& triangles, const Mo
   return volume;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

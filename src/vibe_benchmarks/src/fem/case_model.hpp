@@ -6,7 +6,7 @@
 #include "fem/fem_case.hpp"
 #include "solver/elastic_body.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// A weighted mean over nodes; the weights sum to 1.
 struct NodeMean {
@@ -66,4 +66,4 @@ double enclosedVolume(const std::vector<std::array<int, 3>>& triangles, const Mo
 /// Builds the shell of a case with its elements, masses and gas.
 void buildShell(const FemCase& bench_case, const BenchMesh& mesh, ElasticBody& body);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

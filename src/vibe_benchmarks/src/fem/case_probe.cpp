@@ -5,7 +5,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 const char* const kPlace[3] = {"x", "y", "z"};
@@ -129,4 +129,4 @@ double CaseProbe::measure(std::size_t sample, const MotionView& motion, const El
   return s.direction.dot(meanDisplacement(sample, motion));
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -3,7 +3,7 @@
 
 #include "fem/case_model.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Evaluates the samples of a case on a state.
 class CaseProbe {
@@ -30,4 +30,4 @@ class CaseProbe {
   std::vector<NumberTable> tables_;           // per sample
 };
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

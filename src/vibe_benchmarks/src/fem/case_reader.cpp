@@ -6,7 +6,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 CaseReader::CaseReader(const std::string& file)
     : source_(YamlSource::load(file, YamlLimits{})),
@@ -51,4 +51,4 @@ std::string CaseReader::path(const YamlField& field) const {
   return given[0] == '/' ? given : folder_ + given;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

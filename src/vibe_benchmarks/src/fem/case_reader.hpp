@@ -7,7 +7,7 @@
 #include "fem/fem_case.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Bound of quantities of which any size makes sense, in their unit.
 constexpr double kHuge = 1e12;
@@ -41,4 +41,4 @@ void readLoads(const CaseReader& reader, const YamlField& field, FemCase& out);
 void readRuns(const CaseReader& reader, const YamlField& field, FemCase& out);
 void readSamples(const CaseReader& reader, const YamlField& field, FemCase& out);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

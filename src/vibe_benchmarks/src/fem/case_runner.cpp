@@ -6,7 +6,7 @@
 #include "fem/mode_solver.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 bool isDifference(const Sample& sample) {
@@ -75,4 +75,4 @@ std::vector<ResultRow> runCase(const FemCase& bench_case, std::ostream& log) {
   return runModes(bench_case, log);
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -5,7 +5,7 @@
 #include "fem/fem_case.hpp"
 #include "output/result_row.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Runs a case and returns one row per sample: `setting` is the sample, `reference_error` the largest relative error
 /// over its levels. Prints the result of each level.
@@ -22,4 +22,4 @@ ResultRow caseRow(const FemCase& bench_case, const std::string& setting, int par
 double referenceError(const Sample& sample, std::size_t level, double value);
 void printSample(const Sample& sample, std::size_t level, const std::string& at, double value, std::ostream& log);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

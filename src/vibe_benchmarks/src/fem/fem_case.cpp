@@ -5,7 +5,7 @@
 #include "vibe_core/scene/choices.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 void readMaterial(const CaseReader& reader, const YamlField& field, FemCase& out) {
@@ -118,4 +118,4 @@ FemCase readCase(const std::string& file) {
   return out;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -9,7 +9,7 @@
 #include "fem/bench_mesh.hpp"
 #include "vibe_core/tissue/material.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 enum class ElementKind { LinearTet, QuadraticTet, Shell };
 
@@ -140,4 +140,4 @@ struct FemCase {
 /// @throws Error "file:line: key: what is wrong; remedy"
 FemCase readCase(const std::string& file);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -6,7 +6,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr int kFewest = 5;  // nodes of a ring
@@ -199,4 +199,4 @@ BenchMesh makeEllipsoid(double radius, double half_length, int nodes) {
   return mesh;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

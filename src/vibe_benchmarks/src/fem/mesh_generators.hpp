@@ -1,7 +1,7 @@
 #pragma once
 #include "fem/bench_mesh.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// A box of equal cells, each divided into 6 tetrahedra around its diagonal (Kuhn) or into 5 (mirrored from cell to
 /// cell). Nodes in the order of x, then y, then z fastest. Sets: the faces x_min, x_max, y_min, y_max, z_min, z_max.
@@ -16,4 +16,4 @@ BenchMesh makeBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& size, co
 /// @throws Error for fewer than 14 nodes or semi-axes that are not positive
 BenchMesh makeEllipsoid(double radius, double half_length, int nodes);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

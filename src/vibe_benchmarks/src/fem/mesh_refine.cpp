@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 void growSets(const std::vector<std::array<int, 2>>& middles, int before, BenchMesh& mesh) {
   for (auto& set : mesh.sets) {
@@ -37,4 +37,4 @@ BenchMesh refineTriangles(const BenchMesh& mesh, const Eigen::Vector3d& project)
   return fine;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -6,7 +6,7 @@
 #include "sparse/factor.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr int kMaxIterations = 200;
@@ -72,4 +72,4 @@ Modes slowestModes(const ElasticBody& body, int count) {
   return modes;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -4,7 +4,7 @@
 
 #include "solver/elastic_body.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// The lowest free vibration modes of a body about rest: K phi = (2 pi f)^2 M phi, M lumped, fixed nodes at rest.
 struct Modes {
@@ -17,4 +17,4 @@ struct Modes {
 /// @throws Error if K is not positive definite: the body can move without strain
 Modes slowestModes(const ElasticBody& body, int count);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 Oscillation measureOscillation(const std::vector<double>& values, double step) {
   std::vector<double> crossings;  // upwards, in steps
@@ -26,4 +26,4 @@ Oscillation measureOscillation(const std::vector<double>& values, double step) {
   return found;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Properties of a vibration about 0, from its values at equal steps.
 struct Oscillation {
@@ -13,4 +13,4 @@ struct Oscillation {
 
 Oscillation measureOscillation(const std::vector<double>& values, double step);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

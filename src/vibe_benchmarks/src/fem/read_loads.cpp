@@ -1,6 +1,6 @@
 #include "fem/case_reader.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 void readMotion(const CaseReader& reader, const YamlField& field, FemCase& out) {
@@ -84,4 +84,4 @@ void readLoads(const CaseReader& reader, const YamlField& field, FemCase& out) {
                   {"forces", each(readForce)}});
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

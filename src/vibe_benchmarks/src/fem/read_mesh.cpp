@@ -4,7 +4,7 @@
 #include "fem/mesh_generators.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 void readBox(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
@@ -94,4 +94,4 @@ void readMesh(const CaseReader& reader, const YamlField& field, BenchMesh& mesh)
     reader.source().fail(field, "needs either tetrahedra or triangles; give one of 'tets' and 'tris'");
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

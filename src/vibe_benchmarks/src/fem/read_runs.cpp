@@ -2,7 +2,7 @@
 
 #include "fem/case_reader.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 void readStatic(const CaseReader& reader, const YamlField& field, FemCase& out) {
@@ -73,4 +73,4 @@ void readRuns(const CaseReader& reader, const YamlField& field, FemCase& out) {
   out.modes = run;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -1,7 +1,7 @@
 #include "fem/case_reader.hpp"
 #include "scene/unit.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 const std::vector<std::string>& kindNames() {
@@ -92,4 +92,4 @@ void readSamples(const CaseReader& reader, const YamlField& field, FemCase& out)
   });
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

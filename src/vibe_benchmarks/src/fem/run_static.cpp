@@ -5,7 +5,7 @@
 #include "fem/case_runner.hpp"
 #include "fem/static_path.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 std::string levelName(double level) {
@@ -54,4 +54,4 @@ std::vector<ResultRow> runStatic(const FemCase& bench_case, std::ostream& log) {
   return rows;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

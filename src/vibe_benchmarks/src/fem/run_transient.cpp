@@ -7,7 +7,7 @@
 #include "fem/oscillation.hpp"
 #include "fem/static_path.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 double levelAt(const TransientRun& run, double time) {
@@ -149,4 +149,4 @@ std::vector<ResultRow> runTransient(const FemCase& bench_case, std::ostream& log
   return rows;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

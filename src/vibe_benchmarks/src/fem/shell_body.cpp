@@ -1,7 +1,7 @@
 #include "fem/case_model.hpp"
 #include "tissue/shell.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 /// The hinged sides between two nodes; the wall rotates freely about them.
@@ -42,4 +42,4 @@ void buildShell(const FemCase& bench_case, const BenchMesh& mesh, ElasticBody& b
   body.elements = std::move(elements);
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kRelaxStep = 0.05;  // [s]
@@ -72,4 +72,4 @@ bool StaticPath::relax() {
   return false;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

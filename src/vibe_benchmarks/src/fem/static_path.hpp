@@ -6,7 +6,7 @@
 #include "fem/tangent_guess.hpp"
 #include "solver/implicit_stepper.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Follows the equilibria of a case from level to level.
 class StaticPath {
@@ -33,4 +33,4 @@ class StaticPath {
   BodyLoads loads_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -2,7 +2,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 TangentGuess::TangentGuess(const ElasticBody& body)
     : pattern_(std::make_shared<const BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups()))),
@@ -36,4 +36,4 @@ void TangentGuess::move(const ElasticBody& body, const std::vector<std::pair<int
     for (int k = 0; k < 3; ++k) motion.x[k][place.first] = place.second[k];
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

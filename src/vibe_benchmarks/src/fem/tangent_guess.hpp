@@ -7,7 +7,7 @@
 #include "solver/elastic_body.hpp"
 #include "sparse/factor.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Moves prescribed fixed nodes to new positions and all other nodes according to the tangent stiffness, so that a
 /// solve starts near the equilibrium and not with one layer of crushed elements.
@@ -24,4 +24,4 @@ class TangentGuess {
   Factor factor_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

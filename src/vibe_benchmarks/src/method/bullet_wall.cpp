@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kSettlingDamping = 10;  // damping until the inflated start is reached [1/s]
@@ -87,4 +87,4 @@ Trajectory runBullet(const BenchWall& wall, const Pull& pull, int steps_per_fram
   return trajectory;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -1,7 +1,7 @@
 #pragma once
 #include "method/trajectory.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// The same mesh and pull with Bullet's btSoftBody: a link per side and per pair of nodes two sides apart, stiffness 1,
 /// and the masses and pressure of the wall. Its stiffness depends on the number of iterations and not on a modulus, so
@@ -9,4 +9,4 @@ namespace vibe {
 /// start. Times are those of whole frames.
 Trajectory runBullet(const BenchWall& wall, const Pull& pull, int steps_per_frame, int iterations);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

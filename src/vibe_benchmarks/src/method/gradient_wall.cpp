@@ -5,7 +5,7 @@
 
 #include "tissue/gradient_deformation.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kFoundation = 5e3;    // [Pa/m] of the default scene
@@ -115,4 +115,4 @@ std::vector<ResultRow> runPokes(int nodes, std::ostream& log) {
   return rows;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

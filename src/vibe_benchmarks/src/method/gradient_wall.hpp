@@ -5,7 +5,7 @@
 
 #include "method/trajectory.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// One setting of the gradient-domain deformation.
 struct PatchChoice {
@@ -27,4 +27,4 @@ Trajectory runGradient(const BenchWall& wall, const BodyMotion& start, const Pul
 /// shapes compared with equilibria of the shell by the implicit solver.
 std::vector<ResultRow> runPokes(int nodes, std::ostream& log);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 double LayerPressure::evaluate(const double* positions4, float* gradient4) const {
   const auto middle = [&](int n) {
@@ -24,4 +24,4 @@ double LayerPressure::evaluate(const double* positions4, float* gradient4) const
   return -pressure_ * volume;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

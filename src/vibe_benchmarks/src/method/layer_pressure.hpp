@@ -4,7 +4,7 @@
 
 #include "vibe_core/solver/energy_term.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// A constant pressure on the surface halfway between an inner and an outer layer of nodes: energy -p V, where V is the
 /// volume inside that closed surface. For walls whose elements have no gas.
@@ -24,4 +24,4 @@ class LayerPressure : public EnergyTerm {
   double pressure_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

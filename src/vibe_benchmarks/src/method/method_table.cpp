@@ -12,7 +12,7 @@
 #include "method/trajectory.hpp"
 #include "method/wall.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr int kParticles = 3618;  // as in the stomach of the paper
@@ -203,4 +203,4 @@ std::vector<ResultRow> runMethods(bool quick, std::ostream& log) {
   return rows;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

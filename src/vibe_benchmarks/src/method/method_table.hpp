@@ -4,7 +4,7 @@
 
 #include "output/result_row.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Compares every setting on the wall of 3,618 particles with one time-converged motion, and likewise linear
 /// tetrahedra, the gradient-domain deformation, the simulator's shape matching and Bullet's soft body on the same mesh.
@@ -12,4 +12,4 @@ namespace vibe {
 /// @param quick  fewer sizes and pulls
 std::vector<ResultRow> runMethods(bool quick, std::ostream& log);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -6,7 +6,7 @@
 #include "constraints/gas.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr int kStepsPerFrame = 17;
@@ -124,4 +124,4 @@ Trajectory runShapeMatching(const BenchWall& wall, const Pull& pull, int& subste
   return trajectory;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

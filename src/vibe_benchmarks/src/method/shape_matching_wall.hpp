@@ -1,7 +1,7 @@
 #pragma once
 #include "method/trajectory.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// The same mesh, masses, damping and pull with the simulator's shape matching and its position-based solver, with the
 /// number of sub-steps that the stiffness requires; the disc moves 17 times per frame. Young's modulus is that of the
@@ -11,4 +11,4 @@ namespace vibe {
 /// @param substeps  out: per frame
 Trajectory runShapeMatching(const BenchWall& wall, const Pull& pull, int& substeps);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -6,7 +6,7 @@
 
 #include "tissue/tetrahedra.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 /// Divides a prism on a triangle into three tetrahedra. Every side is cut from its lower inner node to its higher outer
@@ -77,4 +77,4 @@ Trajectory runTets(const BenchWall& wall, const Pull& pull, const StepChoice& ch
   return trajectory;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

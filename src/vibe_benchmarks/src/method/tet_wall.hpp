@@ -1,7 +1,7 @@
 #pragma once
 #include "method/trajectory.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// The same wall as one layer of linear tetrahedra: an inner and an outer node per node of the mesh and three
 /// tetrahedra per triangle. Held nodes are held on both sides, and the pressure acts on the surface halfway between
@@ -13,4 +13,4 @@ BenchWall makeTetWall(const BenchWall& wall);
 /// time stepping.
 Trajectory runTets(const BenchWall& wall, const Pull& pull, const StepChoice& choice);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

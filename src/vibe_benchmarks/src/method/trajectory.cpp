@@ -4,7 +4,7 @@
 
 #include "tissue/shell.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr int kFirstForceFrame =
@@ -123,4 +123,4 @@ std::uint64_t hashOf(const BodyMotion& motion) {
   return hash;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

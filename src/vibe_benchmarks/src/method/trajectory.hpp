@@ -5,7 +5,7 @@
 #include "output/result_row.hpp"
 #include "solver/implicit_stepper.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 constexpr double kFrame = 1.0 / 60;  ///< [s]
 
@@ -47,4 +47,4 @@ double energyDrift(const BenchWall& wall, const BodyMotion& start, const BodyMot
 /// FNV-1a of positions and velocities.
 std::uint64_t hashOf(const BodyMotion& motion);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

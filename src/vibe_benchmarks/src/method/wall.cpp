@@ -9,7 +9,7 @@
 #include "tissue/shell.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kRadius = 0.04325, kHalfLength = 0.12325;  // of the middle surface
@@ -127,4 +127,4 @@ double distanceBetween(const BodyMotion& a, const BodyMotion& b) {
   return std::sqrt(sum);
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

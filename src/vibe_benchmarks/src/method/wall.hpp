@@ -7,7 +7,7 @@
 #include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/tissue/material.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 constexpr double kWallThickness = 0.0035;  ///< [m]
 constexpr double kWallDensity = 1050;      ///< [kg/m^3]
@@ -53,4 +53,4 @@ BodyMotion pulledEquilibrium(const BenchWall& wall, const BodyMotion& start, dou
 /// sqrt(sum |a - b|^2) over all nodes [m].
 double distanceBetween(const BodyMotion& a, const BodyMotion& b);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -7,7 +7,7 @@
 
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 std::string show(const char* format, double value) {
@@ -94,4 +94,4 @@ double threadMilliseconds() {
   return 1e3 * threadCpuTime();
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 constexpr double kNotApplicable = std::numeric_limits<double>::quiet_NaN();
 
@@ -38,4 +38,4 @@ std::uint64_t hashNumbers(const double* values, std::size_t count, std::uint64_t
 /// CPU time of this thread [ms].
 double threadMilliseconds();
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

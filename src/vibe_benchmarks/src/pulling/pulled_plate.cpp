@@ -7,7 +7,7 @@
 #include "procedure/thread_events.hpp"
 #include "vibe_core/suture/technique.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kDepth = 10e-3;  // of the box that closes the plate, as shape matching requires [m]
@@ -119,4 +119,4 @@ MotionView PulledPlate::motion() {
           {state.ax.data(), state.ay.data(), state.az.data()}};
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

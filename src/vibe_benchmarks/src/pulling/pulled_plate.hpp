@@ -6,7 +6,7 @@
 #include "fem/case_model.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// One method of pulling.
 struct PullWay {
@@ -39,4 +39,4 @@ class PulledPlate {
   Simulation simulation_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -9,7 +9,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr int kAll = 1000;
@@ -146,4 +146,4 @@ std::vector<ResultRow> runPulling(const std::string& profile, std::ostream& log)
   return table.rows;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -5,7 +5,7 @@
 
 #include "output/result_row.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Compares the methods of pulling two bites of the slightly domed wall of case 7 together, in the simulator's own
 /// steps of 1/60 s: by the thread, by the groups of the prototype, and by a condition on the bites as in the case
@@ -15,4 +15,4 @@ namespace vibe {
 /// @param profile  file for the final mid-line of each method; empty: none
 std::vector<ResultRow> runPulling(const std::string& profile, std::ostream& log);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

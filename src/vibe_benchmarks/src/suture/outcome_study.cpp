@@ -10,7 +10,7 @@
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kFlow = 5e-4;   // of the insufflator: full within seconds [m^3/s]
@@ -148,4 +148,4 @@ std::vector<OutcomeTrial> outcomeTrials(const Scene& scene, bool quick) {
   return trials;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

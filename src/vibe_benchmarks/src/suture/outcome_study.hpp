@@ -10,7 +10,7 @@
 #include "suture/suture_session.hpp"
 #include "vibe_core/suture/technique.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// One idealised sleeve: where its bites are and how it is cinched.
 struct OutcomeTrial {
@@ -73,4 +73,4 @@ std::vector<OutcomeTrial> outcomeTrials(const Scene& scene, bool quick);
 void printOutcome(const OutcomeRow& row, std::ostream& out);
 void writeOutcomes(const std::vector<OutcomeRow>& rows, std::ostream& out);  ///< CSV
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

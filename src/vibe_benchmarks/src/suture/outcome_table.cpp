@@ -2,7 +2,7 @@
 
 #include "suture/outcome_study.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 void printOutcome(const OutcomeRow& row, std::ostream& out) {
   char line[400];
@@ -66,4 +66,4 @@ void writeOutcomes(const std::vector<OutcomeRow>& rows, std::ostream& out) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -8,7 +8,7 @@
 #include "suture/wall_crossing.hpp"
 #include "vibe_core/common/package_path.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kLongestWait = 10;  // [s]
@@ -127,4 +127,4 @@ std::vector<PatternRow> studyPatterns(const Scene& scene, bool quick, std::ostre
   return rows;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -8,7 +8,7 @@
 #include "vibe_core/metrics/organ_measures.hpp"
 #include "vibe_core/scene/scene.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 constexpr double kMillimetreOfMercury = 133.322;  ///< [Pa]
 
@@ -57,4 +57,4 @@ inline double percentLess(std::optional<double> before, std::optional<double> no
 void printPatterns(const std::vector<PatternRow>& rows, std::ostream& out);
 void writePatterns(const std::vector<PatternRow>& rows, std::ostream& out);  ///< CSV
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

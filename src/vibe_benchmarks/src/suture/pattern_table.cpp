@@ -3,7 +3,7 @@
 
 #include "suture/pattern_study.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 void printPatterns(const std::vector<PatternRow>& rows, std::ostream& out) {
   char line[400];
@@ -69,4 +69,4 @@ void writePatterns(const std::vector<PatternRow>& rows, std::ostream& out) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -4,7 +4,7 @@
 #include "suture/set_scenario.hpp"
 #include "vibe_core/suture/technique.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 std::string eventsOf(const SewnSet& set) {
@@ -82,4 +82,4 @@ void writeScenarios(const std::vector<ScenarioResult>& results, std::ostream& ou
     }
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

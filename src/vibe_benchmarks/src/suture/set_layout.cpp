@@ -5,7 +5,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kArc = 110 * 3.14159265358979323846 / 180;  // half of the sweep of a C [rad]
@@ -58,4 +58,4 @@ std::vector<std::vector<WallSpot>> planSets(const WallPlan& plan, const SetLayou
   return sets;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -5,7 +5,7 @@
 
 #include "suture/wall_plan.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Placement of the sets of a procedure: along the greater curvature of the body, distal to proximal, each across it
 /// from the anterior to the posterior wall. Spacings of 15 to 20 mm are usual; all values here are design choices.
@@ -26,4 +26,4 @@ std::vector<Eigen::Vector2d> patternBites(const std::string& pattern, int bites)
 /// The bites of every set.
 std::vector<std::vector<WallSpot>> planSets(const WallPlan& plan, const SetLayout& layout);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -8,7 +8,7 @@
 #include "suture/wall_crossing.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 double meanOf(const std::vector<double>& values) {
@@ -136,4 +136,4 @@ std::string processorName() {
   return "unknown processor";
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -7,7 +7,7 @@
 #include "suture/set_layout.hpp"
 #include "suture/suture_session.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Statistics of step times [ms].
 struct StepTimes {
@@ -51,4 +51,4 @@ void writeScenarios(const std::vector<ScenarioResult>& results, std::ostream& ou
 /// Name of the processor as reported by the system.
 std::string processorName();
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

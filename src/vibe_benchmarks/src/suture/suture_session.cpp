@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/model/accounting.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kStill = 1e-4;        // [m/s]
@@ -146,4 +146,4 @@ SewnSet SutureSession::sew(const std::vector<WallSpot>& spots, double after, std
   return set;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -7,7 +7,7 @@
 #include "suture/wall_plan.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// Costs of steps: one entry per step, in order [ms].
 struct StepCosts {
@@ -82,4 +82,4 @@ Suture sutureThrough(const Model& model, const SurfaceView& wall, const std::vec
 /// Fastest particle [m/s].
 double maxSpeed(const State& state);
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -4,7 +4,7 @@
 
 #include "geometry/self_intersection.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 bool wallsCross(const Model& model, const State& state) {
   SurfaceMesh mesh = model.organ.surface;
@@ -12,4 +12,4 @@ bool wallsCross(const Model& model, const State& state) {
   return findSelfIntersection(TriangleTree(std::move(mesh))).first >= 0;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -7,7 +7,7 @@
 #include "geometry/regions.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr double kGreater = 1.57079632679489662;  // angle of the greater curvature around the axis [rad]
@@ -110,4 +110,4 @@ WallSpot WallPlan::at(double along, double across) const {
   return spot;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

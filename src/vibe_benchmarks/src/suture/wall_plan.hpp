@@ -7,7 +7,7 @@
 #include "vibe_core/geometry/stomach_axis.hpp"
 #include "vibe_core/geometry/surface_view.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// A material point of the wall.
 struct WallSpot {
@@ -44,4 +44,4 @@ class WallPlan {
   std::vector<double> curve_length_;  // from the distal end along the wall [m]
 };
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -7,7 +7,7 @@
 
 #include "unix_socket.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 CommandChannel::CommandChannel(const std::string& socket_path) : listener_(listenAt(socket_path)) {}
 
@@ -36,4 +36,4 @@ void CommandChannel::answerLines(const Handler& handler) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

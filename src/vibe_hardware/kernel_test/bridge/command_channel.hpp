@@ -2,7 +2,7 @@
 #include <functional>
 #include <string>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Lines of text from the guest, one answer to each: the other end of a serial port of the virtual machine.
 class CommandChannel {
@@ -28,4 +28,4 @@ class CommandChannel {
   std::string received_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

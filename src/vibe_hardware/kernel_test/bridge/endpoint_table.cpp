@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr std::uint8_t kInterface = 4, kEndpoint = 5;  // descriptor types
@@ -63,4 +63,4 @@ usb_redir_device_connect_header readDevice(const std::vector<std::uint8_t>& devi
   return header;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Interfaces and endpoints of a device in the form in which usbredir sends them.
 struct EndpointTable {
@@ -18,4 +18,4 @@ EndpointTable readEndpoints(const std::vector<std::uint8_t>& configuration);
 /// The connect message of a full-speed device, from its device descriptor of 18 bytes.
 usb_redir_device_connect_header readDevice(const std::vector<std::uint8_t>& device);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

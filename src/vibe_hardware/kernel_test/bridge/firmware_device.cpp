@@ -12,7 +12,7 @@
 #include "vibe_firmware/protocol/haptic_function.hpp"
 #include "vibe_firmware/protocol/input_function.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr long kPeriod = 1'000'000;  // of the loop [ns]
@@ -73,4 +73,4 @@ std::unique_ptr<UsbDevice> makeInputDevice(const std::string& serial) {
   return std::make_unique<FirmwareDevice<vibe_firmware::InputFunction, vibe_firmware::InputConfig>>(serial);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

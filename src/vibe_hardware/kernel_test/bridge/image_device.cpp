@@ -9,7 +9,7 @@
 
 #include "unix_socket.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kConnectTimeout = 20;  // [s]
@@ -104,4 +104,4 @@ bool ImageDevice::readMore(int timeout_ms) {
   return true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -5,7 +5,7 @@
 
 #include "usb_device.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The firmware image that runs in an emulated board: its USB packets come through a socket, the board's serial port.
 ///
@@ -44,4 +44,4 @@ class ImageDevice : public UsbDevice {
   std::vector<std::vector<std::uint8_t>> reports_;  ///< that came while an answer was awaited
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

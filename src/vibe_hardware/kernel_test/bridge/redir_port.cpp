@@ -9,7 +9,7 @@
 #include "endpoint_table.hpp"
 #include "unix_socket.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using vibe_firmware::UsbSetup;
@@ -209,4 +209,4 @@ void RedirPort::answer(std::uint64_t id, usb_redir_control_packet_header header,
   usbredirparser_send_control_packet(parser_, id, &header, sent ? response.data() : nullptr, sent);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 
 #include "usb_device.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A USB port of a virtual machine: the "usb-host" side of one usbredir connection (protocol 0.7). A device is plugged
 /// in and pulled out while the connection stays.
@@ -58,4 +58,4 @@ class RedirPort {
   Faults faults_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr std::int32_t kTravel = 10000;      // of axis 0: counts, and ticks there
@@ -25,4 +25,4 @@ vibe_firmware::HapticSample scriptedHand(std::uint32_t tick) {
   return sample;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

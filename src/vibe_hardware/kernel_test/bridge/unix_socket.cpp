@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 sockaddr_un addressOf(const std::string& path) {
@@ -67,4 +67,4 @@ int acceptFrom(int listener) {
   return descriptor;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

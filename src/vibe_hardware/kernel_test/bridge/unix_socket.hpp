@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Makes a unix stream socket that listens at this path, without blocking. @return its descriptor  @throws
 /// std::runtime_error
@@ -16,4 +16,4 @@ int connectTo(const std::string& path, double timeout);
 /// @throws std::runtime_error
 int acceptFrom(int listener);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -24,6 +24,8 @@
 #include "image_device.hpp"
 #include "redir_port.hpp"
 
+namespace hardware = vibe::hardware;
+
 namespace {
 
 struct Options {
@@ -47,7 +49,7 @@ class Bridge {
  public:
   explicit Bridge(const Options& options) : options_(options), commands_(options.folder + "/commands") {
     for (const char* device : {"haptic", "input", "spare-haptic", "spare-input", "image"}) {
-      ports_.emplace(device, std::make_unique<vibe::RedirPort>(options.folder + "/" + device));
+      ports_.emplace(device, std::make_unique<hardware::RedirPort>(options.folder + "/" + device));
     }
   }
 
@@ -85,7 +87,7 @@ class Bridge {
     }
   }
 
-  bool obey(const std::string& verb, const std::string& name, int count, vibe::RedirPort& port) {
+  bool obey(const std::string& verb, const std::string& name, int count, hardware::RedirPort& port) {
     if (verb == "plug") {
       port.plug(make(name));
     } else if (verb == "unplug") {
@@ -102,17 +104,17 @@ class Bridge {
     return true;
   }
 
-  std::unique_ptr<vibe::UsbDevice> make(const std::string& name) const {
+  std::unique_ptr<hardware::UsbDevice> make(const std::string& name) const {
     const std::string serial = "bridge-" + name;
-    if (name == "haptic" || name == "spare-haptic") return vibe::makeHapticDevice(serial);
-    if (name == "input" || name == "spare-input") return vibe::makeInputDevice(serial);
+    if (name == "haptic" || name == "spare-haptic") return hardware::makeHapticDevice(serial);
+    if (name == "input" || name == "spare-input") return hardware::makeInputDevice(serial);
     if (options_.image_socket.empty()) throw std::runtime_error("there is no firmware image; see --image-socket");
-    return std::make_unique<vibe::ImageDevice>(options_.image_socket);
+    return std::make_unique<hardware::ImageDevice>(options_.image_socket);
   }
 
   Options options_;
-  vibe::CommandChannel commands_;
-  std::map<std::string, std::unique_ptr<vibe::RedirPort>> ports_;
+  hardware::CommandChannel commands_;
+  std::map<std::string, std::unique_ptr<hardware::RedirPort>> ports_;
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "vibe_firmware/protocol/control_endpoint.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A device on a bus without a bus: answers control requests and hands out input reports. Used from one thread.
 class UsbDevice {
@@ -30,4 +30,4 @@ class UsbDevice {
   virtual void service(const ReportSink& sink) = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

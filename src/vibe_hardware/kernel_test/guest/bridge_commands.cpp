@@ -11,7 +11,7 @@
 #include <mutex>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr const char* kSerialPort = "/dev/ttyS1";
@@ -67,4 +67,4 @@ void tellBridge(const std::string& command) {
   if (answer != "ok") throw std::runtime_error("bridge, asked to '" + command + "': " + answer);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

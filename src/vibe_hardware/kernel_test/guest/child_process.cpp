@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::hardware {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command) : pid_(fork()) {
   if (pid_ < 0) throw std::runtime_error("cannot start " + command.at(0));
@@ -32,4 +32,4 @@ bool ChildProcess::running() const {
   return waitid(P_PID, static_cast<id_t>(pid_), &state, WEXITED | WNOHANG | WNOWAIT) == 0 && state.si_pid == 0;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A program that runs as long as the object lives.
 class ChildProcess {
@@ -21,4 +21,4 @@ class ChildProcess {
   pid_t pid_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -14,7 +14,7 @@
 #include "statistics.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using vibe_firmware::kHapticReportDescriptor;
@@ -145,4 +145,4 @@ TEST_P(Enumeration, TheJoystickHasTheSameAxesAndButtons) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -14,7 +14,7 @@
 #include "statistics.hpp"
 #include "virtual_pad.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr const char* kName = "virtual test pad";
@@ -131,4 +131,4 @@ TEST_F(GamepadNode, AForceShakesThePadAndTheTissuePullsTheStick) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::hardware

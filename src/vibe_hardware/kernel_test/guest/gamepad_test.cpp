@@ -9,7 +9,7 @@
 #include "vibe_hardware/gamepad/pad_finder.hpp"
 #include "virtual_pad.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kTimeout = 10;  // [s]
@@ -121,4 +121,4 @@ TEST(GamepadOfOurs, TheInputDeviceDrivesLikeAnyGamepad) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::hardware

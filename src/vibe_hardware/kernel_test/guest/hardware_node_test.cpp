@@ -20,7 +20,7 @@
 #include "statistics.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using namespace vibe_firmware;
@@ -242,4 +242,4 @@ TEST_F(HardwareNode, AReplugIsFollowedByMessagesAndTheSameParameters) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::hardware {
 
 HidrawFile::HidrawFile(const std::string& path) : file_(open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK)) {
   if (file_ < 0) throw std::runtime_error("cannot open " + path + ": " + std::strerror(errno));
@@ -51,4 +51,4 @@ std::vector<std::uint8_t> HidrawFile::reportDescriptor() const {
   return {descriptor.value, descriptor.value + descriptor.size};
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// An open /dev/hidraw file, through the kernel's interface alone (linux/hidraw.h). It shares no code with the driver.
 class HidrawFile {
@@ -29,4 +29,4 @@ class HidrawFile {
   int file_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

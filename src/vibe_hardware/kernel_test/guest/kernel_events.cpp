@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace vibe {
+namespace vibe::hardware {
 
 KernelEvents::KernelEvents()
     : socket_(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_KOBJECT_UEVENT)) {
@@ -41,4 +41,4 @@ bool KernelEvents::waitUntil(const std::function<bool()>& condition, double time
   return true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -1,7 +1,7 @@
 #pragma once
 #include <functional>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// What the kernel tells about devices that come and go (netlink, as udev listens to it).
 class KernelEvents {
@@ -20,4 +20,4 @@ class KernelEvents {
   int socket_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

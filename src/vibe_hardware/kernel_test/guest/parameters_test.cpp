@@ -10,7 +10,7 @@
 #include "statistics.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using namespace vibe_firmware;
@@ -150,4 +150,4 @@ TEST(Parameters, TheInputDeviceHasNone) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::hardware

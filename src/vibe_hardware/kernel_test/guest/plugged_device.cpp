@@ -6,7 +6,7 @@
 #include "bridge_commands.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using vibe_firmware::kHapticProductId;
@@ -78,4 +78,4 @@ PluggedDevice& spareInputDevice() {
   return device;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

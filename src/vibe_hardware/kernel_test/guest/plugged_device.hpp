@@ -7,7 +7,7 @@
 #include "kernel_events.hpp"
 #include "usb_nodes.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A device of the bridge, as a test plugs it in and pulls it out.
 class PluggedDevice {
@@ -49,4 +49,4 @@ PluggedDevice& imageDevice();  ///< the firmware image of the haptic device; onl
 PluggedDevice& spareHapticDevice();
 PluggedDevice& spareInputDevice();
 
-}  // namespace vibe
+}  // namespace vibe::hardware

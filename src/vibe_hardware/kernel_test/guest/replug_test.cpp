@@ -15,7 +15,7 @@
 #include "statistics.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 /// The first report after plugging in: the device has started afresh.
@@ -79,4 +79,4 @@ TEST(Replug, TheKernelTellsOfNoFault) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -17,7 +17,7 @@
 #include "statistics.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using namespace vibe_firmware;
@@ -212,4 +212,4 @@ TEST(Reports, TheJoystickGivesTheSameButtons) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -7,7 +7,7 @@
 
 #include "statistics.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kMasterTimeout = 120;  // [s]; Python starts slowly in an emulated processor
@@ -43,4 +43,4 @@ bool RosGraph::waitUntil(const std::function<bool()>& condition, double timeout)
   return true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 
 #include "child_process.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The test's place in the guest's ROS graph, whose master scripts/hid_kernel has started. Callbacks come in
 /// waitUntil().
@@ -33,4 +33,4 @@ class RosGraph {
   ros::NodeHandle handle_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

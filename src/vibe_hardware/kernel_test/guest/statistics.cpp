@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <numeric>
 
-namespace vibe {
+namespace vibe::hardware {
 
 void SequenceCount::add(std::uint16_t sequence) {
   const auto step = static_cast<std::uint16_t>(sequence - last_);
@@ -48,4 +48,4 @@ std::vector<double> differences(const std::vector<double>& values) {
   return result;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Counts what is wrong in a row of sequence numbers of 16 bits.
 struct SequenceCount {
@@ -27,4 +27,4 @@ void figures(const std::string& name, const std::vector<double>& times);
 /// Differences of neighbours.
 std::vector<double> differences(const std::vector<double>& values);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 
 #include "vibe_firmware/protocol/descriptors.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 namespace fs = std::filesystem;
@@ -86,4 +86,4 @@ bool isKnown(const UsbName& name) {
   return false;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// What tells one device from another; the vendor id is always the project's.
 struct UsbName {
@@ -28,4 +28,4 @@ bool isKnown(const UsbName& name);
 /// Text of a file in /sys without the line end; empty: there is none.
 std::string readAttribute(const std::string& path);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

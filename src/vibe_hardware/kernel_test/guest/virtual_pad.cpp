@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr int kMaxEffects = 8;
@@ -127,4 +127,4 @@ void VirtualPad::erase(int request) {
   ioctl(file_, UI_END_FF_ERASE, &erased);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A gamepad that the kernel makes for this program (uinput), with two sticks, buttons, rumble and spring. It shows
 /// what a reader of the pad asks of its motors.
@@ -46,4 +46,4 @@ class VirtualPad {
   std::thread thread_;  // of answerRequests(): the kernel lets a reader wait until an upload is answered
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

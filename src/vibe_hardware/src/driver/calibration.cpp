@@ -5,7 +5,7 @@
 #include "driver/calibration_reader.hpp"
 #include "vibe_core/common/package_path.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 Calibration Calibration::load(const std::string& address) {
   return CalibrationReader(YamlSource::load(resolveAddress(address), {})).read();
@@ -22,4 +22,4 @@ int Calibration::jointOf(DeviceKind device, int axis) const {
   return -1;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

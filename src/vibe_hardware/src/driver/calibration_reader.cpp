@@ -5,7 +5,7 @@
 
 #include "vibe_core/scene/nearest_key.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 const std::vector<std::string> kDeviceNames{"haptic", "input"};
@@ -218,4 +218,4 @@ Calibration Calibration::parse(const std::string& yaml, const std::string& place
   return CalibrationReader(YamlSource::parse(yaml, place, {})).read();
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

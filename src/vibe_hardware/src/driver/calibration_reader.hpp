@@ -5,7 +5,7 @@
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_hardware/driver/calibration.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Reads a Calibration from YAML. Every mistake ends in an Error "file:line: key: what is wrong; remedy".
 class CalibrationReader {
@@ -34,4 +34,4 @@ class CalibrationReader {
   void checkHome(const YamlField& field, int joint, double home) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

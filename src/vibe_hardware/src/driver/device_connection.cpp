@@ -5,7 +5,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using vibe_firmware::AxisConfig;
@@ -130,4 +130,4 @@ std::string describe(const vibe_firmware::Verdict& verdict) {
   return axis + "for the unknown reason " + std::to_string(static_cast<int>(verdict.refusal));
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -5,7 +5,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr std::size_t kBuffer = 256;  // longer than any report, so that one that is too long is noticed
@@ -254,4 +254,4 @@ DeviceStatistics DeviceDriver::statistics() const {
   return s;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

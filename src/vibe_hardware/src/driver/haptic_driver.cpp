@@ -6,7 +6,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_hardware/driver/passive_spring.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using vibe_firmware::AxisParameters;
@@ -173,4 +173,4 @@ void HapticDriver::checkRefusals() {
                           device_.now());
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

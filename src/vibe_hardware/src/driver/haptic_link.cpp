@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kTimeRounding = 1e-6;  // of times [s]
@@ -55,4 +55,4 @@ std::optional<vibe_firmware::ParameterReport> HapticLink::next(double now) {
   return report_;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

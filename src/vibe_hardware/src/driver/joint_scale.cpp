@@ -1,6 +1,6 @@
 #include "vibe_hardware/driver/joint_scale.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 double jointPosition(const JointScale& joint, double axis_position) {
   return joint.offset + joint.scale * axis_position;
@@ -35,4 +35,4 @@ vibe_firmware::AxisParameters axisSpring(const JointScale& joint, const JointSpr
   return axis;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -1,6 +1,6 @@
 #include "vibe_hardware/driver/message_limiter.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 void MessageLimiter::warn(const std::string& kind, const std::string& sentence, double now) {
   const auto [entry, is_new] = kinds_.try_emplace(kind);
@@ -22,4 +22,4 @@ void MessageLimiter::warnOnce(const std::string& kind, const std::string& senten
   sink_(Severity::Warning, sentence);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kLongestStep = 0.1;  // a gap in the samples is not a motion [s]
@@ -25,4 +25,4 @@ void OverstitchDrive::setPositions(const Positions& positions) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

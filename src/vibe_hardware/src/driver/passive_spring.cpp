@@ -5,7 +5,7 @@
 
 #include "vibe_firmware/core/passivity.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using vibe_firmware::AxisConfig;
@@ -54,4 +54,4 @@ PassiveSpring passiveSpring(const AxisConfig& axis, const JointSpring& spring) {
   return result;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <exception>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr std::chrono::milliseconds kIdle{5};
@@ -34,4 +34,4 @@ PollingThread::~PollingThread() {
   thread_.join();
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using vibe_firmware::InputReport;
@@ -127,4 +127,4 @@ double ReportStream::rate(double now) const {
   return recent;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

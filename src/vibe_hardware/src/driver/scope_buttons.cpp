@@ -1,6 +1,6 @@
 #include "vibe_hardware/driver/scope_buttons.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 bool ScopeButtons::take(DeviceKind device, std::uint16_t bits) {
   bits_[static_cast<std::size_t>(device)] = bits;
@@ -12,4 +12,4 @@ bool ScopeButtons::take(DeviceKind device, std::uint16_t bits) {
   return pressed_ != before;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

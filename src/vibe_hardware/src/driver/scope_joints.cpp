@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 bool isPressed(const DeviceSample& sample, int bit) {
@@ -67,4 +67,4 @@ bool ScopeJoints::isKnown() const {
   return true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -1,6 +1,6 @@
 #include "vibe_hardware/driver/silence_watch.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 bool SilenceWatch::arrived(double now) {
   const bool ends_silence = told_;
@@ -17,4 +17,4 @@ bool SilenceWatch::expired(double now) {
   return true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

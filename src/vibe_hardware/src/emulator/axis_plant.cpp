@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 /// Torque of the current that the bridge can make at rest, at most `command`.
@@ -82,4 +82,4 @@ double kineticEnergy(const AxisPlant& plant, const AxisPlantState& state) {
   return 0.5 * totalInertia(plant) * state.velocity * state.velocity;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

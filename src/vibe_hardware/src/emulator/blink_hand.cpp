@@ -6,7 +6,7 @@
 #include "counter_random.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kAfter = 1;  // time the hand holds still after the last blink [s]
@@ -37,4 +37,4 @@ double BlinkHand::duration() const {
   return blinks_.back() + kAfter;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -4,7 +4,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 BlinkLog::BlinkLog(const std::string& file, std::vector<double> blinks)
     : file_(file), out_(file), blinks_(std::move(blinks)) {
@@ -24,4 +24,4 @@ void BlinkLog::report(std::int64_t wall) {
   if (!out_) throw Error("The blinks cannot be written to '" + file_ + "' any more; is the disk full?");
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

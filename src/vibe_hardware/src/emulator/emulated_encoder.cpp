@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::hardware {
 
 std::int32_t EmulatedEncoder::turnOf(std::int32_t count) const {
   const std::int32_t from_index = count - kIndexCount, turn = from_index / counts_per_turn_;
@@ -23,4 +23,4 @@ vibe_firmware::EncoderSample EmulatedEncoder::sample(std::int32_t count) {
   return sample;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

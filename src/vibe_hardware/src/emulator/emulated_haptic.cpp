@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 
 using vibe_firmware::kAxisCount;
 
@@ -39,4 +39,4 @@ bool EmulatedHaptic::nextReport(std::uint8_t (&bytes)[vibe_firmware::kInputRepor
   return firmware_->nextReport(bytes);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

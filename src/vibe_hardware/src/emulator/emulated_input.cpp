@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 
 EmulatedInput::EmulatedInput(const vibe_firmware::InputConfig& config, std::string serial)
     : config_(config), serial_(std::move(serial)) {
@@ -35,4 +35,4 @@ bool EmulatedInput::nextReport(std::uint8_t (&bytes)[vibe_firmware::kInputReport
   return firmware_->nextReport(bytes);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

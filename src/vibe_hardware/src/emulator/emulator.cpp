@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kApproach = 2;  // time to reach a first position that is not 0 [s]
@@ -83,4 +83,4 @@ void Emulator::tick() {
   ++ticks_;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

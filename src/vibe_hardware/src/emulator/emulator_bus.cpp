@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 256;
@@ -86,4 +86,4 @@ std::unique_ptr<HidPort> EmulatorBus::open(const std::string& path) {
   throw DeviceGone("There is no emulated device " + path + ".");
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

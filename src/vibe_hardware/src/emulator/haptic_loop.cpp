@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 std::shared_ptr<const Model> modelOf(Scene scene, double step_period) {
@@ -194,4 +194,4 @@ HapticLoopResult runHapticLoop(const Scene& scene, const HapticLoopSettings& set
   return Loop(scene, settings).run();
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::hardware {
 
 LoopHost::LoopHost(EmulatorBus& bus, const Calibration& calibration, std::function<double()> clock)
     : joints_(calibration),
@@ -65,4 +65,4 @@ void LoopHost::render(const std::optional<ToolImpedance>& impedance, Rendering r
   haptic_.setTarget(targets);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

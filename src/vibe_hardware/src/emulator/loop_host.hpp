@@ -9,7 +9,7 @@
 #include "vibe_hardware/emulator/emulator_bus.hpp"
 #include "vibe_hardware/emulator/haptic_loop.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The host's side of the haptic loop: the drivers of both devices, as hardware_node uses them, without a graph.
 class LoopHost {
@@ -49,4 +49,4 @@ class LoopHost {
   bool touching_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::hardware {
 
 void OverstitchFingers::decide(const Positions& intended, double report_period) {
   for (std::size_t j = 0; j < drives_.size(); ++j) {
@@ -23,4 +23,4 @@ bool OverstitchFingers::isPressed(const DeviceButton& button) const {
   return false;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

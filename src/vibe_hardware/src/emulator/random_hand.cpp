@@ -6,7 +6,7 @@
 
 #include "counter_random.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -68,4 +68,4 @@ double RandomHand::duration() const {
   return std::numeric_limits<double>::infinity();
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

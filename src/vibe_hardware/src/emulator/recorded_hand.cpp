@@ -11,7 +11,7 @@
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 // Numbers of columns: 0 is the time, then joints, then buttons.
@@ -192,4 +192,4 @@ HandSample RecordedHand::at(double time) const {
   return sample;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -11,7 +11,7 @@
 
 #include "hid/local_socket.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr int kSendBuffer = 16 * 1024;  // of the kernel, per host [bytes]: some ten reports; the rest waits here
@@ -123,4 +123,4 @@ SocketServer::Outcome SocketServer::flush(Host& host) {
   return Outcome::Stays;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

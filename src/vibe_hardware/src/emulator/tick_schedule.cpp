@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 
 double TickSchedule::next() const {
   return origin_ + tick_ * static_cast<double>(ticks_);
@@ -22,4 +22,4 @@ int TickSchedule::due(double now) {
   return count;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

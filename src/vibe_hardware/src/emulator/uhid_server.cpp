@@ -10,7 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr const char* kPath = "/dev/uhid";
@@ -91,4 +91,4 @@ void UhidServer::serve() {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using vibe_firmware::UsbSetup;
@@ -84,4 +84,4 @@ bool UsbHost::setFeature(const std::uint8_t* bytes, std::size_t size) {
   return endpoint_.handle(setup, bytes, nullptr, 0) != vibe_firmware::ControlEndpoint::kStall;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

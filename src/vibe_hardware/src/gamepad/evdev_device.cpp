@@ -10,7 +10,7 @@
 
 #include "vibe_firmware/protocol/descriptors.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 const char* textOf(const char* text) {
@@ -100,4 +100,4 @@ bool isWanted(const std::string& wanted, const libevdev& device, const std::stri
   return info.name.find(wanted) != std::string::npos || info.phys.find(wanted) != std::string::npos;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

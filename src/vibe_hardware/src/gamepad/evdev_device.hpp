@@ -6,7 +6,7 @@
 
 #include "vibe_hardware/gamepad/pad_state.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 struct LibevdevDeleter {
   void operator()(libevdev* device) const { libevdev_free(device); }
@@ -39,4 +39,4 @@ bool isScopeDevice(const libevdev& device);
 /// Whether it is a pad to be opened. @param wanted  part of its name or phys; empty: any pad but a scope device
 bool isWanted(const std::string& wanted, const libevdev& device, const std::string& path);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -5,7 +5,7 @@
 
 #include "gamepad/force_effects.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 EvdevMotors::~EvdevMotors() {
   erase(rumble_id_);
@@ -35,4 +35,4 @@ void EvdevMotors::erase(int& id) {
   id = -1;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

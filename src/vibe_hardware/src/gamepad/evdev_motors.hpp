@@ -3,7 +3,7 @@
 
 #include "vibe_hardware/gamepad/pad_motors.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Motors of a device of the kernel: one rumble and one spring effect, replaced in place.
 class EvdevMotors : public PadMotors {
@@ -28,4 +28,4 @@ class EvdevMotors : public PadMotors {
   void erase(int& id);
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

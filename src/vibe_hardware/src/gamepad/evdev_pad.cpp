@@ -1,6 +1,6 @@
 #include "gamepad/evdev_pad.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 EvdevPad::EvdevPad(EvdevDevice device, const std::string& path)
     : device_(std::move(device)),
@@ -36,4 +36,4 @@ void EvdevPad::restoreFilters() {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -7,7 +7,7 @@
 #include "vibe_hardware/gamepad/event_reader.hpp"
 #include "vibe_hardware/gamepad/pad_source.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A pad of the kernel. While it is open, the kernel's own filters of its axes (fuzz, flat) are off where the
 /// permissions allow: they swallow small moves. Dead zones are the mapping's.
@@ -38,4 +38,4 @@ class EvdevPad : public PadSource {
   void restoreFilters();
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

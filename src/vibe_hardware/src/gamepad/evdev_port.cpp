@@ -2,7 +2,7 @@
 
 #include <cerrno>
 
-namespace vibe {
+namespace vibe::hardware {
 
 EventPort::Status EvdevPort::next(bool resync, PadEvent& event) {
   input_event raw{};
@@ -19,4 +19,4 @@ EventPort::Status EvdevPort::next(bool resync, PadEvent& event) {
   return Status::Event;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

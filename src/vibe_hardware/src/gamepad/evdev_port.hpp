@@ -2,7 +2,7 @@
 #include "gamepad/evdev_device.hpp"
 #include "vibe_hardware/gamepad/event_port.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Events of a device of the kernel, read through libevdev.
 class EvdevPort : public EventPort {
@@ -14,4 +14,4 @@ class EvdevPort : public EventPort {
   libevdev& device_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -1,6 +1,6 @@
 #include "vibe_hardware/gamepad/event_reader.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr int kMostEvents = 20000;  // a device that floods must not stop the program; the rest waits for the next call
@@ -36,4 +36,4 @@ void EventReader::take(const PadEvent& event) {
   if (listener_) listener_(event);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 double limited(double value, double low) {
@@ -39,4 +39,4 @@ ff_effect springEffect(const std::array<StickSpring, 2>& springs, int id) {
   return effect;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

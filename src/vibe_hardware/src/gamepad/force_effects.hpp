@@ -5,7 +5,7 @@
 
 #include "vibe_hardware/gamepad/pad_motors.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 constexpr int kRumbleTime = 500;  ///< a program that hangs must not leave the pad shaking [ms]
 
@@ -14,4 +14,4 @@ constexpr int kRumbleTime = 500;  ///< a program that hangs must not leave the p
 ff_effect rumbleEffect(double strong, double weak, int id);
 ff_effect springEffect(const std::array<StickSpring, 2>& springs, int id);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kLongestStep = 0.1;  // [s]
@@ -168,4 +168,4 @@ std::string missingControls(const PadMapping& mapping, const PadState& pad) {
   return list.empty() ? "" : "This pad has no " + list + "; choose another mapping or change it.";
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

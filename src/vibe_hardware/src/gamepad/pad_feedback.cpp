@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kUpdatePeriod = 0.02;    // 50 Hz
@@ -118,4 +118,4 @@ void PadFeedback::forgetPad() {
   sent_springs_ = {};
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -6,7 +6,7 @@
 
 #include "gamepad/evdev_pad.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ std::unique_ptr<PadSource> openPad(const std::string& wanted, std::string& why, 
   return nullptr;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -1,6 +1,6 @@
 #include "vibe_hardware/gamepad/pad_link.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kRetryPeriod = 0.5;  // [s]
@@ -35,4 +35,4 @@ std::string PadLink::look(double now) {
   return why + " Waiting for it.";
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

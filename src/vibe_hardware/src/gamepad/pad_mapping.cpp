@@ -3,7 +3,7 @@
 #include "gamepad/pad_mapping_reader.hpp"
 #include "vibe_core/common/package_path.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr YamlLimits kLimits{1 << 16, 8};
@@ -29,4 +29,4 @@ const char* jointUnit(int joint) {
   return joint == Insertion || joint == HelixAdvance || joint == NeedleDriver ? "m" : "rad";
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -9,7 +9,7 @@
 #include "vibe_core/scene/nearest_key.hpp"
 #include "vibe_hardware/gamepad/pad_state.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kDefaultDeadZone = 0.12;  // of sticks that do not return to their middle exactly (design choice)
@@ -201,4 +201,4 @@ void PadMappingReader::readFeedback(const YamlField& field) {
     mapping_.feedback.rumble_force = source_.quantity(*force, "N", 0, kLargestEffort);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -6,7 +6,7 @@
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_hardware/gamepad/pad_mapping.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Reads a PadMapping out of a YAML document.
 class PadMappingReader {
@@ -34,4 +34,4 @@ class PadMappingReader {
   void checkKeys(const std::vector<YamlField>& entries, const std::vector<std::string>& known) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

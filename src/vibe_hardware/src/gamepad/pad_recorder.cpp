@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 std::FILE* openFile(const std::string& file, const char* mode) {
@@ -68,4 +68,4 @@ void PadRecorder::add(const PadEvent& event) {
   if (event.type == EV_SYN) std::fflush(file_);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kLongest = 86400;  // a day [s]
@@ -162,4 +162,4 @@ std::unique_ptr<PadSource> playPadRecording(PadRecording recording) {
   return std::make_unique<RecordedPad>(std::move(recording));
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::hardware {
 
 double PadAxis::deflection() const {
   if (maximum <= minimum) return 0;
@@ -34,4 +34,4 @@ int eventCodeFromName(int type, const std::string& name) {
   return libevdev_event_code_from_name(static_cast<unsigned>(type), name.c_str());
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

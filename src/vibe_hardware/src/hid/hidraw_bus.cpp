@@ -18,7 +18,7 @@
 #include "vibe_hardware/hid/file_descriptor.hpp"
 #include "vibe_hardware/hid/report_descriptor.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr const char* kKernelFolder = "/sys/class/hidraw";
@@ -144,4 +144,4 @@ std::unique_ptr<HidPort> HidrawBus::open(const std::string& path) {
   return std::make_unique<HidrawPort>(device, path);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 /// @return false if the path is too long for a socket
@@ -64,4 +64,4 @@ bool waitReadable(int file, double seconds) {
   return ::poll(&entry, 1, milliseconds) > 0;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 
 #include "vibe_hardware/hid/file_descriptor.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Connects to a socket file without waiting. @return empty if nobody serves it; errno says why
 FileDescriptor connectTo(const std::string& path);
@@ -16,4 +16,4 @@ FileDescriptor listenAt(const std::string& path);
 /// @return whether it can
 bool waitReadable(int file, double seconds);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

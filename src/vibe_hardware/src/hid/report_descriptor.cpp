@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 using Kind = ReportSize::Kind;
@@ -213,4 +213,4 @@ void checkReportDescriptor(const std::uint8_t* bytes, std::size_t size, DeviceKi
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

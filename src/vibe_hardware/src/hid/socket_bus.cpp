@@ -14,7 +14,7 @@
 #include "hid/local_socket.hpp"
 #include "vibe_hardware/hid/socket_protocol.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 constexpr double kHelloTimeout = 0.1;  // [s]; a device answers within one tick
@@ -188,4 +188,4 @@ std::unique_ptr<HidPort> SocketBus::open(const std::string& path) {
   return std::make_unique<SocketPort>(std::move(file), path, std::move(hello));
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

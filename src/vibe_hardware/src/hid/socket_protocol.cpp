@@ -1,6 +1,6 @@
 #include "vibe_hardware/hid/socket_protocol.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 namespace {
 
 void appendU16(std::size_t value, Packet& packet) {
@@ -74,4 +74,4 @@ std::optional<Hello> unpackHello(const std::uint8_t* bytes, std::size_t size) {
   return hello;
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

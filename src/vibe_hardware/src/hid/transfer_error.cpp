@@ -5,7 +5,7 @@
 
 #include "vibe_hardware/hid/hid_port.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 // A device that was unplugged answers ENODEV or EIO; one that does not know a report stalls the request: EPIPE.
 void failTransfer(const std::string& path, int error, const std::string& what) {
@@ -15,4 +15,4 @@ void failTransfer(const std::string& path, int error, const std::string& what) {
   throw DeviceGone(sentence);
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -13,7 +13,7 @@
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_hardware/emulator/scripted_hand.hpp"
 
-namespace vibe::haptic_loop_test {
+namespace vibe::hardware::haptic_loop_test {
 namespace {
 
 // scenes name the URDF of the scope by its package
@@ -122,4 +122,4 @@ TEST(RenderingError, FindsErrorDelayAndEnergy) {
 }
 
 }  // namespace
-}  // namespace vibe::haptic_loop_test
+}  // namespace vibe::hardware::haptic_loop_test

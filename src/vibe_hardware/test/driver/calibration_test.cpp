@@ -9,7 +9,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::calibration_test {
+namespace vibe::hardware::calibration_test {
 namespace {
 
 std::string shipped() {
@@ -135,4 +135,4 @@ TEST(Calibration, FileAndLineAreThoseOfTheMistake) {
 }
 
 }  // namespace
-}  // namespace vibe::calibration_test
+}  // namespace vibe::hardware::calibration_test

@@ -4,7 +4,7 @@
 
 #include "driver/fake_devices.hpp"
 
-namespace vibe::device_driver_test {
+namespace vibe::hardware::device_driver_test {
 namespace {
 
 constexpr double kWait = 0.004;
@@ -356,4 +356,4 @@ TEST_F(DeviceDriverTest, ReportsAnEncoderFaultOnce) {
 }
 
 }  // namespace
-}  // namespace vibe::device_driver_test
+}  // namespace vibe::hardware::device_driver_test

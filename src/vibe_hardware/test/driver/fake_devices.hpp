@@ -13,7 +13,7 @@
 #include "vibe_hardware/hid/hid_port.hpp"
 #include "vibe_hardware/hid/report_descriptor.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 using Packet = std::vector<std::uint8_t>;
 using Packets = std::vector<Packet>;
@@ -199,4 +199,4 @@ struct Sentences {
   }
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 #include "driver/fake_devices.hpp"
 #include "vibe_firmware/core/passivity.hpp"
 
-namespace vibe::haptic_driver_test {
+namespace vibe::hardware::haptic_driver_test {
 namespace {
 
 class HapticDriverTest : public testing::Test {
@@ -269,4 +269,4 @@ TEST_F(HapticDriverTest, ADeviceThatStopsIsNotSpokenTo) {
 }
 
 }  // namespace
-}  // namespace vibe::haptic_driver_test
+}  // namespace vibe::hardware::haptic_driver_test

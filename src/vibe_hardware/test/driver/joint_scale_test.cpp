@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace vibe::joint_scale_test {
+namespace vibe::hardware::joint_scale_test {
 namespace {
 
 double force(const JointSpring& s, double x, double v) {
@@ -57,4 +57,4 @@ TEST_F(JointScaleTest, TheDevicesLawIsTheSameSpringWithDampingAboutRest) {
 }
 
 }  // namespace
-}  // namespace vibe::joint_scale_test
+}  // namespace vibe::hardware::joint_scale_test

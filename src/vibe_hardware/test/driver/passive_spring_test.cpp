@@ -7,7 +7,7 @@
 
 #include "vibe_firmware/core/passivity.hpp"
 
-namespace vibe::passive_spring_test {
+namespace vibe::hardware::passive_spring_test {
 namespace {
 
 using vibe_firmware::AxisConfig;
@@ -69,4 +69,4 @@ TEST(PassiveSpring, WhateverComesIsAccepted) {
 }
 
 }  // namespace
-}  // namespace vibe::passive_spring_test
+}  // namespace vibe::hardware::passive_spring_test

@@ -5,7 +5,7 @@
 #include "vibe_hardware/driver/overstitch_drive.hpp"
 #include "vibe_hardware/driver/scope_buttons.hpp"
 
-namespace vibe::scope_joints_test {
+namespace vibe::hardware::scope_joints_test {
 namespace {
 
 constexpr std::uint16_t kHomingBit = 1 << 6;
@@ -136,4 +136,4 @@ TEST(OverstitchDrive, AGapIsNoMotionAndACameraSetsThePosition) {
 }
 
 }  // namespace
-}  // namespace vibe::scope_joints_test
+}  // namespace vibe::hardware::scope_joints_test

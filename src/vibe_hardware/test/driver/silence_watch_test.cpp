@@ -5,7 +5,7 @@
 #include "driver/fake_devices.hpp"
 #include "vibe_hardware/driver/haptic_driver.hpp"
 
-namespace vibe::silence_watch_test {
+namespace vibe::hardware::silence_watch_test {
 namespace {
 
 TEST(SilenceWatch, TellsEachSilenceOnce) {
@@ -103,4 +103,4 @@ TEST(SilenceWatch, TheDriverSpeaksFirstIfItCan) {
 }
 
 }  // namespace
-}  // namespace vibe::silence_watch_test
+}  // namespace vibe::hardware::silence_watch_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace vibe::axis_plant_test {
+namespace vibe::hardware::axis_plant_test {
 namespace {
 
 constexpr double kTick = 1e-3;
@@ -146,4 +146,4 @@ TEST(AxisPlant, EqualStatesHaveEqualFutures) {
 }
 
 }  // namespace
-}  // namespace vibe::axis_plant_test
+}  // namespace vibe::hardware::axis_plant_test

@@ -11,7 +11,7 @@
 #include "vibe_hardware/emulator/random_hand.hpp"
 #include "vibe_hardware/emulator/scripted_hand.hpp"
 
-namespace vibe::blink_test {
+namespace vibe::hardware::blink_test {
 namespace {
 
 BlinkSetup setupOf(int count, std::uint64_t seed = 1) {
@@ -93,4 +93,4 @@ TEST(BlinkLog, AFileThatCannotBeWrittenIsSaid) {
 }
 
 }  // namespace
-}  // namespace vibe::blink_test
+}  // namespace vibe::hardware::blink_test

@@ -11,7 +11,7 @@
 #include "vibe_hardware/emulator/usb_host.hpp"
 #include "vibe_hardware/hid/socket_bus.hpp"
 
-namespace vibe::emulated_device_test {
+namespace vibe::hardware::emulated_device_test {
 namespace {
 
 using vibe_firmware::InputReport;
@@ -275,4 +275,4 @@ TEST(Emulator, AHostBehindASocketDrivesTheFirmware) {
 }
 
 }  // namespace
-}  // namespace vibe::emulated_device_test
+}  // namespace vibe::hardware::emulated_device_test

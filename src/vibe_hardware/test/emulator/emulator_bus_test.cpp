@@ -11,7 +11,7 @@
 #include "vibe_hardware/emulator/scripted_hand.hpp"
 #include "vibe_hardware/hid/socket_protocol.hpp"
 
-namespace vibe::emulator_bus_test {
+namespace vibe::hardware::emulator_bus_test {
 namespace {
 
 constexpr const char* kScript = R"(
@@ -98,4 +98,4 @@ TEST(OverstitchFingers, FollowNoFasterThanTheHost) {
 }
 
 }  // namespace
-}  // namespace vibe::emulator_bus_test
+}  // namespace vibe::hardware::emulator_bus_test

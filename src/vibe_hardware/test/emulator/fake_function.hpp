@@ -6,7 +6,7 @@
 #include "vibe_firmware/protocol/descriptors.hpp"
 #include "vibe_firmware/protocol/hid_function.hpp"
 
-namespace vibe::test {
+namespace vibe::hardware::test {
 
 /// A HID device for tests: feature report 2 can be set and got, report 3 only got, all others stall.
 class FakeFunction final : public vibe_firmware::HidFunction {
@@ -51,4 +51,4 @@ class FakeFunction final : public vibe_firmware::HidFunction {
       vibe_firmware::configurationDescriptor(sizeof vibe_firmware::kHapticReportDescriptor);
 };
 
-}  // namespace vibe::test
+}  // namespace vibe::hardware::test

@@ -8,7 +8,7 @@
 #include "vibe_hardware/emulator/recorded_hand.hpp"
 #include "vibe_hardware/emulator/scripted_hand.hpp"
 
-namespace vibe::hand_test {
+namespace vibe::hardware::hand_test {
 namespace {
 
 constexpr const char* kScript = R"(
@@ -160,4 +160,4 @@ TEST(RandomHand, BeginsAtZeroIsRepeatableAndDependsOnTheSeed) {
 }
 
 }  // namespace
-}  // namespace vibe::hand_test
+}  // namespace vibe::hardware::hand_test

@@ -12,7 +12,7 @@
 
 #include "vibe_hardware/emulator/socket_server.hpp"
 
-namespace vibe::test {
+namespace vibe::hardware::test {
 
 /// A folder of its own, removed at the end.
 class SocketFolder {
@@ -72,4 +72,4 @@ class ServedDevice {
   std::thread thread_;
 };
 
-}  // namespace vibe::test
+}  // namespace vibe::hardware::test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::tick_schedule_test {
+namespace vibe::hardware::tick_schedule_test {
 namespace {
 
 TEST(TickSchedule, TakesOneTickPerMillisecond) {
@@ -45,4 +45,4 @@ TEST(TickSchedule, DropsALongDelay) {
 }
 
 }  // namespace
-}  // namespace vibe::tick_schedule_test
+}  // namespace vibe::hardware::tick_schedule_test

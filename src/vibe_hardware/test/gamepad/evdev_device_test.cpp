@@ -8,7 +8,7 @@
 #include "vibe_firmware/protocol/descriptors.hpp"
 #include "vibe_hardware/gamepad/pad_finder.hpp"
 
-namespace vibe::evdev_device_test {
+namespace vibe::hardware::evdev_device_test {
 namespace {
 
 /// libevdev's description of a device without a file.
@@ -126,4 +126,4 @@ TEST(PadFinder, SaysWhatItLookedForAndWhatItSaw) {
 }
 
 }  // namespace
-}  // namespace vibe::evdev_device_test
+}  // namespace vibe::hardware::evdev_device_test

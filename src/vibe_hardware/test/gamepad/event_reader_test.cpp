@@ -6,7 +6,7 @@
 
 #include "gamepad/pads.hpp"
 
-namespace vibe::event_reader_test {
+namespace vibe::hardware::event_reader_test {
 namespace {
 
 /// A device whose queue overflows where the test says, and which can bring a reader up to date as libevdev does.
@@ -100,4 +100,4 @@ TEST(EventReader, EventsOfUnknownAxesAndButtonsAreIgnored) {
 }
 
 }  // namespace
-}  // namespace vibe::event_reader_test
+}  // namespace vibe::hardware::event_reader_test

@@ -12,7 +12,7 @@
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 
-namespace vibe::first_bite_test {
+namespace vibe::hardware::first_bite_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -53,4 +53,4 @@ TEST(FirstBite, TutorialSessionInsufflatesGrabsAndBites) {
 }
 
 }  // namespace
-}  // namespace vibe::first_bite_test
+}  // namespace vibe::hardware::first_bite_test

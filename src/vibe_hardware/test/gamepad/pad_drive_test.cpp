@@ -7,7 +7,7 @@
 
 #include "gamepad/pads.hpp"
 
-namespace vibe::pad_drive_test {
+namespace vibe::hardware::pad_drive_test {
 namespace {
 
 constexpr double kPeriod = 0.01;
@@ -287,4 +287,4 @@ TEST(PadDrive, AxesThatThePadLacksMoveNothing) {
 }
 
 }  // namespace
-}  // namespace vibe::pad_drive_test
+}  // namespace vibe::hardware::pad_drive_test

@@ -8,7 +8,7 @@
 #include "gamepad/force_effects.hpp"
 #include "gamepad/pads.hpp"
 
-namespace vibe::pad_feedback_test {
+namespace vibe::hardware::pad_feedback_test {
 namespace {
 
 class TestMotors : public PadMotors {
@@ -180,4 +180,4 @@ TEST(ForceEffects, LevelsBecomeTheKernelsNumbers) {
 }
 
 }  // namespace
-}  // namespace vibe::pad_feedback_test
+}  // namespace vibe::hardware::pad_feedback_test

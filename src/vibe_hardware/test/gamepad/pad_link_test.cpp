@@ -4,7 +4,7 @@
 
 #include "gamepad/pads.hpp"
 
-namespace vibe::pad_link_test {
+namespace vibe::hardware::pad_link_test {
 namespace {
 
 /// A pad that is there until the test unplugs it.
@@ -71,4 +71,4 @@ TEST_F(PadLinkTest, FindsAPadThatReturnsWithinASecond) {
 }
 
 }  // namespace
-}  // namespace vibe::pad_link_test
+}  // namespace vibe::hardware::pad_link_test

@@ -5,7 +5,7 @@
 #include "gamepad/pads.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::pad_mapping_test {
+namespace vibe::hardware::pad_mapping_test {
 namespace {
 
 std::string errorOf(const std::string& text) {
@@ -129,4 +129,4 @@ TEST(PadMapping, NamesMistakesOutsideOfJoints) {
 }
 
 }  // namespace
-}  // namespace vibe::pad_mapping_test
+}  // namespace vibe::hardware::pad_mapping_test

@@ -8,7 +8,7 @@
 #include "gamepad/pads.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::pad_recording_test {
+namespace vibe::hardware::pad_recording_test {
 namespace {
 
 /// As evemu-record writes it.
@@ -136,4 +136,4 @@ TEST(PadRecording, NamesTheLineOfAMistake) {
 }
 
 }  // namespace
-}  // namespace vibe::pad_recording_test
+}  // namespace vibe::hardware::pad_recording_test

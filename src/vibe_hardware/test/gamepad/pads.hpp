@@ -9,7 +9,7 @@
 
 // Pads and mappings for tests.
 
-namespace vibe {
+namespace vibe::hardware {
 
 inline const ToolLimits& toolLimits() {
   static const ToolLimits limits = loadToolLimits("../../vibe_description/urdf/scope.urdf");
@@ -57,4 +57,4 @@ inline void letGo(PadState& pad, int code) {
   pad.apply({0, EV_KEY, code, 0});
 }
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace vibe::hidraw_bus_test {
+namespace vibe::hardware::hidraw_bus_test {
 namespace {
 
 TEST(HidrawBus, ListsDevicesOrSaysThatTheKernelHasNone) {
@@ -65,4 +65,4 @@ TEST(HidrawBus, ListingIsCheap) {
 }
 
 }  // namespace
-}  // namespace vibe::hidraw_bus_test
+}  // namespace vibe::hardware::hidraw_bus_test

@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
 
-namespace vibe::report_descriptor_test {
+namespace vibe::hardware::report_descriptor_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -110,4 +110,4 @@ TEST(ReportDescriptor, DamagedDescriptorsAreErrorsOrHarmless) {
 }
 
 }  // namespace
-}  // namespace vibe::report_descriptor_test
+}  // namespace vibe::hardware::report_descriptor_test

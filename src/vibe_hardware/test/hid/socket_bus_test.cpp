@@ -11,7 +11,7 @@
 #include "emulator/served_device.hpp"
 #include "hid/local_socket.hpp"
 
-namespace vibe::socket_bus_test {
+namespace vibe::hardware::socket_bus_test {
 namespace {
 
 using test::FakeFunction;
@@ -305,4 +305,4 @@ TEST(SocketServer, ReplacesAStaleSocketAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace vibe::socket_bus_test
+}  // namespace vibe::hardware::socket_bus_test

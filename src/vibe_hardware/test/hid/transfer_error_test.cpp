@@ -6,7 +6,7 @@
 
 #include "vibe_hardware/hid/hid_port.hpp"
 
-namespace vibe::transfer_error_test {
+namespace vibe::hardware::transfer_error_test {
 namespace {
 
 TEST(TransferError, ATimeoutIsNoAnswerAndNoRejection) {
@@ -30,4 +30,4 @@ TEST(TransferError, NamesDeviceReportAndReason) {
 }
 
 }  // namespace
-}  // namespace vibe::transfer_error_test
+}  // namespace vibe::hardware::transfer_error_test

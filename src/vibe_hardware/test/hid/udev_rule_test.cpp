@@ -10,7 +10,7 @@
 #include "vibe_firmware/protocol/descriptors.hpp"
 #include "vibe_hardware/driver/calibration.hpp"
 
-namespace vibe::udev_rule_test {
+namespace vibe::hardware::udev_rule_test {
 namespace {
 
 std::vector<std::string> deviceRules() {
@@ -55,4 +55,4 @@ TEST(UdevRule, TheShippedCalibrationLooksForTheSameDevices) {
 }
 
 }  // namespace
-}  // namespace vibe::udev_rule_test
+}  // namespace vibe::hardware::udev_rule_test

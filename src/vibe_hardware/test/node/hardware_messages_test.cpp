@@ -9,7 +9,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe::hardware_messages_test {
+namespace vibe::hardware::hardware_messages_test {
 namespace {
 
 class HardwareMessagesTest : public testing::Test {
@@ -106,4 +106,4 @@ TEST_F(HardwareMessagesTest, StatesAreThoseOfCrtk) {
 }
 
 }  // namespace
-}  // namespace vibe::hardware_messages_test
+}  // namespace vibe::hardware::hardware_messages_test

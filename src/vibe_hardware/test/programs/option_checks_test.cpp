@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace vibe::option_checks_test {
+namespace vibe::hardware::option_checks_test {
 namespace {
 
 /// What a program with these checks says to its arguments.
@@ -39,4 +39,4 @@ TEST(OptionChecks, WholeNumberTakesTheDigitsOfAnUnsignedNumber) {
 }
 
 }  // namespace
-}  // namespace vibe::option_checks_test
+}  // namespace vibe::hardware::option_checks_test

@@ -1,7 +1,7 @@
 #pragma once
 #include <functional>
 
-namespace vibe {
+namespace vibe::node {
 
 /// Waits for an answer of the ROS master. Call it after ros::init() and before the first NodeHandle, which waits for a
 /// master for ever and hears no signal meanwhile. Says once that it waits.
@@ -14,4 +14,4 @@ bool waitForMaster(double patience, const std::function<bool()>& stopped = {});
 /// Whether the command line has --help or -h.
 bool asksForHelp(int argc, const char* const* argv);
 
-}  // namespace vibe
+}  // namespace vibe::node

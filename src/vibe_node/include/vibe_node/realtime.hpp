@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::node {
 
 /// Gives the calling thread the real-time priority of SCHED_FIFO, so that no ordinary program delays it. Threads that
 /// it starts later have it too.
@@ -23,4 +23,4 @@ namespace vibe {
 /// @return one sentence for each that is not permitted
 [[nodiscard]] std::vector<std::string> runInRealTime(int priority);
 
-}  // namespace vibe
+}  // namespace vibe::node

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 JointTree::JointTree(const std::string& description) {
   urdf::Model model;
@@ -75,4 +75,4 @@ std::optional<Eigen::Isometry3d> JointTree::pose(const std::string& frame, const
   return b->second.inverse() * a->second;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

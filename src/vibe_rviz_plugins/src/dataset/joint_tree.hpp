@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Poses of the links of a robot from its joints, and of frames that stand still: what robot_state_publisher and tf
 /// tell in a running graph, without either.
@@ -45,4 +45,4 @@ class JointTree {
   std::map<std::string, double> positions_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::size_t kAlign = 64;  // of the data, as the format asks for
@@ -45,4 +45,4 @@ void writeHalfNpy(const std::string& file, const std::vector<std::size_t>& shape
   writeArray(file, shape, "<f2", halves.data(), halves.size() * sizeof halves[0]);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

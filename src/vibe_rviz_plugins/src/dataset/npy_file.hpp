@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Writes a file of NumPy (format 1.0, little endian, rows first).
 /// @param shape  the product is the number of values
@@ -13,4 +13,4 @@ void writeNpy(const std::string& file, const std::vector<std::size_t>& shape, co
 /// The same with half precision (IEEE 754 binary16: eleven bits), for unit vectors.
 void writeHalfNpy(const std::string& file, const std::vector<std::size_t>& shape, const std::vector<float>& values);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
@@ -68,4 +68,4 @@ Variation variationOf(std::uint32_t seed, double field_of_view) {
   return result;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 #include "geometry/mucosa_look.hpp"
 #include "sensor/sensor_model.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What differs between two endoscopes of the same kind, between two moments of their processors, and between the
 /// mucosa of two stomachs of the same shape.
@@ -28,4 +28,4 @@ struct Variation {
 /// ahead, 4,800 to 7,000 K.
 Variation variationOf(std::uint32_t seed, double field_of_view);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 #include <rviz/display_context.h>
 #include <rviz/frame_manager.h>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 std::string lookUpFrame(rviz::DisplayContext& context, const std::string& frame, const ros::Time& stamp,
                         FramePose& pose) {
@@ -14,4 +14,4 @@ std::string lookUpFrame(rviz::DisplayContext& context, const std::string& frame,
          "'; choose another fixed frame or publish this transform.";
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -2,7 +2,7 @@
 
 #include <rviz/properties/status_property.h>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 PropertyHelp checkPropertyHelp(const rviz::Property& parent, const std::string& path) {
   PropertyHelp help;
@@ -19,4 +19,4 @@ PropertyHelp checkPropertyHelp(const rviz::Property& parent, const std::string& 
   return help;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 
 #include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using rviz::StatusProperty;
@@ -118,4 +118,4 @@ void TopicDisplay::place(const std_msgs::Header& header) {
   scene_node_->setOrientation(pose.orientation);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

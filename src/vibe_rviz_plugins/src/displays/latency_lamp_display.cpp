@@ -13,7 +13,7 @@
 
 #include "render/legend.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kSize = 64;  // of the lamp [pixels]
@@ -101,6 +101,6 @@ void LatencyLampDisplay::postRenderTargetUpdate(const Ogre::RenderTargetEvent&) 
   publisher_.publish(timing_);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
-PLUGINLIB_EXPORT_CLASS(vibe::LatencyLampDisplay, rviz::Display)
+PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::LatencyLampDisplay, rviz::Display)

@@ -17,7 +17,7 @@ class FloatProperty;
 class StringProperty;
 }  // namespace rviz
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class Legend;
 
@@ -52,4 +52,4 @@ class LatencyLampDisplay : public MessageDisplay<sensor_msgs::JointState>, priva
   bool pending_ = false;             // the frame with it has not been rendered yet
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -12,7 +12,7 @@
 #include "render/legend.hpp"
 #include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 PackedColour packedOf(const QColor& colour) {
@@ -258,6 +258,6 @@ bool SutureDisplay::drawBlood() {
   return changed;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
-PLUGINLIB_EXPORT_CLASS(vibe::SutureDisplay, rviz::Display)
+PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::SutureDisplay, rviz::Display)

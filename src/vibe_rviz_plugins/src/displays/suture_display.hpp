@@ -19,7 +19,7 @@ class FloatProperty;
 class VectorProperty;
 }  // namespace rviz
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class Legend;
 
@@ -71,4 +71,4 @@ class SutureDisplay : public MessageDisplay<vibe_msgs::SutureArray> {
   rviz::VectorProperty* down_property_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

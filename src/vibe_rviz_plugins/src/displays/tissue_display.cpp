@@ -15,7 +15,7 @@
 #include "render/tissue_visual.hpp"
 #include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using rviz::StatusProperty;
@@ -329,6 +329,6 @@ void TissueDisplay::changeLegend() {
   legend_->show(legendOf(colouring, map));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
-PLUGINLIB_EXPORT_CLASS(vibe::TissueDisplay, rviz::Display)
+PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::TissueDisplay, rviz::Display)

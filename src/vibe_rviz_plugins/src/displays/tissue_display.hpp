@@ -16,7 +16,7 @@ class FloatProperty;
 class RosTopicProperty;
 }  // namespace rviz
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class Legend;
 class TissueVisual;
@@ -74,4 +74,4 @@ class TissueDisplay : public rviz::Display {
   std::unique_ptr<Legend> legend_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

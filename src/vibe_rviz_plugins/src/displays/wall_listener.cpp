@@ -2,7 +2,7 @@
 
 #include "messages/tissue_messages.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 void WallListener::listen(ros::NodeHandle& node, bool wanted) {
   if (wanted == listens_) return;
@@ -39,4 +39,4 @@ bool WallListener::update() {
   return another;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

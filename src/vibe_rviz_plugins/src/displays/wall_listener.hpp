@@ -10,7 +10,7 @@
 #include "geometry/deformable_surface.hpp"
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The drawn wall of an organ from tissue/topology and tissue/particles, for displays that put something on it. What is
 /// wrong with these messages is said by the display of the tissue. All functions run in the thread that renders.
@@ -39,4 +39,4 @@ class WallListener {
   bool listens_ = false, has_mesh_ = false, placed_ = false, forgot_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 enum Button : int { ApcPedal, HelixGrab, Needle, TTag, Cinch, Insufflate };
@@ -77,4 +77,4 @@ const std::vector<KeyRow>& keyRows() {
   return rows;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

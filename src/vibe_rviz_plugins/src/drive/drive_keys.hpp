@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 constexpr int kJointCount = 7;
 /// In the order of StepInput.
@@ -47,4 +47,4 @@ struct KeyRow {
 };
 const std::vector<KeyRow>& keyRows();
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

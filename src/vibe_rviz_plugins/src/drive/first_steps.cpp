@@ -1,6 +1,6 @@
 #include "drive/first_steps.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kInflated = 400;               // gauge pressure, below the set point of the default scene [Pa]
@@ -54,4 +54,4 @@ FirstStep firstStep(const DriveSituation& now) {
   return now.holds ? biting(now) : approaching(now);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 
 #include "drive/drive_keys.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Where a player stands.
 struct DriveSituation {
@@ -28,4 +28,4 @@ struct FirstStep {
 constexpr int kFirstSteps = 12;
 FirstStep firstStep(const DriveSituation& now);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 // Time from rest to the greatest speed of the URDF; the speeds of the keys are reached sooner. Design choice. [s]
@@ -103,4 +103,4 @@ bool ScopeDrive::atRest() const {
   return std::all_of(axes_.begin(), axes_.end(), [](const SmoothAxis& axis) { return axis.velocity() == 0; });
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 #include "drive/drive_keys.hpp"
 #include "drive/smooth_axis.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Position limits and greatest speed of the joints, as the URDF gives them.
 struct JointLimit {
@@ -65,4 +65,4 @@ class ScopeDrive {
   void advanceJoint(int joint, double seconds);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kPrecision = 1e-10;  // of positions, far below what a joint resolves [m] or [rad]
@@ -64,4 +64,4 @@ double SmoothAxis::cruise(double seconds) {
   return seconds;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

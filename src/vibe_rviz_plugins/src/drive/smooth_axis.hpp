@@ -1,6 +1,6 @@
 #pragma once
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Limits of one joint, from the URDF, and how fast its velocity may change. [m] or [rad]
 struct AxisLimits {
@@ -39,4 +39,4 @@ class SmoothAxis {
   double cruise(double seconds);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

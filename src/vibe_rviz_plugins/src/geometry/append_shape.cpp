@@ -1,6 +1,6 @@
 #include "geometry/append_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 void appendShape(const ColouredShape& from, ColouredShape& to) {
   const auto first = static_cast<std::uint32_t>(to.vertices.size());
@@ -17,4 +17,4 @@ void joinRows(std::uint32_t upper, std::uint32_t lower, std::uint32_t count, boo
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,7 +1,7 @@
 #pragma once
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Adds the triangles of a shape to those of another one.
 void appendShape(const ColouredShape& from, ColouredShape& to);
@@ -10,4 +10,4 @@ void appendShape(const ColouredShape& from, ColouredShape& to);
 /// @param closed  the last vertex of a row is beside the first
 void joinRows(std::uint32_t upper, std::uint32_t lower, std::uint32_t count, bool closed, ColouredShape& shape);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kCloseEnough = 0.04;  // of the target: close enough to show the first picture [1]
@@ -30,4 +30,4 @@ void AutoExposure::see(double level, double time) {
   time_ = time;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The exposure of a video processor: brings the mean level of the picture to a target, at a limited rate. A function
 /// of the levels and stamps it has seen, so the same pictures are exposed in the same way again.
@@ -31,4 +31,4 @@ class AutoExposure {
   int tries_ = 0;  ///< of the picture of time_
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

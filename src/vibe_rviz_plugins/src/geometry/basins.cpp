@@ -7,7 +7,7 @@
 
 #include "geometry/descent.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kSameHeight = 1e-7, kSameLevel = 1e-7;  // [m]
@@ -158,4 +158,4 @@ void Basins::pour(std::uint32_t vertex, double volume, double brown) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 
 #include "geometry/wall_surface.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A fluid at rest on a wall.
 struct Pool {
@@ -65,4 +65,4 @@ class Basins {
 /// @param a, b, c    depth of its corners below the level, the deepest first; negative above it [m]
 double volumeOnTriangle(double projected, double a, double b, double c);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,6 +1,6 @@
 #include "geometry/bleeding_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 void BleedingShape::setMesh(const TissueMesh* mesh) {
   mesh_ = mesh;
@@ -26,4 +26,4 @@ bool BleedingShape::update(const std::vector<MovingVertex>* wall, const Eigen::I
   return true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include "geometry/blood_shapes.hpp"
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The blood of the wounds of a scene on the wall of an organ, made again only if one of them has changed. Without
 /// wounds it costs nothing.
@@ -31,4 +31,4 @@ class BleedingShape {
   bool changed_ = false, on_wall_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

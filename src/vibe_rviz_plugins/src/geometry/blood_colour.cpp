@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kBrown = 45;      // [s]
@@ -38,4 +38,4 @@ double wobble(int number, int which) {
   return 2 * (value - std::floor(value)) - 1;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

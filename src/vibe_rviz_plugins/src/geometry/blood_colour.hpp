@@ -2,7 +2,7 @@
 #include "geometry/suture_drawing.hpp"
 #include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Colour of blood and what it hides, 0 to 1.
 struct BloodShade {
@@ -29,4 +29,4 @@ BloodShade layerOf(double depth, double brown);
 /// Pseudo-random value from -1 to 1 for the number of a wound, so that shapes differ.
 double wobble(int number, int which);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 #include "geometry/blood_jet.hpp"
 #include "geometry/descent.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -177,4 +177,4 @@ BloodFlow flowOf(const std::vector<Wound>& wounds, const WallSurface& wall, cons
   return builder.finished();
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 #include "geometry/suture_drawing.hpp"
 #include "geometry/wall_surface.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Blood that lies around a point of the wall.
 struct BloodFilm {
@@ -49,4 +49,4 @@ struct BloodFlow {
 /// The blood of a brisk wound does the same from where its jet lands, and so does what falls from a ceiling.
 BloodFlow flowOf(const std::vector<Wound>& wounds, const WallSurface& wall, const BloodStyle& style);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

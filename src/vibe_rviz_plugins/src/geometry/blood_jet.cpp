@@ -7,7 +7,7 @@
 #include "geometry/blood_colour.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -84,4 +84,4 @@ void appendJet(const Wound& wound, const std::vector<Vector3d>& line, const Bloo
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

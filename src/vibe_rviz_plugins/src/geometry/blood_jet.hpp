@@ -6,7 +6,7 @@
 #include "geometry/suture_drawing.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Initial speed of the jet of a brisk wound [m/s].
 double jetSpeed(double time);
@@ -25,4 +25,4 @@ std::vector<Eigen::Vector3d> jetLine(const Wound& wound, double duration, const 
 void appendJet(const Wound& wound, const std::vector<Eigen::Vector3d>& line, const BloodStyle& style,
                ColouredShape& shape);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

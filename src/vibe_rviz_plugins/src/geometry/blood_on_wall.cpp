@@ -8,7 +8,7 @@
 #include "geometry/blood_colour.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -177,4 +177,4 @@ void appendPool(const Pool& pool, const WallSurface& wall, const BloodStyle& sty
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -2,7 +2,7 @@
 #include "geometry/blood_flow.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // The shapes of blood that lies on a wall. They follow the wall, a little above it; colour and opacity of a vertex are
 // those of the depth of blood there, so that edges are thin and let the wall through.
@@ -17,4 +17,4 @@ void appendRivulet(const Rivulet& rivulet, const WallSurface& wall, ColouredShap
 /// shore, as those of a fluid that does not wet.
 void appendPool(const Pool& pool, const WallSurface& wall, const BloodStyle& style, ColouredShape& shape);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -9,7 +9,7 @@
 #include "geometry/blood_on_wall.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -172,4 +172,4 @@ void appendBlood(const SutureDrawing& scene, const BloodStyle& style, const Wall
     if (wound.amount > 0 || wound.rate > 0) appendWound(wound, scene, style, shape);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

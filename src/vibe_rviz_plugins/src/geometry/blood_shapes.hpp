@@ -8,7 +8,7 @@
 #include "geometry/wall_surface.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Appends all bleeding. On a wall: films, rivulets and pools as flowOf() finds them, and the pulsing jets of brisk
 /// wounds; a jet pulses 72 times a minute, follows a ballistic path, and breaks up into drops. Stopped: no jet, and the
@@ -34,4 +34,4 @@ void appendPuddle(const Puddle& puddle, ColouredShape& shape);
 /// Mean radius of a puddle's outline [m].
 double puddleRadius(const Puddle& puddle);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

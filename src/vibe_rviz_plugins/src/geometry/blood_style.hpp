@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// How bleeding is drawn. The shape depends on the message, its time and the wall of that time alone.
 struct BloodStyle {
@@ -10,4 +10,4 @@ struct BloodStyle {
   double time = 0;                 ///< of the message; phase of the pulse of brisk bleeding [s]
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

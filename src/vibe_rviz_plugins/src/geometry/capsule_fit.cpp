@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -109,4 +109,4 @@ std::vector<Capsule> fitCapsules(const std::vector<Eigen::Vector3f>& points,
   return capsules;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// All points that are at most `radius` away from a segment [m].
 struct Capsule {
@@ -19,4 +19,4 @@ struct Capsule {
 std::vector<Capsule> fitCapsules(const std::vector<Eigen::Vector3f>& points,
                                  const std::vector<std::uint32_t>& triangles);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

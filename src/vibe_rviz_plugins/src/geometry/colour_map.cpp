@@ -1,6 +1,6 @@
 #include "vibe_rviz_plugins/geometry/colour_map.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kAnchors = 33;  // straight between: off by at most 2 of 255 levels, cividis 6 at its dark end
@@ -74,4 +74,4 @@ const std::vector<std::string>& colourMapNames() {
   return names;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

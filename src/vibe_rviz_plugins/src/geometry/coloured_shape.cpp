@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr float kMaxCoordinate = 1e6F;  // a vertex farther away is a mistake [m]
@@ -33,4 +33,4 @@ std::string problemOf(const ColouredShape& shape) {
   return "";
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

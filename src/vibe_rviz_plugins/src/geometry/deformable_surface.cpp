@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::size_t kMaxMovedShare = 4;  // if more than one particle in this many has moved, all are updated
@@ -124,4 +124,4 @@ void DeformableSurface::findBounds() {
   for (const MovingVertex& vertex : vertices_) bounds_.extend(Eigen::Map<const Eigen::Vector3f>(vertex.position));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 #include "geometry/vertex_span.hpp"
 #include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The drawn surface of a moving organ: positions and smooth normals of the vertices from those of the particles. The
 /// cost grows with the number of moved particles, because vertices of particles at rest are not updated. Up to rounding
@@ -54,4 +54,4 @@ class DeformableSurface {
   std::vector<std::uint8_t> particle_mark_, triangle_mark_, vertex_mark_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

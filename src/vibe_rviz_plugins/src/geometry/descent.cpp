@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -55,4 +55,4 @@ std::uint32_t bottomBelow(const WallSurface& wall, const WallPlace& point, const
   return bottomBelow(wall, lowest, down);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

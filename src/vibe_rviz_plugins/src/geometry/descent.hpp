@@ -3,7 +3,7 @@
 
 #include "geometry/wall_surface.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Where something that flows slowly runs on a wall: the line of steepest descent of its smooth normals, in steps of
 /// 1.2 mm or less. It ends where the wall goes down no more (a hollow, or the tip of a fold that hangs down), or after
@@ -17,4 +17,4 @@ std::vector<WallPlace> steepestDescent(const WallSurface& wall, const WallPlace&
 std::uint32_t bottomBelow(const WallSurface& wall, const WallPlace& point, const Eigen::Vector3d& down);
 std::uint32_t bottomBelow(const WallSurface& wall, std::uint32_t vertex, const Eigen::Vector3d& down);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

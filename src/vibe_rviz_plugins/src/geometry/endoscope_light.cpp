@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kAhead = 0.5;                                         // light of a guide of strength 1 ahead
@@ -29,4 +29,4 @@ Eigen::Vector2d coneOf(const EndoscopeLight& light, const LightGuide& guide) {
   return kAhead * guide.strength * Eigen::Vector2d(light.sideward, 1 - light.sideward);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

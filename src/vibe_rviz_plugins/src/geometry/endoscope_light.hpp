@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <array>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The end of a bundle of fibres beside the lens.
 struct LightGuide {
@@ -27,4 +27,4 @@ Eigen::Vector3d lightColour(double temperature);
 /// guides of the default have 0.15 and 0.35.
 Eigen::Vector2d coneOf(const EndoscopeLight& light, const LightGuide& guide);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 /// The unit direction in which the angle around the organ grows, in a triangle at rest; zero where it is not defined.
@@ -82,4 +82,4 @@ const std::vector<float>& FoldHeight::update(const std::vector<float>& positions
   return heights_;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 #include "geometry/mucosa_map.hpp"
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 constexpr float kRestingFold = 3e-3F;    ///< at rest; "several millimetres" in descriptions; design choice [m]
 constexpr float kTallestFold = 4.5e-3F;  ///< of a wall that is compressed; design choice [m]
@@ -50,4 +50,4 @@ class FoldHeight {
   std::vector<float> stretch_, of_particle_, heights_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,6 +1,6 @@
 #include "geometry/incidence.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 void makeRoom(const std::vector<std::uint32_t>& groups_of_item, std::size_t groups, Incidence& result) {
@@ -28,4 +28,4 @@ Incidence turnedAround(const std::vector<std::uint32_t>& groups_of_item, std::si
   return turnedAround(offset, groups_of_item, groups);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

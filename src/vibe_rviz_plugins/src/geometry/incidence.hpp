@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The items of each group, group by group: items[first[g]] to items[first[g + 1]].
 struct Incidence {
@@ -20,4 +20,4 @@ Incidence turnedAround(const std::vector<std::uint32_t>& offset, const std::vect
 /// The same for items that are in `each` groups, such as triangles with three corners.
 Incidence turnedAround(const std::vector<std::uint32_t>& groups_of_item, std::size_t each, std::size_t groups);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kMinPicture = 16, kMaxPicture = 4096;  // [px]
@@ -89,4 +89,4 @@ CameraNumbers numbersOf(const RoundCamera& camera, double baseline) {
   return numbers;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Projection of a lens: how the angle theta between a ray and the optical axis gives the distance from the image
 /// centre.
@@ -81,4 +81,4 @@ struct CameraNumbers {
 /// @param baseline  distance to the right of the first camera of a stereo pair [m]; 0: first or only camera
 CameraNumbers numbersOf(const RoundCamera& camera, double baseline);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

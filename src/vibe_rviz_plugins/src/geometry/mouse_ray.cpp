@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 namespace {
 
@@ -73,4 +73,4 @@ std::optional<Eigen::Vector3d> meetPlane(const MouseRay& ray, const Eigen::Vecto
   return Eigen::Vector3d(ray.origin + distance * ray.direction);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

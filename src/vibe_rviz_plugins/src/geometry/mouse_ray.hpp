@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A half-line: what lies under the mouse.
 struct MouseRay {
@@ -32,4 +32,4 @@ std::optional<MouseHit> firstHit(const MouseRay& ray, const std::vector<float>& 
 std::optional<Eigen::Vector3d> meetPlane(const MouseRay& ray, const Eigen::Vector3d& place,
                                          const Eigen::Vector3d& normal);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What differs between the mucosa of two stomachs of the same shape, under the light of an endoscope. The defaults are
 /// the look of the live view.
@@ -23,4 +23,4 @@ struct MucosaLook {
   }
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

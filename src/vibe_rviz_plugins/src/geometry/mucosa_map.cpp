@@ -7,7 +7,7 @@
 #include "geometry/mucosa_pattern.hpp"
 #include "geometry/surface_graph.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 // numbers of vibe_msgs/TissueTopology
@@ -177,4 +177,4 @@ MucosaMap mapMucosa(const TissueMesh& mesh, const Eigen::Vector3f& shift) {
   return entriesOf(mesh, values, shift);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What the mucosa looks like at a vertex, from the anatomy alone: constant while the organ moves. All of it is smooth
 /// across the borders of regions. Layout of a vertex buffer.
@@ -33,4 +33,4 @@ struct MucosaMap {
 /// @param shift  of the patterns, see MucosaLook [m]
 MucosaMap mapMucosa(const TissueMesh& mesh, const Eigen::Vector3f& shift = {0, 0, 0});
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3f;
@@ -138,4 +138,4 @@ MucosaPattern halved(const MucosaPattern& pattern) {
   return half;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

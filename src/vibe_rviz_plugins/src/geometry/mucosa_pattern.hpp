@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A solid texture of four patterns that the shader of the mucosa cuts with the surface at rest. It repeats without a
 /// seam in x, y and z; the shader reads it at several scales in turned frames, so that no period is seen.
@@ -31,4 +31,4 @@ float foldBend(const Eigen::Vector3f& rest);
 /// The next coarser level: means of 2 x 2 x 2 voxels, which a surface far away shows instead of an alias.
 MucosaPattern halved(const MucosaPattern& pattern);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 #include "geometry/append_shape.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector2d;
@@ -85,4 +85,4 @@ void appendBobbin(const Vector3d& centre, const Vector3d& axis, double length, d
   appendRevolved(profile, centre, axis, colour, sides, shape);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

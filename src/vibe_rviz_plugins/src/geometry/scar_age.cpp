@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 bool anyGradeFell(const std::vector<std::uint8_t>& before, const std::vector<std::uint8_t>& now) {
@@ -55,4 +55,4 @@ std::vector<float> ScarAge::browned() const {
   return of_vertex;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Time after which a mark is half way from white to brown, that is, tan. Design choice: sessions last 8 to 17 minutes,
 /// in which the first marks shall be told from the last ones [s].
@@ -36,4 +36,4 @@ class ScarAge {
   double time_ = 0;                  ///< of the last frame [s]
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 bool anyDoseFell(const std::vector<float>& before, const std::vector<float>& now) {
@@ -46,4 +46,4 @@ double Smoke::extinction() const {
   return std::min(kDensestSmoke, kSmokePerJoule * energy_);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

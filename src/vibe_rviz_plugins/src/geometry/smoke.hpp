@@ -3,7 +3,7 @@
 
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // Design choices: nothing is published on the smoke of argon plasma coagulation in a stomach.
 constexpr double kSmokeLife =
@@ -41,4 +41,4 @@ class Smoke {
   double energy_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

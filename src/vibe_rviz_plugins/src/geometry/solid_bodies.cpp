@@ -4,7 +4,7 @@
 
 #include "vibe_rviz_plugins/geometry/revolved.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kSolidSides = 32, kSphereRings = 16;
@@ -51,4 +51,4 @@ void appendBox(const Eigen::Isometry3d& pose, const Eigen::Vector3d& size, Packe
     for (const double sign : {-1., 1.}) appendFace(pose, size, axis, sign, colour, shape);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,6 +1,6 @@
 #include "geometry/surface_colours.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr PackedColour kWhite = 0x00ffffffU;  // without alpha
@@ -109,4 +109,4 @@ VertexSpan SurfaceColours::update(const TissueFrame& frame) {
   return span;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

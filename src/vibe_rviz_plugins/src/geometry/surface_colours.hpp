@@ -6,7 +6,7 @@
 #include "geometry/vertex_span.hpp"
 #include "vibe_rviz_plugins/geometry/colour_map.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What the colour of tissue shows.
 enum class Colouring { Tissue, Region, Wall, Strain, Heat, Thickness };
@@ -50,4 +50,4 @@ class SurfaceColours {
   std::vector<std::uint8_t> mark_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

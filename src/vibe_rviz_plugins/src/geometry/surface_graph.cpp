@@ -6,7 +6,7 @@
 #include <queue>
 #include <utility>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 /// Both directions of every edge, each once, in ascending order.
@@ -74,4 +74,4 @@ Eigen::MatrixXd SurfaceGraph::blurred(const Eigen::MatrixXd& values, double radi
   return factor.solve(values);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The edges of a closed triangle mesh, for smoothing and distances on its surface.
 class SurfaceGraph {
@@ -31,4 +31,4 @@ class SurfaceGraph {
   double mean_edge_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A bite of the needle in the wall.
 struct SutureBite {
@@ -58,4 +58,4 @@ struct SutureDrawing {
   std::vector<Wound> wounds;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

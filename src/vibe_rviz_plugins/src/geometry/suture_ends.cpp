@@ -7,7 +7,7 @@
 #include "vibe_rviz_plugins/geometry/revolved.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -73,4 +73,4 @@ void appendCinch(const SutureSet& set, double size, const HeldThread& thread, Co
              thread.radius, thread.colour, kThreadSides, shape);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -2,7 +2,7 @@
 #include "geometry/suture_drawing.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Opacity of vertices of metal, which media/suture.frag tells from polymer by it; bodies are drawn opaque.
 constexpr double kMetal = 0.5;
@@ -24,4 +24,4 @@ void appendTag(const SutureSet& set, double size, const HeldThread& thread, Colo
 /// thread, the cut end of which stands out.
 void appendCinch(const SutureSet& set, double size, const HeldThread& thread, ColouredShape& shape);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

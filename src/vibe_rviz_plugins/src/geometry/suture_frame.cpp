@@ -5,7 +5,7 @@
 
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -68,4 +68,4 @@ Vector3d cinchAxis(const SutureSet& set) {
   return set.pieces.empty() ? wholeWay(set) : unitOr(beginning(set.pieces.front()), wholeWay(set));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

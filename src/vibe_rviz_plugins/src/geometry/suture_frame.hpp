@@ -3,7 +3,7 @@
 
 #include "geometry/suture_drawing.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // Orientation of the parts of a suture from the positions of its bites and thread. All are unit vectors, rotate with
 // the suture, and are defined for every set, even if all bites coincide.
@@ -21,4 +21,4 @@ Eigen::Vector3d tagAxis(const SutureSet& set);
 /// Axis of the cinch, along the thread.
 Eigen::Vector3d cinchAxis(const SutureSet& set);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -11,7 +11,7 @@
 #include "vibe_rviz_plugins/geometry/revolved.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -198,4 +198,4 @@ Vector3d labelPlace(const SutureSet& set, double distance) {
   return inward.norm() > 1e-6 ? Vector3d(middle + distance * inward.normalized()) : middle;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 #include "vibe_rviz_plugins/geometry/colour_map.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 enum class ThreadColour { Tension, One, PerSuture };
 
@@ -43,4 +43,4 @@ std::string labelOf(const SutureSet& set, std::size_t number);
 /// Position of the label: the centroid of the bites, moved into the lumen by `distance` [m].
 Eigen::Vector3d labelPlace(const SutureSet& set, double distance);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Constant data of an organ, from tissue/topology. A "vertex" belongs to the drawn surface, a "particle" to the
 /// simulated one; without a render surface they are the same.
@@ -41,4 +41,4 @@ struct TissueFrame {
   std::vector<float> dose;  ///< largest heat so far, as energy of a whole spot [J]; empty like grade
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

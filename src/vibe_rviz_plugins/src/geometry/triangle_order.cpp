@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kBits = 10;  // of a coordinate
@@ -39,4 +39,4 @@ std::vector<std::uint32_t> sortedInSpace(const std::vector<std::uint32_t>& trian
   return sorted;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The same triangles, sorted so that neighbours in the list are neighbours in space (order of Morton 1966): a renderer
 /// then finds most corners among those that it has computed a moment ago.
@@ -10,4 +10,4 @@ namespace vibe {
 /// @param places     x y z per vertex; any unit
 std::vector<std::uint32_t> sortedInSpace(const std::vector<std::uint32_t>& triangles, const std::vector<float>& places);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

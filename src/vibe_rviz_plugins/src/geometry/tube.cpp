@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -193,4 +193,4 @@ void appendBall(const Vector3d& centre, double radius, PackedColour colour, int 
   appendTube({{centre, radius, colour}}, sides, shape);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Vertices from `first` up to but excluding `last`: the part of a buffer that must be sent again.
 struct VertexSpan {
@@ -17,4 +17,4 @@ struct VertexSpan {
   }
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -182,4 +182,4 @@ std::optional<WallPlace> WallSurface::landing(const std::vector<Vector3d>& line,
   return std::nullopt;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

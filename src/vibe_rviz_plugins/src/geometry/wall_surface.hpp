@@ -8,7 +8,7 @@
 #include "geometry/tissue_mesh.hpp"
 #include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A point on a wall.
 struct WallPlace {
@@ -65,4 +65,4 @@ class WallSurface {
   std::vector<Eigen::Vector3d> places_, inwards_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,6 +1,6 @@
 #include "messages/button_bank.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kMinPress = 0.1;    // design choice: several steps at 60 Hz [s]
@@ -78,4 +78,4 @@ void ButtonBank::liftHeld() {
     if (!commands()[i].toggles) down_[i] = 0;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A command of the trainee: a button of the topic scope/buttons.
 struct Command {
@@ -49,4 +49,4 @@ class ButtonBank {
   std::array<Moment, kCommandCount> pressed_{};
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,6 +1,6 @@
 #include "messages/cloud_field.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 std::size_t sizeOf(std::uint8_t type) {
@@ -44,4 +44,4 @@ std::string findField(const sensor_msgs::PointCloud2& cloud, const std::string& 
   return required ? "The cloud has no field '" + name + "'; is it tissue/particles?" : std::string();
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

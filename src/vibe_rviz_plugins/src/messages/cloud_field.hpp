@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// One field of a point cloud: at(i) is the value of point i. Valid as long as the message.
 class CloudField {
@@ -34,4 +34,4 @@ std::string checkLayout(const sensor_msgs::PointCloud2& cloud);
 std::string findField(const sensor_msgs::PointCloud2& cloud, const std::string& name, std::uint8_t type, bool required,
                       CloudField& field);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

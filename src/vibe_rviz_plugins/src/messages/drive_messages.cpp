@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::size_t kScopeJoints = 4;
@@ -83,4 +83,4 @@ DriveSituation situationOf(const vibe_msgs::ProcedureState& state) {
   return now;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

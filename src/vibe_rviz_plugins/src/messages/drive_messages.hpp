@@ -7,7 +7,7 @@
 #include "drive/first_steps.hpp"
 #include "drive/scope_drive.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Limits of the seven joints from a URDF. @return empty, or one sentence that says what is wrong with it
 std::string readJointLimits(const std::string& urdf, JointLimits& limits);
@@ -26,4 +26,4 @@ bool isOtherSession(const vibe_msgs::ProcedureState& before, const vibe_msgs::Pr
 /// What the state tells about the first steps; joints and buttons are not in it.
 DriveSituation situationOf(const vibe_msgs::ProcedureState& state);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

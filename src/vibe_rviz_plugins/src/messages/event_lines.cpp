@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Event = vibe_msgs::ProcedureEvent;
@@ -81,4 +81,4 @@ std::string eventText(const vibe_msgs::ProcedureEvent& event) {
   return event.kind == Event::REJECTED ? "Rejected: " + event.text : event.text;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// How an event is shown. Every one has a symbol of its own, so that nothing depends on seeing colours.
 enum class EventSeverity { Note, Success, Warning, Bleeding, Harm };
@@ -21,4 +21,4 @@ bool isListed(const vibe_msgs::ProcedureEvent& event);
 /// Its sentence, with "Rejected: " before it for a command that could not act. The title if there is no sentence.
 std::string eventText(const vibe_msgs::ProcedureEvent& event);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

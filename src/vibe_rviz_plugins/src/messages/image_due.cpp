@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 bool ImageDue::isDue(const ros::Time& stamp) {
   constexpr double kSlack = 0.1;  // of a period: stamps are rounded
@@ -16,4 +16,4 @@ bool ImageDue::isDue(const ros::Time& stamp) {
   return true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

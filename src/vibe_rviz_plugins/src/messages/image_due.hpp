@@ -1,7 +1,7 @@
 #pragma once
 #include <ros/time.h>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Decides for which of the states an image is drawn, so that images have a given rate in the time of their stamps.
 class ImageDue {
@@ -19,4 +19,4 @@ class ImageDue {
   bool any_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

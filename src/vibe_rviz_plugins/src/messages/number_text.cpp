@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kMaxPlain = 1e9;  // larger numbers are written with an exponent
@@ -47,4 +47,4 @@ std::string countText(unsigned long count, const std::string& singular) {
   return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // Numbers for display, always with a decimal point whatever the locale. A value that is not finite is shown as a dash.
 
@@ -19,4 +19,4 @@ std::string durationText(double seconds);
 /// "1 bite", "2 bites".
 std::string countText(unsigned long count, const std::string& singular);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

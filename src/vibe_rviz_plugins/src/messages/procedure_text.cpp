@@ -4,7 +4,7 @@
 
 #include "messages/number_text.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::array<const char*, kPhaseCount> kPhases = {"inspect", "mark", "suture", "pull", "done"};
@@ -114,4 +114,4 @@ std::vector<NamedText> solverStatisticsRows(const vibe_msgs::SolverStatistics& s
   return rows;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

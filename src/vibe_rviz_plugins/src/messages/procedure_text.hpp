@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The procedure's phases as a row of steps.
 enum class StepKind { Before, Present, After };
@@ -47,4 +47,4 @@ struct NamedText {
 };
 std::vector<NamedText> solverStatisticsRows(const vibe_msgs::SolverStatistics& statistics);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

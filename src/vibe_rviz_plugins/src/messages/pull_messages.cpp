@@ -2,7 +2,7 @@
 
 #include "messages/max_coordinate.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 namespace {
 
@@ -30,4 +30,4 @@ std::string readPullState(const vibe_msgs::TissuePullState& message, PullState& 
   return "";
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <string>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The pull spring after a step.
 struct PullState {
@@ -18,4 +18,4 @@ struct PullState {
 /// @return empty, and the state is set; otherwise one sentence that says what is wrong
 std::string readPullState(const vibe_msgs::TissuePullState& message, PullState& state);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 
 #include "messages/number_text.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -206,4 +206,4 @@ BarShape barShape(const ShownMeasure& measure, double value) {
   return shape;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

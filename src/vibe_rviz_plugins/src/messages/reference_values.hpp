@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What the measures of a session are taken from.
 struct SessionMessages {
@@ -59,4 +59,4 @@ BarShape barShape(const ShownMeasure& measure, double value);
 /// Force of tissue on the tool [N] that is published as seldom: the limit of "too hard".
 extern const ShownMeasure kPullingForce;
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

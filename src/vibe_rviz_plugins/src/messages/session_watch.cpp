@@ -7,7 +7,7 @@
 
 #include "messages/number_text.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kSilentAfter = 2;  // the same as in the simulator [s]
@@ -63,4 +63,4 @@ std::string checkNamespace(const std::string& name) {
   return "The namespace '" + name + "' cannot be used: letters, digits, _ and / are allowed, with a letter first.";
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // Times are of a steady clock [s].
 
@@ -68,4 +68,4 @@ class MaxOfWindow {
 /// @return empty if a namespace can be used; otherwise one sentence that says why not
 std::string checkNamespace(const std::string& name);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

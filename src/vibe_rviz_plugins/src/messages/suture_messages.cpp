@@ -7,7 +7,7 @@
 
 #include "messages/max_coordinate.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Eigen::Vector3d;
@@ -214,4 +214,4 @@ std::string readSutures(const vibe_msgs::SutureArray& message, SutureDrawing& sc
   return {};
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

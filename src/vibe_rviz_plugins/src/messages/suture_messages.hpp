@@ -5,7 +5,7 @@
 
 #include "geometry/suture_drawing.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Checks and reads the threads and bleeding of a session.
 /// @return empty, and `scene` is set; otherwise one sentence that says what is wrong, and `scene` is unchanged
@@ -18,4 +18,4 @@ namespace vibe {
 /// to the right and up, and so on. It is accurate to about 30 degrees for a stomach in normal position.
 std::string readSutures(const vibe_msgs::SutureArray& message, SutureDrawing& scene);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 
 #include "messages/number_text.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 std::string stageName(const vibe_msgs::Suture& suture) {
@@ -97,4 +97,4 @@ std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures, const v
   return rows;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// One set of bites as a row of a table.
 struct SutureRow {
@@ -27,4 +27,4 @@ std::vector<SutureRow> sutureRows(const vibe_msgs::SutureArray& sutures,
 /// Maximum tension of the pieces of a thread [N]; NaN without pieces or if the message contains NaN.
 double maxTension(const vibe_msgs::Suture& suture);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

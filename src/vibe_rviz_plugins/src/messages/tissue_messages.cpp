@@ -8,7 +8,7 @@
 #include "messages/cloud_field.hpp"
 #include "messages/max_coordinate.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::size_t kMaxParticles = 10'000'000;  // more is a mistake
@@ -161,4 +161,4 @@ std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueM
   return {};
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

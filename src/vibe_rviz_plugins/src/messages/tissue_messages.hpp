@@ -6,7 +6,7 @@
 
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // Messages may come from any source. The functions return an empty string and fill the result, or one sentence that
 // says what is wrong with the message; then nothing is drawn from it.
@@ -18,4 +18,4 @@ std::string readTopology(const vibe_msgs::TissueTopology& message, TissueMesh& m
 /// positions finite. Reuses the memory of `frame`.
 std::string readParticles(const sensor_msgs::PointCloud2& message, const TissueMesh& mesh, TissueFrame& frame);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Goal = vibe_msgs::GoalProgress;
@@ -37,4 +37,4 @@ std::string traineeText(const vibe_msgs::TraineeProgress& progress) {
   return text;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 
 #include "panels/procedure_subscriptions.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::uint32_t kQueue = 100;
@@ -103,4 +103,4 @@ std::string ButtonSender::sentence(double now) const {
                          listeners > 1 ? listeners - 1 : 0, now);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 #include "messages/button_bank.hpp"
 #include "messages/session_watch.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Publishes scope/buttons while it has control: at every change and whenever tick() is called, which should be ten
 /// times a second. Without control nothing is advertised, so that the simulator has no second publisher to ignore.
@@ -60,4 +60,4 @@ class ButtonSender {
   void publish();
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 #include "panels/panel_colours.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kButtonColumns = 2;
@@ -67,4 +67,4 @@ void CommandBox::display(bool in_control, const std::array<std::int32_t, kComman
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -8,7 +8,7 @@
 class QLabel;
 class QPushButton;
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The six buttons of the device and the switch that takes control of them.
 class CommandBox : public QWidget {
@@ -36,4 +36,4 @@ class CommandBox : public QWidget {
   void makeButton(int button);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

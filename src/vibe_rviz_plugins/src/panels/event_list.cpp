@@ -7,7 +7,7 @@
 #include "panels/panel_colours.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kLinesShown = 8;
@@ -48,4 +48,4 @@ QSize EventList::sizeHint() const {
   return {200, kLinesShown * fontMetrics().height() + 2 * frameWidth()};
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <QListWidget>
 #include <string>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Recent events, newest first, each with the symbol of its severity. Their number is limited. A note that repeats
 /// without another event in between is listed once, with its last time.
@@ -23,4 +23,4 @@ class EventList : public QListWidget {
   std::string newest_;  // sentence of the top entry
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -9,7 +9,7 @@
 #include "panels/range_bar.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 MeasuresView::MeasuresView(QWidget* parent) : QWidget(parent) {
   makeSmaller(*this);
@@ -52,4 +52,4 @@ void MeasuresView::display(const PanelMessages& messages) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 
 class QLabel;
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class RangeBar;
 
@@ -26,4 +26,4 @@ class MeasuresView : public QWidget {
   std::vector<Row> rows_;  // as measures()
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <QPainterPath>
 #include <QPixmap>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kSize = 32;  // drawn finer than shown, for dense screens [px]
@@ -116,4 +116,4 @@ QIcon lamp(bool on, const QPalette& palette) {
   });
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 #include "messages/event_lines.hpp"
 #include "messages/reference_values.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Colours and symbols of the panel, legible with light and dark styles. No meaning depends on colour alone: every
 /// symbol has its own shape.
@@ -25,4 +25,4 @@ QIcon symbolOf(EventSeverity severity, const QPalette& palette);
 /// A lamp, filled while it is on.
 QIcon lamp(bool on, const QPalette& palette);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 #include <vibe_msgs/SutureArray.h>
 #include <vibe_msgs/TraineeProgress.h>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The last message of every topic that the panel shows; null: none has come.
 struct PanelMessages {
@@ -24,4 +24,4 @@ struct Freshness {
   double delay = 0;  ///< from the sample to its arrival; NaN: not known, stamps are simulated time [s]
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

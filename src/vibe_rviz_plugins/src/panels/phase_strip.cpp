@@ -7,7 +7,7 @@
 
 #include "panels/panel_colours.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kGap = 3;          // between two steps [px]
@@ -91,4 +91,4 @@ void PhaseStrip::paintStep(QPainter& painter, const QRectF& place, const PhaseSt
   painter.drawText(place, Qt::AlignCenter, QString::fromStdString(step.name));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 
 #include "messages/procedure_text.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The procedure's phases from left to right. The present one is filled, framed and bold, those behind are
 /// underlined.
@@ -26,4 +26,4 @@ class PhaseStrip : public QWidget {
   void paintStep(QPainter& painter, const QRectF& place, const PhaseStep& step) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

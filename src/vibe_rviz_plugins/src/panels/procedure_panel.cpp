@@ -5,7 +5,7 @@
 
 #include "panels/procedure_widget.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 ProcedurePanel::ProcedurePanel(QWidget* parent) : rviz::Panel(parent), widget_(new ProcedureWidget) {
   auto* column = new QVBoxLayout(this);
@@ -29,6 +29,6 @@ void ProcedurePanel::save(rviz::Config config) const {
   config.mapSetValue("Namespace", widget_->nameSpace());
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
-PLUGINLIB_EXPORT_CLASS(vibe::ProcedurePanel, rviz::Panel)
+PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::ProcedurePanel, rviz::Panel)

@@ -3,7 +3,7 @@
 #include <rviz/panel.h>
 #endif
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class ProcedureWidget;
 
@@ -21,4 +21,4 @@ class ProcedurePanel : public rviz::Panel {
   ProcedureWidget* widget_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

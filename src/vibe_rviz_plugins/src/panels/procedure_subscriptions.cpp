@@ -3,7 +3,7 @@
 #include <chrono>
 #include <limits>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr std::uint32_t kEventQueue = 1000;  // many come in one step, and all are shown
@@ -74,4 +74,4 @@ double ProcedureSubscriptions::origin() const {
   return messages_.state ? messages_.state->header.stamp.toSec() - messages_.state->time : 0;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -9,7 +9,7 @@
 #include "messages/session_watch.hpp"
 #include "panels/panel_messages.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Time of a steady clock [s].
 double steadySeconds();
@@ -46,4 +46,4 @@ class ProcedureSubscriptions {
   void noteArrival(const ros::Time& stamp);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -18,7 +18,7 @@
 #include "panels/suture_table.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kMinWidth = 260;                                // nothing is clipped [px]
@@ -213,4 +213,4 @@ void ProcedureWidget::displayStatus(double now) {
   status_->setVisible(!sentence.empty());
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -9,7 +9,7 @@ class QLabel;
 class QLineEdit;
 class QVBoxLayout;
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class CommandBox;
 class EventList;
@@ -73,4 +73,4 @@ class ProcedureWidget : public QWidget {
   void displayStatus(double now);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 
 #include "panels/panel_colours.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kMark = 5;   // radius of the mark [px]
@@ -58,4 +58,4 @@ void RangeBar::paintMark(QPainter& painter, double x, double y) const {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 
 #include "messages/reference_values.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A small horizontal bar: the published range as a band, the value as a mark on it. The mark is a filled circle within
 /// the range, a triangle outside, an open circle without a range, and an arrow beyond the end of the bar.
@@ -25,4 +25,4 @@ class RangeBar : public QWidget {
   void paintMark(QPainter& painter, double x, double y) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

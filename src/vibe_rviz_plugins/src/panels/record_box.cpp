@@ -11,7 +11,7 @@
 #include "panels/panel_colours.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kPatience = 10000;  // for the recorder to write what it holds, when rviz is closed [ms]
@@ -111,4 +111,4 @@ void RecordBox::show(const QString& sentence, bool failed) {
   state_->show();
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -8,7 +8,7 @@ class QLabel;
 class QLineEdit;
 class QPushButton;
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A button that records the graph with vibe_record, and what became of it. The recording ends with the second press or
 /// with the box.
@@ -43,4 +43,4 @@ class RecordBox : public QWidget {
   void show(const QString& sentence, bool failed);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -14,7 +14,7 @@
 #include "panels/replay_slider.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kStay = std::numeric_limits<double>::quiet_NaN();
@@ -100,6 +100,6 @@ void ReplayPanel::display(const vibe_msgs::ReplayStatus& status) {
   state_->setText(name + comparison(status));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
-PLUGINLIB_EXPORT_CLASS(vibe::ReplayPanel, rviz::Panel)
+PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::ReplayPanel, rviz::Panel)

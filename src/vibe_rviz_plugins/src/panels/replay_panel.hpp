@@ -9,7 +9,7 @@ class QComboBox;
 class QLabel;
 class QPushButton;
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class ReplaySlider;
 
@@ -34,4 +34,4 @@ class ReplayPanel : public rviz::Panel {
   double rate() const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

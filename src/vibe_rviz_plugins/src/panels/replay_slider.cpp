@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kHandleMargin = 8;     // at both ends, for the handle [px]
@@ -94,4 +94,4 @@ bool ReplaySlider::event(QEvent* event) {
   return true;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

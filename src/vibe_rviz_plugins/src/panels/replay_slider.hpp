@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The time of a recording as a bar: played part, marks, and a handle to drag.
 class ReplaySlider : public QWidget {
@@ -42,4 +42,4 @@ class ReplaySlider : public QWidget {
   void drag(int x, bool exact);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

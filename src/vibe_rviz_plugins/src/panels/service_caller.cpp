@@ -7,7 +7,7 @@
 
 #include <chrono>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 ServiceCaller::ServiceCaller(Report report) : report_(std::move(report)), thread_([this] { run(); }) {}
 
@@ -103,4 +103,4 @@ void ServiceCaller::run() {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

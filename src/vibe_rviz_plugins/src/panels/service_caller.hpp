@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Calls the services of the simulator in a separate thread, so that the panel does not wait for a service that is slow
 /// or hangs. One call at a time.
@@ -51,4 +51,4 @@ class ServiceCaller {
   void run();
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

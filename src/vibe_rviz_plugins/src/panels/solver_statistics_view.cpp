@@ -7,7 +7,7 @@
 #include "messages/procedure_text.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 const char* const kAgeHelp = "Wall time since the last message about the tool or, without a tool, about the state.";
@@ -42,4 +42,4 @@ void SolverStatisticsView::display(const PanelMessages& messages, const Freshnes
   rows_->set("Delay", known ? toQt(quantityText(1e3 * freshness.delay, 0, "ms")) : kNoValue, kDelayHelp);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 
 #include "panels/panel_messages.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class TextRows;
 
@@ -20,4 +20,4 @@ class SolverStatisticsView : public QWidget {
   std::unique_ptr<TextRows> rows_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

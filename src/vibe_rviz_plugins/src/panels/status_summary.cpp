@@ -15,7 +15,7 @@
 #include "panels/range_bar.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kStatePeriod = 1;  // between two messages of the state at most, in simulated time [s]
@@ -117,4 +117,4 @@ void StatusSummary::displayForce(const PanelMessages& messages) {
   force_bar_->display(barShape(kPullingForce, force), rating);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

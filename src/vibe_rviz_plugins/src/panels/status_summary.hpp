@@ -6,7 +6,7 @@
 
 class QLabel;
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class PhaseStrip;
 class RangeBar;
@@ -33,4 +33,4 @@ class StatusSummary : public QWidget {
   void displayForce(const PanelMessages& messages);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -10,7 +10,7 @@
 #include "panels/panel_colours.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kMaxSteps = 10000;
@@ -101,4 +101,4 @@ void SteppingBox::enableAll() {
     widget->setEnabled(!waiting_);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

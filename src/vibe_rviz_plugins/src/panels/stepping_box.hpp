@@ -7,7 +7,7 @@ class QLabel;
 class QPushButton;
 class QSpinBox;
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Pause, single steps and reset, and the answer of the simulator.
 class SteppingBox : public QWidget {
@@ -41,4 +41,4 @@ class SteppingBox : public QWidget {
   void pressReset();
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 #include "panels/panel_colours.hpp"
 #include "panels/text_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kMaxShown = 8;  // rows without scrolling
@@ -91,4 +91,4 @@ QSize SutureTable::sizeHint() const {
           horizontalHeader()->sizeHint().height() + shown * verticalHeader()->defaultSectionSize() + 2 * frameWidth()};
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -3,7 +3,7 @@
 
 #include "messages/suture_rows.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// One row per set of bites.
 class SutureTable : public QTableWidget {
@@ -18,4 +18,4 @@ class SutureTable : public QTableWidget {
   void displayRow(int row, const SutureRow& content);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 
 #include "panels/panel_colours.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kSmaller = 0.9;
@@ -64,4 +64,4 @@ QLabel* TextRows::value(const QString& name) const {
   return found == values_.end() ? nullptr : found->second;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@ class QGridLayout;
 class QLabel;
 class QWidget;
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Two columns of labels: names and current values. Long values wrap.
 class TextRows {
@@ -37,4 +37,4 @@ inline QString toQt(const std::string& text) {
   return QString::fromStdString(text);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -15,7 +15,7 @@
 #include "render/endoscope_lamp.hpp"
 #include "render/mesh_look.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 const char* const kShadowParameters = "vibe_device_shadow";  // as in media/vibe.program
@@ -128,4 +128,4 @@ void DeviceShadow::cast(Ogre::SceneManager& scene, const Ogre::Camera& camera, s
   send(capsules);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -11,7 +11,7 @@ class Mesh;
 class SceneManager;
 }  // namespace Ogre
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Tells the mucosa's shader what stands between the light guides and the wall: the meshes of robots before the lens,
 /// as capsules in view coordinates (media/shadow.glsl). The shader's parameters are shared by all materials; cast() is
@@ -30,4 +30,4 @@ class DeviceShadow {
   std::map<std::uint64_t, std::vector<Capsule>> known_;  // by the handle of the mesh
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -10,7 +10,7 @@
 #include "messages/number_text.hpp"
 #include "messages/reference_values.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kPanelWidth = 196, kStateWidth = 186, kPlateMargin = 8, kRow = 18, kCapSize = 15,
@@ -236,4 +236,4 @@ bool sitBeside(const QImage& keys, const QImage& state, int width) {
   return keys.width() + state.width() + kGaps <= width;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -8,7 +8,7 @@
 #include "drive/first_steps.hpp"
 #include "drive/scope_drive.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What the overlay of the tool 'Drive scope' shows.
 struct DriveHud {
@@ -39,4 +39,4 @@ double overlayScale(int width, int height);
 /// Whether both panels fit into a view of this width [pixels] with a gap between them. If not, the keys are shown.
 bool sitBeside(const QImage& keys, const QImage& state, int width);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

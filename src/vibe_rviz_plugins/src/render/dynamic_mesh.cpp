@@ -14,7 +14,7 @@
 #include "geometry/triangle_order.hpp"
 #include "render/resources.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 enum Source : unsigned short { Vertices, Colours, Fixed, Mucosa, Heights, Browned };
@@ -164,4 +164,4 @@ void DynamicMesh::setVisible(bool visible) {
   if (entity_ != nullptr) entity_->setVisible(visible);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

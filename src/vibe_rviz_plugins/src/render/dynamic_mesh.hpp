@@ -17,7 +17,7 @@ class Entity;
 class SceneNode;
 }  // namespace Ogre
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Triangles with moving vertices in hardware buffers. Only what changes is sent to the graphics card; vertices and
 /// colours have separate buffers, so tissue that moves without changing colour sends only its vertices.
@@ -75,4 +75,4 @@ class DynamicMesh : private Ogre::MovableObject::Listener {
   bool visible_ = true;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

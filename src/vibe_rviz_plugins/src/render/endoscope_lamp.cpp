@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 const char* const kLampParameters = "vibe_lamp";  // as in media/*.program
@@ -63,4 +63,4 @@ std::array<Ogre::Vector3, 2> guidePlaces() {
   return {Ogre::Vector3(valuesOf(kGuides[0])), Ogre::Vector3(valuesOf(kGuides[1]))};
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

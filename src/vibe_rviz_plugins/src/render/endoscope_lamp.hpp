@@ -5,7 +5,7 @@
 
 #include "geometry/endoscope_light.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The light of media/lamp.glsl: parameters that all materials share which it lights, and all scenes of the process.
 
@@ -22,4 +22,4 @@ bool isUsualLamp();
 /// Where the guides are now, in view coordinates of Ogre [m].
 std::array<Ogre::Vector3, 2> guidePlaces();
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

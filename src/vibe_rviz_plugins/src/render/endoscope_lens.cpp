@@ -24,7 +24,7 @@
 
 #include "render/resources.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kMaxSource = 4096;  // what every graphics card can do [px]
@@ -244,4 +244,4 @@ void EndoscopeLens::setMaterial(const Ogre::MaterialPtr& material, int width, in
   uniforms.setNamedConstant("middle_size", real(sources_.middle.size));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -18,7 +18,7 @@ class CompositionTechnique;
 class SceneNode;
 }  // namespace Ogre
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Makes a viewport show the image of an endoscope: with the projection of its lens, black outside of a circle, and lit
 /// by its lamp (scheme kEndoscopeScheme for materials of this package, a light in the scene for other materials). The
@@ -79,4 +79,4 @@ class EndoscopeLens : private Ogre::Viewport::Listener,
   DeviceShadow shadow_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -16,7 +16,7 @@
 
 #include "render/resources.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kWidth = 170, kMargin = 12, kLine = 20, kTitle = 26, kBar = 18, kBarLength = 130, kMarks = 5;  // [pixels]
@@ -155,4 +155,4 @@ void Legend::hide() {
   if (overlay_ != nullptr) overlay_->hide();
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

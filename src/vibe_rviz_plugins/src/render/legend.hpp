@@ -13,7 +13,7 @@ class Overlay;
 class OverlayContainer;
 }  // namespace Ogre
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A colour and its meaning.
 struct LegendEntry {
@@ -50,4 +50,4 @@ class Legend {
   Ogre::TexturePtr texture_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

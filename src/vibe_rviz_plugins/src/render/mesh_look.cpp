@@ -8,7 +8,7 @@
 
 #include "render/resources.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 const char* const kLook = "vibe/instrument";
@@ -49,4 +49,4 @@ void dressMeshesForEndoscope() {
   Ogre::MaterialManager::getSingleton().addListener(&wardrobe, kEndoscopeScheme);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

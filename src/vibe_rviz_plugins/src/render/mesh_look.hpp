@@ -4,7 +4,7 @@ namespace Ogre {
 class Material;
 }
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Whether rviz has made the material for a mesh of a robot.
 bool isMeshOfRobot(const Ogre::Material& material);
@@ -14,4 +14,4 @@ bool isMeshOfRobot(const Ogre::Material& material);
 /// highlights and their sharpness are those of the mesh file. For loadResources(), once per process.
 void dressMeshesForEndoscope();
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -8,7 +8,7 @@
 #include "geometry/mucosa_pattern.hpp"
 #include "render/resources.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 const std::string& provideMucosaTexture() {
   static const std::string name = "vibe/mucosa_pattern";
@@ -31,4 +31,4 @@ const std::string& provideMucosaTexture() {
   return name;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

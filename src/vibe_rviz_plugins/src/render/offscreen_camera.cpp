@@ -12,7 +12,7 @@
 #include "render/optical_frame.hpp"
 #include "render/resources.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 OffscreenCamera::OffscreenCamera(Ogre::SceneManager& scene, const RoundCamera& round, double sharpness)
     : scene_(scene), round_(round), sharpness_(sharpness), camera_(scene.createCamera(uniqueName("Camera"))) {
@@ -80,4 +80,4 @@ void OffscreenCamera::take(const Eigen::Isometry3d& pose, double time, std::vect
   read(pixels);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

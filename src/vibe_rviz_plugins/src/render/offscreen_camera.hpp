@@ -14,7 +14,7 @@ class Camera;
 class SceneManager;
 }  // namespace Ogre
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class EndoscopeLens;
 
@@ -53,4 +53,4 @@ class OffscreenCamera {
   double gain_ = AutoExposure::kFixedGain, time_ = -1;  ///< of the last picture; time: [s]
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

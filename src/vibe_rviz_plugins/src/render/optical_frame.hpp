@@ -1,7 +1,7 @@
 #pragma once
 #include <OgreQuaternion.h>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 constexpr float kScopeNearClip = 0.0006f;  ///< near clipping distance; the glass of the lens is 0.4 mm thick [m]
 constexpr float kScopeFarClip = 2;         ///< far clipping distance, beyond any tissue [m]
@@ -12,4 +12,4 @@ inline Ogre::Quaternion opticalToOgre() {
   return {0, 1, 0, 0};
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cstdio>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 namespace {
 
@@ -95,4 +95,4 @@ void PullVisual::hide() {
   node_->setVisible(false);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -11,7 +11,7 @@ class MovableText;
 class Shape;
 }  // namespace rviz
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The pull spring: a ball at the held patch, a thin line to the target, and an arrow of the force with its magnitude
 /// beside it. All positions are in one frame. To be used from the thread that renders.
@@ -42,4 +42,4 @@ class PullVisual {
   std::unique_ptr<rviz::MovableText> text_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -14,7 +14,7 @@
 #include "render/mesh_look.hpp"
 #include "render/mucosa_texture.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 const char* const kResourceGroup = "vibe_rviz_plugins";
 const char* const kEndoscopeScheme = "vibe_endoscope";
@@ -55,4 +55,4 @@ void dropMaterial(Ogre::MaterialPtr& material) {
   material.reset();
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

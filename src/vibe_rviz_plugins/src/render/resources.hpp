@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Resource group of this package in Ogre: materials and shaders of media/ and everything created at run time.
 extern const char* const kResourceGroup;
@@ -23,4 +23,4 @@ std::string uniqueName(const std::string& what);
 Ogre::MaterialPtr copyMaterial(const std::string& name);
 void dropMaterial(Ogre::MaterialPtr& material);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kSteps = 256;  // per 1/m: sums of such numbers are exact, so smoke that is gone leaves nothing
@@ -19,4 +19,4 @@ void SceneSmoke::set(double extinction, double time) {
   scene_.setFog(Ogre::FOG_NONE, Ogre::ColourValue::White, sum, static_cast<float>(time));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

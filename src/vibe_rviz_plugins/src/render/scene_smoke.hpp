@@ -4,7 +4,7 @@ namespace Ogre {
 class SceneManager;
 }  // namespace Ogre
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The smoke of one organ in a scene; its shaders see the sum over all organs. It is a setting of the scene, its
 /// density of fog, because the light through it changes on everything that an endoscope sees, meshes of other displays
@@ -26,4 +26,4 @@ class SceneSmoke {
   float extinction_ = 0;  // as it is part of the sum
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

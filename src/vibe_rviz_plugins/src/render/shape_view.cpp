@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 bool same(const std::vector<MovingVertex>& a, const std::vector<MovingVertex>& b) {
@@ -40,4 +40,4 @@ void ShapeView::setBounds() {
   mesh_.setBounds(box);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

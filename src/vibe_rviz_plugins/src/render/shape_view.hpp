@@ -2,7 +2,7 @@
 #include "render/dynamic_mesh.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A shape on the graphics card. Everything is sent if the triangles change, otherwise only the vertices or colours
 /// that differ.
@@ -21,4 +21,4 @@ class ShapeView {
   ColouredShape shown_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

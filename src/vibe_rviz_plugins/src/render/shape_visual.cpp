@@ -3,7 +3,7 @@
 #include "render/resources.hpp"
 #include "render/shape_view.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 struct ShapeVisual::Parts {
   explicit Parts(Ogre::SceneNode& parent)
@@ -25,4 +25,4 @@ void ShapeVisual::show(const ColouredShape& shape) {
   parts_->view->show(shape);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 
 #include "render/resources.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 Ogre::MaterialPtr with(Ogre::MaterialPtr material, const char* parameter, float value) {
@@ -72,4 +72,4 @@ void SutureVisual::clear() {
   showLabels({}, 0);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

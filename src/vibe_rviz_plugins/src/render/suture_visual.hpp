@@ -15,7 +15,7 @@ namespace rviz {
 class MovableText;
 }
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A text that faces the camera.
 struct SutureLabel {
@@ -55,4 +55,4 @@ class SutureVisual {
   std::vector<Text> texts_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -14,7 +14,7 @@
 #include "render/endoscope_lamp.hpp"
 #include "render/resources.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 // Frames may overtake each other on their way, in a filter that waits for transforms for instance. An overtaken one
@@ -228,4 +228,4 @@ void TissueVisual::applyMucosa(Ogre::Pass& pass) const {
   parameters.setNamedConstant("more_mucus", real(mucosa_.mucus));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -22,7 +22,7 @@ namespace rviz {
 class PointCloud;
 }
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// How tissue is drawn.
 struct TissueLook {
@@ -103,4 +103,4 @@ class TissueVisual {
   std::unique_ptr<rviz::PointCloud> points_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

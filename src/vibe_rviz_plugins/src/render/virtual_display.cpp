@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kPatience = 30;  // for Xvfb to be ready, on a busy machine [s]
@@ -73,4 +73,4 @@ void provideDisplay() {
   if (!displayAnswers()) throw std::runtime_error(kRemedy);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -207,4 +207,4 @@ void SensorModel::develop(std::vector<std::uint8_t>& pixels, std::uint64_t numbe
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 
 #include "geometry/lens.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What the optics and the sensor of a real camera do to an image. The defaults do nothing. All are design choices
 /// within the range of endoscopes; ranges are those of the parameters of endoscope_camera.
@@ -62,4 +62,4 @@ class SensorModel {
   std::vector<float> light_, scratch_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -19,7 +19,7 @@
 #include "panels/procedure_subscriptions.hpp"
 #include "render/legend.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kOverlayPeriod = 0.1;                                                           // [s]
@@ -311,6 +311,6 @@ void DriveScopeTool::hideOverlay() {
     if (legend != nullptr) legend->hide();
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
-PLUGINLIB_EXPORT_CLASS(vibe::DriveScopeTool, rviz::Tool)
+PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::DriveScopeTool, rviz::Tool)

@@ -22,7 +22,7 @@ class FloatProperty;
 class StringProperty;
 }  // namespace rviz
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class Legend;
 
@@ -80,4 +80,4 @@ class DriveScopeTool : public rviz::Tool {
   bool active_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

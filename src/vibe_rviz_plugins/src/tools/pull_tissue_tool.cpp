@@ -19,7 +19,7 @@
 #include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 #include "views/endoscope_view_controller.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 namespace {
 
@@ -266,6 +266,6 @@ void PullTissueTool::sayHowTo() {
       "view.");
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
-PLUGINLIB_EXPORT_CLASS(vibe::PullTissueTool, rviz::Tool)
+PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::PullTissueTool, rviz::Tool)

@@ -21,7 +21,7 @@ class FloatProperty;
 class StringProperty;
 }  // namespace rviz
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 class PullVisual;
 
@@ -88,4 +88,4 @@ class PullTissueTool : public rviz::Tool {
   bool active_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

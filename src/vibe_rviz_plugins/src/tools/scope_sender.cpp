@@ -8,7 +8,7 @@
 #include "messages/drive_messages.hpp"
 #include "panels/procedure_subscriptions.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kPeriod = 1.0 / 60;   // [s]
@@ -240,4 +240,4 @@ void ScopeSender::endDriving() {
   present_.reset();
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

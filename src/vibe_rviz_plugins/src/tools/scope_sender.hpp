@@ -16,7 +16,7 @@
 #include "drive/scope_drive.hpp"
 #include "messages/session_watch.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Publishes the joints of a ScopeDrive on scope/servo_jp and overstitch/measured_js, 60 times a second in a thread of
 /// its own, so that slow drawing does not make the motion rough. It begins where the simulator's joints are and is
@@ -86,4 +86,4 @@ class ScopeSender {
   void endDriving();
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 
 #include "geometry/surface_colours.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
@@ -95,4 +95,4 @@ std::string labelText(const std::vector<LabelEntry>& table) {
   return text.str();
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // Numbers of what a pixel shows. They are stable: a number is never given another meaning.
 constexpr std::uint8_t kLabelNothing = 0;       ///< outside of the circle, or nothing is there
@@ -41,4 +41,4 @@ std::vector<LabelEntry> labelTable(const std::vector<std::string>& parts);
 /// The table as YAML, one row a line; it is JSON too.
 std::string labelText(const std::vector<LabelEntry>& table);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What the filter of a translucent body reads.
 struct Veil {
@@ -215,4 +215,4 @@ void RayScene::areBlocked(const Eigen::Isometry3d& camera, const std::vector<Cam
       });
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

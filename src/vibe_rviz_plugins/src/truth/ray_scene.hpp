@@ -7,7 +7,7 @@
 
 #include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The nearest triangle along a ray. Its point is (1 - u - v) a + u b + v c with the corners a, b, c of the triangle.
 struct SurfaceHit {
@@ -66,4 +66,4 @@ class RayScene {
   std::unique_ptr<Embree> embree_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -124,4 +124,4 @@ void TruthCamera::hide(const std::vector<std::uint32_t>& pixels, const std::vect
     visible[pixels[k]] = blocked[k] != 0 ? TruthFlow::kHiddenNext : TruthFlow::kVisibleNext;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 #include "geometry/lens.hpp"
 #include "truth/truth_scene.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What a camera has seen at one moment: for each pixel in the circle the point of a surface, as material coordinates.
 struct TruthView {
@@ -63,4 +63,4 @@ class TruthCamera {
   std::vector<CameraRay> rays_;        // of these pixels, in the frame of the camera
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -7,7 +7,7 @@
 #include "geometry/append_shape.hpp"
 #include "geometry/suture_shapes.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 /// A shape that goes on after the first vertices and triangles of `shape`, which it shares with `beginning`.
@@ -189,4 +189,4 @@ std::uint8_t TruthScene::labelOf(const SurfaceHit& hit, const Eigen::Vector3d& t
   return wall_labels_.at(corner, {1 - hit.u - hit.v, hit.u, hit.v});
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

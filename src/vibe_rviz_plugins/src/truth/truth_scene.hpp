@@ -17,7 +17,7 @@
 #include "truth/wall_labels.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Everything that an endoscope sees, as triangles with labels: the same that are drawn. The frame of the scene is that
 /// of the particles; lengths in metres.
@@ -88,4 +88,4 @@ class TruthScene {
   std::uint64_t shapes_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 
 #include "truth/label_table.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 /// Calls `use(particle, weight)` for the particles that carry a vertex.
@@ -64,4 +64,4 @@ std::uint8_t WallLabels::at(const std::uint32_t* corner, const std::array<float,
   return hotLabel(cold, static_cast<int>(std::lround(heat)));
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

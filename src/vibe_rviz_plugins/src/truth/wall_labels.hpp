@@ -5,7 +5,7 @@
 
 #include "geometry/tissue_mesh.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Region, wall and heat of every point of the drawn surface of the organ.
 ///
@@ -26,4 +26,4 @@ class WallLabels {
   std::vector<float> heat_;          // per vertex; empty: no heat anywhere
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -20,7 +20,7 @@
 #include "render/optical_frame.hpp"
 #include "vibe_rviz_plugins/display_base/frame_pose.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 const char* const kFrame = "scope_camera_optical";
@@ -139,7 +139,7 @@ rviz::Property* EndoscopeViewController::subProp(const QString& name) {
   return name == "Target Frame" ? &no_target_ : rviz::ViewController::subProp(name);
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
 #include <pluginlib/class_list_macros.hpp>
-PLUGINLIB_EXPORT_CLASS(vibe::EndoscopeViewController, rviz::ViewController)
+PLUGINLIB_EXPORT_CLASS(vibe::rviz_plugins::EndoscopeViewController, rviz::ViewController)

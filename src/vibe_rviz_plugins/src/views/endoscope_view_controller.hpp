@@ -12,7 +12,7 @@ class StringProperty;
 class TfFrameProperty;
 }  // namespace rviz
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// View of rviz from the camera at the tip of the endoscope, which it follows: what the trainee sees.
 class EndoscopeViewController : public rviz::ViewController {
@@ -54,4 +54,4 @@ class EndoscopeViewController : public rviz::ViewController {
   bool broken_ = false;  ///< the graphics card cannot draw the lens; not tried again
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

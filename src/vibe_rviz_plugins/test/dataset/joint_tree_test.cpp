@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace vibe::joint_tree_test {
+namespace vibe::rviz_plugins::joint_tree_test {
 namespace {
 
 const char kArm[] = R"(<robot name="arm">
@@ -58,4 +58,4 @@ TEST(JointTree, UnknownFramesAndBadDescriptionsAreTold) {
 }
 
 }  // namespace
-}  // namespace vibe::joint_tree_test
+}  // namespace vibe::rviz_plugins::joint_tree_test

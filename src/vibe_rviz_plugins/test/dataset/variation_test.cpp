@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe::variation_test {
+namespace vibe::rviz_plugins::variation_test {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180, kLens = 140 * kDegree;
@@ -140,4 +140,4 @@ TEST(Variation, GuidesTogetherAreAsStrongAsEver) {
 }
 
 }  // namespace
-}  // namespace vibe::variation_test
+}  // namespace vibe::rviz_plugins::variation_test

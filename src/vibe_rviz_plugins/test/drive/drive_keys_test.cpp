@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace vibe::drive_keys_test {
+namespace vibe::rviz_plugins::drive_keys_test {
 namespace {
 
 TEST(DriveKeys, EveryKeyHasOneMeaning) {
@@ -35,4 +35,4 @@ TEST(DriveKeys, JointNamesAreThoseOfTheUrdf) {
 }
 
 }  // namespace
-}  // namespace vibe::drive_keys_test
+}  // namespace vibe::rviz_plugins::drive_keys_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::first_steps_test {
+namespace vibe::rviz_plugins::first_steps_test {
 namespace {
 
 DriveSituation atStart() {
@@ -91,4 +91,4 @@ TEST(FirstSteps, AClosedArmIsOpenedBeforeTheNextGrab) {
 }
 
 }  // namespace
-}  // namespace vibe::first_steps_test
+}  // namespace vibe::rviz_plugins::first_steps_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace vibe::scope_drive_test {
+namespace vibe::rviz_plugins::scope_drive_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979;
@@ -246,4 +246,4 @@ TEST(ScopeDriveProperties, PlayDoesNotDependOnTheFrameRate) {
 }
 
 }  // namespace
-}  // namespace vibe::scope_drive_test
+}  // namespace vibe::rviz_plugins::scope_drive_test

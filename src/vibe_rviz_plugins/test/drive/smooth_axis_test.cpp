@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace vibe::smooth_axis_test {
+namespace vibe::rviz_plugins::smooth_axis_test {
 namespace {
 
 const AxisLimits kInsertion = {0, 0.3, 0.15, 0.5};
@@ -118,4 +118,4 @@ TEST(SmoothAxis, ASpeedOfZeroHolds) {
 }
 
 }  // namespace
-}  // namespace vibe::smooth_axis_test
+}  // namespace vibe::rviz_plugins::smooth_axis_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe::auto_exposure_test {
+namespace vibe::rviz_plugins::auto_exposure_test {
 namespace {
 
 /// Level of a picture of one brightness, as media/endoscope.frag shows it.
@@ -67,4 +67,4 @@ TEST(AutoExposureTest, BlackAndWhitePicturesEndAtTheLimits) {
 }
 
 }  // namespace
-}  // namespace vibe::auto_exposure_test
+}  // namespace vibe::rviz_plugins::auto_exposure_test

@@ -4,7 +4,7 @@
 
 #include "walls.hpp"
 
-namespace vibe::basins_test {
+namespace vibe::rviz_plugins::basins_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -113,4 +113,4 @@ TEST(Basins, LevelRisesWithTheVolume) {
 }
 
 }  // namespace
-}  // namespace vibe::basins_test
+}  // namespace vibe::rviz_plugins::basins_test

@@ -8,7 +8,7 @@
 #include "shape_measures.hpp"
 #include "walls.hpp"
 
-namespace vibe::blood_flow_test {
+namespace vibe::rviz_plugins::blood_flow_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -251,4 +251,4 @@ TEST(BleedingShape, IsMadeAgainOnlyIfSomethingHasChanged) {
 }
 
 }  // namespace
-}  // namespace vibe::blood_flow_test
+}  // namespace vibe::rviz_plugins::blood_flow_test

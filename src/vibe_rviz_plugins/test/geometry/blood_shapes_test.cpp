@@ -4,7 +4,7 @@
 
 #include "shape_measures.hpp"
 
-namespace vibe::blood_shapes_test {
+namespace vibe::rviz_plugins::blood_shapes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -245,4 +245,4 @@ TEST(Blood, UnknownWallsAndAnyDirectionOfGravityAreDrawn) {
 }
 
 }  // namespace
-}  // namespace vibe::blood_shapes_test
+}  // namespace vibe::rviz_plugins::blood_shapes_test

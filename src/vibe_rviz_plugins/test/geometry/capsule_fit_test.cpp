@@ -4,7 +4,7 @@
 
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
-namespace vibe::capsule_fit_test {
+namespace vibe::rviz_plugins::capsule_fit_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -69,4 +69,4 @@ TEST(CapsuleFit, NothingOfNothing) {
 }
 
 }  // namespace
-}  // namespace vibe::capsule_fit_test
+}  // namespace vibe::rviz_plugins::capsule_fit_test

@@ -10,7 +10,7 @@
 #include <map>
 #include <utility>
 
-namespace vibe::colour_map_test {
+namespace vibe::rviz_plugins::colour_map_test {
 namespace {
 
 double linear(double channel) {
@@ -97,4 +97,4 @@ TEST(ColourMap, MapsDiffer) {
 }
 
 }  // namespace
-}  // namespace vibe::colour_map_test
+}  // namespace vibe::rviz_plugins::colour_map_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe::coloured_shape_test {
+namespace vibe::rviz_plugins::coloured_shape_test {
 namespace {
 
 ColouredShape triangle() {
@@ -42,4 +42,4 @@ TEST(ColouredShape, EveryDefectIsNamed) {
 }
 
 }  // namespace
-}  // namespace vibe::coloured_shape_test
+}  // namespace vibe::rviz_plugins::coloured_shape_test

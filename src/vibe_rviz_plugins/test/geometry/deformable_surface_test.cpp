@@ -4,7 +4,7 @@
 
 #include "surfaces.hpp"
 
-namespace vibe::deformable_surface_test {
+namespace vibe::rviz_plugins::deformable_surface_test {
 namespace {
 
 Eigen::Vector3f place(const MovingVertex& v) {
@@ -119,4 +119,4 @@ TEST(DeformableSurface, TrianglesWithoutAreaGiveNoNaN) {
 }
 
 }  // namespace
-}  // namespace vibe::deformable_surface_test
+}  // namespace vibe::rviz_plugins::deformable_surface_test

@@ -4,7 +4,7 @@
 
 #include "walls.hpp"
 
-namespace vibe::descent_test {
+namespace vibe::rviz_plugins::descent_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -91,4 +91,4 @@ TEST(Descent, TrianglesWithoutAreaDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace vibe::descent_test
+}  // namespace vibe::rviz_plugins::descent_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe::endoscope_light_test {
+namespace vibe::rviz_plugins::endoscope_light_test {
 namespace {
 
 TEST(EndoscopeLight, DefaultIsThatOfTheLiveViewToTheBit) {
@@ -42,4 +42,4 @@ TEST(EndoscopeLight, ConeKeepsTheLightAhead) {
 }
 
 }  // namespace
-}  // namespace vibe::endoscope_light_test
+}  // namespace vibe::rviz_plugins::endoscope_light_test

@@ -6,7 +6,7 @@
 
 #include "tube_organ.hpp"
 
-namespace vibe::fold_height_test {
+namespace vibe::rviz_plugins::fold_height_test {
 namespace {
 
 TEST(FoldHeightTest, FallsMonotonicallyAndIsGoneFromTheSmoothStretchOn) {
@@ -60,4 +60,4 @@ TEST(FoldHeightTest, IsTheSameForAnOrganThatIsMovedAsAWhole) {
 }
 
 }  // namespace
-}  // namespace vibe::fold_height_test
+}  // namespace vibe::rviz_plugins::fold_height_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe::lens_test {
+namespace vibe::rviz_plugins::lens_test {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
@@ -159,4 +159,4 @@ TEST(LensSources, OfOtherLensesAreOnePlane) {
 }
 
 }  // namespace
-}  // namespace vibe::lens_test
+}  // namespace vibe::rviz_plugins::lens_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe::mouse_ray_test {
+namespace vibe::rviz_plugins::mouse_ray_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -96,4 +96,4 @@ TEST(MeetPlane, ParallelAndRecedingRaysMeetNothing) {
 }
 
 }  // namespace
-}  // namespace vibe::mouse_ray_test
+}  // namespace vibe::rviz_plugins::mouse_ray_test

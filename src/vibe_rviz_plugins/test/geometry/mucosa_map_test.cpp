@@ -8,7 +8,7 @@
 #include "surfaces.hpp"
 #include "tube_organ.hpp"
 
-namespace vibe::mucosa_map_test {
+namespace vibe::rviz_plugins::mucosa_map_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979;
@@ -104,4 +104,4 @@ TEST(MucosaMapTest, WithoutAnatomyThereAreNoFoldsAndARenderSurfaceInterpolates) 
 }
 
 }  // namespace
-}  // namespace vibe::mucosa_map_test
+}  // namespace vibe::rviz_plugins::mucosa_map_test

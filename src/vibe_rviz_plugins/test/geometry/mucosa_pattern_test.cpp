@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace vibe::mucosa_pattern_test {
+namespace vibe::rviz_plugins::mucosa_pattern_test {
 namespace {
 
 int at(const MucosaPattern& pattern, int x, int y, int z, int channel) {
@@ -77,4 +77,4 @@ TEST(MucosaPatternTest, BlotchesAreWideEnoughToBeInterpolatedBetweenVertices) {
 }
 
 }  // namespace
-}  // namespace vibe::mucosa_pattern_test
+}  // namespace vibe::rviz_plugins::mucosa_pattern_test

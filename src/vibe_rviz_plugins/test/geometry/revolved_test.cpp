@@ -5,7 +5,7 @@
 #include "shape_measures.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
-namespace vibe::revolved_test {
+namespace vibe::rviz_plugins::revolved_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -71,4 +71,4 @@ TEST(Revolved, ProfileOfOnePointDrawsNothing) {
 }
 
 }  // namespace
-}  // namespace vibe::revolved_test
+}  // namespace vibe::rviz_plugins::revolved_test

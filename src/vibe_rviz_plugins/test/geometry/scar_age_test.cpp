@@ -4,7 +4,7 @@
 
 #include "tube_organ.hpp"
 
-namespace vibe::scar_age_test {
+namespace vibe::rviz_plugins::scar_age_test {
 namespace {
 
 constexpr std::size_t kFirst = 100, kLater = 2000, kBare = 3000;  // particles
@@ -94,4 +94,4 @@ TEST(ScarAgeTest, VertexOfARenderSurfaceHasTheBrowningOfItsMarkedParticles) {
 }
 
 }  // namespace
-}  // namespace vibe::scar_age_test
+}  // namespace vibe::rviz_plugins::scar_age_test

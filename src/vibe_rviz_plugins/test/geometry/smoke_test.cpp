@@ -7,7 +7,7 @@
 
 #include "tube_organ.hpp"
 
-namespace vibe::smoke_test {
+namespace vibe::rviz_plugins::smoke_test {
 namespace {
 
 constexpr std::size_t kBurnt = 2000;  // a particle in the middle of the tube
@@ -120,4 +120,4 @@ TEST(SmokeTest, WhatWasBurntBeforeDoesNotSmoke) {
 }
 
 }  // namespace
-}  // namespace vibe::smoke_test
+}  // namespace vibe::rviz_plugins::smoke_test

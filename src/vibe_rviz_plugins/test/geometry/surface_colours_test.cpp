@@ -4,7 +4,7 @@
 
 #include "surfaces.hpp"
 
-namespace vibe::surface_colours_test {
+namespace vibe::rviz_plugins::surface_colours_test {
 namespace {
 
 TissueFrame frameOf(const TissueMesh& mesh) {
@@ -89,4 +89,4 @@ TEST(SurfaceColours, RegionsHaveDistinctColoursAndUnknownNumbersNone) {
 }
 
 }  // namespace
-}  // namespace vibe::surface_colours_test
+}  // namespace vibe::rviz_plugins::surface_colours_test

@@ -8,7 +8,7 @@
 #include "geometry/suture_frame.hpp"
 #include "shape_measures.hpp"
 
-namespace vibe::suture_shapes_test {
+namespace vibe::rviz_plugins::suture_shapes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -283,4 +283,4 @@ TEST(SutureFrame, DirectionsAreDefinedForAnEmptySuture) {
 }
 
 }  // namespace
-}  // namespace vibe::suture_shapes_test
+}  // namespace vibe::rviz_plugins::suture_shapes_test

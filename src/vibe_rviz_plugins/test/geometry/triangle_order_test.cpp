@@ -6,7 +6,7 @@
 #include <array>
 #include <random>
 
-namespace vibe::triangle_order_test {
+namespace vibe::rviz_plugins::triangle_order_test {
 namespace {
 
 constexpr std::uint32_t kEdge = 64;  // vertices along the edge of a square grid
@@ -86,4 +86,4 @@ TEST(TriangleOrderTest, LeavesTrianglesWithoutPlacesAndNoTriangles) {
 }
 
 }  // namespace
-}  // namespace vibe::triangle_order_test
+}  // namespace vibe::rviz_plugins::triangle_order_test

@@ -6,7 +6,7 @@
 
 #include "shape_measures.hpp"
 
-namespace vibe::tube_test {
+namespace vibe::rviz_plugins::tube_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -201,4 +201,4 @@ TEST(Tube, AnyNormalIsPerpendicular) {
 }
 
 }  // namespace
-}  // namespace vibe::tube_test
+}  // namespace vibe::rviz_plugins::tube_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::button_bank_test {
+namespace vibe::rviz_plugins::button_bank_test {
 namespace {
 
 using Buttons = std::array<std::int32_t, kCommandCount>;
@@ -122,4 +122,4 @@ TEST(ButtonBank, InvalidButtonHasNoEffect) {
 }
 
 }  // namespace
-}  // namespace vibe::button_bank_test
+}  // namespace vibe::rviz_plugins::button_bank_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-namespace vibe::drive_messages_test {
+namespace vibe::rviz_plugins::drive_messages_test {
 namespace {
 
 std::string shippedUrdf() {
@@ -108,4 +108,4 @@ TEST(DriveMessages, SituationFollowsFromTheState) {
 }
 
 }  // namespace
-}  // namespace vibe::drive_messages_test
+}  // namespace vibe::rviz_plugins::drive_messages_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::event_lines_test {
+namespace vibe::rviz_plugins::event_lines_test {
 namespace {
 
 using Event = vibe_msgs::ProcedureEvent;
@@ -47,4 +47,4 @@ TEST(EventLines, contactsAreNotListed) {
 }
 
 }  // namespace
-}  // namespace vibe::event_lines_test
+}  // namespace vibe::rviz_plugins::event_lines_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::image_due_test {
+namespace vibe::rviz_plugins::image_due_test {
 namespace {
 
 int imagesOf(ImageDue& due, double begin, double rate, int states) {
@@ -37,4 +37,4 @@ TEST(ImageDue, ContinuesAfterTimeWasSetBack) {
 }
 
 }  // namespace
-}  // namespace vibe::image_due_test
+}  // namespace vibe::rviz_plugins::image_due_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe::number_text_test {
+namespace vibe::rviz_plugins::number_text_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -56,4 +56,4 @@ TEST(NumberText, DurationsHaveMinutesAndHours) {
 }
 
 }  // namespace
-}  // namespace vibe::number_text_test
+}  // namespace vibe::rviz_plugins::number_text_test

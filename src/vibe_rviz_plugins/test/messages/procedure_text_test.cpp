@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace vibe::procedure_text_test {
+namespace vibe::rviz_plugins::procedure_text_test {
 namespace {
 
 vibe_msgs::Bleeding makeBleeding(bool brisk, double rate, bool overdue = false) {
@@ -117,4 +117,4 @@ TEST(ProcedureText, missedDeadlinesWarn) {
 }
 
 }  // namespace
-}  // namespace vibe::procedure_text_test
+}  // namespace vibe::rviz_plugins::procedure_text_test

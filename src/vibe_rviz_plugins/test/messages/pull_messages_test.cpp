@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace vibe::pull_messages_test {
+namespace vibe::rviz_plugins::pull_messages_test {
 namespace {
 
 vibe_msgs::TissuePullState goodState() {
@@ -50,4 +50,4 @@ TEST(PullMessages, ReleasedSpringIsAValidState) {
 }
 
 }  // namespace
-}  // namespace vibe::pull_messages_test
+}  // namespace vibe::rviz_plugins::pull_messages_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-namespace vibe::reference_values_test {
+namespace vibe::rviz_plugins::reference_values_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -140,4 +140,4 @@ TEST(ReferenceValues, barsStayWithinThemselves) {
 }
 
 }  // namespace
-}  // namespace vibe::reference_values_test
+}  // namespace vibe::rviz_plugins::reference_values_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe::session_watch_test {
+namespace vibe::rviz_plugins::session_watch_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -60,4 +60,4 @@ TEST(Namespace, IsChecked) {
 }
 
 }  // namespace
-}  // namespace vibe::session_watch_test
+}  // namespace vibe::rviz_plugins::session_watch_test

@@ -9,7 +9,7 @@
 
 #include "suture_sessions.hpp"
 
-namespace vibe::suture_messages_test {
+namespace vibe::rviz_plugins::suture_messages_test {
 namespace {
 
 using vibe_msgs::SutureArray;
@@ -219,4 +219,4 @@ TEST(SutureMessages, RandomNumbersDoNotCrash) {
 }
 
 }  // namespace
-}  // namespace vibe::suture_messages_test
+}  // namespace vibe::rviz_plugins::suture_messages_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe::suture_rows_test {
+namespace vibe::rviz_plugins::suture_rows_test {
 namespace {
 
 vibe_msgs::SutureArray oneSet(std::uint8_t stage) {
@@ -97,4 +97,4 @@ TEST(SutureRows, UnknownStageIsANumber) {
 }
 
 }  // namespace
-}  // namespace vibe::suture_rows_test
+}  // namespace vibe::rviz_plugins::suture_rows_test

@@ -6,7 +6,7 @@
 #include <functional>
 #include <random>
 
-namespace vibe::tissue_messages_test {
+namespace vibe::rviz_plugins::tissue_messages_test {
 namespace {
 
 vibe_msgs::TissueTopology tetrahedron() {
@@ -188,4 +188,4 @@ TEST(ReadParticles, RandomBytesDoNotCrash) {
 }
 
 }  // namespace
-}  // namespace vibe::tissue_messages_test
+}  // namespace vibe::rviz_plugins::tissue_messages_test

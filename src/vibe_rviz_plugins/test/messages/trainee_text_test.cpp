@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::trainee_text_test {
+namespace vibe::rviz_plugins::trainee_text_test {
 namespace {
 
 using Goal = vibe_msgs::GoalProgress;
@@ -39,4 +39,4 @@ TEST(TraineeText, WhatIsDoneAndWhatFailed) {
 }
 
 }  // namespace
-}  // namespace vibe::trainee_text_test
+}  // namespace vibe::rviz_plugins::trainee_text_test

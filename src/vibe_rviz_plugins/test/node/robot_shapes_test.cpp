@@ -11,7 +11,7 @@
 
 #include "robot_visuals.hpp"
 
-namespace vibe::robot_shapes_test {
+namespace vibe::rviz_plugins::robot_shapes_test {
 namespace {
 
 const std::string kAddress = "package://vibe_description/";
@@ -125,4 +125,4 @@ TEST(RobotShapes, WhatCannotBeReadIsToldInOneSentence) {
 }
 
 }  // namespace
-}  // namespace vibe::robot_shapes_test
+}  // namespace vibe::rviz_plugins::robot_shapes_test

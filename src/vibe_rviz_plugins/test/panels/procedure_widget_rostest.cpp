@@ -20,7 +20,7 @@
 #include "panels/procedure_panel.hpp"
 #include "panels/procedure_widget.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -276,7 +276,7 @@ TEST_F(ProcedureWidgetTest, NamespaceIsSavedInTheConfiguration) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);

@@ -13,7 +13,7 @@
 #include "panels/record_box.hpp"
 #include "panels/replay_slider.hpp"
 
-namespace vibe::recording_widgets_test {
+namespace vibe::rviz_plugins::recording_widgets_test {
 namespace {
 
 constexpr int kPatience = 10000;  // [ms]
@@ -98,4 +98,4 @@ TEST_F(RecordingWidgets, theBarAsksRoughlyWhileDraggedAndExactlyAtTheEnd) {
 }
 
 }  // namespace
-}  // namespace vibe::recording_widgets_test
+}  // namespace vibe::rviz_plugins::recording_widgets_test

@@ -19,7 +19,7 @@
 #include "panels/stepping_box.hpp"
 #include "panels/suture_table.hpp"
 
-namespace vibe::widgets_test {
+namespace vibe::rviz_plugins::widgets_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -332,4 +332,4 @@ TEST_F(Widgets, performanceHasDashesWithoutMessages) {
 }
 
 }  // namespace
-}  // namespace vibe::widgets_test
+}  // namespace vibe::rviz_plugins::widgets_test

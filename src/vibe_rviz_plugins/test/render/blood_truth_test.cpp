@@ -12,7 +12,7 @@
 #include "render/tissue_visual.hpp"
 #include "truth/truth_worlds.hpp"
 
-namespace vibe::blood_truth_test {
+namespace vibe::rviz_plugins::blood_truth_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -157,4 +157,4 @@ TEST_F(BloodTruthTest, BloodRunsDownInThePicture) {
 }
 
 }  // namespace
-}  // namespace vibe::blood_truth_test
+}  // namespace vibe::rviz_plugins::blood_truth_test

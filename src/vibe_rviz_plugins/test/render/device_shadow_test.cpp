@@ -11,7 +11,7 @@
 #include "render/tissue_visual.hpp"
 #include "tube_organ.hpp"
 
-namespace vibe::device_shadow_test {
+namespace vibe::rviz_plugins::device_shadow_test {
 namespace {
 
 constexpr int kSize = 200;                                 // [px]
@@ -118,4 +118,4 @@ TEST_F(DeviceShadowTest, RodBehindTheGuidesThrowsNone) {
 }
 
 }  // namespace
-}  // namespace vibe::device_shadow_test
+}  // namespace vibe::rviz_plugins::device_shadow_test

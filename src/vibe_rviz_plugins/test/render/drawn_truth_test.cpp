@@ -12,7 +12,7 @@
 #include "render/tissue_visual.hpp"
 #include "truth/truth_worlds.hpp"
 
-namespace vibe::drawn_truth_test {
+namespace vibe::rviz_plugins::drawn_truth_test {
 namespace {
 
 using test::Pixels;
@@ -132,4 +132,4 @@ INSTANTIATE_TEST_SUITE_P(Lenses, DrawnTruthTest, ::testing::Values(LensKind::Equ
                          test::lensName);
 
 }  // namespace
-}  // namespace vibe::drawn_truth_test
+}  // namespace vibe::rviz_plugins::drawn_truth_test

@@ -6,7 +6,7 @@
 
 #include "offscreen.hpp"
 
-namespace vibe::drive_overlay_test {
+namespace vibe::rviz_plugins::drive_overlay_test {
 namespace {
 
 DriveHud exampleHud() {
@@ -157,4 +157,4 @@ TEST_F(DriveOverlayTest, TroubleReplacesTheStep) {
 }
 
 }  // namespace
-}  // namespace vibe::drive_overlay_test
+}  // namespace vibe::rviz_plugins::drive_overlay_test

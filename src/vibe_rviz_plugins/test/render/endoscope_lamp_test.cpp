@@ -17,7 +17,7 @@
 #include "tube_organ.hpp"
 #include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
-namespace vibe::endoscope_lamp_test {
+namespace vibe::rviz_plugins::endoscope_lamp_test {
 namespace {
 
 using test::Pixels;
@@ -181,4 +181,4 @@ TEST_F(EndoscopeLampTest, PlacesAreThoseOfTheLight) {
 }
 
 }  // namespace
-}  // namespace vibe::endoscope_lamp_test
+}  // namespace vibe::rviz_plugins::endoscope_lamp_test

@@ -20,7 +20,7 @@
 #include "render/shape_view.hpp"
 #include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
-namespace vibe::endoscope_lens_test {
+namespace vibe::rviz_plugins::endoscope_lens_test {
 namespace {
 
 using test::Pixels;
@@ -205,4 +205,4 @@ TEST_F(EndoscopeLensTest, TwoCamerasOfOneSceneDoNotDisturbEachOther) {
 }
 
 }  // namespace
-}  // namespace vibe::endoscope_lens_test
+}  // namespace vibe::rviz_plugins::endoscope_lens_test

@@ -15,7 +15,7 @@
 #include "render/offscreen_camera.hpp"
 #include "render/resources.hpp"
 
-namespace vibe::mesh_look_test {
+namespace vibe::rviz_plugins::mesh_look_test {
 namespace {
 
 const char* const kCap = "package://vibe_description/meshes/cap.obj";
@@ -106,4 +106,4 @@ TEST_F(MeshLookTest, OtherMaterialsStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace vibe::mesh_look_test
+}  // namespace vibe::rviz_plugins::mesh_look_test

@@ -11,7 +11,7 @@
 #include "render/tissue_visual.hpp"
 #include "tube_organ.hpp"
 
-namespace vibe::mucosa_look_test {
+namespace vibe::rviz_plugins::mucosa_look_test {
 namespace {
 
 using test::Pixels;
@@ -142,4 +142,4 @@ TEST(MucosaLook, VesselsDarkenWetnessBrightensMucusSmooths) {
 }
 
 }  // namespace
-}  // namespace vibe::mucosa_look_test
+}  // namespace vibe::rviz_plugins::mucosa_look_test

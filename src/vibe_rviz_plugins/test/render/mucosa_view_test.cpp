@@ -11,7 +11,7 @@
 #include "render/tissue_visual.hpp"
 #include "tube_organ.hpp"
 
-namespace vibe::mucosa_view_test {
+namespace vibe::rviz_plugins::mucosa_view_test {
 namespace {
 
 using test::Pixels;
@@ -214,4 +214,4 @@ TEST_F(MucosaViewTest, AntrumIsPalerThanTheBody) {
 }
 
 }  // namespace
-}  // namespace vibe::mucosa_view_test
+}  // namespace vibe::rviz_plugins::mucosa_view_test

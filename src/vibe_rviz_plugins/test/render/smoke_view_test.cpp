@@ -18,7 +18,7 @@
 #include "tube_organ.hpp"
 #include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
-namespace vibe::smoke_view_test {
+namespace vibe::rviz_plugins::smoke_view_test {
 namespace {
 
 using test::Pixels;
@@ -326,4 +326,4 @@ TEST_F(SmokeViewTest, ValuesForTheEndoscopeAreAskedForOnlyByItsScheme) {
 }
 
 }  // namespace
-}  // namespace vibe::smoke_view_test
+}  // namespace vibe::rviz_plugins::smoke_view_test

@@ -14,7 +14,7 @@
 #include "truth/truth_camera.hpp"
 #include "tube_organ.hpp"
 
-namespace vibe::texture_truth_test {
+namespace vibe::rviz_plugins::texture_truth_test {
 namespace {
 
 using test::Levels;
@@ -212,4 +212,4 @@ TEST(PatchShiftTest, FindsAKnownShiftToATenthOfAPixel) {
 }
 
 }  // namespace
-}  // namespace vibe::texture_truth_test
+}  // namespace vibe::rviz_plugins::texture_truth_test

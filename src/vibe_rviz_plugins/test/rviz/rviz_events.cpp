@@ -15,7 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kNotch = 120;    // [eighths of a degree]
@@ -105,4 +105,4 @@ void RvizEvents::chooseTool(const QString& name) {
   fail("there is no tool '" + name + "'");
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -8,7 +8,7 @@ namespace rviz {
 class VisualizationManager;
 }
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Sends events to the render window of rviz, as they are read from standard input, one a line:
 ///   down KEY        a key goes down; KEY is the name of Qt, such as Key_W
@@ -39,4 +39,4 @@ class RvizEvents {
   void chooseTool(const QString& name);
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -100,7 +100,7 @@ QJsonObject helpOf(rviz::VisualizationManager& manager) {
   int count = 0;
   QJsonArray missing;
   for (const auto& [parent, name] : ownParents(manager)) {
-    const vibe::PropertyHelp help = vibe::checkPropertyHelp(*parent, name.toStdString());
+    const vibe::rviz_plugins::PropertyHelp help = vibe::rviz_plugins::checkPropertyHelp(*parent, name.toStdString());
     count += help.count;
     for (const std::string& path : help.missing) missing.append(QString::fromStdString(path));
   }
@@ -152,7 +152,7 @@ int main(int argc, char** argv) {
   rviz::VisualizerApp rviz_application;
   rviz_application.setApp(&application);
   if (!rviz_application.init(argc, argv)) return 1;
-  vibe::RvizEvents events(*findFrame()->getManager());
+  vibe::rviz_plugins::RvizEvents events(*findFrame()->getManager());
   QTimer timer;
   QObject::connect(&timer, &QTimer::timeout, [&file_name] { report(file_name); });
   timer.start(kInterval);

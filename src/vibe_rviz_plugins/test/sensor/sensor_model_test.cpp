@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace vibe::sensor_model_test {
+namespace vibe::rviz_plugins::sensor_model_test {
 namespace {
 
 using Pixels = std::vector<std::uint8_t>;
@@ -162,4 +162,4 @@ TEST(SensorModel, DistortionThatFoldsTheImageOverIsRefused) {
 }
 
 }  // namespace
-}  // namespace vibe::sensor_model_test
+}  // namespace vibe::rviz_plugins::sensor_model_test

@@ -20,7 +20,7 @@
 #include "geometry/fold_height.hpp"
 #include "messages/tissue_messages.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 namespace {
 
 constexpr double kPascal = 133.322;                      // of 1 mmHg
@@ -191,7 +191,7 @@ TEST(FoldPressureTest, FoldsOfTheSimulatedOrganGoWithThePressureAndComeBack) {
 }
 
 }  // namespace
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);

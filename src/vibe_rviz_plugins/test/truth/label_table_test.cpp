@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace vibe::label_table_test {
+namespace vibe::rviz_plugins::label_table_test {
 namespace {
 
 TEST(LabelTable, NumbersAndNamesAreUniqueAndTheTextNamesThemAll) {
@@ -37,4 +37,4 @@ TEST(LabelTable, NumbersAreThoseOfTheDocumentation) {
 }
 
 }  // namespace
-}  // namespace vibe::label_table_test
+}  // namespace vibe::rviz_plugins::label_table_test

@@ -8,7 +8,7 @@
 
 #include "truth_worlds.hpp"
 
-namespace vibe::truth_camera_test {
+namespace vibe::rviz_plugins::truth_camera_test {
 namespace {
 
 using test::FoldedWorld;
@@ -228,4 +228,4 @@ INSTANTIATE_TEST_SUITE_P(Lenses, TruthCameraTest, ::testing::Values(LensKind::Eq
                          test::lensName);
 
 }  // namespace
-}  // namespace vibe::truth_camera_test
+}  // namespace vibe::rviz_plugins::truth_camera_test

@@ -7,7 +7,7 @@
 
 #include "truth_worlds.hpp"
 
-namespace vibe::truth_flow_test {
+namespace vibe::rviz_plugins::truth_flow_test {
 namespace {
 
 using test::FoldedWorld;
@@ -210,4 +210,4 @@ INSTANTIATE_TEST_SUITE_P(Lenses, TruthFlowTest, ::testing::Values(LensKind::Equi
                          test::lensName);
 
 }  // namespace
-}  // namespace vibe::truth_flow_test
+}  // namespace vibe::rviz_plugins::truth_flow_test

@@ -13,7 +13,7 @@
 #include "truth/truth_camera.hpp"
 #include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
-namespace vibe::test {
+namespace vibe::rviz_plugins::test {
 
 // A hollow organ with folds, two rigid bodies and a thread in it, of which everything is known, and a caster of rays
 // that shares nothing with the one that is tested: every ray against every triangle, in double precision.
@@ -202,4 +202,4 @@ inline PlainSurface plainWorld(const FoldedWorld& world, double time, bool sutur
   return surface;
 }
 
-}  // namespace vibe::test
+}  // namespace vibe::rviz_plugins::test

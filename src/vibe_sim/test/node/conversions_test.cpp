@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 
-namespace vibe::conversions_test {
+namespace vibe::sim::conversions_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -263,4 +263,4 @@ TEST(Conversions, toolStateFollowsWhatHappens) {
 }
 
 }  // namespace
-}  // namespace vibe::conversions_test
+}  // namespace vibe::sim::conversions_test

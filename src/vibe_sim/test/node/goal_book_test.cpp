@@ -5,13 +5,13 @@
 
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe::goal_book_test {
+namespace vibe::sim::goal_book_test {
 namespace {
 
 using Entry = vibe_msgs::GoalProgress;
 
 struct Bench {
-  Bench() : simulation(loadModel("node/scenes/balloon.yaml")), trainee(begin()) {}
+  Bench() : simulation(vibe::loadModel("node/scenes/balloon.yaml")), trainee(begin()) {}
 
   std::unique_ptr<Trainee> begin() const {
     return std::make_unique<Trainee>(simulation.sharedModel(), Skill::expert(), 1);
@@ -139,4 +139,4 @@ TEST(GoalBook, ABiteTellsWhichSutureIsThatOfTheGoal) {
 }
 
 }  // namespace
-}  // namespace vibe::goal_book_test
+}  // namespace vibe::sim::goal_book_test

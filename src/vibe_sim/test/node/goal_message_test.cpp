@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe::goal_message_test {
+namespace vibe::sim::goal_message_test {
 namespace {
 
 vibe_msgs::TraineeGoal message(const std::string& kind) {
@@ -136,7 +136,7 @@ TEST(GoalMessage, APlaceMayBeAShareOfARegion) {
 }
 
 TEST(GoalMessage, ARegionThatTheOrganLacksIsARefusal) {
-  const auto model = std::const_pointer_cast<Model>(loadModel("node/scenes/small_stomach.yaml"));
+  const auto model = std::const_pointer_cast<Model>(vibe::loadModel("node/scenes/small_stomach.yaml"));
   vibe_msgs::TraineeGoal goal = message("bite");
   goal.region = "antrum";
   goal.along = 0.5;
@@ -147,14 +147,14 @@ TEST(GoalMessage, ARegionThatTheOrganLacksIsARefusal) {
 }
 
 TEST(GoalMessage, WhatASceneLacksIsARefusal) {
-  const std::shared_ptr<const Model> stomach = loadModel("node/scenes/small_stomach.yaml");
+  const std::shared_ptr<const Model> stomach = vibe::loadModel("node/scenes/small_stomach.yaml");
   for (const char* kind : {"insufflate", "bite", "suture_set", "cinch", "withdraw", "wait"})
     EXPECT_EQ(refusalOf(*stomach, message(kind)), "") << kind;
   EXPECT_NE(refusalOf(*stomach, message("mark")).find("'marking'"), std::string::npos);
-  const std::shared_ptr<const Model> ball = loadModel("node/scenes/balloon.yaml");
+  const std::shared_ptr<const Model> ball = vibe::loadModel("node/scenes/balloon.yaml");
   EXPECT_FALSE(refusalOf(*ball, message("bite")).empty()) << "a ball has no anatomy";
   EXPECT_EQ(refusalOf(*ball, message("wait")), "");
 }
 
 }  // namespace
-}  // namespace vibe::goal_message_test
+}  // namespace vibe::sim::goal_message_test

@@ -4,7 +4,7 @@
 
 #include "worlds.hpp"
 
-namespace vibe::input_queue_test {
+namespace vibe::sim::input_queue_test {
 namespace {
 
 InputSample scopeAt(double insertion, std::int64_t stamp) {
@@ -255,4 +255,4 @@ TEST_F(InputQueueTest, aTipTargetWithoutAScopeIsReportedAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace vibe::input_queue_test
+}  // namespace vibe::sim::input_queue_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::input_window_test {
+namespace vibe::sim::input_window_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000, kHour = 3600 * kSecond, kNow = 1'700'000'000 * kSecond;
@@ -32,4 +32,4 @@ TEST(InputWindow, InSimulatedTimeOldStampsCountAndWallClocksDoNot) {
 }
 
 }  // namespace
-}  // namespace vibe::input_window_test
+}  // namespace vibe::sim::input_window_test

@@ -8,7 +8,7 @@
 #include "input_queue.hpp"
 #include "vibe_core/model/model.hpp"
 
-namespace vibe::joint_move_test {
+namespace vibe::sim::joint_move_test {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
@@ -116,4 +116,4 @@ TEST_F(MoveQueueTest, AMoveWithoutAScopeIsASentence) {
 }
 
 }  // namespace
-}  // namespace vibe::joint_move_test
+}  // namespace vibe::sim::joint_move_test

@@ -9,7 +9,7 @@
 
 #include "conversions.hpp"
 
-namespace vibe::observation_queue_test {
+namespace vibe::sim::observation_queue_test {
 namespace {
 
 vibe_msgs::StepResult::ConstPtr result(int step, bool has_particles = true) {
@@ -110,4 +110,4 @@ TEST(ObservationQueue, InRealTimeTheNewestCounts) {
 }
 
 }  // namespace
-}  // namespace vibe::observation_queue_test
+}  // namespace vibe::sim::observation_queue_test

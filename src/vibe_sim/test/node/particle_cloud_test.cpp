@@ -6,7 +6,7 @@
 #include "conversions.hpp"
 #include "worlds.hpp"
 
-namespace vibe::particle_cloud_test {
+namespace vibe::sim::particle_cloud_test {
 namespace {
 
 using test::World;
@@ -88,4 +88,4 @@ TEST(Topology, describesTheMeshAndItsRestShape) {
 }
 
 }  // namespace
-}  // namespace vibe::particle_cloud_test
+}  // namespace vibe::sim::particle_cloud_test

@@ -9,7 +9,7 @@
 
 #include "phase_lock.hpp"
 
-namespace vibe::phase_lock_test {
+namespace vibe::sim::phase_lock_test {
 namespace {
 
 constexpr std::int64_t kPeriod = 10'000'000;  // of the steps [ns]
@@ -136,4 +136,4 @@ TEST(PhaseLock, NoStepWaitsForASampleOfASlowerDevice) {
 }
 
 }  // namespace
-}  // namespace vibe::phase_lock_test
+}  // namespace vibe::sim::phase_lock_test

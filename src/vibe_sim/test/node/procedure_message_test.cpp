@@ -6,7 +6,7 @@
 
 #include "worlds.hpp"
 
-namespace vibe::procedure_message_test {
+namespace vibe::sim::procedure_message_test {
 namespace {
 
 class ProcedureMessage : public ::testing::Test {
@@ -245,4 +245,4 @@ TEST_F(ProcedureMessage, everyEventButContactIsToldAtOnce) {
 }
 
 }  // namespace
-}  // namespace vibe::procedure_message_test
+}  // namespace vibe::sim::procedure_message_test

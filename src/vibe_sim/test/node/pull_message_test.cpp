@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "worlds.hpp"
 
-namespace vibe::pull_message_test {
+namespace vibe::sim::pull_message_test {
 namespace {
 
 vibe_msgs::TissuePull goodPull() {
@@ -82,4 +82,4 @@ TEST(PullMessage, theStateSaysPlaceTargetAndForce) {
 }
 
 }  // namespace
-}  // namespace vibe::pull_message_test
+}  // namespace vibe::sim::pull_message_test

@@ -17,7 +17,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 
-namespace vibe::recording_test {
+namespace vibe::sim::recording_test {
 namespace {
 
 class RecordingFile : public ::testing::Test {
@@ -178,4 +178,4 @@ TEST_F(RecordingFile, EmptyForeignMissingAndCutFilesHaveASentenceEach) {
 }
 
 }  // namespace
-}  // namespace vibe::recording_test
+}  // namespace vibe::sim::recording_test

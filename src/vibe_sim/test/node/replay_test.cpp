@@ -22,7 +22,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 
-namespace vibe::replay_test {
+namespace vibe::sim::replay_test {
 namespace {
 
 constexpr int kSteps = 660;      // of the first run: one snapshot at its start and one 10 s later
@@ -418,4 +418,4 @@ TEST_F(ReplayTest, FillsInWhatWasLeftOutToTheBit) {
 }
 
 }  // namespace
-}  // namespace vibe::replay_test
+}  // namespace vibe::sim::replay_test

@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace vibe::sim_time_test {
+namespace vibe::sim::sim_time_test {
 namespace {
 
 TEST(SimTime, stampsAreIntegerNanosecondsWithoutDrift) {
@@ -58,4 +58,4 @@ TEST(TimeLine, shiftMovesEveryStamp) {
 }
 
 }  // namespace
-}  // namespace vibe::sim_time_test
+}  // namespace vibe::sim::sim_time_test

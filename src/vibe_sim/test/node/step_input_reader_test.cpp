@@ -11,7 +11,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 
-namespace vibe::step_input_reader_test {
+namespace vibe::sim::step_input_reader_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -182,4 +182,4 @@ TEST(StepInputReader, RejectsDefinitionsThatAreIncomplete) {
 }
 
 }  // namespace
-}  // namespace vibe::step_input_reader_test
+}  // namespace vibe::sim::step_input_reader_test

@@ -12,7 +12,7 @@
 #include "scope_worlds.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
-namespace vibe::step_path_test {
+namespace vibe::sim::step_path_test {
 namespace {
 
 constexpr double kRadius = 0.06;
@@ -155,4 +155,4 @@ TEST_F(StepPath, SamplesOfAnotherThreadAllArrive) {
 }
 
 }  // namespace
-}  // namespace vibe::step_path_test
+}  // namespace vibe::sim::step_path_test

@@ -9,11 +9,11 @@
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 
-namespace vibe::step_result_message_test {
+namespace vibe::sim::step_result_message_test {
 namespace {
 
 std::shared_ptr<const Model> smallStomach() {
-  static const std::shared_ptr<const Model> model = loadModel("node/scenes/small_stomach.yaml");
+  static const std::shared_ptr<const Model> model = vibe::loadModel("node/scenes/small_stomach.yaml");
   return model;
 }
 
@@ -113,4 +113,4 @@ TEST(StepResultMessage, AnotherKindOfCloudIsRefused) {
 }
 
 }  // namespace
-}  // namespace vibe::step_result_message_test
+}  // namespace vibe::sim::step_result_message_test

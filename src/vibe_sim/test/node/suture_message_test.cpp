@@ -7,7 +7,7 @@
 #include "conversions.hpp"
 #include "worlds.hpp"
 
-namespace vibe::suture_message_test {
+namespace vibe::sim::suture_message_test {
 namespace {
 
 using test::World;
@@ -231,4 +231,4 @@ TEST_F(SutureMessage, kindChangesWithWhatIsToldAtOnceAndWithNothingElse) {
 }
 
 }  // namespace
-}  // namespace vibe::suture_message_test
+}  // namespace vibe::sim::suture_message_test

@@ -12,7 +12,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kSignificance = 0.01;
@@ -233,4 +233,4 @@ AxisFit fitAxis(const std::vector<AxisStop>& stops) {
   return Fitter(stops).run();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

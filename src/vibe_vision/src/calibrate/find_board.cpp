@@ -6,7 +6,7 @@
 #include "calibrate/median.hpp"
 #include "vibe_vision/calibrate/lens_calibration.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kWrongCorner = 0.15;  // of the distance of neighbours
@@ -105,4 +105,4 @@ std::optional<std::vector<Eigen::Vector2d>> findBoard(const ImageView& image, co
   return corners;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 
 #include "calibrate/student_t.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 double LinearFit::deletedTail(Eigen::Index row) const {
   const double free = 1 - leverage(row);
@@ -33,4 +33,4 @@ LinearFit solveLinear(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   return fit;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

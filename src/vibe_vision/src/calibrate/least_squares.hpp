@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Dense>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Linear least squares with equal weights, its covariance and its leverages.
 struct LinearFit {
@@ -17,4 +17,4 @@ struct LinearFit {
 
 LinearFit solveLinear(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
-}  // namespace vibe
+}  // namespace vibe::vision

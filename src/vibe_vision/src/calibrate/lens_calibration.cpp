@@ -8,7 +8,7 @@
 #include "calibrate/with_decimals.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kSignificant = 4;  // standard deviations; errors of neighbouring corners are not independent
@@ -192,4 +192,4 @@ LensCalibration calibrateLens(const std::vector<BoardView>& views, const BoardSp
   return result;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kMinScore = 0.6;        // correlation of what is taken for the marker
@@ -241,4 +241,4 @@ std::optional<MarkerSighting> MarkerFinder::find(const ImageView& image) {
   return best;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kMargin = 1.5e-3;                          // around the rough place [m]
@@ -153,4 +153,4 @@ LocatedMarkers locateMarkers(const VisionConfig& config, std::size_t instrument,
   return located;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

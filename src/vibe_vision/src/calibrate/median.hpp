@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Of two in the middle the greater. There must be a value.
 template <class Number>
@@ -12,4 +12,4 @@ Number median(std::vector<Number> values) {
   return *middle;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::size_t kFewestSamples = 5;
@@ -90,4 +90,4 @@ MotionFit fitMotion(const std::vector<MotionSample>& samples, const ScaleTrust& 
   return result;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

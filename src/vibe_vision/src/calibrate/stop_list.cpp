@@ -7,7 +7,7 @@
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kLargestSlide = 1;  // [m]
@@ -53,4 +53,4 @@ std::vector<StopImage> loadStopList(const std::string& file) {
   return parseStopList(readTextFile(file, "list of stops"), file);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

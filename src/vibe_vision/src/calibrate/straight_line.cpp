@@ -8,7 +8,7 @@
 #include "calibrate/median.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kFar = 5 * 1.4826;      // times the median distance: 5 standard deviations
@@ -68,4 +68,4 @@ StraightLine StraightLine::fit(const std::vector<Eigen::Vector2d>& points, Eigen
   return line;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// By which a marker must move to show a direction [px].
 constexpr double kShortestPath = 20;
@@ -24,4 +24,4 @@ struct StraightLine {
   static StraightLine fit(const std::vector<Eigen::Vector2d>& points, Eigen::Matrix2d* covariance = nullptr);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

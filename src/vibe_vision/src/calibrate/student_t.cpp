@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 
 // With t = sqrt(n) tan(a) the density becomes cos^(n - 1)(a), up to a constant.
 double studentTail(double t, int freedom) {
@@ -32,4 +32,4 @@ double studentQuantile(double tail, int freedom) {
   return high;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

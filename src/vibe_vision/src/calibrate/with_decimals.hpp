@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <string>
 
-namespace vibe {
+namespace vibe::vision {
 
 inline std::string withDecimals(double value, int decimals) {
   char text[40];
@@ -10,4 +10,4 @@ inline std::string withDecimals(double value, int decimals) {
   return text;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

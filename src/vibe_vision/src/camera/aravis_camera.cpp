@@ -7,7 +7,7 @@
 #include "camera/host_time.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 // On the loopback interface test packets of a simulated camera are not answered. With its management data this size
@@ -204,4 +204,4 @@ void AravisCamera::onStream(void* self, ArvStreamCallbackType type, ArvBuffer*) 
   camera->lacks_priority_ = !arv_make_thread_realtime(camera->priority_);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

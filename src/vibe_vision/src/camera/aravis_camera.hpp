@@ -7,7 +7,7 @@
 #include "camera/buffer_loan.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A connected GigE Vision or USB3 Vision camera that sends frames, until it is destroyed.
 class AravisCamera {
@@ -56,4 +56,4 @@ class AravisCamera {
   static void onStream(void* self, ArvStreamCallbackType type, ArvBuffer* buffer);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-namespace vibe {
+namespace vibe::vision {
 
 struct Unref {
   void operator()(gpointer object) const { g_object_unref(object); }
@@ -31,4 +31,4 @@ class AravisError {
   GError* error_ = nullptr;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

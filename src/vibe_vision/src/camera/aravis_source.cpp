@@ -6,7 +6,7 @@
 #include "camera/pixel_format.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kSilence = 1;           // without any packet after which a camera is opened again [s]
@@ -207,4 +207,4 @@ std::string AravisSource::status() const {
   return status_;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

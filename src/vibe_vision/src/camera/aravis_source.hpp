@@ -10,7 +10,7 @@
 #include "camera/stamp_clock.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A GigE Vision or USB3 Vision camera. Stamps: the camera's own of each frame, mapped by StampClock. Frames of Mono8
 /// are not copied: consumers share the buffers of the stream, and frames are copied only while many are held.
@@ -53,4 +53,4 @@ class AravisSource : public FrameSource {
   std::string goodStatus() const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -1,6 +1,6 @@
 #include "camera/buffer_loan.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 void BufferLoan::detach() {
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -27,4 +27,4 @@ void BufferLoan::takeBack(ArvBuffer* buffer) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 
 #include "camera/aravis_pointer.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Buffers of a stream that consumers hold without a copy. Each returns to the stream with its last owner, or is freed
 /// if the stream has gone in the meantime. At most kMost are lent, so that the stream never runs out of buffers.
@@ -27,4 +27,4 @@ class BufferLoan : public std::enable_shared_from_this<BufferLoan> {
   void takeBack(ArvBuffer* buffer);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

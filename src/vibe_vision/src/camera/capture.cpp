@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kReadPatience = 0.1;  // of one read: after this the thread sees whether it shall stop [s]
@@ -93,4 +93,4 @@ std::string Capture::status() const {
   return impl_->source->status();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -16,7 +16,7 @@
 #include "camera/host_time.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::uint16_t kControlPort = 3956;  // GVCP
@@ -176,4 +176,4 @@ void FakeCamera::announceFormat(std::uint32_t code) {
   arv_fake_camera_write_register(impl_->camera, ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, code);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

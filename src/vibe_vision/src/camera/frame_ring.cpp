@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr int kMaxFrames = 5000;
@@ -76,4 +76,4 @@ std::shared_ptr<const FrameRing> renderRing(const SyntheticScene& scene, int fra
   return ring;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

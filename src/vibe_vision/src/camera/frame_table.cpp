@@ -6,7 +6,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kMaxSequence = 9e15;  // integers that a double holds
@@ -103,4 +103,4 @@ FrameTable FrameTable::load(const std::string& file, double exposure) {
   return Reader(file, exposure).read();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What a recording knows about its frames, from a text file with one row per frame and commas between columns. The
 /// first line names the columns: "stamp" (middle of the exposure, Unix time [s]) is needed, "sequence" and "exposure"
@@ -22,4 +22,4 @@ struct FrameTable {
   static FrameTable load(const std::string& file, double exposure);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 
 #include "vibe_core/common/step_timer.hpp"  // steadyTime()
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Unix time [s].
 inline double hostTime() {
@@ -15,4 +15,4 @@ inline void sleepFor(double duration) {
   if (duration > 0) std::this_thread::sleep_for(std::chrono::duration<double>(duration));
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -8,7 +8,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 bool isDigit(char c) {
@@ -70,4 +70,4 @@ std::string ImageListReader::folder() const {
   return slash == std::string::npos ? "." : files_.front().substr(0, slash);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

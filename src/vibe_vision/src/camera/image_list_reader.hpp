@@ -3,7 +3,7 @@
 
 #include "camera/picture_reader.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Numbers in names count by their value: frame_9 is before frame_10.
 bool isBefore(const std::string& a, const std::string& b);
@@ -25,4 +25,4 @@ class ImageListReader : public PictureReader {
   std::string complaint_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

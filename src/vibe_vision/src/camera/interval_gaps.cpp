@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr int kWindow = 30;
@@ -28,4 +28,4 @@ void IntervalGaps::learn(double interval) {
   intervals_ = 0;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

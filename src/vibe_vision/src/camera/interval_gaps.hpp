@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Tells frames that were left out from the stamps of the others, for drivers that tell no numbers. The period is the
 /// one that was asked for, and from then on the shortest interval of the last frames: a camera that runs more slowly
@@ -20,4 +20,4 @@ class IntervalGaps {
   void learn(double interval);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

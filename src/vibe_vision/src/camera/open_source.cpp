@@ -8,7 +8,7 @@
 #include "camera/video_reader.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr const char* kForms = "v4l2:/dev/video0, gige:ADDRESS, video:FILE or images:GLOB";
@@ -61,4 +61,4 @@ std::unique_ptr<FrameSource> openSource(const std::string& address, const Source
   throw Error("camera address \"" + address + "\" is not understood; write " + kForms + ".");
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

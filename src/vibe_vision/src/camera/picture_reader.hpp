@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Pictures of a recording one after the other.
 class PictureReader {
@@ -20,4 +20,4 @@ class PictureReader {
   virtual std::string complaint() const = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

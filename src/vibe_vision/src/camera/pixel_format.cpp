@@ -5,7 +5,7 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 enum class Layout { Bytes, Words, Packed, Stream, Bayer, Colour };
@@ -120,4 +120,4 @@ void toMono8(PixelFormat format, const std::uint8_t* data, int width, int height
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Layouts of pixels that can be turned into 8-bit grey. Values: EMVA Pixel Format Naming Convention 2.3.
 enum class PixelFormat : std::uint32_t {
@@ -38,4 +38,4 @@ std::size_t sizeOf(PixelFormat format, int width, int height);
 /// @param data  sizeOf() bytes of a readable format
 void toMono8(PixelFormat format, const std::uint8_t* data, int width, int height, std::uint8_t* grey);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace vibe {
+namespace vibe::vision {
 
 std::shared_ptr<std::uint8_t> PixelPool::acquire(std::size_t size) {
   auto pixels = std::make_shared<std::vector<std::uint8_t>>();
@@ -23,4 +23,4 @@ std::shared_ptr<std::uint8_t> PixelPool::acquire(std::size_t size) {
           }};
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

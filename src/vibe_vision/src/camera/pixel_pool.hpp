@@ -4,7 +4,7 @@
 #include <mutex>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Memory of pixels that is used again as soon as nobody holds it: frames of constant size allocate nothing.
 class PixelPool {
@@ -21,4 +21,4 @@ class PixelPool {
   std::shared_ptr<Store> store_ = std::make_shared<Store>();
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 #include "camera/host_time.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kCountTolerance = 0.02;  // of the number of frames that a container of video tells
@@ -156,4 +156,4 @@ std::string RecordingSource::status() const {
   return complaint_.empty() ? name_ : complaint_;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

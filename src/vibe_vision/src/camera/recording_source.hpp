@@ -7,7 +7,7 @@
 #include "camera/pixel_pool.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A recording as a source. Stamps are those of its table. Without one, frame k is at k / rate; if the recording is
 /// paced, this counts from the time at which it was first read, as if a camera took it now.
@@ -48,4 +48,4 @@ class RecordingSource : public FrameSource {
   void complain(const std::string& text, std::uint64_t unreadable);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

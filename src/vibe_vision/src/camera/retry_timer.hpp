@@ -3,7 +3,7 @@
 
 #include "camera/host_time.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Lets an attempt through at most once per second. The first is let through at once.
 class RetryTimer {
@@ -21,4 +21,4 @@ class RetryTimer {
   double next_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

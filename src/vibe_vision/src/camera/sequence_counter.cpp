@@ -1,6 +1,6 @@
 #include "camera/sequence_counter.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::uint64_t kShortIds = 65535;  // 0 is no frame number
@@ -28,4 +28,4 @@ std::uint64_t SequenceCounter::distance(std::uint64_t id) const {
   return has_wrapped ? id + kShortIds - last_id_ : 1;  // 1: the camera has begun to count anew
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Makes one sequence without wraps or restarts from the frame numbers of a camera. GigE Vision 1.x counts from 1 to
 /// 65535 and then from 1 again; 2.x and USB3 Vision have 64 bits.
@@ -23,4 +23,4 @@ class SequenceCounter {
   std::uint64_t distance(std::uint64_t id) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kTaiAhead = 37;    // TAI - UTC since 2017 (IERS bulletin C) [s]
@@ -39,4 +39,4 @@ bool StampClock::hasJumped(double device_end, double first_packet) const {
   return device_end < last_device_ || first_packet < clock_.hostTime(device_end) - kJump;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 #include "vibe_core/common/device_clock.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Maps stamps of a camera to Unix time. It is given the end of each exposure by the camera's clock and the host time
 /// at which the first packet of the frame came. A camera sends after the exposure, so the smallest of these delays is
@@ -28,4 +28,4 @@ class StampClock {
   bool hasJumped(double device_end, double first_packet) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

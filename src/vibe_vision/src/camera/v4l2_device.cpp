@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 std::string reasonOf(int error) {
@@ -41,4 +41,4 @@ std::string v4l2Obstacle(const std::string& device) {
   return device + ": takes no pictures (it is another node of the same camera); try the next lower number";
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 #include "camera/host_time.hpp"
 #include "camera/v4l2_device.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kPlausible = 10;  // between a kernel stamp and its arrival [s]
@@ -165,4 +165,4 @@ std::string V4l2Source::status() const {
   return status_;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

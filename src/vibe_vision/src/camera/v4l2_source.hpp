@@ -8,7 +8,7 @@
 #include "camera/retry_timer.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Unix time of a kernel stamp (CLOCK_MONOTONIC) [s].
 double unixFromMonotonic(double monotonic);
@@ -49,4 +49,4 @@ class V4l2Source : public FrameSource {
   void say(const std::string& text);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

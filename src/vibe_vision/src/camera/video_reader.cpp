@@ -5,7 +5,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 VideoReader::VideoReader(const std::string& file) : file_(file) {
   struct stat facts {};
@@ -44,4 +44,4 @@ void VideoReader::rewind() {
   open();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

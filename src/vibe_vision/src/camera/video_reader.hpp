@@ -3,7 +3,7 @@
 
 #include "camera/picture_reader.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 class VideoReader : public PictureReader {
  public:
@@ -23,4 +23,4 @@ class VideoReader : public PictureReader {
   void open();
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -6,7 +6,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 // Far beyond any rig: these ranges reject errors of units.
@@ -258,4 +258,4 @@ void ConfigReader::checkLens(const YamlField& field) const {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

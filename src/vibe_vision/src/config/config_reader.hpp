@@ -6,7 +6,7 @@
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Reads a VisionConfig from YAML. Every mistake ends in an Error "file:line: key: what is wrong; remedy".
 class ConfigReader {
@@ -50,4 +50,4 @@ class ConfigReader {
   void checkLens(const YamlField& field) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 /// A single value of a flow list or map: quoted where YAML would read something else.
@@ -116,4 +116,4 @@ std::string toYaml(const VisionConfig& config) {
   return out.str();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

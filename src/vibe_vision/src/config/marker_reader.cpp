@@ -3,7 +3,7 @@
 
 // The part of ConfigReader that reads markers.
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kSmallest = 1e-5, kLargest = 0.2;  // of anything printed [m]
@@ -64,4 +64,4 @@ void ConfigReader::readHelix(const YamlField& field, SleeveDesign& sleeve) const
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

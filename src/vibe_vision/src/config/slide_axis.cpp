@@ -1,6 +1,6 @@
 #include "vibe_vision/config/slide_axis.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 double alongOf(const SlideAxis& axis, double slide) {
   return axis.pixels_per_metre * slide / (1 + axis.perspective * slide);
@@ -15,4 +15,4 @@ double pixelsPerMetre(const SlideAxis& axis, double slide) {
   return axis.pixels_per_metre / (w * w);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 VisionConfig VisionConfig::load(const std::string& address, AxisRule rule) {
   return ConfigReader(YamlSource::load(resolveAddress(address), {}), rule).read();
@@ -24,4 +24,4 @@ std::size_t VisionConfig::indexOf(const std::string& instrument) const {
   throw Error("'" + instrument + "' is not an instrument of this configuration; " + suggestKey(instrument, names));
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

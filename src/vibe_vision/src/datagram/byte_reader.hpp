@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Reads little-endian numbers, on any machine. Reading beyond the end gives 0 and makes ok() false.
 class ByteReader {
@@ -46,4 +46,4 @@ class ByteReader {
   bool ok_ = true;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

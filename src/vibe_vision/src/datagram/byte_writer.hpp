@@ -3,7 +3,7 @@
 #include <cstring>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Appends numbers as little-endian bytes, on any machine.
 class ByteWriter {
@@ -29,4 +29,4 @@ class ByteWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

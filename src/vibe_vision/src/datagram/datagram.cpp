@@ -4,7 +4,7 @@
 #include "datagram/byte_writer.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x54424956;  // the bytes "VIBT"
@@ -92,4 +92,4 @@ std::optional<TrackDatagram> decode(const std::uint8_t* bytes, std::size_t size)
   return datagram;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

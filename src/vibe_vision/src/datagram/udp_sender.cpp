@@ -10,7 +10,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr int kLargestPort = 65535;
@@ -63,4 +63,4 @@ void UdpSender::send(const std::vector<std::uint8_t>& bytes) {
   ++(taken == static_cast<ssize_t>(bytes.size()) ? sent_ : failed_);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

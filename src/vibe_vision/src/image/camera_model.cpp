@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 /// A point of the plane z = 1 as the lens moves it, and the derivative.
@@ -78,4 +78,4 @@ Eigen::Vector2d project(const CameraModel& camera, const Eigen::Vector3d& point)
   return distort(camera, ideal);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/marker/marker_design.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 /// White that must be around a ring, and at both ends of a sleeve: as wide as the blur of a fast marker.
@@ -122,4 +122,4 @@ void checkMarker(const MarkerDesign& design, const std::string& place) {
   std::visit([&](const auto& marker) { check(marker, place); }, design);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

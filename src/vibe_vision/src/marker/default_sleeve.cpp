@@ -1,6 +1,6 @@
 #include "vibe_vision/marker/marker_design.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Bars: of random layouts with at least ten edges, improved edge by edge, the one with the smallest side lobes of the
 /// multiple correlation that the search uses, over motion blurs of 0 to 20 px, sizes of 0.75 to 1.1 and all rotations.
@@ -17,4 +17,4 @@ SleeveDesign defaultSleeve() {
   return design;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

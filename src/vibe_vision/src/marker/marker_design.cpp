@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 
 double reflectance(const RingDesign& design, double x, double y) {
   const double diameter = 2 * std::hypot(x, y);
@@ -17,4 +17,4 @@ double reflectance(const SleeveDesign& design, double u, double phi) {
   return phase - std::floor(phase) < design.helix_duty ? 0 : 1;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -45,4 +45,4 @@ void InstrumentPredictor::reset() {
   rotation_.reset();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

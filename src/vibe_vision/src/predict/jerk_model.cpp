@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 // Gauss-Legendre quadrature on [0, 1] with eight points: exact for polynomials of degree 15.
@@ -56,4 +56,4 @@ Eigen::Matrix4d jerkNoise(double dt, const JerkModel& jerk) {
   return 2 * jerk.deviation * jerk.deviation / jerk.time * q;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

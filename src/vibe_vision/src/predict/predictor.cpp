@@ -6,7 +6,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 void checkPositive(double value, const std::string& name) {
@@ -70,4 +70,4 @@ MotionEstimate Predictor::predict(double time) const {
   return extrapolate(state_, time - state_.time, prior_.jerk);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

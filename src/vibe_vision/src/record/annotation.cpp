@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 // channels in the order blue, green, red
@@ -96,4 +96,4 @@ cv::Mat annotate(const VisionConfig& config, const Frame& frame, const Measureme
   return annotate(config, frame, measurements, texts);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

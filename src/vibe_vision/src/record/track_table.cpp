@@ -7,7 +7,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 const char* const kColumns =
@@ -137,4 +137,4 @@ std::string TrackSummary::text() const {
   return text + line;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -10,7 +10,7 @@
 #include "sheet/sheet_painter.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kPointsPerMetre = 72 / 25.4e-3;
@@ -97,4 +97,4 @@ SheetRaster MarkerSheet::raster(std::size_t page, double pixels_per_metre) const
   return raster;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

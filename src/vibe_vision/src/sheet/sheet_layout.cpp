@@ -6,7 +6,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 /// The part of a page that markers may use.
@@ -138,4 +138,4 @@ std::vector<SheetPage> layOut(const VisionConfig& config, const SheetOptions& op
   return pages;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 
 #include "vibe_vision/sheet/marker_sheet.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 // Everything here in metres.
 constexpr double kPageMargin = 15e-3;  // printers cannot print to the edge
@@ -21,4 +21,4 @@ PaperExtent extentOf(Paper paper);
 /// Where everything goes. @throws Error if something is larger than a page
 std::vector<SheetPage> layOut(const VisionConfig& config, const SheetOptions& options);
 
-}  // namespace vibe
+}  // namespace vibe::vision

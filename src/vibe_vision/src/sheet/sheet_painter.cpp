@@ -7,7 +7,7 @@
 #include "sheet/sheet_layout.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kTextSize = 2.8e-3;
@@ -198,4 +198,4 @@ void SheetPainter::text(double x, double y, double size, const std::string& word
   cairo_show_text(context_, words.c_str());
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

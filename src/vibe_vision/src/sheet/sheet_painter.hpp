@@ -5,7 +5,7 @@
 
 #include "vibe_vision/sheet/marker_sheet.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Draws a page on a cairo surface.
 class SheetPainter {
@@ -38,4 +38,4 @@ class SheetPainter {
   void text(double x, double y, double size, const std::string& words);
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

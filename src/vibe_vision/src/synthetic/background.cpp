@@ -4,7 +4,7 @@
 
 #include "synthetic/random_field.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 float smoothStep(float t) {
@@ -60,4 +60,4 @@ void Background::addPatches(std::uint64_t seed) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What is behind the markers, in grey values at full light: cloth-like texture with straight-edged patches. It is
 /// defined as the bilinear interpolation of values at the pixel centres, some pixels beyond the image too.
@@ -26,4 +26,4 @@ class Background {
   std::vector<float> values_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Share of an aperture of width `width` that lies on the positive side of an edge across it, at distance `distance`.
 inline float edgeShare(float distance, float inverse_width) {
@@ -30,4 +30,4 @@ inline float positiveShare(float value, const ApertureSpread& spread) {
   return share > 1 ? 1.0F : (share < 0 ? 0.0F : share);  // rounding
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

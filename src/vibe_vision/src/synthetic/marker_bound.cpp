@@ -6,7 +6,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kShift = 0.05;          // half width of a difference [px]
@@ -141,4 +141,4 @@ MarkerBound cramerRaoBound(const SyntheticScene& scene, std::size_t instrument, 
   return {std::sqrt(bound(0, 0)), turns ? std::sqrt(bound(4, 4)) : 0};
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 
 AxisLine axisLine(const CameraModel& camera, const SlideAxis& axis) {
   // A point s along the line, at depth z0 (1 + p s), is seen at o + direction * along(s). Solved for the line's
@@ -49,4 +49,4 @@ Eigen::Vector2d halfExtents(const SyntheticInstrument& instrument) {
   return half * instrument.scale;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// The straight line in space whose picture is a SlideAxis, in the camera frame.
 struct AxisLine {
@@ -27,4 +27,4 @@ Eigen::Vector2d projectIdeal(const CameraModel& camera, const Eigen::Vector3d& p
 /// Half extents of a marker's printed surface along and across [m], times its scale; a tag's with its white border.
 Eigen::Vector2d halfExtents(const SyntheticInstrument& instrument);
 
-}  // namespace vibe
+}  // namespace vibe::vision

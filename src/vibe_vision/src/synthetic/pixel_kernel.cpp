@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 
 PixelKernel::PixelKernel(double sigma, int samples)
     : samples_(samples), margin_(std::max(1, static_cast<int>(std::ceil(4.5 * sigma)))) {
@@ -49,4 +49,4 @@ void PixelKernel::alongRow(const float* samples, int count, float* pixels) const
     sumAlongRow<4>(samples, count, pixels);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Optics and pixel aperture in one dimension: Gaussian point spread function, integrated over the pixel's width. Works
 /// on samples that are means over 1 / samples of a pixel each.
@@ -29,4 +29,4 @@ class PixelKernel {
   std::vector<float> weights_, lattice_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

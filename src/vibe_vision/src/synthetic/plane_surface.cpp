@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 PlaneMap::PlaneMap(const CameraModel& camera, const MarkerFrame& frame, const Eigen::Vector2d& reference,
                    double aperture) {
   const ViewRay ray(camera, reference);
@@ -60,4 +60,4 @@ void TagSurface::row(const float* x, const float* y, int count, float* coverage,
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

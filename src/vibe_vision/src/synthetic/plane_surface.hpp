@@ -3,7 +3,7 @@
 #include "synthetic/surface.hpp"
 #include "synthetic/view_ray.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A flat marker: maps pixels to coordinates of the printed plane, in metres of the design.
 class PlaneMap {
@@ -49,4 +49,4 @@ class TagSurface : public Surface {
   float cell_;  // side [m]
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

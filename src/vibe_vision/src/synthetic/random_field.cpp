@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 /// Natural logarithm of a normal number in (0, 1), to 1e-6.
@@ -52,4 +52,4 @@ void addNoise(const RandomStream& random, std::uint32_t counter, const float* ex
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

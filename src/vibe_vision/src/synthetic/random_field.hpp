@@ -4,7 +4,7 @@
 
 #include "vibe_core/common/random.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Random numbers by counter: number i of a stream is a function of its seed and i alone, with integer arithmetic and
 /// single-precision operations that IEEE 754 rounds exactly. The same on every machine, in any order.
@@ -35,4 +35,4 @@ class RandomStream {
 void addNoise(const RandomStream& random, std::uint32_t counter, const float* expected, int count, float gain,
               float variance, std::uint8_t* pixels);
 
-}  // namespace vibe
+}  // namespace vibe::vision

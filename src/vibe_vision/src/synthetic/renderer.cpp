@@ -6,7 +6,7 @@
 #include "synthetic/random_field.hpp"
 #include "synthetic/tile_renderer.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr int kStripHeight = 32;  // of the pieces that an occluder is drawn in [px]
@@ -124,4 +124,4 @@ RenderedFrame Renderer::render(std::uint64_t index, double start) const {
   return rendered;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

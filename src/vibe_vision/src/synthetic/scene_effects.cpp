@@ -6,7 +6,7 @@
 
 #include "synthetic/random_field.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kFlicker = 100;       // of lamps on 50 Hz mains [Hz]
@@ -119,4 +119,4 @@ std::vector<SyntheticInstrument> objectsOf(const SyntheticScene& scene) {
   return objects;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

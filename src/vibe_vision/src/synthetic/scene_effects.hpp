@@ -3,7 +3,7 @@
 
 #include "synthetic/marker_frame.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Mean light from `begin` to `end` [s], relative to full light.
 double meanLight(const Degradation& degradation, double begin, double end);
@@ -44,4 +44,4 @@ class Highlights {
 /// The instruments of a scene and behind them their look-alikes.
 std::vector<SyntheticInstrument> objectsOf(const SyntheticScene& scene);
 
-}  // namespace vibe
+}  // namespace vibe::vision

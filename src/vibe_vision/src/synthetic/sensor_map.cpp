@@ -5,7 +5,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 /// Derivative of undistort(), from that of its inverse by central differences.
@@ -44,4 +44,4 @@ SensorMap::Entry SensorMap::at(int x, int y) const {
   return entry;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

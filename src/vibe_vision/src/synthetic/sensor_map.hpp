@@ -4,7 +4,7 @@
 
 #include "vibe_vision/image/camera_model.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Where each pixel looks without the lens's distortion, with the derivative there. Beyond the image the map goes on
 /// linearly from the nearest pixel.
@@ -23,4 +23,4 @@ class SensorMap {
   std::vector<Entry> entries_;  ///< empty: no distortion
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

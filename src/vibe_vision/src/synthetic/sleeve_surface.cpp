@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr float kTurn = 6.28318530718F;
@@ -156,4 +156,4 @@ void SleeveSurface::row(const float* x, const float* y, int count, float* covera
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

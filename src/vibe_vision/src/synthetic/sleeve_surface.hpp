@@ -5,7 +5,7 @@
 #include "synthetic/surface.hpp"
 #include "synthetic/view_ray.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A printed cylinder: each ray is intersected with it.
 class SleeveSurface : public Surface {
@@ -42,4 +42,4 @@ class SleeveSurface : public Surface {
   float direction_x_, direction_y_;  // of the rod in the image
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

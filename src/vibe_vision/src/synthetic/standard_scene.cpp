@@ -5,7 +5,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kPeakSpeed = 0.5;  // [m/s]
@@ -187,4 +187,4 @@ std::vector<std::string> sceneNames() {
   return names;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include "synthetic/plane_surface.hpp"
 #include "synthetic/sleeve_surface.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 std::unique_ptr<Surface> makeSurface(const CameraModel& camera, const SyntheticInstrument& instrument,
                                      const MarkerFrame& frame, const Eigen::Vector2d& reference, double aperture) {
@@ -15,4 +15,4 @@ std::unique_ptr<Surface> makeSurface(const CameraModel& camera, const SyntheticI
                                          aperture);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 
 #include "synthetic/marker_frame.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A marker at one moment, as seen through small square apertures: what share of each it covers, and how white it is
 /// there. Edges are integrated over the aperture by their distance, not sampled.
@@ -21,4 +21,4 @@ class Surface {
 std::unique_ptr<Surface> makeSurface(const CameraModel& camera, const SyntheticInstrument& instrument,
                                      const MarkerFrame& frame, const Eigen::Vector2d& reference, double aperture);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -6,7 +6,7 @@
 
 #include "synthetic/edge_share.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr int kFewSamples = 2;   // per pixel and direction, where motion smooths the picture
@@ -262,4 +262,4 @@ void TileRenderer::render(const PixelRect& rect, const Exposure& exposure, float
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

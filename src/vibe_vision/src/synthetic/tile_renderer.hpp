@@ -8,7 +8,7 @@
 #include "synthetic/sensor_map.hpp"
 #include "synthetic/surface.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Pixels from (x0, y0) up to, without, (x1, y1).
 struct PixelRect {
@@ -73,4 +73,4 @@ class TileRenderer {
   Occluder occluder_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

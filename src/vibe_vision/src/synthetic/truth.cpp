@@ -3,7 +3,7 @@
 #include "synthetic/scene_effects.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 /// A point of the marker, from -1 to 1 in both directions; false: none there.
@@ -62,4 +62,4 @@ SyntheticTruth truthAt(const SyntheticScene& scene, std::size_t instrument, doub
   return truth;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

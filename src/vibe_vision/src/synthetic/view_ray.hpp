@@ -1,7 +1,7 @@
 #pragma once
 #include "synthetic/marker_frame.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// One coordinate of the ray through a pixel, linear in the pixel: value + x dx + y dy.
 struct RayPart {
@@ -31,4 +31,4 @@ class ViewRay {
   Eigen::Vector3d centre_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::uint8_t kSaturated = 253;  // grey values from which a pixel may have lost light [DN]
@@ -192,4 +192,4 @@ void AxisMap::readBand(const Frame& frame, double begin, double end, double half
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

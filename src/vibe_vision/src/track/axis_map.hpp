@@ -8,7 +8,7 @@
 #include "vibe_vision/image/frame.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Pixels of the full sensor, [x, x + width) x [y, y + height).
 struct PixelWindow {
@@ -68,4 +68,4 @@ class AxisMap {
   bool any_saturated_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kMotionStep = 4;  // between templates [px]
@@ -106,4 +106,4 @@ void AxisSearch::keep(const Candidate& candidate) {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 #include "track/axis_map.hpp"
 #include "track/search_template.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Finds places along an axis that look like a marker: correlation of the mean grey value across a narrow band with the
 /// marker's own, for several speeds and sizes and any rotation.
@@ -55,4 +55,4 @@ class AxisSearch {
   Result result_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kStepReach = 6;  // standard deviations after which a step is over
@@ -67,4 +67,4 @@ BlurredLine::Entry BlurredLine::entryAt(const std::vector<Interval>& black, doub
           static_cast<float>(sum[2]), static_cast<float>(sum[3])};
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Black from `begin` to `end` [px].
 struct Interval {
@@ -96,4 +96,4 @@ class BlurredLine {
   std::vector<Entry> entries_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

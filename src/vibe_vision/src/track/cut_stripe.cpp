@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 // Midpoint rule over the blur across the axis, in standard deviations: the integrand has kinks.
@@ -104,4 +104,4 @@ CutStripe::Entry CutStripe::nearCut(float y, float phase, float deviation, float
   return sum;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 #include "track/blurred_line.hpp"
 #include "track/normal_table.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Standard deviations of the blur after which an edge is over, and between cut and edge of a stripe from which they do
 /// not disturb each other.
@@ -45,4 +45,4 @@ class CutStripe {
   float period_, inverse_period_, half_black_, mean_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Four floats of a vector register; compilers without the instructions take several. Sums below are always taken in
 /// the same order, and nothing is fused: the same bits on every machine.
@@ -49,4 +49,4 @@ inline double dot(const float* p, const float* q, std::size_t count) {
   return total(a + b);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 // chi^2 per degree of freedom of the pixels that are no outliers: of a marker that is seen as a whole, of half of one.
@@ -58,4 +58,4 @@ bool Gates::isReachable(double slide, const MotionFilter::State& predicted, doub
          std::abs(slide - predicted.mean[0]) <= kDeviations * predicted.deviation();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include "track/motion_filter.hpp"
 #include "vibe_vision/track/measurement.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Decides whether a fit is the marker.
 class Gates {
@@ -23,4 +23,4 @@ class Gates {
   double lateral_tolerance_;  ///< [px]
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

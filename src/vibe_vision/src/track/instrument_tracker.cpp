@@ -7,7 +7,7 @@
 
 #include "track/square.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kCloseEnough = 1.2;    // deviation of a prediction from which a fit converges [px]
@@ -318,4 +318,4 @@ void InstrumentTracker::updateFilters(double stamp, const MarkerFit& fit, double
     rotation_.update(stamp, last_rotation_, turn_variance);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

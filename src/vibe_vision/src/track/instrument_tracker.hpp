@@ -4,7 +4,7 @@
 #include "track/light_model.hpp"
 #include "track/slow_state.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Follows one instrument. Each frame: predict, fit, gate; if that fails, search the axis, fit and gate again.
 class InstrumentTracker {
@@ -64,4 +64,4 @@ class InstrumentTracker {
   Measurement measurement_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

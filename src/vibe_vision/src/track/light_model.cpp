@@ -5,7 +5,7 @@
 
 #include "track/square.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::array<double, 2> kFlicker{100, 120};  // of lamps on 50 and 60 Hz mains [Hz]
@@ -67,4 +67,4 @@ LightModel::Delay LightModel::delay(double time, double exposure) const {
   return {h.dot(mean_), h.dot(covariance_ * h)};
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

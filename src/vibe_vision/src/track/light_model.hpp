@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Follows the brightness of a marker from frame to frame, to know how the light changes within an exposure: lamps on
 /// the mains flicker at 100 or 120 Hz, and a moving marker that is lit more at the end of the exposure seems to be
@@ -33,4 +33,4 @@ class LightModel {
   bool started_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 #include "track/sleeve_pattern.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 std::unique_ptr<MarkerPattern> makePattern(const MarkerDesign& design, double pixels_per_metre,
                                            const MarkerView& view) {
@@ -11,4 +11,4 @@ std::unique_ptr<MarkerPattern> makePattern(const MarkerDesign& design, double pi
   return std::make_unique<SleevePattern>(std::get<SleeveDesign>(design), pixels_per_metre, view);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::size_t kMinPixels = 48;
@@ -222,4 +222,4 @@ void MarkerFitter::take(const FitStep& step, MarkerFit& fit) const {
   fit.x[kBlur] = std::clamp(fit.x[kBlur], 0.05, 4.0);
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 #include "track/axis_map.hpp"
 #include "track/pattern_fit.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A marker as it was fitted to one frame.
 struct MarkerFit {
@@ -60,4 +60,4 @@ class MarkerFitter {
   PatternFit fit_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

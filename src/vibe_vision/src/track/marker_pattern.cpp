@@ -1,6 +1,6 @@
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 void PixelBlock::allocate(std::size_t capacity) {
   const std::size_t size = (capacity + kLanes - 1) / kLanes * kLanes;
@@ -33,4 +33,4 @@ MarkerView markerView(const CameraModel& camera, const SlideAxis& axis) {
 
 void MarkerPattern::select(const MarkerPose&, double, PixelBlock&) const {}
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -1,6 +1,6 @@
 #include "vibe_vision/track/measurement.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 const char* toText(LostReason reason) {
   switch (reason) {
@@ -28,4 +28,4 @@ const char* toText(LostReason reason) {
   return "unknown";
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 
 #include "track/square.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 // The acceleration may change from one limit to the other at about 12 Hz; the jerk keeps its sign for 1 ms.
@@ -66,4 +66,4 @@ void MotionFilter::update(double time, double value, double variance) {
   state_.covariance = keep * predicted.covariance * keep.transpose() + variance * gain * gain.transpose();
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

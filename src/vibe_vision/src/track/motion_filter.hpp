@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Kalman filter of one coordinate with constant acceleration, driven by white jerk (Bar-Shalom, Li, Kirubarajan,
 /// "Estimation with Applications to Tracking and Navigation", 2001, section 6.2.3). It says where to look in the next
@@ -34,4 +34,4 @@ class MotionFilter {
   State state_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -6,7 +6,7 @@
 #include "track/float_sums.hpp"
 #include "track/lanes.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 using Order [[gnu::vector_size(16)]] = int;
@@ -111,4 +111,4 @@ VIBE_LANES void MovingLine::look(const Places& places, std::size_t count, const 
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 
 #include "track/blurred_line.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Means of a BlurredLine over one motion, as tables for a few variances of the blur.
 class MovingLine {
@@ -38,4 +38,4 @@ class MovingLine {
   std::vector<float> table_;  ///< value, slope, second derivative, 0
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

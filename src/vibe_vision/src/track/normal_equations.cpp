@@ -5,7 +5,7 @@
 
 #include "track/lanes.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr std::size_t kRowsAtATime = 256;  // rows summed in single precision before they are added in double precision
@@ -60,4 +60,4 @@ void NormalEquations::sumGroup(int a, int b, std::size_t begin, std::size_t rows
     products_(a, b + k < count_ ? b + k : kMaxColumns) += sums[k];
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Sums of products of columns of floats, always in the same order and without fused operations: the same bits on every
 /// machine.
@@ -33,4 +33,4 @@ class NormalEquations {
   Eigen::Matrix<double, kMaxColumns + 1, kMaxColumns + 1> products_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 
 NormalTable::NormalTable() {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
@@ -17,4 +17,4 @@ const NormalTable& NormalTable::instance() {
   return table;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

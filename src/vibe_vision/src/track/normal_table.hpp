@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// The standard normal distribution as a table: its integral, itself and its density, to 1e-6. A step blurred by a
 /// Gaussian of deviation s is value(x / s); the integral of that over x is s * integral(x / s).
@@ -29,4 +29,4 @@ class NormalTable {
   std::array<Entry, 161> entries_{};
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 #include "track/float_sums.hpp"
 #include "track/lanes.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kOutlier = 6;  // standard deviations beyond which a pixel counts nothing
@@ -224,4 +224,4 @@ void PatternFit::solve(const FitVector& x, const FitPrior& prior, FitStep& resul
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 #include "track/normal_equations.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What a fit looks for: the pose, then grey values of the marker and how the light changes over it. A pixel shows
 ///   (black + contrast * reflectance) * (1 + slope_along * (along - pose.along) + slope_lateral * (lateral - ...)).
@@ -84,4 +84,4 @@ class PatternFit {
   double squares_ = 0, weights_ = 0, loss_ = 0, valid_ = 0, used_ = 0, full_ = 0, used_white_ = 0, full_white_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 #include "track/lanes.hpp"
 #include "track/pixel_area.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kMaxMotion = 48;  // during the exposure [px]
@@ -255,4 +255,4 @@ void RingPattern::searchProfile(double motion, double scale, std::vector<float>&
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

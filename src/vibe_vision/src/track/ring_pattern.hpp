@@ -3,7 +3,7 @@
 #include "track/ring_table.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A flat black ring on white.
 class RingPattern : public MarkerPattern {
@@ -30,4 +30,4 @@ class RingPattern : public MarkerPattern {
   RingTable table_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

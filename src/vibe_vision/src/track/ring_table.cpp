@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kBlurRatio = 1.25;        // of the blur from one level to the next
@@ -182,4 +182,4 @@ void RingTable::spreadMotion() {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Picture of a black ring on white, blurred, as a table over one quadrant: rows along the axis (u), columns across it
 /// (v), kStep apart, beginning kMargin steps before the centre. It holds coefficients of a cubic B-spline (Unser,
@@ -45,4 +45,4 @@ class RingTable {
   std::vector<float> table_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

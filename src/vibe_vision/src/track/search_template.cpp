@@ -9,7 +9,7 @@
 
 #include "track/float_sums.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 AxisSamples::AxisSamples(std::size_t size)
     : values_(size + kSpare, 0), seen_(size + 1, 0), sum_(size + 1, 0), squares_(size + 1, 0) {}
@@ -91,4 +91,4 @@ SearchTemplate::Match SearchTemplate::describe(const Eigen::Vector3d& parts, dou
   return match;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Mean grey values along an axis, 1 px apart, with running sums.
 class AxisSamples {
@@ -58,4 +58,4 @@ class SearchTemplate {
   Eigen::Matrix3d inverse_ = Eigen::Matrix3d::Zero();  ///< of the profiles' products
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

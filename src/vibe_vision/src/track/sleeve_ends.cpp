@@ -2,7 +2,7 @@
 
 #include "track/sleeve_part.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Near an end of the helix.
 void SleevePattern::cutAt(std::size_t i, Part& part) const {
@@ -93,4 +93,4 @@ SleevePattern::Blackness SleevePattern::cutStripeAt(const Part& part, std::size_
           0.5F * along * (b.slope - a.slope) * inverse};
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

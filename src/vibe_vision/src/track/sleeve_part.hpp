@@ -3,7 +3,7 @@
 
 #include "track/sleeve_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A pose, ready for use.
 struct SleevePattern::View {
@@ -43,4 +43,4 @@ struct SleevePattern::Blackness {
   float value = 0, by_u = 0, by_w = 0, by_blur = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 #include "track/lanes.hpp"
 #include "track/pixel_area.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kMinBlur = 0.25, kMaxBlur = 3.5;  // of the optics [px]
@@ -282,4 +282,4 @@ VIBE_LANES void SleevePattern::chain(const View& pose, std::size_t begin, const 
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

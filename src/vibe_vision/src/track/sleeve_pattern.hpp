@@ -4,7 +4,7 @@
 #include "track/moving_line.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A printed cylinder seen by a pinhole camera. A pixel looks at one place of the print, (u, phi); around it, the print
 /// is a picture of straight edges whose slope against the axis depends on the row, so that the blur in both directions
@@ -59,4 +59,4 @@ class SleevePattern : public MarkerPattern {
   bool rough_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 
 #include "track/sleeve_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr double kSearchRim = 0.6;       // of the radius: rows that show nearly the same
@@ -60,4 +60,4 @@ std::vector<double> SleevePattern::rotationGuesses() const {
   return guesses;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

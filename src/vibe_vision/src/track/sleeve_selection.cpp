@@ -3,7 +3,7 @@
 #include "track/lanes.hpp"
 #include "track/sleeve_part.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 constexpr float kTellReach = 2.7F;    // standard deviations from an edge within which a pixel tells something
@@ -60,4 +60,4 @@ VIBE_LANES void SleevePattern::mark(Part& __restrict part) const {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 namespace {
 
 // Standard deviations at the beginning, and random walk from one frame to the next. Design choices.
@@ -124,4 +124,4 @@ FitVector SlowState::nominal(double slide) const {
   return x;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 #include "track/pattern_fit.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What changes little from frame to frame: size, tilt, aspect, slant, blur of the marker and the slope of the light.
 /// Each frame estimates it along with the position, from what is known from the frames before: then it costs the
@@ -38,4 +38,4 @@ class SlowState {
   FitMatrix covariance_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -1,9 +1,9 @@
 #pragma once
 
-namespace vibe {
+namespace vibe::vision {
 
 inline double square(double x) {
   return x * x;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

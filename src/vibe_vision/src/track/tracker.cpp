@@ -2,7 +2,7 @@
 
 #include "track/instrument_tracker.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 struct Tracker::Impl {
   VisionConfig config;
@@ -51,4 +51,4 @@ const VisionConfig& Tracker::config() const {
   return impl_->config;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 
 #include "bench_cell.hpp"
 
-namespace vibe::reach_test {
+namespace vibe::vision::reach_test {
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
@@ -105,4 +105,4 @@ TEST(ReachControl, NothingIsWrongBeyondTheStandardScenes) {
 }
 
 }  // namespace
-}  // namespace vibe::reach_test
+}  // namespace vibe::vision::reach_test

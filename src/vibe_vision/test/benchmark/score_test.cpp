@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe::score_test {
+namespace vibe::vision::score_test {
 namespace {
 
 /// Reports what it is told to.
@@ -100,4 +100,4 @@ TEST(Score, QuantilesAreThoseOfTables) {
 }
 
 }  // namespace
-}  // namespace vibe::score_test
+}  // namespace vibe::vision::score_test

@@ -9,7 +9,7 @@
 #include "calibrate/student_t.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::axis_fit_test {
+namespace vibe::vision::axis_fit_test {
 namespace {
 
 SlideAxis slantedAxis() {
@@ -208,4 +208,4 @@ TEST(MotionFit, WhatCannotBeFittedIsSaid) {
 }
 
 }  // namespace
-}  // namespace vibe::axis_fit_test
+}  // namespace vibe::vision::axis_fit_test

@@ -8,7 +8,7 @@
 #include "calibrate/rendered_board.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::lens_calibration_test {
+namespace vibe::vision::lens_calibration_test {
 namespace {
 
 CameraModel bentLens() {
@@ -186,4 +186,4 @@ TEST(LensCalibration, TooFewImagesAreAnError) {
 }
 
 }  // namespace
-}  // namespace vibe::lens_calibration_test
+}  // namespace vibe::vision::lens_calibration_test

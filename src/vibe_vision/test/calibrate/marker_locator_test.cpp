@@ -8,7 +8,7 @@
 #include "vibe_vision/calibrate/axis_fit.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
-namespace vibe::marker_locator_test {
+namespace vibe::vision::marker_locator_test {
 namespace {
 
 constexpr double kRate = 10;                     // stops per second of the synthetic time
@@ -134,4 +134,4 @@ TEST(MarkerLocator, ImagesOfAnotherSizeAreSaid) {
 }
 
 }  // namespace
-}  // namespace vibe::marker_locator_test
+}  // namespace vibe::vision::marker_locator_test

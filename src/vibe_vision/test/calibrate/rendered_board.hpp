@@ -9,7 +9,7 @@
 #include "vibe_vision/image/camera_model.hpp"
 #include "vibe_vision/image/frame.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Pictures of a chessboard in the world: each pixel is the mean of rays through the lens, plus noise.
 class RenderedBoard {
@@ -106,4 +106,4 @@ inline std::vector<Eigen::Isometry3d> boardPoses(const CameraModel& camera, cons
   return poses;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

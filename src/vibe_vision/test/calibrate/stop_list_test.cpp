@@ -4,7 +4,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::stop_list_test {
+namespace vibe::vision::stop_list_test {
 namespace {
 
 std::string errorOf(const std::string& text) {
@@ -40,4 +40,4 @@ TEST(StopList, MistakesAreNamed) {
 }
 
 }  // namespace
-}  // namespace vibe::stop_list_test
+}  // namespace vibe::vision::stop_list_test

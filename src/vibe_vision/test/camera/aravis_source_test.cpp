@@ -13,7 +13,7 @@
 #include "camera/retry_timer.hpp"
 #include "vibe_vision/camera/capture.hpp"
 
-namespace vibe::aravis_source_test {
+namespace vibe::vision::aravis_source_test {
 
 namespace {
 
@@ -303,4 +303,4 @@ TEST(FakeCamera, AnAddressOfAnotherComputerIsRefused) {
   EXPECT_THROW(FakeCamera(gradientRing(), options), Error);
 }
 
-}  // namespace vibe::aravis_source_test
+}  // namespace vibe::vision::aravis_source_test

@@ -8,7 +8,7 @@
 #include "camera/fake_rig.hpp"
 #include "camera/own_network.hpp"
 
-namespace vibe::buffer_loan_test {
+namespace vibe::vision::buffer_loan_test {
 
 namespace {
 
@@ -41,4 +41,4 @@ TEST(BufferLoan, LendsSomeAndTakesThemBack) {
   }
 }
 
-}  // namespace vibe::buffer_loan_test
+}  // namespace vibe::vision::buffer_loan_test

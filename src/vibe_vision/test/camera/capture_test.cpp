@@ -9,7 +9,7 @@
 
 #include "camera/host_time.hpp"
 
-namespace vibe::capture_test {
+namespace vibe::vision::capture_test {
 
 namespace {
 
@@ -101,4 +101,4 @@ TEST(Capture, AnExceptionOfTheSourceEndsItWithTheMessage) {
   EXPECT_EQ(capture.status(), "the disk is gone");
 }
 
-}  // namespace vibe::capture_test
+}  // namespace vibe::vision::capture_test

@@ -10,7 +10,7 @@
 #include "vibe_vision/camera/fake_camera.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 constexpr double kForever = 60;  ///< within which anything has to happen on a busy machine [s]
 
@@ -74,4 +74,4 @@ inline long residentMemory() {
   return resident * 4096;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
-namespace vibe::frame_ring_test {
+namespace vibe::vision::frame_ring_test {
 
 TEST(FrameRing, GoesForwardAndBackward) {
   FrameRing ring;
@@ -57,4 +57,4 @@ TEST(FrameRing, AnAbsurdNumberOfFramesIsRefused) {
   EXPECT_THROW(renderRing(standardScene(), 1 << 30), Error);
 }
 
-}  // namespace vibe::frame_ring_test
+}  // namespace vibe::vision::frame_ring_test

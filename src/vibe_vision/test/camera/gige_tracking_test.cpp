@@ -11,7 +11,7 @@
 #include "vibe_vision/camera/capture.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
-namespace vibe::gige_tracking_test {
+namespace vibe::vision::gige_tracking_test {
 
 namespace {
 
@@ -102,4 +102,4 @@ TEST(GigeTracking, PositionsFromPacketsAreThoseOfTheScene) {
   }
 }
 
-}  // namespace vibe::gige_tracking_test
+}  // namespace vibe::vision::gige_tracking_test

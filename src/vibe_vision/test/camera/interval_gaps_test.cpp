@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::interval_gaps_test {
+namespace vibe::vision::interval_gaps_test {
 
 TEST(IntervalGaps, CountsFramesThatAreLeftOut) {
   IntervalGaps gaps(0.01);
@@ -29,4 +29,4 @@ TEST(IntervalGaps, AClockThatIsSetIsNoGap) {
   EXPECT_EQ(gaps.advance(10), 0U);
 }
 
-}  // namespace vibe::interval_gaps_test
+}  // namespace vibe::vision::interval_gaps_test

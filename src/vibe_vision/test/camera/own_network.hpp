@@ -7,7 +7,7 @@
 
 #include <cstring>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Gives this process a loopback interface of its own, so that simulated cameras of tests that run at the same time do
 /// not meet. Call it before any thread starts. @return false if the system does not permit it
@@ -23,4 +23,4 @@ inline bool enterOwnNetwork() {
   return is_up;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace vibe::pixel_format_test {
+namespace vibe::vision::pixel_format_test {
 
 namespace {
 
@@ -99,4 +99,4 @@ TEST(PixelFormat, AnUnknownCodeIsNamedAndNotRead) {
   EXPECT_EQ(sizeOf(PixelFormat::Mono8, -1, 4), 0U);
 }
 
-}  // namespace vibe::pixel_format_test
+}  // namespace vibe::vision::pixel_format_test

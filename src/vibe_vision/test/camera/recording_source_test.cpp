@@ -11,7 +11,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
-namespace vibe::recording_source_test {
+namespace vibe::vision::recording_source_test {
 namespace fs = std::filesystem;
 
 namespace {
@@ -300,4 +300,4 @@ TEST(ImageList, NumbersCountByTheirValue) {
   EXPECT_NE(isBefore("x01", "x1"), isBefore("x1", "x01"));
 }
 
-}  // namespace vibe::recording_source_test
+}  // namespace vibe::vision::recording_source_test

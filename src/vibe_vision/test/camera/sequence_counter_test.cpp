@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::sequence_counter_test {
+namespace vibe::vision::sequence_counter_test {
 
 TEST(SequenceCounter, CountsGaps) {
   SequenceCounter counter;
@@ -47,4 +47,4 @@ TEST(SequenceCounter, NumbersThatGoBackAreNoGap) {
   EXPECT_EQ(counter.advance(4).sequence, 502U);
 }
 
-}  // namespace vibe::sequence_counter_test
+}  // namespace vibe::vision::sequence_counter_test

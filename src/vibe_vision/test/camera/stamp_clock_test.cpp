@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace vibe::stamp_clock_test {
+namespace vibe::vision::stamp_clock_test {
 
 namespace {
 
@@ -120,4 +120,4 @@ TEST(StampClock, PtpWithStampsFromTheFutureIsNotBelieved) {
   EXPECT_FALSE(clock.isHostTime());
 }
 
-}  // namespace vibe::stamp_clock_test
+}  // namespace vibe::vision::stamp_clock_test

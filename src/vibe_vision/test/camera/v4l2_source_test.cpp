@@ -12,7 +12,7 @@
 #include "camera/host_time.hpp"
 #include "camera/v4l2_device.hpp"
 
-namespace vibe::v4l2_source_test {
+namespace vibe::vision::v4l2_source_test {
 
 namespace {
 
@@ -83,4 +83,4 @@ TEST(V4l2Source, FormatsOfTheDriverAreKnown) {
   EXPECT_FALSE(isReadable(v4l2Format(codeOf("MJPG"))));  // OpenCV decodes it
 }
 
-}  // namespace vibe::v4l2_source_test
+}  // namespace vibe::vision::v4l2_source_test

@@ -6,7 +6,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
-namespace vibe::config_round_trip_test {
+namespace vibe::vision::config_round_trip_test {
 namespace {
 
 void expectEqual(const MarkerDesign& a, const MarkerDesign& b) {
@@ -104,4 +104,4 @@ TEST(ConfigRoundTrip, ADirectionOfAnotherLengthIsNormalised) {
 }
 
 }  // namespace
-}  // namespace vibe::config_round_trip_test
+}  // namespace vibe::vision::config_round_trip_test

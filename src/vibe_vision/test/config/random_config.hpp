@@ -4,7 +4,7 @@
 
 #include "vibe_vision/config/vision_config.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A valid configuration with any numbers, for tests of properties.
 class RandomConfig {
@@ -94,4 +94,4 @@ class RandomConfig {
   }
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

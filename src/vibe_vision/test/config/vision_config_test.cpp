@@ -11,7 +11,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
-namespace vibe::vision_config_test {
+namespace vibe::vision::vision_config_test {
 namespace {
 
 const char* const kText = R"(camera:
@@ -165,4 +165,4 @@ TEST(VisionConfig, NoInstrumentOrTooManyIsAnError) {
 }
 
 }  // namespace
-}  // namespace vibe::vision_config_test
+}  // namespace vibe::vision::vision_config_test

@@ -9,7 +9,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::datagram_test {
+namespace vibe::vision::datagram_test {
 namespace {
 
 CoordinateSample randomCoordinate(std::mt19937_64& random) {
@@ -168,4 +168,4 @@ TEST(Datagram, TooManyInstrumentsAreAnError) {
 }
 
 }  // namespace
-}  // namespace vibe::datagram_test
+}  // namespace vibe::vision::datagram_test

@@ -15,7 +15,7 @@
 #include "vibe_vision/datagram/udp_sender.hpp"
 #include "vibe_vision/predict/predictor.hpp"
 
-namespace vibe::receiver_examples_test {
+namespace vibe::vision::receiver_examples_test {
 namespace {
 
 double hostTime() {
@@ -128,4 +128,4 @@ TEST(ReceiverExamples, TheOneInPythonUnderstandsTheSender) {
 }
 
 }  // namespace
-}  // namespace vibe::receiver_examples_test
+}  // namespace vibe::vision::receiver_examples_test

@@ -8,7 +8,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::udp_sender_test {
+namespace vibe::vision::udp_sender_test {
 namespace {
 
 /// A socket on a free port of this machine.
@@ -105,4 +105,4 @@ TEST(UdpSender, WrongAddressesAreNamed) {
 }
 
 }  // namespace
-}  // namespace vibe::udp_sender_test
+}  // namespace vibe::vision::udp_sender_test

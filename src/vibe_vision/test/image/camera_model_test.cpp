@@ -6,7 +6,7 @@
 #include <opencv2/calib3d.hpp>
 #include <vector>
 
-namespace vibe::camera_model_test {
+namespace vibe::vision::camera_model_test {
 namespace {
 
 CameraModel cameraWith(const std::array<double, 5>& distortion) {
@@ -75,4 +75,4 @@ TEST(CameraModel, NoAnswerWhereTheLensCannotBeInverted) {
 }
 
 }  // namespace
-}  // namespace vibe::camera_model_test
+}  // namespace vibe::vision::camera_model_test

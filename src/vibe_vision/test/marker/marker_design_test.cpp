@@ -8,7 +8,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::marker_design_test {
+namespace vibe::vision::marker_design_test {
 namespace {
 
 TEST(MarkerDesign, RingIsBlackBetweenItsDiameters) {
@@ -98,4 +98,4 @@ TEST(MarkerDesign, PeriodicBarsAreRefused) {
 }
 
 }  // namespace
-}  // namespace vibe::marker_design_test
+}  // namespace vibe::vision::marker_design_test

@@ -8,7 +8,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vision_messages.hpp"
 
-namespace vibe::image_messages_test {
+namespace vibe::vision::image_messages_test {
 namespace {
 
 namespace encodings = sensor_msgs::image_encodings;
@@ -151,4 +151,4 @@ TEST(ImageMessages, AnImageMessageAndAFrameAreTheSame) {
 }
 
 }  // namespace
-}  // namespace vibe::image_messages_test
+}  // namespace vibe::vision::image_messages_test

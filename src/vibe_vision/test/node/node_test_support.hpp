@@ -4,7 +4,7 @@
 
 #include "vision_messages.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A sleeve and a ring, with joints that differ from what is measured by sign and offset.
 inline VisionConfig twoInstruments() {
@@ -72,4 +72,4 @@ inline std::vector<JointSample> samplesOf(const VisionConfig& config, double tim
   return samples;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -4,7 +4,7 @@
 
 #include "node/node_test_support.hpp"
 
-namespace vibe::vision_messages_test {
+namespace vibe::vision::vision_messages_test {
 namespace {
 
 constexpr double kTime = 1.7e9 + 0.0068027210884;  // [s]
@@ -167,4 +167,4 @@ TEST_F(VisionMessages, DatagramOfALostInstrumentHasNoNumbers) {
 }
 
 }  // namespace
-}  // namespace vibe::vision_messages_test
+}  // namespace vibe::vision::vision_messages_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace vibe::jerk_model_test {
+namespace vibe::vision::jerk_model_test {
 namespace {
 
 constexpr double kStep = 1 / 147.0;  // [s]
@@ -72,4 +72,4 @@ TEST(JerkModel, VarianceOfTheJerkStaysThatOfTheProcess) {
 }
 
 }  // namespace
-}  // namespace vibe::jerk_model_test
+}  // namespace vibe::vision::jerk_model_test

@@ -11,7 +11,7 @@
 #include "predict/reach.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::predictor_test {
+namespace vibe::vision::predictor_test {
 namespace {
 
 constexpr double kStep = 1 / 147.0;  // [s]
@@ -205,4 +205,4 @@ TEST(Predictor, RefusesAPriorThatMeansNothing) {
 }
 
 }  // namespace
-}  // namespace vibe::predictor_test
+}  // namespace vibe::vision::predictor_test

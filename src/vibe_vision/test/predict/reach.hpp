@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Motion of a hand: reaches of minimum jerk from -20 mm to 20 mm and back with a peak of 0.28 m/s, 0.3 s of rest
 /// between them, and a tremor of 0.1 mm at 9 Hz all the time.
@@ -22,4 +22,4 @@ struct Reach {
   }
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

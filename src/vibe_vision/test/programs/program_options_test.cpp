@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vibe::program_options_test {
+namespace vibe::vision::program_options_test {
 namespace {
 
 template <class Function>
@@ -49,4 +49,4 @@ TEST(ProgramOptions, NumbersAreFiniteAndWithinTheirLimits) {
 }
 
 }  // namespace
-}  // namespace vibe::program_options_test
+}  // namespace vibe::vision::program_options_test

@@ -9,7 +9,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::track_table_test {
+namespace vibe::vision::track_table_test {
 namespace {
 
 VisionConfig twoInstruments() {
@@ -92,4 +92,4 @@ TEST(TrackSummary, EveryReasonHasAWordOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace vibe::track_table_test
+}  // namespace vibe::vision::track_table_test

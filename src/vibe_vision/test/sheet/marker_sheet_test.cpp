@@ -11,7 +11,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::marker_sheet_test {
+namespace vibe::vision::marker_sheet_test {
 namespace {
 
 constexpr double kRaster = 40e3;  // pixels per metre: 1016 dpi
@@ -300,4 +300,4 @@ TEST(MarkerSheet, WhatCannotBePrintedIsSaid) {
 }
 
 }  // namespace
-}  // namespace vibe::marker_sheet_test
+}  // namespace vibe::vision::marker_sheet_test

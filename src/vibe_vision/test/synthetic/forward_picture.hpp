@@ -7,7 +7,7 @@
 
 #include "synthetic/marker_frame.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// The black part of a marker as the camera sees it at one moment, drawn the other way round than the renderer does:
 /// points of the print, by reflectance(), are projected forward and put into the pixels that they fall into.
@@ -81,4 +81,4 @@ ForwardPicture forwardPicture(const CameraModel& camera, const Design& design, c
   return picture;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 #include "synthetic/picture_moments.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
-namespace vibe::marker_bound_test {
+namespace vibe::vision::marker_bound_test {
 namespace {
 
 double ringBound(double diameter, const PixelNoise& noise = {}) {
@@ -93,4 +93,4 @@ TEST(MarkerBound, NeedsAMarkerThatIsSeen) {
 }
 
 }  // namespace
-}  // namespace vibe::marker_bound_test
+}  // namespace vibe::vision::marker_bound_test

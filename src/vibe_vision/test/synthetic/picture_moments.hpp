@@ -4,7 +4,7 @@
 
 #include "vibe_vision/synthetic/renderer.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What is black on the markers of a picture, in pixels that are black altogether: from the difference to the picture
 /// in which the ink is as white as the paper.
@@ -52,4 +52,4 @@ inline void bendLens(SyntheticScene& scene) {
   scene.degradation.distortion = scene.camera.distortion;
 }
 
-}  // namespace vibe
+}  // namespace vibe::vision

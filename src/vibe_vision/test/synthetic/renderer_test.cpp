@@ -8,7 +8,7 @@
 
 #include "synthetic/picture_moments.hpp"
 
-namespace vibe::renderer_test {
+namespace vibe::vision::renderer_test {
 namespace {
 
 Moments ringMoments(const SyntheticScene& scene, std::uint64_t index = 0) {
@@ -280,4 +280,4 @@ TEST(Renderer, UnknownScenesAreNamedTogetherWithTheKnownOnes) {
 }
 
 }  // namespace
-}  // namespace vibe::renderer_test
+}  // namespace vibe::vision::renderer_test

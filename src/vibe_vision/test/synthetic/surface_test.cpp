@@ -9,7 +9,7 @@
 #include "synthetic/forward_picture.hpp"
 #include "synthetic/picture_moments.hpp"
 
-namespace vibe::surface_test {
+namespace vibe::vision::surface_test {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
@@ -189,4 +189,4 @@ TEST(AxisLine, ItsPictureIsTheCalibratedAxis) {
 }
 
 }  // namespace
-}  // namespace vibe::surface_test
+}  // namespace vibe::vision::surface_test

@@ -7,7 +7,7 @@
 
 #include "vibe_vision/track/marker_pattern.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// The picture of a sleeve by brute force: rays of a pinhole camera through a fine grid of points, each met with the
 /// cylinder, then summed with the weights of optics, pixel and motion. It shares nothing with SleevePattern.
@@ -92,4 +92,4 @@ class DrawnSleeve {
   std::vector<double> across_weights_, along_weights_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

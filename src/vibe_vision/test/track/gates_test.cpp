@@ -5,7 +5,7 @@
 
 #include "track/ring_scene.hpp"
 
-namespace vibe::gates_test {
+namespace vibe::vision::gates_test {
 namespace {
 
 using test::rest;
@@ -126,4 +126,4 @@ TEST(Gates, ALookAlikeBesideTheMarkerIsNeverReported) {
 }
 
 }  // namespace
-}  // namespace vibe::gates_test
+}  // namespace vibe::vision::gates_test

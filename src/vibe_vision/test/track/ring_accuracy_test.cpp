@@ -3,7 +3,7 @@
 
 #include "track/ring_scene.hpp"
 
-namespace vibe::ring_accuracy_test {
+namespace vibe::vision::ring_accuracy_test {
 namespace {
 
 using test::moveAs;
@@ -89,4 +89,4 @@ TEST(RingAccuracy, ATooSmallNoiseOfTheCameraIsNoticed) {
 }
 
 }  // namespace
-}  // namespace vibe::ring_accuracy_test
+}  // namespace vibe::vision::ring_accuracy_test

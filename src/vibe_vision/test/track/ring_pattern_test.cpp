@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace vibe::ring_pattern_test {
+namespace vibe::vision::ring_pattern_test {
 namespace {
 
 constexpr double kScale = 5000;  // [px/m]: a ring of 20 px
@@ -127,4 +127,4 @@ TEST_F(RingPatternTest, SelectionKeepsWhatTells) {
 }
 
 }  // namespace
-}  // namespace vibe::ring_pattern_test
+}  // namespace vibe::vision::ring_pattern_test

@@ -6,7 +6,7 @@
 #include "vibe_vision/synthetic/renderer.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
-namespace vibe::test {
+namespace vibe::vision::test {
 
 /// The needle driver of a named scene alone: a ring.
 inline SyntheticScene ringScene(const std::string& name) {
@@ -75,4 +75,4 @@ class PlainFrame {
   Frame frame_;
 };
 
-}  // namespace vibe::test
+}  // namespace vibe::vision::test

@@ -6,7 +6,7 @@
 
 #include "track/drawn_sleeve.hpp"
 
-namespace vibe::sleeve_pattern_test {
+namespace vibe::vision::sleeve_pattern_test {
 namespace {
 
 constexpr double kPixelsPerMetre = 10000;
@@ -168,4 +168,4 @@ TEST(SleevePattern, SelectionKeepsWhatTells) {
 }
 
 }  // namespace
-}  // namespace vibe::sleeve_pattern_test
+}  // namespace vibe::vision::sleeve_pattern_test

@@ -5,7 +5,7 @@
 #include "vibe_vision/synthetic/renderer.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
-namespace vibe::sleeve_tracking_test {
+namespace vibe::vision::sleeve_tracking_test {
 namespace {
 
 constexpr int kSettle = 25;  // frames until slant and lateral place are known
@@ -110,4 +110,4 @@ TEST(SleeveTracking, FindsItBackAfterItWasCoveredInABadPicture) {
 }
 
 }  // namespace
-}  // namespace vibe::sleeve_tracking_test
+}  // namespace vibe::vision::sleeve_tracking_test

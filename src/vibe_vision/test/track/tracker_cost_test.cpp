@@ -8,7 +8,7 @@
 #include "track/ring_scene.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
-namespace vibe::tracker_cost_test {
+namespace vibe::vision::tracker_cost_test {
 namespace {
 
 using test::ringScene;
@@ -22,15 +22,15 @@ TEST(TrackerCost, NoMemoryPerFrame) {
     for (std::uint64_t i = 0; i < 60; ++i) {
       const RenderedFrame rendered = renderer.render(i);
       if (i % 20 == 10) tracker.reset();  // the search too
-      const long before = test::allocations;
+      const long before = vibe::test::allocations;
       tracker.track(rendered.frame);
       if (i > 0) {
-        EXPECT_EQ(test::allocations, before) << name << " frame " << i;
+        EXPECT_EQ(vibe::test::allocations, before) << name << " frame " << i;
       }
     }
-    const long before = test::allocations;
+    const long before = vibe::test::allocations;
     const RenderedFrame control = renderer.render(0);
-    EXPECT_GT(test::allocations, before);
+    EXPECT_GT(vibe::test::allocations, before);
   }
 }
 
@@ -71,4 +71,4 @@ TEST(TrackerCost, IndependentOfTheSensor) {
 }
 
 }  // namespace
-}  // namespace vibe::tracker_cost_test
+}  // namespace vibe::vision::tracker_cost_test

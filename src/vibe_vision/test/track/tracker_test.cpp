@@ -6,7 +6,7 @@
 #include "track/ring_scene.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::tracker_test {
+namespace vibe::vision::tracker_test {
 namespace {
 
 using test::moveAs;
@@ -179,4 +179,4 @@ TEST(Tracker, AMarkerThatCannotBeTrackedIsRefused) {
 }
 
 }  // namespace
-}  // namespace vibe::tracker_test
+}  // namespace vibe::vision::tracker_test

@@ -7,7 +7,7 @@
 #include "vibe_hardware/driver/device_driver.hpp"
 #include "vibe_hardware/driver/joint_scale.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 constexpr int kDeviceButtons = 16;  ///< bits of a report
 
@@ -54,4 +54,4 @@ struct Calibration {
   int jointOf(DeviceKind device, int axis) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

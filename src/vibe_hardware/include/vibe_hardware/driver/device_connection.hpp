@@ -7,7 +7,7 @@
 #include "vibe_hardware/hid/hid_port.hpp"
 #include "vibe_hardware/hid/report_descriptor.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// An open device whose protocol has been checked, and its feature reports. Not thread-safe.
 class DeviceConnection {
@@ -46,4 +46,4 @@ class DeviceConnection {
 /// One sentence on why a set of parameters was refused, with the numbers that were compared.
 std::string describe(const vibe_firmware::Verdict& verdict);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -9,7 +9,7 @@
 #include "vibe_hardware/driver/message_limiter.hpp"
 #include "vibe_hardware/driver/report_stream.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Which device to use.
 struct DeviceSelection {
@@ -111,4 +111,4 @@ class DeviceDriver {
   void refreshStatus();
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

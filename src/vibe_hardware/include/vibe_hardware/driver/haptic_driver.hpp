@@ -7,7 +7,7 @@
 #include "vibe_hardware/driver/haptic_link.hpp"
 #include "vibe_hardware/driver/joint_scale.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// What became of the parameters.
 struct HapticStatistics {
@@ -72,4 +72,4 @@ class HapticDriver {
 /// First difference between two sets: "stiffness of axis 0 is 0.1 instead of 0.2"; empty: none.
 std::string firstDifference(const vibe_firmware::ParameterReport& sent, const vibe_firmware::ParameterReport& read);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -4,7 +4,7 @@
 
 #include "vibe_firmware/protocol/reports.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Decides which parameters are sent to the haptic device, and when: a new target at once but at most every 10 ms, and
 /// otherwise the present one often enough for the watchdog of the device. If no target has come for 0.1 s, the spring
@@ -45,4 +45,4 @@ class HapticLink {
   double gain(double now) const;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -1,7 +1,7 @@
 #pragma once
 #include "vibe_firmware/core/axis.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// How a joint of the scope follows from an axis of a device: joint = offset + scale * axis.
 /// scale: [m/rad] for insertion (radius of the roller), [rad/rad] otherwise; its sign is the direction; not 0.
@@ -33,4 +33,4 @@ JointSpring springOnAxis(const JointScale& joint, const JointSpring& spring);
 /// @param torque_limit  of the axis [N m]
 vibe_firmware::AxisParameters axisSpring(const JointScale& joint, const JointSpring& spring, double torque_limit);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-namespace vibe {
+namespace vibe::hardware {
 
 enum class Severity : unsigned char { Info, Warning };
 
@@ -34,4 +34,4 @@ class MessageLimiter {
   std::map<std::string, Kind> kinds_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

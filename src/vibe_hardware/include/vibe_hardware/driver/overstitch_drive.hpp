@@ -4,7 +4,7 @@
 #include "vibe_hardware/driver/calibration.hpp"
 #include "vibe_hardware/driver/scope_buttons.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Moves helix_advance, helix_rotation and needle_driver while buttons are held, for setups in which no camera tracks
 /// the instruments.
@@ -27,4 +27,4 @@ class OverstitchDrive {
   Positions positions_{};
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

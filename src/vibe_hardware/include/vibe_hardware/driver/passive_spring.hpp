@@ -2,7 +2,7 @@
 #include "vibe_firmware/core/axis.hpp"
 #include "vibe_hardware/driver/joint_scale.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The nearest spring-damper that an axis accepts.
 struct PassiveSpring {
@@ -17,4 +17,4 @@ struct PassiveSpring {
 /// @param spring  in units of the axis, finite; stiffness and damping at least 0
 PassiveSpring passiveSpring(const vibe_firmware::AxisConfig& axis, const JointSpring& spring);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

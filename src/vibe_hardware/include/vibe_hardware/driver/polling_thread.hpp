@@ -4,7 +4,7 @@
 #include <string>
 #include <thread>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Calls a function again and again until it is destroyed.
 class PollingThread {
@@ -21,4 +21,4 @@ class PollingThread {
   std::thread thread_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -7,7 +7,7 @@
 #include "vibe_core/common/device_clock.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A report of a device in the units of its axes.
 struct DeviceSample {
@@ -77,4 +77,4 @@ class ReportStream {
   void accept(const vibe_firmware::InputReport& report, double arrival, DeviceSample& sample);
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

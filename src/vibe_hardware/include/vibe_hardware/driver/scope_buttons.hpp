@@ -4,7 +4,7 @@
 
 #include "vibe_hardware/driver/calibration.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The six buttons of scope/buttons from the bits of both devices.
 class ScopeButtons {
@@ -25,4 +25,4 @@ class ScopeButtons {
   std::array<std::uint8_t, kButtonCount> pressed_{};
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

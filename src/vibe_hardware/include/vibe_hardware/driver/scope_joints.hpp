@@ -5,7 +5,7 @@
 #include "vibe_hardware/driver/calibration.hpp"
 #include "vibe_hardware/driver/report_stream.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Joints of the scope from the samples of both devices.
 ///
@@ -47,4 +47,4 @@ class ScopeJoints {
   bool takeHoming(DeviceKind device, const DeviceSample& sample);
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -1,7 +1,7 @@
 #pragma once
 #include "vibe_hardware/driver/device_driver.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Tells that the samples of a device have stopped, to a thread that does not wait for the device: a request that is
 /// not answered keeps the driver's own thread for seconds. Not thread-safe. Times: host clock [s].
@@ -24,4 +24,4 @@ class SilenceWatch {
   bool told_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -4,7 +4,7 @@
 // The mechanics of one axis of a device with the hand that holds it: a pure function of model, state and input.
 // Angles [rad] and torques [N m] are at the shaft after the transmission.
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A DC motor behind an H-bridge. Defaults: Faulhaber 1524-012SR, data sheet. The inductance is left out: the
 /// electrical time constant is shorter than a substep.
@@ -87,4 +87,4 @@ std::int32_t encoderCount(const AxisPlant& plant, const AxisPlantState& state);
 /// Kinetic energy of motor, shaft and hand [J].
 double kineticEnergy(const AxisPlant& plant, const AxisPlantState& state);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

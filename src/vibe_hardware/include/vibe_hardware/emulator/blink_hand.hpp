@@ -5,7 +5,7 @@
 
 #include "vibe_hardware/emulator/hand.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// When a hand blinks.
 struct BlinkSetup {
@@ -38,4 +38,4 @@ class BlinkHand : public Hand {
   std::vector<double> blinks_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

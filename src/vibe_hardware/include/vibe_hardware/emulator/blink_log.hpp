@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Writes when each blink of a hand happened and when the report that shows it left the device, as a table with the
 /// columns `blink`, `event` and `report`: number from 0, and times of the wall clock [ns].
@@ -27,4 +27,4 @@ class BlinkLog {
   std::vector<std::int64_t> events_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

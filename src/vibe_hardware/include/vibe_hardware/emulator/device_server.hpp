@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Makes an emulated device reachable for hosts. All functions return at once, whatever a host does.
 class DeviceServer {
@@ -19,4 +19,4 @@ class DeviceServer {
   virtual std::uint64_t droppedReports() const = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -5,7 +5,7 @@
 #include "vibe_firmware/protocol/hid_function.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 constexpr double kTick = 1e-3;  ///< of the control loop [s]
 
@@ -33,4 +33,4 @@ class EmulatedDevice {
   virtual void restart() = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 
 #include "vibe_firmware/core/encoder.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A quadrature encoder with an index pulse, and the counter of a timer that reads it.
 class EmulatedEncoder {
@@ -26,4 +26,4 @@ class EmulatedEncoder {
   std::int32_t last_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 #include "vibe_hardware/emulator/emulated_device.hpp"
 #include "vibe_hardware/emulator/emulated_encoder.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The haptic device: two axes with motors, the firmware, and a hand that holds them.
 class EmulatedHaptic : public EmulatedDevice {
@@ -40,4 +40,4 @@ class EmulatedHaptic : public EmulatedDevice {
   std::uint32_t ticks_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -7,7 +7,7 @@
 #include "vibe_hardware/emulator/emulated_device.hpp"
 #include "vibe_hardware/emulator/emulated_encoder.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The input device: two wheels and buttons. It has no motors, so the wheels are where the hand wants them to be.
 class EmulatedInput : public EmulatedDevice {
@@ -27,4 +27,4 @@ class EmulatedInput : public EmulatedDevice {
   std::uint32_t ticks_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -9,7 +9,7 @@
 #include "vibe_hardware/emulator/hand.hpp"
 #include "vibe_hardware/emulator/overstitch_fingers.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Hand and arm at the axes of the haptic device. Form: see HandImpedance; the values are a design choice: a natural
 /// frequency of 8 Hz (insertion) and 17 Hz (rotation), damping ratios of one half.
@@ -65,4 +65,4 @@ class Emulator {
   double approach_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

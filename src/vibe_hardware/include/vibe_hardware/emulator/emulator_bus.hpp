@@ -9,7 +9,7 @@
 #include "vibe_hardware/emulator/usb_host.hpp"
 #include "vibe_hardware/hid/hid_port.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The devices of an emulator in the same program, in virtual time: for drivers in tests and studies. Time passes only
 /// in Emulator::tick(), so no call waits. Each device can be opened once at a time.
@@ -31,4 +31,4 @@ class EmulatorBus : public HidBus {
   std::array<std::unique_ptr<Device>, kDeviceKinds> devices_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

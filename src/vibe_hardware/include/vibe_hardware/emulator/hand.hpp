@@ -4,7 +4,7 @@
 
 #include "vibe_core/input/step_input.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// What a hand intends at one time. The device follows as far as its mechanics and the forces allow.
 struct HandSample {
@@ -24,4 +24,4 @@ class Hand {
   virtual double duration() const = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -6,7 +6,7 @@
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_hardware/emulator/emulator.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// What the device renders between two messages of the simulator.
 enum class Rendering {
@@ -66,4 +66,4 @@ struct HapticLoopResult {
 /// @throws Error if the scene cannot be built
 HapticLoopResult runHapticLoop(const Scene& scene, const HapticLoopSettings& settings);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

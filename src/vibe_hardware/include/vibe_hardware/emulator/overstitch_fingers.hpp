@@ -4,7 +4,7 @@
 
 #include "vibe_hardware/driver/calibration.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The fingers of an emulated hand on the buttons that move the suturing device (Calibration::overstitch). They press
 /// so that the joints follow intended positions, in steps of what the host adds up per report, and no faster than it
@@ -27,4 +27,4 @@ class OverstitchFingers {
   std::array<int, kOverstitchJointCount> direction_{};  // 1: forward, -1: backward
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

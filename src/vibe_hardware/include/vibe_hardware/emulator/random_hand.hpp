@@ -4,7 +4,7 @@
 
 #include "vibe_hardware/emulator/hand.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Between which limits a random hand moves a joint.
 struct RandomRange {
@@ -38,4 +38,4 @@ class RandomHand : public Hand {
   std::array<std::vector<Wave>, kScopeJointCount> waves_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -6,7 +6,7 @@
 #include "vibe_hardware/driver/calibration.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Where a joint can be [m], [rad].
 struct JointRange {
@@ -45,4 +45,4 @@ class RecordedHand : public Hand {
   std::vector<Row> rows_;  // at least one
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

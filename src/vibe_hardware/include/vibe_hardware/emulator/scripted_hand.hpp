@@ -4,7 +4,7 @@
 #include "vibe_core/trainee/trainee_script.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Plays a trainee script: the motions of all joints, with their tremor, and the buttons, as vibe_trainee does.
 class ScriptedHand : public Hand {
@@ -18,4 +18,4 @@ class ScriptedHand : public Hand {
   TraineeScript script_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -9,7 +9,7 @@
 #include "vibe_hardware/hid/file_descriptor.hpp"
 #include "vibe_hardware/hid/socket_protocol.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Serves a device on a local socket: see socket_protocol.hpp and SocketBus, which is the other side.
 ///
@@ -59,4 +59,4 @@ class SocketServer : public DeviceServer {
   std::uint64_t dropped_ = 0, expelled_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

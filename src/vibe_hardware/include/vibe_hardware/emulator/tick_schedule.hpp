@@ -3,7 +3,7 @@
 
 #include "vibe_hardware/emulator/emulated_device.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Decides how many ticks of a millisecond are due by the wall clock. A short delay is made up for; after a long one,
 /// for example because the computer was suspended, the time in between is dropped.
@@ -35,4 +35,4 @@ class TickSchedule {
   double delay_ = 0, worst_delay_ = 0, dropped_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

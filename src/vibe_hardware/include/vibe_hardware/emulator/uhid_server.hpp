@@ -5,7 +5,7 @@
 #include "vibe_hardware/emulator/usb_host.hpp"
 #include "vibe_hardware/hid/file_descriptor.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Hands a device to the kernel through /dev/uhid: it then has a hidraw node and is a gamepad, as if it were on USB.
 /// Needs a kernel with CONFIG_UHID and the right to write to /dev/uhid. The destructor removes the device.
@@ -29,4 +29,4 @@ class UhidServer : public DeviceServer {
   std::uint64_t dropped_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -6,7 +6,7 @@
 
 #include "vibe_firmware/protocol/control_endpoint.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// What the USB core of a kernel does with a device, for an emulated one: enumerates it and exchanges feature reports,
 /// all through the control endpoint of the firmware.
@@ -40,4 +40,4 @@ class UsbHost {
   std::vector<std::uint8_t> report_descriptor_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

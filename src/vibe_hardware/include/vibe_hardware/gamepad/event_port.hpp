@@ -1,7 +1,7 @@
 #pragma once
 #include "vibe_hardware/gamepad/pad_state.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Where the events of a pad come from; what a test replaces.
 class EventPort {
@@ -19,4 +19,4 @@ class EventPort {
   virtual Status next(bool resync, PadEvent& event) = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -4,7 +4,7 @@
 
 #include "vibe_hardware/gamepad/event_port.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Keeps the state of a pad up to date from its events, also across lost ones.
 class EventReader {
@@ -32,4 +32,4 @@ class EventReader {
   void take(const PadEvent& event);
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

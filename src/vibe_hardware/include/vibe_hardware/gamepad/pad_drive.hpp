@@ -7,7 +7,7 @@
 #include "vibe_hardware/gamepad/pad_mapping.hpp"
 #include "vibe_hardware/gamepad/pad_state.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// What a pad has made of its axes and buttons so far.
 struct DriveState {
@@ -48,4 +48,4 @@ std::string waitingControls(const PadMapping& mapping, const DriveState& state);
 /// One sentence that names the controls that the mapping uses and the pad lacks; empty if none.
 std::string missingControls(const PadMapping& mapping, const PadState& pad);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

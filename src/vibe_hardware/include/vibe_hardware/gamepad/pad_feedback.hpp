@@ -5,7 +5,7 @@
 #include "vibe_hardware/gamepad/pad_mapping.hpp"
 #include "vibe_hardware/gamepad/pad_motors.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// What is felt as one short pulse of the light motor.
 enum class PadPulse {
@@ -65,4 +65,4 @@ class PadFeedback {
   void updateSprings(double now, PadMotors& motors);
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -5,7 +5,7 @@
 
 #include "vibe_hardware/gamepad/pad_source.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// An input device of this machine.
 struct PadListing {
@@ -27,4 +27,4 @@ std::vector<PadListing> listInputDevices(const std::string& folder = "/dev/input
 std::unique_ptr<PadSource> openPad(const std::string& wanted, std::string& why,
                                    const std::string& folder = "/dev/input");
 
-}  // namespace vibe
+}  // namespace vibe::hardware

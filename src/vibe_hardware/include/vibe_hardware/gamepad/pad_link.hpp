@@ -6,7 +6,7 @@
 
 #include "vibe_hardware/gamepad/pad_source.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Looks for a pad until there is one, and again when it is gone.
 class PadLink {
@@ -34,4 +34,4 @@ class PadLink {
   std::string look(double now);
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

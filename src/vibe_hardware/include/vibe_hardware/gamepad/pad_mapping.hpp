@@ -5,7 +5,7 @@
 #include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/input/step_input.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Range and greatest speed of the seven joints, from the URDF.
 using ToolLimits = std::array<JointLimits, kJointCount>;
@@ -67,4 +67,4 @@ PadMapping parsePadMapping(const std::string& text, const std::string& place, co
 /// "m" or "rad".
 const char* jointUnit(int joint);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Spring of one axis of a stick: force = coefficient (centre - deflection), as a share of the device's greatest.
 struct StickSpring {
@@ -23,4 +23,4 @@ class PadMotors {
   virtual bool spring(const std::array<StickSpring, 2>& springs) = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -6,7 +6,7 @@
 
 #include "vibe_hardware/gamepad/pad_source.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A recorded pad session in the text format of evemu (evemu-record, evemu-play): lines N (name), I (bus, vendor,
 /// product, version), B (bits of buttons), A (axes: code, minimum, maximum, fuzz, flat), E (events: time, type, code,
@@ -47,4 +47,4 @@ class PadRecorder {
   void writeHeader(const PadInfo& info, const PadState& state);
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -5,7 +5,7 @@
 #include "vibe_hardware/gamepad/pad_motors.hpp"
 #include "vibe_hardware/gamepad/pad_state.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// A pad that is there: a device, or a recording of one.
 class PadSource {
@@ -25,4 +25,4 @@ class PadSource {
   virtual void setListener(std::function<void(const PadEvent&)> listener) = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// One event of an input device, as the kernel reports it.
 struct PadEvent {
@@ -59,4 +59,4 @@ std::string eventCodeName(int type, int code);
 /// The inverse. @return -1 for a word that is no name of this type
 int eventCodeFromName(int type, const std::string& name);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

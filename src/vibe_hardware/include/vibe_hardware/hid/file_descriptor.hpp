@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// An open file that is closed with its owner.
 class FileDescriptor {
@@ -25,4 +25,4 @@ class FileDescriptor {
   int number_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -8,7 +8,7 @@
 
 // HID devices, wherever they are: on USB through the kernel (hidraw), or emulated behind a local socket.
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// The device does not answer any more: unplugged, or its emulator has ended.
 struct DeviceGone : std::runtime_error {
@@ -69,4 +69,4 @@ class HidBus {
   virtual std::unique_ptr<HidPort> open(const std::string& path) = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -1,7 +1,7 @@
 #pragma once
 #include "vibe_hardware/hid/hid_port.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// HID devices of the Linux kernel, through hidapi and /dev/hidraw*. Needs no root: see docs/hardware.md for the udev
 /// rule. All ports share one library, so the last bus that is destroyed ends it.
@@ -20,4 +20,4 @@ class HidrawBus : public HidBus {
   std::uint16_t vendor_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

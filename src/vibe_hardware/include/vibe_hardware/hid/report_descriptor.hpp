@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// Size of one report, its id included if the device numbers its reports.
 struct ReportSize {
@@ -39,4 +39,4 @@ const char* deviceName(DeviceKind kind);  ///< "haptic device", "input device"
 /// @throws Error with the first difference and what to do
 void checkReportDescriptor(const std::uint8_t* bytes, std::size_t size, DeviceKind kind);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 
 #include "vibe_hardware/hid/hid_port.hpp"
 
-namespace vibe {
+namespace vibe::hardware {
 
 /// $XDG_RUNTIME_DIR/vibe_emulator, or /tmp/vibe_emulator-UID without that variable.
 std::string defaultSocketFolder();
@@ -25,4 +25,4 @@ class SocketBus : public HidBus {
   bool exists_ = false, serves_ = false;  // at the last list(): the folder, a device in it
 };
 
-}  // namespace vibe
+}  // namespace vibe::hardware

@@ -19,7 +19,7 @@
 // A host has one request at a time under way and ignores replies with another number. A packet that does not fit this
 // table ends the connection.
 
-namespace vibe {
+namespace vibe::hardware {
 
 constexpr std::uint8_t kSocketVersion = 1;
 constexpr std::size_t kMaxPacket = 8192;  ///< bytes; no packet is longer
@@ -40,4 +40,4 @@ Packet packHello(const Hello& hello);
 /// Empty: the packet is not a hello of this version.
 std::optional<Hello> unpackHello(const std::uint8_t* bytes, std::size_t size);
 
-}  // namespace vibe
+}  // namespace vibe::hardware

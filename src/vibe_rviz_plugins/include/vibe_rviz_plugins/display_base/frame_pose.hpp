@@ -9,7 +9,7 @@ namespace rviz {
 class DisplayContext;
 }
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Pose of a frame in the fixed frame of rviz.
 struct FramePose {
@@ -23,4 +23,4 @@ struct FramePose {
 std::string lookUpFrame(rviz::DisplayContext& context, const std::string& frame, const ros::Time& stamp,
                         FramePose& pose);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A display of the newest message of one topic; a flood of messages costs no drawing. Derived classes check a message
 /// in read() and draw in draw(). Properties of derived classes may use the slot redraw().
@@ -54,4 +54,4 @@ class MessageDisplay : public TopicDisplay {
   Pointer shown_, latest_;  // latest_: not read yet
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

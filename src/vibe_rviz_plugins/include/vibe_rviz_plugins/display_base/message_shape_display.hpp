@@ -7,7 +7,7 @@
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 #include "vibe_rviz_plugins/render/shape_visual.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A display that draws each message as one shape. A derived class has a constructor without parameters that names the
 /// topic and adds properties (with the slot redraw()), and the function makeShape(); it needs no Q_OBJECT. Drawing,
@@ -51,4 +51,4 @@ class MessageShapeDisplay : public MessageDisplay<Message> {
   bool changed_ = false;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@ namespace rviz {
 class Property;
 }
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Which properties explain themselves.
 struct PropertyHelp {
@@ -19,4 +19,4 @@ struct PropertyHelp {
 /// @param path  name of the parent, which the paths begin with
 PropertyHelp checkPropertyHelp(const rviz::Property& parent, const std::string& path);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -12,7 +12,7 @@ namespace rviz {
 class RosTopicProperty;
 }
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// What a display says about a message.
 struct MessageReport {
@@ -80,4 +80,4 @@ class TopicDisplay : public rviz::Display {
   std::optional<bool> placed_;         // whether the transform was known; none: not looked up yet
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

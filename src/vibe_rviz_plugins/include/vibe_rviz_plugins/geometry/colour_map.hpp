@@ -5,7 +5,7 @@
 
 #include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Maps values to colours. The maps are those of matplotlib (van der Walt & Smith 2015; Nunez, Anderton & Renslow
 /// 2018 for cividis; CC0): lightness grows evenly, so equal steps of the value look equally large and a greyscale print
@@ -40,4 +40,4 @@ class ColourMap {
 /// "viridis", "magma", "cividis".
 const std::vector<std::string>& colourMapNames();
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -6,7 +6,7 @@
 
 #include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// Triangles with vertices and colours. Shapes are appended, so that one mesh draws many.
 struct ColouredShape {
@@ -20,4 +20,4 @@ struct ColouredShape {
 /// Why this shape cannot be drawn, as one sentence; empty: it can. Graphics libraries abort on such shapes.
 std::string problemOf(const ColouredShape& shape);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// The part of a vertex that moves, in the layout of a vertex buffer.
 struct MovingVertex {
@@ -24,4 +24,4 @@ constexpr PackedColour packed(double red, double green, double blue, double alph
   return colour;
 }
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -4,7 +4,7 @@
 
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A point of the outline of a body of revolution: position along the axis and distance from it [m].
 using ProfilePoint = Eigen::Vector2d;
@@ -28,4 +28,4 @@ void appendRing(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, doub
 void appendBobbin(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis, double length, double rim,
                   PackedColour colour, int sides, ColouredShape& shape);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

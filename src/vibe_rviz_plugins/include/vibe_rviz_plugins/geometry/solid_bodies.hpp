@@ -3,7 +3,7 @@
 
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 // Appends the bodies of robot descriptions to a shape, centred at the pose, a cylinder along its z axis. All lengths
 // are in metres and positive.
@@ -14,4 +14,4 @@ void appendCylinder(const Eigen::Isometry3d& pose, double radius, double length,
 /// @param size  of the edges along x, y and z
 void appendBox(const Eigen::Isometry3d& pose, const Eigen::Vector3d& size, PackedColour colour, ColouredShape& shape);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

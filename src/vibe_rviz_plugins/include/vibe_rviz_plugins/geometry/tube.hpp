@@ -4,7 +4,7 @@
 
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A point on the centre line of a tube.
 struct TubePoint {
@@ -32,4 +32,4 @@ void appendBall(const Eigen::Vector3d& centre, double radius, PackedColour colou
 /// A unit vector perpendicular to a unit vector; the result depends on the argument only.
 Eigen::Vector3d anyNormal(const Eigen::Vector3d& direction);
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

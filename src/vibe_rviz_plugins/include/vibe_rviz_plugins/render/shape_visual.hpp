@@ -7,7 +7,7 @@ namespace Ogre {
 class SceneNode;
 }
 
-namespace vibe {
+namespace vibe::rviz_plugins {
 
 /// A solid shape in a scene of Ogre, with the material of this package that also follows the light of the endoscope.
 /// To be used from the thread that renders.
@@ -29,4 +29,4 @@ class ShapeVisual {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::rviz_plugins

@@ -5,7 +5,7 @@
 
 #include "vibe_vision/config/slide_axis.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// The marker seen while the instrument stands at a known slide.
 struct AxisStop {
@@ -63,4 +63,4 @@ struct MotionFit {
 MotionFit fitMotion(const std::vector<MotionSample>& samples, const ScaleTrust& trust,
                     const Eigen::Vector2d& direction);
 
-}  // namespace vibe
+}  // namespace vibe::vision

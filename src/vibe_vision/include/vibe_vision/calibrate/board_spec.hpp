@@ -1,6 +1,6 @@
 #pragma once
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Chessboard for the calibration of the lens, counted by its inner corners as OpenCV does.
 struct BoardSpec {
@@ -8,4 +8,4 @@ struct BoardSpec {
   double square = 5e-3;  ///< side of a square [m]
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

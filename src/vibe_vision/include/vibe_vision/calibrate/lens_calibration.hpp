@@ -9,7 +9,7 @@
 #include "vibe_vision/image/camera_model.hpp"
 #include "vibe_vision/image/frame.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// One image of the chessboard.
 struct BoardView {
@@ -43,4 +43,4 @@ struct LensCalibration {
 /// @throws Error for fewer than 3 views, or a view with another number of corners
 LensCalibration calibrateLens(const std::vector<BoardView>& views, const BoardSpec& board, int width, int height);
 
-}  // namespace vibe
+}  // namespace vibe::vision

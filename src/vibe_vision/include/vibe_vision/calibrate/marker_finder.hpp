@@ -6,7 +6,7 @@
 #include "vibe_vision/image/frame.hpp"
 #include "vibe_vision/marker/marker_design.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Where a marker roughly is: within a pixel, 2 % of its size and a few degrees.
 struct MarkerSighting {
@@ -38,4 +38,4 @@ class MarkerFinder {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

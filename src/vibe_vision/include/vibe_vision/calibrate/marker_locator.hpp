@@ -6,7 +6,7 @@
 #include "vibe_vision/calibrate/marker_finder.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// The marker of an instrument in one image.
 struct LocatedMarker {
@@ -31,4 +31,4 @@ struct LocatedMarkers {
 LocatedMarkers locateMarkers(const VisionConfig& config, std::size_t instrument, const std::vector<Frame>& images,
                              const MarkerSearch& search);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// An image that was taken while the instrument stood at a known slide.
 struct StopImage {
@@ -18,4 +18,4 @@ std::vector<StopImage> loadStopList(const std::string& file);
 /// @param place  what to call the text in errors; its folder is where relative paths start
 std::vector<StopImage> parseStopList(const std::string& text, const std::string& place);
 
-}  // namespace vibe
+}  // namespace vibe::vision

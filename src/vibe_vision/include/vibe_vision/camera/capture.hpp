@@ -4,7 +4,7 @@
 
 #include "vibe_vision/camera/frame_source.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Reads a source in a thread of its own and keeps the newest frame only: a slow consumer drops frames, it never lags,
 /// and memory stays constant. One thread takes; the other functions may be called from any.
@@ -27,4 +27,4 @@ class Capture {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

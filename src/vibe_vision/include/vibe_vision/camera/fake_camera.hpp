@@ -6,7 +6,7 @@
 
 #include "vibe_vision/camera/frame_ring.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 struct FakeCameraOptions {
   std::string address = "127.0.0.1";  ///< of a network interface of this computer; one camera per address
@@ -44,4 +44,4 @@ class FakeCamera {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

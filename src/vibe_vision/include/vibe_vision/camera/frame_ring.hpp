@@ -6,7 +6,7 @@
 
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Pictures that a simulated camera shows in turn, forward and backward, so that nothing jumps. All have one size.
 struct FrameRing {
@@ -29,4 +29,4 @@ struct FrameRing {
 /// turn there without a jump of their speed. @param frames  at most; 0.4 MB each at 728 x 544
 std::shared_ptr<const FrameRing> renderRing(const SyntheticScene& scene, int frames);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 
 #include "vibe_vision/image/frame.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What went wrong so far; all counts only grow. Every frame that a camera took is in one of the first four.
 struct SourceStatistics {
@@ -69,4 +69,4 @@ struct SourceOptions {
 ///         not there is no error: read() keeps trying
 std::unique_ptr<FrameSource> openSource(const std::string& address, const SourceOptions& options);
 
-}  // namespace vibe
+}  // namespace vibe::vision

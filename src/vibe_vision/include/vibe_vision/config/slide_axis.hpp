@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Where an instrument slides, in undistorted pixels of the full sensor: the marker's centre at slide s is at
 ///   origin + direction * along(s),   along(s) = pixels_per_metre * s / (1 + perspective * s)
@@ -23,4 +23,4 @@ double alongOf(const SlideAxis& axis, double slide);         ///< [m] -> [px]
 double slideOf(const SlideAxis& axis, double along);         ///< [px] -> [m]
 double pixelsPerMetre(const SlideAxis& axis, double slide);  ///< d along / d slide [px/m]
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -7,7 +7,7 @@
 #include "vibe_vision/image/camera_model.hpp"
 #include "vibe_vision/marker/marker_design.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Noise of a pixel, in grey values (DN): variance = gain * value + read^2 (photon transfer, EMVA 1288).
 struct PixelNoise {
@@ -69,4 +69,4 @@ struct VisionConfig {
 /// unit, without axes that are not calibrated. What parse() refuses is written all the same.
 std::string toYaml(const VisionConfig& config);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// One coordinate of an instrument as the predictor knows it at the stamp of its datagram [m] or [rad], and seconds.
 struct CoordinateSample {
@@ -46,4 +46,4 @@ std::vector<std::uint8_t> encode(const TrackDatagram& datagram);
 ///         kMaxInstruments, a flag that is neither 0 nor 1, padding that is not 0
 std::optional<TrackDatagram> decode(const std::uint8_t* bytes, std::size_t size);
 
-}  // namespace vibe
+}  // namespace vibe::vision

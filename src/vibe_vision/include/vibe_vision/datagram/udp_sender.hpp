@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Sends datagrams to one address; never waits and never receives. A receiver that is not there is no error.
 class UdpSender {
@@ -28,4 +28,4 @@ class UdpSender {
   std::atomic<std::uint64_t> sent_{0}, failed_{0};
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

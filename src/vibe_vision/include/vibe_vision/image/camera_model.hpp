@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <array>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Pinhole camera with the distortion model "plumb_bob" of sensor_msgs/CameraInfo (Brown 1971): x right, y down, z
 /// forward. Pixels are those of the full sensor; see Frame::offset_x.
@@ -24,4 +24,4 @@ Eigen::Vector2d distort(const CameraModel& camera, const Eigen::Vector2d& undist
 /// Of a point in the camera frame [m], z > 0.
 Eigen::Vector2d project(const CameraModel& camera, const Eigen::Vector3d& point);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <memory>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// 8-bit grey pixels that somebody else owns, row by row. Pixel (0, 0) is the upper left one of the view; coordinates
 /// are those of pixel centres, as in OpenCV and ROS: the view covers [-0.5, width - 0.5) x [-0.5, height - 0.5).
@@ -28,4 +28,4 @@ struct Frame {
   double arrival = 0;          ///< of the last byte at the host [s]; for latency only, never a stamp
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

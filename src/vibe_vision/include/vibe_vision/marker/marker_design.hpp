@@ -3,7 +3,7 @@
 #include <variant>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// A black ring on a white square: slide only. It is printed flat and looks at the camera.
 struct RingDesign {
@@ -47,4 +47,4 @@ double reflectance(const RingDesign& design, double x, double y);
 /// r).
 double reflectance(const SleeveDesign& design, double u, double phi);
 
-}  // namespace vibe
+}  // namespace vibe::vision

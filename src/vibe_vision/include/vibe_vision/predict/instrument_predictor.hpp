@@ -3,7 +3,7 @@
 #include "vibe_vision/predict/predictor.hpp"
 #include "vibe_vision/track/measurement.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// What one frame says about the joints of one instrument: as measured, and as the predictors know them.
 struct JointSample {
@@ -33,4 +33,4 @@ class InstrumentPredictor {
   Predictor slide_{kSlidePrior}, rotation_{kRotationPrior};
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

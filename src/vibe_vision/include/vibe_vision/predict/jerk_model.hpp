@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Jerk as a first-order Gauss-Markov process. For a short correlation time it is white with the spectral density
 /// 2 deviation^2 time.
@@ -19,4 +19,4 @@ Eigen::Matrix4d motionTransition(double dt, double correlation_time);
 /// of 2 deviation^2 / T g(s) g(s)^T with g = jerkResponse(), to a relative 1e-9.
 Eigen::Matrix4d jerkNoise(double dt, const JerkModel& jerk);
 
-}  // namespace vibe
+}  // namespace vibe::vision

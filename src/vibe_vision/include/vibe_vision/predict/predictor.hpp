@@ -3,7 +3,7 @@
 
 #include "vibe_vision/predict/jerk_model.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Position, velocity, acceleration and jerk of one coordinate at a time, with their covariance. Units: those of the
 /// coordinate ([m] or [rad]) and seconds.
@@ -58,4 +58,4 @@ class Predictor {
 /// Extrapolates an estimate by dt >= 0 [s].
 MotionEstimate extrapolate(const MotionEstimate& estimate, double dt, const JerkModel& jerk);
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -8,7 +8,7 @@
 #include "vibe_vision/image/frame.hpp"
 #include "vibe_vision/track/measurement.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// The frame in colour. For each instrument: its axis, a box where it was looked for, a cross on its marker, and its
 /// text; green if it is tracked, red if it is lost.
@@ -19,4 +19,4 @@ cv::Mat annotate(const VisionConfig& config, const Frame& frame, const Measureme
 /// The same with slide and rotation, or the reason of the loss, as text.
 cv::Mat annotate(const VisionConfig& config, const Frame& frame, const Measurements& measurements);
 
-}  // namespace vibe
+}  // namespace vibe::vision

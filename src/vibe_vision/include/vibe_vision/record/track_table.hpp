@@ -9,7 +9,7 @@
 #include "vibe_vision/image/frame.hpp"
 #include "vibe_vision/track/measurement.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// "not_found", "occluded", ...: the reason as one word for tables; "" if tracked.
 const char* toWord(LostReason reason);
@@ -49,4 +49,4 @@ class TrackSummary {
   std::vector<double> seconds_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -6,7 +6,7 @@
 #include "vibe_vision/calibrate/board_spec.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 enum class Paper { A4, Letter };
 
@@ -69,4 +69,4 @@ double flatTurn(const SleeveDesign& sleeve, double paper_thickness);
 /// Diameter of the rod that the sleeve is made for: the design's diameter less the paper on both sides [m].
 double rodDiameter(const SleeveDesign& sleeve, double paper_thickness);
 
-}  // namespace vibe
+}  // namespace vibe::vision

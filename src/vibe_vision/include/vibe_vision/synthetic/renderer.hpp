@@ -5,7 +5,7 @@
 #include "vibe_vision/image/frame.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 struct RenderedFrame {
   Frame frame;
@@ -44,4 +44,4 @@ struct MarkerBound {
 /// @throws Error if too little of the marker is seen
 MarkerBound cramerRaoBound(const SyntheticScene& scene, std::size_t instrument, std::uint64_t index);
 
-}  // namespace vibe
+}  // namespace vibe::vision

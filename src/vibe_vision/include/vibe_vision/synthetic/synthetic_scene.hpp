@@ -7,7 +7,7 @@
 
 #include "vibe_vision/config/vision_config.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Motion of one instrument in a synthetic scene.
 struct SyntheticMotion {
@@ -93,4 +93,4 @@ SyntheticScene swayScene();
 SyntheticScene namedScene(const std::string& name);
 std::vector<std::string> sceneNames();
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -6,7 +6,7 @@
 
 #include "vibe_vision/config/vision_config.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Where and how a marker is seen. All in undistorted pixels, along the slide axis and across it.
 ///
@@ -110,4 +110,4 @@ MarkerView markerView(const CameraModel& camera, const SlideAxis& axis);
 std::unique_ptr<MarkerPattern> makePattern(const MarkerDesign& design, double pixels_per_metre,
                                            const MarkerView& view = {});
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Why an instrument has no position. The numbers are those of vibe_msgs/InstrumentTrack and of the datagram: new ones
 /// at the end.
@@ -45,4 +45,4 @@ struct Measurement {
 /// Of all instruments, in the order of VisionConfig::instruments.
 using Measurements = std::vector<Measurement>;
 
-}  // namespace vibe
+}  // namespace vibe::vision

@@ -5,7 +5,7 @@
 #include "vibe_vision/image/frame.hpp"
 #include "vibe_vision/track/measurement.hpp"
 
-namespace vibe {
+namespace vibe::vision {
 
 /// Follows all instruments of a rig from frame to frame. Each frame: predict, fit the marker's model to the pixels
 /// around the prediction; if that fails a gate, search the axis in the same frame, fit and gate again; else report it
@@ -32,4 +32,4 @@ class Tracker {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::vision
