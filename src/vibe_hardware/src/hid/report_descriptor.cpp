@@ -19,9 +19,9 @@ constexpr std::uint8_t kLongItem = 0xFE;
 
 // prefix of a short item without its size, HID 1.11, sections 6.2.2.4 to 6.2.2.8
 enum Item : std::uint8_t {
-  kInput = 0x80,
-  kOutput = 0x90,
-  kFeature = 0xB0,
+  kInputItem = 0x80,
+  kOutputItem = 0x90,
+  kFeatureItem = 0xB0,
   kCollection = 0xA0,
   kEndCollection = 0xC0,
   kUsagePage = 0x04,
@@ -92,11 +92,11 @@ class Parser {
 
   void apply(int item, std::uint32_t value, std::size_t length) {
     switch (item) {
-      case kInput:
+      case kInputItem:
         return addField(Kind::Input);
-      case kOutput:
+      case kOutputItem:
         return addField(Kind::Output);
-      case kFeature:
+      case kFeatureItem:
         return addField(Kind::Feature);
       case kCollection:
         return openCollection(value);
