@@ -9,10 +9,10 @@ import time
 
 import rospy
 from vibe_bringup.graph import Graph
+from vibe_testing.wait import PATIENCE, wait_until
 
 STEPS_PER_SECOND = 60  # of light.yaml
 DECORATION = re.compile(r"\x1b\[[0-9;]*m(\[ *[A-Z]+\] \[[0-9., ]+\]: )?|^\[ *[A-Z]+\] \[[0-9., ]+\]: ")  # of roscpp
-PATIENCE = 20.0  # for what must come sooner or later; a limit of a check is another number [s]
 
 
 class Failure(Exception):
@@ -23,16 +23,6 @@ def expect(condition, sentence):
     """Raises Failure unless the condition holds."""
     if not condition:
         raise Failure(sentence)
-
-
-def wait_until(condition, seconds=PATIENCE):
-    """Whether the condition became true within some seconds."""
-    deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline:
-        if condition():
-            return True
-        time.sleep(0.01)
-    return bool(condition())
 
 
 class Row:

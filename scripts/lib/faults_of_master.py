@@ -5,9 +5,10 @@ import os
 import sys
 import time
 
-from fault_bench import Flow, Row, expect, script_of_motions, wait_until
+from fault_bench import Flow, Row, expect, script_of_motions
 from sensor_msgs.msg import JointState
 from vibe_msgs.msg import StepInput
+from vibe_testing.wait import wait_until
 
 LIMIT = 2.0  # from the start of a program until its messages come [s]
 OUTAGE = 3.0  # without a master [s]

@@ -8,11 +8,12 @@ import time
 
 import rosbag
 import rospy
-from fault_bench import PATIENCE, Failure, Flow, Row, expect, script_of_motions, wait_until
+from fault_bench import Failure, Flow, Row, expect, script_of_motions
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import Joy
 from vibe_msgs.msg import InstrumentTrackArray, OperatingState, ProcedureEvent, StepInput
 from vibe_msgs.srv import Snapshot
+from vibe_testing.wait import PATIENCE, wait_until
 
 LIMIT = 2.0  # from the start of a program until its messages come again [s]
 TRIES = 3  # to do so, since other programs run on this machine, too

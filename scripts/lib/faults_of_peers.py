@@ -5,10 +5,11 @@ import struct
 import time
 import xmlrpc.client
 
-from fault_bench import Flow, Row, expect, pace, wait_until
+from fault_bench import Flow, Row, expect, pace
 from fault_peers import POSITION, Flood, RawPublisher, Victim, connect, encode_header, message_of, receive_header
 from sensor_msgs.msg import JointState, Joy
 from vibe_msgs.msg import StepInput
+from vibe_testing.wait import wait_until
 
 WINDOW = 1.5  # [s]
 LEAST_PACE = 0.9  # of real time, while the peers are there

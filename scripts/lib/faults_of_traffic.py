@@ -7,10 +7,11 @@ import sys
 import time
 
 import fault_peers
-from fault_bench import Flow, Row, expect, pace, script_of_motions, wait_until
+from fault_bench import Flow, Row, expect, pace, script_of_motions
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 from vibe_msgs.msg import ProcedureEvent, StepInput
+from vibe_testing.wait import wait_until
 
 RATE = 10000.0  # of a flood [Hz]
 LEAST_RATE = 0.5  # of that, on a busy machine

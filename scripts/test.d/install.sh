@@ -53,6 +53,9 @@ hasMeshes() {
 }
 check 'the meshes of the URDF are installed' hasMeshes
 
+check 'rostests of others can use vibe_testing' inSpace /usr/bin/python3 -c \
+  'import vibe_testing.program, vibe_testing.recorder, vibe_testing.diagnostics, vibe_testing.virtual_display'
+
 helps() {
   local program
   for program in 'vibe_sim sim_node' 'vibe_sim vibe_replay' 'vibe_sim vibe_record' 'vibe_sim vibe_player' \

@@ -2,11 +2,8 @@
 """gamepad_node with a recorded pad and a simulator that is played by the test: motion, buttons, start, end, errors."""
 
 import os
-import signal
-import subprocess
 import sys
 import tempfile
-import threading
 import time
 import unittest
 
@@ -14,21 +11,14 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from sensor_msgs.msg import JointState, Joy
+from vibe_testing.program import Program
+from vibe_testing.wait import wait_until
 
 SCOPE = ["insertion", "rotation", "tip_up_down", "tip_left_right"]
 OVERSTITCH = ["helix_advance", "helix_rotation", "needle_driver"]
 START = [0.05, 0.3, -0.2, 0.1, 0.004, 1.0, 0.006]
 RECORDING = os.path.join(os.path.dirname(os.path.abspath(__file__)), "pad_session.evemu")
 INSERTION_RATE = 0.04  # of two_stick.yaml [m/s]
-
-
-def wait_until(condition, seconds=10.0):
-    deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline:
-        if condition():
-            return True
-        time.sleep(0.01)
-    return bool(condition())
 
 
 class Simulator:
@@ -63,46 +53,6 @@ class Simulator:
         self.publisher.unregister()
 
 
-class Node:
-    """gamepad_node, with its output."""
-
-    def __init__(self, **parameters):
-        for name in rospy.get_param_names():
-            if name.startswith("/gamepad_node/"):
-                rospy.delete_param(name)
-        places = [os.path.join(f, "lib/vibe_hardware/gamepad_node") for f in os.environ["CMAKE_PREFIX_PATH"].split(":")]
-        program = next(place for place in places if os.path.exists(place))
-        arguments = ["_{}:={}".format(key, value) for key, value in parameters.items()]
-        self.lines = []
-        self.process = subprocess.Popen(
-            [program] + arguments, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True
-        )
-        self.reader = threading.Thread(target=lambda: self.lines.extend(self.read()), daemon=True)
-        self.reader.start()
-
-    def read(self):
-        for line in self.process.stdout:
-            yield line.rstrip()
-
-    def count(self, text):
-        return sum(text in line for line in list(self.lines))
-
-    def ends(self, seconds=20.0):
-        try:
-            self.process.wait(seconds)
-            self.reader.join(5)
-        except subprocess.TimeoutExpired:
-            return None
-        return self.process.returncode
-
-    def stop(self):
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGINT)
-        if self.ends() is None:
-            self.process.kill()
-        return self.ends()
-
-
 class GamepadTest(unittest.TestCase):
     def setUp(self):
         self.simulator = Simulator()
@@ -114,7 +64,7 @@ class GamepadTest(unittest.TestCase):
         self.simulator.stop()
 
     def start(self, **parameters):
-        self.nodes.append(Node(**parameters))
+        self.nodes.append(Program("vibe_hardware", "gamepad_node", name="gamepad_node", **parameters))
         return self.nodes[-1]
 
     def test_a_recorded_pad_drives_the_scope(self):

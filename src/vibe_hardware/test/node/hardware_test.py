@@ -13,10 +13,13 @@ import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from hardware_test_support import OVERSTITCH_JOINTS, SCOPE_JOINTS
-from hardware_test_support import Diagnostics, Emulator, Program, Recorder, wait_until
+from hardware_test_support import OVERSTITCH_JOINTS, SCOPE_JOINTS, Emulator
 from sensor_msgs.msg import JointState, Joy
 from vibe_msgs.msg import HapticParameters, OperatingState
+from vibe_testing.diagnostics import Diagnostics
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 # The hand moves to 5 cm and stays; from the first second on it holds a pedal.
 SCRIPT = """
@@ -62,7 +65,7 @@ class HardwareTest(unittest.TestCase):
 
     def setUp(self):
         self.emulator = Emulator(SCRIPT)
-        self.node = Program("hardware_node", name="hardware_node", bus=self.emulator.folder)
+        self.node = Program("vibe_hardware", "hardware_node", name="hardware_node", bus=self.emulator.folder)
 
     def tearDown(self):
         self.node.stop()
@@ -74,7 +77,7 @@ class HardwareTest(unittest.TestCase):
         """Starts the emulator and waits until everything runs and the pedal is held."""
         self.assertTrue(wait_until(lambda: self.state.messages), self.node.output())
         self.emulator.start()
-        self.assertIsNotNone(self.scope.waits_for(lambda m: True), self.node.output())
+        self.assertIsNotNone(self.scope.waits_for(), self.node.output())
         self.assertIsNotNone(self.buttons.waits_for(lambda m: m.buttons[0] == 1), self.node.output())
         self.assertTrue(wait_until(lambda: self.state.messages[-1].state == "ENABLED"), self.node.output())
 
@@ -100,7 +103,7 @@ class HardwareTest(unittest.TestCase):
         self.assertEqual(button_stamps, sorted(set(button_stamps)))
         rate = len(button_stamps) / (1e-9 * (button_stamps[-1] - button_stamps[0]))
         self.assertTrue(8 < rate < 13, rate)
-        level, text, values = self.haptic_diagnostics.newest(time.time() - 0.5)
+        level, text, values = self.haptic_diagnostics.waits_for_newer(time.time() - 0.5)
         self.assertIn(level, (OK, WARN), text)  # WARN: this machine was too busy for 90 Hz
         self.assertEqual(values["firmware version"].count("."), 2)
         for key in ("duplicated reports", "reordered reports", "malformed reports", "implausible reports", "reconnects"):
@@ -131,7 +134,7 @@ class HardwareTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: self.state.messages[-1].state == "ENABLED", 2))
         time.sleep(2)
         now = time.time()
-        _, text, values = self.haptic_diagnostics.newest(now)
+        _, text, values = self.haptic_diagnostics.waits_for_newer(now)
         self.assertEqual(values["reconnects"], "1")
         self.assertEqual(values["restarts of the device"], "1")
         self.assertEqual(values["state"], "running")
@@ -162,7 +165,7 @@ class HardwareTest(unittest.TestCase):
             self.assertTrue(wait_until(lambda: self.state.messages[-1].state in ("FAULT", "DISABLED"), 5))
             sentences = [line for line in self.node.lines if "no valid report has come" in line or "is gone" in line]
             self.assertGreaterEqual(len(sentences), 1, self.node.output())
-            level, text, values = self.input_diagnostics.newest(time.time())
+            level, text, values = self.input_diagnostics.waits_for_newer(time.time())
             self.assertIn((level, values["state"]), ((ERROR, "silent"), (WARN, "absent")), text)
         finally:
             self.emulator.program.send(signal.SIGCONT)
@@ -171,7 +174,7 @@ class HardwareTest(unittest.TestCase):
     def test_the_spring_of_the_simulator_is_felt(self):
         self.start()
         wait_until(lambda: self.parameters.get_num_connections() > 0)
-        before = self.haptic_diagnostics.value("sent parameters", time.time())
+        before = float(self.haptic_diagnostics.waits_for_newer(time.time())[2]["sent parameters"])
         for _ in range(120):
             self.parameters.publish(spring(100, 0.06))
             time.sleep(1 / 60)
@@ -181,7 +184,7 @@ class HardwareTest(unittest.TestCase):
         self.assertGreater(effort, 0.3)
         time.sleep(0.5)  # no messages: the spring has faded
         self.assertAlmostEqual(self.haptic.messages[-1].effort[0], 0, delta=1e-3)
-        _, text, values = self.haptic_diagnostics.newest(time.time())
+        _, text, values = self.haptic_diagnostics.waits_for_newer(time.time())
         self.assertGreater(float(values["sent parameters"]) - before, 25)
         self.assertEqual(values["refused parameters"], "0", text)
         self.assertEqual(values["clamped parameters"], "0", text)
@@ -197,7 +200,7 @@ class HardwareTest(unittest.TestCase):
             time.sleep(1.1)
         self.assertEqual(self.node.count("A message on haptic/parameters is ignored:"), 3, self.node.output())
         self.assertEqual(self.node.count("joint_stiffness of insertion is not finite; send finite numbers."), 2)
-        values = self.haptic_diagnostics.newest(time.time())[2]
+        values = self.haptic_diagnostics.waits_for_newer(time.time())[2]
         self.assertGreater(float(values["clamped parameters"]), 0)
         self.assertEqual(values["refused parameters"], "0")
         self.assertEqual(values["rejected messages on haptic/parameters"], "3")
@@ -242,11 +245,11 @@ class HardwareTest(unittest.TestCase):
         time.sleep(2)
         self.assertEqual(len(self.node.lines), 2, self.node.output())
         self.assertEqual(self.state.messages[-1].state, "DISABLED")
-        self.assertEqual(self.haptic_diagnostics.newest()[0], WARN)
+        self.assertEqual(self.haptic_diagnostics.waits_for_newer()[0], WARN)
         self.assertFalse(self.scope.messages)
 
     def check_usage_error(self, sentence, **parameters):
-        program = Program("hardware_node", name="wrong", **parameters)
+        program = Program("vibe_hardware", "hardware_node", name="wrong", **parameters)
         self.assertEqual(program.ends(), 2, program.output())
         self.assertIn(sentence, program.output())
 

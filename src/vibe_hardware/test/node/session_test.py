@@ -11,9 +11,13 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from hardware_test_support import Diagnostics, Emulator, Program, Recorder, wait_until
+from hardware_test_support import Emulator
 from sensor_msgs.msg import JointState
 from vibe_msgs.msg import HapticParameters, ProcedureEvent, StepInput
+from vibe_testing.diagnostics import Diagnostics
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 # Touches at 7 cm, presses for some seconds and leaves; the helix is advanced and a button held meanwhile.
 SCRIPT = """
@@ -64,7 +68,7 @@ class SessionTest(unittest.TestCase):
         assert wait_until(lambda: cls.applied.messages, 60), "the simulator does not run"
         cls.emulator = Emulator(SCRIPT)
         cls.emulator.start()
-        cls.node = Program("hardware_node", name="hardware_node", bus=cls.emulator.folder)
+        cls.node = Program("vibe_hardware", "hardware_node", name="hardware_node", bus=cls.emulator.folder)
 
     @classmethod
     def tearDownClass(cls):
@@ -114,7 +118,7 @@ class SessionTest(unittest.TestCase):
 
     def check_diagnostics(self):
         for name in ("haptic device", "input device"):
-            _, _, values = Diagnostics(self.diagnostics, name).newest(time.time())
+            _, _, values = Diagnostics(self.diagnostics, name).waits_for_newer(time.time())
             for key in ("lost reports", "duplicated reports", "malformed reports", "reconnects"):
                 self.assertEqual(values[key], "0", name + ": " + key)
             self.assertGreater(int(values["received reports"]), 300)

@@ -16,13 +16,14 @@ import ball
 import numpy
 import rospy
 import tf2_msgs.msg
-from endoscope_camera_test import Program, pixels_of, wait_until
+from endoscope_camera_test import Camera, pixels_of
 from geometry_msgs.msg import TransformStamped
 from PIL import Image
 from scipy.spatial.transform import Rotation
 from scope_pose import Scope, pose
 from sensor_msgs.msg import PointCloud2
 from vibe_msgs.msg import TissueTopology
+from vibe_testing.wait import wait_until
 
 HELD = {"needle_slide": 0.018, "needle_draw": 0.0012, "needle_turn": 0.4189}  # the needle in the anchor exchange
 HELIX = {"helix_advance": 0.018, "helix_rotation": 2.0}
@@ -82,7 +83,7 @@ class Studio:
         if camera:
             options.update(lens="rectilinear", field_of_view=44, camera_frame="outside", width=900, height=900)
             options.update(auto_exposure=False, exposure=OUTSIDE_EXPOSURE)
-        with Program(**options) as program:
+        with Camera(**options) as program:
             assert wait_until(lambda: min(self.listeners()) > 0)
             self.clock += rospy.Duration(1)
             self.topology.publish(tissue.topology(self.clock))

@@ -15,12 +15,13 @@ import rospy
 import rostest
 import tf2_msgs.msg
 from ball import FRAME, Ball
-from endoscope_camera_test import CAMERA, QUATERNION, Program, distance_from_middle, pixels_of, wait_until
+from endoscope_camera_test import CAMERA, QUATERNION, Camera, distance_from_middle, pixels_of
 from geometry_msgs.msg import TransformStamped
 from scipy.spatial.transform import Rotation
 from scope_pose import Scope, pose
 from sensor_msgs.msg import Image, PointCloud2
 from vibe_msgs.msg import TissueTopology
+from vibe_testing.wait import wait_until
 
 TIP = numpy.array([-0.02, 0, 0])  # of the endoscope in the ball, which looks along x [m]
 LENS = TIP + (0, 0, 0.0025)  # scope_camera_mount
@@ -75,7 +76,7 @@ class DeviceViewTest(unittest.TestCase):
     def shot(self, urdf, way=0.0, joints={}):
         """The picture, how far its pixels are from the middle, and their labels."""
         rospy.set_param("/robot_description", urdf)
-        program = Program(rate=0, width=320, height=320)
+        program = Camera(rate=0, width=320, height=320)
         program.labels = []
         program.subscribers.append(rospy.Subscriber("endoscope/labels", Image, program.labels.append))
         with program as camera:

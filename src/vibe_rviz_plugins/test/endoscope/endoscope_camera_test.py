@@ -4,7 +4,6 @@ the picture must be where camera_info says."""
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -21,34 +20,18 @@ from geometry_msgs.msg import PoseStamped, TransformStamped
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2
 from std_msgs.msg import String
 from vibe_msgs.msg import TissueTopology
+from vibe_testing.program import Program, find_program
+from vibe_testing.wait import wait_until
 
 CAMERA = "scope_camera_optical"
-PATIENCE = 40.0  # software rendering on a busy machine [s]
 NEAR = 1.0  # error allowed where the spot is [px]
+WITHOUT_DISPLAY = {"DISPLAY": None, "LIBGL_ALWAYS_SOFTWARE": None}
 
 # a camera off the middle that looks along x of the ball: z forward, x right, y down
 TURN = numpy.column_stack([(0, -1, 0), (0, 0, -1), (1, 0, 0)])
 QUATERNION = (-0.5, 0.5, -0.5, 0.5)  # the same
 PLACE = numpy.array([-0.008, 0.003, -0.002])
 ASIDE = numpy.array([0, 0.008, 0])  # another place
-
-
-def wait_until(condition, patience=PATIENCE):
-    deadline = time.monotonic() + patience
-    while not condition():
-        if time.monotonic() > deadline:
-            return False
-        time.sleep(0.02)
-    return True
-
-
-def program():
-    return subprocess.check_output(["catkin_find", "--first-only", "--libexec", "vibe_rviz_plugins", "endoscope_camera"],
-                                   text=True).strip()  # fmt: skip
-
-
-def without_display():
-    return {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "LIBGL_ALWAYS_SOFTWARE")}
 
 
 def in_camera(point, place):
@@ -90,16 +73,15 @@ def dark_spot(image):
     return middle, spread, amount
 
 
-class Program:
+class Camera(Program):
     """endoscope_camera with some parameters, and what it publishes."""
 
-    count = 0  # each has a name of its own: parameters stay at the master
+    started = 0  # each has a name of its own: parameters stay at the master
 
     def __init__(self, eyes=("",), **parameters):
-        Program.count += 1
-        arguments = ["__name:=camera{}".format(Program.count)]
-        arguments += ["_{}:={}".format(*item) for item in parameters.items()]
-        self.process = subprocess.Popen([program()] + arguments, env=without_display(), start_new_session=True)
+        Camera.started += 1
+        name = "camera{}".format(Camera.started)
+        super().__init__("vibe_rviz_plugins", "endoscope_camera", name=name, env=WITHOUT_DISPLAY, **parameters)
         self.images, self.infos, self.subscribers = {}, {}, []
         for eye in eyes:
             self.images[eye], self.infos[eye] = [], []
@@ -118,8 +100,7 @@ class Program:
     def __exit__(self, *_):
         for subscriber in self.subscribers:
             subscriber.unregister()
-        self.process.send_signal(signal.SIGINT)
-        assert self.process.wait(20) == 0
+        assert self.stop() == 0, self.output()
 
     def last(self, stamp, eye=""):
         """Image and camera_info of a stamp, once they are there."""
@@ -129,7 +110,7 @@ class Program:
 
         arrived = wait_until(lambda: of_stamp(self.images[eye]) and of_stamp(self.infos[eye]))
         assert arrived, "no image in time; the program {}".format(
-            "runs" if self.process.poll() is None else "ended with status {}".format(self.process.poll()))
+            "runs" if self.is_running() else "ended with status {}".format(self.ends()))
         return of_stamp(self.images[eye])[0], of_stamp(self.infos[eye])[0]
 
 
@@ -225,7 +206,7 @@ class EndoscopeCameraTest(unittest.TestCase):
         return found
 
     def test_equidistant_picture_is_as_camera_info_says(self):
-        with Program(rate=0) as camera:
+        with Camera(rate=0) as camera:
             stamp = self.show()
             image, info = camera.last(stamp)
             self.assertEqual((image.width, image.height, image.step, image.encoding), (640, 480, 1920, "rgb8"))
@@ -251,7 +232,7 @@ class EndoscopeCameraTest(unittest.TestCase):
             self.assertIsNone(dark_spot(image)[0])
 
     def test_rectilinear_picture_is_as_camera_info_says(self):
-        with Program(rate=0, lens="rectilinear", field_of_view=110, width=500, height=600) as camera:
+        with Camera(rate=0, lens="rectilinear", field_of_view=110, width=500, height=600) as camera:
             image, info = camera.last(self.show())
             self.assertEqual((image.width, image.height, info.distortion_model), (500, 600, "plumb_bob"))
             self.assertEqual(len(info.D), 5)
@@ -263,7 +244,7 @@ class EndoscopeCameraTest(unittest.TestCase):
             self.assertGreater(numpy.linalg.norm(found - project(wrong, in_camera(self.spot, PLACE))), 4 * NEAR)
 
     def test_pair_sees_the_spot_displaced_by_focal_length_times_baseline_over_depth(self):
-        with Program(("left", "right"), rate=0, stereo=True, baseline=0.005, lens="rectilinear",
+        with Camera(("left", "right"), rate=0, stereo=True, baseline=0.005, lens="rectilinear",
                      field_of_view=100) as pair:  # fmt: skip
             stamp = self.show()
             left, left_info = pair.last(stamp, "left")
@@ -279,7 +260,7 @@ class EndoscopeCameraTest(unittest.TestCase):
             self.assertAlmostEqual(displaced[1], 0, delta=0.5)
 
     def test_picture_shows_the_scope_as_it_was_at_the_stamp(self):
-        with Program(rate=0) as camera:
+        with Camera(rate=0) as camera:
             self.wait_for_listener()
             begin = self.show()
             camera.last(begin)
@@ -308,7 +289,7 @@ class EndoscopeCameraTest(unittest.TestCase):
         return pixel
 
     def test_truth_has_stamp_size_and_geometry_of_the_image(self):
-        with Program(rate=0) as camera, Truth() as truth:
+        with Camera(rate=0) as camera, Truth() as truth:
             tables = []
             rospy.Subscriber("endoscope/label_table", String, lambda message: tables.append(json.loads(message.data)))
             self.assertTrue(wait_until(lambda: tables))
@@ -337,7 +318,7 @@ class EndoscopeCameraTest(unittest.TestCase):
         shots = []
         for parameters in ({}, {"exposure": 0.5, "read_noise": 0.05, "distortion": 0.02}):
             self.wait_until_alone()
-            with Program(rate=0, **parameters) as camera, Truth() as truth:
+            with Camera(rate=0, **parameters) as camera, Truth() as truth:
                 stamp = self.show()
                 image, info = camera.last(stamp)
                 shots.append((pixels_of(image), info.D, truth.values("depth/image_raw", stamp)))
@@ -352,7 +333,7 @@ class EndoscopeCameraTest(unittest.TestCase):
         shots = []
         for size in (1, 2):
             self.wait_until_alone()
-            with Program(rate=0, width=320 * size, height=240 * size) as camera:
+            with Camera(rate=0, width=320 * size, height=240 * size) as camera:
                 shots.append(camera.last(self.show())[0])
         spots = [dark_spot(shot)[0] + 0.5 for shot in shots]  # from the corner
         self.assertLess(numpy.linalg.norm(spots[1] / 2 - spots[0]), 0.5)
@@ -366,9 +347,9 @@ class EndoscopeCameraTest(unittest.TestCase):
         self.assertGreater(control, 2 * difference)
 
     def test_listens_to_nothing_while_nobody_looks(self):
-        with Program((), rate=0) as camera:
+        with Camera((), rate=0) as camera:
             wait_until(lambda: any(t == "/endoscope/image_raw" for t, _ in rospy.get_published_topics()))
-            self.assertIsNone(camera.process.poll())
+            self.assertTrue(camera.is_running())
             time.sleep(1)
             self.assertEqual(self.particles.get_num_connections(), 0)
             subscriber = rospy.Subscriber("endoscope/image_raw", Image, lambda _: None)
@@ -386,9 +367,9 @@ class EndoscopeCameraTest(unittest.TestCase):
             (["_lens:=rectilinear", "_distortion:=-0.1"], None, 2, "folds the image over"),
             ([], "/nowhere", 1, "apt-get install xvfb"),
         ]
-        binary = program()
+        binary = find_program("vibe_rviz_plugins", "endoscope_camera")
         for number, (arguments, path, status, words) in enumerate(cases):
-            environment = without_display()
+            environment = {name: value for name, value in os.environ.items() if name not in WITHOUT_DISPLAY}
             if path:
                 environment["PATH"] = path
             name = "__name:=wrong{}".format(number)

@@ -11,6 +11,7 @@ import rospy
 import rostest
 import yaml
 from sensor_msgs.msg import JointState, Joy
+from vibe_testing.recorder import Recorder
 
 from rviz_under_test import RvizUnderTest
 from small_simulator import OVERSTITCH, SCOPE, START, SmallSimulator
@@ -20,29 +21,6 @@ INSERTION_SPEED = 0.03  # with the properties of the shipped configuration [m/s]
 INSERTION_ACCELERATION = 0.15 / 0.3  # from rest to the limit of the URDF in 0.3 s [m/s^2]
 WHEEL = 2e-3  # insertion per notch [m]
 PANELS = "840x560+20+110"  # of the picture: where keys and state are shown, without the line above them
-
-
-class Recorder:
-    """All messages of a topic since the last clear()."""
-
-    def __init__(self, topic, kind):
-        self.lock, self.messages = threading.Lock(), []
-        self.subscriber = rospy.Subscriber(topic, kind, self.take, queue_size=1000)
-
-    def take(self, message):
-        with self.lock:
-            self.messages.append(message)
-
-    def all(self):
-        with self.lock:
-            return list(self.messages)
-
-    def clear(self):
-        with self.lock:
-            self.messages = []
-
-    def is_published(self):
-        return self.subscriber.get_num_connections() > 0
 
 
 class DriveScope(unittest.TestCase):
@@ -58,7 +36,7 @@ class DriveScope(unittest.TestCase):
         cls.rviz.wait_for(lambda: cls.rviz.report()["tool"] == "Drive Scope", "the tool is not active at the start")
         cls.rviz.tell("focus_in")
         time.sleep(2)
-        cls.silent_at_first = not cls.scope.all() and not cls.buttons.all()
+        cls.silent_at_first = not cls.scope.messages and not cls.buttons.messages
         cls.simulator.publishes = True
 
     @classmethod
@@ -69,14 +47,14 @@ class DriveScope(unittest.TestCase):
     def setUp(self):
         """The tool drives, and everything is at its start."""
         self.rviz.tell("focus_out", "tool Move Camera")
-        self.wait(lambda: not self.scope.is_published() and not self.buttons.is_published(), "silence")
+        self.wait(lambda: not self.scope.is_connected() and not self.buttons.is_connected(), "silence")
         self.simulator.clock_runs = self.simulator.runs = self.simulator.publishes = True
         self.simulator.reset()
         time.sleep(0.2)
         self.scope.clear(), self.overstitch.clear(), self.buttons.clear()
         self.rviz.tell("tool Drive Scope")
         for recorder in (self.scope, self.overstitch, self.buttons):
-            self.wait(recorder.all, "messages of the tool on " + recorder.subscriber.name)
+            self.wait(lambda: recorder.messages, "messages of the tool on " + recorder.subscriber.name)
 
     def wait(self, condition, what):
         self.rviz.wait_for(condition, "no " + what, 20)
@@ -88,11 +66,11 @@ class DriveScope(unittest.TestCase):
 
     def joint(self, name):
         recorder = self.scope if name in SCOPE else self.overstitch
-        message = recorder.all()[-1]
+        message = recorder.messages[-1]
         return message.position[message.name.index(name)]
 
     def pressed(self):
-        return list(self.buttons.all()[-1].buttons)
+        return list(self.buttons.messages[-1].buttons)
 
     def wait_for_buttons(self, expected):
         self.wait(lambda: self.pressed() == expected, "buttons {}".format(expected))
@@ -111,18 +89,18 @@ class DriveScope(unittest.TestCase):
 
     def test_begins_where_the_simulator_is(self):
         time.sleep(1)
-        for message in self.scope.all() + self.overstitch.all():
+        for message in self.scope.messages + self.overstitch.messages:
             for name, position in zip(message.name, message.position):
                 self.assertEqual(position, START[name], name)
-        self.assertEqual(self.scope.all()[0].name, SCOPE)
-        self.assertEqual(self.overstitch.all()[0].name, OVERSTITCH)
+        self.assertEqual(self.scope.messages[0].name, SCOPE)
+        self.assertEqual(self.overstitch.messages[0].name, OVERSTITCH)
 
     def test_key_moves_a_joint_smoothly(self):
         self.rviz.tell("down Key_W")
         self.wait(lambda: self.joint("insertion") > START["insertion"] + 0.03, "motion")
         self.rviz.tell("repeat Key_W", "repeat Key_W", "up Key_W")
         self.assertGreater(self.rest(), START["insertion"] + 0.03)
-        messages = self.scope.all()
+        messages = self.scope.messages
         times = [message.header.stamp.to_sec() for message in messages]
         places = [message.position[0] for message in messages]
         last_speed, last_passed = 0.0, 0.0
@@ -143,7 +121,7 @@ class DriveScope(unittest.TestCase):
         self.scope.clear()
         begin = self.simulator.now
         time.sleep(3)
-        messages = len(self.scope.all()) / (self.simulator.now - begin)
+        messages = len(self.scope.messages) / (self.simulator.now - begin)
         self.assertGreater(messages, 40)
         self.assertLess(messages, 61)
 
@@ -172,7 +150,7 @@ class DriveScope(unittest.TestCase):
         self.rviz.tell("up Key_C", "click Key_G")
         self.wait_for_buttons([0, 0, 0, 0, 0, 0])
         self.rviz.tell("click Key_N")
-        self.wait(lambda: any(message.buttons[2] for message in self.buttons.all()), "press of the needle")
+        self.wait(lambda: any(message.buttons[2] for message in self.buttons.messages), "press of the needle")
         self.wait_for_buttons([0, 0, 0, 0, 0, 0])
 
     def test_wheel_and_drag(self):
@@ -191,12 +169,12 @@ class DriveScope(unittest.TestCase):
             self.scope.clear(), self.overstitch.clear(), self.buttons.clear()
             self.tell_and_wait("down Key_W")
             self.tell_and_wait("up Key_W")
-            self.assertEqual((self.scope.all(), self.overstitch.all()), ([], []), stop)
+            self.assertEqual((self.scope.messages, self.overstitch.messages), ([], []), stop)
             if stop == "runs":
-                self.assertEqual(self.buttons.all(), [])
+                self.assertEqual(self.buttons.messages, [])
             setattr(self.simulator, stop, True)
             self.simulator.tell_state()
-            self.wait(self.scope.all, "messages after the pause")
+            self.wait(lambda: self.scope.messages, "messages after the pause")
             self.assertEqual(self.joint("insertion"), START["insertion"])
 
     def test_reset_is_followed(self):
@@ -219,15 +197,15 @@ class DriveScope(unittest.TestCase):
             time.sleep(0.02)
             if time.monotonic() - since < 1:
                 self.scope.clear()
-        self.assertEqual(self.scope.all(), [])
+        self.assertEqual(self.scope.messages, [])
         device.unregister()
-        self.wait(self.scope.all, "messages after the device is gone")
-        self.assertAlmostEqual(self.scope.all()[0].position[0], 0.2, 6)
+        self.wait(lambda: self.scope.messages, "messages after the device is gone")
+        self.assertAlmostEqual(self.scope.messages[0].position[0], 0.2, 6)
 
     def test_buttons_of_another_node_are_respected(self):
         """The joints can be driven all the same."""
         self.rviz.tell("tool Move Camera")
-        self.wait(lambda: not self.buttons.is_published(), "silence")
+        self.wait(lambda: not self.buttons.is_connected(), "silence")
         other = rospy.Publisher("/scope/buttons", Joy, queue_size=10)
         ends = threading.Event()
 
@@ -241,18 +219,18 @@ class DriveScope(unittest.TestCase):
             time.sleep(1)
             self.scope.clear()
             self.rviz.tell("tool Drive Scope")
-            self.wait(self.scope.all, "joints")
+            self.wait(lambda: self.scope.messages, "joints")
             self.rviz.tell("down Key_Space", "down Key_W")
             self.wait(lambda: self.joint("insertion") > START["insertion"] + 0.01, "motion")
             time.sleep(1.5)
-            self.assertEqual({tuple(message.buttons) for message in self.buttons.all()[-20:]}, {(0, 1, 0, 0, 0, 0)})
+            self.assertEqual({tuple(message.buttons) for message in self.buttons.messages[-20:]}, {(0, 1, 0, 0, 0, 0)})
         finally:
             ends.set()
             thread.join()
             other.unregister()
         self.buttons.clear()
         self.rviz.tell("focus_out")
-        self.wait(self.buttons.all, "control of the buttons")
+        self.wait(lambda: self.buttons.messages, "control of the buttons")
         self.assertEqual(self.pressed(), [0, 1, 0, 0, 0, 0], "the helix stays as it was")
 
     def test_leaving_the_tool_falls_silent(self):
@@ -260,9 +238,9 @@ class DriveScope(unittest.TestCase):
         self.wait_for_buttons([1, 1, 0, 0, 0, 0])
         self.wait(lambda: self.joint("insertion") > START["insertion"] + 0.005, "motion")
         self.rviz.tell("tool Move Camera")
-        self.wait(lambda: not self.scope.is_published() and not self.buttons.is_published(), "silence")
+        self.wait(lambda: not self.scope.is_connected() and not self.buttons.is_connected(), "silence")
         self.assertEqual(self.pressed(), [0, 1, 0, 0, 0, 0], "the helix must not let go")
-        speeds = [b.position[0] - a.position[0] for a, b in zip(self.scope.all()[-6:], self.scope.all()[-5:])]
+        speeds = [b.position[0] - a.position[0] for a, b in zip(self.scope.messages[-6:], self.scope.messages[-5:])]
         self.assertLess(speeds[-1], 0.5 * INSERTION_SPEED / 60, "it brakes")
 
     def test_escape_leaves_and_d_comes_back(self):

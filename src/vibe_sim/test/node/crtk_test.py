@@ -8,11 +8,13 @@ import numpy
 import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped
-from node_test_support import OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS, Recorder, joints, wait_until
+from node_test_support import OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS, joints
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from vibe_msgs.msg import OperatingState, StepInput
 from vibe_msgs.srv import Reset, Step
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 INSERTION_SPEED = 0.15  # limit of the URDF [m/s]
 
@@ -117,7 +119,7 @@ class CrtkTest(unittest.TestCase):
     def test_a_move_goes_smoothly_to_its_goal_and_is_busy_on_the_way(self):
         self.send("scope/move_jp", [0.04, 0.2, 0, 0])
         self.step(1)
-        self.assertTrue(self.state.find(lambda m: m.is_busy))
+        self.assertTrue(self.state.waits_for(lambda m: m.is_busy))
         self.step(59)
         self.assertTrue(wait_until(lambda: not self.state.messages[-1].is_busy))
         position = numpy.array([m.joints[0] for m in self.applied.messages])
@@ -132,7 +134,7 @@ class CrtkTest(unittest.TestCase):
     def test_another_command_ends_a_move(self):
         self.send("scope/move_jp", [0.05, 0, 0, 0])
         self.step(5)
-        self.assertTrue(self.state.find(lambda m: m.is_busy))
+        self.assertTrue(self.state.waits_for(lambda m: m.is_busy))
         self.send("scope/servo_jp", [0.001, 0, 0, 0])
         self.step(2)
         self.assertTrue(wait_until(lambda: not self.state.messages[-1].is_busy))
@@ -154,7 +156,7 @@ class CrtkTest(unittest.TestCase):
         self.assertEqual(self.overstitch.messages[-1].effort, ())
         self.send("overstitch/move_jp", [0.02, 0.0, 0.0])
         self.step(1)
-        self.assertTrue(self.overstitch_state.find(lambda m: m.is_busy))
+        self.assertTrue(self.overstitch_state.waits_for(lambda m: m.is_busy))
         self.assertFalse(self.state.messages[-1].is_busy)
         self.step(120)
         self.check_kinematics(self.overstitch)

@@ -9,10 +9,12 @@ import unittest
 import rospy
 import rostest
 import tf2_ros
-from node_test_support import EPOCH, OVERSTITCH_JOINTS, SCOPE_JOINTS, Recorder, buttons, joints, stamp_of, wait_until
+from node_test_support import EPOCH, OVERSTITCH_JOINTS, SCOPE_JOINTS, buttons, joints, stamp_of
 from sensor_msgs.msg import JointState, Joy
 from vibe_msgs.msg import ProcedureEvent, StepInput
 from vibe_msgs.srv import Reset, Step
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 OPEN, CLOSING, CLOSED = (0, 0, 0), (0, 0, 0.012), (0, 0, 0.018)
 NEEDLE_BUTTON = 2
@@ -84,7 +86,7 @@ class DrawnJointsTest(unittest.TestCase):
         self.assertLess(self.distance("needle_arm_pin", "needle_hook_pin"), 1e-6)
         self.command(CLOSED)
         self.command(CLOSED, pressed=(NEEDLE_BUTTON,))
-        self.assertIsNotNone(self.events.find(lambda m: m.kind == ProcedureEvent.BITE), "outside the balloon is deep")
+        self.assertIsNotNone(self.events.waits_for(lambda m: m.kind == ProcedureEvent.BITE), "outside the balloon is deep")
         held = self.command(OPEN)
         self.assertEqual((held["needle_driver"], held["needle_slide"], held["needle_draw"]), (0, 0.018, 0.0012))
         self.assertAlmostEqual(self.distance("needle", "suture_needle"), math.hypot(0.0108 + 0.0012, 0.0144), delta=1e-6)

@@ -14,9 +14,12 @@ import unittest
 import rosgraph
 import rospy
 import rostest
-from node_test_support import Program, Recorder, find_program, scene, state_hash, wait_until
+from node_test_support import scene, state_hash
 from std_msgs.msg import String
 from vibe_msgs.msg import StepInput
+from vibe_testing.program import Program, find_program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 
 def free_port():
@@ -28,7 +31,7 @@ def free_port():
 class FailuresTest(unittest.TestCase):
     def assert_refuses(self, program, words, **parameters):
         """Ends with status 2 and one sentence that has the words."""
-        refused = Program(program, program + "_refused", **parameters)
+        refused = Program("vibe_sim", program, name=program + "_refused", **parameters)
         try:
             self.assertEqual(refused.ends(20), 2, refused.output())
             self.assertEqual(len(refused.lines), 1, refused.output())
@@ -89,11 +92,11 @@ class FailuresTest(unittest.TestCase):
             rospy.delete_param("/use_sim_time")
 
     def test_the_older_of_two_nodes_of_one_name_ends(self):
-        older = Program("sim_node", "twin", scene=scene("balloon.yaml"))
+        older = Program("vibe_sim", "sim_node", name="twin", scene=scene("balloon.yaml"))
         newer = None
         try:
             self.assertTrue(older.says("x real time"), older.output())
-            newer = Program("sim_node", "twin", scene=scene("balloon.yaml"))
+            newer = Program("vibe_sim", "sim_node", name="twin", scene=scene("balloon.yaml"))
             self.assertEqual(older.ends(20), 0, older.output())
             self.assertEqual(older.count("Stopped because the ROS master said so"), 1)
             self.assertTrue(newer.says("x real time"), newer.output())
@@ -104,17 +107,17 @@ class FailuresTest(unittest.TestCase):
     def test_a_signal_loses_nothing(self):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "summary.txt")
-            simulator = Program("sim_node", "signalled", scene=scene("balloon.yaml"), duration=1000, summary_file=file)
+            parameters = {"scene": scene("balloon.yaml"), "duration": 1000, "summary_file": file}
+            simulator = Program("vibe_sim", "sim_node", name="signalled", **parameters)
             self.assertTrue(simulator.says("x real time"), simulator.output())
-            simulator.process.send_signal(signal.SIGTERM)
+            simulator.send(signal.SIGTERM)
             self.assertEqual(simulator.ends(20), 1)  # less than the duration asked for
             with open(file) as text:
                 self.assertEqual(state_hash(text.read()), state_hash(simulator.output()))
 
     def test_a_summary_that_cannot_be_written_is_an_error(self):
-        simulator = Program(
-            "sim_node", "unwritable", scene=scene("balloon.yaml"), duration=0.1, summary_file="/nowhere/summary.txt"
-        )
+        parameters = {"scene": scene("balloon.yaml"), "duration": 0.1, "summary_file": "/nowhere/summary.txt"}
+        simulator = Program("vibe_sim", "sim_node", name="unwritable", **parameters)
         self.assertEqual(simulator.ends(20), 2)
         self.assertIn("/nowhere/summary.txt", simulator.output())
 
@@ -127,7 +130,7 @@ class FailuresTest(unittest.TestCase):
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        simulator = Program("sim_node", env=env, scene=scene("balloon.yaml"), master_timeout=2.5)
+        simulator = Program("vibe_sim", "sim_node", env=env, scene=scene("balloon.yaml"), master_timeout=2.5)
         try:
             self.assertTrue(simulator.says("x real time"), simulator.output())
             master.kill()
@@ -146,7 +149,7 @@ class FailuresTest(unittest.TestCase):
         env = {"ROS_MASTER_URI": "http://localhost:{}".format(free_port())}
         for program in ("sim_node", "vibe_trainee", "vibe_record"):
             with self.subTest(program):
-                path = find_program(program)
+                path = find_program("vibe_sim", program)
                 shown = subprocess.run([path, "--help"], env=dict(os.environ, **env), capture_output=True, timeout=5)
                 self.assertEqual(shown.returncode, 0)
                 self.assertIn(b"Usage", shown.stdout)
@@ -164,7 +167,7 @@ class FailuresTest(unittest.TestCase):
         )
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "orphan.bag")
-            recorder = subprocess.Popen([find_program("vibe_record"), bag], env=env)
+            recorder = subprocess.Popen([find_program("vibe_sim", "vibe_record"), bag], env=env)
             try:
                 self.assertTrue(wait_until(lambda: os.path.exists(bag + ".active"), 20))
                 rospy.rostime.wallsleep(1)
@@ -187,7 +190,9 @@ class FailuresTest(unittest.TestCase):
 
         publisher = rospy.Publisher("much", String, queue_size=1000)
         recorder = subprocess.Popen(
-            [find_program("vibe_record"), bag], stderr=subprocess.PIPE, preexec_fn=little_room if limit else None
+            [find_program("vibe_sim", "vibe_record"), bag],
+            stderr=subprocess.PIPE,
+            preexec_fn=little_room if limit else None,
         )
         try:
             deadline = time.monotonic() + 30
@@ -213,7 +218,7 @@ class FailuresTest(unittest.TestCase):
 
     def test_await_recorder_waits_for_a_listener(self):
         simulator = Program(
-            "sim_node", "patient", scene=scene("balloon.yaml"), duration=0.5, await_recorder="true"
+            "vibe_sim", "sim_node", name="patient", scene=scene("balloon.yaml"), duration=0.5, await_recorder="true"
         )
         try:
             self.assertTrue(simulator.says("x real time"), simulator.output())

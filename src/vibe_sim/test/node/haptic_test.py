@@ -9,9 +9,10 @@ import unittest
 import numpy
 import rospy
 import rostest
-from node_test_support import PERIOD, SCOPE_JOINTS
-from node_test_support import Program, Recorder, find_program, scene, stamp_of, state_hash
+from node_test_support import PERIOD, SCOPE_JOINTS, scene, stamp_of, state_hash
 from vibe_msgs.msg import HapticParameters, ProcedureEvent, StepInput
+from vibe_testing.program import Program, find_program
+from vibe_testing.recorder import Recorder
 
 DURATION = 3.0  # of poke.trainee.yaml [s]
 
@@ -36,8 +37,8 @@ class HapticTest(unittest.TestCase):
         for recorder in (self.parameters, self.applied, self.events):
             recorder.clear()
         settings = dict(scene=scene(name), time_source="sim", lockstep="true", fast="true", duration=DURATION)
-        simulator = Program("sim_node", "sim_node", await_recorder="true", **settings)
-        trainee = Program("vibe_trainee", "trainee", script=scene("poke.trainee.yaml"), lockstep="true")
+        simulator = Program("vibe_sim", "sim_node", name="sim_node", await_recorder="true", **settings)
+        trainee = Program("vibe_sim", "vibe_trainee", name="trainee", script=scene("poke.trainee.yaml"), lockstep="true")
         try:
             self.assertEqual(simulator.ends(90), 0, simulator.output())
         finally:
@@ -46,7 +47,8 @@ class HapticTest(unittest.TestCase):
         return state_hash(simulator.output())
 
     def run_headless(self, name):
-        command = [find_program("vibe_headless"), "--scene", scene(name), "--script", scene("poke.trainee.yaml")]
+        command = [find_program("vibe_core", "vibe_headless"), "--scene", scene(name)]
+        command += ["--script", scene("poke.trainee.yaml")]
         command += ["--duration", str(DURATION), "--quiet"]
         return state_hash(subprocess.run(command, check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout)
 

@@ -8,10 +8,13 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped
-from node_test_support import EPOCH, OVERSTITCH_JOINTS, SCOPE_JOINTS, Program, Recorder, joints, scene, wait_until
+from node_test_support import EPOCH, OVERSTITCH_JOINTS, SCOPE_JOINTS, joints, scene
 from sensor_msgs.msg import JointState, Joy
 from vibe_msgs.msg import ProcedureEvent, SolverStatistics, StepInput, TissuePull
 from vibe_msgs.srv import Reset, Step
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 NAN = float("nan")
 
@@ -80,7 +83,7 @@ class InputsTest(unittest.TestCase):
         self.wait_for_silence(topic)
         before = self.last_input_after(1)
         self.publishers[topic].publish(message)
-        warning = self.events.find(lambda m: m.kind == ProcedureEvent.WARNING, 5)
+        warning = self.events.waits_for(lambda m: m.kind == ProcedureEvent.WARNING, 5)
         self.assertIsNotNone(warning, "no warning")
         for word in (topic, rospy.get_name()) + words:
             self.assertIn(word, warning.text)
@@ -117,7 +120,7 @@ class InputsTest(unittest.TestCase):
         self.publishers["tissue/pull"].publish(pull(particle=1000000))
         rospy.rostime.wallsleep(0.3)
         self.assertEqual(self.last_input_after(1).pull_particle, -1)
-        warning = self.events.find(lambda m: m.kind == ProcedureEvent.WARNING, 5)
+        warning = self.events.waits_for(lambda m: m.kind == ProcedureEvent.WARNING, 5)
         self.assertIsNotNone(warning)
         self.assertIn("tissue/pull", warning.text)
         self.assertIn("1000000", warning.text)
@@ -127,7 +130,7 @@ class InputsTest(unittest.TestCase):
         bad = joints(SCOPE_JOINTS, (NAN, 0, 0, 0), rospy.Time(nsecs=EPOCH))
         for _ in range(200):
             self.publishers["scope/measured_js"].publish(bad)
-        self.assertIsNotNone(self.events.find(lambda m: True, 5))
+        self.assertIsNotNone(self.events.waits_for(lambda m: True, 5))
         rospy.rostime.wallsleep(0.5)
         self.assertEqual(len(self.events.messages), 1)
 
@@ -135,7 +138,7 @@ class InputsTest(unittest.TestCase):
         self.assertTrue(self.step(n).success)
         rospy.rostime.wallsleep(0.1)  # for a report from before
         self.performance.clear()
-        return self.performance.find(lambda m: True, 4).state_hash
+        return self.performance.waits_for(lambda m: True, 4).state_hash
 
     def test_bad_messages_leave_the_state_hash_alone(self):
         start = joints(SCOPE_JOINTS, (0.075, 0, 0, 0), rospy.Time(nsecs=EPOCH))
@@ -150,7 +153,7 @@ class InputsTest(unittest.TestCase):
                 self.publishers["scope/measured_js"].publish(joints(SCOPE_JOINTS, (NAN, 0, 0, 0), start.header.stamp))
                 self.publishers["scope/servo_cp"].publish(pose(frame="map"))
                 self.publishers["scope/buttons"].publish(Joy(buttons=[1]))
-                self.assertIsNotNone(self.events.find(lambda m: "buttons" in m.text, 5))
+                self.assertIsNotNone(self.events.waits_for(lambda m: "buttons" in m.text, 5))
             hashes.append(self.hash_after_steps(60))
         self.assertEqual(hashes[0], hashes[1])
         self.assertNotEqual(hashes[0], hashes[2])
@@ -185,7 +188,7 @@ class InputsTest(unittest.TestCase):
             self.publishers["scope/servo_cp"].publish(far)
             rospy.rostime.wallsleep(0.01)
             self.step(1)
-        warning = self.events.find(lambda m: "scope/servo_cp" in m.text, 5)
+        warning = self.events.waits_for(lambda m: "scope/servo_cp" in m.text, 5)
         self.assertIsNotNone(warning)
         self.assertRegex(warning.text, "misses by [0-9]+ mm")
         self.assertLessEqual(len([m for m in self.events.messages if "scope/servo_cp" in m.text]), 3)
@@ -194,21 +197,21 @@ class InputsTest(unittest.TestCase):
         self.publishers["scope/servo_cp"].publish(pose(x=-0.08))
         rospy.rostime.wallsleep(0.3)
         self.last_input_after(90)
-        self.assertIsNone(self.events.find(lambda m: "scope/servo_cp" in m.text, 0.5))
+        self.assertIsNone(self.events.waits_for(lambda m: "scope/servo_cp" in m.text, 0.5))
 
     def test_only_one_of_two_publishers_is_obeyed(self):
         self.wait_for_silence("scope/measured_js")
         ours = joints(SCOPE_JOINTS, (0.04, 0, 0, 0), rospy.Time(nsecs=EPOCH))
         self.publishers["scope/measured_js"].publish(ours)
         rospy.rostime.wallsleep(0.2)
-        other = Program("vibe_trainee", name="other", script=scene("poke.trainee.yaml"))
+        other = Program("vibe_sim", "vibe_trainee", name="other", script=scene("poke.trainee.yaml"))
         try:
             deadline = time.monotonic() + 15
             warning = None
             while warning is None and time.monotonic() < deadline:
                 self.publishers["scope/measured_js"].publish(ours)
                 self.step(1)  # time must go on for the trainee to move
-                warning = self.events.find(lambda m: "Two nodes publish scope/measured_js" in m.text, 0.02)
+                warning = self.events.waits_for(lambda m: "Two nodes publish scope/measured_js" in m.text, 0.02)
             self.assertIsNotNone(warning)
             self.assertIn(rospy.get_name() + " is obeyed", warning.text)
             self.assertIn("/other", warning.text)

@@ -10,11 +10,13 @@ import unittest
 
 import rospy
 import rostest
-from node_test_support import OVERSTITCH_JOINTS, SCOPE_JOINTS, Program, Recorder
-from node_test_support import find_program, joints, scene, stamp_of, state_hash, wait_until
+from node_test_support import OVERSTITCH_JOINTS, SCOPE_JOINTS, joints, scene, stamp_of, state_hash
 from sensor_msgs.msg import JointState
 from vibe_msgs.msg import ProcedureEvent, ProcedureState, StepInput
 from vibe_msgs.srv import Step
+from vibe_testing.program import Program, find_program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 DURATION = 3.0
 
@@ -29,7 +31,7 @@ class LockstepTest(unittest.TestCase):
 
     @staticmethod
     def run_headless():
-        command = [find_program("vibe_headless"), "--scene", scene("balloon.yaml")]
+        command = [find_program("vibe_core", "vibe_headless"), "--scene", scene("balloon.yaml")]
         command += ["--script", scene("poke.trainee.yaml"), "--duration", str(DURATION), "--quiet"]
         return state_hash(subprocess.run(command, check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout)
 
@@ -43,14 +45,14 @@ class LockstepTest(unittest.TestCase):
             program.stop()
 
     def start_trainee(self, name="trainee"):
-        trainee = Program("vibe_trainee", name, script=scene("poke.trainee.yaml"), lockstep="true")
+        trainee = Program("vibe_sim", "vibe_trainee", name=name, script=scene("poke.trainee.yaml"), lockstep="true")
         self.programs.append(trainee)
         return trainee
 
     def start_simulator(self, **parameters):
         settings = dict(scene=scene("balloon.yaml"), time_source="sim", lockstep="true", fast="true")
         settings.update(parameters)
-        simulator = Program("sim_node", "sim_node", **settings)
+        simulator = Program("vibe_sim", "sim_node", name="sim_node", **settings)
         self.programs.append(simulator)
         return simulator
 
@@ -120,7 +122,7 @@ class LockstepTest(unittest.TestCase):
     def test_missing_inputs_pause_an_open_session(self):
         simulator = self.start_simulator(lockstep_timeout=1.5)
         self.assertTrue(simulator.says("the simulation is paused"), simulator.output())
-        self.assertIsNotNone(self.procedure.find(lambda m: m.paused, 5))
+        self.assertIsNotNone(self.procedure.waits_for(lambda m: m.paused, 5))
         rospy.wait_for_service("step", 5)
         reply = rospy.ServiceProxy("step", Step)(1)
         self.assertFalse(reply.success)

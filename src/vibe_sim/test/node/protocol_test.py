@@ -12,10 +12,12 @@ import unittest
 
 import rospy
 import rostest
-from node_test_support import Program, Recorder, find_program, scene, stamp_of, state_hash
+from node_test_support import scene, stamp_of, state_hash
 from sensor_msgs.msg import PointCloud2
 from vibe_msgs.msg import ProcedureEvent, StepInput, StepResult
 from vibe_msgs.srv import Reset
+from vibe_testing.program import Program, find_program
+from vibe_testing.recorder import Recorder
 
 DURATION = 18.0  # the first bite is over
 STEPS = 1080
@@ -37,7 +39,8 @@ class ProtocolTest(unittest.TestCase):
 
     @staticmethod
     def run_headless(protocol):
-        command = [find_program("vibe_headless"), "--scene", scene("small_stomach.yaml"), "--script", protocol]
+        command = [find_program("vibe_core", "vibe_headless"), "--scene", scene("small_stomach.yaml")]
+        command += ["--script", protocol]
         command += ["--duration", str(DURATION), "--quiet"]
         return state_hash(subprocess.run(command, check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout)
 
@@ -51,7 +54,7 @@ class ProtocolTest(unittest.TestCase):
             program.stop()
 
     def start(self, program, **parameters):
-        self.programs.append(Program(program, program, **parameters))
+        self.programs.append(Program("vibe_sim", program, name=program, **parameters))
         return self.programs[-1]
 
     def start_simulator(self, **parameters):
@@ -97,9 +100,9 @@ class ProtocolTest(unittest.TestCase):
         trainee = self.start_trainee()
         for _ in range(5):
             time.sleep(0.3)
-            trainee.process.send_signal(signal.SIGSTOP)
+            trainee.send(signal.SIGSTOP)
             time.sleep(0.3)
-            trainee.process.send_signal(signal.SIGCONT)
+            trainee.send(signal.SIGCONT)
         self.assertEqual(simulator.ends(120), 0, simulator.output())
         self.assertEqual(state_hash(simulator.output()), self.reference)
 
@@ -110,7 +113,7 @@ class ProtocolTest(unittest.TestCase):
 
     def test_a_recording_repeats_without_the_trainee(self):
         file = os.path.join(self.folder.name, "session.bag")
-        recorder = subprocess.Popen([find_program("vibe_record"), "--last", "applied_input", file],
+        recorder = subprocess.Popen([find_program("vibe_sim", "vibe_record"), "--last", "applied_input", file],
                                     stdout=subprocess.PIPE, universal_newlines=True)
         # the recorder joins applied_input last, when it has all the other topics
         for own in (self.applied, self.results, self.events):
@@ -121,7 +124,8 @@ class ProtocolTest(unittest.TestCase):
             recorder.send_signal(signal.SIGINT)
             recorder.communicate(timeout=60)
             type(self).setUpRecorders()
-        replay = subprocess.run([find_program("vibe_replay"), file], stdout=subprocess.PIPE, universal_newlines=True)
+        command = [find_program("vibe_sim", "vibe_replay"), file]
+        replay = subprocess.run(command, stdout=subprocess.PIPE, universal_newlines=True)
         self.assertEqual(replay.returncode, 0, replay.stdout)
         self.assertEqual(state_hash(replay.stdout), self.reference)
 
@@ -135,11 +139,11 @@ class ProtocolTest(unittest.TestCase):
         simulator = self.start_simulator(fast="false")
         self.start_trainee()
         rospy.wait_for_service("reset", 20)
-        self.assertIsNotNone(self.results.find(lambda m: m.step == 60, 20))
+        self.assertIsNotNone(self.results.waits_for(lambda m: m.step == 60, 20))
         first = [m.joints for m in self.applied.messages][:60]
         self.applied.clear()
         self.assertTrue(rospy.ServiceProxy("reset", Reset)(0, True).success)
-        self.assertIsNotNone(self.applied.find(lambda m: m.step == 59, 20), simulator.output())
+        self.assertIsNotNone(self.applied.waits_for(lambda m: m.step == 59, 20), simulator.output())
         again = {m.step: m.joints for m in self.applied.messages if m.step < 60}
         # the first step after a reset may have had its input before
         self.assertEqual([again[k] for k in range(1, 60)], first[1:])
@@ -158,7 +162,7 @@ class ProtocolTest(unittest.TestCase):
         rospy.wait_for_service("pause", 20)
         time.sleep(0.5)
         particles = Recorder("tissue/particles", PointCloud2)
-        self.assertIsNotNone(particles.find(lambda m: m.header.stamp.to_nsec() == stamp_of(0)), simulator.output())
+        self.assertIsNotNone(particles.waits_for(lambda m: m.header.stamp.to_nsec() == stamp_of(0)), simulator.output())
         particles.subscriber.unregister()
 
 

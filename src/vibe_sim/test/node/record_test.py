@@ -12,11 +12,13 @@ import unittest
 import rosbag
 import rospy
 import rostest
-from node_test_support import Recorder, buttons, joints, wait_until
+from node_test_support import buttons, joints
 from sensor_msgs.msg import JointState, Joy, PointCloud2
 from std_srvs.srv import SetBool
 from vibe_msgs.msg import ProcedureState, ReplayCommand, ReplayStatus, StepInput
 from vibe_msgs.srv import Reset
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 NAN = float("nan")
 SCOPE = ["insertion", "rotation", "tip_up_down", "tip_left_right"]
@@ -139,17 +141,17 @@ class RecordTest(unittest.TestCase):
         status = Recorder("/replayed/replay/status", ReplayStatus)
         clouds = Recorder("/replayed/tissue/particles", PointCloud2)
         commands = rospy.Publisher("/replayed/replay/command", ReplayCommand, queue_size=10)
-        self.assertIsNotNone(status.find(lambda m: m.duration > 5 and not m.playing, 30))
+        self.assertIsNotNone(status.waits_for(lambda m: m.duration > 5 and not m.playing, 30))
         self.assertTrue(wait_until(lambda: commands.get_num_connections() == 1, 20))
         commands.publish(ReplayCommand(play=False, rate=1, seek=3.0, exact=True))
-        self.assertIsNotNone(status.find(lambda m: abs(m.time - 3.0) < 0.02, 30))
+        self.assertIsNotNone(status.waits_for(lambda m: abs(m.time - 3.0) < 0.02, 30))
         commands.publish(ReplayCommand(play=False, rate=1, seek=0.5, exact=True))
-        there = status.find(lambda m: abs(m.time - 0.5) < 0.02, 30)
+        there = status.waits_for(lambda m: abs(m.time - 0.5) < 0.02, 30)
         self.assertIsNotNone(there)
         states = Recorder("/replayed/procedure/state", ProcedureState)
         self.assertTrue(wait_until(lambda: len(states.messages) > 2, 10), "it is silent while it stands still")
         commands.publish(ReplayCommand(play=True, rate=4, seek=NAN, exact=True))
-        self.assertIsNotNone(status.find(lambda m: m.time > 4.5 and m.same, 60))
+        self.assertIsNotNone(status.waits_for(lambda m: m.time > 4.5 and m.same, 60))
         stamps = clouds.stamps()
         self.assertGreater(len(stamps), 10)
         self.assertEqual(stamps, sorted(set(stamps)), "stamps go back")

@@ -10,11 +10,13 @@ import unittest
 
 import rospy
 import rostest
-from node_test_support import EPOCH, SCOPE_JOINTS, Recorder, joints, scene, stamp_of, wait_until
+from node_test_support import EPOCH, SCOPE_JOINTS, joints, scene, stamp_of
 from sensor_msgs.msg import JointState, PointCloud2
 from std_srvs.srv import SetBool
 from vibe_msgs.msg import ProcedureState, SolverStatistics, StepInput, TissueTopology
 from vibe_msgs.srv import LoadScene, Reset, Snapshot, Step
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 
 class ServicesTest(unittest.TestCase):
@@ -56,7 +58,7 @@ class ServicesTest(unittest.TestCase):
     def hash(self):
         rospy.rostime.wallsleep(0.1)  # for a report from before
         self.performance.clear()
-        return self.performance.find(lambda m: True, 4).state_hash
+        return self.performance.waits_for(lambda m: True, 4).state_hash
 
     def assert_fails(self, service, words, *arguments, **named):
         reply = self.call[service](*arguments, **named)
@@ -113,7 +115,7 @@ class ServicesTest(unittest.TestCase):
     def test_reset_takes_a_seed(self):
         initial = self.hash()
         self.assertTrue(self.call["reset"](seed=99, keep_time=True).success)
-        self.assertIsNotNone(self.procedure.find(lambda m: m.seed == 99))
+        self.assertIsNotNone(self.procedure.waits_for(lambda m: m.seed == 99))
         self.assertNotEqual(self.hash(), initial)
 
     def test_a_loaded_snapshot_has_the_same_future(self):
@@ -157,7 +159,7 @@ class ServicesTest(unittest.TestCase):
         self.addCleanup(self.call["load_scene"], scene("balloon.yaml"))
         reply = self.call["load_scene"](scene("rest.yaml"))
         self.assertTrue(reply.success, reply.message)
-        topology = self.topology.find(lambda m: m.revision == revision + 1)
+        topology = self.topology.waits_for(lambda m: m.revision == revision + 1)
         self.assertEqual((topology.name, len(topology.region)), ("rest", 200))
         self.call["step"](3)
         self.assertTrue(wait_until(lambda: len(self.particles.messages) == 4))

@@ -12,11 +12,14 @@ import unittest
 
 import rospy
 import rostest
-from node_test_support import Program, Recorder, scene, wait_until
+from node_test_support import scene
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt32
 from vibe_msgs.msg import GoalProgress, StepInput, TraineeGoal, TraineeProgress
 from vibe_msgs.srv import Reset, SendGoal
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 TUTORIAL = os.path.join(os.path.dirname(os.path.realpath(__file__)), "../../../../docs/tutorials/command_a_trainee.md")
 QUEUED, ACTIVE = GoalProgress.QUEUED, GoalProgress.ACTIVE
@@ -42,17 +45,17 @@ class ServoTest(unittest.TestCase):
             program.stop()
 
     def start(self, program, **parameters):
-        self.programs.append(Program(program, program, **parameters))
+        self.programs.append(Program("vibe_sim", program, name=program, **parameters))
         return self.programs[-1]
 
     def begin(self, lockstep="true", **parameters):
         """A simulator and a trainee without a protocol, ready for goals."""
         self.start("sim_node", scene=scene("small_stomach.yaml"), time_source="sim", lockstep=lockstep, fast=lockstep)
         self.trainee = self.start("vibe_trainee", lockstep=lockstep, **parameters)
-        self.assertIsNotNone(self.progress.find(lambda m: not m.goals, 20), self.trainee.output())
+        self.assertIsNotNone(self.progress.waits_for(lambda m: not m.goals, 20), self.trainee.output())
         rospy.wait_for_service("trainee/goal", 20)
         self.send = rospy.ServiceProxy("trainee/goal", SendGoal)
-        self.assertIsNotNone(self.applied.find(lambda m: True, 20), self.trainee.output())
+        self.assertIsNotNone(self.applied.waits_for(lambda m: True, 20), self.trainee.output())
         no_goal = TraineeGoal(kind="wait", time=-1)
         self.assertTrue(wait_until(lambda: "the scene yet" not in self.send(no_goal).message, 20))
         self.assertTrue(wait_until(lambda: self.goals.get_num_connections() and self.cancel.get_num_connections()))
@@ -157,7 +160,7 @@ class ServoTest(unittest.TestCase):
         self.start("sim_node", scene=scene("balloon.yaml"), time_source="sim", lockstep="true", fast="true")
         trainee = self.start("vibe_trainee", lockstep="true", skill="novice")
         rospy.wait_for_service("trainee/goal", 20)
-        self.assertIsNotNone(self.applied.find(lambda m: True, 20), trainee.output())
+        self.assertIsNotNone(self.applied.waits_for(lambda m: True, 20), trainee.output())
         reply = rospy.ServiceProxy("trainee/goal", SendGoal)(TraineeGoal(kind="bite", along=0.5))
         self.assertFalse(reply.success)
         self.assertGreater(len(reply.message), 20)

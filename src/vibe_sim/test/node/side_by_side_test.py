@@ -8,10 +8,13 @@ import rosgraph
 import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped
-from node_test_support import Program, Recorder, scene, wait_until
+from node_test_support import scene
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
 from tf2_msgs.msg import TFMessage
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 SIDES = ("left", "right")
 
@@ -23,15 +26,16 @@ class SideBySideTest(unittest.TestCase):
         cls.transforms = {side: Recorder("/{}/tf_static".format(side), TFMessage) for side in SIDES}
         cls.programs = [
             Program(
+                "vibe_sim",
                 "sim_node",
+                "/tf_static:=tf_static",
                 env={"ROS_NAMESPACE": side},
-                remap=["/tf_static:=tf_static"],
                 scene=scene("balloon.yaml"),
             )
             for side in SIDES
         ]
         for side in SIDES:
-            assert cls.poses[side].find(lambda m: True, 30), "\n".join(p.output() for p in cls.programs)
+            assert cls.poses[side].waits_for(lambda m: True, 30), "\n".join(p.output() for p in cls.programs)
 
     @classmethod
     def tearDownClass(cls):
@@ -56,7 +60,7 @@ class SideBySideTest(unittest.TestCase):
 
     def test_each_has_its_own_transforms(self):
         for side in SIDES:
-            self.assertTrue(self.transforms[side].find(lambda m: m.transforms[0].child_frame_id == "stomach"))
+            self.assertTrue(self.transforms[side].waits_for(lambda m: m.transforms[0].child_frame_id == "stomach"))
         published, _, _ = rosgraph.Master("/side_by_side").getSystemState()
         self.assertEqual([nodes for topic, nodes in published if topic == "/tf_static"], [])
 

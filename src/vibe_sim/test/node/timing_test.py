@@ -11,10 +11,13 @@ import unittest
 
 import rospy
 import rostest
-from node_test_support import PERIOD, SCOPE_JOINTS, Program, Recorder, joints, scene, wait_until
+from node_test_support import PERIOD, SCOPE_JOINTS, joints, scene
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 from vibe_msgs.msg import StepInput, StepTiming
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 SCHED_FIFO = 1
 
@@ -57,7 +60,7 @@ class TimingTest(unittest.TestCase):
         cls.applied = Recorder("applied_input", StepInput)
 
     def start(self, **parameters):
-        self.simulator = Program("sim_node", "sim_node", scene=scene("light.yaml"), **parameters)
+        self.simulator = Program("vibe_sim", "sim_node", name="sim_node", scene=scene("light.yaml"), **parameters)
         self.addCleanup(self.stop)
         self.timing.clear()
         self.pose.clear()
@@ -112,9 +115,9 @@ class TimingTest(unittest.TestCase):
         self.addCleanup(device.stop)
         time.sleep(1)
         stalled = time.time()
-        self.simulator.process.send_signal(signal.SIGSTOP)
+        self.simulator.send(signal.SIGSTOP)
         time.sleep(0.15)
-        self.simulator.process.send_signal(signal.SIGCONT)
+        self.simulator.send(signal.SIGCONT)
         time.sleep(1)
         # from the last steps before the stall on: a burst would be between them and the first one after it
         messages = [m for m in self.timing.messages if stalled - 0.05 < 1e-9 * ns(m.begin) < stalled + 0.8]
@@ -153,7 +156,8 @@ class TimingTest(unittest.TestCase):
         self.assertTrue(self.simulator.says("limits.d"))
 
     def start_wrapped(self, wrapper, **parameters):
-        self.simulator = Program("sim_node", "sim_node", wrapper=wrapper, scene=scene("light.yaml"), **parameters)
+        parameters["scene"] = scene("light.yaml")
+        self.simulator = Program("vibe_sim", "sim_node", name="sim_node", wrapper=wrapper, **parameters)
         self.addCleanup(self.stop)
         self.timing.clear()
         self.assertTrue(wait_until(lambda: len(self.timing.messages) > 60, 20), self.simulator.output())
@@ -163,7 +167,7 @@ class TimingTest(unittest.TestCase):
             ("scope/measured_js or overstitch/measured_js", {"follow": "scope/buttons"}),
             ("realtime_priority must be a whole number from 0 to 99", {"realtime_priority": 100}),
         ):
-            program = Program("sim_node", "sim_node", scene=scene("light.yaml"), **parameters)
+            program = Program("vibe_sim", "sim_node", name="sim_node", scene=scene("light.yaml"), **parameters)
             self.assertEqual(program.ends(20), 2, program.output())
             self.assertEqual(program.count(words), 1, program.output())
 

@@ -12,13 +12,14 @@ import rostest
 import sensor_msgs.point_cloud2
 import tf2_ros
 from geometry_msgs.msg import Point, PoseStamped, WrenchStamped
-from node_test_support import EPOCH, OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS
-from node_test_support import Recorder, buttons, joints, stamp_of, wait_until
+from node_test_support import EPOCH, OVERSTITCH_JOINTS, PERIOD, SCOPE_JOINTS, buttons, joints, stamp_of
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Joy, PointCloud2
 from vibe_msgs.msg import ProcedureEvent, ProcedureState, SkillMetrics, SolverStatistics, StepInput, StepResult, SutureArray
 from vibe_msgs.msg import TissuePull, TissuePullState, TissueTopology
 from vibe_msgs.srv import Reset, Step
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 STREAMS = {
     "scope/measured_cp": (PoseStamped, "world"),
@@ -125,7 +126,7 @@ class TopicsTest(unittest.TestCase):
         self.events.clear()
         rival = rospy.Publisher("/clock", Clock, queue_size=1)
         try:
-            warning = self.events.find(lambda m: "/clock" in m.text, 10)
+            warning = self.events.waits_for(lambda m: "/clock" in m.text, 10)
             self.assertIsNotNone(warning)
             self.assertEqual(warning.kind, ProcedureEvent.WARNING)
             self.assertIn(rospy.get_name(), warning.text)
@@ -209,7 +210,7 @@ class TopicsTest(unittest.TestCase):
         force = self.recorders["scope/measured_cf"].messages[-1].wrench.force
         self.assertLess(force.x, -0.1)
         self.assertLess(abs(force.y) + abs(force.z), 0.5 * abs(force.x))
-        self.assertIsNotNone(self.events.find(lambda m: m.kind == ProcedureEvent.CONTACT_BEGIN))
+        self.assertIsNotNone(self.events.waits_for(lambda m: m.kind == ProcedureEvent.CONTACT_BEGIN))
 
     def test_particles_are_the_rest_shape_at_the_start(self):
         wait_until(lambda: self.topology.messages)
@@ -217,7 +218,7 @@ class TopicsTest(unittest.TestCase):
         rest = numpy.array(topology.rest_positions).reshape(-1, 3)
         self.step(1)
         self.assertTrue(self.reset_service(seed=0, keep_time=False).success)
-        cloud = self.recorders["tissue/particles"].find(lambda m: m.header.stamp.to_nsec() == EPOCH)
+        cloud = self.recorders["tissue/particles"].waits_for(lambda m: m.header.stamp.to_nsec() == EPOCH)
         points = list(sensor_msgs.point_cloud2.read_points(cloud, ["x", "y", "z", "strain", "id", "revision", "region"]))
         self.assertEqual(len(points), 300)
         self.assertLess(numpy.abs(numpy.array([p[:3] for p in points]) - rest).max(), 1e-8)
@@ -242,7 +243,7 @@ class TopicsTest(unittest.TestCase):
 
     def test_procedure_state_tells_volume_pressure_and_time(self):
         self.step(61)
-        state = self.procedure.find(lambda m: m.step >= 60)
+        state = self.procedure.waits_for(lambda m: m.step >= 60)
         sphere = 4 / 3 * math.pi * 0.05**3
         self.assertAlmostEqual(state.volume, sphere, delta=0.05 * sphere)
         self.assertEqual(state.scene, "balloon")
@@ -256,7 +257,7 @@ class TopicsTest(unittest.TestCase):
     def test_insufflation_raises_volume_and_pressure_to_the_set_point(self):
         self.command((0, 0, 0, 0), pressed=(5,))
         self.step(240)
-        event = self.events.find(lambda m: m.kind == ProcedureEvent.PRESSURE_REACHED)
+        event = self.events.waits_for(lambda m: m.kind == ProcedureEvent.PRESSURE_REACHED)
         self.assertIsNotNone(event)
         self.assertAlmostEqual(event.value, 1333, delta=0.02 * 1333)
         states = self.procedure.messages
@@ -267,33 +268,33 @@ class TopicsTest(unittest.TestCase):
         self.command((0.075, 0, 0, 0), (0.004, 0, 0))
         self.step(90)
         self.command((0.075, 0, 0, 0), (0.004, 0, 0), pressed=(1,))
-        grab = self.events.find(lambda m: m.kind == ProcedureEvent.GRAB)
+        grab = self.events.waits_for(lambda m: m.kind == ProcedureEvent.GRAB)
         self.assertIsNotNone(grab)
         self.assertGreaterEqual(grab.value, 1)
-        held = self.procedure.find(lambda m: m.held_particles > 0)
+        held = self.procedure.waits_for(lambda m: m.held_particles > 0)
         self.assertEqual(held.tool_state, "grip")
         self.assertEqual(held.held_particles, grab.value)
         self.command((0.075, 0, 0, 0), (0.004, 0, 0))
-        release = self.events.find(lambda m: m.kind == ProcedureEvent.RELEASE)
+        release = self.events.waits_for(lambda m: m.kind == ProcedureEvent.RELEASE)
         self.assertIsNotNone(release)
         self.assertGreater(release.header.stamp, grab.header.stamp)
-        last = self.skill.find(lambda m: m.releases == 1)
+        last = self.skill.waits_for(lambda m: m.releases == 1)
         self.assertIsNotNone(last)
         self.assertEqual((last.grabs, last.header.stamp), (1, release.header.stamp))
         self.assertGreater(last.max_force, 0)
-        state = self.procedure.find(lambda m: m.header.stamp == release.header.stamp)
+        state = self.procedure.waits_for(lambda m: m.header.stamp == release.header.stamp)
         self.assertEqual(state.held_particles, 0)
 
     def test_skill_metrics_are_latched_and_come_with_the_state(self):
         self.step(150)
-        state = self.procedure.find(lambda m: m.step == 150)  # once per second, and after the last step
+        state = self.procedure.waits_for(lambda m: m.step == 150)  # once per second, and after the last step
         self.assertIsNotNone(state)
-        self.assertIsNotNone(self.skill.find(lambda m: m.header.stamp == state.header.stamp))
+        self.assertIsNotNone(self.skill.waits_for(lambda m: m.header.stamp == state.header.stamp))
         # the one of the reset may come late
         self.assertEqual(set(self.skill.stamps()) - {EPOCH}, set(self.procedure.stamps()) - {EPOCH})
         self.assertEqual(len(set(self.skill.stamps()) - {EPOCH}), 3)
         late = Recorder("procedure/skill_metrics", SkillMetrics)
-        message = late.find(lambda m: True)
+        message = late.waits_for()
         self.assertIsNotNone(message, "latched")
         self.assertEqual(message.header.stamp, state.header.stamp)
         self.assertAlmostEqual(message.time, message.phase_time[0], delta=1e-9)  # all of it inspection
@@ -305,7 +306,7 @@ class TopicsTest(unittest.TestCase):
         self.step(1)
         self.assertTrue(self.reset_service(seed=0, keep_time=False).success)
         late = Recorder("sutures", SutureArray)
-        message = late.find(lambda m: m.header.stamp.to_nsec() == EPOCH)
+        message = late.waits_for(lambda m: m.header.stamp.to_nsec() == EPOCH)
         self.assertIsNotNone(message)
         self.assertEqual(message.header.frame_id, "world")
         self.assertEqual((len(message.sutures), len(message.bleedings), message.blood_lost), (0, 0, 0))
@@ -314,7 +315,7 @@ class TopicsTest(unittest.TestCase):
         late.subscriber.unregister()
 
     def test_a_hand_pulls_the_tissue_feels_it_and_lets_go_when_it_falls_silent(self):
-        topology = self.topology.find(lambda m: True)
+        topology = self.topology.waits_for()
         places = numpy.reshape(topology.rest_positions, (-1, 3))
         message = TissuePull(particle=int(numpy.argmax(places[:, 0])))  # far from where the scope enters
         place = Point(*places[message.particle])
@@ -339,7 +340,7 @@ class TopicsTest(unittest.TestCase):
             self.assertAlmostEqual(getattr(held.force, axis), 300 * stretch, delta=2e-3)  # the mean over a step
         self.events.clear()
         self.step(120)
-        self.assertIsNotNone(self.events.find(lambda m: "tissue/pull has been silent" in m.text))
+        self.assertIsNotNone(self.events.waits_for(lambda m: "tissue/pull has been silent" in m.text))
         self.assertEqual(self.recorders["applied_input"].messages[-1].pull_particle, -1)
         wait_until(lambda: self.pull_state.messages[-1].particle == -1)
         self.assertEqual([m.particle for m in self.pull_state.messages].count(-1), 1)
@@ -348,12 +349,12 @@ class TopicsTest(unittest.TestCase):
     def test_a_cinch_without_a_thread_is_rejected_with_a_reason(self):
         self.command((0, 0, 0, 0), pressed=())
         self.command((0, 0, 0, 0), pressed=(4,))
-        rejected = self.events.find(lambda m: m.kind == ProcedureEvent.REJECTED)
+        rejected = self.events.waits_for(lambda m: m.kind == ProcedureEvent.REJECTED)
         self.assertIsNotNone(rejected)
         self.assertEqual(rejected.value, 4)
         self.assertEqual(rejected.text, "There is no thread to cinch: take bites and drop the T-tag first.")
-        self.assertIsNotNone(self.skill.find(lambda m: m.rejected == 1))
-        state = self.procedure.find(lambda m: m.header.stamp == rejected.header.stamp)
+        self.assertIsNotNone(self.skill.waits_for(lambda m: m.rejected == 1))
+        state = self.procedure.waits_for(lambda m: m.header.stamp == rejected.header.stamp)
         self.assertIsNotNone(state)
         self.assertEqual((state.phase, state.sutures, state.bites), ("inspect", 0, 0))
         self.assertTrue(state.needle_loaded and state.needle_on_arm)
@@ -363,7 +364,7 @@ class TopicsTest(unittest.TestCase):
         self.assertTrue(wait_until(lambda: len(self.performance.messages) >= 2, 4))
         self.step(30)
         self.performance.clear()
-        message = self.performance.find(lambda m: True, 3)
+        message = self.performance.waits_for(lambda m: True, 3)
         self.assertEqual([s.name for s in message.stages], ["solver", "solver_wall", "publish", "total"])
         self.assertEqual(message.particle_count, 300)
         self.assertEqual(message.active_count, 300)

@@ -7,11 +7,14 @@ import unittest
 
 import rospy
 import rostest
-from node_test_support import SCOPE_JOINTS, Program, Recorder, buttons, joints, scene, wait_until
+from node_test_support import SCOPE_JOINTS, buttons, joints, scene
 from sensor_msgs.msg import JointState, Joy, PointCloud2
 from std_srvs.srv import SetBool
 from vibe_msgs.msg import ProcedureEvent, SolverStatistics, StepInput
 from vibe_msgs.srv import Reset
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 
 class WallTimeTest(unittest.TestCase):
@@ -22,7 +25,7 @@ class WallTimeTest(unittest.TestCase):
         cls.events = Recorder("procedure/events", ProcedureEvent)
         cls.performance = Recorder("solver_statistics", SolverStatistics)
         cls.joints = Recorder("scope/measured_js", JointState)
-        cls.simulator = Program("sim_node", "sim_node", scene=scene("light.yaml"))
+        cls.simulator = Program("vibe_sim", "sim_node", name="sim_node", scene=scene("light.yaml"))
         rospy.wait_for_service("pause", 20)
         cls.pause = rospy.ServiceProxy("pause", SetBool)
         cls.reset = rospy.ServiceProxy("reset", Reset)
@@ -83,7 +86,7 @@ class WallTimeTest(unittest.TestCase):
             stamp = rospy.Time.from_sec(time.time() + 3600 * hours)
             for k in range(5000):  # more than may wait
                 command.publish(joints([], (0.09, 0, 0, 0), stamp + rospy.Duration(0.001 * k)))
-            told = self.events.find(lambda m: "scope/servo_jp" in m.text and rospy.get_name() in m.text, 10)
+            told = self.events.waits_for(lambda m: "scope/servo_jp" in m.text and rospy.get_name() in m.text, 10)
             self.assertIsNotNone(told)
             self.assertRegex(told.text, "3(59[0-9]|60[0-9])[.][0-9] s (ahead of|behind) the simulator's time")
         self.assertFalse(any(m.joints[0] == 0.09 for m in self.applied.messages))
@@ -105,17 +108,17 @@ class WallTimeTest(unittest.TestCase):
             time.sleep(0.1)
         self.assertEqual(self.applied.messages[-1].buttons[0], 1)
         self.events.clear()
-        warning = self.events.find(lambda m: "scope/buttons" in m.text, 5)
+        warning = self.events.waits_for(lambda m: "scope/buttons" in m.text, 5)
         self.assertIsNotNone(warning)
         self.assertIn("are released: apc_pedal, cinch;", warning.text)
         self.assertTrue(wait_until(lambda: not any(self.applied.messages[-1].buttons), 2))
         press.unregister()
 
     def test_a_free_trainee_moves_the_scope(self):
-        trainee = Program("vibe_trainee", "trainee", script=scene("poke.trainee.yaml"))
+        trainee = Program("vibe_sim", "vibe_trainee", name="trainee", script=scene("poke.trainee.yaml"))
         try:
             self.assertTrue(wait_until(lambda: any(m.joints[0] > 0.07 for m in self.applied.messages), 15))
-            self.assertIsNotNone(self.events.find(lambda m: m.kind == ProcedureEvent.GRAB, 10))
+            self.assertIsNotNone(self.events.waits_for(lambda m: m.kind == ProcedureEvent.GRAB, 10))
             stamps = [1e-9 * s for s in self.joints.stamps()]
             rate = (len(stamps) - 1) / (stamps[-1] - stamps[0])
             self.assertAlmostEqual(rate, 100, delta=1)

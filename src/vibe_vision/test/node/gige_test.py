@@ -11,7 +11,10 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from vibe_msgs.msg import InstrumentTrack, InstrumentTrackArray
-from vision_test_support import Diagnostics, Program, Recorder, wait_until
+from vibe_testing.diagnostics import Diagnostics
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
 
 ADDRESS = "127.0.0.1"
 OK, WARN, ERROR = 0, 1, 2
@@ -33,7 +36,7 @@ class GigeTest(unittest.TestCase):
         self.tracking.clear()
         self.camera = self.start_camera()
         self.assertTrue(wait_until(lambda: os.path.exists(self.config), 60), self.camera.output())
-        self.node = Program("vision_node", name="vision_node", config=self.config, source="gige:" + ADDRESS)
+        self.node = Program("vibe_vision", "vision_node", name="vision_node", config=self.config, source="gige:" + ADDRESS)
 
     def tearDown(self):
         self.node.stop()
@@ -41,7 +44,7 @@ class GigeTest(unittest.TestCase):
 
     def start_camera(self):
         arguments = ["--address", ADDRESS, "--frames", "60", "--truth", self.truth, "--config", self.config]
-        return Program("vibe_fake_camera", *arguments)
+        return Program("vibe_vision", "vibe_fake_camera", *arguments)
 
     def follows(self, begin=0.0):
         """Whether frames come in which both are tracked, stamped after a time."""
@@ -76,8 +79,7 @@ class GigeTest(unittest.TestCase):
 
     def test_a_camera_that_goes_and_comes_back(self):
         self.assertTrue(self.follows(), self.node.output() + self.camera.output())
-        self.camera.process.kill()
-        self.camera.process.wait()
+        self.camera.kill()
         gone = time.time()
         silent = self.tracking.waits_for(lambda m: m.header.stamp.to_sec() > gone and m.exposure == 0)
         self.assertIsNotNone(silent)

@@ -6,7 +6,10 @@ import unittest
 import rospy
 import rostest
 from vibe_msgs.msg import InstrumentTrackArray
-from vision_test_support import Program, Recorder, Scene, errors_of, rms, wait_until
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
+from vision_test_support import Scene, errors_of, rms
 
 FRAMES = 147
 
@@ -23,14 +26,14 @@ class NodeletTest(unittest.TestCase):
     def test_two_nodelets_share_images(self):
         first = Recorder("overstitch/tracking", InstrumentTrackArray)
         second = Recorder("second/overstitch/tracking", InstrumentTrackArray)
-        manager = Program("nodelet", "manager", name="manager", package="nodelet")
+        manager = Program("nodelet", "nodelet", "manager", name="manager")
         follower = Program(
-            "nodelet", "load", "vibe_vision/VisionNodelet", "/manager", "image:=/image_raw", "__ns:=second",
-            name="vision", package="nodelet", config=self.scene.config, source="topic",
+            "nodelet", "nodelet", "load", "vibe_vision/VisionNodelet", "/manager", "image:=/image_raw", "__ns:=second",
+            name="vision", config=self.scene.config, source="topic",
         )  # fmt: skip
         camera = Program(
-            "nodelet", "load", "vibe_vision/VisionNodelet", "/manager",
-            name="camera", package="nodelet", config=self.scene.config, source=self.scene.source, loop="true",
+            "nodelet", "nodelet", "load", "vibe_vision/VisionNodelet", "/manager",
+            name="camera", config=self.scene.config, source=self.scene.source, loop="true",
         )  # fmt: skip
         try:
             enough = wait_until(lambda: sum(m.exposure > 0 for m in second.messages) > 100, 30)
@@ -48,8 +51,8 @@ class NodeletTest(unittest.TestCase):
                 program.stop()
 
     def test_wrong_parameters_are_said_by_the_manager(self):
-        manager = Program("nodelet", "manager", name="manager2", package="nodelet")
-        nodelet = Program("nodelet", "load", "vibe_vision/VisionNodelet", "manager2", name="wrong", package="nodelet")
+        manager = Program("nodelet", "nodelet", "manager", name="manager2")
+        nodelet = Program("nodelet", "nodelet", "load", "vibe_vision/VisionNodelet", "manager2", name="wrong")
         try:
             self.assertTrue(manager.says("Parameter /wrong/config is not set"), manager.output())
             self.assertNotEqual(nodelet.ends(10), 0)

@@ -4,6 +4,7 @@
 import math
 import os
 import re
+import signal
 import socket
 import time
 import unittest
@@ -15,8 +16,11 @@ from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import CameraInfo, Image, JointState
 from std_srvs.srv import Trigger
 from vibe_msgs.msg import InstrumentTrack, InstrumentTrackArray
-from vision_test_support import JOINTS, PACKAGE, RATE, Diagnostics, Program, Recorder, Scene
-from vision_test_support import errors_of, rms, udp_receiver, wait_until
+from vibe_testing.diagnostics import Diagnostics
+from vibe_testing.program import Program
+from vibe_testing.recorder import Recorder
+from vibe_testing.wait import wait_until
+from vision_test_support import JOINTS, PACKAGE, RATE, Scene, errors_of, rms, udp_receiver
 
 FRAMES = 147
 OK, WARN, ERROR = 0, 1, 2
@@ -70,7 +74,7 @@ class VisionTest(unittest.TestCase):
     def start(self, name="vision_node", **parameters):
         given = dict(config=self.scene.config, source=self.scene.source)
         given.update(parameters)
-        self.programs.append(Program("vision_node", name=name, **given))
+        self.programs.append(Program("vibe_vision", "vision_node", name=name, **given))
         return self.programs[-1]
 
     def tracks(self):
@@ -204,7 +208,7 @@ class VisionTest(unittest.TestCase):
         tracking = Recorder("second/overstitch/tracking", InstrumentTrackArray)
         arguments = ["image:=/image_raw", "__ns:=second"]
         given = dict(config=self.scene.config, source="topic", exposure=0.001)
-        self.programs.append(Program("vision_node", *arguments, name="vision_node", **given))
+        self.programs.append(Program("vibe_vision", "vision_node", *arguments, name="vision_node", **given))
         enough = wait_until(lambda: sum(m.exposure > 0 for m in tracking.messages) > 200, 30)
         self.assertTrue(enough, self.programs[-1].output() + camera.output())
         by_stamp = {round((stamp - self.scene.stamps[0]) * 1e6): k for k, stamp in self.scene.stamps.items()}
@@ -276,10 +280,10 @@ class VisionTest(unittest.TestCase):
         self.start(loop="true")
         self.assertTrue(wait_until(lambda: len(self.tracks()) > 30))
         images, raw = Recorder("debug_image", Image), Recorder("image_raw", Image)
-        image = images.waits_for(lambda m: True)
+        image = images.waits_for()
         self.assertIsNotNone(image)
         self.assertEqual((image.width, image.height, image.encoding), (728, 544, "bgr8"))
-        plain = raw.waits_for(lambda m: True)
+        plain = raw.waits_for()
         self.assertEqual((plain.width, plain.height, plain.encoding), (728, 544, "mono8"))
         coloured = sum(image.data[i] != image.data[i + 1] for i in range(0, len(image.data), 3))
         self.assertGreater(coloured, 500)
@@ -299,17 +303,17 @@ class VisionTest(unittest.TestCase):
     def test_a_listener_that_does_not_read_delays_nobody(self):
         node = self.start(loop="true")
         self.assertTrue(wait_until(lambda: len(self.tracks()) > 30))
-        listener = Program("rostopic", "echo", "/image_raw")
+        listener = Program("rostopic", "rostopic", "echo", "/image_raw")
         self.programs.append(listener)
         self.assertTrue(wait_until(lambda: len(listener.lines) > 5))
-        listener.process.send_signal(19)  # SIGSTOP
+        listener.send(signal.SIGSTOP)
         time.sleep(1)
         before, count, begin = node.memory(), len(self.tracks()), time.time()
         time.sleep(4)
         rate = (len(self.tracks()) - count) / (time.time() - begin)
         grown = node.memory() - before
-        listener.process.send_signal(18)  # SIGCONT
-        listener.process.kill()
+        listener.send(signal.SIGCONT)
+        listener.kill()
         self.assertGreater(rate, 0.1 * RATE)
         self.assertLess(grown, 20e6)
 
@@ -328,7 +332,8 @@ class VisionTest(unittest.TestCase):
     def assert_refuses(self, text, **parameters):
         given = dict(config=self.scene.config, source=self.scene.source)
         given.update(parameters)
-        node = Program("vision_node", name="vision_node", **{k: v for k, v in given.items() if v is not None})
+        given = {k: v for k, v in given.items() if v is not None}
+        node = Program("vibe_vision", "vision_node", name="vision_node", **given)
         status = node.ends(10)
         node.stop()
         self.assertEqual(status, 2, node.output())
