@@ -3,7 +3,7 @@
 # cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-for name in format door rooms launch bash python; do
+for name in format door rooms names launch bash python; do
   check "lint $name" "$root/scripts/lint" --only "$name"
 done
 
@@ -74,3 +74,22 @@ check 'lint sees an include by bare name' findsRoomProblem src/solver/a.cpp '#in
 check 'lint sees a room that is not in the table' findsRoomProblem src/attic/a.cpp '' 'lies in no room'
 check 'lint sees an include of a header that is not there' findsRoomProblem src/solver/a.cpp \
   '#include "vibe_core/state/lost.hpp"' 'is no public header'
+
+# findsName FILE TEXT PATTERN: two sources of a folder and a header pass; with TEXT in FILE lint must name the problem
+findsName() {
+  local tree core
+  tree=$(copyOfTree) core=$tree/src/vibe_core
+  printf '#pragma once\nnamespace vibe {\nenum Kind { kFirst, kSecond };\n}  // namespace vibe\n' >"$core/include/vibe_core/solver/kind.hpp"
+  printf 'namespace vibe {\nnamespace {\nint used() {\n  return kFirst;\n}\n}  // namespace\n}  // namespace vibe\n' >"$core/src/solver/use.cpp"
+  "$tree/scripts/lint" --only names || { echo 'finds a problem where none is'; return 1; }
+  printf 'namespace vibe {\nnamespace {\n%s\n}  // namespace\n}  // namespace vibe\n' "$2" >"$core/src/solver/$1"
+  refuses 1 'not clean: names' bash -c '"$1" --only names 2>&1 >"$2"' - "$tree/scripts/lint" "$tree/said" &&
+    cat "$tree/said" && grep -qE "^src/vibe_core/src/solver/[a-z]+.cpp:3: .*$3" "$tree/said"
+}
+check 'lint sees a value that hides that of a header' findsName other.cpp 'enum Item { kFirst = 7 };' \
+  "'kFirst' hides that of .*kind.hpp in use.cpp"
+check 'lint sees a constant that hides a value of a header' findsName other.cpp 'constexpr int kFirst = 7;' \
+  "'kFirst' hides that of .*kind.hpp in use.cpp"
+check 'lint sees a function in two sources of a folder' findsName very.cpp 'double used(double x) {
+  return x;
+}' "'used' stands in use.cpp, too"

@@ -82,7 +82,7 @@ int SessionMetrics::warnings() const {
 namespace {
 
 // What was put in, what was lost, and what is left over.
-std::string summarise(const EnergyAccount& e, double balance) {
+std::string summariseEnergy(const EnergyAccount& e, double balance) {
   const auto shown = [](double energy) { return rounded(energy, 4); };
   char text[512];
   std::snprintf(text, sizeof text,
@@ -114,7 +114,7 @@ std::string summarise(const SessionMetrics& m) {
                 m.time, m.contact_time, m.grip_time, m.insufflation_time, m.path_length, m.events.of(Kind::Grab),
                 m.events.of(Kind::GrabMissed), m.events.of(Kind::Release), m.events.of(Kind::Slip), m.max_force,
                 m.mean_force, m.volume * 1e6, m.max_volume * 1e6, m.pressure / 133.322, m.max_pressure / 133.322,
-                100 * m.max_strain, summarise(m.energy, m.energy_balance).c_str(), m.warnings());
+                100 * m.max_strain, summariseEnergy(m.energy, m.energy_balance).c_str(), m.warnings());
   return text + ("\n" + summarise(m.skill));
 }
 

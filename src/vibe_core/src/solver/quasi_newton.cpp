@@ -58,7 +58,7 @@ double dot(const std::vector<float>& a, const std::vector<float>& b) {
   return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
-void addScaled(double scale, const std::vector<float>& a, std::vector<float>& to) {
+void addMultiple(double scale, const std::vector<float>& a, std::vector<float>& to) {
   const auto s = static_cast<float>(scale);
   for (std::size_t i = 0; i < a.size(); ++i) to[i] += s * a[i];
 }
@@ -231,7 +231,7 @@ void QuasiNewton::loadWork() {
                           : 0;
   if (lack == 0) return s.factor->load(s.work.data(), s.half.data());
   s.direction = s.work;
-  addScaled(lack, s.volume_gradient, s.direction);
+  addMultiple(lack, s.volume_gradient, s.direction);
   s.factor->load(s.direction.data(), s.half.data());
 }
 
@@ -247,7 +247,7 @@ void QuasiNewton::findDirection() {
   double alpha[StepperScratch::kHistory];
   for (int i = s.pairs - 1; i >= 0; --i) {
     alpha[i] = s.curvature[i] * (dot(s.move[i], s.work) + unknowns_.gradientTerm(i));
-    addScaled(-alpha[i], s.change[i], s.work);
+    addMultiple(-alpha[i], s.change[i], s.work);
     unknowns_.subtract(i, alpha[i]);
   }
   if (s.pairs > 0) addRowForces(1, s.work);
@@ -275,7 +275,7 @@ void QuasiNewton::applyInverse(const double* alpha) {
   s.factor->store(s.half.data(), s.direction.data());
   for (int i = 0; i < s.pairs; ++i) {
     const double beta = -s.curvature[i] * (dot(s.change[i], s.direction) + unknowns_.directionTerm(i));
-    addScaled(-(alpha[i] - beta), s.move[i], s.direction);
+    addMultiple(-(alpha[i] - beta), s.move[i], s.direction);
     unknowns_.reduce(i, alpha[i] - beta);
   }
   for (int i = 0; i < body_.nodeCount(); ++i)

@@ -56,7 +56,7 @@ void moveAxis(const ElasticBody& body, const TimeScheme& scheme, int k, const Mo
   }
 }
 
-double dot(const std::vector<float>& a, const std::vector<double>& b) {
+double dotInDouble(const std::vector<float>& a, const std::vector<double>& b) {
   double sum[4] = {0, 0, 0, 0};
   for (std::size_t i = 0; i < a.size(); i += 4)
     for (int k = 0; k < 4; ++k) sum[k] += static_cast<double>(a[i + k]) * b[i + k];
@@ -134,12 +134,14 @@ StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const M
   const std::vector<double>& move = scratch.trial;
   const double first = s.to_first / s.move2, last = s.to_last / s.move2, at = s.to_z / s.move2;
   if (scratch.only_first) scratch.repeatFirst();
-  const ForceAlong elastic = forceAlong(first, last, dot(scratch.first_elastic_gradient, move),
-                                        dot(scratch.elastic_gradient, move), beyondTrapezoid(scratch));
+  const ForceAlong elastic = forceAlong(first, last, dotInDouble(scratch.first_elastic_gradient, move),
+                                        dotInDouble(scratch.elastic_gradient, move), beyondTrapezoid(scratch));
   if (loads.extra != nullptr)
-    work.extra =
-        -forceAlong(first, last, dot(scratch.first_extra_gradient, move), dot(scratch.extra_gradient, move), 0).at(at);
-  if (loads.gas.control != GasLoad::Control::None) work.gas = scratch.pressure * dot(scratch.volume_gradient, move);
+    work.extra = -forceAlong(first, last, dotInDouble(scratch.first_extra_gradient, move),
+                             dotInDouble(scratch.extra_gradient, move), 0)
+                      .at(at);
+  if (loads.gas.control != GasLoad::Control::None)
+    work.gas = scratch.pressure * dotInDouble(scratch.volume_gradient, move);
   work.mass_damping = scheme.rate * s.damping;
   work.viscous = elastic.at(at) - elastic.at(scheme.part());
   work.stored = elastic.integral();

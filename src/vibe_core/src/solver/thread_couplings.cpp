@@ -29,7 +29,7 @@ bool setNodes(const AttachmentPoint& from, const AttachmentPoint& to, StiffnessC
   return true;
 }
 
-Eigen::Vector3d between(const StiffnessCoupling& coupling, const double* positions4) {
+Eigen::Vector3d runOf(const StiffnessCoupling& coupling, const double* positions4) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // from the second point to the first
   for (std::size_t i = 0; i < coupling.node.size(); ++i)
     for (int k = 0; k < 3 && coupling.node[i] >= 0; ++k)
@@ -79,7 +79,7 @@ void addThreadCouplings(const BodyLoads& loads, const double* positions4, double
       const auto first = static_cast<std::size_t>(thread.first_attachment) + k;
       StiffnessCoupling coupling;
       if (!setNodes(loads.attachments[first], loads.attachments[first + 1], coupling)) continue;
-      const Eigen::Vector3d run = between(coupling, positions4);
+      const Eigen::Vector3d run = runOf(coupling, positions4);
       const double stiffness = 1 / (gain * turnCompliance(run.norm(), thread.tension[k]));
       if (stiffness < kSoftTurn) continue;
       setAcross(segmentDirection(run), stiffness, coupling);

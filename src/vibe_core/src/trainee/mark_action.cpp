@@ -12,7 +12,7 @@ constexpr double kAimed = 2e-3;    // of the beam from its target, and of the pr
 constexpr int kCorrections = 3;    // of the tip, before the pedal is pressed
 
 // Brings the probe before the wall; what the last motion missed is added to the next.
-bool approach(const WallPoint& target, double distance, Operator& me) {
+bool approachMark(const WallPoint& target, double distance, Operator& me) {
   Eigen::Vector3d correction = Eigen::Vector3d::Zero();
   for (int k = 0; k < kCorrections; ++k) {
     const Eigen::Vector3d place = me.position(target);
@@ -43,7 +43,7 @@ GoalResult perform(const MarkGoal& goal, Operator& me) {
   const WallPoint place = find(goal.place, me.map());
   GoalResult result{false, ""};
   for (int k = 0; k < me.skill().attempts && !result.reached; ++k) {
-    if (!approach(me.withAimError(place), probe + kBeamGap, me))
+    if (!approachMark(me.withAimError(place), probe + kBeamGap, me))
       result.reason = "the scope met a wall on its way";
     else if (burn(goal.time, me))
       result = {true, ""};
