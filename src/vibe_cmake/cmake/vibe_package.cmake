@@ -21,7 +21,9 @@ macro(vibe_package)
 
   add_library(${PROJECT_NAME}_options INTERFACE)
   target_compile_options(${PROJECT_NAME}_options INTERFACE
-    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
+    -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Werror
+    # clang++ calls it shadowing, too, where a type within a function has the name of one in another file of the folder
+    $<$<CXX_COMPILER_ID:GNU>:-Wshadow>)
   if(VIBE_SANITIZE)
     target_compile_options(${PROJECT_NAME}_options INTERFACE
       -fsanitize=${VIBE_SANITIZERS} -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g)
