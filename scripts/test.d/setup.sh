@@ -41,10 +41,10 @@ check 'nothing is missing once the tests run' bash -c '[ -z "$("$1" --missing)" 
 check 'setup has nothing to do twice' bash -c '"$1" --yes | grep -qx "Everything is installed."' - "$setup"
 
 everyPackageExists() {
-  local package
-  while read -r package; do
-    apt-cache show "$package" >/dev/null 2>&1 || { echo "no Debian package $package"; return 1; }
-  done < <(sed -nE 's/^[@a-z][^ ]* +//p' "$root/scripts/apt_packages.txt" | tr -s ' ' '\n' | sort -u)
+  local unknown
+  unknown=$(comm -23 <(sed -nE 's/^[@a-z][^ ]* +//p' "$root/scripts/apt_packages.txt" | tr -s ' ' '\n' | sort -u) \
+    <(apt-cache pkgnames | sort -u))
+  [ -z "$unknown" ] || { echo "no Debian package" $unknown; return 1; }
 }
 if apt-cache show libroscpp-dev >/dev/null 2>&1; then
   check 'the table names packages that exist' everyPackageExists

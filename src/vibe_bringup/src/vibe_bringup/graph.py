@@ -5,6 +5,7 @@ import os
 import signal
 import socket
 import subprocess
+import sys
 import threading
 import time
 import xmlrpc.client
@@ -27,7 +28,10 @@ def end_with_parent():
 
 def free_port():
     with socket.socket() as probe:
-        probe.bind(("localhost", 0))
+        try:
+            probe.bind(("localhost", 0))
+        except socket.gaierror as error:
+            sys.exit("the name localhost has no address here ({}); add '127.0.0.1 localhost' to /etc/hosts".format(error))
         return probe.getsockname()[1]
 
 
