@@ -63,11 +63,6 @@ BenchWall makeWall(int nodes) {
 
 BodyLoads pressureLoads(const BenchWall& wall, double pressure) {
   BodyLoads loads;
-  if (wall.layers) {
-    wall.layers->setPressure(pressure);
-    loads.extra = wall.layers.get();
-    return loads;
-  }
   loads.gas.control = GasLoad::Control::Pressure;
   loads.gas.pressure = pressure;
   loads.gas.volume = wall.rest_volume;
