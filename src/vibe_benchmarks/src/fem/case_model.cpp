@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "fem/mesh_refine.hpp"
-#include "tissue/tetrahedra.hpp"
+#include "tetrahedra/tetrahedra.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::benchmarks {

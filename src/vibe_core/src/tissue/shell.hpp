@@ -3,14 +3,20 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "tissue/elastic_elements.hpp"
-#include "tissue/shell_kernel.hpp"
 #include "vibe_core/tissue/material.hpp"
 
 namespace vibe {
+
+struct BatchOffsets;
+struct BatchReals;
+struct LawConstants;
+struct ShellKernel;
+struct ShellSweep;
 
 /// Up to two families of fibres in the plane of a wall, which resist only tension. Each adds, per volume, modulus / (2
 /// stiffening) (exp(stiffening (I - 1)^2) - 1) where the squared stretch I of the fibre is above 1: Holzapfel, Gasser,
@@ -47,15 +53,16 @@ struct ShellMesh {
 ///
 /// A side without a neighbour bends freely. A side with two fixed nodes is clamped: its tangent plane is preserved.
 /// Energy and force stay finite if the wall degenerates to a line or a point, or folds over. Memory: the triangles of a
-/// material are cut into batches of kTetLanes, those with three neighbours first.
+/// material are cut into batches for the kernel, those with three neighbours first.
 class ShellElements : public ElasticElements {
  public:
   /// @param origin  reference point of volumes, near the centre of the organ for precision [m]
   /// @throws Error with the number of a triangle that has no area or thickness, has fibres out of range, has a node or
   ///         material out of range, shares a side with two others, is oriented opposite to its neighbour, or lies
   ///         folded upon it; for a hinged side that does not exist; as checkMaterial for the materials
-  explicit ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero(),
-                         ShellKernel kernel = shellKernel());
+  explicit ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
+  /// With a certain kernel, for tests; otherwise it is that of the arithmetic and the instruction set in use.
+  ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin, const ShellKernel& kernel);
   ~ShellElements() override;
 
   int nodeCount() const override { return static_cast<int>(mesh_.nodes.size()); }
@@ -102,31 +109,31 @@ class ShellElements : public ElasticElements {
   Eigen::Matrix<double, 3, 6> restPatch(std::size_t triangle) const;
   void makeBatches();
   void addRun(const std::vector<int>& triangles, int material, bool ghosts);
-  void addBatch(const std::array<int, kTetLanes>& triangles, int rows);
+  void addBatch(const std::vector<int>& triangles, int rows);
   double evaluatePiece(int piece, ShellSweep sweep, double* volume) const;
 
   double areaOf(std::size_t triangle) const;
   bool held(int node) const { return !mesh_.fixed.empty() && mesh_.fixed[static_cast<std::size_t>(node)] != 0; }
   bool atBoundary(std::size_t triangle) const;
   int patchNode(std::size_t triangle, int k) const { return patch_nodes_[6 * triangle + static_cast<std::size_t>(k)]; }
-  const double* rest(std::size_t triangle) const { return rest_.data() + triangle * kShellGhostRows; }
+  const double* rest(std::size_t triangle) const;
   int materialOf(std::size_t triangle) const { return mesh_.material.empty() ? 0 : mesh_.material[triangle]; }
   /// Displacements of the patch relative to node 1, ghosts included.
   void gather(std::size_t triangle, const double* displacement, double (&v)[5][3]) const;
 
   ShellMesh mesh_;
   Eigen::Vector3d origin_;
-  ShellKernel kernel_;
+  std::unique_ptr<const ShellKernel> kernel_;
   std::vector<LawConstants> constants_;  // per material
   std::vector<int> patch_nodes_;         // (triangles * 6), -1: ghost
   std::vector<char> released_;           // (triangles * 3) sides hinged by ShellMesh::hinged
   std::vector<double> rest_;             // (triangles * kShellGhostRows)
   int batch_count_ = 0, piece_count_ = 1;
   std::vector<Run> runs_;
-  std::vector<TetOffsets> batch_node_;
-  std::vector<TetReals> batch_rest_;
+  std::vector<BatchOffsets> batch_node_;
+  std::vector<BatchReals> batch_rest_;
   std::vector<double> fibre_rest_;  // (triangles * kFibreRows), empty without fibres
-  std::vector<TetReals> batch_fibre_;
+  std::vector<BatchReals> batch_fibre_;
 };
 
 }  // namespace vibe

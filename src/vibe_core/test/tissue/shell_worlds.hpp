@@ -15,6 +15,7 @@
 
 #include "tissue/element_worlds.hpp"
 #include "tissue/shell.hpp"
+#include "tissue/shell_kernel.hpp"
 
 /// Walls and displacements for the tests of shells.
 namespace vibe::test {

@@ -1,15 +1,14 @@
-#include "tissue/tetrahedra.hpp"
+#include "tetrahedra/tetrahedra.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <map>
 
-#include "tissue/material_law.hpp"
-#include "tissue/tetrahedra_worlds.hpp"
+#include "tetrahedra/tetrahedra_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::tetrahedra_test {
+namespace vibe::benchmarks::tetrahedra_test {
 namespace {
 
 using namespace test;
@@ -20,10 +19,10 @@ struct Uniaxial {
 
 // The stretch across which leaves the sides free, by bisection of dW/d(lateral).
 Uniaxial uniaxial(const Material& m, double stretch) {
-  const LawTerms<double> terms(lawConstants(m));
+  const MaterialEnergy energy(m);
   const auto law = [&](double across) {
     const double i = stretch * stretch + 2 * across * across - 3, j = stretch * across * across - 1;
-    return withLaw(m.law, [&](auto tag) { return lawAt<decltype(tag)::value>(terms, i, j, i - 2 * j); });
+    return energy.at(i, j, i - 2 * j);
   };
   double low = 0.3, high = 3;
   for (int step = 0; step < 100; ++step) {
@@ -278,4 +277,4 @@ TEST(Tetrahedra, BadMeshIsAnErrorThatNamesTheElement) {
 }
 
 }  // namespace
-}  // namespace vibe::tetrahedra_test
+}  // namespace vibe::benchmarks::tetrahedra_test

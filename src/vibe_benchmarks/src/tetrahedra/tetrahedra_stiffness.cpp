@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue/tetrahedra.hpp"
-#include "tissue/tetrahedra_point.hpp"
+#include "tetrahedra/tetrahedra.hpp"
+#include "tetrahedra/tetrahedron_energy.hpp"
 
 // Derivatives of the energy of an integration point in the frame of its principal stretches. There the tangent of a law
 // of I and J splits into one 3 x 3 block and three 2 x 2 blocks: Smith, de Goes, Kim 2019.
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 // F = u diag(stretch) vt with rotations u and v; the product of the stretches has the sign of det F.
@@ -38,7 +38,7 @@ Eigen::Matrix3d withoutNegativeEigenvalues(const Eigen::Matrix3d& symmetric) {
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
 }
 
-Tangent tangent(const Eigen::Vector3d& s, const LawAt<double>& w) {
+Tangent tangent(const Eigen::Vector3d& s, const EnergyDerivatives<double>& w) {
   const Eigen::Vector3d cof(s[1] * s[2], s[2] * s[0], s[0] * s[1]);
   Eigen::Matrix3d a = 4 * w.by_ii * s * s.transpose() + w.by_jj * cof * cof.transpose() +
                       2 * w.by_ij * (s * cof.transpose() + cof * s.transpose());
@@ -56,13 +56,10 @@ Tangent tangent(const Eigen::Vector3d& s, const LawAt<double>& w) {
   return out;
 }
 
-LawAt<double> lawOf(const Material& material, const LawConstants& constants, const Eigen::Matrix3d& h) {
+EnergyDerivatives<double> lawOf(const MaterialEnergy& law, const Eigen::Matrix3d& h) {
   const double trace = h.trace(), square = h.squaredNorm();
   const double higher = (trace * trace - (h * h).trace()) / 2 + h.determinant();
-  return withLaw(material.law, [&](auto tag) {
-    return lawAt<decltype(tag)::value>(LawTerms<double>(constants), 2 * trace + square, trace + higher,
-                                       square - 2 * higher);
-  });
+  return law.at(2 * trace + square, trace + higher, square - 2 * higher);
 }
 
 // Second derivative of the energy of the point with respect to the displacements of two nodes with shape gradients a
@@ -117,14 +114,14 @@ template <int Nodes>
 void TetElements<Nodes>::addStiffness(const double* displacement, BlockMatrix& stiffness) const {
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
     const auto& nodes = mesh_.elements[e];
-    const auto material = static_cast<std::size_t>(materialOf(e));
+    const MaterialEnergy& law = laws_[static_cast<std::size_t>(materialOf(e))];
     std::array<Eigen::Matrix3d, Nodes*(Nodes + 1) / 2> blocks;
     blocks.fill(Eigen::Matrix3d::Zero());
     for (int point = 0; point < kPoints; ++point) {
       const ShapeGradients<Nodes> shape = shapeGradients<Nodes>(rest(e, point), point);
       const Eigen::Matrix3d h = displacementGradient<Nodes>(displacement, nodes, shape);
       const Principal p = principal(h + Eigen::Matrix3d::Identity());
-      const Tangent t = tangent(p.stretch, lawOf(mesh_.materials[material], constants_[material], h));
+      const Tangent t = tangent(p.stretch, lawOf(law, h));
       const ShapeGradients<Nodes> turned = p.v.transpose() * shape;
       const Eigen::Matrix3d weighted = rest(e, point)[9] * p.u;
       std::size_t k = 0;
@@ -163,4 +160,4 @@ template void TetElements<10>::addStiffness(const double*, BlockMatrix&) const;
 template void TetElements<4>::strain(const double*, float*) const;
 template void TetElements<10>::strain(const double*, float*) const;
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

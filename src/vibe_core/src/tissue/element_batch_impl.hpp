@@ -1,8 +1,11 @@
 #pragma once
 #include <immintrin.h>
 
-#include "tissue/tetrahedra_kernel.hpp"
-#include "tissue/tetrahedra_point.hpp"
+#include <cstdint>
+#include <xsimd/xsimd.hpp>
+
+#include "common/multiply_add.hpp"
+#include "tissue/element_batch.hpp"
 
 namespace vibe {
 namespace {
@@ -11,7 +14,7 @@ namespace {
 /// batch has two parts. The order of additions is the same in all instruction sets: everything of a node before the
 /// next node, lanes in ascending order.
 template <class Arch>
-struct TetLanes {
+struct BatchLanes {
   using Pack = xsimd::batch<float, Arch>;
 
   static void load(const float* base, const std::uint32_t* offset, Pack (&out)[3]) {
@@ -54,7 +57,7 @@ struct TetLanes {
 
 #ifdef __AVX2__
 template <>
-struct TetLanes<xsimd::fma3<xsimd::avx2>> {
+struct BatchLanes<xsimd::fma3<xsimd::avx2>> {
   using Pack = xsimd::batch<float, xsimd::fma3<xsimd::avx2>>;
 
   // nodes of lanes k and k + 4
@@ -101,41 +104,6 @@ struct TetLanes<xsimd::fma3<xsimd::avx2>> {
   };
 };
 #endif
-
-template <class Arch, int Nodes>
-struct TetKernelOf {
-  using Lanes = TetLanes<Arch>;
-  using Pack = typename Lanes::Pack;
-  static constexpr int kWidth = static_cast<int>(Pack::size), kParts = kTetLanes / kWidth;
-
-  template <Law law>
-  static double sweepLaw(const TetSweep& s) {
-    const LawTerms<Pack> terms(*s.constants);
-    typename Lanes::Sum energy;
-    for (int batch = s.first; batch < s.last; ++batch) {
-      const TetOffsets* offset = s.node + batch * Nodes;
-      Pack force[kParts][Nodes][3];
-      for (int part = 0; part < kParts; ++part) {
-        const int lane = part * kWidth, point_stride = s.point_stride;
-        const TetReals* rows = s.rest + static_cast<std::ptrdiff_t>(batch) * s.batch_stride;
-        const auto rest = [=](int point, int row) {
-          return Pack::load_aligned(rows[point * point_stride + row].lane + lane);
-        };
-        Pack u[Nodes][3];
-        for (int a = 0; a < Nodes; ++a) Lanes::load(s.displacement4, offset[a].lane + lane, u[a]);
-        energy.add(elementEnergy<Nodes, law>(terms, u, rest, force[part]), part);
-      }
-      for (int a = 0; a < Nodes; ++a)
-        for (int part = 0; part < kParts; ++part)
-          Lanes::add(s.gradient4, offset[a].lane + part * kWidth, force[part][a]);
-    }
-    return energy.total();
-  }
-
-  static double sweep(const TetSweep& s) {
-    return withLaw(s.law, [&](auto tag) { return sweepLaw<decltype(tag)::value>(s); });
-  }
-};
 
 }  // namespace
 }  // namespace vibe

@@ -1,17 +1,15 @@
-#include "tissue/tetrahedra_kernel.hpp"
-
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "tissue/tetrahedra_worlds.hpp"
+#include "tetrahedra/tetrahedra_worlds.hpp"
 
-namespace vibe::tetrahedra_kernel_test {
+namespace vibe::benchmarks::tetrahedra_pieces_test {
 namespace {
 
 using namespace test;
 
-void expectSingleIsDouble(TetKernel kernel) {
+TEST(TetrahedraInPieces, SingleIsDouble) {
   forAllElements(
       [](const ElasticElements& elements, const auto&) {
         for (const double amount : {1e-6, 1e-3, 0.1}) {
@@ -21,60 +19,7 @@ void expectSingleIsDouble(TetKernel kernel) {
           EXPECT_NEAR(f.energy, d.energy, 1e-5 * d.energy) << amount;
         }
       },
-      {2, 2, 1}, kernel);
-}
-
-bool haveAvx2() {
-  return widestInstructionSet() != InstructionSet::Sse2;
-}
-
-TEST(TetrahedraKernel, SingleIsDoubleOnTheSse2Path) {
-  expectSingleIsDouble(tetKernelSse2());
-}
-
-TEST(TetrahedraKernel, SingleIsDoubleOnTheAvx2Path) {
-  if (!haveAvx2()) GTEST_SKIP() << "this machine has no AVX2";
-  expectSingleIsDouble(tetKernelAvx2());
-}
-
-template <int Nodes>
-void expectPathsAgree(const TetMesh<Nodes>& mesh) {
-  const TetElements<Nodes> narrow(mesh, tetKernelSse2()), wide(mesh, tetKernelAvx2());
-  for (const double amount : {1e-4, 0.1, 3.0}) {
-    const Eigen::VectorXd u = randomDisplacement(narrow.nodeCount(), amount * kSide);
-    const TetEvaluation a = inSingle(narrow, u), b = inSingle(wide, u);
-    EXPECT_LT((a.gradient - b.gradient).norm(), 1e-5 * a.gradient.norm()) << amount;
-    EXPECT_NEAR(a.energy, b.energy, 1e-5 * a.energy) << amount;
-  }
-}
-
-TEST(TetrahedraKernel, InstructionPathsAgree) {
-  if (!haveAvx2()) GTEST_SKIP() << "this machine has no AVX2";
-  for (const Law law : kLaws) {
-    expectPathsAgree(linearMesh(law, {3, 2, 1}));
-    expectPathsAgree(curvedMesh(law, {3, 2, 1}));
-  }
-}
-
-template <int Nodes>
-void expectFusedPathsGiveTheSameBits(const TetMesh<Nodes>& mesh) {
-  const TetElements<Nodes> narrow(mesh, tetKernelFusedSse2()), wide(mesh, tetKernelAvx2()),
-      plain(mesh, tetKernelSse2());
-  for (const double amount : {1e-4, 0.1, 3.0}) {
-    const Eigen::VectorXd u = randomDisplacement(narrow.nodeCount(), amount * kSide);
-    const TetEvaluation a = inSingle(narrow, u), b = inSingle(wide, u);
-    EXPECT_EQ(a.energy, b.energy) << amount;
-    EXPECT_EQ(a.gradient, b.gradient) << amount;
-    EXPECT_NE(a.gradient, inSingle(plain, u).gradient) << "plain arithmetic";
-  }
-}
-
-TEST(TetrahedraKernel, FusedPathsGiveTheSameBits) {
-  if (!haveAvx2()) GTEST_SKIP() << "this machine has no AVX2";
-  for (const Law law : kLaws) {
-    expectFusedPathsGiveTheSameBits(linearMesh(law, {3, 2, 1}));
-    expectFusedPathsGiveTheSameBits(curvedMesh(law, {3, 2, 1}));
-  }
+      {2, 2, 1});
 }
 
 // The outputs of all pieces, each of its own, one after another.
@@ -95,7 +40,7 @@ std::vector<double> outputs(const ElasticElements& elements, const std::vector<f
   return energy;
 }
 
-TEST(TetrahedraKernel, PiecesDependOnNoThread) {
+TEST(TetrahedraInPieces, PiecesDependOnNoThread) {
   const TetElements<4> elements(linearMesh(Law::NeoHookean, {9, 7, 6}));
   ASSERT_EQ(elements.pieceCount(), 8);
   const Eigen::VectorXd u = randomDisplacement(elements.nodeCount(), 0.1 * kSide);
@@ -112,7 +57,7 @@ TEST(TetrahedraKernel, PiecesDependOnNoThread) {
   EXPECT_LT((sum - whole.gradient).norm(), 1e-5 * whole.gradient.norm());
 }
 
-TEST(TetrahedraKernel, SeveralMaterialsAreTheSumOfTheirParts) {
+TEST(TetrahedraInPieces, SeveralMaterialsAreTheSumOfTheirParts) {
   TetMesh<4> mesh = linearMesh(Law::NeoHookean, {3, 2, 2});
   mesh.materials = {material(Law::NeoHookean), {Law::Fung, 5e4, 0.4, 1.2}, {Law::NeoHookean, 9e4, 0.3, 0}};
   std::array<TetMesh<4>, 3> parts;
@@ -137,7 +82,7 @@ TEST(TetrahedraKernel, SeveralMaterialsAreTheSumOfTheirParts) {
   EXPECT_LT((denseStiffness(whole, u) - stiffness).norm(), 1e-12 * stiffness.norm());
 }
 
-TEST(TetrahedraKernel, GarbageHasFiniteEnergyAndForce) {
+TEST(TetrahedraInPieces, GarbageHasFiniteEnergyAndForce) {
   const double metre_per_side = 1 / kSide;
   forAllElements([&](const ElasticElements& elements, const std::vector<Eigen::Vector3d>& nodes) {
     for (const double amount : {1.0, 30.0, 10 * metre_per_side}) {
@@ -156,7 +101,7 @@ TEST(TetrahedraKernel, GarbageHasFiniteEnergyAndForce) {
   });
 }
 
-TEST(TetrahedraKernel, InvertedElementReturns) {
+TEST(TetrahedraInPieces, InvertedElementReturns) {
   for (const Law law : kLaws) {
     const TetElements<4> elements(linearMesh(law));
     const Eigen::VectorXd u = affine(elements.mesh(), Eigen::Vector3d(-0.5, 1, 1).asDiagonal());
@@ -165,4 +110,4 @@ TEST(TetrahedraKernel, InvertedElementReturns) {
 }
 
 }  // namespace
-}  // namespace vibe::tetrahedra_kernel_test
+}  // namespace vibe::benchmarks::tetrahedra_pieces_test

@@ -3,10 +3,10 @@
 #include <string>
 #include <unordered_map>
 
-#include "tissue/tetrahedra.hpp"
+#include "tetrahedra/tetrahedra.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 QuadraticMesh quadraticMesh(const TetMesh<4>& linear) {
   constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
@@ -43,4 +43,4 @@ QuadraticMesh quadraticMesh(const TetMesh<4>& linear) {
   return out;
 }
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

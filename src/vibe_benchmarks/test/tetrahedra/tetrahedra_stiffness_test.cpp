@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "tissue/tetrahedra_worlds.hpp"
+#include "tetrahedra/tetrahedra_worlds.hpp"
 
-namespace vibe::tetrahedra_stiffness_test {
+namespace vibe::benchmarks::tetrahedra_stiffness_test {
 namespace {
 
 using namespace test;
@@ -76,4 +76,4 @@ TEST(TetrahedraStiffness, SecondDerivativeItselfIsIndefiniteWhenCompressed) {
 }
 
 }  // namespace
-}  // namespace vibe::tetrahedra_stiffness_test
+}  // namespace vibe::benchmarks::tetrahedra_stiffness_test

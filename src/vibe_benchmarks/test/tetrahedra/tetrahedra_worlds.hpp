@@ -11,11 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "tetrahedra/tetrahedra.hpp"
 #include "tissue/element_worlds.hpp"
-#include "tissue/tetrahedra.hpp"
 
 /// Solids and displacements for the tests of tetrahedra.
-namespace vibe::test {
+namespace vibe::benchmarks::test {
+
+using namespace vibe::test;
 
 /// A box of cubes with the given number along each axis, cut into six tetrahedra each (Kuhn's division).
 inline TetMesh<4> tetBox(std::array<int, 3> cubes, double side, const Material& material) {
@@ -98,10 +100,10 @@ inline TetMesh<10> curvedMesh(Law law, std::array<int, 3> cubes = {2, 1, 1}) {
 // All kinds of element, of every law.
 inline void forAllElements(
     const std::function<void(const ElasticElements&, const std::vector<Eigen::Vector3d>&)>& check,
-    std::array<int, 3> cubes = {2, 1, 1}, TetKernel kernel = tetKernel()) {
+    std::array<int, 3> cubes = {2, 1, 1}) {
   for (const Law law : kLaws) {
-    const TetElements<4> linear(linearMesh(law, cubes), kernel);
-    const TetElements<10> straight(straightMesh(law, cubes), kernel), curved(curvedMesh(law, cubes), kernel);
+    const TetElements<4> linear(linearMesh(law, cubes));
+    const TetElements<10> straight(straightMesh(law, cubes)), curved(curvedMesh(law, cubes));
     const std::string name = "law " + std::to_string(static_cast<int>(law));
     {
       SCOPED_TRACE(name + ", linear");
@@ -118,4 +120,4 @@ inline void forAllElements(
   }
 }
 
-}  // namespace vibe::test
+}  // namespace vibe::benchmarks::test

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "tissue/elastic_elements.hpp"
-#include "tissue/tetrahedra_kernel.hpp"
-#include "vibe_core/tissue/material.hpp"
+#include "vibe_core/tissue/material_energy.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 
 /// A solid of tetrahedra at rest. Nodes 4: linear. Nodes 10: quadratic, straight or curved; the vertices first, then
 /// the nodes on the edges 01 12 20 03 13 23 (the order of VTK and of most finite element codes). Seen from vertex 3,
@@ -34,9 +33,9 @@ QuadraticMesh quadraticMesh(const TetMesh<4>& linear);
 /// Hyperelastic tetrahedra: linear with one integration point, quadratic with four (exact for polynomials of degree 2).
 /// Quadratic elements bend and are nearly incompressible without locking; linear elements lock in both cases.
 ///
-/// The displacement gradient H = F - 1 is used, never F, so single precision resolves a strain of 1e-7. Memory: the
-/// elements of a material are cut into batches of kTetLanes. Per batch and point there are ten rows: the gradients with
-/// respect to x, y, z of the barycentric coordinates 1, 2, 3 [1/m], then the volume of the point [m^3].
+/// The displacement gradient H = F - 1 is used, never F, so single precision resolves a strain of 1e-7. The elements of
+/// a material are cut into batches of kBatch, whose forces are added node by node, as a kernel for kBatch elements at
+/// once adds them: results stay comparable to the bit with those published.
 template <int Nodes>
 class TetElements : public ElasticElements {
  public:
@@ -44,7 +43,7 @@ class TetElements : public ElasticElements {
 
   /// @throws Error with the number of an element whose volume is not positive (at an integration point), or whose node
   ///         or material is out of range; as checkMaterial for the materials
-  explicit TetElements(TetMesh<Nodes> mesh, TetKernel kernel = tetKernel());
+  explicit TetElements(TetMesh<Nodes> mesh);
 
   ~TetElements() override;
 
@@ -69,15 +68,22 @@ class TetElements : public ElasticElements {
   struct Run {  // batches of one material
     int first, last, material;
   };
+  // Per element and point: the gradients with respect to x, y, z of the barycentric coordinates 1, 2, 3 [1/m], then the
+  // volume of the point [m^3].
   static constexpr int kRows = 10;
-  static constexpr int kWindow = 16;  // batches that share a contiguous piece of the mesh
+  static constexpr int kBatch = 8;
+  static constexpr int kWindow = 16;      // batches that share a contiguous piece of the mesh
+  using Batch = std::array<int, kBatch>;  // elements; -1: the place is empty
 
   void measure();
   void checkIndices() const;
   bool straight() const;
   void makeBatches();
   void addBatches(const std::vector<int>& elements);
-  void addBatch(const std::array<int, kTetLanes>& elements);
+  template <class Real>
+  Real elementEnergy(std::size_t element, const Real (&u)[Nodes][3], Real (&force)[Nodes][3]) const;
+  void evaluateBatch(const Batch& batch, const float* displacement4, float* gradient4,
+                     std::array<double, kBatch>& energy) const;
   double volumeOf(std::size_t element) const;
   const double* rest(std::size_t element, int point) const {
     return rest_.data() + (element * kPoints + point) * kRows;
@@ -85,17 +91,16 @@ class TetElements : public ElasticElements {
   int materialOf(std::size_t element) const { return mesh_.material.empty() ? 0 : mesh_.material[element]; }
 
   TetMesh<Nodes> mesh_;
-  TetKernel kernel_;
-  std::vector<LawConstants> constants_;  // per material
-  std::vector<double> rest_;             // (elements * points * rows), in double precision
-  std::vector<int> flat_nodes_;          // of the elements in sequence
-  int batch_count_ = 0, point_stride_ = 0, batch_stride_ = 0, piece_count_ = 1;
+  std::vector<MaterialEnergy> laws_;  // per material
+  std::vector<double> rest_;          // (elements * points * rows)
+  bool straight_ = true;              // the points of an element share their rows in single precision
+  std::vector<int> flat_nodes_;       // of the elements in sequence
+  int piece_count_ = 1;
   std::vector<Run> runs_;
-  std::vector<TetOffsets> batch_node_;
-  std::vector<TetReals> batch_rest_;
+  std::vector<Batch> batches_;
 };
 
 extern template class TetElements<4>;
 extern template class TetElements<10>;
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks

@@ -1,14 +1,16 @@
-#include "tissue/tetrahedra.hpp"
+#include "tetrahedra/tetrahedra.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <type_traits>
 
-#include "tissue/tetrahedra_point.hpp"
+#include "tetrahedra/tetrahedron_energy.hpp"
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::benchmarks {
 namespace {
 
 constexpr int kTetrahedraPerPiece = 2000;  // with fewer, a second thread does not pay off
@@ -43,11 +45,11 @@ std::string elementName(std::size_t element) {
 }  // namespace
 
 template <int Nodes>
-TetElements<Nodes>::TetElements(TetMesh<Nodes> mesh, TetKernel kernel) : mesh_(std::move(mesh)), kernel_(kernel) {
+TetElements<Nodes>::TetElements(TetMesh<Nodes> mesh) : mesh_(std::move(mesh)) {
   checkIndices();
   for (std::size_t m = 0; m < mesh_.materials.size(); ++m) {
     checkMaterial(mesh_.materials[m], "material " + std::to_string(m) + " of the tetrahedra");
-    constants_.push_back(lawConstants(mesh_.materials[m]));
+    laws_.emplace_back(mesh_.materials[m]);
   }
   for (const auto& element : mesh_.elements) flat_nodes_.insert(flat_nodes_.end(), element.begin(), element.end());
   measure();
@@ -108,71 +110,75 @@ bool TetElements<Nodes>::straight() const {
 
 template <int Nodes>
 void TetElements<Nodes>::makeBatches() {
-  const bool shared = straight();
-  point_stride_ = shared ? 0 : kRows;
-  batch_stride_ = shared ? kRows : kRows * kPoints;
+  straight_ = straight();
   std::vector<std::vector<int>> of_material(mesh_.materials.size());
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e)
     of_material[static_cast<std::size_t>(materialOf(e))].push_back(static_cast<int>(e));
   for (std::size_t m = 0; m < of_material.size(); ++m) {
-    const std::vector<int>& elements = of_material[m];
-    const int first = batch_count_;
-    addBatches(elements);
-    if (batch_count_ > first) runs_.push_back({first, batch_count_, static_cast<int>(m)});
+    const int first = static_cast<int>(batches_.size());
+    addBatches(of_material[m]);
+    const int last = static_cast<int>(batches_.size());
+    if (last > first) runs_.push_back({first, last, static_cast<int>(m)});
   }
   piece_count_ = static_cast<int>(mesh_.elements.size()) > kTetrahedraPerPiece ? kTetrahedraPieces : 1;
 }
 
-// Elements adjacent in the mesh are adjacent in its order. They are placed in the same lane of successive batches, not
-// in the lanes of one batch: adding to a node that the previous lane has just written would stall.
+// Elements adjacent in the mesh are adjacent in its order. They have the same place in successive batches.
 template <int Nodes>
 void TetElements<Nodes>::addBatches(const std::vector<int>& elements) {
   const int count = static_cast<int>(elements.size());
-  const int batches = (count + kTetLanes - 1) / kTetLanes;
+  const int batches = (count + kBatch - 1) / kBatch;
   for (int window = 0; window < batches; window += kWindow) {
     const int length = std::min(kWindow, batches - window);
     for (int step = 0; step < length; ++step) {
-      std::array<int, kTetLanes> lanes;
-      for (int lane = 0; lane < kTetLanes; ++lane) {
-        const int slot = window * kTetLanes + lane * length + step;
-        lanes[static_cast<std::size_t>(lane)] = slot < count ? elements[static_cast<std::size_t>(slot)] : -1;
+      Batch& batch = batches_.emplace_back();
+      for (int place = 0; place < kBatch; ++place) {
+        const int slot = window * kBatch + place * length + step;
+        batch[static_cast<std::size_t>(place)] = slot < count ? elements[static_cast<std::size_t>(slot)] : -1;
       }
-      addBatch(lanes);
     }
   }
 }
 
 template <int Nodes>
-void TetElements<Nodes>::addBatch(const std::array<int, kTetLanes>& elements) {
-  const int filler = *std::max_element(elements.begin(), elements.end());  // -1: the lane is empty
-  const int points = batch_stride_ / kRows;
-  const std::size_t node = batch_node_.size(), row = batch_rest_.size();
-  batch_node_.resize(node + Nodes);
-  batch_rest_.resize(row + static_cast<std::size_t>(batch_stride_));
-  for (std::size_t lane = 0; lane < kTetLanes; ++lane) {
-    const bool empty = elements[lane] < 0;
-    const std::size_t e = static_cast<std::size_t>(empty ? filler : elements[lane]);
-    for (std::size_t a = 0; a < Nodes; ++a)
-      batch_node_[node + a].lane[lane] = 4 * static_cast<std::uint32_t>(mesh_.elements[e][a]);
-    // an empty lane has neither deformation nor energy
-    for (int k = 0; k < points * kRows; ++k)
-      batch_rest_[row + static_cast<std::size_t>(k)].lane[lane] = empty ? 0 : static_cast<float>(rest(e, 0)[k]);
+template <class Real>
+Real TetElements<Nodes>::elementEnergy(std::size_t element, const Real (&u)[Nodes][3], Real (&force)[Nodes][3]) const {
+  const bool shared = std::is_same_v<Real, float> && straight_;
+  const auto rows = [&](int point, int row) { return static_cast<Real>(rest(element, shared ? 0 : point)[row]); };
+  const MaterialEnergy& law = laws_[static_cast<std::size_t>(materialOf(element))];
+  return benchmarks::elementEnergy<Nodes>(law, u, rows, force);
+}
+
+template <int Nodes>
+void TetElements<Nodes>::evaluateBatch(const Batch& batch, const float* displacement4, float* gradient4,
+                                       std::array<double, kBatch>& energy) const {
+  float force[kBatch][Nodes][3];
+  for (std::size_t k = 0; k < kBatch; ++k) {
+    if (batch[k] < 0) continue;
+    const auto e = static_cast<std::size_t>(batch[k]);
+    float u[Nodes][3];
+    for (int a = 0; a < Nodes; ++a)
+      for (int r = 0; r < 3; ++r) u[a][r] = displacement4[4 * mesh_.elements[e][a] + r];
+    energy[k] += static_cast<double>(elementEnergy(e, u, force[k]));
   }
-  ++batch_count_;
+  for (int a = 0; a < Nodes; ++a)
+    for (std::size_t k = 0; k < kBatch; ++k)
+      for (int r = 0; batch[k] >= 0 && r < 3; ++r)
+        gradient4[4 * mesh_.elements[static_cast<std::size_t>(batch[k])][a] + r] += force[k][a][r];
 }
 
 template <int Nodes>
 double TetElements<Nodes>::evaluate(int piece, const float* displacement4, float* gradient4) const {
-  const int first = static_cast<int>(static_cast<std::int64_t>(batch_count_) * piece / piece_count_);
-  const int last = static_cast<int>(static_cast<std::int64_t>(batch_count_) * (piece + 1) / piece_count_);
-  const TetSweepFunction sweep = Nodes == 4 ? kernel_.linear : kernel_.quadratic;
+  const auto bound = [&](int p) {
+    return static_cast<int>(static_cast<std::int64_t>(batches_.size()) * p / piece_count_);
+  };
   double energy = 0;
   for (const Run& run : runs_) {
-    const int begin = std::max(first, run.first), end = std::min(last, run.last);
-    if (begin >= end) continue;
-    const auto material = static_cast<std::size_t>(run.material);
-    energy += sweep({batch_node_.data(), batch_rest_.data(), batch_stride_, point_stride_, begin, end,
-                     mesh_.materials[material].law, &constants_[material], displacement4, gradient4});
+    const int begin = std::max(bound(piece), run.first), end = std::min(bound(piece + 1), run.last);
+    std::array<double, kBatch> sum{};
+    for (int b = begin; b < end; ++b)
+      evaluateBatch(batches_[static_cast<std::size_t>(b)], displacement4, gradient4, sum);
+    energy += ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
   }
   return energy;
 }
@@ -183,14 +189,10 @@ double TetElements<Nodes>::evaluate(const double* displacement, double* gradient
   double energy = 0;
   for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
     const auto& nodes = mesh_.elements[e];
-    const auto material = static_cast<std::size_t>(materialOf(e));
     double u[Nodes][3], force[Nodes][3];
     for (int a = 0; a < Nodes; ++a)
       for (int r = 0; r < 3; ++r) u[a][r] = displacement[3 * nodes[a] + r];
-    const auto rows = [this, e](int point, int row) { return rest(e, point)[row]; };
-    energy += withLaw(mesh_.materials[material].law, [&](auto tag) {
-      return elementEnergy<Nodes, decltype(tag)::value>(LawTerms<double>(constants_[material]), u, rows, force);
-    });
+    energy += elementEnergy(e, u, force);
     for (int a = 0; a < Nodes; ++a)
       for (int r = 0; r < 3; ++r) gradient[3 * nodes[a] + r] += force[a][r];
   }
@@ -230,4 +232,4 @@ std::vector<double> TetElements<Nodes>::lumpedMass(double density) const {
 template class TetElements<4>;
 template class TetElements<10>;
 
-}  // namespace vibe
+}  // namespace vibe::benchmarks
