@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "procedure/needle.hpp"
+#include "vibe_core/procedure/bite.hpp"
 #include "suture/outcome_study.hpp"
 #include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "contact/contact_check.hpp"
-#include "contact/self_contact.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/contact/wall_contacts.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe::benchmarks {
@@ -37,7 +36,7 @@ double distance(const std::array<std::vector<double>, 3>& a, const std::array<st
 class Recorder {
  public:
   Recorder(const ContactCase& one, const ContactSetting& setting)
-      : one_(one), simulation_(modelAt(one, setting), SimulationSettings::study(1)), check_(simulation_.model()) {
+      : one_(one), simulation_(modelAt(one, setting), SimulationSettings::study(1)), check_(simulation_.model()), contacts_(simulation_.model()) {
     trace_.setting = setting;
     simulation_.replaceState(one.start);
     trace_.frames.push_back({one.start.x, one.start.y, one.start.z});
@@ -85,23 +84,14 @@ class Recorder {
     trace_.frames.push_back({state.x, state.y, state.z});
     trace_.crossings = std::max(trace_.crossings, static_cast<int>(check_.wall(state).size()));
     trace_.depth = std::max(trace_.depth, check_.tool(state).depth);
-    trace_.pairs = std::max(trace_.pairs, countPairs(state));
-  }
-
-  int countPairs(const State& state) {
-    const Model& model = simulation_.model();
-    if (!model.scene.tissue.self_contact) return 0;
-    if (!contact_) contact_.emplace(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus);
-    contact_->detect({state.x.data(), state.y.data(), state.z.data()},
-                     {state.vx.data(), state.vy.data(), state.vz.data()}, 0, 0);
-    return static_cast<int>(contact_->pairs().size());
+    trace_.pairs = std::max(trace_.pairs, contacts_.count(state));
   }
 
   const ContactCase& one_;
   Simulation simulation_;
   ContactCheck check_;
+  WallContacts contacts_;
   ContactTrace trace_;
-  std::optional<SelfContact> contact_;
   bool first_ = true;
 };
 

@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "sparse/factor.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/sparse/factor.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -1,5 +1,5 @@
 #include "fem/case_model.hpp"
-#include "tissue/shell.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "fem/case_model.hpp"
 #include "fem/tangent_guess.hpp"
-#include "solver/implicit_stepper.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe::benchmarks {
 

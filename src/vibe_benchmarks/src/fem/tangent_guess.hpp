@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "solver/elastic_body.hpp"
-#include "sparse/factor.hpp"
+#include "vibe_core/solver/elastic_body.hpp"
+#include "vibe_core/sparse/factor.hpp"
 
 namespace vibe::benchmarks {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "constraints/gas.hpp"
+#include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe::benchmarks {

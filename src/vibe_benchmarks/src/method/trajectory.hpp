@@ -3,7 +3,7 @@
 
 #include "method/wall.hpp"
 #include "output/result_row.hpp"
-#include "solver/implicit_stepper.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe::benchmarks {
 

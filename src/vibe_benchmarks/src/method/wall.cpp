@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "fem/mesh_generators.hpp"
-#include "solver/implicit_stepper.hpp"
-#include "tissue/shell.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe::benchmarks {
 namespace {

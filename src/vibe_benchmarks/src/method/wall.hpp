@@ -2,8 +2,8 @@
 #include <memory>
 #include <vector>
 
-#include "solver/elastic_body.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
+#include "vibe_core/solver/elastic_body.hpp"
 #include "vibe_core/tissue/material.hpp"
 
 namespace vibe::benchmarks {

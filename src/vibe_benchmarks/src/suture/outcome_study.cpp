@@ -6,9 +6,9 @@
 
 #include "suture/suture_session.hpp"
 #include "suture/wall_crossing.hpp"
-#include "trainee/suture_pattern.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
+#include "vibe_core/trainee/suture_pattern.hpp"
 
 namespace vibe::benchmarks {
 namespace {

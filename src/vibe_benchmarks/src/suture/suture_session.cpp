@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "procedure/needle.hpp"
-#include "procedure/thread_events.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/model/accounting.hpp"
+#include "vibe_core/procedure/bite.hpp"
+#include "vibe_core/procedure/thread.hpp"
 
 namespace vibe::benchmarks {
 namespace {

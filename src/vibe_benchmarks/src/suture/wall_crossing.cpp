@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "geometry/self_intersection.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe::benchmarks {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/regions.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::benchmarks {

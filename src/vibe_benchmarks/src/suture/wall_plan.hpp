@@ -2,10 +2,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/triangle_tree.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/geometry/stomach_axis.hpp"
 #include "vibe_core/geometry/surface_view.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe::benchmarks {
 

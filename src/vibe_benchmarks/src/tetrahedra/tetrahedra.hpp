@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "tissue/elastic_elements.hpp"
+#include "vibe_core/tissue/elastic_elements.hpp"
 #include "vibe_core/tissue/material_energy.hpp"
 
 namespace vibe::benchmarks {

@@ -1,5 +1,5 @@
 // Implicit steps against what is known on paper: conservation, vibration, equilibrium.
-#include "solver/implicit_stepper.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 #include <gtest/gtest.h>
 

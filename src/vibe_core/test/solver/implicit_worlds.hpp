@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "solver/implicit_stepper.hpp"
 #include "solver/linear_tetrahedra.hpp"
 #include "tissue/element_worlds.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 /// Solid bodies for the tests of implicit steps.
 namespace vibe::test {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "tissue/elastic_elements.hpp"
+#include "vibe_core/tissue/elastic_elements.hpp"
 #include "vibe_core/tissue/material_energy.hpp"
 
 /// Solids for the tests of implicit steps, in double precision throughout.

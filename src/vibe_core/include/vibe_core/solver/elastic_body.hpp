@@ -1,12 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <memory>
 #include <vector>
 
-#include "tissue/elastic_elements.hpp"
+#include <Eigen/Core>
+
 #include "vibe_core/solver/body_loads.hpp"
+#include "vibe_core/tissue/elastic_elements.hpp"
 
 namespace vibe {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "sparse/block_matrix.hpp"
+#include "vibe_core/sparse/block_matrix.hpp"
 
 namespace vibe {
 

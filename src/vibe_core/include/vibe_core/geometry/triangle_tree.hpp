@@ -1,7 +1,10 @@
 #pragma once
-#include <Eigen/Geometry>
+
 #include <functional>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "vibe_core/geometry/surface_mesh.hpp"
 
@@ -54,5 +57,9 @@ class TriangleTree {
   std::vector<int> order_;  ///< triangle numbers, leaf by leaf
   std::vector<Node> nodes_;
 };
+
+/// First pair of triangles that cross each other; (-1, -1) if there is none. Contact at shared vertices or edges does
+/// not count. Coplanar overlap and contact without crossing are not detected.
+std::pair<int, int> findSelfIntersection(const TriangleTree& tree);
 
 }  // namespace vibe

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace vibe {
 

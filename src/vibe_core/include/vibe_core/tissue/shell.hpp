@@ -1,13 +1,14 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "tissue/elastic_elements.hpp"
+#include <Eigen/Core>
+
+#include "vibe_core/tissue/elastic_elements.hpp"
 #include "vibe_core/tissue/material.hpp"
 
 namespace vibe {

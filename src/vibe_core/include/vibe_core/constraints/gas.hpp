@@ -1,4 +1,5 @@
 #pragma once
+
 #include "vibe_core/scene/scene.hpp"
 
 namespace vibe {

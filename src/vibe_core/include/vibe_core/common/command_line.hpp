@@ -1,6 +1,8 @@
 #pragma once
-#include <CLI/CLI.hpp>
+
 #include <functional>
+
+#include <CLI/CLI.hpp>
 
 namespace vibe {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "solver/elastic_body.hpp"
-#include "solver/step_outcome.hpp"
-#include "sparse/factor.hpp"
+#include "vibe_core/solver/elastic_body.hpp"
+#include "vibe_core/solver/step_outcome.hpp"
+#include "vibe_core/sparse/factor.hpp"
 #include "vibe_core/state/stepper_memory.hpp"
 
 namespace vibe {

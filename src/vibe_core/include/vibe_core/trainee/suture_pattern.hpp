@@ -1,6 +1,8 @@
 #pragma once
-#include <Eigen/Core>
+
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "vibe_core/suture/technique.hpp"
 
