@@ -4,7 +4,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "method/shape_matching_wall.hpp"
 #include "method/trajectory.hpp"
 #include "method/wall.hpp"
 

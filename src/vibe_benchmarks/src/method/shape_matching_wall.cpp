@@ -1,4 +1,4 @@
-#include "method/shape_matching_wall.hpp"
+#include "method/trajectory.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "fem/case_probe.hpp"
+#include "fem/case_runner.hpp"
 #include "pulling/pulled_plate.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"

@@ -1,6 +1,8 @@
 #pragma once
-#include <Eigen/Core>
+
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "vibe_core/solver/elastic_body.hpp"
 
@@ -16,5 +18,15 @@ struct Modes {
 /// frequency.
 /// @throws Error if K is not positive definite: the body can move without strain
 Modes slowestModes(const ElasticBody& body, int count);
+
+/// Properties of a vibration about 0, from its values at equal steps.
+struct Oscillation {
+  double frequency =
+      0;  ///< from the first to the last zero crossing in the same direction [Hz]; NaN: less than one period
+  double kept =
+      0;  ///< ratio of the amplitude to that one period earlier, mean over all periods; NaN: less than one period
+};
+
+Oscillation measureOscillation(const std::vector<double>& values, double step);
 
 }  // namespace vibe::benchmarks
