@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/contact/wall_contacts.hpp"
+#include "vibe_core/constraints/wall_contacts.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe::benchmarks {

@@ -76,7 +76,7 @@ TEST(Stomach, hasExactlyTheParticlesAndTheVolume) {
 TEST(Stomach, isAnEvenClosedSurface) {
   const Organ& organ = defaultStomach();
   EXPECT_NO_THROW(checkSurface(organ.surface, "stomach"));
-  const MeshQuality quality = measureQuality(organ.surface);
+  const test::MeshQuality quality = test::measureQuality(organ.surface);
   EXPECT_LT(quality.edge_variation, 0.12);
   EXPECT_GT(quality.smallest_angle, 30 * M_PI / 180);
   EXPECT_GE(quality.smallest_valence, 5);

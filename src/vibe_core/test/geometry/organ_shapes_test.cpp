@@ -49,7 +49,7 @@ TEST_P(ShippedStomach, IsAnEvenClosedSurfaceOfItsVolume) {
   EXPECT_EQ(organ.surface.vertices.size(), 3618u);
   const double volume = geometry.volume * std::pow(geometry.scale, 3);
   EXPECT_NEAR(enclosedVolume(organ.surface), volume, 1e-9 * volume);
-  const MeshQuality quality = measureQuality(organ.surface);
+  const test::MeshQuality quality = test::measureQuality(organ.surface);
   EXPECT_LT(quality.edge_variation, 0.12);
   EXPECT_GT(quality.smallest_angle, 30 * M_PI / 180);
 }

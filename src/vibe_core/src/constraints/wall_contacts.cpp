@@ -1,4 +1,4 @@
-#include "vibe_core/contact/wall_contacts.hpp"
+#include "vibe_core/constraints/wall_contacts.hpp"
 
 #include "contact/self_contact.hpp"
 

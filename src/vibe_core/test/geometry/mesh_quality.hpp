@@ -1,5 +1,4 @@
-#include "geometry/mesh_quality.hpp"
-
+#pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -7,16 +6,28 @@
 
 #include "common/elementary.hpp"
 #include "geometry/editable_mesh.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 
-namespace vibe {
+namespace vibe::test {
 
-namespace {
+/// Uniformity measures of a triangle surface.
+struct MeshQuality {
+  double mean_edge = 0;       ///< [m]
+  double edge_variation = 0;  ///< standard deviation of the edge lengths over their mean [1]
+  double shortest_edge = 0;   ///< [m]
+  double longest_edge = 0;    ///< [m]
+  double smallest_angle = 0;  ///< of all triangles [rad]
+  double largest_bend = 0;    ///< angle between the normals of neighbouring triangles [rad]
+  double mean_bend = 0;       ///< root mean square of that angle [rad]
+  int smallest_valence = 0;
+  int largest_valence = 0;
+};
 
-double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+inline double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return math::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-double smallestAngle(const SurfaceMesh& mesh) {
+inline double smallestAngle(const SurfaceMesh& mesh) {
   double smallest = M_PI;
   for (const auto& t : mesh.triangles) {
     for (int k = 0; k < 3; ++k) {
@@ -28,7 +39,7 @@ double smallestAngle(const SurfaceMesh& mesh) {
   return smallest;
 }
 
-void measureBends(const SurfaceMesh& mesh, const EditableMesh& editable, MeshQuality& quality) {
+inline void measureBends(const SurfaceMesh& mesh, const EditableMesh& editable, MeshQuality& quality) {
   double squares = 0.0;
   int count = 0;
   for (const auto& [a, b] : editable.edges()) {
@@ -43,9 +54,8 @@ void measureBends(const SurfaceMesh& mesh, const EditableMesh& editable, MeshQua
   quality.mean_bend = std::sqrt(squares / count);
 }
 
-}  // namespace
-
-MeshQuality measureQuality(const SurfaceMesh& mesh) {
+/// @param mesh closed and manifold, with at least one triangle.
+inline MeshQuality measureQuality(const SurfaceMesh& mesh) {
   const EditableMesh editable(mesh);
   MeshQuality quality;
   quality.shortest_edge = std::numeric_limits<double>::infinity();
@@ -72,4 +82,4 @@ MeshQuality measureQuality(const SurfaceMesh& mesh) {
   return quality;
 }
 
-}  // namespace vibe
+}  // namespace vibe::test
