@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "common/command_line.hpp"
 #include "fem/case_runner.hpp"
 #include "fem/fem_case.hpp"
 #include "method/method_table.hpp"
 #include "output/result_row.hpp"
 #include "pulling/pulling_table.hpp"
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 

@@ -3,11 +3,10 @@
 #include <iostream>
 #include <string>
 
-#include "common/command_line.hpp"
-#include "contact/contact_states.hpp"
 #include "contact/contact_table.hpp"
 #include "contact/grip_refinement.hpp"
 #include "contact/hard_cases.hpp"
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/scene_parser.hpp"

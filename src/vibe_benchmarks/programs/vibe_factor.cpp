@@ -1,16 +1,21 @@
 // Compares the times of the sparse factor with those of CHOLMOD (supernodal), on the stiffness of a stomach and of a
 // block.
 #include <Eigen/CholmodSupport>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <string>
 
-#include "sparse/eigen_matrix.hpp"
-#include "sparse/stiffness_worlds.hpp"
+#include "fem/mesh_generators.hpp"
+#include "tetrahedra/tetrahedra.hpp"
+#include "vibe_core/builder/model_builder.hpp"
+#include "vibe_core/builder/wall_body.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/sparse/factor.hpp"
 
 namespace {
 
@@ -26,6 +31,62 @@ const char kHelp[] =
     "from the order that is there. CHOLMOD calls the BLAS of the system, which decides its times.\n";
 
 constexpr int kRepeats = 15;  // design choice: the median of this many runs is reproducible to a few percent
+
+/// The wall of the organ of a scene with tissue.model: shell.
+ElasticBody stomachBody(const std::string& scene_file) {
+  Scene scene = loadScene(scene_file);
+  scene.scope.reset(), scene.helix.reset(), scene.suture.reset(), scene.bleeding.reset(), scene.marking.reset();
+  return wallBody(*buildModel(scene, ""));
+}
+
+/// A block of linear tetrahedra of 10 mm, held at one end.
+ElasticBody blockBody(const std::array<int, 3>& cells) {
+  const benchmarks::BenchMesh mesh =
+      benchmarks::makeBox(Eigen::Vector3d::Zero(), 0.01 * Eigen::Vector3d(cells[0], cells[1], cells[2]), cells, 6);
+  const auto elements = std::make_shared<const benchmarks::TetElements<4>>(
+      benchmarks::TetMesh<4>{mesh.nodes, mesh.tets, {{Law::NeoHookean, 3e4, 0.45, 0}}, {}});
+  ElasticBody body;
+  body.elements = elements;
+  body.rest = mesh.nodes;
+  body.mass = elements->lumpedMass(1000);
+  for (const Eigen::Vector3d& p : mesh.nodes) body.fixed.push_back(p.x() < 1e-9 ? 1 : 0);
+  return body;
+}
+
+/// Stiffness at rest with the inertia of a step of 1/60 s, as the implicit solver factors it.
+BlockMatrix stiffnessOf(const ElasticBody& body) {
+  constexpr double kInertia = 3600;  // [1/s^2]
+  BlockMatrix matrix(std::make_shared<BlockPattern>(blockPattern(body.nodeCount(), body.elements->nodeGroups())));
+  const std::vector<double> displacement(3 * body.rest.size(), 0.0);
+  body.elements->addStiffness(displacement.data(), matrix);
+  for (int n = 0; n < body.nodeCount(); ++n) {
+    const double spring = body.foundation.empty() ? 0 : body.foundation[n];
+    matrix.add(n, n, (kInertia * body.mass[n] + spring) * Eigen::Matrix3d::Identity());
+  }
+  for (int n = 0; n < body.nodeCount(); ++n)
+    if (body.fixed[n] != 0) matrix.fix(n);
+  return matrix;
+}
+
+/// The same for other solvers, both triangles.
+Eigen::SparseMatrix<double> eigenMatrix(const BlockMatrix& matrix) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto put = [&](int row, int column, const Eigen::Matrix3d& block) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) entries.emplace_back(3 * row + i, 3 * column + j, block(i, j));
+  };
+  const BlockPattern& pattern = matrix.pattern();
+  for (int i = 0; i < pattern.size; ++i) {
+    put(i, i, matrix.diagonal()[i]);
+    for (int k = pattern.start[i]; k < pattern.start[i + 1]; ++k) {
+      put(i, pattern.column[k], matrix.lower()[k]);
+      put(pattern.column[k], i, matrix.lower()[k].transpose());
+    }
+  }
+  Eigen::SparseMatrix<double> result(3 * pattern.size, 3 * pattern.size);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
 
 void print(const std::string& matrix, const std::string& method, const std::string& part,
            const std::function<void()>& work) {
@@ -130,7 +191,7 @@ void printColumns(const std::string& name, const ElasticBody& body, const Factor
 }
 
 void printCholmod(const std::string& name, const BlockMatrix& matrix) {
-  const Eigen::SparseMatrix<double> a = test::eigenMatrix(matrix);
+  const Eigen::SparseMatrix<double> a = eigenMatrix(matrix);
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholmod;
   const Eigen::VectorXd b = Eigen::VectorXd::Ones(a.rows());
   Eigen::VectorXd x = b;
@@ -141,9 +202,9 @@ void printCholmod(const std::string& name, const BlockMatrix& matrix) {
 
 void printTable(const std::string& scene) {
   std::printf("%-8s %-14s %-8s %9s %9s\n", "matrix", "method", "part", "least", "median");
-  for (const auto& [name, body] : {std::pair<std::string, ElasticBody>("stomach", test::stomachBody(scene)),
-                                   std::pair<std::string, ElasticBody>("block", test::cantilever({14, 10, 8}))}) {
-    const BlockMatrix matrix = test::stiffnessOf(body);
+  for (const auto& [name, body] : {std::pair<std::string, ElasticBody>("stomach", stomachBody(scene)),
+                                   std::pair<std::string, ElasticBody>("block", blockBody({14, 10, 8}))}) {
+    const BlockMatrix matrix = stiffnessOf(body);
     std::printf("# %s: %d nodes\n", name.c_str(), matrix.pattern().size);
     printAssembly(name, body);
     printOwn(name, matrix);

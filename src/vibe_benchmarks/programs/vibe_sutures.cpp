@@ -3,10 +3,10 @@
 #include <iostream>
 #include <string>
 
-#include "common/command_line.hpp"
 #include "suture/outcome_study.hpp"
 #include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/scene_parser.hpp"

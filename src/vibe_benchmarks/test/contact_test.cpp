@@ -4,11 +4,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "contact/contact_check.hpp"
-#include "contact/contact_states.hpp"
+#include "contact/bench_tools.hpp"
+#include "contact/contact_run.hpp"
 #include "contact/contact_table.hpp"
-#include "contact/free_hand.hpp"
-#include "contact/joint_limits.hpp"
 #include "contact_scene.hpp"
 #include "vibe_core/common/error.hpp"
 

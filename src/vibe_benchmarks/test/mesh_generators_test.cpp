@@ -7,8 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "fem/mesh_refine.hpp"
-#include "fem/oscillation.hpp"
+#include "fem/vibration.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe::benchmarks::mesh_generators_test {

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <sstream>
 
-#include "procedure/needle.hpp"
 #include "suture/outcome_study.hpp"
 #include "suture/pattern_study.hpp"
 #include "suture/set_scenario.hpp"
-#include "suture/wall_crossing.hpp"
+#include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
+#include "vibe_core/procedure/bite.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/suture/technique.hpp"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "common/command_line.hpp"
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/command_line.hpp"
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/suture/technique.hpp"
 #include "vibe_core/suture/technique_csv.hpp"

@@ -2,14 +2,42 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 
-#include "contact/contact_check.hpp"
-#include "contact/self_contact.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/constraints/wall_contacts.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe::benchmarks {
+
+std::shared_ptr<const Model> modelAt(const ContactCase& one, const ContactSetting& setting) {
+  auto model = std::make_shared<Model>();
+  model->scene = one.model->scene;
+  model->organ = one.model->organ;
+  model->scene.step_period = 1.0 / setting.rate;
+  model->scene.tissue.iterations = setting.iterations;
+  model->scene.tissue.spectral_radius = setting.spectral_radius;
+  finishModel(one.urdf, *model);
+  return model;
+}
+
+ContactCheck::ContactCheck(const Model& model) : model_(model) {
+  for (const End end : model.organ.end) open_.push_back(end != End::None ? 1 : 0);
+}
+
+const std::vector<WallCrossings::Pair>& ContactCheck::wall(const State& state) {
+  return wall_.find({model_.organ.surface.triangles, state.x, state.y, state.z});
+}
+
+ToolCrossing ContactCheck::tool(const State& state) {
+  if (!model_.tool) return {};
+  passes_ = open_;
+  for (const GripPoint& point : state.grip) passes_[static_cast<std::size_t>(point.particle)] = 1;
+  model_.tool->forwardKinematics(state.joints, state.tool_displacement, poses_);
+  for (Eigen::Isometry3d& pose : poses_) pose = model_.tool_base * pose;
+  return findToolCrossing(*model_.tool, poses_, {model_.organ.surface.triangles, state.x, state.y, state.z}, passes_);
+}
+
 namespace {
 
 constexpr int kFramesPerSecond = 60;
@@ -37,7 +65,10 @@ double distance(const std::array<std::vector<double>, 3>& a, const std::array<st
 class Recorder {
  public:
   Recorder(const ContactCase& one, const ContactSetting& setting)
-      : one_(one), simulation_(modelAt(one, setting), SimulationSettings::study(1)), check_(simulation_.model()) {
+      : one_(one),
+        simulation_(modelAt(one, setting), SimulationSettings::study(1)),
+        check_(simulation_.model()),
+        contacts_(simulation_.model()) {
     trace_.setting = setting;
     simulation_.replaceState(one.start);
     trace_.frames.push_back({one.start.x, one.start.y, one.start.z});
@@ -85,23 +116,14 @@ class Recorder {
     trace_.frames.push_back({state.x, state.y, state.z});
     trace_.crossings = std::max(trace_.crossings, static_cast<int>(check_.wall(state).size()));
     trace_.depth = std::max(trace_.depth, check_.tool(state).depth);
-    trace_.pairs = std::max(trace_.pairs, countPairs(state));
-  }
-
-  int countPairs(const State& state) {
-    const Model& model = simulation_.model();
-    if (!model.scene.tissue.self_contact) return 0;
-    if (!contact_) contact_.emplace(model.organ.surface, model.organ.thickness, model.scene.tissue.young_modulus);
-    contact_->detect({state.x.data(), state.y.data(), state.z.data()},
-                     {state.vx.data(), state.vy.data(), state.vz.data()}, 0, 0);
-    return static_cast<int>(contact_->pairs().size());
+    trace_.pairs = std::max(trace_.pairs, contacts_.count(state));
   }
 
   const ContactCase& one_;
   Simulation simulation_;
   ContactCheck check_;
+  WallContacts contacts_;
   ContactTrace trace_;
-  std::optional<SelfContact> contact_;
   bool first_ = true;
 };
 

@@ -1,12 +1,67 @@
 #pragma once
-#include <Eigen/Core>
+
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
 #include <vector>
 
-#include "contact/contact_case.hpp"
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "vibe_core/contact/tool_crossings.hpp"
+#include "vibe_core/contact/wall_crossings.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/simulation/simulation.hpp"
+#include "vibe_core/state/state.hpp"
 
 namespace vibe::benchmarks {
+
+/// Force that a case compares.
+enum class ContactSignal { ToolForce, ThreadTension };
+
+/// A start state with contact and the motion of the hand that follows, prescribed over time, so that any step period
+/// gives the same motion.
+struct ContactCase {
+  std::string name;
+  std::shared_ptr<const Model> model;  ///< at the step period at which it was prepared
+  std::string urdf;                    ///< text, of the tool
+  State start;                         ///< at time 0
+  double duration = 1;                 ///< [s]
+  /// Command of the step that ends at a time after the start [s].
+  std::function<StepInput(double end)> input;
+  ContactSignal signal = ContactSignal::ToolForce;
+};
+
+/// Settings of the implicit step.
+struct ContactSetting {
+  int rate = 60;                 ///< steps per second, a multiple of 60 [Hz]
+  int iterations = 4;            ///< tissue.iterations
+  double spectral_radius = 0.2;  ///< tissue.spectral_radius
+};
+
+/// The model of the case with another setting.
+std::shared_ptr<const Model> modelAt(const ContactCase& one, const ContactSetting& setting);
+
+/// Looks for walls and tools that pass through each other, with none of the solver's own contact.
+class ContactCheck {
+ public:
+  explicit ContactCheck(const Model& model);
+
+  /// Pairs of triangles without common vertex that intersect.
+  const std::vector<WallCrossings::Pair>& wall(const State& state);
+
+  /// The tool in the wall, without the open ends and what the helix holds.
+  ToolCrossing tool(const State& state);
+
+ private:
+  const Model& model_;
+  WallCrossings wall_;
+  std::vector<char> open_, passes_;
+  std::vector<Eigen::Isometry3d> poses_;
+};
 
 /// Record of a case at one setting.
 struct ContactTrace {

@@ -1,13 +1,12 @@
-#include "contact/contact_states.hpp"
+#include "contact/contact_table.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "contact/free_hand.hpp"
-#include "contact/scope_motion.hpp"
-#include "suture/set_layout.hpp"
+#include "contact/bench_tools.hpp"
 #include "suture/suture_session.hpp"
+#include "suture/wall_plan.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::benchmarks {

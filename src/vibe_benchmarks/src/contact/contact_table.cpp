@@ -4,8 +4,6 @@
 #include <cstdio>
 #include <map>
 
-#include "contact/contact_states.hpp"
-
 namespace vibe::benchmarks {
 namespace {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <ostream>
 
-#include "contact/free_hand.hpp"
+#include "contact/bench_tools.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/rotation.hpp"

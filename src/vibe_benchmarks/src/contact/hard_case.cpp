@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <ostream>
 
-#include "contact/contact_check.hpp"
+#include "contact/contact_run.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <ostream>
 
-#include "contact/joint_limits.hpp"
+#include "contact/bench_tools.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/bench_tools.hpp"
 #include "contact/hard_cases.hpp"
-#include "contact/scope_motion.hpp"
-#include "suture/set_layout.hpp"
 #include "suture/suture_session.hpp"
+#include "suture/wall_plan.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::benchmarks {

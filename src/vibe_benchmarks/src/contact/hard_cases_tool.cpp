@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/bench_tools.hpp"
 #include "contact/hard_cases.hpp"
-#include "contact/joint_limits.hpp"
-#include "contact/scope_motion.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/random.hpp"
 

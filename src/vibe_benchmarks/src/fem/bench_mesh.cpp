@@ -6,9 +6,9 @@
 #include <limits>
 #include <sstream>
 
-#include "scene/unit.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/unit.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fem/fem_case.hpp"
-#include "solver/elastic_body.hpp"
+#include "vibe_core/solver/elastic_body.hpp"
 
 namespace vibe::benchmarks {
 

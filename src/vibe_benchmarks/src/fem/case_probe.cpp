@@ -1,4 +1,4 @@
-#include "fem/case_probe.hpp"
+#include "fem/case_runner.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -1,8 +1,10 @@
 #include "fem/case_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
+#include "fem/mesh_generators.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
 
@@ -49,6 +51,95 @@ Eigen::Vector3d CaseReader::direction(const YamlField& field) const {
 std::string CaseReader::path(const YamlField& field) const {
   const std::string given = source_.text(field);
   return given[0] == '/' ? given : folder_ + given;
+}
+
+namespace {
+
+void readBox(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero(), size = origin, cells = origin;
+  int tets = 6;
+  reader.readMap(
+      field, {"size", "cells"},
+      {{"origin", [&](const YamlField& f) { origin = reader.vector(f, "m"); }},
+       {"size", [&](const YamlField& f) { size = reader.vector(f, "m"); }},
+       {"cells",
+        [&](const YamlField& f) {
+          cells = reader.vector(f, "1");
+          if (cells != cells.array().round().matrix() || cells.minCoeff() < 1 || cells.prod() > 1e6)
+            reader.source().fail(f,
+                                 "needs three whole numbers above 0 with a product up to a million; "
+                                 "write for example [24, 6, 6]");
+        }},
+       {"tets_per_cell", [&](const YamlField& f) { tets = static_cast<int>(reader.source().integer(f, 5, 6)); }}});
+  mesh =
+      makeBox(origin, size, {static_cast<int>(cells[0]), static_cast<int>(cells[1]), static_cast<int>(cells[2])}, tets);
+}
+
+void readEllipsoid(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
+  double radius = 0, half_length = 0;
+  int nodes = 0;
+  reader.readMap(
+      field, {"radius", "half_length", "nodes"},
+      {{"radius", [&](const YamlField& f) { radius = reader.number(f, "m", 1e-9, 1e9); }},
+       {"half_length", [&](const YamlField& f) { half_length = reader.number(f, "m", 1e-9, 1e9); }},
+       {"nodes", [&](const YamlField& f) { nodes = static_cast<int>(reader.source().integer(f, 14, 1000000)); }}});
+  mesh = makeEllipsoid(radius, half_length, nodes);
+}
+
+/// The nodes of a set given by a box in space, or the node nearest to a point.
+void readSet(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
+  const double far = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(-far), high = Eigen::Vector3d::Constant(far), near;
+  bool nearest = false;
+  reader.readMap(field, {},
+                 {{"min", [&](const YamlField& f) { low = reader.vector(f, "m"); }},
+                  {"max", [&](const YamlField& f) { high = reader.vector(f, "m"); }},
+                  {"nearest", [&](const YamlField& f) {
+                     near = reader.vector(f, "m");
+                     nearest = true;
+                   }}});
+  std::vector<int>& set = mesh.sets[field.key];
+  set.clear();
+  for (int n = 0; n < static_cast<int>(mesh.nodes.size()); ++n) {
+    if (!nearest && (mesh.nodes[n].array() >= low.array()).all() && (mesh.nodes[n].array() <= high.array()).all())
+      set.push_back(n);
+    if (nearest && (set.empty() || (mesh.nodes[n] - near).norm() < (mesh.nodes[set[0]] - near).norm())) set = {n};
+  }
+  if (set.empty()) reader.source().fail(field, "has no node; widen its box");
+}
+
+}  // namespace
+
+void readMesh(const CaseReader& reader, const YamlField& field, BenchMesh& mesh) {
+  std::string tets, tris, sets;
+  std::vector<YamlField> named;
+  reader.readMap(field, {},
+                 {{"box", [&](const YamlField& f) { readBox(reader, f, mesh); }},
+                  {"ellipsoid", [&](const YamlField& f) { readEllipsoid(reader, f, mesh); }},
+                  {"nodes", [&](const YamlField& f) { mesh.nodes = readNodes(reader.path(f)); }},
+                  {"tets", [&](const YamlField& f) { tets = reader.path(f); }},
+                  {"tris", [&](const YamlField& f) { tris = reader.path(f); }},
+                  {"sets", [&](const YamlField& f) { sets = reader.path(f); }},
+                  {"named", [&](const YamlField& f) {
+                     for (const YamlField& entry : reader.source().map(f)) named.push_back(entry);
+                   }}});
+  const int count = static_cast<int>(mesh.nodes.size());
+  if (count == 0) reader.source().fail(field, "has no nodes; give 'nodes' with 'tets' or 'tris', 'box' or 'ellipsoid'");
+  if (!tets.empty()) {
+    const auto numbers = readElements(tets, 4, count);
+    for (std::size_t i = 0; i < numbers.size(); i += 4)
+      mesh.tets.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]});
+  }
+  if (!tris.empty()) {
+    const auto numbers = readElements(tris, 3, count);
+    for (std::size_t i = 0; i < numbers.size(); i += 3)
+      mesh.triangles.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+  }
+  if (!sets.empty())
+    for (const auto& set : readSets(sets, count)) mesh.sets[set.first] = set.second;
+  for (const YamlField& set : named) readSet(reader, set, mesh);
+  if (mesh.tets.empty() == mesh.triangles.empty())
+    reader.source().fail(field, "needs either tetrahedra or triangles; give one of 'tets' and 'tris'");
 }
 
 }  // namespace vibe::benchmarks

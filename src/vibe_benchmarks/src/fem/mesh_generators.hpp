@@ -1,4 +1,5 @@
 #pragma once
+
 #include "fem/bench_mesh.hpp"
 
 namespace vibe::benchmarks {
@@ -15,5 +16,14 @@ BenchMesh makeBox(const Eigen::Vector3d& origin, const Eigen::Vector3d& size, co
 /// @param radius, half_length  semi-axes across and along z [m]
 /// @throws Error for fewer than 14 nodes or semi-axes that are not positive
 BenchMesh makeEllipsoid(double radius, double half_length, int nodes);
+
+/// Divides every triangle into four at the midpoints of its sides. A new node joins the sets that contain both ends of
+/// its side.
+/// @param project  semi-axes of an ellipsoid about the origin onto which the new nodes are projected; zero: no
+///         projection [m]
+BenchMesh refineTriangles(const BenchMesh& mesh, const Eigen::Vector3d& project);
+
+/// Adds nodes at the midpoints of two others, numbered after the `before` existing ones, to the sets that contain both.
+void growSets(const std::vector<std::array<int, 2>>& middles, int before, BenchMesh& mesh);
 
 }  // namespace vibe::benchmarks

@@ -1,5 +1,5 @@
 #include "fem/case_reader.hpp"
-#include "scene/unit.hpp"
+#include "vibe_core/scene/unit.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fem/case_probe.hpp"
 #include "fem/case_runner.hpp"
-#include "fem/mode_solver.hpp"
-#include "fem/oscillation.hpp"
 #include "fem/static_path.hpp"
+#include "fem/vibration.hpp"
 
 namespace vibe::benchmarks {
 namespace {

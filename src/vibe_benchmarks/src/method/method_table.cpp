@@ -2,13 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
-#include "method/bullet_wall.hpp"
-#include "method/gradient_wall.hpp"
-#include "method/shape_matching_wall.hpp"
-#include "method/tet_wall.hpp"
 #include "method/trajectory.hpp"
 #include "method/wall.hpp"
 
@@ -114,26 +109,12 @@ void addSettings(const BenchWall& wall, const Truth& truth, bool quick, std::ost
   }
 }
 
-/// The same pull with other elements and other solvers on the same mesh.
-void addPeers(const BenchWall& wall, const Truth& truth, bool quick, std::ostream& log, std::vector<ResultRow>& rows) {
-  log << "wall: linear tetrahedra\n";
-  addPull(runTets(wall, truth.pull, kThree), truth, "linear_tet", kThree.name, rows);
-  rows.back().particles = 2 * kParticles;
-  for (const PatchChoice& choice : kPatchChoices) {
-    log << "wall: gradient domain, " << choice.name << "\n";
-    addPull(runGradient(wall, truth.start, truth.pull, choice), truth, "gradient_domain", choice.name, rows);
-  }
+/// The same pull with the other tissue model on the same mesh.
+void addShapeMatching(const BenchWall& wall, const Truth& truth, std::ostream& log, std::vector<ResultRow>& rows) {
   log << "wall: shape matching\n";
   int substeps = 0;
   const Trajectory matched = runShapeMatching(wall, truth.pull, substeps);
   addPull(matched, truth, "shape_matching", "60 Hz, " + std::to_string(substeps) + " sub-steps", rows);
-  for (const auto& [steps, iterations] : {std::pair<int, int>{1, 20}, {8, 4}, {32, 4}}) {
-    if (quick && steps > 1) continue;
-    char setting[40];
-    std::snprintf(setting, sizeof setting, "%d Hz, %d iterations", 60 * steps, iterations);
-    log << "wall: Bullet, " << setting << "\n";
-    addPull(runBullet(wall, truth.pull, steps, iterations), truth, "bullet_softbody", setting, rows);
-  }
 }
 
 /// One long pull with one setting, to check the equilibrium 1.5 s after the stop.
@@ -193,11 +174,7 @@ std::vector<ResultRow> runMethods(bool quick, std::ostream& log) {
   const BodyMotion start = inflate(wall, kExact);
   const Truth truth = findTruth(wall, start, quick, log);
   addSettings(wall, truth, quick, log, rows);
-  addPeers(wall, truth, quick, log, rows);
-  if (!quick) {
-    const auto pokes = runPokes(kParticles, log);
-    rows.insert(rows.end(), pokes.begin(), pokes.end());
-  }
+  addShapeMatching(wall, truth, log, rows);
   addLongPulls(wall, start, quick, log, rows);
   addGrowth(quick, log, rows);
   return rows;

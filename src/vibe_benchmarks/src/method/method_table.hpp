@@ -6,9 +6,9 @@
 
 namespace vibe::benchmarks {
 
-/// Compares every setting on the wall of 3,618 particles with one time-converged motion, and likewise linear
-/// tetrahedra, the gradient-domain deformation, the simulator's shape matching and Bullet's soft body on the same mesh.
-/// Also measures pokes on a foundation, pulls to 30, 40 and 50 mm, and the cost for growing numbers of particles.
+/// Compares every setting on the wall of 3,618 particles with one time-converged motion, and likewise the simulator's
+/// shape matching on the same mesh. Also measures pulls to 30, 40 and 50 mm, and the cost for growing numbers of
+/// particles.
 /// @param quick  fewer sizes and pulls
 std::vector<ResultRow> runMethods(bool quick, std::ostream& log);
 

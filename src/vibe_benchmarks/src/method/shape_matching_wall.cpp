@@ -1,9 +1,9 @@
-#include "method/shape_matching_wall.hpp"
+#include "method/trajectory.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "constraints/gas.hpp"
+#include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe::benchmarks {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tissue/shell.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "fem/mesh_generators.hpp"
-#include "solver/implicit_stepper.hpp"
-#include "tissue/shell.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe::benchmarks {
 namespace {
@@ -63,11 +63,6 @@ BenchWall makeWall(int nodes) {
 
 BodyLoads pressureLoads(const BenchWall& wall, double pressure) {
   BodyLoads loads;
-  if (wall.layers) {
-    wall.layers->setPressure(pressure);
-    loads.extra = wall.layers.get();
-    return loads;
-  }
   loads.gas.control = GasLoad::Control::Pressure;
   loads.gas.pressure = pressure;
   loads.gas.volume = wall.rest_volume;

@@ -2,9 +2,8 @@
 #include <memory>
 #include <vector>
 
-#include "method/layer_pressure.hpp"
-#include "solver/elastic_body.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
+#include "vibe_core/solver/elastic_body.hpp"
 #include "vibe_core/tissue/material.hpp"
 
 namespace vibe::benchmarks {
@@ -17,13 +16,12 @@ constexpr Material kWallTissue{Law::NeoHookean, 50e3, 0.45, 0};
 /// 1050 kg/m^3, with held ends (60 nodes of 3,618), inflated to 500 Pa. A disc of 5 mm radius at the equator is pulled
 /// inwards at constant speed and then held.
 struct BenchWall {
-  SurfaceMesh mesh;                       ///< middle surface at rest, long axis z
-  ElasticBody body;                       ///< damped by 30 1/s
-  std::vector<int> tool;                  ///< nodes of the disc
-  Eigen::Vector3d pull_direction;         ///< unit, inwards
-  double pressure = 500;                  ///< [Pa]
-  double rest_volume = 0;                 ///< [m^3]
-  std::shared_ptr<LayerPressure> layers;  ///< of a solid wall, in place of the gas of a shell; null: a shell
+  SurfaceMesh mesh;                ///< middle surface at rest, long axis z
+  ElasticBody body;                ///< damped by 30 1/s
+  std::vector<int> tool;           ///< nodes of the disc
+  Eigen::Vector3d pull_direction;  ///< unit, inwards
+  double pressure = 500;           ///< [Pa]
+  double rest_volume = 0;          ///< [m^3]
 };
 BenchWall makeWall(int nodes);
 
@@ -38,7 +36,7 @@ struct Pull {
 /// The pressure, and three conditions per node of the disc: its start position, displaced by a distance.
 /// @param start  positions of the inflated wall
 BodyLoads wallLoads(const BenchWall& wall, const BodyMotion& start, double distance);
-/// The pressure alone. A solid wall has one pressure at a time: that of the most recent loads.
+/// The pressure alone.
 BodyLoads pressureLoads(const BenchWall& wall, double pressure);
 /// Force of the disc on the wall along the pull [N].
 double toolForce(const BenchWall& wall, const BodyLoads& loads);

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "output/result_row.hpp"
-#include "procedure/thread_events.hpp"
+#include "vibe_core/procedure/thread.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe::benchmarks {

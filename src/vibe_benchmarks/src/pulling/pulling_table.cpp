@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <fstream>
 
-#include "fem/case_probe.hpp"
+#include "fem/case_runner.hpp"
 #include "pulling/pulled_plate.hpp"
-#include "solver/implicit_stepper.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "suture/set_layout.hpp"
+#include "suture/wall_plan.hpp"
 #include "vibe_core/metrics/organ_measures.hpp"
 #include "vibe_core/scene/scene.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "suture/set_layout.hpp"
 #include "suture/suture_session.hpp"
+#include "suture/wall_plan.hpp"
 
 namespace vibe::benchmarks {
 

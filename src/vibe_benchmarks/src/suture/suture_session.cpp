@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "procedure/needle.hpp"
-#include "procedure/thread_events.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 #include "vibe_core/model/accounting.hpp"
+#include "vibe_core/procedure/bite.hpp"
+#include "vibe_core/procedure/thread.hpp"
 
 namespace vibe::benchmarks {
+
 namespace {
 
 constexpr double kStill = 1e-4;        // [m/s]
@@ -144,6 +147,12 @@ SewnSet SutureSession::sew(const std::vector<WallSpot>& spots, double after, std
   set.balance = energyBalance(model(), state()) - start_balance_;
   count(first_event, set);
   return set;
+}
+
+bool wallsCross(const Model& model, const State& state) {
+  SurfaceMesh mesh = model.organ.surface;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) mesh.vertices[v] = {state.x[v], state.y[v], state.z[v]};
+  return findSelfIntersection(TriangleTree(std::move(mesh))).first >= 0;
 }
 
 }  // namespace vibe::benchmarks

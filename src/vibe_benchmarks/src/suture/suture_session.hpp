@@ -1,11 +1,14 @@
 #pragma once
+
 #include <array>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "suture/wall_plan.hpp"
+#include "vibe_core/model/model.hpp"
 #include "vibe_core/simulation/simulation.hpp"
+#include "vibe_core/state/state.hpp"
 
 namespace vibe::benchmarks {
 
@@ -81,5 +84,8 @@ Suture sutureThrough(const Model& model, const SurfaceView& wall, const std::vec
 
 /// Fastest particle [m/s].
 double maxSpeed(const State& state);
+
+/// Whether the mid-surface of the wall intersects itself.
+bool wallsCross(const Model& model, const State& state);
 
 }  // namespace vibe::benchmarks

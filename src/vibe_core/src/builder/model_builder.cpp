@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <numeric>
 
-#include "constraints/gas.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/rotation.hpp"
 #include "scene/attachments.hpp"
@@ -13,6 +12,7 @@
 #include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/builder/tissue_registry.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/constraints/gas.hpp"
 
 namespace vibe {
 

@@ -15,8 +15,8 @@
 #include "geometry/remesh.hpp"
 #include "geometry/smoothing.hpp"
 #include "geometry/surface_check.hpp"
-#include "geometry/triangle_tree.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
 

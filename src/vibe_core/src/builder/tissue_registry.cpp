@@ -1,4 +1,5 @@
 #include "vibe_core/builder/tissue_registry.hpp"
+#include "vibe_core/builder/wall_body.hpp"
 
 #include <map>
 #include <mutex>
@@ -97,6 +98,16 @@ TissueAndSolver makeTissue(const Scene& scene, const Organ& organ, const std::ve
     throw Error(std::string(kKey) + " '" + scene.tissue.model + "' is unknown; " +
                 suggestKey(scene.tissue.model, tissueModelNames()));
   return factory({scene, organ, masses, areas, min_substeps});
+}
+
+ElasticBody wallBody(const Model& model) {
+  const auto* tissue = dynamic_cast<const ShellTissue*>(model.tissue.get());
+  if (tissue == nullptr)
+    throw Error("The tissue of '" + model.scene.name + "' has no elements; give it tissue.model: shell.");
+  ElasticBody body = shellBody({model.scene, model.organ, model.mass, model.area});
+  body.elements = tissue->elements();
+  body.shell = tissue->elements().get();
+  return body;
 }
 
 }  // namespace vibe

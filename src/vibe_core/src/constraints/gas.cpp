@@ -1,4 +1,4 @@
-#include "constraints/gas.hpp"
+#include "vibe_core/constraints/gas.hpp"
 
 #include <algorithm>
 

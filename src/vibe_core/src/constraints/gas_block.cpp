@@ -1,7 +1,7 @@
 #include "constraints/gas_block.hpp"
 
-#include "constraints/gas.hpp"
 #include "geometry/lumen.hpp"
+#include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "solver/elastic_body.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
+#include "vibe_core/solver/elastic_body.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {

@@ -7,10 +7,10 @@
 
 #include "contact/tool_guard.hpp"
 #include "haptics/impedance_estimator.hpp"
-#include "solver/implicit_stepper.hpp"
 #include "solver/sum_term.hpp"
 #include "vibe_core/constraints/constraint_block.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe {
 

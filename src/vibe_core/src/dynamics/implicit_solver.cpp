@@ -4,8 +4,8 @@
 
 #include "contact/surface_contacts.hpp"
 #include "dynamics/implicit_step.hpp"
-#include "tissue/shell.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "dynamics/loss_limits.hpp"
-#include "solver/implicit_stepper.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe {
 

@@ -5,10 +5,10 @@
 #include "contact/tool_motion.hpp"
 #include "dynamics/implicit_scratch.hpp"
 #include "dynamics/loss_limits.hpp"
-#include "solver/implicit_stepper.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/elementary.hpp"
-#include "tissue/shell.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "solver/elastic_body.hpp"
+#include "vibe_core/solver/elastic_body.hpp"
 
 namespace vibe {
 

@@ -5,11 +5,11 @@
 
 #include "common/elementary.hpp"
 #include "constraints/depenetration.hpp"
-#include "constraints/gas.hpp"
 #include "contact/deepest_contact.hpp"
 #include "contact/tool_motion.hpp"
 #include "model/max_speed.hpp"
 #include "model/tool_push.hpp"
+#include "vibe_core/constraints/gas.hpp"
 
 namespace vibe {
 

@@ -10,9 +10,6 @@ namespace vibe {
 /// The side of the stomach at an angle around its axis (see StomachAxis::angleAt). Each side covers a quarter.
 Wall wallAtAngle(double angle);
 
-/// Axis of an organ whose surface, ends and landmarks are known.
-StomachAxis findAxis(const Organ& organ);
-
 /// Fills region and wall of an organ whose surface, ends, entry and landmarks are known:
 ///   cardia   within 2 cm of the gastro-oesophageal junction, and the oesophagus above it
 ///   fundus   higher than the junction

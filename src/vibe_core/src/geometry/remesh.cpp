@@ -9,8 +9,8 @@
 
 #include "geometry/editable_mesh.hpp"
 #include "geometry/smoothing.hpp"
-#include "geometry/triangle_tree.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
 

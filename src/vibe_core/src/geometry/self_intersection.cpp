@@ -1,4 +1,4 @@
-#include "geometry/self_intersection.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/self_intersection.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
 

@@ -1,4 +1,4 @@
-#include "geometry/triangle_tree.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 #include <algorithm>
 #include <cmath>

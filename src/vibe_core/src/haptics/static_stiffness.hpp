@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solver/constraint_schur.hpp"
-#include "solver/elastic_body.hpp"
+#include "vibe_core/solver/elastic_body.hpp"
 
 namespace vibe {
 

@@ -9,8 +9,8 @@
 #include "geometry/lumen.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/surface_operators.hpp"
-#include "geometry/triangle_tree.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "constraints/gas.hpp"
 #include "contact/deepest_contact.hpp"
 #include "geometry/lumen.hpp"
+#include "vibe_core/constraints/gas.hpp"
 
 namespace vibe {
 

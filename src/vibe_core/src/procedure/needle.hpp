@@ -6,6 +6,7 @@
 #include "procedure/needle_path.hpp"
 #include "vibe_core/geometry/surface_view.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/procedure/bite.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
@@ -26,14 +27,5 @@ struct NeedleReach {
 /// @param begin, end  of the needle's path, in world [m]
 NeedleReach reachOfNeedle(const Model& model, const State& state, const Eigen::Vector3d& begin,
                           const Eigen::Vector3d& end);
-
-/// The particles around a point of the wall, with weights that fall smoothly to 0 at `radius`: area at rest times
-/// (1 - (d / radius)^2)^2. Only wall that is connected to the point within the radius counts, not a wall opposite to
-/// it. The corners of the triangle always take part: on a coarse mesh the radius grows to 1.5 times their distance.
-/// @param point  on `triangle` [m]
-Bite biteAround(const Model& model, const SurfaceView& wall, int triangle, const Eigen::Vector3d& point, double radius);
-
-/// The particle of the bite with the largest weight; -1 without particles.
-int nearestParticle(const Bite& bite);
 
 }  // namespace vibe

@@ -8,7 +8,7 @@
 
 #include "common/constants.hpp"
 #include "common/elementary.hpp"
-#include "geometry/triangle_tree.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
 

@@ -1,4 +1,4 @@
-#include "scene/unit.hpp"
+#include "vibe_core/scene/unit.hpp"
 
 #include <cctype>
 #include <charconv>

@@ -9,10 +9,10 @@
 #include <sstream>
 
 #include "scene/printable.hpp"
-#include "scene/unit.hpp"
 #include "scene/yaml_guard.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/unit.hpp"
 
 namespace vibe {
 namespace {

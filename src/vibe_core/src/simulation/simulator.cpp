@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "constraints/gas.hpp"
 #include "contact/tool_motion.hpp"
 #include "events/emit_event.hpp"
 #include "procedure/marking.hpp"
@@ -13,6 +12,7 @@
 #include "procedure/procedure.hpp"
 #include "procedure/set_point.hpp"
 #include "procedure/thread_events.hpp"
+#include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/procedure/helix_grip.hpp"
 
 namespace vibe {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "sparse/factor.hpp"
 #include "vibe_core/solver/body_loads.hpp"
+#include "vibe_core/sparse/factor.hpp"
 
 namespace vibe {
 

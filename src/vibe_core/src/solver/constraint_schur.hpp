@@ -9,8 +9,8 @@
 #include "solver/constraint_rows.hpp"
 #include "solver/contact_problem.hpp"
 #include "solver/half_rows.hpp"
-#include "sparse/factor.hpp"
 #include "suture/limited_slide.hpp"
+#include "vibe_core/sparse/factor.hpp"
 
 namespace vibe {
 

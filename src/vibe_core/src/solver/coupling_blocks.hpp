@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "sparse/block_matrix.hpp"
+#include "vibe_core/sparse/block_matrix.hpp"
 #include "vibe_core/state/stiffness_coupling.hpp"
 
 namespace vibe {

@@ -1,4 +1,4 @@
-#include "solver/implicit_stepper.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tissue/shell.hpp"
 #include "vibe_core/solver/energy_term.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe {
 

@@ -6,8 +6,8 @@
 
 #include "common/background_worker.hpp"
 #include "solver/constraint_schur.hpp"
-#include "solver/implicit_stepper.hpp"
 #include "solver/row_unknowns.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/implicit_stepper.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe {
 

@@ -1,4 +1,4 @@
-#include "sparse/block_matrix.hpp"
+#include "vibe_core/sparse/block_matrix.hpp"
 
 #include <algorithm>
 #include <string>

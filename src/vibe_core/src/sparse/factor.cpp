@@ -1,4 +1,4 @@
-#include "sparse/factor.hpp"
+#include "vibe_core/sparse/factor.hpp"
 
 #include <cmath>
 #include <string>

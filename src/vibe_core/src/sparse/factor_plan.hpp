@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "sparse/factor.hpp"
 #include "sparse/panel_kernel.hpp"
+#include "vibe_core/sparse/factor.hpp"
 
 namespace vibe {
 

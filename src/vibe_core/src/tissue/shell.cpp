@@ -1,4 +1,4 @@
-#include "tissue/shell.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tissue/shell_fibres.hpp"
+#include "tissue/shell_kernel.hpp"
 
 namespace vibe {
 namespace {
@@ -16,8 +17,11 @@ constexpr int kReferenceSteps = 12;  // of Newton's method for the stretch acros
 
 }  // namespace
 
-ShellElements::ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin, ShellKernel kernel)
-    : mesh_(std::move(mesh)), origin_(origin), kernel_(kernel) {
+ShellElements::ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin)
+    : ShellElements(std::move(mesh), origin, shellKernel()) {}
+
+ShellElements::ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin, const ShellKernel& kernel)
+    : mesh_(std::move(mesh)), origin_(origin), kernel_(std::make_unique<const ShellKernel>(kernel)) {
   checkMesh();
   for (std::size_t m = 0; m < mesh_.materials.size(); ++m) {
     checkMaterial(mesh_.materials[m], "material " + std::to_string(m) + " of the shell");
@@ -31,6 +35,10 @@ ShellElements::ShellElements(ShellMesh mesh, const Eigen::Vector3d& origin, Shel
 
 ShellElements::~ShellElements() = default;
 
+const double* ShellElements::rest(std::size_t triangle) const {
+  return rest_.data() + triangle * kShellGhostRows;
+}
+
 void ShellElements::makeBatches() {
   std::vector<std::vector<int>> groups(2 * mesh_.materials.size());
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e)
@@ -43,14 +51,14 @@ void ShellElements::makeBatches() {
 // Elements adjacent in the mesh are adjacent in its order. They are placed in the same lane of successive batches, not
 // in the lanes of one batch: adding to a node that the previous lane has just written would stall.
 void ShellElements::addRun(const std::vector<int>& triangles, int material, bool ghosts) {
-  const int count = static_cast<int>(triangles.size()), batches = (count + kTetLanes - 1) / kTetLanes;
+  const int count = static_cast<int>(triangles.size()), batches = (count + kBatchLanes - 1) / kBatchLanes;
   runs_.push_back({batch_count_, batch_count_ + batches, material, ghosts, batch_rest_.size()});
   for (int window = 0; window < batches; window += kWindow) {
     const int length = std::min(kWindow, batches - window);
     for (int step = 0; step < length; ++step) {
-      std::array<int, kTetLanes> lanes;
-      for (int lane = 0; lane < kTetLanes; ++lane) {
-        const int slot = window * kTetLanes + lane * length + step;
+      std::vector<int> lanes(kBatchLanes);
+      for (int lane = 0; lane < kBatchLanes; ++lane) {
+        const int slot = window * kBatchLanes + lane * length + step;
         lanes[static_cast<std::size_t>(lane)] = slot < count ? triangles[static_cast<std::size_t>(slot)] : -1;
       }
       addBatch(lanes, ghosts ? kShellGhostRows : kShellRows);
@@ -58,14 +66,14 @@ void ShellElements::addRun(const std::vector<int>& triangles, int material, bool
   }
 }
 
-void ShellElements::addBatch(const std::array<int, kTetLanes>& triangles, int rows) {
+void ShellElements::addBatch(const std::vector<int>& triangles, int rows) {
   const int filler = *std::max_element(triangles.begin(), triangles.end());  // -1: the lane is empty
   const std::size_t node = batch_node_.size(), row = batch_rest_.size();
   batch_node_.resize(node + 6);
   batch_rest_.resize(row + static_cast<std::size_t>(rows));
   const std::size_t fibre = batch_fibre_.size();
   if (!fibre_rest_.empty()) batch_fibre_.resize(fibre + kFibreRows);
-  for (std::size_t lane = 0; lane < kTetLanes; ++lane) {
+  for (std::size_t lane = 0; lane < kBatchLanes; ++lane) {
     const bool empty = triangles[lane] < 0;
     const std::size_t e = static_cast<std::size_t>(empty ? filler : triangles[lane]);
     for (int a = 0; a < 6; ++a) {
@@ -103,11 +111,11 @@ double ShellElements::evaluatePiece(int piece, ShellSweep sweep, double* volume)
     sweep.law = mesh_.materials[material].law;
     sweep.poisson_ratio = mesh_.materials[material].poisson_ratio;
     sweep.constants = &constants_[material];
-    energy += kernel_.sweep(sweep);
+    energy += kernel_->sweep(sweep);
     if (batch_fibre_.empty()) continue;
     sweep.fibre = batch_fibre_.data() + static_cast<std::size_t>(kFibreRows * sweep.first);
     sweep.fibre_stiffening = mesh_.fibres.stiffening;
-    energy += kernel_.fibres(sweep);
+    energy += kernel_->fibres(sweep);
   }
   if (volume != nullptr) *volume += sweep.volume;
   return energy;

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "common/kernel_path.hpp"
-#include "tissue/tetrahedra_kernel.hpp"
+#include "tissue/element_batch.hpp"
+#include "vibe_core/tissue/material.hpp"
 
 namespace vibe {
+
+struct LawConstants;
 
 // Rows of precomputed rest data per triangle of a shell, see ShellElements. A side is opposite the node of the same
 // number; its apex is the node beyond it.
@@ -22,16 +25,17 @@ constexpr int kFibreSide = 0;      ///< per side and family: the direction in th
 constexpr int kFibreModulus = 12;  ///< [Pa]
 constexpr int kFibreRows = 13;
 
-/// Arguments for evaluating some batches of triangles of one material; see TetSweep.
+/// Arguments for evaluating some batches of triangles of one material. Uses plain pointers, so that the translation
+/// units of the kernel share no inline code that one of them could compile for the wrong machine.
 struct ShellSweep {
-  const TetOffsets* node;  ///< (batches * 6)
-  const TetReals* rest;    ///< (batches * kShellRows or kShellGhostRows), from batch `first`
-  bool ghosts;             ///< whether the rows of ghosts are present
-  int first, last;         ///< batches, for `node`
+  const BatchOffsets* node;  ///< (batches * 6)
+  const BatchReals* rest;    ///< (batches * kShellRows or kShellGhostRows), from batch `first`
+  bool ghosts;               ///< whether the rows of ghosts are present
+  int first, last;           ///< batches, for `node`
   Law law;
   double poisson_ratio;
   const LawConstants* constants;
-  const TetReals* fibre;       ///< (batches * kFibreRows), from batch `first`; for fibres only
+  const BatchReals* fibre;     ///< (batches * kFibreRows), from batch `first`; for fibres only
   double fibre_stiffening;     ///< for fibres only
   const float* displacement4;  ///< [m]
   float* gradient4;            ///< added to [N]

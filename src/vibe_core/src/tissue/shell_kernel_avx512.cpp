@@ -15,14 +15,14 @@ struct ShellKernelOfPairs {
   static Half first(const Pack& both) { return Half(_mm512_castps512_ps256(both)); }
   static Half second(const Pack& both) { return Half(_mm512_extractf32x8_ps(both, 1)); }
 
-  [[gnu::always_inline]] static void load(const ShellSweep& s, const TetOffsets* offset, Pack (&out)[3]) {
+  [[gnu::always_inline]] static void load(const ShellSweep& s, const BatchOffsets* offset, Pack (&out)[3]) {
     Half a[3], b[3];
     Single::Lanes::load(s.displacement4, offset[0].lane, a);
     Single::Lanes::load(s.displacement4, offset[6].lane, b);
     for (int r = 0; r < 3; ++r) out[r] = both(a[r], b[r]);
   }
 
-  [[gnu::always_inline]] static void gather(const ShellSweep& s, const TetOffsets* offset, Pack (&u1)[3],
+  [[gnu::always_inline]] static void gather(const ShellSweep& s, const BatchOffsets* offset, Pack (&u1)[3],
                                             Pack (&u)[5][3]) {
     load(s, offset, u1);
     for (int a = 0; a < 5; ++a) {
@@ -32,7 +32,7 @@ struct ShellKernelOfPairs {
   }
 
   template <class Part>
-  [[gnu::always_inline]] static void scatter(const ShellSweep& s, const TetOffsets* offset, const Pack (&f)[5][3],
+  [[gnu::always_inline]] static void scatter(const ShellSweep& s, const BatchOffsets* offset, const Pack (&f)[5][3],
                                              const Part& part) {
     Half half[1][5][3];
     for (int a = 0; a < 5; ++a)
@@ -41,7 +41,7 @@ struct ShellKernelOfPairs {
   }
 
   template <class Part>
-  [[gnu::always_inline]] static void addShares(const ShellSweep& s, const TetOffsets* offset, const Pack (&share)[3],
+  [[gnu::always_inline]] static void addShares(const ShellSweep& s, const BatchOffsets* offset, const Pack (&share)[3],
                                                const Part& part) {
     const Half half[3] = {part(share[0]), part(share[1]), part(share[2])};
     for (int a = 0; a < 3; ++a) Single::Lanes::add(s.volume_gradient4, offset[a].lane, half);
@@ -52,10 +52,10 @@ struct ShellKernelOfPairs {
     constexpr int kRows = ghosts ? kShellGhostRows : kShellRows;
     const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
     Single::Lanes::Sum energy, enclosed;
-    const TetReals* rows = s.rest;
+    const BatchReals* rows = s.rest;
     int batch = s.first;
     for (; batch + 1 < s.last; batch += 2, rows += 2 * kRows) {
-      const TetOffsets* offset = s.node + batch * 6;
+      const BatchOffsets* offset = s.node + batch * 6;
       const auto rest = [=](int row) {
         return both(Half::load_aligned(rows[row].lane), Half::load_aligned(rows[kRows + row].lane));
       };

@@ -1,19 +1,19 @@
 #pragma once
 
+#include "tissue/element_batch_impl.hpp"
 #include "tissue/shell_fibres.hpp"
-#include "tissue/tetrahedra_kernel_impl.hpp"  // how lanes load nodes and add to them
 
 namespace vibe {
 namespace {
 
 template <class Arch>
 struct ShellKernelOf {
-  using Lanes = TetLanes<Arch>;
+  using Lanes = BatchLanes<Arch>;
   using Pack = typename Lanes::Pack;
-  static constexpr int kWidth = static_cast<int>(Pack::size), kParts = kTetLanes / kWidth;
+  static constexpr int kWidth = static_cast<int>(Pack::size), kParts = kBatchLanes / kWidth;
 
   /// The displacements of a patch relative to node 1, without ghosts.
-  [[gnu::always_inline]] static void gather(const ShellSweep& s, const TetOffsets* offset, int lane, Pack (&u1)[3],
+  [[gnu::always_inline]] static void gather(const ShellSweep& s, const BatchOffsets* offset, int lane, Pack (&u1)[3],
                                             Pack (&u)[5][3]) {
     Lanes::load(s.displacement4, offset[0].lane + lane, u1);
     for (int a = 0; a < 5; ++a) {
@@ -21,7 +21,7 @@ struct ShellKernelOf {
       for (int r = 0; r < 3; ++r) u[a][r] = u[a][r] - u1[r];
     }
   }
-  [[gnu::always_inline]] static void scatter(const ShellSweep& s, const TetOffsets* offset,
+  [[gnu::always_inline]] static void scatter(const ShellSweep& s, const BatchOffsets* offset,
                                              const Pack (&f)[kParts][5][3]) {
     for (int part = 0; part < kParts; ++part) {
       Pack f1[3];
@@ -36,8 +36,8 @@ struct ShellKernelOf {
   /// @param terms  made from the sweep
   template <Law law, bool ghosts, bool volume, class Sum>
   [[gnu::always_inline]] static void sweepBatch(ShellSweep& s, const WallTerms<Pack>& terms, int batch,
-                                                const TetReals* rows, Sum& energy, Sum& enclosed) {
-    const TetOffsets* offset = s.node + batch * 6;
+                                                const BatchReals* rows, Sum& energy, Sum& enclosed) {
+    const BatchOffsets* offset = s.node + batch * 6;
     Pack f[kParts][5][3], share[kParts][3];
     for (int part = 0; part < kParts; ++part) {
       const int lane = part * kWidth;
@@ -60,7 +60,7 @@ struct ShellKernelOf {
   static double sweepAll(ShellSweep& s) {
     const WallTerms<Pack> terms(*s.constants, s.poisson_ratio);
     typename Lanes::Sum energy, enclosed;
-    const TetReals* rows = s.rest;
+    const BatchReals* rows = s.rest;
     for (int batch = s.first; batch < s.last; ++batch, rows += ghosts ? kShellGhostRows : kShellRows)
       sweepBatch<law, ghosts, volume>(s, terms, batch, rows, energy, enclosed);
     if constexpr (volume) s.volume += enclosed.total();
@@ -70,10 +70,10 @@ struct ShellKernelOf {
   template <bool ghosts>
   static double sweepFibresOf(ShellSweep& s) {
     typename Lanes::Sum energy;
-    const TetReals *rows = s.rest, *fibres = s.fibre;
+    const BatchReals *rows = s.rest, *fibres = s.fibre;
     for (int batch = s.first; batch < s.last;
          ++batch, rows += ghosts ? kShellGhostRows : kShellRows, fibres += kFibreRows) {
-      const TetOffsets* offset = s.node + batch * 6;
+      const BatchOffsets* offset = s.node + batch * 6;
       Pack f[kParts][5][3];
       for (int part = 0; part < kParts; ++part) {
         const int lane = part * kWidth;

@@ -4,9 +4,9 @@
 #include <map>
 #include <string>
 
-#include "tissue/shell.hpp"
 #include "tissue/shell_point.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 // Rest data of a shell: the neighbours of each side, and the rows of shell_kernel.hpp.
 

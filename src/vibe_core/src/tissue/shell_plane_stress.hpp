@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "common/elementary.hpp"
-#include "tissue/tetrahedra_point.hpp"
+#include "tissue/material_law.hpp"
 
 // The laws of a solid applied to a wall with zero stress across it, for one wall or a pack of them; law_terms.hpp
 // explains why everything is in an unnamed namespace.
@@ -15,6 +15,12 @@ namespace {
 // more at rest.
 constexpr double kMinSlope = 0.01;
 constexpr int kRareSteps = 7;  // of Newton's method in rare states, where speed does not matter
+
+/// a b - c d
+template <class B>
+inline B minor(const B& a, const B& b, const B& c, const B& d) {
+  return minusMul(c, d, B(a * b));
+}
 
 inline double rootOf(double x) {
   return std::sqrt(x);

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "common/elementary.hpp"
-#include "tissue/shell.hpp"
 #include "tissue/shell_fibres.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe {
 namespace {

@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "tissue/shell.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/scene/scene.hpp"
+#include "vibe_core/tissue/shell.hpp"
 #include "vibe_core/tissue/tissue_model.hpp"
 
 namespace vibe {

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "tissue/shell.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/scene/scene.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe {
 

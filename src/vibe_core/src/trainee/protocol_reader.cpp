@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trainee/suture_pattern.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/trainee/suture_pattern.hpp"
 
 namespace vibe {
 namespace {

@@ -1,4 +1,4 @@
-#include "trainee/suture_pattern.hpp"
+#include "vibe_core/trainee/suture_pattern.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "trainee/operator.hpp"
-#include "trainee/suture_pattern.hpp"
+#include "vibe_core/trainee/suture_pattern.hpp"
 
 namespace vibe {
 

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "contact/self_contact.hpp"
-#include "solver/implicit_stepper.hpp"
 #include "tissue/shell_worlds.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe::self_contact_cinch_test {
 namespace {

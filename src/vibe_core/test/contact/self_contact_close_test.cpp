@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "contact/self_contact_worlds.hpp"
-#include "solver/implicit_stepper.hpp"
-#include "tissue/shell.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe::self_contact_close_test {
 namespace {

@@ -11,10 +11,10 @@
 #include "geometry/mesh_writer.hpp"
 #include "geometry/surface_check.hpp"
 #include "geometry/test_surfaces.hpp"
-#include "geometry/triangle_tree.hpp"
 #include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe::mesh_import_test {
 namespace {

@@ -10,8 +10,8 @@
 #include "geometry/regions.hpp"
 #include "geometry/surface_check.hpp"
 #include "geometry/surface_operators.hpp"
-#include "geometry/triangle_tree.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe::organ_builder_test {
 namespace {
@@ -76,7 +76,7 @@ TEST(Stomach, hasExactlyTheParticlesAndTheVolume) {
 TEST(Stomach, isAnEvenClosedSurface) {
   const Organ& organ = defaultStomach();
   EXPECT_NO_THROW(checkSurface(organ.surface, "stomach"));
-  const MeshQuality quality = measureQuality(organ.surface);
+  const test::MeshQuality quality = test::measureQuality(organ.surface);
   EXPECT_LT(quality.edge_variation, 0.12);
   EXPECT_GT(quality.smallest_angle, 30 * M_PI / 180);
   EXPECT_GE(quality.smallest_valence, 5);

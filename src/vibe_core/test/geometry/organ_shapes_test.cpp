@@ -9,9 +9,9 @@
 #include "geometry/regions.hpp"
 #include "geometry/stomach_knots.hpp"
 #include "geometry/surface_check.hpp"
-#include "geometry/triangle_tree.hpp"
 #include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
 #include "vibe_core/simulation/simulation.hpp"
@@ -49,7 +49,7 @@ TEST_P(ShippedStomach, IsAnEvenClosedSurfaceOfItsVolume) {
   EXPECT_EQ(organ.surface.vertices.size(), 3618u);
   const double volume = geometry.volume * std::pow(geometry.scale, 3);
   EXPECT_NEAR(enclosedVolume(organ.surface), volume, 1e-9 * volume);
-  const MeshQuality quality = measureQuality(organ.surface);
+  const test::MeshQuality quality = test::measureQuality(organ.surface);
   EXPECT_LT(quality.edge_variation, 0.12);
   EXPECT_GT(quality.smallest_angle, 30 * M_PI / 180);
 }

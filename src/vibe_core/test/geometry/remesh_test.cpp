@@ -19,7 +19,7 @@ constexpr double kDegree = M_PI / 180;
 
 void expectEven(const SurfaceMesh& mesh, const char* name) {
   EXPECT_NO_THROW(checkSurface(mesh, name));
-  const MeshQuality quality = measureQuality(mesh);
+  const test::MeshQuality quality = test::measureQuality(mesh);
   EXPECT_GE(quality.smallest_valence, 4) << name;
   EXPECT_LE(quality.largest_valence, 9) << name;
   EXPECT_GT(quality.smallest_angle, 25 * kDegree) << name;
@@ -56,7 +56,7 @@ TEST(Remesh, veryUnevenInputBecomesEven) {
   // needles at the poles, edges from 1 to 60 mm
   SurfaceMesh input = makeUvSphere(0.05, 4, 200);
   for (auto& v : input.vertices) v.z() *= 1.5;
-  EXPECT_GT(measureQuality(input).edge_variation, 0.6);  // else the test says nothing
+  EXPECT_GT(test::measureQuality(input).edge_variation, 0.6);  // else the test says nothing
   RemeshReport report;
   const SurfaceMesh mesh = remeshSurface(input, 1500, &report);
   expectEven(mesh, "uneven");
@@ -67,9 +67,9 @@ TEST(Remesh, veryUnevenInputBecomesEven) {
 TEST(Remesh, smoothsTheCreasesOfCoarseInput) {
   const SurfaceMesh input = makeUvSphere(0.05, 8, 12);
   RemeshReport report;
-  const MeshQuality fine = measureQuality(remeshSurface(input, 4000, &report));
+  const test::MeshQuality fine = test::measureQuality(remeshSurface(input, 4000, &report));
   EXPECT_TRUE(report.smoothed);
-  EXPECT_GT(measureQuality(input).largest_bend, 25 * kDegree);
+  EXPECT_GT(test::measureQuality(input).largest_bend, 25 * kDegree);
   EXPECT_LT(fine.largest_bend, 15 * kDegree);
 }
 

@@ -10,7 +10,7 @@
 #include "scene/expect_error.hpp"
 #include "scene/scene_value.hpp"
 #include "scene/schema_text.hpp"
-#include "scene/unit.hpp"
+#include "vibe_core/scene/unit.hpp"
 
 namespace vibe {
 

@@ -1,6 +1,6 @@
 // The balloon on paper: a membrane of modulus K = E t / (1 - nu) per length on a sphere stretched by e carries
 //   p = 2 K e / (R (1 + e)^2).
-#include "constraints/gas.hpp"
+#include "vibe_core/constraints/gas.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "constraints/gas.hpp"
 #include "geometry/lumen.hpp"
+#include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "worlds.hpp"
 

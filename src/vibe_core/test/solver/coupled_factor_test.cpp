@@ -19,7 +19,7 @@ constexpr double kContact = 30 * kE * kSide;  // stiff beside an element [N/m]
 /// Springs between nodes of the lower plate and points on triangles of the upper one, along z, unstrained at rest.
 class Springs : public EnergyTerm {
  public:
-  Springs(const TetMesh<4>& mesh, bool in_factor) : in_factor_(in_factor) {
+  Springs(const TetMesh& mesh, bool in_factor) : in_factor_(in_factor) {
     const int half = static_cast<int>(mesh.nodes.size()) / 2;
     const auto number = [](int x, int y, int z) { return (x * (kCubes[1] + 1) + y) * (kCubes[2] + 1) + z; };
     for (int x = 0; x < kCubes[0]; ++x)
@@ -61,9 +61,9 @@ class Springs : public EnergyTerm {
   std::vector<double> rest_;  // [m]
 };
 
-TetMesh<4> plates() {
-  TetMesh<4> mesh = tetBox(kCubes, kSide, neoHookean());
-  const TetMesh<4> other = mesh;
+TetMesh plates() {
+  TetMesh mesh = tetBox(kCubes, kSide, neoHookean());
+  const TetMesh other = mesh;
   const int count = static_cast<int>(mesh.nodes.size());
   for (const Eigen::Vector3d& node : other.nodes)
     mesh.nodes.push_back(node + Eigen::Vector3d(0, 0, kCubes[2] * kSide + kGap));
@@ -76,7 +76,7 @@ TetMesh<4> plates() {
 
 /// Both held at x = 0; the upper one is pressed down.
 ElasticBody platesBody() {
-  const auto elements = std::make_shared<const TetElements<4>>(plates());
+  const auto elements = std::make_shared<const LinearTetrahedra>(plates());
   ElasticBody body;
   body.elements = elements;
   body.rest = elements->mesh().nodes;

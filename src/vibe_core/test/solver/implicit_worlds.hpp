@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "solver/implicit_stepper.hpp"
-#include "tissue/tetrahedra_worlds.hpp"
+#include "solver/linear_tetrahedra.hpp"
+#include "tissue/element_worlds.hpp"
+#include "vibe_core/solver/implicit_stepper.hpp"
 
 /// Solid bodies for the tests of implicit steps.
 namespace vibe::test {
@@ -16,7 +17,7 @@ inline constexpr double kDensity = 1000;
 
 /// A block of linear tetrahedra, nothing held.
 inline ElasticBody block(std::array<int, 3> cubes, const Material& of, double side = kSide) {
-  const auto elements = std::make_shared<const TetElements<4>>(tetBox(cubes, side, of));
+  const auto elements = std::make_shared<const LinearTetrahedra>(tetBox(cubes, side, of));
   ElasticBody body;
   body.elements = elements;
   body.rest = elements->mesh().nodes;
@@ -48,10 +49,10 @@ struct Body {
   Eigen::Vector3d velocity(int i) const { return {motion.v[0][i], motion.v[1][i], motion.v[2][i]}; }
   int nodes() const { return stepper.body().nodeCount(); }
 
-  TetEvaluation elastic() const {
-    Eigen::VectorXd u(3 * nodes());
+  double elasticEnergy() const {
+    Eigen::VectorXd u(3 * nodes()), gradient(3 * nodes());
     for (int i = 0; i < nodes(); ++i) u.segment<3>(3 * i) = position(i) - stepper.body().rest[i];
-    return inDouble(*stepper.body().elements, u);
+    return stepper.body().elements->evaluate(u.data(), gradient.data());
   }
   double kinetic() const {
     double sum = 0;

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "sparse/block_matrix.hpp"
+#include "vibe_core/sparse/block_matrix.hpp"
 
 namespace vibe::test {
 

@@ -3,7 +3,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "sparse/block_matrix.hpp"
+#include "vibe_core/sparse/block_matrix.hpp"
 
 namespace vibe::test {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "geometry/regions.hpp"
-#include "geometry/triangle_tree.hpp"
 #include "procedure/marking_worlds.hpp"
 #include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe::mark_zones_test {
 namespace {

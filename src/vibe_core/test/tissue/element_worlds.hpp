@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
-#include "tissue/elastic_elements.hpp"
 #include "vibe_core/scene/material_law_list.hpp"
+#include "vibe_core/tissue/elastic_elements.hpp"
 #include "vibe_core/tissue/material.hpp"
 
 /// Materials and displacements for the tests of shells and of tetrahedra.

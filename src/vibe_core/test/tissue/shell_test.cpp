@@ -1,4 +1,4 @@
-#include "tissue/shell.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,8 @@
 #include <vector>
 
 #include "tissue/element_worlds.hpp"
-#include "tissue/shell.hpp"
+#include "tissue/shell_kernel.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 /// Walls and displacements for the tests of shells.
 namespace vibe::test {

@@ -1,5 +1,5 @@
 // Planned patterns are what they are called, for the recogniser that judges the bites.
-#include "trainee/suture_pattern.hpp"
+#include "vibe_core/trainee/suture_pattern.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,8 @@
 
 namespace vibe {
 
+struct Organ;
+
 /// The centreline of a stomach from the fundus to the pylorus, with the position of every vertex along and around it.
 /// Sections are level sets of the harmonic function between the two ends of the surface, so they follow any bend. The
 /// curve joins their centres.
@@ -49,5 +51,8 @@ class StomachAxis {
   std::vector<double> vertex_length_;  ///< (vertices)
   std::vector<double> vertex_angle_;   ///< (vertices)
 };
+
+/// Axis of an organ whose surface, ends and landmarks are known.
+StomachAxis findAxis(const Organ& organ);
 
 }  // namespace vibe

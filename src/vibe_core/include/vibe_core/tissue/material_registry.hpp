@@ -29,7 +29,7 @@ struct LawDerivatives {
 };
 
 /// An elastic law defined in another package. Once registered, scenes and benchmark cases refer to it by name like a
-/// built-in law, and shells and tetrahedra use it. It is evaluated triangle by triangle in double precision, while the
+/// built-in law, and shells and everything that evaluates a MaterialEnergy use it. It is evaluated triangle by triangle in double precision, while the
 /// built-in laws are compiled into kernels for several triangles at once; see CONTRIBUTING.md for the difference in
 /// speed.
 ///

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "vibe_core/solver/elastic_body.hpp"
+#include "vibe_core/solver/step_outcome.hpp"
+#include "vibe_core/sparse/factor.hpp"
+#include "vibe_core/state/stepper_memory.hpp"
+
+namespace vibe {
+
+struct StepSettings {
+  double step = 1.0 / 60;  ///< [s]
+  /// Generalised-alpha (Chung, Hulbert 1993): the part of the amplitude of the fastest motions that one step keeps;
+  /// 1: trapezoidal rule, conserves energy; 0: removes them in one step. [0, 1]
+  double spectral_radius = 0.2;
+  bool backward_euler = false;  ///< first order and strongly damping, for states far from any equilibrium
+  /// Quasi-Newton iterations of a step. It takes more while they do not halve what is left, up to a number of further
+  /// evaluations of the energy (kSpareEvaluations, kSpareInFallback); what remains then is left to the next steps,
+  /// which start from the true forces.
+  int iterations = 3;
+  double tolerance = 1e-7;  ///< a step ends earlier when no node would move farther than this [m]
+  /// A factor about other positions takes over this long after they were, and is made in the background meanwhile; a
+  /// whole number of steps, so that a replay has the same bits. 0: the factor stays [s]
+  double refactor_interval = 0.1;
+  double refactor_distance = 5e-4;  ///< it is begun when a node has moved farther than this [m]
+};
+
+/// The memory of a stepper: factors, histories, vectors. One per thread of control.
+class StepperScratch;
+class QuasiNewton;
+struct TimeScheme;
+
+/// Evaluations of the energy that a step may take beyond StepSettings::iterations. Design choice: eight, so that L-BFGS
+/// with a history of six pairs shows its superlinear rate in a step that needs it.
+constexpr int kSpareEvaluations = 8;
+/// The same of a step with backward Euler (StepSettings::backward_euler, or because one of the last steps did not
+/// arrive). Design choice: a step from far away spends half of its evaluations on line searches.
+constexpr int kSpareInFallback = 16;
+
+/// Backward Euler or generalised-alpha steps, and static equilibria, by quasi-Newton iterations: L-BFGS (Nocedal 1980)
+/// on top of the factor of a stiffness about an earlier state, with a line search on the energy.
+/// Conditions, contacts and the gas enter by the exact block elimination (Woodbury) of their few unknowns in the
+/// half-solved space, so they need no new factor.
+class ImplicitStepper {
+ public:
+  ImplicitStepper(ElasticBody body, StepSettings settings, FactorStorage storage = FactorStorage::Half);
+  ~ImplicitStepper();
+
+  const ElasticBody& body() const { return body_; }
+  const StepSettings& settings() const { return settings_; }
+
+  std::shared_ptr<StepperScratch> makeScratch() const;
+
+  /// Names the present positions as those that the factor is about, at once. Costs tens of step times.
+  void refactor(const MotionView& motion, StepperMemory& memory) const;
+
+  /// One step. Its work is limited by counts: settings().iterations + kSpareEvaluations evaluations of the energy, or
+  /// settings().iterations + kSpareInFallback with backward Euler, and at most two solves for each. A step that does
+  /// not arrive ends at the best point it has found, with the mean velocity over the step, and the next few steps take
+  /// backward Euler. Forces of the loads are their means over the step.
+  StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch) const;
+
+  /// The equilibrium under the loads from the positions in `motion` (velocities become 0), refactoring as it goes.
+  /// @param tolerance  no node would move farther [m]
+  StepOutcome settle(MotionView motion, BodyLoads& loads, StepperScratch& scratch, double tolerance,
+                     int max_iterations = 400) const;
+
+  /// Elastic energy at the positions [J].
+  double elasticEnergy(const MotionView& motion, StepperScratch& scratch) const;
+
+ private:
+  struct Plan;
+  bool extrapolates(bool fallback) const;
+  void guess(const MotionView& motion, bool fallback, StepperScratch& scratch) const;
+  static void correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome);
+  void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch,
+                   StepOutcome& outcome) const;
+  void iterate(QuasiNewton& newton, const StepperScratch& scratch, StepperMemory& memory, StepOutcome& outcome) const;
+  void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
+  void refactorHere(const BodyLoads& loads, StepperScratch& scratch) const;
+  void placeAtRest(const StepperScratch& scratch, const MotionView& motion) const;
+
+  ElasticBody body_;
+  StepSettings settings_;
+  std::unique_ptr<Plan> plan_;
+};
+
+}  // namespace vibe
