@@ -313,9 +313,9 @@ void ImplicitStep::reportHand(double tool_work) {
 void ImplicitStep::reportImpedance() {
   if (scratch_.touches.empty() && scratch_.loads.contacts.empty()) return;
   findToolContactRows(model_, *motion_, stepper_, report_, scratch_);
-  report_.tool_impedance =
-      scratch_.impedance->update(state_.step, scratch_.tool_rows, {state_.x.data(), state_.y.data(), state_.z.data()},
-                                 scratch_.stepper->volume_gradient, scratch_.loads.gas.stiffness, state_.impedance);
+  report_.tool_impedance = scratch_.impedance->update(
+      state_.step, scratch_.tool_rows, {state_.x.data(), state_.y.data(), state_.z.data()},
+      scratch_.stepper->last.volume_gradient, scratch_.loads.gas.stiffness, state_.impedance);
 }
 
 void ImplicitStep::account() {

@@ -74,14 +74,14 @@ double shortestDistance(const ElasticBody& body) {
 // which only determines the rate of convergence.
 double foreseenVolume(const GasLoad& gas, const MotionView& motion, const TimeScheme& scheme,
                       const StepperScratch& scratch) {
-  if (gas.control != GasLoad::Control::Regulated) return scratch.volume;
+  if (gas.control != GasLoad::Control::Regulated) return scratch.last.volume;
   double rate = 0;
   for (int k = 0; k < 3; ++k) {
-    const float* const gradient = scratch.volume_gradient.data() + k;
-    for (std::size_t i = 0; 4 * i < scratch.volume_gradient.size(); ++i)
+    const float* const gradient = scratch.last.volume_gradient.data() + k;
+    for (std::size_t i = 0; 4 * i < scratch.last.volume_gradient.size(); ++i)
       rate += static_cast<double>(gradient[4 * i]) * motion.v[k][i];
   }
-  return scratch.volume + scheme.part() * scheme.h * rate;
+  return scratch.last.volume + scheme.part() * scheme.h * rate;
 }
 
 FactorSchedule scheduleOf(const StepSettings& settings, const TimeScheme& scheme) {
@@ -176,7 +176,7 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
 // the scheme has lost the difference in the last step.
 void ImplicitStepper::correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome) {
   StepWork& work = outcome.work;
-  const double start = scratch.first_elastic_value - work.to_first;
+  const double start = scratch.first.elastic_value - work.to_first;
   if (memory.elastic_energy >= 0 && memory.steps > 1) work.numerical -= start - memory.elastic_energy;
   const double foreseen = start + work.stored;
   memory.elastic_energy = std::max(0.0, foreseen);  // far from the forces' linear range it may be negative
@@ -213,16 +213,16 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
                      settings_.iterations + (outcome.fallback ? kSpareInFallback : kSpareEvaluations));
   newton.start();
   // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
-  if (extrapolates(outcome.fallback) && !(scratch.elastic_value <= kGuessGrowth * memory.elastic_energy)) {
+  if (extrapolates(outcome.fallback) && !(scratch.last.elastic_value <= kGuessGrowth * memory.elastic_energy)) {
     startFromHere(motion, scratch);
     newton.start();
   }
-  scratch.keepFirst();
+  scratch.first = scratch.last;
   scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
   newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
   iterate(newton, scratch, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
-  scratch.gas_stiffness = potential.gas().stiffness(scratch.volume);
+  scratch.gas_stiffness = potential.gas().stiffness(scratch.last.volume);
 }
 
 // Iterations go on until they contract: otherwise stiff motions would grow from step to step.
@@ -274,7 +274,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
       newton.start();
       ++outcome.refactorisations;
     }
-    newton.setGas(scratch.volume);
+    newton.setGas(scratch.last.volume);
     outcome.last_move = newton.iterate(kFallbackMaxMove * plan_->size, true);
     ++outcome.iterations;
     outcome.converged = newton.directionLength() < std::max(tolerance, newton.resolution());
@@ -312,11 +312,12 @@ void ImplicitStepper::placeAtRest(const StepperScratch& scratch, const MotionVie
 
 double ImplicitStepper::elasticEnergy(const MotionView& motion, StepperScratch& scratch) const {
   for (int i = 0; i < body_.nodeCount(); ++i)
-    for (int k = 0; k < 3; ++k) scratch.displacement[4 * i + k] = static_cast<float>(motion.x[k][i] - body_.rest[i][k]);
+    for (int k = 0; k < 3; ++k)
+      scratch.last.displacement[4 * i + k] = static_cast<float>(motion.x[k][i] - body_.rest[i][k]);
   std::fill(scratch.work.begin(), scratch.work.end(), 0.0F);
   double energy = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p)
-    energy += body_.elements->evaluate(p, scratch.displacement.data(), scratch.work.data());
+    energy += body_.elements->evaluate(p, scratch.last.displacement.data(), scratch.work.data());
   return energy;
 }
 

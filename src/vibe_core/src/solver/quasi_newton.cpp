@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "vibe_core/solver/energy_term.hpp"
 
@@ -172,7 +173,7 @@ bool QuasiNewton::satisfyConstraints() {
 }
 
 double QuasiNewton::resolution() const {
-  return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.displacement);
+  return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.last.displacement);
 }
 
 // The forces that the last elimination found.
@@ -201,14 +202,14 @@ void QuasiNewton::slideThreads() {
 
 void QuasiNewton::setGas(double volume) {
   gas_piece_ = potential_.gas().pieceAt(volume);
-  scratch_.schur.setGas(scratch_.volume_gradient.data(), potential_.gas().lineOf(gas_piece_, scratch_.volume).stiffness,
-                        *scratch_.factor);
+  scratch_.schur.setGas(scratch_.last.volume_gradient.data(),
+                        potential_.gas().lineOf(gas_piece_, scratch_.last.volume).stiffness, *scratch_.factor);
 }
 
 // @returns whether the direction leads to another piece of the gas law than the one it was computed with
 bool QuasiNewton::changeGas() {
   if (gas_.control != GasLoad::Control::Regulated) return false;
-  const double end = scratch_.volume + dot(scratch_.volume_gradient, scratch_.direction);
+  const double end = scratch_.last.volume + dot(scratch_.last.volume_gradient, scratch_.direction);
   if (potential_.gas().pieceAt(end) == gas_piece_) return false;
   setGas(end);
   return true;
@@ -217,21 +218,21 @@ bool QuasiNewton::changeGas() {
 // By how much the volume changes in the direction where the gas has no stiffness of its own. The piece of an
 // insufflator's law may lie elsewhere than the present volume.
 double QuasiNewton::swelling() const {
-  if (gas_.control == GasLoad::Control::Volume) return gas_.target_volume - scratch_.volume;
+  if (gas_.control == GasLoad::Control::Volume) return gas_.target_volume - scratch_.last.volume;
   if (gas_.control != GasLoad::Control::Regulated || gas_piece_ == GasLaw::Piece::Kept) return 0;
-  const GasLaw::Line line = potential_.gas().lineOf(gas_piece_, scratch_.volume);
-  return (line.pressure - scratch_.pressure) / line.stiffness;
+  const GasLaw::Line line = potential_.gas().lineOf(gas_piece_, scratch_.last.volume);
+  return (line.pressure - scratch_.last.pressure) / line.stiffness;
 }
 
 // With what the pressure lacks to the set point where the direction leads there.
 void QuasiNewton::loadWork() {
   StepperScratch& s = scratch_;
   const double lack = gas_.control == GasLoad::Control::Regulated && gas_piece_ == GasLaw::Piece::Kept
-                          ? gas_.set_pressure - s.pressure
+                          ? gas_.set_pressure - s.last.pressure
                           : 0;
   if (lack == 0) return s.factor->load(s.work.data(), s.half.data());
   s.direction = s.work;
-  addMultiple(lack, s.volume_gradient, s.direction);
+  addMultiple(lack, s.last.volume_gradient, s.direction);
   s.factor->load(s.direction.data(), s.half.data());
 }
 
@@ -348,7 +349,7 @@ void QuasiNewton::takeUnseen() {
   setTrial(1);
   s.z.swap(s.trial);
   unknowns_.move(1);
-  if (gas_.control != GasLoad::Control::None) potential_.moveVolume(dot(s.volume_gradient, s.direction));
+  if (gas_.control != GasLoad::Control::None) potential_.moveVolume(dot(s.last.volume_gradient, s.direction));
 }
 
 double QuasiNewton::slopeAtTrial(double part) const {
@@ -362,7 +363,7 @@ double QuasiNewton::search(double part) {
   const double old_pressure = gas_.pressure;
   const double from = value_ + lagrangian(0), slope = slope_ + lagrangianSlope(0);
   double to = value_;
-  s.exchangeEvaluations();
+  std::swap(s.last, s.kept);
   for (int trial = 1;; ++trial) {
     setTrial(part);
     if (prescribed != 0) gas_.pressure = old_pressure + part * prescribed;
@@ -374,7 +375,7 @@ double QuasiNewton::search(double part) {
       break;
     if (trial == kMaxTrials || exhausted()) {
       failed_ = true;
-      s.exchangeEvaluations();
+      std::swap(s.last, s.kept);
       return 0;
     }
     part *= std::isfinite(to) ? shortening(part * slope, change) : kShortest;

@@ -211,8 +211,8 @@ void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
   YieldVector pull = YieldVector::Zero();
   rows.forEachYield([&](int row, const YieldVector& yield) { pull += force[row] * yield; });
   if (rows.tool_yields) loads.tool_yield.displacement = loads.tool_yield.free - loads.tool_yield.compliance * pull;
-  loads.gas.volume = scratch.volume;
-  loads.gas.pressure = scratch.pressure;
+  loads.gas.volume = scratch.last.volume;
+  loads.gas.pressure = scratch.last.pressure;
   loads.gas.stiffness = scratch.gas_stiffness;
 }
 

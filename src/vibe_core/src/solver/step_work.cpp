@@ -32,7 +32,7 @@ void moveAxis(const ElasticBody& body, const TimeScheme& scheme, int k, const Mo
   const double* const z = scratch.z.data() + k;
   const double* const rest = scratch.rest.data() + k;
   double* const move = scratch.trial.data() + k;
-  const float *const first = scratch.first_displacement.data() + k, *const last = scratch.displacement.data() + k;
+  const float *const first = scratch.first.displacement.data() + k, *const last = scratch.last.displacement.data() + k;
   for (int i = 0; i < body.nodeCount(); ++i) {
     move[4 * i] = 0;
     if (body.fixed[i] != 0) continue;
@@ -93,12 +93,12 @@ ForceAlong forceAlong(double from, double to, double first, double last, double 
 }
 
 // How much more energy the last point of evaluation has than the trapezoidal rule says [J].
-double beyondTrapezoid(const StepperScratch& s) {
+double beyondTrapezoid(const Evaluation& first, const Evaluation& last) {
   double twice = 0;
-  for (std::size_t i = 0; i < s.displacement.size(); ++i)
-    twice += (static_cast<double>(s.first_elastic_gradient[i]) + s.elastic_gradient[i]) *
-             (static_cast<double>(s.displacement[i]) - s.first_displacement[i]);
-  return s.elastic_value - s.first_elastic_value - 0.5 * twice;
+  for (std::size_t i = 0; i < last.displacement.size(); ++i)
+    twice += (static_cast<double>(first.elastic_gradient[i]) + last.elastic_gradient[i]) *
+             (static_cast<double>(last.displacement[i]) - first.displacement[i]);
+  return last.elastic_value - first.elastic_value - 0.5 * twice;
 }
 
 // Of the rows on the body, in all.
@@ -133,15 +133,15 @@ StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const M
   if (!(s.move2 > 0)) return work;
   const std::vector<double>& move = scratch.trial;
   const double first = s.to_first / s.move2, last = s.to_last / s.move2, at = s.to_z / s.move2;
-  if (scratch.only_first) scratch.repeatFirst();
-  const ForceAlong elastic = forceAlong(first, last, dotInDouble(scratch.first_elastic_gradient, move),
-                                        dotInDouble(scratch.elastic_gradient, move), beyondTrapezoid(scratch));
+  const ForceAlong elastic =
+      forceAlong(first, last, dotInDouble(scratch.first.elastic_gradient, move),
+                 dotInDouble(scratch.last.elastic_gradient, move), beyondTrapezoid(scratch.first, scratch.last));
   if (loads.extra != nullptr)
-    work.extra = -forceAlong(first, last, dotInDouble(scratch.first_extra_gradient, move),
-                             dotInDouble(scratch.extra_gradient, move), 0)
+    work.extra = -forceAlong(first, last, dotInDouble(scratch.first.extra_gradient, move),
+                             dotInDouble(scratch.last.extra_gradient, move), 0)
                       .at(at);
   if (loads.gas.control != GasLoad::Control::None)
-    work.gas = scratch.pressure * dotInDouble(scratch.volume_gradient, move);
+    work.gas = scratch.last.pressure * dotInDouble(scratch.last.volume_gradient, move);
   work.mass_damping = scheme.rate * s.damping;
   work.viscous = elastic.at(at) - elastic.at(scheme.part());
   work.stored = elastic.integral();

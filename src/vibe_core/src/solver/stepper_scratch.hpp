@@ -23,6 +23,16 @@ struct FactorTask {
   RowList<AttachmentPoint> attachments;
 };
 
+/// What an evaluation of the energy has found at one point.
+struct Evaluation {
+  std::vector<float> displacement;      // of the point [m]
+  std::vector<float> elastic_gradient;  // of elements and foundation [N]
+  std::vector<float> extra_gradient;    // of BodyLoads::extra [N]
+  std::vector<float> volume_gradient;   // [m^2]
+  double elastic_value = 0;             // energy of elements and foundation [J]
+  double volume = 0, pressure = 0;      // [m^3], [Pa]
+};
+
 /// All memory of an ImplicitStepper. Node vectors are 4 numbers per node.
 class StepperScratch {
  public:
@@ -40,16 +50,11 @@ class StepperScratch {
   std::unique_ptr<BackgroundWorker> making;  // of next_factor; null: none was ever made
   ColumnCache columns, next_columns;         // of `factor`, of `next_factor`
   ConstraintSchur schur;
-  std::vector<double> rest;                     // positions [m]
-  std::vector<double> z, z_hat;                 // unknown, where inertia wants it [m]
-  std::vector<double> trial;                    // [m]
-  std::vector<float> displacement;              // of the point under evaluation [m]
-  std::vector<float> gradient, trial_gradient;  // [N]
-  std::vector<float> elastic_gradient;          // its part from elements and foundation [N]
-  std::vector<float> extra_gradient;            // its part from BodyLoads::extra [N]
-  std::vector<float> first_displacement;        // the same of the first point of a step
-  std::vector<float> first_elastic_gradient, first_extra_gradient;
-  std::vector<float> volume_gradient;            // [m^2]
+  std::vector<double> rest;                      // positions [m]
+  std::vector<double> z, z_hat;                  // unknown, where inertia wants it [m]
+  std::vector<double> trial;                     // [m]
+  std::vector<float> gradient, trial_gradient;   // [N]
+  Evaluation last, first, kept;                  // of a step; `kept`: at z, while a trial is evaluated
   std::vector<float> direction, work;            // [m]
   std::vector<float> half;                       // in elimination order
   std::vector<std::vector<float>> move, change;  // L-BFGS pairs
@@ -61,30 +66,7 @@ class StepperScratch {
   RowUnknowns unknowns;
   Eigen::VectorXd row_moves;  // of the last direction, beyond what rows give way, to the scale of the rows [m]
   Eigen::VectorXd slid;       // thread that slid out of a row in this step, to the scale of the rows [m]
-  /// Keeps what the first evaluation of a step has found.
-  void keepFirst() {
-    first_displacement = displacement;
-    first_elastic_gradient.swap(elastic_gradient);
-    first_extra_gradient.swap(extra_gradient);
-    first_elastic_value = elastic_value;
-    only_first = true;
-  }
-  /// The first evaluation was the last one too.
-  void repeatFirst() {
-    elastic_gradient = first_elastic_gradient;
-    extra_gradient = first_extra_gradient;
-  }
-  /// Exchanges what the last evaluation has found with what is kept: before a trial, and again where it is rejected.
-  void exchangeEvaluations();
-  double elastic_value = 0, first_elastic_value = 0;  // energy of elements and foundation [J]
-  bool only_first = true;                             // nothing was evaluated since
-  double volume = 0, pressure = 0;                    // of the point under evaluation
-  double gas_stiffness = 0;                           // there, after a step [Pa/m^3]
-
- private:
-  std::vector<float> kept_displacement_, kept_elastic_gradient_, kept_extra_gradient_, kept_volume_gradient_;
-  double kept_elastic_value_ = 0, kept_volume_ = 0, kept_pressure_ = 0;
-  bool kept_only_first_ = true;
+  double gas_stiffness = 0;   // at the end of a step [Pa/m^3]
 };
 
 }  // namespace vibe

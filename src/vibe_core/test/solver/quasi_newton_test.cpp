@@ -125,15 +125,15 @@ TEST(QuasiNewton, ADirectionWithoutLowerEnergyIsReportedAndNotTaken) {
   newton.start();
   const StepperScratch& scratch = *problem.scratch;
   const std::vector<double> before = scratch.z;
-  const std::vector<float> displacement = scratch.displacement, elastic = scratch.elastic_gradient;
-  const double energy = scratch.elastic_value;
+  const std::vector<float> displacement = scratch.last.displacement, elastic = scratch.last.elastic_gradient;
+  const double energy = scratch.last.elastic_value;
   EXPECT_EQ(newton.iterate(kFar, true), 0);
   EXPECT_TRUE(newton.failed());
   EXPECT_EQ(scratch.z, before);
   // forces and works of the step are those at z, not those of the trial that was rejected
-  EXPECT_EQ(scratch.displacement, displacement);
-  EXPECT_EQ(scratch.elastic_gradient, elastic);
-  EXPECT_EQ(scratch.elastic_value, energy);
+  EXPECT_EQ(scratch.last.displacement, displacement);
+  EXPECT_EQ(scratch.last.elastic_gradient, elastic);
+  EXPECT_EQ(scratch.last.elastic_value, energy);
 }
 
 TEST(QuasiNewton, AConstraintIsMetAtTheMinimum) {
