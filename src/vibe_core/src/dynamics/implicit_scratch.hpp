@@ -20,7 +20,6 @@ struct ImplicitScratch : SolverScratch {
   std::vector<std::unique_ptr<ConstraintBlock>> blocks;  // in the order in which they are asked
   BodyLoads loads;
   SumTerm terms;                                   // energies of the blocks
-  std::vector<char> has_term;                      // per block
   std::array<std::vector<double>, 6> uncorrected;  // positions and velocities before corrections [m], [m/s]
   ToolPoses poses;
   std::optional<ToolGuard> guard;                 // empty without a tool

@@ -175,12 +175,7 @@ void ImplicitStep::recover() {
 bool ImplicitStep::solve() {
   scratch_.terms.clear();
   scratch_.start[0] = state_.x, scratch_.start[1] = state_.y, scratch_.start[2] = state_.z;
-  scratch_.has_term.clear();
-  for (const auto& block : scratch_.blocks) {
-    const EnergyTerm* const term = block->energyTerm(context_);
-    scratch_.terms.add(term);
-    scratch_.has_term.push_back(term != nullptr ? 1 : 0);
-  }
+  for (const auto& block : scratch_.blocks) scratch_.terms.add(block->energyTerm(context_));
   contact_energy_ = state_.energy.contact_energy;
   scratch_.loads.extra = scratch_.terms.simplest();
   const StepOutcome outcome = stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
@@ -207,11 +202,7 @@ void ImplicitStep::yieldTool() {
 void ImplicitStep::store() {
   correct();
   scratch_.touches.clear();
-  for (std::size_t b = 0; b < scratch_.blocks.size(); ++b) {
-    const double before = springWork();
-    scratch_.blocks[b]->store(context_, scratch_.loads, scratch_.touches);
-    if (scratch_.has_term[b] != 0) work_.extra -= springWork() - before;  // it has accounted for its term itself
-  }
+  for (const auto& block : scratch_.blocks) work_.extra -= block->store(context_, scratch_.loads, scratch_.touches);
   if (motion_ != nullptr) {
     const double tool_work = state_.energy.tool_work;
     reportTool();
@@ -327,10 +318,6 @@ void ImplicitStep::account() {
   sum.residual_work += work_.residual;
   // what walls in contact took from the tissue is stored or lost
   sum.contact_loss -= work_.extra + sum.contact_energy - contact_energy_;
-}
-
-double ImplicitStep::springWork() const {
-  return state_.energy.pull_work + state_.energy.thread_work;
 }
 
 void ImplicitStep::updateRest(Activity activity) {

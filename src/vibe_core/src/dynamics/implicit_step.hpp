@@ -40,7 +40,6 @@ class ImplicitStep {
   void correct();
   void account();
   Energies mechanicalEnergy() const;
-  double springWork() const;
   void updateRest(Activity activity);
   MotionView motionOf() const;
 
