@@ -21,12 +21,11 @@ struct ImplicitScratch : SolverScratch {
   BodyLoads loads;
   SumTerm terms;                                   // energies of the blocks
   std::array<std::vector<double>, 6> uncorrected;  // positions and velocities before corrections [m], [m/s]
-  ToolPoses poses;
-  std::optional<ToolGuard> guard;                 // empty without a tool
-  std::vector<int> held;                          // particles that the helix holds
-  std::array<std::vector<double>, 3> start;       // positions at the start of the step [m]
-  std::vector<ToolTouch> touches;                 // of the last step
-  std::unique_ptr<ImpedanceEstimator> impedance;  // null without a tool
+  std::optional<ToolGuard> guard;                  // empty without a tool
+  std::vector<int> held;                           // particles that the helix holds
+  std::array<std::vector<double>, 3> start;        // positions at the start of the step [m]
+  std::vector<ToolTouch> touches;                  // of the last step
+  std::unique_ptr<ImpedanceEstimator> impedance;   // null without a tool
   ToolContactRows tool_rows;
 };
 

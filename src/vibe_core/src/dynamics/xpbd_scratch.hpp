@@ -22,7 +22,7 @@ class XpbdScratch : public SolverScratch {
   ClusterSweepFunction sweep_function = nullptr;
   std::unique_ptr<ToolCollision> collision;
   XpbdPull pull;
-  std::vector<Eigen::Isometry3d> poses, old_poses, ahead_poses;  // of the tool's links in world
+  LinkPoses old_tool, tool_ahead;  // before the sub-step, after the last one until the next search
 };
 
 }  // namespace vibe

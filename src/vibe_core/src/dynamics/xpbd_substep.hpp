@@ -35,7 +35,7 @@ class XpbdSubstep {
   void limitSpeeds();
   void limitSpeed(int i, double speed2);
   void lookAhead();
-  Eigen::Vector3d tip() const { return scratch_.poses[model_.tip_link].translation(); }
+  Eigen::Vector3d tip() const { return scratch_.tool.end[model_.tip_link].translation(); }
   void accountDamping(double decay);
 
   const Model& model_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "constraints/gas.hpp"
 #include "contact/tool_motion.hpp"
@@ -120,16 +121,17 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   BeamStep beam{pedal, pedal && state.procedure.pressed[ApcPedal] == 0, 0};
   const double gas_before = state.gas_amount;
   std::optional<ToolMotion> motion;
-  std::vector<Eigen::Isometry3d>& poses = workspace.linkPoses();
+  ToolPoses& poses = workspace.solverScratch().tool;
   if (model.tool) {
     auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
     end = model.scope_springs ? model.scope_springs->handMotion(state.joints, end, state.tool_displacement, dt)
                               : stalledMotion(*model.tool, state.joints, end, state.hand_effort);
     end = heldMotion(state.joints, end, state.stall);
     motion.emplace(*model.tool, model.tool_base, state.joints, end, state.tool_displacement);
-    motion->linkPoses(0, poses);
-    updateGrip(model, poses, input.buttons[HelixGrab] != 0, state, log);
-    commandProcedure(model, poses, input, state, log);
+    std::swap(poses.start, poses.end);  // it starts where the last step ended
+    motion->linkPoses(0, poses.start);
+    updateGrip(model, poses.start, input.buttons[HelixGrab] != 0, state, log);
+    commandProcedure(model, poses.start, input, state, log);
     state.joints = end;
   } else {
     commandProcedure(model, {}, input, state, log);  // says which part of the scene is missing
@@ -146,11 +148,12 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   if (model.tool) {
     state.tool_displacement = report.tool_displacement;
     updateStall(report.stopped, state.stall);
-    ToolMotion(*model.tool, model.tool_base, state.joints, state.joints, state.tool_displacement).linkPoses(1, poses);
-    storeForces(model, report, poses, state);
+    ToolMotion(*model.tool, model.tool_base, state.joints, state.joints, state.tool_displacement)
+        .linkPoses(1, poses.end);
+    storeForces(model, report, poses.end, state);
     reportContact(report.contact_count, dt, state, log);
     releaseOverloadedGrip(model, state, log);
-    if (workspace.marking()) updateMarking(model, poses, beam, state, *workspace.marking(), log);
+    if (workspace.marking()) updateMarking(model, poses.end, beam, state, *workspace.marking(), log);
     updateProcedure(model, state, log);
   }
   if (model.scene.gas) reportPressure(*model.scene.gas, insufflator_on, state, log);

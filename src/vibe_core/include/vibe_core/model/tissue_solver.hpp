@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "vibe_core/contact/tool_poses.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
-#include "vibe_core/state/tool_displacement.hpp"
 
 namespace vibe {
 
@@ -37,6 +37,8 @@ struct StepReport {
 class SolverScratch {
  public:
   virtual ~SolverScratch() = default;
+
+  ToolPoses tool;  ///< before Solver::advance() `start` is that of the step
 };
 
 /// Advances the tissue by one step under everything that acts on it: its own elasticity, gas, weight, foundation, the
