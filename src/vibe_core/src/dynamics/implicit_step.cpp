@@ -10,7 +10,7 @@
 #include "geometry/lumen.hpp"
 #include "model/max_speed.hpp"
 #include "model/tool_push.hpp"
-#include "solver/stepper_scratch.hpp"
+#include "solver/stepper_workspace.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe {
@@ -49,7 +49,7 @@ void stopMotion(State& state) {
 }  // namespace
 
 ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, const LossLimits& limits,
-                           const ToolMotion* motion, bool insufflator_on, State& state, ImplicitScratch& scratch,
+                           const ToolMotion* motion, bool insufflator_on, State& state, ImplicitWorkspace& scratch,
                            StepReport& report)
     : model_(model),
       stepper_(stepper),

@@ -29,7 +29,7 @@ void addTouch(const Model& model, const std::vector<Eigen::Isometry3d>& poses, c
 
 // The forces are those of a moment before the end of the step.
 void findPlace(const Model& model, const ToolMotion& motion, const ImplicitStepper& stepper, bool fallback,
-               ImplicitScratch& scratch) {
+               ImplicitWorkspace& scratch) {
   StepSettings settings = stepper.settings();
   settings.backward_euler = settings.backward_euler || fallback;
   const double before = TimeScheme(settings, 0, 0).alpha_f;
@@ -48,7 +48,7 @@ void findPlace(const Model& model, const ToolMotion& motion, const ImplicitStepp
 }  // namespace
 
 void findToolContactRows(const Model& model, const ToolMotion& motion, const ImplicitStepper& stepper,
-                         const StepReport& report, ImplicitScratch& scratch) {
+                         const StepReport& report, ImplicitWorkspace& scratch) {
   ToolContactRows& rows = scratch.tool_rows;
   rows.rows.clear();
   rows.force.setZero();

@@ -34,7 +34,7 @@ constexpr double kMaxSpeed = 50;
 }  // namespace
 
 XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const ToolMotion* motion, bool insufflator_on,
-                         State& state, XpbdScratch& scratch, ThreadPool& pool, StepReport& report)
+                         State& state, XpbdWorkspace& scratch, ThreadPool& pool, StepReport& report)
     : model_(model),
       clusters_(clusters),
       motion_(motion),

@@ -98,7 +98,7 @@ ToolDisplacement relaxed(const Model& model, const State& state, double dt) {
 void moveTissue(const Model& model, const ToolMotion* motion, bool pedal, bool insufflator_on, State& state,
                 Workspace& workspace, StepReport& report) {
   const auto solve = [&] {
-    model.solver->advance(model, motion, insufflator_on, state, workspace.solverScratch(), workspace.threadPool(),
+    model.solver->advance(model, motion, insufflator_on, state, workspace.solverWorkspace(), workspace.threadPool(),
                           report);
   };
   MarkingTouch* touch = motion && workspace.marking() ? workspace.marking()->touch.get() : nullptr;
@@ -121,7 +121,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   BeamStep beam{pedal, pedal && state.procedure.pressed[ApcPedal] == 0, 0};
   const double gas_before = state.gas_amount;
   std::optional<ToolMotion> motion;
-  ToolPoses& poses = workspace.solverScratch().tool;
+  ToolPoses& poses = workspace.solverWorkspace().tool;
   if (model.tool) {
     auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
     end = model.scope_springs ? model.scope_springs->handMotion(state.joints, end, state.tool_displacement, dt)

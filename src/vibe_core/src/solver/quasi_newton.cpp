@@ -81,7 +81,7 @@ double shortening(double slope, double change) {
 
 }  // namespace
 
-QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch,
+QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperWorkspace& scratch,
                          double safe_length, int max_evaluations)
     : body_(body),
       potential_(potential),
@@ -147,7 +147,7 @@ bool QuasiNewton::rowsStay() const {
 // line search would admit only small parts of a far move, and no number of them meets the constraint.
 bool QuasiNewton::satisfyConstraints() {
   if (extra_ != nullptr && extra_->acts()) return false;  // walls that meet may forbid it
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   rowResidual();
   unknowns_.addDisplacement(s.rhs);
   double max = 0;
@@ -188,7 +188,7 @@ void QuasiNewton::addRowForces(double sign, std::vector<float>& vector) const {
 void QuasiNewton::slideThreads() {
   if (threads_have_slid_) return;
   threads_have_slid_ = true;
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   s.slid.setZero(s.rows.count());
   for (const ThreadRows& thread : s.rows.threads)
     for (int k = 0; k + 1 < thread.count(); ++k) {
@@ -226,7 +226,7 @@ double QuasiNewton::swelling() const {
 
 // With what the pressure lacks to the set point where the direction leads there.
 void QuasiNewton::loadWork() {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   const double lack = gas_.control == GasLoad::Control::Regulated && gas_piece_ == GasLaw::Piece::Kept
                           ? gas_.set_pressure - s.last.pressure
                           : 0;
@@ -238,14 +238,14 @@ void QuasiNewton::loadWork() {
 
 // Two-loop recursion (Nocedal 1980) with the factor, the rows and the gas as initial inverse.
 void QuasiNewton::findDirection() {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   rowResidual();
   s.work = s.gradient;
   // forces of rows may be far larger than the remaining gradient: without this, a pair that moves rows by a rounding
   // would consist of their forces only
   if (s.pairs > 0) addRowForces(-1, s.work);
   unknowns_.beginDirection(s.schur);
-  double alpha[StepperScratch::kHistory];
+  double alpha[StepperWorkspace::kHistory];
   for (int i = s.pairs - 1; i >= 0; --i) {
     alpha[i] = s.curvature[i] * (dot(s.move[i], s.work) + unknowns_.gradientTerm(i));
     addMultiple(-alpha[i], s.change[i], s.work);
@@ -264,7 +264,7 @@ void QuasiNewton::findDirection() {
 
 // To the work vector: what follows the first loop.
 void QuasiNewton::applyInverse(const double* alpha) {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   ++solves_;
   loadWork();
   s.factor->forward(s.half.data());
@@ -303,8 +303,8 @@ void QuasiNewton::setTrial(double part) {
 }
 
 void QuasiNewton::keepPair(double part) {
-  StepperScratch& s = scratch_;
-  if (s.pairs == StepperScratch::kHistory) {
+  StepperWorkspace& s = scratch_;
+  if (s.pairs == StepperWorkspace::kHistory) {
     std::rotate(s.move.begin(), s.move.begin() + 1, s.move.end());
     std::rotate(s.change.begin(), s.change.begin() + 1, s.change.end());
     std::rotate(s.curvature.begin(), s.curvature.begin() + 1, s.curvature.end());
@@ -345,7 +345,7 @@ double QuasiNewton::advance(double max, bool verify) {
 
 // The whole direction, without an evaluation at its end.
 void QuasiNewton::takeUnseen() {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   setTrial(1);
   s.z.swap(s.trial);
   unknowns_.move(1);
@@ -358,7 +358,7 @@ double QuasiNewton::slopeAtTrial(double part) const {
 
 // As much of the direction as lowers the energy.
 double QuasiNewton::search(double part) {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   const double prescribed = gas_.control == GasLoad::Control::Volume ? s.schur.gasForce() : 0;
   const double old_pressure = gas_.pressure;
   const double from = value_ + lagrangian(0), slope = slope_ + lagrangianSlope(0);

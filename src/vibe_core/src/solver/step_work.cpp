@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "solver/stepper_scratch.hpp"
+#include "solver/stepper_workspace.hpp"
 
 namespace vibe {
 
@@ -26,7 +26,7 @@ struct Sums {
 
 // Moves one coordinate of the nodes.
 void moveAxis(const ElasticBody& body, const TimeScheme& scheme, int k, const MotionView& motion, bool mean_velocity,
-              StepperScratch& scratch, Sums& sums) {
+              StepperWorkspace& scratch, Sums& sums) {
   const double per_gain = 1 / scheme.z_gain, per_step = 1 / scheme.h;
   double *const x = motion.x[k], *const v = motion.v[k], *const a = motion.a[k];
   const double* const z = scratch.z.data() + k;
@@ -102,7 +102,7 @@ double beyondTrapezoid(const Evaluation& first, const Evaluation& last) {
 }
 
 // Of the rows on the body, in all.
-double workOfRows(StepperScratch& scratch, BodyLoads& loads) {
+double workOfRows(StepperWorkspace& scratch, BodyLoads& loads) {
   const std::vector<double>& move = scratch.trial;
   const ConstraintRows& rows = scratch.rows;
   const Eigen::VectorXd& force = scratch.schur.forces();
@@ -125,7 +125,7 @@ double workOfRows(StepperScratch& scratch, BodyLoads& loads) {
 }  // namespace
 
 StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const MotionView& motion, BodyLoads& loads,
-                      bool mean_velocity, StepperScratch& scratch) {
+                      bool mean_velocity, StepperWorkspace& scratch) {
   Sums s;
   for (int k = 0; k < 3; ++k) moveAxis(body, scheme, k, motion, mean_velocity, scratch, s);
   StepWork work;

@@ -1,12 +1,12 @@
-#include "solver/stepper_scratch.hpp"
+#include "solver/stepper_workspace.hpp"
 
 #include <utility>
 
 namespace vibe {
 
-StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_positions,
-                               std::shared_ptr<const FactorPlan> elements_plan, FactorStorage storage,
-                               std::shared_ptr<const BlockPattern> pattern)
+StepperWorkspace::StepperWorkspace(const std::vector<Eigen::Vector3d>& rest_positions,
+                                   std::shared_ptr<const FactorPlan> elements_plan, FactorStorage storage,
+                                   std::shared_ptr<const BlockPattern> pattern)
     : plan(std::move(elements_plan)),
       factor(std::make_unique<Factor>(plan, storage)),
       next_factor(std::make_unique<Factor>(plan, storage)),
@@ -25,7 +25,7 @@ StepperScratch::StepperScratch(const std::vector<Eigen::Vector3d>& rest_position
   curvature.assign(kHistory, 0);
 }
 
-StepperScratch::~StepperScratch() {
+StepperWorkspace::~StepperWorkspace() {
   making.reset();  // it works on the other members
 }
 

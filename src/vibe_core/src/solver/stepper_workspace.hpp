@@ -34,11 +34,11 @@ struct Evaluation {
 };
 
 /// All memory of an ImplicitStepper. Node vectors are 4 numbers per node.
-class StepperScratch {
+class StepperWorkspace {
  public:
-  StepperScratch(const std::vector<Eigen::Vector3d>& rest, std::shared_ptr<const FactorPlan> elements_plan,
-                 FactorStorage storage, std::shared_ptr<const BlockPattern> pattern);
-  ~StepperScratch();
+  StepperWorkspace(const std::vector<Eigen::Vector3d>& rest, std::shared_ptr<const FactorPlan> elements_plan,
+                   FactorStorage storage, std::shared_ptr<const BlockPattern> pattern);
+  ~StepperWorkspace();
 
   static constexpr int kHistory = RowUnknowns::kHistory;
 

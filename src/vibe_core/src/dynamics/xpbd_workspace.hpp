@@ -12,7 +12,7 @@
 namespace vibe {
 
 /// Buffers of XpbdSolver.
-class XpbdScratch : public SolverScratch {
+class XpbdWorkspace : public SolverWorkspace {
  public:
   std::vector<double> old_x, old_y, old_z;        // positions before the sub-step [m]
   std::vector<double> ahead_x, ahead_y, ahead_z;  // positions a little ahead, where elastic forces are taken [m]

@@ -15,8 +15,8 @@
 namespace vibe {
 
 /// Buffers of ImplicitSolver.
-struct ImplicitScratch : SolverScratch {
-  std::shared_ptr<StepperScratch> stepper;
+struct ImplicitWorkspace : SolverWorkspace {
+  std::shared_ptr<StepperWorkspace> stepper;
   std::vector<std::unique_ptr<ConstraintBlock>> blocks;  // in the order in which they are asked
   BodyLoads loads;
   SumTerm terms;                                   // energies of the blocks
