@@ -119,7 +119,7 @@ TEST(Bleeding, BriskIsOverdueOnceAndGoesOnUntilTheSetIsCinched) {
   const double lost = state.procedure.blood_lost;
   EXPECT_NEAR(lost, 2 * model.scene.bleeding->brisk_rate * 200, 1e-9 * lost);
   events.clear();
-  stopBleedings(0, state, events);
+  stopBleedings(0, state, {state, events});
   ASSERT_EQ(events.size(), 1u) << "only of its own set";
   EXPECT_EQ(events.front().kind, Kind::BleedingStopped);
   update(model, state);
