@@ -19,10 +19,11 @@ class TetherBlock : public vibe::ConstraintBlock {
   }
 
   /// The work of the spring on the tissue, for the energy balance.
-  void store(const vibe::StepContext& context, const vibe::BodyLoads&, std::vector<vibe::ToolTouch>&) override {
+  double store(const vibe::StepContext& context, const vibe::BodyLoads&, std::vector<vibe::ToolTouch>&) override {
     const double before = (tether_.end - start_).squaredNorm();
     const double after = (tether_.end - position(context.state)).squaredNorm();
     context.state.energy.pull_work += 0.5 * tether_.stiffness * (before - after);
+    return 0;  // there is no energy term
   }
 
  private:

@@ -86,7 +86,7 @@ Record update(const FemCase& bench_case, const CaseModel& model) {
   // dead loads are constant during a transient run: use those at the end of the path; the start state is set before
   const double end_level = levelAt(run, run.duration);
   const ImplicitStepper stepper(model.body(end_level), settings);
-  const auto scratch = stepper.makeScratch();
+  const auto scratch = stepper.makeWorkspace();
   StepperMemory memory;
   BodyMotion motion(stepper.body());
   placeStart(bench_case, model, motion.view());

@@ -54,7 +54,7 @@ StaticPath::StaticPath(const CaseModel& model, double tolerance)
     : model_(model),
       tolerance_(tolerance),
       stepper_(std::make_unique<ImplicitStepper>(model.body(0), StepSettings{})),
-      scratch_(stepper_->makeScratch()),
+      scratch_(stepper_->makeWorkspace()),
       guess_(stepper_->body()),
       motion_(stepper_->body()),
       loads_(model.loads(0)) {}
@@ -67,7 +67,7 @@ bool StaticPath::advanceTo(double level, int substeps) {
     if (model_.bodyDependsOnLevel()) {
       scratch_.reset();
       stepper_ = std::make_unique<ImplicitStepper>(model_.body(level_), StepSettings{});
-      scratch_ = stepper_->makeScratch();
+      scratch_ = stepper_->makeWorkspace();
     }
     BodyLoads next = model_.loads(level_);
     if (next.gas.control == GasLoad::Control::Volume) next.gas.pressure = loads_.gas.pressure;
@@ -92,7 +92,7 @@ bool StaticPath::relax() {
   settings.iterations = 30;
   settings.tolerance = 0.1 * tolerance_;
   const ImplicitStepper stepper(stepper_->body(), settings);
-  const auto scratch = stepper.makeScratch();
+  const auto scratch = stepper.makeWorkspace();
   StepperMemory memory;
   stepper.refactor(motion_.view(), memory);
   for (int step = 0; step < kMaxRelaxSteps; ++step) {

@@ -47,7 +47,7 @@ class StaticPath {
   const CaseModel& model_;
   double tolerance_, level_ = 0;
   std::unique_ptr<ImplicitStepper> stepper_;
-  std::shared_ptr<StepperScratch> scratch_;
+  std::shared_ptr<StepperWorkspace> scratch_;
   TangentGuess guess_;
   BodyMotion motion_;
   BodyLoads loads_;

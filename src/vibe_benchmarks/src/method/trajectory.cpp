@@ -40,7 +40,7 @@ double totalEnergy(const BenchWall& wall, const BodyMotion& motion) {
 Trajectory update(const BenchWall& wall, const BodyMotion& start, const Pull& pull, const StepChoice& choice,
                   int frames) {
   const ImplicitStepper stepper(wall.body, settingsOf(choice));
-  const auto scratch = stepper.makeScratch();
+  const auto scratch = stepper.makeWorkspace();
   StepperMemory memory;
   BodyMotion motion = start;
   stepper.refactor(motion.view(), memory);
@@ -105,7 +105,7 @@ double energyDrift(const BenchWall& wall, const BodyMotion& start, const BodyMot
   BenchWall free = wall;
   free.body.mass_damping = 0;
   const ImplicitStepper stepper(free.body, settingsOf(choice));
-  const auto scratch = stepper.makeScratch();
+  const auto scratch = stepper.makeWorkspace();
   StepperMemory memory;
   stepper.refactor(motion.view(), memory);
   const double before = totalEnergy(free, motion), rest = totalEnergy(free, start);

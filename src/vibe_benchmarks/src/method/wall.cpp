@@ -24,7 +24,7 @@ void holdEnds(std::size_t count, std::vector<char>& fixed, const std::vector<Eig
   for (std::size_t i = 0; i < count; ++i) fixed[order[i]] = 1;
 }
 
-void settleOrFail(const ImplicitStepper& stepper, MotionView motion, BodyLoads& loads, StepperScratch& scratch,
+void settleOrFail(const ImplicitStepper& stepper, MotionView motion, BodyLoads& loads, StepperWorkspace& scratch,
                   double tolerance, const char* what) {
   const StepOutcome outcome = stepper.settle(motion, loads, scratch, tolerance);
   if (!outcome.finite || !outcome.converged)
@@ -92,7 +92,7 @@ double toolForce(const BenchWall& wall, const BodyLoads& loads) {
 
 BodyMotion inflate(const BenchWall& wall, double tolerance) {
   const ImplicitStepper stepper(wall.body, StepSettings{});
-  const auto scratch = stepper.makeScratch();
+  const auto scratch = stepper.makeWorkspace();
   BodyMotion motion(wall.body);
   for (int k = 1; k <= 5; ++k) {
     BodyLoads loads = pressureLoads(wall, wall.pressure * k / 5);
@@ -104,7 +104,7 @@ BodyMotion inflate(const BenchWall& wall, double tolerance) {
 BodyMotion pulledEquilibrium(const BenchWall& wall, const BodyMotion& start, double distance, double tolerance,
                              double& force) {
   const ImplicitStepper stepper(wall.body, StepSettings{});
-  const auto scratch = stepper.makeScratch();
+  const auto scratch = stepper.makeWorkspace();
   BodyMotion motion = start;
   const int stages = std::max(1, static_cast<int>(std::lround(distance / 0.004)));
   for (int k = 1; k <= stages; ++k) {

@@ -106,7 +106,7 @@ void runConstraint(Table& table, std::ostream& log) {
   body.mass_damping = TissueScene{}.mass_damping;
   body.stiffness_damping = TissueScene{}.stiffness_damping;
   const ImplicitStepper stepper(body, settings);
-  const auto scratch = stepper.makeScratch();
+  const auto scratch = stepper.makeWorkspace();
   BodyMotion motion(body);
   StepperMemory memory;
   std::vector<double> times;

@@ -28,7 +28,10 @@ class GasBlock : public ConstraintBlock {
     loads.gas.volume = state.volume;
   }
 
-  void store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override { measure(context); }
+  double store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override {
+    measure(context);
+    return 0;
+  }
   void recover(const StepContext& context) override { measure(context); }
 
  private:

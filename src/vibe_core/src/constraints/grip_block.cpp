@@ -22,7 +22,7 @@ class GripBlock : public ConstraintBlock {
     return context.state.grip.empty() ? Activity::Sleep : Activity::Disturb;
   }
 
-  void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
+  double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
     const int link = context.model.grip_link;
     for (std::size_t g = 0; g < first_.size(); ++g) {
       const GripPoint& point = context.state.grip[g];
@@ -38,6 +38,7 @@ class GripBlock : public ConstraintBlock {
       touch.direction_count = 3;
       touches.push_back(touch);
     }
+    return 0;
   }
 
  private:

@@ -16,11 +16,12 @@ class PullSpringBlock : public ConstraintBlock {
     return Activity::Disturb;
   }
 
-  void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>&) override {
+  double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>&) override {
     PullSpring& pull = context.state.pull;
-    if (!pull.holds()) return;
+    if (!pull.holds()) return 0;
     pull.force = loads.pointForce(first_);
     context.state.energy.pull_work += loads.pointWork(first_);
+    return 0;
   }
 
   void recover(const StepContext& context) override {

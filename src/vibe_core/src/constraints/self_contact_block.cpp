@@ -36,17 +36,18 @@ class SelfContactBlock : public ConstraintBlock {
     contact_.resolvePenetrations(viewOf(context.state), context.step);
   }
 
-  void store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override {
-    detect(context);
-    context.state.energy.contact_energy = contact_.energy();
+  double store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override {
+    measure(context);
+    return 0;
   }
 
-  void recover(const StepContext& context) override {
-    detect(context);
-    context.state.energy.contact_energy = contact_.energy();
-  }
+  void recover(const StepContext& context) override { measure(context); }
 
  private:
+  void measure(const StepContext& context) {
+    detect(context);
+    context.state.energy.contact_energy = contact_.energy();
+  }
   void detect(const StepContext& context) {
     const double move = kReachPerMove * context.step * std::sqrt(maxSpeedSquared(context.state));
     const TissueScene& tissue = context.model.scene.tissue;

@@ -22,13 +22,14 @@ class ThreadBlock : public ConstraintBlock {
     return isCinching(context.state) ? Activity::Wake : Activity::Sleep;
   }
 
-  void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>&) override {
+  double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>&) override {
     for (std::size_t t = 0; t < sutures_.size(); ++t) {
       Suture& suture = context.state.procedure.sutures[sutures_[t]];
       suture.length = loads.threads[first_ + t].length;
       suture.tension = loads.threads[first_ + t].tension;
       context.state.energy.thread_work += loads.threads[first_ + t].work;
     }
+    return 0;
   }
 
  private:

@@ -44,11 +44,12 @@ class ToolContactBlock : public ConstraintBlock {
     return place_.empty() ? Activity::Sleep : Activity::Disturb;
   }
 
-  void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
+  double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
     for (std::size_t c = 0; c < place_.size(); ++c) {
       const ContactConstraint& contact = loads.contacts[first_ + c];
       if (!contact.force.isZero()) touches.push_back(touchOf(context, contact, c));
     }
+    return 0;
   }
 
  private:

@@ -32,9 +32,14 @@ void ToolMotion::stop(double fraction) {
   end_displacement_ = displacement(fraction);
 }
 
-void ToolMotion::linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const {
-  tool_->forwardKinematics(inputs(fraction), displacement(fraction), poses);
-  for (Eigen::Isometry3d& pose : poses) pose = base_ * pose;
+void ToolMotion::linkPoses(double fraction, LinkPoses& at) const {
+  const auto here = inputs(fraction);
+  const ToolDisplacement displaced = displacement(fraction);
+  if (!at.poses.empty() && at.inputs == here && at.displacement == displaced) return;
+  tool_->forwardKinematics(here, displaced, at.poses);
+  for (Eigen::Isometry3d& pose : at.poses) pose = base_ * pose;
+  at.inputs = here;
+  at.displacement = displaced;
 }
 
 double ToolMotion::travel(const std::vector<Eigen::Isometry3d>& from, const std::vector<Eigen::Isometry3d>& to) const {

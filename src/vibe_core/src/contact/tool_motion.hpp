@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "vibe_core/contact/tool_model.hpp"
+#include "vibe_core/contact/tool_poses.hpp"
 
 namespace vibe {
 
@@ -30,7 +31,8 @@ class ToolMotion {
   const ToolDisplacement& startDisplacement() const { return start_displacement_; }
 
   /// Pose of every link in world at a fraction [0, 1] of the step.
-  void linkPoses(double fraction, std::vector<Eigen::Isometry3d>& poses) const;
+  /// @param at  in and out; of this tool on this base, or empty
+  void linkPoses(double fraction, LinkPoses& at) const;
 
   /// The inputs at a fraction [0, 1] of the step [m], [rad].
   std::array<double, kJointCount> inputs(double fraction) const;

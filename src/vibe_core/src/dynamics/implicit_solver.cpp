@@ -12,9 +12,9 @@ namespace vibe {
 ImplicitSolver::ImplicitSolver(std::shared_ptr<const ShellElements> shell, ElasticBody body, StepSettings settings)
     : shell_(std::move(shell)), stepper_(std::move(body), settings), limits_(*shell_, stepper_.body().rest) {}
 
-std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) const {
-  auto scratch = std::make_unique<ImplicitScratch>();
-  scratch->stepper = stepper_.makeScratch();
+std::unique_ptr<SolverWorkspace> ImplicitSolver::makeWorkspace(const Model& model) const {
+  auto scratch = std::make_unique<ImplicitWorkspace>();
+  scratch->stepper = stepper_.makeWorkspace();
   scratch->blocks = makeConstraintBlocks(model);
   if (model.tool)
     scratch->guard.emplace(*model.tool, model.organ.surface, model.organ.thickness, passableVertices(model.organ));
@@ -23,8 +23,9 @@ std::unique_ptr<SolverScratch> ImplicitSolver::makeScratch(const Model& model) c
 }
 
 void ImplicitSolver::advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
-                             SolverScratch& scratch, ThreadPool&, StepReport& report) const {
-  ImplicitStep(model, stepper_, limits_, motion, insufflator_on, state, static_cast<ImplicitScratch&>(scratch), report)
+                             SolverWorkspace& scratch, ThreadPool&, StepReport& report) const {
+  ImplicitStep(model, stepper_, limits_, motion, insufflator_on, state, static_cast<ImplicitWorkspace&>(scratch),
+               report)
       .run();
 }
 

@@ -19,9 +19,9 @@ class ImplicitSolver : public Solver {
   ImplicitSolver(std::shared_ptr<const ShellElements> shell, ElasticBody body, StepSettings settings);
 
   std::string name() const override { return "implicit"; }
-  std::unique_ptr<SolverScratch> makeScratch(const Model& model) const override;
-  void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state, SolverScratch& scratch,
-               ThreadPool& pool, StepReport& report) const override;
+  std::unique_ptr<SolverWorkspace> makeWorkspace(const Model& model) const override;
+  void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
+               SolverWorkspace& scratch, ThreadPool& pool, StepReport& report) const override;
 
  private:
   std::shared_ptr<const ShellElements> shell_;

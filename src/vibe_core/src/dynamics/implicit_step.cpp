@@ -10,7 +10,7 @@
 #include "geometry/lumen.hpp"
 #include "model/max_speed.hpp"
 #include "model/tool_push.hpp"
-#include "solver/stepper_scratch.hpp"
+#include "solver/stepper_workspace.hpp"
 #include "vibe_core/model/accounting.hpp"
 
 namespace vibe {
@@ -49,7 +49,7 @@ void stopMotion(State& state) {
 }  // namespace
 
 ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, const LossLimits& limits,
-                           const ToolMotion* motion, bool insufflator_on, State& state, ImplicitScratch& scratch,
+                           const ToolMotion* motion, bool insufflator_on, State& state, ImplicitWorkspace& scratch,
                            StepReport& report)
     : model_(model),
       stepper_(stepper),
@@ -58,7 +58,7 @@ ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, c
       state_(state),
       report_(report),
       scratch_(scratch),
-      context_{model, state, model.scene.step_period, motion != nullptr ? &scratch.poses : nullptr, insufflator_on} {}
+      context_{model, state, model.scene.step_period, motion != nullptr ? &scratch.tool : nullptr, insufflator_on} {}
 
 void ImplicitStep::run() {
   const Activity activity = gather();
@@ -76,10 +76,7 @@ void ImplicitStep::run() {
 
 // @returns the most active of the blocks' answers
 Activity ImplicitStep::gather() {
-  if (motion_ != nullptr) {
-    motion_->linkPoses(0, scratch_.poses.start);
-    motion_->linkPoses(1, scratch_.poses.end);
-  }
+  if (motion_ != nullptr) motion_->linkPoses(1, scratch_.tool.end);
   scratch_.loads.clear();
   if (motion_ != nullptr && model_.scope_springs) gatherSprings();
   Activity most = Activity::Sleep;
@@ -95,8 +92,8 @@ void ImplicitStep::gatherSprings() {
   expected_ = expectedDisplacement();
   ToolMotion motion = *motion_;
   motion.displaceEnd(expected_);
-  motion.linkPoses(0.5, scratch_.poses.middle);
-  motion.linkPoses(1, scratch_.poses.end);
+  motion.linkPoses(0.5, scratch_.tool.middle);
+  motion.linkPoses(1, scratch_.tool.end);
   bend_.emplace(model_.tool->shaftBend(motion.inputs(0.5), motion.displacement(0.5)));
   context_.bend = &*bend_;
   springs_ = model_.scope_springs->during(motion.inputs(0.5), from, motion.displacement(0.5), context_.step);
@@ -110,9 +107,9 @@ void ImplicitStep::gatherSprings() {
 ToolDisplacement ImplicitStep::expectedDisplacement() const {
   const ToolDisplacement& from = motion_->startDisplacement();
   const ToolYield yield = model_.scope_springs->during(motion_->inputs(0.5), from, from, context_.step).yield();
-  const Eigen::Isometry3d& tip = scratch_.poses.start[model_.tip_link];
+  const Eigen::Isometry3d& tip = scratch_.tool.start[model_.tip_link];
   const YieldVector pull =
-      yieldForce(*model_.tool, scratch_.poses.start, model_.tool->shaftBend(motion_->inputs(0), from), model_.tip_link,
+      yieldForce(*model_.tool, scratch_.tool.start, model_.tool->shaftBend(motion_->inputs(0), from), model_.tip_link,
                  tip.translation(), tip.linear() * state_.tool_force, tip.linear() * state_.tool_torque);
   const YieldVector moved = yield.free + yield.compliance * pull;
   ToolDisplacement end = from;
@@ -175,12 +172,7 @@ void ImplicitStep::recover() {
 bool ImplicitStep::solve() {
   scratch_.terms.clear();
   scratch_.start[0] = state_.x, scratch_.start[1] = state_.y, scratch_.start[2] = state_.z;
-  scratch_.has_term.clear();
-  for (const auto& block : scratch_.blocks) {
-    const EnergyTerm* const term = block->energyTerm(context_);
-    scratch_.terms.add(term);
-    scratch_.has_term.push_back(term != nullptr ? 1 : 0);
-  }
+  for (const auto& block : scratch_.blocks) scratch_.terms.add(block->energyTerm(context_));
   contact_energy_ = state_.energy.contact_energy;
   scratch_.loads.extra = scratch_.terms.simplest();
   const StepOutcome outcome = stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
@@ -201,17 +193,13 @@ void ImplicitStep::yieldTool() {
   report_.tool_displacement = expected_;
   for (int d = 0; d < kYieldDofs; ++d) report_.tool_displacement[d] += scratch_.loads.tool_yield.displacement[d];
   yielded_->displaceEnd(report_.tool_displacement);
-  yielded_->linkPoses(1, scratch_.poses.end);
+  yielded_->linkPoses(1, scratch_.tool.end);
 }
 
 void ImplicitStep::store() {
   correct();
   scratch_.touches.clear();
-  for (std::size_t b = 0; b < scratch_.blocks.size(); ++b) {
-    const double before = springWork();
-    scratch_.blocks[b]->store(context_, scratch_.loads, scratch_.touches);
-    if (scratch_.has_term[b] != 0) work_.extra -= springWork() - before;  // it has accounted for its term itself
-  }
+  for (const auto& block : scratch_.blocks) work_.extra -= block->store(context_, scratch_.loads, scratch_.touches);
   if (motion_ != nullptr) {
     const double tool_work = state_.energy.tool_work;
     reportTool();
@@ -256,7 +244,7 @@ void ImplicitStep::keepToolApart() {
   ToolMotion motion = yielded_ ? *yielded_ : *motion_;
   scratch_.held.clear();
   for (const GripPoint& point : state_.grip) scratch_.held.push_back(point.particle);
-  const double free = scratch_.guard->keepApart(scratch_.poses, motion, path, scratch_.held);
+  const double free = scratch_.guard->keepApart(scratch_.tool, motion, path, scratch_.held);
   state_.joints = motion.inputs(1);
   const auto start = motion_->inputs(0), wanted = motion_->inputs(1);
   tool_stopped_ = state_.joints != wanted || (yielded_ && motion.displacement(1) != yielded_->displacement(1));
@@ -275,7 +263,7 @@ void ImplicitStep::keepToolApart() {
 }
 
 void ImplicitStep::reportTool() {
-  const Eigen::Vector3d tip = scratch_.poses.end[model_.tip_link].translation();
+  const Eigen::Vector3d tip = scratch_.tool.end[model_.tip_link].translation();
   for (const ToolTouch& touch : scratch_.touches) {
     if (touch.kind == ToolTouch::Kind::Grip) report_.grip_force -= touch.force;
     if (touch.kind == ToolTouch::Kind::Contact) ++report_.contact_count;
@@ -289,7 +277,7 @@ void ImplicitStep::reportTool() {
 void ImplicitStep::reportHand(double tool_work) {
   Eigen::Matrix<double, kJointCount, 1> effort = Eigen::Matrix<double, kJointCount, 1>::Zero();
   for (const ToolTouch& touch : scratch_.touches)
-    effort += pointJacobian(*model_.tool, scratch_.poses.end, touch.link, touch.point).transpose() * touch.force;
+    effort += pointJacobian(*model_.tool, scratch_.tool.end, touch.link, touch.point).transpose() * touch.force;
   const auto from = motion_->inputs(0), &to = state_.joints;
   const double scope_loss = state_.energy.scope_loss;
   if (springs_) {
@@ -313,9 +301,9 @@ void ImplicitStep::reportHand(double tool_work) {
 void ImplicitStep::reportImpedance() {
   if (scratch_.touches.empty() && scratch_.loads.contacts.empty()) return;
   findToolContactRows(model_, *motion_, stepper_, report_, scratch_);
-  report_.tool_impedance =
-      scratch_.impedance->update(state_.step, scratch_.tool_rows, {state_.x.data(), state_.y.data(), state_.z.data()},
-                                 scratch_.stepper->volume_gradient, scratch_.loads.gas.stiffness, state_.impedance);
+  report_.tool_impedance = scratch_.impedance->update(
+      state_.step, scratch_.tool_rows, {state_.x.data(), state_.y.data(), state_.z.data()},
+      scratch_.stepper->last.volume_gradient, scratch_.loads.gas.stiffness, state_.impedance);
 }
 
 void ImplicitStep::account() {
@@ -327,10 +315,6 @@ void ImplicitStep::account() {
   sum.residual_work += work_.residual;
   // what walls in contact took from the tissue is stored or lost
   sum.contact_loss -= work_.extra + sum.contact_energy - contact_energy_;
-}
-
-double ImplicitStep::springWork() const {
-  return state_.energy.pull_work + state_.energy.thread_work;
 }
 
 void ImplicitStep::updateRest(Activity activity) {

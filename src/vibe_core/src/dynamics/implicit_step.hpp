@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "contact/tool_motion.hpp"
-#include "dynamics/implicit_scratch.hpp"
+#include "dynamics/implicit_workspace.hpp"
 #include "dynamics/loss_limits.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/model/model.hpp"
@@ -19,7 +19,7 @@ class ImplicitStep {
  public:
   /// @param limits  that tell a lost state
   ImplicitStep(const Model& model, const ImplicitStepper& stepper, const LossLimits& limits, const ToolMotion* motion,
-               bool insufflator_on, State& state, ImplicitScratch& scratch, StepReport& report);
+               bool insufflator_on, State& state, ImplicitWorkspace& scratch, StepReport& report);
   void run();
 
  private:
@@ -40,7 +40,6 @@ class ImplicitStep {
   void correct();
   void account();
   Energies mechanicalEnergy() const;
-  double springWork() const;
   void updateRest(Activity activity);
   MotionView motionOf() const;
 
@@ -50,7 +49,7 @@ class ImplicitStep {
   const ToolMotion* motion_;
   State& state_;
   StepReport& report_;
-  ImplicitScratch& scratch_;
+  ImplicitWorkspace& scratch_;
   std::optional<ShaftBend> bend_;           // of a tool that yields, in the middle of the step
   std::optional<ScopeSpringStep> springs_;  // of it
   ToolDisplacement expected_{};             // of it at the end of the step

@@ -29,12 +29,12 @@ void addTouch(const Model& model, const std::vector<Eigen::Isometry3d>& poses, c
 
 // The forces are those of a moment before the end of the step.
 void findPlace(const Model& model, const ToolMotion& motion, const ImplicitStepper& stepper, bool fallback,
-               ImplicitScratch& scratch) {
+               ImplicitWorkspace& scratch) {
   StepSettings settings = stepper.settings();
   settings.backward_euler = settings.backward_euler || fallback;
   const double before = TimeScheme(settings, 0, 0).alpha_f;
-  const Eigen::Vector3d from = scratch.poses.start[model.tip_link].translation();
-  const Eigen::Vector3d to = scratch.poses.end[model.tip_link].translation();
+  const Eigen::Vector3d from = scratch.tool.start[model.tip_link].translation();
+  const Eigen::Vector3d to = scratch.tool.end[model.tip_link].translation();
   ToolContactRows& rows = scratch.tool_rows;
   rows.place.head<3>() = to + before * (from - to);
   rows.speed.head<3>() = (to - from) / settings.step;
@@ -48,14 +48,14 @@ void findPlace(const Model& model, const ToolMotion& motion, const ImplicitStepp
 }  // namespace
 
 void findToolContactRows(const Model& model, const ToolMotion& motion, const ImplicitStepper& stepper,
-                         const StepReport& report, ImplicitScratch& scratch) {
+                         const StepReport& report, ImplicitWorkspace& scratch) {
   ToolContactRows& rows = scratch.tool_rows;
   rows.rows.clear();
   rows.force.setZero();
   rows.contacts = false;
   rows.smooth = !report.fallback;
   findPlace(model, motion, stepper, report.fallback, scratch);
-  for (const ToolTouch& touch : scratch.touches) addTouch(model, scratch.poses.end, touch, rows);
+  for (const ToolTouch& touch : scratch.touches) addTouch(model, scratch.tool.end, touch, rows);
 }
 
 }  // namespace vibe

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "contact/tool_motion.hpp"
-#include "dynamics/implicit_scratch.hpp"
+#include "dynamics/implicit_workspace.hpp"
 #include "vibe_core/model/model.hpp"
 
 namespace vibe {
@@ -9,6 +9,6 @@ namespace vibe {
 /// The touches of the last step as rows for the tool's impedance, with the motion of their targets per motion of the
 /// tool: from scratch.touches to scratch.tool_rows.
 void findToolContactRows(const Model& model, const ToolMotion& motion, const ImplicitStepper& stepper,
-                         const StepReport& report, ImplicitScratch& scratch);
+                         const StepReport& report, ImplicitWorkspace& scratch);
 
 }  // namespace vibe

@@ -5,8 +5,8 @@
 
 #include "constraints/foundation.hpp"
 #include "contact/tool_motion.hpp"
-#include "dynamics/xpbd_scratch.hpp"
 #include "dynamics/xpbd_substep.hpp"
+#include "dynamics/xpbd_workspace.hpp"
 #include "vibe_core/common/thread_pool.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/model/model.hpp"
@@ -14,9 +14,9 @@
 
 namespace vibe {
 
-std::unique_ptr<SolverScratch> XpbdSolver::makeScratch(const Model& model) const {
+std::unique_ptr<SolverWorkspace> XpbdSolver::makeWorkspace(const Model& model) const {
   rejectAddedConstraints(model);
-  auto scratch = std::make_unique<XpbdScratch>();
+  auto scratch = std::make_unique<XpbdWorkspace>();
   const std::size_t n = static_cast<std::size_t>(model.particle_count);
   for (auto* v :
        {&scratch->old_x, &scratch->old_y, &scratch->old_z, &scratch->ahead_x, &scratch->ahead_y, &scratch->ahead_z})
@@ -32,8 +32,8 @@ std::unique_ptr<SolverScratch> XpbdSolver::makeScratch(const Model& model) const
 }
 
 void XpbdSolver::advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
-                         SolverScratch& scratch, ThreadPool& pool, StepReport& report) const {
-  XpbdSubstep substep(model, tissue_->clusters(), motion, insufflator_on, state, static_cast<XpbdScratch&>(scratch),
+                         SolverWorkspace& scratch, ThreadPool& pool, StepReport& report) const {
+  XpbdSubstep substep(model, tissue_->clusters(), motion, insufflator_on, state, static_cast<XpbdWorkspace&>(scratch),
                       pool, report);
   const int count = model.substeps;
   for (int i = 0; i < count; ++i) substep.run(i, count);

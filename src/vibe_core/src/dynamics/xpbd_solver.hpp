@@ -16,9 +16,9 @@ class XpbdSolver : public Solver {
 
   std::string name() const override { return "xpbd"; }
   bool usesSubsteps() const override { return true; }
-  std::unique_ptr<SolverScratch> makeScratch(const Model& model) const override;
-  void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state, SolverScratch& scratch,
-               ThreadPool& pool, StepReport& report) const override;
+  std::unique_ptr<SolverWorkspace> makeWorkspace(const Model& model) const override;
+  void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
+               SolverWorkspace& scratch, ThreadPool& pool, StepReport& report) const override;
 
  private:
   std::shared_ptr<const ShapeMatching> tissue_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/elementary.hpp"
 #include "constraints/depenetration.hpp"
@@ -33,7 +34,7 @@ constexpr double kMaxSpeed = 50;
 }  // namespace
 
 XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const ToolMotion* motion, bool insufflator_on,
-                         State& state, XpbdScratch& scratch, ThreadPool& pool, StepReport& report)
+                         State& state, XpbdWorkspace& scratch, ThreadPool& pool, StepReport& report)
     : model_(model),
       clusters_(clusters),
       motion_(motion),
@@ -46,7 +47,7 @@ XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const T
       inverse_h_(1 / h_),
       stiffness_damping_(model.scene.tissue.stiffness_damping),
       weight_(model.unbalanced_gravity) {
-  if (motion_ != nullptr) motion_->linkPoses(0, scratch_.poses);
+  if (motion_ != nullptr) scratch_.tool.end = scratch_.tool.start;
   loadOrientations(clusters, state, scratch_.buffers);
   scratch_.sweep = bindSweep(clusters, state, scratch_.buffers);
   scratch_.sweep.substep = h_;
@@ -70,18 +71,18 @@ void XpbdSubstep::run(int index, int count) {
 void XpbdSubstep::moveTool(int index, int count) {
   if (motion_ == nullptr) return;
   if (index % kCandidateInterval == 0) findCandidates(index, count);
-  scratch_.old_poses.swap(scratch_.poses);
-  motion_->linkPoses(static_cast<double>(index + 1) / count, scratch_.poses);
+  std::swap(scratch_.old_tool, scratch_.tool.end);
+  motion_->linkPoses(static_cast<double>(index + 1) / count, scratch_.tool.end);
 }
 
 // Candidates for the next kCandidateInterval sub-steps: everything that tool and tissue can bring together by then.
 void XpbdSubstep::findCandidates(int index, int count) {
   const int last = std::min(index + kCandidateInterval, count);
-  motion_->linkPoses(static_cast<double>(last) / count, scratch_.ahead_poses);
+  motion_->linkPoses(static_cast<double>(last) / count, scratch_.tool_ahead);
   const double tissue_travel = std::min(2 * std::sqrt(maxSpeedSquared(state_)) * h_ * kCandidateInterval, kMaxTravel);
-  const double reach =
-      model_.particle_radius + motion_->travel(scratch_.poses, scratch_.ahead_poses) + tissue_travel + kCandidateMargin;
-  scratch_.collision->findCandidates(scratch_.poses, state_.x.data(), state_.y.data(), state_.z.data(),
+  const double reach = model_.particle_radius + motion_->travel(scratch_.tool.end, scratch_.tool_ahead) +
+                       tissue_travel + kCandidateMargin;
+  scratch_.collision->findCandidates(scratch_.tool.end, state_.x.data(), state_.y.data(), state_.z.data(),
                                      model_.particle_count, reach);
 }
 
@@ -146,8 +147,8 @@ void XpbdSubstep::moveParticle(int i, double decay) {
 
 void XpbdSubstep::holdGrip() {
   if (state_.grip.empty()) return;
-  const Eigen::Isometry3d& helix = scratch_.poses[model_.grip_link];
-  const Eigen::Isometry3d& old_helix = scratch_.old_poses[model_.grip_link];
+  const Eigen::Isometry3d& helix = scratch_.tool.end[model_.grip_link];
+  const Eigen::Isometry3d& old_helix = scratch_.old_tool[model_.grip_link];
   for (const GripPoint& point : state_.grip) {
     const int i = point.particle;
     const Eigen::Vector3d target = helix * point.local;
@@ -161,7 +162,7 @@ void XpbdSubstep::holdGrip() {
 
 void XpbdSubstep::resolveContacts() {
   if (motion_ == nullptr || scratch_.collision->candidateCount() == 0) return;
-  const auto& contacts = scratch_.collision->findContacts(scratch_.poses, state_.x.data(), state_.y.data(),
+  const auto& contacts = scratch_.collision->findContacts(scratch_.tool.end, state_.x.data(), state_.y.data(),
                                                           state_.z.data(), model_.particle_radius);
   int touched = 0;
   forEachDeepest(contacts, [&](const Contact& contact) {
@@ -180,7 +181,7 @@ void XpbdSubstep::pushOut(const Contact& contact) {
   const int link = model_.tool->shapes()[contact.shape].link;
   const Eigen::Vector3d p(state_.x[i], state_.y[i], state_.z[i]);
   const Eigen::Vector3d old_p(scratch_.old_x[i], scratch_.old_y[i], scratch_.old_z[i]);
-  const Eigen::Vector3d tool_step = p - scratch_.old_poses[link] * (scratch_.poses[link].inverse() * p);
+  const Eigen::Vector3d tool_step = p - scratch_.old_tool[link] * (scratch_.tool.end[link].inverse() * p);
   const Eigen::Vector3d slide = p - old_p - tool_step;
   const double normal_slide = contact.normal.dot(slide);
   const double depth =

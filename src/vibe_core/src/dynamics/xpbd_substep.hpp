@@ -1,5 +1,5 @@
 #pragma once
-#include "dynamics/xpbd_scratch.hpp"
+#include "dynamics/xpbd_workspace.hpp"
 #include "tissue/cluster_set.hpp"
 #include "vibe_core/common/thread_pool.hpp"
 #include "vibe_core/model/model.hpp"
@@ -14,7 +14,7 @@ class ToolMotion;
 class XpbdSubstep {
  public:
   XpbdSubstep(const Model& model, const ClusterSet& clusters, const ToolMotion* motion, bool insufflator_on,
-              State& state, XpbdScratch& scratch, ThreadPool& pool, StepReport& report);
+              State& state, XpbdWorkspace& scratch, ThreadPool& pool, StepReport& report);
 
   void run(int index, int count);
 
@@ -35,7 +35,7 @@ class XpbdSubstep {
   void limitSpeeds();
   void limitSpeed(int i, double speed2);
   void lookAhead();
-  Eigen::Vector3d tip() const { return scratch_.poses[model_.tip_link].translation(); }
+  Eigen::Vector3d tip() const { return scratch_.tool.end[model_.tip_link].translation(); }
   void accountDamping(double decay);
 
   const Model& model_;
@@ -45,7 +45,7 @@ class XpbdSubstep {
   State& state_;
   ThreadPool& pool_;
   StepReport& report_;
-  XpbdScratch& scratch_;
+  XpbdWorkspace& scratch_;
   double h_;                  // sub-step [s]
   double inverse_h_;          // [1/s]
   double stiffness_damping_;  // [s]

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "events/emit_event.hpp"
 #include "vibe_core/common/random.hpp"
+#include "vibe_core/events/event_log.hpp"
 
 namespace vibe {
 
@@ -12,21 +12,21 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // tolerance for the rounding of times that are sums of steps [s]
 
-Event& emitBleeding(Event::Kind kind, const Bleeding& bleeding, double time, double value, std::vector<Event>& events) {
-  Event& event = emitEvent(kind, time, bleeding.particle, value, events);
+Event& emitBleeding(Event::Kind kind, const Bleeding& bleeding, double value, EventLog log) {
+  Event& event = log.emit(kind, bleeding.particle, value);
   event.suture = bleeding.suture;
   event.bite = bleeding.bite;
   return event;
 }
 
-void stop(Bleeding& bleeding, EventDetail how, double time, std::vector<Event>& events) {
+void stop(Bleeding& bleeding, EventDetail how, EventLog log) {
   bleeding.rate = 0;
-  emitBleeding(Event::Kind::BleedingStopped, bleeding, time, bleeding.amount, events).detail = how;
+  emitBleeding(Event::Kind::BleedingStopped, bleeding, bleeding.amount, log).detail = how;
 }
 
 }  // namespace
 
-void bleedFromBite(const Model& model, int suture, int bite, int particle, State& state, std::vector<Event>& events) {
+void bleedFromBite(const Model& model, int suture, int bite, int particle, State& state, EventLog log) {
   if (!model.scene.bleeding) return;
   const BleedingScene& scene = *model.scene.bleeding;
   const double draw = nextUniform(state.random);
@@ -38,12 +38,11 @@ void bleedFromBite(const Model& model, int suture, int bite, int particle, State
   bleeding.brisk = draw < scene.brisk_probability;
   bleeding.begin = state.time;
   bleeding.rate = bleeding.brisk ? scene.brisk_rate : scene.mild_rate;
-  emitBleeding(bleeding.brisk ? Event::Kind::BleedingBrisk : Event::Kind::BleedingMild, bleeding, state.time,
-               bleeding.rate, events);
+  emitBleeding(bleeding.brisk ? Event::Kind::BleedingBrisk : Event::Kind::BleedingMild, bleeding, bleeding.rate, log);
   state.procedure.bleedings.push_back(bleeding);
 }
 
-void updateBleedings(const Model& model, State& state, std::vector<Event>& events) {
+void updateBleedings(const Model& model, State& state, EventLog log) {
   if (!model.scene.bleeding) return;
   const BleedingScene& scene = *model.scene.bleeding;
   for (Bleeding& bleeding : state.procedure.bleedings) {
@@ -52,17 +51,17 @@ void updateBleedings(const Model& model, State& state, std::vector<Event>& event
     bleeding.amount += lost;
     state.procedure.blood_lost += lost;
     const double age = state.time - bleeding.begin + kRounding;
-    if (!bleeding.brisk && age >= scene.mild_duration) stop(bleeding, EventDetail::MildByItself, state.time, events);
+    if (!bleeding.brisk && age >= scene.mild_duration) stop(bleeding, EventDetail::MildByItself, log);
     if (!bleeding.brisk || bleeding.overdue || age < scene.brisk_time) continue;
     bleeding.overdue = true;
-    emitBleeding(Event::Kind::BleedingOverdue, bleeding, state.time, bleeding.amount, events);
+    emitBleeding(Event::Kind::BleedingOverdue, bleeding, bleeding.amount, log);
   }
 }
 
-void stopBleedings(int suture, State& state, std::vector<Event>& events) {
+void stopBleedings(int suture, State& state, EventLog log) {
   for (Bleeding& bleeding : state.procedure.bleedings) {
     if (bleeding.suture != suture || bleeding.rate <= 0) continue;
-    stop(bleeding, bleeding.brisk ? EventDetail::BriskCinched : EventDetail::MildCinched, state.time, events);
+    stop(bleeding, bleeding.brisk ? EventDetail::BriskCinched : EventDetail::MildCinched, log);
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
-#include <vector>
 
-#include "vibe_core/events/event.hpp"
+#include "vibe_core/events/event_log.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -10,10 +9,10 @@ namespace vibe {
 // Both need scene.suture.
 
 /// Call when the button of the T-tag is pressed: drops the needle at the last bite, or rejects the command.
-void dropTTag(const Model& model, State& state, std::vector<Event>& events);
+void dropTTag(const Model& model, State& state, EventLog log);
 
 /// Call in every step. The cinch starts when its button is pressed, draws thread while the button is held, and makes
 /// the set permanent when it is released.
-void commandCinch(const Model& model, bool pressed, bool was_pressed, State& state, std::vector<Event>& events);
+void commandCinch(const Model& model, bool pressed, bool was_pressed, State& state, EventLog log);
 
 }  // namespace vibe

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "events/emit_event.hpp"
 #include "procedure/phase.hpp"
+#include "vibe_core/events/event_log.hpp"
 
 namespace vibe {
 
@@ -28,14 +28,13 @@ int nearestFreeParticle(const Model& model, const State& state, const Eigen::Vec
   return nearest;
 }
 
-void takeHold(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state,
-              std::vector<Event>& events) {
+void takeHold(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state, EventLog log) {
   const HelixScene& helix = *model.scene.helix;
   const Eigen::Vector3d tip = link_poses[model.helix_link].translation();
   double distance = 0;
   const int target = nearestFreeParticle(model, state, tip, distance);
   if (target < 0 || distance > helix.reach) {
-    emitEvent(Event::Kind::GrabMissed, state.time, target, distance, events).limit = helix.reach;
+    log.emit(Event::Kind::GrabMissed, target, distance).limit = helix.reach;
     return;
   }
   const Eigen::Isometry3d to_grip = link_poses[model.grip_link].inverse();
@@ -47,15 +46,15 @@ void takeHold(const Model& model, const std::vector<Eigen::Isometry3d>& link_pos
     if ((p - centre).norm() <= helix.grip_radius) state.grip.push_back({i, to_grip * p});
   }
   const double held = static_cast<double>(state.grip.size());
-  Event& event = emitEvent(Event::Kind::Grab, state.time, target, held, events);
+  Event& event = log.emit(Event::Kind::Grab, target, held);
   event.region = model.organ.region[target];
   event.wall = model.organ.wall[target];
   state.procedure.grip_rotation = state.joints[HelixRotation];
   state.procedure.grip_turns = 0;
-  if (model.scene.suture) noteSuturing(state, events);
+  if (model.scene.suture) noteSuturing(state, log);
 }
 
-void countTurns(const Model& model, State& state, std::vector<Event>& events) {
+void countTurns(const Model& model, State& state, EventLog log) {
   constexpr double kTurn = 6.28318530717958647692;  // [rad]
   const HelixScene& helix = *model.scene.helix;
   const double turns = (state.joints[HelixRotation] - state.procedure.grip_rotation) / kTurn;
@@ -63,21 +62,20 @@ void countTurns(const Model& model, State& state, std::vector<Event>& events) {
   if (!(turns > before)) return;
   state.procedure.grip_turns = turns;
   if (before < helix.hold_turns && turns >= helix.hold_turns)
-    emitEvent(Event::Kind::HelixTurned, state.time, state.grip.front().particle, turns, events).limit =
-        helix.hold_force;
+    log.emit(Event::Kind::HelixTurned, state.grip.front().particle, turns).limit = helix.hold_force;
 }
 
 }  // namespace
 
 void updateGrip(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, bool pressed, State& state,
-                std::vector<Event>& events) {
+                EventLog log) {
   if (!model.scene.helix) return;
   const bool went_down = pressed && !state.helix_pressed;
   const bool went_up = !pressed && state.helix_pressed;
   state.helix_pressed = pressed;
-  if (went_down && state.grip.empty()) takeHold(model, link_poses, state, events);
+  if (went_down && state.grip.empty()) takeHold(model, link_poses, state, log);
   if (went_up && !state.grip.empty()) {
-    emitEvent(Event::Kind::Release, state.time, state.grip.front().particle, state.grip_force, events);
+    log.emit(Event::Kind::Release, state.grip.front().particle, state.grip_force);
     state.grip.clear();
   }
 }
@@ -88,12 +86,12 @@ double holdingForce(const HelixScene& helix, double turns) {
          (helix.hold_force - helix.initial_hold_force) * std::max(turns, 0.0) / helix.hold_turns;
 }
 
-void releaseOverloadedGrip(const Model& model, State& state, std::vector<Event>& events) {
+void releaseOverloadedGrip(const Model& model, State& state, EventLog log) {
   if (!model.scene.helix || state.grip.empty()) return;
-  countTurns(model, state, events);
+  countTurns(model, state, log);
   const double hold = holdingForce(*model.scene.helix, state.procedure.grip_turns);
   if (state.grip_force <= hold) return;
-  Event& event = emitEvent(Event::Kind::Slip, state.time, state.grip.front().particle, state.grip_force, events);
+  Event& event = log.emit(Event::Kind::Slip, state.grip.front().particle, state.grip_force);
   event.limit = hold;
   event.amount = state.procedure.grip_turns;
   state.grip.clear();

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "events/emit_event.hpp"
 #include "procedure/marking_touch.hpp"
 #include "procedure/phase.hpp"
+#include "vibe_core/events/event_log.hpp"
 
 namespace vibe {
 
@@ -15,8 +15,8 @@ Event::Kind kindOf(BurnGrade grade) {
   return grade == BurnGrade::Burn ? Event::Kind::Burn : Event::Kind::Mark;
 }
 
-void emitBurn(const Burn& burn, double dose, std::size_t marks, double time, std::vector<Event>& events) {
-  Event& event = emitEvent(kindOf(burn.grade), time, burn.particle, dose, events);
+void emitBurn(const Burn& burn, double dose, std::size_t marks, EventLog log) {
+  Event& event = log.emit(kindOf(burn.grade), burn.particle, dose);
   event.region = burn.region;
   event.wall = burn.wall;
   if (event.kind != Event::Kind::Mark) return;
@@ -30,17 +30,16 @@ bool beginsThere(const Burn& burn, const std::vector<int>& neighbours, const std
 }
 
 void fireBeam(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, bool went_down, State& state,
-              MarkingScratch& scratch, std::vector<Event>& events) {
+              MarkingScratch& scratch, EventLog log) {
   const ApcParameters& apc = model.scene.marking->apc;
   const Eigen::Isometry3d& tip = link_poses[model.tip_link];
   const SurfaceView wall{model.organ.surface.triangles, state.x, state.y, state.z};
   const BeamHit& hit = scratch.beam.fire(tip.translation(), tip.linear().col(0), wall, model.particle_radius, apc);
-  if (hit.triangle >= 0) return noteMarking(state, events);
-  if (went_down)
-    reject(ApcPedal, RejectReason::BeamOutOfReach, state.time, events).limit = apc.probe_length + apc.reach;
+  if (hit.triangle >= 0) return noteMarking(state, log);
+  if (went_down) log.reject(ApcPedal, RejectReason::BeamOutOfReach).limit = apc.probe_length + apc.reach;
 }
 
-void recordBurns(const Model& model, State& state, MarkingScratch& scratch, std::vector<Event>& events) {
+void recordBurns(const Model& model, State& state, MarkingScratch& scratch, EventLog log) {
   ProcedureState& procedure = state.procedure;
   for (const Burn& burn : scratch.burns) {
     const bool begins = beginsThere(burn, scratch.neighbours[burn.particle], procedure.grade);
@@ -48,7 +47,7 @@ void recordBurns(const Model& model, State& state, MarkingScratch& scratch, std:
     if (!begins) continue;
     const SurfaceView wall{model.organ.surface.triangles, state.x, state.y, state.z};
     const std::size_t marks = scratch.finder.find(*model.dose_law, procedure.dose, wall).size();
-    emitBurn(burn, procedure.dose[burn.particle], marks, state.time, events);
+    emitBurn(burn, procedure.dose[burn.particle], marks, log);
   }
 }
 
@@ -63,15 +62,15 @@ MarkingScratch::MarkingScratch(const Model& model)
 MarkingScratch::~MarkingScratch() = default;
 
 void updateMarking(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, const BeamStep& step,
-                   State& state, MarkingScratch& scratch, std::vector<Event>& events) {
+                   State& state, MarkingScratch& scratch, EventLog log) {
   const double dt = model.scene.step_period;
-  if (step.pedal) fireBeam(model, link_poses, step.went_down, state, scratch, events);
+  if (step.pedal) fireBeam(model, link_poses, step.went_down, state, scratch, log);
   const std::vector<BeamShare>& shares = step.pedal ? scratch.beam.shares() : scratch.no_beam;
   for (const BeamShare& share : shares) state.procedure.beam_energy += share.power * dt;
   const GasFlow flow{step.pedal ? model.scene.marking->apc.argon_flow : 0, step.insufflation};
   scratch.burns.clear();
   model.dose_law->advance(model.organ, shares, flow, dt, state.procedure.heat, state.procedure.dose, scratch.burns);
-  recordBurns(model, state, scratch, events);
+  recordBurns(model, state, scratch, log);
 }
 
 void coolDown(State& state) {

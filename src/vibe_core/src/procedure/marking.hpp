@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "vibe_core/events/event.hpp"
+#include "vibe_core/events/event_log.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 #include "vibe_core/thermal/argon_beam.hpp"
@@ -47,7 +47,7 @@ struct BeamStep {
 /// particles are in the state.
 /// @param link_poses  of the tool's links in world at the end of the step
 void updateMarking(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, const BeamStep& step,
-                   State& state, MarkingScratch& scratch, std::vector<Event>& events);
+                   State& state, MarkingScratch& scratch, EventLog log);
 
 /// Resets the heat when the tissue starts again from rest. Marks stay.
 void coolDown(State& state);

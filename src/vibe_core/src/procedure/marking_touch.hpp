@@ -43,7 +43,7 @@ class MarkingTouch {
   const Model& model_;
   ToolCollision collision_;
   GradientTouch touch_;
-  std::vector<Eigen::Isometry3d> old_poses_, poses_;  // of the tool's links in world, before and after a step
+  LinkPoses old_poses_, poses_;  // of the tool's links in world, before and after a step
 };
 
 }  // namespace vibe

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "events/emit_event.hpp"
 #include "procedure/bleeding.hpp"
 #include "procedure/needle.hpp"
 #include "procedure/phase.hpp"
 #include "procedure/thread_events.hpp"
+#include "vibe_core/events/event_log.hpp"
 
 namespace vibe {
 
@@ -17,39 +17,37 @@ constexpr double kClosed = 0.95;
 constexpr double kOpen = 0.10;
 constexpr double kMinNewSegment = 1e-3;  // so that two bites at one place have thread between them; design choice [m]
 
-void meetTissue(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state,
-                std::vector<Event>& events) {
+void meetTissue(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state, EventLog log) {
   const auto [begin, end] = needlePath(model, link_poses);
   NeedleReach reach = reachOfNeedle(model, state, begin, end);
   if (reach.depth <= 0) {
-    emitEvent(Event::Kind::BiteMissed, state.time, -1, -reach.depth, events);
+    log.emit(Event::Kind::BiteMissed, -1, -reach.depth);
     return;
   }
   ProcedureState& procedure = state.procedure;
   procedure.pierced = true;
   procedure.pending = std::move(reach.bite);
-  emitEvent(Event::Kind::Pierced, state.time, nearestParticle(procedure.pending), reach.depth, events);
-  noteSuturing(state, events);
+  log.emit(Event::Kind::Pierced, nearestParticle(procedure.pending), reach.depth);
+  noteSuturing(state, log);
 }
 
-void closeArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state,
-              std::vector<Event>& events) {
+void closeArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state, EventLog log) {
   state.procedure.arm_closed = true;
   if (!state.procedure.needle_loaded)
-    reject(-1, RejectReason::ClosedWithoutNeedle, state.time, events);
+    log.reject(-1, RejectReason::ClosedWithoutNeedle);
   else if (state.procedure.needle_on_arm)
-    meetTissue(model, link_poses, state, events);
+    meetTissue(model, link_poses, state, log);
   else
-    emitEvent(Event::Kind::ArmClosed, state.time, -1, 0, events);
+    log.emit(Event::Kind::ArmClosed);
 }
 
-void openArm(State& state, std::vector<Event>& events) {
+void openArm(State& state, EventLog log) {
   ProcedureState& procedure = state.procedure;
   procedure.arm_closed = false;
   const bool withdrawn = procedure.pierced && procedure.needle_on_arm;
   procedure.pierced = false;
   if (!withdrawn) return;
-  emitEvent(Event::Kind::BiteWithdrawn, state.time, nearestParticle(procedure.pending), 0, events);
+  log.emit(Event::Kind::BiteWithdrawn, nearestParticle(procedure.pending), 0);
   procedure.pending = Bite{};
 }
 
@@ -60,10 +58,9 @@ double distanceFromLast(const Suture* open, const State& state) {
 }
 
 // True, with an event, if the bite cannot be taken.
-bool rejectBite(const SutureScene& scene, const Suture* open, double spacing, const State& state,
-                std::vector<Event>& events) {
+bool rejectBite(const SutureScene& scene, const Suture* open, double spacing, const State& state, EventLog log) {
   const auto no = [&](RejectReason reason, double limit) {
-    Event& event = reject(Needle, reason, state.time, events);
+    Event& event = log.reject(Needle, reason);
     event.limit = limit;
     event.amount = spacing;
     return true;
@@ -77,8 +74,8 @@ bool rejectBite(const SutureScene& scene, const Suture* open, double spacing, co
   return too_long && no(RejectReason::ThreadUsedUp, scene.thread_length - state.procedure.thread_used);
 }
 
-void emitBite(const Bite& bite, int set, int number, double spacing, double time, std::vector<Event>& events) {
-  Event& event = emitEvent(Event::Kind::Bite, time, nearestParticle(bite), bite.depth, events);
+void emitBite(const Bite& bite, int set, int number, double spacing, EventLog log) {
+  Event& event = log.emit(Event::Kind::Bite, nearestParticle(bite), bite.depth);
   event.detail = bite.fullThickness() ? EventDetail::FullThickness : EventDetail::PartialThickness;
   event.suture = set;
   event.bite = number;
@@ -87,11 +84,11 @@ void emitBite(const Bite& bite, int set, int number, double spacing, double time
   event.wall = bite.wall;
 }
 
-void takeBite(const Model& model, State& state, std::vector<Event>& events) {
+void takeBite(const Model& model, State& state, EventLog log) {
   ProcedureState& procedure = state.procedure;
   Suture* open = activeSuture(procedure);  // open, as there is a needle
   const double spacing = distanceFromLast(open, state);
-  if (rejectBite(*model.scene.suture, open, spacing, state, events)) return;
+  if (rejectBite(*model.scene.suture, open, spacing, state, log)) return;
   if (!open) {
     open = &procedure.sutures.emplace_back();
     open->begin = state.time;
@@ -107,9 +104,9 @@ void takeBite(const Model& model, State& state, std::vector<Event>& events) {
   }
   open->bites.push_back(std::move(bite));
   const int set = static_cast<int>(procedure.sutures.size()) - 1, number = static_cast<int>(open->bites.size()) - 1;
-  emitBite(open->bites.back(), set, number, spacing, state.time, events);
-  noteSuturing(state, events);
-  bleedFromBite(model, set, number, nearestParticle(open->bites.back()), state, events);
+  emitBite(open->bites.back(), set, number, spacing, log);
+  noteSuturing(state, log);
+  bleedFromBite(model, set, number, nearestParticle(open->bites.back()), state, log);
 }
 
 // None: the needle can change sides.
@@ -121,25 +118,24 @@ RejectReason reasonAgainstExchange(const ProcedureState& procedure) {
 
 }  // namespace
 
-void updateArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state,
-               std::vector<Event>& events) {
+void updateArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state, EventLog log) {
   const JointLimits& limits = model.tool->limits()[NeedleDriver];
   const double closed = (state.joints[NeedleDriver] - limits.lower) / (limits.upper - limits.lower);
-  if (!state.procedure.arm_closed && closed >= kClosed) closeArm(model, link_poses, state, events);
-  if (state.procedure.arm_closed && closed <= kOpen) openArm(state, events);
+  if (!state.procedure.arm_closed && closed >= kClosed) closeArm(model, link_poses, state, log);
+  if (state.procedure.arm_closed && closed <= kOpen) openArm(state, log);
 }
 
-void exchangeNeedle(const Model& model, State& state, std::vector<Event>& events) {
+void exchangeNeedle(const Model& model, State& state, EventLog log) {
   ProcedureState& procedure = state.procedure;
   const bool bites = procedure.needle_loaded && procedure.arm_closed && procedure.pierced && procedure.needle_on_arm;
-  if (bites) return takeBite(model, state, events);
+  if (bites) return takeBite(model, state, log);
   const RejectReason reason = reasonAgainstExchange(procedure);
   if (reason != RejectReason::None) {
-    reject(Needle, reason, state.time, events);
+    log.reject(Needle, reason);
     return;
   }
   procedure.needle_on_arm = !procedure.needle_on_arm;
-  emitEvent(Event::Kind::NeedleExchanged, state.time, -1, procedure.needle_on_arm ? 1 : 0, events).detail =
+  log.emit(Event::Kind::NeedleExchanged, -1, procedure.needle_on_arm ? 1 : 0).detail =
       procedure.needle_on_arm ? EventDetail::NeedleOnArm : EventDetail::NeedleInExchange;
 }
 

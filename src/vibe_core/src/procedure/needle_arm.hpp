@@ -2,7 +2,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "vibe_core/events/event.hpp"
+#include "vibe_core/events/event_log.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -15,11 +15,10 @@ constexpr int kMaxSutures = 64;
 
 /// Call in every step: the needle pierces the wall when the arm's joint reaches its closed end, and is withdrawn when
 /// it reaches its open end.
-void updateArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state,
-               std::vector<Event>& events);
+void updateArm(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, State& state, EventLog log);
 
 /// Call when the button of the anchor exchange is pressed: the needle changes sides or completes a bite, or the command
 /// is rejected.
-void exchangeNeedle(const Model& model, State& state, std::vector<Event>& events);
+void exchangeNeedle(const Model& model, State& state, EventLog log);
 
 }  // namespace vibe

@@ -1,6 +1,6 @@
 #include "procedure/phase.hpp"
 
-#include "events/emit_event.hpp"
+#include "vibe_core/events/event_log.hpp"
 
 namespace vibe {
 
@@ -21,27 +21,27 @@ bool everySetIsFinished(const ProcedureState& procedure) {
 
 }  // namespace
 
-void enterPhase(Phase phase, State& state, std::vector<Event>& events) {
+void enterPhase(Phase phase, State& state, EventLog log) {
   if (state.procedure.phase == phase) return;
   state.procedure.phase = phase;
-  emitEvent(Event::Kind::PhaseChanged, state.time, -1, static_cast<double>(phase), events);
+  log.emit(Event::Kind::PhaseChanged, -1, static_cast<double>(phase));
 }
 
-void noteMarking(State& state, std::vector<Event>& events) {
-  if (state.procedure.phase != Phase::Pull) enterPhase(Phase::Mark, state, events);
+void noteMarking(State& state, EventLog log) {
+  if (state.procedure.phase != Phase::Pull) enterPhase(Phase::Mark, state, log);
 }
 
-void noteSuturing(State& state, std::vector<Event>& events) {
-  if (state.procedure.phase != Phase::Pull) enterPhase(Phase::Suture, state, events);
+void noteSuturing(State& state, EventLog log) {
+  if (state.procedure.phase != Phase::Pull) enterPhase(Phase::Suture, state, log);
 }
 
-void updatePhase(const Model& model, State& state, std::vector<Event>& events) {
+void updatePhase(const Model& model, State& state, EventLog log) {
   const double insertion = state.joints[Insertion] - model.tool->limits()[Insertion].lower;
   const bool done = state.procedure.phase == Phase::Done;
   const bool at_work = state.procedure.arm_closed || !state.grip.empty();
   if (!done && !at_work && insertion < kWithdrawn && everySetIsFinished(state.procedure))
-    enterPhase(Phase::Done, state, events);
-  if (done && insertion > kInserted) enterPhase(Phase::Inspect, state, events);
+    enterPhase(Phase::Done, state, log);
+  if (done && insertion > kInserted) enterPhase(Phase::Inspect, state, log);
 }
 
 }  // namespace vibe

@@ -1,7 +1,6 @@
 #pragma once
-#include <vector>
 
-#include "vibe_core/events/event.hpp"
+#include "vibe_core/events/event_log.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -17,15 +16,15 @@ namespace vibe {
 //            withdrawn to less than 1 cm
 
 /// Enters a phase, with an Event::Kind::PhaseChanged unless it is the present one.
-void enterPhase(Phase phase, State& state, std::vector<Event>& events);
+void enterPhase(Phase phase, State& state, EventLog log);
 
 /// Call when the argon beam heats tissue.
-void noteMarking(State& state, std::vector<Event>& events);
+void noteMarking(State& state, EventLog log);
 
 /// Call when the helix has grabbed or the needle has pierced the wall.
-void noteSuturing(State& state, std::vector<Event>& events);
+void noteSuturing(State& state, EventLog log);
 
 /// Enters Done, and Inspect after it, depending on the insertion of the scope.
-void updatePhase(const Model& model, State& state, std::vector<Event>& events);
+void updatePhase(const Model& model, State& state, EventLog log);
 
 }  // namespace vibe

@@ -2,7 +2,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "vibe_core/events/event.hpp"
+#include "vibe_core/events/event_log.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
@@ -16,9 +16,9 @@ namespace vibe {
 /// shortens the threads that are being drawn.
 /// @param link_poses  of the tool's links in world at the start of the step
 void commandProcedure(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, const StepInput& input,
-                      State& state, std::vector<Event>& events);
+                      State& state, EventLog log);
 
 /// Call after the tissue has moved: breaks overloaded threads, tears out overloaded bites, updates bleeding and phase.
-void updateProcedure(const Model& model, State& state, std::vector<Event>& events);
+void updateProcedure(const Model& model, State& state, EventLog log);
 
 }  // namespace vibe

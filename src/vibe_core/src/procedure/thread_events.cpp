@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "constraints/group_draw.hpp"
-#include "events/emit_event.hpp"
 #include "procedure/bleeding.hpp"
 #include "procedure/needle.hpp"
 #include "procedure/phase.hpp"
+#include "vibe_core/events/event_log.hpp"
 
 namespace vibe {
 
@@ -37,25 +37,25 @@ double sum(const std::vector<double>& values) {
 }
 
 // The thread of the set no longer pulls. If the set was being cinched, the device takes a new thread.
-void giveUp(Suture& suture, State& state, std::vector<Event>& events) {
+void giveUp(Suture& suture, State& state, EventLog log) {
   const bool active = !suture.permanent();
   suture.stage = Suture::Stage::Broken;
   std::fill(suture.tension.begin(), suture.tension.end(), 0.0);
   if (!active) return;
   loadThread(state.procedure);
-  enterPhase(Phase::Suture, state, events);
+  enterPhase(Phase::Suture, state, log);
 }
 
-bool breakThread(const SutureScene& scene, int number, State& state, std::vector<Event>& events) {
+bool breakThread(const SutureScene& scene, int number, State& state, EventLog log) {
   Suture& suture = state.procedure.sutures[number];
   for (double& tension : suture.tension)
     if (!std::isfinite(tension)) tension = 0;
   const double max = *std::max_element(suture.tension.begin(), suture.tension.end());
   if (max <= scene.thread_strength) return false;
-  Event& event = emitEvent(Event::Kind::ThreadBroke, state.time, -1, max, events);
+  Event& event = log.emit(Event::Kind::ThreadBroke, -1, max);
   event.suture = number;
   event.limit = scene.thread_strength;
-  giveUp(suture, state, events);
+  giveUp(suture, state, log);
   return true;
 }
 
@@ -96,18 +96,18 @@ int overloadedBite(const SutureScene& scene, const Suture& suture, const State& 
   return worst;
 }
 
-void tearOut(const SutureScene& scene, int number, State& state, std::vector<Event>& events) {
+void tearOut(const SutureScene& scene, int number, State& state, EventLog log) {
   Suture& suture = state.procedure.sutures[number];
   double force = 0;
   const int bite = overloadedBite(scene, suture, state, force);
   if (bite < 0) return;
-  Event& event = emitEvent(Event::Kind::TearOut, state.time, nearestParticle(suture.bites[bite]), force, events);
+  Event& event = log.emit(Event::Kind::TearOut, nearestParticle(suture.bites[bite]), force);
   event.suture = number;
   event.bite = bite;
   event.limit = holdOfBite(scene, suture.bites[bite]);
   removeBite(bite, suture);
   forgetBite(number, bite, state.procedure);
-  if (suture.bites.size() < 2) giveUp(suture, state, events);
+  if (suture.bites.size() < 2) giveUp(suture, state, log);
 }
 
 }  // namespace
@@ -162,7 +162,7 @@ double holdOfBite(const SutureScene& scene, const Bite& bite) {
   return scene.pull_out_force * std::clamp(bite.depth / bite.thickness, kMinHold, 1.0);
 }
 
-void updateThreads(const Model& model, State& state, std::vector<Event>& events) {
+void updateThreads(const Model& model, State& state, EventLog log) {
   const SutureScene& scene = *model.scene.suture;
   ProcedureState& procedure = state.procedure;
   if (Suture* active = activeSuture(procedure)) {
@@ -172,7 +172,7 @@ void updateThreads(const Model& model, State& state, std::vector<Event>& events)
   }
   for (int number = 0; number < static_cast<int>(procedure.sutures.size()); ++number) {
     if (!procedure.sutures[number].pulls()) continue;
-    if (!breakThread(scene, number, state, events)) tearOut(scene, number, state, events);
+    if (!breakThread(scene, number, state, log)) tearOut(scene, number, state, log);
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
-#include <vector>
 
-#include "vibe_core/events/event.hpp"
+#include "vibe_core/events/event_log.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/procedure/thread.hpp"
 #include "vibe_core/solver/elastic_body.hpp"
@@ -24,7 +23,7 @@ double holdOfBite(const SutureScene& scene, const Bite& bite);
 
 /// Call after a step. Thread that runs freely follows the tissue. Threads that pull break above their strength; bites
 /// tear out above their hold, in each set at most one per step, the one with the highest ratio of force to hold.
-void updateThreads(const Model& model, State& state, std::vector<Event>& events);
+void updateThreads(const Model& model, State& state, EventLog log);
 
 /// Lengthens all threads until they have no tension, for tissue that was put back to rest.
 void slackenThreads(State& state);

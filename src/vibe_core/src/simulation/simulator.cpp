@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "contact/tool_motion.hpp"
-#include "events/emit_event.hpp"
 #include "procedure/marking.hpp"
 #include "procedure/marking_touch.hpp"
 #include "procedure/procedure.hpp"
 #include "procedure/set_point.hpp"
 #include "procedure/thread_events.hpp"
 #include "vibe_core/constraints/gas.hpp"
+#include "vibe_core/events/event_log.hpp"
 #include "vibe_core/procedure/helix_grip.hpp"
 
 namespace vibe {
@@ -30,19 +31,18 @@ void storeForces(const Model& model, const StepReport& report, const std::vector
   state.contact_count = report.contact_count;
 }
 
-void reportContact(int contact_count, double dt, State& state, std::vector<Event>& events) {
+void reportContact(int contact_count, double dt, State& state, EventLog log) {
   const bool touching = contact_count > 0;
-  if (touching && !state.in_contact) emitEvent(Event::Kind::ContactBegin, state.time, -1, contact_count, events);
+  if (touching && !state.in_contact) log.emit(Event::Kind::ContactBegin, -1, contact_count);
   state.untouched_time = touching || !state.in_contact ? 0 : state.untouched_time + dt;
   const bool ended = state.in_contact && state.untouched_time >= kContactGap;
-  if (ended) emitEvent(Event::Kind::ContactEnd, state.time, -1, 0, events);
+  if (ended) log.emit(Event::Kind::ContactEnd);
   state.in_contact = touching || (state.in_contact && !ended);
 }
 
-void reportPressure(const GasScene& gas, bool insufflator_on, State& state, std::vector<Event>& events) {
+void reportPressure(const GasScene& gas, bool insufflator_on, State& state, EventLog log) {
   const bool reached = insufflator_on && isAtSetPoint(state.pressure, gas.regulated_pressure, state.pressure_reached);
-  if (reached && !state.pressure_reached)
-    emitEvent(Event::Kind::PressureReached, state.time, -1, state.pressure, events);
+  if (reached && !state.pressure_reached) log.emit(Event::Kind::PressureReached, -1, state.pressure);
   state.pressure_reached = reached;
 }
 
@@ -61,7 +61,7 @@ bool isFinite(const State& state) {
 }
 
 // A state with numbers that are not finite cannot be continued: the tissue starts again from rest, with an event.
-void recover(const Model& model, State& state, std::vector<Event>& events) {
+void recover(const Model& model, State& state, EventLog log) {
   const State fresh = initialState(model, state.seed);
   state.x = fresh.x, state.y = fresh.y, state.z = fresh.z;
   state.vx = fresh.vx, state.vy = fresh.vy, state.vz = fresh.vz;
@@ -84,7 +84,7 @@ void recover(const Model& model, State& state, std::vector<Event>& events) {
   state.tool_force.setZero();
   state.tool_torque.setZero();
   state.grip_force = 0;
-  emitEvent(Event::Kind::Recovery, state.time, -1, 0, events).detail = EventDetail::NotFinite;
+  log.emit(Event::Kind::Recovery).detail = EventDetail::NotFinite;
 }
 
 // Where a tool goes on which nothing acts.
@@ -98,7 +98,7 @@ ToolDisplacement relaxed(const Model& model, const State& state, double dt) {
 void moveTissue(const Model& model, const ToolMotion* motion, bool pedal, bool insufflator_on, State& state,
                 Workspace& workspace, StepReport& report) {
   const auto solve = [&] {
-    model.solver->advance(model, motion, insufflator_on, state, workspace.solverScratch(), workspace.threadPool(),
+    model.solver->advance(model, motion, insufflator_on, state, workspace.solverWorkspace(), workspace.threadPool(),
                           report);
   };
   MarkingTouch* touch = motion && workspace.marking() ? workspace.marking()->touch.get() : nullptr;
@@ -114,25 +114,27 @@ bool insufflatorIsOn(const Model& model, const StepInput& input) {
 }
 
 void step(const Model& model, State& state, const StepInput& input, Workspace& workspace, std::vector<Event>& events) {
+  const EventLog log(state, events);
   const double dt = model.scene.step_period;
   const bool insufflator_on = insufflatorIsOn(model, input);
   const bool pedal = input.buttons[ApcPedal] != 0;
   BeamStep beam{pedal, pedal && state.procedure.pressed[ApcPedal] == 0, 0};
   const double gas_before = state.gas_amount;
   std::optional<ToolMotion> motion;
-  std::vector<Eigen::Isometry3d>& poses = workspace.linkPoses();
+  ToolPoses& poses = workspace.solverWorkspace().tool;
   if (model.tool) {
     auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
     end = model.scope_springs ? model.scope_springs->handMotion(state.joints, end, state.tool_displacement, dt)
                               : stalledMotion(*model.tool, state.joints, end, state.hand_effort);
     end = heldMotion(state.joints, end, state.stall);
     motion.emplace(*model.tool, model.tool_base, state.joints, end, state.tool_displacement);
-    motion->linkPoses(0, poses);
-    updateGrip(model, poses, input.buttons[HelixGrab] != 0, state, events);
-    commandProcedure(model, poses, input, state, events);
+    std::swap(poses.start, poses.end);  // it starts where the last step ended
+    motion->linkPoses(0, poses.start);
+    updateGrip(model, poses.start, input.buttons[HelixGrab] != 0, state, log);
+    commandProcedure(model, poses.start, input, state, log);
     state.joints = end;
   } else {
-    commandProcedure(model, {}, input, state, events);  // says which part of the scene is missing
+    commandProcedure(model, {}, input, state, log);  // says which part of the scene is missing
   }
   movePullSpring(model, input, state);
   StepReport& report = workspace.report();
@@ -146,18 +148,19 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
   if (model.tool) {
     state.tool_displacement = report.tool_displacement;
     updateStall(report.stopped, state.stall);
-    ToolMotion(*model.tool, model.tool_base, state.joints, state.joints, state.tool_displacement).linkPoses(1, poses);
-    storeForces(model, report, poses, state);
-    reportContact(report.contact_count, dt, state, events);
-    releaseOverloadedGrip(model, state, events);
-    if (workspace.marking()) updateMarking(model, poses, beam, state, *workspace.marking(), events);
-    updateProcedure(model, state, events);
+    ToolMotion(*model.tool, model.tool_base, state.joints, state.joints, state.tool_displacement)
+        .linkPoses(1, poses.end);
+    storeForces(model, report, poses.end, state);
+    reportContact(report.contact_count, dt, state, log);
+    releaseOverloadedGrip(model, state, log);
+    if (workspace.marking()) updateMarking(model, poses.end, beam, state, *workspace.marking(), log);
+    updateProcedure(model, state, log);
   }
-  if (model.scene.gas) reportPressure(*model.scene.gas, insufflator_on, state, events);
+  if (model.scene.gas) reportPressure(*model.scene.gas, insufflator_on, state, log);
   if (report.speed_limited > 0)
-    emitEvent(Event::Kind::Recovery, state.time, -1, report.speed_limited, events).detail = EventDetail::SpeedLimited;
-  if (report.put_back) emitEvent(Event::Kind::Recovery, state.time, -1, 0, events).detail = EventDetail::Distorted;
-  if (!isFinite(state)) recover(model, state, events);
+    log.emit(Event::Kind::Recovery, -1, report.speed_limited).detail = EventDetail::SpeedLimited;
+  if (report.put_back) log.emit(Event::Kind::Recovery).detail = EventDetail::Distorted;
+  if (!isFinite(state)) recover(model, state, log);
 }
 
 }  // namespace vibe

@@ -6,7 +6,7 @@ namespace vibe {
 
 Workspace::Workspace(const Model& model, int threads)
     : pool_(threads),
-      solver_scratch_(model.solver->makeScratch(model)),
+      solver_workspace_(model.solver->makeWorkspace(model)),
       marking_(model.scene.marking && model.tool ? std::make_unique<MarkingScratch>(model) : nullptr) {}
 
 Workspace::~Workspace() = default;

@@ -103,7 +103,7 @@ void FactorSchedule::nameHere(const ElasticBody& body, const MotionView& motion,
 }
 
 void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, const BodyLoads& loads,
-                             StepperMemory& memory, StepperScratch& scratch) const {
+                             StepperMemory& memory, StepperWorkspace& scratch) const {
   if (memory.linearization_id == 0) memory.linearization_id = hashOf(memory.linearization_point, memory.couplings);
   if (!memory.next.empty() && memory.steps >= memory.due) {
     memory.linearization_point.swap(memory.next);
@@ -131,7 +131,7 @@ void FactorSchedule::factorSafely(const ElasticBody& body, const FactorPoint& po
 }
 
 void FactorSchedule::provide(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
-                             StepperScratch& scratch) const {
+                             StepperWorkspace& scratch) const {
   if (scratch.factor_id != memory.linearization_id) {
     if (scratch.making) scratch.making->finish();
     if (scratch.next_id == memory.linearization_id) {
@@ -151,7 +151,7 @@ void FactorSchedule::provide(const ElasticBody& body, const BodyLoads& loads, co
 
 // With the columns of what is held and touched now, which most likely still is when the factor is used.
 void FactorSchedule::makeInBackground(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
-                                      StepperScratch& scratch) const {
+                                      StepperWorkspace& scratch) const {
   if (!scratch.making) scratch.making = std::make_unique<BackgroundWorker>([&scratch] { makeNext(scratch); });
   scratch.making->finish();
   scratch.next_id = memory.next_id;
@@ -165,7 +165,7 @@ void FactorSchedule::makeInBackground(const ElasticBody& body, const BodyLoads& 
   scratch.making->start();
 }
 
-void FactorSchedule::makeNext(StepperScratch& scratch) {
+void FactorSchedule::makeNext(StepperWorkspace& scratch) {
   const FactorTask& task = scratch.task;
   task.schedule->factorSafely(*task.body, {task.positions, task.couplings}, scratch.plan, scratch.matrix,
                               *scratch.next_factor);

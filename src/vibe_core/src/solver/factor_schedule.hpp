@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/stepper_scratch.hpp"
+#include "solver/stepper_workspace.hpp"
 
 namespace vibe {
 
@@ -31,12 +31,12 @@ struct FactorSchedule {
 
   /// Lets the next factor take over where it is due, and names the positions and couplings of the one after.
   void advance(const ElasticBody& body, const MotionView& motion, const BodyLoads& loads, StepperMemory& memory,
-               StepperScratch& scratch) const;
+               StepperWorkspace& scratch) const;
   /// The factor that the memory names, and the columns of the spots about it.
   void provide(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
-               StepperScratch& scratch) const;
-  /// What StepperScratch::task says, in the background.
-  static void makeNext(StepperScratch& scratch);
+               StepperWorkspace& scratch) const;
+  /// What StepperWorkspace::task says, in the background.
+  static void makeNext(StepperWorkspace& scratch);
   /// The present positions, without couplings, from this step on.
   static void nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory);
 
@@ -45,7 +45,7 @@ struct FactorSchedule {
   void factorSafely(const ElasticBody& body, const FactorPoint& point, const std::shared_ptr<const FactorPlan>& plan,
                     BlockMatrix& matrix, Factor& factor) const;
   void makeInBackground(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
-                        StepperScratch& scratch) const;
+                        StepperWorkspace& scratch) const;
 };
 
 /// Stiffness that the loads add at positions (4 per node) [m].

@@ -73,15 +73,15 @@ double shortestDistance(const ElasticBody& body) {
 // Where the forces of the step act, if the nodes keep their velocities. It selects the stiffness of an insufflator,
 // which only determines the rate of convergence.
 double foreseenVolume(const GasLoad& gas, const MotionView& motion, const TimeScheme& scheme,
-                      const StepperScratch& scratch) {
-  if (gas.control != GasLoad::Control::Regulated) return scratch.volume;
+                      const StepperWorkspace& scratch) {
+  if (gas.control != GasLoad::Control::Regulated) return scratch.last.volume;
   double rate = 0;
   for (int k = 0; k < 3; ++k) {
-    const float* const gradient = scratch.volume_gradient.data() + k;
-    for (std::size_t i = 0; 4 * i < scratch.volume_gradient.size(); ++i)
+    const float* const gradient = scratch.last.volume_gradient.data() + k;
+    for (std::size_t i = 0; 4 * i < scratch.last.volume_gradient.size(); ++i)
       rate += static_cast<double>(gradient[4 * i]) * motion.v[k][i];
   }
-  return scratch.volume + scheme.part() * scheme.h * rate;
+  return scratch.last.volume + scheme.part() * scheme.h * rate;
 }
 
 FactorSchedule scheduleOf(const StepSettings& settings, const TimeScheme& scheme) {
@@ -146,8 +146,8 @@ ImplicitStepper::ImplicitStepper(ElasticBody body, StepSettings settings, Factor
 
 ImplicitStepper::~ImplicitStepper() = default;
 
-std::shared_ptr<StepperScratch> ImplicitStepper::makeScratch() const {
-  return std::make_shared<StepperScratch>(body_.rest, plan_->factor_plan, plan_->storage, plan_->pattern);
+std::shared_ptr<StepperWorkspace> ImplicitStepper::makeWorkspace() const {
+  return std::make_shared<StepperWorkspace>(body_.rest, plan_->factor_plan, plan_->storage, plan_->pattern);
 }
 
 void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) const {
@@ -155,7 +155,7 @@ void ImplicitStepper::refactor(const MotionView& motion, StepperMemory& memory) 
 }
 
 StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMemory& memory,
-                                  StepperScratch& scratch) const {
+                                  StepperWorkspace& scratch) const {
   plan_->schedule.advance(body_, motion, loads, memory, scratch);
   plan_->schedule.provide(body_, loads, memory, scratch);
   ++memory.steps;
@@ -174,9 +174,9 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
 
 // The first evaluation of a step tells the energy at its start. Where it differs from what the last step has foreseen,
 // the scheme has lost the difference in the last step.
-void ImplicitStepper::correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome) {
+void ImplicitStepper::correctStored(StepperMemory& memory, const StepperWorkspace& scratch, StepOutcome& outcome) {
   StepWork& work = outcome.work;
-  const double start = scratch.first_elastic_value - work.to_first;
+  const double start = scratch.first.elastic_value - work.to_first;
   if (memory.elastic_energy >= 0 && memory.steps > 1) work.numerical -= start - memory.elastic_energy;
   const double foreseen = start + work.stored;
   memory.elastic_energy = std::max(0.0, foreseen);  // far from the forces' linear range it may be negative
@@ -189,7 +189,7 @@ bool ImplicitStepper::extrapolates(bool fallback) const {
   return !fallback && settings_.iterations == 1;
 }
 
-void ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperScratch& scratch) const {
+void ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperWorkspace& scratch) const {
   const TimeScheme& scheme = fallback ? plan_->fallback_scheme : plan_->scheme;
   const bool from_hat = extrapolates(fallback);
   for (int i = 0; i < body_.nodeCount(); ++i)
@@ -203,7 +203,7 @@ void ImplicitStepper::guess(const MotionView& motion, bool fallback, StepperScra
 }
 
 void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory,
-                                  StepperScratch& scratch, StepOutcome& outcome) const {
+                                  StepperWorkspace& scratch, StepOutcome& outcome) const {
   const TimeScheme& scheme = outcome.fallback ? plan_->fallback_scheme : plan_->scheme;
   guess(motion, outcome.fallback, scratch);
   buildRows(loads, motion, scratch);
@@ -213,20 +213,20 @@ void ImplicitStepper::iterateStep(const MotionView& motion, BodyLoads& loads, St
                      settings_.iterations + (outcome.fallback ? kSpareInFallback : kSpareEvaluations));
   newton.start();
   // a guess with far more energy may be tangled and lead to a tangled minimum: then start from the present positions
-  if (extrapolates(outcome.fallback) && !(scratch.elastic_value <= kGuessGrowth * memory.elastic_energy)) {
+  if (extrapolates(outcome.fallback) && !(scratch.last.elastic_value <= kGuessGrowth * memory.elastic_energy)) {
     startFromHere(motion, scratch);
     newton.start();
   }
-  scratch.keepFirst();
+  scratch.first = scratch.last;
   scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
   newton.setGas(foreseenVolume(loads.gas, motion, scheme, scratch));
   iterate(newton, scratch, memory, outcome);
   outcome.finite = std::isfinite(outcome.last_move) && std::isfinite(newton.value());
-  scratch.gas_stiffness = potential.gas().stiffness(scratch.volume);
+  scratch.gas_stiffness = potential.gas().stiffness(scratch.last.volume);
 }
 
 // Iterations go on until they contract: otherwise stiff motions would grow from step to step.
-void ImplicitStepper::iterate(QuasiNewton& newton, const StepperScratch& scratch, StepperMemory& memory,
+void ImplicitStepper::iterate(QuasiNewton& newton, const StepperWorkspace& scratch, StepperMemory& memory,
                               StepOutcome& outcome) const {
   const double longest = outcome.fallback ? kFallbackMaxMove * plan_->size : std::numeric_limits<double>::max();
   double first_length = 0;
@@ -250,12 +250,12 @@ void ImplicitStepper::iterate(QuasiNewton& newton, const StepperScratch& scratch
   outcome.solves = newton.solves();
 }
 
-void ImplicitStepper::startFromHere(const MotionView& motion, StepperScratch& scratch) const {
+void ImplicitStepper::startFromHere(const MotionView& motion, StepperWorkspace& scratch) const {
   for (int i = 0; i < body_.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) scratch.z[4 * i + k] = motion.x[k][i];
 }
 
-StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, StepperScratch& scratch, double tolerance,
+StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, StepperWorkspace& scratch, double tolerance,
                                     int max_iterations) const {
   if (scratch.making) scratch.making->finish();
   scratch.factor_id = scratch.next_id = 0;
@@ -274,7 +274,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
       newton.start();
       ++outcome.refactorisations;
     }
-    newton.setGas(scratch.volume);
+    newton.setGas(scratch.last.volume);
     outcome.last_move = newton.iterate(kFallbackMaxMove * plan_->size, true);
     ++outcome.iterations;
     outcome.converged = newton.directionLength() < std::max(tolerance, newton.resolution());
@@ -287,7 +287,7 @@ StepOutcome ImplicitStepper::settle(MotionView motion, BodyLoads& loads, Stepper
   return outcome;
 }
 
-void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperScratch& scratch) const {
+void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperWorkspace& scratch) const {
   std::vector<float> positions(3 * body_.rest.size());
   for (std::size_t i = 0; i < body_.rest.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = static_cast<float>(scratch.z[4 * i + k]);
@@ -302,7 +302,7 @@ void ImplicitStepper::refactorHere(const BodyLoads& loads, StepperScratch& scrat
   scratch.schur.setRows(scratch.rows, *scratch.factor, scratch.columns);
 }
 
-void ImplicitStepper::placeAtRest(const StepperScratch& scratch, const MotionView& motion) const {
+void ImplicitStepper::placeAtRest(const StepperWorkspace& scratch, const MotionView& motion) const {
   for (int i = 0; i < body_.nodeCount(); ++i)
     for (int k = 0; k < 3; ++k) {
       motion.x[k][i] = scratch.z[4 * i + k];
@@ -310,13 +310,14 @@ void ImplicitStepper::placeAtRest(const StepperScratch& scratch, const MotionVie
     }
 }
 
-double ImplicitStepper::elasticEnergy(const MotionView& motion, StepperScratch& scratch) const {
+double ImplicitStepper::elasticEnergy(const MotionView& motion, StepperWorkspace& scratch) const {
   for (int i = 0; i < body_.nodeCount(); ++i)
-    for (int k = 0; k < 3; ++k) scratch.displacement[4 * i + k] = static_cast<float>(motion.x[k][i] - body_.rest[i][k]);
+    for (int k = 0; k < 3; ++k)
+      scratch.last.displacement[4 * i + k] = static_cast<float>(motion.x[k][i] - body_.rest[i][k]);
   std::fill(scratch.work.begin(), scratch.work.end(), 0.0F);
   double energy = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p)
-    energy += body_.elements->evaluate(p, scratch.displacement.data(), scratch.work.data());
+    energy += body_.elements->evaluate(p, scratch.last.displacement.data(), scratch.work.data());
   return energy;
 }
 

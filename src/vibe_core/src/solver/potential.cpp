@@ -16,8 +16,8 @@ constexpr double kRounding = 6e-8;  // half a unit in the last place of single p
 double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gradient) {
   startSums(z, gradient);
   const bool has_gas = gas_.control != GasLoad::Control::None;
-  const float* const u = scratch_.displacement.data();
-  float* const volume_gradient = scratch_.volume_gradient.data();
+  const float* const u = scratch_.last.displacement.data();
+  float* const volume_gradient = scratch_.last.volume_gradient.data();
   double value = 0, volume = 0;
   for (int p = 0; p < body_.elements->pieceCount(); ++p) {
     double part = 0;
@@ -27,11 +27,10 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
   }
   elastic_ = value;
   noise_ = 1e-6 * std::abs(value);
-  scratch_.elastic_value = value += addRareTerms(z, gradient);
-  scratch_.elastic_gradient = gradient;
-  scratch_.only_first = false;
+  scratch_.last.elastic_value = value += addRareTerms(z, gradient);
+  scratch_.last.elastic_gradient = gradient;
   if (has_gas) {
-    scratch_.volume = volume;
+    scratch_.last.volume = volume;
     value += gasEnergy();
   }
   if (extra_ != nullptr) value += addExtra(z, gradient);
@@ -42,7 +41,8 @@ double Potential::evaluate(const std::vector<double>& z, std::vector<float>& gra
 void Potential::startSums(const std::vector<double>& z, std::vector<float>& gradient) {
   const std::size_t size = z.size();
   const double *const at = z.data(), *const rest = scratch_.rest.data();
-  float *const u = scratch_.displacement.data(), *const g = gradient.data(), *const v = scratch_.volume_gradient.data();
+  float *const u = scratch_.last.displacement.data(), *const g = gradient.data(),
+               *const v = scratch_.last.volume_gradient.data();
   for (std::size_t i = 0; i < size; ++i) {
     u[i] = static_cast<float>(at[i] - rest[i]);
     g[i] = 0;
@@ -51,7 +51,7 @@ void Potential::startSums(const std::vector<double>& z, std::vector<float>& grad
 }
 
 double Potential::addExtra(const std::vector<double>& z, std::vector<float>& gradient) const {
-  std::vector<float>& extra = scratch_.extra_gradient;
+  std::vector<float>& extra = scratch_.last.extra_gradient;
   std::fill(extra.begin(), extra.end(), 0.0F);
   const double value = extra_->evaluate(z.data(), extra.data());
   for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] += extra[i];
@@ -72,22 +72,23 @@ double Potential::addSprings(const std::vector<double>& z, std::vector<float>& g
 }
 
 double Potential::gasEnergy() {
-  scratch_.pressure = gas_law_.pressure(scratch_.volume);
-  noise_ += 1e-7 * std::abs(scratch_.pressure * scratch_.volume);
-  return gas_law_.energy(scratch_.volume);
+  Evaluation& here = scratch_.last;
+  here.pressure = gas_law_.pressure(here.volume);
+  noise_ += 1e-7 * std::abs(here.pressure * here.volume);
+  return gas_law_.energy(here.volume);
 }
 
 void Potential::moveVolume(double change) {
-  scratch_.volume += change;
-  scratch_.pressure = gas_law_.pressure(scratch_.volume);
+  scratch_.last.volume += change;
+  scratch_.last.pressure = gas_law_.pressure(scratch_.last.volume);
 }
 
 // Gas pressure, inertia and weight. Four lanes per node, the last of them zero, so that the compiler can
 // use vectors of them.
 double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>& gradient) {
   const double *const hat = scratch_.z_hat.data(), *const rest = scratch_.rest.data();
-  float* const area = scratch_.volume_gradient.data();
-  const float pressure = gas_.control != GasLoad::Control::None ? static_cast<float>(scratch_.pressure) : 0.0F;
+  float* const area = scratch_.last.volume_gradient.data();
+  const float pressure = gas_.control != GasLoad::Control::None ? static_cast<float>(scratch_.last.pressure) : 0.0F;
   const double pull[4] = {body_.gravity[0], body_.gravity[1], body_.gravity[2], 0};
   double twice[4] = {0, 0, 0, 0}, work[4] = {0, 0, 0, 0}, rounded[4] = {0, 0, 0, 0};
   for (int i = 0; i < body_.nodeCount(); ++i) {
@@ -97,7 +98,7 @@ double Potential::addBodyTerms(const std::vector<double>& z, std::vector<float>&
       continue;
     }
     const double mass = body_.mass[i], spring = inertia_ * mass;
-    const float* const u = &scratch_.displacement[4 * i];
+    const float* const u = &scratch_.last.displacement[4 * i];
     for (int k = 0; k < 4; ++k) {
       const double away = z[4 * i + k] - hat[4 * i + k], moved = z[4 * i + k] - rest[4 * i + k];
       const double force = spring * away, weight = mass * pull[k];

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/gas_law.hpp"
-#include "solver/stepper_scratch.hpp"
+#include "solver/stepper_workspace.hpp"
 
 namespace vibe {
 
@@ -11,7 +11,7 @@ class Potential {
  public:
   /// @param inertia  mass times this is the spring to z_hat [1/s^2]; 0: a static problem
   /// @param part     of the step after which its forces act, see GasLaw [1]
-  Potential(const ElasticBody& body, const BodyLoads& loads, double inertia, StepperScratch& scratch, double part = 1)
+  Potential(const ElasticBody& body, const BodyLoads& loads, double inertia, StepperWorkspace& scratch, double part = 1)
       : body_(body),
         gas_(loads.gas),
         gas_law_(loads.gas, part),
@@ -41,7 +41,7 @@ class Potential {
   GasLaw gas_law_;
   const EnergyTerm* extra_;
   double inertia_;
-  StepperScratch& scratch_;
+  StepperWorkspace& scratch_;
   double noise_ = 0, elastic_ = 0;
 };
 

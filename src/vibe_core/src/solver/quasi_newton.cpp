@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "vibe_core/solver/energy_term.hpp"
 
@@ -80,7 +81,7 @@ double shortening(double slope, double change) {
 
 }  // namespace
 
-QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch,
+QuasiNewton::QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperWorkspace& scratch,
                          double safe_length, int max_evaluations)
     : body_(body),
       potential_(potential),
@@ -146,7 +147,7 @@ bool QuasiNewton::rowsStay() const {
 // line search would admit only small parts of a far move, and no number of them meets the constraint.
 bool QuasiNewton::satisfyConstraints() {
   if (extra_ != nullptr && extra_->acts()) return false;  // walls that meet may forbid it
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   rowResidual();
   unknowns_.addDisplacement(s.rhs);
   double max = 0;
@@ -172,7 +173,7 @@ bool QuasiNewton::satisfyConstraints() {
 }
 
 double QuasiNewton::resolution() const {
-  return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.displacement);
+  return 4 * std::numeric_limits<float>::epsilon() * largest(scratch_.last.displacement);
 }
 
 // The forces that the last elimination found.
@@ -187,7 +188,7 @@ void QuasiNewton::addRowForces(double sign, std::vector<float>& vector) const {
 void QuasiNewton::slideThreads() {
   if (threads_have_slid_) return;
   threads_have_slid_ = true;
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   s.slid.setZero(s.rows.count());
   for (const ThreadRows& thread : s.rows.threads)
     for (int k = 0; k + 1 < thread.count(); ++k) {
@@ -201,14 +202,14 @@ void QuasiNewton::slideThreads() {
 
 void QuasiNewton::setGas(double volume) {
   gas_piece_ = potential_.gas().pieceAt(volume);
-  scratch_.schur.setGas(scratch_.volume_gradient.data(), potential_.gas().lineOf(gas_piece_, scratch_.volume).stiffness,
-                        *scratch_.factor);
+  scratch_.schur.setGas(scratch_.last.volume_gradient.data(),
+                        potential_.gas().lineOf(gas_piece_, scratch_.last.volume).stiffness, *scratch_.factor);
 }
 
 // @returns whether the direction leads to another piece of the gas law than the one it was computed with
 bool QuasiNewton::changeGas() {
   if (gas_.control != GasLoad::Control::Regulated) return false;
-  const double end = scratch_.volume + dot(scratch_.volume_gradient, scratch_.direction);
+  const double end = scratch_.last.volume + dot(scratch_.last.volume_gradient, scratch_.direction);
   if (potential_.gas().pieceAt(end) == gas_piece_) return false;
   setGas(end);
   return true;
@@ -217,34 +218,34 @@ bool QuasiNewton::changeGas() {
 // By how much the volume changes in the direction where the gas has no stiffness of its own. The piece of an
 // insufflator's law may lie elsewhere than the present volume.
 double QuasiNewton::swelling() const {
-  if (gas_.control == GasLoad::Control::Volume) return gas_.target_volume - scratch_.volume;
+  if (gas_.control == GasLoad::Control::Volume) return gas_.target_volume - scratch_.last.volume;
   if (gas_.control != GasLoad::Control::Regulated || gas_piece_ == GasLaw::Piece::Kept) return 0;
-  const GasLaw::Line line = potential_.gas().lineOf(gas_piece_, scratch_.volume);
-  return (line.pressure - scratch_.pressure) / line.stiffness;
+  const GasLaw::Line line = potential_.gas().lineOf(gas_piece_, scratch_.last.volume);
+  return (line.pressure - scratch_.last.pressure) / line.stiffness;
 }
 
 // With what the pressure lacks to the set point where the direction leads there.
 void QuasiNewton::loadWork() {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   const double lack = gas_.control == GasLoad::Control::Regulated && gas_piece_ == GasLaw::Piece::Kept
-                          ? gas_.set_pressure - s.pressure
+                          ? gas_.set_pressure - s.last.pressure
                           : 0;
   if (lack == 0) return s.factor->load(s.work.data(), s.half.data());
   s.direction = s.work;
-  addMultiple(lack, s.volume_gradient, s.direction);
+  addMultiple(lack, s.last.volume_gradient, s.direction);
   s.factor->load(s.direction.data(), s.half.data());
 }
 
 // Two-loop recursion (Nocedal 1980) with the factor, the rows and the gas as initial inverse.
 void QuasiNewton::findDirection() {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   rowResidual();
   s.work = s.gradient;
   // forces of rows may be far larger than the remaining gradient: without this, a pair that moves rows by a rounding
   // would consist of their forces only
   if (s.pairs > 0) addRowForces(-1, s.work);
   unknowns_.beginDirection(s.schur);
-  double alpha[StepperScratch::kHistory];
+  double alpha[StepperWorkspace::kHistory];
   for (int i = s.pairs - 1; i >= 0; --i) {
     alpha[i] = s.curvature[i] * (dot(s.move[i], s.work) + unknowns_.gradientTerm(i));
     addMultiple(-alpha[i], s.change[i], s.work);
@@ -263,7 +264,7 @@ void QuasiNewton::findDirection() {
 
 // To the work vector: what follows the first loop.
 void QuasiNewton::applyInverse(const double* alpha) {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   ++solves_;
   loadWork();
   s.factor->forward(s.half.data());
@@ -302,8 +303,8 @@ void QuasiNewton::setTrial(double part) {
 }
 
 void QuasiNewton::keepPair(double part) {
-  StepperScratch& s = scratch_;
-  if (s.pairs == StepperScratch::kHistory) {
+  StepperWorkspace& s = scratch_;
+  if (s.pairs == StepperWorkspace::kHistory) {
     std::rotate(s.move.begin(), s.move.begin() + 1, s.move.end());
     std::rotate(s.change.begin(), s.change.begin() + 1, s.change.end());
     std::rotate(s.curvature.begin(), s.curvature.begin() + 1, s.curvature.end());
@@ -344,11 +345,11 @@ double QuasiNewton::advance(double max, bool verify) {
 
 // The whole direction, without an evaluation at its end.
 void QuasiNewton::takeUnseen() {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   setTrial(1);
   s.z.swap(s.trial);
   unknowns_.move(1);
-  if (gas_.control != GasLoad::Control::None) potential_.moveVolume(dot(s.volume_gradient, s.direction));
+  if (gas_.control != GasLoad::Control::None) potential_.moveVolume(dot(s.last.volume_gradient, s.direction));
 }
 
 double QuasiNewton::slopeAtTrial(double part) const {
@@ -357,12 +358,12 @@ double QuasiNewton::slopeAtTrial(double part) const {
 
 // As much of the direction as lowers the energy.
 double QuasiNewton::search(double part) {
-  StepperScratch& s = scratch_;
+  StepperWorkspace& s = scratch_;
   const double prescribed = gas_.control == GasLoad::Control::Volume ? s.schur.gasForce() : 0;
   const double old_pressure = gas_.pressure;
   const double from = value_ + lagrangian(0), slope = slope_ + lagrangianSlope(0);
   double to = value_;
-  s.exchangeEvaluations();
+  std::swap(s.last, s.kept);
   for (int trial = 1;; ++trial) {
     setTrial(part);
     if (prescribed != 0) gas_.pressure = old_pressure + part * prescribed;
@@ -374,7 +375,7 @@ double QuasiNewton::search(double part) {
       break;
     if (trial == kMaxTrials || exhausted()) {
       failed_ = true;
-      s.exchangeEvaluations();
+      std::swap(s.last, s.kept);
       return 0;
     }
     part *= std::isfinite(to) ? shortening(part * slope, change) : kShortest;

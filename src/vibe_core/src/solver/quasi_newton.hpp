@@ -11,7 +11,7 @@ class QuasiNewton {
  public:
   /// @param safe_length      a last move shorter than this is not verified [m]
   /// @param max_evaluations  of the potential, after which it is exhausted
-  QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperScratch& scratch,
+  QuasiNewton(const ElasticBody& body, Potential& potential, BodyLoads& loads, StepperWorkspace& scratch,
               double safe_length = 0, int max_evaluations = std::numeric_limits<int>::max());
 
   /// Evaluates at the scratch's z.
@@ -73,7 +73,7 @@ class QuasiNewton {
   Potential& potential_;
   GasLoad& gas_;
   const EnergyTerm* extra_;
-  StepperScratch& scratch_;
+  StepperWorkspace& scratch_;
   RowUnknowns& unknowns_;
   double safe_length_;
   int max_evaluations_;

@@ -6,7 +6,8 @@
 
 namespace vibe {
 
-void moveRigidly(const ElasticBody& body, const MotionView& motion, const TimeScheme& scheme, StepperScratch& scratch) {
+void moveRigidly(const ElasticBody& body, const MotionView& motion, const TimeScheme& scheme,
+                 StepperWorkspace& scratch) {
   const auto at = [&](int i) { return Eigen::Map<Eigen::Vector3d>(&scratch.z[4 * i]); };
   const auto move = [&](int i) {
     Eigen::Vector3d sum;

@@ -132,7 +132,7 @@ void scaleCompliances(double gain, ConstraintRows& rows) {
     for (SegmentRows& segment : thread.segments) scaleSegment(gain, segment);
 }
 
-void storeThread(const StepperScratch& scratch, const ThreadRows& rows, double gain, ThreadLoad& thread) {
+void storeThread(const StepperWorkspace& scratch, const ThreadRows& rows, double gain, ThreadLoad& thread) {
   thread.tension.resize(thread.length.size());
   for (int k = 0; k < rows.count(); ++k) {
     thread.tension[k] = scratch.schur.forces()[rows.pullRow(k)];
@@ -146,7 +146,7 @@ void storeThread(const StepperScratch& scratch, const ThreadRows& rows, double g
 
 }  // namespace
 
-void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch& scratch) {
+void buildRows(const BodyLoads& loads, const MotionView& motion, StepperWorkspace& scratch) {
   ConstraintRows& rows = scratch.rows;
   rows.clear();
   for (const LinearConstraint& constraint : loads.constraints) {
@@ -165,13 +165,13 @@ void buildRows(const BodyLoads& loads, const MotionView& motion, StepperScratch&
   scratch.rhs.resize(rows.count());
 }
 
-void setEquilibriumTargets(const BodyLoads& loads, StepperScratch& scratch) {
+void setEquilibriumTargets(const BodyLoads& loads, StepperWorkspace& scratch) {
   setTargets(loads, scratch.rows, scratch.target);
   limitContacts(scratch);
 }
 
 void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
-                    const std::vector<StiffnessCoupling>& in_factor, StepperScratch& scratch) {
+                    const std::vector<StiffnessCoupling>& in_factor, StepperWorkspace& scratch) {
   setTargets(loads, scratch.rows, scratch.target);
   const auto set = [&](int row, const LinearForm& form) {
     scratch.target[row] = stepTarget(form, scratch.target[row], motion, scheme);
@@ -183,7 +183,7 @@ void setStepTargets(const BodyLoads& loads, const MotionView& motion, const Time
   limitContacts(scratch);
 }
 
-void limitContacts(StepperScratch& scratch) {
+void limitContacts(StepperWorkspace& scratch) {
   ConstraintRows& rows = scratch.rows;
   if (rows.contacts.size() <= kMaxWithFriction) return;
   std::vector<std::pair<double, std::size_t>>& order = scratch.contact_order;  // minus depth, contact
@@ -198,7 +198,7 @@ void limitContacts(StepperScratch& scratch) {
   }
 }
 
-void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
+void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads) {
   const Eigen::VectorXd& force = scratch.schur.forces();
   const ConstraintRows& rows = scratch.rows;
   for (std::size_t i = 0; i < loads.constraints.size(); ++i) loads.constraints[i].force = force[i];
@@ -211,8 +211,8 @@ void storeForces(const StepperScratch& scratch, double gain, BodyLoads& loads) {
   YieldVector pull = YieldVector::Zero();
   rows.forEachYield([&](int row, const YieldVector& yield) { pull += force[row] * yield; });
   if (rows.tool_yields) loads.tool_yield.displacement = loads.tool_yield.free - loads.tool_yield.compliance * pull;
-  loads.gas.volume = scratch.volume;
-  loads.gas.pressure = scratch.pressure;
+  loads.gas.volume = scratch.last.volume;
+  loads.gas.pressure = scratch.last.pressure;
   loads.gas.stiffness = scratch.gas_stiffness;
 }
 

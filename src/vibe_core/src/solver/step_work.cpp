@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "solver/stepper_scratch.hpp"
+#include "solver/stepper_workspace.hpp"
 
 namespace vibe {
 
@@ -26,13 +26,13 @@ struct Sums {
 
 // Moves one coordinate of the nodes.
 void moveAxis(const ElasticBody& body, const TimeScheme& scheme, int k, const MotionView& motion, bool mean_velocity,
-              StepperScratch& scratch, Sums& sums) {
+              StepperWorkspace& scratch, Sums& sums) {
   const double per_gain = 1 / scheme.z_gain, per_step = 1 / scheme.h;
   double *const x = motion.x[k], *const v = motion.v[k], *const a = motion.a[k];
   const double* const z = scratch.z.data() + k;
   const double* const rest = scratch.rest.data() + k;
   double* const move = scratch.trial.data() + k;
-  const float *const first = scratch.first_displacement.data() + k, *const last = scratch.displacement.data() + k;
+  const float *const first = scratch.first.displacement.data() + k, *const last = scratch.last.displacement.data() + k;
   for (int i = 0; i < body.nodeCount(); ++i) {
     move[4 * i] = 0;
     if (body.fixed[i] != 0) continue;
@@ -93,16 +93,16 @@ ForceAlong forceAlong(double from, double to, double first, double last, double 
 }
 
 // How much more energy the last point of evaluation has than the trapezoidal rule says [J].
-double beyondTrapezoid(const StepperScratch& s) {
+double beyondTrapezoid(const Evaluation& first, const Evaluation& last) {
   double twice = 0;
-  for (std::size_t i = 0; i < s.displacement.size(); ++i)
-    twice += (static_cast<double>(s.first_elastic_gradient[i]) + s.elastic_gradient[i]) *
-             (static_cast<double>(s.displacement[i]) - s.first_displacement[i]);
-  return s.elastic_value - s.first_elastic_value - 0.5 * twice;
+  for (std::size_t i = 0; i < last.displacement.size(); ++i)
+    twice += (static_cast<double>(first.elastic_gradient[i]) + last.elastic_gradient[i]) *
+             (static_cast<double>(last.displacement[i]) - first.displacement[i]);
+  return last.elastic_value - first.elastic_value - 0.5 * twice;
 }
 
 // Of the rows on the body, in all.
-double workOfRows(StepperScratch& scratch, BodyLoads& loads) {
+double workOfRows(StepperWorkspace& scratch, BodyLoads& loads) {
   const std::vector<double>& move = scratch.trial;
   const ConstraintRows& rows = scratch.rows;
   const Eigen::VectorXd& force = scratch.schur.forces();
@@ -125,7 +125,7 @@ double workOfRows(StepperScratch& scratch, BodyLoads& loads) {
 }  // namespace
 
 StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const MotionView& motion, BodyLoads& loads,
-                      bool mean_velocity, StepperScratch& scratch) {
+                      bool mean_velocity, StepperWorkspace& scratch) {
   Sums s;
   for (int k = 0; k < 3; ++k) moveAxis(body, scheme, k, motion, mean_velocity, scratch, s);
   StepWork work;
@@ -133,15 +133,15 @@ StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const M
   if (!(s.move2 > 0)) return work;
   const std::vector<double>& move = scratch.trial;
   const double first = s.to_first / s.move2, last = s.to_last / s.move2, at = s.to_z / s.move2;
-  if (scratch.only_first) scratch.repeatFirst();
-  const ForceAlong elastic = forceAlong(first, last, dotInDouble(scratch.first_elastic_gradient, move),
-                                        dotInDouble(scratch.elastic_gradient, move), beyondTrapezoid(scratch));
+  const ForceAlong elastic =
+      forceAlong(first, last, dotInDouble(scratch.first.elastic_gradient, move),
+                 dotInDouble(scratch.last.elastic_gradient, move), beyondTrapezoid(scratch.first, scratch.last));
   if (loads.extra != nullptr)
-    work.extra = -forceAlong(first, last, dotInDouble(scratch.first_extra_gradient, move),
-                             dotInDouble(scratch.extra_gradient, move), 0)
+    work.extra = -forceAlong(first, last, dotInDouble(scratch.first.extra_gradient, move),
+                             dotInDouble(scratch.last.extra_gradient, move), 0)
                       .at(at);
   if (loads.gas.control != GasLoad::Control::None)
-    work.gas = scratch.pressure * dotInDouble(scratch.volume_gradient, move);
+    work.gas = scratch.last.pressure * dotInDouble(scratch.last.volume_gradient, move);
   work.mass_damping = scheme.rate * s.damping;
   work.viscous = elastic.at(at) - elastic.at(scheme.part());
   work.stored = elastic.integral();

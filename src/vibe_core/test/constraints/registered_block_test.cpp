@@ -35,12 +35,13 @@ class Tether : public ConstraintBlock {
   }
 
   // Work by the trapezoidal rule.
-  void store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>&) override {
+  double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>&) override {
     const Eigen::Vector3d now = place(context.state);
     const Eigen::Vector3d before = kStiffness * (endAt(context.state.time) - start_);
     const Eigen::Vector3d after = kStiffness * (endAt(context.state.time + context.step) - now);
     context.state.energy.pull_work += 0.5 * (before + after).dot(now - start_);
     force_ = loads.pointForce(first_);
+    return 0;
   }
 
   Eigen::Vector3d force() const { return force_; }

@@ -52,7 +52,7 @@ class Cinch {
     settings.iterations = 10;
     stepper = std::make_unique<ImplicitStepper>(body, settings);
     motion = std::make_unique<BodyMotion>(stepper->body());
-    scratch = stepper->makeScratch();
+    scratch = stepper->makeWorkspace();
     forget();
   }
 
@@ -172,7 +172,7 @@ class Cinch {
   SurfaceMesh surface;
   std::unique_ptr<ImplicitStepper> stepper;
   std::unique_ptr<BodyMotion> motion;
-  std::shared_ptr<StepperScratch> scratch;
+  std::shared_ptr<StepperWorkspace> scratch;
   StepperMemory memory;
   BodyLoads loads;
   std::vector<double> whole;

@@ -122,7 +122,7 @@ TEST(SelfContactClose, EdgesThatCrossComeToRestBeforeTheyAreStopped) {
   settings.iterations = 4;
   const ImplicitStepper stepper(body, settings);
   BodyMotion motion(body);
-  const std::shared_ptr<StepperScratch> scratch = stepper.makeScratch();
+  const std::shared_ptr<StepperWorkspace> scratch = stepper.makeWorkspace();
   StepperMemory memory;
   BodyLoads loads;
   for (int v = 4; v < 8; ++v)

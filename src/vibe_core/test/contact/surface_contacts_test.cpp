@@ -207,7 +207,7 @@ TEST(ToolGuard, NothingPassesWhateverMoves) {
     for (double& x : moved[0]) x += pushed;  // towards the tool
     const auto crosses = [&](const ToolMotion& made, double tool_part, double wall_part) {
       constexpr int kMoments = 60;
-      std::vector<Isometry3d> at;
+      LinkPoses at;
       for (int moment = 0; moment <= kMoments; ++moment) {
         made.linkPoses(tool_part * moment / kMoments, at);
         const Isometry3d& pose = at[scene.tool.linkIndex("scope_tip")];
@@ -225,9 +225,9 @@ TEST(ToolGuard, NothingPassesWhateverMoves) {
     const double free = guard.keepApart(poses, made, pathOf(wall, moved), {});
     EXPECT_FALSE(crosses(made, 1, free)) << "trial " << trial;
     stopped += made.inputs(1) != motion.inputs(1) || free < 1 ? 1 : 0;
-    std::vector<Isometry3d> reached;
+    LinkPoses reached;
     made.linkPoses(1, reached);
-    EXPECT_TRUE(reached.back().isApprox(poses.end.back()));
+    EXPECT_TRUE(reached.poses.back().isApprox(poses.end.poses.back()));
   }
   EXPECT_GT(passing, 50) << "without the guard they cross";
   EXPECT_GE(stopped, passing);

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "contact/scope_fixture.hpp"
+#include "contact/tool_motion.hpp"
 
 // counts what is allocated, for the promise that forwardKinematics allocates nothing
 static long allocations = 0;
@@ -149,6 +150,25 @@ TEST(ToolModel, ForwardKinematicsAllocatesNothing) {
   poses.shrink_to_fit();
   tool.forwardKinematics({}, poses);
   EXPECT_GT(allocations, before) << "the counter counts";
+}
+
+TEST(ToolMotion, PosesAreThoseOfThePlaceWhateverWasAskedBefore) {
+  const ToolModel tool = loadScope();
+  const Isometry3d base(Translation3d(0.1, 0.2, 0.3));
+  std::mt19937 random(3);
+  LinkPoses kept;
+  for (int trial = 0; trial < 50; ++trial) {
+    const Inputs from = randomInputs(tool, random), to = trial % 3 == 0 ? from : randomInputs(tool, random);
+    ToolMotion motion(tool, base, from, to);
+    motion.displaceEnd({0.01 * (trial % 2), 0.1 * (trial % 4)});
+    for (const double fraction : {1.0, 1.0, 0.0, 0.5, 0.0}) {
+      motion.linkPoses(fraction, kept);
+      std::vector<Isometry3d> expected;
+      tool.forwardKinematics(motion.inputs(fraction), motion.displacement(fraction), expected);
+      for (std::size_t k = 0; k < expected.size(); ++k)
+        ASSERT_TRUE(kept[k].matrix() == (base * expected[k]).matrix()) << "trial " << trial << ", link " << k;
+    }
+  }
 }
 
 TEST(ToolModel, LimitsComeFromTheInputJoints) {

@@ -24,7 +24,7 @@ std::vector<Kind> outcomes(const Model& model, int bites, std::uint64_t seed) {
   std::vector<Kind> kinds;
   for (int bite = 0; bite < bites; ++bite) {
     std::vector<Event> events;
-    bleedFromBite(model, 0, bite, 5, state, events);
+    bleedFromBite(model, 0, bite, 5, state, {state, events});
     kinds.push_back(events.empty() ? Kind::Warning : events.front().kind);
   }
   return kinds;
@@ -39,7 +39,7 @@ std::vector<Event> update(const Model& model, State& state) {
   std::vector<Event> events;
   ++state.step;
   state.time = static_cast<double>(state.step) * model.scene.step_period;
-  updateBleedings(model, state, events);
+  updateBleedings(model, state, {state, events});
   return events;
 }
 
@@ -77,8 +77,8 @@ TEST(Bleeding, WithoutItsPartOfTheSceneDrawsNothing) {
   State state;
   state.random = 42;
   std::vector<Event> events;
-  bleedFromBite(model, 0, 0, 5, state, events);
-  updateBleedings(model, state, events);
+  bleedFromBite(model, 0, 0, 5, state, {state, events});
+  updateBleedings(model, state, {state, events});
   EXPECT_EQ(state.random, 42u);
   EXPECT_TRUE(events.empty() && state.procedure.bleedings.empty());
 }
@@ -87,7 +87,7 @@ TEST(Bleeding, MildStopsByItselfAfterRateTimesDuration) {
   const Model model = modelWith(1, 0);
   State state;
   std::vector<Event> events;
-  bleedFromBite(model, 2, 3, 5, state, events);
+  bleedFromBite(model, 2, 3, 5, state, {state, events});
   ASSERT_EQ(state.procedure.bleedings.size(), 1u);
   int stopped_at = 0;
   for (int step = 1; step <= 400 && stopped_at == 0; ++step)
@@ -105,8 +105,8 @@ TEST(Bleeding, BriskIsOverdueOnceAndGoesOnUntilTheSetIsCinched) {
   const Model model = modelWith(0, 1);
   State state;
   std::vector<Event> events;
-  bleedFromBite(model, 0, 0, 5, state, events);
-  bleedFromBite(model, 1, 0, 6, state, events);
+  bleedFromBite(model, 0, 0, 5, state, {state, events});
+  bleedFromBite(model, 1, 0, 6, state, {state, events});
   int overdue = 0, first = 0;
   for (int step = 1; step <= 800; ++step)
     for (const Event& event : update(model, state)) {
@@ -119,7 +119,7 @@ TEST(Bleeding, BriskIsOverdueOnceAndGoesOnUntilTheSetIsCinched) {
   const double lost = state.procedure.blood_lost;
   EXPECT_NEAR(lost, 2 * model.scene.bleeding->brisk_rate * 200, 1e-9 * lost);
   events.clear();
-  stopBleedings(0, state, events);
+  stopBleedings(0, state, {state, events});
   ASSERT_EQ(events.size(), 1u) << "only of its own set";
   EXPECT_EQ(events.front().kind, Kind::BleedingStopped);
   update(model, state);

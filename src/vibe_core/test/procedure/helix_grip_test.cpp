@@ -28,12 +28,12 @@ class HelixGrip : public ::testing::Test {
               readTextFile(std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf", "URDF")) {
     world.model->tool->forwardKinematics(world.state.joints, poses);
     poses[world.model->helix_link].translation() = world.position(kTarget);
-    updateGrip(*world.model, poses, true, world.state, world.events);
+    updateGrip(*world.model, poses, true, world.state, {world.state, world.events});
   }
 
   void turnTo(double turns) {
     world.state.joints[HelixRotation] = 2 * M_PI * turns;
-    releaseOverloadedGrip(*world.model, world.state, world.events);
+    releaseOverloadedGrip(*world.model, world.state, {world.state, world.events});
   }
 
   // The greatest force that it bears now, by trying.
@@ -41,7 +41,7 @@ class HelixGrip : public ::testing::Test {
     State state = world.state;
     std::vector<Event> events;
     state.grip_force = force;
-    releaseOverloadedGrip(*world.model, state, events);
+    releaseOverloadedGrip(*world.model, state, {state, events});
     return !state.grip.empty();
   }
 
@@ -90,10 +90,10 @@ TEST_F(HelixGrip, TurnedBackItKeepsItsHold) {
 }
 
 TEST_F(HelixGrip, CountsFromWhereItTookHold) {
-  updateGrip(*world.model, poses, false, world.state, world.events);
+  updateGrip(*world.model, poses, false, world.state, {world.state, world.events});
   EXPECT_EQ(world.count(Kind::Release), 1);
   world.state.joints[HelixRotation] = 2 * M_PI * 3;
-  updateGrip(*world.model, poses, true, world.state, world.events);
+  updateGrip(*world.model, poses, true, world.state, {world.state, world.events});
   turnTo(4);
   EXPECT_NEAR(world.state.procedure.grip_turns, 1, 1e-12);
   EXPECT_FALSE(bears(holdingForce(HelixScene{}, 1) + 1e-6));

@@ -167,7 +167,8 @@ void beamAt(Stage& stage, const Eigen::Vector3d& direction, double seconds) {
   tip.translation() = (kRadius - kWall / 2 - kGap - ApcParameters{}.probe_length) * direction;
   const long steps = std::lround(seconds * 60);
   for (long k = 0; k < steps; ++k)
-    updateMarking(*stage.model, poses, {true, k == 0, 0}, stage.state, *stage.workspace->marking(), stage.events);
+    updateMarking(*stage.model, poses, {true, k == 0, 0}, stage.state, *stage.workspace->marking(),
+                  {stage.state, stage.events});
 }
 
 TEST(MarkingStep, ALineIsOneEventAndAnotherSpotAnother) {
@@ -189,7 +190,8 @@ TEST(MarkingStep, InsufflationCools) {
     beamAt(stage, Eigen::Vector3d(0, 1, 0), 2);
     std::vector<Eigen::Isometry3d> poses(stage.model->tool->linkCount(), Eigen::Isometry3d::Identity());
     for (int k = 0; k < 600; ++k)
-      updateMarking(*stage.model, poses, {false, false, flow}, stage.state, *stage.workspace->marking(), stage.events);
+      updateMarking(*stage.model, poses, {false, false, flow}, stage.state, *stage.workspace->marking(),
+                    {stage.state, stage.events});
   };
   cool(still, 0);
   cool(cooled, 3 * kLitrePerMinute);

@@ -60,10 +60,10 @@ struct Bench {
   /// One step of the procedure with the present input.
   void act() {
     events.clear();
-    commandProcedure(model(), poses(), input, state(), events);
+    commandProcedure(model(), poses(), input, state(), {state(), events});
     ++state().step;
     state().time = static_cast<double>(state().step) * model().scene.step_period;
-    updateProcedure(model(), state(), events);
+    updateProcedure(model(), state(), {state(), events});
     world.events.insert(world.events.end(), events.begin(), events.end());
   }
 

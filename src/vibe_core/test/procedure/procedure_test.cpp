@@ -354,8 +354,8 @@ TEST(Procedure, StepsWithoutCommandsAskForNoMemory) {
   const auto allocationsIn = [&](int steps) {
     const long before = test::allocations;
     for (int k = 0; k < steps; ++k) {
-      commandProcedure(bench.model(), poses, bench.input, bench.state(), bench.events);
-      updateProcedure(bench.model(), bench.state(), bench.events);
+      commandProcedure(bench.model(), poses, bench.input, bench.state(), {bench.state(), bench.events});
+      updateProcedure(bench.model(), bench.state(), {bench.state(), bench.events});
     }
     return test::allocations - before;
   };

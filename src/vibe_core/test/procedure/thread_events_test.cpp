@@ -36,7 +36,7 @@ struct Thread {
   Suture& suture() { return state.procedure.sutures.front(); }
   void update() {
     events.clear();
-    updateThreads(model, state, events);
+    updateThreads(model, state, {state, events});
   }
   int count(Kind kind) const {
     int n = 0;

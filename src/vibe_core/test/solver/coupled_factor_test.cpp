@@ -92,7 +92,7 @@ ElasticBody platesBody() {
 struct Descent {
   explicit Descent(bool in_factor)
       : body(platesBody()), springs(plates(), true), stepper(body, {}, FactorStorage::Double), motion(body) {
-    const auto scratch = stepper.makeScratch();
+    const auto scratch = stepper.makeWorkspace();
     const std::vector<StiffnessCoupling> none;
     EXPECT_TRUE(factorAt(body, {{}, in_factor ? springs.couplings() : none}, 0, 1, scratch->plan, scratch->matrix,
                          *scratch->factor));
@@ -197,7 +197,7 @@ TEST(CoupledFactor, FixedNodesAreLeftOut) {
     for (const int node : c.node) some_fixed = some_fixed || body.fixed[static_cast<std::size_t>(node)] != 0;
   ASSERT_TRUE(some_fixed);
   const ImplicitStepper stepper(body, {});
-  const auto scratch = stepper.makeScratch();
+  const auto scratch = stepper.makeWorkspace();
   ASSERT_TRUE(factorAt(body, {{}, springs.couplings()}, 3600, 1, scratch->plan, scratch->matrix, *scratch->factor));
   ASSERT_FALSE(scratch->matrix.pairs().empty());
   for (const NodePair& pair : scratch->matrix.pairs()) {

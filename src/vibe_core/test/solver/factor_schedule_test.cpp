@@ -13,7 +13,7 @@ using namespace test;
 constexpr FactorSchedule kSchedule{3600, 1, 3, 1e-3};
 
 struct Fixture {
-  Fixture() : body(cantilever({3, 1, 1})), stepper(body, {}), motion(body), scratch(stepper.makeScratch()) {}
+  Fixture() : body(cantilever({3, 1, 1})), stepper(body, {}), motion(body), scratch(stepper.makeWorkspace()) {}
   void moveTip(double by) { motion.x[2].back() = body.rest.back().z() + by; }
   void advance(const FactorSchedule& schedule = kSchedule) {
     schedule.advance(body, motion.view(), loads, memory, *scratch);
@@ -23,7 +23,7 @@ struct Fixture {
     kSchedule.provide(body, {}, memory, *scratch);
     ++memory.steps;
   }
-  std::vector<float> solution(const StepperScratch& of) const {
+  std::vector<float> solution(const StepperWorkspace& of) const {
     std::vector<float> nodes4(4 * body.rest.size(), 1.0F), half(of.half.size(), 0.0F);
     of.factor->load(nodes4.data(), half.data());
     of.factor->forward(half.data());
@@ -36,7 +36,7 @@ struct Fixture {
   BodyMotion motion;
   BodyLoads loads;
   StepperMemory memory;
-  std::shared_ptr<StepperScratch> scratch;
+  std::shared_ptr<StepperWorkspace> scratch;
 };
 
 TEST(FactorSchedule, TissueThatStaysNeedsNoOtherFactor) {
@@ -105,7 +105,7 @@ TEST(FactorSchedule, AFactorFromTheBackgroundHasTheBitsOfOneMadeAtOnce) {
   for (int i = 0; i < 1 + kSchedule.steps; ++i) fixture.step();
   const std::vector<float> from_background = fixture.solution(*fixture.scratch);
   EXPECT_NE(from_background, about_rest) << "negative control: the factor has not changed";
-  const auto fresh = fixture.stepper.makeScratch();
+  const auto fresh = fixture.stepper.makeWorkspace();
   StepperMemory memory = fixture.memory;
   memory.next.clear();
   kSchedule.provide(fixture.body, {}, memory, *fresh);

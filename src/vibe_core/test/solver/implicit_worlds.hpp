@@ -40,7 +40,7 @@ inline ElasticBody cantilever(std::array<int, 3> cubes = {6, 2, 2}) {
 /// A stepper with one motion, and what both need.
 struct Body {
   explicit Body(ElasticBody body, StepSettings settings = {}, FactorStorage storage = FactorStorage::Half)
-      : stepper(std::move(body), settings, storage), motion(stepper.body()), scratch(stepper.makeScratch()) {}
+      : stepper(std::move(body), settings, storage), motion(stepper.body()), scratch(stepper.makeWorkspace()) {}
 
   StepOutcome step() { return stepper.step(motion.view(), loads, memory, *scratch); }
   StepOutcome settle(double tolerance = 1e-8) { return stepper.settle(motion.view(), loads, *scratch, tolerance); }
@@ -79,7 +79,7 @@ struct Body {
   BodyMotion motion;
   BodyLoads loads;
   StepperMemory memory;
-  std::shared_ptr<StepperScratch> scratch;
+  std::shared_ptr<StepperWorkspace> scratch;
 };
 
 inline bool sameBits(const BodyMotion& a, const BodyMotion& b) {

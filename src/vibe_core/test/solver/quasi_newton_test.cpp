@@ -29,7 +29,7 @@ ElasticBody springs(double at_some_nodes = 1) {
 struct Problem {
   /// @param factored  the body that the factor is made for
   explicit Problem(const ElasticBody& factored)
-      : body(springs()), stepper(body, {}, FactorStorage::Double), scratch(stepper.makeScratch()), motion(body) {
+      : body(springs()), stepper(body, {}, FactorStorage::Double), scratch(stepper.makeWorkspace()), motion(body) {
     EXPECT_TRUE(factorAt(factored, {}, 0, 1, scratch->matrix, *scratch->factor));
     scratch->schur.reset(*scratch->factor);
     for (int i = 0; i < body.nodeCount(); ++i)
@@ -51,7 +51,7 @@ struct Problem {
   }
   ElasticBody body;
   ImplicitStepper stepper;
-  std::shared_ptr<StepperScratch> scratch;
+  std::shared_ptr<StepperWorkspace> scratch;
   BodyMotion motion;
   BodyLoads loads;
 };
@@ -123,17 +123,17 @@ TEST(QuasiNewton, ADirectionWithoutLowerEnergyIsReportedAndNotTaken) {
   Potential potential(problem.body, problem.loads, 0, *problem.scratch);
   QuasiNewton newton(problem.body, potential, problem.loads, *problem.scratch);
   newton.start();
-  const StepperScratch& scratch = *problem.scratch;
+  const StepperWorkspace& scratch = *problem.scratch;
   const std::vector<double> before = scratch.z;
-  const std::vector<float> displacement = scratch.displacement, elastic = scratch.elastic_gradient;
-  const double energy = scratch.elastic_value;
+  const std::vector<float> displacement = scratch.last.displacement, elastic = scratch.last.elastic_gradient;
+  const double energy = scratch.last.elastic_value;
   EXPECT_EQ(newton.iterate(kFar, true), 0);
   EXPECT_TRUE(newton.failed());
   EXPECT_EQ(scratch.z, before);
   // forces and works of the step are those at z, not those of the trial that was rejected
-  EXPECT_EQ(scratch.displacement, displacement);
-  EXPECT_EQ(scratch.elastic_gradient, elastic);
-  EXPECT_EQ(scratch.elastic_value, energy);
+  EXPECT_EQ(scratch.last.displacement, displacement);
+  EXPECT_EQ(scratch.last.elastic_gradient, elastic);
+  EXPECT_EQ(scratch.last.elastic_value, energy);
 }
 
 TEST(QuasiNewton, AConstraintIsMetAtTheMinimum) {

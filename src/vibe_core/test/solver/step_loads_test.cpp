@@ -293,7 +293,7 @@ TEST(Replay, ACopyOfMotionAndMemoryHasTheSameFuture) {
 TEST(Replay, AFreshScratchAtEveryStepHasTheSameBits) {
   Body kept(replayBody(), replaySettings()), fresh(replayBody(), replaySettings());
   for (int i = 0; i < kReplaySteps; ++i) {
-    fresh.scratch = fresh.stepper.makeScratch();
+    fresh.scratch = fresh.stepper.makeWorkspace();
     for (Body* run : {&kept, &fresh}) load(*run, i), run->step();
     ASSERT_TRUE(sameBits(kept.motion, fresh.motion)) << "step " << i;
   }

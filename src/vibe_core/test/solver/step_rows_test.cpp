@@ -13,7 +13,7 @@ namespace {
 using namespace test;
 
 struct Fixture {
-  Fixture() : body(block({2, 1, 1}, neoHookean())), stepper(body, {}), motion(body), scratch(stepper.makeScratch()) {
+  Fixture() : body(block({2, 1, 1}, neoHookean())), stepper(body, {}), motion(body), scratch(stepper.makeWorkspace()) {
     loads.addPoint({1, 2}, {0.25, 0.75}, {0.1, 0.2, 0.3}, 0.02);
     const Eigen::Vector3d normal = Eigen::Vector3d(0, 3, 4) / 5;
     ContactConstraint contact;
@@ -46,7 +46,7 @@ struct Fixture {
   ElasticBody body;
   ImplicitStepper stepper;
   BodyMotion motion;
-  std::shared_ptr<StepperScratch> scratch;
+  std::shared_ptr<StepperWorkspace> scratch;
   BodyLoads loads;
 };
 
@@ -81,7 +81,7 @@ TEST(StepRows, AContactHasItsNormalAndTwoTangents) {
 
 TEST(StepRows, TheDeepestContactsCountWhereThereAreTooMany) {
   Fixture fixture;
-  StepperScratch& scratch = *fixture.scratch;
+  StepperWorkspace& scratch = *fixture.scratch;
   const ContactConstraint first = fixture.loads.contacts[0];
   fixture.loads.contacts.clear();
   constexpr int kCount = 150;
@@ -174,7 +174,7 @@ TEST(StepRows, TargetsOfAStepAreMetAtItsEnd) {
 
 TEST(StepRows, ForcesComeBackToTheLoads) {
   Fixture fixture;
-  StepperScratch& scratch = *fixture.scratch;
+  StepperWorkspace& scratch = *fixture.scratch;
   setEquilibriumTargets(fixture.loads, scratch);
   ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
   scratch.schur.reset(*scratch.factor);
@@ -197,7 +197,7 @@ TEST(StepRows, ForcesComeBackToTheLoads) {
 
 TEST(StepRows, AsMuchThreadAsAFoldNeedsStaysBetweenTwoBites) {
   Fixture fixture;
-  StepperScratch& scratch = *fixture.scratch;
+  StepperWorkspace& scratch = *fixture.scratch;
   scratch.slid.setZero(scratch.rows.count());
   ASSERT_TRUE(factorAt(fixture.body, {}, 3600, 1, scratch.matrix, *scratch.factor));
   scratch.schur.reset(*scratch.factor);

@@ -12,7 +12,7 @@ namespace {
 using namespace test;
 
 struct Fixture {
-  Fixture() : body(block({3, 1, 1}, neoHookean())), stepper(body, {}), motion(body), scratch(stepper.makeScratch()) {
+  Fixture() : body(block({3, 1, 1}, neoHookean())), stepper(body, {}), motion(body), scratch(stepper.makeWorkspace()) {
     loads.attachments = {{{0, 1, 2}, {0.2, 0.5, 0.3}}, {{8, 9, 10}, {0.5, 0.25, 0.25}}, {{15}, {1}}};
     ThreadLoad thread;
     thread.length = {0.02, 0.015};
@@ -28,7 +28,7 @@ struct Fixture {
   ElasticBody body;
   ImplicitStepper stepper;
   BodyMotion motion;
-  std::shared_ptr<StepperScratch> scratch;
+  std::shared_ptr<StepperWorkspace> scratch;
   BodyLoads loads;
   std::vector<double> positions;
 };

@@ -49,8 +49,9 @@ struct ToolTouch {
 };
 
 /// One kind of load or constraint on the tissue, for example the grip or the threads. The implicit step asks its blocks
-/// in the order of registration, see constraint_registry.hpp, and knows no kinds. All functions run on the thread that
-/// steps; none allocates once the block's buffers have grown.
+/// in the order of registration, see constraint_registry.hpp, and knows no kinds; what the helix holds and whether the
+/// gas bears the wall's tension it reads from State. All functions run on the thread that steps; none allocates once
+/// the block's buffers have grown.
 ///
 /// A block belongs to the scratch memory of one simulation. It must not carry anything from one step to the next that
 /// results depend on: what has to last is in State.
@@ -76,7 +77,12 @@ class ConstraintBlock {
 
   /// After the solve: reads forces from the loads, stores what has to last in the state, adds its work to
   /// State::energy (loads from outside to pull_work) and its forces between tool and tissue to `touches`.
-  virtual void store(const StepContext& /*context*/, const BodyLoads& /*loads*/, std::vector<ToolTouch>& /*touches*/) {}
+  /// @returns the work of its energyTerm() on the tissue that it has added to State::energy; what it has not counts as
+  ///          done by walls in contact. 0 without a term [J]
+  virtual double store(const StepContext& /*context*/, const BodyLoads& /*loads*/,
+                       std::vector<ToolTouch>& /*touches*/) {
+    return 0;
+  }
 
   /// In place of the solve, while tissue that was lost is led back to rest: the nodes have been moved already, and the
   /// block gives up its forces and whatever would pull the tissue away again.

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "vibe_core/contact/tool_poses.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
-#include "vibe_core/state/tool_displacement.hpp"
 
 namespace vibe {
 
@@ -34,26 +34,28 @@ struct StepReport {
 };
 
 /// Scratch memory of a solver; carries nothing from one step to the next.
-class SolverScratch {
+class SolverWorkspace {
  public:
-  virtual ~SolverScratch() = default;
+  virtual ~SolverWorkspace() = default;
+
+  ToolPoses tool;  ///< before Solver::advance() `start` is that of the step
 };
 
 /// Advances the tissue by one step under everything that acts on it: its own elasticity, gas, weight, foundation, the
-/// moving tool and what the helix holds. Constant; all memory is in State and SolverScratch, so one solver serves many
-/// states. The method may be explicit, position-based or implicit, and may divide the step.
+/// moving tool and what the helix holds. Constant; all memory is in State and SolverWorkspace, so one solver serves
+/// many states. The method may be explicit, position-based or implicit, and may divide the step.
 class Solver {
  public:
   virtual ~Solver() = default;
   virtual std::string name() const = 0;
   /// Divides the step into model.substeps explicit ones.
   virtual bool usesSubsteps() const { return false; }
-  virtual std::unique_ptr<SolverScratch> makeScratch(const Model& model) const = 0;
+  virtual std::unique_ptr<SolverWorkspace> makeWorkspace(const Model& model) const = 0;
 
   /// @param motion  path of the tool during the step; null without a scope
   /// Changes positions, velocities, orientations, gas and energy account of the state; not its clock, joints or grip.
   virtual void advance(const Model& model, const ToolMotion* motion, bool insufflator_on, State& state,
-                       SolverScratch& scratch, ThreadPool& pool, StepReport& report) const = 0;
+                       SolverWorkspace& scratch, ThreadPool& pool, StepReport& report) const = 0;
 };
 
 }  // namespace vibe

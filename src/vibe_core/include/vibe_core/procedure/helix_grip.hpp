@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "vibe_core/events/event.hpp"
+#include "vibe_core/events/event_log.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
@@ -13,7 +13,7 @@ namespace vibe {
 /// with the helix: a corkscrew turns in the tissue.
 /// @param link_poses  of the tool's links in world; the origin of the helix link is the tip of the helix
 void updateGrip(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, bool pressed, State& state,
-                std::vector<Event>& events);
+                EventLog log);
 
 /// Force that the helix holds after a number of turns [N]: linear from initial_hold_force at 0 to hold_force at
 /// hold_turns, constant above. With hold_turns 0 it is always hold_force.
@@ -22,6 +22,6 @@ double holdingForce(const HelixScene& helix, double turns);
 /// Call after a step. Counts the turns since the helix took hold, and releases the tissue with a slip if the force on
 /// the grip exceeds holdingForce(). Turns count in the direction of positive rotation, which drives a right-handed
 /// helix forward. The maximum counts: a helix that is turned back keeps its hold until its button is released.
-void releaseOverloadedGrip(const Model& model, State& state, std::vector<Event>& events);
+void releaseOverloadedGrip(const Model& model, State& state, EventLog log);
 
 }  // namespace vibe

@@ -20,8 +20,7 @@ class Workspace {
   Workspace(const Workspace&) = delete;
   Workspace& operator=(const Workspace&) = delete;
 
-  SolverScratch& solverScratch() { return *solver_scratch_; }
-  std::vector<Eigen::Isometry3d>& linkPoses() { return link_poses_; }
+  SolverWorkspace& solverWorkspace() { return *solver_workspace_; }
   /// Output of the last step beside the state: mechanical impedance of the tissue at the tool. Empty while nothing is
   /// touched, and with solvers that do not estimate it (shape matching).
   std::optional<ToolImpedance>& toolImpedance() { return tool_impedance_; }
@@ -34,9 +33,8 @@ class Workspace {
 
  private:
   ThreadPool pool_;
-  std::unique_ptr<SolverScratch> solver_scratch_;
+  std::unique_ptr<SolverWorkspace> solver_workspace_;
   std::unique_ptr<MarkingScratch> marking_;
-  std::vector<Eigen::Isometry3d> link_poses_;
   std::optional<ToolImpedance> tool_impedance_;
   StepReport report_;
 };

@@ -29,7 +29,7 @@ struct StepSettings {
 };
 
 /// The memory of a stepper: factors, histories, vectors. One per thread of control.
-class StepperScratch;
+class StepperWorkspace;
 class QuasiNewton;
 struct TimeScheme;
 
@@ -52,7 +52,7 @@ class ImplicitStepper {
   const ElasticBody& body() const { return body_; }
   const StepSettings& settings() const { return settings_; }
 
-  std::shared_ptr<StepperScratch> makeScratch() const;
+  std::shared_ptr<StepperWorkspace> makeWorkspace() const;
 
   /// Names the present positions as those that the factor is about, at once. Costs tens of step times.
   void refactor(const MotionView& motion, StepperMemory& memory) const;
@@ -61,27 +61,27 @@ class ImplicitStepper {
   /// settings().iterations + kSpareInFallback with backward Euler, and at most two solves for each. A step that does
   /// not arrive ends at the best point it has found, with the mean velocity over the step, and the next few steps take
   /// backward Euler. Forces of the loads are their means over the step.
-  StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch) const;
+  StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
 
   /// The equilibrium under the loads from the positions in `motion` (velocities become 0), refactoring as it goes.
   /// @param tolerance  no node would move farther [m]
-  StepOutcome settle(MotionView motion, BodyLoads& loads, StepperScratch& scratch, double tolerance,
+  StepOutcome settle(MotionView motion, BodyLoads& loads, StepperWorkspace& scratch, double tolerance,
                      int max_iterations = 400) const;
 
   /// Elastic energy at the positions [J].
-  double elasticEnergy(const MotionView& motion, StepperScratch& scratch) const;
+  double elasticEnergy(const MotionView& motion, StepperWorkspace& scratch) const;
 
  private:
   struct Plan;
   bool extrapolates(bool fallback) const;
-  void guess(const MotionView& motion, bool fallback, StepperScratch& scratch) const;
-  static void correctStored(StepperMemory& memory, const StepperScratch& scratch, StepOutcome& outcome);
-  void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperScratch& scratch,
+  void guess(const MotionView& motion, bool fallback, StepperWorkspace& scratch) const;
+  static void correctStored(StepperMemory& memory, const StepperWorkspace& scratch, StepOutcome& outcome);
+  void iterateStep(const MotionView& motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch,
                    StepOutcome& outcome) const;
-  void iterate(QuasiNewton& newton, const StepperScratch& scratch, StepperMemory& memory, StepOutcome& outcome) const;
-  void startFromHere(const MotionView& motion, StepperScratch& scratch) const;
-  void refactorHere(const BodyLoads& loads, StepperScratch& scratch) const;
-  void placeAtRest(const StepperScratch& scratch, const MotionView& motion) const;
+  void iterate(QuasiNewton& newton, const StepperWorkspace& scratch, StepperMemory& memory, StepOutcome& outcome) const;
+  void startFromHere(const MotionView& motion, StepperWorkspace& scratch) const;
+  void refactorHere(const BodyLoads& loads, StepperWorkspace& scratch) const;
+  void placeAtRest(const StepperWorkspace& scratch, const MotionView& motion) const;
 
   ElasticBody body_;
   StepSettings settings_;

@@ -15,19 +15,17 @@
 namespace vibe {
 
 /// Buffers of ImplicitSolver.
-struct ImplicitScratch : SolverScratch {
-  std::shared_ptr<StepperScratch> stepper;
+struct ImplicitWorkspace : SolverWorkspace {
+  std::shared_ptr<StepperWorkspace> stepper;
   std::vector<std::unique_ptr<ConstraintBlock>> blocks;  // in the order in which they are asked
   BodyLoads loads;
   SumTerm terms;                                   // energies of the blocks
-  std::vector<char> has_term;                      // per block
   std::array<std::vector<double>, 6> uncorrected;  // positions and velocities before corrections [m], [m/s]
-  ToolPoses poses;
-  std::optional<ToolGuard> guard;                 // empty without a tool
-  std::vector<int> held;                          // particles that the helix holds
-  std::array<std::vector<double>, 3> start;       // positions at the start of the step [m]
-  std::vector<ToolTouch> touches;                 // of the last step
-  std::unique_ptr<ImpedanceEstimator> impedance;  // null without a tool
+  std::optional<ToolGuard> guard;                  // empty without a tool
+  std::vector<int> held;                           // particles that the helix holds
+  std::array<std::vector<double>, 3> start;        // positions at the start of the step [m]
+  std::vector<ToolTouch> touches;                  // of the last step
+  std::unique_ptr<ImpedanceEstimator> impedance;   // null without a tool
   ToolContactRows tool_rows;
 };
 

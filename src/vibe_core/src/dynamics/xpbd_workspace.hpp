@@ -12,7 +12,7 @@
 namespace vibe {
 
 /// Buffers of XpbdSolver.
-class XpbdScratch : public SolverScratch {
+class XpbdWorkspace : public SolverWorkspace {
  public:
   std::vector<double> old_x, old_y, old_z;        // positions before the sub-step [m]
   std::vector<double> ahead_x, ahead_y, ahead_z;  // positions a little ahead, where elastic forces are taken [m]
@@ -22,7 +22,7 @@ class XpbdScratch : public SolverScratch {
   ClusterSweepFunction sweep_function = nullptr;
   std::unique_ptr<ToolCollision> collision;
   XpbdPull pull;
-  std::vector<Eigen::Isometry3d> poses, old_poses, ahead_poses;  // of the tool's links in world
+  LinkPoses old_tool, tool_ahead;  // before the sub-step, after the last one until the next search
 };
 
 }  // namespace vibe
