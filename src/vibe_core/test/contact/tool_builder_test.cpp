@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "contact/scope_fixture.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::tool_builder_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <new>
 #include <random>
 
-#include "contact/scope_fixture.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 // counts what is allocated, for the promise that forwardKinematics allocates nothing
 static long allocations = 0;

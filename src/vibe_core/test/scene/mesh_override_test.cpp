@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scene/expect_error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::mesh_override_test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "solver/implicit_worlds.hpp"
 #include "tissue/shell.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 /// A ball of gas in a thin wall, for the tests of implicit steps.
 namespace vibe::test {

@@ -1,4 +1,5 @@
 #pragma once
+
 #include <cerrno>
 #include <cstddef>
 #include <cstdlib>
@@ -13,7 +14,9 @@
 #endif
 
 namespace vibe::test {
+
 inline thread_local long allocations = 0;
+
 }  // namespace vibe::test
 
 #if VIBE_COUNTS_ALLOCATIONS

@@ -1,4 +1,5 @@
 #pragma once
+
 #include <dlfcn.h>
 #include <pthread.h>
 
@@ -11,7 +12,9 @@
 #endif
 
 namespace vibe::test {
+
 inline thread_local long locks = 0;
+
 }  // namespace vibe::test
 
 #if VIBE_COUNTS_LOCKS

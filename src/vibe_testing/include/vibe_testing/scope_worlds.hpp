@@ -1,6 +1,7 @@
 #pragma once
-#include "contact/scope_fixture.hpp"
-#include "worlds.hpp"
+
+#include "vibe_testing/scope_fixture.hpp"
+#include "vibe_testing/worlds.hpp"
 
 /// A ball around the origin that stands in for the organ, with the endoscope entering at its top and looking down.
 namespace vibe::test {
