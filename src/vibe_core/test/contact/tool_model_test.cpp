@@ -7,6 +7,7 @@
 #include <new>
 #include <random>
 
+#include "vibe_testing/expect_error.hpp"
 #include "vibe_testing/scope_fixture.hpp"
 
 // counts what is allocated, for the promise that forwardKinematics allocates nothing
@@ -135,7 +136,7 @@ TEST(ToolModel, LinksAreNumberedParentFirst) {
     EXPECT_LT(tool.joints()[k].parent_link, k + 1);
   }
   EXPECT_EQ(tool.linkCount(), static_cast<int>(tool.joints().size()) + 1);
-  EXPECT_EQ(messageOf([&] { tool.linkIndex("elbow"); }), "The tool has no link 'elbow'; its URDF must define it.");
+  EXPECT_EQ(errorOf([&] { tool.linkIndex("elbow"); }), "The tool has no link 'elbow'; its URDF must define it.");
 }
 
 TEST(ToolModel, ForwardKinematicsAllocatesNothing) {

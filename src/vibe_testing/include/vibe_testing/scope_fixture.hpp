@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/contact/tool_model.hpp"
 
 namespace vibe {
 
+/// Of the endoscope's URDF. VIBE_DESCRIPTION_DIR is the folder of vibe_description; who includes this defines it.
 inline std::string scopePath() {
   return std::string(VIBE_DESCRIPTION_DIR) + "/urdf/scope.urdf";
 }
@@ -25,17 +25,6 @@ inline std::string scopeText() {
 
 inline ToolModel loadScope() {
   return ToolModel::fromUrdf(scopeText(), "scope.urdf");
-}
-
-/// What the Error says that `action` throws; empty if it throws none.
-template <typename Action>
-std::string messageOf(Action&& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace vibe
