@@ -6,7 +6,7 @@
 #include "constraints/attachment.hpp"
 #include "constraints/foundation.hpp"
 #include "solver/factor_schedule.hpp"
-#include "solver/implicit_stepper.hpp"
+#include "solver/implicit_worlds.hpp"
 #include "tissue/shell_tissue.hpp"
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/scene/scene_parser.hpp"

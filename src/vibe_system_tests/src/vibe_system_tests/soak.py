@@ -1,9 +1,24 @@
 """What the programs that look for growing memory share."""
 
+import os
 import sys
 import tempfile
 
+from vibe_bringup.graph import Graph
 from vibe_bringup.session import carry_out
+
+
+class Soak:
+    """A graph whose memory is watched; who derives from it starts and watches what is in it."""
+
+    def __init__(self, arguments, folder):
+        self.arguments, self.folder = arguments, folder
+        logs = os.path.join(folder, "log")
+        os.mkdir(logs)
+        self.graph = Graph(logs)
+
+    def stop(self):
+        self.graph.stop_all()
 
 
 def slope(samples):

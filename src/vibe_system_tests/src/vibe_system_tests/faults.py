@@ -14,22 +14,21 @@ import traceback
 from vibe_bringup.graph import GraphError
 from vibe_bringup.session import Interrupted, interruptible
 
-from fault_bench import Bench, Failure
+from .fault_bench import Bench, Failure
 
 
 def groups():
-    """Name of a group -> its class."""
-    from faults_of_master import Master
-    from faults_of_nodes import Nodes
-    from faults_of_peers import Peers
-    from faults_of_traffic import FastTraffic, Traffic
+    """Name of a group -> its class; each imports the messages of half a workspace."""
+    from .faults_of_master import Master
+    from .faults_of_nodes import Nodes
+    from .faults_of_peers import Peers
+    from .faults_of_traffic import FastTraffic, Traffic
 
     return {"nodes": Nodes, "master": Master, "traffic": Traffic, "fast": FastTraffic, "peers": Peers}
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(allow_abbrev=False, description=__doc__.split("\n\n", maxsplit=1)[0])
-    parser.add_argument("--workspace", required=True)
     parser.add_argument("--group", choices=("nodes", "master", "traffic", "fast", "peers"), default="nodes")
     parser.add_argument("--only", default="", help="part of the names of the faults wanted")
     parser.add_argument("--report", default="/dev/stdout", help="file to append to")
@@ -58,7 +57,7 @@ def attempt(arguments, name, check):
 def main():
     arguments = parse_arguments()
     with tempfile.TemporaryDirectory(prefix="vibe-faults-") as folder:
-        bench = Bench(arguments.workspace, folder)
+        bench = Bench(folder)
         if arguments.list:
             for group, make in groups().items():
                 print("\n".join("{}\t{}".format(group, name) for name, _ in make(bench).faults()))

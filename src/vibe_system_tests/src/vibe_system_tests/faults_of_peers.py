@@ -5,11 +5,12 @@ import struct
 import time
 import xmlrpc.client
 
-from fault_bench import Flow, Row, expect, pace
-from fault_peers import POSITION, Flood, RawPublisher, Victim, connect, encode_header, message_of, receive_header
-from sensor_msgs.msg import JointState, Joy
+from sensor_msgs.msg import JointState
 from vibe_msgs.msg import StepInput
 from vibe_testing.wait import wait_until
+
+from .fault_bench import Flow, Row, expect, pace
+from .fault_peers import POSITION, Flood, RawPublisher, Victim, connect, encode_header, message_of, receive_header
 
 WINDOW = 1.5  # [s]
 LEAST_PACE = 0.9  # of real time, while the peers are there

@@ -10,10 +10,10 @@ import json
 import os
 import time
 
-from vibe_bringup.graph import Graph, GraphError
+from vibe_bringup.graph import GraphError
 from vibe_bringup.rviz_window import RvizWindow, wait_for
 
-from soak import run, slope
+from .soak import Soak, run, slope
 
 INTERVAL = 2.0  # between two samples [s]
 WARM_UP = 0.3  # of the time
@@ -30,13 +30,10 @@ def parse_arguments():
     return parser.parse_args()
 
 
-class Soak:
+class RvizSoak(Soak):
     def __init__(self, arguments, folder):
-        self.arguments = arguments
+        super().__init__(arguments, folder)
         self.report_file = os.path.join(folder, "report.json")
-        logs = os.path.join(folder, "log")
-        os.mkdir(logs)
-        self.graph = Graph(logs)
         self.window = RvizWindow(self.graph, folder, arguments.config)
 
     def start(self):
@@ -82,9 +79,6 @@ class Soak:
         if growth > self.arguments.most_growth:
             raise GraphError("memory grew by {:.1f} MB, {:.1f} are allowed".format(growth, self.arguments.most_growth))
 
-    def stop(self):
-        self.graph.stop_all()
-
 
 if __name__ == "__main__":
-    run(Soak, parse_arguments())
+    run(RvizSoak, parse_arguments())

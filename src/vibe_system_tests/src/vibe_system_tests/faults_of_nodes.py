@@ -8,12 +8,14 @@ import time
 
 import rosbag
 import rospy
-from fault_bench import Failure, Flow, Row, expect, script_of_motions
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import Joy
+from vibe_bringup import places
 from vibe_msgs.msg import InstrumentTrackArray, OperatingState, ProcedureEvent, StepInput
 from vibe_msgs.srv import Snapshot
 from vibe_testing.wait import PATIENCE, wait_until
+
+from .fault_bench import Failure, Flow, Row, expect, script_of_motions
 
 LIMIT = 2.0  # from the start of a program until its messages come again [s]
 TRIES = 3  # to do so, since other programs run on this machine, too
@@ -46,7 +48,7 @@ class Nodes:
         bench = self.bench
         os.mkdir(self.sockets)
         bench.graph.start_master()
-        with open(bench.source("vibe_description", "urdf", "scope.urdf"), encoding="utf-8") as urdf:
+        with open(places.find(places.ROBOT), encoding="utf-8") as urdf:
             bench.graph.set_parameter("/robot_description", urdf.read())
         rig = os.path.join(bench.folder, "rig.yaml")
         bench.start("vibe_fake_camera", "vibe_vision", "vibe_fake_camera", "--frames", "30", "--config", rig)
@@ -63,7 +65,7 @@ class Nodes:
                     script=bench.file("motions.yaml", script_of_motions("to and fro")))
         bench.start("gamepad_node", "vibe_hardware", "gamepad_node", "scope/servo_jp:=pad/scope",
                     "overstitch/measured_js:=pad/overstitch", "scope/buttons:=pad/buttons",
-                    replay=bench.source("vibe_hardware", "test", "node", "pad_session.evemu"))
+                    replay=places.find("package://vibe_hardware/test/node/pad_session.evemu"))
         bench.start("hardware_node", "vibe_hardware", "hardware_node", "overstitch/measured_js:=overstitch/buttons_js",
                     bus=self.sockets)
         bench.says("vibe_fake_camera", " serves ", seconds=90)

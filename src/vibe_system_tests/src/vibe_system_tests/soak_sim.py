@@ -11,11 +11,13 @@ import socket
 import time
 import xmlrpc.client
 
-from vibe_bringup.graph import Graph, GraphError
+from vibe_bringup import places
+from vibe_bringup.graph import GraphError
+from vibe_testing.program import find_program
 
-from fault_bench import simulated_time
-from fault_peers import Listener, Victim
-from soak import run, slope
+from .fault_bench import memory, simulated_time
+from .fault_peers import Listener, Victim
+from .soak import Soak, run, slope
 
 INTERVAL = 1.0  # between two samples [s of wall time]
 WARM_UP = 0.2  # of the time
@@ -29,9 +31,8 @@ HEARD = ("tissue/particles", "step_result", "joint_states", "sutures", "procedur
 
 def parse_arguments():
     parser = argparse.ArgumentParser(allow_abbrev=False, description=__doc__.split("\n\n", maxsplit=1)[0])
-    parser.add_argument("--workspace", required=True)
-    parser.add_argument("--scene", default="", help="default: small_stomach.yaml of the tests of vibe_sim")
-    parser.add_argument("--script", default="", help="of one turn; default: demo/grabs.yaml")
+    parser.add_argument("--scene", default="package://vibe_sim/test/node/scenes/small_stomach.yaml")
+    parser.add_argument("--script", default="package://vibe_core/trainees/demo/grabs.yaml", help="of one turn")
     parser.add_argument("--minutes", type=float, default=120.0, help="of simulated time")
     parser.add_argument("--most-growth", type=float, default=1.0, help="in an hour of simulated time [MB]")
     return parser.parse_args()
@@ -43,39 +44,28 @@ def repeated(script, times):
     return head + "\nactions:\n" + times * (actions.rstrip("\n") + "\n")
 
 
-class Soak:
+class SimulatorSoak(Soak):
     def __init__(self, arguments, folder):
-        self.arguments, self.folder = arguments, folder
-        logs = os.path.join(folder, "log")
-        os.mkdir(logs)
-        self.graph = Graph(logs)
+        super().__init__(arguments, folder)
         self.listeners = []
-        self.time = 0.0
-
-    def source(self, *path):
-        return os.path.join(self.arguments.workspace, "src", *path)
 
     def start(self):
         graph, put = self.graph, self.graph.set_parameter
         graph.start_master()
         put("/use_sim_time", True)
-        tests = self.source("vibe_sim", "test", "node", "scenes")
-        put("/sim_node/scene", self.arguments.scene or os.path.join(tests, "small_stomach.yaml"))
+        put("/sim_node/scene", places.find(self.arguments.scene))
         put("/sim_node/time_source", "sim")
         for node in ("sim_node", "vibe_trainee"):
             put("/{}/lockstep".format(node), True)
         put("/sim_node/fast", True)
         put("/vibe_trainee/script", self.write_script())
-        self.sim = graph.start("sim_node", [self.program("sim_node")])
-        graph.start("vibe_trainee", [self.program("vibe_trainee")])
+        # not through rosrun: it would be rosrun whose memory is looked at
+        self.sim = graph.start("sim_node", [find_program("vibe_sim", "sim_node")])
+        graph.start("vibe_trainee", [find_program("vibe_sim", "vibe_trainee")])
         self.listeners = self.wait_for_simulator()
 
-    def program(self, name):
-        """Not through rosrun: it would be rosrun whose memory is looked at."""
-        return os.path.join(self.arguments.workspace, "devel", "lib", "vibe_sim", name)
-
     def write_script(self):
-        turn = self.arguments.script or self.source("vibe_core", "trainees", "demo", "grabs.yaml")
+        turn = places.find(self.arguments.script)
         path = os.path.join(self.folder, "script.yaml")
         with open(turn, encoding="utf-8") as text, open(path, "w", encoding="utf-8") as script:
             script.write(repeated(text.read(), round(60 * self.arguments.minutes / SCRIPT_SECONDS) + 1))
@@ -94,11 +84,6 @@ class Soak:
                     raise GraphError("sim_node does not begin; it said:\n" + self.sim.last_words())
                 time.sleep(0.2)
 
-    def resident(self):
-        """[MB]"""
-        with open("/proc/{}/status".format(self.sim.process.pid), encoding="ascii") as text:
-            return next(int(line.split()[1]) / 1024 for line in text if line.startswith("VmRSS:"))
-
     def watch(self):
         end, begin = 60 * self.arguments.minutes, time.monotonic()
         samples, progress = [], begin
@@ -107,7 +92,7 @@ class Soak:
             self.graph.check_alive()
             now = simulated_time(self.sim.log)
             if not samples or now > samples[-1][0]:
-                samples.append((now, self.resident()))
+                samples.append((now, memory(self.sim.process.pid)))
                 progress = time.monotonic()
             if time.monotonic() - progress > PATIENCE:
                 raise GraphError("no step in {:.0f} s; it said:\n{}".format(PATIENCE, self.sim.last_words()))
@@ -132,8 +117,8 @@ class Soak:
     def stop(self):
         for listener in self.listeners:
             listener.connection.shutdown(socket.SHUT_RDWR)
-        self.graph.stop_all()
+        super().stop()
 
 
 if __name__ == "__main__":
-    run(Soak, parse_arguments())
+    run(SimulatorSoak, parse_arguments())

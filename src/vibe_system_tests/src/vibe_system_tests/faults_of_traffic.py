@@ -1,17 +1,16 @@
 """Too much, too slow and at the wrong time: floods, deaf listeners, wrong clocks, and a simulator that stands still."""
 
 import math
-import os
 import signal
-import sys
 import time
 
-import fault_peers
-from fault_bench import Flow, Row, expect, pace, script_of_motions
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 from vibe_msgs.msg import ProcedureEvent, StepInput
 from vibe_testing.wait import wait_until
+
+from . import fault_peers
+from .fault_bench import Flow, Row, expect, pace, script_of_motions
 
 RATE = 10000.0  # of a flood [Hz]
 LEAST_RATE = 0.5  # of that, on a busy machine
@@ -62,8 +61,7 @@ class Traffic:
         ]
 
     def start_peer(self, name, *arguments):
-        command = [sys.executable, os.path.abspath(fault_peers.__file__), "--name", "/" + name, *arguments]
-        self.bench.programs[name] = self.bench.graph.start(name, command)
+        self.bench.start_module(name, "fault_peers", "--name", "/" + name, *arguments)
 
     def achieved(self, name):
         """Messages that a flood has sent in a second, in the mean [Hz]."""
@@ -122,7 +120,7 @@ class Traffic:
     def deaf(self):
         bench = self.bench
         before, memory = pace(self.steps, WINDOW), bench.memory("sim_node")
-        self.start_listener("deaf")
+        bench.start_module("deaf", "listener", "deaf", *sorted("/" + topic for topic in TOPICS))
         expect(wait_until(lambda: len(bench.said("deaf")) > 5), "the listener hears nothing")
         bench.send("deaf", signal.SIGSTOP)
         try:
@@ -134,11 +132,6 @@ class Traffic:
         expect(grown < DEAF_MEMORY, "memory grew by {:.1f} MB".format(grown))
         return [Row("a listener of all topics stands still (SIGSTOP)", "its messages; pace {:.2f} (before {:.2f}), "
                     "memory +{:.1f} MB in {:.0f} s".format(during, before, grown, WINDOW), 0.0, "nothing")]
-
-    def start_listener(self, name):
-        topics = sorted("/" + topic for topic in TOPICS)
-        script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "faults_of_master.py")
-        self.bench.programs[name] = self.bench.graph.start(name, [sys.executable, script, name, *topics])
 
     def stand_still(self):
         bench = self.bench

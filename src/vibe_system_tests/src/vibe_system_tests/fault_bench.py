@@ -4,11 +4,14 @@ which message came."""
 import os
 import re
 import signal
-import threading
+import sys
 import time
 
 import rospy
+from vibe_bringup import places
 from vibe_bringup.graph import Graph
+from vibe_testing.program import find_program
+from vibe_testing.recorder import Recorder
 from vibe_testing.wait import PATIENCE, wait_until
 
 STEPS_PER_SECOND = 60  # of light.yaml
@@ -36,30 +39,23 @@ class Row:
         return "| {} | {} | {} | {} |".format(self.fault, self.lost, recovery, self.seen)
 
 
-class Flow:
-    """When the messages of a topic arrived and, if it is to `keep` them, the messages. Only those count for which
-    `counts` holds."""
+class Flow(Recorder):
+    """When the messages of a topic arrived, in monotonic time, and, if it is to `keep` them, the messages. Only those
+    count for which `counts` holds."""
+
+    clock = staticmethod(time.monotonic)
 
     def __init__(self, topic, kind=rospy.AnyMsg, keep=False, counts=None):
         self.topic, self.keep, self.counts = topic, keep, counts
-        self.lock = threading.Lock()
-        self.arrivals = []
-        self.subscriber = rospy.Subscriber(topic, kind, self.take, queue_size=None, tcp_nodelay=True)
+        super().__init__(topic, kind)
 
     def take(self, message):
-        now = time.monotonic()
         if self.counts is None or self.counts(message):
-            with self.lock:
-                self.arrivals.append((now, message if self.keep else None))
+            super().take(message if self.keep else None)
 
     def since(self, begin, end=None):
         """(time of arrival, message) from begin to end."""
-        with self.lock:
-            return [(t, m) for t, m in self.arrivals if t >= begin and (end is None or t <= end)]
-
-    def newest(self):
-        with self.lock:
-            return self.arrivals[-1][1] if self.arrivals else None
+        return [(t, m) for t, m in self.arrivals if t >= begin and (end is None or t <= end)]
 
     def gap(self, begin, end):
         """The longest time without a message between two times [s]."""
@@ -80,8 +76,8 @@ class Flow:
 class Bench:
     """A graph of its own. Programs are named as their nodes are and can be killed and started again."""
 
-    def __init__(self, workspace, folder):
-        self.workspace, self.folder = workspace, folder
+    def __init__(self, folder):
+        self.folder = folder
         logs = os.path.join(folder, "log")
         os.makedirs(logs, exist_ok=True)
         self.graph = Graph(logs)
@@ -92,17 +88,6 @@ class Bench:
     def observe(self):
         """Makes this process a node."""
         rospy.init_node("observer", disable_signals=True, log_level=rospy.FATAL)
-
-    def source(self, *path):
-        return os.path.join(self.workspace, "src", *path)
-
-    def program(self, package, name):
-        """Not through rosrun, so that a signal meets the program and no time goes into looking for it."""
-        for folder in (os.path.join(self.workspace, "devel", "lib"), "/usr/lib"):
-            path = os.path.join(folder, package, name)
-            if os.path.exists(path):
-                return path
-        raise Failure("{} of {} is not built".format(name, package))
 
     def file(self, name, text):
         """A file of this bench."""
@@ -116,16 +101,20 @@ class Bench:
         if package is not None:
             words = ["_{}:={}".format(key, value) for key, value in parameters.items()]
             node = [] if program in ("vibe_emulator", "vibe_fake_camera", "rosmaster") else ["__name:=" + name]
-            path = "/usr/bin/rosmaster" if program == "rosmaster" else self.program(package, program)
-            self.commands[name] = [path] + list(arguments) + words + node
+            # not through rosrun, so that a signal meets the program and no time goes into looking for it
+            self.commands[name] = [find_program(package, program)] + list(arguments) + words + node
         begin = time.monotonic()
         self.programs[name] = self.graph.start(name, self.commands[name])
         return begin
 
     def start_simulator(self, **parameters):
         """The lightest scene, in real time unless the parameters say something else."""
-        scene = self.source("vibe_sim", "test", "node", "scenes", "light.yaml")
+        scene = places.find("package://vibe_sim/test/node/scenes/light.yaml")
         self.start("sim_node", "vibe_sim", "sim_node", **{"scene": scene, **parameters})
+
+    def start_module(self, name, module, *words):
+        """A module of this package, in a process of its own."""
+        self.programs[name] = self.graph.start(name, [sys.executable, "-P", "-m", __package__ + "." + module, *words])
 
     def pid(self, name):
         return self.programs[name].process.pid
@@ -180,9 +169,7 @@ class Bench:
         expect(wait_until(lambda: self.step(name) >= step, seconds), "{} takes too few steps".format(name))
 
     def memory(self, name, key="VmRSS"):
-        """Of a program [MB]."""
-        with open("/proc/{}/status".format(self.pid(name)), encoding="ascii") as text:
-            return next(int(line.split()[1]) / 1024 for line in text if line.startswith(key + ":"))
+        return memory(self.pid(name), key)
 
     def descriptors(self, name):
         return len(os.listdir("/proc/{}/fd".format(self.pid(name))))
@@ -192,6 +179,12 @@ class Bench:
             if program.status() is None:
                 program.process.send_signal(signal.SIGCONT)  # what stands still does not hear that it should end
         self.graph.stop_all()
+
+
+def memory(pid, key="VmRSS"):
+    """Of a process [MB]."""
+    with open("/proc/{}/status".format(pid), encoding="ascii") as text:
+        return next(int(line.split()[1]) / 1024 for line in text if line.startswith(key + ":"))
 
 
 def simulated_time(log):

@@ -1,4 +1,4 @@
-# Runs in the virtual machine, in the host's files. The variables come from scripts/lib/hid_kernel.py:
+# Runs in the virtual machine, in the host's files. The variables come from vibe_system_tests/hid_kernel.py:
 # VIBE_DEVEL, the devel folder; VIBE_PACKAGES, the folder of the packages; VIBE_FILTER, which tests to run (gtest);
 # VIBE_IMAGE, not empty if the firmware image runs.
 set -a
@@ -30,7 +30,7 @@ export ROS_PYTHON_LOG_CONFIG_FILE=$PWD/logging.conf
 # the tests of the nodes come last; until then the master has started
 /usr/bin/rosmaster --core -p 11311 >rosmaster.log 2>&1 &
 
-tests=$VIBE_DEVEL/lib/vibe_hardware/hid_guest
+tests=$VIBE_DEVEL/lib/vibe_system_tests/hid_guest
 "${tests}_replug" --gtest_color=no --gtest_filter="$VIBE_FILTER" >replug.log 2>&1 &
 replug=$!
 "$tests" --gtest_color=no --gtest_filter="$VIBE_FILTER"

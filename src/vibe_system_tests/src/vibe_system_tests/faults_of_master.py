@@ -1,14 +1,13 @@
 """The ROS master dies and comes back on its port, empty."""
 
-import json
 import os
-import sys
 import time
 
-from fault_bench import Flow, Row, expect, script_of_motions
 from sensor_msgs.msg import JointState
 from vibe_msgs.msg import StepInput
 from vibe_testing.wait import wait_until
+
+from .fault_bench import Flow, Row, expect, script_of_motions
 
 LIMIT = 2.0  # from the start of a program until its messages come [s]
 OUTAGE = 3.0  # without a master [s]
@@ -87,8 +86,7 @@ class Master:
 
     def start_listener(self, name):
         """A node of the new graph, in a process of its own: this one is known to the old master only."""
-        command = [sys.executable, os.path.abspath(__file__), name, "/applied_input", "/scope/measured_js"]
-        self.bench.programs[name] = self.bench.graph.start(name, command)
+        self.bench.start_module(name, "listener", name, "/applied_input", "/scope/measured_js")
         self.bench.says(name, "listens")
 
     def heard(self, name):
@@ -112,25 +110,3 @@ class Master:
         self.bench.check_alive()
         return [Row("simulator, trainee and recorder started again", "the session since its last snapshot", max(times),
                     "everything as after a first start")]
-
-
-def listen(name, topics):
-    """Prints each topic with the time when its first message came (CLOCK_MONOTONIC, the same in all processes)."""
-    import rospy
-
-    rospy.init_node(name)
-    seen = set()
-
-    def take(_, topic):
-        if topic not in seen:
-            seen.add(topic)
-            print(topic, repr(time.monotonic()), flush=True)
-
-    for topic in topics:
-        rospy.Subscriber(topic, rospy.AnyMsg, take, topic)
-    print("listens", json.dumps(topics), flush=True)
-    rospy.spin()
-
-
-if __name__ == "__main__":
-    listen(sys.argv[1], sys.argv[2:])
