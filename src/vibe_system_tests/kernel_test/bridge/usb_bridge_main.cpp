@@ -19,10 +19,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "command_channel.hpp"
 #include "firmware_device.hpp"
 #include "image_device.hpp"
 #include "redir_port.hpp"
+#include "unix_socket.hpp"
 
 namespace hardware = vibe::hardware;
 

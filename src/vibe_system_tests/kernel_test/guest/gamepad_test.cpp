@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 #include <linux/input.h>
 
-#include "kernel_events.hpp"
 #include "plugged_device.hpp"
 #include "statistics.hpp"
+#include "usb_nodes.hpp"
 #include "vibe_hardware/gamepad/pad_finder.hpp"
 #include "virtual_pad.hpp"
 

@@ -14,7 +14,6 @@
 #include <map>
 #include <thread>
 
-#include "bridge_commands.hpp"
 #include "plugged_device.hpp"
 #include "ros_graph.hpp"
 #include "statistics.hpp"

@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <random>
 
-#include "bridge_commands.hpp"
 #include "plugged_device.hpp"
 #include "statistics.hpp"
 #include "vibe_firmware/protocol/reports.hpp"

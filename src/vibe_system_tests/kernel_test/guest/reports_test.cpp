@@ -12,7 +12,6 @@
 #include <functional>
 #include <set>
 
-#include "bridge_commands.hpp"
 #include "plugged_device.hpp"
 #include "statistics.hpp"
 #include "vibe_firmware/protocol/reports.hpp"

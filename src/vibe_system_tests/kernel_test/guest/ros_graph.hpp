@@ -1,14 +1,29 @@
 #pragma once
-#include <ros/ros.h>
 
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "child_process.hpp"
+#include <ros/ros.h>
+#include <sys/types.h>
 
 namespace vibe::hardware {
+
+/// A program that runs as long as the object lives.
+class ChildProcess {
+ public:
+  /// @param command  program and arguments  @throws std::runtime_error
+  explicit ChildProcess(const std::vector<std::string>& command);
+  ~ChildProcess();  ///< asks it to end and waits for that
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  bool running() const;
+
+ private:
+  pid_t pid_;
+};
 
 /// The test's place in the guest's ROS graph, whose master scripts/hid_kernel has started. Callbacks come in
 /// waitUntil().

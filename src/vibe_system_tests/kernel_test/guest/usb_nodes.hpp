@@ -1,5 +1,7 @@
 #pragma once
+
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,5 +29,22 @@ bool isKnown(const UsbName& name);
 
 /// Text of a file in /sys without the line end; empty: there is none.
 std::string readAttribute(const std::string& path);
+
+/// What the kernel tells about devices that come and go (netlink, as udev listens to it).
+class KernelEvents {
+ public:
+  KernelEvents();  ///< @throws std::runtime_error
+  ~KernelEvents();
+  KernelEvents(const KernelEvents&) = delete;
+  KernelEvents& operator=(const KernelEvents&) = delete;
+
+  /// Checks the condition now and after every event.
+  /// @param timeout  [s]
+  /// @return whether it became true in time
+  bool waitUntil(const std::function<bool()>& condition, double timeout);
+
+ private:
+  int socket_;
+};
 
 }  // namespace vibe::hardware
