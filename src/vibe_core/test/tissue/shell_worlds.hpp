@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "tissue/element_worlds.hpp"
 #include "tissue/shell.hpp"
+#include "vibe_testing/element_worlds.hpp"
 
 /// Walls and displacements for the tests of shells.
 namespace vibe::test {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "tissue/element_worlds.hpp"
 #include "tissue/tetrahedra.hpp"
+#include "vibe_testing/element_worlds.hpp"
 
 /// Solids and displacements for the tests of tetrahedra.
 namespace vibe::test {
