@@ -29,6 +29,15 @@ refuses() {
   grep -qE -- "$pattern" <<<"$said" || { echo "does not match: $pattern"; return 1; }
 }
 
+# systemTest MODULE OPTION...: a module of vibe_system_tests
+systemTest() (
+  export PYTHONPATH=$root/src/vibe_system_tests/src${PYTHONPATH:+:$PYTHONPATH} PYTHONDONTWRITEBYTECODE=1
+  exec /usr/bin/python3 -P -m "vibe_system_tests.$1" "${@:2}"
+)
+
+# builtSystemTest MODULE OPTION...: the same for one that needs what is built
+builtSystemTest() { (set +u && source "$root/devel/setup.bash" && systemTest "$@"); }
+
 # processesWith NAME=VALUE: the processes that were started with this in their environment.
 processesWith() {
   grep -lzxF -- "$1" /proc/[0-9]*/environ 2>/dev/null | sed -E 's#/proc/([0-9]+)/.*#\1#' || true

@@ -7,7 +7,7 @@ packagesOf() {
     devices) echo vibe_firmware vibe_hardware ;;
     vision) echo vibe_vision ;;
     measurements) echo vibe_latency vibe_benchmarks ;;
-    tests) echo vibe_testing ;;
+    tests) echo vibe_testing vibe_system_tests ;;
     *) return 1 ;;
   esac
 }

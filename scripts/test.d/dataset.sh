@@ -11,7 +11,7 @@ fi
 
 bag=$scratch/session/session.bag
 dataset() { "$root/scripts/dataset" "$bag" --width 160 --height 120 --rate 2 "$@"; }
-checkFiles() { /usr/bin/python3 "$root/scripts/lib/check_dataset.py" "$@"; }
+checkFiles() { systemTest check_dataset "$@"; }
 # refusesNew CODE PATTERN WORDS...: one line on stderr, and no folder is left, neither the new one nor the one around it.
 refusesNew() {
   refuses "$1" "$2" errorsOf "$root/scripts/dataset" "${@:3}" --output "$scratch/new/folder" || return 1

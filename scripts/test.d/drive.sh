@@ -185,7 +185,7 @@ keyboardDrives() {
   until grep -qs '^t =   1[0-9]\.' "$scratch/keyboard.txt" || ! kill -0 "$session_pid" 2>/dev/null; do sleep 0.5; done
   while kill -0 "$session_pid" 2>/dev/null; do
     [ "$SECONDS" -lt "$deadline" ] || { kill -INT "$session_pid"; echo 'the session goes on without rviz'; return 1; }
-    /usr/bin/python3 "$root/scripts/lib/close_window.py" || true
+    systemTest close_window || true
     sleep 2
   done
   wait "$session_pid" || status=$?

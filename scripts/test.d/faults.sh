@@ -13,10 +13,7 @@ for program in vibe_sim/sim_node vibe_hardware/hardware_node vibe_vision/vision_
 done
 unset DISPLAY
 
-faults() {
-  (set +u && source "$root/devel/setup.bash" && PYTHONDONTWRITEBYTECODE=1 exec /usr/bin/python3 \
-    "$root/scripts/lib/faults.py" --workspace "$root" "$@")
-}
+faults() { builtSystemTest faults "$@"; }
 
 # isOk GROUP NAME: the report says so; else the reason, and what was printed meanwhile.
 isOk() {

@@ -6,7 +6,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 references=$root/docs/pictures
 region=860x610+20+70 # where rviz draws: figures in panels and the frame rate change all the time
 states=(rest marked grabbed sutured cinched)
-compare() { /usr/bin/python3 "$root/scripts/lib/compare_pictures.py" --region "$region" "$@"; }
+compare() { systemTest compare_pictures --region "$region" "$@"; }
 fails() {
   local status=0
   "$@" || status=$?

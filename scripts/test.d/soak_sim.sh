@@ -9,8 +9,7 @@ if [ -z "${VIBE_SLOW_TESTS:-}" ] || [ -n "${VIBE_VARIANT:-}" ]; then
 fi
 
 soak() {
-  (set +u && source "$root/devel/setup.bash" && PYTHONDONTWRITEBYTECODE=1 exec /usr/bin/python3 \
-    "$root/scripts/lib/soak_sim.py" --workspace "$root" "$@") >"$scratch/soak.txt" 2>&1 || { cat "$scratch/soak.txt"; return 1; }
+  builtSystemTest soak_sim "$@" >"$scratch/soak.txt" 2>&1 || { cat "$scratch/soak.txt"; return 1; }
 }
 check 'two hours of simulated time, and the memory of the simulator does not grow' soak --minutes 120
 if [ -s "$scratch/soak.txt" ]; then sed 's/^/    /' "$scratch/soak.txt"; fi

@@ -15,4 +15,4 @@ fi
 
 takesTheViews() { "$root/scripts/views" --size 320x240 --truth --output "$scratch"; }
 check 'views: the eight pictures are taken, with their truth' takesTheViews
-/usr/bin/python3 "$root/scripts/lib/check_views.py" "$scratch" || echo 'not ok views: not everything could be measured'
+systemTest check_views "$scratch" || echo 'not ok views: not everything could be measured'

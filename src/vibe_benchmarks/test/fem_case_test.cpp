@@ -3,8 +3,8 @@
 #include <dirent.h>
 
 #include "case_file.hpp"
-#include "scene/expect_error.hpp"
 #include "vibe_core/scene/choices.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::benchmarks::fem_case_test {
 namespace {

@@ -13,6 +13,8 @@
 
 #include "tetrahedra/tetrahedra.hpp"
 #include "tissue/element_worlds.hpp"
+#include "tissue/tetrahedra.hpp"
+#include "vibe_testing/element_worlds.hpp"
 
 /// Solids and displacements for the tests of tetrahedra.
 namespace vibe::benchmarks::test {

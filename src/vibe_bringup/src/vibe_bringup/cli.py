@@ -33,9 +33,9 @@ class Formatter(argparse.RawDescriptionHelpFormatter):
 class Parser(argparse.ArgumentParser):
     """`usage` is what follows the name of the program. Options are added to `options`, and to groups."""
 
-    def __init__(self, name, usage, description, epilog=None):
+    def __init__(self, name, usage, description, epilog=None, package="vibe_bringup"):
         self.name = name
-        prog = "rosrun vibe_bringup " + name
+        prog = "rosrun {} {}".format(package, name)
         if "VIBE_WORKSPACE" in os.environ:
             prog = "scripts/" + name
             description += "\nInstalls and builds first what is missing."

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "allocation_count.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 namespace vibe::background_worker_test {
 namespace {

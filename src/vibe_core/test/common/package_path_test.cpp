@@ -8,8 +8,8 @@
 
 #include "common/own_place.hpp"
 #include "environment_variable.hpp"
-#include "temporary_folder.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_testing/temporary_folder.hpp"
 
 namespace vibe::package_path_test {
 namespace {

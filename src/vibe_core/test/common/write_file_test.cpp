@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "temporary_folder.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
+#include "vibe_testing/temporary_folder.hpp"
 
 namespace vibe::write_file_test {
 namespace {

@@ -11,7 +11,7 @@
 #include "procedure/marking_touch.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::pull_spring_test {
 namespace {

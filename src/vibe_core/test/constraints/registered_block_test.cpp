@@ -8,7 +8,7 @@
 #include "vibe_core/constraints/constraint_registry.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/solver/energy_term.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::registered_block_test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "contact/scope_fixture.hpp"
 #include "contact/tool_jacobian.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::scope_springs_test {
 namespace {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <set>
 
-#include "contact/scope_fixture.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::scope_urdf_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "contact/thin_tool.hpp"
 #include "contact/tool_guard.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::surface_contacts_test {
 namespace {

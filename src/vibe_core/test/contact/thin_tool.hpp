@@ -2,7 +2,7 @@
 #include <regex>
 #include <string>
 
-#include "contact/scope_fixture.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::test {
 

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <random>
 
-#include "contact/scope_fixture.hpp"
+#include "vibe_testing/expect_error.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::tool_builder_test {
 namespace {
@@ -25,7 +26,7 @@ std::string without(std::string text, const std::string& begin, const std::strin
 }
 
 std::string errorOf(const std::string& text) {
-  return messageOf([&] { ToolModel::fromUrdf(text, "scope.urdf"); });
+  return vibe::errorOf([&] { ToolModel::fromUrdf(text, "scope.urdf"); });
 }
 
 int lineOf(const std::string& text, const std::string& what) {
@@ -44,7 +45,7 @@ void expectSentence(const std::string& message) {
 }
 
 TEST(ToolBuilder, AcceptsTheScope) {
-  EXPECT_EQ(errorOf(scopeText()), "");
+  EXPECT_EQ(errorOf(scopeText()), "no error");
 }
 
 struct Bad {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "contact/scope_fixture.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::tool_collision_test {
 namespace {

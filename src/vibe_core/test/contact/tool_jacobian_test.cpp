@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "contact/scope_fixture.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::tool_jacobian_test {
 namespace {

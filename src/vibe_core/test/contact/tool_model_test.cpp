@@ -9,6 +9,8 @@
 
 #include "contact/scope_fixture.hpp"
 #include "contact/tool_motion.hpp"
+#include "vibe_testing/expect_error.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 // counts what is allocated, for the promise that forwardKinematics allocates nothing
 static long allocations = 0;
@@ -136,7 +138,7 @@ TEST(ToolModel, LinksAreNumberedParentFirst) {
     EXPECT_LT(tool.joints()[k].parent_link, k + 1);
   }
   EXPECT_EQ(tool.linkCount(), static_cast<int>(tool.joints().size()) + 1);
-  EXPECT_EQ(messageOf([&] { tool.linkIndex("elbow"); }), "The tool has no link 'elbow'; its URDF must define it.");
+  EXPECT_EQ(errorOf([&] { tool.linkIndex("elbow"); }), "The tool has no link 'elbow'; its URDF must define it.");
 }
 
 TEST(ToolModel, ForwardKinematicsAllocatesNothing) {

@@ -5,8 +5,8 @@
 #include <sstream>
 #include <string>
 
-#include "temporary_folder.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
+#include "vibe_testing/temporary_folder.hpp"
 
 namespace vibe::test {
 

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <functional>
 
-#include "scope_worlds.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::haptic_test {
 namespace {

@@ -6,10 +6,10 @@
 #include <limits>
 #include <vector>
 
-#include "allocation_count.hpp"
 #include "metrics/motions.hpp"
 #include "trainee/minimum_jerk.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 namespace vibe::motion_measures_test {
 namespace {

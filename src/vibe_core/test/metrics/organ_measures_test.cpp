@@ -6,11 +6,11 @@
 #include <chrono>
 #include <limits>
 
-#include "allocation_count.hpp"
 #include "metrics/organs.hpp"
 #include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/common/error.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/allocation_count.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::organ_measures_test {
 namespace {

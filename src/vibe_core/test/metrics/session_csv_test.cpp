@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "vibe_core/common/error.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::session_csv_test {
 namespace {

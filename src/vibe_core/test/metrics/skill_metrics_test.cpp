@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "allocation_count.hpp"
 #include "procedure/procedure_bench.hpp"
 #include "vibe_core/metrics/session_metrics.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 namespace vibe::skill_metrics_test {
 namespace {

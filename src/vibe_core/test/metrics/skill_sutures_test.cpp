@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::skill_sutures_test {
 namespace {

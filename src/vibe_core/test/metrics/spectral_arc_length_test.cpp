@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "allocation_count.hpp"
 #include "metrics/motions.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 namespace vibe::spectral_arc_length_test {
 namespace {

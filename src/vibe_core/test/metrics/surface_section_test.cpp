@@ -7,7 +7,7 @@
 
 #include "geometry/test_surfaces.hpp"
 #include "vibe_core/common/error.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::surface_section_test {
 namespace {

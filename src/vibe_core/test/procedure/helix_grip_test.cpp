@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "vibe_core/common/package_path.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::helix_grip_test {
 namespace {

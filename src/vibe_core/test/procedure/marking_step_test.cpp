@@ -1,6 +1,6 @@
 // Marking in whole steps: pedal, beam, heat, events, and the two ways in which the wall gives way.
 #include <gtest/gtest.h>
-#include "allocation_count.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 #include <algorithm>
 #include <cstdio>

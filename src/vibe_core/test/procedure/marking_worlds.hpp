@@ -3,7 +3,7 @@
 
 #include "vibe_core/thermal/argon_beam.hpp"
 #include "vibe_core/thermal/thermal_dose.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 /// A wall, a beam and a dose in one line, for the tests of marking.
 namespace vibe::test {

@@ -6,8 +6,8 @@
 
 #include "procedure/needle.hpp"
 #include "procedure/procedure.hpp"
-#include "scope_worlds.hpp"
 #include "vibe_core/common/rotation.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::test {
 

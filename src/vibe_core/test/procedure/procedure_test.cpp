@@ -6,10 +6,10 @@
 #include <limits>
 #include <set>
 
-#include "allocation_count.hpp"
 #include "procedure/procedure_bench.hpp"
 #include "vibe_core/common/random.hpp"
 #include "vibe_core/suture/technique.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 namespace vibe::procedure_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "vibe_core/simulation/simulation.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::set_point_test {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/expect_error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::choices_test {
 namespace {

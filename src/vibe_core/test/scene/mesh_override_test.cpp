@@ -2,31 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <string>
 
-#include "scene/expect_error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_testing/expect_error.hpp"
+#include "vibe_testing/temporary_folder.hpp"
 
 namespace vibe::mesh_override_test {
 namespace {
 
 class MeshOverride : public ::testing::Test {
  protected:
-  void SetUp() override {
-    char name[] = "/tmp/mesh_override_XXXXXX";
-    ASSERT_NE(mkdtemp(name), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string write(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
 
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ + "/" + name) << text;
-    return folder_ + "/" + name;
-  }
-
-  std::string folder_;
+  test::TemporaryFolder folder_;
   Scene scene_ = parseScene("name: s\ngeometry: {particles: 900}\ngas: {}\n", "s.yaml");
 };
 
@@ -64,7 +53,7 @@ TEST_F(MeshOverride, SceneTellsWhatTheSidecarDoesNot) {
 }
 
 TEST_F(MeshOverride, SaysExactlyWhatIsMissing) {
-  EXPECT_ERROR(applyMeshOverride(scene_, folder_ + "/none.obj"), "none.obj: there is no such surface file");
+  EXPECT_ERROR(applyMeshOverride(scene_, folder_.path() + "/none.obj"), "none.obj: there is no such surface file");
   const std::string mesh = write("a.stl", "");
   const std::string message = errorOf([&] { applyMeshOverride(scene_, mesh); });
   for (const char* part :
@@ -94,7 +83,7 @@ TEST_F(MeshOverride, TargetVolumeNeedsNoUnit) {
 
 TEST_F(MeshOverride, SidecarIsCheckedLikeAScene) {
   const std::string mesh = write("a.obj", "");
-  const std::string place = folder_ + "/a.obj.landmarks.yaml:";
+  const std::string place = folder_.path() + "/a.obj.landmarks.yaml:";
   write("a.obj.landmarks.yaml", "units: 1 mm\n");
   EXPECT_ERROR(applyMeshOverride(scene_, mesh), place + "1: units: is not a known key; did you mean 'unit'?");
   write("a.obj.landmarks.yaml", "unit: 1 mm\nlandmarks:\n  pilorus: [1, 2, 3]\n");

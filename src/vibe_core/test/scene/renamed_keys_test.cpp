@@ -5,9 +5,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "scene/expect_error.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::renamed_keys_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "scene/expect_error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::scene_parser_test {
 namespace {

@@ -5,11 +5,11 @@
 #include <random>
 #include <sstream>
 
-#include "scene/expect_error.hpp"
 #include "scene/mutation.hpp"
 #include "scene/scene_value.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::scene_property_test {
 namespace {

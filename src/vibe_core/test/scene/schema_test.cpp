@@ -7,10 +7,11 @@
 #include <set>
 #include <sstream>
 
-#include "scene/expect_error.hpp"
 #include "scene/scene_value.hpp"
 #include "scene/schema_text.hpp"
+#include "scene/unit.hpp"
 #include "vibe_core/scene/unit.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe {
 

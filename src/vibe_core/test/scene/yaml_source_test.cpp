@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "scene/expect_error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::yaml_source_test {
 namespace {

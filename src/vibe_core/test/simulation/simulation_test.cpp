@@ -5,10 +5,10 @@
 
 #include <cstdio>
 
-#include "scope_worlds.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 #include "vibe_core/state/state_fields.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::simulation_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scope_worlds.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::tip_motion_test {
 namespace {

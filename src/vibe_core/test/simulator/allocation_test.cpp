@@ -1,11 +1,11 @@
 // A step asks for no memory once a session has settled in: with gas, walls that may meet, a grip and contacts.
-#include "allocation_count.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "scope_worlds.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::allocation_test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "scope_worlds.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::compliant_scope_test {
 namespace {

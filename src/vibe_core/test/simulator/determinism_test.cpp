@@ -8,7 +8,7 @@
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::determinism_test {
 namespace {

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 
-#include "contact/scope_fixture.hpp"
 #include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::energy_test {
 namespace {

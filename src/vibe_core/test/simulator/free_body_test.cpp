@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "vibe_core/model/accounting.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::free_body_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "geometry/lumen.hpp"
 #include "vibe_core/model/accounting.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::gas_test {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <random>
 
-#include "scope_worlds.hpp"
 #include "vibe_core/builder/tissue_registry.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::hard_cases_test {
 namespace {

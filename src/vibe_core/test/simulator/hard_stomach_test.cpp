@@ -4,9 +4,9 @@
 #include <functional>
 #include <random>
 
-#include "contact/scope_fixture.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/scope_fixture.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::hard_stomach_test {
 namespace {

@@ -1,7 +1,7 @@
 // The helix is a corkscrew: turned in the wall that it holds, it goes round and the wall stays.
 #include <gtest/gtest.h>
 
-#include "scope_worlds.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::helix_turn_test {
 namespace {

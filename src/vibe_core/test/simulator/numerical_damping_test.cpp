@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "vibe_core/model/accounting.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::numerical_damping_test {
 namespace {

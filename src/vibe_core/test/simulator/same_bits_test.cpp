@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "scope_worlds.hpp"
 #include "solver/pulled_sheet.hpp"
 #include "vibe_core/common/arithmetic.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::same_bits_test {
 namespace {

@@ -6,7 +6,7 @@
 #include "geometry/lumen.hpp"
 #include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::shell_scene_test {
 namespace {

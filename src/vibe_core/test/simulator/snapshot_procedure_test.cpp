@@ -8,7 +8,7 @@
 
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::snapshot_procedure_test {
 namespace {

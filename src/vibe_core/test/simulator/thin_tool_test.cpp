@@ -7,7 +7,7 @@
 #include "contact/thin_tool.hpp"
 #include "contact/tool_collision.hpp"
 #include "contact/triangle_gap.hpp"
-#include "scope_worlds.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::thin_tool_test {
 namespace {

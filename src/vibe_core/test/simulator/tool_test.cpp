@@ -5,8 +5,8 @@
 
 #include "contact/tool_collision.hpp"
 #include "contact/tool_motion.hpp"
-#include "scope_worlds.hpp"
 #include "vibe_core/model/accounting.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::tool_test {
 namespace {

@@ -7,7 +7,7 @@
 #include "constraints/group_draw.hpp"
 #include "procedure/thread_events.hpp"
 #include "vibe_core/suture/technique.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::test {
 

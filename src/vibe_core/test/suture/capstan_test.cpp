@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "allocation_count.hpp"
 #include "suture/thread_problems.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 namespace vibe::capstan_test {
 namespace {

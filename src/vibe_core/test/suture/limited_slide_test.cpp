@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "allocation_count.hpp"
 #include "suture/thread_problems.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 namespace vibe::limited_slide_test {
 namespace {

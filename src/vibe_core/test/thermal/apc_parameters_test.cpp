@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "scene/expect_error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::apc_parameters_test {
 namespace {

@@ -1,7 +1,7 @@
 #include "vibe_core/thermal/argon_beam.hpp"
 
 #include <gtest/gtest.h>
-#include "allocation_count.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "procedure/marking_worlds.hpp"
-#include "scene/expect_error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::thermal_dose_test {
 namespace {

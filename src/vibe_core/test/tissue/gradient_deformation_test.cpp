@@ -1,7 +1,7 @@
 #include "tissue/gradient_deformation.hpp"
 
 #include <gtest/gtest.h>
-#include "allocation_count.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "geometry/surface_operators.hpp"
-#include "scene/expect_error.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/expect_error.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::gradient_deformation_test {
 namespace {

@@ -1,12 +1,12 @@
 #include "tissue/gradient_touch.hpp"
 
 #include <gtest/gtest.h>
-#include "allocation_count.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::gradient_touch_test {
 namespace {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/expect_error.hpp"
 #include "tissue/material_law.hpp"
 #include "tissue/shell_worlds.hpp"
 #include "vibe_core/scene/choices.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::material_registry_test {
 namespace {

@@ -8,7 +8,7 @@
 #include "tissue/shape_matching_kernel.hpp"
 #include "vibe_core/common/arithmetic.hpp"
 #include "vibe_core/model/accounting.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::shape_matching_test {
 namespace {

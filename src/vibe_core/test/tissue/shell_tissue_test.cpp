@@ -6,7 +6,7 @@
 
 #include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/common/error.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::shell_tissue_test {
 namespace {

@@ -14,8 +14,10 @@
 #include <vector>
 
 #include "tissue/element_worlds.hpp"
+#include "tissue/shell.hpp"
 #include "tissue/shell_kernel.hpp"
 #include "vibe_core/tissue/shell.hpp"
+#include "vibe_testing/element_worlds.hpp"
 
 /// Walls and displacements for the tests of shells.
 namespace vibe::test {

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "scene/expect_error.hpp"
 #include "scene/mutation.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::script_reader_test {
 namespace {

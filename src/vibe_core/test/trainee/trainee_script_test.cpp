@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "scene/expect_error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::trainee_script_test {
 namespace {

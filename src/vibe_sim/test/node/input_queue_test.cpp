@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::sim::input_queue_test {
 namespace {

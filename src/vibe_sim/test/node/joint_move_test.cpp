@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "contact/scope_fixture.hpp"
 #include "input_queue.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::sim::joint_move_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <sensor_msgs/point_cloud2_iterator.h>
 
 #include "conversions.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::sim::particle_cloud_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::sim::procedure_message_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "vibe_core/common/error.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::sim::pull_message_test {
 namespace {

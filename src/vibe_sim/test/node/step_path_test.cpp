@@ -6,11 +6,11 @@
 #include <mutex>
 #include <thread>
 
-#include "allocation_count.hpp"
 #include "input_queue.hpp"
-#include "lock_count.hpp"
-#include "scope_worlds.hpp"
 #include "vibe_core/simulation/simulation.hpp"
+#include "vibe_testing/allocation_count.hpp"
+#include "vibe_testing/lock_count.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::sim::step_path_test {
 namespace {

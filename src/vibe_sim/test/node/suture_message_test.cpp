@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "conversions.hpp"
-#include "worlds.hpp"
+#include "vibe_testing/worlds.hpp"
 
 namespace vibe::sim::suture_message_test {
 namespace {

@@ -9,16 +9,20 @@ from .wait import PATIENCE, wait_until
 
 
 class Recorder:
-    """Everything that arrives on a topic since the last clear(), in order, with the time of arrival."""
+    """Everything that arrives on a topic since the last clear(), in order, with the time of arrival on `clock`."""
+
+    clock = staticmethod(time.time)
 
     def __init__(self, topic, message_type):
         self._arrivals = []
         self._lock = threading.Lock()
-        self.subscriber = rospy.Subscriber(topic, message_type, self._append, queue_size=None, tcp_nodelay=True)
+        self.subscriber = rospy.Subscriber(topic, message_type, self.take, queue_size=None, tcp_nodelay=True)
 
-    def _append(self, message):
+    def take(self, message):
+        """The callback of the topic."""
+        now = self.clock()
         with self._lock:
-            self._arrivals.append((time.time(), message))
+            self._arrivals.append((now, message))
 
     @property
     def arrivals(self):
@@ -29,6 +33,11 @@ class Recorder:
     @property
     def messages(self):
         return [message for _, message in self.arrivals]
+
+    def newest(self):
+        """The last message, or None."""
+        with self._lock:
+            return self._arrivals[-1][1] if self._arrivals else None
 
     def stamps(self):
         """Of the messages [ns]."""

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "calibrate/student_t.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::axis_fit_test {
 namespace {
@@ -41,16 +41,6 @@ std::vector<AxisStop> stopsOf(const SlideAxis& axis, std::size_t count, double a
 
 double angleOf(const SlideAxis& axis) {
   return std::atan2(axis.direction.y(), axis.direction.x());
-}
-
-template <class Function>
-std::string errorOf(const Function& function) {
-  try {
-    function();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(StudentT, TailsAreThoseOfTables) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "calibrate/rendered_board.hpp"
-#include "vibe_core/common/error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::lens_calibration_test {
 namespace {
@@ -58,16 +58,6 @@ double largestDifference(const CameraModel& a, const CameraModel& b) {
 bool anyContains(const std::vector<std::string>& sentences, const std::string& part) {
   return std::any_of(sentences.begin(), sentences.end(),
                      [&](const std::string& sentence) { return sentence.find(part) != std::string::npos; });
-}
-
-template <class Function>
-std::string errorOf(const Function& function) {
-  try {
-    function();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(FindBoard, CornersOfARenderedBoardAreWherePixelCentresAreIntegers) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "vibe_core/common/error.hpp"
+#include "vibe_testing/expect_error.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
 
@@ -99,16 +99,6 @@ TEST(MarkerLocator, TheSizeOfTheMarkerGivesTheScale) {
     EXPECT_NEAR(fit.axis.pixels_per_metre, 9400, 3 * fit.scale_uncertainty * 9400) << instrument;
     EXPECT_NEAR(fit.axis.pixels_per_metre, 9400, 0.01 * 9400) << instrument;
   }
-}
-
-template <class Function>
-std::string errorOf(const Function& function) {
-  try {
-    function();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(MarkerLocator, AMarkerThatIsNotThereIsSaid) {

@@ -3,17 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::stop_list_test {
 namespace {
 
 std::string errorOf(const std::string& text) {
-  try {
-    parseStopList(text, "folder/stops.csv");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return vibe::errorOf([&] { parseStopList(text, "folder/stops.csv"); });
 }
 
 TEST(StopList, ImagesAndSlidesAreRead) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_testing/expect_error.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
 namespace vibe::vision::vision_config_test {
@@ -42,12 +43,7 @@ std::string with(const std::string& part, const std::string& other) {
 }
 
 std::string errorOf(const std::string& text) {
-  try {
-    VisionConfig::parse(text, "rig.yaml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return vibe::errorOf([&] { VisionConfig::parse(text, "rig.yaml"); });
 }
 
 TEST(VisionConfig, UnitsAreConverted) {

@@ -1,19 +1,10 @@
 #include "program_options.hpp"
 
 #include <gtest/gtest.h>
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::program_options_test {
 namespace {
-
-template <class Function>
-std::string errorOf(const Function& function) {
-  try {
-    function();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(ProgramOptions, LengthsHaveUnitsOrAreInMetres) {
   EXPECT_DOUBLE_EQ(lengthOption("--square", "5mm"), 5e-3);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::marker_sheet_test {
 namespace {
@@ -37,12 +38,7 @@ std::string contentOf(const std::string& file) {
 }
 
 std::string errorOf(const VisionConfig& config, const SheetOptions& options) {
-  try {
-    MarkerSheet(config, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return vibe::errorOf([&] { MarkerSheet(config, options); });
 }
 
 /// Looks a page up in metres.

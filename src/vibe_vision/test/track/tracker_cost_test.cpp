@@ -1,5 +1,5 @@
 // A tracked frame asks for no memory, and its cost does not depend on the sensor.
-#include "../../vibe_core/test/allocation_count.hpp"
+#include "vibe_testing/allocation_count.hpp"
 
 #include <gtest/gtest.h>
 
