@@ -1,4 +1,4 @@
-#include "conversions.hpp"
+#include "conversions/conversions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Goals of messages have the ranges, defaults and sentences of protocols.
-#include "goal_message.hpp"
+#include "conversions/goal_message.hpp"
 
 #include <gtest/gtest.h>
 

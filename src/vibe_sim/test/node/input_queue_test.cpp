@@ -1,4 +1,4 @@
-#include "input_queue.hpp"
+#include "input/input_queue.hpp"
 
 #include <gtest/gtest.h>
 

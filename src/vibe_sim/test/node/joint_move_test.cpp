@@ -1,11 +1,11 @@
-#include "joint_move.hpp"
+#include "input/input_interpreter.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "contact/scope_fixture.hpp"
-#include "input_queue.hpp"
+#include "input/input_queue.hpp"
 #include "vibe_core/model/model.hpp"
 
 namespace vibe::sim::joint_move_test {

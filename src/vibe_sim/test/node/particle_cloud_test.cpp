@@ -1,9 +1,9 @@
-#include "particle_cloud.hpp"
+#include "conversions/tissue_message.hpp"
 
 #include <gtest/gtest.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 
-#include "conversions.hpp"
+#include "conversions/conversions.hpp"
 #include "worlds.hpp"
 
 namespace vibe::sim::particle_cloud_test {

@@ -1,4 +1,4 @@
-#include "procedure_message.hpp"
+#include "conversions/procedure_message.hpp"
 
 #include <gtest/gtest.h>
 

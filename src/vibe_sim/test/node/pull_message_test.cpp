@@ -1,4 +1,4 @@
-#include "pull_message.hpp"
+#include "conversions/input_message.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Recordings read back from bags: of this release, of an older one, and what cannot be repeated.
-#include "recording.hpp"
+#include "recording/recording.hpp"
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
@@ -13,7 +13,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "conversions.hpp"
+#include "conversions/conversions.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 

@@ -1,5 +1,5 @@
 // A session recorded without a graph, repeated, edited, filled up again, and begun from its snapshots.
-#include "replay.hpp"
+#include "replay/replay.hpp"
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
@@ -15,10 +15,10 @@
 #include <limits>
 #include <map>
 
-#include "bag_filler.hpp"
-#include "publishers.hpp"
-#include "recording_rules.hpp"
-#include "scene_source.hpp"
+#include "publishing/publishers.hpp"
+#include "recording/recording.hpp"
+#include "replay/bag_filler.hpp"
+#include "simulation/scene_source.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 

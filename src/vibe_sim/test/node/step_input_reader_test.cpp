@@ -1,5 +1,5 @@
 // Recorded inputs of this and of older releases, from the bytes and the definition in a bag.
-#include "step_input_reader.hpp"
+#include "recording/step_input_reader.hpp"
 
 #include <gtest/gtest.h>
 #include <vibe_msgs/StepInput.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "conversions.hpp"
+#include "conversions/conversions.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 

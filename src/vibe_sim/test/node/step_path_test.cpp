@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "allocation_count.hpp"
-#include "input_queue.hpp"
+#include "input/input_queue.hpp"
 #include "lock_count.hpp"
 #include "scope_worlds.hpp"
 #include "vibe_core/simulation/simulation.hpp"

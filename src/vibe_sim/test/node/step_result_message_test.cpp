@@ -1,9 +1,9 @@
 // What a node perceives from messages has the bits of what a program without ROS perceives.
-#include "step_result_message.hpp"
+#include "conversions/session_message.hpp"
 
 #include <gtest/gtest.h>
 
-#include "particle_cloud.hpp"
+#include "conversions/tissue_message.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/simulation/simulation.hpp"

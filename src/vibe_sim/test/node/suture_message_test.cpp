@@ -1,10 +1,10 @@
-#include "suture_message.hpp"
+#include "conversions/suture_message.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "conversions.hpp"
+#include "conversions/conversions.hpp"
 #include "worlds.hpp"
 
 namespace vibe::sim::suture_message_test {
