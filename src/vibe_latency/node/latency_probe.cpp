@@ -9,6 +9,21 @@
 #include "vibe_node/wall_clock.hpp"
 
 namespace vibe::latency {
+namespace {
+
+constexpr std::uint32_t kQueue = 10000;
+
+std::int64_t ns(const ros::Time& time) {
+  return static_cast<std::int64_t>(time.toNSec());
+}
+
+std::size_t indexOf(const std::string& joint) {
+  const auto found = std::find(kJointNames.begin(), kJointNames.end(), joint);
+  if (found == kJointNames.end()) throw Error("Parameter ~joint is '" + joint + "'; set it to a joint of the scope.");
+  return static_cast<std::size_t>(found - kJointNames.begin());
+}
+
+}  // namespace
 
 EventTable::EventTable(const std::string& file, const std::string& columns) : file_(file), out_(file) {
   out_ << columns << '\n' << std::setprecision(17) << std::flush;
@@ -42,22 +57,6 @@ void EventTable::flush() {
 void EventTable::check() {
   if (!out_) throw Error("Cannot write to '" + file_ + "'; check the folder and whether the disk is full.");
 }
-
-namespace {
-
-constexpr std::uint32_t kQueue = 10000;
-
-std::int64_t ns(const ros::Time& time) {
-  return static_cast<std::int64_t>(time.toNSec());
-}
-
-std::size_t indexOf(const std::string& joint) {
-  const auto found = std::find(kJointNames.begin(), kJointNames.end(), joint);
-  if (found == kJointNames.end()) throw Error("Parameter ~joint is '" + joint + "'; set it to a joint of the scope.");
-  return static_cast<std::size_t>(found - kJointNames.begin());
-}
-
-}  // namespace
 
 ProbeParameters readProbeParameters(const ros::NodeHandle& private_handle) {
   node::ParameterReader reader(private_handle);

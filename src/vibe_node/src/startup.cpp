@@ -18,26 +18,6 @@
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::node {
-
-bool waitForMaster(double patience, const std::function<bool()>& stopped) {
-  const ros::WallTime begin = ros::WallTime::now();
-  bool told = false;
-  while (!ros::master::check()) {
-    if (stopped && stopped()) return false;
-    if ((ros::WallTime::now() - begin).toSec() > patience)
-      throw Error("No ROS master answers at " + ros::master::getURI() + "; start roscore, or set ROS_MASTER_URI.");
-    if (!told) std::fprintf(stderr, "Waiting for a ROS master at %s ...\n", ros::master::getURI().c_str());
-    told = true;
-    ros::WallDuration(0.1).sleep();
-  }
-  return true;
-}
-
-bool asksForHelp(int argc, const char* const* argv) {
-  return std::any_of(argv + 1, argv + argc,
-                     [](const char* word) { return std::string(word) == "--help" || std::string(word) == "-h"; });
-}
-
 namespace {
 
 // Limits of a user are raised in limits.conf(5).
@@ -59,6 +39,25 @@ std::string refusal(int error, int priority) {
 }
 
 }  // namespace
+
+bool waitForMaster(double patience, const std::function<bool()>& stopped) {
+  const ros::WallTime begin = ros::WallTime::now();
+  bool told = false;
+  while (!ros::master::check()) {
+    if (stopped && stopped()) return false;
+    if ((ros::WallTime::now() - begin).toSec() > patience)
+      throw Error("No ROS master answers at " + ros::master::getURI() + "; start roscore, or set ROS_MASTER_URI.");
+    if (!told) std::fprintf(stderr, "Waiting for a ROS master at %s ...\n", ros::master::getURI().c_str());
+    told = true;
+    ros::WallDuration(0.1).sleep();
+  }
+  return true;
+}
+
+bool asksForHelp(int argc, const char* const* argv) {
+  return std::any_of(argv + 1, argv + argc,
+                     [](const char* word) { return std::string(word) == "--help" || std::string(word) == "-h"; });
+}
 
 std::string takeRealtimePriority(int priority) {
   const int error = setPriority(0, priority);

@@ -12,6 +12,28 @@ namespace vibe::sim {
 
 namespace {
 
+// The numbers on the wire are those of the library.
+using Wire = vibe_msgs::ProcedureEvent;
+static_assert(
+    same(Event::Kind::Grab, Wire::GRAB) && same(Event::Kind::GrabMissed, Wire::GRAB_MISSED) &&
+    same(Event::Kind::Release, Wire::RELEASE) && same(Event::Kind::Slip, Wire::SLIP) &&
+    same(Event::Kind::ContactBegin, Wire::CONTACT_BEGIN) && same(Event::Kind::ContactEnd, Wire::CONTACT_END) &&
+    same(Event::Kind::PressureReached, Wire::PRESSURE_REACHED) && same(Event::Kind::Warning, Wire::WARNING) &&
+    same(Event::Kind::Recovery, Wire::RECOVERY) && same(Event::Kind::Rejected, Wire::REJECTED) &&
+    same(Event::Kind::Mark, Wire::MARK) && same(Event::Kind::Burn, Wire::BURN) &&
+    same(Event::Kind::DeepBurn, Wire::DEEP_BURN) && same(Event::Kind::HelixTurned, Wire::HELIX_TURNED) &&
+    same(Event::Kind::Bite, Wire::BITE) && same(Event::Kind::BiteMissed, Wire::BITE_MISSED) &&
+    same(Event::Kind::BiteWithdrawn, Wire::BITE_WITHDRAWN) &&
+    same(Event::Kind::NeedleExchanged, Wire::NEEDLE_EXCHANGED) &&
+    same(Event::Kind::BleedingMild, Wire::BLEEDING_MILD) && same(Event::Kind::BleedingBrisk, Wire::BLEEDING_BRISK) &&
+    same(Event::Kind::BleedingStopped, Wire::BLEEDING_STOPPED) &&
+    same(Event::Kind::BleedingOverdue, Wire::BLEEDING_OVERDUE) &&
+    same(Event::Kind::TechniqueFound, Wire::TECHNIQUE_FOUND) && same(Event::Kind::TTagDropped, Wire::T_TAG_DROPPED) &&
+    same(Event::Kind::CinchPulling, Wire::CINCH_PULLING) && same(Event::Kind::Cinched, Wire::CINCHED) &&
+    same(Event::Kind::CinchLoose, Wire::CINCH_LOOSE) && same(Event::Kind::TearOut, Wire::TEAR_OUT) &&
+    same(Event::Kind::ThreadBroke, Wire::THREAD_BROKE) && same(Event::Kind::PhaseChanged, Wire::PHASE_CHANGED) &&
+    same(Event::Kind::Pierced, Wire::PIERCED) && same(Event::Kind::ArmClosed, Wire::ARM_CLOSED));
+
 /// Particles whose grade is this or worse.
 std::uint32_t countGrades(const std::vector<std::uint8_t>& grades, BurnGrade min) {
   const auto reached = [min](std::uint8_t grade) { return grade >= static_cast<std::uint8_t>(min); };
@@ -147,28 +169,52 @@ void addSkill(const SkillMetrics& skill, vibe_msgs::SkillMetrics& message) {
 
 }  // namespace
 
-vibe_msgs::ProcedureState makeProcedureState(const Session& session, const RunStatus& status) {
-  vibe_msgs::ProcedureState message;
-  message.header.stamp = toRosTime(session.now());
-  message.scene = session.model->scene.name;
-  message.seed = session.state.seed;
-  message.step = static_cast<std::uint64_t>(session.state.step);
-  message.step_period = session.time.period();
-  message.time = session.state.time;
-  message.origin = toRosTime(session.time.origin());
-  message.paused = status.paused;
-  message.tool_state = toolStateOf(session.state, session.input);
-  message.held_particles = static_cast<std::uint32_t>(session.state.grip.size());
-  message.volume = session.state.volume;
-  message.pressure = session.state.pressure;
-  addProcedure(session.state.procedure, session.model->scene, message);
+vibe_msgs::ProcedureEvent makeEvent(const Event& event, std::int64_t stamp) {
+  vibe_msgs::ProcedureEvent message;
+  message.header.stamp = toRosTime(stamp);
+  message.kind = static_cast<std::uint8_t>(event.kind);
+  message.particle = event.particle;
+  message.value = event.value;
+  message.text = describe(event);
   return message;
 }
 
-vibe_msgs::SkillMetrics makeSkillMetrics(const Session& session) {
-  const SessionMetrics& metrics = session.metrics();
+vibe_msgs::ProcedureEvent makeWarning(const std::string& text, std::int64_t stamp) {
+  Event event;
+  event.kind = Event::Kind::Warning;
+  vibe_msgs::ProcedureEvent message = makeEvent(event, stamp);
+  message.text = text;
+  return message;
+}
+
+const char* toolStateOf(const State& state, const StepInput& input) {
+  if (!state.grip.empty()) return "grip";
+  if (input.buttons[Insufflate] && !state.pressure_reached) return "insufflation";
+  return state.in_contact ? "contact" : "free";
+}
+
+vibe_msgs::ProcedureState makeProcedureState(const TimedSimulation& simulation, const RunStatus& status) {
+  vibe_msgs::ProcedureState message;
+  message.header.stamp = toRosTime(simulation.now());
+  message.scene = simulation.model().scene.name;
+  message.seed = simulation.state().seed;
+  message.step = static_cast<std::uint64_t>(simulation.state().step);
+  message.step_period = simulation.time().period();
+  message.time = simulation.state().time;
+  message.origin = toRosTime(simulation.time().origin());
+  message.paused = status.paused;
+  message.tool_state = toolStateOf(simulation.state(), simulation.input());
+  message.held_particles = static_cast<std::uint32_t>(simulation.state().grip.size());
+  message.volume = simulation.state().volume;
+  message.pressure = simulation.state().pressure;
+  addProcedure(simulation.state().procedure, simulation.model().scene, message);
+  return message;
+}
+
+vibe_msgs::SkillMetrics makeSkillMetrics(const TimedSimulation& simulation) {
+  const SessionMetrics& metrics = simulation.metrics();
   vibe_msgs::SkillMetrics message;
-  message.header.stamp = toRosTime(session.now());
+  message.header.stamp = toRosTime(simulation.now());
   message.time = metrics.time;
   message.contact_time = metrics.contact_time;
   message.grip_time = metrics.grip_time;
@@ -186,10 +232,10 @@ vibe_msgs::SkillMetrics makeSkillMetrics(const Session& session) {
   return message;
 }
 
-std::string kindOf(const Session& session, const RunStatus& status) {
-  return session.model->scene.name + '|' + toolStateOf(session.state, session.input) + '|' +
-         std::to_string(session.state.grip.size()) + (status.paused ? "|paused|" : "|") +
-         std::to_string(countWithoutContact(session.metrics().events));
+std::string kindOf(const TimedSimulation& simulation, const RunStatus& status) {
+  return simulation.model().scene.name + '|' + toolStateOf(simulation.state(), simulation.input()) + '|' +
+         std::to_string(simulation.state().grip.size()) + (status.paused ? "|paused|" : "|") +
+         std::to_string(countWithoutContact(simulation.metrics().events));
 }
 
 }  // namespace vibe::sim

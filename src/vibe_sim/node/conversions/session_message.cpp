@@ -2,51 +2,20 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <string>
 
 #include "conversions/conversions.hpp"
+#include "conversions/procedure_message.hpp"
+#include "conversions/tool_message.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/machine_info.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
 namespace vibe::sim {
-
-vibe_msgs::SessionInfo makeSessionInfo(const Session& session) {
-  const Model& model = *session.model;
-  const MachineInfo machine = machineInfo();
-  vibe_msgs::SessionInfo message;
-  message.header.stamp = toRosTime(session.now());
-  message.run = session.run;
-  message.revision = session.revision;
-  message.version = machine.version;
-  message.state_version = kStateVersion;
-  message.compiler = machine.compiler;
-  message.c_library = machine.c_library;
-  message.os = machine.os;
-  message.processor = machine.processor;
-  message.cores = static_cast<std::uint32_t>(machine.cores);
-  message.instruction_set = machine.instruction_set;
-  message.arithmetic = machine.arithmetic;
-  message.urdf = session.urdf;
-  message.urdf_hash = hash(message.urdf);
-  message.scene = makeSceneText(model.scene, session.seed).data;
-  message.scene_hash = hash(message.scene);
-  message.model_hash = modelFingerprint(model);
-  return message;
-}
-
-vibe_msgs::StateSnapshot makeStateSnapshot(const Session& session) {
-  vibe_msgs::StateSnapshot message;
-  message.header.stamp = toRosTime(session.now());
-  message.run = session.run;
-  message.step = static_cast<std::uint64_t>(session.state.step);
-  const std::string bytes = encodeSnapshot(*session.model, session.state);
-  message.data.assign(bytes.begin(), bytes.end());
-  return message;
-}
-
 namespace {
 
 geometry_msgs::Pose toPose(const Eigen::Vector3d& position, const Eigen::Quaterniond& turn) {
@@ -57,11 +26,11 @@ geometry_msgs::Pose toPose(const Eigen::Vector3d& position, const Eigen::Quatern
   return pose;
 }
 
-void addTool(const Observation& seen, const Session& session, vibe_msgs::StepResult& message) {
+void addTool(const Observation& seen, const TimedSimulation& simulation, vibe_msgs::StepResult& message) {
   std::copy(seen.joints.begin(), seen.joints.end(), message.joints.begin());
   message.tip = toPose(seen.tip, seen.tip_turn);
   message.helix = toPose(seen.helix, seen.tip_turn);
-  message.wrench = makeWrench(session.state, 0).wrench;
+  message.wrench = makeWrench(simulation.state(), 0).wrench;
 }
 
 void addSituation(const Observation& seen, const State& state, vibe_msgs::StepResult& message) {
@@ -87,19 +56,71 @@ std::size_t offsetOf(const std::string& name, const sensor_msgs::PointCloud2& cl
 
 }  // namespace
 
-vibe_msgs::StepResult makeStepResult(const Session& session, bool whole) {
-  const Observation seen = observe(session.simulation);
+std_msgs::String makeSceneText(const Scene& scene, std::uint64_t seed) {
+  Scene whole = scene;
+  whole.seed = seed;
+  if (!whole.geometry.file.empty()) whole.geometry.file = std::filesystem::absolute(whole.geometry.file).string();
+  std_msgs::String text;
+  text.data = toYaml(whole);
+  return text;
+}
+
+vibe_msgs::StageTime makeStageTime(const std::string& name, const DurationHistogram& durations) {
+  vibe_msgs::StageTime message;
+  message.name = name;
+  message.p50 = 1e3 * durations.quantile(0.5);
+  message.p99 = 1e3 * durations.quantile(0.99);
+  message.max = 1e3 * durations.max();
+  return message;
+}
+
+vibe_msgs::SessionInfo makeSessionInfo(const TimedSimulation& simulation) {
+  const Model& model = simulation.model();
+  const MachineInfo machine = machineInfo();
+  vibe_msgs::SessionInfo message;
+  message.header.stamp = toRosTime(simulation.now());
+  message.run = simulation.run();
+  message.revision = simulation.revision();
+  message.version = machine.version;
+  message.state_version = kStateVersion;
+  message.compiler = machine.compiler;
+  message.c_library = machine.c_library;
+  message.os = machine.os;
+  message.processor = machine.processor;
+  message.cores = static_cast<std::uint32_t>(machine.cores);
+  message.instruction_set = machine.instruction_set;
+  message.arithmetic = machine.arithmetic;
+  message.urdf = simulation.urdf();
+  message.urdf_hash = hash(message.urdf);
+  message.scene = makeSceneText(model.scene, simulation.seed()).data;
+  message.scene_hash = hash(message.scene);
+  message.model_hash = modelFingerprint(model);
+  return message;
+}
+
+vibe_msgs::StateSnapshot makeStateSnapshot(const TimedSimulation& simulation) {
+  vibe_msgs::StateSnapshot message;
+  message.header.stamp = toRosTime(simulation.now());
+  message.run = simulation.run();
+  message.step = static_cast<std::uint64_t>(simulation.state().step);
+  const std::string bytes = encodeSnapshot(simulation.model(), simulation.state());
+  message.data.assign(bytes.begin(), bytes.end());
+  return message;
+}
+
+vibe_msgs::StepResult makeStepResult(const TimedSimulation& simulation, bool whole) {
+  const Observation seen = observe(simulation.simulation());
   vibe_msgs::StepResult message;
-  message.header.stamp = toRosTime(session.now());
+  message.header.stamp = toRosTime(simulation.now());
   message.header.frame_id = kWorldFrame;
   message.step = static_cast<std::uint64_t>(seen.step);
   message.time = seen.time;
-  message.revision = session.revision;
+  message.revision = simulation.revision();
   message.has_particles = whole || !seen.wall.empty();
-  addTool(seen, session, message);
-  addSituation(seen, session.state, message);
-  for (const Event& event : session.events)
-    if (event.kind != Event::Kind::Warning) message.events.push_back(makeEvent(event, session.now()));
+  addTool(seen, simulation, message);
+  addSituation(seen, simulation.state(), message);
+  for (const Event& event : simulation.events())
+    if (event.kind != Event::Kind::Warning) message.events.push_back(makeEvent(event, simulation.now()));
   return message;
 }
 

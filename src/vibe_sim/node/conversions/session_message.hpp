@@ -1,9 +1,12 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <sensor_msgs/PointCloud2.h>
+#include <std_msgs/String.h>
 #include <vibe_msgs/SessionInfo.h>
+#include <vibe_msgs/StageTime.h>
 #include <vibe_msgs/StateSnapshot.h>
 #include <vibe_msgs/StepResult.h>
 
@@ -12,13 +15,19 @@
 
 namespace vibe::sim {
 
-/// What a session was made with.
-vibe_msgs::SessionInfo makeSessionInfo(const Session& session);
+/// The scene as a scene file that builds the same model anywhere: absolute paths, the seed in use.
+std_msgs::String makeSceneText(const Scene& scene, std::uint64_t seed);
 
-vibe_msgs::StateSnapshot makeStateSnapshot(const Session& session);
+/// Durations in ms.
+vibe_msgs::StageTime makeStageTime(const std::string& name, const DurationHistogram& durations);
+
+/// What a session was made with.
+vibe_msgs::SessionInfo makeSessionInfo(const TimedSimulation& simulation);
+
+vibe_msgs::StateSnapshot makeStateSnapshot(const TimedSimulation& simulation);
 
 /// @param whole  the state is the first of a session or a new one, so that its particles are published in any case
-vibe_msgs::StepResult makeStepResult(const Session& session, bool whole);
+vibe_msgs::StepResult makeStepResult(const TimedSimulation& simulation, bool whole);
 
 /// What a trainee perceives, without the wall: the bits of observe().
 Observation readStepResult(const vibe_msgs::StepResult& message);

@@ -27,14 +27,6 @@ static_assert(same(Technique::Other, WireSuture::TECHNIQUE_OTHER) && same(Techni
               same(Technique::Running, WireSuture::TECHNIQUE_RUNNING) && same(Technique::C, WireSuture::TECHNIQUE_C));
 static_assert(kTechniqueCount == 7);
 
-geometry_msgs::Point toPoint(const Eigen::Vector3d& v) {
-  geometry_msgs::Point point;
-  point.x = v.x();
-  point.y = v.y();
-  point.z = v.z();
-  return point;
-}
-
 int heaviest(const Bite& bite) {
   const auto max = std::max_element(bite.weight.begin(), bite.weight.end());
   return max == bite.weight.end() ? -1 : bite.particle[static_cast<std::size_t>(max - bite.weight.begin())];
@@ -42,7 +34,7 @@ int heaviest(const Bite& bite) {
 
 vibe_msgs::Bite makeBite(const Bite& bite, const State& state) {
   vibe_msgs::Bite message;
-  message.position = toPoint(bitePosition(bite, state.x, state.y, state.z));
+  message.position = toMessage<geometry_msgs::Point>(bitePosition(bite, state.x, state.y, state.z));
   message.time = bite.time;
   message.depth = bite.depth;
   message.thickness = bite.thickness;
@@ -61,7 +53,8 @@ void addSlack(const Eigen::Vector3d& first, const Eigen::Vector3d& last, double 
   if (!drawable || length <= (last - first).norm()) return;
   const Eigen::Vector3d gravity = scene.gravity ? scene.gravity->acceleration : Eigen::Vector3d::Zero();
   const Catenary shape = hang(first, last, length, polypropylene20().weightPerLength(gravity.norm()), gravity);
-  for (int k = 1; k < kSlackPieces; ++k) thread.push_back(toPoint(shape.point(length * k / kSlackPieces)));
+  for (int k = 1; k < kSlackPieces; ++k)
+    thread.push_back(toMessage<geometry_msgs::Point>(shape.point(length * k / kSlackPieces)));
 }
 
 void addThread(const Suture& suture, const Scene& scene, vibe_msgs::Suture& message) {
@@ -95,7 +88,7 @@ void addTechnique(const Suture& suture, vibe_msgs::Suture& message) {
   }
   message.technique_margin = suture.technique_margin;
   std::copy(suture.transitions.begin(), suture.transitions.end(), message.transitions.begin());
-  for (const Eigen::Vector3d& place : suture.taken) message.taken.push_back(toPoint(place));
+  for (const Eigen::Vector3d& place : suture.taken) message.taken.push_back(toMessage<geometry_msgs::Point>(place));
 }
 
 vibe_msgs::Suture makeSuture(const Suture& suture, const Scene& scene, const State& state) {
@@ -123,7 +116,7 @@ vibe_msgs::Bleeding makeBleeding(const Bleeding& bleeding, const State& state) {
   message.bite = bleeding.bite;
   if (bleeding.particle >= 0) {
     const auto p = static_cast<std::size_t>(bleeding.particle);
-    message.position = toPoint({state.x[p], state.y[p], state.z[p]});
+    message.position = toMessage<geometry_msgs::Point>({state.x[p], state.y[p], state.z[p]});
   }
   message.brisk = bleeding.brisk;
   message.begin = bleeding.begin;

@@ -9,6 +9,18 @@ namespace vibe::sim {
 
 namespace {
 
+// The numbers on the wire are those of the library.
+using Anatomy = vibe_msgs::TissueTopology;
+static_assert(same(Region::Cardia, Anatomy::REGION_CARDIA) && same(Region::Fundus, Anatomy::REGION_FUNDUS) &&
+              same(Region::Body, Anatomy::REGION_BODY) && same(Region::Antrum, Anatomy::REGION_ANTRUM) &&
+              same(Region::Pylorus, Anatomy::REGION_PYLORUS));
+static_assert(same(Wall::Anterior, Anatomy::WALL_ANTERIOR) &&
+              same(Wall::GreaterCurvature, Anatomy::WALL_GREATER_CURVATURE) &&
+              same(Wall::Posterior, Anatomy::WALL_POSTERIOR) &&
+              same(Wall::LesserCurvature, Anatomy::WALL_LESSER_CURVATURE));
+static_assert(same(End::None, Anatomy::END_NONE) && same(End::Oesophagus, Anatomy::END_OESOPHAGUS) &&
+              same(End::Duodenum, Anatomy::END_DUODENUM));
+
 /// One point on the wire.
 struct Point {
   float x, y, z;
@@ -31,6 +43,22 @@ sensor_msgs::PointField field(const std::string& name, std::size_t offset, std::
   result.datatype = type;
   result.count = 1;
   return result;
+}
+
+template <typename Enum>
+std::vector<std::uint8_t> toBytes(const std::vector<Enum>& values) {
+  std::vector<std::uint8_t> bytes(values.size());
+  std::transform(values.begin(), values.end(), bytes.begin(), [](Enum v) { return static_cast<std::uint8_t>(v); });
+  return bytes;
+}
+
+std::vector<std::uint32_t> flatten(const std::vector<std::array<int, 3>>& triangles) {
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(3 * triangles.size());
+  for (const auto& triangle : triangles) {
+    for (int corner : triangle) numbers.push_back(static_cast<std::uint32_t>(corner));
+  }
+  return numbers;
 }
 
 }  // namespace
@@ -85,6 +113,27 @@ void ParticleCloud::updateMarks(const ProcedureState& procedure) {
     point[offsetof(Point, grade)] = procedure.grade[i];
     std::memcpy(point + offsetof(Point, thermal_dose), &procedure.dose[i], sizeof(float));
   }
+}
+
+vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revision, std::int64_t stamp) {
+  vibe_msgs::TissueTopology message;
+  message.header.stamp = toRosTime(stamp);
+  message.header.frame_id = kTissueFrame;
+  message.revision = revision;
+  message.name = model.scene.name;
+  message.triangles = flatten(model.organ.surface.triangles);
+  for (const Eigen::Vector3d& vertex : model.organ.surface.vertices) {
+    message.rest_positions.insert(message.rest_positions.end(), vertex.data(), vertex.data() + 3);
+  }
+  message.region = toBytes(model.organ.region);
+  message.wall = toBytes(model.organ.wall);
+  message.end = toBytes(model.organ.end);
+  for (double thickness : model.organ.thickness) message.thickness.push_back(static_cast<float>(thickness));
+  message.render_triangles = flatten(model.render_surface.triangles);
+  message.render_offsets.assign(model.render_surface.offsets.begin(), model.render_surface.offsets.end());
+  message.render_particles.assign(model.render_surface.particles.begin(), model.render_surface.particles.end());
+  message.render_weights = model.render_surface.weights;
+  return message;
 }
 
 }  // namespace vibe::sim

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <sensor_msgs/PointCloud2.h>
+#include <vibe_msgs/TissueTopology.h>
 
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
@@ -31,5 +32,8 @@ class ParticleCloud {
 
   void updateMarks(const ProcedureState& procedure);
 };
+
+/// Triangles, rest shape and anatomy of the organ, and the surface to draw.
+vibe_msgs::TissueTopology makeTopology(const Model& model, std::uint32_t revision, std::int64_t stamp);
 
 }  // namespace vibe::sim

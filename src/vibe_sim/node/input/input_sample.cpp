@@ -4,6 +4,20 @@
 
 namespace vibe::sim {
 
+const char* toString(InputChannel channel) {
+  switch (channel) {
+    case InputChannel::Scope:
+      return "scope/measured_js";
+    case InputChannel::Overstitch:
+      return "overstitch/measured_js";
+    case InputChannel::Buttons:
+      return "scope/buttons";
+    case InputChannel::Pull:
+      return "tissue/pull";
+  }
+  return "";
+}
+
 std::string faultOf(std::int64_t stamp, std::int64_t now, const InputWindow& window) {
   if (stamp == 0) return "";
   const bool early = stamp - now > window.look_ahead;

@@ -1,9 +1,37 @@
 #pragma once
-
+#include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <string>
 
+#include "vibe_core/input/step_input.hpp"
+
 namespace vibe::sim {
+
+using JointArray = std::array<double, kJointCount>;
+
+/// Where an input comes from. Each has its own queue, because each has its own rate.
+enum class InputChannel { Scope, Overstitch, Buttons, Pull };
+constexpr int kInputChannelCount = 4;
+constexpr int kLockstepChannelCount = 3;  ///< the first ones; a pull is optional
+
+const char* toString(InputChannel channel);
+
+/// What a sample of the channel Scope says: joint positions, or the pose that scope_tip is to reach.
+enum class ScopeTarget { Joints, TipInWorld, TipInBase };
+
+/// One valid message, free of ROS. Only the values of its channel count.
+struct InputSample {
+  InputChannel channel = InputChannel::Scope;
+  std::int64_t stamp = 0;  ///< time of the sample [ns]; 0: as soon as possible
+  JointArray joints{};
+  bool move = false;  ///< the joints are the goal of a JointMove from where the hand is; else where it is to be now
+  std::array<std::uint8_t, kButtonCount> buttons{};
+  ScopeTarget target = ScopeTarget::Joints;
+  Eigen::Isometry3d tip_pose = Eigen::Isometry3d::Identity();  ///< in world or in the tool's root link
+  int pull_particle = -1;
+  Eigen::Vector3d pull_target = Eigen::Vector3d::Zero();  ///< in world [m]
+};
 
 /// Which stamps a message of an input may have, compared with the simulator's time at its arrival. A node whose clock
 /// is wrong is told so; its messages neither wait nor count.

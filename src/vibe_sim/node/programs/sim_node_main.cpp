@@ -40,8 +40,8 @@ void onSignal(int number) {
   stop_signal = number;
 }
 
-void waitForEnd(const sim::Stepper& stepper, const sim::MasterWatch& watch) {
-  while (ros::ok() && !stop_signal && stepper.isRunning() && !watch.isHopeless()) ros::WallDuration(0.02).sleep();
+void waitForEnd(const sim::SimulationThread& thread, const sim::MasterWatch& watch) {
+  while (ros::ok() && !stop_signal && thread.isRunning() && !watch.isHopeless()) ros::WallDuration(0.02).sleep();
 }
 
 /// The sentence that says why the node ends, unless the stepping has said so itself.
@@ -73,26 +73,26 @@ int run() {
   vibe::node::ParameterReader(ros::NodeHandle("~")).tell();
   sim::InputQueue queue;
   sim::Publishers publishers(handle, parameters.time_source == sim::TimeSource::Sim);
-  sim::Stepper stepper(parameters, made, queue, publishers);
+  sim::SimulationThread thread(parameters, made, queue, publishers);
   ros::AsyncSpinner spinner(1);
   sim::MasterWatch watch(handle, publishers, parameters.master_timeout);
   {
     sim::Inputs inputs(
         handle, queue, publishers, parameters.input_window,
         [&] { return parameters.time_source == sim::TimeSource::Wall ? vibe::node::wallTime() : queue.now(); },
-        [&stepper](sim::InputChannel channel) { stepper.wake(channel); });
-    sim::Services services(handle, stepper);
-    stepper.start();
+        [&thread](sim::InputChannel channel) { thread.wake(channel); });
+    sim::Services services(handle, thread);
+    thread.start();
     spinner.start();
-    waitForEnd(stepper, watch);
-    stepper.stop();
+    waitForEnd(thread, watch);
+    thread.stop();
   }
   explainEnd(watch);
   const bool has_end = parameters.duration > 0;
-  if (has_end || !parameters.summary_file.empty()) stepper.finish();
+  if (has_end || !parameters.summary_file.empty()) thread.finish();
   if (ros::ok() && publishers.hasListener()) ros::WallDuration(kDelivery).sleep();
-  if (stepper.outcome() == sim::Outcome::Finished) return 0;
-  const bool failed = stepper.outcome() == sim::Outcome::Failed || watch.isHopeless();
+  if (thread.outcome() == sim::Outcome::Finished) return 0;
+  const bool failed = thread.outcome() == sim::Outcome::Failed || watch.isHopeless();
   return failed || has_end ? kFailure : 0;
 }
 

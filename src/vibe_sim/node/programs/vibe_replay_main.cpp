@@ -97,7 +97,7 @@ int report(const Recording& recording, const ReplayResult& result) {
 }
 
 void showProgress(const Replay& replay) {
-  if (replay.session().state.step % kProgressSteps != 0) return;
+  if (replay.simulation().state().step % kProgressSteps != 0) return;
   std::fprintf(stderr, "\rrepeated %.0f of %.0f s ", replay.time(), replay.duration());
 }
 
@@ -116,13 +116,13 @@ int run(const Options& options) {
   }
   std::fprintf(stderr, "\r");
   std::printf("repeated %llu steps, %.2f s\n", static_cast<unsigned long long>(steps), replay.time() - first);
-  const Simulation& simulation = replay.session().simulation;
+  const TimedSimulation& simulation = replay.simulation();
   std::fputs(runSummary(simulation.metrics(), simulation.timer().cpu.all, simulation.model().particle_count,
-                        replay.time() - first, steadyTime() - begin, simulation.hash())
+                        replay.time() - first, steadyTime() - begin, hash(simulation.state()))
                  .c_str(),
              stdout);
   if (filler) {
-    filler->finish(replay.session());
+    filler->finish(replay.simulation());
     std::printf("filled: %s, %llu messages\n", options.fill.c_str(),
                 static_cast<unsigned long long>(filler->messageCount()));
   }

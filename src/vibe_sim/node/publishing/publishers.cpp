@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include <rosgraph_msgs/Clock.h>
@@ -20,45 +21,6 @@
 #include "vibe_core/simulation/simulator.hpp"
 
 namespace vibe::sim {
-
-ArmPublishers::ArmPublishers(OutletSource& outlets)
-    : scope_(outlets.advertise<sensor_msgs::JointState>("scope/simulated/measured_js", kSmallQueue)),
-      overstitch_(outlets.advertise<sensor_msgs::JointState>("overstitch/simulated/measured_js", kSmallQueue)),
-      jacobian_(outlets.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kSmallQueue)),
-      wall_(outlets.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kSmallQueue)),
-      scope_state_(outlets.advertise<vibe_msgs::OperatingState>("scope/operating_state", kSmallQueue, true)),
-      overstitch_state_(outlets.advertise<vibe_msgs::OperatingState>("overstitch/operating_state", kSmallQueue, true)) {
-}
-
-void ArmPublishers::place(const Session& session, bool continues, std::int64_t stamp) {
-  const JointArray joints = toolJoints(session.state);
-  JointArray velocity{};
-  for (int j = 0; continues && j < kJointCount; ++j)
-    velocity[j] = (joints[j] - last_joints_[j]) / session.time.period();
-  last_joints_ = joints;
-  scope_.publish(makeMeasuredScope(session.state, velocity, stamp));
-  overstitch_.publish(makeMeasuredOverstitch(session.state, velocity, stamp));
-  if (jacobian_.getNumSubscribers() > 0) jacobian_.publish(makeJacobian(tipJacobian(*session.model, session.state)));
-  if (wall_.getNumSubscribers() == 0) return;
-  if (const auto sight = lookAhead(*session.model, session.state)) wall_.publish(makeWallPose(*sight, stamp));
-}
-
-void ArmPublishers::operatingState(const Session& session, const RunStatus& status) {
-  const bool present = session.model->tool != nullptr;
-  const auto scope = makeOperatingState(present, status.paused, status.scope_moves, session.now());
-  const auto overstitch = makeOperatingState(present, status.paused, status.overstitch_moves, session.now());
-  const std::string state = scope.state + (scope.is_busy ? " scope" : "") + (overstitch.is_busy ? " overstitch" : "");
-  if (state == last_state_) return;
-  last_state_ = state;
-  scope_state_.publish(scope);
-  overstitch_state_.publish(overstitch);
-}
-
-bool ArmPublishers::hasListener() const {
-  const auto all = {&scope_, &overstitch_, &jacobian_, &wall_, &scope_state_, &overstitch_state_};
-  return std::any_of(all.begin(), all.end(), [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });
-}
-
 namespace {
 
 constexpr double kHapticRate = 100;                       // of haptic/parameters at most, in simulated time [Hz]
@@ -71,7 +33,50 @@ int hapticInterval(double step_period) {
   return static_cast<int>(std::ceil(1 / (kHapticRate * step_period) - 1e-6));
 }
 
+bool anyIsHeard(std::initializer_list<const Outlet*> outlets) {
+  return std::any_of(outlets.begin(), outlets.end(),
+                     [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });
+}
+
 }  // namespace
+
+ArmPublishers::ArmPublishers(OutletSource& outlets)
+    : scope_(outlets.advertise<sensor_msgs::JointState>("scope/simulated/measured_js", kSmallQueue)),
+      overstitch_(outlets.advertise<sensor_msgs::JointState>("overstitch/simulated/measured_js", kSmallQueue)),
+      jacobian_(outlets.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kSmallQueue)),
+      wall_(outlets.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kSmallQueue)),
+      scope_state_(outlets.advertise<vibe_msgs::OperatingState>("scope/operating_state", kSmallQueue, true)),
+      overstitch_state_(outlets.advertise<vibe_msgs::OperatingState>("overstitch/operating_state", kSmallQueue, true)) {
+}
+
+void ArmPublishers::place(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {
+  const JointArray joints = toolJoints(simulation.state());
+  JointArray velocity{};
+  for (int j = 0; continues && j < kJointCount; ++j)
+    velocity[j] = (joints[j] - last_joints_[j]) / simulation.time().period();
+  last_joints_ = joints;
+  scope_.publish(makeMeasuredScope(simulation.state(), velocity, stamp));
+  overstitch_.publish(makeMeasuredOverstitch(simulation.state(), velocity, stamp));
+  if (jacobian_.getNumSubscribers() > 0)
+    jacobian_.publish(makeJacobian(tipJacobian(simulation.model(), simulation.state())));
+  if (wall_.getNumSubscribers() == 0) return;
+  if (const auto sight = lookAhead(simulation.model(), simulation.state())) wall_.publish(makeWallPose(*sight, stamp));
+}
+
+void ArmPublishers::operatingState(const TimedSimulation& simulation, const RunStatus& status) {
+  const bool present = simulation.model().tool != nullptr;
+  const auto scope = makeOperatingState(present, status.paused, status.scope_moves, simulation.now());
+  const auto overstitch = makeOperatingState(present, status.paused, status.overstitch_moves, simulation.now());
+  const std::string state = scope.state + (scope.is_busy ? " scope" : "") + (overstitch.is_busy ? " overstitch" : "");
+  if (state == last_state_) return;
+  last_state_ = state;
+  scope_state_.publish(scope);
+  overstitch_state_.publish(overstitch);
+}
+
+bool ArmPublishers::hasListener() const {
+  return anyIsHeard({&scope_, &overstitch_, &jacobian_, &wall_, &scope_state_, &overstitch_state_});
+}
 
 Publishers::Publishers(OutletSource outlets, bool with_clock)
     : scope_pose_(outlets.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
@@ -101,98 +106,98 @@ Publishers::Publishers(OutletSource outlets, bool with_clock)
   if (with_clock) clock_ = outlets.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
 }
 
-void Publishers::announceModel(const Session& session) {
-  const Model& model = *session.model;
-  cloud_ = std::make_unique<ParticleCloud>(model, session.state, session.revision);
-  scene_.publish(makeSceneText(model.scene, session.seed));
-  topology_.publish(makeTopology(model, session.revision, session.now()));
+void Publishers::announceModel(const TimedSimulation& simulation) {
+  const Model& model = simulation.model();
+  cloud_ = std::make_unique<ParticleCloud>(model, simulation.state(), simulation.revision());
+  scene_.publish(makeSceneText(model.scene, simulation.seed()));
+  topology_.publish(makeTopology(model, simulation.revision(), simulation.now()));
   std::vector<geometry_msgs::TransformStamped> transforms = {
-      makeTransform(Eigen::Isometry3d::Identity(), kWorldFrame, kTissueFrame, session.now())};
-  if (model.tool) transforms.push_back(makeTransform(model.tool_base, kWorldFrame, kScopeBaseFrame, session.now()));
+      makeTransform(Eigen::Isometry3d::Identity(), kWorldFrame, kTissueFrame, simulation.now())};
+  if (model.tool) transforms.push_back(makeTransform(model.tool_base, kWorldFrame, kScopeBaseFrame, simulation.now()));
   if (static_transforms_) static_transforms_->sendTransform(transforms);
-  announceRun(session);
+  announceRun(simulation);
 }
 
-void Publishers::announceRun(const Session& session) {
-  session_info_.publish(makeSessionInfo(session));
+void Publishers::announceRun(const TimedSimulation& simulation) {
+  session_info_.publish(makeSessionInfo(simulation));
   snapshot_asked_ = true;
 }
 
-void Publishers::appliedInput(const Session& session) {
-  snapshot(session);
-  vibe_msgs::StepInput message = makeStepInput(session.input, session.state.step, session.now());
-  message.run = session.run;
+void Publishers::appliedInput(const TimedSimulation& simulation) {
+  snapshot(simulation);
+  vibe_msgs::StepInput message = makeStepInput(simulation.input(), simulation.state().step, simulation.now());
+  message.run = simulation.run();
   if (hasRecorder()) {
-    message.input_hash = hash(session.input, session.state.step);
-    message.state_hash = hash(session.state);
+    message.input_hash = hash(simulation.input(), simulation.state().step);
+    message.state_hash = hash(simulation.state());
   }
   applied_input_.publish(message);
 }
 
-void Publishers::snapshot(const Session& session) {
+void Publishers::snapshot(const TimedSimulation& simulation) {
   if (snapshot_.getNumSubscribers() == 0) return;
   const bool asked = snapshot_asked_.exchange(false);
-  if (!asked && session.now() - last_snapshot_ < kSnapshotPeriod) return;
-  last_snapshot_ = session.now();
-  snapshot_.publish(makeStateSnapshot(session));
+  if (!asked && simulation.now() - last_snapshot_ < kSnapshotPeriod) return;
+  last_snapshot_ = simulation.now();
+  snapshot_.publish(makeStateSnapshot(simulation));
 }
 
-void Publishers::stepResult(const Session& session, const RunStatus& status) {
-  const std::int64_t stamp = session.now();
+void Publishers::stepResult(const TimedSimulation& simulation, const RunStatus& status) {
+  const std::int64_t stamp = simulation.now();
   now_ = stamp;
-  tool(session, true, stamp);
-  haptic(session, stamp);
-  pull(session, stamp);
-  if (session.state.step % imageInterval(session.time.period()) == 0) particles(session, stamp);
-  if (suturesAreDue(session)) sutures(session);
-  arms_.operatingState(session, status);
-  for (const Event& event : session.events) events_.publish(makeEvent(event, stamp));
-  if (kindOf(session, status) != last_kind_ || stamp - last_procedure_ >= kProcedurePeriod) {
-    procedureState(session, status);
+  tool(simulation, true, stamp);
+  haptic(simulation, stamp);
+  pull(simulation, stamp);
+  if (simulation.state().step % imageInterval(simulation.time().period()) == 0) particles(simulation, stamp);
+  if (suturesAreDue(simulation)) sutures(simulation);
+  arms_.operatingState(simulation, status);
+  for (const Event& event : simulation.events()) events_.publish(makeEvent(event, stamp));
+  if (kindOf(simulation, status) != last_kind_ || stamp - last_procedure_ >= kProcedurePeriod) {
+    procedureState(simulation, status);
   }
-  step_result_.publish(makeStepResult(session, false));
+  step_result_.publish(makeStepResult(simulation, false));
   clock(stamp);
 }
 
-void Publishers::wholeState(const Session& session, const RunStatus& status) {
-  const std::int64_t stamp = session.now();
+void Publishers::wholeState(const TimedSimulation& simulation, const RunStatus& status) {
+  const std::int64_t stamp = simulation.now();
   now_ = stamp;
-  if (stamp != last_particles_) particles(session, stamp);
-  sutures(session);
-  procedureState(session, status);
+  if (stamp != last_particles_) particles(simulation, stamp);
+  sutures(simulation);
+  procedureState(simulation, status);
   if (stamp == last_tool_) return;
   if (haptic_touching_) hapticRelease(stamp);
-  pull(session, stamp);
-  tool(session, false, stamp);
-  step_result_.publish(makeStepResult(session, true));
+  pull(simulation, stamp);
+  tool(simulation, false, stamp);
+  step_result_.publish(makeStepResult(simulation, true));
   clock(stamp);
 }
 
-void Publishers::heartbeat(const Session& session) {
-  if (particles_missed_) particles(session, session.now());
-  clock(session.now());
+void Publishers::heartbeat(const TimedSimulation& simulation) {
+  if (particles_missed_) particles(simulation, simulation.now());
+  clock(simulation.now());
 }
 
-void Publishers::procedureState(const Session& session, const RunStatus& status) {
-  last_kind_ = kindOf(session, status);
-  last_procedure_ = session.now();
-  procedure_.publish(makeProcedureState(session, status));
-  skill_metrics_.publish(makeSkillMetrics(session));
-  arms_.operatingState(session, status);
+void Publishers::procedureState(const TimedSimulation& simulation, const RunStatus& status) {
+  last_kind_ = kindOf(simulation, status);
+  last_procedure_ = simulation.now();
+  procedure_.publish(makeProcedureState(simulation, status));
+  skill_metrics_.publish(makeSkillMetrics(simulation));
+  arms_.operatingState(simulation, status);
 }
 
-bool Publishers::suturesAreDue(const Session& session) const {
-  const ProcedureState& procedure = session.state.procedure;
+bool Publishers::suturesAreDue(const TimedSimulation& simulation) const {
+  const ProcedureState& procedure = simulation.state().procedure;
   if (kindOf(procedure) != last_suture_kind_) return true;
   if (procedure.sutures.empty()) return false;
-  const bool in_turn = session.state.step % imageInterval(session.time.period()) == 0;
-  return (in_turn && sutures_.getNumSubscribers() > 0) || session.now() - last_sutures_ >= kProcedurePeriod;
+  const bool in_turn = simulation.state().step % imageInterval(simulation.time().period()) == 0;
+  return (in_turn && sutures_.getNumSubscribers() > 0) || simulation.now() - last_sutures_ >= kProcedurePeriod;
 }
 
-void Publishers::sutures(const Session& session) {
-  last_suture_kind_ = kindOf(session.state.procedure);
-  last_sutures_ = session.now();
-  sutures_.publish(makeSutures(*session.model, session.state, session.now()));
+void Publishers::sutures(const TimedSimulation& simulation) {
+  last_suture_kind_ = kindOf(simulation.state().procedure);
+  last_sutures_ = simulation.now();
+  sutures_.publish(makeSutures(simulation.model(), simulation.state(), simulation.now()));
 }
 
 void Publishers::warn(const std::string& text) {
@@ -201,37 +206,37 @@ void Publishers::warn(const std::string& text) {
 }
 
 bool Publishers::hasListener() const {
-  const auto all = {&scope_pose_,        &helix_pose_,  &wrench_,        &joint_states_, &hand_joints_, &topology_,
-                    &particles_,         &procedure_,   &skill_metrics_, &events_,       &sutures_,     &applied_input_,
-                    &solver_statistics_, &scene_,       &haptic_,        &pull_,         &step_result_, &session_info_,
-                    &snapshot_,          &step_timing_, &clock_};
   return arms_.hasListener() ||
-         std::any_of(all.begin(), all.end(), [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });
+         anyIsHeard(
+             {&scope_pose_,        &helix_pose_,  &wrench_,        &joint_states_, &hand_joints_, &topology_,
+              &particles_,         &procedure_,   &skill_metrics_, &events_,       &sutures_,     &applied_input_,
+              &solver_statistics_, &scene_,       &haptic_,        &pull_,         &step_result_, &session_info_,
+              &snapshot_,          &step_timing_, &clock_});
 }
 
-void Publishers::tool(const Session& session, bool continues, std::int64_t stamp) {
+void Publishers::tool(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {
   last_tool_ = stamp;
-  const Model& model = *session.model;
+  const Model& model = simulation.model();
   if (!model.tool) return;
-  model.tool->forwardKinematics(session.state.joints, session.state.tool_displacement, link_poses_);
+  model.tool->forwardKinematics(simulation.state().joints, simulation.state().tool_displacement, link_poses_);
   scope_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
   helix_pose_.publish(makePose(model.tool_base * link_poses_[model.helix_link], kWorldFrame, stamp));
-  wrench_.publish(makeWrench(session.state, stamp));
-  joint_states_.publish(makeJointState(model, session.state, stamp));
-  hand_joints_.publish(makeHandJoints(session.state, stamp));
-  arms_.place(session, continues, stamp);
+  wrench_.publish(makeWrench(simulation.state(), stamp));
+  joint_states_.publish(makeJointState(model, simulation.state(), stamp));
+  hand_joints_.publish(makeHandJoints(simulation.state(), stamp));
+  arms_.place(simulation, continues, stamp);
 }
 
-void Publishers::haptic(const Session& session, std::int64_t stamp) {
-  const std::optional<ToolImpedance>& response = session.toolImpedance();
+void Publishers::haptic(const TimedSimulation& simulation, std::int64_t stamp) {
+  const std::optional<ToolImpedance>& response = simulation.simulation().toolImpedance();
   if (!response) {
     if (haptic_touching_) hapticRelease(stamp);
     return;
   }
-  if (haptic_touching_ && session.state.step % hapticInterval(session.time.period()) != 0) return;
+  if (haptic_touching_ && simulation.state().step % hapticInterval(simulation.time().period()) != 0) return;
   haptic_touching_ = true;
-  const bool holds = session.model->scene.helix && !session.state.grip.empty();
-  const double limit = holds ? holdingForce(*session.model->scene.helix, session.state.procedure.grip_turns)
+  const bool holds = simulation.model().scene.helix && !simulation.state().grip.empty();
+  const double limit = holds ? holdingForce(*simulation.model().scene.helix, simulation.state().procedure.grip_turns)
                              : std::numeric_limits<double>::infinity();
   haptic_.publish(makeHapticParameters(*response, limit, stamp));
 }
@@ -242,18 +247,18 @@ void Publishers::hapticRelease(std::int64_t stamp) {
 }
 
 // The state after a reset or load has its own hand, and a listener must not go on drawing the former one.
-void Publishers::pull(const Session& session, std::int64_t stamp) {
-  const bool holds = session.state.pull.holds();
+void Publishers::pull(const TimedSimulation& simulation, std::int64_t stamp) {
+  const bool holds = simulation.state().pull.holds();
   if (!holds && !pull_held_) return;
   pull_held_ = holds;
-  pull_.publish(makePullState(session.state, stamp));
+  pull_.publish(makePullState(simulation.state(), stamp));
 }
 
-void Publishers::particles(const Session& session, std::int64_t stamp) {
+void Publishers::particles(const TimedSimulation& simulation, std::int64_t stamp) {
   last_particles_ = stamp;
   particles_missed_ = particles_.getNumSubscribers() == 0;
   if (particles_missed_) return;
-  particles_.publish(cloud_->update(*session.model, session.state, stamp));
+  particles_.publish(cloud_->update(simulation.model(), simulation.state(), stamp));
 }
 
 void Publishers::clock(std::int64_t stamp) {

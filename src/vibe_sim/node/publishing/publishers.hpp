@@ -11,7 +11,7 @@
 #include <vibe_msgs/StepTiming.h>
 
 #include "conversions/tissue_message.hpp"
-#include "input/input_interpreter.hpp"
+#include "input/input_sample.hpp"
 #include "publishing/outlet.hpp"
 #include "simulation/timed_simulation.hpp"
 
@@ -25,9 +25,9 @@ class ArmPublishers {
 
   /// The present place of a tool, of a scene with one.
   /// @param continues  the state follows by one step from that of the last call; false: velocities are 0
-  void place(const Session& session, bool continues, std::int64_t stamp);
+  void place(const TimedSimulation& simulation, bool continues, std::int64_t stamp);
   /// The operating states, where they have changed.
-  void operatingState(const Session& session, const RunStatus& status);
+  void operatingState(const TimedSimulation& simulation, const RunStatus& status);
   bool hasListener() const;
 
  private:
@@ -48,27 +48,27 @@ class Publishers {
   Publishers(OutletSource outlets, bool with_clock);
 
   /// A model begins to be simulated: scene, topology, static transforms.
-  void announceModel(const Session& session);
+  void announceModel(const TimedSimulation& simulation);
   /// A run begins: with the first step, after a reset, or with another state or model.
-  void announceRun(const Session& session);
+  void announceRun(const TimedSimulation& simulation);
 
   /// What the step about to be taken uses, with the hash of the state, and a snapshot where one is due; call before the
   /// step.
-  void appliedInput(const Session& session);
+  void appliedInput(const TimedSimulation& simulation);
   /// What one step has changed, the clock last: who sees the clock at t can have everything up to t.
-  void stepResult(const Session& session, const RunStatus& status);
+  void stepResult(const TimedSimulation& simulation, const RunStatus& status);
   /// What of the present state has not been sent yet, decimation aside: after a start, reset or load, and at the end.
-  void wholeState(const Session& session, const RunStatus& status);
+  void wholeState(const TimedSimulation& simulation, const RunStatus& status);
   /// While time stands still, for nodes that have just started: the time again, and the particles if nobody listened to
   /// them when they were due.
-  void heartbeat(const Session& session);
+  void heartbeat(const TimedSimulation& simulation);
   /// procedure/state and procedure/skill_metrics, and the operating states.
-  void procedureState(const Session& session, const RunStatus& status);
+  void procedureState(const TimedSimulation& simulation, const RunStatus& status);
 
   bool hasTimingListener() const { return step_timing_.getNumSubscribers() > 0; }
   void stepTiming(const vibe_msgs::StepTiming& message) { step_timing_.publish(message); }
 
-  void solver_statistics(const vibe_msgs::SolverStatistics& message) { solver_statistics_.publish(message); }
+  void solverStatistics(const vibe_msgs::SolverStatistics& message) { solver_statistics_.publish(message); }
 
   /// A warning event at the present simulated time.
   void warn(const std::string& text);
@@ -101,14 +101,14 @@ class Publishers {
   bool pull_held_ = false;                  // as last sent
   std::atomic<std::int64_t> now_{0};        // of the last state
 
-  void tool(const Session& session, bool continues, std::int64_t stamp);
-  void particles(const Session& session, std::int64_t stamp);
-  bool suturesAreDue(const Session& session) const;
-  void sutures(const Session& session);
-  void haptic(const Session& session, std::int64_t stamp);
+  void tool(const TimedSimulation& simulation, bool continues, std::int64_t stamp);
+  void particles(const TimedSimulation& simulation, std::int64_t stamp);
+  bool suturesAreDue(const TimedSimulation& simulation) const;
+  void sutures(const TimedSimulation& simulation);
+  void haptic(const TimedSimulation& simulation, std::int64_t stamp);
   void hapticRelease(std::int64_t stamp);
-  void pull(const Session& session, std::int64_t stamp);
-  void snapshot(const Session& session);
+  void pull(const TimedSimulation& simulation, std::int64_t stamp);
+  void snapshot(const TimedSimulation& simulation);
   void clock(std::int64_t stamp);
 };
 

@@ -10,7 +10,6 @@
 #include "vibe_core/input/step_input_fields.hpp"
 
 namespace vibe::sim {
-
 namespace {
 
 constexpr int kMaxDepth = 16;     // of messages in messages
@@ -104,28 +103,6 @@ class Cursor {
   std::size_t size_, at_ = 0;
 };
 
-}  // namespace
-
-MessageLayout::MessageLayout(const std::string& definition) {
-  Flattener(definition).add("", "", 0, fields_);
-}
-
-std::vector<MessageLayout::Field> MessageLayout::locate(const std::uint8_t* bytes, std::size_t size) const {
-  std::vector<Field> fields = fields_;
-  Cursor cursor(bytes, size);
-  for (Field& field : fields) {
-    const std::size_t count = field.count == kVariable ? cursor.length() : static_cast<std::size_t>(field.count);
-    field.at = cursor.at();
-    if (field.type == "string")
-      for (std::size_t i = 0; i < count; ++i) cursor.skip(cursor.length());
-    else
-      cursor.skip(count * kSizes.at(field.type));
-  }
-  return fields;
-}
-
-namespace {
-
 const std::string kReads = "this build reads versions 1 to " + std::to_string(kStepInputVersion) +
                            "; replay it with the release that recorded it.";
 
@@ -165,6 +142,24 @@ std::uint32_t versionOf(const InputFields& message) {
 }
 
 }  // namespace
+
+MessageLayout::MessageLayout(const std::string& definition) {
+  Flattener(definition).add("", "", 0, fields_);
+}
+
+std::vector<MessageLayout::Field> MessageLayout::locate(const std::uint8_t* bytes, std::size_t size) const {
+  std::vector<Field> fields = fields_;
+  Cursor cursor(bytes, size);
+  for (Field& field : fields) {
+    const std::size_t count = field.count == kVariable ? cursor.length() : static_cast<std::size_t>(field.count);
+    field.at = cursor.at();
+    if (field.type == "string")
+      for (std::size_t i = 0; i < count; ++i) cursor.skip(cursor.length());
+    else
+      cursor.skip(count * kSizes.at(field.type));
+  }
+  return fields;
+}
 
 RecordedStep StepInputReader::read(const std::uint8_t* bytes, std::size_t size) const {
   const InputFields message(layout_, bytes, size);

@@ -64,8 +64,8 @@ void BagFiller::fail(const std::string& why) {
   throw Error("'" + file_ + ".active' breaks off (" + why + "); make room on the disk.");
 }
 
-void BagFiller::publish(const Session& session, const std::function<void()>& send) {
-  target_.time = toRosTime(session.now());
+void BagFiller::publish(const TimedSimulation& simulation, const std::function<void()>& send) {
+  target_.time = toRosTime(simulation.now());
   try {
     send();
   } catch (const rosbag::BagException& error) {
@@ -73,20 +73,20 @@ void BagFiller::publish(const Session& session, const std::function<void()>& sen
   }
 }
 
-void BagFiller::newModel(const Session& session) {
-  publish(session, [&] { publishers_.announceModel(session); });
+void BagFiller::newModel(const TimedSimulation& simulation) {
+  publish(simulation, [&] { publishers_.announceModel(simulation); });
 }
 
-void BagFiller::newState(const Session& session) {
-  publish(session, [&] { publishers_.wholeState(session, {}); });
+void BagFiller::newState(const TimedSimulation& simulation) {
+  publish(simulation, [&] { publishers_.wholeState(simulation, {}); });
 }
 
-void BagFiller::afterStep(const Session& session) {
-  publish(session, [&] { publishers_.stepResult(session, {}); });
+void BagFiller::afterStep(const TimedSimulation& simulation) {
+  publish(simulation, [&] { publishers_.stepResult(simulation, {}); });
 }
 
-void BagFiller::finish(const Session& session) {
-  newState(session);
+void BagFiller::finish(const TimedSimulation& simulation) {
+  newState(simulation);
   try {
     for (const rosbag::MessageInstance& message : rosbag::View(recording_.bag()))
       if (!isReplayed(message.getTopic(), recording_.prefix()))

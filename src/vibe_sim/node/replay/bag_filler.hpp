@@ -30,18 +30,18 @@ class BagFiller : public Replay::Listener {
   BagFiller(const Recording& recording, const std::string& file);
   ~BagFiller() override;
 
-  void newModel(const Session& session) override;
-  void newState(const Session& session) override;
-  void afterStep(const Session& session) override;
+  void newModel(const TimedSimulation& simulation) override;
+  void newState(const TimedSimulation& simulation) override;
+  void afterStep(const TimedSimulation& simulation) override;
 
   /// Writes what the simulator sends when it ends, copies the rest and ends the file.
   /// @throws Error if it cannot be written
-  void finish(const Session& session);
+  void finish(const TimedSimulation& simulation);
 
   std::uint64_t messageCount() const { return count_; }
 
  private:
-  void publish(const Session& session, const std::function<void()>& send);
+  void publish(const TimedSimulation& simulation, const std::function<void()>& send);
   [[noreturn]] void fail(const std::string& why);
 
   const Recording& recording_;

@@ -15,7 +15,6 @@
 #include "vibe_core/state/procedure_state.hpp"
 
 namespace vibe::sim {
-
 namespace {
 
 using EventMessage = vibe_msgs::ProcedureEvent;
@@ -38,6 +37,13 @@ std::string nameOf(const EventMessage& event) {
   return found == names.end() ? "" : found->second;
 }
 
+constexpr double kStatusPeriod = 0.1;      // [s]
+constexpr double kHeartbeatPeriod = 0.08;  // of the clock while time stands still [s]
+constexpr double kWholePeriod = 1;         // of the procedure's state then, as the simulator sends it [s]
+constexpr double kBurst = 0.05;            // of steps before commands are looked at again [s]
+constexpr double kMaxReplayLag = 0.25;     // after which lost time is given up [s]
+constexpr double kMinRate = 0.01, kMaxRate = 100;
+
 }  // namespace
 
 std::vector<ReplayMark> readMarks(const Recording& recording) {
@@ -58,17 +64,6 @@ std::vector<ReplayMark> readMarks(const Recording& recording) {
   return marks;
 }
 
-namespace {
-
-constexpr double kStatusPeriod = 0.1;      // [s]
-constexpr double kHeartbeatPeriod = 0.08;  // of the clock while time stands still [s]
-constexpr double kWholePeriod = 1;         // of the procedure's state then, as the simulator sends it [s]
-constexpr double kBurst = 0.05;            // of steps before commands are looked at again [s]
-constexpr double kMaxReplayLag = 0.25;     // after which lost time is given up [s]
-constexpr double kMinRate = 0.01, kMaxRate = 100;
-
-}  // namespace
-
 Player::Player(const Recording& recording, ros::NodeHandle handle, bool plays, double rate)
     : recording_(recording),
       publishers_(handle, true),
@@ -86,25 +81,25 @@ Player::Player(const Recording& recording, ros::NodeHandle handle, bool plays, d
   restartPace();
 }
 
-void Player::newModel(const Session& session) {
-  announced_run_ = session.run;
-  publishers_.announceModel(session);
+void Player::newModel(const TimedSimulation& simulation) {
+  announced_run_ = simulation.run();
+  publishers_.announceModel(simulation);
 }
 
-void Player::newState(const Session& session) {
-  if (session.run != announced_run_) {
-    announced_run_ = session.run;
-    publishers_.announceRun(session);
+void Player::newState(const TimedSimulation& simulation) {
+  if (simulation.run() != announced_run_) {
+    announced_run_ = simulation.run();
+    publishers_.announceRun(simulation);
   }
-  publishers_.wholeState(session, {});
+  publishers_.wholeState(simulation, {});
 }
 
-void Player::beforeStep(const Session& session) {
-  publishers_.appliedInput(session);
+void Player::beforeStep(const TimedSimulation& simulation) {
+  publishers_.appliedInput(simulation);
 }
 
-void Player::afterStep(const Session& session) {
-  publishers_.stepResult(session, {});
+void Player::afterStep(const TimedSimulation& simulation) {
+  publishers_.stepResult(simulation, {});
 }
 
 void Player::obey(const vibe_msgs::ReplayCommand& command) {
@@ -156,7 +151,7 @@ void Player::publishStatus(bool now) {
   if (!now && steadyTime() - last_status_ < kStatusPeriod) return;
   last_status_ = steadyTime();
   const ReplayResult& result = replay_.result();
-  message_.header.stamp = toRosTime(replay_.session().now());
+  message_.header.stamp = toRosTime(replay_.simulation().now());
   message_.time = replay_.time();
   message_.checked = result.same > 0 && result.unchecked == 0;
   message_.same = !result.difference && error_.empty();
@@ -172,10 +167,10 @@ void Player::spinOnce() {
     playDueSteps();
   } else if (steadyTime() - last_heartbeat_ > kHeartbeatPeriod) {
     last_heartbeat_ = steadyTime();
-    publishers_.heartbeat(replay_.session());
+    publishers_.heartbeat(replay_.simulation());
     if (steadyTime() - last_whole_ > kWholePeriod) {
       last_whole_ = steadyTime();
-      publishers_.wholeState(replay_.session(), {});
+      publishers_.wholeState(replay_.simulation(), {});
     }
   }
   publishStatus(false);

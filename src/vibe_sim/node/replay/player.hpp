@@ -39,10 +39,10 @@ class Player : private Replay::Listener {
   void spinOnce();
 
  private:
-  void newModel(const Session& session) override;
-  void newState(const Session& session) override;
-  void beforeStep(const Session& session) override;
-  void afterStep(const Session& session) override;
+  void newModel(const TimedSimulation& simulation) override;
+  void newState(const TimedSimulation& simulation) override;
+  void beforeStep(const TimedSimulation& simulation) override;
+  void afterStep(const TimedSimulation& simulation) override;
   void obey(const vibe_msgs::ReplayCommand& command);
   void attempt(const std::function<void()>& move);
   void restartPace();

@@ -14,7 +14,6 @@
 #include "vibe_core/state/state_fields.hpp"
 
 namespace vibe::sim {
-
 namespace {
 
 // "compiler (recorded: GCC 12.2, here: Clang 14)"; empty if they are equal.
@@ -34,6 +33,20 @@ std::string differences(const vibe_msgs::SessionInfo& info) {
     if (!one.empty()) all += (all.empty() ? "" : ", ") + one;
   }
   return all;
+}
+
+std::int64_t firstStamp(const RecordedRun& run) {
+  return run.steps.front().stamp;
+}
+
+// A run begins when the one before it has ended, also if a reset set the time back.
+std::vector<std::int64_t> beginsOf(const std::vector<RecordedRun>& runs) {
+  std::vector<std::int64_t> begins = {0};
+  for (std::size_t r = 1; r < runs.size(); ++r) {
+    const std::int64_t length = runs[r - 1].steps.back().stamp - firstStamp(runs[r - 1]);
+    begins.push_back(begins.back() + std::max(length, firstStamp(runs[r]) - firstStamp(runs[r - 1])));
+  }
+  return begins;
 }
 
 }  // namespace
@@ -57,28 +70,10 @@ std::string causeOfState(const vibe_msgs::SessionInfo& info) {
          "please report it";
 }
 
-namespace {
-
-std::int64_t firstStamp(const RecordedRun& run) {
-  return run.steps.front().stamp;
-}
-
-// A run begins when the one before it has ended, also if a reset set the time back.
-std::vector<std::int64_t> beginsOf(const std::vector<RecordedRun>& runs) {
-  std::vector<std::int64_t> begins = {0};
-  for (std::size_t r = 1; r < runs.size(); ++r) {
-    const std::int64_t length = runs[r - 1].steps.back().stamp - firstStamp(runs[r - 1]);
-    begins.push_back(begins.back() + std::max(length, firstStamp(runs[r]) - firstStamp(runs[r - 1])));
-  }
-  return begins;
-}
-
-}  // namespace
-
 Replay::Replay(const Recording& recording, Listener& listener, Stamps stamps)
     : recording_(recording), listener_(listener), begins_(beginsOf(recording.runs())), stamps_(stamps) {
   beginRun(0, 0);
-  listener_.newState(*session_);
+  listener_.newState(*simulation_);
 }
 
 bool Replay::done() const {
@@ -94,29 +89,29 @@ double Replay::time() const {
 }
 
 double Replay::duration() const {
-  return timeOf(begins_.size() - 1, recording_.runs().back().steps.back().stamp) + session_->time.period();
+  return timeOf(begins_.size() - 1, recording_.runs().back().steps.back().stamp) + simulation_->time().period();
 }
 
 void Replay::step() {
   if (done()) return;
   if (next_ == run().steps.size()) {
     beginRun(run_ + 1, 0);
-    listener_.newState(*session_);
+    listener_.newState(*simulation_);
   }
   prepareStep();
-  listener_.beforeStep(*session_);
+  listener_.beforeStep(*simulation_);
   takeStep();
-  listener_.afterStep(*session_);
+  listener_.afterStep(*simulation_);
 }
 
 void Replay::prepareStep() {
   matchStamp();
-  session_->simulation.setInput(recorded().input);
+  simulation_->setInput(recorded().input);
   checkStep();
 }
 
 void Replay::takeStep() {
-  session_->step(recorded().input);
+  simulation_->step();
   ++next_;
   checkEnd();
 }
@@ -132,7 +127,7 @@ void Replay::seek(double time, bool exact) {
   const auto target = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - steps.begin(), 1) - 1);
   std::size_t start = target;
   while (start > 0 && recording_.runs()[r].snapshots.count(steps[start].step) == 0) --start;
-  const std::int64_t before = session_->now();
+  const std::int64_t before = simulation_->now();
   // forward within the run, what lies between is stepped unless a snapshot is nearer
   if (!(exact && r == run_ && next_ <= target && next_ >= start)) beginRun(r, start);
   while (exact && next_ < target) {
@@ -140,36 +135,36 @@ void Replay::seek(double time, bool exact) {
     takeStep();
   }
   goForward(before);
-  listener_.newState(*session_);
+  listener_.newState(*simulation_);
 }
 
 // Stamps go on from where they were.
 void Replay::goForward(std::int64_t before) {
-  if (stamps_ != Stamps::Forward || session_->now() > before) return;
-  stamp_shift_ += before + 1 - session_->now();
+  if (stamps_ != Stamps::Forward || simulation_->now() > before) return;
+  stamp_shift_ += before + 1 - simulation_->now();
   matchStamp();
 }
 
 void Replay::beginRun(std::size_t number, std::size_t index) {
   const RecordedRun& begun = recording_.runs()[number];
-  const bool first = !session_;
-  const std::int64_t before = first ? 0 : session_->now();
+  const bool first = !simulation_;
+  const std::int64_t before = first ? 0 : simulation_->now();
   const bool new_model = useModel(begun);
   run_ = number;
   next_ = index;
   checkRun();  // first: a snapshot of another model could not be read, which would not say why
   restore(begun, index, new_model);
-  session_->run = begun.number;
-  if (begun.info && begun.info->revision > 0) session_->revision = begun.info->revision;
+  const bool has_revision = begun.info && begun.info->revision > 0;
+  simulation_->renumber(begun.number, has_revision ? begun.info->revision : simulation_->revision());
   matchStamp();
   if (!first) goForward(before);
-  if (new_model) listener_.newModel(*session_);
+  if (new_model) listener_.newModel(*simulation_);
 }
 
 void Replay::restore(const RecordedRun& begun, std::size_t index, bool new_model) {
   try {
     State state = stateAt(begun, index);
-    if (hash(state) != hash(session_->state) || !new_model) session_->replaceState(std::move(state));
+    if (hash(state) != hash(simulation_->state()) || !new_model) simulation_->replaceState(std::move(state));
   } catch (const Error& error) {
     next_ = run().steps.size();  // nothing of this run can be stepped
     if (result_.difference) throw ReplayEnd(error, *result_.difference, result_.same);
@@ -180,7 +175,7 @@ void Replay::restore(const RecordedRun& begun, std::size_t index, bool new_model
 // @return whether it is another one than before
 bool Replay::useModel(const RecordedRun& begun) {
   const std::string urdf = begun.info ? begun.info->urdf : "";
-  if (session_ && begun.scene == scene_ && urdf == urdf_) return false;
+  if (simulation_ && begun.scene == scene_ && urdf == urdf_) return false;
   if (begun.info && !begun.info->arithmetic.empty())
     setArithmetic(begun.info->arithmetic == wordFor(Arithmetic::Plain) ? Arithmetic::Plain : Arithmetic::Fused);
   SceneModel made;
@@ -192,32 +187,31 @@ bool Replay::useModel(const RecordedRun& begun) {
   }
   scene_ = begun.scene;
   urdf_ = urdf;
-  if (session_) {
-    session_->replaceModel(made.model);
+  if (simulation_) {
+    simulation_->replaceModel(made);
   } else {
-    session_ = std::make_unique<Session>(made.model, made.model->scene.seed, firstStamp(begun), 1);
+    simulation_ = std::make_unique<TimedSimulation>(made, made.model->scene.seed, firstStamp(begun), 1);
   }
-  session_->urdf = made.urdf;
   return true;
 }
 
 State Replay::stateAt(const RecordedRun& begun, std::size_t index) {
   const std::uint64_t step = begun.steps[index].step;
-  if (step == 0 && begun.number <= 1) return initialState(*session_->model, session_->model->scene.seed);
-  return decodeSnapshot(*session_->model, recording_.snapshot(begun, step),
+  if (step == 0 && begun.number <= 1) return initialState(simulation_->model(), simulation_->model().scene.seed);
+  return decodeSnapshot(simulation_->model(), recording_.snapshot(begun, step),
                         recording_.file() + ": step " + std::to_string(step));
 }
 
 // The stamps are those of the recording, also where the simulator fell behind the wall clock.
 void Replay::matchStamp() {
-  if (recorded().stamp != 0) session_->time.shiftOrigin(recorded().stamp - recordedNow());
+  if (recorded().stamp != 0) simulation_->shiftTime(recorded().stamp - recordedNow());
 }
 
 void Replay::checkRun() {
   if (!run().info || result_.difference) return;
   const std::string edited = findEdit(*run().info);
   if (!edited.empty()) return differ(edited, "it was edited after the recording");
-  if (run().info->model_hash != modelFingerprint(*session_->model))
+  if (run().info->model_hash != modelFingerprint(simulation_->model()))
     differ("the model (rest shape, masses) is not the recorded one", causeOfModel(*run().info));
 }
 
@@ -229,8 +223,8 @@ void Replay::checkStep() {
     result_.unchecked_why = why;
     return;
   }
-  const std::uint64_t state = hash(session_->state);
-  if (recorded().input_hash != hash(recorded().input, session_->state.step))
+  const std::uint64_t state = hash(simulation_->state());
+  if (recorded().input_hash != hash(recorded().input, simulation_->state().step))
     return differ("the input of this step is not the recorded one", "it was edited after the recording");
   if (recorded().state_hash != state)
     return differ("the state at the start of this step has hash " + toHex(state) + ", recorded was " +
@@ -245,7 +239,7 @@ void Replay::checkEnd() {
   if (result_.difference || known == end || next_ == 0) return;
   --next_;
   const std::string why = uncheckedWhy();
-  const std::string state = why.empty() ? toHex(hash(session_->state)) : "";
+  const std::string state = why.empty() ? toHex(hash(simulation_->state())) : "";
   if (why.empty() && std::none_of(known, end, [&](const auto& entry) { return entry.second == state; }))
     differ("the state after this step has hash " + state + ", recorded was " + known->second,
            causeOfState(*run().info));

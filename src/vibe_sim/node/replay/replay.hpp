@@ -49,10 +49,10 @@ class Replay {
   /// What happens on the way, in this order.
   struct Listener {
     virtual ~Listener() = default;
-    virtual void newModel(const Session&) {}    ///< the first, or that of a loaded scene
-    virtual void newState(const Session&) {}    ///< the first, after a reset or a load, and after seek()
-    virtual void beforeStep(const Session&) {}  ///< of step(), not of seek(); Session::input is that of the step
-    virtual void afterStep(const Session&) {}
+    virtual void newModel(const TimedSimulation&) {}    ///< the first, or that of a loaded scene
+    virtual void newState(const TimedSimulation&) {}    ///< the first, after a reset or a load, and after seek()
+    virtual void beforeStep(const TimedSimulation&) {}  ///< of step(), not of seek(); its input() is that of the step
+    virtual void afterStep(const TimedSimulation&) {}
   };
 
   /// Stamps after seek(): those of the recording, or such as go on from where the replay was.
@@ -74,7 +74,7 @@ class Replay {
   /// @throws Error if the snapshot is damaged or of another version; ReplayEnd as step()
   void seek(double time, bool exact);
 
-  const Session& session() const { return *session_; }
+  const TimedSimulation& simulation() const { return *simulation_; }
   const ReplayResult& result() const { return result_; }
 
  private:
@@ -89,7 +89,7 @@ class Replay {
   void matchStamp();
   void goForward(std::int64_t before);
   double timeOf(std::size_t run, std::int64_t stamp) const;
-  std::int64_t recordedNow() const { return session_->now() - stamp_shift_; }
+  std::int64_t recordedNow() const { return simulation_->now() - stamp_shift_; }
   void checkRun();
   void checkStep();
   void checkEnd();
@@ -98,7 +98,7 @@ class Replay {
 
   const Recording& recording_;
   Listener& listener_;
-  std::unique_ptr<Session> session_;
+  std::unique_ptr<TimedSimulation> simulation_;
   std::vector<std::int64_t> begins_;  // of the runs, since the start of the recording, one after the other [ns]
   std::size_t run_ = 0;
   std::size_t next_ = 0;      // index of the step to take in its run

@@ -4,6 +4,16 @@
 #include <utility>
 
 namespace vibe::sim {
+namespace {
+
+SimulationSettings makeSettings(std::uint64_t seed, int threads) {
+  SimulationSettings settings;
+  settings.seed = seed;
+  settings.threads = threads;
+  return settings;
+}
+
+}  // namespace
 
 std::int64_t stampOf(std::int64_t origin, std::int64_t step, double period) {
   return origin + std::llround(static_cast<double>(step) * period * 1e9);
@@ -27,45 +37,33 @@ void TimeLine::continueWith(std::int64_t old_step, std::int64_t new_step, double
   shift_ = -new_step;
 }
 
-namespace {
-
-SimulationSettings makeSettings(std::uint64_t seed, int threads) {
-  SimulationSettings settings;
-  settings.seed = seed;
-  settings.threads = threads;
-  return settings;
+TimedSimulation::TimedSimulation(SceneModel made, std::uint64_t seed, std::int64_t origin, int threads)
+    : simulation_(std::move(made.model), makeSettings(seed, threads)),
+      time_(origin, simulation_.stepPeriod()),
+      urdf_(std::move(made.urdf)),
+      seed_(state().seed) {
+  simulation_.warmUp();
 }
 
-}  // namespace
-
-Session::Session(std::shared_ptr<const Model> new_model, std::uint64_t first_seed, std::int64_t origin, int threads)
-    : simulation(std::move(new_model), makeSettings(first_seed, threads)),
-      time(origin, simulation.stepPeriod()),
-      model(simulation.sharedModel()),
-      state(simulation.state()),
-      input(simulation.input()),
-      events(simulation.events()) {
-  seed = state.seed;
-  simulation.warmUp();
+void TimedSimulation::replaceState(State new_state) {
+  time_.continueWith(state().step, new_state.step, simulation_.stepPeriod());
+  simulation_.replaceState(std::move(new_state));
+  ++run_;
 }
 
-void Session::step(const StepInput& new_input) {
-  simulation.step(new_input);
+void TimedSimulation::replaceModel(SceneModel made) {
+  const std::int64_t old_step = state().step;
+  simulation_.replaceModel(std::move(made.model));
+  time_.continueWith(old_step, state().step, simulation_.stepPeriod());
+  urdf_ = std::move(made.urdf);
+  seed_ = state().seed;
+  ++revision_;
+  ++run_;
 }
 
-void Session::replaceState(State new_state) {
-  time.continueWith(state.step, new_state.step, simulation.stepPeriod());
-  simulation.replaceState(std::move(new_state));
-  ++run;
-}
-
-void Session::replaceModel(std::shared_ptr<const Model> new_model) {
-  const std::int64_t old_step = state.step;
-  simulation.replaceModel(std::move(new_model));
-  time.continueWith(old_step, state.step, simulation.stepPeriod());
-  seed = state.seed;
-  ++revision;
-  ++run;
+void TimedSimulation::renumber(std::uint32_t run, std::uint32_t revision) {
+  run_ = run;
+  revision_ = revision;
 }
 
 }  // namespace vibe::sim

@@ -2,9 +2,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
+#include "simulation/scene_source.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe::sim {
@@ -48,38 +49,66 @@ class TimeLine {
   std::int64_t shift_ = 0;  // clock step minus state step
 };
 
-/// The node's simulation with the time on its stamps. Belongs to the stepping thread and is touched by no other.
-class Session {
+/// A simulation with the time on its stamps and the numbers under which its messages go out. It owns a
+/// vibe::Simulation, whose state and time change together only. Belongs to the stepping thread and is touched by no
+/// other.
+class TimedSimulation {
  public:
-  Session(std::shared_ptr<const Model> new_model, std::uint64_t first_seed, std::int64_t origin, int threads);
+  /// Begins at the initial state.
+  /// @param seed     of that state
+  /// @param origin   stamp of its step 0 [ns]
+  /// @param threads  used inside a step
+  TimedSimulation(SceneModel made, std::uint64_t seed, std::int64_t origin, int threads);
 
-  /// One step with an input.
-  void step(const StepInput& new_input);
+  /// What the next step will use.
+  void setInput(const StepInput& input) { simulation_.setInput(input); }
+  /// One step with the input in force.
+  void step() { simulation_.step(); }
+  void warmUp() { simulation_.warmUp(); }
+  void addWarnings(int count) { simulation_.addWarnings(count); }
+  StepTimer& timer() { return simulation_.timer(); }
 
   /// Another state of the same model takes over; its stamps follow those of the old one.
   void replaceState(State new_state);
   /// Another model takes over, at its initial state.
-  void replaceModel(std::shared_ptr<const Model> new_model);
+  void replaceModel(SceneModel made);
+  /// The numbers of a recording take the place of those that were counted.
+  void renumber(std::uint32_t run, std::uint32_t revision);
 
-  std::int64_t now() const { return time.stamp(state.step); }  ///< stamp of the state [ns]
-  const SessionMetrics& metrics() const { return simulation.metrics(); }
-  const std::optional<ToolImpedance>& toolImpedance() const { return simulation.toolImpedance(); }
+  /// Moves all stamps, e.g. after the simulator fell behind the wall clock [ns].
+  void shiftTime(std::int64_t by) { time_.shiftOrigin(by); }
+  /// Time begins anew: step 0 of the state has the stamp `origin` [ns].
+  void restartTime(std::int64_t origin) { time_ = TimeLine(origin, time_.period()); }
 
-  Simulation simulation;
-  TimeLine time;
-  std::uint32_t revision = 1;  ///< of the topology
-  std::uint32_t run = 1;       ///< one more whenever another state takes over
-  std::string urdf;            ///< text that the tool was made from; empty without a tool
-  std::uint64_t seed;          ///< of the model's first state, in the published scene
+  const TimeLine& time() const { return time_; }
+  std::int64_t now() const { return time_.stamp(state().step); }  ///< stamp of the state [ns]
+  std::uint32_t revision() const { return revision_; }            ///< of the topology
+  std::uint32_t run() const { return run_; }                      ///< one more whenever another state takes over
+  std::uint64_t seed() const { return seed_; }       ///< of the model's first state, in the published scene
+  const std::string& urdf() const { return urdf_; }  ///< text that the tool was made from; empty without a tool
 
-  // parts of the simulation
-  const std::shared_ptr<const Model>& model;
-  const State& state;
-  const StepInput& input;            ///< in force
-  const std::vector<Event>& events;  ///< of the last step
+  const Simulation& simulation() const { return simulation_; }
+  const std::shared_ptr<const Model>& sharedModel() const { return simulation_.sharedModel(); }
+  const Model& model() const { return simulation_.model(); }
+  const State& state() const { return simulation_.state(); }
+  const StepInput& input() const { return simulation_.input(); }             ///< in force
+  const std::vector<Event>& events() const { return simulation_.events(); }  ///< of the last step
+  const SessionMetrics& metrics() const { return simulation_.metrics(); }
+  const StepTimer& timer() const { return simulation_.timer(); }
+
+  /// As those of Simulation, for tests that put things into the state.
+  State& editState() { return simulation_.editState(); }
+  void record(const std::vector<Event>& events) { simulation_.record(events); }
+
+ private:
+  Simulation simulation_;
+  TimeLine time_;
+  std::string urdf_;
+  std::uint64_t seed_;
+  std::uint32_t revision_ = 1, run_ = 1;
 };
 
-/// What the messages of a step say in addition to the session.
+/// What the messages of a step say in addition to the simulation.
 struct RunStatus {
   bool paused = false;
   bool scope_moves = false;       ///< scope/move_jp is under way

@@ -1,6 +1,5 @@
 #include "simulator/inputs.hpp"
 
-#include "conversions/conversions.hpp"
 #include "conversions/input_message.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"

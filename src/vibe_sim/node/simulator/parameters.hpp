@@ -6,7 +6,6 @@
 
 #include <ros/node_handle.h>
 
-#include "input/input_queue.hpp"
 #include "input/input_sample.hpp"
 
 namespace vibe::sim {

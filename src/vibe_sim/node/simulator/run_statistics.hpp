@@ -21,18 +21,18 @@ class RunStatistics {
   std::uint32_t missed_deadlines = 0;  ///< in the window
 
   /// The stepping begins now; time before does not count.
-  void begin(Session& session);
+  void begin(TimedSimulation& simulation);
   void countStep(double period, const StepReport& report);
   bool windowIsOver() const;  ///< one second has passed
 
-  vibe_msgs::SolverStatistics windowMessage(const Session& session) const;
-  vibe_msgs::SolverStatistics wholeMessage(const Session& session) const;
+  vibe_msgs::SolverStatistics windowMessage(const TimedSimulation& simulation) const;
+  vibe_msgs::SolverStatistics wholeMessage(const TimedSimulation& simulation) const;
   /// One line for people: simulated time, phase, speed, solver time.
-  std::string progressLine(const Session& session) const;
+  std::string progressLine(const TimedSimulation& simulation) const;
   /// Several lines for people at the end; the last is "state hash: <16 hex digits>".
-  std::string summary(const Session& session) const;
+  std::string summary(const TimedSimulation& simulation) const;
 
-  void startWindow(Session& session);
+  void startWindow(TimedSimulation& simulation);
 
  private:
   struct Work {                    // of the solver
@@ -47,7 +47,8 @@ class RunStatistics {
   std::uint32_t all_missed_deadlines_ = 0;  // before the window
   Work window_work_, all_work_;
 
-  vibe_msgs::SolverStatistics message(const Session& session, DurationHistogram DurationRecord::*which) const;
+  vibe_msgs::SolverStatistics message(const TimedSimulation& simulation,
+                                      DurationHistogram DurationRecord::*which) const;
 };
 
 }  // namespace vibe::sim

@@ -21,19 +21,19 @@ void Services::offer(const std::string& name, Work work) {
   servers_.push_back(handle_.advertiseService(name, callback));
 }
 
-Services::Services(const ros::NodeHandle& handle, Stepper& stepper) : handle_(handle) {
+Services::Services(const ros::NodeHandle& handle, SimulationThread& thread) : handle_(handle) {
   handle_.setCallbackQueue(&queue_);
   offer<std_srvs::SetBool>("pause",
-                           [&stepper](const std_srvs::SetBool::Request& r) { return stepper.setPaused(r.data); });
-  offer<vibe_msgs::Step>("step", [&stepper](const vibe_msgs::Step::Request& r) { return stepper.takeSteps(r.n); });
-  offer<vibe_msgs::Reset>(
-      "reset", [&stepper](const vibe_msgs::Reset::Request& r) { return stepper.reset(r.seed, r.keep_time); });
-  offer<vibe_msgs::Snapshot>(
-      "save_snapshot", [&stepper](const vibe_msgs::Snapshot::Request& r) { return stepper.saveSnapshot(r.file); });
-  offer<vibe_msgs::Snapshot>(
-      "load_snapshot", [&stepper](const vibe_msgs::Snapshot::Request& r) { return stepper.loadSnapshot(r.file); });
+                           [&thread](const std_srvs::SetBool::Request& r) { return thread.setPaused(r.data); });
+  offer<vibe_msgs::Step>("step", [&thread](const vibe_msgs::Step::Request& r) { return thread.takeSteps(r.n); });
+  offer<vibe_msgs::Reset>("reset",
+                          [&thread](const vibe_msgs::Reset::Request& r) { return thread.reset(r.seed, r.keep_time); });
+  offer<vibe_msgs::Snapshot>("save_snapshot",
+                             [&thread](const vibe_msgs::Snapshot::Request& r) { return thread.saveSnapshot(r.file); });
+  offer<vibe_msgs::Snapshot>("load_snapshot",
+                             [&thread](const vibe_msgs::Snapshot::Request& r) { return thread.loadSnapshot(r.file); });
   offer<vibe_msgs::LoadScene>("load_scene",
-                              [&stepper](const vibe_msgs::LoadScene::Request& r) { return stepper.loadScene(r.file); });
+                              [&thread](const vibe_msgs::LoadScene::Request& r) { return thread.loadScene(r.file); });
   spinner_ = std::make_unique<ros::AsyncSpinner>(4, &queue_);
   spinner_->start();
 }

@@ -16,7 +16,7 @@ namespace vibe::sim {
 /// may wait for steps that need inputs.
 class Services {
  public:
-  Services(const ros::NodeHandle& handle, Stepper& stepper);
+  Services(const ros::NodeHandle& handle, SimulationThread& thread);
   ~Services();
 
  private:

@@ -12,14 +12,13 @@
 #include <string>
 #include <thread>
 
-#include <boost/lockfree/spsc_queue.hpp>
-
+#include "input/input_interpreter.hpp"
 #include "input/input_queue.hpp"
 #include "publishing/publishers.hpp"
 #include "simulation/scene_source.hpp"
 #include "simulation/timed_simulation.hpp"
+#include "simulator/pace.hpp"
 #include "simulator/parameters.hpp"
-#include "simulator/phase_lock.hpp"
 #include "simulator/run_statistics.hpp"
 
 namespace vibe::sim {
@@ -38,13 +37,13 @@ enum class Outcome {
 };
 
 /// The stepping thread: takes a step whenever time, pause and inputs allow, and serves commands between two steps.
-/// The session belongs to this thread alone, so that it needs no lock: other threads hand it work and wait for the
-/// answer. From the inputs of a step to its state the thread takes no lock and, once the session has settled in, asks
+/// The simulation belongs to this thread alone, so that it needs no lock: other threads hand it work and wait for the
+/// answer. From the inputs of a step to its state the thread takes no lock and, once it has settled in, asks
 /// for no memory; sending messages does both, in roscpp.
-class Stepper {
+class SimulationThread {
  public:
-  Stepper(const Parameters& parameters, const SceneModel& made, InputQueue& queue, Publishers& publishers);
-  ~Stepper();
+  SimulationThread(const Parameters& parameters, const SceneModel& made, InputQueue& queue, Publishers& publishers);
+  ~SimulationThread();
 
   void start();
   /// Ends the thread after the present step; commands that still wait are answered with a failure.
@@ -87,18 +86,12 @@ class Stepper {
   // inputs and pace
   bool mustWaitForRecorder();
   void checkPatience(Hold hold);
-  std::int64_t nextDeadline() const;
-  std::int64_t nextBegin() const;
-  std::int64_t inputTime(std::int64_t now) const;
-  void followInput();
-  void restartPace(std::int64_t now);
   void reportLag(double lag);
 
   // commands
   Reply call(std::function<Reply()> work);
   Reply post(Command command);
   void serveCommands();
-  void hearArrivals();
   void rejectCommands();
   Reply changePause(bool paused);
   void answerSteps(const Reply& reply);
@@ -109,22 +102,20 @@ class Stepper {
   Publishers& publishers_;
 
   // of the thread alone
-  Session session_;
+  InputInterpreter interpreter_;
+  TimedSimulation simulation_;
+  Pace pace_;
   RunStatistics statistics_;
   RunStatus status_;
-  std::int64_t last_step_ = 0;     // statistics_.steps after which to finish; 0: never
-  std::int64_t pace_offset_ = 0;   // wall clock minus stamp at which a step is due [ns]
-  std::int64_t follow_shift_ = 0;  // by which the next step is due later than its stamp says [ns]
-  std::int64_t last_begin_ = 0;    // wall time of the last step [ns]
-  vibe_msgs::StepTiming timing_;   // of the present step
-  double hold_begin_ = 0;          // steady time at which the present hold began [s]
+  std::int64_t last_step_ = 0;    // statistics_.steps after which to finish; 0: never
+  vibe_msgs::StepTiming timing_;  // of the present step
+  double hold_begin_ = 0;         // steady time at which the present hold began [s]
   Hold hold_ = Hold::None;
   double recorder_since_ = 0;                 // steady time; 0: nobody listens yet [s]
   double last_clock_ = 0;                     // steady time [s]
   double last_lag_report_ = -1e9;             // steady time [s]
   double lag_report_period_ = 0;              // until the next [s]
   std::map<std::string, double> complaints_;  // about a topic, steady time of the last [s]
-  PhaseLock lock_;                            // to the samples of ~follow
   std::uint32_t steps_asked_ = 0;             // of a running takeSteps()
   std::uint32_t steps_left_ = 0;
   std::shared_ptr<Answer> steps_answer_;
@@ -137,7 +128,6 @@ class Stepper {
   std::atomic<bool> asked_{false};  // commands_ may hold some
   std::atomic<bool> woken_{false};  // by a sample
   std::atomic<bool> stopping_{false};
-  boost::lockfree::spsc_queue<std::int64_t, boost::lockfree::capacity<256>> arrivals_;  // wall times of ~follow [ns]
   std::atomic<bool> running_{false};
   std::atomic<Outcome> outcome_{Outcome::Stopped};
   std::thread thread_;

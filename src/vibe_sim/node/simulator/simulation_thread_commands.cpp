@@ -7,7 +7,7 @@
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_node/wall_clock.hpp"
 
-// The commands of Stepper: what other threads ask for, and how the stepping thread does it between two steps.
+// The commands of SimulationThread: what other threads ask for, and how the stepping thread does it between two steps.
 
 namespace vibe::sim {
 
@@ -23,7 +23,7 @@ std::string seconds(double time) {
 
 }  // namespace
 
-Reply Stepper::post(Command command) {
+Reply SimulationThread::post(Command command) {
   auto answer = std::make_shared<Answer>();
   std::future<Reply> reply = answer->get_future();
   {
@@ -36,7 +36,7 @@ Reply Stepper::post(Command command) {
   return reply.get();
 }
 
-Reply Stepper::call(std::function<Reply()> work) {
+Reply SimulationThread::call(std::function<Reply()> work) {
   return post([work = std::move(work)](const std::shared_ptr<Answer>& answer) {
     try {
       answer->set_value(work());
@@ -46,7 +46,7 @@ Reply Stepper::call(std::function<Reply()> work) {
   });
 }
 
-void Stepper::serveCommands() {
+void SimulationThread::serveCommands() {
   if (!asked_) return;
   std::unique_lock<std::mutex> lock(mutex_);
   asked_ = false;  // whoever asks from now on sets it again
@@ -59,7 +59,7 @@ void Stepper::serveCommands() {
   }
 }
 
-void Stepper::rejectCommands() {
+void SimulationThread::rejectCommands() {
   std::lock_guard<std::mutex> lock(mutex_);
   accepting_ = false;
   for (auto& [command, answer] : commands_) answer->set_value(kShuttingDown);
@@ -67,26 +67,26 @@ void Stepper::rejectCommands() {
   answerSteps(kShuttingDown);
 }
 
-void Stepper::answerSteps(const Reply& reply) {
+void SimulationThread::answerSteps(const Reply& reply) {
   steps_left_ = 0;
   if (steps_answer_) steps_answer_->set_value(reply);
   steps_answer_.reset();
 }
 
-Reply Stepper::setPaused(bool paused) {
+Reply SimulationThread::setPaused(bool paused) {
   return call([this, paused] { return changePause(paused); });
 }
 
-Reply Stepper::changePause(bool paused) {
+Reply SimulationThread::changePause(bool paused) {
   if (status_.paused == paused) return {true, paused ? "It is paused already." : "It is running already."};
   status_.paused = paused;
   hold_ = Hold::None;  // whoever resumes gives the inputs the full time to come
-  if (!paused) restartPace(node::wallTime());
-  publishers_.procedureState(session_, status_);
-  return {true, (paused ? "Paused at " : "Running from ") + seconds(session_.state.time) + "."};
+  if (!paused) pace_.restart(node::wallTime());
+  publishers_.procedureState(simulation_, status_);
+  return {true, (paused ? "Paused at " : "Running from ") + seconds(simulation_.state().time) + "."};
 }
 
-Reply Stepper::takeSteps(std::uint32_t n) {
+Reply SimulationThread::takeSteps(std::uint32_t n) {
   return post([this, n](const std::shared_ptr<Answer>& answer) {
     if (n == 0) {
       answer->set_value({false, "There is nothing to do for 0 steps; ask for 1 or more."});
@@ -98,42 +98,42 @@ Reply Stepper::takeSteps(std::uint32_t n) {
       steps_asked_ = steps_left_ = n;
       steps_answer_ = answer;
       hold_ = Hold::None;
-      restartPace(node::wallTime());
+      pace_.restart(node::wallTime());
     }
   });
 }
 
-Reply Stepper::reset(std::uint64_t seed, bool keep_time) {
+Reply SimulationThread::reset(std::uint64_t seed, bool keep_time) {
   return call([this, seed, keep_time]() -> Reply {
     if (!keep_time && parameters_.time_source == TimeSource::Wall) {
       return {false, "The wall clock cannot be set back; reset with keep_time true."};
     }
-    const Model& model = *session_.model;
-    session_.replaceState(initialState(model, seed != 0 ? seed : model.scene.seed));
+    const Model& model = simulation_.model();
+    simulation_.replaceState(initialState(model, seed != 0 ? seed : model.scene.seed));
     if (!keep_time) {
-      session_.time = TimeLine(kEpoch, model.scene.step_period);
+      simulation_.restartTime(kEpoch);
       queue_.clear();
     }
     afterReplacement();
-    return {true, "Reset to the initial state with seed " + std::to_string(session_.state.seed) + "."};
+    return {true, "Reset to the initial state with seed " + std::to_string(simulation_.state().seed) + "."};
   });
 }
 
-void Stepper::afterReplacement() {
-  queue_.endMoves();
+void SimulationThread::afterReplacement() {
+  interpreter_.endMoves();
   status_.scope_moves = status_.overstitch_moves = false;
-  restartPace(node::wallTime());
-  publishers_.announceRun(session_);
-  publishers_.wholeState(session_, status_);
+  pace_.restart(node::wallTime());
+  publishers_.announceRun(simulation_);
+  publishers_.wholeState(simulation_, status_);
 }
 
-Reply Stepper::saveSnapshot(const std::string& file) {
+Reply SimulationThread::saveSnapshot(const std::string& file) {
   // copying is quick, writing may not be: only the copy holds up the stepping
   std::shared_ptr<const Model> model;
   State state;
   Reply copied = call([&]() -> Reply {
-    model = session_.model;
-    state = session_.state;
+    model = simulation_.sharedModel();
+    state = simulation_.state();
     return {true, ""};
   });
   if (!copied.success) return copied;
@@ -145,15 +145,15 @@ Reply Stepper::saveSnapshot(const std::string& file) {
   return {true, "Saved the state at " + seconds(state.time) + " to '" + file + "'."};
 }
 
-Reply Stepper::loadSnapshot(const std::string& file) {
+Reply SimulationThread::loadSnapshot(const std::string& file) {
   return call([this, file]() -> Reply {
-    session_.replaceState(vibe::loadSnapshot(*session_.model, file));
+    simulation_.replaceState(vibe::loadSnapshot(simulation_.model(), file));
     afterReplacement();
-    return {true, "Loaded the state at " + seconds(session_.state.time) + " from '" + file + "'."};
+    return {true, "Loaded the state at " + seconds(simulation_.state().time) + " from '" + file + "'."};
   });
 }
 
-Reply Stepper::loadScene(const std::string& address) {
+Reply SimulationThread::loadScene(const std::string& address) {
   SceneModel made;
   try {
     made = loadModel(address, "");
@@ -161,15 +161,14 @@ Reply Stepper::loadScene(const std::string& address) {
     return {false, error.what()};
   }
   return call([this, made]() -> Reply {
-    const double left = static_cast<double>(last_step_ - statistics_.steps) * session_.time.period();
-    session_.replaceModel(made.model);
-    session_.urdf = made.urdf;
-    if (last_step_ > 0) last_step_ = statistics_.steps + stepsIn(left, session_.time.period());
-    lock_ = PhaseLock(std::llround(1e9 * session_.time.period()));
-    publishers_.announceModel(session_);
+    const double left = static_cast<double>(last_step_ - statistics_.steps) * simulation_.time().period();
+    simulation_.replaceModel(made);
+    if (last_step_ > 0) last_step_ = statistics_.steps + stepsIn(left, simulation_.time().period());
+    pace_.forgetSamples();
+    publishers_.announceModel(simulation_);
     afterReplacement();
-    session_.simulation.warmUp();
-    restartPace(node::wallTime());
+    simulation_.warmUp();
+    pace_.restart(node::wallTime());
     return {true, "Simulating '" + made.model->scene.name + "' with " + std::to_string(made.model->particle_count) +
                       " particles."};
   });

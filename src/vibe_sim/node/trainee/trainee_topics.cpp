@@ -1,13 +1,16 @@
 #include "trainee/trainee_topics.hpp"
 
 #include "conversions/conversions.hpp"
+#include "conversions/input_message.hpp"
 #include "conversions/session_message.hpp"
 
 namespace vibe::sim {
-
 namespace {
 
 constexpr std::uint32_t kSenderQueue = 1000;
+
+constexpr std::size_t kMaxResults = 10000;  // of a simulation that goes on although its particles do not come
+constexpr std::size_t kMaxClouds = 100;
 
 }  // namespace
 
@@ -29,13 +32,6 @@ void InputSender::send(const StepInput& input, std::int64_t stamp, bool with_but
 void InputSender::sendButtons(const StepInput& input, std::int64_t stamp) {
   buttons_.publish(makeButtons(input, stamp));
 }
-
-namespace {
-
-constexpr std::size_t kMaxResults = 10000;  // of a simulation that goes on although its particles do not come
-constexpr std::size_t kMaxClouds = 100;
-
-}  // namespace
 
 void ObservationQueue::push(const vibe_msgs::StepResult::ConstPtr& result) {
   results_.push_back(result);

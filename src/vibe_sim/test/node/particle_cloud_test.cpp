@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 
-#include "conversions/conversions.hpp"
 #include "worlds.hpp"
 
 namespace vibe::sim::particle_cloud_test {

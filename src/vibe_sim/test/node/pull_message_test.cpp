@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "vibe_core/common/error.hpp"
+#include "sentences.hpp"
 #include "worlds.hpp"
 
 namespace vibe::sim::pull_message_test {
@@ -21,12 +21,7 @@ vibe_msgs::TissuePull goodPull() {
 }
 
 std::string errorOf(const vibe_msgs::TissuePull& message) {
-  try {
-    readPull(message);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return sentenceOf([&] { readPull(message); });
 }
 
 TEST(PullMessage, isReadBitForBitInBothFrames) {

@@ -4,7 +4,6 @@
 
 #include <functional>
 
-#include "conversions/conversions.hpp"
 #include "worlds.hpp"
 
 namespace vibe::sim::suture_message_test {
