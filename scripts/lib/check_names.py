@@ -62,7 +62,8 @@ def names_of(text, unnamed):
 
 def folders(package):
     """The folders that are compiled as one file each."""
-    return [folder for folder in [*package.glob("src/*/"), package / "node", package / "src"] if any(folder.glob("*.cpp"))]
+    return [folder for folder in [*package.glob("src/*/"), *package.glob("node/*/"), package / "node", package / "src"]
+            if any(folder.glob("*.cpp"))]
 
 
 def header_names(root, package):

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "vibe_core/common/error.hpp"
-#include "wall_time.hpp"
+#include "vibe_node/wall_clock.hpp"
 
 namespace vibe::latency {
 namespace {
@@ -69,7 +69,7 @@ void LampWatch::run() {
       continue;
     }
     const std::optional<bool> state = readLamp();
-    if (state && state != last) changed_(wallTime(), *state);
+    if (state && state != last) changed_(node::wallTime(), *state);
     if (state) last = state;
     next = std::max(next + kReadPeriod, std::chrono::steady_clock::now() - kReadPeriod);
     std::this_thread::sleep_until(next);

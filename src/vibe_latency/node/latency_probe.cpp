@@ -1,11 +1,12 @@
 #include "latency_probe.hpp"
 
 #include <algorithm>
+#include <iomanip>
 
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_node/parameter_reader.hpp"
-#include "wall_time.hpp"
+#include "vibe_node/wall_clock.hpp"
 
 namespace vibe::latency {
 namespace {
@@ -23,6 +24,39 @@ std::size_t indexOf(const std::string& joint) {
 }
 
 }  // namespace
+
+EventTable::EventTable(const std::string& file, const std::string& columns) : file_(file), out_(file) {
+  out_ << columns << '\n' << std::setprecision(17) << std::flush;
+  check();
+}
+
+void EventTable::add(std::initializer_list<std::int64_t> numbers, std::initializer_list<double> values) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  rows_.push_back({numbers, values});
+}
+
+void EventTable::flush() {
+  std::vector<Row> rows;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    rows.swap(rows_);
+  }
+  for (const Row& row : rows) {
+    const char* separator = "";
+    for (const std::int64_t number : row.numbers) {
+      out_ << separator << number;
+      separator = ",";
+    }
+    for (const double value : row.values) out_ << ',' << value;
+    out_ << '\n';
+  }
+  out_.flush();
+  check();
+}
+
+void EventTable::check() {
+  if (!out_) throw Error("Cannot write to '" + file_ + "'; check the folder and whether the disk is full.");
+}
 
 ProbeParameters readProbeParameters(const ros::NodeHandle& private_handle) {
   node::ParameterReader reader(private_handle);
@@ -62,13 +96,14 @@ void LatencyProbe::listenToSteps(ros::NodeHandle& handle, const ros::TransportHi
   subscribers_.push_back(handle.subscribe<vibe_msgs::StepInput>(
       "applied_input", kQueue,
       [this](const vibe_msgs::StepInput::ConstPtr& m) {
-        input_.add({wallTime(), ns(m->header.stamp), static_cast<std::int64_t>(m->step)}, {m->joints[input_joint_]});
+        input_.add({node::wallTime(), ns(m->header.stamp), static_cast<std::int64_t>(m->step)},
+                   {m->joints[input_joint_]});
       },
       {}, hints));
   subscribers_.push_back(handle.subscribe<vibe_msgs::StepTiming>(
       "step_timing", kQueue,
       [this](const vibe_msgs::StepTiming::ConstPtr& m) {
-        step_.add({wallTime(), ns(m->header.stamp), static_cast<std::int64_t>(m->step), ns(m->due), ns(m->begin),
+        step_.add({node::wallTime(), ns(m->header.stamp), static_cast<std::int64_t>(m->step), ns(m->due), ns(m->begin),
                    ns(m->solved), ns(m->published)});
       },
       {}, hints));
@@ -78,7 +113,7 @@ void LatencyProbe::listenToDisplay(ros::NodeHandle& handle, const ros::Transport
   subscribers_.push_back(handle.subscribe<vibe_msgs::DisplayTiming>(
       "latency_lamp", kQueue,
       [this](const vibe_msgs::DisplayTiming::ConstPtr& m) {
-        display_.add({wallTime(), ns(m->header.stamp), m->lit, ns(m->received), ns(m->rendered)});
+        display_.add({node::wallTime(), ns(m->header.stamp), m->lit, ns(m->received), ns(m->rendered)});
       },
       {}, hints));
 }
@@ -87,7 +122,7 @@ void LatencyProbe::addJoint(EventTable& table, const sensor_msgs::JointState& me
   const auto found = std::find(message.name.begin(), message.name.end(), joint_);
   const auto index = static_cast<std::size_t>(found - message.name.begin());
   if (index < message.name.size() && index < message.position.size())
-    table.add({wallTime(), ns(message.header.stamp)}, {message.position[index]});
+    table.add({node::wallTime(), ns(message.header.stamp)}, {message.position[index]});
 }
 
 void LatencyProbe::flush() {

@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "latency_probe.hpp"
-#include "vibe_node/master.hpp"
 #include "vibe_node/parameter_reader.hpp"
+#include "vibe_node/startup.hpp"
 
 namespace {
 

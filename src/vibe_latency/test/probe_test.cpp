@@ -4,8 +4,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "event_table.hpp"
 #include "lamp_watch.hpp"
+#include "latency_probe.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::latency::probe_test {

@@ -1,10 +1,10 @@
-// sources: node/message_layout.cpp node/step_input_reader.cpp
+// sources: node/recording/step_input_reader.cpp
 // includes: node
 #include <cstdlib>
 #include <string>
 #include <vector>
 
-#include "step_input_reader.hpp"
+#include "recording/step_input_reader.hpp"
 #include "vibe_core/common/error.hpp"
 
 // Any text up to a zero byte as the definition of a recorded message, and any bytes behind it as the message: an Error

@@ -12,8 +12,6 @@
 #include <vector>
 
 #include "tetrahedra/tetrahedra.hpp"
-#include "tissue/element_worlds.hpp"
-#include "tissue/tetrahedra.hpp"
 #include "vibe_testing/element_worlds.hpp"
 
 /// Solids and displacements for the tests of tetrahedra.

@@ -7,7 +7,6 @@
 #include <new>
 #include <random>
 
-#include "contact/scope_fixture.hpp"
 #include "contact/tool_motion.hpp"
 #include "vibe_testing/expect_error.hpp"
 #include "vibe_testing/scope_fixture.hpp"

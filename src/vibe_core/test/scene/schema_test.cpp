@@ -9,7 +9,6 @@
 
 #include "scene/scene_value.hpp"
 #include "scene/schema_text.hpp"
-#include "scene/unit.hpp"
 #include "vibe_core/scene/unit.hpp"
 #include "vibe_testing/expect_error.hpp"
 

@@ -2,10 +2,8 @@
 #include <memory>
 
 #include "solver/implicit_worlds.hpp"
-#include "tissue/shell.hpp"
 #include "vibe_core/tissue/shell.hpp"
 #include "vibe_testing/worlds.hpp"
-#include "worlds.hpp"
 
 /// A ball of gas in a thin wall, for the tests of implicit steps.
 namespace vibe::test {

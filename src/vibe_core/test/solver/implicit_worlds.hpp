@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "solver/linear_tetrahedra.hpp"
-#include "tissue/element_worlds.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
+#include "vibe_testing/element_worlds.hpp"
 
 /// Solid bodies for the tests of implicit steps.
 namespace vibe::test {

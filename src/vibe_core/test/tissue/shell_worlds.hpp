@@ -13,8 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "tissue/element_worlds.hpp"
-#include "tissue/shell.hpp"
 #include "tissue/shell_kernel.hpp"
 #include "vibe_core/tissue/shell.hpp"
 #include "vibe_testing/element_worlds.hpp"

@@ -1,11 +1,17 @@
-#include "conversions.hpp"
+// Messages <-> library, apart from those that have a test of their own.
+#include "conversions/conversions.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "vibe_core/common/error.hpp"
+#include "conversions/input_message.hpp"
+#include "conversions/procedure_message.hpp"
+#include "conversions/session_message.hpp"
+#include "conversions/tissue_message.hpp"
+#include "conversions/tool_message.hpp"
+#include "sentences.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 
 namespace vibe::sim::conversions_test {
@@ -19,23 +25,8 @@ sensor_msgs::JointState scopeMessage() {
   return makeScopeJoints(input, 123456789012);
 }
 
-/// The sentence with which reading fails; empty if it does not.
-template <typename Read>
-std::string errorOf(Read read) {
-  try {
-    read();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 std::string jointError(const sensor_msgs::JointState& message, JointSource source = JointSource::Measured) {
-  return errorOf([&] { readJoints(message, InputChannel::Scope, source); });
-}
-
-void expectMentions(const std::string& sentence, const std::string& part) {
-  EXPECT_NE(sentence.find(part), std::string::npos) << "'" << sentence << "' lacks '" << part << "'";
+  return sentenceOf([&] { readJoints(message, InputChannel::Scope, source); });
 }
 
 TEST(Conversions, jointsSurviveTheRoundTripBitForBit) {
@@ -149,9 +140,9 @@ TEST(Conversions, buttonsAreReadByPosition) {
   sensor_msgs::Joy message = makeButtons(input, 5);
   EXPECT_EQ(readButtons(message).buttons, input.buttons);
   message.buttons[HelixGrab] = 2;
-  expectMentions(errorOf([&] { readButtons(message); }), "'helix_grab' is 2");
+  expectMentions(sentenceOf([&] { readButtons(message); }), "'helix_grab' is 2");
   message.buttons.resize(3);
-  expectMentions(errorOf([&] { readButtons(message); }), "3 buttons");
+  expectMentions(sentenceOf([&] { readButtons(message); }), "3 buttons");
 }
 
 geometry_msgs::PoseStamped poseMessage() {
@@ -166,21 +157,21 @@ TEST(Conversions, tipTargetsKnowTheirFrame) {
   message.header.frame_id = "scope_base";
   EXPECT_EQ(readTipTarget(message).target, ScopeTarget::TipInBase);
   message.header.frame_id = "map";
-  expectMentions(errorOf([&] { readTipTarget(message); }), "'map'");
+  expectMentions(sentenceOf([&] { readTipTarget(message); }), "'map'");
   message.header.frame_id = "";
-  EXPECT_NE(errorOf([&] { readTipTarget(message); }), "");
+  EXPECT_NE(sentenceOf([&] { readTipTarget(message); }), "");
 }
 
 TEST(Conversions, badTipTargetsAreErrors) {
   geometry_msgs::PoseStamped message = poseMessage();
   message.pose.position.y = kNan;
-  expectMentions(errorOf([&] { readTipTarget(message); }), "finite");
+  expectMentions(sentenceOf([&] { readTipTarget(message); }), "finite");
   message = poseMessage();
   message.pose.orientation.z = kNan;
-  expectMentions(errorOf([&] { readTipTarget(message); }), "finite");
+  expectMentions(sentenceOf([&] { readTipTarget(message); }), "finite");
   message = poseMessage();
   message.pose.orientation.w = 0;
-  expectMentions(errorOf([&] { readTipTarget(message); }), "unit quaternion");
+  expectMentions(sentenceOf([&] { readTipTarget(message); }), "unit quaternion");
 }
 
 TEST(Conversions, stampsBeforeZeroBecomeZero) {

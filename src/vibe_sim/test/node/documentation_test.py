@@ -64,7 +64,8 @@ class DocumentationTest(unittest.TestCase):
         self.assertEqual(rows_of(self.text, "Services"), running)
 
     def test_parameters(self):
-        for section, file in (("sim_node", "parameters.cpp"), ("vibe_trainee", "vibe_trainee_main.cpp")):
+        for section, file in (("sim_node", "simulator/parameters.cpp"),
+                              ("vibe_trainee", "programs/vibe_trainee_main.cpp")):
             with self.subTest(section):
                 self.assertEqual(set(rows_of(self.text, section)), parameters_read_by(file))
 

@@ -1,5 +1,5 @@
 // What trainee/progress says, from the first goal to the end of a session.
-#include "goal_book.hpp"
+#include "trainee/goal_book.hpp"
 
 #include <gtest/gtest.h>
 

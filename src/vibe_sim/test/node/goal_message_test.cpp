@@ -1,11 +1,11 @@
 // Goals of messages have the ranges, defaults and sentences of protocols.
-#include "goal_message.hpp"
+#include "conversions/goal_message.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "vibe_core/common/error.hpp"
+#include "sentences.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 namespace vibe::sim::goal_message_test {
@@ -18,12 +18,7 @@ vibe_msgs::TraineeGoal message(const std::string& kind) {
 }
 
 std::string errorOf(const vibe_msgs::TraineeGoal& goal) {
-  try {
-    readGoal(goal);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return sentenceOf([&] { readGoal(goal); });
 }
 
 TEST(GoalMessage, ABiteHasItsPlaceToTheBit) {

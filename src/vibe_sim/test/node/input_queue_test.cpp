@@ -1,8 +1,11 @@
-#include "input_queue.hpp"
+// What is applied when, and what it means to a model: InputQueue and InputInterpreter together.
+#include "input/input_queue.hpp"
 
 #include <gtest/gtest.h>
 
+#include "input/input_interpreter.hpp"
 #include "vibe_testing/worlds.hpp"
+#include "worlds.hpp"
 
 namespace vibe::sim::input_queue_test {
 namespace {
@@ -42,34 +45,38 @@ InputSample pullAt(int particle, double x, std::int64_t stamp) {
 class InputQueueTest : public testing::Test {
  protected:
   InputQueue queue;
+  InputInterpreter interpreter;
   Model model;  // without a tool
   StepInput input;
+  std::vector<std::string> apply(std::int64_t stamp, bool real_time = true) {
+    return interpreter.apply(stamp, queue, model, input, real_time);
+  }
 };
 
 TEST_F(InputQueueTest, futureSamplesWaitUntilTheyAreDue) {
   queue.push(scopeAt(0.1, 100));
   queue.push(scopeAt(0.2, 200));
-  queue.apply(99, model, input);
+  apply(99);
   EXPECT_EQ(input.joints[Insertion], 0.0);
-  queue.apply(100, model, input);
+  apply(100);
   EXPECT_EQ(input.joints[Insertion], 0.1);
-  queue.apply(1000, model, input);
+  apply(1000);
   EXPECT_EQ(input.joints[Insertion], 0.2);
 }
 
 TEST_F(InputQueueTest, lastValueStaysInForce) {
   queue.push(buttonsAt(1, 10));
-  queue.apply(10, model, input);
-  queue.apply(20, model, input);
+  apply(10);
+  apply(20);
   EXPECT_EQ(input.buttons[HelixGrab], 1);
 }
 
 TEST_F(InputQueueTest, stampZeroAndThePastCountAsNowInTheOrderOfArrival) {
-  queue.apply(500, model, input);
+  apply(500);
   queue.push(scopeAt(0.1, 400));
   queue.push(scopeAt(0.2, 0));
   queue.push(scopeAt(0.3, 300));
-  queue.apply(501, model, input);
+  apply(501);
   EXPECT_EQ(input.joints[Insertion], 0.3);
 }
 
@@ -77,23 +84,23 @@ TEST_F(InputQueueTest, samplesOutOfOrderAreAppliedInTheOrderOfStamps) {
   queue.push(scopeAt(0.3, 300));
   queue.push(scopeAt(0.1, 100));
   queue.push(scopeAt(0.2, 200));
-  queue.apply(250, model, input);
+  apply(250);
   EXPECT_EQ(input.joints[Insertion], 0.2);
 }
 
 TEST_F(InputQueueTest, aRepeatedStampReplacesWhatWaits) {
   for (int i = 0; i < 10000; ++i) EXPECT_TRUE(queue.push(scopeAt(0.001 * i, 100)));
-  queue.apply(100, model, input);
+  apply(100);
   EXPECT_DOUBLE_EQ(input.joints[Insertion], 9.999);
 }
 
 TEST_F(InputQueueTest, channelsTouchTheirOwnValuesOnly) {
   input.joints = {1, 2, 3, 4, 5, 6, 7};
   queue.push(overstitchAt(0.01, 1));
-  queue.apply(1, model, input);
+  apply(1);
   EXPECT_EQ(input.joints, (std::array<double, kJointCount>{1, 2, 3, 4, 0.01, 0, 0}));
   queue.push(scopeAt(0.02, 2));
-  queue.apply(2, model, input);
+  apply(2);
   EXPECT_EQ(input.joints, (std::array<double, kJointCount>{0.02, 0, 0, 0, 0.01, 0, 0}));
 }
 
@@ -103,7 +110,7 @@ TEST_F(InputQueueTest, aFullChannelRefusesAndTheOthersDoNotCare) {
   }
   EXPECT_FALSE(queue.push(scopeAt(0, 999999)));
   EXPECT_TRUE(queue.push(buttonsAt(1, 999999)));
-  queue.apply(1000, model, input);
+  apply(1000);
   EXPECT_TRUE(queue.push(scopeAt(0, 999999)));
 }
 
@@ -119,7 +126,7 @@ TEST_F(InputQueueTest, lockstepKnowsATimeWhenEveryChannelHasReachedIt) {
   EXPECT_FALSE(queue.knownUntil(101));
   EXPECT_EQ(queue.missingAt(101), "scope/measured_js, scope/buttons");
   // applying does not make it forget what it knows
-  queue.apply(100, model, input);
+  apply(100);
   EXPECT_TRUE(queue.knownUntil(100));
   queue.clear();
   EXPECT_FALSE(queue.knownUntil(100));
@@ -128,52 +135,52 @@ TEST_F(InputQueueTest, lockstepKnowsATimeWhenEveryChannelHasReachedIt) {
 TEST_F(InputQueueTest, buttonsThatNobodyPressesAnyMoreAreReleasedAndTheScopeStays) {
   queue.push(buttonsAt(1, 1000));
   queue.push(scopeAt(0.1, 1000));
-  EXPECT_TRUE(queue.apply(1000, model, input).empty());
-  EXPECT_TRUE(queue.apply(1000 + kButtonTimeout, model, input).empty());
+  EXPECT_TRUE(apply(1000).empty());
+  EXPECT_TRUE(apply(1000 + kButtonTimeout).empty());
   EXPECT_EQ(input.buttons[HelixGrab], 1);
-  const std::vector<std::string> sentences = queue.apply(1001 + kButtonTimeout, model, input);
+  const std::vector<std::string> sentences = apply(1001 + kButtonTimeout);
   ASSERT_EQ(sentences.size(), 1u);
   EXPECT_NE(sentences[0].find("scope/buttons"), std::string::npos);
   EXPECT_NE(sentences[0].find("are released: helix_grab;"), std::string::npos);
   EXPECT_EQ(input.buttons[HelixGrab], 0);
   EXPECT_EQ(input.joints[Insertion], 0.1);
-  EXPECT_TRUE(queue.apply(5000 + kButtonTimeout, model, input).empty()) << "said once";
+  EXPECT_TRUE(apply(5000 + kButtonTimeout).empty()) << "said once";
   queue.push(buttonsAt(1, 0));
-  queue.apply(6000 + kButtonTimeout, model, input);
+  apply(6000 + kButtonTimeout);
   EXPECT_EQ(input.buttons[HelixGrab], 1);
 }
 
 TEST_F(InputQueueTest, buttonsStayPressedWhereTimeIsNotThatOfTheWall) {
   queue.push(buttonsAt(1, 1000));
-  queue.apply(1000, model, input, false);
-  EXPECT_TRUE(queue.apply(9 * kButtonTimeout, model, input, false).empty());
+  apply(1000, false);
+  EXPECT_TRUE(apply(9 * kButtonTimeout, false).empty());
   EXPECT_EQ(input.buttons[HelixGrab], 1);
 }
 
 TEST_F(InputQueueTest, buttonsThatAreNotPressedMayBeSilent) {
   queue.push(buttonsAt(0, 1000));
-  queue.apply(1000, model, input);
-  EXPECT_TRUE(queue.apply(5 * kButtonTimeout, model, input).empty());
+  apply(1000);
+  EXPECT_TRUE(apply(5 * kButtonTimeout).empty());
 }
 
 TEST_F(InputQueueTest, aPressThatIsToEndLaterIsNotSilent) {
   queue.push(buttonsAt(1, 1000));
   queue.push(buttonsAt(0, 9 * kButtonTimeout));
-  queue.apply(1000, model, input);
-  EXPECT_TRUE(queue.apply(8 * kButtonTimeout, model, input).empty());
+  apply(1000);
+  EXPECT_TRUE(apply(8 * kButtonTimeout).empty());
   EXPECT_EQ(input.buttons[HelixGrab], 1);
 }
 
 TEST_F(InputQueueTest, aClockThatIsSetBackLocksNobodyOut) {
   const std::int64_t hour = 3600LL * 1'000'000'000;
-  queue.apply(2 * hour, model, input);
+  apply(2 * hour);
   queue.push(scopeAt(0.1, 2 * hour + 1));
-  queue.apply(hour, model, input);
+  apply(hour);
   EXPECT_EQ(input.joints[Insertion], 0.1) << "what waited is due";
   queue.push(scopeAt(0.2, hour + 100));
-  queue.apply(hour + 99, model, input);
+  apply(hour + 99);
   EXPECT_EQ(input.joints[Insertion], 0.1);
-  queue.apply(hour + 100, model, input);
+  apply(hour + 100);
   EXPECT_EQ(input.joints[Insertion], 0.2);
 }
 
@@ -181,8 +188,9 @@ class PullQueueTest : public testing::Test {
  protected:
   test::World world{test::bareScene(), test::plainOrgan(test::icosphere(0.05, 2), 2e-3)};
   InputQueue queue;
+  InputInterpreter interpreter;
   StepInput input;
-  std::vector<std::string> apply(std::int64_t stamp) { return queue.apply(stamp, *world.model, input); }
+  std::vector<std::string> apply(std::int64_t stamp) { return interpreter.apply(stamp, queue, *world.model, input); }
 };
 
 TEST_F(PullQueueTest, aPullIsLatchedLikeEveryInput) {
@@ -248,7 +256,7 @@ TEST_F(InputQueueTest, aTipTargetWithoutAScopeIsReportedAndChangesNothing) {
   sample.target = ScopeTarget::TipInWorld;
   queue.push(sample);
   input.joints[Insertion] = 0.05;
-  const std::vector<std::string> sentences = queue.apply(1, model, input);
+  const std::vector<std::string> sentences = apply(1);
   ASSERT_EQ(sentences.size(), 1u);
   EXPECT_NE(sentences[0].find("no scope"), std::string::npos);
   EXPECT_EQ(input.joints[Insertion], 0.05);

@@ -1,5 +1,5 @@
 // Which stamps of inputs are accepted.
-#include "input_window.hpp"
+#include "input/input_sample.hpp"
 
 #include <gtest/gtest.h>
 

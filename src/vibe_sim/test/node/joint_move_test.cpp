@@ -1,9 +1,11 @@
-#include "joint_move.hpp"
+#include "input/input_interpreter.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "contact/scope_fixture.hpp"
+#include "input/input_queue.hpp"
 #include "input_queue.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_testing/scope_fixture.hpp"
@@ -67,6 +69,7 @@ TEST_F(JointMoveTest, AMoveToWhereItIsTakesNoTime) {
 class MoveQueueTest : public testing::Test {
  protected:
   InputQueue queue;
+  InputInterpreter interpreter;
   Model model;
   StepInput input;
 
@@ -84,35 +87,35 @@ class MoveQueueTest : public testing::Test {
 TEST_F(MoveQueueTest, BeginsWhereTheHandIsAndNotWhereItWasSentTo) {
   input.joints[Insertion] = 0.2;
   send(InputChannel::Scope, 0.1, true);
-  queue.apply(1000, model, input, true, JointArray{0.05});
+  interpreter.apply(1000, queue, model, input, true, JointArray{0.05});
   EXPECT_EQ(input.joints[Insertion], 0.05);
-  EXPECT_TRUE(queue.moves(InputChannel::Scope));
-  EXPECT_FALSE(queue.moves(InputChannel::Overstitch));
-  queue.apply(20'000 * kMillisecond, model, input);
+  EXPECT_TRUE(interpreter.moves(InputChannel::Scope));
+  EXPECT_FALSE(interpreter.moves(InputChannel::Overstitch));
+  interpreter.apply(20'000 * kMillisecond, queue, model, input);
   EXPECT_NEAR(input.joints[Insertion], 0.1, 1e-15);
-  EXPECT_FALSE(queue.moves(InputChannel::Scope));
+  EXPECT_FALSE(interpreter.moves(InputChannel::Scope));
 }
 
 TEST_F(MoveQueueTest, TheScopeAndTheDeviceMoveIndependently) {
   send(InputChannel::Scope, 0.1, true);
   send(InputChannel::Overstitch, 0.01, true);
-  queue.apply(1000, model, input);
+  interpreter.apply(1000, queue, model, input);
   send(InputChannel::Scope, 0.02, false);
-  queue.apply(2000, model, input);
+  interpreter.apply(2000, queue, model, input);
   EXPECT_EQ(input.joints[Insertion], 0.02);
-  EXPECT_FALSE(queue.moves(InputChannel::Scope));
-  EXPECT_TRUE(queue.moves(InputChannel::Overstitch));
-  queue.endMoves();
-  EXPECT_FALSE(queue.moves(InputChannel::Overstitch));
+  EXPECT_FALSE(interpreter.moves(InputChannel::Scope));
+  EXPECT_TRUE(interpreter.moves(InputChannel::Overstitch));
+  interpreter.endMoves();
+  EXPECT_FALSE(interpreter.moves(InputChannel::Overstitch));
 }
 
 TEST_F(MoveQueueTest, AMoveWithoutAScopeIsASentence) {
   model.tool.reset();
   send(InputChannel::Overstitch, 0.1, true);
-  const std::vector<std::string> sentences = queue.apply(1000, model, input);
+  const std::vector<std::string> sentences = interpreter.apply(1000, queue, model, input);
   ASSERT_EQ(sentences.size(), 1u);
   EXPECT_EQ(sentences[0].rfind("overstitch/move_jp", 0), 0u);
-  EXPECT_FALSE(queue.moves(InputChannel::Overstitch));
+  EXPECT_FALSE(interpreter.moves(InputChannel::Overstitch));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Messages of a step arrive on two topics in any order: what a trainee perceives in lock-step does not depend on it.
-#include "observation_queue.hpp"
+#include "trainee/trainee_topics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "conversions.hpp"
+#include "conversions/conversions.hpp"
 
 namespace vibe::sim::observation_queue_test {
 namespace {

@@ -1,10 +1,11 @@
-#include "particle_cloud.hpp"
+#include "conversions/tissue_message.hpp"
 
 #include <gtest/gtest.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 
 #include "conversions.hpp"
 #include "vibe_testing/worlds.hpp"
+#include "worlds.hpp"
 
 namespace vibe::sim::particle_cloud_test {
 namespace {

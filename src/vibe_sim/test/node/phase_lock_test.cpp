@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "phase_lock.hpp"
+#include "simulator/phase_lock.hpp"
 
 namespace vibe::sim::phase_lock_test {
 namespace {

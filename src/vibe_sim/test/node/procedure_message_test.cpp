@@ -1,4 +1,4 @@
-#include "procedure_message.hpp"
+#include "conversions/procedure_message.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,27 +11,27 @@ namespace {
 
 class ProcedureMessage : public ::testing::Test {
  protected:
-  Session session = makeSession();
-  State& state = session.simulation.editState();
+  TimedSimulation simulation = makeSimulation();
+  State& state = simulation.editState();
   ProcedureState& procedure = state.procedure;
 
-  static Session makeSession() {
+  static TimedSimulation makeSimulation() {
     Scene scene = test::bareScene();
     scene.suture.emplace();
     const test::World world(scene, test::plainOrgan(test::icosphere(0.05, 1), 2e-3));
-    return Session(world.model, 1, 1'000'000'000, 1);
+    return TimedSimulation({world.model, ""}, 1, 1'000'000'000, 1);
   }
 
   /// A step that leads to the present state, with these events.
   void record(std::initializer_list<Event::Kind> kinds = {}) {
     std::vector<Event> events;
     for (Event::Kind kind : kinds) events.emplace_back().kind = kind;
-    session.simulation.record(events);
+    simulation.record(events);
   }
 
-  vibe_msgs::ProcedureState message() const { return makeProcedureState(session, {}); }
-  vibe_msgs::SkillMetrics skill() const { return makeSkillMetrics(session); }
-  std::string kind() const { return kindOf(session, {}); }
+  vibe_msgs::ProcedureState message() const { return makeProcedureState(simulation, {}); }
+  vibe_msgs::SkillMetrics skill() const { return makeSkillMetrics(simulation); }
+  std::string kind() const { return kindOf(simulation, {}); }
 
   Suture& addSuture(Suture::Stage stage, int full, int partial = 0) {
     Suture& suture = procedure.sutures.emplace_back();
@@ -67,7 +67,7 @@ TEST_F(ProcedureMessage, countsParticlesByGradeWithTheWorseOnesIncluded) {
 }
 
 TEST_F(ProcedureMessage, countsSuturesByWhatBecameOfThem) {
-  const double loose = session.model->scene.suture->loose_tension;
+  const double loose = simulation.model().scene.suture->loose_tension;
   addSuture(Suture::Stage::Cinched, 6, 1).cinch_tension = loose;
   addSuture(Suture::Stage::Cinched, 4).cinch_tension = 0.99 * loose;
   procedure.sutures[1].technique = 1;
@@ -102,7 +102,7 @@ TEST_F(ProcedureMessage, countsEventsAndForgetsThemWithTheState) {
   EXPECT_EQ(skill().withdrawn_bites, 1u);
   EXPECT_EQ(skill().rejected, 3u);
   EXPECT_EQ(skill().overdue_bleedings, 1u);
-  session.replaceState(state);
+  simulation.replaceState(state);
   EXPECT_EQ(skill().rejected + skill().missed_bites, 0u);
 }
 
@@ -116,7 +116,7 @@ TEST_F(ProcedureMessage, sessionMeasuresAndStateHaveTheSameTime) {
   EXPECT_EQ(skill().time, 2.5);
   EXPECT_EQ(message().time, 2.5);
   EXPECT_EQ(skill().header.stamp, message().header.stamp);
-  EXPECT_NEAR(skill().contact_time, session.model->scene.step_period, 1e-12);
+  EXPECT_NEAR(skill().contact_time, simulation.model().scene.step_period, 1e-12);
   EXPECT_EQ(skill().grip_time + skill().insufflation_time + skill().path_length, 0);
   EXPECT_DOUBLE_EQ(skill().max_force, 5);
   EXPECT_DOUBLE_EQ(skill().mean_force, 5);
@@ -141,7 +141,7 @@ TEST_F(ProcedureMessage, whatIsNotDefinedYetIsNan) {
 }
 
 TEST_F(ProcedureMessage, timesAndForcesStandAtTheirPhase) {
-  const double dt = session.model->scene.step_period;
+  const double dt = simulation.model().scene.step_period;
   state.tool_force = Eigen::Vector3d(0, 6, 0);
   record();
   procedure.phase = Phase::Pull;
@@ -175,7 +175,7 @@ TEST_F(ProcedureMessage, tellsHowBitesLie) {
   EXPECT_DOUBLE_EQ(m.full_thickness_share, 0.75);
   EXPECT_DOUBLE_EQ(m.bite_depth_mean, 2.5e-3);
   EXPECT_DOUBLE_EQ(m.bite_depth_sd, 1e-3);
-  const auto& vertices = session.model->organ.surface.vertices;
+  const auto& vertices = simulation.model().organ.surface.vertices;
   Eigen::Vector3d spacing;  // bite k is at vertex k
   for (int k = 0; k < 3; ++k) spacing[k] = (vertices[k + 1] - vertices[k]).norm();
   EXPECT_NEAR(m.bite_spacing_mean, spacing.mean(), 1e-12);
@@ -196,7 +196,7 @@ TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
     for (double& value : *coordinate) value *= 0.5;
   state.pressure = 1000;
   record({Event::Kind::PressureReached, Event::Kind::DeepBurn, Event::Kind::ThreadBroke, Event::Kind::ThreadBroke});
-  for (int k = 0; k < std::ceil(0.1 / session.model->scene.step_period); ++k) record();  // marks are counted then
+  for (int k = 0; k < std::ceil(0.1 / simulation.model().scene.step_period); ++k) record();  // marks are counted then
   const vibe_msgs::SkillMetrics m = skill();
   EXPECT_EQ(m.mark_zones, 1u);
   EXPECT_EQ(m.mark_zones_inside, 1u);
@@ -212,7 +212,7 @@ TEST_F(ProcedureMessage, tellsMarksBleedingsAndTheOrgan) {
   EXPECT_EQ(m.organ_pressure, 1000);
   EXPECT_NEAR(m.volume_reduction, 0, 1e-12);
   for (double& value : state.x) value *= 0.5;
-  for (int k = 0; k < std::lround(1 / session.model->scene.step_period); ++k) record();
+  for (int k = 0; k < std::lround(1 / simulation.model().scene.step_period); ++k) record();
   EXPECT_NEAR(skill().volume_reduction, 0.5, 1e-9);
 }
 
@@ -221,11 +221,11 @@ TEST_F(ProcedureMessage, aNewStateBringsItsBitesAndNotWhatWasRecorded) {
   State loaded = state;
   loaded.procedure.sutures.emplace_back().bites.resize(3);
   for (Bite& bite : loaded.procedure.sutures[0].bites) bite.depth = 4e-3;
-  session.replaceState(loaded);
+  simulation.replaceState(loaded);
   EXPECT_EQ(skill().broken_threads, 0u);
   EXPECT_EQ(skill().phase_time[0], 0);
   EXPECT_DOUBLE_EQ(skill().bite_depth_mean, 4e-3);
-  session.replaceModel(makeSession().model);
+  simulation.replaceModel({makeSimulation().sharedModel(), ""});
   EXPECT_TRUE(std::isnan(skill().bite_depth_mean));
   for (int k = 0; k < 100; ++k) record({Event::Kind::Mark});  // with the organ of the new model
   EXPECT_GT(skill().phase_time[0], 0);

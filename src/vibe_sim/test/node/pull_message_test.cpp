@@ -1,12 +1,14 @@
-#include "pull_message.hpp"
+#include "conversions/input_message.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "sentences.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_testing/worlds.hpp"
+#include "worlds.hpp"
 
 namespace vibe::sim::pull_message_test {
 namespace {
@@ -21,12 +23,7 @@ vibe_msgs::TissuePull goodPull() {
 }
 
 std::string errorOf(const vibe_msgs::TissuePull& message) {
-  try {
-    readPull(message);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return sentenceOf([&] { readPull(message); });
 }
 
 TEST(PullMessage, isReadBitForBitInBothFrames) {

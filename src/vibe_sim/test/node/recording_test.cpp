@@ -1,5 +1,5 @@
 // Recordings read back from bags: of this release, of an older one, and what cannot be repeated.
-#include "recording.hpp"
+#include "recording/recording.hpp"
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
@@ -13,8 +13,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "conversions.hpp"
-#include "vibe_core/common/error.hpp"
+#include "conversions/input_message.hpp"
+#include "sentences.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 
 namespace vibe::sim::recording_test {
@@ -39,18 +39,9 @@ class RecordingFile : public ::testing::Test {
   }
 
   std::string errorOfReading() {
-    try {
-      Recording{file};
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return sentenceOf([this] { Recording{file}; });
   }
 };
-
-void expectMentions(const std::string& sentence, const std::string& part) {
-  EXPECT_NE(sentence.find(part), std::string::npos) << "'" << sentence << "' lacks '" << part << "'";
-}
 
 TEST_F(RecordingFile, HoldsSceneInputsAndHashes) {
   {

@@ -1,5 +1,5 @@
 // A session recorded without a graph, repeated, edited, filled up again, and begun from its snapshots.
-#include "replay.hpp"
+#include "replay/replay.hpp"
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
@@ -15,10 +15,11 @@
 #include <limits>
 #include <map>
 
-#include "bag_filler.hpp"
-#include "publishers.hpp"
-#include "recording_rules.hpp"
-#include "scene_source.hpp"
+#include "publishing/publishers.hpp"
+#include "recording/recording.hpp"
+#include "replay/bag_filler.hpp"
+#include "sentences.hpp"
+#include "simulation/scene_source.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 
@@ -53,13 +54,13 @@ StepInput inputAt(std::int64_t step) {
   return input;
 }
 
-void step(Session& session, Publishers& publishers, BagTarget& target, const StepInput& input) {
-  target.time = ros::Time(0, 0) + ros::Duration().fromNSec(session.now());
-  session.simulation.setInput(input);
-  publishers.appliedInput(session);
-  session.step(input);
-  target.time = ros::Time(0, 0) + ros::Duration().fromNSec(session.now());
-  publishers.stepResult(session, {});
+void step(TimedSimulation& simulation, Publishers& publishers, BagTarget& target, const StepInput& input) {
+  target.time = ros::Time(0, 0) + ros::Duration().fromNSec(simulation.now());
+  simulation.setInput(input);
+  publishers.appliedInput(simulation);
+  simulation.step();
+  target.time = ros::Time(0, 0) + ros::Duration().fromNSec(simulation.now());
+  publishers.stepResult(simulation, {});
 }
 
 // All topics of a session with a reset in it, which may set the time back, too.
@@ -67,19 +68,19 @@ void record(const std::string& file, bool keep_time = true) {
   rosbag::Bag bag(file, rosbag::bagmode::Write);
   BagTarget target{bag, "/", [](const std::string&) { return true; }, ros::Time(1)};
   Publishers publishers{OutletSource(target), true};
-  const auto model = modelOfText(kScene, "test").model;
-  Session session(model, model->scene.seed, kOrigin, 1);
+  const SceneModel made = modelOfText(kScene, "test");
+  TimedSimulation simulation(made, made.model->scene.seed, kOrigin, 1);
   target.time = ros::Time(5);
-  publishers.announceModel(session);
-  publishers.wholeState(session, {});
-  for (int k = 0; k < kSteps; ++k) step(session, publishers, target, inputAt(k));
-  session.replaceState(initialState(*model, 7));
-  if (!keep_time) session.time = TimeLine(kOrigin, model->scene.step_period);
-  target.time = ros::Time(0, 0) + ros::Duration().fromNSec(session.now());
-  publishers.announceRun(session);
-  publishers.wholeState(session, {});
-  for (int k = 0; k < kStepsAfter; ++k) step(session, publishers, target, inputAt(k));
-  publishers.wholeState(session, {});  // as the simulator does when it ends
+  publishers.announceModel(simulation);
+  publishers.wholeState(simulation, {});
+  for (int k = 0; k < kSteps; ++k) step(simulation, publishers, target, inputAt(k));
+  simulation.replaceState(initialState(*made.model, 7));
+  if (!keep_time) simulation.restartTime(kOrigin);
+  target.time = ros::Time(0, 0) + ros::Duration().fromNSec(simulation.now());
+  publishers.announceRun(simulation);
+  publishers.wholeState(simulation, {});
+  for (int k = 0; k < kStepsAfter; ++k) step(simulation, publishers, target, inputAt(k));
+  publishers.wholeState(simulation, {});  // as the simulator does when it ends
 }
 
 // A copy without some topics, with inputs edited.
@@ -136,17 +137,13 @@ class ReplayTest : public ::testing::Test {
   }
 };
 
-vibe_msgs::SolverStatistics statisticsOf(const Session& session) {
+vibe_msgs::SolverStatistics statisticsOf(const TimedSimulation& simulation) {
   vibe_msgs::SolverStatistics statistics;
-  statistics.header.stamp.fromNSec(static_cast<std::uint64_t>(session.now()));
+  statistics.header.stamp.fromNSec(static_cast<std::uint64_t>(simulation.now()));
   char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash(session.state)));
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash(simulation.state())));
   statistics.state_hash = text;
   return statistics;
-}
-
-void expectMentions(const std::string& sentence, const std::string& part) {
-  EXPECT_NE(sentence.find(part), std::string::npos) << "'" << sentence << "' lacks '" << part << "'";
 }
 
 TEST_F(ReplayTest, EveryStepIsTheSameAlsoAfterAReset) {
@@ -238,14 +235,14 @@ TEST_F(ReplayTest, BeginsAtAnySnapshotAndIsTheSameFromThere) {
   Replay replay(recording, nobody);
   const auto stepAt = [&](double time, bool exact) {
     replay.seek(time, exact);
-    return replay.session().state.step;
+    return replay.simulation().state().step;
   };
   EXPECT_EQ(stepAt(10.5, false), 600);
   EXPECT_EQ(stepAt(10.5, true), 630);
   EXPECT_EQ(stepAt(1, true), 60);
-  EXPECT_EQ(replay.session().run, 1U);
+  EXPECT_EQ(replay.simulation().run(), 1U);
   EXPECT_EQ(stepAt(11.2, true), 11);  // of the second run: the reset took one stamp
-  EXPECT_EQ(replay.session().run, 2U);
+  EXPECT_EQ(replay.simulation().run(), 2U);
   EXPECT_EQ(stepAt(10.2, true), 612);
   while (!replay.done()) replay.step();
   EXPECT_FALSE(replay.result().difference);
@@ -261,9 +258,9 @@ TEST_F(ReplayTest, AResetThatSetsTheTimeBackIsReplayedAndReached) {
   Replay replay(recording, nobody);
   EXPECT_NEAR(replay.duration(), (kSteps + kStepsAfter - 1) / 60.0, 1e-3);
   replay.seek(1, true);
-  EXPECT_EQ(replay.session().run, 1U);
+  EXPECT_EQ(replay.simulation().run(), 1U);
   replay.seek(kSteps / 60.0 + 0.2, true);
-  EXPECT_EQ(replay.session().run, 2U);
+  EXPECT_EQ(replay.simulation().run(), 2U);
   EXPECT_NEAR(replay.time(), kSteps / 60.0 + 0.2, 0.02);
 }
 
@@ -275,10 +272,10 @@ TEST_F(ReplayTest, TheLastStateIsComparedAlsoWhereStampsComeTwice) {
     const Recording recording(file);
     Replay::Listener nobody;
     Replay replay(recording, nobody);
-    while (replay.session().run == 1 && replay.session().state.step < kStepsAfter) replay.step();
-    const auto first = statisticsOf(replay.session());
+    while (replay.simulation().run() == 1 && replay.simulation().state().step < kStepsAfter) replay.step();
+    const auto first = statisticsOf(replay.simulation());
     while (!replay.done()) replay.step();
-    auto last = statisticsOf(replay.session());
+    auto last = statisticsOf(replay.simulation());
     ASSERT_EQ(first.header.stamp, last.header.stamp);
     ASSERT_NE(first.state_hash, last.state_hash);
     rosbag::Bag bag(file, rosbag::bagmode::Append);
@@ -292,7 +289,7 @@ TEST_F(ReplayTest, TheLastStateIsComparedAlsoWhereStampsComeTwice) {
     Replay::Listener nobody;
     Replay replay(recording, nobody);
     while (!replay.done()) replay.step();
-    auto wrong = statisticsOf(replay.session());
+    auto wrong = statisticsOf(replay.simulation());
     wrong.state_hash[0] = wrong.state_hash[0] == '0' ? '1' : '0';
     rosbag::Bag bag(file, rosbag::bagmode::Append);
     bag.write("/solver_statistics", wrong.header.stamp, wrong);
@@ -357,7 +354,7 @@ TEST_F(ReplayTest, FillingAFullDiskIsAnError) {
       BagFiller filler(recording, filled);
       Replay replay(recording, filler);
       while (!replay.done()) replay.step();
-      filler.finish(replay.session());
+      filler.finish(replay.simulation());
     } catch (const Error& error) {
       said = error.what();
     }
@@ -405,7 +402,7 @@ TEST_F(ReplayTest, FillsInWhatWasLeftOutToTheBit) {
     BagFiller filler(recording, filled);
     Replay replay(recording, filler);
     while (!replay.done()) replay.step();
-    filler.finish(replay.session());
+    filler.finish(replay.simulation());
   }
   const auto before = messagesOf(whole()), thin = messagesOf(file), after = messagesOf(filled);
   EXPECT_LT(thin.size() + 10, before.size());

@@ -1,4 +1,4 @@
-#include "sim_time.hpp"
+#include "simulation/timed_simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Recorded inputs of this and of older releases, from the bytes and the definition in a bag.
-#include "step_input_reader.hpp"
+#include "recording/step_input_reader.hpp"
 
 #include <gtest/gtest.h>
 #include <vibe_msgs/StepInput.h>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "conversions.hpp"
-#include "vibe_core/common/error.hpp"
+#include "conversions/input_message.hpp"
+#include "sentences.hpp"
 #include "vibe_core/input/step_input_fields.hpp"
 
 namespace vibe::sim::step_input_reader_test {
@@ -64,16 +64,7 @@ void putPull(Bytes& bytes) {
 }
 
 std::string errorOf(const StepInputReader& reader, const Bytes& bytes) {
-  try {
-    reader.read(bytes.data(), bytes.size());
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
-void expectMentions(const std::string& sentence, const std::string& part) {
-  EXPECT_NE(sentence.find(part), std::string::npos) << "'" << sentence << "' lacks '" << part << "'";
+  return sentenceOf([&] { reader.read(bytes.data(), bytes.size()); });
 }
 
 Bytes present() {

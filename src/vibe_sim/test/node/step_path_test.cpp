@@ -6,7 +6,12 @@
 #include <mutex>
 #include <thread>
 
+#include "allocation_count.hpp"
+#include "input/input_interpreter.hpp"
+#include "input/input_queue.hpp"
 #include "input_queue.hpp"
+#include "lock_count.hpp"
+#include "scope_worlds.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_testing/allocation_count.hpp"
 #include "vibe_testing/lock_count.hpp"
@@ -67,12 +72,13 @@ class StepPath : public ::testing::Test {
       send(channel, part, grabs);
   }
 
-  // What Stepper::takeStep() does up to the state.
+  // What SimulationThread::takeStep() does up to the state.
   void step() {
     stamp += kPeriod;
     StepInput input = simulation.input();
-    queue.apply(stamp, simulation.model(), input, true, simulation.state().joints);
-    simulation.step(input);
+    interpreter.apply(stamp, queue, simulation.model(), input, true, simulation.state().joints);
+    simulation.setInput(input);
+    simulation.step();
   }
 
   Count countedStep(double part, bool grabs) {
@@ -83,6 +89,7 @@ class StepPath : public ::testing::Test {
   double partAt(int i) const { return 0.5 * (1 - std::cos(2 * M_PI * i / kCycle)); }
 
   InputQueue queue;
+  InputInterpreter interpreter;
   Simulation simulation;
   std::int64_t stamp = 1'000'000'000;
 };
@@ -146,7 +153,7 @@ TEST_F(StepPath, SamplesOfAnotherThreadAllArrive) {
   StepInput input;
   double last = 0;
   for (std::int64_t now = 0; last < 1e-6 * kCount - 1e-9; now += 7) {
-    queue.apply(now, simulation.model(), input);
+    interpreter.apply(now, queue, simulation.model(), input);
     ASSERT_GE(input.joints[Insertion], last);
     last = input.joints[Insertion];
   }

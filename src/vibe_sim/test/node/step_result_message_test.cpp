@@ -1,9 +1,9 @@
 // What a node perceives from messages has the bits of what a program without ROS perceives.
-#include "step_result_message.hpp"
+#include "conversions/session_message.hpp"
 
 #include <gtest/gtest.h>
 
-#include "particle_cloud.hpp"
+#include "conversions/tissue_message.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/simulation/simulation.hpp"
@@ -18,10 +18,10 @@ std::shared_ptr<const Model> smallStomach() {
 }
 
 /// What a subscriber has after the last step.
-Observation fromMessages(const Session& session) {
-  ParticleCloud cloud(*session.model, session.state, session.revision);
-  Observation seen = readStepResult(makeStepResult(session, false));
-  seen.wall = readWall(cloud.update(*session.model, session.state, session.now()));
+Observation fromMessages(const TimedSimulation& simulation) {
+  ParticleCloud cloud(simulation.model(), simulation.state(), simulation.revision());
+  Observation seen = readStepResult(makeStepResult(simulation, false));
+  seen.wall = readWall(cloud.update(simulation.model(), simulation.state(), simulation.now()));
   return seen;
 }
 
@@ -51,14 +51,14 @@ void expectSameEvents(const Observation& a, const Observation& b) {
 }
 
 TEST(StepResultMessage, HasTheBitsOfAnObservationWithoutRos) {
-  Session session(smallStomach(), 1, kEpoch, 1);
+  TimedSimulation simulation({smallStomach(), ""}, 1, kEpoch, 1);
   Trainee trainee(smallStomach(), Skill::expert(), 1);
   trainee.add(InsufflateGoal{1});
   trainee.add(BiteGoal{{0.5, 0.3, 0, 0}});
   bool touched = false, gripped = false, closed = false;
   std::size_t events = 0;
   for (int k = 0; k < 1200 && !(touched && gripped && closed) && !HasFailure(); ++k) {
-    const Observation wanted = observe(session.simulation), seen = fromMessages(session);
+    const Observation wanted = observe(simulation.simulation()), seen = fromMessages(simulation);
     expectSame(seen, wanted);
     expectSameEvents(seen, wanted);
     touched = touched || seen.force.norm() > 0.1;
@@ -67,20 +67,22 @@ TEST(StepResultMessage, HasTheBitsOfAnObservationWithoutRos) {
     events += seen.events.size();
     StepInput input = trainee.next(seen);
     if (gripped) input.joints[NeedleDriver] = 18e-3;  // whatever it wants to do next
-    session.step(input);
+    simulation.setInput(input);
+    simulation.step();
   }
   EXPECT_TRUE(touched && gripped && closed) << "the session shows too little";
   EXPECT_GT(events, 3u);
 }
 
 TEST(StepResultMessage, TheWallIsRoundedToSinglePrecision) {
-  Session session(smallStomach(), 1, kEpoch, 1);
-  session.step(StepInput{});
-  const std::vector<Eigen::Vector3d> wall = fromMessages(session).wall;
+  TimedSimulation simulation({smallStomach(), ""}, 1, kEpoch, 1);
+  simulation.setInput(StepInput{});
+  simulation.step();
+  const std::vector<Eigen::Vector3d> wall = fromMessages(simulation).wall;
   int rounded = 0;
   for (std::size_t i = 0; i < wall.size(); ++i) {
-    EXPECT_NEAR(wall[i].x(), session.state.x[i], 1e-7);
-    rounded += wall[i].x() != session.state.x[i] ? 1 : 0;
+    EXPECT_NEAR(wall[i].x(), simulation.state().x[i], 1e-7);
+    rounded += wall[i].x() != simulation.state().x[i] ? 1 : 0;
   }
   EXPECT_GT(rounded, static_cast<int>(wall.size()) / 2) << "a comparison of bits would find a wall that is not rounded";
 }
@@ -89,8 +91,8 @@ TEST(StepResultMessage, AWallComesSixtyTimesASecond) {
   EXPECT_EQ(imageInterval(1. / 60), 1);
   EXPECT_EQ(imageInterval(0.02), 1);
   EXPECT_EQ(imageInterval(1e-3), 17);
-  Session session(smallStomach(), 1, kEpoch, 1);
-  EXPECT_TRUE(makeStepResult(session, false).has_particles);
+  TimedSimulation simulation({smallStomach(), ""}, 1, kEpoch, 1);
+  EXPECT_TRUE(makeStepResult(simulation, false).has_particles);
 }
 
 TEST(StepResultMessage, AnotherKindOfCloudIsRefused) {

@@ -1,4 +1,4 @@
-#include "suture_message.hpp"
+#include "conversions/suture_message.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 
 #include "conversions.hpp"
 #include "vibe_testing/worlds.hpp"
+#include "worlds.hpp"
 
 namespace vibe::sim::suture_message_test {
 namespace {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace vibe::node {
+
+/// Waits for an answer of the ROS master. Call it after ros::init() and before the first NodeHandle, which waits for a
+/// master for ever and hears no signal meanwhile. Says once that it waits.
+/// @param patience  [s]
+/// @param stopped   asked ten times a second; the wait ends where it is true; empty: never
+/// @return whether there is a master; false: stopped
+/// @throws Error when none has answered in time
+bool waitForMaster(double patience, const std::function<bool()>& stopped = {});
+
+/// Whether the command line has --help or -h.
+bool asksForHelp(int argc, const char* const* argv);
+
+/// Gives the calling thread the real-time priority of SCHED_FIFO, so that no ordinary program delays it. Threads that
+/// it starts later have it too.
+/// @param priority  1 (lowest) to 99
+/// @return empty, or one sentence that says why not and what to do
+[[nodiscard]] std::string takeRealtimePriority(int priority);
+
+/// The same for all threads that this process has now, such as those of ROS, which have locks that others wait for.
+[[nodiscard]] std::string takeRealtimePriorityForAll(int priority);
+
+/// Locks the memory of this process, what it has and what it will get, and keeps freed memory, so that no step waits
+/// for a page.
+/// @return empty, or one sentence that says why not and what to do
+[[nodiscard]] std::string lockMemory();
+
+/// What a node with a real-time priority does first: locks its memory and gives the priority to all threads it has.
+/// Those that come later inherit it.
+/// @return one sentence for each that is not permitted
+[[nodiscard]] std::vector<std::string> runInRealTime(int priority);
+
+}  // namespace vibe::node

@@ -1,0 +1,97 @@
+#include "vibe_node/startup.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include <malloc.h>
+#include <ros/master.h>
+#include <ros/this_node.h>
+#include <ros/time.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include "vibe_core/common/error.hpp"
+
+namespace vibe::node {
+namespace {
+
+// Limits of a user are raised in limits.conf(5).
+std::string remedy(const char* limit) {
+  return std::string("; add the line '@realtime - ") + limit +
+         "' to /etc/security/limits.d/realtime.conf, the user to the group realtime, and log in again.";
+}
+
+/// @param thread  its id in Linux; 0: the calling one  @return errno
+int setPriority(pid_t thread, int priority) {
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  return ::sched_setscheduler(thread, SCHED_FIFO, &parameters) == 0 ? 0 : errno;
+}
+
+std::string refusal(int error, int priority) {
+  return "The node runs without real-time priority: SCHED_FIFO " + std::to_string(priority) + " is not permitted (" +
+         std::strerror(error) + ")" + remedy("rtprio 99");
+}
+
+}  // namespace
+
+bool waitForMaster(double patience, const std::function<bool()>& stopped) {
+  const ros::WallTime begin = ros::WallTime::now();
+  bool told = false;
+  while (!ros::master::check()) {
+    if (stopped && stopped()) return false;
+    if ((ros::WallTime::now() - begin).toSec() > patience)
+      throw Error("No ROS master answers at " + ros::master::getURI() + "; start roscore, or set ROS_MASTER_URI.");
+    if (!told) std::fprintf(stderr, "Waiting for a ROS master at %s ...\n", ros::master::getURI().c_str());
+    told = true;
+    ros::WallDuration(0.1).sleep();
+  }
+  return true;
+}
+
+bool asksForHelp(int argc, const char* const* argv) {
+  return std::any_of(argv + 1, argv + argc,
+                     [](const char* word) { return std::string(word) == "--help" || std::string(word) == "-h"; });
+}
+
+std::string takeRealtimePriority(int priority) {
+  const int error = setPriority(0, priority);
+  return error == 0 ? "" : refusal(error, priority);
+}
+
+std::string takeRealtimePriorityForAll(int priority) {
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    const int error = setPriority(std::stoi(thread.path().filename()), priority);
+    if (error != 0 && error != ESRCH) return refusal(error, priority);  // ESRCH: it has ended meanwhile
+  }
+  return "";
+}
+
+std::string lockMemory() {
+  // With a limit, memory that is asked for later would be refused, and the process would end.
+  rlimit limit{RLIM_INFINITY, RLIM_INFINITY};
+  ::setrlimit(RLIMIT_MEMLOCK, &limit);  // root may
+  ::getrlimit(RLIMIT_MEMLOCK, &limit);
+  const bool enough = limit.rlim_cur == RLIM_INFINITY;
+  if (enough && ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
+    ::mallopt(M_TRIM_THRESHOLD, -1);  // freed memory is not given back
+    ::mallopt(M_MMAP_MAX, 0);         // nor are large blocks
+    return "";
+  }
+  const std::string reason = enough ? std::strerror(errno) : "only " + std::to_string(limit.rlim_cur / 1024) + " kB";
+  return "Memory is not locked: it is not permitted (" + reason + ")" + remedy("memlock unlimited");
+}
+
+std::vector<std::string> runInRealTime(int priority) {
+  std::vector<std::string> refusals;
+  for (const std::string& sentence : {lockMemory(), takeRealtimePriorityForAll(priority)})
+    if (!sentence.empty()) refusals.push_back(sentence);
+  return refusals;
+}
+
+}  // namespace vibe::node

@@ -1,0 +1,135 @@
+#include "conversions/tool_message.hpp"
+
+#include <Eigen/Geometry>
+
+#include "conversions/conversions.hpp"
+#include "conversions/input_message.hpp"
+#include "vibe_core/common/rotation.hpp"
+#include "vibe_core/simulation/drawn_joints.hpp"
+
+namespace vibe::sim {
+
+namespace {
+
+sensor_msgs::JointState makeMeasured(const State& state, const JointArray& velocity, JointRange range,
+                                     std::int64_t stamp) {
+  sensor_msgs::JointState message = makeJoints(toolJoints(state), range, stamp);
+  message.velocity.assign(velocity.begin() + range.first, velocity.begin() + range.first + range.count);
+  return message;
+}
+
+std_msgs::MultiArrayDimension makeDimension(const char* label, std::uint32_t size, std::uint32_t stride) {
+  std_msgs::MultiArrayDimension dimension;
+  dimension.label = label;
+  dimension.size = size;
+  dimension.stride = stride;
+  return dimension;
+}
+
+}  // namespace
+
+JointArray toolJoints(const State& state) {
+  JointArray joints = state.joints;
+  for (int j = 0; j < kScopeJointCount; ++j) joints[j] += state.tool_displacement[j];
+  return joints;
+}
+
+sensor_msgs::JointState makeMeasuredScope(const State& state, const JointArray& velocity, std::int64_t stamp) {
+  sensor_msgs::JointState message = makeMeasured(state, velocity, jointsOf(InputChannel::Scope), stamp);
+  message.effort.assign(state.hand_effort.begin(), state.hand_effort.end());
+  return message;
+}
+
+sensor_msgs::JointState makeMeasuredOverstitch(const State& state, const JointArray& velocity, std::int64_t stamp) {
+  return makeMeasured(state, velocity, jointsOf(InputChannel::Overstitch), stamp);
+}
+
+vibe_msgs::OperatingState makeOperatingState(bool present, bool paused, bool busy, std::int64_t stamp) {
+  vibe_msgs::OperatingState message;
+  message.header.stamp = toRosTime(stamp);
+  message.state = !present ? "DISABLED" : paused ? "PAUSED" : "ENABLED";
+  message.is_homed = present;
+  message.is_busy = present && busy;
+  return message;
+}
+
+std_msgs::Float64MultiArray makeJacobian(const TipJacobian& jacobian) {
+  std_msgs::Float64MultiArray message;
+  message.layout.dim = {makeDimension("twist", 6, 6 * kScopeJointCount),
+                        makeDimension("joint", kScopeJointCount, kScopeJointCount)};
+  for (int row = 0; row < jacobian.rows(); ++row)
+    for (int column = 0; column < jacobian.cols(); ++column) message.data.push_back(jacobian(row, column));
+  return message;
+}
+
+geometry_msgs::PoseStamped makeWallPose(const WallSight& sight, std::int64_t stamp) {
+  const Eigen::Quaterniond turn = rotationBetween(Eigen::Vector3d::UnitX(), sight.normal);
+  return makePose(Eigen::Translation3d(sight.point) * turn, kWorldFrame, stamp);
+}
+
+sensor_msgs::JointState makeJointState(const Model& model, const State& state, std::int64_t stamp) {
+  const ToolModel& tool = *model.tool;
+  sensor_msgs::JointState message = makeJoints(toolJoints(state), {0, kJointCount}, stamp);
+  const ShaftBend bend = tool.shaftBend(state.joints, state.tool_displacement);
+  for (const ToolJoint& joint : tool.joints()) {
+    if (joint.station < 0) continue;
+    message.name.push_back(joint.name);
+    message.position.push_back(bend.angle(joint.station, joint.direction));
+  }
+  for (const DrawnJoint& joint : drawnJoints(model, state)) {
+    message.name.push_back(joint.name);
+    message.position.push_back(joint.position);
+  }
+  return message;
+}
+
+sensor_msgs::JointState makeHandJoints(const State& state, std::int64_t stamp) {
+  sensor_msgs::JointState message = makeJoints(state.joints, jointsOf(InputChannel::Scope), stamp);
+  message.effort.assign(state.hand_effort.begin(), state.hand_effort.end());
+  return message;
+}
+
+geometry_msgs::WrenchStamped makeWrench(const State& state, std::int64_t stamp) {
+  geometry_msgs::WrenchStamped message;
+  message.header.stamp = toRosTime(stamp);
+  message.header.frame_id = kScopeTipFrame;
+  message.wrench.force = toMessage<geometry_msgs::Vector3>(state.tool_force);
+  message.wrench.torque = toMessage<geometry_msgs::Vector3>(state.tool_torque);
+  return message;
+}
+
+vibe_msgs::HapticParameters makeHapticRelease(std::int64_t stamp) {
+  vibe_msgs::HapticParameters message;
+  message.header.stamp = toRosTime(stamp);
+  message.header.frame_id = kWorldFrame;
+  message.joint_name.assign(kJointNames.begin(), kJointNames.begin() + kScopeJointCount);
+  return message;
+}
+
+vibe_msgs::HapticParameters makeHapticParameters(const ToolImpedance& response, double force_limit,
+                                                 std::int64_t stamp) {
+  vibe_msgs::HapticParameters message = makeHapticRelease(stamp);
+  message.touching = 1;
+  message.position = toMessage<geometry_msgs::Point>(response.position);
+  message.velocity = toMessage<geometry_msgs::Vector3>(response.velocity);
+  message.force = toMessage<geometry_msgs::Vector3>(response.force);
+  message.equilibrium = toMessage<geometry_msgs::Point>(response.equilibrium);
+  message.force_limit = force_limit;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      message.stiffness[3 * row + column] = response.stiffness(row, column);
+      message.damping[3 * row + column] = response.damping(row, column);
+    }
+  for (int j = 0; j < kScopeJointCount; ++j) {
+    const JointResponse& joint = response.joints[j];
+    message.joint_position[j] = joint.position;
+    message.joint_velocity[j] = joint.velocity;
+    message.joint_effort[j] = joint.effort;
+    message.joint_stiffness[j] = joint.stiffness;
+    message.joint_damping[j] = joint.damping;
+    message.joint_equilibrium[j] = joint.equilibrium;
+  }
+  return message;
+}
+
+}  // namespace vibe::sim

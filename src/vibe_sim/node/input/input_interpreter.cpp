@@ -1,0 +1,150 @@
+#include "input/input_interpreter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "input/input_queue.hpp"
+#include "vibe_core/constraints/pull_patch.hpp"
+#include "vibe_core/state/pull_spring.hpp"
+
+namespace vibe::sim {
+namespace {
+
+constexpr double kPeakSpeed = 1.875;  // of the path of least jerk, over its mean speed
+constexpr double kReached = 5e-3;     // of the tip from its target: close enough to say nothing [m]
+
+/// Share of the way at a share of the time.
+double leastJerk(double s) {
+  return s * s * s * (10 - 15 * s + 6 * s * s);
+}
+
+std::string beyondReach(const Eigen::Vector3d& target, const Model& model, const StepInput& input) {
+  std::vector<Eigen::Isometry3d> poses;
+  model.tool->forwardKinematics(input.joints, poses);
+  const double miss = (poses[model.tip_link].translation() - target).norm();
+  if (miss < kReached) return "";
+  return "scope/servo_cp asks for a place that the scope misses by " + std::to_string(std::lround(1e3 * miss)) +
+         " mm; it goes as near as it can.";
+}
+
+std::string reachTip(const InputSample& sample, const Model& model, StepInput& input) {
+  if (!model.tool)
+    return "scope/servo_cp has no effect because the scene '" + model.scene.name +
+           "' has no scope; load a scene with one.";
+  const bool in_world = sample.target == ScopeTarget::TipInWorld;
+  const Eigen::Isometry3d pose = in_world ? model.tool_base.inverse() * sample.tip_pose : sample.tip_pose;
+  input.joints = model.tool->inverseKinematics(pose, input.joints);
+  return beyondReach(pose.translation(), model, input);
+}
+
+// A pull that the model rejects ends the pull in force: the user has asked for another one.
+std::string applyPull(const InputSample& sample, const Model& model, StepInput& input) {
+  const bool asks = sample.pull_particle >= 0 && sample.pull_particle != input.pull_particle;
+  const std::string reason = asks ? pullRejection(model, sample.pull_particle) : "";
+  input.pull_particle = reason.empty() ? sample.pull_particle : -1;
+  input.pull_target = input.pull_particle < 0 ? Eigen::Vector3d::Zero() : sample.pull_target;
+  return reason.empty() ? "" : "tissue/pull has no effect because " + reason;
+}
+
+/// @return one sentence if the model cannot use the sample, otherwise empty
+std::string applyValues(const InputSample& sample, const Model& model, StepInput& input) {
+  if (sample.target != ScopeTarget::Joints) return reachTip(sample, model, input);
+  switch (sample.channel) {
+    case InputChannel::Scope:
+      std::copy_n(sample.joints.begin(), kScopeJointCount, input.joints.begin());
+      break;
+    case InputChannel::Overstitch:
+      std::copy(sample.joints.begin() + kScopeJointCount, sample.joints.end(), input.joints.begin() + kScopeJointCount);
+      break;
+    case InputChannel::Buttons:
+      input.buttons = sample.buttons;
+      break;
+    case InputChannel::Pull:
+      return applyPull(sample, model, input);
+  }
+  return "";
+}
+
+/// @return a sentence if there was a pull
+std::string letGo(StepInput& input) {
+  if (input.pull_particle < 0) return "";
+  input.pull_particle = -1;
+  input.pull_target.setZero();
+  return "The hand on tissue/pull has been silent for 2 s and lets go; send its target again while it holds.";
+}
+
+/// @return a sentence if anything was pressed
+std::string releaseButtons(StepInput& input) {
+  std::string names;
+  for (int b = 0; b < kButtonCount; ++b) {
+    if (!input.buttons[b]) continue;
+    names += (names.empty() ? "" : ", ") + std::string(kButtonNames[b]);
+    input.buttons[b] = 0;
+  }
+  if (names.empty()) return "";
+  return "No message has come on scope/buttons for 1 s, so the scope stays where it is and these buttons are "
+         "released: " +
+         names + "; send pressed buttons at 10 Hz.";
+}
+
+}  // namespace
+
+JointMove::JointMove(const JointArray& start, const JointArray& goal, int first, int count,
+                     const std::array<JointLimits, kJointCount>& limits, std::int64_t begin)
+    : start_(start), first_(first), count_(count), begin_(begin) {
+  for (int j = first_; j < first_ + count_; ++j) {
+    way_[j] = std::clamp(goal[j], limits[j].lower, limits[j].upper) - start_[j];
+    const double seconds = kPeakSpeed * std::abs(way_[j]) / limits[j].velocity;
+    duration_ = std::max(duration_, static_cast<std::int64_t>(std::ceil(1e9 * seconds)));
+  }
+}
+
+void JointMove::apply(std::int64_t stamp, JointArray& joints) const {
+  const double passed = static_cast<double>(stamp - begin_);
+  const double s = stamp >= end() ? 1 : std::max(0.0, passed / static_cast<double>(duration_));
+  for (int j = first_; j < first_ + count_; ++j) joints[j] = start_[j] + leastJerk(s) * way_[j];
+}
+
+std::vector<std::string> InputInterpreter::apply(std::int64_t stamp, InputQueue& queue, const Model& model,
+                                                 StepInput& input, bool real_time,
+                                                 const std::optional<JointArray>& hand) {
+  if (stamp < queue.now()) endMoves();
+  const JointArray start = hand.value_or(input.joints);
+  std::vector<std::string> sentences;
+  const auto say = [&sentences](std::string sentence) {
+    if (!sentence.empty()) sentences.push_back(std::move(sentence));
+  };
+  queue.takeDue(stamp, [&](const InputSample& sample) { say(applySample(sample, stamp, model, start, input)); });
+  applyMoves(stamp, input.joints);
+  if (queue.isSilent(InputChannel::Pull, kPullTimeout)) say(letGo(input));
+  if (real_time && queue.isSilent(InputChannel::Buttons, kButtonTimeout)) say(releaseButtons(input));
+  return sentences;
+}
+
+std::string InputInterpreter::applySample(const InputSample& sample, std::int64_t stamp, const Model& model,
+                                          const JointArray& hand, StepInput& input) {
+  moves_[static_cast<std::size_t>(sample.channel)].reset();
+  return sample.move ? beginMove(sample, stamp, model, hand) : applyValues(sample, model, input);
+}
+
+std::string InputInterpreter::beginMove(const InputSample& sample, std::int64_t stamp, const Model& model,
+                                        const JointArray& hand) {
+  const bool scope = sample.channel == InputChannel::Scope;
+  if (!model.tool)
+    return std::string(scope ? "scope" : "overstitch") + "/move_jp has no effect because the scene '" +
+           model.scene.name + "' has no scope; load a scene with one.";
+  const int first = scope ? 0 : kScopeJointCount, count = scope ? kScopeJointCount : kJointCount - kScopeJointCount;
+  moves_[static_cast<std::size_t>(sample.channel)].emplace(hand, sample.joints, first, count, model.tool->limits(),
+                                                           stamp);
+  return "";
+}
+
+void InputInterpreter::applyMoves(std::int64_t stamp, JointArray& joints) {
+  for (std::optional<JointMove>& move : moves_) {
+    if (!move) continue;
+    move->apply(stamp, joints);
+    if (stamp >= move->end()) move.reset();
+  }
+}
+
+}  // namespace vibe::sim

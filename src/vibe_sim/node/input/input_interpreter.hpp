@@ -1,0 +1,74 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "input/input_sample.hpp"
+#include "vibe_core/contact/tool_model.hpp"
+#include "vibe_core/input/step_input.hpp"
+#include "vibe_core/model/model.hpp"
+
+namespace vibe::sim {
+
+class InputQueue;
+
+/// A motion of some joints from where they are to a goal, all in the same time: the path of least jerk from rest to
+/// rest (Flash and Hogan 1985), as fast as the limits of the slowest joint allow. A function of time only.
+class JointMove {
+ public:
+  /// @param start   of all joints [m], [rad]
+  /// @param goal    read from joint `first` to `first + count - 1`, the ones that move; clamped to the limits
+  /// @param limits  of position and velocity
+  /// @param begin   stamp [ns]
+  JointMove(const JointArray& start, const JointArray& goal, int first, int count,
+            const std::array<JointLimits, kJointCount>& limits, std::int64_t begin);
+
+  /// Sets the joints that move to their place on the path; before the begin that is the start, after the end the goal.
+  void apply(std::int64_t stamp, JointArray& joints) const;
+  std::int64_t end() const { return begin_ + duration_; }  ///< stamp [ns]
+
+ private:
+  JointArray start_, way_{};
+  int first_, count_;
+  std::int64_t begin_, duration_ = 0;
+};
+
+/// A pull ends if no message arrives for this long: its publisher may be gone [ns of the simulator's time].
+constexpr std::int64_t kPullTimeout = 2'000'000'000;
+
+/// Buttons that are pressed are released if no message arrives for this long: whoever presses them may be gone [ns of
+/// the simulator's time].
+constexpr std::int64_t kButtonTimeout = 1'000'000'000;
+
+/// Knows what samples mean to a model: makes the input of a step of those that are due, and keeps moves that are under
+/// way. Belongs to the thread that steps.
+class InputInterpreter {
+ public:
+  /// Applies to `input` everything that is due at `stamp`, see InputQueue::takeDue(); the last valid values stay in
+  /// force. Targets of the tip become joints by the tool's inverse kinematics; a pull without a message for
+  /// kPullTimeout ends. A move ends at its goal, when another sample for its joints is applied, or when the clock is
+  /// set back.
+  /// @param real_time  release buttons without a message for kButtonTimeout; false where time does not pass as it does
+  ///                   for the publishers
+  /// @param hand       where the hand is, from where a move begins; empty: where `input` says
+  /// @return one sentence per sample that the model cannot use and per input that has fallen silent
+  std::vector<std::string> apply(std::int64_t stamp, InputQueue& queue, const Model& model, StepInput& input,
+                                 bool real_time = true, const std::optional<JointArray>& hand = {});
+
+  /// Whether a move of the scope or of the suturing device is under way.
+  bool moves(InputChannel channel) const { return moves_[static_cast<std::size_t>(channel)].has_value(); }
+  /// Ends all moves where they are, because another state has taken over.
+  void endMoves() { moves_ = {}; }
+
+ private:
+  std::array<std::optional<JointMove>, kInputChannelCount> moves_;
+
+  std::string applySample(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand,
+                          StepInput& input);
+  std::string beginMove(const InputSample& sample, std::int64_t stamp, const Model& model, const JointArray& hand);
+  void applyMoves(std::int64_t stamp, JointArray& joints);
+};
+
+}  // namespace vibe::sim

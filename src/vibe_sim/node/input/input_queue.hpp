@@ -1,0 +1,93 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <boost/circular_buffer.hpp>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "input/input_sample.hpp"
+
+namespace vibe::sim {
+
+/// Holds what has arrived until the step for which it is due. What a sample means is the InputInterpreter's.
+///
+/// One thread pushes, one thread takes steps. Neither waits for the other or asks for memory: samples go through a ring
+/// without a lock. push() belongs to the first thread, now() to any, all other functions to the second.
+class InputQueue {
+ public:
+  /// Samples that may wait in one channel; more means that a publisher stamps far into the future.
+  static constexpr std::size_t kCapacity = 4096;
+  /// Samples of all channels between two calls of collect().
+  static constexpr std::size_t kInbox = 4 * kCapacity;
+
+  InputQueue();
+
+  /// A sample with the stamp of one that still waits replaces it.
+  /// @return false if the channel is full and the sample was not taken
+  bool push(const InputSample& sample);
+
+  /// Takes in what was pushed. Functions that look at samples begin with it; without them, to be called now and
+  /// then.
+  void collect();
+
+  /// Whether every channel of lock-step has delivered a sample stamped `stamp` or later: all that matters at that time
+  /// is known.
+  bool knownUntil(std::int64_t stamp);
+  /// Names of the channels for which that is not so, for a message.
+  std::string missingAt(std::int64_t stamp);
+
+  /// Takes out everything that is due at `stamp`: channel by channel, each in the order of stamps; samples from the
+  /// past count as of now, in the order of arrival. A `stamp` before the last one means that the clock was set back:
+  /// what waits is due at once.
+  /// @param take  is called with each sample
+  template <typename Take>
+  void takeDue(std::int64_t stamp, Take take);
+
+  /// Whether no sample of the channel was due in a time [ns] up to now(), and none waits: one that has promised a later
+  /// sample is not silent.
+  bool isSilent(InputChannel channel, std::int64_t timeout) const;
+
+  /// Forgets everything, e.g. because time starts again.
+  void clear();
+
+  /// Stamp of the last takeDue(); 0: none yet.
+  std::int64_t now() const { return applied_until_; }
+
+ private:
+  struct Queue {
+    boost::circular_buffer<InputSample> waiting{kCapacity};  // ascending stamps
+    std::int64_t newest = 0;                                 // max stamp delivered so far
+    std::int64_t last_due = 0;                               // time at which a sample was taken out last
+  };
+  // of the thread that pushes
+  std::array<std::int64_t, kInputChannelCount> last_pushed_{};  // stamp [ns]
+
+  // between the two
+  boost::lockfree::spsc_queue<InputSample> inbox_{kInbox};
+  std::array<std::atomic<std::size_t>, kInputChannelCount> taken_{};  // samples in the inbox and waiting, at most
+  std::atomic<std::int64_t> applied_until_{0};
+
+  // of the thread that steps
+  std::array<Queue, kInputChannelCount> queues_;
+
+  void insert(const InputSample& sample);
+  void dropFirst(Queue& queue, std::int64_t stamp);
+  void setBack(std::int64_t stamp);
+};
+
+template <typename Take>
+void InputQueue::takeDue(std::int64_t stamp, Take take) {
+  collect();
+  if (stamp < applied_until_) setBack(stamp);
+  for (Queue& queue : queues_) {
+    while (!queue.waiting.empty() && queue.waiting.front().stamp <= stamp) {
+      take(std::as_const(queue.waiting.front()));
+      dropFirst(queue, stamp);
+    }
+  }
+  applied_until_ = stamp;
+}
+
+}  // namespace vibe::sim

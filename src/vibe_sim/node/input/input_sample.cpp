@@ -1,0 +1,34 @@
+#include "input/input_sample.hpp"
+
+#include <cstdio>
+
+namespace vibe::sim {
+
+const char* toString(InputChannel channel) {
+  switch (channel) {
+    case InputChannel::Scope:
+      return "scope/measured_js";
+    case InputChannel::Overstitch:
+      return "overstitch/measured_js";
+    case InputChannel::Buttons:
+      return "scope/buttons";
+    case InputChannel::Pull:
+      return "tissue/pull";
+  }
+  return "";
+}
+
+std::string faultOf(std::int64_t stamp, std::int64_t now, const InputWindow& window) {
+  if (stamp == 0) return "";
+  const bool early = stamp - now > window.look_ahead;
+  const bool late = now - stamp > window.staleness;
+  if (!early && !late) return "";
+  const double off = 1e-9 * static_cast<double>(early ? stamp - now : now - stamp);
+  const double limit = 1e-9 * static_cast<double>(early ? window.look_ahead : window.staleness);
+  char text[200];
+  std::snprintf(text, sizeof text, "its stamp is %.1f s %s the simulator's time, and %.3g s are accepted", off,
+                early ? "ahead of" : "behind", limit);
+  return text;
+}
+
+}  // namespace vibe::sim

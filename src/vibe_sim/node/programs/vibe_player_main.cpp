@@ -1,0 +1,69 @@
+#include <csignal>
+#include <cstdio>
+
+#include <ros/ros.h>
+
+#include "replay/player.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_node/parameter_reader.hpp"
+#include "vibe_node/startup.hpp"
+
+// vibe_player: plays a recording into the graph, where rviz shows it; goes to any time on command.
+
+namespace {
+
+constexpr int kFailure = 1;
+constexpr int kUsage = 2;
+constexpr double kMasterPatience = 10;  // [s]
+constexpr double kIdle = 0.002;         // [s]
+
+constexpr char kHelp[] =
+    "vibe_player: plays a recording into the graph.\n"
+    "Usage: rosrun vibe_sim vibe_player _recording:=BAG [_play:=true] [_rate:=1.0]\n"
+    "It needs /use_sim_time true, takes replay/command and says where it is on replay/status.\n";
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+void onSignal(int number) {
+  stop_signal = number;
+}
+
+void play() {
+  vibe::node::ParameterReader reader(ros::NodeHandle("~"));
+  const std::string file = reader.required("recording", "the bag to play");
+  bool plays = true;
+  double rate = 1;
+  reader.read("play", plays);
+  reader.read("rate", rate, 0.01, 100, "");
+  reader.finish();
+  bool use_sim_time = false;
+  if (!ros::param::get("/use_sim_time", use_sim_time) || !use_sim_time)
+    throw vibe::Error("/use_sim_time is not true; run 'rosparam set /use_sim_time true' before any node starts.");
+  const vibe::sim::Recording recording(file);
+  vibe::sim::Player player(recording, ros::NodeHandle(), plays, rate);
+  while (ros::ok() && !stop_signal) {
+    player.spinOnce();
+    ros::WallDuration(kIdle).sleep();
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    ros::init(argc, argv, "vibe_player", ros::init_options::NoSigintHandler);
+    if (vibe::node::asksForHelp(argc, argv)) {
+      std::fputs(kHelp, stdout);
+      return 0;
+    }
+    std::signal(SIGINT, onSignal);
+    std::signal(SIGTERM, onSignal);
+    if (!vibe::node::waitForMaster(kMasterPatience, [] { return stop_signal != 0; })) return kFailure;
+    play();
+    ros::shutdown();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vibe_player: %s\n", error.what());
+    return kUsage;
+  }
+}

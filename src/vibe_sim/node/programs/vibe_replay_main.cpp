@@ -1,0 +1,149 @@
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "recording/recording.hpp"
+#include "replay/bag_filler.hpp"
+#include "replay/replay.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/step_timer.hpp"
+#include "vibe_core/metrics/run_summary.hpp"
+
+// Steps the simulator through the inputs of a recording, without a roscore, and compares every step with it.
+
+namespace {
+
+using namespace vibe;
+using namespace vibe::sim;
+
+constexpr int kSame = 0, kDiffers = 1, kUsage = 2, kNotChecked = 3;
+constexpr int kProgressSteps = 120;
+
+const char kHelp[] =
+    "usage: vibe_replay [--from S] [--to S] [--fill FILE] BAG\n"
+    "Repeats a recorded session from its scene and inputs, without a roscore, compares every step with the recorded\n"
+    "hashes, and prints its summary.\n"
+    "  --from S     begin at the last snapshot before S seconds\n"
+    "  --to S       end after S seconds\n"
+    "  --fill FILE  also write a bag with every message of every topic that the simulator sent\n"
+    "Ends with 0 if all steps are the same, 1 if one differs, 2 if the recording cannot be repeated, 3 if it could "
+    "not\n"
+    "be checked, or not all of it, because hashes are missing or are of another version.\n";
+
+struct Options {
+  std::string bag, fill;
+  double from = 0, to = INFINITY;
+};
+
+double readSeconds(const std::string& option, const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(value) || value < 0)
+    throw Error(option + " needs seconds, 0 or more, not '" + text + "'; see --help.");
+  return value;
+}
+
+Options readOptions(const std::vector<std::string>& words) {
+  Options options;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool has_value = i + 1 < words.size();
+    if (words[i] == "--from" && has_value) {
+      options.from = readSeconds("--from", words[++i]);
+    } else if (words[i] == "--to" && has_value) {
+      options.to = readSeconds("--to", words[++i]);
+    } else if (words[i] == "--fill" && has_value) {
+      options.fill = words[++i];
+    } else if (words[i].rfind('-', 0) == 0 || !options.bag.empty()) {
+      throw Error("argument '" + words[i] + "' is not understood; see --help.");
+    } else {
+      options.bag = words[i];
+    }
+  }
+  if (options.bag.empty()) throw Error("takes one recording; see --help.");
+  if (options.to <= options.from) throw Error("--to must be later than --from.");
+  if (!options.fill.empty() && (options.from > 0 || std::isfinite(options.to)))
+    throw Error("--fill writes the whole recording; leave --from and --to out.");
+  return options;
+}
+
+int reportDifference(const ReplayDifference& d, std::uint64_t same) {
+  std::printf("NOT the same: %llu steps are, then at step %llu (%.3f s) %s; %s\n",
+              static_cast<unsigned long long>(same), static_cast<unsigned long long>(d.step), d.time, d.what.c_str(),
+              d.cause.c_str());
+  return kDiffers;
+}
+
+int report(const Recording& recording, const ReplayResult& result) {
+  const auto same = static_cast<unsigned long long>(result.same);
+  if (recording.stepsLeftOut() > 0)
+    std::printf("%zu steps before the first snapshot were left out: the recording began late\n",
+                recording.stepsLeftOut());
+  if (result.difference) return reportDifference(*result.difference, result.same);
+  if (result.unchecked > 0) {
+    std::printf("not checked: %llu of %llu steps, since %s\n", static_cast<unsigned long long>(result.unchecked),
+                same + static_cast<unsigned long long>(result.unchecked), result.unchecked_why.c_str());
+    return kNotChecked;
+  }
+  if (!recording.lost().empty()) {
+    std::printf("not checked: the %llu steps that could be repeated are the same, but %s\n", same,
+                recording.lost().c_str());
+    return kNotChecked;
+  }
+  std::printf("the same: all %llu steps have the recorded input and the recorded state\n", same);
+  return kSame;
+}
+
+void showProgress(const Replay& replay) {
+  if (replay.simulation().state().step % kProgressSteps != 0) return;
+  std::fprintf(stderr, "\rrepeated %.0f of %.0f s ", replay.time(), replay.duration());
+}
+
+int run(const Options& options) {
+  const Recording recording(options.bag);
+  Replay::Listener nobody;
+  std::unique_ptr<BagFiller> filler;
+  if (!options.fill.empty()) filler = std::make_unique<BagFiller>(recording, options.fill);
+  Replay replay(recording, filler ? *filler : nobody);
+  if (options.from > 0) replay.seek(options.from, false);
+  const double begin = steadyTime(), first = replay.time();
+  std::uint64_t steps = 0;
+  for (; !replay.done() && replay.time() < options.to; ++steps) {
+    replay.step();
+    showProgress(replay);
+  }
+  std::fprintf(stderr, "\r");
+  std::printf("repeated %llu steps, %.2f s\n", static_cast<unsigned long long>(steps), replay.time() - first);
+  const TimedSimulation& simulation = replay.simulation();
+  std::fputs(runSummary(simulation.metrics(), simulation.timer().cpu.all, simulation.model().particle_count,
+                        replay.time() - first, steadyTime() - begin, hash(simulation.state()))
+                 .c_str(),
+             stdout);
+  if (filler) {
+    filler->finish(replay.simulation());
+    std::printf("filled: %s, %llu messages\n", options.fill.c_str(),
+                static_cast<unsigned long long>(filler->messageCount()));
+  }
+  return report(recording, replay.result());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() == 1 && words[0] == "--help") {
+    std::fputs(kHelp, stdout);
+    return 0;
+  }
+  try {
+    return run(readOptions(words));
+  } catch (const ReplayEnd& end) {
+    std::fprintf(stderr, "vibe_replay: it ends here: %s\n", end.what());
+    return reportDifference(end.difference, end.same);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vibe_replay: %s\n", error.what());
+    return kUsage;
+  }
+}

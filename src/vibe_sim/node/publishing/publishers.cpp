@@ -1,0 +1,270 @@
+#include "publishing/publishers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+
+#include <rosgraph_msgs/Clock.h>
+#include <std_msgs/String.h>
+#include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SkillMetrics.h>
+#include <vibe_msgs/StepResult.h>
+
+#include "conversions/conversions.hpp"
+#include "conversions/input_message.hpp"
+#include "conversions/procedure_message.hpp"
+#include "conversions/session_message.hpp"
+#include "conversions/suture_message.hpp"
+#include "conversions/tool_message.hpp"
+#include "vibe_core/procedure/helix_grip.hpp"
+#include "vibe_core/simulation/simulator.hpp"
+
+namespace vibe::sim {
+namespace {
+
+constexpr double kHapticRate = 100;                       // of haptic/parameters at most, in simulated time [Hz]
+constexpr std::int64_t kSnapshotPeriod = 10'000'000'000;  // of simulated time [ns]
+constexpr std::int64_t kProcedurePeriod = 1'000'000'000;  // of procedure and sutures when nothing happens [ns]
+
+constexpr std::uint32_t kCloudQueue = 600;  // of large clouds, as many as fit into some 60 MB
+
+int hapticInterval(double step_period) {
+  return static_cast<int>(std::ceil(1 / (kHapticRate * step_period) - 1e-6));
+}
+
+bool anyIsHeard(std::initializer_list<const Outlet*> outlets) {
+  return std::any_of(outlets.begin(), outlets.end(),
+                     [](const Outlet* outlet) { return outlet->getNumSubscribers() > 0; });
+}
+
+}  // namespace
+
+ArmPublishers::ArmPublishers(OutletSource& outlets)
+    : scope_(outlets.advertise<sensor_msgs::JointState>("scope/simulated/measured_js", kSmallQueue)),
+      overstitch_(outlets.advertise<sensor_msgs::JointState>("overstitch/simulated/measured_js", kSmallQueue)),
+      jacobian_(outlets.advertise<std_msgs::Float64MultiArray>("scope/jacobian", kSmallQueue)),
+      wall_(outlets.advertise<geometry_msgs::PoseStamped>("wall/measured_cp", kSmallQueue)),
+      scope_state_(outlets.advertise<vibe_msgs::OperatingState>("scope/operating_state", kSmallQueue, true)),
+      overstitch_state_(outlets.advertise<vibe_msgs::OperatingState>("overstitch/operating_state", kSmallQueue, true)) {
+}
+
+void ArmPublishers::place(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {
+  const JointArray joints = toolJoints(simulation.state());
+  JointArray velocity{};
+  for (int j = 0; continues && j < kJointCount; ++j)
+    velocity[j] = (joints[j] - last_joints_[j]) / simulation.time().period();
+  last_joints_ = joints;
+  scope_.publish(makeMeasuredScope(simulation.state(), velocity, stamp));
+  overstitch_.publish(makeMeasuredOverstitch(simulation.state(), velocity, stamp));
+  if (jacobian_.getNumSubscribers() > 0)
+    jacobian_.publish(makeJacobian(tipJacobian(simulation.model(), simulation.state())));
+  if (wall_.getNumSubscribers() == 0) return;
+  if (const auto sight = lookAhead(simulation.model(), simulation.state())) wall_.publish(makeWallPose(*sight, stamp));
+}
+
+void ArmPublishers::operatingState(const TimedSimulation& simulation, const RunStatus& status) {
+  const bool present = simulation.model().tool != nullptr;
+  const auto scope = makeOperatingState(present, status.paused, status.scope_moves, simulation.now());
+  const auto overstitch = makeOperatingState(present, status.paused, status.overstitch_moves, simulation.now());
+  const std::string state = scope.state + (scope.is_busy ? " scope" : "") + (overstitch.is_busy ? " overstitch" : "");
+  if (state == last_state_) return;
+  last_state_ = state;
+  scope_state_.publish(scope);
+  overstitch_state_.publish(overstitch);
+}
+
+bool ArmPublishers::hasListener() const {
+  return anyIsHeard({&scope_, &overstitch_, &jacobian_, &wall_, &scope_state_, &overstitch_state_});
+}
+
+Publishers::Publishers(OutletSource outlets, bool with_clock)
+    : scope_pose_(outlets.advertise<geometry_msgs::PoseStamped>("scope/measured_cp", kSmallQueue)),
+      helix_pose_(outlets.advertise<geometry_msgs::PoseStamped>("overstitch/helix/measured_cp", kSmallQueue)),
+      wrench_(outlets.advertise<geometry_msgs::WrenchStamped>("scope/measured_cf", kSmallQueue)),
+      joint_states_(outlets.advertise<sensor_msgs::JointState>("joint_states", kSmallQueue)),
+      hand_joints_(outlets.advertise<sensor_msgs::JointState>("scope/setpoint_js", kSmallQueue)),
+      topology_(outlets.advertise<vibe_msgs::TissueTopology>("tissue/topology", 1, true)),
+      particles_(outlets.advertise<sensor_msgs::PointCloud2>("tissue/particles", kCloudQueue, true)),
+      procedure_(outlets.advertise<vibe_msgs::ProcedureState>("procedure/state", kSmallQueue, true)),
+      skill_metrics_(outlets.advertise<vibe_msgs::SkillMetrics>("procedure/skill_metrics", kSmallQueue, true)),
+      events_(outlets.advertise<vibe_msgs::ProcedureEvent>("procedure/events", kSmallQueue)),
+      sutures_(outlets.advertise<vibe_msgs::SutureArray>("sutures", kCloudQueue, true)),
+      applied_input_(outlets.advertise<vibe_msgs::StepInput>("applied_input", kSmallQueue, false,
+                                                             [this] { snapshot_asked_ = true; })),
+      solver_statistics_(outlets.advertise<vibe_msgs::SolverStatistics>("solver_statistics", kSmallQueue)),
+      scene_(outlets.advertise<std_msgs::String>("scene", 1, true)),
+      haptic_(outlets.advertise<vibe_msgs::HapticParameters>("haptic/parameters", kSmallQueue)),
+      pull_(outlets.advertise<vibe_msgs::TissuePullState>("tissue/pull_state", kSmallQueue)),
+      step_result_(outlets.advertise<vibe_msgs::StepResult>("step_result", kSmallQueue, true)),
+      session_info_(outlets.advertise<vibe_msgs::SessionInfo>("session_info", kSmallQueue, true)),
+      snapshot_(outlets.advertise<vibe_msgs::StateSnapshot>("snapshot", kCloudQueue, false,
+                                                            [this] { snapshot_asked_ = true; })),
+      step_timing_(outlets.advertise<vibe_msgs::StepTiming>("step_timing", kSmallQueue)),
+      arms_(outlets) {
+  if (outlets.isGraph()) static_transforms_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
+  if (with_clock) clock_ = outlets.advertise<rosgraph_msgs::Clock>("/clock", kSmallQueue);
+}
+
+void Publishers::announceModel(const TimedSimulation& simulation) {
+  const Model& model = simulation.model();
+  cloud_ = std::make_unique<ParticleCloud>(model, simulation.state(), simulation.revision());
+  scene_.publish(makeSceneText(model.scene, simulation.seed()));
+  topology_.publish(makeTopology(model, simulation.revision(), simulation.now()));
+  std::vector<geometry_msgs::TransformStamped> transforms = {
+      makeTransform(Eigen::Isometry3d::Identity(), kWorldFrame, kTissueFrame, simulation.now())};
+  if (model.tool) transforms.push_back(makeTransform(model.tool_base, kWorldFrame, kScopeBaseFrame, simulation.now()));
+  if (static_transforms_) static_transforms_->sendTransform(transforms);
+  announceRun(simulation);
+}
+
+void Publishers::announceRun(const TimedSimulation& simulation) {
+  session_info_.publish(makeSessionInfo(simulation));
+  snapshot_asked_ = true;
+}
+
+void Publishers::appliedInput(const TimedSimulation& simulation) {
+  snapshot(simulation);
+  vibe_msgs::StepInput message = makeStepInput(simulation.input(), simulation.state().step, simulation.now());
+  message.run = simulation.run();
+  if (hasRecorder()) {
+    message.input_hash = hash(simulation.input(), simulation.state().step);
+    message.state_hash = hash(simulation.state());
+  }
+  applied_input_.publish(message);
+}
+
+void Publishers::snapshot(const TimedSimulation& simulation) {
+  if (snapshot_.getNumSubscribers() == 0) return;
+  const bool asked = snapshot_asked_.exchange(false);
+  if (!asked && simulation.now() - last_snapshot_ < kSnapshotPeriod) return;
+  last_snapshot_ = simulation.now();
+  snapshot_.publish(makeStateSnapshot(simulation));
+}
+
+void Publishers::stepResult(const TimedSimulation& simulation, const RunStatus& status) {
+  const std::int64_t stamp = simulation.now();
+  now_ = stamp;
+  tool(simulation, true, stamp);
+  haptic(simulation, stamp);
+  pull(simulation, stamp);
+  if (simulation.state().step % imageInterval(simulation.time().period()) == 0) particles(simulation, stamp);
+  if (suturesAreDue(simulation)) sutures(simulation);
+  arms_.operatingState(simulation, status);
+  for (const Event& event : simulation.events()) events_.publish(makeEvent(event, stamp));
+  if (kindOf(simulation, status) != last_kind_ || stamp - last_procedure_ >= kProcedurePeriod) {
+    procedureState(simulation, status);
+  }
+  step_result_.publish(makeStepResult(simulation, false));
+  clock(stamp);
+}
+
+void Publishers::wholeState(const TimedSimulation& simulation, const RunStatus& status) {
+  const std::int64_t stamp = simulation.now();
+  now_ = stamp;
+  if (stamp != last_particles_) particles(simulation, stamp);
+  sutures(simulation);
+  procedureState(simulation, status);
+  if (stamp == last_tool_) return;
+  if (haptic_touching_) hapticRelease(stamp);
+  pull(simulation, stamp);
+  tool(simulation, false, stamp);
+  step_result_.publish(makeStepResult(simulation, true));
+  clock(stamp);
+}
+
+void Publishers::heartbeat(const TimedSimulation& simulation) {
+  if (particles_missed_) particles(simulation, simulation.now());
+  clock(simulation.now());
+}
+
+void Publishers::procedureState(const TimedSimulation& simulation, const RunStatus& status) {
+  last_kind_ = kindOf(simulation, status);
+  last_procedure_ = simulation.now();
+  procedure_.publish(makeProcedureState(simulation, status));
+  skill_metrics_.publish(makeSkillMetrics(simulation));
+  arms_.operatingState(simulation, status);
+}
+
+bool Publishers::suturesAreDue(const TimedSimulation& simulation) const {
+  const ProcedureState& procedure = simulation.state().procedure;
+  if (kindOf(procedure) != last_suture_kind_) return true;
+  if (procedure.sutures.empty()) return false;
+  const bool in_turn = simulation.state().step % imageInterval(simulation.time().period()) == 0;
+  return (in_turn && sutures_.getNumSubscribers() > 0) || simulation.now() - last_sutures_ >= kProcedurePeriod;
+}
+
+void Publishers::sutures(const TimedSimulation& simulation) {
+  last_suture_kind_ = kindOf(simulation.state().procedure);
+  last_sutures_ = simulation.now();
+  sutures_.publish(makeSutures(simulation.model(), simulation.state(), simulation.now()));
+}
+
+void Publishers::warn(const std::string& text) {
+  ++warnings_;
+  events_.publish(makeWarning(text, now_));
+}
+
+bool Publishers::hasListener() const {
+  return arms_.hasListener() ||
+         anyIsHeard(
+             {&scope_pose_,        &helix_pose_,  &wrench_,        &joint_states_, &hand_joints_, &topology_,
+              &particles_,         &procedure_,   &skill_metrics_, &events_,       &sutures_,     &applied_input_,
+              &solver_statistics_, &scene_,       &haptic_,        &pull_,         &step_result_, &session_info_,
+              &snapshot_,          &step_timing_, &clock_});
+}
+
+void Publishers::tool(const TimedSimulation& simulation, bool continues, std::int64_t stamp) {
+  last_tool_ = stamp;
+  const Model& model = simulation.model();
+  if (!model.tool) return;
+  model.tool->forwardKinematics(simulation.state().joints, simulation.state().tool_displacement, link_poses_);
+  scope_pose_.publish(makePose(model.tool_base * link_poses_[model.tip_link], kWorldFrame, stamp));
+  helix_pose_.publish(makePose(model.tool_base * link_poses_[model.helix_link], kWorldFrame, stamp));
+  wrench_.publish(makeWrench(simulation.state(), stamp));
+  joint_states_.publish(makeJointState(model, simulation.state(), stamp));
+  hand_joints_.publish(makeHandJoints(simulation.state(), stamp));
+  arms_.place(simulation, continues, stamp);
+}
+
+void Publishers::haptic(const TimedSimulation& simulation, std::int64_t stamp) {
+  const std::optional<ToolImpedance>& response = simulation.simulation().toolImpedance();
+  if (!response) {
+    if (haptic_touching_) hapticRelease(stamp);
+    return;
+  }
+  if (haptic_touching_ && simulation.state().step % hapticInterval(simulation.time().period()) != 0) return;
+  haptic_touching_ = true;
+  const bool holds = simulation.model().scene.helix && !simulation.state().grip.empty();
+  const double limit = holds ? holdingForce(*simulation.model().scene.helix, simulation.state().procedure.grip_turns)
+                             : std::numeric_limits<double>::infinity();
+  haptic_.publish(makeHapticParameters(*response, limit, stamp));
+}
+
+void Publishers::hapticRelease(std::int64_t stamp) {
+  haptic_touching_ = false;
+  haptic_.publish(makeHapticRelease(stamp));
+}
+
+// The state after a reset or load has its own hand, and a listener must not go on drawing the former one.
+void Publishers::pull(const TimedSimulation& simulation, std::int64_t stamp) {
+  const bool holds = simulation.state().pull.holds();
+  if (!holds && !pull_held_) return;
+  pull_held_ = holds;
+  pull_.publish(makePullState(simulation.state(), stamp));
+}
+
+void Publishers::particles(const TimedSimulation& simulation, std::int64_t stamp) {
+  last_particles_ = stamp;
+  particles_missed_ = particles_.getNumSubscribers() == 0;
+  if (particles_missed_) return;
+  particles_.publish(cloud_->update(simulation.model(), simulation.state(), stamp));
+}
+
+void Publishers::clock(std::int64_t stamp) {
+  rosgraph_msgs::Clock message;
+  message.clock = toRosTime(stamp);
+  clock_.publish(message);
+}
+
+}  // namespace vibe::sim

@@ -1,0 +1,108 @@
+#include "simulator/inputs.hpp"
+
+#include "conversions/input_message.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/common/step_timer.hpp"
+
+namespace vibe::sim {
+
+namespace {
+
+constexpr double kOwnerPatience = 2;          // a source that is silent for longer has given the topic up [s]
+constexpr std::uint32_t kInputQueue = 10000;  // none may be lost in lock-step; the queue bounds what really waits
+
+}  // namespace
+
+Inputs::Inputs(const ros::NodeHandle& handle, InputQueue& queue, Publishers& publishers, const InputWindow& window,
+               std::function<std::int64_t()> now, std::function<void(InputChannel)> arrived)
+    : handle_(handle),
+      queue_(queue),
+      publishers_(publishers),
+      window_(window),
+      now_(std::move(now)),
+      arrived_(std::move(arrived)) {
+  using sensor_msgs::JointState;
+  handle_.setCallbackQueue(&callbacks_);
+  listen<JointState>("scope/measured_js", [](const JointState& message) {
+    return readJoints(message, InputChannel::Scope, JointSource::Measured);
+  });
+  listen<JointState>("scope/servo_jp", [](const JointState& message) {
+    return readJoints(message, InputChannel::Scope, JointSource::Commanded);
+  });
+  listen<geometry_msgs::PoseStamped>("scope/servo_cp", readTipTarget);
+  listen<JointState>("overstitch/measured_js", [](const JointState& message) {
+    return readJoints(message, InputChannel::Overstitch, JointSource::Measured);
+  });
+  listen<JointState>("overstitch/servo_jp", [](const JointState& message) {
+    return readJoints(message, InputChannel::Overstitch, JointSource::Commanded);
+  });
+  listen<JointState>("scope/move_jp", [](const JointState& message) { return readMove(message, InputChannel::Scope); });
+  listen<JointState>("overstitch/move_jp",
+                     [](const JointState& message) { return readMove(message, InputChannel::Overstitch); });
+  listen<sensor_msgs::Joy>("scope/buttons", readButtons);
+  listen<vibe_msgs::TissuePull>("tissue/pull", readPull);
+  spinner_ = std::make_unique<ros::AsyncSpinner>(1, &callbacks_);
+  spinner_->start();
+}
+
+Inputs::~Inputs() {
+  spinner_->stop();
+}
+
+template <typename Message>
+void Inputs::listen(const std::string& name, std::function<InputSample(const Message&)> read) {
+  using Arrival = ros::MessageEvent<const Message>;
+  const boost::function<void(const Arrival&)> callback = [this, name, read = std::move(read)](const Arrival& event) {
+    receive(name, event.getPublisherName(), [&] { return read(*event.getMessage()); });
+  };
+  ros::SubscribeOptions options;
+  options.template initByFullCallbackType<const Arrival&>(name, kInputQueue, callback);
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  topics_[name].subscriber = handle_.subscribe(options);
+}
+
+void Inputs::receive(const std::string& name, const std::string& publisher, const std::function<InputSample()>& read) {
+  Topic& topic = topics_.at(name);
+  if (!obeys(name, topic, publisher)) return;
+  try {
+    take(name, topic, publisher, read());
+  } catch (const Error& error) {
+    complain(topic, "A message on " + name + " from " + publisher + " is ignored: " + error.what());
+  }
+}
+
+void Inputs::take(const std::string& name, Topic& topic, const std::string& publisher, const InputSample& sample) {
+  const std::string fault = faultOf(sample.stamp, now_(), window_);
+  if (!fault.empty())
+    return complain(topic, "A message on " + name + " from " + publisher + " is ignored: " + fault +
+                               "; check the clock of that node and whether both read the same /use_sim_time.");
+  if (!queue_.push(sample))
+    return complain(topic, "A message on " + name + " from " + publisher +
+                               " is ignored: " + std::to_string(InputQueue::kCapacity) +
+                               " messages with later stamps wait already; send less ahead.");
+  topic.owner = publisher;
+  topic.last_message = steadyTime();
+  arrived_(sample.channel);
+}
+
+bool Inputs::obeys(const std::string& name, Topic& topic, const std::string& publisher) {
+  const double now = steadyTime();
+  const bool owned = !topic.owner.empty() && topic.owner != publisher && topic.subscriber.getNumPublishers() > 1 &&
+                     now - topic.last_message < kOwnerPatience;
+  if (owned) {
+    complain(topic, "Two nodes publish " + name + ": " + topic.owner + " is obeyed and " + publisher +
+                        " ignored; stop one of them.");
+    return false;
+  }
+  return true;
+}
+
+void Inputs::complain(Topic& topic, const std::string& sentence) {
+  const double now = steadyTime();
+  if (now - topic.last_complaint < kComplaintPeriod) return;
+  topic.last_complaint = now;
+  ROS_WARN_STREAM(sentence);
+  publishers_.warn(sentence);
+}
+
+}  // namespace vibe::sim

@@ -1,0 +1,45 @@
+#include "simulator/services.hpp"
+
+#include <std_srvs/SetBool.h>
+#include <vibe_msgs/LoadScene.h>
+#include <vibe_msgs/Reset.h>
+#include <vibe_msgs/Snapshot.h>
+#include <vibe_msgs/Step.h>
+
+namespace vibe::sim {
+
+template <typename Service, typename Work>
+void Services::offer(const std::string& name, Work work) {
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+  const boost::function<bool(Request&, Response&)> callback = [work](Request& request, Response& response) {
+    const Reply reply = work(request);
+    response.success = reply.success;
+    response.message = reply.message;
+    return true;
+  };
+  servers_.push_back(handle_.advertiseService(name, callback));
+}
+
+Services::Services(const ros::NodeHandle& handle, SimulationThread& thread) : handle_(handle) {
+  handle_.setCallbackQueue(&queue_);
+  offer<std_srvs::SetBool>("pause",
+                           [&thread](const std_srvs::SetBool::Request& r) { return thread.setPaused(r.data); });
+  offer<vibe_msgs::Step>("step", [&thread](const vibe_msgs::Step::Request& r) { return thread.takeSteps(r.n); });
+  offer<vibe_msgs::Reset>("reset",
+                          [&thread](const vibe_msgs::Reset::Request& r) { return thread.reset(r.seed, r.keep_time); });
+  offer<vibe_msgs::Snapshot>("save_snapshot",
+                             [&thread](const vibe_msgs::Snapshot::Request& r) { return thread.saveSnapshot(r.file); });
+  offer<vibe_msgs::Snapshot>("load_snapshot",
+                             [&thread](const vibe_msgs::Snapshot::Request& r) { return thread.loadSnapshot(r.file); });
+  offer<vibe_msgs::LoadScene>("load_scene",
+                              [&thread](const vibe_msgs::LoadScene::Request& r) { return thread.loadScene(r.file); });
+  spinner_ = std::make_unique<ros::AsyncSpinner>(4, &queue_);
+  spinner_->start();
+}
+
+Services::~Services() {
+  spinner_->stop();
+}
+
+}  // namespace vibe::sim

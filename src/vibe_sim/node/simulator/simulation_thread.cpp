@@ -1,0 +1,286 @@
+#include "simulator/simulation_thread.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include <ros/console.h>
+
+#include "conversions/conversions.hpp"
+#include "vibe_core/common/write_file.hpp"
+#include "vibe_node/startup.hpp"
+#include "vibe_node/wall_clock.hpp"
+
+namespace vibe::sim {
+
+namespace {
+
+constexpr std::int64_t kMaxStepLag = 250'000'000;  // behind the wall clock before time is given up [ns]
+constexpr double kClockHeartbeat = 0.08;           // while time stands still [s]
+constexpr double kRecorderPatience = 30;           // [s]
+constexpr double kRecorderSettling = 0.3;          // [s]
+constexpr double kLagReportPeriod = 5;             // at first; doubled while the lag goes on [s]
+constexpr double kLagReportPeriodMax = 60;         // [s]
+constexpr std::chrono::milliseconds kIdle(40);
+constexpr std::chrono::microseconds kSamplePoll(200);
+
+std::int64_t startOrigin(const Parameters& parameters) {
+  return parameters.time_source == TimeSource::Sim ? kEpoch : node::wallTime();
+}
+
+}  // namespace
+
+SimulationThread::SimulationThread(const Parameters& parameters, const SceneModel& made, InputQueue& queue,
+                                   Publishers& publishers)
+    : parameters_(parameters),
+      queue_(queue),
+      publishers_(publishers),
+      simulation_(made, parameters.seed.value_or(made.model->scene.seed), startOrigin(parameters), parameters.threads),
+      pace_(simulation_, parameters.time_source),
+      last_step_(stepsIn(parameters.duration, made.model->scene.step_period)) {
+  status_.paused = parameters.start_paused;
+}
+
+SimulationThread::~SimulationThread() {
+  stop();
+}
+
+void SimulationThread::start() {
+  running_ = true;
+  thread_ = std::thread([this] { run(); });
+}
+
+void SimulationThread::stop() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);  // the thread is not just about to wait
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void SimulationThread::wake(InputChannel channel) {
+  if (channel == parameters_.follow) pace_.arrive(node::wallTime());
+  {
+    std::lock_guard<std::mutex> lock(mutex_);  // the thread is not just about to wait
+    woken_ = true;
+  }
+  changed_.notify_all();
+}
+
+void SimulationThread::run() {
+  const std::string refusal =
+      parameters_.realtime_priority > 0 ? node::takeRealtimePriority(parameters_.realtime_priority) : "";
+  if (!refusal.empty()) ROS_WARN_STREAM_ONCE(refusal);
+  try {
+    loop();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+  rejectCommands();
+  running_ = false;
+}
+
+void SimulationThread::loop() {
+  publishers_.announceModel(simulation_);
+  publishers_.wholeState(simulation_, status_);
+  statistics_.begin(simulation_);
+  pace_.restart(node::wallTime());
+  while (!stopping_) {
+    pace_.collect();
+    serveCommands();
+    if (last_step_ > 0 && statistics_.steps >= last_step_) {
+      outcome_ = Outcome::Finished;
+      return;
+    }
+    const Hold hold = findHold();
+    if (hold == Hold::None) {
+      takeStep();
+    } else {
+      wait(hold);
+      if (outcome_ == Outcome::Failed) return;
+    }
+    reportEverySecond();
+  }
+}
+
+SimulationThread::Hold SimulationThread::findHold() {
+  if (status_.paused && steps_left_ == 0) return Hold::Paused;
+  if (mustWaitForRecorder()) return Hold::Recorder;
+  if (parameters_.lockstep && !queue_.knownUntil(simulation_.now())) return Hold::Inputs;
+  // single steps are taken as fast as they can be, but stamps must not run ahead of the wall clock
+  const bool hurry = steps_left_ > 0 && parameters_.time_source == TimeSource::Sim;
+  if (parameters_.fast || hurry) return Hold::None;
+  return findDeadline();
+}
+
+SimulationThread::Hold SimulationThread::findDeadline() {
+  const std::int64_t now = node::wallTime();
+  const std::int64_t late = now - pace_.deadline();
+  if (late < -Pace::kClockJump) pace_.restart(now);
+  if (late < 0 || now < pace_.earliestBegin()) return Hold::Pace;
+  if (parameters_.follow && pace_.awaitsSample(now)) return Hold::Sample;
+  if (static_cast<double>(late) > 1e9 * simulation_.time().period()) ++statistics_.missed_deadlines;
+  if (late > kMaxStepLag) {
+    reportLag(1e-9 * static_cast<double>(late));
+    pace_.restart(now);
+  }
+  return Hold::None;
+}
+
+bool SimulationThread::mustWaitForRecorder() {
+  if (!parameters_.await_recorder || statistics_.steps > 0) return false;
+  if (!publishers_.hasRecorder()) {
+    recorder_since_ = 0;
+    return true;
+  }
+  // its connections to the other topics come at about the same time
+  if (recorder_since_ == 0) recorder_since_ = steadyTime();
+  return steadyTime() - recorder_since_ < kRecorderSettling;
+}
+
+void SimulationThread::wait(Hold hold) {
+  const double now = steadyTime();
+  if (hold != hold_) hold_begin_ = now;
+  hold_ = hold;
+  const bool time_stands_still = hold != Hold::Pace && hold != Hold::Sample;
+  if (time_stands_still && now - std::max(last_clock_, hold_begin_) >= kClockHeartbeat) {
+    publishers_.heartbeat(simulation_);
+    last_clock_ = now;
+  }
+  checkPatience(hold);
+  queue_.collect();
+  std::unique_lock<std::mutex> lock(mutex_);
+  std::chrono::nanoseconds duration = kIdle;
+  if (hold == Hold::Pace)
+    duration = std::min(duration, std::chrono::nanoseconds(pace_.earliestBegin() - node::wallTime()));
+  if (hold == Hold::Sample) duration = kSamplePoll;
+  // inputs matter to a step only when it is due, so that their arrival ends no other wait
+  const bool inputs_matter = hold == Hold::Inputs || hold == Hold::Sample;
+  changed_.wait_for(lock, duration, [&] { return stopping_ || asked_ || (inputs_matter && woken_); });
+  woken_ = false;
+  // time spent waiting for others is not lag of the simulation
+  if (hold == Hold::Inputs || hold == Hold::Recorder) pace_.restart(node::wallTime());
+}
+
+void SimulationThread::checkPatience(Hold hold) {
+  const double waited = steadyTime() - hold_begin_;
+  if (hold == Hold::Recorder && waited > kRecorderPatience) {
+    fail("Nobody listens to applied_input although ~await_recorder is set; start the recorder or do not set it.");
+  }
+  if (hold != Hold::Inputs || waited < parameters_.lockstep_timeout) return;
+  const std::string sentence = "No message stamped " + std::to_string(1e-9 * static_cast<double>(simulation_.now())) +
+                               " s or later has come on " + queue_.missingAt(simulation_.now()) + " for " +
+                               std::to_string(static_cast<int>(waited)) + " s, which ~lockstep needs; ";
+  answerSteps({false, sentence + "the simulation stays paused."});
+  if (parameters_.duration > 0) {
+    fail(sentence + "start the node that sends it.");
+    return;
+  }
+  ROS_ERROR_STREAM(sentence << "the simulation is paused: start the node that sends it and call the service pause.");
+  publishers_.warn(sentence + "the simulation is paused.");
+  status_.paused = true;
+  publishers_.procedureState(simulation_, status_);
+}
+
+void SimulationThread::takeStep() {
+  hold_ = Hold::None;
+  if (statistics_.steps == 0) statistics_.begin(simulation_);
+  statistics_.total.start();
+  const bool real_time = !parameters_.fast && !parameters_.lockstep && steps_left_ == 0;
+  const std::int64_t now = node::wallTime();
+  beginTiming(now, real_time);
+  pace_.begin(now);
+  StepInput input = simulation_.input();
+  for (const std::string& sentence : interpreter_.apply(pace_.inputTime(now, queue_.now()), queue_, simulation_.model(),
+                                                        input, real_time, simulation_.state().joints))
+    complain(sentence);
+  status_.scope_moves = interpreter_.moves(InputChannel::Scope);
+  status_.overstitch_moves = interpreter_.moves(InputChannel::Overstitch);
+  simulation_.addWarnings(publishers_.takeWarnings());
+  simulation_.setInput(input);
+  publishers_.appliedInput(simulation_);
+  simulation_.step();
+  timing_.solved = toRosTime(node::wallTime());
+  statistics_.publish.start();
+  publishers_.stepResult(simulation_, status_);
+  statistics_.publish.stop();
+  endTiming();
+  if (real_time && parameters_.follow) pace_.follow();
+  last_clock_ = steadyTime();
+  statistics_.countStep(simulation_.time().period(), simulation_.simulation().report());
+  statistics_.total.stop();
+  if (steps_left_ > 0 && --steps_left_ == 0) {
+    publishers_.procedureState(simulation_, status_);  // it is sent once a second, and time now stands still
+    answerSteps({true, "Took " + std::to_string(steps_asked_) + " steps."});
+  }
+}
+
+void SimulationThread::beginTiming(std::int64_t now, bool real_time) {
+  timing_.step = simulation_.state().step;
+  timing_.due = toRosTime(real_time ? std::min(pace_.deadline(), now) : now);
+  timing_.begin = toRosTime(now);
+}
+
+void SimulationThread::endTiming() {
+  if (!publishers_.hasTimingListener()) return;
+  timing_.header.stamp = toRosTime(simulation_.now());
+  timing_.published = toRosTime(node::wallTime());
+  publishers_.stepTiming(timing_);
+}
+
+// Of a command that is sent 100 times a second, one sentence a second is enough.
+void SimulationThread::complain(const std::string& sentence) {
+  double& last = complaints_.try_emplace(sentence.substr(0, sentence.find(' ')), -1e9).first->second;
+  const double now = steadyTime();
+  if (now - last < kComplaintPeriod) return;
+  last = now;
+  ROS_WARN_STREAM(sentence);
+  publishers_.warn(sentence);
+}
+
+void SimulationThread::reportEverySecond() {
+  if (!statistics_.windowIsOver()) return;
+  publishers_.solverStatistics(statistics_.windowMessage(simulation_));
+  std::printf("%s%s\n", statistics_.progressLine(simulation_).c_str(), status_.paused ? "  (paused)" : "");
+  std::fflush(stdout);
+  statistics_.startWindow(simulation_);
+}
+
+void SimulationThread::fail(const std::string& sentence) {
+  ROS_ERROR_STREAM(sentence);
+  publishers_.warn(sentence);
+  outcome_ = Outcome::Failed;
+}
+
+void SimulationThread::reportLag(double lag) {
+  const double now = steadyTime();
+  const double since = now - last_lag_report_;
+  if (since < lag_report_period_) return;
+  const bool goes_on = since < 2 * lag_report_period_;
+  lag_report_period_ = goes_on ? std::min(2 * lag_report_period_, kLagReportPeriodMax) : kLagReportPeriod;
+  last_lag_report_ = now;
+  const double step = statistics_.total.wall.all.quantile(0.5), period = simulation_.time().period();
+  const char* remedy = step < period ? "stop other programs, or use fewer particles if single steps are long"
+                                     : "use fewer particles or substeps";
+  char sentence[320];
+  std::snprintf(sentence, sizeof sentence,
+                "The simulation is %.2f s behind the wall clock and gives that time up: the median step takes %.1f ms "
+                "and simulates %.1f ms; %s.",
+                lag, 1e3 * step, 1e3 * period, remedy);
+  ROS_WARN_STREAM(sentence);
+  publishers_.warn(sentence);
+}
+
+void SimulationThread::finish() {
+  simulation_.addWarnings(publishers_.takeWarnings());
+  publishers_.wholeState(simulation_, status_);
+  publishers_.solverStatistics(statistics_.wholeMessage(simulation_));
+  const std::string summary = statistics_.summary(simulation_);
+  std::fputs(summary.c_str(), stdout);
+  std::fflush(stdout);
+  if (!parameters_.summary_file.empty()) writeFile(parameters_.summary_file, summary, "The summary");
+}
+
+}  // namespace vibe::sim
