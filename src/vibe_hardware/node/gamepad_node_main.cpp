@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "gamepad_node.hpp"
-#include "vibe_node/master.hpp"
+#include "vibe_node/startup.hpp"
 
 namespace {
 

@@ -6,8 +6,7 @@
 #include <cstdio>
 
 #include "hardware_node.hpp"
-#include "vibe_node/master.hpp"
-#include "vibe_node/realtime.hpp"
+#include "vibe_node/startup.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "vibe_node/master.hpp"
+#include "vibe_node/startup.hpp"
 #include "vision_node.hpp"
 
 namespace {

@@ -5,7 +5,6 @@
 
 #include "input/input_interpreter.hpp"
 #include "vibe_testing/worlds.hpp"
-#include "worlds.hpp"
 
 namespace vibe::sim::input_queue_test {
 namespace {

@@ -4,9 +4,7 @@
 
 #include <cmath>
 
-#include "contact/scope_fixture.hpp"
 #include "input/input_queue.hpp"
-#include "input_queue.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_testing/scope_fixture.hpp"
 

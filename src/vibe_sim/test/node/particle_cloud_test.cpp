@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 
-#include "conversions.hpp"
+#include "conversions/conversions.hpp"
 #include "vibe_testing/worlds.hpp"
-#include "worlds.hpp"
 
 namespace vibe::sim::particle_cloud_test {
 namespace {

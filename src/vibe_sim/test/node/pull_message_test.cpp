@@ -8,7 +8,6 @@
 #include "sentences.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_testing/worlds.hpp"
-#include "worlds.hpp"
 
 namespace vibe::sim::pull_message_test {
 namespace {

@@ -6,12 +6,8 @@
 #include <mutex>
 #include <thread>
 
-#include "allocation_count.hpp"
 #include "input/input_interpreter.hpp"
 #include "input/input_queue.hpp"
-#include "input_queue.hpp"
-#include "lock_count.hpp"
-#include "scope_worlds.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_testing/allocation_count.hpp"
 #include "vibe_testing/lock_count.hpp"

@@ -4,9 +4,8 @@
 
 #include <functional>
 
-#include "conversions.hpp"
+#include "conversions/conversions.hpp"
 #include "vibe_testing/worlds.hpp"
-#include "worlds.hpp"
 
 namespace vibe::sim::suture_message_test {
 namespace {
