@@ -4,12 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "vibe_vision/datagram/datagram.hpp"
 #include "vibe_vision/datagram/udp_sender.hpp"
 #include "vibe_vision/predict/instrument_predictor.hpp"
 #include "vibe_vision/track/tracker.hpp"
-#include "vision_messages.hpp"
 
 namespace vibe::vision {
+
+/// Where the time of one frame went [s]; fields as in vibe_msgs/InstrumentTrackArray.
+struct StageTimes {
+  double transport = 0, wait = 0, track = 0, publish = 0;
+};
 
 /// Everything about one frame.
 struct FrameResult {
@@ -19,6 +24,9 @@ struct FrameResult {
   StageTimes times;       ///< publish is filled by the publisher
   double tracked_at = 0;  ///< end of tracking [s]
 };
+
+TrackDatagram makeDatagram(const Frame& frame, const Measurements& measurements,
+                           const std::vector<JointSample>& samples);
 
 /// From a frame to the datagram: tracks, updates the predictors, sends. Not thread-safe.
 class FramePipeline {
