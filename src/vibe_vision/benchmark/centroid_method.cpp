@@ -3,7 +3,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "cpu_clock.hpp"
+#include "bench_cell.hpp"
 #include "method.hpp"
 #include "vibe_vision/image/camera_model.hpp"
 

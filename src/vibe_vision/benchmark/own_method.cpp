@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "cpu_clock.hpp"
+#include "bench_cell.hpp"
 #include "method.hpp"
 #include "vibe_vision/predict/predictor.hpp"
 #include "vibe_vision/track/tracker.hpp"

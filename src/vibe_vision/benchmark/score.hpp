@@ -1,8 +1,12 @@
 #pragma once
-#include <limits>
-#include <string>
 
-#include "cpu_clock.hpp"
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "bench_cell.hpp"
+#include "bench_scene.hpp"
 #include "method.hpp"
 
 namespace vibe::vision {
@@ -61,5 +65,17 @@ class Scorer {
   double lead_squares_ = 0, lead_count_ = 0;
   std::vector<double> track_times_, search_times_;
 };
+
+struct CellResult {
+  Cell cell;
+  std::vector<Score> scores;  ///< by method
+  TimeSummary track, search;  ///< one tracker for both instruments, per frame [s]
+};
+
+/// The table for people: one line per method.
+void printHeader(std::ostream& out, const ScoreLimits& limits);
+void printCell(std::ostream& out, const CellResult& result);
+/// One row per cell and method, SI units except pixels.
+void writeCsv(std::ostream& out, const std::vector<CellResult>& results);
 
 }  // namespace vibe::vision

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "frame_pipeline.hpp"
+#include "../include/vibe_vision/predict/frame_pipeline.hpp"
 
 namespace vibe::vision {
 

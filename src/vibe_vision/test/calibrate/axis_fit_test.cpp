@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "calibrate/student_t.hpp"
+#include "calibrate/fitting.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::vision::axis_fit_test {
