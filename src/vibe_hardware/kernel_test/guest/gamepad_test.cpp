@@ -6,7 +6,7 @@
 #include "kernel_events.hpp"
 #include "plugged_device.hpp"
 #include "statistics.hpp"
-#include "vibe_hardware/gamepad/pad_finder.hpp"
+#include "vibe_hardware/gamepad/pad_source.hpp"
 #include "virtual_pad.hpp"
 
 namespace vibe::hardware {

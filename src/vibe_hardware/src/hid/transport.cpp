@@ -1,9 +1,4 @@
-#include "hid/local_socket.hpp"
-
-#include <poll.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
+#include "hid/transport.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,7 +6,15 @@
 #include <cstring>
 #include <stdexcept>
 
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include "vibe_hardware/hid/hid_port.hpp"
+
 namespace vibe::hardware {
+
 namespace {
 
 /// @return false if the path is too long for a socket
@@ -62,6 +65,14 @@ bool waitReadable(int file, double seconds) {
   pollfd entry{file, POLLIN, 0};
   const int milliseconds = seconds < 0 ? -1 : static_cast<int>(std::ceil(std::min(seconds, 1e6) * 1e3));
   return ::poll(&entry, 1, milliseconds) > 0;
+}
+
+// A device that was unplugged answers ENODEV or EIO; one that does not know a report stalls the request: EPIPE.
+void failTransfer(const std::string& path, int error, const std::string& what) {
+  const std::string sentence = path + ": " + what + ": " + std::strerror(error);
+  if (error == ETIMEDOUT) throw NoAnswer(sentence);
+  if (error == EPIPE || error == EINVAL || error == EOVERFLOW) throw ReportRejected(sentence);
+  throw DeviceGone(sentence);
 }
 
 }  // namespace vibe::hardware

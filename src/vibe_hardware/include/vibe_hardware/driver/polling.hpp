@@ -1,7 +1,28 @@
 #pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <thread>
+
 #include "vibe_hardware/driver/device_driver.hpp"
 
 namespace vibe::hardware {
+
+/// Calls a function again and again until it is destroyed.
+class PollingThread {
+ public:
+  /// @param poll    is called all the time; it waits itself, or returns false to be called again in 5 ms
+  /// @param failed  gets the sentence of an exception that `poll` lets out; polling goes on after one second
+  PollingThread(std::function<bool()> poll, std::function<void(const std::string&)> failed);
+  ~PollingThread();
+  PollingThread(const PollingThread&) = delete;
+  PollingThread& operator=(const PollingThread&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
 
 /// Tells that the samples of a device have stopped, to a thread that does not wait for the device: a request that is
 /// not answered keeps the driver's own thread for seconds. Not thread-safe. Times: host clock [s].

@@ -1,9 +1,10 @@
-#include "vibe_hardware/driver/polling_thread.hpp"
+#include "vibe_hardware/driver/polling.hpp"
 
 #include <chrono>
 #include <exception>
 
 namespace vibe::hardware {
+
 namespace {
 
 constexpr std::chrono::milliseconds kIdle{5};
@@ -32,6 +33,21 @@ PollingThread::PollingThread(std::function<bool()> poll, std::function<void(cons
 PollingThread::~PollingThread() {
   stop_ = true;
   thread_.join();
+}
+
+bool SilenceWatch::arrived(double now) {
+  const bool ends_silence = told_;
+  last_ = now;
+  watching_ = true;
+  told_ = false;
+  return ends_silence;
+}
+
+bool SilenceWatch::expired(double now) {
+  if (!watching_ || now - last_ < kLimit) return false;
+  watching_ = false;
+  told_ = true;
+  return true;
 }
 
 }  // namespace vibe::hardware

@@ -1,4 +1,5 @@
 #pragma once
+
 #include <string>
 
 #include "vibe_hardware/hid/file_descriptor.hpp"
@@ -15,5 +16,10 @@ FileDescriptor listenAt(const std::string& path);
 /// Waits until something can be read or the other side has closed. @param seconds  negative: for ever
 /// @return whether it can
 bool waitReadable(int file, double seconds);
+
+/// Throws what a failed request for a feature report means: DeviceGone, ReportRejected or NoAnswer.
+/// @param error  errno of the request
+/// @param what   "feature report 3 cannot be read"
+[[noreturn]] void failTransfer(const std::string& path, int error, const std::string& what);
 
 }  // namespace vibe::hardware
