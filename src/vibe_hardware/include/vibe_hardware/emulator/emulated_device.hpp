@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "vibe_firmware/core/encoder.hpp"
+#include "vibe_firmware/core/sample.hpp"
+#include "vibe_firmware/protocol/control_endpoint.hpp"
 #include "vibe_firmware/protocol/haptic_function.hpp"
-#include "vibe_firmware/protocol/hid_function.hpp"
 #include "vibe_firmware/protocol/input_function.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 #include "vibe_hardware/emulator/axis_plant.hpp"

@@ -1,9 +1,11 @@
-#include "vibe_firmware/core/encoder.hpp"
+#include "vibe_firmware/core/sample.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 
 namespace vibe_firmware {
+
 namespace {
 
 /// to - from, of counters that wrap: the shorter way round.
@@ -49,6 +51,18 @@ std::int32_t step(const AxisConfig& config, int counter_bits, const EncoderSampl
   if (sample.index)
     useIndex(config, state.count + difference(sample.index_counter, sample.counter, counter_bits), state);
   return moved;
+}
+
+void step(std::uint8_t ticks, std::uint16_t contacts, DebouncerState& state) {
+  const auto changed = static_cast<std::uint16_t>(contacts ^ state.buttons);
+  for (std::size_t i = 0; i < kButtonCount; ++i) {
+    if ((changed >> i & 1) == 0) {
+      state.differs[i] = 0;
+    } else if (++state.differs[i] >= ticks) {
+      state.buttons = static_cast<std::uint16_t>(state.buttons ^ (1U << i));
+      state.differs[i] = 0;
+    }
+  }
 }
 
 }  // namespace vibe_firmware

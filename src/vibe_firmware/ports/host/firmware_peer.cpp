@@ -1,4 +1,4 @@
-#include "fifo_peer.hpp"
+#include "firmware_peer.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,8 +1,8 @@
-#include "simulated_encoders.hpp"
+#include "usb_board.hpp"
 
 #include <algorithm>
 
-#include "interrupts.hpp"
+#include "startup.hpp"
 
 namespace vibe_firmware::mps2 {
 namespace {

@@ -1,4 +1,4 @@
-#include "control_requests.hpp"
+#include "scenario.hpp"
 
 #include <cstring>
 
