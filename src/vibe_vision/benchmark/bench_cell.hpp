@@ -3,18 +3,8 @@
 #include <vector>
 
 #include "score.hpp"
-#include "vibe_core/common/step_timer.hpp"  // threadCpuTime()
 
 namespace vibe::vision {
-
-/// Keeps the calling thread on the processor it runs on. @return false where the system does not allow it
-bool pinThread();
-
-/// Of a set of times, all in the same unit; NaN for an empty set.
-struct TimeSummary {
-  double least = 0, median = 0;
-};
-TimeSummary summarise(std::vector<double> times);
 
 struct BenchOptions {
   int frames = 200;  ///< per seed

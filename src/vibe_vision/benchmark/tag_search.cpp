@@ -8,8 +8,8 @@
 #include <apriltag/tag36h11.h>
 #include <opencv2/aruco.hpp>
 
-#include "bench_cell.hpp"
 #include "method.hpp"
+#include "vibe_core/common/step_timer.hpp"
 #include "vibe_vision/image/camera_model.hpp"
 
 namespace vibe::vision {
