@@ -21,24 +21,21 @@ void TopicInput::onImage(const sensor_msgs::ImageConstPtr& image, const sensor_m
   try {
     Frame frame = makeFrame(image, *info, exposure_, start_stamped_);
     frame.arrival = ros::Time::now().toSec();
-    put(std::move(frame));
+    count(frame.sequence);
+    latest_.put(std::move(frame));
   } catch (const Error& error) {
     refuse(error.what());
   }
 }
 
-void TopicInput::put(Frame&& frame) {
+void TopicInput::count(std::uint64_t sequence) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (fresh_) ++dropped_;
   // a publisher that starts anew counts from the beginning
-  const bool gap = statistics_.frames > 0 && frame.sequence > last_sequence_ + 1;
-  if (gap) statistics_.lost += frame.sequence - last_sequence_ - 1;
-  last_sequence_ = frame.sequence;
+  const bool gap = statistics_.frames > 0 && sequence > last_sequence_ + 1;
+  if (gap) statistics_.lost += sequence - last_sequence_ - 1;
+  last_sequence_ = sequence;
   ++statistics_.frames;
   complaint_.clear();
-  frame_ = std::move(frame);
-  fresh_ = true;
-  arrived_.notify_one();
 }
 
 void TopicInput::refuse(const std::string& complaint) {
@@ -49,14 +46,7 @@ void TopicInput::refuse(const std::string& complaint) {
 }
 
 ReadResult TopicInput::take(Frame& frame, double timeout) {
-  std::unique_lock<std::mutex> lock(mutex_);
-  if (!arrived_.wait_for(lock, std::chrono::duration<double>(timeout), [&] { return fresh_; })) {
-    return ReadResult::Timeout;
-  }
-  frame = std::move(frame_);
-  frame_ = Frame();
-  fresh_ = false;
-  return ReadResult::Frame;
+  return latest_.take(frame, timeout);
 }
 
 SourceStatistics TopicInput::statistics() const {
@@ -65,8 +55,7 @@ SourceStatistics TopicInput::statistics() const {
 }
 
 std::uint64_t TopicInput::dropped() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return dropped_;
+  return latest_.dropped();
 }
 
 std::string TopicInput::status() const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -48,20 +47,18 @@ class TopicInput : public FrameInput {
  private:
   double exposure_;
   bool start_stamped_;
-  mutable std::mutex mutex_;
-  std::condition_variable arrived_;
-  Frame frame_;
-  bool fresh_ = false;
+  LatestFrame latest_;
+  mutable std::mutex mutex_;  // of what follows, up to the topic
   SourceStatistics statistics_;
-  std::uint64_t dropped_ = 0;
   std::uint64_t last_sequence_ = 0;
-  std::string topic_, complaint_;
+  std::string complaint_;
+  std::string topic_;
   image_transport::ImageTransport transport_;
   image_transport::CameraSubscriber subscriber_;
 
   void onImage(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfoConstPtr& info);
   void refuse(const std::string& complaint);
-  void put(Frame&& frame);
+  void count(std::uint64_t sequence);
 };
 
 }  // namespace vibe::vision
