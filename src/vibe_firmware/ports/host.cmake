@@ -3,14 +3,13 @@ find_package(CLI11 REQUIRED)
 add_executable(
   vibe_cosim
   host/axis_plant.cpp
-  host/control_requests.cpp
   host/cosim_main.cpp
-  host/fifo_peer.cpp
+  host/firmware_peer.cpp
   host/hostile_scenario.cpp
   host/lockstep.cpp
   host/passive_scenario.cpp
   host/release_scenario.cpp
-  host/trace_file.cpp)
+  host/scenario.cpp)
 target_link_libraries(vibe_cosim PRIVATE firmware_core CLI11::CLI11)
 
 # Plugin of QEMU that counts instructions.

@@ -16,7 +16,7 @@ function(firmware_image name port core)
 endfunction()
 
 set(MPS2_SOURCES processor.cpp semihosting.cpp tick_timer.cpp)
-set(MPS2_USB_SOURCES ${MPS2_SOURCES} simulated_encoders.cpp uart_link.cpp)
+set(MPS2_USB_SOURCES ${MPS2_SOURCES} uart_link.cpp usb_board.cpp)
 firmware_image(firmware_mps2_haptic_usb mps2_an500 firmware_core haptic_usb_main.cpp ${MPS2_USB_SOURCES})
 firmware_image(firmware_mps2_input_usb mps2_an500 firmware_core input_usb_main.cpp ${MPS2_USB_SOURCES})
 firmware_image(firmware_mps2_haptic_cosim mps2_an500 firmware_core haptic_cosim_main.cpp ${MPS2_SOURCES})
@@ -33,8 +33,7 @@ set_target_properties(firmware_core_fused firmware_mps2_haptic_cosim_fused firmw
 set(TINYUSB_DIR "" CACHE PATH "TinyUSB")
 set(CMSIS_CORE_DIR "" CACHE PATH "folder with core_cm7.h")
 set(CMSIS_DEVICE_DIR "" CACHE PATH "folder with stm32f7xx.h")
-set(STM32_SOURCES clocks.cpp diagnostics.cpp encoders.cpp motor_pwm.cpp pins.cpp processor.cpp serial_number.cpp
-    timing.cpp)
+set(STM32_SOURCES clocks.cpp diagnostics.cpp nucleo_board.cpp processor.cpp serial_number.cpp)
 if(NOT TINYUSB_DIR)
   list(APPEND STM32_SOURCES no_usb_handler.cpp)
 else()

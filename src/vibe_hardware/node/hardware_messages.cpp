@@ -7,6 +7,7 @@
 #include "vibe_core/common/step_timer.hpp"
 
 namespace vibe::hardware {
+
 namespace {
 
 const ros::Duration kLeast(0, 1000);  // between stamps
@@ -118,6 +119,161 @@ std::string operatingState(const DeviceStatistics& device, const HapticStatistic
   constexpr int kFaults = vibe_firmware::kEncoderFault | vibe_firmware::kDriveFault;
   if (device.state != LinkState::Running || (device.flags & kFaults) != 0) return "FAULT";
   return haptic.in_force ? "ENABLED" : "PAUSED";
+}
+
+namespace {
+
+sensor_msgs::JointState jointMessage(const DriveState& drive, const ros::Time& stamp, int first, int last) {
+  sensor_msgs::JointState message;
+  message.header.stamp = stamp;
+  message.name.assign(kJointNames.begin() + first, kJointNames.begin() + last);
+  message.position.assign(drive.joints.begin() + first, drive.joints.begin() + last);
+  return message;
+}
+
+}  // namespace
+
+sensor_msgs::JointState scopeCommand(const DriveState& drive, const ros::Time& stamp) {
+  return jointMessage(drive, stamp, 0, kScopeJointCount);
+}
+
+sensor_msgs::JointState overstitchCommand(const DriveState& drive, const ros::Time& stamp) {
+  return jointMessage(drive, stamp, kScopeJointCount, kJointCount);
+}
+
+sensor_msgs::Joy buttonCommand(const DriveState& drive, const ros::Time& stamp) {
+  sensor_msgs::Joy message;
+  message.header.stamp = stamp;
+  message.buttons.assign(drive.buttons.begin(), drive.buttons.end());
+  return message;
+}
+
+std::optional<std::array<double, kJointCount>> readJointStates(const sensor_msgs::JointState& message) {
+  std::array<double, kJointCount> joints{};
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    const auto found = std::find(message.name.begin(), message.name.end(), kJointNames[i]);
+    const auto index = static_cast<std::size_t>(found - message.name.begin());
+    if (index >= message.position.size() || !std::isfinite(message.position[index])) return std::nullopt;
+    joints[i] = message.position[index];
+  }
+  return joints;
+}
+
+JointSprings readJointSprings(const vibe_msgs::HapticParameters& message) {
+  JointSprings springs;
+  springs.touching = message.touching;
+  for (std::size_t i = 0; i < kScopeJointCount; ++i) {
+    const auto found = std::find(message.joint_name.begin(), message.joint_name.end(), kJointNames[i]);
+    const auto index = static_cast<std::size_t>(found - message.joint_name.begin());
+    if (index >= message.joint_stiffness.size()) continue;
+    springs.stiffness[i] = message.joint_stiffness[index];
+    springs.equilibrium[i] = message.joint_equilibrium[index];
+  }
+  return springs;
+}
+
+std::optional<PadPulse> pulseOf(const vibe_msgs::ProcedureEvent& event) {
+  using vibe_msgs::ProcedureEvent;
+  switch (event.kind) {
+    case ProcedureEvent::CONTACT_BEGIN:
+      return PadPulse::Contact;
+    case ProcedureEvent::GRAB:
+    case ProcedureEvent::HELIX_TURNED:
+      return PadPulse::Grab;
+    case ProcedureEvent::PIERCED:
+    case ProcedureEvent::BITE:
+      return PadPulse::Bite;
+    case ProcedureEvent::GRAB_MISSED:
+    case ProcedureEvent::SLIP:
+    case ProcedureEvent::REJECTED:
+    case ProcedureEvent::BITE_MISSED:
+    case ProcedureEvent::TEAR_OUT:
+    case ProcedureEvent::THREAD_BROKE:
+      return PadPulse::Failure;
+    default:
+      return std::nullopt;
+  }
+}
+
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+
+constexpr double kLowestRate = 90;  // of 100 Hz
+
+void addLink(const DeviceStatistics& device, DiagnosticStatusWrapper& status) {
+  status.add("state", stateName(device.state));
+  status.add("path", device.path);
+  status.add("product", device.name);
+  status.add("serial number", device.serial);
+  status.add("firmware version", device.firmware);
+  status.addf("rate [Hz]", "%.1f", device.rate);
+  status.addf("age of the last sample [ms]", "%.1f", 1e3 * device.age);
+  status.addf("clock drift [ppm]", "%.1f", 1e6 * device.drift);
+  status.add("connections", device.connections);
+  status.add("reconnects", device.connections > 0 ? device.connections - 1 : 0);
+  status.add("late ticks", device.late_ticks);
+}
+
+void addCounts(const StreamCounts& counts, DiagnosticStatusWrapper& status) {
+  status.add("received reports", counts.received);
+  status.add("lost reports", counts.lost);
+  status.add("duplicated reports", counts.duplicated);
+  status.add("reordered reports", counts.reordered);
+  status.add("malformed reports", counts.malformed);
+  status.add("implausible reports", counts.implausible);
+  status.add("restarts of the device", counts.restarts);
+}
+
+void addParameters(const HapticStatistics& haptic, std::uint64_t rejected, DiagnosticStatusWrapper& status) {
+  status.add("sent parameters", haptic.sent);
+  status.add("clamped parameters", haptic.clamped);
+  status.add("refused parameters", haptic.refused);
+  status.add("last refusal", haptic.last_refusal);
+  status.add("parameters that read back differently", haptic.mismatched);
+  status.add("reports of the device without valid parameters for 200 ms", haptic.starved);
+  status.add("rejected messages on haptic/parameters", rejected);
+}
+
+void warnIf(bool condition, const std::string& sentence, DiagnosticStatusWrapper& status) {
+  if (condition) status.mergeSummary(DiagnosticStatus::WARN, sentence);
+}
+
+void compare(const StreamCounts& now, const StreamCounts& before, DiagnosticStatusWrapper& status) {
+  warnIf(now.lost > before.lost, "reports were lost", status);
+  warnIf(now.duplicated > before.duplicated, "reports came twice", status);
+  warnIf(now.reordered > before.reordered, "reports were reordered", status);
+  warnIf(now.malformed > before.malformed, "reports were malformed", status);
+  warnIf(now.implausible > before.implausible, "reports were implausible", status);
+}
+
+}  // namespace
+
+void fillDiagnostics(const DeviceStatistics& device, const HapticStatistics* haptic, std::uint64_t rejected,
+                     DiagnosticMemory& memory, DiagnosticStatusWrapper& status) {
+  status.hardware_id = device.serial.empty() ? "none" : device.serial;
+  const bool failed = device.state == LinkState::Unusable || device.state == LinkState::Silent;
+  if (failed) {
+    status.summary(DiagnosticStatus::ERROR, device.problem);
+  } else if (device.state == LinkState::Absent) {
+    status.summary(DiagnosticStatus::WARN, "absent; waiting for it");
+  } else {
+    status.summary(DiagnosticStatus::OK, "running");
+    warnIf(device.rate < kLowestRate, "the rate is low", status);
+    warnIf((device.flags & vibe_firmware::kEncoderFault) != 0, "an encoder has jumped, motors are off", status);
+    warnIf((device.flags & vibe_firmware::kDriveFault) != 0, "the power stage has switched the motors off", status);
+  }
+  compare(device.counts, memory.counts, status);
+  memory.counts = device.counts;
+  addLink(device, status);
+  addCounts(device.counts, status);
+  if (haptic == nullptr) return;
+  warnIf(haptic->refused > memory.haptic.refused, "parameters were refused", status);
+  warnIf(haptic->mismatched > memory.haptic.mismatched, "parameters read back differently", status);
+  warnIf(haptic->starved > memory.haptic.starved, "the device has missed parameters", status);
+  memory.haptic = *haptic;
+  addParameters(*haptic, rejected, status);
 }
 
 }  // namespace vibe::hardware

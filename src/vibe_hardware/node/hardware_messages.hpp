@@ -1,15 +1,22 @@
 #pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include <diagnostic_updater/diagnostic_updater.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/Joy.h>
 #include <vibe_msgs/HapticParameters.h>
 #include <vibe_msgs/OperatingState.h>
+#include <vibe_msgs/ProcedureEvent.h>
 
-#include <array>
-#include <string>
-
+#include "vibe_core/input/step_input.hpp"
+#include "vibe_hardware/driver/device_driver.hpp"
 #include "vibe_hardware/driver/haptic_driver.hpp"
-#include "vibe_hardware/driver/overstitch_drive.hpp"
 #include "vibe_hardware/driver/scope_joints.hpp"
+#include "vibe_hardware/gamepad/pad_drive.hpp"
+#include "vibe_hardware/gamepad/pad_feedback.hpp"
 
 namespace vibe::hardware {
 
@@ -38,5 +45,32 @@ OverstitchDrive::Positions readOverstitchJoints(const sensor_msgs::JointState& m
 
 /// As CRTK has it: DISABLED, ENABLED, PAUSED or FAULT.
 std::string operatingState(const DeviceStatistics& device, const HapticStatistics& haptic);
+
+/// For scope/servo_jp: the joints of the scope as a command.
+sensor_msgs::JointState scopeCommand(const DriveState& drive, const ros::Time& stamp);
+/// For overstitch/measured_js.
+sensor_msgs::JointState overstitchCommand(const DriveState& drive, const ros::Time& stamp);
+/// For scope/buttons.
+sensor_msgs::Joy buttonCommand(const DriveState& drive, const ros::Time& stamp);
+
+/// The seven joints of joint_states, by name. Nothing if one is missing or not finite.
+std::optional<std::array<double, kJointCount>> readJointStates(const sensor_msgs::JointState& message);
+/// Stiffness and equilibrium of the scope's joints.
+JointSprings readJointSprings(const vibe_msgs::HapticParameters& message);
+/// What an event feels like; nothing for those that are not felt.
+std::optional<PadPulse> pulseOf(const vibe_msgs::ProcedureEvent& event);
+
+/// What a device's entry on /diagnostics compares with its last one.
+struct DiagnosticMemory {
+  StreamCounts counts;
+  HapticStatistics haptic;
+};
+
+/// Fills the entry of a device: ERROR if it is unusable or silent; WARN if it is absent, or if since the last entry
+/// reports were lost or wrong or parameters refused, or the rate is low.
+/// @param haptic           null for the input device
+/// @param rejected         messages on haptic/parameters that could not be used
+void fillDiagnostics(const DeviceStatistics& device, const HapticStatistics* haptic, std::uint64_t rejected,
+                     DiagnosticMemory& memory, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 }  // namespace vibe::hardware

@@ -1,17 +1,31 @@
 #pragma once
-#include <ros/ros.h>
 
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
-#include "hardware_diagnostics.hpp"
+#include <ros/node_handle.h>
+#include <ros/ros.h>
+
 #include "hardware_messages.hpp"
-#include "hardware_parameters.hpp"
-#include "vibe_hardware/driver/polling_thread.hpp"
-#include "vibe_hardware/driver/silence_watch.hpp"
+#include "vibe_hardware/driver/polling.hpp"
+#include "vibe_hardware/hid/hid_port.hpp"
 
 namespace vibe::hardware {
+
+/// Private parameters of hardware_node.
+struct HardwareParameters {
+  std::string config = "package://vibe_hardware/config/devices.yaml";
+  std::string bus = "hidraw";  ///< or the folder of an emulator's sockets
+  int realtime_priority = 0;   ///< of all threads, SCHED_FIFO; 0: ordinary threads
+};
+
+/// @throws Error for a parameter that is unknown or wrong
+HardwareParameters readHardwareParameters(const ros::NodeHandle& private_handle);
+
+/// @param bus  "hidraw", or a folder
+std::unique_ptr<HidBus> makeBus(const std::string& bus);
 
 /// Both devices as topics: docs/interfaces.md. One thread per device; callbacks of ROS come from one thread of a
 /// spinner, which must have been stopped before stop() or the end.

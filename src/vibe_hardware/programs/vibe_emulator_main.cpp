@@ -12,15 +12,10 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"
-#include "vibe_hardware/emulator/blink_hand.hpp"
-#include "vibe_hardware/emulator/blink_log.hpp"
+#include "vibe_hardware/emulator/device_server.hpp"
 #include "vibe_hardware/emulator/emulator.hpp"
-#include "vibe_hardware/emulator/random_hand.hpp"
+#include "vibe_hardware/emulator/hand.hpp"
 #include "vibe_hardware/emulator/recorded_hand.hpp"
-#include "vibe_hardware/emulator/scripted_hand.hpp"
-#include "vibe_hardware/emulator/socket_server.hpp"
-#include "vibe_hardware/emulator/tick_schedule.hpp"
-#include "vibe_hardware/emulator/uhid_server.hpp"
 #include "vibe_hardware/hid/socket_bus.hpp"
 
 namespace {

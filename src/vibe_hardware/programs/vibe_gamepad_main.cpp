@@ -13,9 +13,8 @@
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/gamepad/pad_drive.hpp"
-#include "vibe_hardware/gamepad/pad_finder.hpp"
-#include "vibe_hardware/gamepad/pad_link.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
+#include "vibe_hardware/gamepad/pad_source.hpp"
 
 namespace hardware = vibe::hardware;
 

@@ -9,8 +9,8 @@
 #include "option_checks.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_hardware/emulator/hand.hpp"
 #include "vibe_hardware/emulator/haptic_loop.hpp"
-#include "vibe_hardware/emulator/scripted_hand.hpp"
 
 namespace {
 

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
-#include "harder_scenes.hpp"
+#include "bench_scene.hpp"
+#include "vibe_core/common/step_timer.hpp"
 #include "vibe_vision/track/tracker.hpp"
 
 namespace vibe::vision {
+
 namespace {
 
 using Frames = std::vector<RenderedFrame>;

@@ -1,5 +1,8 @@
 #pragma once
-#include "report.hpp"
+
+#include <vector>
+
+#include "score.hpp"
 
 namespace vibe::vision {
 

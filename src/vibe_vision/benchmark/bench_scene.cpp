@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "harder_scenes.hpp"
-
 namespace vibe::vision {
 namespace {
 

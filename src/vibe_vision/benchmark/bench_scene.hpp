@@ -1,9 +1,12 @@
 #pragma once
+
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "vibe_vision/synthetic/renderer.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
 namespace vibe::vision {
@@ -37,5 +40,17 @@ std::vector<Cell> furtherCells();
 /// The picture of a tag as the libraries draw it.
 SyntheticTag arucoTag(double side);
 SyntheticTag aprilTag(double side);
+
+/// A scene beyond the standard ones: one of those, changed. `seed` varies what a scene may vary.
+struct HarderScene {
+  std::string name;
+  std::string base;  ///< of sceneNames()
+  std::function<void(SyntheticScene&, std::uint64_t seed)> change;
+  std::function<void(const SyntheticScene&, RenderedFrame&)> retouch;  ///< of every frame and its truth; may be empty
+};
+
+const std::vector<HarderScene>& harderScenes();
+/// @return null for a standard scene
+const HarderScene* findHarderScene(const std::string& name);
 
 }  // namespace vibe::vision

@@ -3,8 +3,8 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "cpu_clock.hpp"
 #include "method.hpp"
+#include "vibe_core/common/step_timer.hpp"
 #include "vibe_vision/image/camera_model.hpp"
 
 namespace vibe::vision {

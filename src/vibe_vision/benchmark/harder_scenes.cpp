@@ -1,4 +1,4 @@
-#include "harder_scenes.hpp"
+#include "bench_scene.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -6,7 +6,7 @@
 
 #include "bench_scene.hpp"
 #include "vibe_vision/synthetic/renderer.hpp"
-#include "vibe_vision/track/measurement.hpp"
+#include "vibe_vision/track/tracker.hpp"
 
 namespace vibe::vision {
 

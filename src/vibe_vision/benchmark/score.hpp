@@ -1,11 +1,23 @@
 #pragma once
-#include <limits>
-#include <string>
 
-#include "cpu_clock.hpp"
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "bench_scene.hpp"
 #include "method.hpp"
 
 namespace vibe::vision {
+
+/// Keeps the calling thread on the processor it runs on. @return false where the system does not allow it
+bool pinThread();
+
+/// Of a set of times, all in the same unit; NaN for an empty set.
+struct TimeSummary {
+  double least = 0, median = 0;
+};
+TimeSummary summarise(std::vector<double> times);
 
 /// What counts as visible and as wrong.
 struct ScoreLimits {
@@ -61,5 +73,17 @@ class Scorer {
   double lead_squares_ = 0, lead_count_ = 0;
   std::vector<double> track_times_, search_times_;
 };
+
+struct CellResult {
+  Cell cell;
+  std::vector<Score> scores;  ///< by method
+  TimeSummary track, search;  ///< one tracker for both instruments, per frame [s]
+};
+
+/// The table for people: one line per method.
+void printHeader(std::ostream& out, const ScoreLimits& limits);
+void printCell(std::ostream& out, const CellResult& result);
+/// One row per cell and method, SI units except pixels.
+void writeCsv(std::ostream& out, const std::vector<CellResult>& results);
 
 }  // namespace vibe::vision

@@ -4,10 +4,16 @@
 #include <cmath>
 #include <limits>
 
-#include "cpu_clock.hpp"
+#include <apriltag/apriltag.h>
+#include <apriltag/tag36h11.h>
+#include <opencv2/aruco.hpp>
+
+#include "method.hpp"
+#include "vibe_core/common/step_timer.hpp"
 #include "vibe_vision/image/camera_model.hpp"
 
 namespace vibe::vision {
+
 namespace {
 
 constexpr std::size_t kFramesPerSearch = 20;
@@ -79,6 +85,134 @@ MethodRun runTagDetector(const BenchScene& scene, std::size_t instrument, const 
     if (i % kFramesPerSearch == 0) detect(wholeFrame(frame), run.searches, run.search_times);
   }
   return run;
+}
+
+namespace {
+
+constexpr int kBits = 4;
+
+cv::Ptr<cv::aruco::Dictionary> dictionary() {
+  return cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
+}
+
+/// cv::aruco with CORNER_REFINE_SUBPIX, otherwise as it comes. The window of the refinement stays within one cell: a
+/// larger one finds corners of the cells inside.
+class ArucoMethod : public Method {
+ public:
+  std::string name() const override { return "aruco"; }
+  std::size_t instrument(const BenchScene& scene) const override { return scene.aruco; }
+
+  MethodRun run(const BenchScene& scene, const std::vector<RenderedFrame>& frames) override {
+    const SyntheticInstrument& tag = scene.scene.instruments[scene.aruco];
+    const double cell = tag.tag.side * tag.nominal.axis.pixels_per_metre / tag.tag.cells;
+    parameters_->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
+    parameters_->cornerRefinementWinSize = std::max(1, static_cast<int>(cell / 2));
+    return runTagDetector(scene, scene.aruco, frames, [this](const ImageView& view) { return detect(view); });
+  }
+
+ private:
+  std::vector<Corners> detect(const ImageView& view) {
+    const cv::Mat image(view.height, view.width, CV_8UC1, const_cast<std::uint8_t*>(view.data),
+                        static_cast<std::size_t>(view.stride));
+    std::vector<std::vector<cv::Point2f>> corners;
+    std::vector<int> ids;
+    cv::aruco::detectMarkers(image, dictionary_, corners, ids, parameters_);
+    std::vector<Corners> tags;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (ids[i] != kArucoId) continue;
+      tags.emplace_back();
+      for (std::size_t k = 0; k < 4; ++k) tags.back()[k] = {corners[i][k].x, corners[i][k].y};
+    }
+    return tags;
+  }
+
+  cv::Ptr<cv::aruco::Dictionary> dictionary_ = dictionary();
+  cv::Ptr<cv::aruco::DetectorParameters> parameters_ = cv::aruco::DetectorParameters::create();
+};
+
+}  // namespace
+
+SyntheticTag arucoTag(double side) {
+  cv::Mat picture;
+  dictionary()->drawMarker(kArucoId, kBits + 2, picture, 1);
+  SyntheticTag tag;
+  tag.cells = kBits + 2;
+  tag.side = side;
+  for (int y = 0; y < tag.cells; ++y)
+    for (int x = 0; x < tag.cells; ++x) tag.white.push_back(picture.at<std::uint8_t>(y, x) > 127 ? 1 : 0);
+  return tag;
+}
+
+std::unique_ptr<Method> makeAruco() {
+  return std::make_unique<ArucoMethod>();
+}
+
+namespace {
+
+struct Family {
+  apriltag_family_t* family = tag36h11_create();
+  ~Family() { tag36h11_destroy(family); }
+};
+
+/// libapriltag, one thread, without decimation.
+class AprilTagMethod : public Method {
+ public:
+  explicit AprilTagMethod(bool refine_edges) : refine_edges_(refine_edges) {
+    detector_->nthreads = 1;
+    detector_->quad_decimate = 1;
+    detector_->refine_edges = refine_edges;
+    apriltag_detector_add_family(detector_, family_.family);
+  }
+  ~AprilTagMethod() override { apriltag_detector_destroy(detector_); }
+  AprilTagMethod(const AprilTagMethod&) = delete;
+  AprilTagMethod& operator=(const AprilTagMethod&) = delete;
+
+  std::string name() const override { return refine_edges_ ? "apriltag" : "apriltag_unrefined"; }
+  std::size_t instrument(const BenchScene& scene) const override { return scene.apriltag; }
+
+  MethodRun run(const BenchScene& scene, const std::vector<RenderedFrame>& frames) override {
+    return runTagDetector(scene, scene.apriltag, frames, [this](const ImageView& view) { return detect(view); });
+  }
+
+ private:
+  std::vector<Corners> detect(const ImageView& view) {
+    image_u8_t image = {view.width, view.height, view.stride, const_cast<std::uint8_t*>(view.data)};
+    zarray_t* detections = apriltag_detector_detect(detector_, &image);
+    std::vector<Corners> tags;
+    for (int i = 0; i < zarray_size(detections); ++i) {
+      apriltag_detection_t* detection = nullptr;
+      zarray_get(detections, i, &detection);
+      if (detection->id != kAprilTagId) continue;
+      // the library's pixel centres are at +0.5
+      tags.emplace_back();
+      for (std::size_t k = 0; k < 4; ++k) tags.back()[k] = {detection->p[k][0] - 0.5, detection->p[k][1] - 0.5};
+    }
+    apriltag_detections_destroy(detections);
+    return tags;
+  }
+
+  bool refine_edges_;
+  Family family_;
+  apriltag_detector_t* detector_ = apriltag_detector_create();
+};
+
+}  // namespace
+
+SyntheticTag aprilTag(double side) {
+  const Family family;
+  const apriltag_family_t& f = *family.family;
+  const auto cells = static_cast<std::size_t>(f.width_at_border);
+  SyntheticTag tag;
+  tag.cells = f.width_at_border;
+  tag.side = side;
+  tag.white.assign(cells * cells, 0);
+  for (std::uint32_t i = 0; i < f.nbits; ++i)  // as apriltag_to_image() does
+    if ((f.codes[kAprilTagId] >> (f.nbits - 1 - i)) & 1) tag.white[f.bit_y[i] * cells + f.bit_x[i]] = 1;
+  return tag;
+}
+
+std::unique_ptr<Method> makeAprilTag(bool refine_edges) {
+  return std::make_unique<AprilTagMethod>(refine_edges);
 }
 
 }  // namespace vibe::vision

@@ -1,4 +1,4 @@
-// sources: src/camera/frame_table.cpp src/calibrate/stop_list.cpp ../vibe_core/src/scene/yaml_source.cpp
+// sources: src/camera/recording_source.cpp src/calibrate/stop_list.cpp ../vibe_core/src/scene/yaml_source.cpp
 // sources: ../vibe_core/src/scene/yaml_guard.cpp ../vibe_core/src/scene/unit.cpp ../vibe_core/src/scene/nearest_key.cpp
 // sources: ../vibe_core/src/common/package_path.cpp ../vibe_core/src/common/own_place.cpp
 // includes: ../vibe_core/src
@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "camera/frame_table.hpp"
+#include "camera/recording_source.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/calibrate/stop_list.hpp"
 

@@ -1,8 +1,13 @@
 #pragma once
+
 #include <memory>
+#include <mutex>
 #include <string>
 
+#include <image_transport/image_transport.h>
+
 #include "vibe_vision/camera/capture.hpp"
+#include "vision_parameters.hpp"
 
 namespace vibe::vision {
 
@@ -28,6 +33,32 @@ class CameraInput : public FrameInput {
 
  private:
   Capture capture_;
+};
+
+/// Images of another node, from the topic `image` with its camera_info. In a nodelet they are shared, not copied.
+class TopicInput : public FrameInput {
+ public:
+  TopicInput(ros::NodeHandle handle, ros::NodeHandle private_handle, const VisionParameters& parameters);
+  ReadResult take(Frame& frame, double timeout) override;
+  SourceStatistics statistics() const override;
+  std::uint64_t dropped() const override;
+  std::string status() const override;
+
+ private:
+  double exposure_;
+  bool start_stamped_;
+  LatestFrame latest_;
+  mutable std::mutex mutex_;  // of what follows, up to the topic
+  SourceStatistics statistics_;
+  std::uint64_t last_sequence_ = 0;
+  std::string complaint_;
+  std::string topic_;
+  image_transport::ImageTransport transport_;
+  image_transport::CameraSubscriber subscriber_;
+
+  void onImage(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfoConstPtr& info);
+  void refuse(const std::string& complaint);
+  void count(std::uint64_t sequence);
 };
 
 }  // namespace vibe::vision

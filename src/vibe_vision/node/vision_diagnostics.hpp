@@ -6,8 +6,8 @@
 
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
-#include "vibe_vision/datagram/udp_sender.hpp"
-#include "vibe_vision/predict/instrument_predictor.hpp"
+#include "vibe_vision/datagram/datagram.hpp"
+#include "vibe_vision/predict/frame_pipeline.hpp"
 
 namespace vibe::vision {
 

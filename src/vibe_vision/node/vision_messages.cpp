@@ -61,21 +61,6 @@ std::pair<double, double> measuredOf(const JointSample& sample, bool rotation) {
   return {sample.slide, sample.slide_motion.mean(1)};
 }
 
-CoordinateSample coordinateOf(const MotionEstimate& motion, bool valid) {
-  CoordinateSample sample{kNaN, kNaN, kNaN, kNaN, {}};
-  sample.covariance.fill(std::numeric_limits<float>::quiet_NaN());
-  if (!valid) return sample;
-  sample.position = motion.mean(0);
-  sample.velocity = motion.mean(1);
-  sample.acceleration = motion.mean(2);
-  sample.jerk = motion.mean(3);
-  std::size_t k = 0;
-  for (int row = 0; row < 4; ++row)
-    for (int column = row; column < 4; ++column)
-      sample.covariance[k++] = static_cast<float>(motion.covariance(row, column));
-  return sample;
-}
-
 }  // namespace
 
 ros::Time toStamp(double time) {
@@ -128,28 +113,6 @@ std::optional<sensor_msgs::JointState> makePredictedJoints(const VisionConfig& c
                                           : extrapolate(samples[i].slide_motion, lead, kSlidePrior.jerk);
     return std::make_pair(ahead.mean(0), ahead.mean(1));
   });
-}
-
-TrackDatagram makeDatagram(const Frame& frame, const Measurements& measurements,
-                           const std::vector<JointSample>& samples) {
-  static_assert(kSlidePrior.jerk.time == kRotationPrior.jerk.time, "a datagram has one correlation time");
-  TrackDatagram datagram;
-  datagram.exposure = static_cast<float>(frame.exposure);
-  datagram.frame_sequence = frame.sequence;
-  datagram.stamp = frame.stamp;
-  datagram.jerk_time = static_cast<float>(kSlidePrior.jerk.time);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const JointSample& joint = samples[i];
-    InstrumentSample sample;
-    sample.tracked = joint.tracked();
-    sample.reason = static_cast<std::uint8_t>(joint.reason);
-    sample.has_rotation = joint.has_rotation;
-    sample.score = joint.tracked() ? static_cast<float>(measurements[i].score) : 0;
-    sample.slide = coordinateOf(joint.slide_motion, joint.tracked());
-    sample.rotation = coordinateOf(joint.rotation_motion, joint.tracked() && joint.has_rotation);
-    datagram.instruments.push_back(sample);
-  }
-  return datagram;
 }
 
 }  // namespace vibe::vision

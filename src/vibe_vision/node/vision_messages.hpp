@@ -8,18 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "vibe_vision/config/vision_config.hpp"
-#include "vibe_vision/datagram/datagram.hpp"
-#include "vibe_vision/image/frame.hpp"
-#include "vibe_vision/predict/instrument_predictor.hpp"
-#include "vibe_vision/track/measurement.hpp"
+#include "../include/vibe_vision/predict/frame_pipeline.hpp"
 
 namespace vibe::vision {
-
-/// Where the time of one frame went [s]; fields as in vibe_msgs/InstrumentTrackArray.
-struct StageTimes {
-  double transport = 0, wait = 0, track = 0, publish = 0;
-};
 
 ros::Time toStamp(double time);  ///< @param time  Unix time [s], to the nearest nanosecond
 
@@ -41,9 +32,6 @@ std::optional<sensor_msgs::JointState> makeHeldJoints(const VisionConfig& config
 /// For overstitch/predicted_js: where the joints will be, stamped with that time. Nothing unless all are tracked.
 std::optional<sensor_msgs::JointState> makePredictedJoints(const VisionConfig& config, double time, double lead,
                                                            const std::vector<JointSample>& samples);
-
-TrackDatagram makeDatagram(const Frame& frame, const Measurements& measurements,
-                           const std::vector<JointSample>& samples);
 
 /// Camera matrix and distortion of the configuration, region of interest and stamp of the frame.
 sensor_msgs::CameraInfo makeCameraInfo(const CameraModel& camera, const Frame& frame, const std::string& frame_id);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "topic_input.hpp"
+#include "frame_input.hpp"
 #include "vibe_core/common/step_timer.hpp"
 
 namespace vibe::vision {

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "../include/vibe_vision/predict/frame_pipeline.hpp"
 #include "frame_input.hpp"
-#include "frame_pipeline.hpp"
 #include "vision_diagnostics.hpp"
 #include "vision_parameters.hpp"
 #include "vision_publisher.hpp"

@@ -10,7 +10,7 @@
 #include "vibe_core/common/write_file.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
 #include "vibe_vision/calibrate/lens_calibration.hpp"
-#include "vibe_vision/calibrate/marker_locator.hpp"
+#include "vibe_vision/calibrate/marker_finder.hpp"
 #include "vibe_vision/calibrate/stop_list.hpp"
 
 namespace vision = vibe::vision;

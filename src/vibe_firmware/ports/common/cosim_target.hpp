@@ -3,7 +3,6 @@
 #include "vibe_firmware/core/haptic_device.hpp"
 #include "vibe_firmware/hal/board.hpp"
 #include "vibe_firmware/hal/motor_drive.hpp"
-#include "vibe_firmware/hal/usb_link.hpp"
 
 namespace vibe_firmware {
 

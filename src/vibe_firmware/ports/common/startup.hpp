@@ -1,5 +1,18 @@
 #pragma once
 
+namespace vibe_firmware {
+
+/// Interrupts that fall due while they are disabled run when they are enabled again.
+inline void disableInterrupts() {
+  asm volatile("cpsid i" ::: "memory");
+}
+
+inline void enableInterrupts() {
+  asm volatile("cpsie i" ::: "memory");
+}
+
+}  // namespace vibe_firmware
+
 // Names that startup code, linker script, boards and tests share.
 
 extern "C" {

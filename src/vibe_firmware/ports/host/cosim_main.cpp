@@ -6,13 +6,11 @@
 #include <map>
 #include <memory>
 
-#include "fifo_peer.hpp"
+#include "firmware_peer.hpp"
 #include "hostile_scenario.hpp"
-#include "local_peer.hpp"
 #include "lockstep.hpp"
 #include "passive_scenario.hpp"
 #include "release_scenario.hpp"
-#include "trace_file.hpp"
 
 // Runs the firmware of the haptic device in lock-step with a simulated motor and a hand.
 

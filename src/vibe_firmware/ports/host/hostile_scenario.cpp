@@ -3,7 +3,7 @@
 #include <limits>
 #include <ostream>
 
-#include "control_requests.hpp"
+#include "scenario.hpp"
 
 namespace vibe_firmware {
 namespace {

@@ -1,8 +1,6 @@
 #pragma once
 #include <random>
 
-#include "port_energy.hpp"
-#include "report_watch.hpp"
 #include "scenario.hpp"
 
 namespace vibe_firmware {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <ostream>
 
-#include "control_requests.hpp"
+#include "scenario.hpp"
 #include "vibe_firmware/core/passivity.hpp"
 
 namespace vibe_firmware {

@@ -1,6 +1,4 @@
 #pragma once
-#include "port_energy.hpp"
-#include "report_watch.hpp"
 #include "scenario.hpp"
 
 namespace vibe_firmware {

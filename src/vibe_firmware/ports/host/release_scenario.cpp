@@ -5,7 +5,7 @@
 #include <functional>
 #include <ostream>
 
-#include "control_requests.hpp"
+#include "scenario.hpp"
 
 namespace vibe_firmware {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 #include <vector>
 
-#include "report_watch.hpp"
 #include "scenario.hpp"
 
 namespace vibe_firmware {

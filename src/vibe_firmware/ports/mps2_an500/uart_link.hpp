@@ -2,9 +2,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "simulated_encoders.hpp"
+#include "usb_board.hpp"
+#include "vibe_firmware/hal/board.hpp"
 #include "vibe_firmware/hal/byte_queue.hpp"
-#include "vibe_firmware/hal/usb_link.hpp"
 
 namespace vibe_firmware::mps2 {
 

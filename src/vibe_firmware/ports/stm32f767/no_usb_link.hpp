@@ -1,6 +1,6 @@
 #pragma once
 #include "diagnostics.hpp"
-#include "vibe_firmware/hal/usb_link.hpp"
+#include "vibe_firmware/hal/board.hpp"
 
 namespace vibe_firmware::stm32 {
 

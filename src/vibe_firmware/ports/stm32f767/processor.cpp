@@ -1,5 +1,5 @@
 #include "clocks.hpp"
-#include "motor_pwm.hpp"
+#include "nucleo_board.hpp"
 #include "startup.hpp"
 
 // Vector table of STM32F767. This port has never run on hardware.

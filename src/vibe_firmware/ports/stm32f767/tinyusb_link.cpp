@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "clocks.hpp"
-#include "pins.hpp"
+#include "nucleo_board.hpp"
 
 namespace vibe_firmware::stm32 {
 namespace {

@@ -2,9 +2,7 @@
 
 #include <cmath>
 
-#include "vibe_firmware/core/passivity_controller.hpp"
-#include "vibe_firmware/core/slew.hpp"
-#include "vibe_firmware/core/velocity_filter.hpp"
+#include "vibe_firmware/core/passivity.hpp"
 
 namespace vibe_firmware {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "vibe_firmware/core/encoder.hpp"
+#include "vibe_firmware/core/sample.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
 // Parts of the input report that both devices have.

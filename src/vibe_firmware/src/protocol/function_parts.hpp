@@ -1,7 +1,7 @@
 #pragma once
 #include <cstring>
 
-#include "vibe_firmware/protocol/hid_function.hpp"
+#include "vibe_firmware/protocol/control_endpoint.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 
 // Parts that the functions of both devices have.

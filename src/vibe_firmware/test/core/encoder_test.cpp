@@ -1,4 +1,4 @@
-#include "vibe_firmware/core/encoder.hpp"
+#include "vibe_firmware/core/sample.hpp"
 
 #include <gtest/gtest.h>
 

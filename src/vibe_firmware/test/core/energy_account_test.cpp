@@ -1,4 +1,4 @@
-#include "vibe_firmware/core/energy_account.hpp"
+#include "vibe_firmware/core/passivity.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vibe_firmware/core/velocity_filter.hpp"
+#include "vibe_firmware/core/axis_control.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vibe_firmware/core/watchdog.hpp"
+#include "vibe_firmware/core/haptic_device.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vibe_firmware/hal/tick_monitor.hpp"
+#include "vibe_firmware/hal/application.hpp"
 
 #include <gtest/gtest.h>
 

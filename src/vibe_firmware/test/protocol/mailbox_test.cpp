@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "vibe_firmware/protocol/published.hpp"
-
 namespace vibe_firmware::mailbox_test {
 namespace {
 

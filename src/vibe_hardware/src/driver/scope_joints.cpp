@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace vibe::hardware {
+
 namespace {
 
 bool isPressed(const DeviceSample& sample, int bit) {
@@ -65,6 +66,38 @@ bool ScopeJoints::isKnown() const {
     if (calibration_.uses(device) && !known_[static_cast<std::size_t>(device)]) return false;
   }
   return true;
+}
+
+bool ScopeButtons::take(DeviceKind device, std::uint16_t bits) {
+  bits_[static_cast<std::size_t>(device)] = bits;
+  const auto before = pressed_;
+  for (std::size_t b = 0; b < pressed_.size(); ++b) {
+    const auto& button = calibration_.buttons[b];
+    pressed_[b] = button && isPressed(*button) ? 1 : 0;
+  }
+  return pressed_ != before;
+}
+
+namespace {
+
+constexpr double kLongestStep = 0.1;  // a gap in the samples is not a motion [s]
+
+}  // namespace
+
+void OverstitchDrive::advance(const ScopeButtons& buttons, double elapsed) {
+  const double time = std::clamp(elapsed, 0.0, kLongestStep);
+  Positions moved = positions_;
+  for (std::size_t j = 0; j < drives_.size(); ++j) {
+    const int direction = buttons.isPressed(drives_[j].forward) - buttons.isPressed(drives_[j].backward);
+    moved[j] += direction * drives_[j].speed * time;
+  }
+  setPositions(moved);
+}
+
+void OverstitchDrive::setPositions(const Positions& positions) {
+  for (std::size_t j = 0; j < drives_.size(); ++j) {
+    positions_[j] = std::clamp(positions[j], drives_[j].lower, drives_[j].upper);
+  }
 }
 
 }  // namespace vibe::hardware

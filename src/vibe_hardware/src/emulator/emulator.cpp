@@ -4,6 +4,43 @@
 #include <cmath>
 
 namespace vibe::hardware {
+
+double TickSchedule::next() const {
+  return origin_ + tick_ * static_cast<double>(ticks_);
+}
+
+int TickSchedule::due(double now) {
+  delay_ = std::max(0.0, now - next());
+  worst_delay_ = std::max(worst_delay_, delay_);
+  if (delay_ > kDrop) {
+    dropped_ += delay_;
+    origin_ += delay_;
+  }
+  if (now < next()) return 0;
+  const auto count = static_cast<int>(std::min((now - next()) / tick_, kMaxBurst - 1.0)) + 1;
+  ticks_ += count;
+  return count;
+}
+
+void OverstitchFingers::decide(const Positions& intended, double report_period) {
+  for (std::size_t j = 0; j < drives_.size(); ++j) {
+    const ButtonDrive& drive = drives_[j];
+    const double step = drive.speed * report_period;
+    const double missing = std::clamp(intended[j], drive.lower, drive.upper) - positions_[j];
+    direction_[j] = missing > 0.5 * step ? 1 : missing < -0.5 * step ? -1 : 0;
+    positions_[j] = std::clamp(positions_[j] + direction_[j] * step, drive.lower, drive.upper);
+  }
+}
+
+bool OverstitchFingers::isPressed(const DeviceButton& button) const {
+  for (std::size_t j = 0; j < drives_.size(); ++j)
+    for (const int direction : {1, -1}) {
+      const DeviceButton& other = direction == 1 ? drives_[j].forward : drives_[j].backward;
+      if (direction_[j] == direction && other.device == button.device && other.bit == button.bit) return true;
+    }
+  return false;
+}
+
 namespace {
 
 constexpr double kApproach = 2;  // time to reach a first position that is not 0 [s]

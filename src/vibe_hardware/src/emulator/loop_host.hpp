@@ -3,8 +3,6 @@
 
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_hardware/driver/haptic_driver.hpp"
-#include "vibe_hardware/driver/overstitch_drive.hpp"
-#include "vibe_hardware/driver/scope_buttons.hpp"
 #include "vibe_hardware/driver/scope_joints.hpp"
 #include "vibe_hardware/emulator/emulator_bus.hpp"
 #include "vibe_hardware/emulator/haptic_loop.hpp"

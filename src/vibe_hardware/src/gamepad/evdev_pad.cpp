@@ -1,6 +1,91 @@
 #include "gamepad/evdev_pad.hpp"
 
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 namespace vibe::hardware {
+
+EventPort::Status EvdevPort::next(bool resync, PadEvent& event) {
+  input_event raw{};
+  const unsigned mode = resync ? LIBEVDEV_READ_FLAG_SYNC : LIBEVDEV_READ_FLAG_NORMAL;
+  const int status = libevdev_next_event(&device_, mode, &raw);
+  if (status == -EAGAIN || status == -EINTR) return Status::Empty;
+  if (status < 0) return Status::Gone;
+  // in normal mode this status announces the loss; in sync mode every event has it
+  if (status == LIBEVDEV_READ_STATUS_SYNC && !resync) return Status::Dropped;
+  event.time = static_cast<double>(raw.input_event_sec) + 1e-6 * static_cast<double>(raw.input_event_usec);
+  event.type = raw.type;
+  event.code = raw.code;
+  event.value = raw.value;
+  return Status::Event;
+}
+
+namespace {
+
+double limited(double value, double low) {
+  return std::isfinite(value) ? std::clamp(value, low, 1.0) : 0;
+}
+
+ff_effect newEffect(int type, int id) {
+  ff_effect effect{};
+  effect.type = static_cast<__u16>(type);
+  effect.id = static_cast<__s16>(id);
+  return effect;
+}
+
+}  // namespace
+
+ff_effect rumbleEffect(double strong, double weak, int id) {
+  ff_effect effect = newEffect(FF_RUMBLE, id);
+  effect.u.rumble.strong_magnitude = static_cast<__u16>(std::lround(0xffff * limited(strong, 0)));
+  effect.u.rumble.weak_magnitude = static_cast<__u16>(std::lround(0xffff * limited(weak, 0)));
+  effect.replay.length = kRumbleTime;
+  return effect;
+}
+
+ff_effect springEffect(const std::array<StickSpring, 2>& springs, int id) {
+  ff_effect effect = newEffect(FF_SPRING, id);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    ff_condition_effect& condition = effect.u.condition[axis];
+    const auto coefficient = static_cast<__s16>(std::lround(0x7fff * limited(springs[axis].coefficient, 0)));
+    condition.left_saturation = condition.right_saturation = 0xffff;
+    condition.left_coeff = condition.right_coeff = coefficient;
+    condition.center = static_cast<__s16>(std::lround(0x7fff * limited(springs[axis].centre, -1)));
+  }
+  return effect;
+}
+
+EvdevMotors::~EvdevMotors() {
+  erase(rumble_id_);
+  erase(spring_id_);
+}
+
+bool EvdevMotors::rumble(double strong, double weak) {
+  return has_rumble_ && play(rumbleEffect(strong, weak, rumble_id_), rumble_id_);
+}
+
+bool EvdevMotors::spring(const std::array<StickSpring, 2>& springs) {
+  return has_spring_ && play(springEffect(springs, spring_id_), spring_id_);
+}
+
+bool EvdevMotors::play(ff_effect effect, int& id) {
+  if (ioctl(fd_, EVIOCSFF, &effect) < 0) return false;
+  id = effect.id;
+  input_event start{};
+  start.type = EV_FF;
+  start.code = static_cast<__u16>(id);
+  start.value = 1;
+  return write(fd_, &start, sizeof start) == static_cast<ssize_t>(sizeof start);
+}
+
+void EvdevMotors::erase(int& id) {
+  if (id >= 0) ioctl(fd_, EVIOCRMFF, id);  // stops it too; an unplugged device has forgotten it anyway
+  id = -1;
+}
 
 EvdevPad::EvdevPad(EvdevDevice device, const std::string& path)
     : device_(std::move(device)),

@@ -1,13 +1,55 @@
 #pragma once
+
+#include <array>
 #include <map>
 
+#include <linux/input.h>
+
 #include "gamepad/evdev_device.hpp"
-#include "gamepad/evdev_motors.hpp"
-#include "gamepad/evdev_port.hpp"
-#include "vibe_hardware/gamepad/event_reader.hpp"
 #include "vibe_hardware/gamepad/pad_source.hpp"
+#include "vibe_hardware/gamepad/pad_state.hpp"
 
 namespace vibe::hardware {
+
+/// Events of a device of the kernel, read through libevdev.
+class EvdevPort : public EventPort {
+ public:
+  explicit EvdevPort(libevdev& device) : device_(device) {}
+  Status next(bool resync, PadEvent& event) override;
+
+ private:
+  libevdev& device_;
+};
+
+constexpr int kRumbleTime = 500;  ///< a program that hangs must not leave the pad shaking [ms]
+
+/// The kernel's effects for levels; levels beyond their range are limited, values that are not finite count as 0.
+/// @param id  of the effect to replace; -1: a new one
+ff_effect rumbleEffect(double strong, double weak, int id);
+ff_effect springEffect(const std::array<StickSpring, 2>& springs, int id);
+
+/// Motors of a device of the kernel: one rumble and one spring effect, replaced in place.
+class EvdevMotors : public PadMotors {
+ public:
+  EvdevMotors(int fd, bool has_rumble, bool has_spring) : fd_(fd), has_rumble_(has_rumble), has_spring_(has_spring) {}
+  ~EvdevMotors() override;
+  EvdevMotors(const EvdevMotors&) = delete;
+  EvdevMotors& operator=(const EvdevMotors&) = delete;
+
+  bool hasRumble() const override { return has_rumble_; }
+  bool hasSpring() const override { return has_spring_; }
+  bool rumble(double strong, double weak) override;
+  bool spring(const std::array<StickSpring, 2>& springs) override;
+
+ private:
+  int fd_;
+  bool has_rumble_, has_spring_;
+  int rumble_id_ = -1;  // of the kernel; -1: not uploaded yet
+  int spring_id_ = -1;
+
+  bool play(ff_effect effect, int& id);
+  void erase(int& id);
+};
 
 /// A pad of the kernel. While it is open, the kernel's own filters of its axes (fuzz, flat) are off where the
 /// permissions allow: they swallow small moves. Dead zones are the mapping's.

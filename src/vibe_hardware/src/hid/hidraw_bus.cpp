@@ -14,7 +14,7 @@
 #include <iterator>
 #include <mutex>
 
-#include "hid/transfer_error.hpp"
+#include "hid/transport.hpp"
 #include "vibe_hardware/hid/file_descriptor.hpp"
 #include "vibe_hardware/hid/report_descriptor.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
-#include "vibe_hardware/emulator/scripted_hand.hpp"
+#include "vibe_hardware/emulator/hand.hpp"
 
 namespace vibe::hardware::haptic_loop_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "vibe_firmware/protocol/descriptors.hpp"
 #include "vibe_firmware/protocol/haptic_function.hpp"
 #include "vibe_firmware/protocol/input_function.hpp"
-#include "vibe_hardware/driver/message_limiter.hpp"
+#include "vibe_hardware/driver/device_driver.hpp"
 #include "vibe_hardware/hid/hid_port.hpp"
 #include "vibe_hardware/hid/report_descriptor.hpp"
 

@@ -1,4 +1,4 @@
-#include "vibe_hardware/driver/passive_spring.hpp"
+#include "vibe_hardware/driver/joint_scale.hpp"
 
 #include <gtest/gtest.h>
 

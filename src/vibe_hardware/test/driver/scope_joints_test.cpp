@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "vibe_hardware/driver/overstitch_drive.hpp"
-#include "vibe_hardware/driver/scope_buttons.hpp"
-
 namespace vibe::hardware::scope_joints_test {
 namespace {
 

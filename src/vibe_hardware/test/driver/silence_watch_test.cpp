@@ -1,4 +1,4 @@
-#include "vibe_hardware/driver/silence_watch.hpp"
+#include "vibe_hardware/driver/polling.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,7 @@
 #include <sstream>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_hardware/emulator/blink_hand.hpp"
-#include "vibe_hardware/emulator/blink_log.hpp"
-#include "vibe_hardware/emulator/random_hand.hpp"
-#include "vibe_hardware/emulator/scripted_hand.hpp"
+#include "vibe_hardware/emulator/hand.hpp"
 
 namespace vibe::hardware::blink_test {
 namespace {

@@ -8,8 +8,8 @@
 #include "emulator/loop_host.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
-#include "vibe_hardware/emulator/scripted_hand.hpp"
-#include "vibe_hardware/hid/socket_protocol.hpp"
+#include "vibe_hardware/emulator/hand.hpp"
+#include "vibe_hardware/hid/socket_bus.hpp"
 
 namespace vibe::hardware::emulator_bus_test {
 namespace {

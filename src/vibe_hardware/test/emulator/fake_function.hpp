@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "vibe_firmware/protocol/control_endpoint.hpp"
 #include "vibe_firmware/protocol/descriptors.hpp"
-#include "vibe_firmware/protocol/hid_function.hpp"
 
 namespace vibe::hardware::test {
 

@@ -4,9 +4,8 @@
 #include <cmath>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_hardware/emulator/random_hand.hpp"
+#include "vibe_hardware/emulator/hand.hpp"
 #include "vibe_hardware/emulator/recorded_hand.hpp"
-#include "vibe_hardware/emulator/scripted_hand.hpp"
 
 namespace vibe::hardware::hand_test {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "vibe_hardware/emulator/socket_server.hpp"
+#include "vibe_hardware/emulator/device_server.hpp"
 
 namespace vibe::hardware::test {
 

@@ -1,4 +1,4 @@
-#include "vibe_hardware/emulator/tick_schedule.hpp"
+#include "vibe_hardware/emulator/emulator.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "vibe_firmware/protocol/descriptors.hpp"
-#include "vibe_hardware/gamepad/pad_finder.hpp"
+#include "vibe_hardware/gamepad/pad_source.hpp"
 
 namespace vibe::hardware::evdev_device_test {
 namespace {

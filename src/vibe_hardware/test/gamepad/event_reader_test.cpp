@@ -1,4 +1,4 @@
-#include "vibe_hardware/gamepad/event_reader.hpp"
+#include "vibe_hardware/gamepad/pad_state.hpp"
 
 #include <gtest/gtest.h>
 

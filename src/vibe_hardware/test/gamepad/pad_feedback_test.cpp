@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "gamepad/force_effects.hpp"
+#include "gamepad/evdev_pad.hpp"
 #include "gamepad/pads.hpp"
 
 namespace vibe::hardware::pad_feedback_test {

@@ -1,4 +1,4 @@
-#include "vibe_hardware/gamepad/pad_link.hpp"
+#include "vibe_hardware/gamepad/pad_source.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 
 #include "emulator/fake_function.hpp"
 #include "emulator/served_device.hpp"
-#include "hid/local_socket.hpp"
+#include "hid/transport.hpp"
 
 namespace vibe::hardware::socket_bus_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "hid/transfer_error.hpp"
+#include "hid/transport.hpp"
 
 #include <gtest/gtest.h>
 

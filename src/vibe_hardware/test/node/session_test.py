@@ -34,7 +34,7 @@ STATUS_REPORT, STALL = 3, 1
 
 
 class DeviceSocket:
-    """A second host of an emulated device, in the words of socket_protocol.hpp."""
+    """A second host of an emulated device, in the words of socket_bus.hpp."""
 
     def __init__(self, path):
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)

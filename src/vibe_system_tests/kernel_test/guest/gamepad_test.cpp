@@ -7,6 +7,7 @@
 #include "statistics.hpp"
 #include "usb_nodes.hpp"
 #include "vibe_hardware/gamepad/pad_finder.hpp"
+#include "vibe_hardware/gamepad/pad_source.hpp"
 #include "virtual_pad.hpp"
 
 namespace vibe::hardware {

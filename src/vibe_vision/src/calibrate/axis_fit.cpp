@@ -4,11 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "calibrate/least_squares.hpp"
-#include "calibrate/median.hpp"
-#include "calibrate/straight_line.hpp"
-#include "calibrate/student_t.hpp"
-#include "calibrate/with_decimals.hpp"
+#include "calibrate/fitting.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 

@@ -3,7 +3,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "calibrate/median.hpp"
+#include "calibrate/fitting.hpp"
 #include "vibe_vision/calibrate/lens_calibration.hpp"
 
 namespace vibe::vision {

@@ -5,7 +5,7 @@
 #include <opencv2/calib3d.hpp>
 #include <set>
 
-#include "calibrate/with_decimals.hpp"
+#include "calibrate/fitting.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::vision {

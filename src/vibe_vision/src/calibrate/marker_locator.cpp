@@ -1,10 +1,9 @@
-#include "vibe_vision/calibrate/marker_locator.hpp"
+#include "vibe_vision/calibrate/marker_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/median.hpp"
-#include "calibrate/straight_line.hpp"
+#include "calibrate/fitting.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/track/tracker.hpp"
 

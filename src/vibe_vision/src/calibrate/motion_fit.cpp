@@ -1,10 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/least_squares.hpp"
-#include "calibrate/median.hpp"
-#include "calibrate/straight_line.hpp"
-#include "calibrate/with_decimals.hpp"
+#include "calibrate/fitting.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
 

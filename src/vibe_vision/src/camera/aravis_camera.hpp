@@ -1,13 +1,61 @@
 #pragma once
+
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
 
-#include "camera/aravis_pointer.hpp"
-#include "camera/buffer_loan.hpp"
+#include <arv.h>
+
 #include "vibe_vision/camera/frame_source.hpp"
 
 namespace vibe::vision {
+
+struct Unref {
+  void operator()(gpointer object) const { g_object_unref(object); }
+};
+template <class T>
+using AravisPointer = std::unique_ptr<T, Unref>;
+
+/// Takes the error of a call of Aravis, and frees it.
+class AravisError {
+ public:
+  AravisError() = default;
+  ~AravisError() { g_clear_error(&error_); }
+  AravisError(const AravisError&) = delete;
+  AravisError& operator=(const AravisError&) = delete;
+
+  GError** slot() {
+    g_clear_error(&error_);
+    return &error_;
+  }
+  explicit operator bool() const { return error_ != nullptr; }
+  std::string text() const { return error_ ? error_->message : ""; }
+
+ private:
+  GError* error_ = nullptr;
+};
+
+/// Buffers of a stream that consumers hold without a copy. Each returns to the stream with its last owner, or is freed
+/// if the stream has gone in the meantime. At most kMost are lent, so that the stream never runs out of buffers.
+class BufferLoan : public std::enable_shared_from_this<BufferLoan> {
+ public:
+  static constexpr int kBuffers = 16;  ///< of a stream
+  static constexpr int kMost = 8;      ///< lent at once
+
+  explicit BufferLoan(ArvStream* stream) : stream_(stream) {}
+  /// The stream ends: buffers that come back later are freed.
+  void detach();
+  /// @return keeps the buffer; nothing if too many are lent, and then the buffer still belongs to the caller
+  std::shared_ptr<const void> lend(ArvBuffer* buffer);
+
+ private:
+  std::mutex mutex_;
+  ArvStream* stream_;
+  int lent_ = 0;
+
+  void takeBack(ArvBuffer* buffer);
+};
 
 /// A connected GigE Vision or USB3 Vision camera that sends frames, until it is destroyed.
 class AravisCamera {

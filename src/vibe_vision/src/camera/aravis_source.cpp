@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "camera/host_time.hpp"
-#include "camera/pixel_format.hpp"
+#include "camera/pixels.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::vision {

@@ -4,10 +4,9 @@
 #include <thread>
 
 #include "camera/aravis_camera.hpp"
-#include "camera/pixel_pool.hpp"
-#include "camera/retry_timer.hpp"
-#include "camera/sequence_counter.hpp"
-#include "camera/stamp_clock.hpp"
+#include "camera/frame_timing.hpp"
+#include "camera/host_time.hpp"
+#include "camera/pixels.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
 namespace vibe::vision {

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -14,15 +13,44 @@ constexpr double kReadPatience = 0.1;  // of one read: after this the thread see
 
 }  // namespace
 
+void LatestFrame::put(Frame frame) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (is_fresh_) ++dropped_;
+    is_fresh_ = true;
+    std::swap(frame_, frame);  // the older one is released outside of the lock
+  }
+  changed_.notify_one();
+}
+
+void LatestFrame::close() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    is_closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+ReadResult LatestFrame::take(Frame& frame, double timeout) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  changed_.wait_for(lock, std::chrono::duration<double>(timeout), [this] { return is_fresh_ || is_closed_; });
+  if (!is_fresh_) return is_closed_ ? ReadResult::End : ReadResult::Timeout;
+  is_fresh_ = false;
+  frame = std::exchange(frame_, Frame());
+  return ReadResult::Frame;
+}
+
+std::uint64_t LatestFrame::dropped() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return dropped_;
+}
+
 struct Capture::Impl {
   std::unique_ptr<FrameSource> source;
   std::atomic<bool> shall_stop{false};
+  std::atomic<bool> is_gone{false};  // at the last read
+  LatestFrame latest;
   mutable std::mutex mutex;
-  std::condition_variable changed;
-  Frame newest;
-  bool is_fresh = false;
-  ReadResult state = ReadResult::Timeout;  // of the last read
-  std::uint64_t dropped = 0;
   std::string failure;
   std::thread thread;
 
@@ -35,24 +63,16 @@ struct Capture::Impl {
     } catch (const std::exception& error) {
       const std::lock_guard<std::mutex> lock(mutex);
       failure = error.what();
-      state = ReadResult::End;
+      latest.close();
     }
-    changed.notify_all();
   }
 
   bool step() {
     Frame frame;
     const ReadResult result = source->read(frame, kReadPatience);
-    {
-      const std::lock_guard<std::mutex> lock(mutex);
-      state = result;
-      if (result == ReadResult::Frame) {
-        if (is_fresh) ++dropped;
-        is_fresh = true;
-        std::swap(newest, frame);  // the older one is released outside of the lock
-      }
-    }
-    if (result == ReadResult::Frame) changed.notify_one();
+    is_gone = result == ReadResult::Gone;
+    if (result == ReadResult::Frame) latest.put(std::move(frame));
+    if (result == ReadResult::End) latest.close();
     return result != ReadResult::End;
   }
 };
@@ -65,20 +85,12 @@ Capture::~Capture() {
 }
 
 ReadResult Capture::take(Frame& frame, double timeout) {
-  std::unique_lock<std::mutex> lock(impl_->mutex);
-  const auto isOver = [this] { return impl_->is_fresh || impl_->state == ReadResult::End; };
-  impl_->changed.wait_for(lock, std::chrono::duration<double>(timeout), isOver);
-  if (impl_->is_fresh) {
-    impl_->is_fresh = false;
-    frame = std::exchange(impl_->newest, Frame());
-    return ReadResult::Frame;
-  }
-  return impl_->state == ReadResult::Frame ? ReadResult::Timeout : impl_->state;
+  const ReadResult result = impl_->latest.take(frame, timeout);
+  return result == ReadResult::Timeout && impl_->is_gone ? ReadResult::Gone : result;
 }
 
 std::uint64_t Capture::dropped() const {
-  const std::lock_guard<std::mutex> lock(impl_->mutex);
-  return impl_->dropped;
+  return impl_->latest.dropped();
 }
 
 SourceStatistics Capture::statistics() const {

@@ -2,10 +2,9 @@
 #include <optional>
 
 #include "camera/aravis_source.hpp"
-#include "camera/image_list_reader.hpp"
+#include "camera/picture_reader.hpp"
 #include "camera/recording_source.hpp"
 #include "camera/v4l2_source.hpp"
-#include "camera/video_reader.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::vision {

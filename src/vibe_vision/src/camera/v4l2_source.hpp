@@ -1,14 +1,19 @@
 #pragma once
+
 #include <mutex>
+#include <string>
+
 #include <opencv2/videoio.hpp>
 
-#include "camera/interval_gaps.hpp"
-#include "camera/pixel_format.hpp"
-#include "camera/pixel_pool.hpp"
-#include "camera/retry_timer.hpp"
+#include "camera/frame_timing.hpp"
+#include "camera/host_time.hpp"
+#include "camera/pixels.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 
 namespace vibe::vision {
+
+/// What keeps a file from being used as a V4L2 camera, with the remedy; empty if nothing does.
+std::string v4l2Obstacle(const std::string& device);
 
 /// Unix time of a kernel stamp (CLOCK_MONOTONIC) [s].
 double unixFromMonotonic(double monotonic);

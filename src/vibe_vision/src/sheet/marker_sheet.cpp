@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "sheet/sheet_layout.hpp"
-#include "sheet/sheet_painter.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::vision {

@@ -1,10 +1,9 @@
-#include "sheet/sheet_painter.hpp"
+#include "sheet/sheet_layout.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "sheet/sheet_layout.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::vision {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 namespace vibe::vision {
+
 namespace {
 
 /// Natural logarithm of a normal number in (0, 1), to 1e-6.
@@ -49,6 +50,61 @@ void addNoise(const RandomStream& random, std::uint32_t counter, const float* ex
     const float value = expected[i] + deviation * normal(random, counter + static_cast<std::uint32_t>(i)) + 0.5F;
     const float clipped = value < 0 ? 0.0F : (value > 255 ? 255.0F : value);
     pixels[i] = static_cast<std::uint8_t>(static_cast<int>(clipped));
+  }
+}
+
+namespace {
+
+float smoothStep(float t) {
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
+Background::Background(int width, int height, double level, std::uint64_t seed)
+    : width_(width),
+      height_(height),
+      stride_(static_cast<std::size_t>(width + 2 * kPadding)),
+      values_(stride_ * static_cast<std::size_t>(height + 2 * kPadding), static_cast<float>(level)) {
+  const auto relative = static_cast<float>(level / 90);
+  addPatches(seed);
+  addTexture(seed + 1, 61, 16 * relative);
+  addTexture(seed + 2, 17, 12 * relative);
+  addTexture(seed + 3, 5, 8 * relative);
+  for (float& value : values_) value = std::clamp(value, 2.0F, 250.0F);
+}
+
+void Background::addTexture(std::uint64_t seed, int cell, float amplitude) {
+  const RandomStream random(seed, 0xBAC6);
+  const int height = height_ + 2 * kPadding, width = width_ + 2 * kPadding, columns = width / cell + 2;
+  const auto knot = [&](int x, int y) { return 2 * random.uniform(static_cast<std::uint32_t>(y * columns + x)) - 1; };
+  for (int y = 0; y < height; ++y) {
+    const float v = smoothStep(static_cast<float>(y % cell) / static_cast<float>(cell));
+    for (int x = 0; x < width; ++x) {
+      const int i = x / cell, j = y / cell;
+      const float u = smoothStep(static_cast<float>(x % cell) / static_cast<float>(cell));
+      const float upper = knot(i, j) + u * (knot(i + 1, j) - knot(i, j));
+      const float lower = knot(i, j + 1) + u * (knot(i + 1, j + 1) - knot(i, j + 1));
+      values_[static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x)] +=
+          amplitude * (upper + v * (lower - upper));
+    }
+  }
+}
+
+void Background::addPatches(std::uint64_t seed) {
+  constexpr std::uint32_t kPatches = 14, kNumbers = 5;
+  const RandomStream random(seed, 0x9A7C);
+  for (std::uint32_t k = 0; k < kPatches; ++k) {
+    const auto number = [&](std::uint32_t i, float low, float high) {
+      return low + (high - low) * random.uniform(k * kNumbers + i);
+    };
+    const auto x0 = static_cast<int>(number(0, 0, static_cast<float>(width_)));
+    const auto y0 = static_cast<int>(number(1, 0, static_cast<float>(height_)));
+    const auto width = static_cast<int>(number(2, 10, 130)), height = static_cast<int>(number(3, 6, 60));
+    const float change = number(4, -35, 45);
+    for (int y = y0; y < std::min(y0 + height, height_ + kPadding); ++y)
+      for (int x = x0; x < std::min(x0 + width, width_ + kPadding); ++x)
+        values_[static_cast<std::size_t>(y + kPadding) * stride_ + static_cast<std::size_t>(x + kPadding)] += change;
   }
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synthetic/edge_share.hpp"
+#include "synthetic/surface.hpp"
 
 namespace vibe::vision {
 namespace {

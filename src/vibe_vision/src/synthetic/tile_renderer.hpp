@@ -2,10 +2,9 @@
 #include <memory>
 #include <vector>
 
-#include "synthetic/background.hpp"
-#include "synthetic/pixel_kernel.hpp"
-#include "synthetic/scene_effects.hpp"
-#include "synthetic/sensor_map.hpp"
+#include "synthetic/degradation.hpp"
+#include "synthetic/random_field.hpp"
+#include "synthetic/scene_geometry.hpp"
 #include "synthetic/surface.hpp"
 
 namespace vibe::vision {

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "synthetic/scene_effects.hpp"
+#include "synthetic/degradation.hpp"
 #include "vibe_vision/synthetic/synthetic_scene.hpp"
 
 namespace vibe::vision {

@@ -1,9 +1,13 @@
 #include "track/blurred_line.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "track/arithmetic.hpp"
+
 namespace vibe::vision {
+
 namespace {
 
 constexpr double kStepReach = 6;  // standard deviations after which a step is over
@@ -65,6 +69,110 @@ BlurredLine::Entry BlurredLine::entryAt(const std::vector<Interval>& black, doub
     }
   return {static_cast<float>(sum[0] - static_cast<double>(mean_) * x), static_cast<float>(sum[1]),
           static_cast<float>(sum[2]), static_cast<float>(sum[3])};
+}
+
+namespace {
+
+using Order [[gnu::vector_size(16)]] = int;
+constexpr float kVarianceStepRatio = 0.12F;  // of the variances' step to the variance that needs no more levels
+constexpr int kStride = 2;                   // of the table against that of the line
+constexpr float kPerPixel = BlurredLine::kPerPixel / kStride;
+
+/// Elements n to the front, zeros behind.
+Four shifted1(Four v) {
+  return __builtin_shuffle(v, Four{}, Order{1, 2, 3, 4});
+}
+Four shifted2(Four v) {
+  return __builtin_shuffle(v, Four{}, Order{2, 3, 4, 4});
+}
+Four shifted3(Four v) {
+  return __builtin_shuffle(v, Four{}, Order{3, 4, 4, 4});
+}
+
+/// An entry of a BlurredLine, taken d further and with more variance; see BlurredLine::at().
+struct Shift {
+  int steps;
+  Four first, second, third;
+  Shift(float distance, float more_variance) {
+    const float place = distance * BlurredLine::kPerPixel;
+    steps = static_cast<int>(std::floor(place + 0.5F));
+    const float d = (place - static_cast<float>(steps)) / BlurredLine::kPerPixel;
+    const float s = 0.5F * (more_variance + d * d);
+    first = Four{d, d, d, 0};
+    second = Four{s, s, 0, 0};
+    third = Four{d * (s + more_variance) / 3, 0, 0, 0};
+  }
+  Four of(Four e) const { return e + first * shifted1(e) + second * shifted2(e) + third * shifted3(e); }
+};
+
+}  // namespace
+
+MovingLine::MovingLine(const BlurredLine& line, int levels)
+    : line_(line),
+      max_levels_(levels),
+      size_(static_cast<std::size_t>(line.length() * kPerPixel) + 2),
+      table_(size_ * static_cast<std::size_t>(levels) * kFourSize) {}
+
+void MovingLine::compose(float low, float high, float half_motion) {
+  low_ = low;
+  const float range = std::max(high - low, 1e-3F);
+  levels_ = std::clamp(1 + static_cast<int>(std::ceil(range / (kVarianceStepRatio * low))), 2, max_levels_);
+  step_ = range / static_cast<float>(levels_ - 1);
+  half_motion_ = std::min(half_motion, kMaxHalfMotion);
+  for (int level = 0; level < levels_; ++level)
+    composeLevel(low_ + static_cast<float>(level) * step_,
+                 table_.data() + static_cast<std::size_t>(level) * size_ * kFourSize);
+}
+
+void MovingLine::composeLevel(float variance, float* table) const {
+  const BlurredLine::Level level = line_.levelOf(variance);
+  const Shift left(-half_motion_, variance - level.variance), right(half_motion_, variance - level.variance);
+  const float scale = 0.5F / half_motion_, mean = line_.mean();
+  const Four factor{scale, scale, scale, 0}, left_drift{left.first[0] * mean, 0, 0, 0},
+      right_drift{right.first[0] * mean, 0, 0, 0}, base{mean, 0, 0, 0};
+  for (std::size_t i = 0; i < size_; ++i) {
+    const int place = static_cast<int>(i) * kStride;
+    const Four a = left.of(loadFour(line_.entry(level, place + left.steps))) - left_drift;
+    const Four b = right.of(loadFour(line_.entry(level, place + right.steps))) - right_drift;
+    store(table + i * kFourSize, (b - a) * factor + base);
+  }
+}
+
+VIBE_LANES void MovingLine::look(const Places& places, std::size_t count, const Result& result) const {
+  const float last = static_cast<float>(size_ - 1), per_step = 1 / step_, top = static_cast<float>(levels_ - 1);
+  const float square = half_motion_ * half_motion_, low = low_, step = step_, stride = static_cast<float>(size_);
+  const BlurredLine::Wrap wrap = line_.wrap();
+  alignas(16) float d[kPart], s[kPart];
+  alignas(16) int index[kPart];
+  const float* __restrict x = places.x, * __restrict variance = places.variance, * __restrict half = places.half_motion;
+  for (std::size_t i = 0; i < count; ++i) {
+    float place = wrap.at(x[i]) * kPerPixel;
+    place = place < 0 ? 0 : place;
+    place = place > last ? last : place;
+    // A longer motion is a blur with more variance.
+    const float all = variance[i] + (half[i] * half[i] - square) * (1.0F / 3);
+    float level = (all - low) * per_step + 0.5F;
+    level = level < 0 ? 0 : level;
+    level = level > top ? top : level;
+    const auto l = static_cast<float>(static_cast<int>(level)), p = static_cast<float>(static_cast<int>(place + 0.5F));
+    index[i] = static_cast<int>(l * stride + p);
+    d[i] = (place - p) / kPerPixel;
+    s[i] = 0.5F * (all - low - l * step + d[i] * d[i]);
+  }
+  for (std::size_t i = 0; i < count; i += kFourSize) {
+    Four e[kFourSize];
+    for (std::size_t k = 0; k < kFourSize; ++k) {
+      const Four entry = loadFour(table_.data() + static_cast<std::size_t>(index[i + k]) * kFourSize);
+      e[k] = entry + d[i + k] * shifted1(entry) + s[i + k] * shifted2(entry);
+    }
+    const Four ab = __builtin_shuffle(e[0], e[1], Order{0, 4, 1, 5});
+    const Four cd = __builtin_shuffle(e[2], e[3], Order{0, 4, 1, 5});
+    const Four bends = __builtin_shuffle(__builtin_shuffle(e[0], e[1], Order{2, 6, 3, 7}),
+                                         __builtin_shuffle(e[2], e[3], Order{2, 6, 3, 7}), Order{0, 1, 4, 5});
+    store(result.value + i, __builtin_shuffle(ab, cd, Order{0, 1, 4, 5}));
+    store(result.slope + i, __builtin_shuffle(ab, cd, Order{2, 3, 6, 7}));
+    store(result.bend + i, bends);
+  }
 }
 
 }  // namespace vibe::vision

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "track/square.hpp"
+#include "track/arithmetic.hpp"
 
 namespace vibe::vision {
 namespace {

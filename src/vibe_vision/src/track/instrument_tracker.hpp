@@ -1,7 +1,7 @@
 #pragma once
 #include "track/axis_search.hpp"
-#include "track/gates.hpp"
-#include "track/light_model.hpp"
+#include "track/kalman_filters.hpp"
+#include "track/marker_fitter.hpp"
 #include "track/slow_state.hpp"
 
 namespace vibe::vision {

@@ -1,8 +1,11 @@
 #pragma once
+
 #include <memory>
 
 #include "track/axis_map.hpp"
+#include "track/kalman_filters.hpp"
 #include "track/pattern_fit.hpp"
+#include "vibe_vision/track/tracker.hpp"
 
 namespace vibe::vision {
 
@@ -58,6 +61,24 @@ class MarkerFitter {
   double seen_ = 0;      ///< share of the marker that follow() saw the last time
   MarkerFit best_;
   PatternFit fit_;
+};
+
+/// Decides whether a fit is the marker.
+class Gates {
+ public:
+  Gates(const VisionConfig& config, const InstrumentConfig& instrument);
+
+  /// Everything that one picture tells. @param nominal  what the calibration says about size and tilt there
+  /// @param expected  the place agrees with a good prediction
+  LostReason judge(const MarkerFit& fit, const FitVector& nominal, bool expected = false) const;
+  /// Whether an instrument that was seen some time ago can be there. @param dt  since then [s]
+  bool isReachable(double slide, const MotionFilter::State& predicted, double last_slide, double dt) const;
+
+ private:
+  GateConfig limits_;
+  MotionLimits motion_;
+  double begin_, end_;        ///< along the axis [px]
+  double lateral_tolerance_;  ///< [px]
 };
 
 }  // namespace vibe::vision

@@ -1,5 +1,8 @@
 #include "vibe_vision/track/marker_pattern.hpp"
 
+#include "track/ring_pattern.hpp"
+#include "track/sleeve_pattern.hpp"
+
 namespace vibe::vision {
 
 void PixelBlock::allocate(std::size_t capacity) {
@@ -32,5 +35,12 @@ MarkerView markerView(const CameraModel& camera, const SlideAxis& axis) {
 }
 
 void MarkerPattern::select(const MarkerPose&, double, PixelBlock&) const {}
+
+std::unique_ptr<MarkerPattern> makePattern(const MarkerDesign& design, double pixels_per_metre,
+                                           const MarkerView& view) {
+  if (const auto* ring = std::get_if<RingDesign>(&design))
+    return std::make_unique<RingPattern>(*ring, pixels_per_metre);
+  return std::make_unique<SleevePattern>(std::get<SleeveDesign>(design), pixels_per_metre, view);
+}
 
 }  // namespace vibe::vision

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "track/float_sums.hpp"
-#include "track/lanes.hpp"
-#include "track/pixel_area.hpp"
+#include "track/arithmetic.hpp"
 
 namespace vibe::vision {
 namespace {

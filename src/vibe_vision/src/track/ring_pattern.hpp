@@ -1,9 +1,53 @@
 #pragma once
-#include "track/float_sums.hpp"
-#include "track/ring_table.hpp"
+
+#include <vector>
+
+#include "track/arithmetic.hpp"
 #include "vibe_vision/track/marker_pattern.hpp"
 
 namespace vibe::vision {
+
+/// Picture of a black ring on white, blurred, as a table over one quadrant: rows along the axis (u), columns across it
+/// (v), kStep apart, beginning kMargin steps before the centre. It holds coefficients of a cubic B-spline (Unser,
+/// Aldroubi, Eden, "B-spline signal processing", IEEE Trans. Signal Processing 41, 1993).
+class RingTable {
+ public:
+  static constexpr double kStep = 0.5;  ///< [px]
+  static constexpr int kMargin = 3;
+  static constexpr double kMinBlur = 0.28;  ///< a pixel without optics has 0.29 px
+  static constexpr double kMaxBlur = 4;     ///< [px]
+
+  /// Radii, and extent of the table from the centre [px].
+  RingTable(double inner, double outer, double reach_u, double reach_v, double max_motion);
+
+  /// Makes the table for a blur (standard deviation, with the pixel's own) and a motion along u [px].
+  void compose(double blur, double motion);
+
+  const float* row(int u) const { return table_.data() + u * columns_; }
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  double blur() const { return blur_; }  ///< of the composed table
+  double motion() const { return motion_; }
+  double maxMotion() const { return max_motion_; }
+
+ private:
+  struct Level {
+    double blur = 0;
+    std::vector<float> integral;  ///< over u from the centre, as coefficients, by rows of u
+  };
+  void buildLevel(Level& level) const;
+  std::vector<double> radialProfile(double blur) const;
+  void prefilterIntegral(std::vector<float>& integral) const;
+  void mixLevels();
+  void spreadMotion();
+
+  double inner_, outer_, max_motion_;
+  int rows_ = 0, columns_ = 0, integral_rows_ = 0;
+  double blur_ = 0, motion_ = 0;
+  std::vector<Level> levels_;
+  std::vector<float> mixed_;  ///< integral at the blur asked for
+  std::vector<float> table_;
+};
 
 /// A flat black ring on white.
 class RingPattern : public MarkerPattern {

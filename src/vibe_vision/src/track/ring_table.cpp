@@ -1,4 +1,4 @@
-#include "track/ring_table.hpp"
+#include "track/ring_pattern.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "track/sleeve_part.hpp"
+#include "track/sleeve_pattern.hpp"
 
 namespace vibe::vision {
 

@@ -1,11 +1,10 @@
-#include "track/sleeve_part.hpp"
+#include "track/sleeve_pattern.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "track/lanes.hpp"
-#include "track/pixel_area.hpp"
+#include "track/arithmetic.hpp"
 
 namespace vibe::vision {
 namespace {

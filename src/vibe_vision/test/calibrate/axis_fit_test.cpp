@@ -6,7 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "calibrate/fitting.hpp"
 #include "calibrate/student_t.hpp"
+#include "vibe_core/common/error.hpp"
 #include "vibe_testing/expect_error.hpp"
 
 namespace vibe::vision::axis_fit_test {

@@ -1,4 +1,4 @@
-#include "vibe_vision/calibrate/marker_locator.hpp"
+#include "vibe_vision/calibrate/marker_finder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "vibe_vision/calibrate/board_spec.hpp"
+#include "vibe_vision/calibrate/lens_calibration.hpp"
 #include "vibe_vision/image/camera_model.hpp"
 #include "vibe_vision/image/frame.hpp"
 

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "camera/fake_rig.hpp"
+#include "camera/host_time.hpp"
 #include "camera/own_network.hpp"
-#include "camera/retry_timer.hpp"
 #include "vibe_vision/camera/capture.hpp"
 
 namespace vibe::vision::aravis_source_test {

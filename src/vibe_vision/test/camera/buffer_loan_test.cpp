@@ -1,10 +1,9 @@
-#include "camera/buffer_loan.hpp"
+#include "camera/aravis_camera.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "camera/aravis_camera.hpp"
 #include "camera/fake_rig.hpp"
 #include "camera/own_network.hpp"
 

@@ -44,6 +44,59 @@ class Script : public FrameSource {
 
 }  // namespace
 
+TEST(LatestFrame, TheNewestWinsAndIsTakenOnce) {
+  LatestFrame latest;
+  Frame frame;
+  for (std::uint64_t k = 1; k <= 3; ++k) {
+    frame.sequence = k;
+    latest.put(frame);
+  }
+  Frame taken;
+  EXPECT_EQ(latest.take(taken, 10), ReadResult::Frame);
+  EXPECT_EQ(taken.sequence, 3U);
+  EXPECT_EQ(latest.dropped(), 2U);
+  EXPECT_EQ(latest.take(taken, 0), ReadResult::Timeout);
+}
+
+TEST(LatestFrame, HoldsNoPixelsOfFramesThatWereReplacedOrTaken) {
+  LatestFrame latest;
+  const auto pixels = std::make_shared<int>();
+  Frame frame, taken;
+  frame.owner = pixels;
+  latest.put(frame);
+  latest.put(std::move(frame));
+  EXPECT_EQ(pixels.use_count(), 2);
+  EXPECT_EQ(latest.take(taken, 0), ReadResult::Frame);
+  taken = Frame();
+  EXPECT_EQ(pixels.use_count(), 1);
+}
+
+TEST(LatestFrame, TheLastFrameIsTakenBeforeTheEnd) {
+  LatestFrame latest;
+  latest.put(Frame());
+  latest.close();
+  Frame taken;
+  EXPECT_EQ(latest.take(taken, 10), ReadResult::Frame);
+  EXPECT_EQ(latest.take(taken, 1000), ReadResult::End);
+}
+
+TEST(LatestFrame, WakesTheOneThatWaits) {
+  LatestFrame latest;
+  std::thread giver([&latest] {
+    sleepFor(0.02);
+    latest.put(Frame());
+  });
+  Frame taken;
+  EXPECT_EQ(latest.take(taken, 1000), ReadResult::Frame);
+  giver.join();
+  std::thread closer([&latest] {
+    sleepFor(0.02);
+    latest.close();
+  });
+  EXPECT_EQ(latest.take(taken, 1000), ReadResult::End);
+  closer.join();
+}
+
 TEST(Capture, ASlowConsumerGetsTheNewestFrameAndNothingGrows) {
   auto script = std::make_unique<Script>(200, 0.002);
   Script& source = *script;

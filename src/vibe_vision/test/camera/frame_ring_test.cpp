@@ -1,4 +1,4 @@
-#include "vibe_vision/camera/frame_ring.hpp"
+#include "vibe_vision/camera/fake_camera.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "camera/interval_gaps.hpp"
+#include "camera/frame_timing.hpp"
 
 #include <gtest/gtest.h>
 

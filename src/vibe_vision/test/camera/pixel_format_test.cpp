@@ -1,4 +1,4 @@
-#include "camera/pixel_format.hpp"
+#include "camera/pixels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "camera/host_time.hpp"
-#include "camera/image_list_reader.hpp"
+#include "camera/picture_reader.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/camera/frame_source.hpp"
 

@@ -1,4 +1,4 @@
-#include "camera/sequence_counter.hpp"
+#include "camera/frame_timing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "camera/stamp_clock.hpp"
+#include "camera/frame_timing.hpp"
 
 #include <gtest/gtest.h>
 

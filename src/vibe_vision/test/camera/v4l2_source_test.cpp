@@ -10,7 +10,6 @@
 #include <fstream>
 
 #include "camera/host_time.hpp"
-#include "camera/v4l2_device.hpp"
 
 namespace vibe::vision::v4l2_source_test {
 

@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "vibe_vision/datagram/datagram.hpp"
-#include "vibe_vision/datagram/udp_sender.hpp"
 #include "vibe_vision/predict/predictor.hpp"
 
 namespace vibe::vision::receiver_examples_test {

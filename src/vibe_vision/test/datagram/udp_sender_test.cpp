@@ -1,4 +1,4 @@
-#include "vibe_vision/datagram/udp_sender.hpp"
+#include "vibe_vision/datagram/datagram.hpp"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "vibe_vision/predict/jerk_model.hpp"
+#include "vibe_vision/predict/predictor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "synthetic/marker_frame.hpp"
+#include "synthetic/scene_geometry.hpp"
 
 namespace vibe::vision {
 

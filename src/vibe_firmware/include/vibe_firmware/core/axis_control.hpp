@@ -1,9 +1,30 @@
 #pragma once
+
 #include "vibe_firmware/core/axis.hpp"
-#include "vibe_firmware/core/encoder.hpp"
-#include "vibe_firmware/core/energy_account.hpp"
+#include "vibe_firmware/core/passivity.hpp"
+#include "vibe_firmware/core/sample.hpp"
 
 namespace vibe_firmware {
+
+/// `value` moved towards `target` by at most `step`.
+constexpr float approach(float value, float target, float step) {
+  if (value < target - step) return value + step;
+  if (value > target + step) return value - step;
+  return target;
+}
+
+constexpr float clamp(float value, float limit) {
+  if (value > limit) return limit;
+  if (value < -limit) return -limit;
+  return value;
+}
+
+/// One step of the low-pass filter v = a v + (1 - a) dx/T. Its gain at rest is 1, its time constant T / -ln a.
+/// @param pole  a, in [0, 1)
+/// @param speed  dx/T [rad/s]
+constexpr float filteredVelocity(float pole, float velocity, float speed) {
+  return pole * velocity + (1.0F - pole) * speed;
+}
 
 /// Everything that changes in one axis.
 struct AxisState {

@@ -2,7 +2,6 @@
 #include <array>
 #include <cstdint>
 
-#include "vibe_firmware/core/debouncer.hpp"
 #include "vibe_firmware/core/sample.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
 

@@ -1,5 +1,18 @@
 #pragma once
+
 #include "vibe_firmware/core/axis.hpp"
+
+namespace vibe_firmware {
+
+/// Energy that an axis may still give to the hand [J]: what it has given is taken off, what the hand has put in is
+/// added, up to a capacity. Sums with compensation (Knuth's two-sum), so that a million small amounts do not get lost.
+struct EnergyAccount {
+  float balance = 0;
+  float error = 0;  ///< that rounding has left out of `balance`
+
+  /// @param capacity  upper limit of the balance [J]
+  void add(float energy, float capacity);
+};
 
 // Conditions under which a sampled spring-damper with a quantised encoder cannot give energy to the hand.
 //
@@ -14,8 +27,6 @@
 // s is the safety factor. h is 1 without delay and at least 1 + 2 t_d/T, so that b > K T (1/2 + t_d/T) + g B holds too;
 // that alone is too little for a delay shorter than the period. Both conditions are sufficient, not necessary; g and h
 // are derived in docs/hardware.md.
-
-namespace vibe_firmware {
 
 /// Viscous friction that the hardware needs [N m s/rad], safety factor included.
 float requiredViscousFriction(const AxisConfig& config, float stiffness, float damping);
@@ -35,5 +46,32 @@ Verdict validate(const AxisConfig& config, const AxisParameters& parameters);
 /// Checks both axes; the first refusal counts. All or nothing: a set is never applied in part.
 Verdict validate(const std::array<AxisConfig, kAxisCount>& configs,
                  const std::array<AxisParameters, kAxisCount>& parameters);
+
+// Second barrier behind the passivity conditions: an observer of the energy that the motor gives to the hand, and a
+// controller that takes torque away before the energy runs out (time-domain passivity; Hannaford and Ryu, IEEE
+// Transactions on Robotics and Automation 18(1), 2002). It also covers what the conditions do not: parameters that
+// change. Whatever the host sends, an axis gives the hand no more than AxisConfig::energy_capacity beyond what the hand
+// has put in since.
+
+/// Books one period: the torque that was held, times the motion that was measured [N m, rad].
+void observe(const AxisConfig& config, float torque, float motion, EnergyAccount& energy);
+
+/// Books a torque change that the hand did not cause. The hand may be half an encoder step beside the measured
+/// position: the observer cannot see the energy |change| D / 2.
+void observeChange(const AxisConfig& config, float change, EnergyAccount& energy);
+
+/// What the controller lets through.
+struct PassivityLimit {
+  float spring = 0;   ///< torque of the spring [N m]
+  float damping = 0;  ///< B [N m s/rad]
+  float torque = 0;   ///< limit on the sum [N m]
+  bool acts = false;
+};
+
+/// Limits so that the energy lasts for one period at AxisConfig::speed_limit, whatever the hand does. One tenth of the
+/// capacity is reserved for damping; where the spring is reduced, the largest passive damping replaces it, which takes
+/// energy from the hand and so fills the account again.
+PassivityLimit limit(const AxisConfig& config, float spring, float damping, float torque_limit,
+                     const EnergyAccount& energy);
 
 }  // namespace vibe_firmware

@@ -2,8 +2,8 @@
 #include <atomic>
 
 #include "vibe_firmware/core/input_device.hpp"
-#include "vibe_firmware/protocol/hid_function.hpp"
-#include "vibe_firmware/protocol/published.hpp"
+#include "vibe_firmware/protocol/control_endpoint.hpp"
+#include "vibe_firmware/protocol/mailbox.hpp"
 
 namespace vibe_firmware {
 

@@ -1,5 +1,7 @@
 #pragma once
+
 #include <array>
+#include <cstdint>
 #include <optional>
 
 #include "vibe_hardware/driver/calibration.hpp"
@@ -45,6 +47,46 @@ class ScopeJoints {
 
   void takeJoint(std::size_t joint, const DeviceSample& sample);
   bool takeHoming(DeviceKind device, const DeviceSample& sample);
+};
+
+/// The six buttons of scope/buttons from the bits of both devices.
+class ScopeButtons {
+ public:
+  explicit ScopeButtons(const Calibration& calibration) : calibration_(calibration) {}
+
+  /// @param bits  of a report; 0 when the device is lost  @return whether one of the six buttons has changed
+  bool take(DeviceKind device, std::uint16_t bits);
+
+  const std::array<std::uint8_t, kButtonCount>& pressed() const { return pressed_; }  ///< 1 while pressed
+  bool isPressed(const DeviceButton& button) const {
+    return (bits_[static_cast<std::size_t>(button.device)] >> button.bit & 1) != 0;
+  }
+
+ private:
+  Calibration calibration_;
+  std::array<std::uint16_t, kDeviceKinds> bits_{};
+  std::array<std::uint8_t, kButtonCount> pressed_{};
+};
+
+/// Moves helix_advance, helix_rotation and needle_driver while buttons are held, for setups in which no camera tracks
+/// the instruments.
+class OverstitchDrive {
+ public:
+  using Positions = std::array<double, kOverstitchJointCount>;
+
+  explicit OverstitchDrive(const std::array<ButtonDrive, kOverstitchJointCount>& drives) : drives_(drives) {}
+
+  /// @param elapsed  since the last call; longer gaps than 0.1 s count as that [s]
+  void advance(const ScopeButtons& buttons, double elapsed);
+
+  /// Continues from measured positions, clamped to the limits: a camera has tracked the instruments up to now.
+  void setPositions(const Positions& positions);
+
+  const Positions& positions() const { return positions_; }  ///< [m], [rad], [m]
+
+ private:
+  std::array<ButtonDrive, kOverstitchJointCount> drives_;
+  Positions positions_{};
 };
 
 }  // namespace vibe::hardware

@@ -1,9 +1,17 @@
 #pragma once
+
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
 
-#include "vibe_firmware/protocol/hid_function.hpp"
+#include "vibe_firmware/core/sample.hpp"
+#include "vibe_firmware/protocol/control_endpoint.hpp"
+#include "vibe_firmware/protocol/haptic_function.hpp"
+#include "vibe_firmware/protocol/input_function.hpp"
 #include "vibe_firmware/protocol/reports.hpp"
+#include "vibe_hardware/emulator/axis_plant.hpp"
 
 namespace vibe::hardware {
 
@@ -31,6 +39,75 @@ class EmulatedDevice {
   /// Switches the firmware off and on; the mechanics stay where they are, and counting begins at 0 there. Ends the life
   /// of function().
   virtual void restart() = 0;
+};
+
+/// A quadrature encoder with an index pulse, and the counter of a timer that reads it.
+class EmulatedEncoder {
+ public:
+  /// @param counts_per_turn  between two index pulses; 0: without
+  /// @param counter_bits     of the timer, 1 to 32
+  EmulatedEncoder(std::int32_t counts_per_turn, int counter_bits)
+      : counts_per_turn_(counts_per_turn), mask_(counter_bits >= 32 ? ~0U : (1U << counter_bits) - 1) {}
+
+  /// Reads the timer. @param count  where the encoder is now
+  vibe_firmware::EncoderSample sample(std::int32_t count);
+
+ private:
+  static constexpr std::int32_t kIndexCount = 700;  ///< an index pulse is here (design choice)
+
+  std::int32_t turnOf(std::int32_t count) const;
+
+  std::int32_t counts_per_turn_;
+  std::uint32_t mask_;
+  std::int32_t last_ = 0;
+};
+
+/// The haptic device: two axes with motors, the firmware, and a hand that holds them.
+class EmulatedHaptic : public EmulatedDevice {
+ public:
+  using Plants = std::array<AxisPlant, vibe_firmware::kAxisCount>;
+
+  /// @param config  of the firmware. The encoder steps of the plants have to be those of its axes.
+  EmulatedHaptic(const vibe_firmware::HapticConfig& config, const Plants& plants, std::string serial);
+
+  void tick(const DeviceMotion& motion) override;
+  bool nextReport(std::uint8_t (&bytes)[vibe_firmware::kInputReportSize]) override;
+  vibe_firmware::HidFunction& function() override { return *firmware_; }
+  void restart() override;
+
+  const AxisPlant& plant(std::size_t axis) const { return plants_[axis]; }
+  const AxisPlantState& axis(std::size_t axis) const { return axes_[axis]; }
+  const vibe_firmware::HapticFunction& firmware() const { return *firmware_; }
+  /// Torques that the firmware asked for in the last tick [N m].
+  const std::array<float, vibe_firmware::kAxisCount>& torques() const { return torques_; }
+
+ private:
+  vibe_firmware::HapticConfig config_;
+  Plants plants_;
+  std::string serial_;
+  std::array<AxisPlantState, vibe_firmware::kAxisCount> axes_{};
+  std::vector<EmulatedEncoder> encoders_;
+  std::unique_ptr<vibe_firmware::HapticFunction> firmware_;
+  std::array<float, vibe_firmware::kAxisCount> torques_{};
+  std::uint32_t ticks_ = 0;
+};
+
+/// The input device: two wheels and buttons. It has no motors, so the wheels are where the hand wants them to be.
+class EmulatedInput : public EmulatedDevice {
+ public:
+  EmulatedInput(const vibe_firmware::InputConfig& config, std::string serial);
+
+  void tick(const DeviceMotion& motion) override;
+  bool nextReport(std::uint8_t (&bytes)[vibe_firmware::kInputReportSize]) override;
+  vibe_firmware::HidFunction& function() override { return *firmware_; }
+  void restart() override;
+
+ private:
+  vibe_firmware::InputConfig config_;
+  std::string serial_;
+  std::vector<EmulatedEncoder> encoders_;
+  std::unique_ptr<vibe_firmware::InputFunction> firmware_;
+  std::uint32_t ticks_ = 0;
 };
 
 }  // namespace vibe::hardware

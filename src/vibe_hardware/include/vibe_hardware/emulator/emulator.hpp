@@ -1,15 +1,67 @@
 #pragma once
+
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "vibe_hardware/driver/calibration.hpp"
-#include "vibe_hardware/emulator/emulated_haptic.hpp"
-#include "vibe_hardware/emulator/emulated_input.hpp"
+#include "vibe_hardware/emulator/emulated_device.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
-#include "vibe_hardware/emulator/overstitch_fingers.hpp"
 
 namespace vibe::hardware {
+
+/// Decides how many ticks of a millisecond are due by the wall clock. A short delay is made up for; after a long one,
+/// for example because the computer was suspended, the time in between is dropped.
+class TickSchedule {
+ public:
+  static constexpr double kBehind = 0.02;  ///< delay that is worth a message [s]
+  static constexpr double kDrop = 1;       ///< delay that is not made up for [s]
+  static constexpr int kMaxBurst = 50;     ///< ticks at once, so that hosts are served in between
+
+  /// @param start        wall time of the first tick [s]
+  /// @param clock_error  by which share the device's clock goes slow [1]: a crystal is wrong by up to 1e-4
+  explicit TickSchedule(double start, double clock_error = 0) : origin_(start), tick_(kTick * (1 + clock_error)) {}
+
+  /// Ticks to take now; they count as taken. @param now  wall time [s], never goes back
+  int due(double now);
+
+  /// Wall time of the next tick [s].
+  double next() const;
+
+  bool behind() const { return delay_ > kBehind; }  ///< at the last due()
+  double delay() const { return delay_; }           ///< of the first tick that was due then [s]
+  double worstDelay() const { return worst_delay_; }
+  double dropped() const { return dropped_; }  ///< time that was left out altogether [s]
+
+ private:
+  double origin_;
+  double tick_;  // on the host's clock [s]
+  std::int64_t ticks_ = 0;
+  double delay_ = 0, worst_delay_ = 0, dropped_ = 0;
+};
+
+/// The fingers of an emulated hand on the buttons that move the suturing device (Calibration::overstitch). They press
+/// so that the joints follow intended positions, in steps of what the host adds up per report, and no faster than it
+/// does.
+class OverstitchFingers {
+ public:
+  using Positions = std::array<double, kOverstitchJointCount>;
+
+  explicit OverstitchFingers(const std::array<ButtonDrive, kOverstitchJointCount>& drives) : drives_(drives) {}
+
+  /// To be called once per report. @param intended  [m], [rad], [m]
+  void decide(const Positions& intended, double report_period);
+
+  bool isPressed(const DeviceButton& button) const;
+  const Positions& positions() const { return positions_; }  ///< that the host should have after the next report
+
+ private:
+  std::array<ButtonDrive, kOverstitchJointCount> drives_;
+  Positions positions_{};
+  std::array<int, kOverstitchJointCount> direction_{};  // 1: forward, -1: backward
+};
 
 /// Hand and arm at the axes of the haptic device. Form: see HandImpedance; the values are a design choice: a natural
 /// frequency of 8 Hz (insertion) and 17 Hz (rotation), damping ratios of one half.

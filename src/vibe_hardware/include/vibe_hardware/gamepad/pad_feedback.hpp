@@ -3,7 +3,7 @@
 
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_hardware/gamepad/pad_mapping.hpp"
-#include "vibe_hardware/gamepad/pad_motors.hpp"
+#include "vibe_hardware/gamepad/pad_source.hpp"
 
 namespace vibe::hardware {
 

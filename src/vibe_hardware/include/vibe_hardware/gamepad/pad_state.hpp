@@ -1,5 +1,7 @@
 #pragma once
+
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -58,5 +60,47 @@ struct PadInfo {
 std::string eventCodeName(int type, int code);
 /// The inverse. @return -1 for a word that is no name of this type
 int eventCodeFromName(int type, const std::string& name);
+
+/// Where the events of a pad come from; what a test replaces.
+class EventPort {
+ public:
+  enum class Status {
+    Event,    ///< `event` is the next event
+    Dropped,  ///< the kernel's queue has overflown and events are lost (SYN_DROPPED): go on with resync
+    Empty,    ///< nothing waits; with resync: the state is up to date again
+    Gone      ///< the device has been unplugged
+  };
+  virtual ~EventPort() = default;
+
+  /// Never waits.
+  /// @param resync  after Dropped: events that bring the state from before the loss to the present one
+  virtual Status next(bool resync, PadEvent& event) = 0;
+};
+
+/// Keeps the state of a pad up to date from its events, also across lost ones.
+class EventReader {
+ public:
+  /// @param initial  state of the pad when it was opened
+  EventReader(EventPort& port, PadState initial) : port_(port), state_(std::move(initial)) {}
+
+  /// Takes over everything that waits. @return false: the device is gone
+  bool update();
+
+  const PadState& state() const { return state_; }
+  std::uint64_t eventCount() const { return event_count_; }
+  std::uint64_t dropCount() const { return drop_count_; }  ///< times that the kernel's queue overflowed
+
+  /// Called with every event, for a recording.
+  void setListener(std::function<void(const PadEvent&)> listener) { listener_ = std::move(listener); }
+
+ private:
+  EventPort& port_;
+  PadState state_;
+  std::uint64_t event_count_ = 0;
+  std::uint64_t drop_count_ = 0;
+  std::function<void(const PadEvent&)> listener_;
+
+  void take(const PadEvent& event);
+};
 
 }  // namespace vibe::hardware

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_vision/config/slide_axis.hpp"
+#include "vibe_vision/config/vision_config.hpp"
 
 namespace vibe::vision {
 

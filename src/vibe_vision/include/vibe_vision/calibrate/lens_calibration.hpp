@@ -1,15 +1,22 @@
 #pragma once
-#include <Eigen/Core>
+
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "vibe_vision/calibrate/board_spec.hpp"
+#include <Eigen/Core>
+
 #include "vibe_vision/image/camera_model.hpp"
 #include "vibe_vision/image/frame.hpp"
 
 namespace vibe::vision {
+
+/// Chessboard for the calibration of the lens, counted by its inner corners as OpenCV does.
+struct BoardSpec {
+  int columns = 9, rows = 6;
+  double square = 5e-3;  ///< side of a square [m]
+};
 
 /// One image of the chessboard.
 struct BoardView {

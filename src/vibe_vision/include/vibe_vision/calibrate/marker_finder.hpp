@@ -1,8 +1,13 @@
 #pragma once
-#include <Eigen/Core>
+
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include <Eigen/Core>
+
+#include "vibe_vision/config/vision_config.hpp"
 #include "vibe_vision/image/frame.hpp"
 #include "vibe_vision/marker/marker_design.hpp"
 
@@ -37,5 +42,28 @@ class MarkerFinder {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The marker of an instrument in one image.
+struct LocatedMarker {
+  bool found = false;
+  std::string problem;                              ///< why it was not found; a sentence
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< centre, undistorted [px]
+  double pixels_per_metre = 0;                      ///< from the size at which it is seen
+  double rotation = 0;                              ///< of a sleeve [rad]
+};
+
+struct LocatedMarkers {
+  std::vector<LocatedMarker> markers;  ///< one per image
+  /// Where positive slide is as a sleeve shows it, undistorted; zero for a ring.
+  Eigen::Vector2d direction = Eigen::Vector2d::Zero();
+};
+
+/// Finds an instrument's marker in images that were taken along its axis, without a calibrated axis: a search of the
+/// whole images gives a rough axis, on which the tracker then measures to a fraction of a pixel.
+/// @param config  its camera must be calibrated; its axis is not used
+/// @throws Error if the images are of another size than the camera, or the marker was found in fewer than two, or it
+///         did not move
+LocatedMarkers locateMarkers(const VisionConfig& config, std::size_t instrument, const std::vector<Frame>& images,
+                             const MarkerSearch& search);
 
 }  // namespace vibe::vision

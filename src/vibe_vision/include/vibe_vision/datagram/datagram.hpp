@@ -1,10 +1,14 @@
 #pragma once
+
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <sys/socket.h>
 
 namespace vibe::vision {
 
@@ -45,5 +49,25 @@ std::vector<std::uint8_t> encode(const TrackDatagram& datagram);
 /// @return nothing for bytes that are not a datagram of this version: another magic, version or length, more than
 ///         kMaxInstruments, a flag that is neither 0 nor 1, padding that is not 0
 std::optional<TrackDatagram> decode(const std::uint8_t* bytes, std::size_t size);
+
+/// Sends datagrams to one address; never waits and never receives. A receiver that is not there is no error.
+class UdpSender {
+ public:
+  /// @param target  "host:port", or "[address]:port" for IPv6. @throws Error if it cannot be understood or resolved
+  explicit UdpSender(const std::string& target);
+  ~UdpSender();
+  UdpSender(const UdpSender&) = delete;
+  UdpSender& operator=(const UdpSender&) = delete;
+
+  void send(const std::vector<std::uint8_t>& bytes);
+  std::uint64_t sent() const { return sent_; }      ///< datagrams that the system took
+  std::uint64_t failed() const { return failed_; }  ///< datagrams that the system did not take
+
+ private:
+  int socket_ = -1;
+  sockaddr_storage address_{};
+  socklen_t address_size_ = 0;
+  std::atomic<std::uint64_t> sent_{0}, failed_{0};
+};
 
 }  // namespace vibe::vision

@@ -7,7 +7,7 @@
 
 #include "vibe_vision/config/vision_config.hpp"
 #include "vibe_vision/image/frame.hpp"
-#include "vibe_vision/track/measurement.hpp"
+#include "vibe_vision/track/tracker.hpp"
 
 namespace vibe::vision {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_vision/calibrate/board_spec.hpp"
+#include "vibe_vision/calibrate/lens_calibration.hpp"
 #include "vibe_vision/config/vision_config.hpp"
 
 namespace vibe::vision {

@@ -1,11 +1,55 @@
 #pragma once
+
 #include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "vibe_vision/config/vision_config.hpp"
 #include "vibe_vision/image/frame.hpp"
-#include "vibe_vision/track/measurement.hpp"
 
 namespace vibe::vision {
+
+/// Why an instrument has no position. The numbers are those of vibe_msgs/InstrumentTrack and of the datagram: new ones
+/// at the end.
+enum class LostReason {
+  None = 0,        ///< tracked
+  NotFound = 1,    ///< nothing in the range of the axis looks like the marker
+  Occluded = 2,    ///< too little of the marker is seen
+  Saturated = 3,   ///< the image is too bright
+  Dark = 4,        ///< the image is too dark
+  Mismatch = 5,    ///< something is there, but its pattern, size or tilt is not the marker's
+  Jump = 6,        ///< further from the prediction than the instrument can move
+  OutOfView = 7,   ///< the axis leaves the image, or its region of interest
+  WrongImage = 8,  ///< size or format of the image is not that of the calibration
+  NoFrame = 9,     ///< no image
+};
+const char* toText(LostReason reason);  ///< a sentence for people
+
+/// What one frame says about one instrument.
+struct Measurement {
+  LostReason reason = LostReason::NoFrame;
+  double slide = 0;     ///< [m]; NaN if lost
+  double rotation = 0;  ///< turns counted since the first detection [rad]; NaN if lost or not shown by the marker
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of slide and rotation [m^2, m rad, rad^2]
+  double score = 0;                                      ///< 0 to 1: how well the marker explains the pixels; 0 if lost
+  double visible = 0;                                    ///< share of the marker's information that was used, 0 to 1
+
+  double along = 0, lateral = 0;                    ///< marker centre relative to SlideAxis::origin, undistorted [px]
+  double along_variance = 0;                        ///< [px^2]
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< marker centre in the full image, as seen (distorted) [px]
+  double scale = 1;                                 ///< size of the marker relative to the calibrated one
+  double tilt = 0;                                  ///< in the image, against the axis [rad]
+  double contrast = 0;                              ///< white - black [DN]
+  int roi_x = 0, roi_y = 0, roi_width = 0, roi_height = 0;  ///< where it was looked for, full image [px]
+  bool reacquired = false;                                  ///< found by a search, not near a prediction
+
+  bool tracked() const { return reason == LostReason::None; }
+};
+
+/// Of all instruments, in the order of VisionConfig::instruments.
+using Measurements = std::vector<Measurement>;
 
 /// Follows all instruments of a rig from frame to frame. Each frame: predict, fit the marker's model to the pixels
 /// around the prediction; if that fails a gate, search the axis in the same frame, fit and gate again; else report it

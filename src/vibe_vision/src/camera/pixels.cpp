@@ -1,0 +1,145 @@
+#include "camera/pixels.hpp"
+
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+namespace vibe::vision {
+
+namespace {
+
+enum class Layout { Bytes, Words, Packed, Stream, Bayer, Colour };
+
+struct Format {
+  PixelFormat code;
+  const char* name;
+  int bits;  // per pixel
+  Layout layout;
+  int detail;  // significant bits, or OpenCV's conversion
+};
+
+constexpr std::array<Format, 16> kFormats{{
+    {PixelFormat::Mono8, "Mono8", 8, Layout::Bytes, 8},
+    {PixelFormat::Mono10, "Mono10", 16, Layout::Words, 10},
+    {PixelFormat::Mono12, "Mono12", 16, Layout::Words, 12},
+    {PixelFormat::Mono16, "Mono16", 16, Layout::Words, 16},
+    {PixelFormat::Mono10Packed, "Mono10Packed", 12, Layout::Packed, 10},
+    {PixelFormat::Mono12Packed, "Mono12Packed", 12, Layout::Packed, 12},
+    {PixelFormat::Mono10p, "Mono10p", 10, Layout::Stream, 10},
+    {PixelFormat::Mono12p, "Mono12p", 12, Layout::Stream, 12},
+    {PixelFormat::BayerGR8, "BayerGR8", 8, Layout::Bayer, cv::COLOR_BayerGRBG2GRAY},
+    {PixelFormat::BayerRG8, "BayerRG8", 8, Layout::Bayer, cv::COLOR_BayerRGGB2GRAY},
+    {PixelFormat::BayerGB8, "BayerGB8", 8, Layout::Bayer, cv::COLOR_BayerGBRG2GRAY},
+    {PixelFormat::BayerBG8, "BayerBG8", 8, Layout::Bayer, cv::COLOR_BayerBGGR2GRAY},
+    {PixelFormat::RGB8, "RGB8", 24, Layout::Colour, cv::COLOR_RGB2GRAY},
+    {PixelFormat::BGR8, "BGR8", 24, Layout::Colour, cv::COLOR_BGR2GRAY},
+    {PixelFormat::YUYV, "YUV422_8", 16, Layout::Colour, cv::COLOR_YUV2GRAY_YUYV},
+    {PixelFormat::UYVY, "YUV422_8_UYVY", 16, Layout::Colour, cv::COLOR_YUV2GRAY_UYVY},
+}};
+
+const Format* find(PixelFormat code) {
+  for (const Format& format : kFormats) {
+    if (format.code == code) return &format;
+  }
+  return nullptr;
+}
+
+void wordsToMono8(const std::uint8_t* data, std::size_t count, int bits, std::uint8_t* grey) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const unsigned value = data[2 * i] | static_cast<unsigned>(data[2 * i + 1]) << 8;
+    grey[i] = static_cast<std::uint8_t>(value >> (bits - 8));
+  }
+}
+
+void packedToMono8(const std::uint8_t* data, std::size_t count, std::uint8_t* grey) {
+  for (std::size_t i = 0; i < count; ++i) grey[i] = data[3 * (i / 2) + (i % 2 == 0 ? 0 : 2)];
+}
+
+void streamToMono8(const std::uint8_t* data, std::size_t count, int bits, std::uint8_t* grey) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t bit = i * static_cast<std::size_t>(bits) + static_cast<std::size_t>(bits - 8);
+    const unsigned low = data[bit / 8], shift = static_cast<unsigned>(bit % 8);
+    const unsigned high = shift == 0 ? 0 : data[bit / 8 + 1];  // a pixel ends with its byte if shift is 0
+    grey[i] = static_cast<std::uint8_t>((low | high << 8) >> shift);
+  }
+}
+
+void colourToMono8(const Format& format, const std::uint8_t* data, int width, int height, std::uint8_t* grey) {
+  const cv::Mat from(height, width, CV_MAKETYPE(CV_8U, format.bits / 8), const_cast<std::uint8_t*>(data));
+  cv::Mat to(height, width, CV_8U, grey);
+  cv::cvtColor(from, to, format.detail);
+}
+
+}  // namespace
+
+bool isReadable(PixelFormat format) {
+  return find(format) != nullptr;
+}
+
+std::string nameOf(PixelFormat format) {
+  if (const Format* known = find(format)) return known->name;
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "0x%08X", static_cast<unsigned>(format));
+  return text.data();
+}
+
+std::string readableFormats() {
+  std::string names;
+  for (const Format& format : kFormats) names += (names.empty() ? "" : ", ") + std::string(format.name);
+  return names;
+}
+
+std::size_t sizeOf(PixelFormat format, int width, int height) {
+  const Format* known = find(format);
+  if (!known || width <= 0 || height <= 0) return 0;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  return (pixels * static_cast<std::size_t>(known->bits) + 7) / 8;
+}
+
+void toMono8(PixelFormat format, const std::uint8_t* data, int width, int height, std::uint8_t* grey) {
+  const Format* known = find(format);
+  if (!known || sizeOf(format, width, height) == 0) return;
+  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  switch (known->layout) {
+    case Layout::Bytes:
+      std::memcpy(grey, data, count);
+      return;
+    case Layout::Words:
+      wordsToMono8(data, count, known->detail, grey);
+      return;
+    case Layout::Packed:
+      packedToMono8(data, count, grey);
+      return;
+    case Layout::Stream:
+      streamToMono8(data, count, known->detail, grey);
+      return;
+    case Layout::Bayer:
+    case Layout::Colour:
+      colourToMono8(*known, data, width, height, grey);
+      return;
+  }
+}
+
+std::shared_ptr<std::uint8_t> PixelPool::acquire(std::size_t size) {
+  auto pixels = std::make_shared<std::vector<std::uint8_t>>();
+  {
+    const std::lock_guard<std::mutex> lock(store_->mutex);
+    if (!store_->spare.empty()) {
+      *pixels = std::move(store_->spare.back());
+      store_->spare.pop_back();
+    }
+  }
+  pixels->resize(size);
+  const std::weak_ptr<Store> weak = store_;
+  return {pixels->data(), [pixels, weak](std::uint8_t*) {
+            const std::shared_ptr<Store> store = weak.lock();
+            if (!store) return;
+            const std::lock_guard<std::mutex> lock(store->mutex);
+            if (store->spare.size() < kSpare) store->spare.push_back(std::move(*pixels));
+          }};
+}
+
+}  // namespace vibe::vision
