@@ -6,7 +6,6 @@
 #include "plugged_device.hpp"
 #include "statistics.hpp"
 #include "usb_nodes.hpp"
-#include "vibe_hardware/gamepad/pad_finder.hpp"
 #include "vibe_hardware/gamepad/pad_source.hpp"
 #include "virtual_pad.hpp"
 

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "calibrate/fitting.hpp"
-#include "calibrate/student_t.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_testing/expect_error.hpp"
 
