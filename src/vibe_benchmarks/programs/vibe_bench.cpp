@@ -26,15 +26,14 @@ struct Options {
   bool quick = false, list = false, methods_only = false, pulling_only = false;
 };
 
-void addOptions(CLI::App& app, Options& o) {
-  app.add_option("--case", o.cases, "only these cases (YAML), no method table")->type_name("FILE");
-  app.add_flag("--methods", o.methods_only, "only the method table");
-  app.add_flag("--pulling", o.pulling_only, "only the ways of pulling two bites together");
-  app.add_option("--profile", o.profile, "with --pulling: write the mid-line of each way there (CSV)")
-      ->type_name("FILE");
-  app.add_flag("--quick", o.quick, "fewer repeats and sizes: about 50 seconds");
-  app.add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
-  app.add_flag("--list", o.list, "print the names of the shipped cases and end");
+void addOptions(OptionList& line, Options& o) {
+  line.option("--case", o.cases, "only these cases (YAML), no method table").typeName("FILE");
+  line.flag("--methods", o.methods_only, "only the method table");
+  line.flag("--pulling", o.pulling_only, "only the ways of pulling two bites together");
+  line.option("--profile", o.profile, "with --pulling: write the mid-line of each way there (CSV)").typeName("FILE");
+  line.flag("--quick", o.quick, "fewer repeats and sizes: about 50 seconds");
+  line.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
+  line.flag("--list", o.list, "print the names of the shipped cases and end");
 }
 
 std::vector<std::string> shippedCases() {
@@ -86,9 +85,9 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{
+  CommandLine line{
       "Prints time per step beside errors, for every method and setting and for cases with reference solutions.",
       "vibe_bench"};
-  addOptions(app, options);
-  return runProgram(app, argc, argv, [&] { run(options); });
+  addOptions(line, options);
+  return runProgram(line, argc, argv, [&] { run(options); });
 }

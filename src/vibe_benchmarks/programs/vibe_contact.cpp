@@ -3,6 +3,7 @@
 #include <iostream>
 #include <string>
 
+#include "contact/contact_states.hpp"
 #include "contact/contact_table.hpp"
 #include "contact/grip_refinement.hpp"
 #include "contact/hard_cases.hpp"
@@ -42,75 +43,67 @@ void save(const std::string& file, const Write& write) {
   if (!out) throw Error(file + ": cannot be written; give --csv a path in a writable folder.");
 }
 
-CLI::Validator rateOfFrames() {
-  return CLI::Validator(
-      [](std::string& text) {
-        const int rate = std::atoi(text.c_str());
-        return rate >= 60 && rate % 60 == 0 ? std::string() : text + " is not a multiple of 60, the rate of the frames";
-      },
-      "");
+OptionCheck rateOfFrames() {
+  return OptionCheck([](const std::string& text) {
+    const int rate = std::atoi(text.c_str());
+    return rate >= 60 && rate % 60 == 0 ? std::string() : text + " is not a multiple of 60, the rate of the frames";
+  });
 }
 
-CLI::App* addStates(CLI::App& app, Options& o) {
-  CLI::App* states =
-      app.add_subcommand("states", "speed and error of states with contact:\n" + describeContactStates());
-  states->add_option("STATE", o.names, "states (default: all); the free pull is always measured")
-      ->type_name("")
-      ->check(CLI::IsMember(contactStateNames()).description(""));
-  states->add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
-  states->add_option("--rate", o.rate, "steps per second, a multiple of 60; several: one setting each (default: 60)")
-      ->type_name("HZ")
-      ->check(rateOfFrames());
-  states->add_option("--iterations", o.iterations, "tissue.iterations; one, or one per rate (default: the scene's)")
-      ->type_name("N")
-      ->check(wholeFrom(1, 1000));
-  states->add_option("--spectral-radius", o.radius, "one, or one per rate (default: the scene's)")
-      ->type_name("R")
-      ->check(CLI::Range(0.0, 1.0).description(""));
-  states->add_option("--reference-rate", o.reference_rate, "steps per second of the reference (default: 960)")
-      ->type_name("HZ")
-      ->check(rateOfFrames());
-  states->add_option("--reference-iterations", o.reference_iterations, "of the reference (default: 8)")
-      ->type_name("N")
-      ->check(wholeFrom(1, 1000));
-  states->add_flag("--check-reference", o.check_reference, "compare it with a reference of twice its rate");
-  states->add_flag("--no-reference", o.no_reference, "times only");
-  states->add_option("--repeats", o.repeats, "runs of each setting (default: 1); of each step the fastest counts")
-      ->type_name("N")
-      ->check(wholeFrom(1, 1000));
-  states->add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
+OptionList addStates(OptionList& line, Options& o) {
+  OptionList states = line.subcommand("states", "speed and error of states with contact:\n" + describeContactStates());
+  states.option("STATE", o.names, "states (default: all); the free pull is always measured")
+      .typeName("")
+      .check(oneOf(contactStateNames()).hidden());
+  states.option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
+  states.option("--rate", o.rate, "steps per second, a multiple of 60; several: one setting each (default: 60)")
+      .typeName("HZ")
+      .check(rateOfFrames());
+  states.option("--iterations", o.iterations, "tissue.iterations; one, or one per rate (default: the scene's)")
+      .typeName("N")
+      .check(wholeFrom(1, 1000));
+  states.option("--spectral-radius", o.radius, "one, or one per rate (default: the scene's)")
+      .typeName("R")
+      .check(inRange(0.0, 1.0).hidden());
+  states.option("--reference-rate", o.reference_rate, "steps per second of the reference (default: 960)")
+      .typeName("HZ")
+      .check(rateOfFrames());
+  states.option("--reference-iterations", o.reference_iterations, "of the reference (default: 8)")
+      .typeName("N")
+      .check(wholeFrom(1, 1000));
+  states.flag("--check-reference", o.check_reference, "compare it with a reference of twice its rate");
+  states.flag("--no-reference", o.no_reference, "times only");
+  states.option("--repeats", o.repeats, "runs of each setting (default: 1); of each step the fastest counts")
+      .typeName("N")
+      .check(wholeFrom(1, 1000));
+  states.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
   return states;
 }
 
-CLI::App* addHard(CLI::App& app, Options& o) {
-  CLI::App* hard = app.add_subcommand("hard", "cases that no contact may break:\n" + describeHardCases());
-  hard->add_option("CASE", o.names, "cases (default: all)")
-      ->type_name("")
-      ->check(CLI::IsMember(hardCaseNames()).description(""));
-  hard->add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
-  hard->add_option("--seed", o.seeds, "of the case random; several: one run each (default: 1)")->type_name("N");
-  hard->add_option("--script", o.scripts, "sessions of these trainee scripts; without CASE only they run")
-      ->type_name("FILE");
-  hard->add_option("--duration", o.duration, "at most so much of a session [s]")->type_name("S")->check(finiteFrom(0));
-  hard->add_flag("--brief", o.brief, "shorter motions, fewer sets");
-  hard->add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
-  hard->add_option("--steps", o.steps, "write a line per step there")->type_name("FILE");
-  hard->add_option("--first-crossing", o.first_crossing, "snapshot of the state before the first crossing")
-      ->type_name("FILE");
+OptionList addHard(OptionList& line, Options& o) {
+  OptionList hard = line.subcommand("hard", "cases that no contact may break:\n" + describeHardCases());
+  hard.option("CASE", o.names, "cases (default: all)").typeName("").check(oneOf(hardCaseNames()).hidden());
+  hard.option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
+  hard.option("--seed", o.seeds, "of the case random; several: one run each (default: 1)").typeName("N");
+  hard.option("--script", o.scripts, "sessions of these trainee scripts; without CASE only they run").typeName("FILE");
+  hard.option("--duration", o.duration, "at most so much of a session [s]").typeName("S").check(finiteFrom(0));
+  hard.flag("--brief", o.brief, "shorter motions, fewer sets");
+  hard.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
+  hard.option("--steps", o.steps, "write a line per step there").typeName("FILE");
+  hard.option("--first-crossing", o.first_crossing, "snapshot of the state before the first crossing").typeName("FILE");
   return hard;
 }
 
-CLI::App* addRefinement(CLI::App& app, Options& o) {
-  CLI::App* refinement = app.add_subcommand("refinement", "force of a pull by 20 mm on finer and finer meshes");
-  refinement->add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")
-      ->type_name("FILE");
-  refinement->add_option("--particles", o.particles, "meshes (default: 1000 2000 3618 8000 16000)")
-      ->type_name("N")
-      ->check(wholeFrom(100, 200000));
-  refinement->add_option("--sites", o.sites, "places on each, 3 mm apart (default: 6)")
-      ->type_name("N")
-      ->check(wholeFrom(1, 30));
-  refinement->add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
+OptionList addRefinement(OptionList& line, Options& o) {
+  OptionList refinement = line.subcommand("refinement", "force of a pull by 20 mm on finer and finer meshes");
+  refinement.option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
+  refinement.option("--particles", o.particles, "meshes (default: 1000 2000 3618 8000 16000)")
+      .typeName("N")
+      .check(wholeFrom(100, 200000));
+  refinement.option("--sites", o.sites, "places on each, 3 mm apart (default: 6)")
+      .typeName("N")
+      .check(wholeFrom(1, 30));
+  refinement.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
   return refinement;
 }
 
@@ -182,14 +175,14 @@ void runRefinement(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Measures steps in which something touches.", "vibe_contact"};
-  CLI::App* states = addStates(app, options);
-  CLI::App* hard = addHard(app, options);
-  CLI::App* refinement = addRefinement(app, options);
-  app.require_subcommand(1);
-  return runProgram(app, argc, argv, [&] {
-    if (*states) runStates(options);
-    if (*hard) runHard(options);
-    if (*refinement) runRefinement(options);
+  CommandLine line{"Measures steps in which something touches.", "vibe_contact"};
+  const OptionList states = addStates(line, options);
+  const OptionList hard = addHard(line, options);
+  const OptionList refinement = addRefinement(line, options);
+  line.requireSubcommand();
+  return runProgram(line, argc, argv, [&] {
+    if (states.isChosen()) runStates(options);
+    if (hard.isChosen()) runHard(options);
+    if (refinement.isChosen()) runRefinement(options);
   });
 }

@@ -29,17 +29,17 @@ struct Options {
   bool quick = false;
 };
 
-void addOptions(CLI::App& app, Options& o) {
-  app.add_option("scenarios|outcomes|patterns", o.mode, "what to sew")
-      ->type_name("")
-      ->required()
-      ->check(CLI::IsMember({"scenarios", "outcomes", "patterns"}).description(""));
-  app.add_option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)")->type_name("FILE");
-  app.add_option("--repeats", o.repeats, "runs of each scenario (default: 3); of each step the fastest counts")
-      ->type_name("N")
-      ->check(wholeFrom(1, 1000));
-  app.add_flag("--quick", o.quick, "one run of each scenario; patterns and outcomes once, with nothing varied");
-  app.add_option("--csv", o.csv, "write the rows there (- for standard output)")->type_name("FILE");
+void addOptions(OptionList& line, Options& o) {
+  line.option("scenarios|outcomes|patterns", o.mode, "what to sew")
+      .typeName("")
+      .required()
+      .check(oneOf({"scenarios", "outcomes", "patterns"}).hidden());
+  line.option("--scene", o.scene, "scene (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
+  line.option("--repeats", o.repeats, "runs of each scenario (default: 3); of each step the fastest counts")
+      .typeName("N")
+      .check(wholeFrom(1, 1000));
+  line.flag("--quick", o.quick, "one run of each scenario; patterns and outcomes once, with nothing varied");
+  line.option("--csv", o.csv, "write the rows there (- for standard output)").typeName("FILE");
 }
 
 Scene sceneOf(const Options& options) {
@@ -97,9 +97,9 @@ void runOutcomes(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{kAbout, "vibe_sutures"};
-  addOptions(app, options);
-  return runProgram(app, argc, argv, [&] {
+  CommandLine line{kAbout, "vibe_sutures"};
+  addOptions(line, options);
+  return runProgram(line, argc, argv, [&] {
     if (options.quick) options.repeats = 1;
     if (options.mode == "scenarios") runScenarios(options);
     if (options.mode == "outcomes") runOutcomes(options);

@@ -43,32 +43,31 @@ struct Options {
   bool script_length = false, list_measures = false;
 };
 
-void addOptions(CLI::App& app, Options& o) {
-  app.add_option("--scene", o.scene, "scene to run (default: package://vibe_core/scenes/stomach.yaml)")
-      ->type_name("FILE");
-  app.add_option("--script", o.script, "what the trainee does: a script or a protocol of goals (default: nothing)")
-      ->type_name("FILE");
-  app.add_option("--mesh", o.mesh, "surface of the organ instead of the scene's")->type_name("FILE");
-  app.add_option("--duration", o.duration,
-                 "simulated seconds (default: length of the script, else 10); a protocol ends before if its goals have")
-      ->type_name("S")
-      ->check(finiteFrom(0));
-  app.add_option("--csv", o.csv, "write one row per step there (- for standard output)")->type_name("FILE");
-  app.add_option("--measures", o.measures, "write the measures by name there, as JSON")->type_name("FILE");
-  app.add_option("--snapshot", o.snapshot, "write the last state there")->type_name("FILE");
-  app.add_option("--threads", o.threads, "threads inside a step (default: 1); the result is the same")
-      ->type_name("N")
-      ->check(wholeFrom(1, 1024));
-  app.add_option("--novice", o.novice, "skill of the trainee instead of the protocol's, 0: expert to 1: novice")
-      ->type_name("PART")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--seed", o.seed, "seed of random numbers instead of the scene's and the protocol's")
-      ->type_name("N")
-      ->check(finiteFrom(0));
-  app.add_flag("--quiet", o.quiet, "print the state hash only");
-  app.add_flag("--list-measures", o.list_measures, "print names and units of all measures as JSON and end");
-  app.add_flag("--script-length", o.script_length,
-               "print the length of the script [s] and end; 0: a protocol, which takes as long as its goals");
+void addOptions(OptionList& line, Options& o) {
+  line.option("--scene", o.scene, "scene to run (default: package://vibe_core/scenes/stomach.yaml)").typeName("FILE");
+  line.option("--script", o.script, "what the trainee does: a script or a protocol of goals (default: nothing)")
+      .typeName("FILE");
+  line.option("--mesh", o.mesh, "surface of the organ instead of the scene's").typeName("FILE");
+  line.option("--duration", o.duration,
+              "simulated seconds (default: length of the script, else 10); a protocol ends before if its goals have")
+      .typeName("S")
+      .check(finiteFrom(0));
+  line.option("--csv", o.csv, "write one row per step there (- for standard output)").typeName("FILE");
+  line.option("--measures", o.measures, "write the measures by name there, as JSON").typeName("FILE");
+  line.option("--snapshot", o.snapshot, "write the last state there").typeName("FILE");
+  line.option("--threads", o.threads, "threads inside a step (default: 1); the result is the same")
+      .typeName("N")
+      .check(wholeFrom(1, 1024));
+  line.option("--novice", o.novice, "skill of the trainee instead of the protocol's, 0: expert to 1: novice")
+      .typeName("PART")
+      .check(inRange(0.0, 1.0));
+  line.option("--seed", o.seed, "seed of random numbers instead of the scene's and the protocol's")
+      .typeName("N")
+      .check(finiteFrom(0));
+  line.flag("--quiet", o.quiet, "print the state hash only");
+  line.flag("--list-measures", o.list_measures, "print names and units of all measures as JSON and end");
+  line.flag("--script-length", o.script_length,
+            "print the length of the script [s] and end; 0: a protocol, which takes as long as its goals");
 }
 
 std::shared_ptr<const Model> load(const Options& o) {
@@ -194,7 +193,7 @@ void run(const Options& o) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Runs a scene under a trainee script as fast as possible, without ROS.", "vibe_headless"};
-  addOptions(app, options);
-  return runProgram(app, argc, argv, [&] { run(options); });
+  CommandLine line{"Runs a scene under a trainee script as fast as possible, without ROS.", "vibe_headless"};
+  addOptions(line, options);
+  return runProgram(line, argc, argv, [&] { run(options); });
 }

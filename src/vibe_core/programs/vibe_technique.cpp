@@ -32,21 +32,21 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-void addOptions(CLI::App& app, Options& o) {
-  app.add_option("FILE", o.files, "bites (CSV)")->type_name("");
-  app.add_option("--rule", o.rule, "corrected (default) or printed (equations 1 to 4 of the ViBE paper: u, z or other)")
-      ->type_name("RULE")
-      ->check(CLI::IsMember({"corrected", "printed"}).description(""));
-  app.add_option("--table", o.table,
-                 "instead of reading a file, measure both rules on N random patterns per technique and "
-                 "number of bites")
-      ->type_name("[N]")
-      ->expected(0, 1)
-      ->default_str("500")
-      ->check(wholeFrom(1, 100000));
-  app.add_option("--seed", o.seed, "seed of the patterns of --table (default: 1)")
-      ->type_name("N")
-      ->check(wholeFrom(1, 1000000000));
+void addOptions(OptionList& line, Options& o) {
+  line.option("FILE", o.files, "bites (CSV)").typeName("");
+  line.option("--rule", o.rule, "corrected (default) or printed (equations 1 to 4 of the ViBE paper: u, z or other)")
+      .typeName("RULE")
+      .check(oneOf({"corrected", "printed"}).hidden());
+  line.option("--table", o.table,
+              "instead of reading a file, measure both rules on N random patterns per technique and "
+              "number of bites")
+      .typeName("[N]")
+      .expected(0, 1)
+      .withoutValue("500")
+      .check(wholeFrom(1, 100000));
+  line.option("--seed", o.seed, "seed of the patterns of --table (default: 1)")
+      .typeName("N")
+      .check(wholeFrom(1, 1000000000));
 }
 
 void checkFiles(const Options& o) {
@@ -83,7 +83,7 @@ void run(const Options& o) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{kAbout, "vibe_technique"};
-  addOptions(app, options);
-  return runProgram(app, argc, argv, [&] { run(options); });
+  CommandLine line{kAbout, "vibe_technique"};
+  addOptions(line, options);
+  return runProgram(line, argc, argv, [&] { run(options); });
 }

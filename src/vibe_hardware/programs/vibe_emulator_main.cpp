@@ -1,5 +1,4 @@
 // vibe_emulator: both devices without hardware, in wall time. A scripted, recorded or random hand moves them.
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <ctime>
@@ -8,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "option_checks.hpp"
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"
@@ -37,34 +36,32 @@ struct Options {
   bool uhid = false;
 };
 
-void addOptions(CLI::App& app, Options& o) {
-  app.add_option("--hand", o.hand,
-                 "who moves the devices: script FILE, recorded FILE, random, or blink [SCRIPT] (default: random)")
-      ->type_name("KIND [FILE]")
-      ->expected(1, 2);
-  app.add_option("--seed", o.seed, "of the random hand and of the blinks (default: 1)")
-      ->type_name("N")
-      ->check(wholeNumber());
-  app.add_option("--blinks", o.blink.count, "how often the hand blinks (default: 1000)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000000));
-  app.add_option("--blink-jump", o.blink.step, "by how much tip_left_right jumps (default: 0.03)")
-      ->type_name("RAD")
-      ->check(CLI::Range(-1.0, 1.0));
-  app.add_option("--blink-log", o.blink_log, "write when the blinks happened and were reported")->type_name("FILE");
-  app.add_option("--clock-error", o.clock_error, "by how much the clock of the devices goes slow (default: 0)")
-      ->type_name("PPM")
-      ->check(CLI::Range(-10000.0, 10000.0));
-  app.add_option("--config", o.config, "calibration of the devices (default: " + o.config + ")")->type_name("FILE");
-  app.add_option("--folder", o.folder, "of the sockets of the devices (default: " + o.folder + ")")->type_name("DIR");
-  app.add_flag("--uhid", o.uhid, "create the devices in the kernel, through /dev/uhid, instead of sockets");
-  app.add_option("--serial", o.serial, "serial number of both devices (default: EMULATOR)")->type_name("TEXT");
-  app.add_option("--drive", o.drive, "how the motors are driven: voltage or torque (default: voltage)")
-      ->check(CLI::IsMember({"voltage", "torque"}));
-  app.add_option("--duration", o.duration, "end after so many seconds (default: never)")
-      ->type_name("S")
-      ->check(notNegative());
-  app.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.\n");
+void addOptions(OptionList& line, Options& o) {
+  line.option("--hand", o.hand,
+              "who moves the devices: script FILE, recorded FILE, random, or blink [SCRIPT] (default: random)")
+      .typeName("KIND [FILE]")
+      .expected(1, 2);
+  line.option("--seed", o.seed, "of the random hand and of the blinks (default: 1)").typeName("N").check(wholeNumber());
+  line.option("--blinks", o.blink.count, "how often the hand blinks (default: 1000)")
+      .typeName("N")
+      .check(inRange(1, 1000000));
+  line.option("--blink-jump", o.blink.step, "by how much tip_left_right jumps (default: 0.03)")
+      .typeName("RAD")
+      .check(inRange(-1.0, 1.0));
+  line.option("--blink-log", o.blink_log, "write when the blinks happened and were reported").typeName("FILE");
+  line.option("--clock-error", o.clock_error, "by how much the clock of the devices goes slow (default: 0)")
+      .typeName("PPM")
+      .check(inRange(-10000.0, 10000.0));
+  line.option("--config", o.config, "calibration of the devices (default: " + o.config + ")").typeName("FILE");
+  line.option("--folder", o.folder, "of the sockets of the devices (default: " + o.folder + ")").typeName("DIR");
+  line.flag("--uhid", o.uhid, "create the devices in the kernel, through /dev/uhid, instead of sockets");
+  line.option("--serial", o.serial, "serial number of both devices (default: EMULATOR)").typeName("TEXT");
+  line.option("--drive", o.drive, "how the motors are driven: voltage or torque (default: voltage)")
+      .check(oneOf({"voltage", "torque"}));
+  line.option("--duration", o.duration, "end after so many seconds (default: never)")
+      .typeName("S")
+      .check(finiteFrom(0));
+  line.footer("SIGUSR1 unplugs both devices, and plugs them in again the next time.\n");
 }
 
 std::shared_ptr<const Hand> makeBlinkHand(const Options& o) {
@@ -239,16 +236,13 @@ class Session {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Emulates the haptic device and the input device with the firmware in them, in wall time.",
-               "vibe_emulator"};
-  app.set_help_flag("--help", "print this text and end");
-  addOptions(app, options);
+  CommandLine line{"Emulates the haptic device and the input device with the firmware in them, in wall time.",
+                   "vibe_emulator"};
+  line.setHelp("--help", "print this text and end");
+  addOptions(line, options);
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    std::printf("%s", app.help().c_str());
-    return 0;
-  } catch (const CLI::ParseError& error) {
+    if (!line.parse(argc, argv)) return 0;
+  } catch (const UsageError& error) {
     std::fprintf(stderr, "vibe_emulator: %s; see --help.\n", error.what());
     return 2;
   }

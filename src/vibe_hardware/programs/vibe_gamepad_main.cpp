@@ -2,14 +2,13 @@
 
 #include <linux/input-event-codes.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <thread>
 
-#include "option_checks.hpp"
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/gamepad/pad_drive.hpp"
@@ -38,17 +37,17 @@ struct Options {
   double duration = 0;
 };
 
-void addOptions(CLI::App& app, Options& options) {
-  app.add_flag("--list", options.list, "List the input devices of this machine with their axes and buttons, and end");
-  app.add_flag("--test", options.test, "Try the motors: both rumble motors, then the spring in the middle; and end");
-  app.add_option("--pad", options.pad, "Path, or part of the name or phys (default: the first gamepad)");
-  app.add_option("--mapping", options.mapping, "Mapping file or package:// address");
-  app.add_option("--urdf", options.urdf, "URDF with the limits of the joints");
-  app.add_option("--record", options.record, "Write the events to this file (format of evemu)");
-  app.add_option("--replay", options.replay, "Play such a file instead of a gamepad");
-  app.add_option("--folder", options.folder, "Folder of the event devices");
-  app.add_option("--duration", options.duration, "End after these seconds (default: at Ctrl-C)")
-      ->check(hardware::notNegative());
+void addOptions(vibe::OptionList& line, Options& options) {
+  line.flag("--list", options.list, "List the input devices of this machine with their axes and buttons, and end");
+  line.flag("--test", options.test, "Try the motors: both rumble motors, then the spring in the middle; and end");
+  line.option("--pad", options.pad, "Path, or part of the name or phys (default: the first gamepad)");
+  line.option("--mapping", options.mapping, "Mapping file or package:// address");
+  line.option("--urdf", options.urdf, "URDF with the limits of the joints");
+  line.option("--record", options.record, "Write the events to this file (format of evemu)");
+  line.option("--replay", options.replay, "Play such a file instead of a gamepad");
+  line.option("--folder", options.folder, "Folder of the event devices");
+  line.option("--duration", options.duration, "End after these seconds (default: at Ctrl-C)")
+      .check(vibe::finiteFrom(0));
 }
 
 void pause(double seconds) {
@@ -204,13 +203,14 @@ class LiveView {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Lists gamepads, shows live what a mapping makes of one, records it, and tries its motors.");
+  vibe::CommandLine line("Lists gamepads, shows live what a mapping makes of one, records it, and tries its motors.");
   Options options;
-  addOptions(app, options);
+  addOptions(line, options);
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (!line.parse(argc, argv)) return 0;
+  } catch (const vibe::UsageError& error) {
+    std::fprintf(stderr, "%s\nRun with --help for more information.\n", error.what());
+    return 2;
   }
   std::signal(SIGINT, [](int) { stopped = 1; });
   std::signal(SIGTERM, [](int) { stopped = 1; });

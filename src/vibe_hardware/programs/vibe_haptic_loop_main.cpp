@@ -1,12 +1,11 @@
 // vibe_haptic_loop: how well the haptic device renders the tissue. Runs simulator, firmware, mechanics and hand in one
 // closed loop in virtual time, and compares the force with that of a simulation of a thousand steps per second.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "option_checks.hpp"
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/package_path.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
@@ -23,18 +22,17 @@ struct Options {
   double from = 0, latency = 5e-3;
 };
 
-void addOptions(CLI::App& app, Options& o) {
-  app.add_option("--scene", o.scene, "scene to run (default: " + o.scene + ")")->type_name("FILE");
-  app.add_option("--script", o.script, "trainee script that the hand plays")->type_name("FILE")->required();
-  app.add_option("--config", o.config, "calibration of the devices (default: " + o.config + ")")->type_name("FILE");
-  app.add_option("--from", o.from, "measure from this time on; the hand should be still there (default: 0)")
-      ->type_name("S")
-      ->check(notNegative());
-  app.add_option("--latency", o.latency, "from the end of a frame to its parameters in the device (default: 0.005)")
-      ->type_name("S")
-      ->check(notNegative());
-  app.add_option("--csv", o.csv, "write one row per millisecond to FILE.spring.csv and FILE.held.csv")
-      ->type_name("FILE");
+void addOptions(OptionList& line, Options& o) {
+  line.option("--scene", o.scene, "scene to run (default: " + o.scene + ")").typeName("FILE");
+  line.option("--script", o.script, "trainee script that the hand plays").typeName("FILE").required();
+  line.option("--config", o.config, "calibration of the devices (default: " + o.config + ")").typeName("FILE");
+  line.option("--from", o.from, "measure from this time on; the hand should be still there (default: 0)")
+      .typeName("S")
+      .check(finiteFrom(0));
+  line.option("--latency", o.latency, "from the end of a frame to its parameters in the device (default: 0.005)")
+      .typeName("S")
+      .check(finiteFrom(0));
+  line.option("--csv", o.csv, "write one row per millisecond to FILE.spring.csv and FILE.held.csv").typeName("FILE");
 }
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -95,18 +93,14 @@ void run(const Options& o) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Compares the force of the haptic device with that of a simulation of a thousand steps per second.",
-               "vibe_haptic_loop"};
-  app.set_help_flag("--help", "print this text and end");
-  addOptions(app, options);
+  CommandLine line{"Compares the force of the haptic device with that of a simulation of a thousand steps per second.",
+                   "vibe_haptic_loop"};
+  line.setHelp("--help", "print this text and end");
+  addOptions(line, options);
   try {
-    app.parse(argc, argv);
-    run(options);
+    if (line.parse(argc, argv)) run(options);
     return 0;
-  } catch (const CLI::CallForHelp&) {
-    std::printf("%s", app.help().c_str());
-    return 0;
-  } catch (const CLI::ParseError& error) {
+  } catch (const UsageError& error) {
     std::fprintf(stderr, "vibe_haptic_loop: %s; see --help.\n", error.what());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "vibe_haptic_loop: %s\n", error.what());

@@ -1,9 +1,9 @@
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 #include <opencv2/core/utility.hpp>
 
 #include "bench_cell.hpp"
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vision = vibe::vision;
@@ -20,22 +20,22 @@ struct Options {
   bool quick = false, list = false;
 };
 
-void addOptions(CLI::App& app, Options& options) {
-  app.add_option("--scene", options.scenes, "only these scenes; --list shows them");
-  app.add_option("--marker", options.markers, "sizes of the markers [px] instead of 40")->check(CLI::Range(12, 80));
-  app.add_option("--exposure", options.exposures, "instead of the scene's [ms]")->check(CLI::Range(0.01, 6.5));
-  app.add_option("--speed", options.speed, "peak speed [m/s]")->check(CLI::Range(0.01, 0.75));
-  app.add_option("--sensor", options.sensor, "width and height [px]")->expected(2);
-  app.add_option("--frames", options.bench.frames, "frames per seed")->check(CLI::Range(2, 100000));
-  app.add_option("--seed", options.bench.seeds, "seeds of motion, noise and background; default: 1 2 3");
-  app.add_option("--visible", options.bench.limits.visible, "share of a marker from which on it should be found")
-      ->check(CLI::Range(0.25, 1.0));
-  app.add_option("--method", options.bench.methods, "only these methods")
-      ->check(CLI::IsMember({"ring", "sleeve", "centroid", "aruco", "apriltag", "apriltag_unrefined"}));
-  app.add_flag("--quick", options.quick, "60 frames of one seed of every scene; no sizes, exposures and sensors");
-  app.add_flag("--list", options.list, "print the names of the scenes and end");
-  app.add_option("--csv", options.csv, "write all numbers to this file");
-  app.add_option("--trace", options.trace, "write every frame of every method to this file");
+void addOptions(vibe::OptionList& line, Options& options) {
+  line.option("--scene", options.scenes, "only these scenes; --list shows them");
+  line.option("--marker", options.markers, "sizes of the markers [px] instead of 40").check(vibe::inRange(12, 80));
+  line.option("--exposure", options.exposures, "instead of the scene's [ms]").check(vibe::inRange(0.01, 6.5));
+  line.option("--speed", options.speed, "peak speed [m/s]").check(vibe::inRange(0.01, 0.75));
+  line.option("--sensor", options.sensor, "width and height [px]").expected(2);
+  line.option("--frames", options.bench.frames, "frames per seed").check(vibe::inRange(2, 100000));
+  line.option("--seed", options.bench.seeds, "seeds of motion, noise and background; default: 1 2 3");
+  line.option("--visible", options.bench.limits.visible, "share of a marker from which on it should be found")
+      .check(vibe::inRange(0.25, 1.0));
+  line.option("--method", options.bench.methods, "only these methods")
+      .check(vibe::oneOf({"ring", "sleeve", "centroid", "aruco", "apriltag", "apriltag_unrefined"}));
+  line.flag("--quick", options.quick, "60 frames of one seed of every scene; no sizes, exposures and sensors");
+  line.flag("--list", options.list, "print the names of the scenes and end");
+  line.option("--csv", options.csv, "write all numbers to this file");
+  line.option("--trace", options.trace, "write every frame of every method to this file");
 }
 
 /// What the options name, or without any everything that docs/vision.md shows.
@@ -97,21 +97,19 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   cv::setNumThreads(0);
-  CLI::App app{
+  vibe::CommandLine line{
       "Accuracy, robustness and processor time of the trackers beside ArUco, AprilTag and a centroid, on the "
       "same rendered frames with known truth."};
   Options options;
-  addOptions(app, options);
+  addOptions(line, options);
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& help) {
-    return app.exit(help);
-  } catch (const CLI::ParseError& error) {
+    if (!line.parse(argc, argv)) return 0;
+  } catch (const vibe::UsageError& error) {
     std::cerr << "vibe_vision_bench: " << error.what() << "; see --help.\n";
     return 2;
   }
-  if (options.quick && app.count("--frames") == 0) options.bench.frames = 60;
-  if (options.quick && app.count("--seed") == 0) options.bench.seeds = {1};
+  if (options.quick && !line.isGiven("--frames")) options.bench.frames = 60;
+  if (options.quick && !line.isGiven("--seed")) options.bench.seeds = {1};
   try {
     return run(options);
   } catch (const std::exception& error) {

@@ -1,5 +1,4 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -7,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_vision/sheet/marker_sheet.hpp"
@@ -34,44 +34,16 @@ inline BoardSpec boardOption(const std::string& corners, const std::string& squa
   return board;
 }
 
-/// Accepts numbers from min to max. CLI::Range accepts NaN.
-inline CLI::Validator finiteIn(double min, double max) {
-  const auto check = [min, max](const std::string& text) {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    char limits[80];
-    std::snprintf(limits, sizeof limits, "' is not a number from %g to %g", min, max);
-    return !text.empty() && *end == 0 && value >= min && value <= max ? std::string() : "'" + text + limits;
-  };
-  return CLI::Validator(check, "");
-}
-
-/// What is wrong with a command line. Unknown words come first: one may be the misspelt name of a required option.
-inline std::string describeWrongCall(const CLI::App& app, const CLI::ParseError& error) {
-  const std::vector<std::string> unknown = app.remaining(true);
-  if (unknown.empty()) return std::string(error.what()) + "; see --help.";
-  const std::string& word = unknown.front();
-  return word.compare(0, 1, "-") == 0 ? "Option '" + word + "' is unknown; see --help."
-                                      : "'" + word + "' is not an option; see --help.";
-}
-
 /// Parses the command line and runs. Wrong options and errors end with status 2 and one sentence.
-inline int runProgram(const char* name, CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
-  app.name(name);  // instead of the path of the program in the help text
+inline int runProgram(CommandLine& line, int argc, char** argv, const std::function<int()>& run) {
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& help) {
-    return app.exit(help);
-  } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "%s: %s\n", name, describeWrongCall(app, error).c_str());
-    return 2;
-  }
-  try {
-    return run();
+    return line.parse(argc, argv) ? run() : 0;
+  } catch (const UsageError& error) {
+    std::fprintf(stderr, "%s: %s\n", line.name().c_str(), usageSentence(error, error.unknown_anywhere).c_str());
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", name, error.what());
-    return 2;
+    std::fprintf(stderr, "%s: %s\n", line.name().c_str(), error.what());
   }
+  return 2;
 }
 
 }  // namespace vibe::vision

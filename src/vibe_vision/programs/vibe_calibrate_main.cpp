@@ -1,6 +1,5 @@
 // vibe_calibrate: lens and axes of a rig from images. No ROS.
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 
@@ -27,36 +26,36 @@ struct Options {
   double print_tolerance = 0.5, slant_tolerance = 5;  // [%], [deg]
 };
 
-void addCommon(CLI::App& app, Options& options) {
-  app.add_option("--config", options.config, "YAML file of the rig; everything but the result is kept")->required();
-  app.add_option("--output", options.output, "Write the rig with the result to this YAML file")->required();
+void addCommon(vibe::OptionList& line, Options& options) {
+  line.option("--config", options.config, "YAML file of the rig; everything but the result is kept").required();
+  line.option("--output", options.output, "Write the rig with the result to this YAML file").required();
 }
 
-void addOptions(CLI::App& lens, CLI::App& axis, Options& options) {
+void addOptions(vibe::OptionList& lens, vibe::OptionList& axis, Options& options) {
   addCommon(lens, options);
-  lens.add_option("--images", options.images, "Images of the chessboard, 'folder/*.png' in quotes")->required();
-  lens.add_option("--board", options.board, "Inner corners of the chessboard")->capture_default_str();
-  lens.add_option("--square", options.square, "Measured side of a square")->capture_default_str();
+  lens.option("--images", options.images, "Images of the chessboard, 'folder/*.png' in quotes").required();
+  lens.option("--board", options.board, "Inner corners of the chessboard").showDefault();
+  lens.option("--square", options.square, "Measured side of a square").showDefault();
   addCommon(axis, options);
-  axis.add_option("--instrument", options.instrument, "Name of the instrument")->required();
-  auto* input = axis.add_option_group("motion")->require_option(1);
-  input->add_option("--stops", options.stops, "CSV file: image,slide; the instrument stands at known slides");
-  input->add_option("--images", options.images,
-                    "Images of a free motion in order, 'folder/*.png' in quotes; slide 0 is in the first");
-  axis.add_option("--lowest-scale", options.lowest_scale, "Smallest scale to look for [px/mm]")
-      ->capture_default_str()
-      ->check(CLI::Range(0.5, 1000.0));
-  axis.add_option("--highest-scale", options.highest_scale, "Largest scale to look for [px/mm]")
-      ->capture_default_str()
-      ->check(CLI::Range(0.5, 1000.0));
-  axis.add_option("--print-tolerance", options.print_tolerance,
-                  "Free motion: standard deviation of the printed marker's size [%]")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 20.0));
-  axis.add_option("--slant-tolerance", options.slant_tolerance,
-                  "Free motion: by how much the axis may be slanted against the sensor [deg]")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 45.0));
+  axis.option("--instrument", options.instrument, "Name of the instrument").required();
+  vibe::OptionList input = axis.oneRequired("motion");
+  input.option("--stops", options.stops, "CSV file: image,slide; the instrument stands at known slides");
+  input.option("--images", options.images,
+               "Images of a free motion in order, 'folder/*.png' in quotes; slide 0 is in the first");
+  axis.option("--lowest-scale", options.lowest_scale, "Smallest scale to look for [px/mm]")
+      .showDefault()
+      .check(vibe::inRange(0.5, 1000.0));
+  axis.option("--highest-scale", options.highest_scale, "Largest scale to look for [px/mm]")
+      .showDefault()
+      .check(vibe::inRange(0.5, 1000.0));
+  axis.option("--print-tolerance", options.print_tolerance,
+              "Free motion: standard deviation of the printed marker's size [%]")
+      .showDefault()
+      .check(vibe::inRange(0.0, 20.0));
+  axis.option("--slant-tolerance", options.slant_tolerance,
+              "Free motion: by how much the axis may be slanted against the sensor [deg]")
+      .showDefault()
+      .check(vibe::inRange(0.0, 45.0));
 }
 
 void printWarnings(const std::vector<std::string>& warnings) {
@@ -229,12 +228,16 @@ int calibrateAxis(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Calibrates a rig: 'intrinsics' the lens from a chessboard, 'axis' where an instrument slides.");
+  vibe::CommandLine line(
+      "Calibrates a rig: 'intrinsics' the lens from a chessboard, 'axis' where an instrument slides.",
+      "vibe_calibrate");
   Options options;
-  CLI::App* lens = app.add_subcommand("intrinsics", "Lens from images of a chessboard (vibe_marker_sheet prints it)");
-  CLI::App* axis = app.add_subcommand("axis", "Axis, direction and scale of an instrument from images of its motion");
-  app.require_subcommand(1);
-  addOptions(*lens, *axis, options);
-  return vision::runProgram("vibe_calibrate", app, argc, argv,
-                            [&] { return lens->parsed() ? calibrateLens(options) : calibrateAxis(options); });
+  vibe::OptionList lens =
+      line.subcommand("intrinsics", "Lens from images of a chessboard (vibe_marker_sheet prints it)");
+  vibe::OptionList axis =
+      line.subcommand("axis", "Axis, direction and scale of an instrument from images of its motion");
+  line.requireSubcommand();
+  addOptions(lens, axis, options);
+  return vision::runProgram(line, argc, argv,
+                            [&] { return lens.isChosen() ? calibrateLens(options) : calibrateAxis(options); });
 }

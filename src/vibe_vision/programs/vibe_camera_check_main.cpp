@@ -1,6 +1,5 @@
 #include <time.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -96,21 +95,20 @@ bool check(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  vibe::CommandLine line(
       "Opens a camera or a recording as the node does, and tells rate, lost frames and the delays of a camera. Ends\n"
-      "with status 1 if no frame came.");
+      "with status 1 if no frame came.",
+      "vibe_camera_check");
   Options options;
-  app.add_option("source", options.source, "gige:ADDRESS, v4l2:/dev/video0, video:FILE or images:GLOB")->required();
-  app.add_option("--duration", options.duration, "time to look [s]")
-      ->check(vision::finiteIn(0.1, 1e5))
-      ->capture_default_str();
-  app.add_option("--rate", options.camera.rate, "frames per second to ask for")->capture_default_str();
-  app.add_option("--exposure", options.camera.exposure, "exposure to ask for [s]")->capture_default_str();
-  app.add_option("--packet-size", options.camera.packet_size, "of GigE Vision [bytes]; 0: the largest that passes")
-      ->capture_default_str();
-  app.add_option("--priority", options.camera.realtime_priority, "of the receiving thread, 1 to 99; 0: ordinary")
-      ->capture_default_str();
-  app.add_flag("--paced", options.camera.paced, "recordings: in real time");
-  app.add_option("--csv", options.csv, "file for sequence, stamp, arrival and taken [s] of each frame");
-  return vision::runProgram("vibe_camera_check", app, argc, argv, [&options] { return check(options) ? 0 : 1; });
+  line.option("source", options.source, "gige:ADDRESS, v4l2:/dev/video0, video:FILE or images:GLOB").required();
+  line.option("--duration", options.duration, "time to look [s]").check(vibe::finiteIn(0.1, 1e5)).showDefault();
+  line.option("--rate", options.camera.rate, "frames per second to ask for").showDefault();
+  line.option("--exposure", options.camera.exposure, "exposure to ask for [s]").showDefault();
+  line.option("--packet-size", options.camera.packet_size, "of GigE Vision [bytes]; 0: the largest that passes")
+      .showDefault();
+  line.option("--priority", options.camera.realtime_priority, "of the receiving thread, 1 to 99; 0: ordinary")
+      .showDefault();
+  line.flag("--paced", options.camera.paced, "recordings: in real time");
+  line.option("--csv", options.csv, "file for sequence, stamp, arrival and taken [s] of each frame");
+  return vision::runProgram(line, argc, argv, [&options] { return check(options) ? 0 : 1; });
 }

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -80,57 +79,58 @@ void serve(Options options) {
   std::cout << "vibe_fake_camera: " << camera.sent() << " frames sent" << std::endl;
 }
 
-void addBlinkOptions(CLI::App& app, Options& options) {
-  app.add_option("--blinks", options.blinks, "of the scene blink: how often the helix jumps")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  app.add_option("--blink-after", options.blink_after, "time before the first jump [s]")
-      ->check(vision::finiteIn(0, 1e6))
-      ->capture_default_str();
-  app.add_option("--blink-jump", options.blink_jump, "by how much it jumps [m]")
-      ->check(vision::finiteIn(-0.02, 0.02))
-      ->capture_default_str();
-  app.add_option("--blink-log", options.camera.blink_file, "file for when each jump happened and was exposed");
-  app.add_option("--seed", options.seed, "of the times of the jumps")->capture_default_str();
+void addBlinkOptions(vibe::OptionList& line, Options& options) {
+  line.option("--blinks", options.blinks, "of the scene blink: how often the helix jumps")
+      .check(vibe::inRange(1, 1000000))
+      .showDefault();
+  line.option("--blink-after", options.blink_after, "time before the first jump [s]")
+      .check(vibe::finiteIn(0, 1e6))
+      .showDefault();
+  line.option("--blink-jump", options.blink_jump, "by how much it jumps [m]")
+      .check(vibe::finiteIn(-0.02, 0.02))
+      .showDefault();
+  line.option("--blink-log", options.camera.blink_file, "file for when each jump happened and was exposed");
+  line.option("--seed", options.seed, "of the times of the jumps").showDefault();
 }
 
-void addOptions(CLI::App& app, Options& options) {
+void addOptions(vibe::OptionList& line, Options& options) {
   std::string names = kBlink + ", " + kSway;
   for (const std::string& name : vision::sceneNames()) names += ", " + name;
-  app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
-  app.add_option("--address", options.camera.address, "of a network interface of this computer")->capture_default_str();
-  app.add_option("--serial", options.camera.serial, "serial number")->capture_default_str();
-  app.add_option("--frames", options.frames, "drawn at most; 0.4 MB of memory each")
-      ->check(CLI::Range(2, 5000))
-      ->capture_default_str();
-  app.add_option("--truth", options.camera.truth_file,
-                 "file for slide [m], rotation [rad] and places [px] of each frame sent, as truth.csv of vibe_render");
-  addBlinkOptions(app, options);
-  app.add_option("--config", options.config, "file for the configuration of the scene, for the tracker");
-  app.add_option("--lost-ratio", options.camera.lost_ratio, "share of the packets that are not sent")
-      ->check(vision::finiteIn(0, 1))
-      ->capture_default_str();
-  app.add_option("--clock-ahead", options.camera.clock_ahead, "camera's clock less Unix time [s]")
-      ->check(vision::finiteIn(-1e9, 1e9))
-      ->capture_default_str();
-  app.add_option("--clock-drift", options.camera.clock_drift, "by which the camera's clock is fast, such as 2e-5")
-      ->check(vision::finiteIn(-1e-2, 1e-2))
-      ->capture_default_str();
-  app.add_option("--duration", options.duration, "time after which it ends [s]; 0: runs until it is stopped")
-      ->check(vision::finiteIn(0, 1e6))
-      ->capture_default_str();
+  line.option("--scene", options.scene, "one of " + names).showDefault();
+  line.option("--address", options.camera.address, "of a network interface of this computer").showDefault();
+  line.option("--serial", options.camera.serial, "serial number").showDefault();
+  line.option("--frames", options.frames, "drawn at most; 0.4 MB of memory each")
+      .check(vibe::inRange(2, 5000))
+      .showDefault();
+  line.option("--truth", options.camera.truth_file,
+              "file for slide [m], rotation [rad] and places [px] of each frame sent, as truth.csv of vibe_render");
+  addBlinkOptions(line, options);
+  line.option("--config", options.config, "file for the configuration of the scene, for the tracker");
+  line.option("--lost-ratio", options.camera.lost_ratio, "share of the packets that are not sent")
+      .check(vibe::finiteIn(0, 1))
+      .showDefault();
+  line.option("--clock-ahead", options.camera.clock_ahead, "camera's clock less Unix time [s]")
+      .check(vibe::finiteIn(-1e9, 1e9))
+      .showDefault();
+  line.option("--clock-drift", options.camera.clock_drift, "by which the camera's clock is fast, such as 2e-5")
+      .check(vibe::finiteIn(-1e-2, 1e-2))
+      .showDefault();
+  line.option("--duration", options.duration, "time after which it ends [s]; 0: runs until it is stopped")
+      .check(vibe::finiteIn(0, 1e6))
+      .showDefault();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  vibe::CommandLine line(
       "A GigE Vision camera in software: it draws a synthetic scene once and serves it over the network, so that the\n"
       "whole way from packets to positions runs without a camera. Consumers open it as gige:ADDRESS. It shows the\n"
-      "drawn frames forward and backward in turn.");
+      "drawn frames forward and backward in turn.",
+      "vibe_fake_camera");
   Options options;
-  addOptions(app, options);
-  return vision::runProgram("vibe_fake_camera", app, argc, argv, [&options] {
+  addOptions(line, options);
+  return vision::runProgram(line, argc, argv, [&options] {
     serve(options);
     return 0;
   });

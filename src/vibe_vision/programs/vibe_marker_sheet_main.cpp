@@ -1,6 +1,5 @@
 // vibe_marker_sheet: the markers of a configuration and a chessboard, to be printed. No ROS.
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
@@ -25,22 +24,19 @@ struct Options {
   bool no_board = false, no_markers = false;
 };
 
-void addOptions(CLI::App& app, Options& options) {
-  app.add_option("--config", options.config, "YAML file or package:// address")->capture_default_str();
-  app.add_option("--pdf", options.pdf, "Write all pages to this PDF file");
-  app.add_option("--svg", options.svg, "Write SVG files, one per page: NAME-1.svg, NAME-2.svg, ...");
-  app.add_option("--png", options.png, "Write previews of 300 dpi, one per page: NAME-1.png, NAME-2.png, ...");
-  app.add_option("--paper", options.paper, "a4 or letter")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"a4", "letter"}));
-  app.add_option("--copies", options.copies, "Of each marker")->capture_default_str()->check(CLI::Range(1, 50));
-  app.add_option("--thickness", options.thickness, "Of the paper; sleeves are shorter by pi times it")
-      ->capture_default_str();
-  app.add_option("--overlap", options.overlap, "Of a sleeve, glued under its other end")->capture_default_str();
-  app.add_option("--board", options.board, "Inner corners of the chessboard")->capture_default_str();
-  app.add_option("--square", options.square, "Side of a square of the chessboard")->capture_default_str();
-  app.add_flag("--no-board", options.no_board, "No page with the chessboard");
-  app.add_flag("--no-markers", options.no_markers, "No pages with markers");
+void addOptions(vibe::OptionList& line, Options& options) {
+  line.option("--config", options.config, "YAML file or package:// address").showDefault();
+  line.option("--pdf", options.pdf, "Write all pages to this PDF file");
+  line.option("--svg", options.svg, "Write SVG files, one per page: NAME-1.svg, NAME-2.svg, ...");
+  line.option("--png", options.png, "Write previews of 300 dpi, one per page: NAME-1.png, NAME-2.png, ...");
+  line.option("--paper", options.paper, "a4 or letter").showDefault().check(vibe::oneOf({"a4", "letter"}));
+  line.option("--copies", options.copies, "Of each marker").showDefault().check(vibe::inRange(1, 50));
+  line.option("--thickness", options.thickness, "Of the paper; sleeves are shorter by pi times it").showDefault();
+  line.option("--overlap", options.overlap, "Of a sleeve, glued under its other end").showDefault();
+  line.option("--board", options.board, "Inner corners of the chessboard").showDefault();
+  line.option("--square", options.square, "Side of a square of the chessboard").showDefault();
+  line.flag("--no-board", options.no_board, "No page with the chessboard");
+  line.flag("--no-markers", options.no_markers, "No pages with markers");
 }
 
 vision::SheetOptions sheetOptions(const Options& options) {
@@ -91,8 +87,9 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes the markers of a configuration and a chessboard at their true size, to be printed.");
+  vibe::CommandLine line("Writes the markers of a configuration and a chessboard at their true size, to be printed.",
+                         "vibe_marker_sheet");
   Options options;
-  addOptions(app, options);
-  return vision::runProgram("vibe_marker_sheet", app, argc, argv, [&options] { return run(options); });
+  addOptions(line, options);
+  return vision::runProgram(line, argc, argv, [&options] { return run(options); });
 }

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -92,26 +91,23 @@ void render(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  vibe::CommandLine line(
       "Draws what the camera of a synthetic scene sees, with the truth: images frame_NNNNNN.png and frames.csv, or\n"
       "video.mkv (lossless) and video.mkv.csv, with sequence, stamp [s] and exposure [s] of each frame; truth.csv\n"
-      "with slide [m], rotation [rad] and places [px] of each instrument; config.yaml for vibe_track.");
+      "with slide [m], rotation [rad] and places [px] of each instrument; config.yaml for vibe_track.",
+      "vibe_render");
   Options options;
   std::string names;
   for (const std::string& name : vision::sceneNames()) names += (names.empty() ? "" : ", ") + name;
-  app.add_option("--scene", options.scene, "one of " + names)->capture_default_str();
-  app.add_option("--frames", options.frames, "number of frames; 147 are one second")
-      ->check(CLI::Range(1, 10000000))
-      ->capture_default_str();
-  app.add_option("--first", options.first, "number of the first frame")->capture_default_str();
-  app.add_option("--start", options.start, "stamp of frame 0, Unix time [s]")
-      ->check(vision::finiteIn(0, 1e10))
-      ->capture_default_str();
-  app.add_option("--out", options.out, "folder, made if it is not there")->required();
-  app.add_option("--format", options.format, "images or video")
-      ->check(CLI::IsMember({"images", "video"}))
-      ->capture_default_str();
-  return vision::runProgram("vibe_render", app, argc, argv, [&options] {
+  line.option("--scene", options.scene, "one of " + names).showDefault();
+  line.option("--frames", options.frames, "number of frames; 147 are one second")
+      .check(vibe::inRange(1, 10000000))
+      .showDefault();
+  line.option("--first", options.first, "number of the first frame").showDefault();
+  line.option("--start", options.start, "stamp of frame 0, Unix time [s]").check(vibe::finiteIn(0, 1e10)).showDefault();
+  line.option("--out", options.out, "folder, made if it is not there").required();
+  line.option("--format", options.format, "images or video").check(vibe::oneOf({"images", "video"})).showDefault();
+  return vision::runProgram(line, argc, argv, [&options] {
     render(options);
     return 0;
   });

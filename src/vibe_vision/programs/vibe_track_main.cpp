@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -31,23 +30,22 @@ struct Options {
   std::uint64_t frames = 0;
 };
 
-void addOptions(CLI::App& app, Options& options) {
-  auto* input = app.add_option_group("recording")->require_option(1);
-  input->add_option("--video", options.video, "Video file; stamps from FILE.csv if it is there");
-  input->add_option("--images", options.images,
-                    "Images in the order of their names, 'folder/*.png' in quotes; stamps "
-                    "from frames.csv in the folder if it is there");
-  app.add_option("--config", options.config, "YAML file or package:// address of the rig")->required();
-  app.add_option("--csv", options.csv, "Write the results to this file")->required();
-  app.add_option("--annotate", options.annotate,
-                 "Draw the results: into FILE.avi or FILE.mkv, or as images into a folder");
-  app.add_option("--frames", options.frames, "End after so many frames (default: all)")
-      ->check(CLI::Range(1, 1000000000));
-  app.add_option("--rate", options.source.rate, "Of a recording without stamps [Hz]")->capture_default_str();
-  app.add_option("--exposure", options.source.exposure, "Of a recording that does not tell it [s]")
-      ->capture_default_str();
-  app.add_option("--roi-x", options.source.roi_x, "Where the recording was cut from the sensor [px]");
-  app.add_option("--roi-y", options.source.roi_y, "The same, rows [px]");
+void addOptions(vibe::OptionList& line, Options& options) {
+  vibe::OptionList input = line.oneRequired("recording");
+  input.option("--video", options.video, "Video file; stamps from FILE.csv if it is there");
+  input.option("--images", options.images,
+               "Images in the order of their names, 'folder/*.png' in quotes; stamps "
+               "from frames.csv in the folder if it is there");
+  line.option("--config", options.config, "YAML file or package:// address of the rig").required();
+  line.option("--csv", options.csv, "Write the results to this file").required();
+  line.option("--annotate", options.annotate,
+              "Draw the results: into FILE.avi or FILE.mkv, or as images into a folder");
+  line.option("--frames", options.frames, "End after so many frames (default: all)")
+      .check(vibe::inRange(1, 1000000000));
+  line.option("--rate", options.source.rate, "Of a recording without stamps [Hz]").showDefault();
+  line.option("--exposure", options.source.exposure, "Of a recording that does not tell it [s]").showDefault();
+  line.option("--roi-x", options.source.roi_x, "Where the recording was cut from the sensor [px]");
+  line.option("--roi-y", options.source.roi_y, "The same, rows [px]");
 }
 
 /// Draws the results into a video or a folder.
@@ -171,8 +169,9 @@ int run(Options options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Tracks the instruments in a video or in images and writes their slides and rotations.");
+  vibe::CommandLine line("Tracks the instruments in a video or in images and writes their slides and rotations.",
+                         "vibe_track");
   Options options;
-  addOptions(app, options);
-  return vision::runProgram("vibe_track", app, argc, argv, [&options] { return run(options); });
+  addOptions(line, options);
+  return vision::runProgram(line, argc, argv, [&options] { return run(options); });
 }

@@ -14,13 +14,13 @@ namespace {
 struct Program {
   int run(std::vector<const char*> words) {
     words.insert(words.begin(), "a_program");
-    CLI::App app{"Does nothing.", "a_program"};
-    app.add_option("--size", size, "a number")->type_name("N")->check(finiteFrom(0.5));
-    app.add_option("--count", count, "a whole number")->type_name("N")->check(wholeFrom(1, 64));
-    app.add_flag("--loud", loud, "a flag");
+    CommandLine line("Does nothing.", "a_program");
+    line.option("--size", size, "a number").typeName("N").check(finiteFrom(0.5));
+    line.option("--count", count, "a whole number").typeName("N").check(wholeFrom(1, 64));
+    line.flag("--loud", loud, "a flag");
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
-    const int status = runProgram(app, static_cast<int>(words.size()), words.data(), [this] {
+    const int status = runProgram(line, static_cast<int>(words.size()), words.data(), [this] {
       ++calls;
       if (!failure.empty()) throw Error(failure);
     });
@@ -86,6 +86,71 @@ TEST(CommandLine, printsTheErrorOfTheWork) {
   program.failure = "The file a.yaml is empty; write a scene into it.";
   EXPECT_EQ(program.run({}), 2);
   EXPECT_EQ(program.err, "a_program: The file a.yaml is empty; write a scene into it.\n");
+}
+
+/// What is wrong with a call of a program that has a subcommand and two options of which one must be chosen.
+std::string errorOf(std::vector<const char*> words) {
+  words.insert(words.begin(), "a_program");
+  CommandLine line("Does nothing.");
+  OptionList one = line.subcommand("one", "the first");
+  line.subcommand("two", "the second");
+  line.requireSubcommand();
+  std::string file;
+  std::vector<int> numbers;
+  OptionList input = one.oneRequired("input");
+  input.option("--file", file, "to read");
+  input.option("--numbers", numbers, "instead").expected(2);
+  try {
+    line.parse(static_cast<int>(words.size()), words.data());
+  } catch (const UsageError& error) {
+    return error.unknown_anywhere.empty() ? error.what() : "unknown: " + error.unknown_anywhere;
+  }
+  EXPECT_TRUE(one.isChosen());
+  EXPECT_EQ(input.isGiven("--file"), numbers.empty());
+  return "";
+}
+
+TEST(CommandLine, KnowsSubcommandsAndWhatExcludesEachOther) {
+  EXPECT_EQ(errorOf({"one", "--file", "a"}), "");
+  EXPECT_EQ(errorOf({"one", "--numbers", "1", "2"}), "");
+  for (const std::vector<const char*>& wrong : std::vector<std::vector<const char*>>{
+           {}, {"one"}, {"three"}, {"one", "--file", "a", "--numbers", "1", "2"}, {"one", "--numbers", "1"}})
+    EXPECT_NE(errorOf(wrong), "");
+  EXPECT_EQ(errorOf({"one", "--fill", "a"}), "unknown: --fill");
+}
+
+TEST(OptionCheck, NumbersAreFiniteAndWithinTheirLimits) {
+  const OptionCheck check = finiteIn(0, 1);
+  for (const char* const good : {"0", "1", "0.5", "1e-3"}) EXPECT_EQ(check.complaint(good), "") << good;
+  for (const std::string wrong : {"nan", "inf", "-0.1", "1.1", "", "0.5x"})
+    EXPECT_EQ(check.complaint(wrong), "'" + wrong + "' is not a number from 0 to 1");
+  for (const char* number : {"0", "2", "0.5", "1e-3"}) EXPECT_EQ(finiteFrom(0).complaint(number), "");
+  for (const std::string text : {"-1", "abc", "nan", "inf", "1s"})
+    EXPECT_EQ(finiteFrom(0).complaint(text), "'" + text + "' is not a number of at least 0");
+}
+
+TEST(OptionCheck, WholeNumbersAreTheDigitsOfAnUnsignedNumber) {
+  for (const char* number : {"0", "7", "18446744073709551615"}) EXPECT_EQ(wholeNumber().complaint(number), "");
+  for (const std::string text : {"-1", "abc", "1.5", "1e3", "0x10", "3 4"})
+    EXPECT_EQ(wholeNumber().complaint(text), "'" + text + "' is not a whole number of at least 0");
+  EXPECT_EQ(wholeNumber().complaint("18446744073709551616"),
+            "'18446744073709551616' is too large; write at most 18446744073709551615");
+}
+
+TEST(OptionCheck, ShowsWhatItAcceptsUnlessHidden) {
+  std::string word;
+  double number = 0;
+  CommandLine line("Does nothing.", "a_program");
+  line.option("--word", word, "a word").check(oneOf({"red", "green"}));
+  line.option("--number", number, "a number").check(inRange(0.5, 2.0).hidden());
+  const char* const words[] = {"a_program", "--help"};
+  testing::internal::CaptureStdout();
+  EXPECT_FALSE(line.parse(2, words));
+  const std::string help = testing::internal::GetCapturedStdout();
+  EXPECT_NE(help.find("{red,green}"), std::string::npos) << help;
+  EXPECT_EQ(help.find("[0.5 - 2]"), std::string::npos) << help;
+  EXPECT_NE(oneOf({"red", "green"}).complaint("blue"), "");
+  EXPECT_NE(inRange(0.5, 2.0).complaint("3"), "");
 }
 
 }  // namespace
