@@ -9,7 +9,7 @@
 #include <limits>
 #include <pluginlib/class_loader.hpp>
 #include <vibe_rviz_plugins/display_base/message_shape_display.hpp>
-#include <vibe_rviz_plugins/display_base/property_help.hpp>
+#include <vibe_rviz_plugins/display_base/topic_display.hpp>
 
 namespace {
 

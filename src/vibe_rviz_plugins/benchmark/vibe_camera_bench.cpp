@@ -17,7 +17,6 @@
 #include "cpu_clock.hpp"
 #include "endoscope_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/optical_frame.hpp"
 #include "render/resources.hpp"
 #include "render/virtual_display.hpp"
 #include "session_frames.hpp"

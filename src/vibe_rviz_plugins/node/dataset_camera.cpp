@@ -1,7 +1,7 @@
 #include "dataset_camera.hpp"
 
 #include "render/endoscope_lamp.hpp"
-#include "render/optical_frame.hpp"
+#include "render/offscreen_camera.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

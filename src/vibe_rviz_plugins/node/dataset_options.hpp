@@ -4,7 +4,7 @@
 
 #include "geometry/endoscope_light.hpp"
 #include "geometry/lens.hpp"
-#include "geometry/mucosa_look.hpp"
+#include "geometry/mucosa_pattern.hpp"
 #include "sensor/sensor_model.hpp"
 
 namespace vibe::rviz_plugins {

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "render/optical_frame.hpp"
+#include "render/offscreen_camera.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

@@ -1,11 +1,30 @@
 #pragma once
-#include <Eigen/Geometry>
+
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe::rviz_plugins {
+
+/// One <visual> of a robot description.
+struct RobotVisual {
+  std::string link;    ///< in whose frame it is
+  std::string part;    ///< name of the link; with "/" and the name of the visual, if it has one
+  ColouredShape body;  ///< a sphere, cylinder or box as triangles, in the frame of the link [m]; empty for a mesh
+  std::string mesh;    ///< address of a mesh file (package://, file:// or a path); empty for such a body
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the mesh in the frame of the link [m]
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();         ///< of the mesh, before the pose
+};
+
+/// All visuals of a robot description, ordered by the names of their links. Bodies have the colour of their material,
+/// without one a grey.
+/// @param description  URDF
+/// @return empty if it cannot be read
+std::optional<std::vector<RobotVisual>> robotVisuals(const std::string& description);
 
 /// A visible part of a robot description.
 struct RobotShape {

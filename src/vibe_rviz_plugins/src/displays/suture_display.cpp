@@ -10,7 +10,7 @@
 
 #include "messages/suture_messages.hpp"
 #include "render/legend.hpp"
-#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
+#include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "displays/wall_listener.hpp"
-#include "geometry/bleeding_shape.hpp"
+#include "geometry/blood_shapes.hpp"
 #include "geometry/suture_drawing.hpp"
 #include "geometry/suture_shapes.hpp"
 #include "render/suture_visual.hpp"

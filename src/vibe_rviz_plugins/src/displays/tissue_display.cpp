@@ -13,7 +13,7 @@
 #include "messages/tissue_messages.hpp"
 #include "render/legend.hpp"
 #include "render/tissue_visual.hpp"
-#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
+#include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

@@ -1,8 +1,18 @@
 #pragma once
+
+#include <Eigen/Core>
+
 #include "geometry/suture_drawing.hpp"
-#include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe::rviz_plugins {
+
+/// How bleeding is drawn. The shape depends on the message, its time and the wall of that time alone.
+struct BloodStyle {
+  Eigen::Vector3d down{-1, 0, 0};  ///< direction of gravity, unit; default: patient in supine position
+  double emphasis = 1;             ///< factor for the thickness of jets and drops
+  double time = 0;                 ///< of the message; phase of the pulse of brisk bleeding [s]
+};
 
 /// Colour of blood and what it hides, 0 to 1.
 struct BloodShade {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/append_shape.hpp"
 #include "geometry/blood_colour.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe::rviz_plugins {

@@ -1,9 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "geometry/incidence.hpp"
+#include "geometry/mesh_index.hpp"
 #include "geometry/tissue_mesh.hpp"
-#include "geometry/vertex_span.hpp"
 #include "vibe_rviz_plugins/geometry/colour_map.hpp"
 
 namespace vibe::rviz_plugins {

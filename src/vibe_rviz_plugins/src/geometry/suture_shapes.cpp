@@ -7,8 +7,7 @@
 #include <cstdio>
 
 #include "geometry/suture_ends.hpp"
-#include "geometry/suture_frame.hpp"
-#include "vibe_rviz_plugins/geometry/revolved.hpp"
+#include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 #include "vibe_rviz_plugins/geometry/tube.hpp"
 
 namespace vibe::rviz_plugins {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/incidence.hpp"
+#include "geometry/mesh_index.hpp"
 #include "geometry/tissue_mesh.hpp"
-#include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe::rviz_plugins {
 

@@ -1,10 +1,14 @@
 #pragma once
-#include <sensor_msgs/PointCloud2.h>
 
 #include <cstring>
 #include <string>
 
+#include <sensor_msgs/PointCloud2.h>
+
 namespace vibe::rviz_plugins {
+
+/// A position beyond it is a mistake [m]. Graphics libraries abort on bounding boxes that are not finite.
+constexpr double kMaxCoordinate = 1e6;
 
 /// One field of a point cloud: at(i) is the value of point i. Valid as long as the message.
 class CloudField {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "messages/max_coordinate.hpp"
+#include "messages/cloud_field.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

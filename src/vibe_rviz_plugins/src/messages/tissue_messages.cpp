@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "messages/cloud_field.hpp"
-#include "messages/max_coordinate.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

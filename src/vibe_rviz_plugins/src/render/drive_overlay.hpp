@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "drive/first_steps.hpp"
+#include "drive/drive_keys.hpp"
 #include "drive/scope_drive.hpp"
 
 namespace vibe::rviz_plugins {

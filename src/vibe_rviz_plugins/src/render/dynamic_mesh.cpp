@@ -11,7 +11,7 @@
 
 #include <cstddef>
 
-#include "geometry/triangle_order.hpp"
+#include "geometry/mesh_index.hpp"
 #include "render/resources.hpp"
 
 namespace vibe::rviz_plugins {

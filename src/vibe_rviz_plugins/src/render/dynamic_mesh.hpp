@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/mucosa_map.hpp"
-#include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace Ogre {
 class Entity;

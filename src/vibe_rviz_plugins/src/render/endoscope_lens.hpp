@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
-#include "geometry/auto_exposure.hpp"
+#include "geometry/endoscope_light.hpp"
 #include "geometry/lens.hpp"
-#include "render/device_shadow.hpp"
+#include "render/endoscope_lamp.hpp"
 
 namespace Ogre {
 class CompositionTechnique;

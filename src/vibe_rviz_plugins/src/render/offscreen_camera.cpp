@@ -9,7 +9,6 @@
 #include <OgreViewport.h>
 
 #include "render/endoscope_lens.hpp"
-#include "render/optical_frame.hpp"
 #include "render/resources.hpp"
 
 namespace vibe::rviz_plugins {

@@ -1,18 +1,20 @@
 #include "render/resources.hpp"
 
-#include <OgreMaterialManager.h>
-#include <OgreResourceGroupManager.h>
-#include <OgreTechnique.h>
-#include <ros/package.h>
-
 #include <atomic>
 #include <stdexcept>
+#include <string>
 
-#include "render/device_shadow.hpp"
+#include <OgreHardwarePixelBuffer.h>
+#include <OgreMaterialManager.h>
+#include <OgrePass.h>
+#include <OgreResourceGroupManager.h>
+#include <OgreTechnique.h>
+#include <OgreTextureManager.h>
+#include <ros/package.h>
+
+#include "geometry/mucosa_pattern.hpp"
 #include "render/endoscope_lamp.hpp"
 #include "render/endoscope_lens.hpp"
-#include "render/mesh_look.hpp"
-#include "render/mucosa_texture.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -53,6 +55,67 @@ Ogre::MaterialPtr copyMaterial(const std::string& name) {
 void dropMaterial(Ogre::MaterialPtr& material) {
   if (material) Ogre::MaterialManager::getSingleton().remove(material);
   material.reset();
+}
+
+namespace {
+
+const char* const kLook = "vibe/instrument";
+
+Ogre::Technique* dressed(Ogre::Material& material, const Ogre::Material& look) {
+  const Ogre::Pass& plain = *material.getTechnique(0)->getPass(0);
+  const Ogre::ColourValue colour = plain.getDiffuse();
+  const Ogre::Real shine = plain.getSpecular().r, sharpness = plain.getShininess();
+  Ogre::Technique* technique = material.createTechnique();
+  *technique = *look.getTechnique(0);
+  Ogre::GpuProgramParameters& uniforms = *technique->getPass(0)->getFragmentProgramParameters();
+  uniforms.setNamedConstant("colour", Ogre::Vector3(colour.r, colour.g, colour.b));
+  uniforms.setNamedConstant("shine", shine);
+  uniforms.setNamedConstant("sharpness", sharpness > 1 ? sharpness : Ogre::Real(1));
+  material.compile();
+  return technique->isSupported() ? technique : nullptr;
+}
+
+/// Asked by Ogre once for each material that has no technique of the scheme.
+class Wardrobe : public Ogre::MaterialManager::Listener {
+ public:
+  Ogre::Technique* handleSchemeNotFound(unsigned short, const Ogre::String&, Ogre::Material* material, unsigned short,
+                                        const Ogre::Renderable*) override {
+    if (!isMeshOfRobot(*material)) return nullptr;
+    const Ogre::MaterialPtr look = Ogre::MaterialManager::getSingleton().getByName(kLook, kResourceGroup);
+    return look ? dressed(*material, *look) : nullptr;
+  }
+};
+
+}  // namespace
+
+bool isMeshOfRobot(const Ogre::Material& material) {
+  return material.getName().find("://") != std::string::npos;  // the address of its file and a number
+}
+
+void dressMeshesForEndoscope() {
+  static Wardrobe wardrobe;
+  Ogre::MaterialManager::getSingleton().addListener(&wardrobe, kEndoscopeScheme);
+}
+
+const std::string& provideMucosaTexture() {
+  static const std::string name = "vibe/mucosa_pattern";
+  auto& textures = Ogre::TextureManager::getSingleton();
+  if (textures.resourceExists(name, kResourceGroup)) return name;
+  MucosaPattern pattern = makeMucosaPattern();
+  int levels = 0;
+  while (pattern.size >> (levels + 1) > 0) ++levels;
+  const auto size = static_cast<Ogre::uint>(pattern.size);
+  const Ogre::TexturePtr texture = textures.createManual(name, kResourceGroup, Ogre::TEX_TYPE_3D, size, size, size,
+                                                         levels, Ogre::PF_BYTE_RGBA, Ogre::TU_STATIC_WRITE_ONLY);
+  if (!texture || texture->getNumMipmaps() != static_cast<Ogre::uint32>(levels))
+    throw std::runtime_error("The graphics system has no solid textures with mipmaps, which the mucosa needs.");
+  for (int level = 0; level <= levels; ++level) {
+    const auto edge = static_cast<Ogre::uint32>(pattern.size);
+    texture->getBuffer(0, static_cast<std::size_t>(level))
+        ->blitFromMemory(Ogre::PixelBox(edge, edge, edge, Ogre::PF_BYTE_RGBA, pattern.voxels.data()));
+    if (level < levels) pattern = halved(pattern);
+  }
+  return name;
 }
 
 }  // namespace vibe::rviz_plugins

@@ -1,7 +1,12 @@
 #pragma once
-#include <OgreMaterial.h>
 
 #include <string>
+
+#include <OgreMaterial.h>
+
+namespace Ogre {
+class Material;
+}
 
 namespace vibe::rviz_plugins {
 
@@ -22,5 +27,18 @@ std::string uniqueName(const std::string& what);
 /// @throws std::runtime_error  there is no such material
 Ogre::MaterialPtr copyMaterial(const std::string& name);
 void dropMaterial(Ogre::MaterialPtr& material);
+
+/// Whether rviz has made the material for a mesh of a robot.
+bool isMeshOfRobot(const Ogre::Material& material);
+
+/// From now on the meshes of robots, which know only rviz's light, have the look of vibe/instrument where the endoscope
+/// sees them (scheme kEndoscopeScheme): in rviz's endoscope view as in the image of endoscope_camera. Colour,
+/// highlights and their sharpness are those of the mesh file. For loadResources(), once per process.
+void dressMeshesForEndoscope();
+
+/// Makes the solid texture that the shader of the mucosa reads (geometry/mucosa_pattern.hpp), once per process.
+/// @return  its name in the resource group of this package
+/// @throws std::runtime_error  the graphics system has no solid textures
+const std::string& provideMucosaTexture();
 
 }  // namespace vibe::rviz_plugins

@@ -1,9 +1,48 @@
 #include "vibe_rviz_plugins/render/shape_visual.hpp"
 
+#include <cstring>
+
+#include <OgreSceneNode.h>
+
 #include "render/resources.hpp"
-#include "render/shape_view.hpp"
+#include "vibe_rviz_plugins/render/shape_visual.hpp"
 
 namespace vibe::rviz_plugins {
+
+namespace {
+
+bool same(const std::vector<MovingVertex>& a, const std::vector<MovingVertex>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
+}
+
+}  // namespace
+
+ShapeView::ShapeView(Ogre::SceneNode& parent, Ogre::MaterialPtr material)
+    : mesh_(parent, std::vector<Ogre::MaterialPtr>{std::move(material)}) {}
+
+void ShapeView::show(const ColouredShape& shape) {
+  const bool new_triangles = shape.vertices.size() != shown_.vertices.size() || shape.triangles != shown_.triangles;
+  const bool moved = new_triangles || !same(shape.vertices, shown_.vertices);
+  const bool recoloured = new_triangles || shape.colours != shown_.colours;
+  if (!moved && !recoloured) return;
+  shown_ = shape;
+  if (new_triangles) mesh_.setTopology(shape.triangles, shape.vertices.size());
+  if (mesh_.vertexCount() == 0) return;
+  if (moved) mesh_.setVertices(shape.vertices.data(), 0, shape.vertices.size());
+  if (recoloured) mesh_.setColours(shape.colours.data(), 0, shape.colours.size());
+  if (moved) setBounds();
+}
+
+void ShapeView::clear() {
+  show({});
+}
+
+void ShapeView::setBounds() {
+  Ogre::AxisAlignedBox box;
+  for (const MovingVertex& vertex : shown_.vertices)
+    box.merge(Ogre::Vector3(vertex.position[0], vertex.position[1], vertex.position[2]));
+  mesh_.setBounds(box);
+}
 
 struct ShapeVisual::Parts {
   explicit Parts(Ogre::SceneNode& parent)

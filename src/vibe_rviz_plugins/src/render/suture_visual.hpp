@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "render/shape_view.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
+#include "vibe_rviz_plugins/render/shape_visual.hpp"
 
 namespace Ogre {
 class SceneNode;

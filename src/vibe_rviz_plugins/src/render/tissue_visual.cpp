@@ -1,5 +1,8 @@
 #include "render/tissue_visual.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include <OgreGpuProgramParams.h>
 #include <OgrePass.h>
 #include <OgreSceneManager.h>
@@ -7,14 +10,26 @@
 #include <OgreTechnique.h>
 #include <rviz/ogre_helpers/point_cloud.h>
 
-#include <cmath>
-#include <limits>
-
 #include "geometry/mucosa_pattern.hpp"
 #include "render/endoscope_lamp.hpp"
 #include "render/resources.hpp"
 
 namespace vibe::rviz_plugins {
+
+namespace {
+
+constexpr double kSteps = 256;  // per 1/m: sums of such numbers are exact, so smoke that is gone leaves nothing
+
+}  // namespace
+
+void SceneSmoke::set(double extinction, double time) {
+  const auto now = static_cast<float>(std::round(kSteps * extinction) / kSteps);
+  const float sum = scene_.getFogDensity() - extinction_ + now;
+  extinction_ = now;
+  // no fog mode, only the numbers: shaders read density and begin as smoke.x and smoke.y
+  scene_.setFog(Ogre::FOG_NONE, Ogre::ColourValue::White, sum, static_cast<float>(time));
+}
+
 namespace {
 
 // Frames may overtake each other on their way, in a filter that waits for transforms for instance. An overtaken one

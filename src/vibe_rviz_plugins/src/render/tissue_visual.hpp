@@ -1,28 +1,49 @@
 #pragma once
-#include <OgreColourValue.h>
 
 #include <memory>
 #include <string>
 
+#include <OgreColourValue.h>
+
+#include "geometry/argon_traces.hpp"
 #include "geometry/deformable_surface.hpp"
 #include "geometry/fold_height.hpp"
-#include "geometry/mucosa_look.hpp"
-#include "geometry/scar_age.hpp"
-#include "geometry/smoke.hpp"
+#include "geometry/mucosa_pattern.hpp"
 #include "geometry/surface_colours.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "render/dynamic_mesh.hpp"
-#include "render/scene_smoke.hpp"
 
 namespace Ogre {
 class Pass;
+class SceneManager;
 class SceneNode;
 }  // namespace Ogre
+
 namespace rviz {
 class PointCloud;
 }
 
 namespace vibe::rviz_plugins {
+
+/// The smoke of one organ in a scene; its shaders see the sum over all organs. It is a setting of the scene, its
+/// density of fog, because the light through it changes on everything that an endoscope sees, meshes of other displays
+/// too. Fixed-function materials stay without fog.
+class SceneSmoke {
+ public:
+  /// @param scene  must outlive this object
+  explicit SceneSmoke(Ogre::SceneManager& scene) : scene_(scene) {}
+  ~SceneSmoke() { set(0, 0); }
+  SceneSmoke(const SceneSmoke&) = delete;
+  SceneSmoke& operator=(const SceneSmoke&) = delete;
+
+  /// @param extinction  of light, rounded to 1/256 [1/m]
+  /// @param time        at which its wisps are seen [s]
+  void set(double extinction, double time);
+
+ private:
+  Ogre::SceneManager& scene_;
+  float extinction_ = 0;  // as it is part of the sum
+};
 
 /// How tissue is drawn.
 struct TissueLook {

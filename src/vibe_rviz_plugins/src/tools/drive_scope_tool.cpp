@@ -15,7 +15,7 @@
 #include <QTimer>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "messages/drive_messages.hpp"
+#include "messages/command_messages.hpp"
 #include "panels/procedure_subscriptions.hpp"
 #include "render/legend.hpp"
 

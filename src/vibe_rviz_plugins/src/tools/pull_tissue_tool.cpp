@@ -16,7 +16,7 @@
 
 #include "messages/tissue_messages.hpp"
 #include "render/pull_visual.hpp"
-#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
+#include "vibe_rviz_plugins/display_base/topic_display.hpp"
 #include "views/endoscope_view_controller.hpp"
 
 namespace vibe::rviz_plugins {

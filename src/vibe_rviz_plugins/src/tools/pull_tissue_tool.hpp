@@ -13,7 +13,7 @@
 
 #include "geometry/mouse_ray.hpp"
 #include "geometry/tissue_mesh.hpp"
-#include "messages/pull_messages.hpp"
+#include "messages/command_messages.hpp"
 #endif
 
 namespace rviz {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "geometry/append_shape.hpp"
 #include "geometry/suture_shapes.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "geometry/bleeding_shape.hpp"
+#include "geometry/blood_shapes.hpp"
 #include "geometry/deformable_surface.hpp"
 #include "geometry/suture_drawing.hpp"
 #include "geometry/tissue_mesh.hpp"
 #include "truth/label_table.hpp"
 #include "truth/ray_scene.hpp"
-#include "truth/wall_labels.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe::rviz_plugins {

@@ -17,8 +17,8 @@
 #include <QCursor>
 #include <cmath>
 
-#include "render/optical_frame.hpp"
-#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
+#include "render/offscreen_camera.hpp"
+#include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

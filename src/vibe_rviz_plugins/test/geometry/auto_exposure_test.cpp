@@ -1,4 +1,4 @@
-#include "geometry/auto_exposure.hpp"
+#include "geometry/endoscope_light.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/bleeding_shape.hpp"
 #include "geometry/blood_on_wall.hpp"
+#include "geometry/blood_shapes.hpp"
 #include "shape_measures.hpp"
 #include "walls.hpp"
 

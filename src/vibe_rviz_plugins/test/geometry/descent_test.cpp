@@ -1,4 +1,4 @@
-#include "geometry/descent.hpp"
+#include "geometry/basins.hpp"
 
 #include <gtest/gtest.h>
 

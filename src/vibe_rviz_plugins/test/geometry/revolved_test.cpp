@@ -1,4 +1,4 @@
-#include "vibe_rviz_plugins/geometry/revolved.hpp"
+#include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "geometry/scar_age.hpp"
+#include "geometry/argon_traces.hpp"
 
 #include <gtest/gtest.h>
 

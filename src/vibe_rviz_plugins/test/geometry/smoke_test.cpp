@@ -1,4 +1,4 @@
-#include "geometry/smoke.hpp"
+#include "geometry/argon_traces.hpp"
 
 #include <gtest/gtest.h>
 

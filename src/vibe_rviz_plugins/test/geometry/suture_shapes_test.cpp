@@ -5,7 +5,6 @@
 #include <set>
 
 #include "geometry/suture_ends.hpp"
-#include "geometry/suture_frame.hpp"
 #include "shape_measures.hpp"
 
 namespace vibe::rviz_plugins::suture_shapes_test {

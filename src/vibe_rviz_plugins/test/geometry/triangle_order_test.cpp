@@ -1,4 +1,4 @@
-#include "geometry/triangle_order.hpp"
+#include "geometry/mesh_index.hpp"
 
 #include <gtest/gtest.h>
 

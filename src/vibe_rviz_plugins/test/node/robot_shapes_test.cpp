@@ -9,8 +9,6 @@
 #include <map>
 #include <sstream>
 
-#include "robot_visuals.hpp"
-
 namespace vibe::rviz_plugins::robot_shapes_test {
 namespace {
 

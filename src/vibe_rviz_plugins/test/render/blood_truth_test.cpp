@@ -5,7 +5,7 @@
 #include <OgreSceneNode.h>
 #include <gtest/gtest.h>
 
-#include "geometry/bleeding_shape.hpp"
+#include "geometry/blood_shapes.hpp"
 #include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
 #include "render/suture_visual.hpp"

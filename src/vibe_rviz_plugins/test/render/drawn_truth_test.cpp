@@ -8,9 +8,9 @@
 
 #include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/shape_view.hpp"
 #include "render/tissue_visual.hpp"
 #include "truth/truth_worlds.hpp"
+#include "vibe_rviz_plugins/render/shape_visual.hpp"
 
 namespace vibe::rviz_plugins::drawn_truth_test {
 namespace {

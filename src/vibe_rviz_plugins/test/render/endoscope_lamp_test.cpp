@@ -11,11 +11,10 @@
 
 #include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/scene_smoke.hpp"
-#include "render/shape_view.hpp"
 #include "render/tissue_visual.hpp"
 #include "tube_organ.hpp"
 #include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
+#include "vibe_rviz_plugins/render/shape_visual.hpp"
 
 namespace vibe::rviz_plugins::endoscope_lamp_test {
 namespace {

@@ -17,8 +17,8 @@
 
 #include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/shape_view.hpp"
 #include "vibe_rviz_plugins/geometry/solid_bodies.hpp"
+#include "vibe_rviz_plugins/render/shape_visual.hpp"
 
 namespace vibe::rviz_plugins::endoscope_lens_test {
 namespace {

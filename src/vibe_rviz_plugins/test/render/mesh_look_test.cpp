@@ -1,6 +1,6 @@
 // Meshes of a robot under the light of the endoscope. Needs no display.
 
-#include "render/mesh_look.hpp"
+#include "render/resources.hpp"
 
 #include <OgreEntity.h>
 #include <OgreMaterialManager.h>
@@ -13,7 +13,6 @@
 
 #include "graphics_scene.hpp"
 #include "render/offscreen_camera.hpp"
-#include "render/resources.hpp"
 
 namespace vibe::rviz_plugins::mesh_look_test {
 namespace {

@@ -1,5 +1,5 @@
 // Mucosa of other stomachs: what each quantity of MucosaLook does to the picture. Needs no display.
-#include "geometry/mucosa_look.hpp"
+#include "geometry/mucosa_pattern.hpp"
 
 #include <OgreSceneManager.h>
 #include <gtest/gtest.h>

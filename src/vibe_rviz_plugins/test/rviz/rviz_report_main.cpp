@@ -32,7 +32,7 @@
 #include <vector>
 
 #include "rviz_events.hpp"
-#include "vibe_rviz_plugins/display_base/property_help.hpp"
+#include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_rviz_plugins/geometry/moving_vertex.hpp"
+#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace vibe::rviz_plugins {
 

@@ -1,6 +1,8 @@
 #pragma once
+
 #include <memory>
 
+#include "render/dynamic_mesh.hpp"
 #include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
 
 namespace Ogre {
@@ -8,6 +10,23 @@ class SceneNode;
 }
 
 namespace vibe::rviz_plugins {
+
+/// A shape on the graphics card. Everything is sent if the triangles change, otherwise only the vertices or colours
+/// that differ.
+class ShapeView {
+ public:
+  /// @param parent  parent node; must outlive this object
+  ShapeView(Ogre::SceneNode& parent, Ogre::MaterialPtr material);
+
+  void show(const ColouredShape& shape);
+  void clear();
+
+ private:
+  void setBounds();
+
+  DynamicMesh mesh_;
+  ColouredShape shown_;
+};
 
 /// A solid shape in a scene of Ogre, with the material of this package that also follows the light of the endoscope.
 /// To be used from the thread that renders.
