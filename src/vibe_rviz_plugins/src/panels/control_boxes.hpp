@@ -9,6 +9,7 @@
 
 class QLabel;
 class QPushButton;
+class QSpinBox;
 
 namespace vibe::rviz_plugins {
 
@@ -37,14 +38,6 @@ class CommandBox : public QWidget {
 
   void makeButton(int button);
 };
-
-}  // namespace vibe::rviz_plugins
-
-class QLabel;
-class QPushButton;
-class QSpinBox;
-
-namespace vibe::rviz_plugins {
 
 /// Pause, single steps and reset, and the answer of the simulator.
 class SteppingBox : public QWidget {

@@ -7,6 +7,8 @@
 #include "messages/reference_values.hpp"
 #include "panels/panel_messages.hpp"
 
+class QLabel;
+
 namespace vibe::rviz_plugins {
 
 /// A small horizontal bar: the published range as a band, the value as a mark on it. The mark is a filled circle within
@@ -28,14 +30,6 @@ class RangeBar : public QWidget {
 
   void paintMark(QPainter& painter, double x, double y) const;
 };
-
-}  // namespace vibe::rviz_plugins
-
-class QLabel;
-
-namespace vibe::rviz_plugins {
-
-class RangeBar;
 
 /// Measures of skill, each with its value and, where a reference is published, with a bar. The tool tips name the
 /// sources.

@@ -9,6 +9,10 @@
 #include "messages/reference_values.hpp"
 #include "messages/table_rows.hpp"
 
+class QGridLayout;
+class QLabel;
+class QWidget;
+
 namespace vibe::rviz_plugins {
 
 /// Colours and symbols of the panel, legible with light and dark styles. No meaning depends on colour alone: every
@@ -27,14 +31,6 @@ QIcon symbolOf(EventSeverity severity, const QPalette& palette);
 
 /// A lamp, filled while it is on.
 QIcon lamp(bool on, const QPalette& palette);
-
-}  // namespace vibe::rviz_plugins
-
-class QGridLayout;
-class QLabel;
-class QWidget;
-
-namespace vibe::rviz_plugins {
 
 /// Two columns of labels: names and current values. Long values wrap.
 class TextRows {

@@ -6,13 +6,13 @@
 #include "panels/procedure_subscriptions.hpp"
 #include "panels/service_caller.hpp"
 
-class QLabel;
-class QLineEdit;
-class QVBoxLayout;
-
 #ifndef Q_MOC_RUN
 #include <rviz/panel.h>
 #endif
+
+class QLabel;
+class QLineEdit;
+class QVBoxLayout;
 
 namespace vibe::rviz_plugins {
 
@@ -77,8 +77,6 @@ class ProcedureWidget : public QWidget {
   void takeAnswer(const ServiceCaller::Answer& answer);
   void displayStatus(double now);
 };
-
-class ProcedureWidget;
 
 /// The cockpit as a panel of rviz. Keeps the namespace in rviz's configuration.
 class ProcedurePanel : public rviz::Panel {

@@ -4,6 +4,16 @@
 #include <functional>
 #include <vector>
 
+#ifndef Q_MOC_RUN
+#include <ros/node_handle.h>
+#include <rviz/panel.h>
+#include <vibe_msgs/ReplayStatus.h>
+#endif
+
+class QComboBox;
+class QLabel;
+class QPushButton;
+
 namespace vibe::rviz_plugins {
 
 /// The time of a recording as a bar: played part, marks, and a handle to drag.
@@ -42,22 +52,6 @@ class ReplaySlider : public QWidget {
   int placeOf(double time) const;
   void drag(int x, bool exact);
 };
-
-}  // namespace vibe::rviz_plugins
-
-#ifndef Q_MOC_RUN
-#include <ros/node_handle.h>
-#include <rviz/panel.h>
-#include <vibe_msgs/ReplayStatus.h>
-#endif
-
-class QComboBox;
-class QLabel;
-class QPushButton;
-
-namespace vibe::rviz_plugins {
-
-class ReplaySlider;
 
 /// Plays, pauses and scrubs a recording that vibe_player has open.
 class ReplayPanel : public rviz::Panel {

@@ -6,6 +6,8 @@
 #include "messages/procedure_text.hpp"
 #include "panels/panel_messages.hpp"
 
+class QLabel;
+
 namespace vibe::rviz_plugins {
 
 /// The procedure's phases from left to right. The present one is filled, framed and bold, those behind are
@@ -29,13 +31,6 @@ class PhaseStrip : public QWidget {
   void paintStep(QPainter& painter, const QRectF& place, const PhaseStep& step) const;
 };
 
-}  // namespace vibe::rviz_plugins
-
-class QLabel;
-
-namespace vibe::rviz_plugins {
-
-class PhaseStrip;
 class RangeBar;
 class TextRows;
 
