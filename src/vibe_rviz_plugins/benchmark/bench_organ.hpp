@@ -1,7 +1,7 @@
 #pragma once
 #include <sensor_msgs/PointCloud2.h>
 
-#include "geometry/tissue_mesh.hpp"
+#include "vibe_render/geometry/tissue_mesh.hpp"
 
 namespace vibe::rviz_plugins {
 

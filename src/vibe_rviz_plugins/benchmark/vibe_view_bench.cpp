@@ -19,11 +19,11 @@
 
 #include "bench_organ.hpp"
 #include "cpu_clock.hpp"
-#include "geometry/deformable_surface.hpp"
-#include "geometry/surface_colours.hpp"
-#include "messages/tissue_messages.hpp"
-#include "render/dynamic_mesh.hpp"
-#include "render/resources.hpp"
+#include "vibe_render/geometry/deformable_surface.hpp"
+#include "vibe_render/geometry/surface_colours.hpp"
+#include "vibe_render/graphics/dynamic_mesh.hpp"
+#include "vibe_render/graphics/resources.hpp"
+#include "vibe_render/messages/tissue_messages.hpp"
 
 namespace {
 

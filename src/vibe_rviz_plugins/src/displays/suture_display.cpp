@@ -8,8 +8,8 @@
 
 #include <pluginlib/class_list_macros.hpp>
 
-#include "messages/suture_messages.hpp"
-#include "render/legend.hpp"
+#include "overlay/legend.hpp"
+#include "vibe_render/messages/suture_messages.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace vibe::rviz_plugins {

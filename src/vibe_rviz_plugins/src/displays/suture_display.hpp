@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "displays/wall_listener.hpp"
-#include "geometry/blood_shapes.hpp"
-#include "geometry/suture_drawing.hpp"
-#include "geometry/suture_shapes.hpp"
-#include "render/suture_visual.hpp"
+#include "vibe_render/geometry/blood_shapes.hpp"
+#include "vibe_render/geometry/suture_drawing.hpp"
+#include "vibe_render/geometry/suture_shapes.hpp"
+#include "vibe_render/graphics/suture_visual.hpp"
 #include "vibe_rviz_plugins/display_base/message_display.hpp"
 
 namespace rviz {

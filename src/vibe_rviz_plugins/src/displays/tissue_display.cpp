@@ -10,9 +10,9 @@
 
 #include <pluginlib/class_list_macros.hpp>
 
-#include "messages/tissue_messages.hpp"
-#include "render/legend.hpp"
-#include "render/tissue_visual.hpp"
+#include "overlay/legend.hpp"
+#include "vibe_render/graphics/tissue_visual.hpp"
+#include "vibe_render/messages/tissue_messages.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace vibe::rviz_plugins {

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "geometry/tissue_mesh.hpp"
+#include "vibe_render/geometry/tissue_mesh.hpp"
 
 namespace rviz {
 class BoolProperty;

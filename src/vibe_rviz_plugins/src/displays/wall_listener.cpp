@@ -1,6 +1,6 @@
 #include "displays/wall_listener.hpp"
 
-#include "messages/tissue_messages.hpp"
+#include "vibe_render/messages/tissue_messages.hpp"
 
 namespace vibe::rviz_plugins {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/deformable_surface.hpp"
-#include "geometry/tissue_mesh.hpp"
+#include "vibe_render/geometry/deformable_surface.hpp"
+#include "vibe_render/geometry/tissue_mesh.hpp"
 
 namespace vibe::rviz_plugins {
 

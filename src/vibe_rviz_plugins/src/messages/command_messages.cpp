@@ -5,7 +5,7 @@
 
 #include <urdf/model.h>
 
-#include "messages/cloud_field.hpp"
+#include "vibe_render/messages/cloud_field.hpp"
 
 namespace vibe::rviz_plugins {
 

@@ -16,8 +16,8 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "messages/command_messages.hpp"
+#include "overlay/legend.hpp"
 #include "panels/procedure_subscriptions.hpp"
-#include "render/legend.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

@@ -14,8 +14,8 @@
 #include <cstdio>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "messages/tissue_messages.hpp"
-#include "render/pull_visual.hpp"
+#include "tools/pull_visual.hpp"
+#include "vibe_render/messages/tissue_messages.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 #include "views/endoscope_view_controller.hpp"
 

@@ -11,9 +11,9 @@
 #include <optional>
 #include <string>
 
-#include "geometry/mouse_ray.hpp"
-#include "geometry/tissue_mesh.hpp"
+#include "drive/mouse_ray.hpp"
 #include "messages/command_messages.hpp"
+#include "vibe_render/geometry/tissue_mesh.hpp"
 #endif
 
 namespace rviz {

@@ -17,7 +17,7 @@
 #include <QCursor>
 #include <cmath>
 
-#include "render/offscreen_camera.hpp"
+#include "vibe_render/graphics/offscreen_camera.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace vibe::rviz_plugins {

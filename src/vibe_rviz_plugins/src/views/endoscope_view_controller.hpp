@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "render/endoscope_lens.hpp"
+#include "vibe_render/graphics/endoscope_lens.hpp"
 
 namespace rviz {
 class BoolProperty;

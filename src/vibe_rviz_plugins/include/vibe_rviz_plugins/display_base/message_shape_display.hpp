@@ -3,9 +3,9 @@
 #include <string>
 #include <utility>
 
+#include "vibe_render/geometry/coloured_shape.hpp"
+#include "vibe_render/graphics/shape_visual.hpp"
 #include "vibe_rviz_plugins/display_base/message_display.hpp"
-#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
-#include "vibe_rviz_plugins/render/shape_visual.hpp"
 
 namespace vibe::rviz_plugins {
 
