@@ -4,6 +4,7 @@
 #include <OgreRoot.h>
 #include <OgreSceneManager.h>
 #include <rviz/ogre_helpers/render_system.h>
+#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "cpu_clock.hpp"
 #include "endoscope_scene.hpp"
 #include "session_frames.hpp"
 #include "truth/truth_camera.hpp"
@@ -44,6 +44,14 @@ constexpr std::array<const char*, kPartCount> kPartNames{"motion of the picture"
                                                          "all"};
 using Samples = std::array<std::vector<double>, kPartCount>;  // [ms]
 
+/// Time that all threads of this process together have had of a processor [s]: other programs on the machine lengthen
+/// it little.
+double processTime() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// A state with the poses of all frames then.
 struct Moment {
   SessionFrame frame;
@@ -66,7 +74,7 @@ class Bench {
       : drawn_(scene, urdf, true),
         truth_(urdf),
         camera_(scene, {}, 1),
-        truth_camera_({}, static_cast<double>(kScopeNearClip), static_cast<double>(kScopeFarClip)) {}
+        truth_camera_({}, static_cast<double>(render::kScopeNearClip), static_cast<double>(render::kScopeFarClip)) {}
 
   void setTopology(const vibe_msgs::TissueTopology& topology) {
     check(drawn_.setTopology(topology)), check(truth_.setTopology(topology));
@@ -120,7 +128,7 @@ class Bench {
 
   EndoscopeScene drawn_;
   TruthWorld truth_;
-  OffscreenCamera camera_;
+  render::OffscreenCamera camera_;
   TruthCamera truth_camera_;
   TruthView before_;
   std::vector<std::uint8_t> pixels_;
@@ -147,10 +155,10 @@ std::string processorName() {
 
 int run(const std::string& bag, const std::vector<double>& times) {
   SessionFrames frames(bag);
-  provideDisplay();
+  render::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
-  loadResources();
+  render::loadResources();
   Bench bench(*scene, frames.info().urdf);
   std::vector<Samples> columns;
   vibe_msgs::TissueTopology::ConstPtr topology;

@@ -10,7 +10,7 @@ namespace vibe::endoscope {
 
 /// Parameters of endoscope_camera.
 struct CameraOptions {
-  RoundCamera round;
+  render::RoundCamera round;
   double sharpness = 1;  ///< as in sourceFor()
   double rate = 30;      ///< images per second of the stamps [Hz]; 0: one for every message of tissue/particles
   bool auto_exposure = true;

@@ -15,9 +15,10 @@ DatasetCamera::DatasetCamera(const DatasetOptions& options, Ogre::SceneManager& 
       drawn_(scene, description, options.smoke, options.mucosa),
       truth_(description),
       camera_(scene, options.round, 1),
-      truth_camera_(options.round, static_cast<double>(kScopeNearClip), static_cast<double>(kScopeFarClip)),
+      truth_camera_(options.round, static_cast<double>(render::kScopeNearClip),
+                    static_cast<double>(render::kScopeFarClip)),
       sensor_(options.sensor, options.round) {
-  setLamp(options.light);
+  render::setLamp(options.light);
   eyes_.push_back({options.stereo ? "left/" : "", 0, {}});
   if (options.stereo) eyes_.push_back({"right/", options.baseline, {}});
 }

@@ -39,7 +39,7 @@ class DatasetCamera {
   DatasetOptions options_;
   EndoscopeScene drawn_;
   TruthWorld truth_;
-  OffscreenCamera camera_;
+  render::OffscreenCamera camera_;
   TruthCamera truth_camera_;
   SensorModel sensor_;
   std::vector<Eye> eyes_;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "dataset/variation.hpp"
-#include "degree.hpp"
 
 namespace vibe::endoscope {
 namespace {
@@ -112,8 +111,8 @@ int readDatasetOptions(int argc, char** argv, DatasetOptions& options) {
     std::fprintf(stderr, "vibe_dataset: %s (--help lists what there is)\n", problem.c_str());
     return kUsage;
   }
-  options.round.lens = words.lens == "rectilinear" ? LensKind::Rectilinear : LensKind::Equidistant;
-  options.round.field_of_view = words.degrees * kDegree;
+  options.round.lens = words.lens == "rectilinear" ? render::LensKind::Rectilinear : render::LensKind::Equidistant;
+  options.round.field_of_view = words.degrees * render::kDegree;
   if (options.name.empty()) options.name = options.bag;
   vary(options);
   return -1;

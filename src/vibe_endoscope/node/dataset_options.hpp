@@ -15,7 +15,7 @@ struct DatasetOptions {
   std::string bag;     ///< a whole recording
   std::string name;    ///< of the recording that it was made from, for the data sheet
   std::string output;  ///< folder; created, must be empty
-  RoundCamera round;
+  render::RoundCamera round;
   bool stereo = false;
   double baseline = 0.004;  ///< [m]
   double rate = 10;         ///< images per second of simulated time [Hz]; 0: every state
@@ -27,8 +27,8 @@ struct DatasetOptions {
   bool depth = true, normals = true, labels = true, flow = true, particles = false, sutures = false;
   SensorStyle sensor;                   ///< as varied
   double roll = 0, pitch = 0, yaw = 0;  ///< of the lens in its mount, as varied [rad]
-  MucosaLook mucosa;                    ///< as varied
-  EndoscopeLight light;                 ///< as varied
+  render::MucosaLook mucosa;            ///< as varied
+  render::EndoscopeLight light;         ///< as varied
 };
 
 /// @return the status with which the program ends at once: help was asked for, or the call is wrong; -1: go on

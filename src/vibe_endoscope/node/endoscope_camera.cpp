@@ -26,8 +26,8 @@ Eigen::Isometry3d toIsometry(const geometry_msgs::Transform& transform) {
 }
 
 sensor_msgs::CameraInfo infoOf(const CameraOptions& options, double aside, const std::string& frame) {
-  const RoundCamera& round = options.round;
-  CameraNumbers numbers = numbersOf(round, aside);
+  const render::RoundCamera& round = options.round;
+  render::CameraNumbers numbers = render::numbersOf(round, aside);
   numbers.d[0] = options.sensor.distortion;  // the first radial coefficient of both models
   sensor_msgs::CameraInfo info;
   info.header.frame_id = frame;
@@ -51,7 +51,8 @@ EndoscopeCamera::EndoscopeCamera(ros::NodeHandle node, const CameraOptions& opti
       camera_(scene, options.round, options.sharpness),
       sensor_(options.sensor, options.round),
       truth_(description),
-      truth_camera_(options.round, static_cast<double>(kScopeNearClip), static_cast<double>(kScopeFarClip)),
+      truth_camera_(options.round, static_cast<double>(render::kScopeNearClip),
+                    static_cast<double>(render::kScopeFarClip)),
       due_(options.rate) {
   for (const std::string& problem : truth_.problems()) ROS_WARN_STREAM(problem);
   label_table_ = node_.advertise<std_msgs::String>("endoscope/label_table", 1, true);

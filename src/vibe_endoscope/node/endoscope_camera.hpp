@@ -63,7 +63,7 @@ class EndoscopeCamera {
   ros::NodeHandle node_;
   CameraOptions options_;
   EndoscopeScene scene_;
-  OffscreenCamera camera_;
+  render::OffscreenCamera camera_;
   SensorModel sensor_;
   TruthWorld truth_;
   TruthCamera truth_camera_;

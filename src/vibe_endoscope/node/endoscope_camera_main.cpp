@@ -13,7 +13,8 @@
 #include "vibe_render/graphics/resources.hpp"
 #include "vibe_render/graphics/virtual_display.hpp"
 
-namespace rviz_plugins = vibe::endoscope;
+namespace endoscope = vibe::endoscope;
+namespace render = vibe::render;
 
 namespace {
 
@@ -25,15 +26,15 @@ int fail(const std::exception& error, int status) {
   return status;
 }
 
-void run(const rviz_plugins::CameraOptions& options) {
-  rviz_plugins::provideDisplay();
+void run(const endoscope::CameraOptions& options) {
+  render::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
-  rviz_plugins::loadResources();
+  render::loadResources();
   ros::NodeHandle node;
   std::string description;
   node.getParam("robot_description", description);
-  rviz_plugins::EndoscopeCamera camera(node, options, *scene, description);
+  endoscope::EndoscopeCamera camera(node, options, *scene, description);
   ros::spin();
 }
 
@@ -41,9 +42,9 @@ void run(const rviz_plugins::CameraOptions& options) {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "endoscope_camera");
-  rviz_plugins::CameraOptions options;
+  endoscope::CameraOptions options;
   try {
-    options = rviz_plugins::readCameraOptions(ros::NodeHandle("~"));
+    options = endoscope::readCameraOptions(ros::NodeHandle("~"));
   } catch (const std::exception& error) {
     return fail(error, kUsage);
   }

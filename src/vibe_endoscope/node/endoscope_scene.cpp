@@ -29,7 +29,7 @@ void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
 }  // namespace
 
 Instrument::Instrument(Ogre::SceneManager& scene, const std::string& description)
-    : scene_(scene), material_(copyMaterial("vibe/solid")) {
+    : scene_(scene), material_(render::copyMaterial("vibe/solid")) {
   const std::optional<std::vector<RobotVisual>> visuals = robotVisuals(description);
   if (!visuals) {
     ROS_WARN("The parameter 'robot_description' holds no URDF that can be read, so no instrument is in the image.");
@@ -49,17 +49,17 @@ Instrument::~Instrument() {
     part.node->removeAndDestroyAllChildren();
     scene_.destroySceneNode(part.node);
   }
-  dropMaterial(material_);
+  render::dropMaterial(material_);
 }
 
 void Instrument::addLink(const std::vector<RobotVisual>& visuals) {
-  ColouredShape shape;
+  render::ColouredShape shape;
   Ogre::SceneNode* node = scene_.getRootSceneNode()->createChildSceneNode();
   for (const RobotVisual& visual : visuals) {
-    appendShape(visual.body, shape);
+    render::appendShape(visual.body, shape);
     if (!visual.mesh.empty()) addMesh(visual, *node);
   }
-  auto view = std::make_unique<ShapeView>(*node, material_);
+  auto view = std::make_unique<render::ShapeView>(*node, material_);
   view->show(shape);
   parts_.push_back({visuals.front().link, node, std::move(view)});
 }
@@ -86,12 +86,12 @@ void Instrument::place(const std::function<std::optional<Eigen::Isometry3d>(cons
 }
 
 EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke,
-                               const MucosaLook& mucosa)
+                               const render::MucosaLook& mucosa)
     : suture_node_(*scene.getRootSceneNode()->createChildSceneNode()),
       tissue_(*scene.getRootSceneNode(), mucosa),
       sutures_(suture_node_),
       instrument_(scene, description) {
-  TissueLook look;
+  render::TissueLook look;
   look.smoke = smoke;
   tissue_.setLook(look);
 }
@@ -99,7 +99,7 @@ EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& des
 EndoscopeScene::~EndoscopeScene() = default;
 
 std::string EndoscopeScene::setTopology(const vibe_msgs::TissueTopology& message) {
-  const std::string problem = readTopology(message, mesh_);
+  const std::string problem = render::readTopology(message, mesh_);
   has_mesh_ = problem.empty();
   if (has_mesh_)
     tissue_.setMesh(mesh_);
@@ -111,7 +111,7 @@ std::string EndoscopeScene::setTopology(const vibe_msgs::TissueTopology& message
 
 std::string EndoscopeScene::read(const sensor_msgs::PointCloud2& message) {
   if (!has_mesh_) return "There is no usable tissue/topology yet, so tissue/particles cannot be drawn.";
-  return readParticles(message, mesh_, frame_);
+  return render::readParticles(message, mesh_, frame_);
 }
 
 std::string EndoscopeScene::setParticles(const sensor_msgs::PointCloud2& message) {
@@ -127,8 +127,8 @@ std::string EndoscopeScene::followParticles(const sensor_msgs::PointCloud2& mess
 }
 
 std::string EndoscopeScene::setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf) {
-  SutureDrawing seen;
-  const std::string problem = readSutures(message, seen);
+  render::SutureDrawing seen;
+  const std::string problem = render::readSutures(message, seen);
   if (!problem.empty()) return problem;
   const std::optional<Eigen::Isometry3d> pose = poseOf(message.header.frame_id);
   if (!pose) return "There is no transform to the frame '" + message.header.frame_id + "' of the sutures.";
@@ -138,9 +138,9 @@ std::string EndoscopeScene::setSutures(const vibe_msgs::SutureArray& message, co
   suture_node_.setPosition(place.x(), place.y(), place.z());
   suture_node_.setOrientation(turn.w(), turn.x(), turn.y(), turn.z());
   shape_.clear();
-  appendSutures(seen, naturalSutures(), shape_);
+  render::appendSutures(seen, render::naturalSutures(), shape_);
   sutures_.showSolids(shape_);
-  BloodStyle style;
+  render::BloodStyle style;
   style.time = message.header.stamp.toSec();
   blood_.setWounds(seen, style);
   return "";

@@ -45,7 +45,7 @@ class Instrument {
   struct Part {
     std::string frame;
     Ogre::SceneNode* node;
-    std::unique_ptr<ShapeView> shape;
+    std::unique_ptr<render::ShapeView> shape;
   };
   /// @param visuals  of one link, at least one
   void addLink(const std::vector<RobotVisual>& visuals);
@@ -68,7 +68,8 @@ class EndoscopeScene {
   /// @param smoke        whether the argon beam makes smoke
   /// @param mucosa       what it looks like
   /// @throws std::runtime_error  the package's media folder cannot be found
-  EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke, const MucosaLook& mucosa = {});
+  EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke,
+                 const render::MucosaLook& mucosa = {});
   ~EndoscopeScene();
 
   std::string setTopology(const vibe_msgs::TissueTopology& message);
@@ -84,15 +85,15 @@ class EndoscopeScene {
   std::string read(const sensor_msgs::PointCloud2& message);
 
   Ogre::SceneNode& suture_node_;
-  TissueVisual tissue_;
-  SutureVisual sutures_;
+  render::TissueVisual tissue_;
+  render::SutureVisual sutures_;
   Instrument instrument_;
-  TissueMesh mesh_;
-  TissueFrame frame_;
+  render::TissueMesh mesh_;
+  render::TissueFrame frame_;
   bool has_mesh_ = false;
-  BleedingShape blood_;
+  render::BleedingShape blood_;
   Eigen::Isometry3d suture_pose_ = Eigen::Isometry3d::Identity();
-  ColouredShape shape_;  ///< kept, so that a frame allocates little
+  render::ColouredShape shape_;  ///< kept, so that a frame allocates little
 };
 
 }  // namespace vibe::endoscope

@@ -13,8 +13,8 @@ namespace {
 namespace encodings = sensor_msgs::image_encodings;
 
 template <class T>
-sensor_msgs::ImagePtr imageOf(const std_msgs::Header& header, const RoundCamera& round, const std::string& encoding,
-                              const std::vector<T>& values) {
+sensor_msgs::ImagePtr imageOf(const std_msgs::Header& header, const render::RoundCamera& round,
+                              const std::string& encoding, const std::vector<T>& values) {
   sensor_msgs::ImagePtr image = boost::make_shared<sensor_msgs::Image>();
   image->header = header;
   image->width = static_cast<std::uint32_t>(round.width), image->height = static_cast<std::uint32_t>(round.height);

@@ -44,8 +44,8 @@ class TruthWorld {
   TruthScene scene_;
   std::vector<Part> parts_;
   std::vector<std::string> problems_;
-  TissueMesh mesh_;
-  TissueFrame frame_;
+  render::TissueMesh mesh_;
+  render::TissueFrame frame_;
   bool has_mesh_ = false;
 };
 

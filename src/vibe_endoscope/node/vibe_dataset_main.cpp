@@ -16,7 +16,8 @@
 #include "vibe_render/graphics/resources.hpp"
 #include "vibe_render/graphics/virtual_display.hpp"
 
-namespace rviz_plugins = vibe::endoscope;
+namespace endoscope = vibe::endoscope;
+namespace render = vibe::render;
 
 namespace {
 
@@ -26,7 +27,7 @@ constexpr auto kProgressPeriod = std::chrono::seconds(2);
 /// Prints how far it is, now and then.
 class Progress {
  public:
-  void show(const rviz_plugins::SessionFrames& frames, std::size_t images) {
+  void show(const endoscope::SessionFrames& frames, std::size_t images) {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < kProgressPeriod) return;
     last_ = now;
@@ -44,7 +45,7 @@ std::string timeText(double seconds) {
   return text;
 }
 
-std::runtime_error wrongState(const rviz_plugins::DatasetOptions& options, const ros::Time& stamp,
+std::runtime_error wrongState(const endoscope::DatasetOptions& options, const ros::Time& stamp,
                               const std::string& problem) {
   const std::string what = problem.substr(0, problem.find(';'));  // then: what a display does about it
   return std::runtime_error("The state at " + timeText(stamp.toSec()) + " s of '" + options.name +
@@ -54,30 +55,30 @@ std::runtime_error wrongState(const rviz_plugins::DatasetOptions& options, const
 /// A part that is not there would be missing in image and truth.
 void refuseMissingMeshes(const std::string& urdf, const std::string& recording) {
   std::vector<std::string> problems;
-  rviz_plugins::robotShapes(urdf, problems);
+  endoscope::robotShapes(urdf, problems);
   if (!problems.empty())
     throw std::runtime_error("The instrument of '" + recording + "' cannot be shown whole: " + problems.front());
 }
 
-void run(const rviz_plugins::DatasetOptions& options) {
-  const std::string impossible = problemOf(options.sensor, options.round);
+void run(const endoscope::DatasetOptions& options) {
+  const std::string impossible = endoscope::problemOf(options.sensor, options.round);
   if (!impossible.empty())
     throw std::runtime_error("--seed " + std::to_string(options.seed) + " does not go with this lens: " + impossible +
                              ", or give another seed.");
-  rviz_plugins::SessionFrames frames(options.bag);
+  endoscope::SessionFrames frames(options.bag);
   if (options.from > frames.end())
     throw std::runtime_error("--from: '" + options.name + "' ends at " + timeText(frames.end()) +
                              " s; give a time before that.");
   refuseMissingMeshes(frames.info().urdf, options.name);
   if (options.check) return;
-  std::optional<rviz_plugins::DatasetFolder> folder;  // made with the first image, so that a refusal leaves nothing
-  rviz_plugins::provideDisplay();
+  std::optional<endoscope::DatasetFolder> folder;  // made with the first image, so that a refusal leaves nothing
+  render::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
-  rviz_plugins::loadResources();
-  rviz_plugins::DatasetCamera camera(options, *scene, frames.info().urdf);
-  rviz_plugins::ImageDue due(options.rate);
-  rviz_plugins::SessionFrame frame;
+  render::loadResources();
+  endoscope::DatasetCamera camera(options, *scene, frames.info().urdf);
+  endoscope::ImageDue due(options.rate);
+  endoscope::SessionFrame frame;
   Progress progress;
   std::string world;
   for (int turn = 0; frames.next(frame);) {
@@ -104,8 +105,8 @@ void run(const rviz_plugins::DatasetOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  rviz_plugins::DatasetOptions options;
-  const int status = rviz_plugins::readDatasetOptions(argc, argv, options);
+  endoscope::DatasetOptions options;
+  const int status = endoscope::readDatasetOptions(argc, argv, options);
   if (status >= 0) return status;
   try {
     run(options);

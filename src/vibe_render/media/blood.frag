@@ -1,7 +1,7 @@
 #version 120
 #include "lamp.glsl"
 // Blood in the light of the endoscope. Colour of the vertices: of a layer of this depth; their alpha: what it hides
-// (src/geometry/blood_colour.hpp). Its surface is a mirror: two tight highlights of the light guides, and towards
+// (geometry/blood_colour.hpp). Its surface is a mirror: two tight highlights of the light guides, and towards
 // grazing angles the lit wall around (Schlick 1994).
 uniform float reach;  // as in mucosa.frag [m]
 uniform vec4 smoke;   // x: its extinction [1/m]

@@ -1,7 +1,7 @@
 // The light of the endoscope: two light guides beside the lens. View coordinates of Ogre: x right, y up, z backward.
 // Radiances are linear, 1 for a white wall at the distance `reach` that faces the guides, before exposure.
 //
-// The numbers are shared by all materials that this file lights (src/render/endoscope_lamp.hpp): their programs say
+// The numbers are shared by all materials that this file lights (graphics/endoscope_lamp.hpp): their programs say
 // shared_params_ref vibe_lamp. Programs that define USUAL have the defaults as constants, which is faster where there is
 // no graphics card.
 #ifdef USUAL

@@ -12,9 +12,9 @@ uniform float fill;    // ambient light; more for data colours
 uniform float scars;   // 1: show heat
 uniform float reach;   // distance at which the light of the guides is 1 [m]
 uniform vec2 window;   // size of the picture [px]
-uniform float unseen;  // share of half the picture within which nothing of it is shown (src/render/endoscope_lens.cpp)
+uniform float unseen;  // share of half the picture within which nothing of it is shown (graphics/endoscope_lens.cpp)
 uniform sampler3D pattern;
-// What differs from stomach to stomach (src/geometry/mucosa_look.hpp)
+// What differs from stomach to stomach (geometry/mucosa_pattern.hpp)
 #ifdef USUAL
 const float areae_count = 50.0, more_mucus = 0.0;
 const vec3 hue = vec3(1.0);
@@ -36,7 +36,7 @@ varying float fold;
 varying vec2 reaching;
 varying float browned;
 #ifdef SMOKE
-uniform vec4 smoke;  // x: extinction [1/m] (render/scene_smoke.hpp)
+uniform vec4 smoke;  // x: extinction [1/m] (graphics/tissue_visual.hpp)
 varying float wisp;
 #endif
 

@@ -1,12 +1,12 @@
 #version 120
 #include "lamp.glsl"
 #include "shadow.glsl"
-// As surface.vert, and what the mucosa looks like at the vertex (src/geometry/mucosa_map.hpp, fold_height.hpp).
+// As surface.vert, and what the mucosa looks like at the vertex (geometry/mucosa_map.hpp, fold_height.hpp).
 uniform mat4 worldViewProj;
 uniform mat4 worldView;
-uniform vec4 smoke;  // y: time [s] (src/render/scene_smoke.hpp)
+uniform vec4 smoke;  // y: time [s] (graphics/tissue_visual.hpp)
 uniform vec3 eye;    // the lens in the frame of the organ [m]
-uniform vec3 pattern_shift;  // of the patterns (src/geometry/mucosa_look.hpp) [m]
+uniform vec3 pattern_shift;  // of the patterns (geometry/mucosa_pattern.hpp) [m]
 
 varying vec3 view_position;
 varying vec3 view_normal;
@@ -16,7 +16,7 @@ varying vec4 around;  // direction around the organ; by how much the phase of th
 varying vec4 anatomy;  // share of folds, of antrum; distance beyond Z line and pylorus [m]
 varying float fold;    // height of the rugae here [m]
 varying vec2 reaching; // part of each light guide that the device does not hide
-varying float browned;  // grade of heat times how brown its scar is (src/geometry/scar_age.hpp)
+varying float browned;  // grade of heat times how brown its scar is (geometry/argon_traces.hpp)
 varying float wisp;    // density of smoke on the way to the lens, of its mean
 
 // Smoke is not quite even: wisps of some 40 mm drift past, seen where the ray has gone a third of its way.

@@ -1,4 +1,4 @@
-// What of each light guide reaches a place past the capsules of src/render/device_shadow.hpp. To be included after
+// What of each light guide reaches a place past the capsules of graphics/endoscope_lamp.hpp. To be included after
 // lamp.glsl. Evaluated at vertices, so it cannot be sharper than they are dense.
 const int kMaxCapsules = 12;
 // One end with the radius, and the other end; view coordinates [m]. Twice kMaxCapsules: Ogre reads a number only.

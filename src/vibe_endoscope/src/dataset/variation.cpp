@@ -7,8 +7,6 @@
 namespace vibe::endoscope {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
 /// Uniform numbers, the same with every standard library.
 class Draw {
  public:
@@ -20,8 +18,8 @@ class Draw {
   std::mt19937 random_;
 };
 
-MucosaLook drawMucosa(Draw& draw) {
-  MucosaLook mucosa;
+render::MucosaLook drawMucosa(Draw& draw) {
+  render::MucosaLook mucosa;
   for (int axis = 0; axis < 3; ++axis) mucosa.shift[axis] = static_cast<float>(draw.between(0, 0.5));
   mucosa.areae_size = draw.between(2e-3, 5e-3);
   mucosa.paleness = draw.factor(0.8, 1.25);
@@ -32,9 +30,9 @@ MucosaLook drawMucosa(Draw& draw) {
   return mucosa;
 }
 
-EndoscopeLight drawLight(Draw& draw) {
-  EndoscopeLight light;
-  for (LightGuide& guide : light.guides) {
+render::EndoscopeLight drawLight(Draw& draw) {
+  render::EndoscopeLight light;
+  for (render::LightGuide& guide : light.guides) {
     guide.right = std::copysign(draw.between(2.8e-3, 3.8e-3), guide.right);
     guide.up = draw.between(0, 1.25e-3);
   }
@@ -50,9 +48,10 @@ EndoscopeLight drawLight(Draw& draw) {
 Variation variationOf(std::uint32_t seed, double field_of_view) {
   Draw draw(seed);
   Variation result;
-  result.field_of_view = std::clamp(field_of_view + draw.between(-5, 5) * kDegree, kMinFieldOfView, kMaxFieldOfView);
-  result.roll = draw.between(-5, 5) * kDegree;
-  result.pitch = draw.between(-2, 2) * kDegree, result.yaw = draw.between(-2, 2) * kDegree;
+  result.field_of_view = std::clamp(field_of_view + draw.between(-5, 5) * render::kDegree, render::kMinFieldOfView,
+                                    render::kMaxFieldOfView);
+  result.roll = draw.between(-5, 5) * render::kDegree;
+  result.pitch = draw.between(-2, 2) * render::kDegree, result.yaw = draw.between(-2, 2) * render::kDegree;
   SensorStyle& sensor = result.sensor;
   sensor.exposure = draw.factor(0.7, 1.4);
   sensor.red_gain = draw.between(0.9, 1.1), sensor.blue_gain = draw.between(0.9, 1.1);

@@ -14,8 +14,8 @@ struct Variation {
   double field_of_view = 2.443461;      ///< [rad]
   double roll = 0, pitch = 0, yaw = 0;  ///< of the lens in its mount [rad]
   SensorStyle sensor;
-  MucosaLook mucosa;
-  EndoscopeLight light;
+  render::MucosaLook mucosa;
+  render::EndoscopeLight light;
 };
 
 /// Draws a variation; the same seed gives the same one. Ranges are design choices; those with (log) are log-uniform.

@@ -51,8 +51,8 @@ std::string labelText(const std::vector<LabelEntry>& table);
 /// coordinate), and the grade is interpolated and rounded: the colour is drawn from the same interpolated value.
 class WallLabels {
  public:
-  void setMesh(const TissueMesh& mesh);
-  void setFrame(const TissueMesh& mesh, const TissueFrame& frame);
+  void setMesh(const render::TissueMesh& mesh);
+  void setFrame(const render::TissueMesh& mesh, const render::TissueFrame& frame);
   /// @param corner  vertices of the triangle
   /// @param weight  barycentric coordinates of the point
   std::uint8_t at(const std::uint32_t* corner, const std::array<float, 3>& weight) const;

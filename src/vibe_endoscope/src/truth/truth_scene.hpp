@@ -25,15 +25,15 @@ class TruthScene {
   /// @throws std::runtime_error  Embree cannot be used
   TruthScene();
 
-  void setMesh(const TissueMesh& mesh);
+  void setMesh(const render::TissueMesh& mesh);
   /// The organ at another moment; a frame of another revision than the mesh is an error of the caller.
-  void setFrame(const TissueFrame& frame);
+  void setFrame(const render::TissueFrame& frame);
   /// @param time  of the message: bleeding pulses [s]
   /// @param pose  of the frame of the sutures in that of the scene
-  void setSutures(const SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose);
+  void setSutures(const render::SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose);
   /// Adds a rigid part of the instrument; parts with the same name have the same label.
   /// @throws std::runtime_error  there are more names than labels
-  std::uint32_t addPart(const std::string& name, ColouredShape shape);
+  std::uint32_t addPart(const std::string& name, render::ColouredShape shape);
   /// @param part  as addPart() returned it; without a pose the part is not seen
   void placePart(std::uint32_t part, const std::optional<Eigen::Isometry3d>& pose);
   /// To be called after changes, before the scene is looked at.
@@ -64,8 +64,8 @@ class TruthScene {
  private:
   struct Body {
     std::uint8_t label = kLabelNothing;
-    ColouredShape own;  // of all bodies but the wall
-    const std::vector<MovingVertex>* vertices = nullptr;
+    render::ColouredShape own;  // of all bodies but the wall
+    const std::vector<render::MovingVertex>* vertices = nullptr;
     const std::vector<std::uint32_t>* triangles = nullptr;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     std::uint64_t shape_number = 0;
@@ -73,13 +73,13 @@ class TruthScene {
   };
 
   std::uint32_t addBody(std::uint8_t label, std::uint32_t number);
-  void setShape(std::uint32_t body, ColouredShape shape, const Eigen::Isometry3d& pose, bool material);
+  void setShape(std::uint32_t body, render::ColouredShape shape, const Eigen::Isometry3d& pose, bool material);
 
   RayScene rays_;
-  TissueMesh mesh_;
-  std::unique_ptr<DeformableSurface> surface_;
+  render::TissueMesh mesh_;
+  std::unique_ptr<render::DeformableSurface> surface_;
   WallLabels wall_labels_;
-  BleedingShape bleeding_;
+  render::BleedingShape bleeding_;
   Eigen::Isometry3d suture_pose_ = Eigen::Isometry3d::Identity();
   std::deque<Body> bodies_;  // a deque, because rays_ refers to the shapes
   std::uint32_t wall_, thread_, tag_, cinch_, blood_;

@@ -66,7 +66,7 @@ def write_recording(file, ball, with_frames=True, urdf=URDF, spoil=lambda state,
 
 
 def call(*arguments):
-    program = subprocess.check_output(["catkin_find", "--first-only", "--libexec", "vibe_rviz_plugins", "vibe_dataset"],
+    program = subprocess.check_output(["catkin_find", "--first-only", "--libexec", "vibe_endoscope", "vibe_dataset"],
                                       text=True).strip()  # fmt: skip
     environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
     return subprocess.run([program, *arguments], env=environment, capture_output=True, text=True, timeout=120)
@@ -312,4 +312,4 @@ class DatasetTest(unittest.TestCase):
 if __name__ == "__main__":
     import rostest
 
-    rostest.rosrun("vibe_rviz_plugins", "dataset_test", DatasetTest, sys.argv)
+    rostest.rosrun("vibe_endoscope", "dataset_test", DatasetTest, sys.argv)

@@ -152,4 +152,4 @@ class DeviceViewTest(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("device_view_test")
-    rostest.rosrun("vibe_rviz_plugins", "device_view_test", DeviceViewTest, sys.argv)
+    rostest.rosrun("vibe_endoscope", "device_view_test", DeviceViewTest, sys.argv)

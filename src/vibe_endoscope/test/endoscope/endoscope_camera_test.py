@@ -81,7 +81,7 @@ class Camera(Program):
     def __init__(self, eyes=("",), **parameters):
         Camera.started += 1
         name = "camera{}".format(Camera.started)
-        super().__init__("vibe_rviz_plugins", "endoscope_camera", name=name, env=WITHOUT_DISPLAY, **parameters)
+        super().__init__("vibe_endoscope", "endoscope_camera", name=name, env=WITHOUT_DISPLAY, **parameters)
         self.images, self.infos, self.subscribers = {}, {}, []
         for eye in eyes:
             self.images[eye], self.infos[eye] = [], []
@@ -367,7 +367,7 @@ class EndoscopeCameraTest(unittest.TestCase):
             (["_lens:=rectilinear", "_distortion:=-0.1"], None, 2, "folds the image over"),
             ([], "/nowhere", 1, "apt-get install xvfb"),
         ]
-        binary = find_program("vibe_rviz_plugins", "endoscope_camera")
+        binary = find_program("vibe_endoscope", "endoscope_camera")
         for number, (arguments, path, status, words) in enumerate(cases):
             environment = {name: value for name, value in os.environ.items() if name not in WITHOUT_DISPLAY}
             if path:
@@ -382,4 +382,4 @@ class EndoscopeCameraTest(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("endoscope_camera_test")
-    rostest.rosrun("vibe_rviz_plugins", "endoscope_camera_test", EndoscopeCameraTest, sys.argv)
+    rostest.rosrun("vibe_endoscope", "endoscope_camera_test", EndoscopeCameraTest, sys.argv)

@@ -16,13 +16,13 @@ namespace vibe::endoscope::blood_truth_test {
 namespace {
 
 using Eigen::Vector3d;
-using test::Pixels;
+using render::test::Pixels;
 
 const Vector3d kDown = -Vector3d::UnitZ();  // in the scene, and in the picture
 
 /// Turns gravity, which is along -x of the frame of the sutures, to that of the scene.
 Eigen::Isometry3d sutureFrame() {
-  return Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(BloodStyle().down, kDown));
+  return Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(render::BloodStyle().down, kDown));
 }
 
 /// From one side of the ball to the other, so that its bottom is in view.
@@ -34,8 +34,8 @@ Eigen::Isometry3d camera() {
 }
 
 /// A wound on the wall ahead, in the frame of the sutures.
-SutureDrawing bleeding(bool brisk, double amount) {
-  Wound wound;
+render::SutureDrawing bleeding(bool brisk, double amount) {
+  render::Wound wound;
   const Vector3d place = 0.05 * Vector3d(0.95, 0.1, 0.2).normalized();
   wound.place = sutureFrame().inverse() * place;
   wound.inward = -wound.place.normalized();
@@ -43,41 +43,41 @@ SutureDrawing bleeding(bool brisk, double amount) {
   wound.rate = brisk ? 2.5e-7 : 1e-8;
   wound.amount = amount;
   wound.age = amount / wound.rate;
-  SutureDrawing scene;
+  render::SutureDrawing scene;
   scene.wounds = {wound};
   return scene;
 }
 
 class BloodTruthTest : public ::testing::Test {
  protected:
-  BloodTruthTest() : mesh_(test::ballMesh(48, 96)) {
+  BloodTruthTest() : mesh_(render::test::ballMesh(48, 96)) {
     frame_.revision = mesh_.revision;
     for (const float p : mesh_.rest) frame_.positions.push_back(0.05F * p);
   }
 
-  Pixels draw(const SutureDrawing& sutures) {
-    TissueVisual wall(*test::graphicsScene().getRootSceneNode());
+  render::test::Pixels draw(const render::SutureDrawing& sutures) {
+    render::TissueVisual wall(*render::test::graphicsScene().getRootSceneNode());
     wall.setMesh(mesh_);
     wall.setFrame(frame_);
-    Ogre::SceneNode& node = *test::graphicsScene().getRootSceneNode()->createChildSceneNode();
+    Ogre::SceneNode& node = *render::test::graphicsScene().getRootSceneNode()->createChildSceneNode();
     const Eigen::Quaternionf turn(sutureFrame().linear().cast<float>());
     node.setOrientation(turn.w(), turn.x(), turn.y(), turn.z());
-    Pixels pixels;
+    render::test::Pixels pixels;
     {
-      SutureVisual drawn(node);
-      BleedingShape blood;
+      render::SutureVisual drawn(node);
+      render::BleedingShape blood;
       blood.setMesh(&mesh_);
-      blood.setWounds(sutures, BloodStyle());
+      blood.setWounds(sutures, render::BloodStyle());
       blood.update(wall.vertices(), sutureFrame().inverse());
       drawn.showBlood(blood.shape());
-      OffscreenCamera eye(test::graphicsScene(), round_, 1);
+      render::OffscreenCamera eye(render::test::graphicsScene(), round_, 1);
       eye.take(camera(), pixels);
     }
-    test::graphicsScene().destroySceneNode(&node);
+    render::test::graphicsScene().destroySceneNode(&node);
     return pixels;
   }
 
-  std::vector<std::uint8_t> labels(const SutureDrawing& sutures) const {
+  std::vector<std::uint8_t> labels(const render::SutureDrawing& sutures) const {
     TruthScene truth;
     truth.setMesh(mesh_);
     truth.setFrame(frame_);
@@ -90,7 +90,7 @@ class BloodTruthTest : public ::testing::Test {
   }
 
   /// Green to red over some pixels.
-  static double green(const Pixels& pixels, const std::vector<std::uint8_t>& labels) {
+  static double green(const render::test::Pixels& pixels, const std::vector<std::uint8_t>& labels) {
     double red = 0, sum = 0;
     for (std::size_t k = 0; k < labels.size(); ++k)
       if (labels[k] == kLabelBlood) red += pixels[3 * k], sum += pixels[3 * k + 1];
@@ -101,8 +101,8 @@ class BloodTruthTest : public ::testing::Test {
     double changed_of_blood = 0, blood_of_changed = 0;
   };
   /// Where the picture has changed and where the label is blood, `shift` pixels to the right of it.
-  Agreement compare(const Pixels& before, const Pixels& after, const std::vector<std::uint8_t>& labels,
-                    int shift = 0) const {
+  Agreement compare(const render::test::Pixels& before, const render::test::Pixels& after,
+                    const std::vector<std::uint8_t>& labels, int shift = 0) const {
     double blood = 0, changed = 0, both = 0;
     for (int y = 0; y < round_.height; ++y)
       for (int x = 0; x + shift < round_.width; ++x) {
@@ -115,15 +115,15 @@ class BloodTruthTest : public ::testing::Test {
     return {both / blood, both / changed};
   }
 
-  RoundCamera round_ = test::smallCamera(LensKind::Equidistant, 320, 320);
-  TissueMesh mesh_;
-  TissueFrame frame_;
+  render::RoundCamera round_ = test::smallCamera(render::LensKind::Equidistant, 320, 320);
+  render::TissueMesh mesh_;
+  render::TissueFrame frame_;
 };
 
 TEST_F(BloodTruthTest, PictureIsRedderWhereBloodHasRunAndTheLabelSaysSo) {
   for (const bool brisk : {false, true}) {
-    const SutureDrawing wound = bleeding(brisk, brisk ? 3e-6 : 5e-7);
-    const Pixels before = draw({}), after = draw(wound);
+    const render::SutureDrawing wound = bleeding(brisk, brisk ? 3e-6 : 5e-7);
+    const render::test::Pixels before = draw({}), after = draw(wound);
     const std::vector<std::uint8_t> seen = labels(wound);
     const auto pixels = std::count(seen.begin(), seen.end(), kLabelBlood);
     const double healthy = green(before, seen), bloody = green(after, seen);

@@ -15,18 +15,18 @@
 namespace vibe::endoscope::drawn_truth_test {
 namespace {
 
-using test::Pixels;
+using render::test::Pixels;
 
 /// A body that shines by itself, so that every pixel of it is bright.
 Ogre::MaterialPtr shining() {
-  Ogre::MaterialPtr material = copyMaterial("vibe/solid");
+  Ogre::MaterialPtr material = render::copyMaterial("vibe/solid");
   for (Ogre::Technique* technique : material->getTechniques())
     technique->getPass(0)->getFragmentProgramParameters()->setNamedConstant("glow", 1.0F);
   return material;
 }
 
-ColouredShape placed(ColouredShape shape, const Eigen::Isometry3d& pose, PackedColour colour) {
-  for (MovingVertex& vertex : shape.vertices) {
+render::ColouredShape placed(render::ColouredShape shape, const Eigen::Isometry3d& pose, render::PackedColour colour) {
+  for (render::MovingVertex& vertex : shape.vertices) {
     Eigen::Map<Eigen::Vector3f> place(vertex.position);
     place = (pose * Eigen::Vector3d(place.cast<double>())).cast<float>();
   }
@@ -41,8 +41,8 @@ struct Comparison {
 };
 
 /// @param drawn  whether a pixel shows the body in the drawn image
-Comparison compare(const std::vector<std::uint8_t>& labels, const std::vector<bool>& drawn, const RoundCamera& round,
-                   int shift = 0) {
+Comparison compare(const std::vector<std::uint8_t>& labels, const std::vector<bool>& drawn,
+                   const render::RoundCamera& round, int shift = 0) {
   Comparison result;
   const auto isBody = [&](int x, int y) {
     return labels[static_cast<std::size_t>(y * round.width + x)] >= kLabelInstrument;
@@ -61,13 +61,13 @@ Comparison compare(const std::vector<std::uint8_t>& labels, const std::vector<bo
   return result;
 }
 
-class DrawnTruthTest : public ::testing::TestWithParam<LensKind> {
+class DrawnTruthTest : public ::testing::TestWithParam<render::LensKind> {
  protected:
-  static void SetUpTestSuite() { test::graphicsScene(); }  // before any material is made
+  static void SetUpTestSuite() { render::test::graphicsScene(); }  // before any material is made
 
-  Pixels draw() const {
-    OffscreenCamera camera(test::graphicsScene(), round_, 1);
-    Pixels pixels;
+  render::test::Pixels draw() const {
+    render::OffscreenCamera camera(render::test::graphicsScene(), round_, 1);
+    render::test::Pixels pixels;
     camera.take(test::eye(), pixels);
     return pixels;
   }
@@ -78,19 +78,19 @@ class DrawnTruthTest : public ::testing::TestWithParam<LensKind> {
     return camera.labels(scene, view);
   }
 
-  RoundCamera round_ = test::smallCamera(GetParam(), 320, 240);
+  render::RoundCamera round_ = test::smallCamera(GetParam(), 320, 240);
 };
 
 TEST_P(DrawnTruthTest, SilhouettesOfBodiesAgreeWithinOnePixel) {
-  ShapeView rod(*test::graphicsScene().getRootSceneNode(), shining()),
-      box(*test::graphicsScene().getRootSceneNode(), shining());
-  rod.show(placed(test::rodShape(), test::rodPose(0), packed(1, 1, 1)));
-  box.show(placed(test::boxShape(), test::boxPose(0), packed(1, 1, 1)));
+  render::ShapeView rod(*render::test::graphicsScene().getRootSceneNode(), shining()),
+      box(*render::test::graphicsScene().getRootSceneNode(), shining());
+  rod.show(placed(test::rodShape(), test::rodPose(0), render::packed(1, 1, 1)));
+  box.show(placed(test::boxShape(), test::boxPose(0), render::packed(1, 1, 1)));
   TruthScene truth;
   truth.placePart(truth.addPart("rod", test::rodShape()), test::rodPose(0));
   truth.placePart(truth.addPart("box", test::boxShape()), test::boxPose(0));
   truth.commit();
-  const Pixels pixels = draw();
+  const render::test::Pixels pixels = draw();
   std::vector<bool> drawn;
   for (std::size_t k = 0; k < pixels.size(); k += 3) drawn.push_back(pixels[k] > 127);
   const std::vector<std::uint8_t> cast = labels(truth);
@@ -106,17 +106,17 @@ TEST_P(DrawnTruthTest, SilhouettesOfBodiesAgreeWithinOnePixel) {
 TEST_P(DrawnTruthTest, BodyBehindTheFoldsOfTheWallIsHiddenInBoth) {
   test::FoldedWorld world(40, 80, false);
   world.show(0.3);
-  ColouredShape ball;
-  appendSphere(Eigen::Isometry3d::Identity(), 0.014, packed(1, 1, 1), ball);
+  render::ColouredShape ball;
+  render::appendSphere(Eigen::Isometry3d::Identity(), 0.014, render::packed(1, 1, 1), ball);
   const Eigen::Isometry3d place(Eigen::Translation3d(0.036, 0.014, 0.006));  // half of it is outside of the organ
   world.scene.placePart(world.scene.addPart("ball", ball), place);
   world.scene.commit();
-  TissueVisual wall(*test::graphicsScene().getRootSceneNode());
+  render::TissueVisual wall(*render::test::graphicsScene().getRootSceneNode());
   wall.setMesh(world.mesh());
   wall.setFrame(world.frame);
-  ShapeView shown(*test::graphicsScene().getRootSceneNode(), shining());
-  shown.show(placed(ball, place, packed(0, 0, 1)));
-  const Pixels pixels = draw();
+  render::ShapeView shown(*render::test::graphicsScene().getRootSceneNode(), shining());
+  shown.show(placed(ball, place, render::packed(0, 0, 1)));
+  const render::test::Pixels pixels = draw();
   std::vector<bool> drawn;  // blue against red
   for (std::size_t k = 0; k < pixels.size(); k += 3) drawn.push_back(pixels[k + 2] > pixels[k] + 20);
   const std::vector<std::uint8_t> cast = labels(world.scene);
@@ -128,7 +128,8 @@ TEST_P(DrawnTruthTest, BodyBehindTheFoldsOfTheWallIsHiddenInBoth) {
   EXPECT_GT(control.beyond, 50);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, DrawnTruthTest, ::testing::Values(LensKind::Equidistant, LensKind::Rectilinear),
+INSTANTIATE_TEST_SUITE_P(Lenses, DrawnTruthTest,
+                         ::testing::Values(render::LensKind::Equidistant, render::LensKind::Rectilinear),
                          test::lensName);
 
 }  // namespace

@@ -18,16 +18,16 @@
 
 namespace vibe::render {
 
-const char* const kResourceGroup = "vibe_rviz_plugins";
+const char* const kResourceGroup = "vibe_render";
 const char* const kEndoscopeScheme = "vibe_endoscope";
 
 void loadResources() {
   auto& groups = Ogre::ResourceGroupManager::getSingleton();
   if (groups.resourceGroupExists(kResourceGroup)) return;
-  const std::string package = ros::package::getPath("vibe_rviz_plugins");
+  const std::string package = ros::package::getPath("vibe_render");
   if (package.empty())
     throw std::runtime_error(
-        "The package vibe_rviz_plugins is not in ROS_PACKAGE_PATH; source devel/setup.bash before rviz.");
+        "The package vibe_render is not in ROS_PACKAGE_PATH; source devel/setup.bash before rviz.");
   groups.createResourceGroup(kResourceGroup);
   groups.addResourceLocation(package + "/media", "FileSystem", kResourceGroup);
   provideMucosaTexture();  // a material of the group reads it
@@ -46,7 +46,7 @@ std::string uniqueName(const std::string& what) {
 Ogre::MaterialPtr copyMaterial(const std::string& name) {
   loadResources();
   Ogre::MaterialPtr original = Ogre::MaterialManager::getSingleton().getByName(name, kResourceGroup);
-  if (!original) throw std::runtime_error("There is no material '" + name + "' in media/ of vibe_rviz_plugins.");
+  if (!original) throw std::runtime_error("There is no material '" + name + "' in media/ of vibe_render.");
   Ogre::MaterialPtr copy = original->clone(uniqueName(name), true, kResourceGroup);
   copy->load();
   return copy;

@@ -24,7 +24,6 @@ namespace vibe::render::endoscope_lens_test {
 namespace {
 
 using test::Pixels;
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr int kWidth = 200, kHeight = 160;
 
 /// A ball in front of a camera at the origin of Ogre's world, which looks along -z.

@@ -162,7 +162,7 @@ TEST(FoldPressureTest, FoldsOfTheSimulatedOrganGoWithThePressureAndComeBack) {
   const int opened = mkstemp(file);
   ASSERT_GE(opened, 0);
   close(opened);
-  const std::string folder = ros::package::getPath("vibe_rviz_plugins") + "/test/simulated/";
+  const std::string folder = ros::package::getPath("vibe_render") + "/test/simulated/";
   const bool continued = simulator.continueIn(folder + "desufflated.yaml", file);
   std::remove(file);
   ASSERT_TRUE(continued);

@@ -17,12 +17,12 @@ namespace vibe::rviz_plugins {
 
 /// A colour and its meaning.
 struct LegendEntry {
-  PackedColour colour;
+  render::PackedColour colour;
   std::string text;
 };
 
 /// The legend of a colour map: a bar with five numbers.
-QImage drawnLegend(const std::string& title, const ColourMap& map);
+QImage drawnLegend(const std::string& title, const render::ColourMap& map);
 /// The legend of a list of colours.
 QImage drawnLegend(const std::string& title, const std::vector<LegendEntry>& entries);
 

@@ -80,8 +80,8 @@ class PullTissueTool : public rviz::Tool {
   ros::Publisher publisher_;
   ros::Subscriber topology_subscriber_, particles_subscriber_, state_subscriber_;
   sensor_msgs::PointCloud2::ConstPtr latest_;
-  TissueMesh mesh_;
-  TissueFrame tissue_;
+  render::TissueMesh mesh_;
+  render::TissueFrame tissue_;
   std::string topology_trouble_;  // why there is no mesh; empty if there is one
   std::optional<Hold> hold_;
   std::unique_ptr<PullVisual> visual_;

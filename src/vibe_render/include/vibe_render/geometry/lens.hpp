@@ -13,6 +13,8 @@ enum class LensKind {
   Rectilinear,  ///< radius = f tan theta: straight lines stay straight, as in a pinhole camera
 };
 
+constexpr double kDegree = 3.14159265358979323846 / 180;  ///< [rad]
+
 constexpr double kMinFieldOfView = 0.174533;  ///< 10 degrees [rad]
 constexpr double kMaxFieldOfView = 2.96706;   ///< 170 degrees; a plane image of 180 degrees would be infinite [rad]
 

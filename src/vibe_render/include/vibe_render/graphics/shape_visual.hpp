@@ -33,7 +33,7 @@ class ShapeView {
 class ShapeVisual {
  public:
   /// @param parent  in whose frame the vertices are; outlives this
-  /// @throws std::runtime_error  the media folder of vibe_rviz_plugins cannot be found
+  /// @throws std::runtime_error  the media folder of vibe_render cannot be found
   explicit ShapeVisual(Ogre::SceneNode& parent);
   ~ShapeVisual();
   ShapeVisual(const ShapeVisual&) = delete;
