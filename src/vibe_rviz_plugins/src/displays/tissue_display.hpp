@@ -16,10 +16,13 @@ class FloatProperty;
 class RosTopicProperty;
 }  // namespace rviz
 
+namespace vibe::render {
+class TissueVisual;
+}
+
 namespace vibe::rviz_plugins {
 
 class Legend;
-class render::TissueVisual;
 
 /// Draws the organ of tissue/topology with the positions of tissue/particles. Only the latest message is drawn, at most
 /// once per frame of rviz, so a flood of messages does not slow it down.
