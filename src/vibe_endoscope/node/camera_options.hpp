@@ -4,7 +4,7 @@
 #include <string>
 
 #include "sensor/sensor_model.hpp"
-#include "vibe_render/geometry/lens.hpp"
+#include "vibe_render/geometry/endoscope_optics.hpp"
 
 namespace vibe::endoscope {
 

@@ -3,8 +3,7 @@
 #include <string>
 
 #include "sensor/sensor_model.hpp"
-#include "vibe_render/geometry/endoscope_light.hpp"
-#include "vibe_render/geometry/lens.hpp"
+#include "vibe_render/geometry/endoscope_optics.hpp"
 #include "vibe_render/geometry/mucosa_pattern.hpp"
 
 namespace vibe::endoscope {

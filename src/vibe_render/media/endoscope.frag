@@ -10,7 +10,7 @@ uniform float source_half_width;  // tangent of the angle to the centre of an ed
 uniform float source_size;        // edge of the plane image [px]
 uniform float middle_half_width;  // the same two of the middle; 0: there is none
 uniform float middle_size;
-uniform float gain;               // of the exposure, see geometry/endoscope_light.hpp
+uniform float gain;               // of the exposure, see geometry/endoscope_optics.hpp
 
 varying vec2 place;  // in the result, 0 to 1
 

@@ -1,7 +1,7 @@
 #version 120
 #include "lamp.glsl"
 #include "shadow.glsl"
-// As surface.vert, and what the mucosa looks like at the vertex (geometry/mucosa_map.hpp, fold_height.hpp).
+// As surface.vert, and what the mucosa looks like at the vertex (geometry/mucosa_map.hpp).
 uniform mat4 worldViewProj;
 uniform mat4 worldView;
 uniform vec4 smoke;  // y: time [s] (graphics/tissue_visual.hpp)

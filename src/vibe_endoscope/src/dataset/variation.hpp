@@ -2,8 +2,7 @@
 #include <cstdint>
 
 #include "sensor/sensor_model.hpp"
-#include "vibe_render/geometry/endoscope_light.hpp"
-#include "vibe_render/geometry/lens.hpp"
+#include "vibe_render/geometry/endoscope_optics.hpp"
 #include "vibe_render/geometry/mucosa_pattern.hpp"
 
 namespace vibe::endoscope {

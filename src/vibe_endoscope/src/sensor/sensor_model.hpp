@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_render/geometry/lens.hpp"
+#include "vibe_render/geometry/endoscope_optics.hpp"
 
 namespace vibe::endoscope {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "truth/truth_scene.hpp"
-#include "vibe_render/geometry/lens.hpp"
+#include "vibe_render/geometry/endoscope_optics.hpp"
 
 namespace vibe::endoscope {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vibe_render/geometry/coloured_shape.hpp"
-
 namespace vibe::render {
 
 namespace {

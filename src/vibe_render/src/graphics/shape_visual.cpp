@@ -5,7 +5,6 @@
 #include <OgreSceneNode.h>
 
 #include "vibe_render/graphics/resources.hpp"
-#include "vibe_render/graphics/shape_visual.hpp"
 
 namespace vibe::render {
 

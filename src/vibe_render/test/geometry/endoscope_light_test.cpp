@@ -1,4 +1,4 @@
-#include "vibe_render/geometry/endoscope_light.hpp"
+#include "vibe_render/geometry/endoscope_optics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vibe_render/geometry/fold_height.hpp"
+#include "vibe_render/geometry/mucosa_map.hpp"
 
 #include <gtest/gtest.h>
 

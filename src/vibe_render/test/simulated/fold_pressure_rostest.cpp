@@ -17,7 +17,7 @@
 #include <thread>
 #include <tuple>
 
-#include "vibe_render/geometry/fold_height.hpp"
+#include "vibe_render/geometry/mucosa_map.hpp"
 #include "vibe_render/messages/tissue_messages.hpp"
 
 namespace vibe::render {

@@ -8,7 +8,7 @@
 #include <OgreVector3.h>
 
 #include "vibe_render/geometry/capsule_fit.hpp"
-#include "vibe_render/geometry/endoscope_light.hpp"
+#include "vibe_render/geometry/endoscope_optics.hpp"
 
 namespace Ogre {
 class Camera;

@@ -9,8 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "vibe_render/geometry/endoscope_light.hpp"
-#include "vibe_render/geometry/lens.hpp"
+#include "vibe_render/geometry/endoscope_optics.hpp"
 #include "vibe_render/graphics/endoscope_lamp.hpp"
 
 namespace Ogre {

@@ -8,8 +8,7 @@
 #include <OgreTexture.h>
 #include <Eigen/Geometry>
 
-#include "vibe_render/geometry/endoscope_light.hpp"
-#include "vibe_render/geometry/lens.hpp"
+#include "vibe_render/geometry/endoscope_optics.hpp"
 
 namespace Ogre {
 class Camera;

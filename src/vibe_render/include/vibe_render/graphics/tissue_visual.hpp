@@ -7,7 +7,7 @@
 
 #include "vibe_render/geometry/argon_traces.hpp"
 #include "vibe_render/geometry/deformable_surface.hpp"
-#include "vibe_render/geometry/fold_height.hpp"
+#include "vibe_render/geometry/mucosa_map.hpp"
 #include "vibe_render/geometry/mucosa_pattern.hpp"
 #include "vibe_render/geometry/surface_colours.hpp"
 #include "vibe_render/geometry/tissue_mesh.hpp"
