@@ -18,7 +18,7 @@ ColouredShape triangle() {
 
 TEST(ColouredShape, SoundAndEmptyShapesHaveNoProblem) {
   EXPECT_EQ(problemOf(triangle()), "");
-  EXPECT_EQ(problemOf({}), "");
+  EXPECT_EQ(problemOf(ColouredShape()), "");
 }
 
 TEST(ColouredShape, EveryDefectIsNamed) {

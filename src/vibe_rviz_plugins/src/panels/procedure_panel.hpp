@@ -2,12 +2,12 @@
 
 #include <QWidget>
 
+#ifndef Q_MOC_RUN
+#include <rviz/panel.h>
+
 #include "panels/button_sender.hpp"
 #include "panels/procedure_subscriptions.hpp"
 #include "panels/service_caller.hpp"
-
-#ifndef Q_MOC_RUN
-#include <rviz/panel.h>
 #endif
 
 class QLabel;

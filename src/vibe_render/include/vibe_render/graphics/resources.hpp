@@ -4,10 +4,6 @@
 
 #include <OgreMaterial.h>
 
-namespace Ogre {
-class Material;
-}
-
 namespace vibe::render {
 
 /// Resource group of this package in Ogre: materials and shaders of media/ and everything created at run time.

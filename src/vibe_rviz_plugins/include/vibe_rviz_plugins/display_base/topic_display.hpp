@@ -1,19 +1,16 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
+#ifndef Q_MOC_RUN
 #include <OgreQuaternion.h>
 #include <OgreVector3.h>
-#include <ros/time.h>
-
-#ifndef Q_MOC_RUN
 #include <ros/subscriber.h>
+#include <ros/time.h>
 #include <rviz/display.h>
 #include <std_msgs/Header.h>
 
 #include <optional>
 #include <string>
+#include <vector>
 #endif
 
 namespace rviz {
