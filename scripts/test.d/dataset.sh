@@ -1,10 +1,10 @@
 # scripts/dataset: data sets of a short session, and what is refused. What the numbers of the files are is tested in
-# src/vibe_rviz_plugins/test/dataset, with a recording of which everything is known.
+# src/vibe_endoscope/test/dataset, with a recording of which everything is known.
 # kind: computing
 # cost: 60
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_rviz_plugins/vibe_dataset" ]; then
+if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_endoscope/vibe_dataset" ]; then
   echo 'skipped data sets of a session (they need the ordinary build)'
   exit 0
 fi

@@ -4,7 +4,7 @@
 # cost: 200
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
-if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_rviz_plugins/endoscope_camera" ]; then
+if [ -n "${VIBE_VARIANT:-}" ] || [ ! -x "$root/devel/lib/vibe_endoscope/endoscope_camera" ]; then
   echo 'skipped what the endoscope shows (it needs the ordinary build)'
   exit 0
 fi

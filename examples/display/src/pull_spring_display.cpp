@@ -6,11 +6,12 @@
 #include <vibe_msgs/TissuePullState.h>
 
 #include <pluginlib/class_list_macros.hpp>
+#include <vibe_render/geometry/tube.hpp>
 #include <vibe_rviz_plugins/display_base/message_shape_display.hpp>
-#include <vibe_rviz_plugins/geometry/tube.hpp>
 
 namespace vibe_example {
 
+using namespace vibe::render;
 using namespace vibe::rviz_plugins;
 
 class PullSpringDisplay : public MessageShapeDisplay<vibe_msgs::TissuePullState> {

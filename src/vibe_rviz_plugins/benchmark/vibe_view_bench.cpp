@@ -9,6 +9,7 @@
 #include <rviz/view_controller.h>
 #include <rviz/view_manager.h>
 #include <rviz/visualization_manager.h>
+#include <time.h>
 
 #include <QApplication>
 #include <algorithm>
@@ -18,12 +19,11 @@
 #include <memory>
 
 #include "bench_organ.hpp"
-#include "cpu_clock.hpp"
-#include "geometry/deformable_surface.hpp"
-#include "geometry/surface_colours.hpp"
-#include "messages/tissue_messages.hpp"
-#include "render/dynamic_mesh.hpp"
-#include "render/resources.hpp"
+#include "vibe_render/geometry/deformable_surface.hpp"
+#include "vibe_render/geometry/surface_colours.hpp"
+#include "vibe_render/graphics/dynamic_mesh.hpp"
+#include "vibe_render/graphics/resources.hpp"
+#include "vibe_render/messages/tissue_messages.hpp"
 
 namespace {
 
@@ -37,6 +37,23 @@ enum Part { Read, Geometry, Colours, Upload, Rest, Whole, kPartCount };
 constexpr std::array<const char*, kPartCount> kPartNames{"reading", "geometry", "colours", "upload", "rest", "process"};
 
 using Samples = std::array<std::vector<double>, kPartCount>;  // [ms]
+
+/// Time that a clock of processor time shows [s]: other programs on the machine lengthen it little.
+double clockTime(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Of this thread.
+double threadTime() {
+  return clockTime(CLOCK_THREAD_CPUTIME_ID);
+}
+
+/// Of all threads of this process together.
+double processTime() {
+  return clockTime(CLOCK_PROCESS_CPUTIME_ID);
+}
 
 struct Case {
   const char* name;
@@ -53,7 +70,7 @@ struct Viewer {
     manager->initialize();
     panel.show();
     QApplication::processEvents();
-    loadResources();
+    render::loadResources();
     auto* view = manager->getViewManager()->getCurrent();
     view->subProp("Distance")->setValue(0.3);
   }
@@ -68,22 +85,22 @@ struct Viewer {
 /// What TissueVisual does with a message, with a look at the clock between its parts.
 class Stages {
  public:
-  Stages(Viewer& viewer, const TissueMesh& mesh)
+  Stages(Viewer& viewer, const render::TissueMesh& mesh)
       : viewer_(viewer),
         mesh_(mesh),
         surface_(mesh_),
         colours_(mesh_),
         node_(*viewer.manager->getSceneManager()->getRootSceneNode()->createChildSceneNode()),
-        inside_(copyMaterial("vibe/tissue_inside")),
-        outside_(copyMaterial("vibe/tissue_outside")),
-        drawn_(std::make_unique<DynamicMesh>(node_, std::vector<Ogre::MaterialPtr>{inside_, outside_})) {
-    colours_.choose(Colouring::Strain, ColourMap());
+        inside_(render::copyMaterial("vibe/tissue_inside")),
+        outside_(render::copyMaterial("vibe/tissue_outside")),
+        drawn_(std::make_unique<render::DynamicMesh>(node_, std::vector<Ogre::MaterialPtr>{inside_, outside_})) {
+    colours_.choose(render::Colouring::Strain, render::ColourMap());
     drawn_->setTopology(mesh_.triangles, mesh_.vertex_count, mesh_.rest);
   }
   ~Stages() {
     drawn_.reset();
     viewer_.manager->getSceneManager()->destroySceneNode(&node_);
-    dropMaterial(inside_), dropMaterial(outside_);
+    render::dropMaterial(inside_), render::dropMaterial(outside_);
   }
 
   std::array<double, kPartCount> drawFrame(const sensor_msgs::PointCloud2& cloud) {
@@ -95,12 +112,12 @@ class Stages {
       times[part] += 1e3 * (now - last);
       last = now;
     };
-    const std::string wrong = readParticles(cloud, mesh_, frame_);
+    const std::string wrong = render::readParticles(cloud, mesh_, frame_);
     if (!wrong.empty()) throw std::runtime_error(wrong);
     lap(Read);
-    const VertexSpan moved = surface_.update(frame_.positions);
+    const render::VertexSpan moved = surface_.update(frame_.positions);
     lap(Geometry);
-    const VertexSpan coloured = colours_.update(frame_);
+    const render::VertexSpan coloured = colours_.update(frame_);
     lap(Colours);
     send(moved, coloured);
     lap(Upload);
@@ -111,7 +128,7 @@ class Stages {
   }
 
  private:
-  void send(const VertexSpan& moved, const VertexSpan& coloured) {
+  void send(const render::VertexSpan& moved, const render::VertexSpan& coloured) {
     if (!moved.empty()) {
       drawn_->setVertices(surface_.vertices().data() + moved.first, moved.first, moved.count());
       const Eigen::Vector3f min = surface_.bounds().min(), max = surface_.bounds().max();
@@ -121,17 +138,17 @@ class Stages {
   }
 
   Viewer& viewer_;
-  TissueMesh mesh_;
-  TissueFrame frame_;
-  DeformableSurface surface_;
-  SurfaceColours colours_;
+  render::TissueMesh mesh_;
+  render::TissueFrame frame_;
+  render::DeformableSurface surface_;
+  render::SurfaceColours colours_;
   Ogre::SceneNode& node_;
   Ogre::MaterialPtr inside_, outside_;
-  std::unique_ptr<DynamicMesh> drawn_;
+  std::unique_ptr<render::DynamicMesh> drawn_;
 };
 
 Samples measure(Viewer& viewer, const Case& c) {
-  const TissueMesh mesh = benchOrgan(c.subdivided);
+  const render::TissueMesh mesh = benchOrgan(c.subdivided);
   Stages stages(viewer, mesh);
   Samples samples;
   for (int frame = 0; frame < kWarmUp + kFrames; ++frame) {
@@ -152,7 +169,7 @@ double added(const Samples& samples) {
   return median(samples[Geometry]) + median(samples[Colours]) + median(samples[Upload]);
 }
 
-void printRow(const Case& c, const TissueMesh& mesh, const Samples& samples) {
+void printRow(const Case& c, const render::TissueMesh& mesh, const Samples& samples) {
   std::printf("| %s | %zu |", c.name, mesh.triangles.size() / 3);
   for (const auto& values : samples) std::printf(" %.3f (%.3f) |", median(values), values.front());
   std::printf(" %.3f |\n", added(samples));

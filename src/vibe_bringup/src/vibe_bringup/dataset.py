@@ -89,7 +89,7 @@ def fill_recording(arguments, scratch):
 
 
 def write_images(arguments, scratch):
-    command = ["rosrun", "vibe_rviz_plugins", "vibe_dataset", os.path.join(scratch, "whole.bag")]
+    command = ["rosrun", "vibe_endoscope", "vibe_dataset", os.path.join(scratch, "whole.bag")]
     command += ["--name", os.path.basename(arguments.bag), "--output", arguments.output, *arguments.words]
     done = subprocess.run(command, stderr=subprocess.PIPE, text=True, errors="replace", check=False)
     # rospack says, as soon as graphics begin, that Debian has no package media_export; nothing needs it
@@ -114,7 +114,7 @@ def run(arguments):
     from .session import Interrupted, interruptible
 
     # a wrong option or file is said before there is a folder and before the recording is repeated
-    check = ["rosrun", "vibe_rviz_plugins", "vibe_dataset", "--check", arguments.bag, "--output", arguments.output]
+    check = ["rosrun", "vibe_endoscope", "vibe_dataset", "--check", arguments.bag, "--output", arguments.output]
     status = subprocess.run(check + arguments.words, check=False).returncode
     if status != 0:
         return status

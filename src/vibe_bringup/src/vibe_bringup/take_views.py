@@ -77,7 +77,7 @@ class ViewSession(PictureSession):
         width, height = self.size.split("x")
         options = ["_width:=" + width, "_height:=" + height, "_rate:=0"]
         graph.start_robot()
-        graph.start_node("vibe_rviz_plugins", "endoscope_camera", *options)
+        graph.start_node("vibe_endoscope", "endoscope_camera", *options)
         graph.start_node("vibe_sim", "vibe_trainee")
         self.sim = graph.start_node("vibe_sim", "sim_node", patience=30.0)
         wait_for(self.is_ready, "the simulator and the camera did not begin (see {})".format(self.logs))

@@ -3,11 +3,21 @@
 #include <OgreSceneNode.h>
 #include <ros/exceptions.h>
 #include <rviz/display_context.h>
+#include <rviz/frame_manager.h>
 #include <rviz/properties/ros_topic_property.h>
-
-#include "vibe_rviz_plugins/display_base/frame_pose.hpp"
+#include <rviz/properties/status_property.h>
 
 namespace vibe::rviz_plugins {
+
+std::string lookUpFrame(rviz::DisplayContext& context, const std::string& frame, const ros::Time& stamp,
+                        FramePose& pose) {
+  rviz::FrameManager& frames = *context.getFrameManager();
+  if (!stamp.isZero() && frames.getTransform(frame, stamp, pose.position, pose.orientation)) return "";
+  if (frames.getTransform(frame, ros::Time(), pose.position, pose.orientation)) return "";
+  return "No transform from '" + frame + "' to '" + context.getFixedFrame().toStdString() +
+         "'; choose another fixed frame or publish this transform.";
+}
+
 namespace {
 
 using rviz::StatusProperty;
@@ -116,6 +126,21 @@ void TopicDisplay::place(const std_msgs::Header& header) {
   if (!known) return;
   scene_node_->setPosition(pose.position);
   scene_node_->setOrientation(pose.orientation);
+}
+
+PropertyHelp checkPropertyHelp(const rviz::Property& parent, const std::string& path) {
+  PropertyHelp help;
+  for (int i = 0; i < parent.numChildren(); ++i) {
+    const rviz::Property& child = *parent.childAtUnchecked(i);
+    if (dynamic_cast<const rviz::StatusProperty*>(&child) != nullptr) continue;
+    const std::string name = path + "/" + child.getName().toStdString();
+    ++help.count;
+    if (child.getDescription().trimmed().isEmpty()) help.missing.push_back(name);
+    const PropertyHelp below = checkPropertyHelp(child, name);
+    help.count += below.count;
+    help.missing.insert(help.missing.end(), below.missing.begin(), below.missing.end());
+  }
+  return help;
 }
 
 }  // namespace vibe::rviz_plugins

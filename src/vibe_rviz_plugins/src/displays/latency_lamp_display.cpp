@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "render/legend.hpp"
+#include "overlay/legend.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

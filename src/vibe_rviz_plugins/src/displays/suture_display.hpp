@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "displays/wall_listener.hpp"
-#include "geometry/bleeding_shape.hpp"
-#include "geometry/suture_drawing.hpp"
-#include "geometry/suture_shapes.hpp"
-#include "render/suture_visual.hpp"
+#include "vibe_render/geometry/blood_shapes.hpp"
+#include "vibe_render/geometry/suture_drawing.hpp"
+#include "vibe_render/geometry/suture_shapes.hpp"
+#include "vibe_render/graphics/suture_visual.hpp"
 #include "vibe_rviz_plugins/display_base/message_display.hpp"
 
 namespace rviz {
@@ -51,16 +51,16 @@ class SutureDisplay : public MessageDisplay<vibe_msgs::SutureArray> {
   void drawLabels();
   bool drawBlood();
   std::optional<Eigen::Isometry3d> poseOfWall();
-  bool showsTension() const { return style_.colouring == ThreadColour::Tension; }
+  bool showsTension() const { return style_.colouring == render::ThreadColour::Tension; }
 
-  std::unique_ptr<SutureVisual> visual_;
+  std::unique_ptr<render::SutureVisual> visual_;
   std::unique_ptr<Legend> legend_;
-  SutureDrawing scene_;
-  SutureStyle style_;
-  BloodStyle blood_style_;
+  render::SutureDrawing scene_;
+  render::SutureStyle style_;
+  render::BloodStyle blood_style_;
   WallListener wall_;
-  BleedingShape blood_;
-  ColouredShape shape_;  // a member to reuse its memory
+  render::BleedingShape blood_;
+  render::ColouredShape shape_;  // a member to reuse its memory
   bool threads_changed_ = false, blood_changed_ = false;
 
   rviz::EnumProperty *colour_property_, *map_property_;

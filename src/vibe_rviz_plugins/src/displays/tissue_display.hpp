@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "geometry/tissue_mesh.hpp"
+#include "vibe_render/geometry/tissue_mesh.hpp"
 
 namespace rviz {
 class BoolProperty;
@@ -16,10 +16,13 @@ class FloatProperty;
 class RosTopicProperty;
 }  // namespace rviz
 
+namespace vibe::render {
+class TissueVisual;
+}
+
 namespace vibe::rviz_plugins {
 
 class Legend;
-class TissueVisual;
 
 /// Draws the organ of tissue/topology with the positions of tissue/particles. Only the latest message is drawn, at most
 /// once per frame of rviz, so a flood of messages does not slow it down.
@@ -66,11 +69,11 @@ class TissueDisplay : public rviz::Display {
 
   ros::Subscriber topology_subscriber_, particles_subscriber_;
   sensor_msgs::PointCloud2::ConstPtr latest_;  // not drawn yet
-  TissueMesh mesh_;
-  TissueFrame frame_;
+  render::TissueMesh mesh_;
+  render::TissueFrame frame_;
   bool has_mesh_ = false, has_error_ = false;
   std::size_t frames_ = 0;
-  std::unique_ptr<TissueVisual> visual_;
+  std::unique_ptr<render::TissueVisual> visual_;
   std::unique_ptr<Legend> legend_;
 };
 

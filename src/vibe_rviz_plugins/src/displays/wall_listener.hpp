@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/deformable_surface.hpp"
-#include "geometry/tissue_mesh.hpp"
+#include "vibe_render/geometry/deformable_surface.hpp"
+#include "vibe_render/geometry/tissue_mesh.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -23,18 +23,18 @@ class WallListener {
   /// Takes the newest messages. @return whether there is another mesh than before, or none any more
   bool update();
 
-  const TissueMesh* mesh() const { return has_mesh_ ? &mesh_ : nullptr; }
+  const render::TissueMesh* mesh() const { return has_mesh_ ? &mesh_ : nullptr; }
   /// As DeformableSurface has them; null: none yet.
-  const std::vector<MovingVertex>* vertices() const { return placed_ ? &surface_->vertices() : nullptr; }
+  const std::vector<render::MovingVertex>* vertices() const { return placed_ ? &surface_->vertices() : nullptr; }
   const std::string& frame() const { return frame_id_; }  ///< of the vertices
 
  private:
   ros::Subscriber topology_subscriber_, particles_subscriber_;
   vibe_msgs::TissueTopology::ConstPtr topology_;  // not read yet
   sensor_msgs::PointCloud2::ConstPtr particles_;  // not read yet
-  TissueMesh mesh_;
-  TissueFrame frame_;
-  std::unique_ptr<DeformableSurface> surface_;
+  render::TissueMesh mesh_;
+  render::TissueFrame frame_;
+  std::unique_ptr<render::DeformableSurface> surface_;
   std::string frame_id_;
   bool listens_ = false, has_mesh_ = false, placed_ = false, forgot_ = false;
 };

@@ -1,12 +1,14 @@
 #pragma once
-#include <vibe_msgs/ProcedureState.h>
-#include <vibe_msgs/SkillMetrics.h>
-#include <vibe_msgs/SolverStatistics.h>
-#include <vibe_msgs/SutureArray.h>
 
 #include <array>
 #include <string>
 #include <vector>
+
+#include <vibe_msgs/ProcedureState.h>
+#include <vibe_msgs/SkillMetrics.h>
+#include <vibe_msgs/SolverStatistics.h>
+#include <vibe_msgs/SutureArray.h>
+#include <vibe_msgs/TraineeProgress.h>
 
 namespace vibe::rviz_plugins {
 
@@ -46,5 +48,9 @@ struct NamedText {
   bool warns = false;
 };
 std::vector<NamedText> solverStatisticsRows(const vibe_msgs::SolverStatistics& statistics);
+
+/// What a trainee does and how far it is, in a few lines: the goal that is pursued, or how many have ended; what is
+/// being done; why the last failed goal failed.
+std::string traineeText(const vibe_msgs::TraineeProgress& progress);
 
 }  // namespace vibe::rviz_plugins

@@ -2,14 +2,68 @@
 
 #include <QGridLayout>
 #include <QLabel>
+#include <QPainter>
 #include <limits>
 
 #include "messages/number_text.hpp"
+#include "messages/procedure_text.hpp"
 #include "messages/reference_values.hpp"
-#include "panels/range_bar.hpp"
-#include "panels/text_rows.hpp"
+#include "panels/panel_style.hpp"
 
 namespace vibe::rviz_plugins {
+
+namespace {
+
+constexpr double kMark = 5;   // radius of the mark [px]
+constexpr double kTrack = 3;  // half of the height of the band [px]
+
+}  // namespace
+
+RangeBar::RangeBar(QWidget* parent) : QWidget(parent) {
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+}
+
+void RangeBar::display(const BarShape& shape, Rating rating) {
+  shape_ = shape;
+  rating_ = rating;
+  setAccessibleName(QString::fromStdString(ratingText(rating)));
+  update();
+}
+
+void RangeBar::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const double left = kMark + 1, length = width() - 2 * left, y = 0.5 * height();
+  const QColor quiet = quietColour(palette());
+  painter.setPen(QPen(quiet, 1));
+  painter.drawLine(QPointF(left, y), QPointF(left + length, y));
+  if (shape_.has_range) {
+    QColor band = goodColour(palette());
+    band.setAlpha(110);
+    const double begin = left + shape_.range_begin * length, end = left + shape_.range_end * length;
+    // a range of one number is a band of a few pixels
+    const QRectF place(begin - 1.5, y - kTrack, std::max(3.0, end - begin + 3), 2 * kTrack);
+    painter.fillRect(place, band);
+    painter.setPen(QPen(goodColour(palette()), 1));
+    painter.drawRect(place);
+  }
+  if (shape_.has_value) paintMark(painter, left + shape_.value * length, y);
+}
+
+void RangeBar::paintMark(QPainter& painter, double x, double y) const {
+  const QColor colour = colourOf(rating_, palette());
+  painter.setPen(QPen(palette().color(QPalette::WindowText), 1));
+  painter.setBrush(rating_ == Rating::Within || rating_ == Rating::Outside ? QBrush(colour)
+                                                                           : palette().brush(QPalette::Window));
+  if (shape_.beyond) {
+    const double tip = shape_.value > 0.5 ? kMark : -kMark;
+    painter.drawPolygon(QVector<QPointF>{{x - tip, y - kMark}, {x + tip, y}, {x - tip, y + kMark}});
+  } else if (rating_ == Rating::Outside) {
+    painter.drawPolygon(QVector<QPointF>{{x, y - kMark}, {x + kMark, y + kMark}, {x - kMark, y + kMark}});
+  } else {
+    painter.drawEllipse(QPointF(x, y), kMark - 1, kMark - 1);
+  }
+}
 
 MeasuresView::MeasuresView(QWidget* parent) : QWidget(parent) {
   makeSmaller(*this);
@@ -50,6 +104,40 @@ void MeasuresView::display(const PanelMessages& messages) {
     rows_[i].bar->display(barShape(measure, value), rating);
     rows_[i].bar->setToolTip(toQt(explain(measure) + "\nNow: " + ratingText(rating) + "."));
   }
+}
+
+namespace {
+
+const char* const kAgeHelp = "Wall time since the last message about the tool or, without a tool, about the state.";
+const char* const kDelayHelp =
+    "Time from the sample to its arrival here, maximum of the last second. Surgeons did worse with 105 ms of added "
+    "delay "
+    "(Kumcu et al. 2016). "
+    "Not known with simulated time, because stamps are not wall time then.";
+
+}  // namespace
+
+SolverStatisticsView::SolverStatisticsView(QWidget* parent) : QWidget(parent) {
+  makeSmaller(*this);
+  auto* grid = new QGridLayout(this);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setVerticalSpacing(2);
+  rows_ = std::make_unique<TextRows>(grid);
+  display({}, {});
+}
+
+SolverStatisticsView::~SolverStatisticsView() = default;
+
+void SolverStatisticsView::display(const PanelMessages& messages, const Freshness& freshness) {
+  static const vibe_msgs::SolverStatistics kNothing;
+  for (const NamedText& row :
+       solverStatisticsRows(messages.solver_statistics ? *messages.solver_statistics : kNothing)) {
+    rows_->set(toQt(row.name), messages.solver_statistics ? toQt(row.value) : kNoValue, toQt(row.help));
+    rows_->mark(toQt(row.name), messages.solver_statistics && row.warns);
+  }
+  const bool known = static_cast<bool>(messages.state);
+  rows_->set("Last message", known ? toQt(quantityText(freshness.age, 2, "s") + " ago") : kNoValue, kAgeHelp);
+  rows_->set("Delay", known ? toQt(quantityText(1e3 * freshness.delay, 0, "ms")) : kNoValue, kDelayHelp);
 }
 
 }  // namespace vibe::rviz_plugins

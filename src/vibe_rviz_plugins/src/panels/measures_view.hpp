@@ -1,14 +1,35 @@
 #pragma once
+
 #include <QWidget>
+#include <memory>
 #include <vector>
 
+#include "messages/reference_values.hpp"
 #include "panels/panel_messages.hpp"
 
 class QLabel;
 
 namespace vibe::rviz_plugins {
 
-class RangeBar;
+/// A small horizontal bar: the published range as a band, the value as a mark on it. The mark is a filled circle within
+/// the range, a triangle outside, an open circle without a range, and an arrow beyond the end of the bar.
+class RangeBar : public QWidget {
+ public:
+  explicit RangeBar(QWidget* parent = nullptr);
+
+  void display(const BarShape& shape, Rating rating);
+  QSize sizeHint() const override { return {90, 16}; }
+  QSize minimumSizeHint() const override { return {40, 16}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  BarShape shape_;
+  Rating rating_ = Rating::NoValue;
+
+  void paintMark(QPainter& painter, double x, double y) const;
+};
 
 /// Measures of skill, each with its value and, where a reference is published, with a bar. The tool tips name the
 /// sources.
@@ -24,6 +45,20 @@ class MeasuresView : public QWidget {
     RangeBar* bar;  // null: no reference
   };
   std::vector<Row> rows_;  // as measures()
+};
+
+class TextRows;
+
+/// Solver times, real-time factor and latency.
+class SolverStatisticsView : public QWidget {
+ public:
+  explicit SolverStatisticsView(QWidget* parent = nullptr);
+  ~SolverStatisticsView() override;
+
+  void display(const PanelMessages& messages, const Freshness& freshness);
+
+ private:
+  std::unique_ptr<TextRows> rows_;
 };
 
 }  // namespace vibe::rviz_plugins

@@ -8,8 +8,7 @@
 #include <QLineEdit>
 #include <QPushButton>
 
-#include "panels/panel_colours.hpp"
-#include "panels/text_rows.hpp"
+#include "panels/panel_style.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

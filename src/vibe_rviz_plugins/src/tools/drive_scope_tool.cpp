@@ -15,9 +15,9 @@
 #include <QTimer>
 #include <pluginlib/class_list_macros.hpp>
 
-#include "messages/drive_messages.hpp"
+#include "messages/command_messages.hpp"
+#include "overlay/legend.hpp"
 #include "panels/procedure_subscriptions.hpp"
-#include "render/legend.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "overlay/drive_overlay.hpp"
 #include "panels/button_sender.hpp"
-#include "render/drive_overlay.hpp"
 #include "tools/scope_sender.hpp"
 #endif
 

@@ -11,9 +11,9 @@
 #include <optional>
 #include <string>
 
-#include "geometry/mouse_ray.hpp"
-#include "geometry/tissue_mesh.hpp"
-#include "messages/pull_messages.hpp"
+#include "drive/mouse_ray.hpp"
+#include "messages/command_messages.hpp"
+#include "vibe_render/geometry/tissue_mesh.hpp"
 #endif
 
 namespace rviz {
@@ -80,8 +80,8 @@ class PullTissueTool : public rviz::Tool {
   ros::Publisher publisher_;
   ros::Subscriber topology_subscriber_, particles_subscriber_, state_subscriber_;
   sensor_msgs::PointCloud2::ConstPtr latest_;
-  TissueMesh mesh_;
-  TissueFrame tissue_;
+  render::TissueMesh mesh_;
+  render::TissueFrame tissue_;
   std::string topology_trouble_;  // why there is no mesh; empty if there is one
   std::optional<Hold> hold_;
   std::unique_ptr<PullVisual> visual_;

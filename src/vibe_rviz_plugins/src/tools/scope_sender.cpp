@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "messages/drive_messages.hpp"
+#include "messages/command_messages.hpp"
 #include "panels/procedure_subscriptions.hpp"
 
 namespace vibe::rviz_plugins {

@@ -1,4 +1,4 @@
-#include "drive/first_steps.hpp"
+#include "drive/drive_keys.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "drive/smooth_axis.hpp"
+#include "drive/scope_drive.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "messages/event_lines.hpp"
+#include "messages/table_rows.hpp"
 
 #include <gtest/gtest.h>
 

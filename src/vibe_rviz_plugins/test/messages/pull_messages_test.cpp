@@ -1,4 +1,4 @@
-#include "messages/pull_messages.hpp"
+#include "messages/command_messages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "messages/suture_rows.hpp"
+#include "messages/table_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "messages/trainee_text.hpp"
+#include "messages/procedure_text.hpp"
 
 #include <gtest/gtest.h>
 

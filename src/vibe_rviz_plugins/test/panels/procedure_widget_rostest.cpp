@@ -18,7 +18,6 @@
 
 #include "offscreen.hpp"
 #include "panels/procedure_panel.hpp"
-#include "panels/procedure_widget.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {

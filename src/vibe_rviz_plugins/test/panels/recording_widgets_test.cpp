@@ -11,7 +11,7 @@
 
 #include "offscreen.hpp"
 #include "panels/record_box.hpp"
-#include "panels/replay_slider.hpp"
+#include "panels/replay_panel.hpp"
 
 namespace vibe::rviz_plugins::recording_widgets_test {
 namespace {

@@ -8,16 +8,11 @@
 
 #include "messages/reference_values.hpp"
 #include "offscreen.hpp"
-#include "panels/command_box.hpp"
-#include "panels/event_list.hpp"
+#include "panels/control_boxes.hpp"
 #include "panels/measures_view.hpp"
-#include "panels/panel_colours.hpp"
-#include "panels/phase_strip.hpp"
-#include "panels/range_bar.hpp"
-#include "panels/solver_statistics_view.hpp"
+#include "panels/panel_style.hpp"
+#include "panels/procedure_tables.hpp"
 #include "panels/status_summary.hpp"
-#include "panels/stepping_box.hpp"
-#include "panels/suture_table.hpp"
 
 namespace vibe::rviz_plugins::widgets_test {
 namespace {

@@ -31,8 +31,8 @@
 #include <utility>
 #include <vector>
 
-#include "rviz_events.hpp"
-#include "vibe_rviz_plugins/display_base/property_help.hpp"
+#include "rviz/rviz_events.hpp"
+#include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace {
 

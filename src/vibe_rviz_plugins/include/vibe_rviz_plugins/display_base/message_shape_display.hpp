@@ -3,9 +3,9 @@
 #include <string>
 #include <utility>
 
+#include "vibe_render/geometry/coloured_shape.hpp"
+#include "vibe_render/graphics/shape_visual.hpp"
 #include "vibe_rviz_plugins/display_base/message_display.hpp"
-#include "vibe_rviz_plugins/geometry/coloured_shape.hpp"
-#include "vibe_rviz_plugins/render/shape_visual.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -18,7 +18,7 @@ class MessageShapeDisplay : public MessageDisplay<Message> {
  public:
   /// Appends what a message looks like to an empty shape [m]. Needs no scene, so a test can call it.
   /// @return empty; otherwise one sentence that says what is wrong with the message, and the shape is not used
-  virtual std::string makeShape(const Message& message, ColouredShape& shape) const = 0;
+  virtual std::string makeShape(const Message& message, render::ColouredShape& shape) const = 0;
 
  protected:
   using MessageDisplay<Message>::MessageDisplay;
@@ -28,13 +28,13 @@ class MessageShapeDisplay : public MessageDisplay<Message> {
   }
 
  private:
-  void makeVisual() final { visual_ = std::make_unique<ShapeVisual>(*this->scene_node_); }
+  void makeVisual() final { visual_ = std::make_unique<render::ShapeVisual>(*this->scene_node_); }
   void clear() final { visual_->show({}); }
 
   MessageReport read(const Message& message) final {
-    ColouredShape shape;
+    render::ColouredShape shape;
     std::string wrong = makeShape(message, shape);
-    if (wrong.empty()) wrong = problemOf(shape);
+    if (wrong.empty()) wrong = render::problemOf(shape);
     if (!wrong.empty()) return {wrong, false};
     shape_ = std::move(shape);
     changed_ = true;
@@ -46,8 +46,8 @@ class MessageShapeDisplay : public MessageDisplay<Message> {
     return std::exchange(changed_, false);
   }
 
-  std::unique_ptr<ShapeVisual> visual_;
-  ColouredShape shape_;
+  std::unique_ptr<render::ShapeVisual> visual_;
+  render::ColouredShape shape_;
   bool changed_ = false;
 };
 

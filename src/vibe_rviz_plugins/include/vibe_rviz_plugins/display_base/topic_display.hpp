@@ -1,18 +1,37 @@
 #pragma once
+
 #ifndef Q_MOC_RUN
+#include <OgreQuaternion.h>
+#include <OgreVector3.h>
 #include <ros/subscriber.h>
+#include <ros/time.h>
 #include <rviz/display.h>
 #include <std_msgs/Header.h>
 
 #include <optional>
 #include <string>
+#include <vector>
 #endif
 
 namespace rviz {
+class DisplayContext;
+class Property;
 class RosTopicProperty;
-}
+}  // namespace rviz
 
 namespace vibe::rviz_plugins {
+
+/// Pose of a frame in the fixed frame of rviz.
+struct FramePose {
+  Ogre::Vector3 position = Ogre::Vector3::ZERO;  ///< [m]
+  Ogre::Quaternion orientation = Ogre::Quaternion::IDENTITY;
+};
+
+/// Looks up where a frame is.
+/// @param stamp  time of the pose; if nothing is known for it, and for time 0, the latest pose is used
+/// @return empty, and the pose is set; otherwise one sentence that says what is missing
+std::string lookUpFrame(rviz::DisplayContext& context, const std::string& frame, const ros::Time& stamp,
+                        FramePose& pose);
 
 /// What a display says about a message.
 struct MessageReport {
@@ -79,5 +98,16 @@ class TopicDisplay : public rviz::Display {
   std::optional<MessageReport> said_;  // last status of the message: setting a status costs more than drawing
   std::optional<bool> placed_;         // whether the transform was known; none: not looked up yet
 };
+
+/// Which properties explain themselves.
+struct PropertyHelp {
+  int count = 0;                     ///< properties found, statuses aside
+  std::vector<std::string> missing;  ///< paths of those without a help sentence, such as "Sutures/Legend"
+};
+
+/// Checks all properties below `parent`, a display for example. Every property of this project has a help sentence,
+/// and tests use this function to make sure.
+/// @param path  name of the parent, which the paths begin with
+PropertyHelp checkPropertyHelp(const rviz::Property& parent, const std::string& path);
 
 }  // namespace vibe::rviz_plugins

@@ -1,0 +1,57 @@
+// endoscope_camera: what the endoscope sees, as images, without rviz and without a screen.
+
+#include <OgreRoot.h>
+#include <OgreSceneManager.h>
+#include <ros/ros.h>
+#include <rviz/ogre_helpers/render_system.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "camera_options.hpp"
+#include "endoscope_camera.hpp"
+#include "vibe_render/graphics/resources.hpp"
+#include "vibe_render/graphics/virtual_display.hpp"
+
+namespace endoscope = vibe::endoscope;
+namespace render = vibe::render;
+
+namespace {
+
+constexpr int kFailure = 1;
+constexpr int kUsage = 2;
+
+int fail(const std::exception& error, int status) {
+  std::fprintf(stderr, "endoscope_camera: %s\n", error.what());
+  return status;
+}
+
+void run(const endoscope::CameraOptions& options) {
+  render::provideDisplay();
+  rviz::RenderSystem::forceNoStereo();
+  Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
+  render::loadResources();
+  ros::NodeHandle node;
+  std::string description;
+  node.getParam("robot_description", description);
+  endoscope::EndoscopeCamera camera(node, options, *scene, description);
+  ros::spin();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "endoscope_camera");
+  endoscope::CameraOptions options;
+  try {
+    options = endoscope::readCameraOptions(ros::NodeHandle("~"));
+  } catch (const std::exception& error) {
+    return fail(error, kUsage);
+  }
+  try {
+    run(options);
+  } catch (const std::exception& error) {
+    return fail(error, kFailure);
+  }
+  return 0;
+}

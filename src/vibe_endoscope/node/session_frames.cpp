@@ -1,0 +1,97 @@
+#include "session_frames.hpp"
+
+#include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <stdexcept>
+#include <vector>
+
+namespace vibe::endoscope {
+namespace {
+
+Eigen::Isometry3d poseOf(const geometry_msgs::Transform& from) {
+  return Eigen::Translation3d(from.translation.x, from.translation.y, from.translation.z) *
+         Eigen::Isometry3d(
+             Eigen::Quaterniond(from.rotation.w, from.rotation.x, from.rotation.y, from.rotation.z).normalized());
+}
+
+}  // namespace
+
+SessionFrames::SessionFrames(const std::string& file) {
+  try {
+    bag_.open(file, rosbag::bagmode::Read);
+  } catch (const rosbag::BagException& error) {
+    throw std::runtime_error("'" + file + "' cannot be read as a recording (" + error.what() + ").");
+  }
+  findTopics();
+  rosbag::View infos(bag_, rosbag::TopicQuery(prefix_ + "session_info"));
+  if (infos.size() == 0 || infos.begin()->instantiate<vibe_msgs::SessionInfo>()->urdf.empty())
+    throw std::runtime_error("'" + file +
+                             "' does not hold the URDF of the scope (topic session_info), so nothing tells " +
+                             "where the camera is; record the session with this release and a scope in the scene.");
+  info_ = *infos.begin()->instantiate<vibe_msgs::SessionInfo>();
+  poses_ = std::make_unique<JointTree>(info_.urdf);
+  readFixedFrames();
+  const std::vector<std::string> topics{prefix_ + "tissue/topology", prefix_ + "tissue/particles", prefix_ + "sutures",
+                                        prefix_ + "joint_states"};
+  view_ = std::make_unique<rosbag::View>(bag_, rosbag::TopicQuery(topics));
+  at_ = view_->begin();
+}
+
+SessionFrames::~SessionFrames() = default;
+
+// The simulator may run in a namespace; the type of its topology is its own.
+void SessionFrames::findTopics() {
+  rosbag::View topologies(bag_, rosbag::TypeQuery("vibe_msgs/TissueTopology"));
+  const auto connections = topologies.getConnections();
+  const std::string name = "tissue/topology";
+  if (connections.empty() || connections[0]->topic.size() < name.size())
+    throw std::runtime_error("'" + bag_.getFileName() + "' has no topic tissue/topology, so there is nothing to see.");
+  if (connections.size() > 1 && connections[0]->topic != connections[1]->topic)
+    throw std::runtime_error("'" + bag_.getFileName() + "' holds several simulators; record one of them alone.");
+  prefix_ = connections[0]->topic.substr(0, connections[0]->topic.size() - name.size());
+}
+
+void SessionFrames::readFixedFrames() {
+  rosbag::View view(bag_, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", prefix_ + "tf_static"}));
+  if (view.size() == 0)
+    throw std::runtime_error("'" + bag_.getFileName() + "' has no topic /tf_static, so nothing tells where the scope " +
+                             "is; record the session with scripts/record or scripts/run.");
+  for (const rosbag::MessageInstance& message : view)
+    for (const auto& transform : message.instantiate<tf2_msgs::TFMessage>()->transforms)
+      poses_->setFixed(transform.child_frame_id, transform.header.frame_id, poseOf(transform.transform));
+}
+
+// The messages of a state have the same time in the bag, in any order.
+bool SessionFrames::next(SessionFrame& frame) {
+  while (at_ != view_->end()) {
+    const ros::Time time = at_->getTime();
+    if (pending_.particles && time > now_) break;
+    now_ = time;
+    take(*at_);
+    ++at_;
+  }
+  if (!pending_.particles) return false;
+  frame = pending_;
+  pending_.particles.reset();
+  return true;
+}
+
+void SessionFrames::take(const rosbag::MessageInstance& message) {
+  if (const auto topology = message.instantiate<vibe_msgs::TissueTopology>()) pending_.topology = topology;
+  if (const auto sutures = message.instantiate<vibe_msgs::SutureArray>()) pending_.sutures = sutures;
+  if (const auto joints = message.instantiate<sensor_msgs::JointState>())
+    poses_->setJoints(joints->name, joints->position);
+  if (const auto particles = message.instantiate<sensor_msgs::PointCloud2>()) pending_.particles = particles;
+}
+
+double SessionFrames::end() const {
+  return rosbag::View(bag_).getEndTime().toSec();
+}
+
+double SessionFrames::progress() const {
+  const double whole = (view_->getEndTime() - view_->getBeginTime()).toSec();
+  return whole > 0 ? (now_ - view_->getBeginTime()).toSec() / whole : 1;
+}
+
+}  // namespace vibe::endoscope

@@ -1,0 +1,52 @@
+#pragma once
+#include <sensor_msgs/PointCloud2.h>
+#include <vibe_msgs/SutureArray.h>
+#include <vibe_msgs/TissueTopology.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "truth/truth_scene.hpp"
+#include "vibe_render/geometry/tissue_mesh.hpp"
+
+namespace vibe::endoscope {
+
+/// The scene of the truth from the messages that the endoscope's image is drawn from. Its frame is that of the
+/// particles. Functions that take a message return one sentence if it is wrong, and the scene stays as it is.
+class TruthWorld {
+ public:
+  /// Pose of a frame in the frame of the scene at the time that is looked at.
+  using PoseOf = std::function<std::optional<Eigen::Isometry3d>(const std::string& frame)>;
+
+  /// @param description  URDF of the instrument
+  /// @throws std::runtime_error  Embree cannot be used, or the instrument has more parts than there are labels
+  explicit TruthWorld(const std::string& description);
+
+  std::string setTopology(const vibe_msgs::TissueTopology& message);
+  std::string setParticles(const sensor_msgs::PointCloud2& message);
+  std::string setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf);
+  void placeInstrument(const PoseOf& poseOf);
+  void commit() { scene_.commit(); }
+
+  const TruthScene& scene() const { return scene_; }
+  /// The table of labels (labelText()).
+  std::string labels() const { return labelText(labelTable(scene_.partNames())); }
+  /// What of the robot description cannot be read, one sentence each.
+  const std::vector<std::string>& problems() const { return problems_; }
+
+ private:
+  struct Part {
+    std::string frame;
+    std::uint32_t body;
+  };
+  TruthScene scene_;
+  std::vector<Part> parts_;
+  std::vector<std::string> problems_;
+  render::TissueMesh mesh_;
+  render::TissueFrame frame_;
+  bool has_mesh_ = false;
+};
+
+}  // namespace vibe::endoscope

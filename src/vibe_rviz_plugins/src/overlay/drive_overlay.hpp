@@ -1,0 +1,42 @@
+#pragma once
+#include <QImage>
+#include <array>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "drive/drive_keys.hpp"
+#include "drive/scope_drive.hpp"
+
+namespace vibe::rviz_plugins {
+
+/// What the overlay of the tool 'Drive scope' shows.
+struct DriveHud {
+  std::set<int> keys_down;  ///< Qt::Key; their caps light up
+  DriveGear gear = DriveGear::Normal;
+  Joints joints{};  ///< NaN: unknown
+  JointLimits limits{};
+  std::array<bool, 6> buttons{};                               ///< in the order of scope/buttons
+  double force = std::numeric_limits<double>::quiet_NaN();     ///< of the tissue on the tool [N]; NaN: unknown
+  double pressure = std::numeric_limits<double>::quiet_NaN();  ///< gauge [Pa]; NaN: unknown
+  std::string tissue, needle, bites;  ///< what the tool does, where the needle is, how many bites: a few words each
+  std::string trouble;                ///< why nothing moves; empty if all is well
+  FirstStep step;                     ///< shown if there is no trouble
+};
+
+// Images with transparent parts. `scale` 1 suits a view of 640 x 480 pixels.
+
+/// The table of keys.
+QImage drawnKeys(const DriveHud& hud, double scale);
+/// Joints, force, pressure, what the tool does, and buttons.
+QImage drawnState(const DriveHud& hud, double scale);
+/// One line: the trouble, or the next step. Not wider than `width` pixels; a longer sentence is broken.
+QImage drawnBanner(const DriveHud& hud, double scale, int width);
+
+/// Scale of the overlay in a view of this size [pixels]: the panels at the sides leave the middle free.
+double overlayScale(int width, int height);
+
+/// Whether both panels fit into a view of this width [pixels] with a gap between them. If not, the keys are shown.
+bool sitBeside(const QImage& keys, const QImage& state, int width);
+
+}  // namespace vibe::rviz_plugins
