@@ -2,6 +2,12 @@
 
 #include "vibe_core/common/arithmetic.hpp"
 
+/// In what vibe_kernels() compiles for an instruction set VIBE_KERNEL_SET is its name, Sse2, FusedSse2 or Avx2, and
+/// VIBE_KERNEL(name) is nameSse2, nameFusedSse2 or nameAvx2: the function of a kernel for that set.
+#define VIBE_KERNEL(name) VIBE_KERNEL_OF(name, VIBE_KERNEL_SET)
+#define VIBE_KERNEL_OF(name, set) VIBE_KERNEL_JOINED(name, set)
+#define VIBE_KERNEL_JOINED(name, set) name##set
+
 namespace vibe {
 
 /// The versions of a kernel. The last three give the same bits; a kernel without one of its own for AVX-512 uses that

@@ -14,6 +14,13 @@ namespace vibe {
 /// SSE2 with an emulated fused multiply-add: slow, with the bits of the processors that have one.
 struct FusedSse2 : xsimd::sse2 {};
 
+/// What KernelSets::VIBE_KERNEL_SET compiles for.
+struct KernelSets {
+  using Sse2 = xsimd::sse2;
+  using FusedSse2 = vibe::FusedSse2;
+  using Avx2 = xsimd::fma3<xsimd::avx2>;
+};
+
 }  // namespace vibe
 
 namespace xsimd::types {

@@ -38,4 +38,13 @@ struct DenseKernel {
 };
 
 }  // namespace
+
+DenseUpdate<float> VIBE_KERNEL(floatUpdate)() {
+  return DenseKernel<float, KernelSets::VIBE_KERNEL_SET>::update;
+}
+
+DenseUpdate<double> VIBE_KERNEL(doubleUpdate)() {
+  return DenseKernel<double, KernelSets::VIBE_KERNEL_SET>::update;
+}
+
 }  // namespace vibe

@@ -282,4 +282,13 @@ struct PanelKernel {
 };
 
 }  // namespace
+
+PanelKernels VIBE_KERNEL(halfKernels)() {
+  return PanelKernel<KernelSets::VIBE_KERNEL_SET, std::uint16_t>::functions();
+}
+
+PanelKernels VIBE_KERNEL(floatKernels)() {
+  return PanelKernel<KernelSets::VIBE_KERNEL_SET, float>::functions();
+}
+
 }  // namespace vibe
