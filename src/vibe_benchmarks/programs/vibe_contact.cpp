@@ -3,7 +3,6 @@
 #include <iostream>
 #include <string>
 
-#include "contact/contact_states.hpp"
 #include "contact/contact_table.hpp"
 #include "contact/grip_refinement.hpp"
 #include "contact/hard_cases.hpp"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "tissue/element_worlds.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_testing/element_worlds.hpp"
 
 namespace vibe::material_energy_test {
 namespace {
