@@ -7,6 +7,7 @@
 #include "contact/tool_collision.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shape_matching_kernel.hpp"
+#include "vibe_core/constraints/constraint_block.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 
 namespace vibe {
@@ -22,6 +23,7 @@ class XpbdScratch : public SolverScratch {
   ClusterSweepFunction sweep_function = nullptr;
   std::unique_ptr<ToolCollision> collision;
   XpbdPull pull;
+  std::vector<std::unique_ptr<ConstraintBlock>> added;           // each with a substepLoad()
   std::vector<Eigen::Isometry3d> poses, old_poses, ahead_poses;  // of the tool's links in world
 };
 

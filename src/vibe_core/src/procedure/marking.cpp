@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "events/emit_event.hpp"
-#include "procedure/marking_touch.hpp"
 #include "procedure/phase.hpp"
 
 namespace vibe {
@@ -55,12 +54,12 @@ void recordBurns(const Model& model, State& state, MarkingScratch& scratch, std:
 }  // namespace
 
 MarkingScratch::MarkingScratch(const Model& model)
-    : beam(model.organ.surface), finder(model.organ), neighbours(vertexNeighbours(model.organ.surface)) {
+    : beam(model.organ.surface),
+      finder(model.organ),
+      neighbours(vertexNeighbours(model.organ.surface)),
+      deformation(makeMarkingDeformation(model)) {
   burns.reserve(neighbours.size());
-  if (model.scene.marking->deformation == "gradient") touch = std::make_unique<MarkingTouch>(model);
 }
-
-MarkingScratch::~MarkingScratch() = default;
 
 void updateMarking(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, const BeamStep& step,
                    State& state, MarkingScratch& scratch, std::vector<Event>& events) {

@@ -41,6 +41,6 @@ double holdOfBite(const SutureScene& scene, const Bite& bite);
 void updateThreads(const Model& model, State& state, std::vector<Event>& events);
 
 /// Lengthens all threads until they have no tension, for tissue that was put back to rest.
-void slackenThreads(State& state);
+void slackenThreads(const Model& model, State& state);
 
 }  // namespace vibe
