@@ -40,7 +40,7 @@ const std::vector<Packaged>& packaged() {
   return all;
 }
 
-bool contains(const std::vector<Choice>& choices, const std::string& word) {
+bool hasWord(const std::vector<Choice>& choices, const std::string& word) {
   for (const Choice& choice : choices)
     if (choice.word == word) return true;
   return false;
@@ -63,7 +63,7 @@ std::vector<Choice> choicesNotLoaded(const std::string& key) {
   const std::vector<Choice> loaded = choicesOf(key);
   std::vector<Choice> others;
   for (const auto& [of, choice] : packaged())
-    if (of == key && !contains(loaded, choice.word)) others.push_back(choice);
+    if (of == key && !hasWord(loaded, choice.word)) others.push_back(choice);
   return others;
 }
 
@@ -75,7 +75,7 @@ std::string sayNotLoaded(const Choice& choice) {
 
 void checkChoice(const std::string& key, const std::string& word) {
   const std::vector<Choice> loaded = choicesOf(key);
-  if (contains(loaded, word)) return;
+  if (hasWord(loaded, word)) return;
   for (const Choice& other : choicesNotLoaded(key))
     if (other.word == word) throw Error(key + ": " + sayNotLoaded(other));
   std::vector<std::string> words;
@@ -90,7 +90,7 @@ void addChoice(const std::string& key, const Choice& choice) {
   if (list == all.of_key.end()) throw Error(key + ": takes no words of other packages; use a key that does");
   if (!isWord(choice.word))
     throw Error(key + ": '" + choice.word + "' is not a name for it; use small letters, digits and '_'");
-  if (contains(list->second, choice.word))
+  if (hasWord(list->second, choice.word))
     throw Error(key + ": '" + choice.word + "' exists already; choose another name");
   list->second.push_back(choice);
 }
