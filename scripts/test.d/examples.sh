@@ -80,7 +80,7 @@ done
 programKnowsTheLaw() {
   local library=$scratch/law/devel/lib/libvibe_example_law.so headless=$devel/lib/vibe_core/vibe_headless
   printf 'geometry: {kind: sphere, particles: 200}\ntissue: {law: polynomial}\n' >"$scratch/polynomial.yaml"
-  LD_PRELOAD=$library "$headless" --quiet --duration 0.1 --scene "$scratch/polynomial.yaml" || return 1
+  VIBE_PLUGINS=$library "$headless" --quiet --duration 0.1 --scene "$scratch/polynomial.yaml" || return 1
   refuses 2 "polynomial.yaml:2: tissue.law: 'polynomial' is not known here" \
     "$headless" --quiet --duration 0.1 --scene "$scratch/polynomial.yaml"
 }

@@ -1,4 +1,5 @@
 // sources: src/scene/[!m]*.cpp src/common/package_path.cpp src/common/own_place.cpp src/geometry/stomach_knots.cpp
+// sources: src/common/plugins.cpp
 // packages: yaml-cpp
 #include <cstdlib>
 #include <string>

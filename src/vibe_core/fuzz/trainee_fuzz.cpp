@@ -2,7 +2,7 @@
 // sources: src/trainee/protocol.cpp src/trainee/protocol_reader.cpp src/trainee/goal.cpp src/trainee/skill.cpp
 // sources: src/trainee/suture_pattern.cpp src/input/step_input.cpp src/geometry/anatomy.cpp
 // sources: src/suture/technique.cpp src/suture/technique_patterns.cpp src/suture/technique_templates.cpp
-// sources: src/suture/technique_wall.cpp src/suture/technique_rays.cpp
+// sources: src/suture/technique_wall.cpp
 // sources: src/scene/yaml_source.cpp src/scene/yaml_guard.cpp src/scene/unit.cpp src/scene/nearest_key.cpp
 // sources: src/common/elementary_*.cpp
 // packages: yaml-cpp bullet

@@ -1,9 +1,10 @@
 #include "pulling/pulled_plate.hpp"
-#include "constraints/group_draw.hpp"
 
 #include <algorithm>
 
 #include "output/result_row.hpp"
+#include "procedure/thread_events.hpp"
+#include "vibe_core/procedure/cinch_model.hpp"
 #include "vibe_core/procedure/thread.hpp"
 #include "vibe_core/suture/technique.hpp"
 
@@ -83,17 +84,14 @@ PulledPlate::PulledPlate(const CaseModel& plate, const PullWay& way)
   suture.tension = {0};
   suture.technique = static_cast<std::uint8_t>(Technique::Other);
   suture.stage = Suture::Stage::Cinching;
-  if (simulation_.model().scene.suture->cinch_model == "groups") findGroup(simulation_.model(), state(), suture);
+  if (const auto& cinch = simulation_.model().cinch) cinch->begin(simulation_.model(), state(), suture);
 }
 
 bool PulledPlate::draw() {
   const SutureScene& scene = *simulation_.model().scene.suture;
   const double amount = scene.cinch_speed * simulation_.model().scene.step_period;
-  double drawn = 0;
-  if (scene.cinch_model == "thread")
-    drawn = drawThread(amount, set());
-  else if (groupStrain(simulation_.model(), state(), set().group) < scene.strain_limit)
-    drawn = drawGroup(amount, set());
+  const auto& cinch = simulation_.model().cinch;
+  const double drawn = cinch ? cinch->draw(simulation_.model(), state(), amount, set()) : drawThread(amount, set());
   step();
   return drawn > 0;
 }

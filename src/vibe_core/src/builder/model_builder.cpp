@@ -13,6 +13,7 @@
 #include "vibe_core/builder/tissue_registry.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/constraints/gas.hpp"
+#include "vibe_core/procedure/cinch_model.hpp"
 
 namespace vibe {
 
@@ -131,7 +132,10 @@ void finishModel(const std::string& tool_urdf, Model& model, const Progress& pro
   if (model.solver->usesSubsteps()) checkSubstepsForGas(model.substeps, for_gas);
   if (model.scene.scope) addTool(tool_urdf, model);
   if (model.scene.marking) model.dose_law.emplace(model.scene.marking->apc);
-  if (model.scene.suture) model.along = placesAlong(model.organ);
+  if (model.scene.suture) {
+    model.along = placesAlong(model.organ);
+    model.cinch = findCinchModel(model.scene.suture->cinch_model);
+  }
   if (model.scene.render_surface) model.render_surface = makeLoopSubdivision(model.organ.surface);
   if (progress) progress("ready", 1.0);
 }

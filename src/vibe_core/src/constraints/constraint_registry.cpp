@@ -5,7 +5,6 @@
 
 #include "constraints/gas_block.hpp"
 #include "constraints/grip_block.hpp"
-#include "constraints/group_block.hpp"
 #include "constraints/pull_spring_block.hpp"
 #include "constraints/self_contact_block.hpp"
 #include "constraints/thread_block.hpp"
@@ -25,13 +24,8 @@ struct Entry {
 // A new kind of constraint is one line here, its own two files, and a test. The order is that of the solver's rows and
 // of the sums over forces and energies; self-contact is first because it corrects positions before the tool does.
 const Entry kBuiltIn[] = {
-    {"self_contact", makeSelfContactBlock},
-    {"grip", makeGripBlock},
-    {"pull_spring", makePullSpringBlock},
-    {"tool_contact", makeToolContactBlock},
-    {"thread", makeThreadBlock},
-    {"gas", makeGasBlock},
-    {"group", makeGroupBlock},
+    {"self_contact", makeSelfContactBlock}, {"grip", makeGripBlock},     {"pull_spring", makePullSpringBlock},
+    {"tool_contact", makeToolContactBlock}, {"thread", makeThreadBlock}, {"gas", makeGasBlock},
 };
 
 struct Added {
@@ -85,11 +79,17 @@ std::vector<std::unique_ptr<ConstraintBlock>> makeConstraintBlocks(const Model& 
   return blocks;
 }
 
-void rejectAddedConstraints(const Model& model) {
-  for (const Entry& entry : addedEntries())
-    if (entry.make(model))
+std::vector<std::unique_ptr<ConstraintBlock>> makeSubstepBlocks(const Model& model) {
+  std::vector<std::unique_ptr<ConstraintBlock>> blocks;
+  for (const Entry& entry : addedEntries()) {
+    auto block = entry.make(model);
+    if (!block) continue;
+    if (!block->substepLoad())
       throw Error("The constraint '" + entry.name + "' needs the implicit solver; tissue.model '" +
                   model.scene.tissue.model + "' does not use it. Choose tissue.model: shell.");
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
 }
 
 }  // namespace vibe

@@ -1,6 +1,4 @@
 #include "constraints/xpbd_pull.hpp"
-#include "constraints/cinching.hpp"
-#include "constraints/group_draw.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
 
 #include <algorithm>
@@ -54,7 +52,6 @@ void XpbdPull::prepare(const Model& model, State& state) {
   thread_count_ = 0;
   pull_last_ = heldPosition(state);
   pull_sum_.setZero();
-  groups_.prepare(model, state);
   if (!model.scene.suture || model.scene.suture->cinch_model != "thread") return;
   const std::vector<Suture>& sutures = state.procedure.sutures;
   for (std::size_t s = 0; s < sutures.size(); ++s) {
@@ -69,7 +66,6 @@ void XpbdPull::prepare(const Model& model, State& state) {
 }
 
 void XpbdPull::apply(const Model& model, double substep, State& state) {
-  for (int g = 0; g < groups_.count(); ++g) applyGroup(model, g, substep, state);
   for (std::size_t t = 0; t < thread_count_; ++t) applyThread(model, threads_[t], substep, state);
   if (state.pull.holds()) applyPull(model, substep, state);
 }
@@ -87,35 +83,6 @@ void XpbdPull::applyPull(const Model& model, double substep, State& state) {
   state.energy.pull_work += force.dot(place - pull_last_);
   pull_sum_ += force;
   pull_last_ = place;
-}
-
-// All springs of a group and the way that their reaction moves its middle at once: one after the other they would push
-// the few particles of a bite to and fro.
-void XpbdPull::applyGroup(const Model& model, int number, double substep, State& state) {
-  const PulledGroup& pulled = groups_.group(number);
-  const TissueGroup& group = groups_.tissue(number, state);
-  const Eigen::Vector3d middle = middleOf(group, state);
-  const double h2 = substep * substep;
-  const auto softened = [&](std::size_t k) {
-    return pulled.stiffness[k] / (1 + pulled.stiffness[k] * h2 * model.inverse_mass[group.particle[k]]);
-  };
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of the forces on the particles if the middle stayed
-  double stiffness = 0, mobility = 0;
-  for (std::size_t k = 0; k < group.particle.size(); ++k) {
-    sum += softened(k) * (pulled.goal[k] + middle - particleAt(group.particle[k], state));
-    stiffness += softened(k);
-  }
-  for (std::size_t k = 0; k < group.middle.size(); ++k)
-    mobility += h2 * group.weight[k] * group.weight[k] * model.inverse_mass[group.middle[k]];
-  const Eigen::Vector3d back = -mobility / (1 + mobility * stiffness) * sum;
-  sum += stiffness * back;
-  for (std::size_t k = 0; k < group.particle.size(); ++k) {
-    const int i = group.particle[k];
-    const Eigen::Vector3d force = softened(k) * (pulled.goal[k] + middle + back - particleAt(i, state));
-    shift(i, h2 * model.inverse_mass[i] * force, substep, state);
-  }
-  for (std::size_t k = 0; k < group.middle.size(); ++k)
-    shift(group.middle[k], -group.weight[k] * h2 * model.inverse_mass[group.middle[k]] * sum, substep, state);
 }
 
 void XpbdPull::applyThread(const Model& model, XpbdThread& thread, double substep, State& state) {
@@ -141,7 +108,6 @@ void XpbdPull::applyThread(const Model& model, XpbdThread& thread, double subste
 }
 
 void XpbdPull::report(int count, State& state) const {
-  groups_.report(state);
   if (state.pull.holds()) state.pull.force = pull_sum_ / count;
   for (std::size_t t = 0; t < thread_count_; ++t) {
     const XpbdThread& thread = threads_[t];

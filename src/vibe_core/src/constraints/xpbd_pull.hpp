@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "constraints/group_pull.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
 
 namespace vibe {
 
@@ -17,7 +18,7 @@ struct XpbdThread {
   std::vector<Eigen::Vector3d> direction;  ///< in which each bite lengthens the way, sum of unit vectors
 };
 
-/// What sutures and the hand do to the particles of XpbdSolver, by either way of pulling. Positions move as by XPBD
+/// What threads and the hand do to the particles of XpbdSolver. Positions move as by XPBD
 /// constraints whose compliance is that of the springs (Macklin, Mueller, Chentanez 2016): at rest the force is exactly
 /// that of the spring, whatever the sub-step, and no spring is too stiff for a sub-step.
 class XpbdPull {
@@ -28,11 +29,9 @@ class XpbdPull {
   void report(int count, State& state) const;
 
  private:
-  void applyGroup(const Model& model, int number, double substep, State& state);
   void applyThread(const Model& model, XpbdThread& thread, double substep, State& state);
   void applyPull(const Model& model, double substep, State& state);
 
-  GroupPull groups_;
   std::vector<XpbdThread> threads_;  // the first thread_count_ of them, so that their memory stays
   std::size_t thread_count_ = 0;
   Eigen::Vector3d pull_last_ = Eigen::Vector3d::Zero();  // place of the held patch, a sub-step ago [m]

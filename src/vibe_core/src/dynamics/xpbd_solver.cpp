@@ -15,8 +15,8 @@
 namespace vibe {
 
 std::unique_ptr<SolverWorkspace> XpbdSolver::makeWorkspace(const Model& model) const {
-  rejectAddedConstraints(model);
   auto scratch = std::make_unique<XpbdWorkspace>();
+  scratch->added = makeSubstepBlocks(model);
   const std::size_t n = static_cast<std::size_t>(model.particle_count);
   for (auto* v :
        {&scratch->old_x, &scratch->old_y, &scratch->old_z, &scratch->ahead_x, &scratch->ahead_y, &scratch->ahead_z})

@@ -54,6 +54,7 @@ XpbdSubstep::XpbdSubstep(const Model& model, const ClusterSet& clusters, const T
   scratch_.sweep.x = scratch_.ahead_x.data();
   scratch_.sweep.y = scratch_.ahead_y.data();
   scratch_.sweep.z = scratch_.ahead_z.data();
+  for (const auto& block : scratch_.added) block->substepLoad()->prepareSubsteps(model, state);
   scratch_.pull.prepare(model, state);
 }
 
@@ -62,6 +63,7 @@ void XpbdSubstep::run(int index, int count) {
   matchShapes();
   if (model_.scene.gas) updateGas();
   move();
+  for (const auto& block : scratch_.added) block->substepLoad()->apply(model_, h_, state_);
   scratch_.pull.apply(model_, h_, state_);
   holdGrip();
   resolveContacts();
@@ -248,6 +250,7 @@ void XpbdSubstep::accountDamping(double decay) {
 
 void XpbdSubstep::finish(int count) {
   storeOrientations(clusters_, scratch_.buffers, state_);
+  for (const auto& block : scratch_.added) block->substepLoad()->reportSubsteps(count, state_);
   scratch_.pull.report(count, state_);
   report_.tool_force /= count;
   report_.tool_torque /= count;

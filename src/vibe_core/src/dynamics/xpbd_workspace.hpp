@@ -7,6 +7,7 @@
 #include "contact/tool_collision.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shape_matching_kernel.hpp"
+#include "vibe_core/constraints/constraint_block.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 
 namespace vibe {
@@ -22,7 +23,8 @@ class XpbdWorkspace : public SolverWorkspace {
   ClusterSweepFunction sweep_function = nullptr;
   std::unique_ptr<ToolCollision> collision;
   XpbdPull pull;
-  LinkPoses old_tool, tool_ahead;  // before the sub-step, after the last one until the next search
+  std::vector<std::unique_ptr<ConstraintBlock>> added;  // each with a substepLoad()
+  LinkPoses old_tool, tool_ahead;                       // before the sub-step, after the last one until the next search
 };
 
 }  // namespace vibe

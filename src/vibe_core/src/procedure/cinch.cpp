@@ -1,10 +1,10 @@
 #include "procedure/cinch.hpp"
 
-#include "constraints/group_draw.hpp"
 #include "procedure/bleeding.hpp"
 #include "procedure/phase.hpp"
 #include "procedure/thread_events.hpp"
 #include "vibe_core/events/event_log.hpp"
+#include "vibe_core/procedure/cinch_model.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe {
@@ -57,18 +57,16 @@ void beginCinch(const Model& model, Suture* active, State& state, EventLog log) 
     return;
   }
   active->stage = Suture::Stage::Cinching;
-  if (model.scene.suture->cinch_model == "groups") findGroup(model, state, *active);
+  if (model.cinch) model.cinch->begin(model, state, *active);
   emitForSet(Event::Kind::CinchPulling, 0, state, log);
 }
 
-// Draws thread or, with suture.cinch_model: groups, the particles of the set up to the strain limit of the wall.
 void draw(const Model& model, const State& state, Suture& suture) {
-  const SutureScene& scene = *model.scene.suture;
-  const double amount = scene.cinch_speed * model.scene.step_period;
-  if (scene.cinch_model == "thread")
+  const double amount = model.scene.suture->cinch_speed * model.scene.step_period;
+  if (model.cinch)
+    model.cinch->draw(model, state, amount, suture);
+  else
     drawThread(amount, suture);
-  else if (groupStrain(model, state, suture.group) < scene.strain_limit)
-    drawGroup(amount, suture);
 }
 
 void endCinch(const SutureScene& scene, State& state, EventLog log) {

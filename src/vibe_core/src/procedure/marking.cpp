@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "procedure/marking_touch.hpp"
 #include "procedure/phase.hpp"
 #include "vibe_core/events/event_log.hpp"
 
@@ -54,12 +53,12 @@ void recordBurns(const Model& model, State& state, MarkingScratch& scratch, Even
 }  // namespace
 
 MarkingScratch::MarkingScratch(const Model& model)
-    : beam(model.organ.surface), finder(model.organ), neighbours(vertexNeighbours(model.organ.surface)) {
+    : beam(model.organ.surface),
+      finder(model.organ),
+      neighbours(vertexNeighbours(model.organ.surface)),
+      deformation(makeMarkingDeformation(model)) {
   burns.reserve(neighbours.size());
-  if (model.scene.marking->deformation == "gradient") touch = std::make_unique<MarkingTouch>(model);
 }
-
-MarkingScratch::~MarkingScratch() = default;
 
 void updateMarking(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, const BeamStep& step,
                    State& state, MarkingScratch& scratch, EventLog log) {

@@ -5,6 +5,7 @@
 
 #include "vibe_core/events/event_log.hpp"
 #include "vibe_core/model/model.hpp"
+#include "vibe_core/procedure/marking_deformation.hpp"
 #include "vibe_core/state/state.hpp"
 #include "vibe_core/thermal/argon_beam.hpp"
 #include "vibe_core/thermal/mark_zones.hpp"
@@ -12,23 +13,20 @@
 
 namespace vibe {
 
-class MarkingTouch;
-
 /// Scratch memory for marking. Carries nothing from one step to the next.
 class MarkingScratch {
  public:
   /// @param model  with scene.marking and a tool; must outlive this
   explicit MarkingScratch(const Model& model);
-  ~MarkingScratch();
   MarkingScratch(const MarkingScratch&) = delete;
   MarkingScratch& operator=(const MarkingScratch&) = delete;
 
   ArgonBeam beam;
   MarkFinder finder;
   std::vector<Burn> burns;
-  const std::vector<BeamShare> no_beam;      ///< the power on the wall while the pedal is up: none
-  std::vector<std::vector<int>> neighbours;  ///< (particles)
-  std::unique_ptr<MarkingTouch> touch;       ///< null unless marking.deformation is gradient
+  const std::vector<BeamShare> no_beam;             ///< the power on the wall while the pedal is up: none
+  std::vector<std::vector<int>> neighbours;         ///< (particles)
+  std::unique_ptr<MarkingDeformation> deformation;  ///< null: the solver alone moves the wall
 };
 
 /// What the argon beam needs to know about a step.

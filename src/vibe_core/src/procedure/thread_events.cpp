@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/group_draw.hpp"
 #include "procedure/bleeding.hpp"
 #include "procedure/needle.hpp"
 #include "procedure/phase.hpp"
 #include "vibe_core/events/event_log.hpp"
+#include "vibe_core/procedure/cinch_model.hpp"
 
 namespace vibe {
 
@@ -176,10 +176,10 @@ void updateThreads(const Model& model, State& state, EventLog log) {
   }
 }
 
-void slackenThreads(State& state) {
+void slackenThreads(const Model& model, State& state) {
   for (Suture& suture : state.procedure.sutures) {
     lengthenToTissue(state, suture);
-    slackenGroup(state, suture.group);
+    if (model.cinch) model.cinch->slacken(state, suture);
     std::fill(suture.tension.begin(), suture.tension.end(), 0.0);
   }
 }

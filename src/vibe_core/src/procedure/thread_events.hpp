@@ -26,6 +26,6 @@ double holdOfBite(const SutureScene& scene, const Bite& bite);
 void updateThreads(const Model& model, State& state, EventLog log);
 
 /// Lengthens all threads until they have no tension, for tissue that was put back to rest.
-void slackenThreads(State& state);
+void slackenThreads(const Model& model, State& state);
 
 }  // namespace vibe

@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 
+#include "common/plugins.hpp"
 #include "scene/printable.hpp"
 #include "scene/renamed_keys.hpp"
 #include "scene/scene_value.hpp"
@@ -235,10 +236,12 @@ Scene load(const std::string& file, int depth) {
 }  // namespace
 
 Scene loadScene(const std::string& file) {
+  loadPlugins();
   return load(file, 0);
 }
 
 Scene parseScene(const std::string& yaml, const std::string& place) {
+  loadPlugins();
   const YamlSource source = YamlSource::parse(yaml, place, kSceneLimits);
   return SceneReader(source).read();
 }

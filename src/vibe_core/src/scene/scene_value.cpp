@@ -1,5 +1,7 @@
 #include "scene/scene_value.hpp"
 
+#include "vibe_core/scene/choices.hpp"
+
 namespace vibe {
 namespace {
 
@@ -21,8 +23,16 @@ struct Reader {
   Scene& scene;
 
   void operator()(std::string& (*at)(Scene&)) const {
-    const std::vector<std::string> words = wordsOf(row);
-    at(scene) = words.empty() ? source.text(field) : source.choice(field, words);
+    std::vector<std::string> words = wordsOf(row);
+    if (words.empty()) {
+      at(scene) = source.text(field);
+      return;
+    }
+    const std::vector<Choice> others = choicesNotLoaded(row.key);
+    for (const Choice& other : others) words.push_back(other.word);
+    at(scene) = source.choice(field, words);
+    for (const Choice& other : others)
+      if (at(scene) == other.word) source.fail(field, sayNotLoaded(other));
   }
   void operator()(bool& (*at)(Scene&)) const { at(scene) = source.boolean(field); }
   void operator()(int& (*at)(Scene&)) const { at(scene) = static_cast<int>(integer()); }

@@ -18,7 +18,8 @@ std::string wordList(const std::vector<std::string>& words) {
 std::string rangeText(const SchemaRow& row) {
   if (std::holds_alternative<GeometryScene::Kind& (*)(Scene&)>(row.access)) return "stomach, mesh, sphere";
   if (std::holds_alternative<bool& (*)(Scene&)>(row.access)) return "true, false";
-  const std::vector<std::string> words = wordsOf(row);
+  std::vector<std::string> words = wordsOf(row);
+  for (const Choice& choice : choicesNotLoaded(row.key)) words.push_back(choice.word);
   if (!words.empty()) return wordList(words);
   if (std::holds_alternative<std::string& (*)(Scene&)>(row.access)) return "text";
   return showQuantity(row.low, "") + " to " + showQuantity(row.high, "");
@@ -39,6 +40,8 @@ void describeChoices(const SchemaRow& row, std::ostream& out) {
   if (choices.empty()) return;
   out << "| `" << row.key << "` | meaning |\n|---|---|\n";
   for (const Choice& choice : choices) out << "| `" << choice.word << "` | " << choice.meaning << " |\n";
+  for (const Choice& choice : choicesNotLoaded(row.key))
+    out << "| `" << choice.word << "` | " << choice.meaning << "; needs the package `" << choice.package << "` |\n";
   out << "\n";
 }
 

@@ -61,18 +61,10 @@ std::vector<SchemaRow> setRows() {
        "order of magnitude: the wall's 48 N/m at 10 mmHg over the 2 to 6 cm that a bite gathers"},
       {"suture.loose_tension", [](Scene& s) -> double& { return s.suture->loose_tension; }, "N", 0, 999,
        "a set that is cinched with less tension is loose", kChoice},
-      {"suture.cinch_model",
-       [](Scene& s) -> std::string& { return s.suture->cinch_model; },
-       "",
-       0,
-       0,
+      {"suture.cinch_model", [](Scene& s) -> std::string& { return s.suture->cinch_model; }, "", 0, 0,
        "how a cinched set draws the wall together: `thread` shortens the thread; `groups` uses equation 5 of the ViBE "
        "prototype",
-       kChoice,
-       std::nullopt,
-       nullptr,
-       false,
-       {"thread", "groups"}},
+       kChoice},
       {"suture.strain_limit", [](Scene& s) -> double& { return s.suture->strain_limit; }, "1", 0.01, 2,
        "strain of the wall, in tension or compression, at which `groups` stops drawing a particle",
        "design choice: the ViBE prototype states no value for its \"elastic limit\""},
@@ -128,19 +120,11 @@ std::vector<SchemaRow> probeRows() {
        "radius of the footprint when the probe touches the tissue", "design choice: the spacing of the particles"},
       {"marking.spread", [](Scene& s) -> double& { return s.marking->apc.spread; }, "rad", 0, 1,
        "half angle at which the footprint widens with distance", kChoice},
-      {"marking.deformation",
-       [](Scene& s) -> std::string& { return s.marking->deformation; },
-       "",
-       0,
-       0,
+      {"marking.deformation", [](Scene& s) -> std::string& { return s.marking->deformation; }, "", 0, 0,
        "how the wall deforms while the pedal is down: `solver` keeps the tissue model; `gradient` makes the wall give "
        "way "
        "to the tool in the gradient domain, without forces, as in the ViBE prototype",
-       "the shell is more accurate at the same rate",
-       std::nullopt,
-       nullptr,
-       false,
-       {"solver", "gradient"}},
+       "the shell is more accurate at the same rate"},
   };
 }
 

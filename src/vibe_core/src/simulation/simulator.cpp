@@ -8,7 +8,6 @@
 
 #include "contact/tool_motion.hpp"
 #include "procedure/marking.hpp"
-#include "procedure/marking_touch.hpp"
 #include "procedure/procedure.hpp"
 #include "procedure/set_point.hpp"
 #include "procedure/thread_events.hpp"
@@ -76,7 +75,7 @@ void recover(const Model& model, State& state, EventLog log) {
   state.energy = fresh.energy;
   state.grip.clear();
   state.pull = PullSpring();
-  slackenThreads(state);
+  slackenThreads(model, state);
   coolDown(state);
   state.tool_displacement = fresh.tool_displacement;
   state.stall = fresh.stall;
@@ -101,10 +100,9 @@ void moveTissue(const Model& model, const ToolMotion* motion, bool pedal, bool i
     model.solver->advance(model, motion, insufflator_on, state, workspace.solverWorkspace(), workspace.threadPool(),
                           report);
   };
-  MarkingTouch* touch = motion && workspace.marking() ? workspace.marking()->touch.get() : nullptr;
-  if (!touch) return solve();
-  if (pedal && MarkingTouch::mayReplaceSolver(state)) return touch->update(*motion, state, report);
-  touch->handBack(*motion, solve, state);
+  MarkingDeformation* own = motion && workspace.marking() ? workspace.marking()->deformation.get() : nullptr;
+  if (!own) return solve();
+  own->advance(*motion, pedal, solve, state, report);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <limits>
 
-#include "procedure/marking_touch.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_testing/worlds.hpp"

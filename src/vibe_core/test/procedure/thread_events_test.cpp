@@ -204,7 +204,7 @@ TEST(ThreadEvents, PutBackToRestAllThreadsAreSlack) {
   Thread thread(kCorner);
   thread.suture().tension = {9, 9, 9};
   thread.suture().length = {0.001, 0.5, 0.001};
-  slackenThreads(thread.state);
+  slackenThreads(thread.model, thread.state);
   EXPECT_NEAR(thread.suture().length[2], 0.03, 1e-12);
   EXPECT_NEAR(thread.suture().length[1], 0.5, 1e-12);
   thread.update();

@@ -187,7 +187,7 @@ Scene withSuture(const std::string& suture, const std::string& bleeding = "") {
 }
 
 TEST(SceneParser, SutureWordsNameTheNearest) {
-  EXPECT_EQ(withSuture("cinch_model: groups, classifier: printed").suture->cinch_model, "groups");
+  EXPECT_EQ(withSuture("cinch_model: thread, classifier: printed").suture->classifier, "printed");
   EXPECT_ERROR(withSuture("cinch_model: tread"),
                "dir/s.yaml:3: suture.cinch_model: 'tread' is not known here; did you mean "
                "'thread'?");

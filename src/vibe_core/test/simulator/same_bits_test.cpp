@@ -36,7 +36,7 @@ std::uint64_t afterAPress() {
 
 /// A thread draws three bites of a sheet together.
 std::uint64_t afterAPull(const std::string& model) {
-  test::PulledSheet sheet(test::sheetScene(model, model == "shell" ? "thread" : "groups"), 4);
+  test::PulledSheet sheet(test::sheetScene(model, "thread"), 4);
   sheet.draw(8e-3);
   sheet.run(1);
   EXPECT_GT(sheet.maxShift(), 1e-3);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "constraints/group_draw.hpp"
 #include "procedure/thread_events.hpp"
+#include "vibe_core/procedure/cinch_model.hpp"
 #include "vibe_core/suture/technique.hpp"
 #include "vibe_testing/worlds.hpp"
 
@@ -93,23 +93,22 @@ struct PulledSheet : World {
     set.tension = {0};
     set.technique = static_cast<std::uint8_t>(Technique::Other);
     set.stage = Suture::Stage::Cinching;
-    if (scene.suture->cinch_model == "groups") findGroup(*model, state, set);
+    if (model->cinch) model->cinch->begin(*model, state, set);
   }
 
   Suture& set() { return state.procedure.sutures.front(); }
   const Suture& set() const { return state.procedure.sutures.front(); }
   Eigen::Vector3d bite(int b) const { return bitePosition(set().bites[b], state.x, state.y, state.z); }
-  Eigen::Vector3d middle() const { return middleOf(set().group, state); }
   double apart() const { return (bite(1) - bite(0)).norm(); }
 
   /// Draws while the wall bears it, as the cinch does. @param way  of the farthest particle [m]
   void draw(double way, double speed = 15e-3) {
     const double part = speed * model->scene.step_period;
     for (double left = way; left > 1e-9; left -= part) {
-      if (set().group.empty())
+      if (model->cinch)
+        model->cinch->draw(*model, state, std::min(part, left), set());
+      else
         drawThread(std::min(part, left), set());
-      else if (groupStrain(*model, state, set().group) < model->scene.suture->strain_limit)
-        drawGroup(std::min(part, left), set());
       step();
     }
   }

@@ -48,6 +48,19 @@ struct ToolTouch {
   int direction_count = 0;
 };
 
+/// A load on the particles of a solver that divides the step. Positions move as by an XPBD constraint: what is imposed
+/// on a particle is an impulse, so its velocity changes by the displacement over the duration of the sub-step.
+class SubstepLoad {
+ public:
+  virtual ~SubstepLoad() = default;
+  /// At the start of a step.
+  virtual void prepareSubsteps(const Model& model, State& state) = 0;
+  /// In every sub-step, before the grip and contacts. @param substep  duration [s]
+  virtual void apply(const Model& model, double substep, State& state) = 0;
+  /// At the end of the step: forces to the state, work to State::energy. @param count  of sub-steps
+  virtual void reportSubsteps(int count, State& state) = 0;
+};
+
 /// One kind of load or constraint on the tissue, for example the grip or the threads. The implicit step asks its blocks
 /// in the order of registration, see constraint_registry.hpp, and knows no kinds; what the helix holds and whether the
 /// gas bears the wall's tension it reads from State. All functions run on the thread that steps; none allocates once
@@ -87,6 +100,9 @@ class ConstraintBlock {
   /// In place of the solve, while tissue that was lost is led back to rest: the nodes have been moved already, and the
   /// block gives up its forces and whatever would pull the tissue away again.
   virtual void recover(const StepContext& /*context*/) {}
+
+  /// The same load for solvers that divide the step, which ask for nothing else; null: it needs the implicit step.
+  virtual SubstepLoad* substepLoad() { return nullptr; }
 };
 
 }  // namespace vibe

@@ -13,7 +13,8 @@ namespace vibe {
 using ConstraintFactory = std::function<std::unique_ptr<ConstraintBlock>(const Model&)>;
 
 /// Adds a kind of constraint after those that exist. Simulations whose scratch memory (Workspace) is made from then on
-/// have it. Only solvers that step implicitly use blocks; the others reject a model for which the factory makes one.
+/// have it. Solvers that divide the step use its substepLoad(); they reject a model for which the factory makes a block
+/// without one.
 /// Call it before simulations run, for example at the beginning of main(); any thread may call it.
 /// @throws vibe::Error if the name is registered already
 void registerConstraint(const std::string& name, ConstraintFactory factory);
@@ -28,8 +29,8 @@ std::vector<std::string> constraintNames();
 /// The blocks of a model, in the order of constraintNames().
 std::vector<std::unique_ptr<ConstraintBlock>> makeConstraintBlocks(const Model& model);
 
-/// For solvers without blocks.
-/// @throws vibe::Error if an added kind makes a block for the model
-void rejectAddedConstraints(const Model& model);
+/// The blocks of the added kinds, for solvers that divide the step.
+/// @throws vibe::Error if one of them has no substepLoad()
+std::vector<std::unique_ptr<ConstraintBlock>> makeSubstepBlocks(const Model& model);
 
 }  // namespace vibe

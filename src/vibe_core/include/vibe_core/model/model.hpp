@@ -14,6 +14,8 @@
 
 namespace vibe {
 
+class CinchModel;
+
 /// Everything that is constant during a simulation. Can be shared between threads and any number of states.
 struct Model {
   Scene scene;  ///< as the user wrote it; nothing changes it
@@ -43,6 +45,8 @@ struct Model {
   int needle_link = -1;  ///< its origin is the needle's point
 
   std::optional<ThermalDose> dose_law;  ///< of the argon beam; empty without scene.marking
+
+  std::shared_ptr<const CinchModel> cinch;  ///< null: sets pull by their thread, or there is no scene.suture
 
   RenderSurface render_surface;  ///< empty without scene.render_surface
 

@@ -6,7 +6,7 @@
 #include "vibe_core/solver/energy_term.hpp"
 #include "vibe_core/state/state.hpp"
 
-namespace vibe {
+namespace vibe::prototype {
 
 /// A group of particles with springs to places about their set's middle, as one step sees it.
 struct PulledGroup {
@@ -22,6 +22,10 @@ class GroupPull : public EnergyTerm {
  public:
   /// Turns the offsets in the state with the sets and takes the goals of a step from them.
   void prepare(const Model& model, State& state);
+  /// One sub-step of a solver that divides the step: all springs of a group and the way that their reaction moves its
+  /// middle at once; one after the other they would push the few particles of a bite to and fro. At rest the force is
+  /// that of the springs, whatever the sub-step (XPBD: Macklin, Mueller, Chentanez 2016). @param substep  [s]
+  void applySubstep(const Model& model, double substep, State& state) const;
   /// Tensions to the sutures, half the sum of the springs' forces: two bites drawn together by a thread feel that of
   /// the thread each. Adds what the springs did to the energy account.
   void report(State& state) const;
@@ -42,4 +46,4 @@ class GroupPull : public EnergyTerm {
   int count_ = 0;
 };
 
-}  // namespace vibe
+}  // namespace vibe::prototype

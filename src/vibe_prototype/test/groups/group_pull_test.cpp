@@ -1,6 +1,6 @@
 // Pulling by the prototype's index groups, with both models of the wall.
-#include "constraints/group_pull.hpp"
-#include "constraints/group_draw.hpp"
+#include "groups/group_pull.hpp"
+#include "groups/group_draw.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "solver/sum_term.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
-namespace vibe::group_pull_test {
+namespace vibe::prototype::group_pull_test {
 namespace {
 
 using test::PulledSheet;
@@ -44,7 +44,7 @@ TEST_P(GroupPullOf, DrawsItsParticlesEvenlyTowardsTheMiddle) {
   sheet.run(1);
   const double part = 1 - 5e-3 / (4 * test::kSpacing);
   EXPECT_NEAR(sheet.set().group.drawn, 1 - part, 1e-9);
-  EXPECT_LT(sheet.middle().head<2>().norm(), 1e-5);
+  EXPECT_LT(middleOf(sheet.set().group, sheet.state).head<2>().norm(), 1e-5);
   for (int k = 1; k <= 4; ++k) {
     const Eigen::Vector3d left = sheet.position(sheetParticle(kMiddle - k, kRow));
     const Eigen::Vector3d right = sheet.position(sheetParticle(kMiddle + k, kRow));
@@ -192,4 +192,4 @@ TEST(GroupPull, IsAbsentWhereNothingPullsByGroups) {
 }
 
 }  // namespace
-}  // namespace vibe::group_pull_test
+}  // namespace vibe::prototype::group_pull_test

@@ -4,7 +4,7 @@
 
 #include "vibe_core/suture/technique.hpp"
 
-namespace vibe {
+namespace vibe::prototype {
 
 /// Current positions of the particles [m], structure of arrays; only read during the call.
 struct ParticlePositions {
@@ -48,4 +48,4 @@ std::vector<std::vector<int>> indexGroups(const ParticlePositions& particles, co
 /// Target of the groups: the mean of the bites [m]; zero without bites.
 Eigen::Vector3d middleOf(const std::vector<Eigen::Vector3d>& bites);
 
-}  // namespace vibe
+}  // namespace vibe::prototype

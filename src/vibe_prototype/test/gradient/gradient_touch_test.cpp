@@ -1,4 +1,4 @@
-#include "tissue/gradient_touch.hpp"
+#include "gradient/gradient_touch.hpp"
 
 #include <gtest/gtest.h>
 #include "vibe_testing/allocation_count.hpp"
@@ -8,7 +8,7 @@
 
 #include "vibe_testing/worlds.hpp"
 
-namespace vibe::gradient_touch_test {
+namespace vibe::prototype::gradient_touch_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -124,4 +124,4 @@ TEST(GradientTouch, DoesNotAllocateWhileTheSameIsTouched) {
 }
 
 }  // namespace
-}  // namespace vibe::gradient_touch_test
+}  // namespace vibe::prototype::gradient_touch_test

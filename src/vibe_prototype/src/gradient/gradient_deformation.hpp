@@ -5,7 +5,7 @@
 
 #include "vibe_core/geometry/surface_view.hpp"
 
-namespace vibe {
+namespace vibe::prototype {
 
 /// Nodes within a distance along edges from any of the seeds, ascending. Empty for seeds outside the surface.
 /// @param radius [m]
@@ -76,4 +76,4 @@ class GradientDeformation {
   Eigen::Matrix<double, Eigen::Dynamic, 3> right_, permuted_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::prototype

@@ -3,7 +3,7 @@
 
 #include "procedure/procedure_bench.hpp"
 
-namespace vibe::group_cinch_test {
+namespace vibe::prototype::group_cinch_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -66,4 +66,4 @@ TEST(GroupCinch, ThreadHasNoGroup) {
 }
 
 }  // namespace
-}  // namespace vibe::group_cinch_test
+}  // namespace vibe::prototype::group_cinch_test

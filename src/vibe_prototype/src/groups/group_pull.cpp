@@ -1,12 +1,12 @@
-#include "constraints/group_pull.hpp"
+#include "groups/group_pull.hpp"
 #include "common/turn.hpp"
 #include "constraints/cinching.hpp"
-#include "constraints/group_draw.hpp"
+#include "groups/group_draw.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::prototype {
 
 namespace {
 
@@ -49,6 +49,37 @@ void prepareGroup(const Model& model, State& state, int number, PulledGroup& pul
   }
 }
 
+// A displacement imposed on a particle is an impulse.
+void shift(int i, const Eigen::Vector3d& by, double substep, State& state) {
+  state.x[i] += by.x(), state.y[i] += by.y(), state.z[i] += by.z();
+  state.vx[i] += by.x() / substep, state.vy[i] += by.y() / substep, state.vz[i] += by.z() / substep;
+}
+
+void applyGroup(const Model& model, const PulledGroup& pulled, const TissueGroup& group, double substep, State& state) {
+  const Eigen::Vector3d middle = middleOf(group, state);
+  const double h2 = substep * substep;
+  const auto softened = [&](std::size_t k) {
+    return pulled.stiffness[k] / (1 + pulled.stiffness[k] * h2 * model.inverse_mass[group.particle[k]]);
+  };
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of the forces on the particles if the middle stayed
+  double stiffness = 0, mobility = 0;
+  for (std::size_t k = 0; k < group.particle.size(); ++k) {
+    sum += softened(k) * (pulled.goal[k] + middle - particleAt(group.particle[k], state));
+    stiffness += softened(k);
+  }
+  for (std::size_t k = 0; k < group.middle.size(); ++k)
+    mobility += h2 * group.weight[k] * group.weight[k] * model.inverse_mass[group.middle[k]];
+  const Eigen::Vector3d back = -mobility / (1 + mobility * stiffness) * sum;
+  sum += stiffness * back;
+  for (std::size_t k = 0; k < group.particle.size(); ++k) {
+    const int i = group.particle[k];
+    const Eigen::Vector3d force = softened(k) * (pulled.goal[k] + middle + back - particleAt(i, state));
+    shift(i, h2 * model.inverse_mass[i] * force, substep, state);
+  }
+  for (std::size_t k = 0; k < group.middle.size(); ++k)
+    shift(group.middle[k], -group.weight[k] * h2 * model.inverse_mass[group.middle[k]] * sum, substep, state);
+}
+
 }  // namespace
 
 void GroupPull::prepare(const Model& model, State& state) {
@@ -89,6 +120,10 @@ double GroupPull::evaluate(const double* positions4, float* gradient4) const {
   return energy;
 }
 
+void GroupPull::applySubstep(const Model& model, double substep, State& state) const {
+  for (int g = 0; g < count_; ++g) applyGroup(model, group(g), tissue(g, state), substep, state);
+}
+
 void GroupPull::report(State& state) const {
   for (int g = 0; g < count_; ++g) {
     const PulledGroup& pulled = group(g);
@@ -110,4 +145,4 @@ void GroupPull::report(State& state) const {
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::prototype

@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "tissue/gradient_deformation.hpp"
+#include "gradient/gradient_deformation.hpp"
 #include "vibe_core/geometry/surface_view.hpp"
 
-namespace vibe {
+namespace vibe::prototype {
 
 /// A particle inside a tool, and its target on the surface of the tool.
 struct Touch {
@@ -61,4 +61,4 @@ class GradientTouch {
   std::vector<double> base_x_, base_y_, base_z_;
 };
 
-}  // namespace vibe
+}  // namespace vibe::prototype

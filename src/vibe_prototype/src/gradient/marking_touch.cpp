@@ -1,4 +1,4 @@
-#include "procedure/marking_touch.hpp"
+#include "gradient/marking_touch.hpp"
 
 #include <algorithm>
 
@@ -6,20 +6,26 @@
 #include "geometry/lumen.hpp"
 #include "vibe_core/constraints/gas.hpp"
 
-namespace vibe {
+namespace vibe::prototype {
 
 namespace {
 
 constexpr double kFarthest = 0.8e-3;  // move of a particle in a step of the handover; design choice [m]
 
+bool mayReplaceSolver(const State& state) {
+  const std::vector<Suture>& sutures = state.procedure.sutures;
+  const bool draws = !sutures.empty() && sutures.back().stage == Suture::Stage::Cinching;
+  return !draws && !state.pull.holds() && state.solver.recovery_steps == 0;
+}
+
 }  // namespace
 
 MarkingTouch::MarkingTouch(const Model& model) : model_(model), collision_(*model.tool) {}
 
-bool MarkingTouch::mayReplaceSolver(const State& state) {
-  const std::vector<Suture>& sutures = state.procedure.sutures;
-  const bool draws = !sutures.empty() && sutures.back().stage == Suture::Stage::Cinching;
-  return !draws && !state.pull.holds() && state.solver.recovery_steps == 0;
+void MarkingTouch::advance(const ToolMotion& motion, bool pedal, const std::function<void()>& solve, State& state,
+                           StepReport& report) {
+  if (pedal && mayReplaceSolver(state)) return update(motion, state, report);
+  handBack(motion, solve, state);
 }
 
 void MarkingTouch::update(const ToolMotion& motion, State& state, StepReport& report) {
@@ -98,4 +104,4 @@ void MarkingTouch::find(const State& state, const std::vector<double>& x, const 
   });
 }
 
-}  // namespace vibe
+}  // namespace vibe::prototype

@@ -1,14 +1,14 @@
-#include "constraints/group_draw.hpp"
+#include "groups/group_draw.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "constraints/cinching.hpp"
-#include "suture/index_groups.hpp"
+#include "groups/index_groups.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
-namespace vibe {
+namespace vibe::prototype {
 
 namespace {
 
@@ -89,4 +89,4 @@ void slackenGroup(const State& state, TissueGroup& group) {
   group.drawn = 0;
 }
 
-}  // namespace vibe
+}  // namespace vibe::prototype

@@ -1,8 +1,8 @@
-#include "tissue/gradient_touch.hpp"
+#include "gradient/gradient_touch.hpp"
 
 #include <algorithm>
 
-namespace vibe {
+namespace vibe::prototype {
 
 namespace {
 
@@ -53,4 +53,4 @@ int GradientTouch::update(const SurfaceView& base, const FindTouches& find, std:
   return static_cast<int>(handles_.size());
 }
 
-}  // namespace vibe
+}  // namespace vibe::prototype

@@ -1,5 +1,5 @@
-#include "suture/index_groups.hpp"
-#include "constraints/group_draw.hpp"
+#include "groups/index_groups.hpp"
+#include "groups/group_draw.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe::index_groups_test {
+namespace vibe::prototype::index_groups_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -203,4 +203,4 @@ TEST(MiddleOf, IsTheMeanOfTheBites) {
 }
 
 }  // namespace
-}  // namespace vibe::index_groups_test
+}  // namespace vibe::prototype::index_groups_test

@@ -1,4 +1,4 @@
-#include "tissue/gradient_deformation.hpp"
+#include "gradient/gradient_deformation.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 #include "vibe_core/common/error.hpp"
 
-namespace vibe {
+namespace vibe::prototype {
 
 namespace {
 
@@ -234,4 +234,4 @@ void GradientDeformation::deform(const std::vector<Vector3d>& targets, std::vect
   }
 }
 
-}  // namespace vibe
+}  // namespace vibe::prototype

@@ -2,7 +2,7 @@
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 
-namespace vibe {
+namespace vibe::prototype {
 
 /// Finds the group of a set whose technique is recognised: all of indexGroups(), with the whole legs of a U.
 /// @throws vibe::Error  as indexGroups() does
@@ -22,4 +22,4 @@ Eigen::Vector3d middleOf(const TissueGroup& group, const State& state);
 /// The springs become as long as they are: for tissue that was put back to rest.
 void slackenGroup(const State& state, TissueGroup& group);
 
-}  // namespace vibe
+}  // namespace vibe::prototype

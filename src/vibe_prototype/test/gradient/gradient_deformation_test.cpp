@@ -1,4 +1,4 @@
-#include "tissue/gradient_deformation.hpp"
+#include "gradient/gradient_deformation.hpp"
 
 #include <gtest/gtest.h>
 #include "vibe_testing/allocation_count.hpp"
@@ -12,7 +12,7 @@
 #include "vibe_testing/expect_error.hpp"
 #include "vibe_testing/worlds.hpp"
 
-namespace vibe::gradient_deformation_test {
+namespace vibe::prototype::gradient_deformation_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -306,4 +306,4 @@ TEST(GradientDeformation, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace vibe::gradient_deformation_test
+}  // namespace vibe::prototype::gradient_deformation_test

@@ -5,12 +5,13 @@
 
 #include "contact/tool_collision.hpp"
 #include "contact/tool_motion.hpp"
-#include "tissue/gradient_touch.hpp"
+#include "gradient/gradient_touch.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
+#include "vibe_core/procedure/marking_deformation.hpp"
 #include "vibe_core/state/state.hpp"
 
-namespace vibe {
+namespace vibe::prototype {
 
 /// Replaces the solver while the pedal is down (marking.deformation: gradient): the wall as it was when the pedal went
 /// down is deformed by the tool and by the tissue that the helix holds, see GradientTouch and its limits. Meanwhile
@@ -19,21 +20,19 @@ namespace vibe {
 /// equilibrium of the solver, so its first steps are shortened until they are small by themselves.
 ///
 /// Not used while a cinch draws thread, while the tissue is pulled, or during a recovery: these need the solver.
-class MarkingTouch {
+class MarkingTouch : public MarkingDeformation {
  public:
   /// @param model  with a tool; must outlive this
   explicit MarkingTouch(const Model& model);
 
-  static bool mayReplaceSolver(const State& state);
+  void advance(const ToolMotion& motion, bool pedal, const std::function<void()>& solve, State& state,
+               StepReport& report) override;
 
-  /// One step.
+ private:
   void update(const ToolMotion& motion, State& state, StepReport& report);
-
   /// One step of the solver from the shape that the gradient domain has left. No particle moves farther than 0.8 mm
   /// plus the motion of the tool.
   void handBack(const ToolMotion& motion, const std::function<void()>& solver_step, State& state);
-
- private:
   void limitStep(double farthest, State& state) const;
   void storeBase(State& state) const;
   void updateGas(State& state) const;
@@ -46,4 +45,4 @@ class MarkingTouch {
   LinkPoses old_poses_, poses_;  // of the tool's links in world, before and after a step
 };
 
-}  // namespace vibe
+}  // namespace vibe::prototype

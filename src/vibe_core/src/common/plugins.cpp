@@ -1,0 +1,40 @@
+#include "common/plugins.hpp"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <mutex>
+#include <sstream>
+
+#include "common/own_place.hpp"
+#include "vibe_core/common/error.hpp"
+
+namespace vibe {
+
+namespace {
+
+std::string findPlugin(const std::string& name) {
+  if (name.find('/') != std::string::npos) return name;
+  std::error_code none;
+  for (const std::filesystem::path& folder : ownFolders())
+    if (std::filesystem::is_regular_file(folder / name, none)) return (folder / name).string();
+  return name;
+}
+
+void loadAll() {
+  const char* names = std::getenv("VIBE_PLUGINS");
+  std::istringstream list(names == nullptr ? "" : names);
+  for (std::string name; std::getline(list, name, ':');)
+    if (!name.empty() && dlopen(findPlugin(name).c_str(), RTLD_NOW) == nullptr)
+      throw Error("VIBE_PLUGINS names '" + name + "', which cannot be loaded (" + dlerror() +
+                  "); build its package, or give the path of the library.");
+}
+
+}  // namespace
+
+void loadPlugins() {
+  static std::once_flag once;
+  std::call_once(once, loadAll);
+}
+
+}  // namespace vibe

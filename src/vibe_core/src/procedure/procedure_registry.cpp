@@ -1,0 +1,43 @@
+#include "scene/word_registry.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/procedure/cinch_model.hpp"
+#include "vibe_core/procedure/marking_deformation.hpp"
+
+namespace vibe {
+
+namespace {
+
+WordRegistry<std::shared_ptr<const CinchModel>>& cinchModels() {
+  static WordRegistry<std::shared_ptr<const CinchModel>> registry("suture.cinch_model");
+  return registry;
+}
+
+WordRegistry<MarkingDeformationFactory>& markingDeformations() {
+  static WordRegistry<MarkingDeformationFactory> registry("marking.deformation");
+  return registry;
+}
+
+}  // namespace
+
+void registerCinchModel(const std::string& name, const std::string& meaning, std::shared_ptr<const CinchModel> model) {
+  if (!model) throw Error("cinch model '" + name + "': there is no model; pass one");
+  cinchModels().add(name, meaning, std::move(model));
+}
+
+std::shared_ptr<const CinchModel> findCinchModel(const std::string& name) {
+  return cinchModels().find(name);
+}
+
+void registerMarkingDeformation(const std::string& name, const std::string& meaning,
+                                MarkingDeformationFactory factory) {
+  if (!factory) throw Error("marking deformation '" + name + "': there is no factory; pass one");
+  markingDeformations().add(name, meaning, std::move(factory));
+}
+
+std::unique_ptr<MarkingDeformation> makeMarkingDeformation(const Model& model) {
+  const MarkingDeformationFactory factory = markingDeformations().find(model.scene.marking->deformation);
+  return factory ? factory(model) : nullptr;
+}
+
+}  // namespace vibe
