@@ -13,7 +13,7 @@
 #include "pulling/pulling_table.hpp"
 #include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "suture/set_scenario.hpp"
 #include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <dirent.h>
 
 #include "case_file.hpp"
-#include "vibe_core/scene/choices.hpp"
+#include "vibe_core/scene/words.hpp"
 #include "vibe_testing/expect_error.hpp"
 
 namespace vibe::benchmarks::fem_case_test {

@@ -8,8 +8,8 @@
 #include "suture/set_scenario.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
-#include "vibe_core/procedure/bite.hpp"
+#include "vibe_core/common/files.hpp"
+#include "vibe_core/procedure/stitch.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/suture/technique.hpp"
 

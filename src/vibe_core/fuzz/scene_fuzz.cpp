@@ -1,5 +1,4 @@
-// sources: src/scene/[!m]*.cpp src/common/package_path.cpp src/common/own_place.cpp src/geometry/stomach_knots.cpp
-// sources: src/common/plugins.cpp
+// sources: src/scene/[!m]*.cpp src/common/files.cpp src/geometry/stomach_knots.cpp src/common/plugins.cpp
 // packages: yaml-cpp
 #include <cstdlib>
 #include <string>

@@ -1,9 +1,7 @@
-// sources: src/geometry/mesh_stream.cpp src/geometry/mesh_file.cpp src/geometry/mesh_header.cpp
-// sources: src/geometry/assimp_reader.cpp src/geometry/helper_process.cpp src/common/own_place.cpp
-// sources: src/geometry/surface_check.cpp src/geometry/self_intersection.cpp src/geometry/triangle_tree.cpp
-// sources: src/geometry/surface_mesh.cpp src/geometry/remesh.cpp src/geometry/editable_mesh.cpp
-// sources: src/geometry/smoothing.cpp src/geometry/regions.cpp src/geometry/surface_operators.cpp
-// sources: src/geometry/stomach_axis.cpp src/geometry/landmark_estimate.cpp
+// sources: src/geometry/mesh_stream.cpp src/geometry/mesh_file.cpp src/geometry/assimp_reader.cpp src/common/files.cpp
+// sources: src/geometry/surface_check.cpp src/geometry/triangle_tree.cpp src/geometry/surface_mesh.cpp
+// sources: src/geometry/remesh.cpp src/geometry/editable_mesh.cpp src/geometry/surface_operators.cpp
+// sources: src/geometry/regions.cpp src/geometry/stomach_axis.cpp src/geometry/landmark_estimate.cpp
 // sources: src/common/elementary_*.cpp
 // includes: ../vibe_firmware/fuzz
 // units: 100
@@ -12,7 +10,6 @@
 #include <string>
 
 #include "fuzz_input.hpp"
-#include "geometry/landmark_estimate.hpp"
 #include "geometry/mesh_stream.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/remesh.hpp"

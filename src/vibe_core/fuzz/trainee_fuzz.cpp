@@ -1,10 +1,8 @@
-// sources: src/trainee/trainee_script.cpp src/trainee/script_reader.cpp src/trainee/timeline.cpp src/trainee/tremor.cpp
-// sources: src/trainee/protocol.cpp src/trainee/protocol_reader.cpp src/trainee/goal.cpp src/trainee/skill.cpp
-// sources: src/trainee/suture_pattern.cpp src/input/step_input.cpp src/geometry/anatomy.cpp
-// sources: src/suture/technique.cpp src/suture/technique_patterns.cpp src/suture/technique_templates.cpp
-// sources: src/suture/technique_wall.cpp
-// sources: src/scene/yaml_source.cpp src/scene/yaml_guard.cpp src/scene/unit.cpp src/scene/nearest_key.cpp
-// sources: src/common/elementary_*.cpp
+// sources: src/trainee/trainee_script.cpp src/trainee/script_reader.cpp src/trainee/skill.cpp src/trainee/protocol.cpp
+// sources: src/trainee/protocol_reader.cpp src/trainee/suture_pattern.cpp src/input/step_input.cpp
+// sources: src/geometry/organ.cpp src/suture/technique.cpp src/suture/technique_patterns.cpp
+// sources: src/suture/technique_templates.cpp src/scene/yaml_source.cpp src/scene/yaml_guard.cpp src/scene/unit.cpp
+// sources: src/scene/words.cpp src/common/elementary_*.cpp
 // packages: yaml-cpp bullet
 #include <cmath>
 #include <cstdlib>

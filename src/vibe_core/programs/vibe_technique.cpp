@@ -11,7 +11,6 @@
 #include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/suture/technique.hpp"
-#include "vibe_core/suture/technique_csv.hpp"
 #include "vibe_core/suture/technique_table.hpp"
 
 namespace {

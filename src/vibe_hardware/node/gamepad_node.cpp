@@ -6,7 +6,7 @@
 #include <linux/input-event-codes.h>
 
 #include "hardware_messages.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"
 #include "vibe_hardware/gamepad/pad_source.hpp"

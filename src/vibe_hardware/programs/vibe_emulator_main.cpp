@@ -9,7 +9,7 @@
 
 #include "vibe_core/common/command_line.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/emulator/device_server.hpp"
 #include "vibe_hardware/emulator/emulator.hpp"

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/common/step_timer.hpp"
 #include "vibe_hardware/gamepad/pad_drive.hpp"
 #include "vibe_hardware/gamepad/pad_recording.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vibe_core/common/command_line.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_hardware/emulator/hand.hpp"
 #include "vibe_hardware/emulator/haptic_loop.hpp"

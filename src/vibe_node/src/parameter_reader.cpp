@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe::node {

@@ -3,8 +3,8 @@
 
 #include "groups/group_cinch.hpp"
 #include "vibe_core/constraints/constraint_registry.hpp"
-#include "vibe_core/scene/choices.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/scene/words.hpp"
 #include "vibe_testing/expect_error.hpp"
 
 namespace vibe::prototype::words_test {

@@ -1,6 +1,6 @@
 // sources: src/camera/recording_source.cpp src/calibrate/stop_list.cpp ../vibe_core/src/scene/yaml_source.cpp
-// sources: ../vibe_core/src/scene/yaml_guard.cpp ../vibe_core/src/scene/unit.cpp ../vibe_core/src/scene/nearest_key.cpp
-// sources: ../vibe_core/src/common/package_path.cpp ../vibe_core/src/common/own_place.cpp
+// sources: ../vibe_core/src/scene/yaml_guard.cpp ../vibe_core/src/scene/unit.cpp ../vibe_core/src/scene/words.cpp
+// sources: ../vibe_core/src/common/files.cpp
 // includes: ../vibe_core/src
 // packages: yaml-cpp
 #include <sys/mman.h>

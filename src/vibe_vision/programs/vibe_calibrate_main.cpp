@@ -6,7 +6,7 @@
 #include "image_files.hpp"
 #include "program_options.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/write_file.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_vision/calibrate/axis_fit.hpp"
 #include "vibe_vision/calibrate/lens_calibration.hpp"
 #include "vibe_vision/calibrate/marker_finder.hpp"

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "vibe_core/contact/tool_model.hpp"
-#include "vibe_core/geometry/surface_view.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/state/state.hpp"
 

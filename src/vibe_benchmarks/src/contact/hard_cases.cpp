@@ -6,7 +6,7 @@
 #include "contact/bench_tools.hpp"
 #include "suture/suture_session.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/trainee/trainee_script.hpp"
 
 namespace vibe::benchmarks {

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
 #include "vibe_core/scene/unit.hpp"
+#include "vibe_core/scene/words.hpp"
 
 namespace vibe::benchmarks {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "fem/mesh_generators.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/words.hpp"
 
 namespace vibe::benchmarks {
 

@@ -2,8 +2,7 @@
 
 #include "fem/case_reader.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/scene/choices.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/words.hpp"
 
 namespace vibe::benchmarks {
 namespace {

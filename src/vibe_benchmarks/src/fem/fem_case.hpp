@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fem/bench_mesh.hpp"
-#include "vibe_core/tissue/material.hpp"
+#include "vibe_core/tissue/material_registry.hpp"
 
 namespace vibe::benchmarks {
 

@@ -4,7 +4,7 @@
 
 #include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/solver/elastic_body.hpp"
-#include "vibe_core/tissue/material.hpp"
+#include "vibe_core/tissue/material_registry.hpp"
 
 namespace vibe::benchmarks {
 

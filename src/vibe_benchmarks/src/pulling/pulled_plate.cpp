@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "output/result_row.hpp"
-#include "procedure/thread_events.hpp"
-#include "vibe_core/procedure/cinch_model.hpp"
-#include "vibe_core/procedure/thread.hpp"
+#include "procedure/suturing.hpp"
+#include "vibe_core/procedure/procedure_registry.hpp"
+#include "vibe_core/procedure/stitch.hpp"
 #include "vibe_core/suture/technique.hpp"
 
 namespace vibe::benchmarks {

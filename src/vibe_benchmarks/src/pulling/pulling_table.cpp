@@ -6,7 +6,7 @@
 #include "fem/case_runner.hpp"
 #include "pulling/pulled_plate.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe::benchmarks {

@@ -7,8 +7,7 @@
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 #include "vibe_core/model/accounting.hpp"
-#include "vibe_core/procedure/bite.hpp"
-#include "vibe_core/procedure/thread.hpp"
+#include "vibe_core/procedure/stitch.hpp"
 
 namespace vibe::benchmarks {
 

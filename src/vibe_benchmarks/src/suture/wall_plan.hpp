@@ -7,7 +7,7 @@
 
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/geometry/stomach_axis.hpp"
-#include "vibe_core/geometry/surface_view.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe::benchmarks {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vibe_core/tissue/elastic_elements.hpp"
-#include "vibe_core/tissue/material_energy.hpp"
+#include "vibe_core/tissue/material_registry.hpp"
 
 namespace vibe::benchmarks {
 

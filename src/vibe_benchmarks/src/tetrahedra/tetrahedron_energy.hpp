@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "vibe_core/tissue/material_energy.hpp"
+#include "vibe_core/tissue/material_registry.hpp"
 
 // The energy of one tetrahedron and its gradient, in single or double precision.
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/elementary.hpp"
-#include "geometry/rotation.hpp"
+#include "common/turn.hpp"
 #include "geometry/surface_check.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-#include "vibe_core/geometry/anatomy.hpp"
+#include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/scene/scene.hpp"
 

@@ -4,16 +4,15 @@
 #include <cstdio>
 #include <numeric>
 
+#include "common/turn.hpp"
+#include "constraints/supports.hpp"
 #include "geometry/regions.hpp"
-#include "geometry/rotation.hpp"
-#include "scene/attachments.hpp"
 #include "tissue/cluster_builder.hpp"
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/builder/organ_builder.hpp"
 #include "vibe_core/builder/tissue_registry.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/constraints/gas.hpp"
-#include "vibe_core/procedure/cinch_model.hpp"
+#include "vibe_core/procedure/procedure_registry.hpp"
 
 namespace vibe {
 

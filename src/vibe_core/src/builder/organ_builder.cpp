@@ -1,4 +1,4 @@
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -13,8 +13,8 @@
 #include "geometry/procedural_stomach.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/remesh.hpp"
-#include "geometry/smoothing.hpp"
 #include "geometry/surface_check.hpp"
+#include "geometry/surface_operators.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 

@@ -1,19 +1,16 @@
 #include "vibe_core/builder/tissue_registry.hpp"
-#include "vibe_core/builder/wall_body.hpp"
 
 #include <map>
 #include <mutex>
 
-#include "constraints/attachment.hpp"
-#include "constraints/foundation.hpp"
+#include "constraints/supports.hpp"
 #include "dynamics/implicit_solver.hpp"
 #include "dynamics/xpbd_solver.hpp"
 #include "tissue/shape_matching.hpp"
 #include "tissue/shell_tissue.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/scene/choices.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
-#include "vibe_core/scene/tissue_model_list.hpp"
+#include "vibe_core/scene/tissue_choices.hpp"
+#include "vibe_core/scene/words.hpp"
 
 namespace vibe {
 

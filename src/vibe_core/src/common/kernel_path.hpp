@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vibe_core/common/arithmetic.hpp"
+#include "vibe_core/common/machine.hpp"
 
 /// In what vibe_kernels() compiles for an instruction set VIBE_KERNEL_SET is its name, Sse2, FusedSse2 or Avx2, and
 /// VIBE_KERNEL(name) is nameSse2, nameFusedSse2 or nameAvx2: the function of a kernel for that set.

@@ -1,9 +1,18 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "common/elementary.hpp"
+
+namespace vibe {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDegree = kPi / 180;  ///< [rad]
+
+}  // namespace vibe
 
 // Rotations with the sines and cosines of elementary.hpp. Eigen::AngleAxis, Rotation2D and Quaternion::slerp take
 // theirs from the C library.
@@ -34,6 +43,13 @@ inline Eigen::Quaterniond between(const Eigen::Quaterniond& from, const Eigen::Q
     first = math::sin(first * angle) / sine, second = math::sin(second * angle) / sine;
   }
   return Eigen::Quaterniond(first * from.coeffs() + (aligned < 0 ? -second : second) * to.coeffs());
+}
+
+/// Rotation of fixed-axis roll, pitch, yaw [rad], as in URDF: about x, then y, then z of the outer frame.
+inline Eigen::Matrix3d rotationFromRpy(const std::array<double, 3>& rpy) {
+  return (quaternionAbout(Eigen::Vector3d::UnitZ(), rpy[2]) * quaternionAbout(Eigen::Vector3d::UnitY(), rpy[1]) *
+          quaternionAbout(Eigen::Vector3d::UnitX(), rpy[0]))
+      .toRotationMatrix();
 }
 
 }  // namespace vibe

@@ -3,12 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "constraints/gas_block.hpp"
-#include "constraints/grip_block.hpp"
-#include "constraints/pull_spring_block.hpp"
-#include "constraints/self_contact_block.hpp"
-#include "constraints/thread_block.hpp"
-#include "constraints/tool_contact_block.hpp"
+#include "constraints/blocks.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/model/model.hpp"
 

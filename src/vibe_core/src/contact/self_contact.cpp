@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "contact/self_contact_distance.hpp"
-#include "contact/self_contact_law.hpp"
 #include "contact/self_contact_memory.hpp"
 #include "vibe_core/common/error.hpp"
 

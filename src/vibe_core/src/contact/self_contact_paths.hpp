@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "contact/surface_walls.hpp"
+#include "contact/self_contact_close.hpp"
 
 namespace vibe {
 

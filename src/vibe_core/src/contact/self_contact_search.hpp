@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "contact/self_contact_bounds.hpp"
+#include "contact/self_contact_close.hpp"
 #include "contact/self_contact_tree.hpp"
-#include "contact/surface_walls.hpp"
-#include "contact/vertex_triangles.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe {

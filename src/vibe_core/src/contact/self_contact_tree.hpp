@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "contact/self_contact_bounds.hpp"
-#include "contact/surface_walls.hpp"
-#include "contact/vertex_triangles.hpp"
+#include "contact/self_contact_close.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/link_shapes.hpp"
+#include "contact/urdf_document.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {

@@ -1,8 +1,10 @@
 #pragma once
-#include <Eigen/Geometry>
+
 #include <vector>
 
-#include "contact/point_distance.hpp"
+#include <Eigen/Geometry>
+
+#include "contact/shape_distance.hpp"
 #include "vibe_core/contact/tool_model.hpp"
 
 namespace vibe {
@@ -59,5 +61,18 @@ class ToolCollision {
   std::vector<Candidate> candidates_;
   std::vector<Contact> contacts_;
 };
+
+/// Calls `use` once per touched particle, with its deepest contact. Where shapes overlap, this contact leads out of
+/// both.
+/// @param contacts  in the order of their particles
+template <class Use>
+void forEachDeepest(const std::vector<Contact>& contacts, Use use) {
+  for (std::size_t first = 0, next; first < contacts.size(); first = next) {
+    std::size_t deepest = first;
+    for (next = first + 1; next < contacts.size() && contacts[next].particle == contacts[first].particle; ++next)
+      if (contacts[next].distance < contacts[deepest].distance) deepest = next;
+    use(contacts[deepest]);
+  }
+}
 
 }  // namespace vibe

@@ -4,7 +4,7 @@
 
 #include "contact/tool_approach.hpp"
 #include "contact/tool_motion.hpp"
-#include "vibe_core/contact/tool_poses.hpp"
+#include "vibe_core/contact/tool_model.hpp"
 
 namespace vibe {
 

@@ -1,9 +1,9 @@
 #include "contact/tool_motion.hpp"
 
-#include <BulletCollision/CollisionShapes/btConvexShape.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
 
 namespace vibe {
 
@@ -95,6 +95,62 @@ void updateStall(const std::array<int, kJointCount>& stopped, std::array<int, kJ
     stall[j] -= stall[j] > 0 ? 1 : stall[j] < 0 ? -1 : 0;
     if (stopped[j] != 0) stall[j] = stopped[j] * kStallSteps;
   }
+}
+
+namespace {
+
+// How a point moves with the joint that carries a link. The motion of a joint changes neither its axis nor, if it is
+// revolute, its origin.
+Eigen::Vector3d jointMotion(const ToolJoint& joint, const Eigen::Isometry3d& pose, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d axis = pose.linear() * joint.axis;
+  if (joint.type == ToolJoint::Type::Revolute) return axis.cross(point - pose.translation());
+  return axis;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 3, kJointCount> pointJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
+                                                    int link, const Eigen::Vector3d& point) {
+  Eigen::Matrix<double, 3, kJointCount> jacobian = Eigen::Matrix<double, 3, kJointCount>::Zero();
+  while (link > 0) {
+    const ToolJoint& joint = tool.joints()[link - 1];  // the joint that carries the link
+    if (joint.input >= 0) jacobian.col(joint.input) += joint.multiplier * jointMotion(joint, poses[link], point);
+    link = joint.parent_link;
+  }
+  return jacobian;
+}
+
+Eigen::Matrix<double, 3, kYieldDofs> yieldJacobian(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses,
+                                                   const ShaftBend& bend, int link, const Eigen::Vector3d& point) {
+  Eigen::Matrix<double, 3, kYieldDofs> jacobian = Eigen::Matrix<double, 3, kYieldDofs>::Zero();
+  while (link > 0) {
+    const ToolJoint& joint = tool.joints()[link - 1];
+    if (joint.station >= 0) {
+      const Eigen::Vector3d moves = jointMotion(joint, poses[link], point);
+      const ShaftBend::Share& share = bend.share(joint.station);
+      const int dof = kShaftDof + 2 * joint.direction;
+      jacobian.col(dof) += share.mean * moves;
+      jacobian.col(dof + 1) += share.change * moves;
+      jacobian.col(Insertion) += bend.angleRate(joint.station, joint.direction) * moves;
+    } else if (joint.input >= 0 && joint.input < kScopeJointCount) {
+      jacobian.col(joint.input) += joint.multiplier * jointMotion(joint, poses[link], point);
+    }
+    link = joint.parent_link;
+  }
+  return jacobian;
+}
+
+// A link that turns by w moves the end of an arm r by w x r, and w is half the sum of e x (w x e) over three axes e.
+YieldVector yieldForce(const ToolModel& tool, const std::vector<Eigen::Isometry3d>& poses, const ShaftBend& bend,
+                       int link, const Eigen::Vector3d& point, const Eigen::Vector3d& force,
+                       const Eigen::Vector3d& torque) {
+  const auto there = yieldJacobian(tool, poses, bend, link, point);
+  YieldVector sum = there.transpose() * force;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
+    sum += 0.5 * (yieldJacobian(tool, poses, bend, link, point + axis) - there).transpose() * torque.cross(axis);
+  }
+  return sum;
 }
 
 }  // namespace vibe

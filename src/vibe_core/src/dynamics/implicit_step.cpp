@@ -1,15 +1,13 @@
-#include "dynamics/implicit_step.hpp"
+#include "dynamics/implicit_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "common/elementary.hpp"
-#include "contact/tool_jacobian.hpp"
-#include "dynamics/tool_contact_rows.hpp"
-#include "geometry/lumen.hpp"
-#include "model/max_speed.hpp"
-#include "model/tool_push.hpp"
+#include "contact/tool_motion.hpp"
+#include "geometry/surface_operators.hpp"
+#include "model/step_accounts.hpp"
 #include "solver/stepper_workspace.hpp"
 #include "vibe_core/model/accounting.hpp"
 

@@ -1,10 +1,81 @@
 #pragma once
-#include <memory>
 
+#include <memory>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "constraints/xpbd_pull.hpp"
+#include "contact/tool_collision.hpp"
+#include "tissue/cluster_builder.hpp"
 #include "tissue/shape_matching.hpp"
+#include "tissue/shape_matching_kernel.hpp"
+#include "vibe_core/common/thread_pool.hpp"
+#include "vibe_core/constraints/constraint_registry.hpp"
+#include "vibe_core/model/model.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
+#include "vibe_core/state/state.hpp"
 
 namespace vibe {
+
+/// Buffers of XpbdSolver.
+class XpbdWorkspace : public SolverWorkspace {
+ public:
+  std::vector<double> old_x, old_y, old_z;        // positions before the sub-step [m]
+  std::vector<double> ahead_x, ahead_y, ahead_z;  // positions a little ahead, where elastic forces are taken [m]
+  std::vector<double> foundation_rate;  // stiffness of each particle's piece of foundation over its mass [1/s^2]
+  SweepBuffers buffers;
+  ClusterSweep sweep{};
+  ClusterSweepFunction sweep_function = nullptr;
+  std::unique_ptr<ToolCollision> collision;
+  XpbdPull pull;
+  std::vector<std::unique_ptr<ConstraintBlock>> added;  // each with a substepLoad()
+  LinkPoses old_tool, tool_ahead;                       // before the sub-step, after the last one until the next search
+};
+
+class ToolMotion;
+
+/// The sub-steps of one step of XpbdSolver: binds what they share, so that each part of a sub-step is a short function.
+class XpbdSubstep {
+ public:
+  XpbdSubstep(const Model& model, const ClusterSet& clusters, const ToolMotion* motion, bool insufflator_on,
+              State& state, XpbdWorkspace& scratch, ThreadPool& pool, StepReport& report);
+
+  void run(int index, int count);
+
+  /// Turns the sums of the sub-steps into means and writes the orientations back.
+  void finish(int count);
+
+ private:
+  void moveTool(int index, int count);
+  void findCandidates(int index, int count);
+  void matchShapes();
+  void updateGas();
+  void move();
+  void moveParticle(int i, double decay);
+  void holdGrip();
+  void resolveContacts();
+  void pushOut(const Contact& contact);
+  void shiftParticle(int i, const Eigen::Vector3d& shift);
+  void limitSpeeds();
+  void limitSpeed(int i, double speed2);
+  void lookAhead();
+  Eigen::Vector3d tip() const { return scratch_.tool.end[model_.tip_link].translation(); }
+  void accountDamping(double decay);
+
+  const Model& model_;
+  const ClusterSet& clusters_;
+  const ToolMotion* motion_;
+  bool insufflator_on_;
+  State& state_;
+  ThreadPool& pool_;
+  StepReport& report_;
+  XpbdWorkspace& scratch_;
+  double h_;                  // sub-step [s]
+  double inverse_h_;          // [1/s]
+  double stiffness_damping_;  // [s]
+  Eigen::Vector3d weight_;    // acceleration that is not balanced by the foundation [m/s^2]
+};
 
 /// Extended position-based dynamics with small steps (Macklin et al. 2016, 2019) for shape matching: in each of
 /// model.substeps sub-steps one sweep over all clusters, move, hold the grip, push out of the tool, derive

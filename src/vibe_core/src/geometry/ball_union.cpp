@@ -1,7 +1,11 @@
 #include "geometry/ball_union.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
 
 #include "common/elementary.hpp"
 
@@ -55,6 +59,117 @@ Eigen::Vector3d BallUnion::project(const Eigen::Vector3d& p) const {
     x -= f / gradient.squaredNorm() * gradient;
   }
   return x;
+}
+
+namespace {
+
+// Kuhn's six tetrahedra around the diagonal of a cube; bit 0 of a corner is x, bit 1 is y, bit 2 is z
+constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+
+class Marcher {
+ public:
+  Marcher(const std::function<double(const Eigen::Vector3d&)>& field, const Eigen::AlignedBox3d& box, double cell)
+      : corner_(box.min()), cell_(cell) {
+    for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(std::ceil(box.sizes()[k] / cell)) + 1;
+    values_.reserve(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2]);
+    for (int z = 0; z < size_[2]; ++z) {
+      for (int y = 0; y < size_[1]; ++y) {
+        for (int x = 0; x < size_[0]; ++x) values_.push_back(field(corner_ + cell_ * Eigen::Vector3d(x, y, z)));
+      }
+    }
+  }
+
+  SurfaceMesh march() {
+    for (int z = 0; z + 1 < size_[2]; ++z) {
+      for (int y = 0; y + 1 < size_[1]; ++y) {
+        for (int x = 0; x + 1 < size_[0]; ++x) marchCube(x, y, z);
+      }
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  std::int64_t node(int x, int y, int z) const {
+    return x + static_cast<std::int64_t>(size_[0]) * (y + static_cast<std::int64_t>(size_[1]) * z);
+  }
+
+  Eigen::Vector3d place(std::int64_t n) const {
+    const std::int64_t x = n % size_[0], y = n / size_[0] % size_[1], z = n / size_[0] / size_[1];
+    return corner_ + cell_ * Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+  }
+
+  bool inside(std::int64_t n) const { return values_[n] < 0.0; }
+
+  void marchCube(int x, int y, int z) {
+    std::array<std::int64_t, 8> corner;
+    int count = 0;
+    for (int k = 0; k < 8; ++k) {
+      corner[k] = node(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2));
+      count += inside(corner[k]) ? 1 : 0;
+    }
+    if (count == 0 || count == 8) return;
+    for (const auto& t : kTetrahedra) marchTetrahedron({corner[t[0]], corner[t[1]], corner[t[2]], corner[t[3]]});
+  }
+
+  void marchTetrahedron(const std::array<std::int64_t, 4>& n) {
+    std::vector<std::int64_t> in, out;
+    for (const auto k : n) (inside(k) ? in : out).push_back(k);
+    if (in.empty() || out.empty()) return;
+    const Eigen::Vector3d outward = mean(out) - mean(in);
+    if (in.size() == 2) {
+      const int a = crossing(in[0], out[0]), b = crossing(in[0], out[1]);
+      const int c = crossing(in[1], out[1]), d = crossing(in[1], out[0]);
+      addTriangle(a, b, c, outward);
+      addTriangle(a, c, d, outward);
+      return;
+    }
+    const auto& one = in.size() == 1 ? in : out;
+    const auto& three = in.size() == 1 ? out : in;
+    // one after another: the order numbers the vertices, and compilers evaluate arguments in different orders
+    const int c = crossing(one[0], three[2]);
+    const int b = crossing(one[0], three[1]);
+    const int a = crossing(one[0], three[0]);
+    addTriangle(a, b, c, outward);
+  }
+
+  Eigen::Vector3d mean(const std::vector<std::int64_t>& nodes) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const auto n : nodes) sum += place(n);
+    return sum / static_cast<double>(nodes.size());
+  }
+
+  /// Vertex on the edge between two nodes, shared by all tetrahedra at that edge.
+  int crossing(std::int64_t a, std::int64_t b) {
+    if (a > b) std::swap(a, b);
+    const std::int64_t key = a * static_cast<std::int64_t>(values_.size()) + b;
+    const auto [entry, is_new] = vertex_of_edge_.emplace(key, static_cast<int>(mesh_.vertices.size()));
+    if (is_new) {
+      // kept away from the nodes: several crossings there would coincide and form triangles without area
+      const double t = std::clamp(values_[a] / (values_[a] - values_[b]), 0.05, 0.95);
+      mesh_.vertices.emplace_back((1.0 - t) * place(a) + t * place(b));
+    }
+    return entry->second;
+  }
+
+  void addTriangle(int a, int b, int c, const Eigen::Vector3d& outward) {
+    const Eigen::Vector3d& p = mesh_.vertices[a];
+    const bool turned = (mesh_.vertices[b] - p).cross(mesh_.vertices[c] - p).dot(outward) < 0.0;
+    mesh_.triangles.push_back(turned ? std::array<int, 3>{a, c, b} : std::array<int, 3>{a, b, c});
+  }
+
+  Eigen::Vector3d corner_;
+  double cell_;
+  std::array<int, 3> size_{};   ///< nodes per axis
+  std::vector<double> values_;  ///< of the field at the nodes
+  SurfaceMesh mesh_;
+  std::unordered_map<std::int64_t, int> vertex_of_edge_;
+};
+
+}  // namespace
+
+SurfaceMesh marchTetrahedra(const std::function<double(const Eigen::Vector3d&)>& field, const Eigen::AlignedBox3d& box,
+                            double cell) {
+  return Marcher(field, box, cell).march();
 }
 
 }  // namespace vibe

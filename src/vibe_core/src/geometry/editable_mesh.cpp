@@ -1,4 +1,4 @@
-#include "geometry/editable_mesh.hpp"
+#include "geometry/remesh.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

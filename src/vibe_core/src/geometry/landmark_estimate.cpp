@@ -1,4 +1,4 @@
-#include "geometry/landmark_estimate.hpp"
+#include "geometry/regions.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -9,7 +9,6 @@
 
 #include "common/elementary.hpp"
 #include "geometry/ball_union.hpp"
-#include "geometry/marching_tetrahedra.hpp"
 #include "geometry/stomach_knots.hpp"
 #include "vibe_core/common/error.hpp"
 

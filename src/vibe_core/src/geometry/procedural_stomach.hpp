@@ -3,7 +3,7 @@
 #include <string>
 
 #include "geometry/remesh.hpp"
-#include "vibe_core/geometry/anatomy.hpp"
+#include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe {

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/editable_mesh.hpp"
-#include "geometry/smoothing.hpp"
+#include "geometry/surface_operators.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 

@@ -1,7 +1,14 @@
 #include "vibe_core/geometry/surface_mesh.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "common/elementary.hpp"
+#include "vibe_core/common/error.hpp"
 
 namespace vibe {
 
@@ -70,6 +77,107 @@ std::vector<std::vector<int>> vertexNeighbours(const SurfaceMesh& mesh) {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
   return neighbours;
+}
+
+namespace {
+
+using Edge = std::pair<int, int>;
+
+Edge makeEdge(int a, int b) {
+  return a < b ? Edge(a, b) : Edge(b, a);
+}
+
+/// Data of Loop's rule for a new vertex: its number, and the vertices opposite the edge.
+struct EdgeVertex {
+  int number = 0;
+  std::array<int, 2> opposite{-1, -1};
+};
+
+std::map<Edge, EdgeVertex> findEdges(const SurfaceMesh& mesh) {
+  std::map<Edge, EdgeVertex> edges;
+  for (const auto& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      EdgeVertex& e = edges[makeEdge(t[k], t[(k + 1) % 3])];
+      const int opposite = t[(k + 2) % 3];
+      if (e.opposite[0] < 0) {
+        e.opposite[0] = opposite;
+      } else if (e.opposite[1] < 0) {
+        e.opposite[1] = opposite;
+      } else {
+        throw Error("makeLoopSubdivision: an edge at vertex " + std::to_string(t[k]) +
+                    " has more than two triangles; check the surface with checkSurface() first");
+      }
+    }
+  }
+  int next = static_cast<int>(mesh.vertices.size());
+  for (auto& [edge, e] : edges) {
+    if (e.opposite[1] < 0) {
+      throw Error("makeLoopSubdivision: the surface is open at the edge from vertex " + std::to_string(edge.first) +
+                  " to " + std::to_string(edge.second) + "; close it first");
+    }
+    e.number = next++;
+  }
+  return edges;
+}
+
+void addWeight(RenderSurface& render_surface, int particle, double weight) {
+  render_surface.particles.push_back(particle);
+  render_surface.weights.push_back(static_cast<float>(weight));
+}
+
+/// Loop's rule for an old vertex of valence n, beta as in Loop's thesis (1987).
+void addOldVertex(RenderSurface& render_surface, int vertex, const std::vector<int>& neighbours) {
+  const double n = static_cast<double>(neighbours.size());
+  if (neighbours.empty()) {
+    addWeight(render_surface, vertex, 1.0);
+  } else {
+    const double c = 3.0 / 8.0 + math::cos(2.0 * M_PI / n) / 4.0;
+    const double beta = (5.0 / 8.0 - c * c) / n;
+    addWeight(render_surface, vertex, 1.0 - n * beta);
+    for (const int k : neighbours) addWeight(render_surface, k, beta);
+  }
+  render_surface.offsets.push_back(static_cast<int>(render_surface.particles.size()));
+}
+
+void addNewVertex(RenderSurface& render_surface, const Edge& edge, const EdgeVertex& e) {
+  addWeight(render_surface, edge.first, 3.0 / 8.0);
+  addWeight(render_surface, edge.second, 3.0 / 8.0);
+  addWeight(render_surface, e.opposite[0], 1.0 / 8.0);
+  addWeight(render_surface, e.opposite[1], 1.0 / 8.0);
+  render_surface.offsets.push_back(static_cast<int>(render_surface.particles.size()));
+}
+
+}  // namespace
+
+RenderSurface makeLoopSubdivision(const SurfaceMesh& particles) {
+  const std::map<Edge, EdgeVertex> edges = findEdges(particles);
+  const auto neighbours = vertexNeighbours(particles);
+  RenderSurface render_surface;
+  render_surface.offsets.push_back(0);
+  for (int v = 0; v < static_cast<int>(particles.vertices.size()); ++v) addOldVertex(render_surface, v, neighbours[v]);
+  for (const auto& [edge, e] : edges) addNewVertex(render_surface, edge, e);  // in the order of their numbers
+  for (const auto& t : particles.triangles) {
+    const int ab = edges.at(makeEdge(t[0], t[1])).number;
+    const int bc = edges.at(makeEdge(t[1], t[2])).number;
+    const int ca = edges.at(makeEdge(t[2], t[0])).number;
+    render_surface.triangles.push_back({t[0], ab, ca});
+    render_surface.triangles.push_back({t[1], bc, ab});
+    render_surface.triangles.push_back({t[2], ca, bc});
+    render_surface.triangles.push_back({ab, bc, ca});
+  }
+  return render_surface;
+}
+
+std::vector<Eigen::Vector3d> renderPositions(const RenderSurface& render_surface,
+                                             const std::vector<Eigen::Vector3d>& particles) {
+  const int count = render_surface.offsets.empty() ? 0 : static_cast<int>(render_surface.offsets.size()) - 1;
+  std::vector<Eigen::Vector3d> positions(count, Eigen::Vector3d::Zero());
+  for (int v = 0; v < count; ++v) {
+    for (int k = render_surface.offsets[v]; k < render_surface.offsets[v + 1]; ++k) {
+      positions[v] += static_cast<double>(render_surface.weights[k]) * particles[render_surface.particles[k]];
+    }
+  }
+  return positions;
 }
 
 }  // namespace vibe

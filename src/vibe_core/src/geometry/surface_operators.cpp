@@ -1,12 +1,15 @@
 #include "geometry/surface_operators.hpp"
 
-#include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <queue>
 #include <utility>
 
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+
+#include "common/elementary.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -105,6 +108,63 @@ std::vector<double> edgeDistances(const SurfaceMesh& mesh, const std::vector<int
     }
   }
   return distance;
+}
+
+namespace {
+
+constexpr double kLambda = 0.5;
+constexpr double kMu = -0.53;
+constexpr int kVolumeIterations = 4;
+
+void stepTowardsNeighbours(SurfaceMesh& mesh, const std::vector<std::vector<int>>& neighbours, double factor) {
+  const std::vector<Eigen::Vector3d> old = mesh.vertices;
+  for (std::size_t v = 0; v < old.size(); ++v) {
+    if (neighbours[v].empty()) continue;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const int k : neighbours[v]) mean += old[k];
+    mean /= static_cast<double>(neighbours[v].size());
+    mesh.vertices[v] += factor * (mean - old[v]);
+  }
+}
+
+}  // namespace
+
+void smoothTaubin(SurfaceMesh& mesh, int iterations) {
+  const auto neighbours = vertexNeighbours(mesh);
+  for (int k = 0; k < iterations; ++k) {
+    stepTowardsNeighbours(mesh, neighbours, kLambda);
+    stepTowardsNeighbours(mesh, neighbours, kMu);
+  }
+}
+
+void offsetToVolume(SurfaceMesh& mesh, double volume) {
+  for (int k = 0; k < kVolumeIterations; ++k) {
+    const double distance = (volume - enclosedVolume(mesh)) / surfaceArea(mesh);
+    const auto normals = vertexNormals(mesh);
+    for (std::size_t v = 0; v < normals.size(); ++v) mesh.vertices[v] += distance * normals[v];
+  }
+}
+
+double scaleToVolume(SurfaceMesh& mesh, double volume) {
+  const double factor = math::cbrt(volume / enclosedVolume(mesh));
+  for (auto& v : mesh.vertices) v *= factor;
+  return factor;
+}
+
+namespace {
+// relative to the first vertex: this does not change the sums over a closed surface and reduces round-off
+Eigen::Vector3d corner(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
+                       int i) {
+  return {x[i] - x[0], y[i] - y[0], z[i] - z[0]};
+}
+}  // namespace
+
+double lumenVolume(const SurfaceMesh& surface, const std::vector<double>& x, const std::vector<double>& y,
+                   const std::vector<double>& z) {
+  double six_volumes = 0;
+  for (const auto& t : surface.triangles)
+    six_volumes += corner(x, y, z, t[0]).dot(corner(x, y, z, t[1]).cross(corner(x, y, z, t[2])));
+  return six_volumes / 6;
 }
 
 }  // namespace vibe

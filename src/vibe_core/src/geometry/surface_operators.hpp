@@ -1,6 +1,8 @@
 #pragma once
-#include <Eigen/SparseCore>
+
 #include <vector>
+
+#include <Eigen/SparseCore>
 
 #include "vibe_core/geometry/surface_mesh.hpp"
 
@@ -21,5 +23,19 @@ std::vector<double> diffuse(const SurfaceMesh& mesh, const std::vector<double>& 
 /// Length of the shortest path along edges from the nearest seed to every vertex; infinity if there is none [m]. On an
 /// even mesh such paths are up to about 15 % longer than those across the surface.
 std::vector<double> edgeDistances(const SurfaceMesh& mesh, const std::vector<int>& seeds);
+
+/// Low-pass filter of an evenly meshed surface that hardly shrinks it (Taubin 1995, lambda 0.5, mu -0.53).
+void smoothTaubin(SurfaceMesh& mesh, int iterations);
+
+/// Moves every vertex by the same distance along its normal until the enclosed volume is reached. Intended for changes
+/// of a few percent, where it preserves the shape.
+void offsetToVolume(SurfaceMesh& mesh, double volume);
+
+/// Scales about the origin to the volume and returns the factor [1].
+double scaleToVolume(SurfaceMesh& mesh, double volume);
+
+/// Volume enclosed by the surface at given vertex positions [m^3].
+double lumenVolume(const SurfaceMesh& surface, const std::vector<double>& x, const std::vector<double>& y,
+                   const std::vector<double>& z);
 
 }  // namespace vibe

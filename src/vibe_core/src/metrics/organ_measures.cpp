@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/lumen.hpp"
 #include "geometry/regions.hpp"
 #include "geometry/surface_operators.hpp"
 #include "vibe_core/common/error.hpp"

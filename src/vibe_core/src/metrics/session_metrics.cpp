@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "contact/tool_motion.hpp"
-#include "metrics/rounded.hpp"
 #include "metrics/skill_text.hpp"
 #include "vibe_core/model/accounting.hpp"
 

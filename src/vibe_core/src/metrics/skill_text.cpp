@@ -6,8 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "metrics/rounded.hpp"
-
 namespace vibe {
 namespace {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "procedure/phase.hpp"
-#include "vibe_core/events/event_log.hpp"
+#include "procedure/procedure.hpp"
+#include "vibe_core/events/event.hpp"
 
 namespace vibe {
 

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "vibe_core/events/event_log.hpp"
+#include "vibe_core/events/event.hpp"
 #include "vibe_core/model/model.hpp"
-#include "vibe_core/procedure/marking_deformation.hpp"
+#include "vibe_core/procedure/procedure_registry.hpp"
 #include "vibe_core/state/state.hpp"
 #include "vibe_core/thermal/argon_beam.hpp"
 #include "vibe_core/thermal/mark_zones.hpp"

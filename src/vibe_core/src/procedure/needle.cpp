@@ -1,9 +1,119 @@
 #include "procedure/needle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/elementary.hpp"
+#include "common/turn.hpp"
+#include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
+
+namespace {
+
+constexpr int kSamples = 64;        // of the path; 0.2 mm apart on that of the needle; design choice
+constexpr double kOnEdge = 1e-6;    // barycentric coordinate below which a point lies on an edge
+constexpr double kTouching = 1e-9;  // [m]
+
+using Corners = std::array<Eigen::Vector3d, 3>;
+
+struct Candidate {
+  int triangle;
+  Corners corners;
+  Eigen::Vector3d centre;
+  double radius;  // of a ball around the centre that holds the triangle
+};
+
+double distanceFromSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d ab = b - a;
+  const double length2 = ab.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0;
+  return (p - a - t * ab).norm();
+}
+
+// Every point of the path has a vertex within this distance: the distance to a vertex is largest at an end of the path.
+double reachOfPath(const SurfaceView& wall, const Eigen::Vector3d& begin, const Eigen::Vector3d& end) {
+  double min = std::numeric_limits<double>::infinity();
+  for (int v = 0; v < static_cast<int>(wall.x.size()); ++v) {
+    const Eigen::Vector3d p = wall.position(v);
+    min = std::min(min, std::max((p - begin).squaredNorm(), (p - end).squaredNorm()));
+  }
+  return std::sqrt(min);
+}
+
+std::vector<Candidate> trianglesNear(const SurfaceView& wall, const Eigen::Vector3d& begin,
+                                     const Eigen::Vector3d& end) {
+  const double reach = reachOfPath(wall, begin, end);
+  std::vector<Candidate> near;
+  for (int t = 0; t < static_cast<int>(wall.triangles.size()); ++t) {
+    const auto& v = wall.triangles[t];
+    Candidate c{t, {wall.position(v[0]), wall.position(v[1]), wall.position(v[2])}, Eigen::Vector3d::Zero(), 0};
+    c.centre = (c.corners[0] + c.corners[1] + c.corners[2]) / 3;
+    for (const Eigen::Vector3d& corner : c.corners) c.radius = std::max(c.radius, (corner - c.centre).norm());
+    if (distanceFromSegment(c.centre, begin, end) - c.radius <= reach + kTouching) near.push_back(c);
+  }
+  return near;
+}
+
+// Angle of a triangle at one of its points: the full angle inside, half of it on an edge.
+double angleAround(const Corners& c, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
+  const double area2 = normal.squaredNorm();
+  if (!(area2 > 0)) return 0;
+  int edges = 0, corner = 0;
+  double max = -1;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d &a = c[(k + 1) % 3], &b = c[(k + 2) % 3];
+    const double share = normal.dot((b - a).cross(p - a)) / area2;
+    if (share < kOnEdge) ++edges;
+    if (share > max) max = share, corner = k;
+  }
+  if (edges == 0) return 2 * kPi;
+  if (edges == 1) return kPi;
+  const Eigen::Vector3d u = c[(corner + 1) % 3] - c[corner], v = c[(corner + 2) % 3] - c[corner];
+  return math::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+Eigen::Vector3d pseudonormal(const std::vector<Candidate>& near, const Eigen::Vector3d& p) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Candidate& c : near) {
+    if ((c.centre - p).norm() > c.radius + kTouching) continue;
+    if ((closestPointOnTriangle(p, c.corners[0], c.corners[1], c.corners[2]) - p).norm() > kTouching) continue;
+    const Eigen::Vector3d normal = (c.corners[1] - c.corners[0]).cross(c.corners[2] - c.corners[0]);
+    if (normal.norm() > 0) sum += angleAround(c.corners, p) * normal.normalized();
+  }
+  return sum;
+}
+
+DeepestPoint signedDistance(const std::vector<Candidate>& near, const Eigen::Vector3d& p) {
+  DeepestPoint best;
+  best.distance = std::numeric_limits<double>::infinity();
+  for (const Candidate& c : near) {
+    if ((c.centre - p).norm() - c.radius >= best.distance) continue;
+    const Eigen::Vector3d point = closestPointOnTriangle(p, c.corners[0], c.corners[1], c.corners[2]);
+    const double distance = (point - p).norm();
+    if (distance >= best.distance) continue;
+    best = {c.triangle, point, distance};
+  }
+  if (best.triangle >= 0 && (p - best.point).dot(pseudonormal(near, best.point)) < 0) best.distance = -best.distance;
+  return best;
+}
+
+}  // namespace
+
+DeepestPoint deepestPoint(const SurfaceView& wall, const Eigen::Vector3d& begin, const Eigen::Vector3d& end) {
+  const std::vector<Candidate> near = trianglesNear(wall, begin, end);
+  DeepestPoint deepest;
+  for (int k = 0; k <= kSamples; ++k) {
+    const double part = static_cast<double>(k) / kSamples;
+    const DeepestPoint at = signedDistance(near, begin + part * (end - begin));
+    if (at.triangle >= 0 && (deepest.triangle < 0 || at.distance > deepest.distance)) deepest = at;
+  }
+  return deepest;
+}
 
 namespace {
 

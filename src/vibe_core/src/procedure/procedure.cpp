@@ -1,13 +1,133 @@
 #include "procedure/procedure.hpp"
 
-#include "procedure/bleeding.hpp"
-#include "procedure/cinch.hpp"
-#include "procedure/needle_arm.hpp"
-#include "procedure/phase.hpp"
-#include "procedure/thread_events.hpp"
-#include "vibe_core/events/event_log.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "procedure/suturing.hpp"
+#include "vibe_core/common/random.hpp"
+#include "vibe_core/events/event.hpp"
 
 namespace vibe {
+
+namespace {
+
+// Hysteresis: a tremor of the hand at the entry must not end the procedure again and again; design choice [m].
+constexpr double kWithdrawn = 0.01;
+constexpr double kInserted = 0.02;
+
+bool everySetIsFinished(const ProcedureState& procedure) {
+  bool cinched = false;
+  for (const Suture& suture : procedure.sutures) {
+    if (!suture.permanent()) return false;
+    cinched |= suture.stage == Suture::Stage::Cinched;
+  }
+  return cinched;
+}
+
+}  // namespace
+
+void enterPhase(Phase phase, State& state, EventLog log) {
+  if (state.procedure.phase == phase) return;
+  state.procedure.phase = phase;
+  log.emit(Event::Kind::PhaseChanged, -1, static_cast<double>(phase));
+}
+
+void noteMarking(State& state, EventLog log) {
+  if (state.procedure.phase != Phase::Pull) enterPhase(Phase::Mark, state, log);
+}
+
+void noteSuturing(State& state, EventLog log) {
+  if (state.procedure.phase != Phase::Pull) enterPhase(Phase::Suture, state, log);
+}
+
+void updatePhase(const Model& model, State& state, EventLog log) {
+  const double insertion = state.joints[Insertion] - model.tool->limits()[Insertion].lower;
+  const bool done = state.procedure.phase == Phase::Done;
+  const bool at_work = state.procedure.arm_closed || !state.grip.empty();
+  if (!done && !at_work && insertion < kWithdrawn && everySetIsFinished(state.procedure))
+    enterPhase(Phase::Done, state, log);
+  if (done && insertion > kInserted) enterPhase(Phase::Inspect, state, log);
+}
+
+namespace {
+
+constexpr double kReached = 0.01, kLost = 0.05;  // parts of the set point
+constexpr double kMinReached = 1, kMinLost = 5;  // of low set points [Pa]
+
+}  // namespace
+
+bool isAtSetPoint(double pressure, double set_point, bool was) {
+  const double part = was ? kLost : kReached, min = was ? kMinLost : kMinReached;
+  return std::abs(pressure - set_point) < std::max(min, part * std::abs(set_point));
+}
+
+namespace {
+
+constexpr double kRounding = 1e-9;  // tolerance for the rounding of times that are sums of steps [s]
+
+Event& emitBleeding(Event::Kind kind, const Bleeding& bleeding, double value, EventLog log) {
+  Event& event = log.emit(kind, bleeding.particle, value);
+  event.suture = bleeding.suture;
+  event.bite = bleeding.bite;
+  return event;
+}
+
+void stop(Bleeding& bleeding, EventDetail how, EventLog log) {
+  bleeding.rate = 0;
+  emitBleeding(Event::Kind::BleedingStopped, bleeding, bleeding.amount, log).detail = how;
+}
+
+}  // namespace
+
+void bleedFromBite(const Model& model, int suture, int bite, int particle, State& state, EventLog log) {
+  if (!model.scene.bleeding) return;
+  const BleedingScene& scene = *model.scene.bleeding;
+  const double draw = nextUniform(state.random);
+  if (draw >= scene.brisk_probability + scene.mild_probability) return;
+  Bleeding bleeding;
+  bleeding.suture = suture;
+  bleeding.bite = bite;
+  bleeding.particle = particle;
+  bleeding.brisk = draw < scene.brisk_probability;
+  bleeding.begin = state.time;
+  bleeding.rate = bleeding.brisk ? scene.brisk_rate : scene.mild_rate;
+  emitBleeding(bleeding.brisk ? Event::Kind::BleedingBrisk : Event::Kind::BleedingMild, bleeding, bleeding.rate, log);
+  state.procedure.bleedings.push_back(bleeding);
+}
+
+void updateBleedings(const Model& model, State& state, EventLog log) {
+  if (!model.scene.bleeding) return;
+  const BleedingScene& scene = *model.scene.bleeding;
+  for (Bleeding& bleeding : state.procedure.bleedings) {
+    if (bleeding.rate <= 0) continue;
+    const double lost = bleeding.rate * model.scene.step_period;
+    bleeding.amount += lost;
+    state.procedure.blood_lost += lost;
+    const double age = state.time - bleeding.begin + kRounding;
+    if (!bleeding.brisk && age >= scene.mild_duration) stop(bleeding, EventDetail::MildByItself, log);
+    if (!bleeding.brisk || bleeding.overdue || age < scene.brisk_time) continue;
+    bleeding.overdue = true;
+    emitBleeding(Event::Kind::BleedingOverdue, bleeding, bleeding.amount, log);
+  }
+}
+
+void stopBleedings(int suture, State& state, EventLog log) {
+  for (Bleeding& bleeding : state.procedure.bleedings) {
+    if (bleeding.suture != suture || bleeding.rate <= 0) continue;
+    stop(bleeding, bleeding.brisk ? EventDetail::BriskCinched : EventDetail::MildCinched, log);
+  }
+}
+
+void forgetBite(int suture, int bite, ProcedureState& procedure) {
+  for (Bleeding& bleeding : procedure.bleedings) {
+    if (bleeding.suture != suture) continue;
+    if (bleeding.bite == bite)
+      bleeding.bite = -1;
+    else if (bleeding.bite > bite)
+      --bleeding.bite;
+  }
+}
 
 namespace {
 

@@ -1,8 +1,7 @@
+#include "vibe_core/procedure/procedure_registry.hpp"
 #include "scene/word_registry.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/model/model.hpp"
-#include "vibe_core/procedure/cinch_model.hpp"
-#include "vibe_core/procedure/marking_deformation.hpp"
 
 namespace vibe {
 

@@ -1,13 +1,12 @@
-#include "procedure/thread_events.hpp"
+#include "procedure/suturing.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "procedure/bleeding.hpp"
 #include "procedure/needle.hpp"
-#include "procedure/phase.hpp"
-#include "vibe_core/events/event_log.hpp"
-#include "vibe_core/procedure/cinch_model.hpp"
+#include "procedure/procedure.hpp"
+#include "vibe_core/events/event.hpp"
+#include "vibe_core/procedure/procedure_registry.hpp"
 
 namespace vibe {
 

@@ -5,16 +5,16 @@
 #include <sstream>
 
 #include "common/plugins.hpp"
-#include "scene/printable.hpp"
-#include "scene/renamed_keys.hpp"
-#include "scene/scene_value.hpp"
+#include "scene/scene_keys.hpp"
+#include "scene/yaml_guard.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/scene/schema.hpp"
+#include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe {
+
 namespace {
 
 constexpr const char* kBase = "base";  // the key of the scene file that another one starts from
@@ -244,6 +244,39 @@ Scene parseScene(const std::string& yaml, const std::string& place) {
   loadPlugins();
   const YamlSource source = YamlSource::parse(yaml, place, kSceneLimits);
   return SceneReader(source).read();
+}
+
+namespace {
+
+int depthOf(const std::string& section) {
+  int depth = section.empty() ? 0 : 1;
+  for (const char c : section) depth += c == '.' ? 1 : 0;
+  return depth;
+}
+
+bool isWritten(const SchemaRow& row, Scene& full) {
+  if (row.only_for && *row.only_for != full.geometry.kind) return false;
+  return row.required || isGiven(row, full);
+}
+
+}  // namespace
+
+std::string toYaml(const Scene& scene) {
+  Scene full = completeScene(scene);  // rows access every section
+  std::ostringstream out;
+  for (const SchemaSection& section : sceneSections()) {
+    if (!section.isPresent(scene)) continue;
+    const std::string name = section.name;
+    const bool only_mesh = name == "geometry.landmarks" && scene.geometry.kind != GeometryScene::Kind::Mesh;
+    if (only_mesh) continue;
+    const int depth = depthOf(name);
+    if (depth > 0) out << std::string(2 * (depth - 1), ' ') << lastPart(name) << ":\n";
+    for (const SchemaRow& row : sceneSchema()) {
+      if (sectionOf(row.key) != name || !isWritten(row, full)) continue;
+      out << std::string(2 * depth, ' ') << lastPart(row.key) << ": " << valueText(row, full) << "\n";
+    }
+  }
+  return out.str();
 }
 
 }  // namespace vibe

@@ -1,4 +1,4 @@
-#include "scene/schema_rows.hpp"
+#include "scene/scene_keys.hpp"
 
 namespace vibe {
 namespace {

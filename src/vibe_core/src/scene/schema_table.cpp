@@ -1,4 +1,4 @@
-#include "scene/schema_rows.hpp"
+#include "scene/scene_keys.hpp"
 #include "vibe_core/scene/schema.hpp"
 
 namespace vibe {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "common/constants.hpp"
-#include "scene/printable.hpp"
+#include "common/turn.hpp"
+#include "scene/yaml_guard.hpp"
 
 namespace vibe {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <sstream>
 
-#include "scene/printable.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {

@@ -1,9 +1,20 @@
 #pragma once
+
 #include <string>
 
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe {
+
+/// A text from a user's file, prepared for an error message: control characters are replaced by '?', and the text is
+/// cut after `max_bytes` bytes, with "..." in place of the rest.
+inline std::string printable(const std::string& text, std::size_t max_bytes) {
+  std::string result = text.substr(0, max_bytes);
+  for (char& c : result) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return text.size() > max_bytes ? result + "..." : result;
+}
 
 /// Parses the text once without building anything. Rejects text that is too large, nested too deeply for a recursive
 /// parser, not YAML, or not exactly one document.

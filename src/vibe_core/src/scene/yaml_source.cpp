@@ -8,11 +8,10 @@
 #include <set>
 #include <sstream>
 
-#include "scene/printable.hpp"
 #include "scene/yaml_guard.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
 #include "vibe_core/scene/unit.hpp"
+#include "vibe_core/scene/words.hpp"
 
 namespace vibe {
 namespace {

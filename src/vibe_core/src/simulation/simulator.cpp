@@ -1,5 +1,4 @@
 #include "vibe_core/simulation/simulator.hpp"
-#include "vibe_core/constraints/pull_patch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +8,20 @@
 #include "contact/tool_motion.hpp"
 #include "procedure/marking.hpp"
 #include "procedure/procedure.hpp"
-#include "procedure/set_point.hpp"
-#include "procedure/thread_events.hpp"
+#include "procedure/suturing.hpp"
 #include "vibe_core/constraints/gas.hpp"
-#include "vibe_core/events/event_log.hpp"
+#include "vibe_core/constraints/pull_patch.hpp"
+#include "vibe_core/events/event.hpp"
 #include "vibe_core/procedure/helix_grip.hpp"
 
 namespace vibe {
+
+Workspace::Workspace(const Model& model, int threads)
+    : pool_(threads),
+      solver_workspace_(model.solver->makeWorkspace(model)),
+      marking_(model.scene.marking && model.tool ? std::make_unique<MarkingScratch>(model) : nullptr) {}
+
+Workspace::~Workspace() = default;
 
 namespace {
 
@@ -159,6 +165,62 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     log.emit(Event::Kind::Recovery, -1, report.speed_limited).detail = EventDetail::SpeedLimited;
   if (report.put_back) log.emit(Event::Kind::Recovery).detail = EventDetail::Distorted;
   if (!isFinite(state)) recover(model, state, log);
+}
+
+}  // namespace vibe
+
+// XXH_INLINE_ALL: the functions become part of this file, and nothing is linked
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state_fields.hpp"
+
+namespace vibe {
+
+namespace {
+
+class HashArchive {
+ public:
+  HashArchive() { XXH3_64bits_reset(&state_); }
+  template <class T>
+  void block(const T* data, std::size_t count) {
+    XXH3_64bits_update(&state_, data, count * sizeof(T));
+  }
+  template <class T>
+  void list(const std::vector<T>& items) {
+    transferList(*this, items);
+  }
+  std::uint64_t result() const { return XXH3_64bits_digest(&state_); }
+
+ private:
+  XXH3_state_t state_;
+};
+
+template <class T>
+void addFields(const T& object, HashArchive& archive) {
+  const std::uint64_t fields = fieldFingerprint<T>();
+  archive.block(&fields, 1);
+  transfer(archive, object);
+}
+
+}  // namespace
+
+std::uint64_t hash(const State& state) {
+  HashArchive archive;
+  addFields(state, archive);
+  return archive.result();
+}
+
+std::uint64_t hash(const StepInput& input, std::int64_t step) {
+  HashArchive archive;
+  archive.block(&step, 1);
+  addFields(input, archive);
+  return archive.result();
+}
+
+std::uint64_t hash(const std::string& text) {
+  return XXH3_64bits(text.data(), text.size());
 }
 
 }  // namespace vibe

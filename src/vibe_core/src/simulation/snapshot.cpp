@@ -7,8 +7,8 @@
 
 #include "simulation/state_check.hpp"
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/common/fnv1a.hpp"
-#include "vibe_core/common/write_file.hpp"
 #include "vibe_core/state/state_fields.hpp"
 
 namespace vibe {

@@ -8,8 +8,7 @@
 #include "solver/column_cache.hpp"
 #include "solver/constraint_rows.hpp"
 #include "solver/contact_problem.hpp"
-#include "solver/half_rows.hpp"
-#include "suture/limited_slide.hpp"
+#include "suture/thread_run.hpp"
 #include "vibe_core/sparse/factor.hpp"
 
 namespace vibe {

@@ -1,4 +1,4 @@
-#include "solver/dense_lu.hpp"
+#include "solver/contact_problem.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,12 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/factor_schedule.hpp"
+#include "solver/couplings.hpp"
 #include "solver/quasi_newton.hpp"
-#include "solver/rigid_guess.hpp"
-#include "solver/step_rows.hpp"
-#include "solver/step_work.hpp"
-#include "solver/thread_couplings.hpp"
+#include "solver/stepper_workspace.hpp"
 #include "solver/time_scheme.hpp"
 
 namespace vibe {

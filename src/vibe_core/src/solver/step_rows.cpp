@@ -1,9 +1,9 @@
-#include "solver/step_rows.hpp"
+#include "solver/time_scheme.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "solver/thread_couplings.hpp"
+#include "solver/couplings.hpp"
 #include "suture/capstan.hpp"
 
 namespace vibe {

@@ -1,6 +1,12 @@
 #include "solver/stepper_workspace.hpp"
 
+#include <algorithm>
+#include <cstring>
 #include <utility>
+
+#include "solver/couplings.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe {
 
@@ -27,6 +33,183 @@ StepperWorkspace::StepperWorkspace(const std::vector<Eigen::Vector3d>& rest_posi
 
 StepperWorkspace::~StepperWorkspace() {
   making.reset();  // it works on the other members
+}
+
+namespace {
+
+// Spring at every node over the mean diagonal of the stiffness, so that a free body can be factored without inertia.
+// Design choice: the rounding of single precision, in which the solution is stored [1].
+constexpr double kShift = 1e-7;
+
+// FNV-1a over 32-bit words
+template <class Word>
+void mix(std::uint64_t& hash, Word word) {
+  static_assert(sizeof(Word) == sizeof(std::uint32_t));
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &word, sizeof bits);
+  hash = (hash ^ bits) * 1099511628211ULL;
+}
+
+// 1: about rest, without couplings
+std::uint64_t hashOf(const std::vector<float>& positions, const std::vector<StiffnessCoupling>& couplings) {
+  if (positions.empty() && couplings.empty()) return 1;
+  std::uint64_t hash = 1469598103934665603ULL;
+  for (const float value : positions) mix(hash, value);
+  for (const StiffnessCoupling& coupling : couplings) {
+    for (const int node : coupling.node) mix(hash, node);
+    for (const float value : coupling.weight) mix(hash, value);
+    for (const float value : coupling.stiffness) mix(hash, value);
+  }
+  return hash;
+}
+
+void copyPositions(const MotionView& motion, int nodes, std::vector<float>& out) {
+  out.resize(3 * static_cast<std::size_t>(nodes));
+  for (int i = 0; i < nodes; ++i)
+    for (int k = 0; k < 3; ++k) out[3 * static_cast<std::size_t>(i) + k] = static_cast<float>(motion.x[k][i]);
+}
+
+void addElements(const ElasticBody& body, const std::vector<float>& positions, double margin, BlockMatrix& matrix) {
+  const std::size_t n = body.rest.size();
+  std::vector<double> displacement(3 * n, 0.0);
+  if (!positions.empty())
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        displacement[3 * i + k] =
+            static_cast<double>(positions[3 * i + k]) - body.rest[i][static_cast<Eigen::Index>(k)];
+  matrix.setZero();
+  body.elements->addStiffness(displacement.data(), matrix);
+  if (margin != 1) matrix.scale(margin);
+}
+
+void addSprings(const ElasticBody& body, double inertia, BlockMatrix& matrix) {
+  const std::size_t n = body.rest.size();
+  double mean = 0;
+  for (std::size_t i = 0; i < n; ++i) mean += matrix.diagonal()[i].trace() / (3 * static_cast<double>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    double spring = inertia * body.mass[i] + kShift * mean;
+    if (!body.foundation.empty()) spring += body.foundation[i];
+    matrix.add(static_cast<int>(i), static_cast<int>(i), spring * Eigen::Matrix3d::Identity());
+  }
+}
+
+}  // namespace
+
+bool factorAt(const ElasticBody& body, const FactorPoint& point, double inertia, double margin,
+              const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix, Factor& factor) {
+  const std::vector<NodePair> pairs = coupledPairs(point.couplings, body.fixed, matrix.pattern());
+  if (pairsOf(*factor.plan()) != pairs) factor.setPlan(coupledPlan(plan, pairs));
+  matrix.couple(pairs);
+  addElements(body, point.positions, margin, matrix);
+  addSprings(body, inertia, matrix);
+  addCouplings(point.couplings, body.fixed, matrix);
+  for (std::size_t i = 0; i < body.rest.size(); ++i)
+    if (body.fixed[i] != 0) matrix.fix(static_cast<int>(i));
+  return factor.compute(matrix);
+}
+
+bool factorAt(const ElasticBody& body, const std::vector<float>& positions, double inertia, double margin,
+              BlockMatrix& matrix, Factor& factor) {
+  return factorAt(body, {positions, {}}, inertia, margin, factor.plan(), matrix, factor);
+}
+
+void collectCouplings(const BodyLoads& loads, const double* positions4, double gain,
+                      std::vector<StiffnessCoupling>& couplings) {
+  couplings = loads.couplings;
+  addThreadCouplings(loads, positions4, gain, couplings);
+  if (loads.extra != nullptr) loads.extra->addStiffness(positions4, couplings);
+}
+
+void FactorSchedule::nameHere(const ElasticBody& body, const MotionView& motion, StepperMemory& memory) {
+  copyPositions(motion, body.nodeCount(), memory.linearization_point);
+  memory.couplings.clear();
+  memory.linearization_id = hashOf(memory.linearization_point, memory.couplings);
+  memory.next.clear();
+  memory.next_couplings.clear();
+}
+
+void FactorSchedule::advance(const ElasticBody& body, const MotionView& motion, const BodyLoads& loads,
+                             StepperMemory& memory, StepperWorkspace& scratch) const {
+  if (memory.linearization_id == 0) memory.linearization_id = hashOf(memory.linearization_point, memory.couplings);
+  if (!memory.next.empty() && memory.steps >= memory.due) {
+    memory.linearization_point.swap(memory.next);
+    memory.couplings.swap(memory.next_couplings);
+    memory.linearization_id = memory.next_id;
+    memory.next.clear();
+    memory.next_couplings.clear();
+  }
+  if (steps == 0 || !memory.next.empty() || !farFrom(body, motion, memory.linearization_point)) return;
+  copyPositions(motion, body.nodeCount(), memory.next);
+  for (int i = 0; i < body.nodeCount(); ++i)
+    for (int k = 0; k < 3; ++k) scratch.trial[4 * i + k] = motion.x[k][i];
+  collectCouplings(loads, scratch.trial.data(), gain, memory.next_couplings);
+  memory.next_id = hashOf(memory.next, memory.next_couplings);
+  memory.due = memory.steps + steps;
+}
+
+// A matrix that is not positive definite gets another chance about rest.
+void FactorSchedule::factorSafely(const ElasticBody& body, const FactorPoint& point,
+                                  const std::shared_ptr<const FactorPlan>& plan, BlockMatrix& matrix,
+                                  Factor& factor) const {
+  if (factorAt(body, point, inertia, margin, plan, matrix, factor)) return;
+  if (factorAt(body, {{}, {}}, inertia, margin, plan, matrix, factor)) return;
+  throw Error("The stiffness of the body at rest is not positive definite; check its mesh, masses and materials.");
+}
+
+void FactorSchedule::provide(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
+                             StepperWorkspace& scratch) const {
+  if (scratch.factor_id != memory.linearization_id) {
+    if (scratch.making) scratch.making->finish();
+    if (scratch.next_id == memory.linearization_id) {
+      scratch.factor.swap(scratch.next_factor);
+      std::swap(scratch.columns, scratch.next_columns);
+    } else {
+      factorSafely(body, {memory.linearization_point, memory.couplings}, scratch.plan, scratch.matrix, *scratch.factor);
+      scratch.columns.reset();
+    }
+    scratch.next_id = 0;
+    scratch.factor_id = memory.linearization_id;
+    scratch.schur.reset(*scratch.factor);
+  }
+  if (!memory.next.empty() && scratch.next_id != memory.next_id) makeInBackground(body, loads, memory, scratch);
+  scratch.columns.setAttachments(*scratch.factor, loads.attachments);
+}
+
+// With the columns of what is held and touched now, which most likely still is when the factor is used.
+void FactorSchedule::makeInBackground(const ElasticBody& body, const BodyLoads& loads, const StepperMemory& memory,
+                                      StepperWorkspace& scratch) const {
+  if (!scratch.making) scratch.making = std::make_unique<BackgroundWorker>([&scratch] { makeNext(scratch); });
+  scratch.making->finish();
+  scratch.next_id = memory.next_id;
+  FactorTask& task = scratch.task;
+  task.schedule = this;
+  task.body = &body;
+  task.positions = memory.next;
+  task.couplings = memory.next_couplings;
+  loads.findNodes(task.nodes);
+  task.attachments = loads.attachments;
+  scratch.making->start();
+}
+
+void FactorSchedule::makeNext(StepperWorkspace& scratch) {
+  const FactorTask& task = scratch.task;
+  task.schedule->factorSafely(*task.body, {task.positions, task.couplings}, scratch.plan, scratch.matrix,
+                              *scratch.next_factor);
+  scratch.next_columns.reset();
+  scratch.next_columns.prepare(*scratch.next_factor, task.nodes, task.attachments);
+}
+
+bool FactorSchedule::farFrom(const ElasticBody& body, const MotionView& motion, const std::vector<float>& about) const {
+  for (int i = 0; i < body.nodeCount(); ++i) {
+    double distance2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double from =
+          about.empty() ? body.rest[i][k] : static_cast<double>(about[3 * static_cast<std::size_t>(i) + k]);
+      distance2 += (motion.x[k][i] - from) * (motion.x[k][i] - from);
+    }
+    if (!(distance2 <= distance * distance)) return true;
+  }
+  return false;
 }
 
 }  // namespace vibe

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/stepper_workspace.hpp"
 #include "vibe_core/solver/implicit_stepper.hpp"
 
 namespace vibe {
@@ -30,5 +31,35 @@ struct TimeScheme {
   Blend hat_z;      ///< where z would be without forces
   double free_v_a;  ///< v' for a' = 0 is v + free_v_a a
 };
+
+/// Moves the scratch's z of a free body rigidly by what its velocities and accelerations make of it: however far, that
+/// does not strain. The translation and the turn have the linear and angular momentum of the nodes' own moves.
+void moveRigidly(const ElasticBody& body, const MotionView& motion, const TimeScheme& scheme,
+                 StepperWorkspace& scratch);
+
+class StepperWorkspace;
+
+/// Moves the nodes to the end of the step and sums up the works. Sets the works of the loads.
+/// @param mean_velocity  the nodes end with the mean velocity of the step and no acceleration: what iterations that
+///                       ended early lack would be amplified by the velocity of the scheme
+StepWork finishMotion(const ElasticBody& body, const TimeScheme& scheme, const MotionView& motion, BodyLoads& loads,
+                      bool mean_velocity, StepperWorkspace& scratch);
+
+/// The constraints, contacts and threads of the loads as rows for the positions at which forces are evaluated, in the
+/// scratch's rows. The lengths of segments of thread are linearised about the given positions.
+void buildRows(const BodyLoads& loads, const MotionView& motion, StepperWorkspace& scratch);
+/// The values that the rows have in the equilibrium itself, in the scratch's target.
+void setEquilibriumTargets(const BodyLoads& loads, StepperWorkspace& scratch);
+/// The same for a step: rows are met at its end, so that z has to move by the scheme's ratio of gains times as much.
+/// Scales the compliances of the rows in the same way.
+/// @param in_factor  stiffness that the factor has beside that of the elements
+void setStepTargets(const BodyLoads& loads, const MotionView& motion, const TimeScheme& scheme,
+                    const std::vector<StiffnessCoupling>& in_factor, StepperWorkspace& scratch);
+/// Bounds the work of a step: the deepest contacts at the scratch's z keep their friction, further ones only their
+/// normal, and the rest has no force. Needs the targets.
+void limitContacts(StepperWorkspace& scratch);
+/// The rows' forces back to the loads, and how far the threads slid.
+/// @param gain  of the rows' values over positions, see setStepTargets(); 1 in an equilibrium
+void storeForces(const StepperWorkspace& scratch, double gain, BodyLoads& loads);
 
 }  // namespace vibe

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/multiply_add.hpp"
-#include "sparse/dense_kernel.hpp"
+#include "sparse/panel_kernel.hpp"
 
 namespace vibe {
 namespace {

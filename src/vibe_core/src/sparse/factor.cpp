@@ -6,7 +6,6 @@
 #include "sparse/aligned_buffer.hpp"
 #include "sparse/factor_plan.hpp"
 #include "sparse/multifrontal.hpp"
-#include "sparse/panel_pack.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "sparse/elimination.hpp"
-#include "sparse/order_repair.hpp"
 
 namespace vibe {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sparse/aligned_buffer.hpp"
-#include "sparse/dense_kernel.hpp"
+#include "sparse/panel_kernel.hpp"
 
 namespace vibe {
 

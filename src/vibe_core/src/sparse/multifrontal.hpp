@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "sparse/aligned_buffer.hpp"
@@ -60,5 +61,10 @@ class Multifrontal {
   std::vector<Update> waiting_;
   std::int64_t stack_top_ = 0;
 };
+
+/// Writes a panel in the order of PanelStep; column_scale gets one number per column. Halves are IEEE 754 binary16
+/// without subnormal numbers, which some processors convert slowly; these become zero.
+template <class Real, class Number>
+void packPanel(const FrontPanel<Real>& panel, const PanelStep& step, Number* to, float* column_scale);
 
 }  // namespace vibe

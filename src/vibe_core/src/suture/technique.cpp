@@ -6,7 +6,6 @@
 
 #include "common/elementary.hpp"
 #include "suture/technique_templates.hpp"
-#include "suture/technique_wall.hpp"
 
 namespace vibe {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "common/constants.hpp"
 #include "common/elementary.hpp"
+#include "common/turn.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/random.hpp"
 

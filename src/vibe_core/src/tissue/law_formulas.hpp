@@ -5,7 +5,7 @@
 #include "tissue/law_terms.hpp"
 
 // The built-in elastic laws, for a scalar or a pack of scalars; law_terms.hpp explains why everything is in an unnamed
-// namespace. A law is a specialisation of LawFormula here and a line in scene/material_law_list.hpp.
+// namespace. A law is a specialisation of LawFormula here and a line in scene/tissue_choices.hpp.
 
 namespace vibe {
 namespace {

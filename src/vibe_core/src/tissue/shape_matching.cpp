@@ -1,11 +1,13 @@
 #include "tissue/shape_matching.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "tissue/cluster_builder.hpp"
 #include "tissue/shape_matching_kernel.hpp"
+#include "vibe_core/common/machine.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {
@@ -128,6 +130,10 @@ void ShapeMatching::strain(const State& state, float* out) const {
     const int lane = clusters_.lane_of_particle[i];
     out[i] = static_cast<float>(std::sqrt(buffers.spread[lane] / clusters_.rest_spread[lane]) - 1);
   }
+}
+
+ClusterSweepFunction chooseClusterSweep() {
+  return instructionSet() == InstructionSet::Sse2 ? sweepClustersSse2 : sweepClustersAvx2;
 }
 
 }  // namespace vibe

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "tissue/cluster_set.hpp"
+#include "tissue/cluster_builder.hpp"
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/tissue/tissue_model.hpp"

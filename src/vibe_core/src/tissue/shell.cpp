@@ -1,14 +1,16 @@
 #include "vibe_core/tissue/shell.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
+
+#include <Eigen/Dense>
 
 #include "tissue/shell_fibres.hpp"
 #include "tissue/shell_kernel.hpp"
 
 namespace vibe {
+
 namespace {
 
 constexpr int kTrianglesPerPiece = 2000;  // with fewer, a second thread does not pay off
@@ -212,6 +214,19 @@ void ShellElements::strain(const double* displacement, float* out) const {
   }
   for (std::size_t i = 0; i < now.size(); ++i)
     out[i] = rest[i] > 0 ? static_cast<float>(std::sqrt(now[i] / rest[i]) - 1) : 0.0f;
+}
+
+ShellKernel shellKernel(KernelPath path) {
+  switch (path) {
+    case KernelPath::Avx512:
+      return shellKernelAvx512();
+    case KernelPath::Avx2:
+      return shellKernelAvx2();
+    case KernelPath::FusedSse2:
+      return shellKernelFusedSse2();
+    default:
+      return shellKernelSse2();
+  }
 }
 
 }  // namespace vibe

@@ -2,7 +2,7 @@
 
 #include "common/kernel_path.hpp"
 #include "tissue/element_batch.hpp"
-#include "vibe_core/tissue/material.hpp"
+#include "vibe_core/tissue/material_registry.hpp"
 
 namespace vibe {
 

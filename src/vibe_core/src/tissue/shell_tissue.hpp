@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/scene/scene.hpp"
@@ -9,6 +10,12 @@
 #include "vibe_core/tissue/tissue_model.hpp"
 
 namespace vibe {
+
+/// Fibres of the wall of an organ. The long axis is that of a stomach (see findAxis); for an organ without an end at
+/// the duodenum it is the line from fundus to pylorus.
+/// @param factor  of the modulus, per triangle [1]
+/// @throws Error if the organ has no axis: fundus and pylorus coincide
+ShellFibres wallFibres(const FibreScene& scene, const Organ& organ, const std::vector<double>& factor);
 
 /// The wall of an organ as a shell whose nodes are the particles (tissue.model: shell).
 class ShellTissue : public TissueModel {

@@ -5,10 +5,9 @@
 #include <limits>
 #include <string>
 
-#include "trainee/device_geometry.hpp"
 #include "trainee/ik_solution.hpp"
-#include "trainee/imagined_draw.hpp"
-#include "trainee/travel.hpp"
+#include "trainee/operator.hpp"
+#include "trainee/picture.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {

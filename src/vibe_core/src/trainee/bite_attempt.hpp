@@ -2,8 +2,8 @@
 #include <optional>
 
 #include "trainee/bite_plan.hpp"
-#include "trainee/needle_view.hpp"
 #include "trainee/operator.hpp"
+#include "trainee/picture.hpp"
 
 namespace vibe {
 

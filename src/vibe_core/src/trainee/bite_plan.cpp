@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trainee/device_geometry.hpp"
 #include "trainee/ik_solution.hpp"
-#include "trainee/imagined_draw.hpp"
+#include "trainee/picture.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "procedure/thread_events.hpp"
+#include "procedure/suturing.hpp"
 
 namespace vibe {
 

@@ -1,4 +1,8 @@
 #pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -7,11 +11,87 @@
 #include <utility>
 #include <vector>
 
-#include "trainee/trainee_hand.hpp"
+#include "vibe_core/contact/tool_model.hpp"
+#include "vibe_core/events/event.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
-#include "vibe_core/trainee/goal.hpp"
+#include "vibe_core/trainee/observation.hpp"
+#include "vibe_core/trainee/protocol.hpp"
+#include "vibe_core/trainee/skill.hpp"
 
 namespace vibe {
+
+/// Completed fraction of a movement at a fraction s in [0, 1] of its time: 10 s^3 - 15 s^4 + 6 s^5. This is the
+/// straight movement with the least mean squared jerk between two rest positions, and close to human reaching: Flash &
+/// Hogan 1985, J Neurosci 5(7):1688. The peak speed is 15/8 of the mean speed, at half time.
+inline double minimumJerk(double s) {
+  if (s <= 0) return 0;
+  if (s >= 1) return 1;
+  return s * s * s * (10 + s * (-15 + 6 * s));
+}
+
+/// Mean speeds of an experienced operator's hand per joint, design choice [m/s], [rad/s].
+constexpr std::array<double, kJointCount> kHandSpeed{0.04, 1.2, 1.2, 1.2, 0.025, 12.5, 0.05};
+constexpr double kPeakOverMean = 1.875;  ///< of the speed of a minimum-jerk movement (Flash & Hogan 1985)
+
+/// Time of a motion of several joints at once, within the tool's speeds [s].
+inline double durationOfMotion(const std::array<double, kJointCount>& from, const std::array<double, kJointCount>& to,
+                               double pace, const std::array<JointLimits, kJointCount>& limits) {
+  double time = 0;
+  for (int j = 0; j < kJointCount; ++j) {
+    const double way = std::abs(to[j] - from[j]);
+    time = std::max({time, way / (pace * kHandSpeed[j]), kPeakOverMean * way / limits[j].velocity});
+  }
+  return time;
+}
+
+/// The hands of a trainee: elementary motions, each of which lasts some steps and perceives what happens meanwhile.
+/// Calls return when the motion has ended.
+class TraineeHand {
+ public:
+  using Joints = std::array<double, kJointCount>;
+
+  /// @param next  ends the present step and returns when the next one has been perceived
+  TraineeHand(const Model& model, const Skill& skill, std::function<void()> next);
+
+  /// Called before the coroutine goes on.
+  void perceive(const Observation& seen);
+
+  const Model& model() const { return model_; }
+  const Skill& skill() const { return skill_; }
+  const Observation& view() const { return *view_; }
+  const StepInput& command() const { return command_; }
+  const Joints& joints() const { return command_.joints; }  ///< commanded
+
+  void wait(double seconds);
+  /// @return whether the condition became true in time
+  bool await(const std::function<bool()>& condition, double patience);
+
+  /// Moves joints to positions at hand speed, in at least `min` seconds at an experienced pace. Entries that are not
+  /// finite stay.
+  /// @param stop  ends the motion on its way where it becomes true; empty: never
+  /// @return false if it was stopped
+  bool moveTo(const Joints& joints, double min, const std::function<bool()>& stop = {});
+  bool move(Joint joint, double position, double min, const std::function<bool()>& stop = {});
+  /// What is felt is more than the skill allows. For `stop`.
+  bool feelsTooMuch() const { return view_->force.norm() > skill_.force_limit; }
+
+  void press(Button button) { command_.buttons[button] = 1; }
+  void release(Button button) { command_.buttons[button] = 0; }
+  void hold(Button button, double seconds);
+
+  /// Events since the last forget().
+  bool happened(Event::Kind kind) const { return find(kind) != nullptr; }
+  const Event* find(Event::Kind kind) const;
+  void forget() { events_.clear(); }
+
+ private:
+  const Model& model_;
+  const Skill& skill_;
+  std::function<void()> next_;
+  const Observation* view_ = nullptr;
+  StepInput command_;
+  std::vector<Event> events_;
+};
 
 /// What the actions of a trainee share: hands, knowledge of the organ, random errors, and how to say what is going on.
 struct Operator {
@@ -58,5 +138,13 @@ GoalResult perform(const WaitGoal& goal, Operator& me);
 GoalResult takeBite(const WallPoint& target, Operator& me);
 /// The scope straight and near its entry, out of the way.
 void stepBack(Operator& me);
+
+/// Moves the scope to joint positions past the walls: directly if they are near, else straightened and drawn back into
+/// the entry, turned, and forward from there. Where it meets a wall with more than Skill::force_limit it comes back.
+/// @return whether it arrived
+bool travel(const TraineeHand::Joints& joints, Operator& me);
+
+/// Straightens the scope and draws it back into the entry, out of what presses on it.
+void retreat(Operator& me);
 
 }  // namespace vibe

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "scene/printable.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
+#include "scene/yaml_guard.hpp"
+#include "vibe_core/scene/words.hpp"
 
 namespace vibe {
 namespace {

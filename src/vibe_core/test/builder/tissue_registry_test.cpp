@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "vibe_core/builder/model_builder.hpp"
-#include "vibe_core/scene/choices.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/scene/words.hpp"
 #include "vibe_testing/expect_error.hpp"
 
 namespace vibe::tissue_registry_test {

@@ -1,4 +1,4 @@
-#include "vibe_core/common/arithmetic.hpp"
+#include "vibe_core/common/machine.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,6 @@
 #include "common/multiply_add.hpp"
 #include "environment_variable.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/machine_info.hpp"
 #include "vibe_core/common/random.hpp"
 
 namespace vibe::arithmetic_test {

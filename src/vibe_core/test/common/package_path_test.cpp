@@ -1,4 +1,4 @@
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,11 +1,10 @@
-#include "vibe_core/common/write_file.hpp"
+#include "vibe_core/common/files.hpp"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
 #include "vibe_testing/temporary_folder.hpp"
 
 namespace vibe::write_file_test {

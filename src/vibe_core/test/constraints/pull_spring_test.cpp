@@ -1,6 +1,6 @@
 // The hand that pulls the tissue from outside: force, limits, release, account, snapshots.
-#include "vibe_core/state/pull_spring.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
+#include "vibe_core/state/state.hpp"
 
 #include <gtest/gtest.h>
 

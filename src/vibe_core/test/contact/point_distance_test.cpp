@@ -1,4 +1,4 @@
-#include "contact/point_distance.hpp"
+#include "contact/shape_distance.hpp"
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "contact/tool_jacobian.hpp"
+#include "contact/tool_motion.hpp"
 #include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::scope_springs_test {

@@ -1,9 +1,9 @@
 // The shaft of the endoscope as a chain of joints: a beam that is clamped where it enters.
-#include "vibe_core/contact/shaft_bend.hpp"
+#include "vibe_core/contact/tool_model.hpp"
 
 #include <gtest/gtest.h>
 
-#include "contact/tool_jacobian.hpp"
+#include "contact/tool_motion.hpp"
 #include "vibe_testing/scope_fixture.hpp"
 
 namespace vibe::shaft_bend_test {

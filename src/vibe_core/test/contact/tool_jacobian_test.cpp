@@ -1,4 +1,4 @@
-#include "contact/tool_jacobian.hpp"
+#include "contact/tool_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/scene/scene_parser.hpp"

@@ -1,4 +1,4 @@
-#include "geometry/landmark_estimate.hpp"
+#include "geometry/regions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "geometry/remesh.hpp"
 #include "geometry/stomach_knots.hpp"
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::landmark_estimate_test {

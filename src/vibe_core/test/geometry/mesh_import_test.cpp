@@ -11,7 +11,7 @@
 #include "geometry/mesh_writer.hpp"
 #include "geometry/surface_check.hpp"
 #include "geometry/test_surfaces.hpp"
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/mesh_file.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"

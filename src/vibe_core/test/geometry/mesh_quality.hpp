@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/elementary.hpp"
-#include "geometry/editable_mesh.hpp"
+#include "geometry/remesh.hpp"
 #include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe::test {

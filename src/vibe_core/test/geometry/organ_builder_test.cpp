@@ -1,4 +1,4 @@
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "geometry/regions.hpp"
 #include "geometry/stomach_knots.hpp"
 #include "geometry/surface_check.hpp"
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 #include "vibe_core/scene/scene_parser.hpp"

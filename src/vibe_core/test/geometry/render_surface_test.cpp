@@ -1,4 +1,4 @@
-#include "vibe_core/geometry/render_surface.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 
 #include <gtest/gtest.h>
 

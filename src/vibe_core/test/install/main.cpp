@@ -4,7 +4,7 @@
 #include <exception>
 #include <iostream>
 
-#include "vibe_core/metrics/run_summary.hpp"
+#include "vibe_core/metrics/session_report.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 
 int main(int argc, char** argv) {

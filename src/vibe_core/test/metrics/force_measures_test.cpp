@@ -1,4 +1,4 @@
-#include "vibe_core/metrics/force_measures.hpp"
+#include "vibe_core/metrics/skill_phases.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vibe_core/metrics/measures.hpp"
+#include "vibe_core/metrics/session_outcome.hpp"
 
 #include <gtest/gtest.h>
 

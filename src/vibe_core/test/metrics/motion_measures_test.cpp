@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "metrics/motions.hpp"
-#include "trainee/minimum_jerk.hpp"
+#include "trainee/operator.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_testing/allocation_count.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "metrics/organs.hpp"
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_testing/allocation_count.hpp"
 #include "vibe_testing/worlds.hpp"

@@ -1,4 +1,4 @@
-#include "vibe_core/metrics/peak_counter.hpp"
+#include "vibe_core/metrics/smoothness.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vibe_core/metrics/session_csv.hpp"
+#include "vibe_core/metrics/session_report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "procedure/procedure_bench.hpp"
-#include "vibe_core/metrics/run_summary.hpp"
+#include "vibe_core/metrics/session_report.hpp"
 
 namespace vibe::session_metrics_test {
 namespace {

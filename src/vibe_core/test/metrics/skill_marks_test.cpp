@@ -1,4 +1,4 @@
-#include "vibe_core/metrics/skill_marks.hpp"
+#include "vibe_core/metrics/skill_acts.hpp"
 
 #include <gtest/gtest.h>
 

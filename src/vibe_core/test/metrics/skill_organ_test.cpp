@@ -1,4 +1,4 @@
-#include "vibe_core/metrics/skill_organ.hpp"
+#include "vibe_core/metrics/skill_metrics.hpp"
 
 #include <gtest/gtest.h>
 

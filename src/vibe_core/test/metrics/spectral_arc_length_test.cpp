@@ -1,4 +1,4 @@
-#include "vibe_core/metrics/spectral_arc_length.hpp"
+#include "vibe_core/metrics/smoothness.hpp"
 
 #include <gtest/gtest.h>
 

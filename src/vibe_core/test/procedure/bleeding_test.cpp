@@ -1,4 +1,4 @@
-#include "procedure/bleeding.hpp"
+#include "procedure/procedure.hpp"
 
 #include <gtest/gtest.h>
 

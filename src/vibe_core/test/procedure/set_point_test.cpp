@@ -1,5 +1,5 @@
 // The set point of the insufflator is reached once, not whenever the tool disturbs the pressure.
-#include "procedure/set_point.hpp"
+#include "procedure/procedure.hpp"
 
 #include <gtest/gtest.h>
 

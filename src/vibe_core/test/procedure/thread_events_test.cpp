@@ -1,4 +1,4 @@
-#include "procedure/thread_events.hpp"
+#include "procedure/suturing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,8 @@
-#include "vibe_core/scene/choices.hpp"
+#include "vibe_core/scene/words.hpp"
 
 #include <gtest/gtest.h>
 
-#include "vibe_core/procedure/cinch_model.hpp"
-#include "vibe_core/procedure/marking_deformation.hpp"
+#include "vibe_core/procedure/procedure_registry.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
 #include "vibe_testing/expect_error.hpp"

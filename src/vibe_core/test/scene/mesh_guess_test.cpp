@@ -1,4 +1,4 @@
-#include "vibe_core/scene/mesh_guess.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe::mesh_guess_test {

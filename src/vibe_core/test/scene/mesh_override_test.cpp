@@ -1,10 +1,9 @@
-#include "vibe_core/scene/mesh_override.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_testing/expect_error.hpp"
 #include "vibe_testing/temporary_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/words.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scene/renamed_keys.hpp"
+#include "scene/scene_keys.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "vibe_core/scene/scene_parser.hpp"
-#include "vibe_core/suture/thread_material.hpp"
+#include "vibe_core/suture/suture_thread.hpp"
 
 #include <gtest/gtest.h>
 

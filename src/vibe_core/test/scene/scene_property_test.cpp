@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "scene/mutation.hpp"
-#include "scene/scene_value.hpp"
+#include "scene/scene_keys.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/scene/schema.hpp"
 #include "vibe_testing/expect_error.hpp"

@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "scene/scene_value.hpp"
+#include "scene/scene_keys.hpp"
 #include "scene/schema_text.hpp"
 #include "vibe_core/scene/unit.hpp"
 #include "vibe_testing/expect_error.hpp"

@@ -1,6 +1,6 @@
 // Joints of what is only drawn: an arm whose bars stay joined, a needle that is where the procedure has it, a probe
 // that comes out with the pedal.
-#include "vibe_core/simulation/drawn_joints.hpp"
+#include "vibe_core/simulation/tool_queries.hpp"
 
 #include <gtest/gtest.h>
 #include <urdf_parser/urdf_parser.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-#include "contact/needle_linkage.hpp"
+#include "contact/kinematics.hpp"
 #include "procedure/procedure_bench.hpp"
 
 namespace vibe::drawn_joints_test {

@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/input/step_input_fields.hpp"
 #include "vibe_core/state/state_fields.hpp"
 #include "vibe_testing/scope_worlds.hpp"
 

@@ -1,4 +1,4 @@
-#include "vibe_core/simulation/tip_motion.hpp"
+#include "vibe_core/simulation/tool_queries.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/lumen.hpp"
+#include "geometry/surface_operators.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_testing/worlds.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "geometry/lumen.hpp"
+#include "geometry/surface_operators.hpp"
 #include "vibe_core/constraints/gas.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_testing/worlds.hpp"

@@ -1,10 +1,10 @@
 // The factor contains the stiffness of contacts between nodes that no element joins: two plates on stiff springs.
 #include <gtest/gtest.h>
 
-#include "solver/factor_schedule.hpp"
 #include "solver/implicit_worlds.hpp"
 #include "solver/quasi_newton.hpp"
-#include "solver/step_rows.hpp"
+#include "solver/stepper_workspace.hpp"
+#include "solver/time_scheme.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe::coupled_factor_test {

@@ -1,5 +1,5 @@
 // Small dense factorizations against Eigen's.
-#include "solver/dense_lu.hpp"
+#include "solver/contact_problem.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // When a factor is renewed is decided by the state alone, and which one is used by its name.
-#include "solver/factor_schedule.hpp"
+#include "solver/stepper_workspace.hpp"
 
 #include <gtest/gtest.h>
 

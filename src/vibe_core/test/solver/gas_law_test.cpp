@@ -1,4 +1,4 @@
-#include "solver/gas_law.hpp"
+#include "solver/potential.hpp"
 
 #include <gtest/gtest.h>
 

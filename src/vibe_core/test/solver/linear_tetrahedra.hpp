@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vibe_core/tissue/elastic_elements.hpp"
-#include "vibe_core/tissue/material_energy.hpp"
+#include "vibe_core/tissue/material_registry.hpp"
 
 /// Solids for the tests of implicit steps, in double precision throughout.
 namespace vibe::test {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "procedure/thread_events.hpp"
-#include "vibe_core/procedure/cinch_model.hpp"
+#include "procedure/suturing.hpp"
+#include "vibe_core/procedure/procedure_registry.hpp"
 #include "vibe_core/suture/technique.hpp"
 #include "vibe_testing/worlds.hpp"
 

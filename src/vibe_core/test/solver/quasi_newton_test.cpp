@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/factor_schedule.hpp"
 #include "solver/implicit_worlds.hpp"
-#include "solver/step_rows.hpp"
+#include "solver/stepper_workspace.hpp"
+#include "solver/time_scheme.hpp"
 #include "vibe_core/solver/energy_term.hpp"
 
 namespace vibe::quasi_newton_test {

@@ -1,10 +1,10 @@
 // Loads as rows: their order, directions and targets, and the way of the forces back.
-#include "solver/step_rows.hpp"
+#include "solver/time_scheme.hpp"
 
 #include <gtest/gtest.h>
 
-#include "solver/factor_schedule.hpp"
 #include "solver/implicit_worlds.hpp"
+#include "solver/stepper_workspace.hpp"
 #include "suture/capstan.hpp"
 
 namespace vibe::step_rows_test {

@@ -1,10 +1,10 @@
 // Springs across tense threads in the factor: their stiffness, and when a row is still needed.
-#include "solver/thread_couplings.hpp"
+#include "solver/couplings.hpp"
 
 #include <gtest/gtest.h>
 
 #include "solver/implicit_worlds.hpp"
-#include "solver/step_rows.hpp"
+#include "solver/time_scheme.hpp"
 
 namespace vibe::thread_couplings_test {
 namespace {

@@ -8,7 +8,6 @@
 #include "sparse/eigen_matrix.hpp"
 #include "sparse/elimination.hpp"
 #include "sparse/factor_plan.hpp"
-#include "sparse/order_repair.hpp"
 
 namespace vibe::coupled_plan_test {
 namespace {

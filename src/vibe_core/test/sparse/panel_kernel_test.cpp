@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "sparse/aligned_buffer.hpp"
-#include "sparse/dense_kernel.hpp"
 #include "sparse/front_elimination.hpp"
-#include "sparse/panel_pack.hpp"
+#include "sparse/multifrontal.hpp"
 
 namespace vibe::panel_kernel_test {
 namespace {

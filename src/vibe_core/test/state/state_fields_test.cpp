@@ -6,7 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "vibe_core/input/step_input_fields.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 
 namespace vibe {  // not one of its own: VIBE_FIELDS describes a struct in this namespace
@@ -146,7 +145,7 @@ TEST(Fields, TheListNamesFieldsAndTheirTypes) {
 }
 
 /// What follows holds for one list of fields. If it fails, a field was added, removed, renamed or moved: raise the
-/// version in state_fields.hpp or step_input_fields.hpp, so that older files are refused by name, then put the new
+/// version in state_fields.hpp, so that older files are refused by name, then put the new
 /// values here.
 TEST(Fields, AnotherListOfFieldsHasAnotherVersion) {
   EXPECT_EQ(kStateVersion, 7U);

@@ -1,4 +1,4 @@
-#include "suture/limited_slide.hpp"
+#include "suture/thread_run.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vibe_core/suture/technique_csv.hpp"
+#include "vibe_core/suture/technique_table.hpp"
 
 #include <gtest/gtest.h>
 

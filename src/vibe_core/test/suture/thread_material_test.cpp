@@ -1,4 +1,4 @@
-#include "vibe_core/suture/thread_material.hpp"
+#include "vibe_core/suture/suture_thread.hpp"
 
 #include <gtest/gtest.h>
 

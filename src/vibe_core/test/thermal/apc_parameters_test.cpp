@@ -1,4 +1,4 @@
-#include "vibe_core/thermal/apc_parameters.hpp"
+#include "vibe_core/thermal/argon_beam.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "geometry/regions.hpp"
 #include "procedure/marking_worlds.hpp"
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe::mark_zones_test {

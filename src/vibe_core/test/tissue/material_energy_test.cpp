@@ -1,4 +1,4 @@
-#include "vibe_core/tissue/material_energy.hpp"
+#include "vibe_core/tissue/material_registry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "tissue/material_law.hpp"
 #include "tissue/shell_worlds.hpp"
-#include "vibe_core/scene/choices.hpp"
+#include "vibe_core/scene/words.hpp"
 #include "vibe_testing/expect_error.hpp"
 
 namespace vibe::material_registry_test {

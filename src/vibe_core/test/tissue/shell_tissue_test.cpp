@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "vibe_core/builder/organ_builder.hpp"
+#include "vibe_core/builder/model_builder.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_testing/worlds.hpp"
 

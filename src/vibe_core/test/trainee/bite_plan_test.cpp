@@ -4,9 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "onlooker.hpp"
-#include "trainee/device_geometry.hpp"
 #include "trainee/ik_solution.hpp"
-#include "trainee/imagined_draw.hpp"
+#include "trainee/picture.hpp"
 
 namespace vibe::bite_plan_test {
 namespace {

@@ -1,8 +1,8 @@
-#include "vibe_core/trainee/goal_outcomes.hpp"
+#include "vibe_core/trainee/trainee.hpp"
 
 #include <gtest/gtest.h>
 
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 

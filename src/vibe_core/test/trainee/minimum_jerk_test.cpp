@@ -1,4 +1,4 @@
-#include "trainee/minimum_jerk.hpp"
+#include "trainee/operator.hpp"
 
 #include <gtest/gtest.h>
 

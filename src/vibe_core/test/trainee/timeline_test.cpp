@@ -1,4 +1,4 @@
-#include "vibe_core/trainee/timeline.hpp"
+#include "vibe_core/trainee/trainee_script.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulation.hpp"

@@ -1,4 +1,4 @@
-#include "vibe_core/trainee/tremor.hpp"
+#include "vibe_core/trainee/skill.hpp"
 
 #include <gtest/gtest.h>
 

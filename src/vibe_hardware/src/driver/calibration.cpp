@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "vibe_core/common/package_path.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/common/files.hpp"
+#include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe::hardware {

@@ -5,7 +5,7 @@
 
 #include "emulator/loop_host.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 
 namespace vibe::hardware {
 namespace {

@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/common/files.hpp"
+#include "vibe_core/scene/words.hpp"
 
 namespace vibe::hardware {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <linux/input-event-codes.h>
 
-#include "vibe_core/common/package_path.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/common/files.hpp"
+#include "vibe_core/scene/words.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 #include "vibe_hardware/gamepad/pad_state.hpp"
 

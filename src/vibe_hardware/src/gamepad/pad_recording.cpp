@@ -9,7 +9,7 @@
 #include <linux/input-event-codes.h>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 
 namespace vibe::hardware {
 

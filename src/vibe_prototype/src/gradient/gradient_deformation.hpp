@@ -3,7 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <vector>
 
-#include "vibe_core/geometry/surface_view.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe::prototype {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gradient/gradient_deformation.hpp"
-#include "vibe_core/geometry/surface_view.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe::prototype {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "contact/deepest_contact.hpp"
-#include "geometry/lumen.hpp"
+#include "contact/tool_collision.hpp"
+#include "geometry/surface_operators.hpp"
 #include "vibe_core/constraints/gas.hpp"
 
 namespace vibe::prototype {

@@ -8,7 +8,7 @@
 #include "gradient/gradient_touch.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
-#include "vibe_core/procedure/marking_deformation.hpp"
+#include "vibe_core/procedure/procedure_registry.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe::prototype {

@@ -1,8 +1,8 @@
 #pragma once
 #include <memory>
 
-#include "vibe_core/constraints/constraint_block.hpp"
-#include "vibe_core/procedure/cinch_model.hpp"
+#include "vibe_core/constraints/constraint_registry.hpp"
+#include "vibe_core/procedure/procedure_registry.hpp"
 
 namespace vibe::prototype {
 

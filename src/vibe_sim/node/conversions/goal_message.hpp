@@ -5,7 +5,7 @@
 #include <vibe_msgs/TraineeGoal.h>
 
 #include "vibe_core/model/model.hpp"
-#include "vibe_core/trainee/goal.hpp"
+#include "vibe_core/trainee/protocol.hpp"
 
 namespace vibe::sim {
 

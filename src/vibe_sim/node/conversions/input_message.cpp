@@ -6,7 +6,7 @@
 #include "conversions/conversions.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
-#include "vibe_core/input/step_input_fields.hpp"
+#include "vibe_core/state/state_fields.hpp"
 
 namespace vibe::sim {
 namespace {

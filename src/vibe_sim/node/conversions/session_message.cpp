@@ -9,7 +9,7 @@
 #include "conversions/procedure_message.hpp"
 #include "conversions/tool_message.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/machine_info.hpp"
+#include "vibe_core/common/machine.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/simulation/snapshot.hpp"

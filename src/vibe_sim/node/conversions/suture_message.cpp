@@ -5,9 +5,8 @@
 #include <vibe_msgs/TissueTopology.h>
 
 #include "conversions/conversions.hpp"
-#include "vibe_core/suture/catenary.hpp"
+#include "vibe_core/suture/suture_thread.hpp"
 #include "vibe_core/suture/technique.hpp"
-#include "vibe_core/suture/thread_material.hpp"
 
 namespace vibe::sim {
 

@@ -12,7 +12,7 @@
 #include "input/input_sample.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 #include "vibe_core/model/model.hpp"
-#include "vibe_core/simulation/tip_motion.hpp"
+#include "vibe_core/simulation/tool_queries.hpp"
 #include "vibe_core/state/state.hpp"
 
 // Where the tool is and what it feels; scope and suturing device as robots of the CRTK convention.

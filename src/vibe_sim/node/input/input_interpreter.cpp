@@ -5,7 +5,7 @@
 
 #include "input/input_queue.hpp"
 #include "vibe_core/constraints/pull_patch.hpp"
-#include "vibe_core/state/pull_spring.hpp"
+#include "vibe_core/state/state.hpp"
 
 namespace vibe::sim {
 namespace {

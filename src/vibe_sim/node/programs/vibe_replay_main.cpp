@@ -10,7 +10,7 @@
 #include "replay/replay.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_core/common/step_timer.hpp"
-#include "vibe_core/metrics/run_summary.hpp"
+#include "vibe_core/metrics/session_report.hpp"
 
 // Steps the simulator through the inputs of a recording, without a roscore, and compares every step with it.
 

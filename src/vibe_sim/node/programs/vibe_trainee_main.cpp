@@ -6,7 +6,7 @@
 #include "trainee/goal_player.hpp"
 #include "trainee/trainee_player.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_node/parameter_reader.hpp"
 #include "vibe_node/startup.hpp"
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/input/step_input_fields.hpp"
+#include "vibe_core/state/state_fields.hpp"
 
 namespace vibe::sim {
 namespace {

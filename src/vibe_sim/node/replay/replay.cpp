@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "simulation/scene_source.hpp"
-#include "vibe_core/common/arithmetic.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/machine_info.hpp"
-#include "vibe_core/metrics/run_summary.hpp"
+#include "vibe_core/common/machine.hpp"
+#include "vibe_core/metrics/session_report.hpp"
 #include "vibe_core/simulation/simulator.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "vibe_core/state/state_fields.hpp"

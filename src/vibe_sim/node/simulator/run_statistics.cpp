@@ -6,8 +6,8 @@
 #include "conversions/conversions.hpp"
 #include "conversions/procedure_message.hpp"
 #include "conversions/session_message.hpp"
-#include "vibe_core/metrics/run_summary.hpp"
-#include "vibe_core/scene/mesh_guess.hpp"
+#include "vibe_core/metrics/session_report.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
 
 namespace vibe::sim {
 

@@ -8,7 +8,7 @@
 #include <ros/console.h>
 
 #include "conversions/conversions.hpp"
-#include "vibe_core/common/write_file.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_node/startup.hpp"
 #include "vibe_node/wall_clock.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <vibe_msgs/TraineeProgress.h>
 
-#include "vibe_core/trainee/goal.hpp"
+#include "vibe_core/trainee/protocol.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 
 namespace vibe::sim {

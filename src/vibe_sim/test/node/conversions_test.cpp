@@ -12,7 +12,7 @@
 #include "conversions/tissue_message.hpp"
 #include "conversions/tool_message.hpp"
 #include "sentences.hpp"
-#include "vibe_core/input/step_input_fields.hpp"
+#include "vibe_core/state/state_fields.hpp"
 
 namespace vibe::sim::conversions_test {
 namespace {

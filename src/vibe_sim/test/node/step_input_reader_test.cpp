@@ -9,7 +9,7 @@
 
 #include "conversions/input_message.hpp"
 #include "sentences.hpp"
-#include "vibe_core/input/step_input_fields.hpp"
+#include "vibe_core/state/state_fields.hpp"
 
 namespace vibe::sim::step_input_reader_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "conversions/tissue_message.hpp"
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/simulation/simulation.hpp"
 #include "vibe_core/trainee/trainee.hpp"
 

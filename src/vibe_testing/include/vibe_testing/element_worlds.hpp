@@ -4,9 +4,9 @@
 #include <random>
 #include <vector>
 
-#include "vibe_core/scene/material_law_list.hpp"
+#include "vibe_core/scene/tissue_choices.hpp"
 #include "vibe_core/tissue/elastic_elements.hpp"
-#include "vibe_core/tissue/material.hpp"
+#include "vibe_core/tissue/material_registry.hpp"
 
 /// Materials and displacements for the tests of shells and of tetrahedra.
 namespace vibe::test {

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/common/package_path.hpp"
+#include "vibe_core/common/files.hpp"
 #include "vibe_core/scene/yaml_source.hpp"
 
 namespace vibe::vision {

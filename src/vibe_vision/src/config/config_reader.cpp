@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "vibe_core/common/error.hpp"
-#include "vibe_core/scene/nearest_key.hpp"
+#include "vibe_core/scene/words.hpp"
 
 namespace vibe::vision {
 namespace {

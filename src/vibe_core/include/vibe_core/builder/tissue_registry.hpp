@@ -1,12 +1,15 @@
 #pragma once
+
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "vibe_core/geometry/organ.hpp"
+#include "vibe_core/model/model.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 #include "vibe_core/scene/scene.hpp"
+#include "vibe_core/solver/elastic_body.hpp"
 #include "vibe_core/tissue/tissue_model.hpp"
 
 namespace vibe {
@@ -44,5 +47,9 @@ void registerTissueModel(const std::string& name, const std::string& meaning, Ti
 /// @throws Error for an unknown name, with the nearest or all known ones, and what the factory throws
 TissueAndSolver makeTissue(const Scene& scene, const Organ& organ, const std::vector<double>& masses,
                            const std::vector<double>& areas, int min_substeps = 1);
+
+/// The wall of a model as its solver sees it: elements, masses, what holds it, foundation, weight and damping.
+/// @throws Error if the tissue of the model is no shell (tissue.model: shell)
+ElasticBody wallBody(const Model& model);
 
 }  // namespace vibe

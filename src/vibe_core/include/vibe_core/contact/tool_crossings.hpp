@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "vibe_core/contact/tool_model.hpp"
-#include "vibe_core/geometry/surface_view.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 
 namespace vibe {
 

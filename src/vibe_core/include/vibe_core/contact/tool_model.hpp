@@ -1,13 +1,50 @@
 #pragma once
-#include <Eigen/Geometry>
+
 #include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "vibe_core/contact/shaft_bend.hpp"
+#include <Eigen/Geometry>
+
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/state/tool_displacement.hpp"
+
+namespace vibe {
+
+/// Most joints of a shaft in one direction.
+constexpr int kMaxShaftStations = 16;
+
+/// The bent shaft of a tool as a chain of joints: the part inside the lumen is a beam, clamped where it enters, whose
+/// curvature is linear along it (exact for a force and a moment at its end, Euler and Bernoulli). Each joint takes the
+/// curvature around it with the weight of a hat function, which leaves the rotation and the deflection of the beam's
+/// end exact for small angles, wherever the joints are.
+class ShaftBend {
+ public:
+  /// How the angle of a joint follows from the two amplitudes of its direction, and how these shares change with the
+  /// free length.
+  struct Share {
+    double mean = 0, change = 0;            ///< [m]
+    double mean_rate = 0, change_rate = 0;  ///< per metre of free length [1]
+  };
+
+  /// @param stations      distance of each joint from the end of the shaft, ascending [m], kMaxShaftStations at most
+  /// @param free_length   of the shaft between entry and end; 0 or less: nothing bends [m]
+  /// @param displacement  of the tool
+  ShaftBend(const std::vector<double>& stations, double free_length, const ToolDisplacement& displacement);
+
+  const Share& share(int station) const { return shares_[static_cast<std::size_t>(station)]; }
+  /// Angle of a joint. @param direction  0: up, 1: left [rad]
+  double angle(int station, int direction) const;
+  /// Its change with the free length at constant amplitudes [rad/m]
+  double angleRate(int station, int direction) const;
+
+ private:
+  std::array<Share, kMaxShaftStations> shares_{};
+  ToolDisplacement displacement_;
+};
+
+}  // namespace vibe
 
 class btConvexShape;
 
@@ -98,6 +135,23 @@ class ToolModel {
   std::array<JointLimits, kJointCount> limits_{};
   std::vector<double> shaft_stations_;
   double shaft_end_ = 0;  // along the axis of the root link at insertion 0 [m]
+};
+
+/// Poses of the tool links in world, in the link order of Model::tool, and the place of the joints that they belong to:
+/// where the tool stays, or another part of a step has had it there already, they are not computed again.
+struct LinkPoses {
+  std::vector<Eigen::Isometry3d> poses;
+  std::array<double, kJointCount> inputs{};  ///< [m], [rad]
+  ToolDisplacement displacement{};
+
+  const Eigen::Isometry3d& operator[](std::size_t link) const { return poses[link]; }
+  operator const std::vector<Eigen::Isometry3d>&() const { return poses; }
+};
+
+/// Of one step.
+struct ToolPoses {
+  LinkPoses start, end;
+  LinkPoses middle;  ///< half way, before the solve; empty: a tool that does not yield
 };
 
 }  // namespace vibe

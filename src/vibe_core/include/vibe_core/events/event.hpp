@@ -1,9 +1,12 @@
 #pragma once
+
+#include <array>
 #include <cstdint>
 #include <string>
 #include <type_traits>
+#include <vector>
 
-#include "vibe_core/geometry/anatomy.hpp"
+#include "vibe_core/geometry/organ.hpp"
 
 namespace vibe {
 
@@ -120,5 +123,48 @@ const char* unitOfValue(Event::Kind kind);
 
 /// One sentence for people, with units; for a rejected command the reason and the remedy.
 std::string describe(const Event& event);
+
+struct State;
+
+/// Where a step writes down what happens. An event gets the time that the state has when it is emitted: up to the solve
+/// that of the start of the step, after it that of its end. A pair of references, to be passed by value.
+class EventLog {
+ public:
+  /// @param state   whose clock counts; must outlive this, as `events` must
+  /// @param events  are appended to
+  EventLog(const State& state, std::vector<Event>& events) : state_(state), events_(events) {}
+
+  /// Appends an event. The caller sets through the reference what else the kind carries, before the next event.
+  Event& emit(Event::Kind kind, int particle = -1, double value = 0) const;
+
+  /// Appends a rejection.
+  /// @param command  Button, or -1: the closing of the needle arm
+  Event& reject(int command, RejectReason reason) const;
+
+ private:
+  const State& state_;
+  std::vector<Event>& events_;
+};
+
+/// How often each kind of event has happened. Whatever counts events reads this.
+class EventCounts {
+ public:
+  /// @param events  of one step
+  void record(const std::vector<Event>& events) {
+    for (const Event& event : events) ++counts_[static_cast<std::size_t>(event.kind)];
+  }
+
+  int of(Event::Kind kind) const { return counts_[static_cast<std::size_t>(kind)]; }
+
+  /// Of all kinds.
+  long total() const {
+    long sum = 0;
+    for (int count : counts_) sum += count;
+    return sum;
+  }
+
+ private:
+  std::array<int, kEventKindCount> counts_{};
+};
 
 }  // namespace vibe

@@ -1,7 +1,9 @@
 #pragma once
-#include <Eigen/Core>
+
 #include <array>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace vibe {
 
@@ -25,5 +27,31 @@ std::vector<Eigen::Vector3d> vertexNormals(const SurfaceMesh& mesh);
 
 /// Neighbours of every vertex along edges, each list in ascending order.
 std::vector<std::vector<int>> vertexNeighbours(const SurfaceMesh& mesh);
+
+/// A non-owning view of a deformed surface: the triangles of the rest mesh and positions as a structure of arrays.
+struct SurfaceView {
+  const std::vector<std::array<int, 3>>& triangles;  ///< vertex numbers
+  const std::vector<double>&x, &y, &z;               ///< (vertices) [m]
+
+  Eigen::Vector3d position(int vertex) const { return {x[vertex], y[vertex], z[vertex]}; }
+};
+
+/// A finer surface for rendering, bound linearly to the particles. The position of render vertex v is
+///   sum over k in [offsets[v], offsets[v+1]) of weights[k] * x[particles[k]],
+/// where the weights of a vertex sum to 1. The surface therefore follows every affine motion of the particles exactly.
+struct RenderSurface {
+  std::vector<std::array<int, 3>> triangles;  ///< render vertex numbers, outward
+  std::vector<int> offsets;                   ///< (vertex count + 1)
+  std::vector<int> particles;                 ///< (offsets.back())
+  std::vector<float> weights;                 ///< (offsets.back())
+};
+
+/// Subdivides the particle mesh once by Loop's scheme (Loop 1987), expressed as weights. The result has four times the
+/// triangles.
+RenderSurface makeLoopSubdivision(const SurfaceMesh& particles);
+
+/// Positions of the render vertices for given particle positions [m].
+std::vector<Eigen::Vector3d> renderPositions(const RenderSurface& render_surface,
+                                             const std::vector<Eigen::Vector3d>& particles);
 
 }  // namespace vibe

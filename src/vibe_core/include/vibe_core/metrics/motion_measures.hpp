@@ -4,8 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "vibe_core/metrics/peak_counter.hpp"
-#include "vibe_core/metrics/spectral_arc_length.hpp"
+#include "vibe_core/metrics/smoothness.hpp"
 
 namespace vibe {
 

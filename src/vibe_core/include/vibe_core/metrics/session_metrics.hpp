@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "vibe_core/events/event.hpp"
-#include "vibe_core/metrics/event_counts.hpp"
 #include "vibe_core/metrics/skill_metrics.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"

@@ -6,7 +6,7 @@
 #include "vibe_core/contact/scope_springs.hpp"
 #include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/geometry/organ.hpp"
-#include "vibe_core/geometry/render_surface.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/model/tissue_solver.hpp"
 #include "vibe_core/scene/scene.hpp"
 #include "vibe_core/thermal/thermal_dose.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "vibe_core/contact/tool_poses.hpp"
+#include "vibe_core/contact/tool_model.hpp"
 #include "vibe_core/haptics/tool_impedance.hpp"
 
 namespace vibe {

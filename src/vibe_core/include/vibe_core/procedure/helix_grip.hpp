@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "vibe_core/events/event_log.hpp"
+#include "vibe_core/events/event.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/state/state.hpp"
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "vibe_core/geometry/anatomy.hpp"
-#include "vibe_core/thermal/apc_parameters.hpp"
+#include "vibe_core/geometry/organ.hpp"
+#include "vibe_core/thermal/argon_beam.hpp"
 
 namespace vibe {
 

@@ -14,7 +14,6 @@
 #include "vibe_core/metrics/session_metrics.hpp"
 #include "vibe_core/model/model.hpp"
 #include "vibe_core/simulation/simulator.hpp"
-#include "vibe_core/simulation/workspace.hpp"
 #include "vibe_core/state/state.hpp"
 
 namespace vibe {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "vibe_core/state/stiffness_coupling.hpp"
+#include "vibe_core/state/stepper_memory.hpp"
 
 namespace vibe {
 

@@ -1,12 +1,68 @@
 #pragma once
+
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "vibe_core/geometry/organ.hpp"
 #include "vibe_core/input/step_input.hpp"
-#include "vibe_core/suture/suture.hpp"
+#include "vibe_core/suture/tissue_group.hpp"
 
 namespace vibe {
+
+/// A point where the needle passed through the wall. The thread acts on the weighted mean of the surrounding particles.
+struct Bite {
+  std::vector<int> particle;
+  std::vector<double> weight;  ///< per particle, sum 1
+  double time = 0;             ///< time of the bite [s]
+  double depth = 0;            ///< greatest depth below the mucosa [m]
+  double thickness = 0;        ///< of the wall at the bite, at rest [m]
+  Region region = Region::Body;
+  Wall wall = Wall::Anterior;
+  double along = 0;  ///< position along the organ's axis at rest, 0: apex of the fundus, 1: pylorus
+
+  bool fullThickness() const { return depth >= thickness; }
+};
+
+/// One thread and its bites. The T-tag fixes the thread at the last bite, the cinch at the first.
+struct Suture {
+  /// In this order. Broken: the thread broke or tore out of all bites but one, and no longer pulls.
+  enum class Stage : std::uint8_t { Open = 0, Tagged = 1, Cinching = 2, Cinched = 3, Broken = 4 };
+  Stage stage = Stage::Open;
+  std::vector<Bite> bites;
+
+  // per segment between consecutive bites (bites - 1)
+  std::vector<double> length;   ///< thread length between the bites, unstretched [m]
+  std::vector<double> tension;  ///< in the last step; 0: slack [N]
+
+  std::vector<Eigen::Vector3d> taken;  ///< the bites of which the technique was recognised, on the wall at rest [m]
+  std::uint8_t technique = 0;          ///< Technique, recognised when the T-tag was dropped
+  double technique_margin = 0;         ///< see recogniseTechnique()
+  std::array<int, 2> transitions{{-1, -1}};
+  std::uint8_t corrected_technique = 0;  ///< Technique by TechniqueRule::Corrected, whichever rule the scene uses
+  std::uint8_t printed_technique = 0;    ///< by TechniqueRule::Printed
+  double pulled = 0;                     ///< thread drawn out by the cinch [m]
+  double cinch_tension = 0;              ///< tension of the first segment when the cinch was released [N]
+  double begin = 0, end = 0;             ///< times of the first bite and of the cinch; end 0: not cinched yet [s]
+  int tear_outs = 0;                     ///< number of bites torn out
+  TissueGroup group;                     ///< particles drawn by the set if suture.cinch_model is `groups`; else empty
+
+  /// Whether the thread, or its tissue group, pulls on the tissue.
+  bool pulls() const { return (stage == Stage::Cinching || stage == Stage::Cinched) && bites.size() > 1; }
+  bool permanent() const { return stage == Stage::Cinched || stage == Stage::Broken; }
+};
+
+const char* toString(Suture::Stage stage);
+
+/// Where a bite is on the wall at rest [m].
+/// @param vertices  of the organ at rest
+Eigen::Vector3d restPosition(const Bite& bite, const std::vector<Eigen::Vector3d>& vertices);
+
+/// Current position of a bite [m]. x, y, z: particle positions.
+Eigen::Vector3d bitePosition(const Bite& bite, const std::vector<double>& x, const std::vector<double>& y,
+                             const std::vector<double>& z);
 
 /// Phase of the procedure. It follows from what the trainee does; every command is possible in every phase.
 enum class Phase : std::uint8_t { Inspect = 0, Mark = 1, Suture = 2, Pull = 3, Done = 4 };

@@ -1,13 +1,53 @@
 #pragma once
-#include <Eigen/Core>
+
 #include <array>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "vibe_core/geometry/surface_mesh.hpp"
-#include "vibe_core/geometry/surface_view.hpp"
-#include "vibe_core/thermal/apc_parameters.hpp"
 
 namespace vibe {
+
+/// One litre per minute [m^3/s].
+constexpr double kLitrePerMinute = 1e-3 / 60;
+
+/// Argon plasma coagulation: parameters of the probe and of the thermal effect on the wall. Energies are generator
+/// power times time, as in publications. The efficiency is therefore 1 unless energies in the tissue are meant.
+struct ApcParameters {
+  // the probe, in the working channel of the scope
+  double power = 40;                        ///< [W]; 20 and 40 W: Fetz 2021, Endosc Int Open 9:E790
+  double efficiency = 1;                    ///< fraction of the power that reaches the tissue [1]
+  double argon_flow = 1 * kLitrePerMinute;  ///< [m^3/s]; 1.0 to 1.4 L/min: Fetz 2021
+  double probe_length = 0.010;              ///< beyond the tip of the scope [m]; design choice
+  /// Largest distance from the end of the probe to tissue [m]. The manufacturer emed specifies 3 mm in endoscopes and 5
+  /// mm in open surgery.
+  double reach = 0.005;
+  /// Radius of the footprint at contact [m]. Design choice. A real lesion of 3 mm is smaller than the particle spacing.
+  /// The footprint must be as wide as that spacing, so that published energies per spot apply on every mesh.
+  double spot_radius = 0.004;
+  double spread = 0.05;  ///< half angle at which the footprint widens with distance [rad]; design choice
+
+  // thresholds of the energy applied to one spot at 40 W without pause [J]
+  // A mark is visible. Published marks take 40 to 80 J (20 to 40 W for 2 s, Fetz 2021). A line drawn at 5 mm/s with 20
+  // W applies 35 J to each place. Design choice below both.
+  double mark_energy = 25;
+  /// Mucosa and submucosa are dead. Published: 600 to 800 J (40 to 80 W for 5 to 25 s on human stomach, J Gastroenterol
+  /// Hepatol 2017). 425 is 0.71 of 600: the share that the nearest particle receives when the spot is as far as
+  /// possible from all particles, on the insufflated default stomach, with the probe at 3 mm.
+  double burn_energy = 425;
+  double deep_energy = 800;  ///< above it the muscularis is at risk (the same publication)
+
+  // cooling: rates of heat loss [1/s]; no published values for the gastric wall
+  // By the surrounding tissue. Design choice: heat leaves a spot of radius a sideways in about a^2 / (4 alpha) = 29 s
+  // (a = 4 mm, diffusivity of water alpha = 1.4e-7 m^2/s). Together with the argon this gives 1/30.
+  double tissue_cooling = 1.0 / 40;
+  double argon_cooling = 1.0 / 120;         ///< in the footprint, per L/min of argon; design choice
+  double insufflation_cooling = 1.0 / 600;  ///< everywhere, per L/min of the insufflator; design choice
+
+  /// @throws Error if a value is not finite or out of range; the message names the key and the range.
+  void check() const;
+};
 
 struct Ray;
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "vibe_core/geometry/organ.hpp"
-#include "vibe_core/geometry/surface_view.hpp"
+#include "vibe_core/geometry/surface_mesh.hpp"
 #include "vibe_core/thermal/thermal_dose.hpp"
 
 namespace vibe {

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "vibe_core/geometry/organ.hpp"
-#include "vibe_core/thermal/apc_parameters.hpp"
 #include "vibe_core/thermal/argon_beam.hpp"
 
 namespace vibe {

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "vibe_core/tissue/elastic_elements.hpp"
-#include "vibe_core/tissue/material.hpp"
+#include "vibe_core/tissue/material_registry.hpp"
 
 namespace vibe {
 

@@ -7,7 +7,7 @@
 #include "vibe_core/events/event.hpp"
 #include "vibe_core/input/step_input.hpp"
 #include "vibe_core/simulation/simulation.hpp"
-#include "vibe_core/suture/suture.hpp"
+#include "vibe_core/state/procedure_state.hpp"
 
 namespace vibe {
 

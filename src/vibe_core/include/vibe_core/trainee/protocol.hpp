@@ -1,12 +1,80 @@
 #pragma once
+
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "vibe_core/trainee/goal.hpp"
+#include "vibe_core/geometry/organ.hpp"
+#include "vibe_core/suture/technique.hpp"
 #include "vibe_core/trainee/skill.hpp"
 
 namespace vibe {
+
+/// A place on the wall of the organ in its present shape: anatomical coordinates (see AnatomicalMap), then millimetres
+/// along the wall from there.
+struct Place {
+  double along = 0.5;   ///< the axis, 0: apex of the fundus, 1: duodenal end; of `region`, if there is one [1]
+  double around = 0;    ///< angle from the greater curvature, positive towards the anterior wall [rad]
+  double distal = 0;    ///< distance from there along the wall, towards the pylorus [m]
+  double anterior = 0;  ///< and then around the organ, towards the front [m]
+  std::optional<Region> region =
+      std::nullopt;  ///< `along` is a share of it, see AnatomicalMap::alongIn(); empty: of the axis
+};
+
+struct InsufflateGoal {
+  double patience = 30;  ///< time after which the goal is given up [s]
+};
+
+/// Looks at a place of the wall: from a distance, with the place in the middle of the endoscope's picture.
+struct InspectGoal {
+  Place place;
+  double distance = 40e-3;  ///< of the tip from the wall [m]
+  double time = 1;          ///< that it stays there [s]
+};
+
+struct MarkGoal {
+  Place place;
+  double time = 2;  ///< that the pedal is pressed [s]
+};
+
+struct BiteGoal {
+  Place place;
+};
+
+/// Bites in a pattern around a place, each as far from the last as the lengths ask for.
+struct SutureSetGoal {
+  Technique pattern = Technique::U;
+  Place centre;
+  int bites = 7;
+  double length = 25e-3;  ///< of the pattern along the organ [m]
+  double width = 60e-3;   ///< and around it [m]
+  bool mirrored = false;  ///< begins on the posterior instead of the anterior side
+  bool cinched = true;    ///< ends with T-tag and cinch
+};
+
+struct CinchGoal {};
+
+struct WithdrawGoal {
+  double insertion = 0;  ///< [m]
+};
+
+struct WaitGoal {
+  double time = 1;  ///< [s]
+};
+
+using Goal =
+    std::variant<InsufflateGoal, InspectGoal, MarkGoal, BiteGoal, SutureSetGoal, CinchGoal, WithdrawGoal, WaitGoal>;
+
+/// One line for people: "suture set u at 45 %, 0 deg".
+std::string describe(const Goal& goal);
+
+/// What became of a goal.
+struct GoalResult {
+  bool reached = false;
+  std::string reason;  ///< one sentence, if not reached; what was done, if it was
+};
 
 /// What a trainee that looks is to do, and how well. docs/protocols.md describes the format.
 struct Protocol {

@@ -1,13 +1,15 @@
 #pragma once
+
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "vibe_core/metrics/session_outcome.hpp"
 #include "vibe_core/model/model.hpp"
-#include "vibe_core/trainee/goal.hpp"
 #include "vibe_core/trainee/observation.hpp"
+#include "vibe_core/trainee/protocol.hpp"
 #include "vibe_core/trainee/skill.hpp"
 
 namespace vibe {
@@ -51,5 +53,14 @@ class Trainee {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What became of the goals of a trainee, in their order.
+std::vector<GoalOutcome> goalOutcomes(const Trainee& trainee);
+
+/// Measures of a protocol: `goals`, `goals_reached` and `sets_as_planned`, the sets whose recognised technique is that
+/// of their goal.
+/// @param trainee  null: the same names without values
+/// @param sets     of the session
+std::vector<Measure> goalMeasures(const Trainee* trainee, const std::vector<SetSkill>& sets);
 
 }  // namespace vibe

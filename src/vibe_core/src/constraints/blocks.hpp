@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "vibe_core/constraints/constraint_registry.hpp"
+
+namespace vibe {
+
+/// Particles that the tool touches: they stay outside its shapes, with Coulomb friction (scene.scope->friction). The
+/// ends of the organ that are open pass through the tool; held particles do not touch. Null without a tool.
+std::unique_ptr<ConstraintBlock> makeToolContactBlock(const Model& model);
+
+/// What the helix holds: each held particle is at its place in the link that carries the helix, at the end of the step.
+/// Null without a tool.
+std::unique_ptr<ConstraintBlock> makeGripBlock(const Model& model);
+
+/// Sutures that pull by their thread (suture.cinch_model: thread): an attachment point per bite, a thread per suture.
+/// Null in a scene with other sutures or none.
+std::unique_ptr<ConstraintBlock> makeThreadBlock(const Model& model);
+
+/// Parts of the wall that meet, see SelfContact. Null without tissue.self_contact.
+std::unique_ptr<ConstraintBlock> makeSelfContactBlock(const Model& model);
+
+/// The gas in the lumen, isothermal, and the insufflator. Null in a scene without gas.
+std::unique_ptr<ConstraintBlock> makeGasBlock(const Model& model);
+
+/// The spring from outside, see PullSpring: it acts on the weighted mean of a patch of the wall.
+std::unique_ptr<ConstraintBlock> makePullSpringBlock(const Model& model);
+
+/// How a point on a link of the tool moves with the tool's displacement: ContactConstraint::yield, and its rows those
+/// of LinearConstraint::yield. Zero with a rigid tool. It is that of the middle of the step, so that the work at the
+/// joints is the work at the point to third order.
+/// @param point  in world, at the poses context.tool->end [m]
+Eigen::Matrix<double, 3, kYieldDofs> toolYield(const StepContext& context, int link, const Eigen::Vector3d& point);
+
+/// Largest speed at which a particle that is found inside the tool is pushed out. Design choice: the usual 2 to 3 mm of
+/// overlap are gone within 0.03 s, and the push adds little kinetic energy [m/s].
+constexpr double kDepenetrationSpeed = 0.1;
+
+}  // namespace vibe

@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <array>
+
+#include "constraints/blocks.hpp"
+#include "contact/surface_contacts.hpp"
+#include "contact/tool_motion.hpp"
+#include "vibe_core/model/model.hpp"
+#include "vibe_core/state/state.hpp"
+
+namespace vibe {
+
+Eigen::Matrix<double, 3, kYieldDofs> toolYield(const StepContext& context, int link, const Eigen::Vector3d& point) {
+  if (context.bend == nullptr) return Eigen::Matrix<double, 3, kYieldDofs>::Zero();
+  const Eigen::Vector3d local = context.tool->end[link].inverse() * point;
+  return yieldJacobian(*context.model.tool, context.tool->middle, *context.bend, link,
+                       context.tool->middle[link] * local);
+}
+
+namespace {
+
+class GripBlock : public ConstraintBlock {
+ public:
+  Activity prepare(const StepContext& context, BodyLoads& loads) override {
+    first_.clear();
+    if (context.tool == nullptr) return Activity::Sleep;
+    for (const GripPoint& point : context.state.grip) {
+      node_[0] = point.particle;
+      const Eigen::Vector3d target = context.tool->end[context.model.grip_link] * point.local;
+      first_.push_back(loads.addPoint(node_, weight_, target, 0));
+      if (context.bend != nullptr) setYield(context, target, loads);
+    }
+    return context.state.grip.empty() ? Activity::Sleep : Activity::Disturb;
+  }
+
+  double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
+    const int link = context.model.grip_link;
+    for (std::size_t g = 0; g < first_.size(); ++g) {
+      const GripPoint& point = context.state.grip[g];
+      ToolTouch touch;
+      touch.kind = ToolTouch::Kind::Grip;
+      touch.surface = SurfacePoint::ofNode(point.particle);
+      touch.link = link;
+      touch.point = context.tool->end[link] * point.local;
+      touch.motion = touch.point - context.tool->start[link] * point.local;
+      touch.force = loads.pointForce(first_[g]);
+      touch.work = loads.pointWork(first_[g]);
+      touch.direction = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
+      touch.direction_count = 3;
+      touches.push_back(touch);
+    }
+    return 0;
+  }
+
+ private:
+  void setYield(const StepContext& context, const Eigen::Vector3d& target, BodyLoads& loads) const {
+    const auto yield = toolYield(context, context.model.grip_link, target);
+    for (int k = 0; k < 3; ++k)
+      loads.constraints[first_.back() + static_cast<std::size_t>(k)].yield = yield.row(k).transpose();
+  }
+
+  std::vector<std::size_t> first_;  // constraint of each held particle
+  std::vector<int> node_{0};
+  std::vector<double> weight_{1};
+};
+
+}  // namespace
+
+std::unique_ptr<ConstraintBlock> makeGripBlock(const Model& model) {
+  return model.tool ? std::make_unique<GripBlock>() : nullptr;
+}
+
+namespace {
+
+// Points of the wall that are predicted this near to the tool become contacts, because they may be reached within the
+// step. Design choice: covers 0.12 m/s that the prediction from velocities does not foresee in a step of 1/60 s [m].
+constexpr double kContactMargin = 2e-3;
+// Stiffness of tissue that cannot give way sideways over its Young's modulus: (1 - nu) / ((1 + nu) (1 - 2 nu)) for a
+// Poisson's ratio of 0.49. Design choice: soft tissue hardly changes its volume; the scene's ratio is that of the
+// membrane [1].
+constexpr double kConfined = 17;
+// Share of the largest friction above which a contact counts as sliding. Design choice: the contact iterations stop
+// within this of the cone [1].
+constexpr double kSticks = 0.999;
+
+class ToolContactBlock : public ConstraintBlock {
+ public:
+  explicit ToolContactBlock(const Model& model)
+      : passable_(passableVertices(model.organ)),
+        excluded_(passable_.size()),
+        contacts_(*model.tool, model.organ.surface, model.organ.thickness, passable_) {
+    for (auto& v : ahead_) v.resize(static_cast<std::size_t>(model.particle_count));
+  }
+
+  Activity prepare(const StepContext& context, BodyLoads& loads) override {
+    first_ = loads.contacts.size();
+    place_.clear();
+    link_.clear();
+    if (context.tool == nullptr) return Activity::Sleep;
+    lookAhead(context);
+    exclude(context);
+    findContacts(context, loads);
+    return place_.empty() ? Activity::Sleep : Activity::Disturb;
+  }
+
+  double store(const StepContext& context, const BodyLoads& loads, std::vector<ToolTouch>& touches) override {
+    for (std::size_t c = 0; c < place_.size(); ++c) {
+      const ContactConstraint& contact = loads.contacts[first_ + c];
+      if (!contact.force.isZero()) touches.push_back(touchOf(context, contact, c));
+    }
+    return 0;
+  }
+
+ private:
+  // Where the wall goes if nothing stops it.
+  void lookAhead(const StepContext& context) {
+    const State& state = context.state;
+    const std::array<const std::vector<double>*, 3> x{&state.x, &state.y, &state.z}, v{&state.vx, &state.vy, &state.vz};
+    for (std::size_t k = 0; k < 3; ++k) {
+      path_.from[k] = x[k]->data();
+      path_.to[k] = ahead_[k].data();
+      for (std::size_t i = 0; i < ahead_[k].size(); ++i) ahead_[k][i] = (*x[k])[i] + context.step * (*v[k])[i];
+    }
+  }
+
+  // What is held or fixed cannot give way.
+  void exclude(const StepContext& context) {
+    for (std::size_t i = 0; i < excluded_.size(); ++i)
+      excluded_[i] = passable_[i] != 0 || context.model.inverse_mass[i] == 0 ? 1 : 0;
+    for (const GripPoint& point : context.state.grip) excluded_[static_cast<std::size_t>(point.particle)] = kHeld;
+  }
+
+  void findContacts(const StepContext& context, BodyLoads& loads) {
+    const ToolPoses& poses = *context.tool;
+    for (const SurfaceContact& contact : contacts_.find(poses.start, poses.end, path_, kContactMargin, excluded_))
+      addContact(context, contact, loads);
+  }
+
+  void addContact(const StepContext& context, const SurfaceContact& contact, BodyLoads& loads) {
+    const Model& model = context.model;
+    const int link = model.tool->shapes()[contact.shape].link;
+    const Eigen::Vector3d p = placeOf(contact.point, context.state);
+    const Eigen::Vector3d place = context.tool->start[link].inverse() * p, anchor = context.tool->end[link] * place;
+    ContactConstraint& constraint = loads.contacts.add();
+    constraint = ContactConstraint();
+    constraint.point = contact.point;
+    constraint.normal = contact.normal;
+    const double surface = contact.normal.dot(contact.tool_point) + contact.clearance;
+    // what is deep inside (the tool was put there) comes out slowly, not at once
+    constraint.offset = std::min(surface, contact.normal.dot(anchor) + kDepenetrationSpeed * context.step);
+    constraint.compliance = complianceOf(model, contact);
+    constraint.friction = model.scene.scope->friction;
+    constraint.anchor = anchor;
+    constraint.yield = toolYield(context, link, anchor);
+    place_.push_back(place);
+    link_.push_back(link);
+  }
+
+  // The inner half of the wall between the tool and the mid-surface is compressed where it cannot give way sideways.
+  static double complianceOf(const Model& model, const SurfaceContact& contact) {
+    double area = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.point.count); ++k)
+      area += contact.point.weight[k] * model.area[contact.point.node[k]];
+    return contact.clearance / (kConfined * model.scene.tissue.young_modulus * area);
+  }
+
+  static Eigen::Vector3d placeOf(const SurfacePoint& point, const State& state) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.count); ++k) {
+      const int i = point.node[k];
+      sum += point.weight[k] * Eigen::Vector3d(state.x[i], state.y[i], state.z[i]);
+    }
+    return sum;
+  }
+
+  ToolTouch touchOf(const StepContext& context, const ContactConstraint& contact, std::size_t number) const {
+    ToolTouch touch;
+    touch.kind = ToolTouch::Kind::Contact;
+    touch.surface = contact.point;
+    touch.compliance = contact.compliance;
+    touch.link = link_[number];
+    touch.point = placeOf(contact.point, context.state);
+    touch.motion = context.tool->end[touch.link] * place_[number] - context.tool->start[touch.link] * place_[number];
+    touch.force = contact.force;
+    touch.work = contact.work;
+    const double push = contact.force.dot(contact.normal);
+    const double drag = (contact.force - push * contact.normal).norm();
+    const Eigen::Vector3d tangent = contact.normal.unitOrthogonal();
+    touch.direction = {contact.normal, tangent, contact.normal.cross(tangent)};
+    touch.direction_count = drag < kSticks * contact.friction * push ? 3 : 1;
+    return touch;
+  }
+
+  std::vector<char> passable_, excluded_;  // per node
+  SurfaceContacts contacts_;
+  std::array<std::vector<double>, 3> ahead_;  // [m]
+  SurfacePath path_;
+  std::size_t first_ = 0;               // of its contacts in the loads
+  std::vector<Eigen::Vector3d> place_;  // of each contact at the start of the step, in the frame of its link [m]
+  std::vector<int> link_;               // of the tool at each contact
+};
+
+}  // namespace
+
+std::unique_ptr<ConstraintBlock> makeToolContactBlock(const Model& model) {
+  return model.tool ? std::make_unique<ToolContactBlock>(model) : nullptr;
+}
+
+}  // namespace vibe

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "vibe_core/contact/tool_model.hpp"
+
+namespace vibe {
+
+/// The joint of that name, null without one.
+const ToolJoint* findJoint(const ToolModel& tool, const std::string& name);
+
+/// Two bars that are joined by a pin: one turns about the hinge of the needle arm, the other about the needle's point.
+struct LinkageTurns {
+  double arm = 0;   ///< about needle_arm_hinge, 0 with the arm open [rad]
+  double hook = 0;  ///< about needle_hook_turn, 0 with the arm open [rad]
+};
+
+/// The turns with which needle_arm_pin and needle_hook_pin are at the same place while needle_driver slides: two
+/// circles meet there, on the side on which they meet with the arm open. Where they do not meet, the bars point at each
+/// other.
+/// @param driver  position of needle_driver [m]
+/// @return empty if the URDF has no such bars, or if arm and needle are not carried by the same link
+std::optional<LinkageTurns> needleLinkage(const ToolModel& tool, double driver);
+
+/// Damped least squares (Levenberg-Marquardt) for one target of the tip; see ToolModel::inverseKinematics.
+class InverseKinematics {
+ public:
+  using Inputs = std::array<double, kJointCount>;
+
+  InverseKinematics(const ToolModel& tool, const Eigen::Isometry3d& target);
+
+  /// The solution found by descent from `start`. Only if it misses the target by more than a millimetre (or the
+  /// equivalent in direction) are other turns and bends tried. One of these is chosen only if it at least halves the
+  /// error, so that a tool that follows a moving target does not jump for a small gain.
+  Inputs solve(const Inputs& start);
+
+ private:
+  static constexpr int kFree = kScopeJointCount;
+  using Residual = Eigen::Matrix<double, 6, 1>;
+  using Jacobian = Eigen::Matrix<double, 6, kFree>;
+  using Step = Eigen::Matrix<double, kFree, 1>;
+
+  Inputs descend(Inputs inputs, double& cost);
+  Residual residual(const Inputs& inputs);
+  Jacobian jacobian() const;
+  Inputs moved(const Inputs& from, const Step& step) const;
+  void holdAtLimits(const Inputs& inputs, const Step& gradient, Eigen::Matrix<double, kFree, kFree>& matrix,
+                    Step& right) const;
+
+  const ToolModel& tool_;
+  Eigen::Vector3d target_position_;
+  Eigen::Vector3d target_direction_;
+  int tip_;
+  std::vector<int> path_;                 // joints from the root to the tip that the first four inputs move
+  std::vector<Eigen::Isometry3d> poses_;  // of the inputs last given to residual()
+};
+
+}  // namespace vibe

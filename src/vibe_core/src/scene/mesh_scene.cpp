@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "common/elementary.hpp"
+#include "common/turn.hpp"
+#include "geometry/regions.hpp"
+#include "geometry/remesh.hpp"
+#include "geometry/surface_check.hpp"
+#include "scene/scene_keys.hpp"
+#include "vibe_core/common/error.hpp"
+#include "vibe_core/geometry/mesh_file.hpp"
+#include "vibe_core/scene/scene_parser.hpp"
+#include "vibe_core/scene/schema.hpp"
+#include "vibe_core/scene/words.hpp"
+#include "vibe_core/scene/yaml_source.hpp"
+
+namespace vibe {
+
+namespace {
+
+/// Keys of `geometry` that describe a surface file; a sidecar file has them at its top level.
+const std::vector<std::string> kSidecarKeys{"unit", "target_volume", "rotation_rpy", "landmarks"};
+const std::vector<std::string> kLandmarkKeys{"oesophagus", "fundus", "incisura", "pylorus"};
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+void readKeys(const YamlSource& source, const YamlField& map, const std::vector<std::string>& allowed, Scene& scene) {
+  for (const YamlField& field : source.map(map)) {
+    if (!contains(allowed, field.key)) source.fail(field, "is not a known key; " + suggestKey(field.key, allowed));
+    if (field.key == "landmarks") {
+      readKeys(source, field, kLandmarkKeys, scene);
+    } else {
+      readValue(source, field, *findRow("geometry." + field.path), scene);
+    }
+  }
+}
+
+bool existsAsFile(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+std::string missingLandmarks(const GeometryScene& geometry) {
+  std::string list;
+  const auto note = [&list](bool given, const char* name) {
+    if (!given) list += std::string(list.empty() ? "" : ", ") + name + ": [x, y, z]";
+  };
+  note(geometry.oesophagus.has_value(), "oesophagus");
+  note(geometry.fundus.has_value(), "fundus");
+  note(geometry.incisura.has_value(), "incisura");
+  note(geometry.pylorus.has_value(), "pylorus");
+  return list;
+}
+
+void checkComplete(const GeometryScene& geometry, const std::string& mesh_file) {
+  // A target volume determines the scale without a unit.
+  const bool lacks_unit = geometry.unit == 0 && geometry.target_volume == 0 && !statesMetres(mesh_file);
+  const std::string points = missingLandmarks(geometry);
+  if (!lacks_unit && points.empty()) return;
+  std::string remedy = lacks_unit ? "'unit: 1 mm' (or what one unit of the file is)" : "";
+  if (!points.empty()) remedy += (remedy.empty() ? "" : " and ") + ("'landmarks: {" + points + "}'");
+  throw Error(mesh_file + ": the simulator cannot know " + (lacks_unit ? "its unit" : "") +
+              (lacks_unit && !points.empty() ? " and " : "") + (points.empty() ? "" : "its landmarks") + "; write " +
+              remedy + ", in the file's own axes and unit, into " + sidecarOf(mesh_file) +
+              " or use a scene with 'geometry: {kind: mesh}' that states them");
+}
+
+}  // namespace
+
+std::string sidecarOf(const std::string& mesh_file) {
+  return mesh_file + ".landmarks.yaml";
+}
+
+bool applyMeshOverride(Scene& scene, const std::string& mesh_file) {
+  if (!existsAsFile(mesh_file)) {
+    throw Error(mesh_file + ": there is no such surface file; give the path of an OBJ, STL, PLY or glTF file");
+  }
+  Scene changed = scene;
+  changed.geometry.kind = GeometryScene::Kind::Mesh;
+  changed.geometry.file = mesh_file;
+  const bool has_sidecar = std::filesystem::exists(sidecarOf(mesh_file));
+  if (has_sidecar) {
+    const YamlSource source = YamlSource::load(sidecarOf(mesh_file), YamlLimits{});
+    readKeys(source, source.root(), kSidecarKeys, changed);
+  }
+  checkComplete(changed.geometry, mesh_file);
+  scene = changed;
+  return has_sidecar;
+}
+
+namespace {
+
+constexpr double kTypicalSize = 0.25;  // largest side of a stomach's bounding box [m]
+constexpr int kGuessVertices = 1500;   // fine enough for landmarks to a few millimetres
+
+double likeliestUnit(const SurfaceMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const auto& v : mesh.vertices) box.extend(v);
+  double best = 1;
+  const auto unlikeliness = [&](double unit) {
+    return std::abs(math::log(box.sizes().maxCoeff() * unit / kTypicalSize));
+  };
+  for (const double unit : {0.01, 0.001, 0.0254})
+    if (unlikeliness(unit) < unlikeliness(best)) best = unit;
+  return best;
+}
+
+std::string doubtAbout(const LandmarkEstimate& estimate, const std::string& mesh_file) {
+  if (estimate.confidence >= kSureLandmarks) return "";
+  return "\nThe landmarks of " + mesh_file + " are doubtful: " + estimate.doubt +
+         "; state them, or its axes as rotation_rpy, in " + sidecarOf(mesh_file) + ".";
+}
+
+std::string describe(const GeometryScene& g, const LandmarkEstimate& estimate, const std::string& mesh_file) {
+  const auto point = [](const Eigen::Vector3d& p) {
+    char text[96];
+    std::snprintf(text, sizeof text, "[%.4g, %.4g, %.4g]", p.x(), p.y(), p.z());
+    return std::string(text);
+  };
+  char head[160];
+  std::snprintf(head, sizeof head, "unit: %g\nrotation_rpy: [%.6f, %.6f, %.6f]\nlandmarks:\n", g.unit,
+                g.rotation_rpy[0], g.rotation_rpy[1], g.rotation_rpy[2]);
+  const auto& moved = estimate.spread;
+  char sureness[200];
+  std::snprintf(sureness, sizeof sureness,
+                "\n# confidence %.2f of 1; axes tilted by 20 degrees move them by up to %.0f, %.0f, %.0f and %.0f mm",
+                estimate.confidence, 1e3 * moved[0], 1e3 * moved[1], 1e3 * moved[2], 1e3 * moved[3]);
+  return "Unit, axes and landmarks of " + mesh_file + " are guesses; look at the regions, and state them in " +
+         sidecarOf(mesh_file) + ":\n" + head + "  oesophagus: " + point(*g.oesophagus) +
+         "\n  fundus: " + point(*g.fundus) + "\n  incisura: " + point(*g.incisura) +
+         "\n  pylorus: " + point(*g.pylorus) + sureness + doubtAbout(estimate, mesh_file);
+}
+
+LandmarkEstimate guess(GeometryScene& geometry) {
+  SurfaceMesh surface = readMeshFile(geometry.file);
+  checkSurface(surface, geometry.file);
+  orientOutwards(surface);
+  if (geometry.unit == 0) geometry.unit = likeliestUnit(surface);
+  if (geometry.rotation_rpy == std::array<double, 3>{0, 0, 0})
+    geometry.rotation_rpy = statesMetres(geometry.file) ? std::array<double, 3>{M_PI / 2, 0, M_PI / 2}
+                                                        : std::array<double, 3>{0, 0, M_PI / 2};
+  const Eigen::Matrix3d map = geometry.unit * rotationFromRpy(geometry.rotation_rpy);
+  for (auto& v : surface.vertices) v = map * v;
+  const LandmarkEstimate estimate = estimateLandmarks(remeshSurface(surface, kGuessVertices, nullptr, {}));
+  const Landmarks& found = estimate.landmarks;
+  const Eigen::Matrix3d back = map.inverse();
+  geometry.oesophagus = back * found.oesophagus;
+  geometry.fundus = back * found.fundus;
+  geometry.incisura = back * found.incisura;
+  geometry.pylorus = back * found.pylorus;
+  geometry.landmark_confidence = estimate.confidence;
+  return estimate;
+}
+
+}  // namespace
+
+std::string useMesh(Scene& scene, const std::string& mesh_file) {
+  const GeometryScene& g = scene.geometry;
+  const bool stated = g.oesophagus || g.fundus || g.incisura || g.pylorus;
+  if (stated || std::filesystem::exists(sidecarOf(mesh_file)) || !std::filesystem::is_regular_file(mesh_file)) {
+    applyMeshOverride(scene, mesh_file);
+    return "";
+  }
+  GeometryScene changed = g;
+  changed.kind = GeometryScene::Kind::Mesh;
+  changed.file = mesh_file;
+  const LandmarkEstimate estimate = guess(changed);
+  scene.geometry = changed;
+  return describe(changed, estimate, mesh_file);
+}
+
+std::string landmarkRemark(const Scene& scene) {
+  if (!scene.geometry.landmark_confidence) return "";
+  char text[64];
+  std::snprintf(text, sizeof text, "landmarks          guessed, confidence %.2f\n",
+                *scene.geometry.landmark_confidence);
+  return text;
+}
+
+}  // namespace vibe
