@@ -113,7 +113,7 @@ struct SideNodes {
 };
 constexpr SideNodes kSideNodes[3] = {{2, 1, 3, 0}, {2, 0, 1, 4}, {1, 0, 2, 5}};
 
-Eigen::Vector3d difference(const Vectors& x, int to, int from) {
+Eigen::Vector3d between(const Vectors& x, int to, int from) {
   const Eigen::Vector3d end = x.col(to - 1);
   return from == 0 ? end : Eigen::Vector3d(end - x.col(from - 1));
 }
@@ -123,8 +123,8 @@ void addMembrane(const Material& material, const WallTerms<double>& terms, const
   for (int side = 0; side < 3; ++side) {
     const SideNodes& n = kSideNodes[side];
     const SideBlocks b =
-        sideBlocks(material, terms, rest + kShellSide + 4 * side, fibres, side, difference(x, n.e_to, n.e_from),
-                   difference(x, n.d_to, n.d_from), difference(u, n.e_to, n.e_from), difference(u, n.d_to, n.d_from));
+        sideBlocks(material, terms, rest + kShellSide + 4 * side, fibres, side, between(x, n.e_to, n.e_from),
+                   between(x, n.d_to, n.d_from), between(u, n.e_to, n.e_from), between(u, n.d_to, n.d_from));
     const int nodes[4] = {n.e_to, n.e_from, n.d_to, n.d_from};
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
