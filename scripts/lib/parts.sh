@@ -3,7 +3,7 @@
 # packagesOf PART: the packages of a part; they need no package of another part but those of `session`.
 packagesOf() {
   case $1 in
-    session) echo vibe_cmake vibe_msgs vibe_core vibe_description vibe_node vibe_sim vibe_render vibe_endoscope vibe_rviz_plugins vibe_sessions vibe_bringup ;;
+    session) echo vibe_cmake vibe_msgs vibe_core vibe_description vibe_node vibe_sim vibe_graphics vibe_endoscope vibe_rviz_plugins vibe_sessions vibe_bringup ;;
     devices) echo vibe_firmware vibe_hardware ;;
     vision) echo vibe_vision ;;
     measurements) echo vibe_latency vibe_prototype vibe_benchmarks ;;

@@ -51,7 +51,7 @@ for header in cv_bridge/cv_bridge image_transport/image_transport camera_info_ma
   check "lint sees ${header%%/*} in the library of the cameras" findsRosIn vibe_vision/src/camera/a.cpp \
     "#include <$header.h>"
 done
-check 'lint sees ROS in a library of the displays' findsRosIn vibe_render/src/geometry/a.hpp \
+check 'lint sees ROS in a library of the displays' findsRosIn vibe_graphics/src/geometry/a.hpp \
   '#include <rviz/display.h>'
 
 # findsRoomProblem FILE LINE PATTERN: adds a line to a file of an orderly tree; lint must name file, line and problem

@@ -6,12 +6,12 @@
 #include <vibe_msgs/TissuePullState.h>
 
 #include <pluginlib/class_list_macros.hpp>
-#include <vibe_render/geometry/tube.hpp>
+#include <vibe_graphics/geometry/tube.hpp>
 #include <vibe_rviz_plugins/display_base/message_shape_display.hpp>
 
 namespace vibe_example {
 
-using namespace vibe::render;
+using namespace vibe::graphics;
 using namespace vibe::rviz_plugins;
 
 class PullSpringDisplay : public MessageShapeDisplay<vibe_msgs::TissuePullState> {

@@ -13,7 +13,7 @@
 
 namespace {
 
-using vibe::render::ColouredShape;
+using vibe::graphics::ColouredShape;
 using PullDisplay = vibe::rviz_plugins::MessageShapeDisplay<vibe_msgs::TissuePullState>;
 constexpr double kPi = 3.14159265358979323846;
 
@@ -57,7 +57,7 @@ TEST_F(PullSpringDisplayTest, SpringIsATubeWithRoundEnds) {
   const double radius = 0.001, length = 0.03;
   ColouredShape shape;
   EXPECT_EQ(display_->makeShape(pullOf(length), shape), "");
-  EXPECT_EQ(vibe::render::problemOf(shape), "");
+  EXPECT_EQ(vibe::graphics::problemOf(shape), "");
   const double area = 2 * kPi * radius * length + 4 * kPi * radius * radius;
   EXPECT_NEAR(areaOf(shape), area, 0.01 * area);  // a prism with 24 sides has 0.3 % less than the cylinder
   ColouredShape longer;

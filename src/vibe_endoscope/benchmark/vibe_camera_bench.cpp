@@ -19,9 +19,9 @@
 #include "session_frames.hpp"
 #include "truth/truth_camera.hpp"
 #include "truth_world.hpp"
-#include "vibe_render/graphics/offscreen_camera.hpp"
-#include "vibe_render/graphics/resources.hpp"
-#include "vibe_render/graphics/virtual_display.hpp"
+#include "vibe_graphics/graphics/offscreen_camera.hpp"
+#include "vibe_graphics/graphics/resources.hpp"
+#include "vibe_graphics/graphics/virtual_display.hpp"
 
 namespace {
 
@@ -74,7 +74,8 @@ class Bench {
       : drawn_(scene, urdf, true),
         truth_(urdf),
         camera_(scene, {}, 1),
-        truth_camera_({}, static_cast<double>(render::kScopeNearClip), static_cast<double>(render::kScopeFarClip)) {}
+        truth_camera_({}, static_cast<double>(graphics::kScopeNearClip), static_cast<double>(graphics::kScopeFarClip)) {
+  }
 
   void setTopology(const vibe_msgs::TissueTopology& topology) {
     check(drawn_.setTopology(topology)), check(truth_.setTopology(topology));
@@ -128,7 +129,7 @@ class Bench {
 
   EndoscopeScene drawn_;
   TruthWorld truth_;
-  render::OffscreenCamera camera_;
+  graphics::OffscreenCamera camera_;
   TruthCamera truth_camera_;
   TruthView before_;
   std::vector<std::uint8_t> pixels_;
@@ -155,10 +156,10 @@ std::string processorName() {
 
 int run(const std::string& bag, const std::vector<double>& times) {
   SessionFrames frames(bag);
-  render::provideDisplay();
+  graphics::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
-  render::loadResources();
+  graphics::loadResources();
   Bench bench(*scene, frames.info().urdf);
   std::vector<Samples> columns;
   vibe_msgs::TissueTopology::ConstPtr topology;

@@ -32,12 +32,12 @@ class Reader {
   void text(const std::string& name, std::string& value) {
     if (has(name) && (!node_.getParam(name, value) || value.empty())) reject(name, "the name of a frame");
   }
-  void lens(const std::string& name, render::LensKind& value) {
+  void lens(const std::string& name, graphics::LensKind& value) {
     if (!has(name)) return;
     std::string word;
     node_.getParam(name, word);
     if (word != "equidistant" && word != "rectilinear") reject(name, "equidistant or rectilinear");
-    value = word == "equidistant" ? render::LensKind::Equidistant : render::LensKind::Rectilinear;
+    value = word == "equidistant" ? graphics::LensKind::Equidistant : graphics::LensKind::Rectilinear;
   }
 
   void rejectOthers() const {
@@ -102,7 +102,7 @@ CameraOptions readCameraOptions(const ros::NodeHandle& node) {
   read.text("right_frame_id", options.right_frame_id);
   readSensor(read, options.sensor);
   read.rejectOthers();
-  options.round.field_of_view = degrees * render::kDegree;
+  options.round.field_of_view = degrees * graphics::kDegree;
   const std::string problem = problemOf(options.sensor, options.round);
   if (!problem.empty())
     throw std::runtime_error("The parameter '" + node.resolveName("distortion") + "': " + problem + ".");

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "sensor/sensor_model.hpp"
-#include "vibe_render/geometry/endoscope_optics.hpp"
+#include "vibe_graphics/geometry/endoscope_optics.hpp"
 
 namespace vibe::endoscope {
 
 /// Parameters of endoscope_camera.
 struct CameraOptions {
-  render::RoundCamera round;
+  graphics::RoundCamera round;
   double sharpness = 1;  ///< as in sourceFor()
   double rate = 30;      ///< images per second of the stamps [Hz]; 0: one for every message of tissue/particles
   bool auto_exposure = true;

@@ -1,7 +1,7 @@
 #include "dataset_camera.hpp"
 
-#include "vibe_render/graphics/endoscope_lamp.hpp"
-#include "vibe_render/graphics/offscreen_camera.hpp"
+#include "vibe_graphics/graphics/endoscope_lamp.hpp"
+#include "vibe_graphics/graphics/offscreen_camera.hpp"
 
 namespace vibe::endoscope {
 namespace {
@@ -15,10 +15,10 @@ DatasetCamera::DatasetCamera(const DatasetOptions& options, Ogre::SceneManager& 
       drawn_(scene, description, options.smoke, options.mucosa),
       truth_(description),
       camera_(scene, options.round, 1),
-      truth_camera_(options.round, static_cast<double>(render::kScopeNearClip),
-                    static_cast<double>(render::kScopeFarClip)),
+      truth_camera_(options.round, static_cast<double>(graphics::kScopeNearClip),
+                    static_cast<double>(graphics::kScopeFarClip)),
       sensor_(options.sensor, options.round) {
-  render::setLamp(options.light);
+  graphics::setLamp(options.light);
   eyes_.push_back({options.stereo ? "left/" : "", 0, {}});
   if (options.stereo) eyes_.push_back({"right/", options.baseline, {}});
 }

@@ -7,7 +7,7 @@
 #include "endoscope_scene.hpp"
 #include "sensor/sensor_model.hpp"
 #include "truth_world.hpp"
-#include "vibe_render/graphics/offscreen_camera.hpp"
+#include "vibe_graphics/graphics/offscreen_camera.hpp"
 
 namespace vibe::endoscope {
 
@@ -39,7 +39,7 @@ class DatasetCamera {
   DatasetOptions options_;
   EndoscopeScene drawn_;
   TruthWorld truth_;
-  render::OffscreenCamera camera_;
+  graphics::OffscreenCamera camera_;
   TruthCamera truth_camera_;
   SensorModel sensor_;
   std::vector<Eye> eyes_;

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "dataset/npy_file.hpp"
-#include "vibe_render/messages/cloud_field.hpp"
+#include "vibe_graphics/messages/cloud_field.hpp"
 
 namespace vibe::endoscope {
 namespace {
@@ -73,7 +73,7 @@ std::string textOf(const SensorStyle& s) {
                        {"read_noise", s.read_noise}});
 }
 
-std::string textOf(const render::MucosaLook& m) {
+std::string textOf(const graphics::MucosaLook& m) {
   return textOf(Values{{"shift_x", m.shift.x()},
                        {"shift_y", m.shift.y()},
                        {"shift_z", m.shift.z()},
@@ -85,7 +85,7 @@ std::string textOf(const render::MucosaLook& m) {
                        {"mucus", m.mucus}});
 }
 
-std::string textOf(const render::EndoscopeLight& light) {
+std::string textOf(const graphics::EndoscopeLight& light) {
   const auto& [right, left] = light.guides;
   return textOf(Values{{"right_guide_x", right.right},
                        {"right_guide_y", right.up},
@@ -199,13 +199,14 @@ void DatasetFolder::writeFlow(const std::string& lens, std::size_t number, const
 }
 
 void DatasetFolder::writeParticles(std::size_t number, const sensor_msgs::PointCloud2& particles) {
-  render::CloudField field[3];
+  graphics::CloudField field[3];
   const char* const names[3] = {"x", "y", "z"};
-  for (int k = 0; k < 3; ++k) render::findField(particles, names[k], sensor_msgs::PointField::FLOAT32, true, field[k]);
+  for (int k = 0; k < 3; ++k)
+    graphics::findField(particles, names[k], sensor_msgs::PointField::FLOAT32, true, field[k]);
   const std::size_t count = std::size_t{particles.width} * particles.height;
   std::vector<float> places;
   for (std::size_t i = 0; i < count; ++i)
-    for (const render::CloudField& axis : field) places.push_back(axis.at<float>(i));
+    for (const graphics::CloudField& axis : field) places.push_back(axis.at<float>(i));
   writeNpy(fileOf("", "particles", number, ".npy"), {count, 3}, places);
 }
 
@@ -239,13 +240,14 @@ void DatasetFolder::writeText(const std::string& name, const std::string& text) 
 }
 
 std::string DatasetFolder::intrinsics() const {
-  const render::CameraNumbers numbers = render::numbersOf(options_.round, options_.stereo ? options_.baseline : 0);
+  const graphics::CameraNumbers numbers = graphics::numbersOf(options_.round, options_.stereo ? options_.baseline : 0);
   std::ostringstream text;
   text << std::setprecision(kDigits) << "{\n\"width\": " << options_.round.width
        << ",\n\"height\": " << options_.round.height << ",\n\"model\": \"" << numbers.distortion_model
-       << "\",\n\"field_of_view\": " << options_.round.field_of_view / render::kDegree << ",\n\"fx\": " << numbers.k[0]
-       << ",\n\"fy\": " << numbers.k[4] << ",\n\"cx\": " << numbers.k[2] << ",\n\"cy\": " << numbers.k[5]
-       << ",\n\"radius\": " << options_.round.radius() << ",\n\"distortion_of_truth\": [";
+       << "\",\n\"field_of_view\": " << options_.round.field_of_view / graphics::kDegree
+       << ",\n\"fx\": " << numbers.k[0] << ",\n\"fy\": " << numbers.k[4] << ",\n\"cx\": " << numbers.k[2]
+       << ",\n\"cy\": " << numbers.k[5] << ",\n\"radius\": " << options_.round.radius()
+       << ",\n\"distortion_of_truth\": [";
   for (std::size_t k = 0; k < numbers.d.size(); ++k) text << (k ? ", 0" : "0");
   text << "],\n\"distortion_of_image\": [" << options_.sensor.distortion;
   for (std::size_t k = 1; k < numbers.d.size(); ++k) text << ", 0";
@@ -261,7 +263,7 @@ std::string DatasetFolder::description(const vibe_msgs::SessionInfo& info, const
        << "\",\n\"model_hash\": \"" << info.model_hash << std::dec << "\",\n\"frame\": " << quoted(frame)
        << ",\n\"images\": " << images_ << ",\n\"first\": " << first_ << ",\n\"last\": " << last_
        << ",\n\"rate\": " << options_.rate << ",\n\"every\": " << options_.every << ",\n\"lens\": \""
-       << (options_.round.lens == render::LensKind::Equidistant ? "equidistant" : "rectilinear")
+       << (options_.round.lens == graphics::LensKind::Equidistant ? "equidistant" : "rectilinear")
        << "\",\n\"stereo\": " << (options_.stereo ? "true" : "false") << ",\n\"content\": [\"image\"";
   for (const auto& [name, on] : {std::pair("depth", options_.depth),
                                  {"normals", options_.normals},

@@ -111,8 +111,8 @@ int readDatasetOptions(int argc, char** argv, DatasetOptions& options) {
     std::fprintf(stderr, "vibe_dataset: %s (--help lists what there is)\n", problem.c_str());
     return kUsage;
   }
-  options.round.lens = words.lens == "rectilinear" ? render::LensKind::Rectilinear : render::LensKind::Equidistant;
-  options.round.field_of_view = words.degrees * render::kDegree;
+  options.round.lens = words.lens == "rectilinear" ? graphics::LensKind::Rectilinear : graphics::LensKind::Equidistant;
+  options.round.field_of_view = words.degrees * graphics::kDegree;
   if (options.name.empty()) options.name = options.bag;
   vary(options);
   return -1;

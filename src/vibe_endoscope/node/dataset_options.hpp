@@ -3,8 +3,8 @@
 #include <string>
 
 #include "sensor/sensor_model.hpp"
-#include "vibe_render/geometry/endoscope_optics.hpp"
-#include "vibe_render/geometry/mucosa_pattern.hpp"
+#include "vibe_graphics/geometry/endoscope_optics.hpp"
+#include "vibe_graphics/geometry/mucosa_pattern.hpp"
 
 namespace vibe::endoscope {
 
@@ -14,7 +14,7 @@ struct DatasetOptions {
   std::string bag;     ///< a whole recording
   std::string name;    ///< of the recording that it was made from, for the data sheet
   std::string output;  ///< folder; created, must be empty
-  render::RoundCamera round;
+  graphics::RoundCamera round;
   bool stereo = false;
   double baseline = 0.004;  ///< [m]
   double rate = 10;         ///< images per second of simulated time [Hz]; 0: every state
@@ -26,8 +26,8 @@ struct DatasetOptions {
   bool depth = true, normals = true, labels = true, flow = true, particles = false, sutures = false;
   SensorStyle sensor;                   ///< as varied
   double roll = 0, pitch = 0, yaw = 0;  ///< of the lens in its mount, as varied [rad]
-  render::MucosaLook mucosa;            ///< as varied
-  render::EndoscopeLight light;         ///< as varied
+  graphics::MucosaLook mucosa;          ///< as varied
+  graphics::EndoscopeLight light;       ///< as varied
 };
 
 /// @return the status with which the program ends at once: help was asked for, or the call is wrong; -1: go on

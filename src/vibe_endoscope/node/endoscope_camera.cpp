@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "vibe_render/graphics/offscreen_camera.hpp"
+#include "vibe_graphics/graphics/offscreen_camera.hpp"
 
 namespace vibe::endoscope {
 namespace {
@@ -26,8 +26,8 @@ Eigen::Isometry3d toIsometry(const geometry_msgs::Transform& transform) {
 }
 
 sensor_msgs::CameraInfo infoOf(const CameraOptions& options, double aside, const std::string& frame) {
-  const render::RoundCamera& round = options.round;
-  render::CameraNumbers numbers = render::numbersOf(round, aside);
+  const graphics::RoundCamera& round = options.round;
+  graphics::CameraNumbers numbers = graphics::numbersOf(round, aside);
   numbers.d[0] = options.sensor.distortion;  // the first radial coefficient of both models
   sensor_msgs::CameraInfo info;
   info.header.frame_id = frame;
@@ -51,8 +51,8 @@ EndoscopeCamera::EndoscopeCamera(ros::NodeHandle node, const CameraOptions& opti
       camera_(scene, options.round, options.sharpness),
       sensor_(options.sensor, options.round),
       truth_(description),
-      truth_camera_(options.round, static_cast<double>(render::kScopeNearClip),
-                    static_cast<double>(render::kScopeFarClip)),
+      truth_camera_(options.round, static_cast<double>(graphics::kScopeNearClip),
+                    static_cast<double>(graphics::kScopeFarClip)),
       due_(options.rate) {
   for (const std::string& problem : truth_.problems()) ROS_WARN_STREAM(problem);
   label_table_ = node_.advertise<std_msgs::String>("endoscope/label_table", 1, true);

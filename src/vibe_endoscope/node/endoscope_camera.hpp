@@ -21,7 +21,7 @@
 #include "truth/truth_camera.hpp"
 #include "truth_topics.hpp"
 #include "truth_world.hpp"
-#include "vibe_render/graphics/offscreen_camera.hpp"
+#include "vibe_graphics/graphics/offscreen_camera.hpp"
 
 namespace vibe::endoscope {
 
@@ -63,7 +63,7 @@ class EndoscopeCamera {
   ros::NodeHandle node_;
   CameraOptions options_;
   EndoscopeScene scene_;
-  render::OffscreenCamera camera_;
+  graphics::OffscreenCamera camera_;
   SensorModel sensor_;
   TruthWorld truth_;
   TruthCamera truth_camera_;

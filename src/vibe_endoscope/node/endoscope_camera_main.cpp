@@ -10,11 +10,11 @@
 
 #include "camera_options.hpp"
 #include "endoscope_camera.hpp"
-#include "vibe_render/graphics/resources.hpp"
-#include "vibe_render/graphics/virtual_display.hpp"
+#include "vibe_graphics/graphics/resources.hpp"
+#include "vibe_graphics/graphics/virtual_display.hpp"
 
 namespace endoscope = vibe::endoscope;
-namespace render = vibe::render;
+namespace graphics = vibe::graphics;
 
 namespace {
 
@@ -27,10 +27,10 @@ int fail(const std::exception& error, int status) {
 }
 
 void run(const endoscope::CameraOptions& options) {
-  render::provideDisplay();
+  graphics::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
-  render::loadResources();
+  graphics::loadResources();
   ros::NodeHandle node;
   std::string description;
   node.getParam("robot_description", description);

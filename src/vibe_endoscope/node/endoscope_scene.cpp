@@ -9,11 +9,11 @@
 #include <rviz/mesh_loader.h>
 
 #include "robot_shapes.hpp"
-#include "vibe_render/geometry/coloured_shape.hpp"
-#include "vibe_render/geometry/suture_shapes.hpp"
-#include "vibe_render/graphics/resources.hpp"
-#include "vibe_render/messages/suture_messages.hpp"
-#include "vibe_render/messages/tissue_messages.hpp"
+#include "vibe_graphics/geometry/coloured_shape.hpp"
+#include "vibe_graphics/geometry/suture_shapes.hpp"
+#include "vibe_graphics/graphics/resources.hpp"
+#include "vibe_graphics/messages/suture_messages.hpp"
+#include "vibe_graphics/messages/tissue_messages.hpp"
 
 namespace vibe::endoscope {
 
@@ -29,7 +29,7 @@ void setPose(const Eigen::Isometry3d& pose, Ogre::SceneNode& node) {
 }  // namespace
 
 Instrument::Instrument(Ogre::SceneManager& scene, const std::string& description)
-    : scene_(scene), material_(render::copyMaterial("vibe/solid")) {
+    : scene_(scene), material_(graphics::copyMaterial("vibe/solid")) {
   const std::optional<std::vector<RobotVisual>> visuals = robotVisuals(description);
   if (!visuals) {
     ROS_WARN("The parameter 'robot_description' holds no URDF that can be read, so no instrument is in the image.");
@@ -49,17 +49,17 @@ Instrument::~Instrument() {
     part.node->removeAndDestroyAllChildren();
     scene_.destroySceneNode(part.node);
   }
-  render::dropMaterial(material_);
+  graphics::dropMaterial(material_);
 }
 
 void Instrument::addLink(const std::vector<RobotVisual>& visuals) {
-  render::ColouredShape shape;
+  graphics::ColouredShape shape;
   Ogre::SceneNode* node = scene_.getRootSceneNode()->createChildSceneNode();
   for (const RobotVisual& visual : visuals) {
-    render::appendShape(visual.body, shape);
+    graphics::appendShape(visual.body, shape);
     if (!visual.mesh.empty()) addMesh(visual, *node);
   }
-  auto view = std::make_unique<render::ShapeView>(*node, material_);
+  auto view = std::make_unique<graphics::ShapeView>(*node, material_);
   view->show(shape);
   parts_.push_back({visuals.front().link, node, std::move(view)});
 }
@@ -86,12 +86,12 @@ void Instrument::place(const std::function<std::optional<Eigen::Isometry3d>(cons
 }
 
 EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke,
-                               const render::MucosaLook& mucosa)
+                               const graphics::MucosaLook& mucosa)
     : suture_node_(*scene.getRootSceneNode()->createChildSceneNode()),
       tissue_(*scene.getRootSceneNode(), mucosa),
       sutures_(suture_node_),
       instrument_(scene, description) {
-  render::TissueLook look;
+  graphics::TissueLook look;
   look.smoke = smoke;
   tissue_.setLook(look);
 }
@@ -99,7 +99,7 @@ EndoscopeScene::EndoscopeScene(Ogre::SceneManager& scene, const std::string& des
 EndoscopeScene::~EndoscopeScene() = default;
 
 std::string EndoscopeScene::setTopology(const vibe_msgs::TissueTopology& message) {
-  const std::string problem = render::readTopology(message, mesh_);
+  const std::string problem = graphics::readTopology(message, mesh_);
   has_mesh_ = problem.empty();
   if (has_mesh_)
     tissue_.setMesh(mesh_);
@@ -111,7 +111,7 @@ std::string EndoscopeScene::setTopology(const vibe_msgs::TissueTopology& message
 
 std::string EndoscopeScene::read(const sensor_msgs::PointCloud2& message) {
   if (!has_mesh_) return "There is no usable tissue/topology yet, so tissue/particles cannot be drawn.";
-  return render::readParticles(message, mesh_, frame_);
+  return graphics::readParticles(message, mesh_, frame_);
 }
 
 std::string EndoscopeScene::setParticles(const sensor_msgs::PointCloud2& message) {
@@ -127,8 +127,8 @@ std::string EndoscopeScene::followParticles(const sensor_msgs::PointCloud2& mess
 }
 
 std::string EndoscopeScene::setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf) {
-  render::SutureDrawing seen;
-  const std::string problem = render::readSutures(message, seen);
+  graphics::SutureDrawing seen;
+  const std::string problem = graphics::readSutures(message, seen);
   if (!problem.empty()) return problem;
   const std::optional<Eigen::Isometry3d> pose = poseOf(message.header.frame_id);
   if (!pose) return "There is no transform to the frame '" + message.header.frame_id + "' of the sutures.";
@@ -138,9 +138,9 @@ std::string EndoscopeScene::setSutures(const vibe_msgs::SutureArray& message, co
   suture_node_.setPosition(place.x(), place.y(), place.z());
   suture_node_.setOrientation(turn.w(), turn.x(), turn.y(), turn.z());
   shape_.clear();
-  render::appendSutures(seen, render::naturalSutures(), shape_);
+  graphics::appendSutures(seen, graphics::naturalSutures(), shape_);
   sutures_.showSolids(shape_);
-  render::BloodStyle style;
+  graphics::BloodStyle style;
   style.time = message.header.stamp.toSec();
   blood_.setWounds(seen, style);
   return "";

@@ -11,11 +11,11 @@
 #include <vibe_msgs/TissueTopology.h>
 #include <Eigen/Geometry>
 
-#include "vibe_render/geometry/blood_shapes.hpp"
-#include "vibe_render/geometry/tissue_mesh.hpp"
-#include "vibe_render/graphics/shape_visual.hpp"
-#include "vibe_render/graphics/suture_visual.hpp"
-#include "vibe_render/graphics/tissue_visual.hpp"
+#include "vibe_graphics/geometry/blood_shapes.hpp"
+#include "vibe_graphics/geometry/tissue_mesh.hpp"
+#include "vibe_graphics/graphics/shape_visual.hpp"
+#include "vibe_graphics/graphics/suture_visual.hpp"
+#include "vibe_graphics/graphics/tissue_visual.hpp"
 
 namespace Ogre {
 
@@ -45,7 +45,7 @@ class Instrument {
   struct Part {
     std::string frame;
     Ogre::SceneNode* node;
-    std::unique_ptr<render::ShapeView> shape;
+    std::unique_ptr<graphics::ShapeView> shape;
   };
   /// @param visuals  of one link, at least one
   void addLink(const std::vector<RobotVisual>& visuals);
@@ -69,7 +69,7 @@ class EndoscopeScene {
   /// @param mucosa       what it looks like
   /// @throws std::runtime_error  the package's media folder cannot be found
   EndoscopeScene(Ogre::SceneManager& scene, const std::string& description, bool smoke,
-                 const render::MucosaLook& mucosa = {});
+                 const graphics::MucosaLook& mucosa = {});
   ~EndoscopeScene();
 
   std::string setTopology(const vibe_msgs::TissueTopology& message);
@@ -85,15 +85,15 @@ class EndoscopeScene {
   std::string read(const sensor_msgs::PointCloud2& message);
 
   Ogre::SceneNode& suture_node_;
-  render::TissueVisual tissue_;
-  render::SutureVisual sutures_;
+  graphics::TissueVisual tissue_;
+  graphics::SutureVisual sutures_;
   Instrument instrument_;
-  render::TissueMesh mesh_;
-  render::TissueFrame frame_;
+  graphics::TissueMesh mesh_;
+  graphics::TissueFrame frame_;
   bool has_mesh_ = false;
-  render::BleedingShape blood_;
+  graphics::BleedingShape blood_;
   Eigen::Isometry3d suture_pose_ = Eigen::Isometry3d::Identity();
-  render::ColouredShape shape_;  ///< kept, so that a frame allocates little
+  graphics::ColouredShape shape_;  ///< kept, so that a frame allocates little
 };
 
 }  // namespace vibe::endoscope

@@ -8,8 +8,8 @@
 #include <urdf/model.h>
 #include <assimp/Importer.hpp>
 
-#include "vibe_render/geometry/coloured_shape.hpp"
-#include "vibe_render/geometry/solid_bodies.hpp"
+#include "vibe_graphics/geometry/coloured_shape.hpp"
+#include "vibe_graphics/geometry/solid_bodies.hpp"
 
 namespace vibe::endoscope {
 
@@ -24,10 +24,10 @@ Eigen::Isometry3d toPose(const urdf::Pose& origin) {
   return pose;
 }
 
-render::PackedColour colourOf(const urdf::Visual& visual) {
-  if (!visual.material) return render::packed(0.6, 0.6, 0.62);
+graphics::PackedColour colourOf(const urdf::Visual& visual) {
+  if (!visual.material) return graphics::packed(0.6, 0.6, 0.62);
   const urdf::Color& colour = visual.material->color;
-  return render::packed(colour.r, colour.g, colour.b);
+  return graphics::packed(colour.r, colour.g, colour.b);
 }
 
 RobotVisual readVisual(const std::string& link, const urdf::Visual& visual) {
@@ -35,13 +35,13 @@ RobotVisual readVisual(const std::string& link, const urdf::Visual& visual) {
   result.link = link;
   result.part = visual.name.empty() ? link : link + "/" + visual.name;
   result.pose = toPose(visual.origin);
-  const render::PackedColour colour = colourOf(visual);
+  const graphics::PackedColour colour = colourOf(visual);
   if (const auto* ball = dynamic_cast<const urdf::Sphere*>(visual.geometry.get())) {
-    render::appendSphere(result.pose, ball->radius, colour, result.body);
+    graphics::appendSphere(result.pose, ball->radius, colour, result.body);
   } else if (const auto* rod = dynamic_cast<const urdf::Cylinder*>(visual.geometry.get())) {
-    render::appendCylinder(result.pose, rod->radius, rod->length, colour, result.body);
+    graphics::appendCylinder(result.pose, rod->radius, rod->length, colour, result.body);
   } else if (const auto* box = dynamic_cast<const urdf::Box*>(visual.geometry.get())) {
-    render::appendBox(result.pose, {box->dim.x, box->dim.y, box->dim.z}, colour, result.body);
+    graphics::appendBox(result.pose, {box->dim.x, box->dim.y, box->dim.z}, colour, result.body);
   } else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(visual.geometry.get())) {
     result.mesh = mesh->filename;
     result.scale = {mesh->scale.x, mesh->scale.y, mesh->scale.z};
@@ -74,7 +74,7 @@ std::string fileOf(const std::string& address) {
 }
 
 void appendMesh(const aiMesh& mesh, const aiMatrix4x4& pose, const Eigen::Affine3d& place,
-                render::ColouredShape& shape) {
+                graphics::ColouredShape& shape) {
   const auto first = static_cast<std::uint32_t>(shape.vertices.size());
   const Eigen::Matrix3d turn = place.linear().inverse().transpose();
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
@@ -83,7 +83,7 @@ void appendMesh(const aiMesh& mesh, const aiMatrix4x4& pose, const Eigen::Affine
     const Eigen::Vector3f p = (place * Eigen::Vector3d(point.x, point.y, point.z)).cast<float>();
     const Eigen::Vector3f n = (turn * Eigen::Vector3d(normal.x, normal.y, normal.z)).normalized().cast<float>();
     shape.vertices.push_back({{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}});
-    shape.colours.push_back(render::packed(0.6, 0.6, 0.62));
+    shape.colours.push_back(graphics::packed(0.6, 0.6, 0.62));
   }
   for (unsigned f = 0; f < mesh.mNumFaces; ++f)
     for (unsigned k = 0; mesh.mFaces[f].mNumIndices == 3 && k < 3; ++k)
@@ -91,14 +91,14 @@ void appendMesh(const aiMesh& mesh, const aiMatrix4x4& pose, const Eigen::Affine
 }
 
 void appendNode(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, const Eigen::Affine3d& place,
-                render::ColouredShape& shape) {
+                graphics::ColouredShape& shape) {
   const aiMatrix4x4 pose = parent * node.mTransformation;
   for (unsigned k = 0; k < node.mNumMeshes; ++k) appendMesh(*scene.mMeshes[node.mMeshes[k]], pose, place, shape);
   for (unsigned k = 0; k < node.mNumChildren; ++k) appendNode(scene, *node.mChildren[k], pose, place, shape);
 }
 
 /// @return one sentence if the mesh cannot be read
-std::string appendMeshFile(const RobotVisual& visual, render::ColouredShape& shape) {
+std::string appendMeshFile(const RobotVisual& visual, graphics::ColouredShape& shape) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // as rviz
   const aiScene* scene =
@@ -122,12 +122,12 @@ std::vector<RobotShape> robotShapes(const std::string& description, std::vector<
         "The parameter 'robot_description' holds no URDF that can be read, so no instrument is in the truth.");
     return shapes;
   }
-  std::map<std::pair<std::string, std::string>, render::ColouredShape> parts;  // by link and part
+  std::map<std::pair<std::string, std::string>, graphics::ColouredShape> parts;  // by link and part
   for (const RobotVisual& visual : *visuals) {
-    render::ColouredShape& shape = parts[{visual.link, visual.part}];
+    graphics::ColouredShape& shape = parts[{visual.link, visual.part}];
     const std::string problem = visual.mesh.empty() ? "" : appendMeshFile(visual, shape);
     if (!problem.empty()) problems.push_back(problem);
-    render::appendShape(visual.body, shape);
+    graphics::appendShape(visual.body, shape);
   }
   for (auto& [name, shape] : parts)
     if (!shape.triangles.empty()) shapes.push_back({name.first, name.second, std::move(shape)});

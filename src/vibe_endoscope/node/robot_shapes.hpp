@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "vibe_render/geometry/coloured_shape.hpp"
+#include "vibe_graphics/geometry/coloured_shape.hpp"
 
 namespace vibe::endoscope {
 
@@ -14,7 +14,7 @@ namespace vibe::endoscope {
 struct RobotVisual {
   std::string link;  ///< in whose frame it is
   std::string part;  ///< name of the link; with "/" and the name of the visual, if it has one
-  render::ColouredShape
+  graphics::ColouredShape
       body;          ///< a sphere, cylinder or box as triangles, in the frame of the link [m]; empty for a mesh
   std::string mesh;  ///< address of a mesh file (package://, file:// or a path); empty for such a body
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the mesh in the frame of the link [m]
@@ -29,9 +29,9 @@ std::optional<std::vector<RobotVisual>> robotVisuals(const std::string& descript
 
 /// A visible part of a robot description.
 struct RobotShape {
-  std::string frame;            ///< link, in whose frame the shape is
-  std::string name;             ///< of the link; with "/" and the name of the visual, if it has one
-  render::ColouredShape shape;  ///< the triangles that are drawn [m]
+  std::string frame;              ///< link, in whose frame the shape is
+  std::string name;               ///< of the link; with "/" and the name of the visual, if it has one
+  graphics::ColouredShape shape;  ///< the triangles that are drawn [m]
 };
 
 /// The visuals of a robot description as the triangles that are drawn, ordered by link. Spheres, cylinders and boxes

@@ -13,7 +13,7 @@ namespace {
 namespace encodings = sensor_msgs::image_encodings;
 
 template <class T>
-sensor_msgs::ImagePtr imageOf(const std_msgs::Header& header, const render::RoundCamera& round,
+sensor_msgs::ImagePtr imageOf(const std_msgs::Header& header, const graphics::RoundCamera& round,
                               const std::string& encoding, const std::vector<T>& values) {
   sensor_msgs::ImagePtr image = boost::make_shared<sensor_msgs::Image>();
   image->header = header;

@@ -1,8 +1,8 @@
 #include "truth_world.hpp"
 
 #include "robot_shapes.hpp"
-#include "vibe_render/messages/suture_messages.hpp"
-#include "vibe_render/messages/tissue_messages.hpp"
+#include "vibe_graphics/messages/suture_messages.hpp"
+#include "vibe_graphics/messages/tissue_messages.hpp"
 
 namespace vibe::endoscope {
 
@@ -12,7 +12,7 @@ TruthWorld::TruthWorld(const std::string& description) {
 }
 
 std::string TruthWorld::setTopology(const vibe_msgs::TissueTopology& message) {
-  const std::string problem = render::readTopology(message, mesh_);
+  const std::string problem = graphics::readTopology(message, mesh_);
   has_mesh_ = problem.empty();
   if (has_mesh_) scene_.setMesh(mesh_);
   return problem;
@@ -20,14 +20,14 @@ std::string TruthWorld::setTopology(const vibe_msgs::TissueTopology& message) {
 
 std::string TruthWorld::setParticles(const sensor_msgs::PointCloud2& message) {
   if (!has_mesh_) return "There is no usable tissue/topology yet, so there is no truth of tissue/particles.";
-  const std::string problem = render::readParticles(message, mesh_, frame_);
+  const std::string problem = graphics::readParticles(message, mesh_, frame_);
   if (problem.empty()) scene_.setFrame(frame_);
   return problem;
 }
 
 std::string TruthWorld::setSutures(const vibe_msgs::SutureArray& message, const PoseOf& poseOf) {
-  render::SutureDrawing seen;
-  const std::string problem = render::readSutures(message, seen);
+  graphics::SutureDrawing seen;
+  const std::string problem = graphics::readSutures(message, seen);
   if (!problem.empty()) return problem;
   const std::optional<Eigen::Isometry3d> pose = poseOf(message.header.frame_id);
   if (!pose) return "There is no transform to the frame '" + message.header.frame_id + "' of the sutures.";

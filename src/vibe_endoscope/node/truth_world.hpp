@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "truth/truth_scene.hpp"
-#include "vibe_render/geometry/tissue_mesh.hpp"
+#include "vibe_graphics/geometry/tissue_mesh.hpp"
 
 namespace vibe::endoscope {
 
@@ -44,8 +44,8 @@ class TruthWorld {
   TruthScene scene_;
   std::vector<Part> parts_;
   std::vector<std::string> problems_;
-  render::TissueMesh mesh_;
-  render::TissueFrame frame_;
+  graphics::TissueMesh mesh_;
+  graphics::TissueFrame frame_;
   bool has_mesh_ = false;
 };
 

@@ -13,11 +13,11 @@
 #include "dataset_camera.hpp"
 #include "image_due.hpp"
 #include "robot_shapes.hpp"
-#include "vibe_render/graphics/resources.hpp"
-#include "vibe_render/graphics/virtual_display.hpp"
+#include "vibe_graphics/graphics/resources.hpp"
+#include "vibe_graphics/graphics/virtual_display.hpp"
 
 namespace endoscope = vibe::endoscope;
-namespace render = vibe::render;
+namespace graphics = vibe::graphics;
 
 namespace {
 
@@ -72,10 +72,10 @@ void run(const endoscope::DatasetOptions& options) {
   refuseMissingMeshes(frames.info().urdf, options.name);
   if (options.check) return;
   std::optional<endoscope::DatasetFolder> folder;  // made with the first image, so that a refusal leaves nothing
-  render::provideDisplay();
+  graphics::provideDisplay();
   rviz::RenderSystem::forceNoStereo();
   Ogre::SceneManager* scene = rviz::RenderSystem::get()->root()->createSceneManager();
-  render::loadResources();
+  graphics::loadResources();
   endoscope::DatasetCamera camera(options, *scene, frames.info().urdf);
   endoscope::ImageDue due(options.rate);
   endoscope::SessionFrame frame;

@@ -16,7 +16,7 @@ constexpr double kPatch = 0.05;  // share of the particles
 constexpr double kBreath = 60;   // frames
 constexpr std::size_t kBytes = 32;
 
-void addVertices(render::TissueMesh& mesh) {
+void addVertices(graphics::TissueMesh& mesh) {
   const auto add = [&mesh](double polar, double azimuth) {
     for (const double x : {kRadius * std::sin(polar) * std::cos(azimuth), kRadius * std::sin(polar) * std::sin(azimuth),
                            kLength * std::cos(polar)})
@@ -41,7 +41,7 @@ void addTriangles(std::vector<std::uint32_t>& triangles) {
 }
 
 // Each triangle in four; a new vertex follows both ends of its edge.
-void addRenderSurface(render::TissueMesh& mesh) {
+void addRenderSurface(graphics::TissueMesh& mesh) {
   mesh.render_offsets.push_back(0);
   const auto update = [&mesh](std::initializer_list<std::uint32_t> particles) {
     for (const std::uint32_t particle : particles) {
@@ -70,7 +70,7 @@ void addRenderSurface(render::TissueMesh& mesh) {
 }
 
 // How far particle i has gone outward at this frame, as a share of its place [1].
-double bulgeOf(const render::TissueMesh& mesh, Motion motion, int frame, std::size_t i) {
+double bulgeOf(const graphics::TissueMesh& mesh, Motion motion, int frame, std::size_t i) {
   const double breath = 0.05 * std::sin(2 * kPi * frame / kBreath);
   if (motion == Motion::Everything) return breath;
   if (motion == Motion::Nothing) return 0;
@@ -100,8 +100,8 @@ void describe(sensor_msgs::PointCloud2& cloud) {
 
 }  // namespace
 
-render::TissueMesh benchOrgan(bool subdivided) {
-  render::TissueMesh mesh;
+graphics::TissueMesh benchOrgan(bool subdivided) {
+  graphics::TissueMesh mesh;
   mesh.revision = 1;
   mesh.name = "egg";
   addVertices(mesh);
@@ -113,7 +113,7 @@ render::TissueMesh benchOrgan(bool subdivided) {
   return mesh;
 }
 
-sensor_msgs::PointCloud2 benchCloud(const render::TissueMesh& mesh, Motion motion, int frame) {
+sensor_msgs::PointCloud2 benchCloud(const graphics::TissueMesh& mesh, Motion motion, int frame) {
   sensor_msgs::PointCloud2 cloud;
   describe(cloud);
   cloud.height = 1;

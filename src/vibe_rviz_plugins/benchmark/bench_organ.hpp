@@ -1,7 +1,7 @@
 #pragma once
 #include <sensor_msgs/PointCloud2.h>
 
-#include "vibe_render/geometry/tissue_mesh.hpp"
+#include "vibe_graphics/geometry/tissue_mesh.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -10,10 +10,10 @@ enum class Motion { Nothing, Patch, Everything };
 
 /// An organ to measure with: a closed egg of 3,618 particles and 7,232 triangles, 20 cm long.
 /// @param skinned  drawn with four times as many triangles, whose vertices follow one or two particles each
-render::TissueMesh benchOrgan(bool subdivided);
+graphics::TissueMesh benchOrgan(bool subdivided);
 
 /// The organ at frame number `frame` as the simulator sends it, in 32 bytes per particle. Everything breathes; a patch
 /// of 5 % of the particles around one place bulges; strain changes where particles move.
-sensor_msgs::PointCloud2 benchCloud(const render::TissueMesh& mesh, Motion motion, int frame);
+sensor_msgs::PointCloud2 benchCloud(const graphics::TissueMesh& mesh, Motion motion, int frame);
 
 }  // namespace vibe::rviz_plugins

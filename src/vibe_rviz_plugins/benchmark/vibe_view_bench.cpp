@@ -19,11 +19,11 @@
 #include <memory>
 
 #include "bench_organ.hpp"
-#include "vibe_render/geometry/deformable_surface.hpp"
-#include "vibe_render/geometry/surface_colours.hpp"
-#include "vibe_render/graphics/dynamic_mesh.hpp"
-#include "vibe_render/graphics/resources.hpp"
-#include "vibe_render/messages/tissue_messages.hpp"
+#include "vibe_graphics/geometry/deformable_surface.hpp"
+#include "vibe_graphics/geometry/surface_colours.hpp"
+#include "vibe_graphics/graphics/dynamic_mesh.hpp"
+#include "vibe_graphics/graphics/resources.hpp"
+#include "vibe_graphics/messages/tissue_messages.hpp"
 
 namespace {
 
@@ -70,7 +70,7 @@ struct Viewer {
     manager->initialize();
     panel.show();
     QApplication::processEvents();
-    render::loadResources();
+    graphics::loadResources();
     auto* view = manager->getViewManager()->getCurrent();
     view->subProp("Distance")->setValue(0.3);
   }
@@ -85,22 +85,22 @@ struct Viewer {
 /// What TissueVisual does with a message, with a look at the clock between its parts.
 class Stages {
  public:
-  Stages(Viewer& viewer, const render::TissueMesh& mesh)
+  Stages(Viewer& viewer, const graphics::TissueMesh& mesh)
       : viewer_(viewer),
         mesh_(mesh),
         surface_(mesh_),
         colours_(mesh_),
         node_(*viewer.manager->getSceneManager()->getRootSceneNode()->createChildSceneNode()),
-        inside_(render::copyMaterial("vibe/tissue_inside")),
-        outside_(render::copyMaterial("vibe/tissue_outside")),
-        drawn_(std::make_unique<render::DynamicMesh>(node_, std::vector<Ogre::MaterialPtr>{inside_, outside_})) {
-    colours_.choose(render::Colouring::Strain, render::ColourMap());
+        inside_(graphics::copyMaterial("vibe/tissue_inside")),
+        outside_(graphics::copyMaterial("vibe/tissue_outside")),
+        drawn_(std::make_unique<graphics::DynamicMesh>(node_, std::vector<Ogre::MaterialPtr>{inside_, outside_})) {
+    colours_.choose(graphics::Colouring::Strain, graphics::ColourMap());
     drawn_->setTopology(mesh_.triangles, mesh_.vertex_count, mesh_.rest);
   }
   ~Stages() {
     drawn_.reset();
     viewer_.manager->getSceneManager()->destroySceneNode(&node_);
-    render::dropMaterial(inside_), render::dropMaterial(outside_);
+    graphics::dropMaterial(inside_), graphics::dropMaterial(outside_);
   }
 
   std::array<double, kPartCount> drawFrame(const sensor_msgs::PointCloud2& cloud) {
@@ -112,12 +112,12 @@ class Stages {
       times[part] += 1e3 * (now - last);
       last = now;
     };
-    const std::string wrong = render::readParticles(cloud, mesh_, frame_);
+    const std::string wrong = graphics::readParticles(cloud, mesh_, frame_);
     if (!wrong.empty()) throw std::runtime_error(wrong);
     lap(Read);
-    const render::VertexSpan moved = surface_.update(frame_.positions);
+    const graphics::VertexSpan moved = surface_.update(frame_.positions);
     lap(Geometry);
-    const render::VertexSpan coloured = colours_.update(frame_);
+    const graphics::VertexSpan coloured = colours_.update(frame_);
     lap(Colours);
     send(moved, coloured);
     lap(Upload);
@@ -128,7 +128,7 @@ class Stages {
   }
 
  private:
-  void send(const render::VertexSpan& moved, const render::VertexSpan& coloured) {
+  void send(const graphics::VertexSpan& moved, const graphics::VertexSpan& coloured) {
     if (!moved.empty()) {
       drawn_->setVertices(surface_.vertices().data() + moved.first, moved.first, moved.count());
       const Eigen::Vector3f min = surface_.bounds().min(), max = surface_.bounds().max();
@@ -138,17 +138,17 @@ class Stages {
   }
 
   Viewer& viewer_;
-  render::TissueMesh mesh_;
-  render::TissueFrame frame_;
-  render::DeformableSurface surface_;
-  render::SurfaceColours colours_;
+  graphics::TissueMesh mesh_;
+  graphics::TissueFrame frame_;
+  graphics::DeformableSurface surface_;
+  graphics::SurfaceColours colours_;
   Ogre::SceneNode& node_;
   Ogre::MaterialPtr inside_, outside_;
-  std::unique_ptr<render::DynamicMesh> drawn_;
+  std::unique_ptr<graphics::DynamicMesh> drawn_;
 };
 
 Samples measure(Viewer& viewer, const Case& c) {
-  const render::TissueMesh mesh = benchOrgan(c.subdivided);
+  const graphics::TissueMesh mesh = benchOrgan(c.subdivided);
   Stages stages(viewer, mesh);
   Samples samples;
   for (int frame = 0; frame < kWarmUp + kFrames; ++frame) {
@@ -169,7 +169,7 @@ double added(const Samples& samples) {
   return median(samples[Geometry]) + median(samples[Colours]) + median(samples[Upload]);
 }
 
-void printRow(const Case& c, const render::TissueMesh& mesh, const Samples& samples) {
+void printRow(const Case& c, const graphics::TissueMesh& mesh, const Samples& samples) {
   std::printf("| %s | %zu |", c.name, mesh.triangles.size() / 3);
   for (const auto& values : samples) std::printf(" %.3f (%.3f) |", median(values), values.front());
   std::printf(" %.3f |\n", added(samples));

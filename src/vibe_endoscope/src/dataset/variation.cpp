@@ -18,8 +18,8 @@ class Draw {
   std::mt19937 random_;
 };
 
-render::MucosaLook drawMucosa(Draw& draw) {
-  render::MucosaLook mucosa;
+graphics::MucosaLook drawMucosa(Draw& draw) {
+  graphics::MucosaLook mucosa;
   for (int axis = 0; axis < 3; ++axis) mucosa.shift[axis] = static_cast<float>(draw.between(0, 0.5));
   mucosa.areae_size = draw.between(2e-3, 5e-3);
   mucosa.paleness = draw.factor(0.8, 1.25);
@@ -30,9 +30,9 @@ render::MucosaLook drawMucosa(Draw& draw) {
   return mucosa;
 }
 
-render::EndoscopeLight drawLight(Draw& draw) {
-  render::EndoscopeLight light;
-  for (render::LightGuide& guide : light.guides) {
+graphics::EndoscopeLight drawLight(Draw& draw) {
+  graphics::EndoscopeLight light;
+  for (graphics::LightGuide& guide : light.guides) {
     guide.right = std::copysign(draw.between(2.8e-3, 3.8e-3), guide.right);
     guide.up = draw.between(0, 1.25e-3);
   }
@@ -48,10 +48,10 @@ render::EndoscopeLight drawLight(Draw& draw) {
 Variation variationOf(std::uint32_t seed, double field_of_view) {
   Draw draw(seed);
   Variation result;
-  result.field_of_view = std::clamp(field_of_view + draw.between(-5, 5) * render::kDegree, render::kMinFieldOfView,
-                                    render::kMaxFieldOfView);
-  result.roll = draw.between(-5, 5) * render::kDegree;
-  result.pitch = draw.between(-2, 2) * render::kDegree, result.yaw = draw.between(-2, 2) * render::kDegree;
+  result.field_of_view = std::clamp(field_of_view + draw.between(-5, 5) * graphics::kDegree, graphics::kMinFieldOfView,
+                                    graphics::kMaxFieldOfView);
+  result.roll = draw.between(-5, 5) * graphics::kDegree;
+  result.pitch = draw.between(-2, 2) * graphics::kDegree, result.yaw = draw.between(-2, 2) * graphics::kDegree;
   SensorStyle& sensor = result.sensor;
   sensor.exposure = draw.factor(0.7, 1.4);
   sensor.red_gain = draw.between(0.9, 1.1), sensor.blue_gain = draw.between(0.9, 1.1);

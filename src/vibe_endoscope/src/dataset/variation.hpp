@@ -2,8 +2,8 @@
 #include <cstdint>
 
 #include "sensor/sensor_model.hpp"
-#include "vibe_render/geometry/endoscope_optics.hpp"
-#include "vibe_render/geometry/mucosa_pattern.hpp"
+#include "vibe_graphics/geometry/endoscope_optics.hpp"
+#include "vibe_graphics/geometry/mucosa_pattern.hpp"
 
 namespace vibe::endoscope {
 
@@ -13,8 +13,8 @@ struct Variation {
   double field_of_view = 2.443461;      ///< [rad]
   double roll = 0, pitch = 0, yaw = 0;  ///< of the lens in its mount [rad]
   SensorStyle sensor;
-  render::MucosaLook mucosa;
-  render::EndoscopeLight light;
+  graphics::MucosaLook mucosa;
+  graphics::EndoscopeLight light;
 };
 
 /// Draws a variation; the same seed gives the same one. Ranges are design choices; those with (log) are log-uniform.

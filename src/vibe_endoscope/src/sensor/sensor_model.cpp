@@ -80,8 +80,8 @@ double bent(double slope, double k1) {
 }
 
 /// r / f at the rim of the circle, without distortion.
-double rimOf(const render::RoundCamera& camera) {
-  return camera.radius() / render::focalLength(camera);
+double rimOf(const graphics::RoundCamera& camera) {
+  return camera.radius() / graphics::focalLength(camera);
 }
 
 }  // namespace
@@ -91,22 +91,23 @@ bool SensorStyle::isPlain() const {
          full_well == 0 && read_noise == 0;
 }
 
-std::string problemOf(const SensorStyle& style, const render::RoundCamera& camera) {
+std::string problemOf(const SensorStyle& style, const graphics::RoundCamera& camera) {
   const double rim = rimOf(camera);
   if (!(1 + 3 * style.distortion * rim * rim > 0.05))
     return "the distortion folds the image over; make it weaker or the field of view smaller";
   return "";
 }
 
-Eigen::Vector2d distorted(const SensorStyle& style, const render::RoundCamera& camera, const Eigen::Vector2d& pixel) {
+Eigen::Vector2d distorted(const SensorStyle& style, const graphics::RoundCamera& camera, const Eigen::Vector2d& pixel) {
   const Eigen::Vector2d aside = pixel - camera.middle();
-  const double slope = aside.norm() / render::focalLength(camera);
+  const double slope = aside.norm() / graphics::focalLength(camera);
   return camera.middle() + (1 + style.distortion * slope * slope) * aside;
 }
 
-Eigen::Vector2d undistorted(const SensorStyle& style, const render::RoundCamera& camera, const Eigen::Vector2d& pixel) {
+Eigen::Vector2d undistorted(const SensorStyle& style, const graphics::RoundCamera& camera,
+                            const Eigen::Vector2d& pixel) {
   const Eigen::Vector2d aside = pixel - camera.middle();
-  const double wanted = aside.norm() / render::focalLength(camera);
+  const double wanted = aside.norm() / graphics::focalLength(camera);
   if (wanted == 0) return pixel;
   double slope = std::min(wanted, rimOf(camera));
   for (int k = 0; k < kNewtonSteps; ++k)
@@ -114,7 +115,8 @@ Eigen::Vector2d undistorted(const SensorStyle& style, const render::RoundCamera&
   return camera.middle() + slope / wanted * aside;
 }
 
-SensorModel::SensorModel(const SensorStyle& style, const render::RoundCamera& camera) : style_(style), camera_(camera) {
+SensorModel::SensorModel(const SensorStyle& style, const graphics::RoundCamera& camera)
+    : style_(style), camera_(camera) {
   const int reach = style.blur > 0 ? static_cast<int>(std::ceil(kKernelReach * style.blur)) : 0;
   for (int k = 0; k <= reach && reach > 0; ++k)
     kernel_.push_back(static_cast<float>(std::exp(-0.5 * k * k / (style.blur * style.blur))));

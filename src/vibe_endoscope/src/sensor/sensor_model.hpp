@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_render/geometry/endoscope_optics.hpp"
+#include "vibe_graphics/geometry/endoscope_optics.hpp"
 
 namespace vibe::endoscope {
 
@@ -26,12 +26,13 @@ struct SensorStyle {
 
 /// Why this style is impossible for this camera, as a sentence without capital and period; empty: it is possible. The
 /// distortion must not fold the image over.
-std::string problemOf(const SensorStyle& style, const render::RoundCamera& camera);
+std::string problemOf(const SensorStyle& style, const graphics::RoundCamera& camera);
 
 /// Where the distorted lens shows the point that the ideal lens shows at `pixel`.
-Eigen::Vector2d distorted(const SensorStyle& style, const render::RoundCamera& camera, const Eigen::Vector2d& pixel);
+Eigen::Vector2d distorted(const SensorStyle& style, const graphics::RoundCamera& camera, const Eigen::Vector2d& pixel);
 /// The inverse.
-Eigen::Vector2d undistorted(const SensorStyle& style, const render::RoundCamera& camera, const Eigen::Vector2d& pixel);
+Eigen::Vector2d undistorted(const SensorStyle& style, const graphics::RoundCamera& camera,
+                            const Eigen::Vector2d& pixel);
 
 /// Makes images of a real sensor from ideal ones. Light is computed in linear values of sRGB (IEC 61966-2-1), in this
 /// order: distortion, blur, vignetting, exposure and gains, shot noise and read noise, rounding to 8 bits. Noise is
@@ -40,7 +41,7 @@ Eigen::Vector2d undistorted(const SensorStyle& style, const render::RoundCamera&
 class SensorModel {
  public:
   /// @param style  possible for the camera
-  SensorModel(const SensorStyle& style, const render::RoundCamera& camera);
+  SensorModel(const SensorStyle& style, const graphics::RoundCamera& camera);
 
   /// Changes an image in place. The noise depends on seed, number, place and colour alone.
   /// @param pixels  red, green, blue of the rows from the top
@@ -55,7 +56,7 @@ class SensorModel {
   void develop(std::vector<std::uint8_t>& pixels, std::uint64_t number) const;
 
   SensorStyle style_;
-  render::RoundCamera camera_;
+  graphics::RoundCamera camera_;
   std::vector<float> kernel_;  // of the blur, from the middle
   std::vector<float> source_;  // x y of the ideal image per pixel, for the distortion
   std::vector<float> share_;   // of the light per pixel: vignetting and exposure; 0 outside of the circle

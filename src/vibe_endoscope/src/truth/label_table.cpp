@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "vibe_render/geometry/surface_colours.hpp"
+#include "vibe_graphics/geometry/surface_colours.hpp"
 
 namespace vibe::endoscope {
 
@@ -26,7 +26,7 @@ LabelEntry entryOf(std::uint8_t number, const std::string& name, const Colour& c
 /// The colour of the region, in four shades for the walls; heat covers it.
 Colour wallColour(int region, int wall, int heat) {
   if (heat > 0) return kHeatColours[heat];
-  const render::PackedColour packed = render::regionColours()[static_cast<std::size_t>(region)];
+  const graphics::PackedColour packed = graphics::regionColours()[static_cast<std::size_t>(region)];
   Colour colour;
   for (std::size_t k = 0; k < 3; ++k)
     colour[k] = static_cast<std::uint8_t>(((packed >> (8 * k)) & 255U) * static_cast<unsigned>(10 - wall) / 10);
@@ -101,14 +101,14 @@ namespace {
 
 /// Calls `use(particle, weight)` for the particles that carry a vertex.
 template <class Use>
-void forCarriers(const render::TissueMesh& mesh, std::size_t vertex, Use use) {
+void forCarriers(const graphics::TissueMesh& mesh, std::size_t vertex, Use use) {
   if (!mesh.subdivided()) return use(static_cast<std::uint32_t>(vertex), 1.0F);
   for (std::uint32_t k = mesh.render_offsets[vertex]; k < mesh.render_offsets[vertex + 1]; ++k)
     use(mesh.render_particles[k], mesh.render_weights[k]);
 }
 
 /// The number with the largest share among the particles that carry a vertex; -1 if none is known.
-std::int8_t prevailing(const render::TissueMesh& mesh, std::size_t vertex, const std::vector<std::uint8_t>& numbers,
+std::int8_t prevailing(const graphics::TissueMesh& mesh, std::size_t vertex, const std::vector<std::uint8_t>& numbers,
                        int count) {
   std::array<float, kRegions> share{};
   if (numbers.empty()) return -1;
@@ -127,14 +127,14 @@ std::uint8_t hotLabel(std::uint8_t cold, int heat) {
 
 }  // namespace
 
-void WallLabels::setMesh(const render::TissueMesh& mesh) {
+void WallLabels::setMesh(const graphics::TissueMesh& mesh) {
   cold_.resize(mesh.vertex_count);
   for (std::size_t v = 0; v < mesh.vertex_count; ++v)
     cold_[v] = wallLabel(prevailing(mesh, v, mesh.region, kRegions), prevailing(mesh, v, mesh.wall, kWalls), 0);
   grade_.clear(), heat_.clear();
 }
 
-void WallLabels::setFrame(const render::TissueMesh& mesh, const render::TissueFrame& frame) {
+void WallLabels::setFrame(const graphics::TissueMesh& mesh, const graphics::TissueFrame& frame) {
   if (frame.grade == grade_) return;  // burns are rare
   grade_ = frame.grade;
   const bool cold = std::all_of(grade_.begin(), grade_.end(), [](std::uint8_t grade) { return grade == 0; });

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_render/geometry/tissue_mesh.hpp"
+#include "vibe_graphics/geometry/tissue_mesh.hpp"
 
 namespace vibe::endoscope {
 
@@ -51,8 +51,8 @@ std::string labelText(const std::vector<LabelEntry>& table);
 /// coordinate), and the grade is interpolated and rounded: the colour is drawn from the same interpolated value.
 class WallLabels {
  public:
-  void setMesh(const render::TissueMesh& mesh);
-  void setFrame(const render::TissueMesh& mesh, const render::TissueFrame& frame);
+  void setMesh(const graphics::TissueMesh& mesh);
+  void setFrame(const graphics::TissueMesh& mesh, const graphics::TissueFrame& frame);
   /// @param corner  vertices of the triangle
   /// @param weight  barycentric coordinates of the point
   std::uint8_t at(const std::uint32_t* corner, const std::array<float, 3>& weight) const;

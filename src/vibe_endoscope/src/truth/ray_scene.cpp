@@ -11,7 +11,7 @@ namespace vibe::endoscope {
 /// What the filter of a translucent body reads.
 struct Veil {
   const std::vector<std::uint32_t>* triangles = nullptr;
-  const std::vector<render::PackedColour>* colours = nullptr;
+  const std::vector<graphics::PackedColour>* colours = nullptr;
 };
 
 namespace {
@@ -37,10 +37,10 @@ void passVeil(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
-void setTriangles(RTCGeometry geometry, const std::vector<render::MovingVertex>& vertices,
+void setTriangles(RTCGeometry geometry, const std::vector<graphics::MovingVertex>& vertices,
                   const std::vector<std::uint32_t>& triangles) {
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0,
-                             sizeof(render::MovingVertex), vertices.size());
+                             sizeof(graphics::MovingVertex), vertices.size());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                              3 * sizeof(std::uint32_t), triangles.size() / 3);
 }
@@ -140,7 +140,7 @@ std::uint32_t RayScene::addMoving() {
   return embree_->attach(std::move(body));
 }
 
-std::uint32_t RayScene::addRigid(const std::vector<render::MovingVertex>& vertices,
+std::uint32_t RayScene::addRigid(const std::vector<graphics::MovingVertex>& vertices,
                                  const std::vector<std::uint32_t>& triangles) {
   auto body = std::make_unique<Embree::Body>();
   body->rigid = rtcNewScene(embree_->device);
@@ -156,8 +156,8 @@ std::uint32_t RayScene::addRigid(const std::vector<render::MovingVertex>& vertic
   return embree_->attach(std::move(body));
 }
 
-void RayScene::set(std::uint32_t number, const std::vector<render::MovingVertex>& vertices,
-                   const std::vector<std::uint32_t>& triangles, const std::vector<render::PackedColour>* colours) {
+void RayScene::set(std::uint32_t number, const std::vector<graphics::MovingVertex>& vertices,
+                   const std::vector<std::uint32_t>& triangles, const std::vector<graphics::PackedColour>* colours) {
   Embree::Body& body = *embree_->bodies.at(number);
   if (triangles.empty()) return rtcDisableGeometry(body.geometry);
   body.veil = {&triangles, colours};

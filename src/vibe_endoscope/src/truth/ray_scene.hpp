@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "vibe_render/geometry/coloured_shape.hpp"
+#include "vibe_graphics/geometry/coloured_shape.hpp"
 
 namespace vibe::endoscope {
 
@@ -40,13 +40,13 @@ class RayScene {
   /// Adds a body without triangles, whose vertices move by themselves.
   std::uint32_t addMoving();
   /// Adds a rigid body. It is not met before it is placed.
-  std::uint32_t addRigid(const std::vector<render::MovingVertex>& vertices,
+  std::uint32_t addRigid(const std::vector<graphics::MovingVertex>& vertices,
                          const std::vector<std::uint32_t>& triangles);
 
   /// Sets vertices [m] and triangles of a moving body; empty: nothing of it is met.
   /// @param colours  rays pass where the interpolated alpha is below one half; null: opaque
-  void set(std::uint32_t body, const std::vector<render::MovingVertex>& vertices,
-           const std::vector<std::uint32_t>& triangles, const std::vector<render::PackedColour>* colours = nullptr);
+  void set(std::uint32_t body, const std::vector<graphics::MovingVertex>& vertices,
+           const std::vector<std::uint32_t>& triangles, const std::vector<graphics::PackedColour>* colours = nullptr);
   /// Vertices of a moving body have other places, the triangles are the same.
   void moved(std::uint32_t body);
   /// Places a rigid body; without a pose it is not met.

@@ -27,7 +27,7 @@ Eigen::Vector3d backwards(const CameraRay& ray, const Eigen::Isometry3d& body) {
 
 }  // namespace
 
-TruthCamera::TruthCamera(const render::RoundCamera& round, double near, double far)
+TruthCamera::TruthCamera(const graphics::RoundCamera& round, double near, double far)
     : round_(round), near_(near), far_(far) {
   for (int top = 0; top < round.height; top += kTile)
     for (int left = 0; left < round.width; left += kTile)
@@ -37,7 +37,7 @@ TruthCamera::TruthCamera(const render::RoundCamera& round, double near, double f
 
 void TruthCamera::addPixel(int x, int y) {
   if (!isInside({x, y})) return;
-  const Eigen::Vector3d ray = render::rayOf(round_, {x, y});
+  const Eigen::Vector3d ray = graphics::rayOf(round_, {x, y});
   pixels_.push_back(static_cast<std::uint32_t>(y * round_.width + x));
   rays_.push_back({ray.cast<float>(), static_cast<float>(near_ / ray.z()), static_cast<float>(far_ / ray.z())});
 }
@@ -102,7 +102,7 @@ TruthFlow TruthCamera::flow(const TruthView& before, const TruthScene& scene, co
     if (!hit.any() || before.shapes[hit.body] == 0 || before.shapes[hit.body] != scene.shapeNumber(hit.body)) continue;
     const Eigen::Vector3d seen = poses[hit.body] * scene.pointOf(hit);
     if (!(seen.z() >= near_ && seen.z() <= far_)) continue;
-    const Eigen::Vector2d pixel = render::pixelOf(round_, seen);
+    const Eigen::Vector2d pixel = graphics::pixelOf(round_, seen);
     if (!isInside(pixel)) continue;
     const int at = static_cast<int>(pixels_[k]);
     flow.motion[2 * pixels_[k]] = static_cast<float>(pixel.x() - at % round_.width);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "truth/truth_scene.hpp"
-#include "vibe_render/geometry/endoscope_optics.hpp"
+#include "vibe_graphics/geometry/endoscope_optics.hpp"
 
 namespace vibe::endoscope {
 
@@ -30,9 +30,9 @@ struct TruthFlow {
 class TruthCamera {
  public:
   /// @param near, far  what is nearer or farther along the optical axis is not seen [m]
-  TruthCamera(const render::RoundCamera& round, double near, double far);
+  TruthCamera(const graphics::RoundCamera& round, double near, double far);
 
-  const render::RoundCamera& round() const { return round_; }
+  const graphics::RoundCamera& round() const { return round_; }
 
   /// Casts the rays; the scene must be committed.
   void look(const TruthScene& scene, const Eigen::Isometry3d& pose, TruthView& view) const;
@@ -57,7 +57,7 @@ class TruthCamera {
   void hide(const std::vector<std::uint32_t>& pixels, const std::vector<CameraRay>& rays, const TruthScene& scene,
             const Eigen::Isometry3d& pose, std::vector<std::uint8_t>& visible) const;
 
-  render::RoundCamera round_;
+  graphics::RoundCamera round_;
   double near_, far_;
   std::vector<std::uint32_t> pixels_;  // in the circle: row * width + column; tile by tile
   std::vector<CameraRay> rays_;        // of these pixels, in the frame of the camera

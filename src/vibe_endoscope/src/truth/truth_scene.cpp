@@ -4,15 +4,15 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "vibe_render/geometry/coloured_shape.hpp"
-#include "vibe_render/geometry/suture_shapes.hpp"
+#include "vibe_graphics/geometry/coloured_shape.hpp"
+#include "vibe_graphics/geometry/suture_shapes.hpp"
 
 namespace vibe::endoscope {
 namespace {
 
 /// A shape that goes on after the first vertices and triangles of `shape`, which it shares with `beginning`.
-render::ColouredShape without(const render::ColouredShape& beginning, const render::ColouredShape& shape) {
-  render::ColouredShape rest;
+graphics::ColouredShape without(const graphics::ColouredShape& beginning, const graphics::ColouredShape& shape) {
+  graphics::ColouredShape rest;
   const std::size_t first = beginning.vertices.size();
   rest.vertices.assign(shape.vertices.begin() + static_cast<std::ptrdiff_t>(first), shape.vertices.end());
   rest.colours.assign(shape.colours.begin() + static_cast<std::ptrdiff_t>(first), shape.colours.end());
@@ -22,37 +22,38 @@ render::ColouredShape without(const render::ColouredShape& beginning, const rend
 }
 
 struct SutureParts {
-  render::ColouredShape threads, tags, cinches;
+  graphics::ColouredShape threads, tags, cinches;
 };
 
 /// The drawn triangles, told apart: those of a set begin with its threads, and the ends follow. The ends are drawn with
 /// their threads, because these give their direction.
-SutureParts partsOf(const render::SutureDrawing& sutures) {
-  const auto drawn = [](const render::SutureSet& set, bool ends) {
-    render::SutureStyle style = render::naturalSutures();
+SutureParts partsOf(const graphics::SutureDrawing& sutures) {
+  const auto drawn = [](const graphics::SutureSet& set, bool ends) {
+    graphics::SutureStyle style = graphics::naturalSutures();
     style.ends = ends;
-    render::ColouredShape shape;
-    render::appendSutures({{set}, {}}, style, shape);
+    graphics::ColouredShape shape;
+    graphics::appendSutures({{set}, {}}, style, shape);
     return shape;
   };
   SutureParts parts;
-  for (const render::SutureSet& set : sutures.sets) {
-    const render::ColouredShape thread = drawn(set, false);
-    render::SutureSet tagged = set, cinched = set;
+  for (const graphics::SutureSet& set : sutures.sets) {
+    const graphics::ColouredShape thread = drawn(set, false);
+    graphics::SutureSet tagged = set, cinched = set;
     tagged.has_cinch = false, cinched.has_t_tag = false;
-    render::appendShape(thread, parts.threads);
-    render::appendShape(without(thread, drawn(tagged, true)), parts.tags);
-    render::appendShape(without(thread, drawn(cinched, true)), parts.cinches);
+    graphics::appendShape(thread, parts.threads);
+    graphics::appendShape(without(thread, drawn(tagged, true)), parts.tags);
+    graphics::appendShape(without(thread, drawn(cinched, true)), parts.cinches);
   }
   return parts;
 }
 
-Eigen::Vector3d placeOf(const render::MovingVertex& vertex) {
+Eigen::Vector3d placeOf(const graphics::MovingVertex& vertex) {
   return {double{vertex.position[0]}, double{vertex.position[1]}, double{vertex.position[2]}};
 }
 
 /// Across the triangle, of any length.
-Eigen::Vector3d across(const render::MovingVertex& a, const render::MovingVertex& b, const render::MovingVertex& c) {
+Eigen::Vector3d across(const graphics::MovingVertex& a, const graphics::MovingVertex& b,
+                       const graphics::MovingVertex& c) {
   const Eigen::Vector3d begin = placeOf(a);
   return (placeOf(b) - begin).cross(placeOf(c) - begin);
 }
@@ -75,18 +76,18 @@ std::uint32_t TruthScene::addBody(std::uint8_t label, std::uint32_t number) {
   return number;
 }
 
-void TruthScene::setMesh(const render::TissueMesh& mesh) {
+void TruthScene::setMesh(const graphics::TissueMesh& mesh) {
   mesh_ = mesh;
   bleeding_.setMesh(&mesh_);
   rays_.set(wall_, {}, {});
-  surface_ = std::make_unique<render::DeformableSurface>(mesh_);
+  surface_ = std::make_unique<graphics::DeformableSurface>(mesh_);
   wall_labels_.setMesh(mesh_);
   Body& wall = bodies_[wall_];
   wall.vertices = &surface_->vertices(), wall.triangles = &mesh_.triangles;
   wall.shape_number = 0;  // until there is a frame
 }
 
-void TruthScene::setFrame(const render::TissueFrame& frame) {
+void TruthScene::setFrame(const graphics::TissueFrame& frame) {
   Body& wall = bodies_[wall_];
   const bool first = wall.shape_number == 0;
   const bool moved = !surface_->update(frame.positions).empty();
@@ -99,21 +100,21 @@ void TruthScene::setFrame(const render::TissueFrame& frame) {
   }
 }
 
-void TruthScene::setSutures(const render::SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose) {
+void TruthScene::setSutures(const graphics::SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose) {
   SutureParts parts = partsOf(sutures);
   setShape(thread_, std::move(parts.threads), pose, true);
   setShape(tag_, std::move(parts.tags), pose, true);
   setShape(cinch_, std::move(parts.cinches), pose, true);
-  render::BloodStyle style;
+  graphics::BloodStyle style;
   style.time = time;
   bleeding_.setWounds(sutures, style);
   suture_pose_ = pose;
 }
 
-void TruthScene::setShape(std::uint32_t number, render::ColouredShape shape, const Eigen::Isometry3d& pose,
+void TruthScene::setShape(std::uint32_t number, graphics::ColouredShape shape, const Eigen::Isometry3d& pose,
                           bool material) {
   Body& body = bodies_[number];
-  for (render::MovingVertex& vertex : shape.vertices) {
+  for (graphics::MovingVertex& vertex : shape.vertices) {
     Eigen::Map<Eigen::Vector3f> place(vertex.position), normal(vertex.normal);
     place = (pose * Eigen::Vector3d(place.cast<double>())).cast<float>();
     normal = (pose.linear() * Eigen::Vector3d(normal.cast<double>())).cast<float>();
@@ -131,7 +132,7 @@ void TruthScene::commit() {
   rays_.commit();
 }
 
-std::uint32_t TruthScene::addPart(const std::string& name, render::ColouredShape shape) {
+std::uint32_t TruthScene::addPart(const std::string& name, graphics::ColouredShape shape) {
   const auto known = std::find(part_names_.begin(), part_names_.end(), name);
   const auto which = static_cast<std::size_t>(known - part_names_.begin());
   if (kLabelInstrument + which > kLabelLast)
@@ -159,7 +160,7 @@ void TruthScene::placePart(std::uint32_t part, const std::optional<Eigen::Isomet
 Eigen::Vector3d TruthScene::pointOf(const SurfaceHit& hit) const {
   const Body& body = bodies_[hit.body];
   const std::uint32_t* corner = &(*body.triangles)[3 * hit.triangle];
-  const render::MovingVertex* vertices = body.vertices->data();
+  const graphics::MovingVertex* vertices = body.vertices->data();
   const double u = double{hit.u}, v = double{hit.v};
   return (1 - u - v) * placeOf(vertices[corner[0]]) + u * placeOf(vertices[corner[1]]) +
          v * placeOf(vertices[corner[2]]);
@@ -168,8 +169,8 @@ Eigen::Vector3d TruthScene::pointOf(const SurfaceHit& hit) const {
 Eigen::Vector3d TruthScene::normalOf(const SurfaceHit& hit, const Eigen::Vector3d& towards) const {
   const Body& body = bodies_[hit.body];
   const std::uint32_t* corner = &(*body.triangles)[3 * hit.triangle];
-  const render::MovingVertex &a = (*body.vertices)[corner[0]], &b = (*body.vertices)[corner[1]],
-                             &c = (*body.vertices)[corner[2]];
+  const graphics::MovingVertex &a = (*body.vertices)[corner[0]], &b = (*body.vertices)[corner[1]],
+                               &c = (*body.vertices)[corner[2]];
   const float w = 1 - hit.u - hit.v;
   Eigen::Vector3d shaded;
   for (int k = 0; k < 3; ++k) shaded[k] = double{w * a.normal[k] + hit.u * b.normal[k] + hit.v * c.normal[k]};
@@ -185,7 +186,7 @@ std::uint8_t TruthScene::labelOf(const SurfaceHit& hit, const Eigen::Vector3d& t
   const Body& body = bodies_[hit.body];
   if (hit.body != wall_) return body.label;
   const std::uint32_t* corner = &(*body.triangles)[3 * hit.triangle];
-  const render::MovingVertex* vertices = body.vertices->data();
+  const graphics::MovingVertex* vertices = body.vertices->data();
   if (across(vertices[corner[0]], vertices[corner[1]], vertices[corner[2]]).dot(towards) > 0) return kLabelOuterWall;
   return wall_labels_.at(corner, {1 - hit.u - hit.v, hit.u, hit.v});
 }

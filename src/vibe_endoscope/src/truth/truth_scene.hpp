@@ -10,11 +10,11 @@
 
 #include "truth/label_table.hpp"
 #include "truth/ray_scene.hpp"
-#include "vibe_render/geometry/blood_shapes.hpp"
-#include "vibe_render/geometry/coloured_shape.hpp"
-#include "vibe_render/geometry/deformable_surface.hpp"
-#include "vibe_render/geometry/suture_drawing.hpp"
-#include "vibe_render/geometry/tissue_mesh.hpp"
+#include "vibe_graphics/geometry/blood_shapes.hpp"
+#include "vibe_graphics/geometry/coloured_shape.hpp"
+#include "vibe_graphics/geometry/deformable_surface.hpp"
+#include "vibe_graphics/geometry/suture_drawing.hpp"
+#include "vibe_graphics/geometry/tissue_mesh.hpp"
 
 namespace vibe::endoscope {
 
@@ -25,15 +25,15 @@ class TruthScene {
   /// @throws std::runtime_error  Embree cannot be used
   TruthScene();
 
-  void setMesh(const render::TissueMesh& mesh);
+  void setMesh(const graphics::TissueMesh& mesh);
   /// The organ at another moment; a frame of another revision than the mesh is an error of the caller.
-  void setFrame(const render::TissueFrame& frame);
+  void setFrame(const graphics::TissueFrame& frame);
   /// @param time  of the message: bleeding pulses [s]
   /// @param pose  of the frame of the sutures in that of the scene
-  void setSutures(const render::SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose);
+  void setSutures(const graphics::SutureDrawing& sutures, double time, const Eigen::Isometry3d& pose);
   /// Adds a rigid part of the instrument; parts with the same name have the same label.
   /// @throws std::runtime_error  there are more names than labels
-  std::uint32_t addPart(const std::string& name, render::ColouredShape shape);
+  std::uint32_t addPart(const std::string& name, graphics::ColouredShape shape);
   /// @param part  as addPart() returned it; without a pose the part is not seen
   void placePart(std::uint32_t part, const std::optional<Eigen::Isometry3d>& pose);
   /// To be called after changes, before the scene is looked at.
@@ -64,8 +64,8 @@ class TruthScene {
  private:
   struct Body {
     std::uint8_t label = kLabelNothing;
-    render::ColouredShape own;  // of all bodies but the wall
-    const std::vector<render::MovingVertex>* vertices = nullptr;
+    graphics::ColouredShape own;  // of all bodies but the wall
+    const std::vector<graphics::MovingVertex>* vertices = nullptr;
     const std::vector<std::uint32_t>* triangles = nullptr;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     std::uint64_t shape_number = 0;
@@ -73,13 +73,13 @@ class TruthScene {
   };
 
   std::uint32_t addBody(std::uint8_t label, std::uint32_t number);
-  void setShape(std::uint32_t body, render::ColouredShape shape, const Eigen::Isometry3d& pose, bool material);
+  void setShape(std::uint32_t body, graphics::ColouredShape shape, const Eigen::Isometry3d& pose, bool material);
 
   RayScene rays_;
-  render::TissueMesh mesh_;
-  std::unique_ptr<render::DeformableSurface> surface_;
+  graphics::TissueMesh mesh_;
+  std::unique_ptr<graphics::DeformableSurface> surface_;
   WallLabels wall_labels_;
-  render::BleedingShape bleeding_;
+  graphics::BleedingShape bleeding_;
   Eigen::Isometry3d suture_pose_ = Eigen::Isometry3d::Identity();
   std::deque<Body> bodies_;  // a deque, because rays_ refers to the shapes
   std::uint32_t wall_, thread_, tag_, cinch_, blood_;

@@ -13,7 +13,7 @@
 namespace vibe::endoscope::variation_test {
 namespace {
 
-constexpr double kLens = 140 * render::kDegree;
+constexpr double kLens = 140 * graphics::kDegree;
 
 struct Quantity {
   std::string name;
@@ -24,12 +24,12 @@ struct Quantity {
 std::vector<Quantity> quantitiesOf(std::uint32_t seed) {
   const Variation v = variationOf(seed, kLens);
   const SensorStyle& s = v.sensor;
-  const render::MucosaLook& m = v.mucosa;
+  const graphics::MucosaLook& m = v.mucosa;
   const auto& [right, left] = v.light.guides;
-  return {{"field of view", v.field_of_view / render::kDegree, 135, 145},
-          {"roll", v.roll / render::kDegree, -5, 5},
-          {"pitch", v.pitch / render::kDegree, -2, 2},
-          {"yaw", v.yaw / render::kDegree, -2, 2},
+  return {{"field of view", v.field_of_view / graphics::kDegree, 135, 145},
+          {"roll", v.roll / graphics::kDegree, -5, 5},
+          {"pitch", v.pitch / graphics::kDegree, -2, 2},
+          {"yaw", v.yaw / graphics::kDegree, -2, 2},
           {"exposure", s.exposure, 0.7, 1.4},
           {"red", s.red_gain, 0.9, 1.1},
           {"blue", s.blue_gain, 0.9, 1.1},
@@ -116,7 +116,7 @@ TEST(Variation, LensAndSensorAreDrawnFirst) {
     return min + (max - min) * static_cast<double>(random()) / 4294967295.0;
   };
   const Variation drawn = variationOf(5, kLens);
-  EXPECT_NEAR(drawn.field_of_view, kLens + between(-5, 5) * render::kDegree, 1e-12);
+  EXPECT_NEAR(drawn.field_of_view, kLens + between(-5, 5) * graphics::kDegree, 1e-12);
   random.discard(10);
   EXPECT_NEAR(drawn.sensor.read_noise, between(0.001, 0.006), 1e-12);
   EXPECT_GT(std::abs(drawn.sensor.read_noise - between(0.001, 0.006)), 1e-6);  // control: the next number
@@ -124,11 +124,11 @@ TEST(Variation, LensAndSensorAreDrawnFirst) {
 
 // The lens is 2.5 mm above the axis of an endoscope of 12.6 mm, and a guide is 1.9 mm wide (docs/device.md).
 TEST(Variation, GuidesFitIntoTheTipBesideTheLens) {
-  const auto farthest = [](const render::LightGuide& guide) {
+  const auto farthest = [](const graphics::LightGuide& guide) {
     return std::hypot(guide.right, guide.up + 2.5e-3) + 0.95e-3;
   };
   for (std::uint32_t seed = 1; seed <= 2000; ++seed)
-    for (const render::LightGuide& guide : variationOf(seed, kLens).light.guides) {
+    for (const graphics::LightGuide& guide : variationOf(seed, kLens).light.guides) {
       EXPECT_LT(farthest(guide), 6.3e-3) << seed;
       EXPECT_GT(std::abs(guide.right) - 0.95e-3, 1.4e-3) << seed << ": beside the lens of 2.8 mm";
     }

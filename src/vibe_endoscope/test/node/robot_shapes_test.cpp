@@ -44,7 +44,7 @@ Extent extentOfFile(const std::string& file) {
   return extent;
 }
 
-Extent extentOf(const render::ColouredShape& shape) {
+Extent extentOf(const graphics::ColouredShape& shape) {
   Extent extent;
   extent.triangles = shape.triangles.size() / 3;
   for (const std::uint32_t corner : shape.triangles)

@@ -6,23 +6,23 @@
 #include <gtest/gtest.h>
 
 #include "truth/truth_worlds.hpp"
-#include "vibe_render/geometry/blood_shapes.hpp"
-#include "vibe_render/graphics/offscreen_camera.hpp"
-#include "vibe_render/graphics/suture_visual.hpp"
-#include "vibe_render/graphics/tissue_visual.hpp"
-#include "vibe_render/testing/graphics_scene.hpp"
+#include "vibe_graphics/geometry/blood_shapes.hpp"
+#include "vibe_graphics/graphics/offscreen_camera.hpp"
+#include "vibe_graphics/graphics/suture_visual.hpp"
+#include "vibe_graphics/graphics/tissue_visual.hpp"
+#include "vibe_graphics/testing/graphics_scene.hpp"
 
 namespace vibe::endoscope::blood_truth_test {
 namespace {
 
 using Eigen::Vector3d;
-using render::test::Pixels;
+using graphics::test::Pixels;
 
 const Vector3d kDown = -Vector3d::UnitZ();  // in the scene, and in the picture
 
 /// Turns gravity, which is along -x of the frame of the sutures, to that of the scene.
 Eigen::Isometry3d sutureFrame() {
-  return Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(render::BloodStyle().down, kDown));
+  return Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(graphics::BloodStyle().down, kDown));
 }
 
 /// From one side of the ball to the other, so that its bottom is in view.
@@ -34,8 +34,8 @@ Eigen::Isometry3d camera() {
 }
 
 /// A wound on the wall ahead, in the frame of the sutures.
-render::SutureDrawing bleeding(bool brisk, double amount) {
-  render::Wound wound;
+graphics::SutureDrawing bleeding(bool brisk, double amount) {
+  graphics::Wound wound;
   const Vector3d place = 0.05 * Vector3d(0.95, 0.1, 0.2).normalized();
   wound.place = sutureFrame().inverse() * place;
   wound.inward = -wound.place.normalized();
@@ -43,41 +43,41 @@ render::SutureDrawing bleeding(bool brisk, double amount) {
   wound.rate = brisk ? 2.5e-7 : 1e-8;
   wound.amount = amount;
   wound.age = amount / wound.rate;
-  render::SutureDrawing scene;
+  graphics::SutureDrawing scene;
   scene.wounds = {wound};
   return scene;
 }
 
 class BloodTruthTest : public ::testing::Test {
  protected:
-  BloodTruthTest() : mesh_(render::test::ballMesh(48, 96)) {
+  BloodTruthTest() : mesh_(graphics::test::ballMesh(48, 96)) {
     frame_.revision = mesh_.revision;
     for (const float p : mesh_.rest) frame_.positions.push_back(0.05F * p);
   }
 
-  render::test::Pixels draw(const render::SutureDrawing& sutures) {
-    render::TissueVisual wall(*render::test::graphicsScene().getRootSceneNode());
+  graphics::test::Pixels draw(const graphics::SutureDrawing& sutures) {
+    graphics::TissueVisual wall(*graphics::test::graphicsScene().getRootSceneNode());
     wall.setMesh(mesh_);
     wall.setFrame(frame_);
-    Ogre::SceneNode& node = *render::test::graphicsScene().getRootSceneNode()->createChildSceneNode();
+    Ogre::SceneNode& node = *graphics::test::graphicsScene().getRootSceneNode()->createChildSceneNode();
     const Eigen::Quaternionf turn(sutureFrame().linear().cast<float>());
     node.setOrientation(turn.w(), turn.x(), turn.y(), turn.z());
-    render::test::Pixels pixels;
+    graphics::test::Pixels pixels;
     {
-      render::SutureVisual drawn(node);
-      render::BleedingShape blood;
+      graphics::SutureVisual drawn(node);
+      graphics::BleedingShape blood;
       blood.setMesh(&mesh_);
-      blood.setWounds(sutures, render::BloodStyle());
+      blood.setWounds(sutures, graphics::BloodStyle());
       blood.update(wall.vertices(), sutureFrame().inverse());
       drawn.showBlood(blood.shape());
-      render::OffscreenCamera eye(render::test::graphicsScene(), round_, 1);
+      graphics::OffscreenCamera eye(graphics::test::graphicsScene(), round_, 1);
       eye.take(camera(), pixels);
     }
-    render::test::graphicsScene().destroySceneNode(&node);
+    graphics::test::graphicsScene().destroySceneNode(&node);
     return pixels;
   }
 
-  std::vector<std::uint8_t> labels(const render::SutureDrawing& sutures) const {
+  std::vector<std::uint8_t> labels(const graphics::SutureDrawing& sutures) const {
     TruthScene truth;
     truth.setMesh(mesh_);
     truth.setFrame(frame_);
@@ -90,7 +90,7 @@ class BloodTruthTest : public ::testing::Test {
   }
 
   /// Green to red over some pixels.
-  static double green(const render::test::Pixels& pixels, const std::vector<std::uint8_t>& labels) {
+  static double green(const graphics::test::Pixels& pixels, const std::vector<std::uint8_t>& labels) {
     double red = 0, sum = 0;
     for (std::size_t k = 0; k < labels.size(); ++k)
       if (labels[k] == kLabelBlood) red += pixels[3 * k], sum += pixels[3 * k + 1];
@@ -101,7 +101,7 @@ class BloodTruthTest : public ::testing::Test {
     double changed_of_blood = 0, blood_of_changed = 0;
   };
   /// Where the picture has changed and where the label is blood, `shift` pixels to the right of it.
-  Agreement compare(const render::test::Pixels& before, const render::test::Pixels& after,
+  Agreement compare(const graphics::test::Pixels& before, const graphics::test::Pixels& after,
                     const std::vector<std::uint8_t>& labels, int shift = 0) const {
     double blood = 0, changed = 0, both = 0;
     for (int y = 0; y < round_.height; ++y)
@@ -115,15 +115,15 @@ class BloodTruthTest : public ::testing::Test {
     return {both / blood, both / changed};
   }
 
-  render::RoundCamera round_ = test::smallCamera(render::LensKind::Equidistant, 320, 320);
-  render::TissueMesh mesh_;
-  render::TissueFrame frame_;
+  graphics::RoundCamera round_ = test::smallCamera(graphics::LensKind::Equidistant, 320, 320);
+  graphics::TissueMesh mesh_;
+  graphics::TissueFrame frame_;
 };
 
 TEST_F(BloodTruthTest, PictureIsRedderWhereBloodHasRunAndTheLabelSaysSo) {
   for (const bool brisk : {false, true}) {
-    const render::SutureDrawing wound = bleeding(brisk, brisk ? 3e-6 : 5e-7);
-    const render::test::Pixels before = draw({}), after = draw(wound);
+    const graphics::SutureDrawing wound = bleeding(brisk, brisk ? 3e-6 : 5e-7);
+    const graphics::test::Pixels before = draw({}), after = draw(wound);
     const std::vector<std::uint8_t> seen = labels(wound);
     const auto pixels = std::count(seen.begin(), seen.end(), kLabelBlood);
     const double healthy = green(before, seen), bloody = green(after, seen);

@@ -7,26 +7,27 @@
 #include <gtest/gtest.h>
 
 #include "truth/truth_worlds.hpp"
-#include "vibe_render/graphics/offscreen_camera.hpp"
-#include "vibe_render/graphics/shape_visual.hpp"
-#include "vibe_render/graphics/tissue_visual.hpp"
-#include "vibe_render/testing/graphics_scene.hpp"
+#include "vibe_graphics/graphics/offscreen_camera.hpp"
+#include "vibe_graphics/graphics/shape_visual.hpp"
+#include "vibe_graphics/graphics/tissue_visual.hpp"
+#include "vibe_graphics/testing/graphics_scene.hpp"
 
 namespace vibe::endoscope::drawn_truth_test {
 namespace {
 
-using render::test::Pixels;
+using graphics::test::Pixels;
 
 /// A body that shines by itself, so that every pixel of it is bright.
 Ogre::MaterialPtr shining() {
-  Ogre::MaterialPtr material = render::copyMaterial("vibe/solid");
+  Ogre::MaterialPtr material = graphics::copyMaterial("vibe/solid");
   for (Ogre::Technique* technique : material->getTechniques())
     technique->getPass(0)->getFragmentProgramParameters()->setNamedConstant("glow", 1.0F);
   return material;
 }
 
-render::ColouredShape placed(render::ColouredShape shape, const Eigen::Isometry3d& pose, render::PackedColour colour) {
-  for (render::MovingVertex& vertex : shape.vertices) {
+graphics::ColouredShape placed(graphics::ColouredShape shape, const Eigen::Isometry3d& pose,
+                               graphics::PackedColour colour) {
+  for (graphics::MovingVertex& vertex : shape.vertices) {
     Eigen::Map<Eigen::Vector3f> place(vertex.position);
     place = (pose * Eigen::Vector3d(place.cast<double>())).cast<float>();
   }
@@ -42,7 +43,7 @@ struct Comparison {
 
 /// @param drawn  whether a pixel shows the body in the drawn image
 Comparison compare(const std::vector<std::uint8_t>& labels, const std::vector<bool>& drawn,
-                   const render::RoundCamera& round, int shift = 0) {
+                   const graphics::RoundCamera& round, int shift = 0) {
   Comparison result;
   const auto isBody = [&](int x, int y) {
     return labels[static_cast<std::size_t>(y * round.width + x)] >= kLabelInstrument;
@@ -61,13 +62,13 @@ Comparison compare(const std::vector<std::uint8_t>& labels, const std::vector<bo
   return result;
 }
 
-class DrawnTruthTest : public ::testing::TestWithParam<render::LensKind> {
+class DrawnTruthTest : public ::testing::TestWithParam<graphics::LensKind> {
  protected:
-  static void SetUpTestSuite() { render::test::graphicsScene(); }  // before any material is made
+  static void SetUpTestSuite() { graphics::test::graphicsScene(); }  // before any material is made
 
-  render::test::Pixels draw() const {
-    render::OffscreenCamera camera(render::test::graphicsScene(), round_, 1);
-    render::test::Pixels pixels;
+  graphics::test::Pixels draw() const {
+    graphics::OffscreenCamera camera(graphics::test::graphicsScene(), round_, 1);
+    graphics::test::Pixels pixels;
     camera.take(test::eye(), pixels);
     return pixels;
   }
@@ -78,19 +79,19 @@ class DrawnTruthTest : public ::testing::TestWithParam<render::LensKind> {
     return camera.labels(scene, view);
   }
 
-  render::RoundCamera round_ = test::smallCamera(GetParam(), 320, 240);
+  graphics::RoundCamera round_ = test::smallCamera(GetParam(), 320, 240);
 };
 
 TEST_P(DrawnTruthTest, SilhouettesOfBodiesAgreeWithinOnePixel) {
-  render::ShapeView rod(*render::test::graphicsScene().getRootSceneNode(), shining()),
-      box(*render::test::graphicsScene().getRootSceneNode(), shining());
-  rod.show(placed(test::rodShape(), test::rodPose(0), render::packed(1, 1, 1)));
-  box.show(placed(test::boxShape(), test::boxPose(0), render::packed(1, 1, 1)));
+  graphics::ShapeView rod(*graphics::test::graphicsScene().getRootSceneNode(), shining()),
+      box(*graphics::test::graphicsScene().getRootSceneNode(), shining());
+  rod.show(placed(test::rodShape(), test::rodPose(0), graphics::packed(1, 1, 1)));
+  box.show(placed(test::boxShape(), test::boxPose(0), graphics::packed(1, 1, 1)));
   TruthScene truth;
   truth.placePart(truth.addPart("rod", test::rodShape()), test::rodPose(0));
   truth.placePart(truth.addPart("box", test::boxShape()), test::boxPose(0));
   truth.commit();
-  const render::test::Pixels pixels = draw();
+  const graphics::test::Pixels pixels = draw();
   std::vector<bool> drawn;
   for (std::size_t k = 0; k < pixels.size(); k += 3) drawn.push_back(pixels[k] > 127);
   const std::vector<std::uint8_t> cast = labels(truth);
@@ -106,17 +107,17 @@ TEST_P(DrawnTruthTest, SilhouettesOfBodiesAgreeWithinOnePixel) {
 TEST_P(DrawnTruthTest, BodyBehindTheFoldsOfTheWallIsHiddenInBoth) {
   test::FoldedWorld world(40, 80, false);
   world.show(0.3);
-  render::ColouredShape ball;
-  render::appendSphere(Eigen::Isometry3d::Identity(), 0.014, render::packed(1, 1, 1), ball);
+  graphics::ColouredShape ball;
+  graphics::appendSphere(Eigen::Isometry3d::Identity(), 0.014, graphics::packed(1, 1, 1), ball);
   const Eigen::Isometry3d place(Eigen::Translation3d(0.036, 0.014, 0.006));  // half of it is outside of the organ
   world.scene.placePart(world.scene.addPart("ball", ball), place);
   world.scene.commit();
-  render::TissueVisual wall(*render::test::graphicsScene().getRootSceneNode());
+  graphics::TissueVisual wall(*graphics::test::graphicsScene().getRootSceneNode());
   wall.setMesh(world.mesh());
   wall.setFrame(world.frame);
-  render::ShapeView shown(*render::test::graphicsScene().getRootSceneNode(), shining());
-  shown.show(placed(ball, place, render::packed(0, 0, 1)));
-  const render::test::Pixels pixels = draw();
+  graphics::ShapeView shown(*graphics::test::graphicsScene().getRootSceneNode(), shining());
+  shown.show(placed(ball, place, graphics::packed(0, 0, 1)));
+  const graphics::test::Pixels pixels = draw();
   std::vector<bool> drawn;  // blue against red
   for (std::size_t k = 0; k < pixels.size(); k += 3) drawn.push_back(pixels[k + 2] > pixels[k] + 20);
   const std::vector<std::uint8_t> cast = labels(world.scene);
@@ -129,7 +130,7 @@ TEST_P(DrawnTruthTest, BodyBehindTheFoldsOfTheWallIsHiddenInBoth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lenses, DrawnTruthTest,
-                         ::testing::Values(render::LensKind::Equidistant, render::LensKind::Rectilinear),
+                         ::testing::Values(graphics::LensKind::Equidistant, graphics::LensKind::Rectilinear),
                          test::lensName);
 
 }  // namespace

@@ -9,15 +9,15 @@
 
 #include "patch_shift.hpp"
 #include "truth/truth_camera.hpp"
-#include "vibe_render/graphics/offscreen_camera.hpp"
-#include "vibe_render/graphics/tissue_visual.hpp"
-#include "vibe_render/testing/graphics_scene.hpp"
-#include "vibe_render/testing/tube_organ.hpp"
+#include "vibe_graphics/graphics/offscreen_camera.hpp"
+#include "vibe_graphics/graphics/tissue_visual.hpp"
+#include "vibe_graphics/testing/graphics_scene.hpp"
+#include "vibe_graphics/testing/tube_organ.hpp"
 
 namespace vibe::endoscope::texture_truth_test {
 namespace {
 
-using render::test::Pixels;
+using graphics::test::Pixels;
 using test::Levels;
 constexpr int kSize = 240;                        // [px]
 constexpr double kDistance = 0.035;               // of the wall from the lens [m]
@@ -35,7 +35,7 @@ Eigen::Vector3d sheared(const Eigen::Vector3d& p) {
   return {p.x(), std::cos(angle) * p.y() + std::sin(angle) * p.z(), std::cos(angle) * p.z() - std::sin(angle) * p.y()};
 }
 Eigen::Vector3d pulled(const Eigen::Vector3d& p) {
-  const Eigen::Vector3d way = p - Eigen::Vector3d(0, 0, kSmooth * render::test::TubeOrgan().radius);
+  const Eigen::Vector3d way = p - Eigen::Vector3d(0, 0, kSmooth * graphics::test::TubeOrgan().radius);
   const double share = std::exp(-way.squaredNorm() / (0.025 * 0.025));
   return p + share * Eigen::Vector3d(0.006, 0.001, -0.003);
 }
@@ -54,7 +54,7 @@ double radiance(std::uint8_t level) {
 }
 
 /// Green to red: the colour of the wall, whatever light falls on its relief.
-double colour(const render::test::Pixels& pixels, std::size_t k) {
+double colour(const graphics::test::Pixels& pixels, std::size_t k) {
   return 255 * radiance(pixels[3 * k + 1]) / radiance(pixels[3 * k]);
 }
 
@@ -83,25 +83,25 @@ double quantile(std::vector<double> values, double share) {
 
 class TextureTruthTest : public ::testing::Test {
  protected:
-  TextureTruthTest() : camera_(render::test::graphicsScene(), round_, 1), eye_(round_, 0.0006, 2) {
+  TextureTruthTest() : camera_(graphics::test::graphicsScene(), round_, 1), eye_(round_, 0.0006, 2) {
     pose_.translate(Eigen::Vector3d(0, 0, kSmooth * organ_.radius - kDistance));
   }
 
   /// @param mesh  its rest shape is where the patterns are evaluated
-  render::test::Pixels draw(const render::TissueMesh& mesh, const std::vector<float>& places) {
-    render::TissueVisual tissue(*render::test::graphicsScene().getRootSceneNode());
-    render::TissueLook look;
+  graphics::test::Pixels draw(const graphics::TissueMesh& mesh, const std::vector<float>& places) {
+    graphics::TissueVisual tissue(*graphics::test::graphicsScene().getRootSceneNode());
+    graphics::TissueLook look;
     look.wetness = 0;  // highlights are images of the light and not of the wall
     tissue.setLook(look);
     tissue.setMesh(mesh);
     tissue.setFrame(frame(places));
-    render::test::Pixels pixels;
+    graphics::test::Pixels pixels;
     camera_.take(pose_, pixels);
     return pixels;
   }
 
-  static render::TissueFrame frame(const std::vector<float>& places) {
-    render::TissueFrame frame;
+  static graphics::TissueFrame frame(const std::vector<float>& places) {
+    graphics::TissueFrame frame;
     frame.revision = 1;
     frame.positions = places;
     return frame;
@@ -120,7 +120,7 @@ class TextureTruthTest : public ::testing::Test {
   }
 
   /// How far the second picture, led back by a share of the flow, is from the first.
-  Residual residual(const render::test::Pixels& before, const render::test::Pixels& after, const TruthFlow& flow,
+  Residual residual(const graphics::test::Pixels& before, const graphics::test::Pixels& after, const TruthFlow& flow,
                     double share = 1) const {
     const auto motionAt = [&](const Eigen::Vector2d& p) {
       return Eigen::Vector2d(between(p, [&](std::size_t k) { return double(flow.motion[2 * k]); }),
@@ -150,9 +150,9 @@ class TextureTruthTest : public ::testing::Test {
                 r.motion, r.median, r.p90, r.p95, r.patches);
   }
 
-  render::test::TubeOrgan organ_;
-  render::RoundCamera round_{render::LensKind::Equidistant, 2.443461, kSize, kSize};
-  render::OffscreenCamera camera_;
+  graphics::test::TubeOrgan organ_;
+  graphics::RoundCamera round_{graphics::LensKind::Equidistant, 2.443461, kSize, kSize};
+  graphics::OffscreenCamera camera_;
   TruthCamera eye_;
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
 };
@@ -165,7 +165,7 @@ TEST_F(TextureTruthTest, FollowsTheMaterialPointsWithinHalfAPixel) {
     for (const auto& [name, deformation] : kDeformations) {
       SCOPED_TRACE(name);
       const std::vector<float> before = organ_.places(wider), after = deformed(before, deformation);
-      const render::test::Pixels first = draw(organ_.mesh(), before), second = draw(organ_.mesh(), after);
+      const graphics::test::Pixels first = draw(organ_.mesh(), before), second = draw(organ_.mesh(), after);
       const TruthFlow motion = flow(before, after);
       const Residual found = residual(first, second, motion), half = residual(first, second, motion, 0.5);
       print(name, found);
@@ -182,7 +182,7 @@ TEST_F(TextureTruthTest, FollowsTheMaterialPointsWithinHalfAPixel) {
 TEST_F(TextureTruthTest, PatternsOfTheWorldAreSeenNotToFollow) {
   for (const auto& [name, deformation] : kDeformations) {
     const std::vector<float> before = organ_.places(kSmooth), after = deformed(before, deformation);
-    render::TissueMesh world_before = organ_.mesh(), world_after = organ_.mesh();
+    graphics::TissueMesh world_before = organ_.mesh(), world_after = organ_.mesh();
     world_before.rest = before;
     world_after.rest = after;
     const Residual found = residual(draw(world_before, before), draw(world_after, after), flow(before, after));

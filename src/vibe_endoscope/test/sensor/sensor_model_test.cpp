@@ -11,11 +11,11 @@ namespace {
 
 using Pixels = std::vector<std::uint8_t>;
 
-render::RoundCamera smallCamera(render::LensKind lens = render::LensKind::Equidistant) {
-  render::RoundCamera camera;
+graphics::RoundCamera smallCamera(graphics::LensKind lens = graphics::LensKind::Equidistant) {
+  graphics::RoundCamera camera;
   camera.lens = lens;
   camera.width = 160, camera.height = 120;
-  if (lens == render::LensKind::Rectilinear) camera.field_of_view = 1.6;
+  if (lens == graphics::LensKind::Rectilinear) camera.field_of_view = 1.6;
   return camera;
 }
 
@@ -127,16 +127,16 @@ TEST(SensorModel, BlurSpreadsALineByItsStandardDeviationAndKeepsTheLight) {
 
 // The image of a bright spot moves to where the model says, and the model is undone by its inverse.
 TEST(SensorModel, DistortionMovesPointsAsTheModelOfTheLensSays) {
-  for (const render::LensKind lens : {render::LensKind::Equidistant, render::LensKind::Rectilinear})
+  for (const graphics::LensKind lens : {graphics::LensKind::Equidistant, graphics::LensKind::Rectilinear})
     for (const double k1 : {-0.08, 0.1}) {
       SensorStyle style;
       style.distortion = k1;
-      const render::RoundCamera camera = smallCamera(lens);
+      const graphics::RoundCamera camera = smallCamera(lens);
       ASSERT_EQ(problemOf(style, camera), "");
       const Eigen::Vector2d spot(110, 76), there = distorted(style, camera, spot);
       EXPECT_LT((undistorted(style, camera, there) - spot).norm(), 1e-9);
-      const double slope = (spot - camera.middle()).norm() / render::focalLength(camera);
-      const double expected = render::focalLength(camera) * (slope + k1 * slope * slope * slope);
+      const double slope = (spot - camera.middle()).norm() / graphics::focalLength(camera);
+      const double expected = graphics::focalLength(camera) * (slope + k1 * slope * slope * slope);
       EXPECT_NEAR((there - camera.middle()).norm(), expected, 1e-9);
       Pixels pixels = flat(0);
       for (int y = -1; y <= 1; ++y)
@@ -154,7 +154,7 @@ TEST(SensorModel, DistortionMovesPointsAsTheModelOfTheLensSays) {
 TEST(SensorModel, DistortionThatFoldsTheImageOverIsRefused) {
   SensorStyle style;
   style.distortion = -0.2;
-  render::RoundCamera camera = smallCamera(render::LensKind::Rectilinear);
+  graphics::RoundCamera camera = smallCamera(graphics::LensKind::Rectilinear);
   camera.field_of_view = 2.4;
   EXPECT_NE(problemOf(style, camera), "");
   style.distortion = 0.2;

@@ -31,11 +31,11 @@ double sphereDepth(const Eigen::Isometry3d& pose, const Eigen::Vector3d& ray) {
   return (-along + std::sqrt(along * along - o.squaredNorm() + kRadius * kRadius)) * ray.z();
 }
 
-class TruthCameraTest : public ::testing::TestWithParam<render::LensKind> {};
+class TruthCameraTest : public ::testing::TestWithParam<graphics::LensKind> {};
 
 TEST_P(TruthCameraTest, DepthAndNormalsOfASphereAreThoseOfItsEquation) {
-  render::TissueMesh mesh = render::test::ballMesh(250, 500);
-  render::TissueFrame frame;
+  graphics::TissueMesh mesh = graphics::test::ballMesh(250, 500);
+  graphics::TissueFrame frame;
   for (const float p : mesh.rest) frame.positions.push_back(static_cast<float>(kRadius) * p);
   TruthScene scene;
   scene.setMesh(mesh);
@@ -43,8 +43,8 @@ TEST_P(TruthCameraTest, DepthAndNormalsOfASphereAreThoseOfItsEquation) {
   scene.commit();
   const TruthCamera camera(test::smallCamera(GetParam()), kNear, kFar);
   const TruthCamera other(
-      test::smallCamera(GetParam() == render::LensKind::Equidistant ? render::LensKind::Rectilinear
-                                                                    : render::LensKind::Equidistant),
+      test::smallCamera(GetParam() == graphics::LensKind::Equidistant ? graphics::LensKind::Rectilinear
+                                                                      : graphics::LensKind::Equidistant),
       kNear, kFar);
   TruthView view, wrong;
   camera.look(scene, test::eye(), view);
@@ -58,7 +58,7 @@ TEST_P(TruthCameraTest, DepthAndNormalsOfASphereAreThoseOfItsEquation) {
     const bool inside = (pixel - camera.round().middle()).norm() <= camera.round().radius();
     ASSERT_EQ(std::isfinite(depth[k]), inside) << pixel.transpose();  // a closed surface: the whole circle
     if (!inside) continue;
-    const Eigen::Vector3d ray = render::rayOf(camera.round(), pixel);
+    const Eigen::Vector3d ray = graphics::rayOf(camera.round(), pixel);
     const double expected = sphereDepth(test::eye(), ray);
     errors.push_back(std::abs(double(depth[k]) - expected));
     controls.push_back(std::abs(double(control[k]) - expected));
@@ -76,17 +76,17 @@ TEST_P(TruthCameraTest, DepthAndNormalsOfASphereAreThoseOfItsEquation) {
 }
 
 /// Depth along the axis by the independent caster; NaN where nothing is hit.
-double plainDepth(const PlainSurface& surface, const render::RoundCamera& round, const Eigen::Isometry3d& pose,
+double plainDepth(const PlainSurface& surface, const graphics::RoundCamera& round, const Eigen::Isometry3d& pose,
                   const Eigen::Vector2d& pixel) {
   const auto hit = test::plainHit(surface, round, pose, pixel);
-  return hit ? hit->distance * render::rayOf(round, pixel).z() : std::numeric_limits<double>::quiet_NaN();
+  return hit ? hit->distance * graphics::rayOf(round, pixel).z() : std::numeric_limits<double>::quiet_NaN();
 }
 
 TEST_P(TruthCameraTest, DepthIsThatOfTheIndependentCasterAndSilhouettesAreWithinHalfAPixel) {
   FoldedWorld world(24, 48);
   world.show(0.4);
   const PlainSurface surface = test::plainWorld(world, 0.4);
-  const render::RoundCamera round = test::smallCamera(GetParam());
+  const graphics::RoundCamera round = test::smallCamera(GetParam());
   const TruthCamera camera(round, kNear, kFar);
   TruthView view;
   camera.look(world.scene, test::eye(), view);
@@ -120,7 +120,7 @@ TEST_P(TruthCameraTest, DepthIsThatOfTheIndependentCasterAndSilhouettesAreWithin
 
 /// The label of an independent hit: region and wall of the nearest corner by the shares of its particles.
 std::uint8_t plainLabel(const FoldedWorld& world, const PlainHit& hit) {
-  const render::TissueMesh& mesh = world.mesh();
+  const graphics::TissueMesh& mesh = world.mesh();
   const std::size_t wall_triangles = mesh.triangles.size() / 3;
   if (hit.triangle >= wall_triangles)
     return static_cast<std::uint8_t>(hit.triangle < wall_triangles + test::rodShape().triangles.size() / 3 ? 128 : 129);
@@ -148,7 +148,7 @@ TEST_P(TruthCameraTest, LabelsAgreeWithTheGeometryInMoreThan999Of1000Pixels) {
   world.scene.setSutures({}, 0, Eigen::Isometry3d::Identity());
   world.scene.commit();
   const PlainSurface surface = test::plainWorld(world, 0.4, false);
-  const render::RoundCamera round = test::smallCamera(GetParam());
+  const graphics::RoundCamera round = test::smallCamera(GetParam());
   const TruthCamera camera(round, kNear, kFar);
   TruthView view;
   camera.look(world.scene, test::eye(), view);
@@ -203,7 +203,7 @@ TEST_P(TruthCameraTest, OuterWallAndWhatIsTooNearAreToldApart) {
 TEST_P(TruthCameraTest, ThreadsAndTagsHaveTheirLabelsAndThinBloodIsTransparent) {
   FoldedWorld world(24, 48, false);
   world.show(0);
-  render::SutureDrawing sutures = test::thread(0);
+  graphics::SutureDrawing sutures = test::thread(0);
   sutures.wounds.push_back({{0.035, 0.008, -0.004}, -Eigen::Vector3d::UnitX(), false, 1e-8, 4e-7, 3, 0});
   world.scene.setSutures(sutures, 1, Eigen::Isometry3d::Identity());
   world.scene.commit();
@@ -226,7 +226,7 @@ TEST_P(TruthCameraTest, ThreadsAndTagsHaveTheirLabelsAndThinBloodIsTransparent) 
 }
 
 INSTANTIATE_TEST_SUITE_P(Lenses, TruthCameraTest,
-                         ::testing::Values(render::LensKind::Equidistant, render::LensKind::Rectilinear),
+                         ::testing::Values(graphics::LensKind::Equidistant, graphics::LensKind::Rectilinear),
                          test::lensName);
 
 }  // namespace

@@ -17,7 +17,7 @@ using test::PlainSurface;
 
 constexpr double kStep = 0.6;  // of the time of the folded world from image to image; moves the image by 1 to 2 px
 
-class TruthFlowTest : public ::testing::TestWithParam<render::LensKind> {
+class TruthFlowTest : public ::testing::TestWithParam<graphics::LensKind> {
  protected:
   TruthFlowTest() : round_(test::smallCamera(GetParam())), camera_(round_, kNear, kFar), world_(24, 48) {}
 
@@ -50,7 +50,7 @@ class TruthFlowTest : public ::testing::TestWithParam<render::LensKind> {
     return (pixel - round_.middle()).norm() <= round_.radius() - margin;
   }
 
-  render::RoundCamera round_;
+  graphics::RoundCamera round_;
   TruthCamera camera_;
   FoldedWorld world_;
   PlainSurface before_, after_;
@@ -69,7 +69,7 @@ TEST_P(TruthFlowTest, LeadsFromThePixelToItsMaterialPointAndTellsWhetherItIsVisi
       const auto hit = isInside({x, y}) ? test::plainHit(before_, round_, test::eye(0), {x, y}) : std::nullopt;
       if (!hit) continue;
       const Eigen::Vector3d place = materialAfter(hit->triangle, hit->weight);
-      const Eigen::Vector2d there = render::pixelOf(round_, test::eye(kStep).inverse() * place);
+      const Eigen::Vector2d there = graphics::pixelOf(round_, test::eye(kStep).inverse() * place);
       if (isInside(there, 0.01) != motion.allFinite() && isInside(there, 0) == isInside(there, 0.02)) ++wrong_side;
       if (!motion.allFinite()) continue;
       const double error = (Eigen::Vector2d(x, y) + motion - there).norm();
@@ -105,11 +105,11 @@ TEST_P(TruthFlowTest, WarpsFreePointsOfTheWallWithinAFifthOfAPixel) {
     const Eigen::Vector3d weight(1 - u - v, u, v);
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
     for (int c = 0; c < 3; ++c) place += weight[c] * before_.corners[3 * triangle + static_cast<std::size_t>(c)];
-    const Eigen::Vector2d from = render::pixelOf(round_, test::eye(0).inverse() * place);
+    const Eigen::Vector2d from = graphics::pixelOf(round_, test::eye(0).inverse() * place);
     if (!isInside(from, 2)) continue;
     const auto seen = test::plainHit(before_, round_, test::eye(0), from);
     if (!seen || (seen->place - place).norm() > 1e-6) continue;
-    const Eigen::Vector2d to = render::pixelOf(round_, test::eye(kStep).inverse() * materialAfter(triangle, weight));
+    const Eigen::Vector2d to = graphics::pixelOf(round_, test::eye(kStep).inverse() * materialAfter(triangle, weight));
     const auto x = static_cast<int>(from.x()), y = static_cast<int>(from.y());
     Eigen::Vector2d motion = Eigen::Vector2d::Zero();
     bool visible = true;  // and all four on the wall
@@ -158,7 +158,7 @@ TEST_P(TruthFlowTest, IsNotToldOfWhatIsGoneOrHasOtherTriangles) {
   camera_.look(world_.scene, test::eye(), view_);
   const std::vector<std::uint8_t> labels = camera_.labels(world_.scene, view_);
   world_.scene.placePart(5, std::nullopt);  // the rod
-  render::SutureDrawing other = test::thread(0);
+  graphics::SutureDrawing other = test::thread(0);
   other.sets[0].pieces[0].line.insert(other.sets[0].pieces[0].line.begin() + 1, {0.0245, 0.0015, 0.0128});
   world_.scene.setSutures(other, 0, Eigen::Isometry3d::Identity());
   world_.scene.commit();
@@ -189,13 +189,13 @@ TEST_P(TruthFlowTest, BetweenTwoLensesIsTheDisparityOfTheDepth) {
   for (std::size_t k = 0; k < depth.size(); ++k) {
     if (flow.visible[k] != TruthFlow::kVisibleNext) continue;
     const int x = static_cast<int>(k) % round_.width, y = static_cast<int>(k) / round_.width;
-    const Eigen::Vector3d ray = render::rayOf(round_, {x, y});
+    const Eigen::Vector3d ray = graphics::rayOf(round_, {x, y});
     const Eigen::Vector3d place = double(depth[k]) / ray.z() * ray - Eigen::Vector3d(kBaseline, 0, 0);
-    const Eigen::Vector2d there = render::pixelOf(round_, place);
+    const Eigen::Vector2d there = graphics::pixelOf(round_, place);
     const Eigen::Vector2d motion = Eigen::Map<const Eigen::Vector2f>(&flow.motion[2 * k]).cast<double>();
     errors.push_back((Eigen::Vector2d(x, y) + motion - there).norm());
-    if (GetParam() == render::LensKind::Rectilinear) {
-      EXPECT_NEAR(double(flow.motion[2 * k]), -render::focalLength(round_) * kBaseline / double(depth[k]), 0.01);
+    if (GetParam() == graphics::LensKind::Rectilinear) {
+      EXPECT_NEAR(double(flow.motion[2 * k]), -graphics::focalLength(round_) * kBaseline / double(depth[k]), 0.01);
     }
     const auto nearest = static_cast<std::size_t>(std::lround(there.y()) * round_.width + std::lround(there.x()));
     depths.push_back(std::abs(double(seen[nearest]) - double(depth[k])));
@@ -207,7 +207,7 @@ TEST_P(TruthFlowTest, BetweenTwoLensesIsTheDisparityOfTheDepth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lenses, TruthFlowTest,
-                         ::testing::Values(render::LensKind::Equidistant, render::LensKind::Rectilinear),
+                         ::testing::Values(graphics::LensKind::Equidistant, graphics::LensKind::Rectilinear),
                          test::lensName);
 
 }  // namespace

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "truth/truth_camera.hpp"
-#include "vibe_render/geometry/solid_bodies.hpp"
-#include "vibe_render/geometry/suture_shapes.hpp"
-#include "vibe_render/testing/surfaces.hpp"
+#include "vibe_graphics/geometry/solid_bodies.hpp"
+#include "vibe_graphics/geometry/suture_shapes.hpp"
+#include "vibe_graphics/testing/surfaces.hpp"
 
 namespace vibe::endoscope::test {
 
@@ -20,21 +20,22 @@ namespace vibe::endoscope::test {
 
 constexpr double kNear = 0.0006, kFar = 2;
 
-inline render::RoundCamera smallCamera(render::LensKind lens, int width = 160, int height = 120) {
-  render::RoundCamera round;
+inline graphics::RoundCamera smallCamera(graphics::LensKind lens, int width = 160, int height = 120) {
+  graphics::RoundCamera round;
   round.lens = lens, round.width = width, round.height = height;
-  round.field_of_view = lens == render::LensKind::Equidistant ? 2.443461 : 1.6;
+  round.field_of_view = lens == graphics::LensKind::Equidistant ? 2.443461 : 1.6;
   return round;
 }
 
 /// Name of a test with a lens.
-inline std::string lensName(const ::testing::TestParamInfo<render::LensKind>& info) {
-  return info.param == render::LensKind::Equidistant ? "Equidistant" : "Rectilinear";
+inline std::string lensName(const ::testing::TestParamInfo<graphics::LensKind>& info) {
+  return info.param == graphics::LensKind::Equidistant ? "Equidistant" : "Rectilinear";
 }
 
 /// The ball with a radius of 50 mm and folds that `time` moves.
-inline render::TissueFrame foldedFrame(const render::TissueMesh& mesh, const std::vector<float>& unit, double time) {
-  render::TissueFrame frame;
+inline graphics::TissueFrame foldedFrame(const graphics::TissueMesh& mesh, const std::vector<float>& unit,
+                                         double time) {
+  graphics::TissueFrame frame;
   frame.revision = mesh.revision;
   for (std::size_t i = 0; i < mesh.particle_count; ++i) {
     const Eigen::Vector3d p = Eigen::Map<const Eigen::Vector3f>(&unit[3 * i]).cast<double>();
@@ -47,12 +48,12 @@ inline render::TissueFrame foldedFrame(const render::TissueMesh& mesh, const std
 
 /// Positions of the particles of ballMesh() and subdividedBall(), on the unit sphere.
 inline std::vector<float> unitBall(std::uint32_t rows, std::uint32_t around) {
-  return render::test::ballMesh(rows, around).rest;
+  return graphics::test::ballMesh(rows, around).rest;
 }
 
 /// An organ with anatomy: regions by height, walls by azimuth.
-inline render::TissueMesh organ(std::uint32_t rows, std::uint32_t around) {
-  render::TissueMesh mesh = render::test::subdividedBall(rows, around);
+inline graphics::TissueMesh organ(std::uint32_t rows, std::uint32_t around) {
+  graphics::TissueMesh mesh = graphics::test::subdividedBall(rows, around);
   const std::vector<float> unit = unitBall(rows, around);
   for (std::size_t i = 0; i < mesh.particle_count; ++i) {
     mesh.region.push_back(static_cast<std::uint8_t>(std::min(4.0, 2.5 * (1 + double(unit[3 * i + 2])))));
@@ -73,15 +74,15 @@ inline Eigen::Isometry3d eye(double time = 0) {
   return pose;
 }
 
-inline render::ColouredShape rodShape() {
-  render::ColouredShape shape;
-  render::appendCylinder(Eigen::Isometry3d(Eigen::Translation3d(0.004, 0, 0)), 0.003, 0.02, render::packed(1, 1, 1),
-                         shape);
+inline graphics::ColouredShape rodShape() {
+  graphics::ColouredShape shape;
+  graphics::appendCylinder(Eigen::Isometry3d(Eigen::Translation3d(0.004, 0, 0)), 0.003, 0.02, graphics::packed(1, 1, 1),
+                           shape);
   return shape;
 }
-inline render::ColouredShape boxShape() {
-  render::ColouredShape shape;
-  render::appendBox(Eigen::Isometry3d::Identity(), {0.006, 0.004, 0.005}, render::packed(1, 1, 1), shape);
+inline graphics::ColouredShape boxShape() {
+  graphics::ColouredShape shape;
+  graphics::appendBox(Eigen::Isometry3d::Identity(), {0.006, 0.004, 0.005}, graphics::packed(1, 1, 1), shape);
   return shape;
 }
 inline Eigen::Isometry3d rodPose(double time) {
@@ -94,9 +95,9 @@ inline Eigen::Isometry3d boxPose(double time) {
 }
 
 /// One thread with a T-tag; without blood.
-inline render::SutureDrawing thread(double time) {
-  render::SutureDrawing scene;
-  render::SutureSet& set = scene.sets.emplace_back();
+inline graphics::SutureDrawing thread(double time) {
+  graphics::SutureDrawing scene;
+  graphics::SutureSet& set = scene.sets.emplace_back();
   const Eigen::Vector3d bites[2] = {{0.025, 0.004, 0.012}, {0.028, -0.006, 0.010 + 0.001 * time}};
   for (const Eigen::Vector3d& place : bites) set.bites.push_back({place, true, -Eigen::Vector3d::UnitX()});
   set.pieces.push_back({{bites[0], {0.024, -0.001, 0.013}, bites[1]}, 1.0});
@@ -123,13 +124,13 @@ class FoldedWorld {
     }
     scene.commit();
   }
-  const render::TissueMesh& mesh() const { return mesh_; }
+  const graphics::TissueMesh& mesh() const { return mesh_; }
 
   TruthScene scene;
-  render::TissueFrame frame;
+  graphics::TissueFrame frame;
 
  private:
-  render::TissueMesh mesh_;
+  graphics::TissueMesh mesh_;
   std::vector<float> unit_;
   std::vector<std::uint32_t> parts_;
 };
@@ -146,12 +147,12 @@ struct PlainHit {
 struct PlainSurface {
   std::vector<Eigen::Vector3d> corners;  ///< three per triangle
 
-  void add(const render::ColouredShape& shape, const Eigen::Isometry3d& pose) {
+  void add(const graphics::ColouredShape& shape, const Eigen::Isometry3d& pose) {
     for (const std::uint32_t v : shape.triangles)
       corners.push_back(pose * Eigen::Map<const Eigen::Vector3f>(shape.vertices[v].position).cast<double>());
   }
   /// The drawn surface of the organ by its definition: the weighted sum of particles.
-  void add(const render::TissueMesh& mesh, const render::TissueFrame& frame) {
+  void add(const graphics::TissueMesh& mesh, const graphics::TissueFrame& frame) {
     for (const std::uint32_t v : mesh.triangles) {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (std::uint32_t k = mesh.render_offsets[v]; k < mesh.render_offsets[v + 1]; ++k)
@@ -183,9 +184,9 @@ struct PlainSurface {
 };
 
 /// What a pixel of a camera sees, by the independent caster.
-inline std::optional<PlainHit> plainHit(const PlainSurface& surface, const render::RoundCamera& round,
+inline std::optional<PlainHit> plainHit(const PlainSurface& surface, const graphics::RoundCamera& round,
                                         const Eigen::Isometry3d& pose, const Eigen::Vector2d& pixel) {
-  const Eigen::Vector3d ray = render::rayOf(round, pixel);
+  const Eigen::Vector3d ray = graphics::rayOf(round, pixel);
   return surface.firstHit(pose.translation(), pose.linear() * ray, kNear / ray.z(), kFar / ray.z());
 }
 
@@ -195,10 +196,10 @@ inline PlainSurface plainWorld(const FoldedWorld& world, double time, bool sutur
   surface.add(world.mesh(), world.frame);
   surface.add(rodShape(), rodPose(time));
   surface.add(boxShape(), boxPose(time));
-  render::ColouredShape drawn;
-  render::SutureStyle style;
-  style.colouring = render::ThreadColour::One, style.bites = style.corners = false;
-  if (sutures) render::appendSutures(thread(time), style, drawn);
+  graphics::ColouredShape drawn;
+  graphics::SutureStyle style;
+  style.colouring = graphics::ThreadColour::One, style.bites = style.corners = false;
+  if (sutures) graphics::appendSutures(thread(time), style, drawn);
   surface.add(drawn, Eigen::Isometry3d::Identity());
   return surface;
 }

@@ -9,14 +9,14 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "overlay/legend.hpp"
-#include "vibe_render/messages/suture_messages.hpp"
+#include "vibe_graphics/messages/suture_messages.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {
 
-render::PackedColour packedOf(const QColor& colour) {
-  return render::packed(colour.redF(), colour.greenF(), colour.blueF());
+graphics::PackedColour packedOf(const QColor& colour) {
+  return graphics::packed(colour.redF(), colour.greenF(), colour.blueF());
 }
 
 Ogre::Vector3 ogreOf(const Eigen::Vector3d& v) {
@@ -24,8 +24,8 @@ Ogre::Vector3 ogreOf(const Eigen::Vector3d& v) {
 }
 
 /// The shape of blood depends on the time of the message only if it pulses.
-bool pulses(const render::SutureDrawing& scene) {
-  for (const render::Wound& wound : scene.wounds)
+bool pulses(const graphics::SutureDrawing& scene) {
+  for (const graphics::Wound& wound : scene.wounds)
     if (wound.brisk && wound.rate > 0) return true;
   return false;
 }
@@ -36,9 +36,9 @@ Eigen::Isometry3d eigenOf(const FramePose& pose) {
   return place * Eigen::Quaterniond(turn.w, turn.x, turn.y, turn.z).normalized();
 }
 
-std::string contentOf(const render::SutureDrawing& scene) {
+std::string contentOf(const graphics::SutureDrawing& scene) {
   std::size_t bites = 0;
-  for (const render::SutureSet& set : scene.sets) bites += set.bites.size();
+  for (const graphics::SutureSet& set : scene.sets) bites += set.bites.size();
   return std::to_string(scene.sets.size()) + " sutures, " + std::to_string(bites) + " bites, " +
          std::to_string(scene.wounds.size()) + " bleedings.";
 }
@@ -57,13 +57,13 @@ void SutureDisplay::addThreadProperties() {
   colour_property_ = new rviz::EnumProperty("Thread colour", "Tension",
                                             "Colour of the threads: their tension, one for all, or one per suture.",
                                             this, SLOT(changeStyle()));
-  colour_property_->addOption("Tension", static_cast<int>(render::ThreadColour::Tension));
-  colour_property_->addOption("One colour", static_cast<int>(render::ThreadColour::One));
-  colour_property_->addOption("One per suture", static_cast<int>(render::ThreadColour::PerSuture));
+  colour_property_->addOption("Tension", static_cast<int>(graphics::ThreadColour::Tension));
+  colour_property_->addOption("One colour", static_cast<int>(graphics::ThreadColour::One));
+  colour_property_->addOption("One per suture", static_cast<int>(graphics::ThreadColour::PerSuture));
   map_property_ =
       new rviz::EnumProperty("Colour map", "viridis", "Colours from no tension (dark) to the maximum tension (light).",
                              colour_property_, SLOT(changeStyle()), this);
-  for (const std::string& name : render::colourMapNames()) map_property_->addOptionStd(name);
+  for (const std::string& name : graphics::colourMapNames()) map_property_->addOptionStd(name);
   max_property_ = new rviz::FloatProperty("Maximum tension", 4,
                                           "Tension in newtons at the upper end of the colour map; a cinch pulls up "
                                           "to 3 N, a full-thickness bite tears out at about 8 N.",
@@ -136,7 +136,7 @@ void SutureDisplay::onInitialize() {
 }
 
 void SutureDisplay::makeVisual() {
-  visual_ = std::make_unique<render::SutureVisual>(*scene_node_);
+  visual_ = std::make_unique<graphics::SutureVisual>(*scene_node_);
 }
 
 void SutureDisplay::onEnable() {
@@ -159,8 +159,8 @@ void SutureDisplay::clear() {
 }
 
 void SutureDisplay::changeStyle() {
-  style_.colouring = static_cast<render::ThreadColour>(colour_property_->getOptionInt());
-  style_.tension_map = render::ColourMap(map_property_->getStdString(), 0, max_property_->getFloat());
+  style_.colouring = static_cast<graphics::ThreadColour>(colour_property_->getOptionInt());
+  style_.tension_map = graphics::ColourMap(map_property_->getStdString(), 0, max_property_->getFloat());
   style_.slack_colour = packedOf(slack_property_->getColor());
   style_.one_colour = packedOf(one_property_->getColor());
   style_.thread_diameter = diameter_property_->getFloat();
@@ -176,8 +176,8 @@ void SutureDisplay::changeStyle() {
   for (rviz::Property* property :
        {static_cast<rviz::Property*>(map_property_), static_cast<rviz::Property*>(max_property_),
         static_cast<rviz::Property*>(slack_property_)})
-    property->setHidden(style_.colouring != render::ThreadColour::Tension);
-  one_property_->setHidden(style_.colouring != render::ThreadColour::One);
+    property->setHidden(style_.colouring != graphics::ThreadColour::Tension);
+  one_property_->setHidden(style_.colouring != graphics::ThreadColour::One);
   threads_changed_ = blood_changed_ = true;
   changeLegend();
 }
@@ -195,8 +195,8 @@ void SutureDisplay::changeLegend() {
 
 /// Compares the message with the one before, so that only what has changed is drawn again.
 MessageReport SutureDisplay::read(const vibe_msgs::SutureArray& message) {
-  render::SutureDrawing scene;
-  const std::string wrong = render::readSutures(message, scene);
+  graphics::SutureDrawing scene;
+  const std::string wrong = graphics::readSutures(message, scene);
   if (!wrong.empty()) return {wrong, false};
   const bool threads_same = shown() != nullptr && shown()->sutures == message.sutures;
   const bool blood_same = threads_same && shown()->bleedings == message.bleedings && !pulses(scene);
@@ -219,20 +219,21 @@ bool SutureDisplay::draw() {
 
 void SutureDisplay::drawThreads() {
   shape_.clear();
-  render::appendSutures(scene_, style_, shape_);
+  graphics::appendSutures(scene_, style_, shape_);
   visual_->showSolids(shape_);
   shape_.clear();
-  render::appendLinks(scene_, style_, shape_);
+  graphics::appendLinks(scene_, style_, shape_);
   visual_->showSigns(shape_);
   drawLabels();
 }
 
 void SutureDisplay::drawLabels() {
   const double height = label_height_property_->getFloat();
-  std::vector<render::SutureLabel> labels;
+  std::vector<graphics::SutureLabel> labels;
   for (std::size_t k = 0; k < scene_.sets.size() && label_property_->getBool(); ++k)
     if (!scene_.sets[k].bites.empty())
-      labels.push_back({render::labelOf(scene_.sets[k], k), ogreOf(render::labelPlace(scene_.sets[k], 2 * height))});
+      labels.push_back(
+          {graphics::labelOf(scene_.sets[k], k), ogreOf(graphics::labelPlace(scene_.sets[k], 2 * height))});
   visual_->showLabels(labels, height);
 }
 
@@ -250,7 +251,7 @@ bool SutureDisplay::drawBlood() {
   const bool wanted = bleeding_property_->getBool();
   wall_.listen(update_nh_, wanted && !scene_.wounds.empty());
   if (wall_.update()) blood_.setMesh(wall_.mesh());
-  if (blood_changed_) blood_.setWounds(wanted ? scene_ : render::SutureDrawing{}, blood_style_);
+  if (blood_changed_) blood_.setWounds(wanted ? scene_ : graphics::SutureDrawing{}, blood_style_);
   blood_changed_ = false;
   const std::optional<Eigen::Isometry3d> pose = wall_.vertices() != nullptr ? poseOfWall() : std::nullopt;
   const bool changed = blood_.update(pose ? wall_.vertices() : nullptr, pose.value_or(Eigen::Isometry3d::Identity()));

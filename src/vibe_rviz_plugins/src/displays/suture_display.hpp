@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "displays/wall_listener.hpp"
-#include "vibe_render/geometry/blood_shapes.hpp"
-#include "vibe_render/geometry/suture_drawing.hpp"
-#include "vibe_render/geometry/suture_shapes.hpp"
-#include "vibe_render/graphics/suture_visual.hpp"
+#include "vibe_graphics/geometry/blood_shapes.hpp"
+#include "vibe_graphics/geometry/suture_drawing.hpp"
+#include "vibe_graphics/geometry/suture_shapes.hpp"
+#include "vibe_graphics/graphics/suture_visual.hpp"
 #include "vibe_rviz_plugins/display_base/message_display.hpp"
 
 namespace rviz {
@@ -51,16 +51,16 @@ class SutureDisplay : public MessageDisplay<vibe_msgs::SutureArray> {
   void drawLabels();
   bool drawBlood();
   std::optional<Eigen::Isometry3d> poseOfWall();
-  bool showsTension() const { return style_.colouring == render::ThreadColour::Tension; }
+  bool showsTension() const { return style_.colouring == graphics::ThreadColour::Tension; }
 
-  std::unique_ptr<render::SutureVisual> visual_;
+  std::unique_ptr<graphics::SutureVisual> visual_;
   std::unique_ptr<Legend> legend_;
-  render::SutureDrawing scene_;
-  render::SutureStyle style_;
-  render::BloodStyle blood_style_;
+  graphics::SutureDrawing scene_;
+  graphics::SutureStyle style_;
+  graphics::BloodStyle blood_style_;
   WallListener wall_;
-  render::BleedingShape blood_;
-  render::ColouredShape shape_;  // a member to reuse its memory
+  graphics::BleedingShape blood_;
+  graphics::ColouredShape shape_;  // a member to reuse its memory
   bool threads_changed_ = false, blood_changed_ = false;
 
   rviz::EnumProperty *colour_property_, *map_property_;

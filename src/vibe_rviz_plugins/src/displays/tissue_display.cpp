@@ -11,8 +11,8 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "overlay/legend.hpp"
-#include "vibe_render/graphics/tissue_visual.hpp"
-#include "vibe_render/messages/tissue_messages.hpp"
+#include "vibe_graphics/graphics/tissue_visual.hpp"
+#include "vibe_graphics/messages/tissue_messages.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace vibe::rviz_plugins {
@@ -24,37 +24,37 @@ using rviz::StatusProperty;
 struct Range {
   float min, max;
 };
-Range defaultRange(render::Colouring colouring) {
+Range defaultRange(graphics::Colouring colouring) {
   switch (colouring) {
-    case render::Colouring::Heat:
+    case graphics::Colouring::Heat:
       return {0, 80};
-    case render::Colouring::Thickness:
+    case graphics::Colouring::Thickness:
       return {0.002F, 0.006F};
     default:
       return {0, 0.5F};
   }
 }
 
-bool hasRange(render::Colouring colouring) {
-  return colouring == render::Colouring::Strain || colouring == render::Colouring::Heat ||
-         colouring == render::Colouring::Thickness;
+bool hasRange(graphics::Colouring colouring) {
+  return colouring == graphics::Colouring::Strain || colouring == graphics::Colouring::Heat ||
+         colouring == graphics::Colouring::Thickness;
 }
 
-QImage legendOf(render::Colouring colouring, const render::ColourMap& map) {
-  const auto list = [](const char* title, const std::vector<render::PackedColour>& colours,
+QImage legendOf(graphics::Colouring colouring, const graphics::ColourMap& map) {
+  const auto list = [](const char* title, const std::vector<graphics::PackedColour>& colours,
                        const std::vector<std::string>& names) {
     std::vector<LegendEntry> entries;
     for (std::size_t k = 0; k < names.size(); ++k) entries.push_back({colours[k], names[k]});
     return drawnLegend(title, entries);
   };
   switch (colouring) {
-    case render::Colouring::Region:
-      return list("Region", render::regionColours(), {"cardia", "fundus", "body", "antrum", "pylorus"});
-    case render::Colouring::Wall:
-      return list("Wall", render::wallColours(), {"anterior", "greater curvature", "posterior", "lesser curvature"});
-    case render::Colouring::Heat:
+    case graphics::Colouring::Region:
+      return list("Region", graphics::regionColours(), {"cardia", "fundus", "body", "antrum", "pylorus"});
+    case graphics::Colouring::Wall:
+      return list("Wall", graphics::wallColours(), {"anterior", "greater curvature", "posterior", "lesser curvature"});
+    case graphics::Colouring::Heat:
       return drawnLegend("Heat [J]", map);
-    case render::Colouring::Thickness:
+    case graphics::Colouring::Thickness:
       return drawnLegend("Thickness [m]", map);
     default:
       return drawnLegend("Strain", map);
@@ -98,19 +98,19 @@ void TissueDisplay::addColours() {
                              "What the colour of the surface shows: natural tissue, region, wall, strain, heat "
                              "received, or wall thickness.",
                              this, SLOT(changeColouring()), this);
-  colouring_->addOption("Tissue", static_cast<int>(render::Colouring::Tissue));
-  colouring_->addOption("Region", static_cast<int>(render::Colouring::Region));
-  colouring_->addOption("Wall", static_cast<int>(render::Colouring::Wall));
-  colouring_->addOption("Strain", static_cast<int>(render::Colouring::Strain));
-  colouring_->addOption("Heat", static_cast<int>(render::Colouring::Heat));
-  colouring_->addOption("Thickness", static_cast<int>(render::Colouring::Thickness));
+  colouring_->addOption("Tissue", static_cast<int>(graphics::Colouring::Tissue));
+  colouring_->addOption("Region", static_cast<int>(graphics::Colouring::Region));
+  colouring_->addOption("Wall", static_cast<int>(graphics::Colouring::Wall));
+  colouring_->addOption("Strain", static_cast<int>(graphics::Colouring::Strain));
+  colouring_->addOption("Heat", static_cast<int>(graphics::Colouring::Heat));
+  colouring_->addOption("Thickness", static_cast<int>(graphics::Colouring::Thickness));
   map_ = new rviz::EnumProperty("Colour map", "viridis",
                                 "Perceptually uniform map from values to colours; cividis looks the same with "
                                 "and without colour vision deficiency.",
                                 colouring_, SLOT(changeLook()), this);
   int number = 0;
-  for (const std::string& name : render::colourMapNames()) map_->addOption(QString::fromStdString(name), number++);
-  const Range range = defaultRange(render::Colouring::Strain);
+  for (const std::string& name : graphics::colourMapNames()) map_->addOption(QString::fromStdString(name), number++);
+  const Range range = defaultRange(graphics::Colouring::Strain);
   min_ = new rviz::FloatProperty("From", range.min,
                                  "Value at the dark end of the map: strain [1], heat [J], thickness [m].", colouring_,
                                  SLOT(changeLook()), this);
@@ -163,7 +163,7 @@ void TissueDisplay::addParts() {
 
 void TissueDisplay::onInitialize() {
   try {
-    visual_ = std::make_unique<render::TissueVisual>(*scene_node_);
+    visual_ = std::make_unique<graphics::TissueVisual>(*scene_node_);
   } catch (const std::exception& error) {
     setStatusStd(StatusProperty::Error, "Materials", error.what());
   }
@@ -222,8 +222,8 @@ void TissueDisplay::reportWaiting() {
 }
 
 void TissueDisplay::takeTopology(const vibe_msgs::TissueTopology::ConstPtr& message) {
-  render::TissueMesh mesh;
-  const std::string wrong = render::readTopology(*message, mesh);
+  graphics::TissueMesh mesh;
+  const std::string wrong = graphics::readTopology(*message, mesh);
   if (!wrong.empty()) {
     setStatusStd(StatusProperty::Error, "Topology", wrong);
     return;
@@ -253,7 +253,7 @@ void TissueDisplay::update(float, float) {
 void TissueDisplay::drawLatest() {
   const sensor_msgs::PointCloud2::ConstPtr message = std::move(latest_);
   latest_.reset();
-  const std::string wrong = render::readParticles(*message, mesh_, frame_);
+  const std::string wrong = graphics::readParticles(*message, mesh_, frame_);
   if (!wrong.empty()) {
     reportError("Particles", wrong);
     return;
@@ -285,7 +285,7 @@ void TissueDisplay::fixedFrameChanged() {
 }
 
 void TissueDisplay::changeColouring() {
-  const auto colouring = static_cast<render::Colouring>(colouring_->getOptionInt());
+  const auto colouring = static_cast<graphics::Colouring>(colouring_->getOptionInt());
   const bool ranged = hasRange(colouring);
   const Range range = defaultRange(colouring);
   map_->setHidden(!ranged), min_->setHidden(!ranged), max_->setHidden(!ranged);
@@ -296,9 +296,9 @@ void TissueDisplay::changeColouring() {
 
 void TissueDisplay::changeLook() {
   if (!visual_) return;
-  render::TissueLook look;
+  graphics::TissueLook look;
   look.surface = surface_->getBool();
-  look.colouring = static_cast<render::Colouring>(colouring_->getOptionInt());
+  look.colouring = static_cast<graphics::Colouring>(colouring_->getOptionInt());
   look.map = map_->getStdString();
   look.min = static_cast<double>(min_->getFloat());
   look.max = static_cast<double>(max_->getFloat());
@@ -319,14 +319,14 @@ void TissueDisplay::changeLook() {
 
 void TissueDisplay::changeLegend() {
   if (!visual_) return;
-  const auto colouring = static_cast<render::Colouring>(colouring_->getOptionInt());
-  if (!isEnabled() || !legend_shown_->getBool() || colouring == render::Colouring::Tissue) {
+  const auto colouring = static_cast<graphics::Colouring>(colouring_->getOptionInt());
+  if (!isEnabled() || !legend_shown_->getBool() || colouring == graphics::Colouring::Tissue) {
     if (legend_) legend_->hide();
     return;
   }
   if (!legend_) legend_ = std::make_unique<Legend>(Legend::Place::BottomLeft);
-  const render::ColourMap map(map_->getStdString(), static_cast<double>(min_->getFloat()),
-                              static_cast<double>(max_->getFloat()));
+  const graphics::ColourMap map(map_->getStdString(), static_cast<double>(min_->getFloat()),
+                                static_cast<double>(max_->getFloat()));
   legend_->show(legendOf(colouring, map));
 }
 

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "vibe_render/geometry/tissue_mesh.hpp"
+#include "vibe_graphics/geometry/tissue_mesh.hpp"
 
 namespace rviz {
 class BoolProperty;
@@ -16,7 +16,7 @@ class FloatProperty;
 class RosTopicProperty;
 }  // namespace rviz
 
-namespace vibe::render {
+namespace vibe::graphics {
 class TissueVisual;
 }
 
@@ -69,11 +69,11 @@ class TissueDisplay : public rviz::Display {
 
   ros::Subscriber topology_subscriber_, particles_subscriber_;
   sensor_msgs::PointCloud2::ConstPtr latest_;  // not drawn yet
-  render::TissueMesh mesh_;
-  render::TissueFrame frame_;
+  graphics::TissueMesh mesh_;
+  graphics::TissueFrame frame_;
   bool has_mesh_ = false, has_error_ = false;
   std::size_t frames_ = 0;
-  std::unique_ptr<render::TissueVisual> visual_;
+  std::unique_ptr<graphics::TissueVisual> visual_;
   std::unique_ptr<Legend> legend_;
 };
 

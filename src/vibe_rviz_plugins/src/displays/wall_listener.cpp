@@ -1,6 +1,6 @@
 #include "displays/wall_listener.hpp"
 
-#include "vibe_render/messages/tissue_messages.hpp"
+#include "vibe_graphics/messages/tissue_messages.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -25,12 +25,12 @@ bool WallListener::update() {
   forgot_ = false;
   if (topology_) {
     placed_ = false;
-    has_mesh_ = render::readTopology(*topology_, mesh_).empty();
-    if (has_mesh_) surface_ = std::make_unique<render::DeformableSurface>(mesh_);
+    has_mesh_ = graphics::readTopology(*topology_, mesh_).empty();
+    if (has_mesh_) surface_ = std::make_unique<graphics::DeformableSurface>(mesh_);
     topology_.reset();
     another = true;
   }
-  if (particles_ && has_mesh_ && render::readParticles(*particles_, mesh_, frame_).empty()) {
+  if (particles_ && has_mesh_ && graphics::readParticles(*particles_, mesh_, frame_).empty()) {
     surface_->update(frame_.positions);
     frame_id_ = particles_->header.frame_id;
     placed_ = true;

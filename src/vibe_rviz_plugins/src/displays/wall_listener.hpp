@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "vibe_render/geometry/deformable_surface.hpp"
-#include "vibe_render/geometry/tissue_mesh.hpp"
+#include "vibe_graphics/geometry/deformable_surface.hpp"
+#include "vibe_graphics/geometry/tissue_mesh.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -23,18 +23,18 @@ class WallListener {
   /// Takes the newest messages. @return whether there is another mesh than before, or none any more
   bool update();
 
-  const render::TissueMesh* mesh() const { return has_mesh_ ? &mesh_ : nullptr; }
+  const graphics::TissueMesh* mesh() const { return has_mesh_ ? &mesh_ : nullptr; }
   /// As DeformableSurface has them; null: none yet.
-  const std::vector<render::MovingVertex>* vertices() const { return placed_ ? &surface_->vertices() : nullptr; }
+  const std::vector<graphics::MovingVertex>* vertices() const { return placed_ ? &surface_->vertices() : nullptr; }
   const std::string& frame() const { return frame_id_; }  ///< of the vertices
 
  private:
   ros::Subscriber topology_subscriber_, particles_subscriber_;
   vibe_msgs::TissueTopology::ConstPtr topology_;  // not read yet
   sensor_msgs::PointCloud2::ConstPtr particles_;  // not read yet
-  render::TissueMesh mesh_;
-  render::TissueFrame frame_;
-  std::unique_ptr<render::DeformableSurface> surface_;
+  graphics::TissueMesh mesh_;
+  graphics::TissueFrame frame_;
+  std::unique_ptr<graphics::DeformableSurface> surface_;
   std::string frame_id_;
   bool listens_ = false, has_mesh_ = false, placed_ = false, forgot_ = false;
 };

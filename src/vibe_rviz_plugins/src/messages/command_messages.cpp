@@ -5,7 +5,7 @@
 
 #include <urdf/model.h>
 
-#include "vibe_render/messages/cloud_field.hpp"
+#include "vibe_graphics/messages/cloud_field.hpp"
 
 namespace vibe::rviz_plugins {
 
@@ -103,8 +103,8 @@ std::string readPullState(const vibe_msgs::TissuePullState& message, PullState& 
   read_state.particle = message.particle;
   if (message.particle < -1)
     return "The pull spring refers to particle " + std::to_string(message.particle) + ", which does not exist.";
-  if (!read(message.position, render::kMaxCoordinate, read_state.position) ||
-      !read(message.target, render::kMaxCoordinate, read_state.target))
+  if (!read(message.position, graphics::kMaxCoordinate, read_state.position) ||
+      !read(message.target, graphics::kMaxCoordinate, read_state.target))
     return "The position or the target of the pull spring is invalid (not finite, or beyond 1000 km).";
   if (!read(message.force, kMaxForce, read_state.force))
     return "The force of the pull spring is invalid (not finite, or beyond 1e6 N).";

@@ -14,14 +14,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vibe_render/graphics/resources.hpp"
+#include "vibe_graphics/graphics/resources.hpp"
 
 namespace vibe::rviz_plugins {
 namespace {
 
 constexpr int kWidth = 170, kMargin = 12, kLine = 20, kTitle = 26, kBar = 18, kBarLength = 130, kMarks = 5;  // [pixels]
 
-QColor opaque(render::PackedColour colour) {
+QColor opaque(graphics::PackedColour colour) {
   return {static_cast<int>(colour & 255U), static_cast<int>(colour >> 8 & 255U), static_cast<int>(colour >> 16 & 255U)};
 }
 
@@ -62,13 +62,13 @@ float leftEdge(Legend::Place place, float width) {
 
 }  // namespace
 
-QImage drawnLegend(const std::string& title, const render::ColourMap& map) {
+QImage drawnLegend(const std::string& title, const graphics::ColourMap& map) {
   QImage image = plate(kTitle + kBarLength + kMargin + kMargin / 2, title);
   QPainter painter(&image);
   painter.setRenderHint(QPainter::Antialiasing);
   const int top = kTitle + kMargin / 2;
   for (int row = 0; row < kBarLength; ++row) {
-    const int step = (kBarLength - 1 - row) * (render::ColourMap::kSteps - 1) / (kBarLength - 1);
+    const int step = (kBarLength - 1 - row) * (graphics::ColourMap::kSteps - 1) / (kBarLength - 1);
     painter.fillRect(kMargin, top + row, kBar, 1, opaque(map.steps()[static_cast<std::size_t>(step)]));
   }
   painter.setPen(Qt::white);
@@ -104,22 +104,22 @@ Legend::~Legend() {
   overlay_->hide();
   overlays.destroyOverlayElement(panel_);
   overlays.destroy(overlay_);
-  render::dropMaterial(material_);
+  graphics::dropMaterial(material_);
   if (texture_) Ogre::TextureManager::getSingleton().remove(texture_);
 }
 
 void Legend::make() {
-  render::loadResources();
+  graphics::loadResources();
   auto& overlays = Ogre::OverlayManager::getSingleton();
-  material_ = Ogre::MaterialManager::getSingleton().create(render::uniqueName("Legend"), render::kResourceGroup);
+  material_ = Ogre::MaterialManager::getSingleton().create(graphics::uniqueName("Legend"), graphics::kResourceGroup);
   Ogre::Pass& pass = *material_->getTechnique(0)->getPass(0);
   pass.setLightingEnabled(false);
   pass.setDepthCheckEnabled(false);
   pass.setDepthWriteEnabled(false);
   pass.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
   pass.createTextureUnitState();
-  overlay_ = overlays.create(render::uniqueName("Legend"));
-  panel_ = static_cast<Ogre::OverlayContainer*>(overlays.createOverlayElement("Panel", render::uniqueName("Legend")));
+  overlay_ = overlays.create(graphics::uniqueName("Legend"));
+  panel_ = static_cast<Ogre::OverlayContainer*>(overlays.createOverlayElement("Panel", graphics::uniqueName("Legend")));
   panel_->setMetricsMode(Ogre::GMM_PIXELS);
   panel_->setVerticalAlignment(isAtBottom(place_) ? Ogre::GVA_BOTTOM : Ogre::GVA_TOP);
   panel_->setHorizontalAlignment(sideOf(place_));
@@ -132,7 +132,7 @@ void Legend::fit(const QImage& image) {
   if (texture_ && texture_->getWidth() == width && texture_->getHeight() == height) return;
   auto& textures = Ogre::TextureManager::getSingleton();
   if (texture_) textures.remove(texture_);
-  texture_ = textures.createManual(render::uniqueName("Legend"), render::kResourceGroup, Ogre::TEX_TYPE_2D, width,
+  texture_ = textures.createManual(graphics::uniqueName("Legend"), graphics::kResourceGroup, Ogre::TEX_TYPE_2D, width,
                                    height, 0, Ogre::PF_A8R8G8B8, Ogre::TU_DEFAULT);
   material_->getTechnique(0)->getPass(0)->getTextureUnitState(0)->setTexture(texture_);
 }

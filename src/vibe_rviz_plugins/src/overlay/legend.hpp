@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vibe_render/geometry/colour_map.hpp"
+#include "vibe_graphics/geometry/colour_map.hpp"
 
 namespace Ogre {
 class Overlay;
@@ -17,12 +17,12 @@ namespace vibe::rviz_plugins {
 
 /// A colour and its meaning.
 struct LegendEntry {
-  render::PackedColour colour;
+  graphics::PackedColour colour;
   std::string text;
 };
 
 /// The legend of a colour map: a bar with five numbers.
-QImage drawnLegend(const std::string& title, const render::ColourMap& map);
+QImage drawnLegend(const std::string& title, const graphics::ColourMap& map);
 /// The legend of a list of colours.
 QImage drawnLegend(const std::string& title, const std::vector<LegendEntry>& entries);
 

@@ -15,7 +15,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "tools/pull_visual.hpp"
-#include "vibe_render/messages/tissue_messages.hpp"
+#include "vibe_graphics/messages/tissue_messages.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 #include "views/endoscope_view_controller.hpp"
 
@@ -35,7 +35,7 @@ Ogre::Ray viewRay(const rviz::ViewportMouseEvent& event, int x, int y) {
   const Ogre::Camera& camera = *event.viewport->getCamera();
   const auto* scope = dynamic_cast<const EndoscopeViewController*>(event.panel->getViewController());
   if (scope != nullptr && scope->roundCamera() != nullptr) {
-    const Eigen::Vector3f ray = render::rayOf(*scope->roundCamera(), Eigen::Vector2d(x, y)).cast<float>();
+    const Eigen::Vector3f ray = graphics::rayOf(*scope->roundCamera(), Eigen::Vector2d(x, y)).cast<float>();
     return {camera.getDerivedPosition(), camera.getDerivedOrientation() * Ogre::Vector3(ray.x(), -ray.y(), -ray.z())};
   }
   return camera.getCameraToViewportRay(static_cast<float>(x) / static_cast<float>(event.viewport->getActualWidth()),
@@ -105,12 +105,12 @@ void PullTissueTool::disconnect() {
   state_subscriber_.shutdown();
   publisher_.shutdown();
   latest_.reset();
-  mesh_ = render::TissueMesh();
+  mesh_ = graphics::TissueMesh();
 }
 
 void PullTissueTool::takeTopology(const vibe_msgs::TissueTopology::ConstPtr& message) {
   letGo();  // the particle numbers have changed
-  topology_trouble_ = render::readTopology(*message, mesh_);
+  topology_trouble_ = graphics::readTopology(*message, mesh_);
   if (!topology_trouble_.empty()) say(topology_trouble_);
 }
 
@@ -140,7 +140,7 @@ std::string PullTissueTool::findTissue() {
   if (!latest_) return "No message on " + particles_subscriber_.getTopic() + " yet; is the simulator running?";
   if (publisher_.getNumSubscribers() == 0)
     return "Nobody subscribes to " + publisher_.getTopic() + "; is the simulator still running?";
-  return render::readParticles(*latest_, mesh_, tissue_);
+  return graphics::readParticles(*latest_, mesh_, tissue_);
 }
 
 bool PullTissueTool::framePose(Eigen::Isometry3d& pose) {

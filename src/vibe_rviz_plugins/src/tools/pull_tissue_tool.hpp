@@ -13,7 +13,7 @@
 
 #include "drive/mouse_ray.hpp"
 #include "messages/command_messages.hpp"
-#include "vibe_render/geometry/tissue_mesh.hpp"
+#include "vibe_graphics/geometry/tissue_mesh.hpp"
 #endif
 
 namespace rviz {
@@ -80,8 +80,8 @@ class PullTissueTool : public rviz::Tool {
   ros::Publisher publisher_;
   ros::Subscriber topology_subscriber_, particles_subscriber_, state_subscriber_;
   sensor_msgs::PointCloud2::ConstPtr latest_;
-  render::TissueMesh mesh_;
-  render::TissueFrame tissue_;
+  graphics::TissueMesh mesh_;
+  graphics::TissueFrame tissue_;
   std::string topology_trouble_;  // why there is no mesh; empty if there is one
   std::optional<Hold> hold_;
   std::unique_ptr<PullVisual> visual_;

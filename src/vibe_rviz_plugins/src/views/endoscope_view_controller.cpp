@@ -17,7 +17,7 @@
 #include <QCursor>
 #include <cmath>
 
-#include "vibe_render/graphics/offscreen_camera.hpp"
+#include "vibe_graphics/graphics/offscreen_camera.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace vibe::rviz_plugins {
@@ -36,15 +36,15 @@ EndoscopeViewController::EndoscopeViewController() {
                                      "Frame of the endoscope's camera: z forward, x right, y down.", this);
   field_of_view_ = new rviz::FloatProperty(
       "Field of view", kFieldOfView, "Angle across the circular image in degrees; most gastroscopes have 140.", this);
-  field_of_view_->setMin(static_cast<float>(render::kMinFieldOfView / render::kDegree));
-  field_of_view_->setMax(static_cast<float>(render::kMaxFieldOfView / render::kDegree));
+  field_of_view_->setMin(static_cast<float>(graphics::kMinFieldOfView / graphics::kDegree));
+  field_of_view_->setMax(static_cast<float>(graphics::kMaxFieldOfView / graphics::kDegree));
   lens_ = new rviz::EnumProperty(
       "Lens", "Equidistant",
       "Equidistant: the radius is proportional to the angle, as in real endoscopes. Rectilinear: "
       "straight lines stay straight, and the centre is small.",
       this);
-  lens_->addOption("Equidistant", static_cast<int>(render::LensKind::Equidistant));
-  lens_->addOption("Rectilinear", static_cast<int>(render::LensKind::Rectilinear));
+  lens_->addOption("Equidistant", static_cast<int>(graphics::LensKind::Equidistant));
+  lens_->addOption("Rectilinear", static_cast<int>(graphics::LensKind::Rectilinear));
   sharpness_ =
       new rviz::FloatProperty("Sharpness", 1,
                               "Resolution relative to the centre of the image. 1 draws every detail; less is faster, "
@@ -63,14 +63,14 @@ EndoscopeViewController::~EndoscopeViewController() = default;
 
 void EndoscopeViewController::onInitialize() {
   frame_->setFrameManager(context_->getFrameManager());
-  near_clip_property_->setMin(render::kScopeNearClip);
-  near_clip_property_->setFloat(render::kScopeNearClip);
-  camera_->setFarClipDistance(render::kScopeFarClip);
+  near_clip_property_->setMin(graphics::kScopeNearClip);
+  near_clip_property_->setFloat(graphics::kScopeNearClip);
+  camera_->setFarClipDistance(graphics::kScopeFarClip);
   camera_->setProjectionType(Ogre::PT_PERSPECTIVE);
 }
 
 void EndoscopeViewController::onActivate() {
-  picture_ = std::make_unique<render::EndoscopeLens>(*context_->getViewManager()->getRenderPanel()->getViewport());
+  picture_ = std::make_unique<graphics::EndoscopeLens>(*context_->getViewManager()->getRenderPanel()->getViewport());
   broken_ = false;
   updateScope();
   bendPicture();
@@ -90,15 +90,15 @@ void EndoscopeViewController::updateScope() {
     return;
   }
   camera_->setPosition(pose.position);
-  camera_->setOrientation(pose.orientation * render::opticalToOgre());
+  camera_->setOrientation(pose.orientation * graphics::opticalToOgre());
   if (!broken_) tell("");
 }
 
 void EndoscopeViewController::bendPicture() {
   if (!picture_ || broken_) return;
   try {
-    picture_->set(static_cast<render::LensKind>(lens_->getOptionInt()), field_of_view_->getFloat() * render::kDegree,
-                  sharpness_->getFloat());
+    picture_->set(static_cast<graphics::LensKind>(lens_->getOptionInt()),
+                  field_of_view_->getFloat() * graphics::kDegree, sharpness_->getFloat());
     context_->queueRender();
   } catch (const std::exception& error) {  // std::runtime_error and Ogre::Exception
     broken_ = true;
@@ -111,7 +111,7 @@ void EndoscopeViewController::expose(float passed) {
   time_ += static_cast<double>(passed);
   const std::optional<double> level = auto_exposure_->getBool() ? picture_->level() : std::nullopt;
   if (level) exposure_.see(*level, time_);
-  picture_->setGain(level ? exposure_.gain() : render::AutoExposure::kFixedGain);
+  picture_->setGain(level ? exposure_.gain() : graphics::AutoExposure::kFixedGain);
 }
 
 void EndoscopeViewController::tell(const QString& text) {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "vibe_render/graphics/endoscope_lens.hpp"
+#include "vibe_graphics/graphics/endoscope_lens.hpp"
 
 namespace rviz {
 class BoolProperty;
@@ -28,7 +28,7 @@ class EndoscopeViewController : public rviz::ViewController {
   rviz::Property* subProp(const QString& name) override;
 
   /// Projection of the lens; null while the view has no lens.
-  const render::RoundCamera* roundCamera() const { return picture_ ? &picture_->camera() : nullptr; }
+  const graphics::RoundCamera* roundCamera() const { return picture_ ? &picture_->camera() : nullptr; }
 
  protected:
   void onInitialize() override;
@@ -46,10 +46,10 @@ class EndoscopeViewController : public rviz::ViewController {
   rviz::FloatProperty* sharpness_;
   rviz::BoolProperty* auto_exposure_;
   rviz::StringProperty* status_;
-  std::unique_ptr<rviz::Property> stereo_;          ///< property of rviz that has no meaning here
-  rviz::Property no_target_;                        ///< target frame for other views
-  std::unique_ptr<render::EndoscopeLens> picture_;  ///< only while this view is active
-  render::AutoExposure exposure_;
+  std::unique_ptr<rviz::Property> stereo_;            ///< property of rviz that has no meaning here
+  rviz::Property no_target_;                          ///< target frame for other views
+  std::unique_ptr<graphics::EndoscopeLens> picture_;  ///< only while this view is active
+  graphics::AutoExposure exposure_;
   double time_ = 0;      ///< that the view has been active, for the rate of the exposure [s]
   bool broken_ = false;  ///< the graphics card cannot draw the lens; not tried again
 };

@@ -3,8 +3,8 @@
 #include <string>
 #include <utility>
 
-#include "vibe_render/geometry/coloured_shape.hpp"
-#include "vibe_render/graphics/shape_visual.hpp"
+#include "vibe_graphics/geometry/coloured_shape.hpp"
+#include "vibe_graphics/graphics/shape_visual.hpp"
 #include "vibe_rviz_plugins/display_base/message_display.hpp"
 
 namespace vibe::rviz_plugins {
@@ -18,7 +18,7 @@ class MessageShapeDisplay : public MessageDisplay<Message> {
  public:
   /// Appends what a message looks like to an empty shape [m]. Needs no scene, so a test can call it.
   /// @return empty; otherwise one sentence that says what is wrong with the message, and the shape is not used
-  virtual std::string makeShape(const Message& message, render::ColouredShape& shape) const = 0;
+  virtual std::string makeShape(const Message& message, graphics::ColouredShape& shape) const = 0;
 
  protected:
   using MessageDisplay<Message>::MessageDisplay;
@@ -28,13 +28,13 @@ class MessageShapeDisplay : public MessageDisplay<Message> {
   }
 
  private:
-  void makeVisual() final { visual_ = std::make_unique<render::ShapeVisual>(*this->scene_node_); }
+  void makeVisual() final { visual_ = std::make_unique<graphics::ShapeVisual>(*this->scene_node_); }
   void clear() final { visual_->show({}); }
 
   MessageReport read(const Message& message) final {
-    render::ColouredShape shape;
+    graphics::ColouredShape shape;
     std::string wrong = makeShape(message, shape);
-    if (wrong.empty()) wrong = render::problemOf(shape);
+    if (wrong.empty()) wrong = graphics::problemOf(shape);
     if (!wrong.empty()) return {wrong, false};
     shape_ = std::move(shape);
     changed_ = true;
@@ -46,8 +46,8 @@ class MessageShapeDisplay : public MessageDisplay<Message> {
     return std::exchange(changed_, false);
   }
 
-  std::unique_ptr<render::ShapeVisual> visual_;
-  render::ColouredShape shape_;
+  std::unique_ptr<graphics::ShapeVisual> visual_;
+  graphics::ColouredShape shape_;
   bool changed_ = false;
 };
 
