@@ -1,4 +1,4 @@
-#include "rviz/rviz_events.hpp"
+#include "rviz_events.hpp"
 
 #include <rviz/render_panel.h>
 #include <rviz/tool.h>

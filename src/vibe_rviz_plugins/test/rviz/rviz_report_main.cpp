@@ -31,7 +31,7 @@
 #include <utility>
 #include <vector>
 
-#include "rviz/rviz_events.hpp"
+#include "rviz_events.hpp"
 #include "vibe_rviz_plugins/display_base/topic_display.hpp"
 
 namespace {
