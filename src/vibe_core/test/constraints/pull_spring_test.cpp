@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <limits>
 
-#include "procedure/marking_touch.hpp"
 #include "vibe_core/model/accounting.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 #include "worlds.hpp"
@@ -227,13 +226,6 @@ TEST(PullSpring, wakesTissueThatSleeps) {
   ASSERT_EQ(world.maxShift(), 0);
   world.run(0.2, pull(world, 17, 8e-3));
   EXPECT_GT(world.maxShift(), 1e-3);
-}
-
-TEST(PullSpring, keepsTheSolverWhileTheBeamIsOn) {
-  State state;
-  EXPECT_TRUE(MarkingTouch::mayReplaceSolver(state));
-  state.pull.node = {0};
-  EXPECT_FALSE(MarkingTouch::mayReplaceSolver(state));
 }
 
 }  // namespace
