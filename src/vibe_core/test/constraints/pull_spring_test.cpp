@@ -228,12 +228,5 @@ TEST(PullSpring, wakesTissueThatSleeps) {
   EXPECT_GT(world.maxShift(), 1e-3);
 }
 
-TEST(PullSpring, keepsTheSolverWhileTheBeamIsOn) {
-  State state;
-  EXPECT_TRUE(MarkingTouch::mayReplaceSolver(state));
-  state.pull.node = {0};
-  EXPECT_FALSE(MarkingTouch::mayReplaceSolver(state));
-}
-
 }  // namespace
 }  // namespace vibe::pull_spring_test

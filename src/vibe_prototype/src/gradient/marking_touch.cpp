@@ -12,15 +12,15 @@ namespace {
 
 constexpr double kFarthest = 0.8e-3;  // move of a particle in a step of the handover; design choice [m]
 
-bool mayReplaceSolver(const State& state) {
+}  // namespace
+
+MarkingTouch::MarkingTouch(const Model& model) : model_(model), collision_(*model.tool) {}
+
+bool MarkingTouch::mayReplaceSolver(const State& state) {
   const std::vector<Suture>& sutures = state.procedure.sutures;
   const bool draws = !sutures.empty() && sutures.back().stage == Suture::Stage::Cinching;
   return !draws && !state.pull.holds() && state.solver.recovery_steps == 0;
 }
-
-}  // namespace
-
-MarkingTouch::MarkingTouch(const Model& model) : model_(model), collision_(*model.tool) {}
 
 void MarkingTouch::advance(const ToolMotion& motion, bool pedal, const std::function<void()>& solve, State& state,
                            StepReport& report) {

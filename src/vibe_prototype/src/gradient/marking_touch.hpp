@@ -25,6 +25,8 @@ class MarkingTouch : public MarkingDeformation {
   /// @param model  with a tool; must outlive this
   explicit MarkingTouch(const Model& model);
 
+  static bool mayReplaceSolver(const State& state);
+
   void advance(const ToolMotion& motion, bool pedal, const std::function<void()>& solve, State& state,
                StepReport& report) override;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "gradient/marking_touch.hpp"
 #include "procedure/marking_stage.hpp"
 #include "vibe_core/simulation/snapshot.hpp"
 
@@ -118,6 +119,13 @@ TEST(MarkingGradient, ACinchThatDrawsNeedsTheSolver) {
   stage.state.procedure.sutures.emplace_back().stage = Suture::Stage::Cinching;
   stage.press(0.1);
   EXPECT_TRUE(stage.state.procedure.base_x.empty());
+}
+
+TEST(MarkingGradient, TissueThatIsPulledNeedsTheSolver) {
+  State state;
+  EXPECT_TRUE(MarkingTouch::mayReplaceSolver(state));
+  state.pull.node = {0};
+  EXPECT_FALSE(MarkingTouch::mayReplaceSolver(state));
 }
 
 TEST(MarkingGradient, GasStaysInAndIsCompressed) {
