@@ -37,7 +37,7 @@ TEST(FreeBody, KeepsMomentumAndEnergyWithoutDissipation) {
   double max_stored = 0;
   for (int i = 0; i < 300; ++i) {
     ASSERT_FALSE(run.step().fallback);
-    const double stored = run.elasticEnergy();
+    const double stored = run.elastic().energy;
     max_stored = std::max(max_stored, stored);
     ASSERT_NEAR(run.kinetic() + stored, energy, 1e-3 * energy) << "step " << i;
   }
@@ -52,7 +52,7 @@ TEST(FreeBody, LosesEnergyWithDissipation) {
   const double energy = run.kinetic();
   const Eigen::Vector3d linear = run.momentum();
   for (int i = 0; i < 30; ++i) run.step();
-  EXPECT_LT(run.kinetic() + run.elasticEnergy(), 0.95 * energy);
+  EXPECT_LT(run.kinetic() + run.elastic().energy, 0.95 * energy);
   EXPECT_LT((run.momentum() - linear).norm(), 1e-5 * linear.norm()) << "dissipation does not brake the whole";
 }
 

@@ -49,10 +49,16 @@ struct Body {
   Eigen::Vector3d velocity(int i) const { return {motion.v[0][i], motion.v[1][i], motion.v[2][i]}; }
   int nodes() const { return stepper.body().nodeCount(); }
 
-  double elasticEnergy() const {
-    Eigen::VectorXd u(3 * nodes()), gradient(3 * nodes());
+  struct Elastic {
+    double energy;             // [J]
+    Eigen::VectorXd gradient;  // [N]
+  };
+  Elastic elastic() const {
+    Eigen::VectorXd u(3 * nodes());
     for (int i = 0; i < nodes(); ++i) u.segment<3>(3 * i) = position(i) - stepper.body().rest[i];
-    return stepper.body().elements->evaluate(u.data(), gradient.data());
+    Elastic out{0, Eigen::VectorXd(u.size())};
+    out.energy = stepper.body().elements->evaluate(u.data(), out.gradient.data());
+    return out;
   }
   double kinetic() const {
     double sum = 0;
