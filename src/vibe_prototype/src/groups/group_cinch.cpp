@@ -19,8 +19,11 @@ class GroupBlock : public ConstraintBlock, public SubstepLoad {
     return groups_.count() > 0 ? &groups_ : nullptr;
   }
 
-  void store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override {
+  double store(const StepContext& context, const BodyLoads&, std::vector<ToolTouch>&) override {
+    const EnergyAccount& sum = context.state.energy;
+    const double before = sum.pull_work + sum.thread_work;
     groups_.report(context.state);
+    return sum.pull_work + sum.thread_work - before;
   }
 
   void recover(const StepContext& context) override {
