@@ -124,13 +124,13 @@ std::vector<Supernode> symbolicFactor(const BlockPattern& pattern, std::vector<i
   return supernodes;
 }
 
-// Measured on the AVX2 path: the entries of a panel stream at about kNumber cycles each (both passes). Every row of a
-// supernode is gathered and scattered once. Every tile of 8 columns and every supernode has a fixed overhead.
+// Measured on the AVX2 path: the entries of a panel stream at about kNumberCost cycles each (both passes). Every row of
+// a supernode is gathered and scattered once. Every tile of 8 columns and every supernode has a fixed overhead.
 double solveCost(int nodes, int rows) {
-  constexpr double kNumber = 0.25, kRow = 2.5, kTile = 30, kSupernode = 120;
+  constexpr double kNumberCost = 0.25, kRowCost = 2.5, kTileCost = 30, kSupernodeCost = 120;
   const double columns = 3.0 * nodes, all_rows = columns + 3.0 * rows;
   const double numbers = columns * (all_rows + 4 - columns / 2);
-  return kNumber * numbers + kRow * all_rows + kTile * (columns / 8 + 1) + kSupernode;
+  return kNumberCost * numbers + kRowCost * all_rows + kTileCost * (columns / 8 + 1) + kSupernodeCost;
 }
 
 namespace {
