@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "output/result_row.hpp"
-#include "procedure/suturing.hpp"
 #include "vibe_core/procedure/procedure_registry.hpp"
 #include "vibe_core/procedure/stitch.hpp"
 #include "vibe_core/suture/technique.hpp"
