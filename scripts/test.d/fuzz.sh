@@ -12,7 +12,7 @@
 #   // includes: ../vibe_firmware/fuzz ...         folders for headers of the file, relative to its package
 #   // packages: yaml-cpp ...                      of pkg-config
 #   // units: 100                                  that it must execute at least, if not 1000
-# Every file may include public headers of all packages, and those of the src and fuzz folders of its own. A source that
+# Every file may include public headers of all packages, and those of the src, node and fuzz folders of its own. A source that
 # several programs name is compiled once.
 source "$(dirname -- "${BASH_SOURCE[0]}")/../lib/check.sh"
 
@@ -59,7 +59,7 @@ objectOf() {
 compiles() {
   local folder own includes=() object
   own=$(sed -E "s|^($root/src/[^/]+)/.*|\1|" <<<"$1")
-  for folder in "$root"/src/*/include "$root/src/vibe_firmware/src" "$own/src" "$own/fuzz"; do includes+=("-I$folder"); done
+  for folder in "$root"/src/*/include "$root/src/vibe_firmware/src" "$own/src" "$own/node" "$own/fuzz"; do includes+=("-I$folder"); done
   for folder in $(named "$1" includes); do includes+=("-I$own/$folder"); done
   object=$(objectOf "$1")
   # shellcheck disable=SC2086

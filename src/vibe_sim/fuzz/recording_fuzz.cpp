@@ -1,5 +1,4 @@
 // sources: node/recording/step_input_reader.cpp
-// includes: node
 #include <cstdlib>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// sources: src/camera/recording_source.cpp src/calibrate/stop_list.cpp ../vibe_core/src/scene/yaml_source.cpp
+// sources: src/camera/frame_table.cpp src/calibrate/stop_list.cpp ../vibe_core/src/scene/yaml_source.cpp
 // sources: ../vibe_core/src/scene/yaml_guard.cpp ../vibe_core/src/scene/unit.cpp ../vibe_core/src/scene/words.cpp
 // sources: ../vibe_core/src/common/files.cpp
 // includes: ../vibe_core/src
@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "camera/recording_source.hpp"
+#include "camera/frame_table.hpp"
 #include "vibe_core/common/error.hpp"
 #include "vibe_vision/calibrate/stop_list.hpp"
 
