@@ -70,5 +70,9 @@ using DenseUpdate = void (*)(const Real* a, int row_panels, const Real* b, int d
 /// @tparam Real  float or double
 template <class Real>
 DenseUpdate<Real> denseUpdate(KernelPath path);
+template <>
+DenseUpdate<float> denseUpdate(KernelPath path);
+template <>
+DenseUpdate<double> denseUpdate(KernelPath path);
 
 }  // namespace vibe
