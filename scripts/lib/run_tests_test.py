@@ -96,7 +96,7 @@ class RunnerTest(unittest.TestCase):
         self.with_file("_ctest_cases", GOOD + GOOD + SKIPPED)
         self.script("words", "# Words.\n# kind: waiting\necho 'ok one'; echo 'skipped two (later)'; echo 'figure 7'\n")
         said = self.run_it()
-        self.assertRegex(said, r"(?m)^\[[123]/3\] ok +cases  \d\.\d s, processor \d\.\d s  \(3 cases, 1 skipped\)$")
+        self.assertRegex(said, r"(?m)^\[[123]/3\] ok +cases  \d\.\d s  \(3 cases, 1 skipped\)$")
         self.assertIn("Skipped:\n  no board\n  two (later)\n", said)
         self.assertNotIn("figure", said)
         self.assertRegex(said, r"(?m)^  pack +2 .* s .* s$")

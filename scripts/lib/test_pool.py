@@ -45,7 +45,6 @@ class Run:
         self.asked = None  # when its processes were asked to end
         self.timed_out = False
         self.status = None
-        self.processor_seconds = 0.0  # of the test and of all it has waited for
         self.mark = "VIBE_TEST_OF_{}={}".format(os.getpid(), os.path.basename(scratch))
         self.process = self.start()
 
@@ -88,15 +87,6 @@ class Run:
             except OSError:
                 pass
 
-    def poll(self):
-        """The exit status, None while the test runs; as Popen.poll(), but it learns what the test has used."""
-        if self.process.returncode is None:
-            pid, status, usage = os.wait4(self.process.pid, os.WNOHANG)
-            if pid:
-                self.process.returncode = os.waitstatus_to_exitcode(status)
-                self.processor_seconds = usage.ru_utime + usage.ru_stime
-        return self.process.returncode
-
     def stop(self):
         """Asks every process of the test to end."""
         self.asked = time.monotonic()
@@ -107,7 +97,7 @@ class Run:
         if self.process is None:
             self.end = time.monotonic()
             return True
-        now, self.status = time.monotonic(), self.poll()
+        now, self.status = time.monotonic(), self.process.poll()
         if self.status is not None and self.end is None:
             self.end = now
         if self.status is not None and not self.members():

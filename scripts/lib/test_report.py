@@ -46,8 +46,7 @@ def show_script(run, verbose):
 
 def show_run(run, result, place, verdict, verbose):
     """The line of a finished test and what belongs to it."""
-    say("{} {:<8} {}  {:.1f} s, processor {:.1f} s  ({})".format(
-        place, verdict, run.test.name, run.seconds(), run.processor_seconds, cases_in_words(result)))
+    say("{} {:<8} {}  {:.1f} s  ({})".format(place, verdict, run.test.name, run.seconds(), cases_in_words(result)))
     if result.failures:
         show_failure(run)
     else:
@@ -64,23 +63,21 @@ def covered(spans):
 
 
 def show_table(title, runs, key):
-    """Wall time, test seconds and processor seconds of each group of runs."""
+    """Wall time and test seconds of each group of runs."""
     groups = {}
     for run in runs:
         groups.setdefault(key(run), []).append(run)
-    say("{:<24} {:>6} {:>12} {:>14} {:>12}".format(title, "tests", "wall time", "test seconds", "processor"))
+    say("{:<24} {:>6} {:>12} {:>14}".format(title, "tests", "wall time", "test seconds"))
     for name, members in sorted(groups.items()) + [("all", runs)]:
         spans = [(run.begin, run.end) for run in members]
         tests = len({run.test.name for run in members})
-        say("  {:<22} {:>6} {:>10.1f} s {:>12.1f} s {:>10.1f} s".format(
-            name, tests, covered(spans), sum(b - a for a, b in spans), sum(run.processor_seconds for run in members)))
+        say("  {:<22} {:>6} {:>10.1f} s {:>12.1f} s".format(name, tests, covered(spans), sum(b - a for a, b in spans)))
 
 
 def show_times(runs):
-    say("Slowest, with their processor time:")
+    say("Slowest:")
     for run in sorted(runs, key=lambda run: -run.seconds())[:SLOWEST]:
-        name = os.path.basename(run.log)[: -len(".log")]
-        say("  {:>8.1f} s {:>8.1f} s  {}".format(run.seconds(), run.processor_seconds, name))
+        say("  {:>8.1f} s  {}".format(run.seconds(), os.path.basename(run.log)[: -len(".log")]))
     show_table("Package", runs, lambda run: run.test.group)
     show_table("Kind", runs, lambda run: run.test.kind)
 
