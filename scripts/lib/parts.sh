@@ -1,6 +1,7 @@
 # The parts of the workspace: what is installed and built when it is first asked for. Sourced, never run.
 
-# packagesOf PART: the packages of a part; they need no package of another part but those of `session`.
+# packagesOf PART: the packages of a part; to be built without tests they need no other part but `session`, except that
+# `tests` needs all of them. A program that starts nodes of further parts names these (`parts()` in vibe_bringup).
 packagesOf() {
   case $1 in
     session) echo vibe_cmake vibe_msgs vibe_core vibe_description vibe_node vibe_sim vibe_graphics vibe_endoscope vibe_rviz_plugins vibe_sessions vibe_bringup ;;

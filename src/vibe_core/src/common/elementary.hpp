@@ -2,7 +2,7 @@
 
 /// Elementary functions that give the same bits with every compiler, processor and C library: made of + - * / and
 /// square roots of IEEE doubles, which are exact to the last bit. The C library promises no last bit, and selects code
-/// by processor. Use these in the library; scripts/test.d/same_bits.sh fails if it calls others.
+/// by processor. Use these in the library; scripts/test.d/plain_cmake.sh fails if it calls others.
 ///
 /// The largest errors that test/common/elementary_test.cpp finds are below 0.9 units in the last place, most below 0.6.
 /// Special values (zero, infinity, NaN, arguments out of range) are those of the C library. No errno, no flags.

@@ -1,4 +1,4 @@
-// Whole steps give the same bits with every instruction set; scripts/test.d/same_bits.sh compares compilers too.
+// Whole steps give the same bits with every instruction set; scripts/test.d/plain_cmake.sh compares compilers too.
 #include <gtest/gtest.h>
 
 #include <vector>
