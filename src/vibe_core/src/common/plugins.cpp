@@ -21,11 +21,20 @@ std::string findPlugin(const std::string& name) {
   return name;
 }
 
+// What the library registers as it is loaded may be refused.
+void* loadPlugin(const std::string& name) {
+  try {
+    return dlopen(findPlugin(name).c_str(), RTLD_NOW);
+  } catch (const Error& error) {
+    throw Error("VIBE_PLUGINS names '" + name + "', which registers something that is refused: " + error.what());
+  }
+}
+
 void loadAll() {
   const char* names = std::getenv("VIBE_PLUGINS");
   std::istringstream list(names == nullptr ? "" : names);
   for (std::string name; std::getline(list, name, ':');)
-    if (!name.empty() && dlopen(findPlugin(name).c_str(), RTLD_NOW) == nullptr)
+    if (!name.empty() && loadPlugin(name) == nullptr)
       throw Error("VIBE_PLUGINS names '" + name + "', which cannot be loaded (" + dlerror() +
                   "); build its package, or give the path of the library.");
 }

@@ -107,8 +107,6 @@ double sweepShell(ShellSweep& s) {
   });
 }
 
-}  // namespace
-
 #ifdef VIBE_KERNEL_SET  // not in the kernel for AVX-512, which has a source of its own
 template <class Set>
 constexpr const char* kSetName = "sse2";
@@ -116,7 +114,11 @@ template <>
 constexpr const char* kSetName<FusedSse2> = "sse2, fused";
 template <>
 constexpr const char* kSetName<KernelSets::Avx2> = "avx2";
+#endif
 
+}  // namespace
+
+#ifdef VIBE_KERNEL_SET
 ShellKernel VIBE_KERNEL(shellKernel)() {
   using Set = KernelSets::VIBE_KERNEL_SET;
   using Kernel = ShellKernelOf<Set>;
