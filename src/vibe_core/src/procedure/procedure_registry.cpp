@@ -1,6 +1,5 @@
 #include "vibe_core/procedure/procedure_registry.hpp"
 #include "scene/word_registry.hpp"
-#include "vibe_core/common/error.hpp"
 #include "vibe_core/model/model.hpp"
 
 namespace vibe {
@@ -20,7 +19,6 @@ WordRegistry<MarkingDeformationFactory>& markingDeformations() {
 }  // namespace
 
 void registerCinchModel(const std::string& name, const std::string& meaning, std::shared_ptr<const CinchModel> model) {
-  if (!model) throw Error("cinch model '" + name + "': there is no model; pass one");
   cinchModels().add(name, meaning, std::move(model));
 }
 
@@ -30,7 +28,6 @@ std::shared_ptr<const CinchModel> findCinchModel(const std::string& name) {
 
 void registerMarkingDeformation(const std::string& name, const std::string& meaning,
                                 MarkingDeformationFactory factory) {
-  if (!factory) throw Error("marking deformation '" + name + "': there is no factory; pass one");
   markingDeformations().add(name, meaning, std::move(factory));
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "vibe_core/common/error.hpp"
 #include "vibe_core/scene/words.hpp"
 
 namespace vibe {
@@ -14,8 +15,10 @@ class WordRegistry {
  public:
   explicit WordRegistry(const char* key) : key_(key) {}
 
-  /// @throws Error if the word is not usable, see addChoice()
+  /// @throws Error if the word is not usable, see addChoice(), or nothing is behind it
   void add(const std::string& word, const std::string& meaning, Thing thing) {
+    if (!thing)
+      throw Error(std::string(key_) + ": nothing is behind '" + word + "'; pass a model or a factory that is not null");
     const std::lock_guard<std::mutex> lock(mutex_);
     addChoice(key_, {word, meaning});
     things_.emplace(word, std::move(thing));

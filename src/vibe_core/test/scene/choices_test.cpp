@@ -62,9 +62,9 @@ TEST(Choices, WaysOfTheProcedureAreRegisteredOnce) {
   EXPECT_EQ(findCinchModel("rope"), rope);
   EXPECT_EQ(findCinchModel("thread"), nullptr) << "the library's own";
   EXPECT_ERROR(registerCinchModel("rope", "", rope), "exists already");
-  EXPECT_ERROR(registerCinchModel("none", "", nullptr), "there is no model");
+  EXPECT_ERROR(registerCinchModel("none", "", nullptr), "suture.cinch_model: nothing is behind 'none'");
   EXPECT_ERROR(registerMarkingDeformation("solver", "", [](const Model&) { return nullptr; }), "exists already");
-  EXPECT_ERROR(registerMarkingDeformation("none", "", {}), "there is no factory");
+  EXPECT_ERROR(registerMarkingDeformation("none", "", {}), "marking.deformation: nothing is behind 'none'");
 }
 
 }  // namespace

@@ -113,6 +113,9 @@ TEST(SceneProperty, ComparisonSeesEveryRow) {
     Scene a = completeScene();
     Scene b = a;
     if (std::holds_alternative<GeometryScene::Kind& (*)(Scene&)>(row.access)) continue;
+    // packages may add words to a list that has one
+    if (const auto* text = std::get_if<std::string& (*)(Scene&)>(&row.access); text && wordsOf(row).size() == 1)
+      (*text)(b) = "another";
     for (int k = 0; k < 20 && valueText(row, a) == valueText(row, b); ++k) {
       std::visit(Randomise{row, b, random}, row.access);
     }
