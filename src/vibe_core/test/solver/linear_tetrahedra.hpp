@@ -7,6 +7,7 @@
 
 #include "vibe_core/tissue/elastic_elements.hpp"
 #include "vibe_core/tissue/material_registry.hpp"
+#include "vibe_testing/tet_box.hpp"
 
 /// Solids for the tests of implicit steps, in double precision throughout.
 namespace vibe::test {
@@ -17,31 +18,9 @@ struct TetMesh {
   Material material;
 };
 
-/// A box of cubes with the given number along each axis, cut into six tetrahedra each (Kuhn's division).
 inline TetMesh tetBox(std::array<int, 3> cubes, double side, const Material& material) {
-  TetMesh mesh;
-  mesh.material = material;
-  const auto number = [&](const std::array<int, 3>& at) {
-    return (at[0] * (cubes[1] + 1) + at[1]) * (cubes[2] + 1) + at[2];
-  };
-  std::array<int, 3> c;
-  for (c[0] = 0; c[0] <= cubes[0]; ++c[0])
-    for (c[1] = 0; c[1] <= cubes[1]; ++c[1])
-      for (c[2] = 0; c[2] <= cubes[2]; ++c[2]) mesh.nodes.push_back(side * Eigen::Vector3d(c[0], c[1], c[2]));
-  for (c[0] = 0; c[0] < cubes[0]; ++c[0])
-    for (c[1] = 0; c[1] < cubes[1]; ++c[1])
-      for (c[2] = 0; c[2] < cubes[2]; ++c[2]) {
-        std::array<std::size_t, 3> axes = {0, 1, 2};
-        do {
-          std::array<int, 3> at = c;
-          std::array<int, 4> element = {number(at), 0, 0, 0};
-          for (std::size_t k = 0; k < 3; ++k) ++at[axes[k]], element[k + 1] = number(at);
-          const bool odd = (axes[0] > axes[1]) ^ (axes[0] > axes[2]) ^ (axes[1] > axes[2]);
-          if (odd) std::swap(element[2], element[3]);
-          mesh.elements.push_back(element);
-        } while (std::next_permutation(axes.begin(), axes.end()));
-      }
-  return mesh;
+  TetBox box = kuhnBox(cubes, side);
+  return {std::move(box.nodes), std::move(box.elements), material};
 }
 
 /// Linear tetrahedra of any law, with the exact second derivative less its negative eigenvalues.
