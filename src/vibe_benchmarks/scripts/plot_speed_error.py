@@ -12,14 +12,11 @@ from plot_lib import label_log_axes, parse_arguments, plt, read_table, save, set
 
 PULL = "pull_20mm"
 WORST = 1.0  # errors beyond are drawn at the edge, as triangles with their figure
-# method: name, colour, marker; the last three are those of version 0.1.0, which are in the published table only
+# method: name, colour, marker
 FAMILIES = {
     "implicit": ("shell, generalised alpha", "tab:blue", "o"),
     "euler": ("shell, backward Euler", "tab:cyan", "o"),
     "shape_matching": ("shape matching", "tab:purple", "D"),
-    "linear_tet": ("linear tetrahedra, one layer", "tab:green", "s"),
-    "gradient_domain": ("gradient-domain deformation", "tab:brown", "P"),
-    "bullet_softbody": ("Bullet's soft body", "tab:orange", "o"),
 }
 PROTOTYPE = (16, 18)  # ms per frame that Erden et al. report for 3,618 particles, without an error
 # column: (largest CPU time of a frame [ms], largest error); the third one of the motion is 17 steps of 0.6 ms
@@ -51,8 +48,7 @@ def label(setting):
 
 def per_frame(row):
     """Time of a 60 Hz frame: the solver is timed per step, other methods per frame."""
-    timed_by_step = row["method"] in ("implicit", "linear_tet")
-    return number(row["ms_p50"]) * (step_rate(row["setting"]) / 60 if timed_by_step else 1)
+    return number(row["ms_p50"]) * (step_rate(row["setting"]) / 60 if row["method"] == "implicit" else 1)
 
 
 def points_of(rows, column):

@@ -1,0 +1,187 @@
+"""What scripts/accuracy measures: sections, each a file of docs/measured, and their parts, each a run of a program."""
+
+import csv
+import dataclasses
+import glob
+import json
+import os
+import re
+import resource
+import subprocess
+import tempfile
+
+SESSION_TEXT = "first_session.txt"  # what the first session printed, which README shows
+STOMACH = "package://vibe_core/scenes/stomach.yaml"
+SCENES = {  # variants of the default scene: a text that follows its line, or (line to remove, None)
+    "rigid": ("  compliance: {}", None),
+    "coarse": (None, "geometry: {particles: 900}\ngas: {flow_limit: 30 L/min}\n"),
+    "shape_matching": (None, "tissue: {model: shape_matching, young_modulus: 100 kPa, self_contact: false}\n"),
+}
+ORGANS = ("stomach", "stomach_small", "stomach_large", "stomach_j", "stomach_steer_horn", "stomach_8mmhg",
+          "stomach_12mmhg")
+QUICK_CASES = ("case4_sphere", "case5_inflation", "case5_limit", "case6_bite", "case6_bite_refined", "case7_cinch")
+MEASURES = ("time", "sets", "sets_as_planned", "bites", "bites_full_thickness", "tear_outs", "missed_bites", "slips",
+            "bites_per_5_min", "max_force", "max_pressure", "area_reduction", "volume_reduction", "length_reduction",
+            "tool_work", "gas_work", "thread_work", "correction_work", "energy_balance")
+
+
+@dataclasses.dataclass(frozen=True)
+class Part:
+    """One run of a program, without the option that names its table. {NAME} in a word is a scene of SCENES, {root} the
+    workspace."""
+    name: str
+    words: tuple
+    minutes: float  # of processor time, about
+    quick: bool = False  # is run by the test
+
+
+@dataclasses.dataclass(frozen=True)
+class Section:
+    name: str
+    about: str
+    keys: tuple  # columns that name a row of a part
+    compared: tuple  # columns that the test compares, where parts are quick
+    parts: tuple
+
+
+def case_parts(root):
+    for case in sorted(glob.glob(os.path.join(root, "src/vibe_benchmarks/cases/*.yaml"))):
+        name = os.path.splitext(os.path.basename(case))[0]
+        words = ("vibe_bench", "--case", "{root}/src/vibe_benchmarks/cases/" + name + ".yaml")
+        yield Part(name, words, 0.1, name in QUICK_CASES)
+
+
+def contact_parts():
+    rates = ("--rate", "60", "120", "240")
+    for name, minutes in (("free", 1), ("free_closed", 1), ("pressed", 2), ("wound", 6), ("cinch1", 3), ("cinch6", 8)):
+        yield Part(name, ("vibe_contact", "states", name, *rates), minutes)
+    yield Part("pressed_rigid", ("vibe_contact", "states", "pressed", "--scene", "{rigid}", *rates), 2)
+    words = ("vibe_contact", "states", "free", "pressed", "--rate", "1020", "--iterations", "1", "--no-reference")
+    yield Part("steps_1_ms", words, 1)
+
+
+def hard_parts():
+    for name, minutes in (("ram_0.15", 1), ("ram_0.3", 1), ("ram_0.5", 1), ("ram_1", 1), ("wind", 2), ("across", 2),
+                          ("desufflate", 2), ("sets_20", 10), ("over_set", 2), ("pressure", 1), ("sleeve", 6),
+                          ("8x7", 5), ("14x4", 7)):
+        yield Part(name, ("vibe_contact", "hard", name), minutes)
+    for seed in range(1, 11):
+        yield Part("random_{}".format(seed), ("vibe_contact", "hard", "random", "--seed", str(seed)), 1)
+
+
+def organ_parts(meshes):
+    script = ("--script", "package://vibe_core/trainees/expert.yaml")
+    for name in ORGANS:
+        yield Part(name, ("vibe_headless", "--scene", f"package://vibe_core/scenes/{name}.yaml", *script), 12)
+    for mesh in meshes:
+        name = "imported_" + os.path.splitext(os.path.basename(mesh))[0]
+        yield Part(name, ("vibe_headless", "--scene", STOMACH, "--mesh", mesh, *script), 12)
+
+
+STATE_ERRORS = ("motion_error", "motion_error_end", "force_error", "force_error_end", "largest_force_N")
+
+
+def guard_parts():
+    reference = ("--reference-rate", "240", "--reference-iterations", "4")
+    words = ("vibe_contact", "states", "pressed", "wound", "cinch1", "--scene", "{coarse}", *reference)
+    yield Part("states", words, 0.2, True)
+    words = ("vibe_contact", "refinement", "--scene", "{coarse}", "--particles", "900", "--sites", "1")
+    yield Part("refinement", words, 0.1, True)
+
+
+def refinement_parts():
+    for count in (1000, 2000, 3618, 8000, 16000):
+        yield Part(str(count), ("vibe_contact", "refinement", "--particles", str(count)), count / 1500)
+
+
+def session_parts():
+    trainees = "package://vibe_core/trainees/"
+    yield Part("first", ("vibe_headless", "--script", trainees + "first.yaml"), 1)
+    yield Part("grabs", ("vibe_headless", "--script", trainees + "demo/grabs.yaml"), 0.5)
+    words = ("vibe_headless", "--scene", "{shape_matching}", "--script", trainees + "demo/grabs.yaml")
+    yield Part("grabs_shape_matching", words, 1.5)
+
+
+def sections(root, meshes=()):
+    """All of them, quick ones first."""
+    case = ("case", "method", "setting")
+    return (
+        Section("guard", "states of contact and a grip with 900 particles: what the test runs",
+                ("state", "grip", "site"), (*STATE_ERRORS, "iterations_mean", "force_N"), tuple(guard_parts())),
+        Section("fem", "shell and tetrahedra against finite elements", case, ("reference_error", "energy_drift"),
+                tuple(case_parts(root))),
+        Section("motion", "speed and error of settings, cost by number of particles", (*case, "particles"), (),
+                (Part("methods", ("vibe_bench", "--methods"), 8),)),
+        Section("pulling", "two bites pulled together by thread and by groups", case, (),
+                (Part("pulling", ("vibe_bench", "--pulling"), 3),)),
+        Section("states", "steps in contact", ("state", "rate", "iterations"), STATE_ERRORS, tuple(contact_parts())),
+        Section("refinement", "force of a grip on finer meshes", ("grip", "site"), (), tuple(refinement_parts())),
+        Section("hard", "hard cases of contact", ("case",), (), tuple(hard_parts())),
+        Section("scenarios", "time of each suture set", ("scenario", "set"), (),
+                (Part("scenarios", ("vibe_sutures", "scenarios", "--quick"), 12),)),
+        Section("outcomes", "idealised sleeves in C, U and Z", ("trial", "pattern"), (),
+                (Part("outcomes", ("vibe_sutures", "outcomes"), 60),)),
+        Section("sessions", "the first session and a minute of grabs", (), (), tuple(session_parts())),
+        Section("organs", "an expert's sleeve on all organs", (), (), tuple(organ_parts(meshes))),
+    )  # fmt: skip
+
+
+def write_scene(root, name, folder):
+    """A variant of the default scene as a file of its own."""
+    removed, added = SCENES[name]
+    with open(os.path.join(root, "src/vibe_core/scenes/stomach.yaml"), encoding="utf-8") as text:
+        lines = text.read().splitlines(keepends=True)
+    if removed:
+        kept = [line for line in lines if not line.startswith(removed)]
+        if len(kept) != len(lines) - 1:
+            raise ValueError("stomach.yaml has no line '{}'".format(removed))
+        scene = "".join(kept)
+    else:
+        scene = "base: {}\nname: {}\n{}".format(STOMACH, name, added)
+    file = os.path.join(folder, name + ".yaml")
+    with open(file, "w", encoding="utf-8") as out:
+        out.write(scene)
+    return file
+
+
+def session_row(said, measures):
+    """What a session of vibe_headless printed and its table of measures, as one row."""
+    row = {name: "{:.6g}".format(value) if value is not None else ""
+           for name in MEASURES for value in (measures["measures"][name]["value"],)}
+    row["steps"], row["state_hash"] = measures["steps"], measures["state_hash"]
+    solver = r"^solver per step +([\d.]+) ms p50 +([\d.]+) ms p99 +([\d.]+) ms max.* of (\d+) particles"
+    row["ms_p50"], row["ms_p99"], row["ms_max"], row["particles"] = re.search(solver, said, re.MULTILINE).groups()
+    times = [float(found) for found in re.findall(r"^ +\d+ +\w+ .* ([\d.]+)  cinched$", said, re.MULTILINE)]
+    row["set_s_least"], row["set_s_most"] = (min(times), max(times)) if times else ("", "")
+    return row
+
+
+class Runner:
+    """Runs parts with the programs of a devel folder."""
+
+    def __init__(self, root, devel, log):
+        self.root, self.devel, self.log = root, devel, log
+
+    def program(self, name):
+        package = "vibe_core" if name == "vibe_headless" else "vibe_benchmarks"
+        return os.path.join(self.devel, "lib", package, name)
+
+    def file(self, name, folder):
+        return self.root if name == "root" else write_scene(self.root, name, folder)
+
+    def run(self, part):
+        """Rows of the part, its processor time [s], and what the program printed."""
+        with tempfile.TemporaryDirectory(prefix="vibe_accuracy.") as folder:
+            words = [re.sub(r"\{(\w+)\}", lambda found: self.file(found.group(1), folder), word) for word in part.words]
+            table = os.path.join(folder, "table")
+            option = "--measures" if words[0] == "vibe_headless" else "--csv"
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            done = subprocess.run([self.program(words[0]), *words[1:], option, table], stdout=subprocess.PIPE,
+                                  stderr=self.log, check=True, text=True)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            with open(table, newline="", encoding="utf-8") as stream:
+                if option == "--csv":
+                    rows = list(csv.DictReader(stream))
+                else:
+                    rows = [session_row(done.stdout, json.load(stream))]
+        return rows, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, done.stdout
