@@ -67,6 +67,7 @@ def hard_parts():
         yield Part(name, ("vibe_contact", "hard", name), minutes)
     for seed in range(1, 11):
         yield Part("random_{}".format(seed), ("vibe_contact", "hard", "random", "--seed", str(seed)), 1)
+        yield Part("jump_{}".format(seed), ("vibe_contact", "hard", "jump", "--seed", str(seed)), 1)
 
 
 def organ_parts(meshes):

@@ -28,6 +28,7 @@ CASES = {
 HARD = {  # a stem that ends with _ stands before a speed or seed
     "ram_": "scope rams the wall by 60 mm, m/s: ",
     "random_": "joints driven at random for 30 s, seed ",
+    "jump_": "wound in and holding, joints sent from limit to limit every 0.2 s for 20 s, seed ",
     "wind": "helix wound 20 turns in a fold, pulled 60 mm",
     "across": "cinch to 5 mm at 8 N across the lumen",
     "desufflate": "insufflator off while sutured",

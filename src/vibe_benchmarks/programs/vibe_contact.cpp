@@ -158,7 +158,7 @@ void runHard(const Options& options) {
   printHardHeader(std::cerr);
   const bool all = options.names.empty() && options.scripts.empty();
   for (const std::string& name : all ? hardCaseNames() : options.names)
-    for (const std::uint64_t seed : name == "random" ? options.seeds : std::vector<std::uint64_t>{1})
+    for (const std::uint64_t seed : name == "random" || name == "jump" ? options.seeds : std::vector<std::uint64_t>{1})
       run(cases.prepare(name, seed));
   for (const std::string& script : options.scripts) run(cases.session(script, options.duration));
   save(options.csv, [&](std::ostream& out) { writeHardResults(results, out); });

@@ -142,7 +142,7 @@ class Runner {
       result_.account.*term = state.energy.*term - hard_.start.energy.*term;
     });
     result_.speed = maxSpeed(state);
-    result_.away = farthest(state, hard_.start);
+    result_.away = farthest(state, hard_.home);
     result_.hash = simulation_->hash();
   }
 

@@ -30,6 +30,7 @@ struct HardCase {
   std::string name;
   std::shared_ptr<const Model> model;
   State start;
+  State home;  ///< where tissue ends that returns
   std::vector<HardPhase> phases;
   bool returns = true;  ///< nothing lasting is done: the tissue has to end where it began
 };
@@ -59,7 +60,7 @@ struct HardResult {
   double worst_balance = 0;  ///< largest such difference at any time, with its sign [J]
   EnergyAccount account;     ///< at the end minus at the start [J]
   double speed = 0;          ///< fastest particle at the end [m/s]
-  double away = 0;           ///< farthest particle from its place at the start [m]
+  double away = 0;           ///< farthest particle from its place at home [m]
   bool returns = true;       ///< as in the case
   std::uint64_t hash = 0;
 };

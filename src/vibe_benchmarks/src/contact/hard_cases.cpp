@@ -12,7 +12,7 @@
 namespace vibe::benchmarks {
 
 const std::vector<std::string>& hardCaseNames() {
-  static const std::vector<std::string> kNames{"ram_0.15", "ram_0.3", "ram_0.5",    "ram_1",   "random",
+  static const std::vector<std::string> kNames{"ram_0.15", "ram_0.3", "ram_0.5",    "ram_1",   "random", "jump",
                                                "wind",     "across",  "desufflate", "sets_20", "over_set",
                                                "pressure", "sleeve",  "8x7",        "14x4"};
   return kNames;
@@ -22,6 +22,7 @@ std::string describeHardCases() {
   return "  ram_V       the scope, straight, is pushed 60 mm into the wall at V m/s and withdrawn\n"
          "  random      all joints go to random places within their limits and speeds, buttons are pressed at random,\n"
          "              for 30 s\n"
+         "  jump        wound in and holding, all joints go at their own speeds to random limits every 0.2 s, for 20 s\n"
          "  wind        the helix, turned 20 times while it holds, is turned by half a turn and pulled by 60 mm\n"
          "  across      two bites 150 mm apart are cinched with 8 N, then the thread is removed\n"
          "  desufflate  two sets, then the gas is let out and in again\n"
@@ -48,6 +49,8 @@ HardCase HardCases::prepare(const std::string& name, std::uint64_t seed) {
     hard = ram(std::stod(name.substr(4)));
   else if (name == "random")
     hard = random(seed);
+  else if (name == "jump")
+    hard = jump(seed);
   else if (name == "wind")
     hard = wind();
   else if (name == "across")
@@ -68,7 +71,7 @@ HardCase HardCases::prepare(const std::string& name, std::uint64_t seed) {
     hard = sleeve();
   else
     throw Error("There is no hard case '" + name + "'; the program's help names those there are.");
-  hard.name = name == "random" ? name + "_" + std::to_string(seed) : name;
+  hard.name = name == "random" || name == "jump" ? name + "_" + std::to_string(seed) : name;
   return hard;
 }
 
@@ -77,7 +80,7 @@ HardCase HardCases::session(const std::string& script, double longest) const {
   HardCase hard;
   hard.name = trainee->name();
   hard.model = model_;
-  hard.start = initialState(*model_, model_->scene.seed);
+  hard.start = hard.home = initialState(*model_, model_->scene.seed);
   hard.returns = false;
   HardPhase phase;
   phase.name = "session";
@@ -90,7 +93,7 @@ HardCase HardCases::session(const std::string& script, double longest) const {
 HardCase HardCases::begin() const {
   HardCase hard;
   hard.model = model_;
-  hard.start = settled_;
+  hard.start = hard.home = settled_;
   return hard;
 }
 

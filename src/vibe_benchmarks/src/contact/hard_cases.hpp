@@ -39,6 +39,8 @@ class HardCases {
   HardCase ram(double speed) const;
   HardCase random(std::uint64_t seed) const;
   HardCase wind() const;
+  HardCase jump(std::uint64_t seed) const;
+  StepInput takeHold(HardCase& hard) const;
   HardCase cinchAcross() const;
   HardCase desufflate() const;
   HardCase manySets(int sets, int bites) const;

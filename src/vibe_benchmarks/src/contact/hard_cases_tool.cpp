@@ -18,6 +18,8 @@ constexpr double kTurns = 20;                      // of the helix
 constexpr double kWindPull = 0.06;                 // [m]
 constexpr double kAdvanceStep = 5e-4;              // of the helix in the search for the wall [m]
 constexpr double kWindReach = 8e-3;                // of it, so that it takes hold on coarse meshes too [m]
+constexpr double kLeastReach = 4e-3;                // of the helix, where it jumps [m]
+constexpr double kJumpTime = 0.2;                  // between jumps [s]
 constexpr double kSleeveTension = 8;               // [N]
 constexpr double kSleeveSpeed = 0.06;              // of the cinch [m/s]
 constexpr double kSleeveWidth = 0.085;             // half, along the wall: beyond the scope [m]
@@ -168,13 +170,9 @@ HardCase HardCases::random(std::uint64_t seed) const {
   return hard;
 }
 
-HardCase HardCases::wind() const {
-  HardCase hard = begin();
-  JointLimits limits = model_->tool->limits()[HelixRotation];
-  limits.upper = std::max(limits.upper, 2 * M_PI * (kTurns + 1));
-  Scene scene = model_->scene;
-  scene.helix->reach = std::max(scene.helix->reach, kWindReach);
-  hard.model = withScene(scene, withJointLimits(urdf_, "helix_rotation", limits));
+// Inserts the scope until it touches, advances the helix and takes hold. `hard.model` and `hard.start` in and out.
+// @returns the command that holds on
+StepInput HardCases::takeHold(HardCase& hard) const {
   insertionAtContact(hard.model, hard.start);
   Simulation simulation(hard.model, SimulationSettings::study(1));
   simulation.replaceState(hard.start);
@@ -187,6 +185,17 @@ HardCase HardCases::wind() const {
   hard.start = simulation.state();
   hard.start.step = 0;
   hard.start.time = 0;
+  return input;
+}
+
+HardCase HardCases::wind() const {
+  HardCase hard = begin();
+  JointLimits limits = model_->tool->limits()[HelixRotation];
+  limits.upper = std::max(limits.upper, 2 * M_PI * (kTurns + 1));
+  Scene scene = model_->scene;
+  scene.helix->reach = std::max(scene.helix->reach, kWindReach);
+  hard.model = withScene(scene, withJointLimits(urdf_, "helix_rotation", limits));
+  const StepInput input = takeHold(hard);
   const double turns = brief_ ? 4 : kTurns;
   StepInput wound = input, turned, pulled;
   wound.joints[HelixRotation] += 2 * M_PI * turns;
@@ -202,6 +211,41 @@ HardCase HardCases::wind() const {
   hard.phases.push_back(move("pull", 1, turned, pulled));
   hard.phases.push_back(still("hold", 0.5, pulled));
   hard.phases.push_back(still("rest", brief_ ? 1 : 3, released));
+  return hard;
+}
+
+// Wound in as far as it takes to hold with all of its force, then every joint at its own speed from limit to limit.
+HardCase HardCases::jump(std::uint64_t seed) const {
+  HardCase hard = begin();
+  std::uint64_t random = seed;
+  Scene scene = model_->scene;
+  scene.helix->reach = kLeastReach + (kWindReach - kLeastReach) * nextUniform(random);
+  hard.model = withScene(scene, urdf_);
+  StepInput wound;
+  const StepInput start = takeHold(hard);
+  wound = start;
+  wound.joints[HelixRotation] = model_->tool->limits()[HelixRotation].upper;
+  const double turning = wound.joints[HelixRotation] / model_->tool->limits()[HelixRotation].velocity;
+  hard.phases.push_back(move("wind", 1.05 * turning, start, wound));
+  std::vector<StepInput> jumps;
+  const double duration = brief_ ? 5 : 20;
+  for (int k = 0; k <= static_cast<int>(duration / kJumpTime); ++k) {
+    jumps.push_back(wound);
+    for (std::size_t j = 0; j < wound.joints.size(); ++j) {
+      const JointLimits& limits = model_->tool->limits()[j];
+      jumps.back().joints[j] = nextUniform(random) < 0.5 ? limits.lower : limits.upper;
+    }
+    if (k > 0 && nextUniform(random) < kPressProbability) jumps.back().buttons[HelixGrab] = 0;
+  }
+  const auto at = [jumps](double end) {
+    return jumps[std::min(jumps.size() - 1, static_cast<std::size_t>(end / kJumpTime))];
+  };
+  StepInput still_there = jumps.back(), out = holdAt(settled_);
+  still_there.buttons[HelixGrab] = 0;
+  hard.phases.push_back(phaseOf("jump", duration, at));
+  hard.phases.push_back(still("release", 0.25, still_there));
+  hard.phases.push_back(still("withdraw", 3, out));
+  hard.phases.push_back(still("rest", 3, out));
   return hard;
 }
 

@@ -46,6 +46,33 @@ double ToolGuard::keepApart(ToolPoses& poses, ToolMotion& motion, const SurfaceP
   return free;
 }
 
+bool ToolGuard::stop(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path, const std::vector<int>& held) {
+  held_ = held;
+  const double free = freePart(poses, motion, path);
+  if (free == 1) return false;
+  blocking_vertex_ = worst_;
+  const ToolMotion wanted = motion;
+  motion.stop(kTakenShare * free);
+  SurfacePath there = path;
+  there.part *= free;
+  moveJoints(poses, wanted, there, motion);
+  motion.linkPoses(1, poses.end);
+  return true;
+}
+
+const std::vector<int>& ToolGuard::meets(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path,
+                                         const std::vector<int>& held) {
+  held_ = held;
+  met_.clear();
+  if (freePart(poses, motion, path) == 1) return met_;
+  for (const NearTriangles::Pair& pair : pairs_)
+    if (!isDrawnIn(pair) && freePart(pair, path) < 1)
+      met_.insert(met_.end(), near_.triangles()[pair.triangle].begin(), near_.triangles()[pair.triangle].end());
+  std::sort(met_.begin(), met_.end());
+  met_.erase(std::unique(met_.begin(), met_.end()), met_.end());
+  return met_;
+}
+
 void ToolGuard::moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, ToolMotion& motion) {
   const auto target = wanted.inputs(1);
   for (int j = 0; j < kJointCount; ++j)
@@ -65,8 +92,11 @@ double ToolGuard::freePart(ToolPoses& poses, const ToolMotion& motion, const Sur
   tool_.place(poses.start, poses.end);
   near_.find(tool_, path, kKeptThickness * *std::max_element(thickness_.begin(), thickness_.end()), pairs_);
   double part = 1;
-  for (const NearTriangles::Pair& pair : pairs_)
-    if (!isDrawnIn(pair)) part = std::min(part, freePart(pair, path));
+  worst_ = -1;
+  for (const NearTriangles::Pair& pair : pairs_) {
+    const double free = isDrawnIn(pair) ? 1 : freePart(pair, path);
+    if (free < part) part = free, worst_ = near_.triangles()[pair.triangle][0];
+  }
   return part;
 }
 

@@ -21,6 +21,10 @@ class ToolGuard {
   ToolGuard(const ToolModel& tool, const SurfaceMesh& surface, const std::vector<double>& thickness,
             const std::vector<char>& passable);
 
+  /// Stops the tool on its way where it would meet the wall, up to where both stay apart on their common way.
+  /// @returns whether it stops
+  bool stop(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path, const std::vector<int>& held);
+
   /// @param poses   of the tool; in and out: `end` becomes the pose that the tool reaches
   /// @param motion  of the tool from start to end; in and out: that to the pose that it reaches
   /// @param path    of the wall
@@ -29,6 +33,13 @@ class ToolGuard {
   /// @returns the part of its path that the wall can go, 1: all of it
   double keepApart(ToolPoses& poses, ToolMotion& motion, const SurfacePath& path, const std::vector<int>& held);
 
+  /// The vertices of the triangles that the tool would meet, in ascending order; valid until the next call.
+  const std::vector<int>& meets(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path,
+                                const std::vector<int>& held);
+
+  /// A vertex of the triangle that has stopped the tool last; -1: none has.
+  int blockingVertex() const { return blocking_vertex_; }
+
  private:
   double freePart(ToolPoses& poses, const ToolMotion& motion, const SurfacePath& path);
   void moveJoints(ToolPoses& poses, const ToolMotion& wanted, const SurfacePath& path, ToolMotion& motion);
@@ -36,9 +47,11 @@ class ToolGuard {
 
   bool isDrawnIn(const NearTriangles::Pair& pair) const;
 
+  int blocking_vertex_ = -1, worst_ = -1;  // the latter: of the last freePart()
   std::vector<double> thickness_;
   std::vector<char> on_tip_;  // per shape
   std::vector<int> held_;     // vertices
+  std::vector<int> met_;
   SweptTool tool_;
   NearTriangles near_;
   std::vector<NearTriangles::Pair> pairs_;

@@ -12,6 +12,9 @@ namespace {
 // Steps until a joint that tissue has stopped tries to go on. Design choice: the tissue has a few steps to give way to
 // a tool that stands still, and the hand tries often enough to go on with it [1].
 constexpr int kStallSteps = 6;
+// Force on the tool at which the hand slows down, and at which it stops. Design choice: forces in endoscopic suturing
+// reach 8 N (Trejos 2011); a force across the shaft, which the entry bears, reaches no joint of the hand [N].
+constexpr double kHandSlows = 10, kHandStops = 20;
 
 }  // namespace
 
@@ -78,6 +81,16 @@ std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::
     const bool over = std::abs(effort[j]) > tool.limits()[j].effort;
     if (over && (end[j] - start[j]) * effort[j] > 0) result[j] = start[j];
   }
+  return result;
+}
+
+std::array<double, kJointCount> feltMotion(const std::array<double, kJointCount>& start,
+                                           const std::array<double, kJointCount>& end,
+                                           const std::array<double, kScopeJointCount>& effort, double force) {
+  const double part = std::clamp((kHandStops - force) / (kHandStops - kHandSlows), 0.0, 1.0);
+  std::array<double, kJointCount> result = end;
+  for (int j = 0; j < kScopeJointCount; ++j)
+    if ((end[j] - start[j]) * effort[j] > 0) result[j] = start[j] + part * (end[j] - start[j]);
   return result;
 }
 

@@ -64,6 +64,14 @@ std::array<double, kJointCount> stalledMotion(const ToolModel& tool, const std::
                                               const std::array<double, kJointCount>& end,
                                               const std::array<double, kScopeJointCount>& effort);
 
+/// The same with a hand that feels the force on the tip: the nearer it is to the largest that a hand applies, the less
+/// it moves a joint of the scope on against it.
+/// @param effort  of the hand on the joints in the last step [N], [N m]
+/// @param force   on the tool in the last step [N]
+std::array<double, kJointCount> feltMotion(const std::array<double, kJointCount>& start,
+                                           const std::array<double, kJointCount>& end,
+                                           const std::array<double, kScopeJointCount>& effort, double force);
+
 /// The same with joints that tissue has stopped a moment ago: the hand does not push them on in that direction.
 /// @param stall  steps for which that holds, with the sign of the direction; 0: not stopped
 std::array<double, kJointCount> heldMotion(const std::array<double, kJointCount>& start,

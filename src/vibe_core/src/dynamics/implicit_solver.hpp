@@ -59,7 +59,7 @@ struct ImplicitWorkspace : SolverWorkspace {
   std::array<std::vector<double>, 6> uncorrected;  // positions and velocities before corrections [m], [m/s]
   std::optional<ToolGuard> guard;                  // empty without a tool
   std::vector<int> held;                           // particles that the helix holds
-  std::array<std::vector<double>, 3> start;        // positions at the start of the step [m]
+  std::array<std::vector<double>, 9> start;        // positions, velocities, accelerations before it [m], [s]
   std::vector<ToolTouch> touches;                  // of the last step
   std::unique_ptr<ImpedanceEstimator> impedance;   // null without a tool
   ToolContactRows tool_rows;
@@ -81,16 +81,23 @@ class ImplicitStep {
 
  private:
   Activity gather();
+  void begin();
   void gatherSprings();
   ToolDisplacement expectedDisplacement() const;
   bool asleep(Activity activity) const;
   bool lost() const;
   bool heldByGas() const;
   void recover();
+  void recoverAround();
+  SurfacePath pathOfStep() const;
   bool solve();
   void yieldTool();
+  bool keepApart();
+  bool keepToolApart();
+  void noteStopped(const ToolMotion& wanted);
+  void stopWall(double part);
+  void giveWay();
   void store();
-  void keepToolApart();
   void reportTool();
   void reportHand(double tool_work);
   void reportImpedance();
@@ -111,6 +118,7 @@ class ImplicitStep {
   std::optional<ScopeSpringStep> springs_;  // of it
   ToolDisplacement expected_{};             // of it at the end of the step
   std::optional<ToolMotion> yielded_;       // its motion, after the solve
+  std::optional<ToolMotion> limited_;       // to where it can go; empty: it goes where the solve has it
   StepContext context_;
   bool tool_stopped_ = false;  // by tissue, on its way
   StepWork work_;              // of the solve

@@ -28,6 +28,9 @@ constexpr int kWakeEvery = 30;
 constexpr double kRecoveryTime = 0.5;
 // Rate of the exponential approach to rest. Design choice: e^-10 of the distance remains after kRecoveryTime [1/s].
 constexpr double kRecoveryRate = 20;
+// Times that nodes are held back which would lead a recovering wall through the tool, before the whole wall waits.
+// Design choice: what is held back spreads by a ring of triangles each time.
+constexpr int kRecoveryAttempts = 8;
 // Steps between checks for an organ that is inside out. Design choice: the check costs a pass over all triangles.
 constexpr int kCheckEvery = 10;
 
@@ -39,9 +42,13 @@ constexpr double kHeldPart = 0.5;
 // on [1].
 constexpr double kStopped = 0.1;
 
+// Positions, velocities, accelerations of the nodes.
+constexpr std::size_t kMotion = 9;
+constexpr std::array<std::vector<double> State::*, kMotion> kMotionOf{
+    &State::x, &State::y, &State::z, &State::vx, &State::vy, &State::vz, &State::ax, &State::ay, &State::az};
+
 void stopMotion(State& state) {
-  for (auto* v : {&state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az})
-    std::fill(v->begin(), v->end(), 0.0);
+  for (std::size_t k = 3; k < kMotion; ++k) std::fill((state.*kMotionOf[k]).begin(), (state.*kMotionOf[k]).end(), 0.0);
 }
 
 }  // namespace
@@ -61,13 +68,18 @@ ImplicitStep::ImplicitStep(const Model& model, const ImplicitStepper& stepper, c
 void ImplicitStep::run() {
   const Activity activity = gather();
   if (asleep(activity)) return;
-  for (const auto& block : scratch_.blocks) block->begin(context_, scratch_.loads);
+  begin();
   if (state_.solver.recovery_steps == 0 && lost()) {
     report_.put_back = true;
     state_.solver.recovery_steps = std::max(1, static_cast<int>(std::lround(kRecoveryTime / context_.step)));
   }
   if (state_.solver.recovery_steps > 0) return recover();
   if (!solve()) return;
+  if (!keepApart()) {
+    giveWay();
+    if (!solve()) return;
+    keepApart();
+  }
   store();
   updateRest(activity);
 }
@@ -76,10 +88,14 @@ void ImplicitStep::run() {
 Activity ImplicitStep::gather() {
   if (motion_ != nullptr) motion_->linkPoses(1, scratch_.tool.end);
   scratch_.loads.clear();
-  if (motion_ != nullptr && model_.scope_springs) gatherSprings();
+  if (motion_ != nullptr && model_.scope_springs && !limited_) gatherSprings();
   Activity most = Activity::Sleep;
   for (const auto& block : scratch_.blocks) most = std::max(most, block->prepare(context_, scratch_.loads));
   return most;
+}
+
+void ImplicitStep::begin() {
+  for (const auto& block : scratch_.blocks) block->begin(context_, scratch_.loads);
 }
 
 // Where the tool is expected at the end of the step is where it meets the wall, and the tool yields along the
@@ -154,6 +170,7 @@ void ImplicitStep::recover() {
   fresh.elastic_energy = -1;
   fresh.recovery_steps = state_.solver.recovery_steps - 1;
   state_.solver = fresh;
+  for (std::size_t k = 0; k < 3; ++k) scratch_.start[k] = state_.*kMotionOf[k];
   const double part = 1 - math::exp(-kRecoveryRate * context_.step);
   for (int i = 0; i < model_.particle_count; ++i) {
     const Eigen::Vector3d& rest = model_.organ.surface.vertices[i];
@@ -162,18 +179,50 @@ void ImplicitStep::recover() {
     state_.z[i] += part * (rest.z() - state_.z[i]);
   }
   stopMotion(state_);
+  if (motion_ != nullptr) recoverAround();
   for (const auto& block : scratch_.blocks) block->recover(context_);
   state_.energy.correction_work += mechanicalEnergy().total() + state_.energy.contact_energy;
+}
+
+// The tool goes as far as a wall that stands still lets it; then the wall goes to where it has no tool in its way.
+void ImplicitStep::recoverAround() {
+  scratch_.held.clear();
+  SurfacePath path = pathOfStep();
+  path.to = path.from;
+  ToolMotion motion = *motion_;
+  motion.displaceEnd(report_.tool_displacement);
+  scratch_.guard->keepApart(scratch_.tool, motion, path, scratch_.held);
+  state_.joints = motion.inputs(1);
+  if (model_.scope_springs) report_.tool_displacement = motion.displacement(1);
+  const ToolMotion stands(*model_.tool, model_.tool_base, state_.joints, state_.joints, motion.displacement(1));
+  ToolPoses there;
+  stands.linkPoses(0, there.start);
+  for (int attempt = 0; attempt < kRecoveryAttempts; ++attempt) {
+    const std::vector<int>& met = scratch_.guard->meets(there, stands, pathOfStep(), scratch_.held);
+    if (met.empty()) return;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const int i : met) (state_.*kMotionOf[k])[i] = scratch_.start[k][i];
+  }
+  for (std::size_t k = 0; k < 3; ++k) state_.*kMotionOf[k] = scratch_.start[k];
+}
+
+SurfacePath ImplicitStep::pathOfStep() const {
+  SurfacePath path;
+  for (std::size_t k = 0; k < 3; ++k)
+    path.from[k] = scratch_.start[k].data(), path.to[k] = (state_.*kMotionOf[k]).data();
+  return path;
 }
 
 // @returns false where the state became useless; the simulator then resets it
 bool ImplicitStep::solve() {
   scratch_.terms.clear();
-  scratch_.start[0] = state_.x, scratch_.start[1] = state_.y, scratch_.start[2] = state_.z;
+  for (std::size_t k = 0; k < kMotion; ++k) scratch_.start[k] = state_.*kMotionOf[k];
   for (const auto& block : scratch_.blocks) scratch_.terms.add(block->energyTerm(context_));
   contact_energy_ = state_.energy.contact_energy;
   scratch_.loads.extra = scratch_.terms.simplest();
-  const StepOutcome outcome = stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
+  const StepOutcome outcome =
+      limited_ ? stepper_.stepAgain(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper)
+                 : stepper_.step(motionOf(), scratch_.loads, state_.solver, *scratch_.stepper);
   report_.iterations = outcome.iterations;
   report_.evaluations = outcome.evaluations;
   report_.residual = outcome.residual;
@@ -194,6 +243,26 @@ void ImplicitStep::yieldTool() {
   yielded_->linkPoses(1, scratch_.tool.end);
 }
 
+// Whatever the solve left, walls and tool end on their sides.
+// @returns false where the tool cannot go as far as the solve has it, and has stopped
+bool ImplicitStep::keepApart() {
+  for (std::size_t k = 0; k < 6; ++k) scratch_.uncorrected[k] = state_.*kMotionOf[k];
+  for (const auto& block : scratch_.blocks) block->correct(context_);
+  return motion_ == nullptr || keepToolApart();
+}
+
+// The solve had the tool where it does not come to, and the wall out of its way there; where the tool stops, the same
+// wall would run into it, and both would stand still for good. Solved again with the tool where it can go, the wall
+// makes room for the next step.
+void ImplicitStep::giveWay() {
+  for (std::size_t k = 0; k < kMotion; ++k) state_.*kMotionOf[k] = scratch_.start[k];
+  motion_ = &*limited_;
+  context_.bend = nullptr;
+  yielded_.reset();
+  gather();
+  begin();
+}
+
 void ImplicitStep::store() {
   correct();
   scratch_.touches.clear();
@@ -209,18 +278,14 @@ void ImplicitStep::store() {
 
 // Corrections are motions without forces: their work is the difference of the energies.
 void ImplicitStep::correct() {
-  std::vector<double>* const now[6] = {&state_.x, &state_.y, &state_.z, &state_.vx, &state_.vy, &state_.vz};
   std::array<std::vector<double>, 6>& before = scratch_.uncorrected;
-  for (std::size_t k = 0; k < 6; ++k) before[k] = *now[k];
-  for (const auto& block : scratch_.blocks) block->correct(context_);
-  if (motion_ != nullptr) keepToolApart();
   bool changed = false;
-  for (std::size_t k = 0; k < 6; ++k) changed = changed || before[k] != *now[k];
+  for (std::size_t k = 0; k < 6; ++k) changed = changed || before[k] != state_.*kMotionOf[k];
   if (!changed) return;
   const Energies after = mechanicalEnergy();
-  for (std::size_t k = 0; k < 6; ++k) before[k].swap(*now[k]);
+  for (std::size_t k = 0; k < 6; ++k) before[k].swap(state_.*kMotionOf[k]);
   const Energies uncorrected = mechanicalEnergy();
-  for (std::size_t k = 0; k < 6; ++k) before[k].swap(*now[k]);
+  for (std::size_t k = 0; k < 6; ++k) before[k].swap(state_.*kMotionOf[k]);
   state_.energy.correction_work += after.total() - uncorrected.total();
   state_.solver.elastic_energy += (after.elastic + after.foundation) - (uncorrected.elastic + uncorrected.foundation);
 }
@@ -232,32 +297,56 @@ Energies ImplicitStep::mechanicalEnergy() const {
   return parts;
 }
 
-// Whatever the solve left, the tool stays on its side of the wall. Straight paths of all nodes have been found free of
-// crossings among each other, so they are at any common part of the paths as well.
-void ImplicitStep::keepToolApart() {
-  const std::array<std::vector<double>*, 3> x{&state_.x, &state_.y, &state_.z}, v{&state_.vx, &state_.vy, &state_.vz},
-      a{&state_.ax, &state_.ay, &state_.az};
-  SurfacePath path;
-  for (std::size_t k = 0; k < 3; ++k) path.from[k] = scratch_.start[k].data(), path.to[k] = x[k]->data();
+// @returns false where it stops for the first time in the step
+bool ImplicitStep::keepToolApart() {
+  const SurfacePath path = pathOfStep();
   ToolMotion motion = yielded_ ? *yielded_ : *motion_;
+  const ToolMotion wanted = motion;
   scratch_.held.clear();
   for (const GripPoint& point : state_.grip) scratch_.held.push_back(point.particle);
-  const double free = scratch_.guard->keepApart(scratch_.tool, motion, path, scratch_.held);
+  if (!limited_ && scratch_.guard->stop(scratch_.tool, motion, path, scratch_.held)) {
+    limited_ = motion;
+    noteStopped(wanted);
+    return false;
+  }
+  const double free = limited_ ? scratch_.guard->keepApart(scratch_.tool, motion, path, scratch_.held) : 1;
+  tool_stopped_ = limited_.has_value();
   state_.joints = motion.inputs(1);
-  const auto start = motion_->inputs(0), wanted = motion_->inputs(1);
-  tool_stopped_ = state_.joints != wanted || (yielded_ && motion.displacement(1) != yielded_->displacement(1));
-  for (std::size_t j = 0; j < start.size(); ++j)
-    if (std::abs(state_.joints[j] - start[j]) < kStopped * std::abs(wanted[j] - start[j]))
-      report_.stopped[j] = wanted[j] > start[j] ? 1 : -1;
-  if (yielded_) report_.tool_displacement = motion.displacement(1);
-  if (free >= 1) return;
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t i = 0; i < x[k]->size(); ++i) {
-      const double move = free * ((*x[k])[i] - scratch_.start[k][i]);
-      (*x[k])[i] = scratch_.start[k][i] + move;
-      (*v[k])[i] = move / context_.step;
-      (*a[k])[i] = 0;
+  if (model_.scope_springs) report_.tool_displacement = motion.displacement(1);
+  if (free < 1) stopWall(free);
+  return true;
+}
+
+// The joints that hardly come on, and whether nothing of the tool does.
+void ImplicitStep::noteStopped(const ToolMotion& wanted) {
+  const auto hardly = [](double from, double to, double target) {
+    return std::abs(to - from) < kStopped * std::abs(target - from);
+  };
+  const auto start = limited_->inputs(0), end = limited_->inputs(1), target = wanted.inputs(1);
+  bool goes = false;
+  for (std::size_t j = 0; j < start.size(); ++j) {
+    const bool stopped = hardly(start[j], end[j], target[j]);
+    if (stopped) report_.stopped[j] = target[j] > start[j] ? 1 : -1;
+    goes = goes || (target[j] != start[j] && !stopped);
+  }
+  const ToolDisplacement from = limited_->displacement(0), to = limited_->displacement(1);
+  for (std::size_t d = 0; d < from.size(); ++d)
+    goes = goes || (to[d] != from[d] && !hardly(from[d], to[d], wanted.displacement(1)[d]));
+  if (!goes) report_.blocking_particle = scratch_.guard->blockingVertex();
+}
+
+// Straight paths of all nodes have been found free of crossings among each other, so they are at any common part of the
+// paths as well.
+void ImplicitStep::stopWall(double part) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::vector<double>&x = state_.*kMotionOf[k], &v = state_.*kMotionOf[3 + k], &a = state_.*kMotionOf[6 + k];
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double move = part * (x[i] - scratch_.start[k][i]);
+      x[i] = scratch_.start[k][i] + move;
+      v[i] = move / context_.step;
+      a[i] = 0;
     }
+  }
 }
 
 void ImplicitStep::reportTool() {

@@ -79,7 +79,10 @@ const std::vector<EventRow>& eventRows() {
       {Kind::Pierced, Detail::None, "pierced", "m",
        "The needle is {value:mm} deep in the wall; hand it to the anchor exchange."},
       {Kind::ArmClosed, Detail::None, "arm closed", "",
-       "The arm closed over the anchor exchange, which holds the needle and can hand it back."}};
+       "The arm closed over the anchor exchange, which holds the needle and can hand it back."},
+      {Kind::Blocked, Detail::None, "blocked", "N",
+       "The wall ({region}, {wall}) lets the tool move no further, at {value:N}; go back the way it came, or release the "
+       "helix."}};
   return rows;
 }
 

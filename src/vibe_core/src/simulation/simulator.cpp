@@ -25,6 +25,10 @@ Workspace::~Workspace() = default;
 
 namespace {
 
+// Steps in which nothing of the tool moves on before that is an event. Design choice: shorter stops are the rule where a
+// wall has to give way first.
+constexpr int kBlockedSteps = 6;
+
 // Forces are reported in the tip's frame at the end of the step.
 void storeForces(const Model& model, const StepReport& report, const std::vector<Eigen::Isometry3d>& poses,
                  State& state) {
@@ -43,6 +47,15 @@ void reportContact(int contact_count, double dt, State& state, EventLog log) {
   const bool ended = state.in_contact && state.untouched_time >= kContactGap;
   if (ended) log.emit(Event::Kind::ContactEnd);
   state.in_contact = touching || (state.in_contact && !ended);
+}
+
+// @param particle  nearest to what has stopped the tool in this step, -1: nothing has
+void reportBlocked(const Model& model, int particle, State& state, EventLog log) {
+  state.blocked_steps = particle < 0 ? 0 : state.blocked_steps + 1;
+  if (state.blocked_steps != kBlockedSteps) return;
+  Event& event = log.emit(Event::Kind::Blocked, particle, state.tool_force.norm());
+  event.region = model.organ.region[particle];
+  event.wall = model.organ.wall[particle];
 }
 
 void reportPressure(const GasScene& gas, bool insufflator_on, State& state, EventLog log) {
@@ -85,6 +98,7 @@ void recover(const Model& model, State& state, EventLog log) {
   coolDown(state);
   state.tool_displacement = fresh.tool_displacement;
   state.stall = fresh.stall;
+  state.blocked_steps = 0;
   state.hand_effort = fresh.hand_effort;
   state.tool_force.setZero();
   state.tool_torque.setZero();
@@ -130,6 +144,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
     auto end = limitedMotion(*model.tool, state.joints, input.joints, dt);
     end = model.scope_springs ? model.scope_springs->handMotion(state.joints, end, state.tool_displacement, dt)
                               : stalledMotion(*model.tool, state.joints, end, state.hand_effort);
+    end = feltMotion(state.joints, end, state.hand_effort, state.tool_force.norm());
     end = heldMotion(state.joints, end, state.stall);
     motion.emplace(*model.tool, model.tool_base, state.joints, end, state.tool_displacement);
     std::swap(poses.start, poses.end);  // it starts where the last step ended
@@ -156,6 +171,7 @@ void step(const Model& model, State& state, const StepInput& input, Workspace& w
         .linkPoses(1, poses.end);
     storeForces(model, report, poses.end, state);
     reportContact(report.contact_count, dt, state, log);
+    reportBlocked(model, report.blocking_particle, state, log);
     releaseOverloadedGrip(model, state, log);
     if (workspace.marking()) updateMarking(model, poses.end, beam, state, *workspace.marking(), log);
     updateProcedure(model, state, log);

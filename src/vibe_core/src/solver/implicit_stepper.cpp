@@ -156,6 +156,20 @@ StepOutcome ImplicitStepper::step(MotionView motion, BodyLoads& loads, StepperMe
   plan_->schedule.advance(body_, motion, loads, memory, scratch);
   plan_->schedule.provide(body_, loads, memory, scratch);
   ++memory.steps;
+  scratch.elastic_energy = memory.elastic_energy;
+  scratch.usual_length = memory.usual_length;
+  return advance(motion, loads, memory, scratch);
+}
+
+StepOutcome ImplicitStepper::stepAgain(MotionView motion, BodyLoads& loads, StepperMemory& memory,
+                                       StepperWorkspace& scratch) const {
+  memory.elastic_energy = scratch.elastic_energy;
+  memory.usual_length = scratch.usual_length;
+  return advance(motion, loads, memory, scratch);
+}
+
+StepOutcome ImplicitStepper::advance(MotionView motion, BodyLoads& loads, StepperMemory& memory,
+                                     StepperWorkspace& scratch) const {
   StepOutcome outcome;
   outcome.fallback = settings_.backward_euler || memory.fallback > 0;
   if (memory.fallback > 0) --memory.fallback;

@@ -67,6 +67,7 @@ class StepperWorkspace {
   Eigen::VectorXd row_moves;  // of the last direction, beyond what rows give way, to the scale of the rows [m]
   Eigen::VectorXd slid;       // thread that slid out of a row in this step, to the scale of the rows [m]
   double gas_stiffness = 0;   // at the end of a step [Pa/m^3]
+  double elastic_energy = 0, usual_length = 0;  // of the memory before the step [J], [m]
 };
 
 /// What a factor is about.

@@ -4,6 +4,7 @@
 #include <functional>
 #include <random>
 
+#include "vibe_core/contact/tool_crossings.hpp"
 #include "vibe_core/scene/scene_parser.hpp"
 #include "vibe_testing/scope_fixture.hpp"
 #include "vibe_testing/worlds.hpp"
@@ -151,6 +152,34 @@ TEST(HardStomach, ToolThroughTheWallInOneFrame) {
   stomach.state.joints[Insertion] = 0;
   expectHealed(stomach, away);
   EXPECT_EQ(stomach.count(Event::Kind::Recovery), 0);
+}
+
+/// Triangles of the wall through which the core of a shape of the tool passes.
+int piercedBy(const Stomach& stomach, const std::array<std::vector<double>, 3>& wall) {
+  std::vector<Eigen::Isometry3d> poses;
+  stomach.model->tool->forwardKinematics(stomach.state.joints, stomach.state.tool_displacement, poses);
+  for (Eigen::Isometry3d& pose : poses) pose = stomach.model->tool_base * pose;
+  std::vector<char> passes;
+  for (const End end : stomach.model->organ.end) passes.push_back(end != End::None ? 1 : 0);
+  const SurfaceView view{stomach.model->organ.surface.triangles, wall[0], wall[1], wall[2]};
+  return findToolCrossing(*stomach.model->tool, poses, view, passes).pierced;
+}
+
+TEST(HardStomach, ARecoveryDoesNotLeadTheWallThroughTheTool) {
+  Stomach stomach;
+  StepInput there;
+  there.joints[Insertion] = stomach.model->tool->limits()[Insertion].upper;
+  stomach.state.joints[Insertion] = there.joints[Insertion];
+  const std::array<std::vector<double>, 3> rest{stomach.state.x, stomach.state.y, stomach.state.z};
+  ASSERT_GT(piercedBy(stomach, rest), 0) << "a straight way to rest would not lead through the tool";
+  const Eigen::Vector3d entry = stomach.model->tool_base.translation();
+  stomach.place([&](const Eigen::Vector3d& p) { return Eigen::Vector3d(entry + 3 * (p - entry)); });
+  ASSERT_EQ(piercedBy(stomach, {stomach.state.x, stomach.state.y, stomach.state.z}), 0);
+  for (int k = 0; k < 60; ++k) {
+    stomach.run(1.0 / 60, there);
+    ASSERT_EQ(piercedBy(stomach, {stomach.state.x, stomach.state.y, stomach.state.z}), 0) << stomach.state.time << " s";
+  }
+  EXPECT_GE(stomach.count(Event::Kind::Recovery), 1);
 }
 
 TEST(HardStomach, AThousandfoldGravityAndThenNone) {

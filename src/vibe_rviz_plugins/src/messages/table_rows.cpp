@@ -20,7 +20,7 @@ struct Kind {
 };
 
 // by number of kind
-constexpr std::array<Kind, 32> kKinds = {{
+constexpr std::array<Kind, 33> kKinds = {{
     {"Grab", EventSeverity::Note},
     {"Grab missed", EventSeverity::Warning},
     {"Release", EventSeverity::Note},
@@ -53,8 +53,9 @@ constexpr std::array<Kind, 32> kKinds = {{
     {"Phase", EventSeverity::Note},
     {"Pierced", EventSeverity::Note},
     {"Arm closed", EventSeverity::Note},
+    {"Blocked", EventSeverity::Warning},
 }};
-static_assert(Event::ARM_CLOSED == kKinds.size() - 1);
+static_assert(Event::BLOCKED == kKinds.size() - 1);
 static_assert(Event::REJECTED == 9 && Event::BITE == 14 && Event::BLEEDING_OVERDUE == 21 && Event::TEAR_OUT == 27);
 
 }  // namespace

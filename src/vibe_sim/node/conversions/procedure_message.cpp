@@ -32,7 +32,8 @@ static_assert(
     same(Event::Kind::CinchPulling, Wire::CINCH_PULLING) && same(Event::Kind::Cinched, Wire::CINCHED) &&
     same(Event::Kind::CinchLoose, Wire::CINCH_LOOSE) && same(Event::Kind::TearOut, Wire::TEAR_OUT) &&
     same(Event::Kind::ThreadBroke, Wire::THREAD_BROKE) && same(Event::Kind::PhaseChanged, Wire::PHASE_CHANGED) &&
-    same(Event::Kind::Pierced, Wire::PIERCED) && same(Event::Kind::ArmClosed, Wire::ARM_CLOSED));
+    same(Event::Kind::Pierced, Wire::PIERCED) && same(Event::Kind::ArmClosed, Wire::ARM_CLOSED) &&
+    same(Event::Kind::Blocked, Wire::BLOCKED));
 
 /// Particles whose grade is this or worse.
 std::uint32_t countGrades(const std::vector<std::uint8_t>& grades, BurnGrade min) {

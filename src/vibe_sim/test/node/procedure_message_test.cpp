@@ -235,7 +235,7 @@ TEST_F(ProcedureMessage, everyEventButContactIsToldAtOnce) {
   std::string before = kind();
   record({Event::Kind::ContactBegin, Event::Kind::ContactEnd});
   EXPECT_EQ(kind(), before);
-  for (int k = 0; k <= static_cast<int>(Event::Kind::ArmClosed); ++k) {
+  for (int k = 0; k <= static_cast<int>(Event::Kind::Blocked); ++k) {
     const auto event = static_cast<Event::Kind>(k);
     if (event == Event::Kind::ContactBegin || event == Event::Kind::ContactEnd) continue;
     record({event});

@@ -92,7 +92,9 @@ struct Event {
     ThreadBroke = 28,   ///< value: tension, limit: strength of the thread [N]; suture
     PhaseChanged = 29,  ///< value: Phase
     Pierced = 30,       ///< the arm closed and the needle went into the wall; value: depth below the mucosa [m]
-    ArmClosed = 31      ///< the arm closed without a needle, over the exchange that holds it
+    ArmClosed = 31,     ///< the arm closed without a needle, over the exchange that holds it
+    Blocked = 32  ///< the wall lets no joint move on; particle: nearest to what stops it, value: force on the tool [N];
+                  ///< region, wall
   };
 
   // Members that the kind does not name keep their defaults.
@@ -108,7 +110,7 @@ struct Event {
   double amount = 0;           ///< a second number
   int suture = -1, bite = -1;  ///< numbers from 0; -1: none
 };
-constexpr int kEventKindCount = 32;
+constexpr int kEventKindCount = 33;
 
 static_assert(std::is_trivially_copyable_v<Event>, "an event carries facts; describe() forms the text");
 

@@ -23,6 +23,7 @@ struct StepReport {
   ToolDisplacement tool_displacement{};                   ///< in: if nothing acts on the tool; out: at the end
   std::array<double, kScopeJointCount> hand_effort{};     ///< of the hand on the joints, mean over the step [N], [N m]
   std::array<int, kJointCount> stopped{};                 ///< joints that tissue has stopped: sign of their motion
+  int blocking_particle = -1;  ///< nearest to what has stopped the whole tool; -1: it goes on, or rests by itself
   int contact_count = 0;                                  ///< see State
   int iterations = 0;                                     ///< of an implicit solver
   int evaluations = 0;                                    ///< of the elastic energy, by an implicit solver

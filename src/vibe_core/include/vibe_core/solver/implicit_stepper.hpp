@@ -98,6 +98,10 @@ class ImplicitStepper {
   /// backward Euler. Forces of the loads are their means over the step.
   StepOutcome step(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
 
+  /// The last step() once more, with other loads.
+  /// @param motion  as before that step
+  StepOutcome stepAgain(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
+
   /// The equilibrium under the loads from the positions in `motion` (velocities become 0), refactoring as it goes.
   /// @param tolerance  no node would move farther [m]
   StepOutcome settle(MotionView motion, BodyLoads& loads, StepperWorkspace& scratch, double tolerance,
@@ -107,6 +111,7 @@ class ImplicitStepper {
   double elasticEnergy(const MotionView& motion, StepperWorkspace& scratch) const;
 
  private:
+  StepOutcome advance(MotionView motion, BodyLoads& loads, StepperMemory& memory, StepperWorkspace& scratch) const;
   struct Plan;
   bool extrapolates(bool fallback) const;
   void guess(const MotionView& motion, bool fallback, StepperWorkspace& scratch) const;

@@ -87,6 +87,7 @@ struct State {
       hand_effort{};                     ///< of the hand on the scope's joints, mean over the step [N], [N m]
   std::array<int, kJointCount> stall{};  ///< steps in which the hand does not push a joint that tissue has stopped,
                                          ///< with the sign of its motion
+  int blocked_steps = 0;                 ///< in a row in which the wall has stopped the whole tool
   std::vector<GripPoint> grip;           ///< what the helix holds; empty: nothing
   bool helix_pressed = false;            ///< button state of the last step, for edges
   bool in_contact = false;               ///< the tool touches tissue, or did within the last kContactGap

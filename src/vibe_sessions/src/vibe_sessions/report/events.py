@@ -34,6 +34,7 @@ KINDS = {
     29: ("PHASE_CHANGED", "phase changed", NOTE),
     30: ("PIERCED", "wall pierced", NOTE),
     31: ("ARM_CLOSED", "arm closed", NOTE),
+    32: ("BLOCKED", "tool blocked", CAUTION),
 }
 PHASES = ("inspect", "mark", "suture", "pull", "done")
 # what the timeline leaves out: it has the phases on its own line, and contacts are too many
