@@ -20,6 +20,8 @@ namespace {
 using namespace vibe;
 using namespace vibe::benchmarks;
 
+constexpr int kOtherBranch = 1;  // exit status if a case has buckled away from the branch of its reference
+
 struct Options {
   std::vector<std::string> cases;
   std::string csv, profile;
@@ -56,18 +58,19 @@ void writeRows(const std::string& file, const std::vector<ResultRow>& rows) {
   if (!out) throw Error(file + ": cannot be written; give --csv a path in a writable folder.");
 }
 
-void run(const Options& options) {
+/// @returns the exit status
+int run(const Options& options) {
   if (options.pulling_only) {
     const std::vector<ResultRow> ways = runPulling(options.profile, std::cerr);
     printTable(ways, std::cerr);
     if (!options.csv.empty()) writeRows(options.csv, ways);
-    return;
+    return 0;
   }
   std::vector<std::string> files = options.cases;
   if (files.empty() && !options.methods_only) files = shippedCases();
   if (options.list) {
     for (const std::string& file : files) std::cout << file << "\n";
-    return;
+    return 0;
   }
   std::vector<ResultRow> rows;
   if (options.cases.empty()) rows = runMethods(options.quick, std::cerr);
@@ -79,6 +82,8 @@ void run(const Options& options) {
   }
   printTable(rows, std::cerr);
   if (!options.csv.empty()) writeRows(options.csv, rows);
+  const bool other = std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.branch == Branch::Other; });
+  return other ? kOtherBranch : 0;
 }
 
 }  // namespace
@@ -86,8 +91,11 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CommandLine line{
-      "Prints time per step beside errors, for every method and setting and for cases with reference solutions.",
+      "Prints time per step beside errors, for every method and setting and for cases with reference solutions. The exit "
+      "status is 1 if a case has buckled away from the branch of its reference, and 2 after an error.",
       "vibe_bench"};
   addOptions(line, options);
-  return runProgram(line, argc, argv, [&] { run(options); });
+  int status = 0;
+  const int failure = runProgram(line, argc, argv, [&] { status = run(options); });
+  return failure != 0 ? failure : status;
 }

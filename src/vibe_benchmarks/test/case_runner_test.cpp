@@ -56,6 +56,59 @@ TEST(CaseRunner, stretchesABlockAsTheClosedFormSays) {
   EXPECT_LE(rows[0].ms_max, whole.count());
 }
 
+// A block pressed to half of its length between sliding ends. Free to, it bows to a side long before; held along an edge
+// at both ends, it stays on the branch of the closed form.
+std::vector<ResultRow> pressed(const std::string& held_too, std::string& log) {
+  return run("name: block\n"
+             "mesh:\n"
+             "  box: {size: [40 mm, 20 mm, 20 mm], cells: [4, 2, 2], tets_per_cell: 6}\n"
+             "  named: {corner: {nearest: [0, 0, 0]}, edge: {nearest: [0, 20 mm, 0]}, far: {nearest: [40 mm, 0, 0]}}\n"
+             "element: linear_tet\n"
+             "material: {law: neo_hookean, young_modulus: 30 kPa, poisson_ratio: 0.45}\n"
+             "density: 1050 kg/m^3\n"
+             "loads:\n"
+             "  prescribed:\n"
+             "    - {set: x_min, held: [x]}\n"
+             "    - {set: corner, held: [y, z]}\n"
+             "    - {set: edge, held: [z]}\n" +
+                 held_too +
+                 "    - {set: x_max, held: [x], translation: [20 mm, 0, 0]}\n"
+                 "static: {levels: [-0.5, -1], substeps: 5, tolerance: 1.0e-8 m}\n"
+                 "sample: [{name: force, kind: reaction, set: x_max, direction: [1, 0, 0], reference: [" +
+                 std::to_string(uniaxialForce(0.75)) + ", " + std::to_string(uniaxialForce(0.5)) + "]}]\n",
+             &log);
+}
+
+TEST(CaseRunner, warnsOfABlockThatBucklesAndNotOfItsTwin) {
+  std::string log;
+  const auto twin = pressed("    - {set: far, held: [y, z]}\n", log);
+  EXPECT_LT(twin[0].reference_error, 1e-3) << log;
+  EXPECT_EQ(twin[0].branch, Branch::Same) << log;
+  EXPECT_EQ(log.find("ANOTHER BRANCH"), std::string::npos) << log;
+  const auto buckled = pressed("", log);
+  EXPECT_GT(buckled[0].reference_error, 0.3) << log;
+  EXPECT_EQ(buckled[0].branch, Branch::Other) << log;
+  EXPECT_EQ(log.find("ANOTHER BRANCH at level -0.5:"), std::string::npos) << log;
+  EXPECT_NE(log.find("ANOTHER BRANCH at level -1:"), std::string::npos) << log;
+}
+
+// What the load bends is no symmetry that has been lost, however far it bends.
+TEST(CaseRunner, doesNotTakeBendingForBuckling) {
+  std::string log;
+  const std::string bar =
+      "name: bar\n"
+      "mesh: {box: {size: [120 mm, 20 mm, 20 mm], cells: [12, 2, 2]}}\n"
+      "element: linear_tet\n"
+      "material: {law: neo_hookean, young_modulus: 30 kPa, poisson_ratio: 0.4}\n"
+      "density: 1050\n"
+      "clamped: [x_min]\n"
+      "loads: {gravity: [0, 0, -9.81]}\n"
+      "static: {levels: [0.5, 1], substeps: 3, tolerance: 1.0e-7 m}\n"
+      "sample: [{name: tip, kind: displacement, points: [[120 mm, 10 mm, 10 mm]], direction: [0, 0, 1], "
+      "reference: [none, -0.04]}]\n";
+  EXPECT_EQ(run(bar, &log)[0].branch, Branch::Same) << log;
+}
+
 TEST(CaseRunner, reportsTheErrorAgainstAWrongReference) {
   const auto rows = run(stretch("[none, " + std::to_string(2 * uniaxialForce(1.5)) + "]"));
   EXPECT_NEAR(rows[0].reference_error, 0.5, 1e-3);

@@ -17,13 +17,14 @@ TEST(ResultRow, writesTheAgreedColumns) {
   row.motion_error = 0.012;
   row.force_error = std::numeric_limits<double>::infinity();
   row.state_hash = 0xabc;
+  row.branch = Branch::Other;
   setTimes({3, 1, 2, 4}, row);
   std::ostringstream out;
   writeCsv({row}, out);
   EXPECT_EQ(out.str(),
             "case,method,setting,particles,threads,ms_p50,ms_p99,ms_max,motion_error,static_error,force_error,"
-            "reference_error,energy_drift,state_hash\n"
-            "\"wall, \"\"thin\"\"\",implicit,60 Hz,3618,1,2,4,4,0.012,,inf,,,0000000000000abc\n");
+            "reference_error,energy_drift,state_hash,branch\n"
+            "\"wall, \"\"thin\"\"\",implicit,60 Hz,3618,1,2,4,4,0.012,,inf,,,0000000000000abc,other\n");
 }
 
 TEST(ResultRow, takesPercentilesFromTheSortedTimes) {

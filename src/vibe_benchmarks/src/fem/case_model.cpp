@@ -1,6 +1,7 @@
 #include "fem/case_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -11,6 +12,29 @@
 #include "vibe_core/tissue/shell.hpp"
 
 namespace vibe::benchmarks {
+
+namespace {
+
+constexpr int kSpotParts = 8;  // per side of a triangle; the mean place of a spot is then exact to 1e-3 of its radius
+
+/// Centroids of the parts of a triangle, as coordinates along its first two sides.
+std::vector<Eigen::Vector2d> spotPoints() {
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < kSpotParts; ++i)
+    for (int j = 0; i + j < kSpotParts; ++j) {
+      points.emplace_back((i + 1.0 / 3) / kSpotParts, (j + 1.0 / 3) / kSpotParts);
+      if (i + j + 1 < kSpotParts) points.emplace_back((i + 2.0 / 3) / kSpotParts, (j + 2.0 / 3) / kSpotParts);
+    }
+  return points;
+}
+
+double wallThickness(const FemCase& bench_case, const BenchMesh& mesh, const std::array<int, 3>& t) {
+  if (bench_case.thickness_along.isZero()) return bench_case.thickness;
+  const Eigen::Vector3d u = mesh.nodes[t[1]] - mesh.nodes[t[0]], v = mesh.nodes[t[2]] - mesh.nodes[t[0]];
+  return bench_case.thickness * std::abs(u.cross(v).normalized().dot(bench_case.thickness_along));
+}
+
+}  // namespace
 
 CaseModel::CaseModel(const FemCase& bench_case, Hold hold) : case_(bench_case), hold_(hold), mesh_(bench_case.mesh) {
   build();
@@ -55,17 +79,39 @@ bool CaseModel::isFixedMotion(const SetMotion& motion) const {
   return hold_ == Hold::AsFixed && motion.held[0] && motion.held[1] && motion.held[2];
 }
 
+std::vector<double> CaseModel::spotWeights(const SpotRule& rule) const {
+  const auto weight = [&rule](const Eigen::Vector3d& place) {
+    Eigen::Vector3d from = place - rule.centre;
+    from -= rule.along.dot(from) * rule.along;
+    const double part = std::max(0.0, 1 - from.squaredNorm() / (rule.radius * rule.radius));
+    return part * part;
+  };
+  std::vector<double> weights(mesh_.nodes.size(), 0.0);
+  if (case_.element != ElementKind::Shell) {
+    for (std::size_t n = 0; n < weights.size(); ++n) weights[n] = weight(mesh_.nodes[n]) * body_.mass[n];
+    return weights;
+  }
+  for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
+    const auto& t = mesh_.triangles[e];
+    const Eigen::Vector3d &a = mesh_.nodes[t[0]], u = mesh_.nodes[t[1]] - a, v = mesh_.nodes[t[2]] - a;
+    const double volume = u.cross(v).norm() * wallThickness(case_, mesh_, t);
+    for (const Eigen::Vector2d& part : spotPoints()) {
+      const double here = weight(a + part[0] * u + part[1] * v) * volume;
+      weights[t[0]] += (1 - part.sum()) * here, weights[t[1]] += part[0] * here, weights[t[2]] += part[1] * here;
+    }
+  }
+  return weights;
+}
+
 NodeMean CaseModel::makeSpot(const SpotRule& rule) const {
   NodeMean mean;
+  const std::vector<double> weights = spotWeights(rule);
   double sum = 0;
   for (int n = 0; n < nodeCount(); ++n) {
-    Eigen::Vector3d from = mesh_.nodes[n] - rule.centre;
-    from -= rule.along.dot(from) * rule.along;
-    const double part = 1 - from.squaredNorm() / (rule.radius * rule.radius);
-    if (part <= 0) continue;
+    if (weights[n] <= 0) continue;
     mean.node.push_back(n);
-    mean.weight.push_back(part * part * body_.mass[n]);
-    sum += mean.weight.back();
+    mean.weight.push_back(weights[n]);
+    sum += weights[n];
   }
   if (!(sum > 0)) throw Error(case_.file + ": spots: a spot holds no node; enlarge its radius or refine the mesh.");
   for (double& weight : mean.weight) weight /= sum;
@@ -219,17 +265,6 @@ NodeMean CaseModel::atTet(const Eigen::Vector3d& point) const {
   return mean;
 }
 
-double enclosedVolume(const std::vector<std::array<int, 3>>& triangles, const MotionView& motion) {
-  double volume = 0;
-  for (const auto& t : triangles) {
-    Eigen::Matrix3d corners;
-    for (int n = 0; n < 3; ++n)
-      for (int k = 0; k < 3; ++k) corners(k, n) = motion.x[static_cast<std::size_t>(k)][t[static_cast<std::size_t>(n)]];
-    volume += corners.determinant() / 6;
-  }
-  return volume;
-}
-
 namespace {
 
 /// The hinged sides between two nodes; the wall rotates freely about them.
@@ -254,14 +289,14 @@ void buildShell(const FemCase& bench_case, const BenchMesh& mesh, ElasticBody& b
   ShellMesh shell;
   shell.nodes = mesh.nodes;
   shell.triangles = mesh.triangles;
-  shell.thickness.assign(mesh.triangles.size(), bench_case.thickness);
+  for (const auto& t : mesh.triangles) shell.thickness.push_back(wallThickness(bench_case, mesh, t));
   shell.materials = {bench_case.material};
   shell.fixed.assign(mesh.nodes.size(), 0);
   for (const auto* names : {&bench_case.clamped, &bench_case.hinged})
     for (const std::string& name : *names)
       for (const int node : mesh.sets.at(name)) shell.fixed[node] = 1;
   for (const SetMotion& motion : bench_case.motions)
-    if (motion.held[0] && motion.held[1] && motion.held[2])
+    if (motion.held[0] && motion.held[1] && motion.held[2] && motion.angle == 0)  // a clamp keeps its tangent plane
       for (const int node : mesh.sets.at(motion.set)) shell.fixed[node] = 1;
   shell.hinged = hingedSides(bench_case, mesh);
   auto elements = std::make_shared<ShellElements>(std::move(shell));

@@ -44,6 +44,9 @@ class CaseModel {
 
  private:
   void build();
+  /// Per node: the integral over the body of the weight of the spot and the node's shape function, lumped for
+  /// tetrahedra; up to a factor.
+  std::vector<double> spotWeights(const SpotRule& rule) const;
   NodeMean makeSpot(const SpotRule& rule) const;
   NodeMean atTriangle(const Eigen::Vector3d& point) const;
   NodeMean atTet(const Eigen::Vector3d& point) const;
@@ -59,9 +62,6 @@ class CaseModel {
   ElasticBody body_;
   std::map<std::string, NodeMean> spots_;
 };
-
-/// Volume enclosed by triangles at the given positions [m^3].
-double enclosedVolume(const std::vector<std::array<int, 3>>& triangles, const MotionView& motion);
 
 /// Builds the shell of a case with its elements, masses and gas.
 void buildShell(const FemCase& bench_case, const BenchMesh& mesh, ElasticBody& body);

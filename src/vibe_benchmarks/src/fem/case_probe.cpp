@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vibe_core/common/error.hpp"
+#include "vibe_core/tissue/shell.hpp"
 
 namespace vibe::benchmarks {
 namespace {
@@ -67,11 +68,26 @@ double CaseProbe::tableDifference(std::size_t sample, const MotionView& motion, 
   return size > 0 ? std::sqrt(difference / size) : std::nan("");
 }
 
+std::vector<double> CaseProbe::displacements(const MotionView& motion) const {
+  const auto& rest = model_.mesh().nodes;
+  std::vector<double> out(3 * rest.size());
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    for (int k = 0; k < 3; ++k) out[3 * i + k] = motion.x[k][i] - rest[i][k];
+  return out;
+}
+
+double CaseProbe::cavity(const Sample& sample, const MotionView& motion, const ElasticBody& body) const {
+  if (body.shell == nullptr)
+    throw Error(model_.benchCase().file + ": sample '" + sample.name + "' needs a shell; only it encloses a volume.");
+  const std::vector<double> displacement = displacements(motion);
+  std::vector<double> gradient(displacement.size());
+  const double volume = body.shell->volume(displacement.data(), gradient.data());
+  return sample.rest_volume > 0 ? sample.rest_volume + volume - model_.restVolume() : volume;
+}
+
 double CaseProbe::toolForce(const Sample& sample, const MotionView& motion, const ElasticBody& body) const {
-  const std::size_t n = body.rest.size();
-  std::vector<double> displacement(3 * n), gradient(3 * n);
-  for (std::size_t i = 0; i < n; ++i)
-    for (int k = 0; k < 3; ++k) displacement[3 * i + k] = motion.x[k][i] - body.rest[i][k];
+  const std::vector<double> displacement = displacements(motion);
+  std::vector<double> gradient(displacement.size());
   body.elements->evaluate(displacement.data(), gradient.data());
   double sum = 0;
   for (const int i : model_.set(sample.set)) {
@@ -110,10 +126,8 @@ double CaseProbe::measure(std::size_t sample, const MotionView& motion, const El
     case SampleKind::AttachmentForce:
     case SampleKind::Tension:
       return constraintForce(s, loads);
-    case SampleKind::Volume: {
-      const double volume = enclosedVolume(model_.mesh().triangles, motion);
-      return s.rest_volume > 0 ? s.rest_volume + volume - model_.restVolume() : volume;
-    }
+    case SampleKind::Volume:
+      return cavity(s, motion, body);
     case SampleKind::Pressure:
     case SampleKind::LimitPressure:
       return loads.gas.pressure;

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "fem/case_model.hpp"
+#include "fem/case_symmetry.hpp"
 #include "fem/static_path.hpp"
 #include "fem/vibration.hpp"
 #include "vibe_core/common/error.hpp"
@@ -80,6 +81,8 @@ std::vector<ResultRow> runCase(const FemCase& bench_case, std::ostream& log) {
 
 namespace {
 
+const char* const kPlanes[3] = {"x", "y", "z"};
+
 std::string levelName(double level) {
   char text[32];
   std::snprintf(text, sizeof text, "level %.5g", level);
@@ -101,12 +104,19 @@ std::vector<ResultRow> runStatic(const FemCase& bench_case, std::ostream& log) {
   const CaseProbe probe(model);
   StaticPath path(model, bench_case.statics->tolerance);
   const std::size_t count = bench_case.samples.size();
+  const CaseSymmetry symmetry(model);
+  Branch branch = symmetry.known() ? Branch::Same : Branch::Unknown;
   std::vector<std::vector<double>> values(count);
   std::vector<double> times;
   for (const double level : bench_case.statics->levels) {
     const double start = threadMilliseconds();
     if (!path.advanceTo(level, bench_case.statics->substeps)) log << "  NOT CONVERGED at " << levelName(level) << "\n";
     times.push_back(threadMilliseconds() - start);
+    if (const auto lost = symmetry.lost(path.motion())) {
+      branch = Branch::Other;
+      log << "  WARNING: ANOTHER BRANCH at " << levelName(level) << ": the equilibrium is no mirror image of itself in "
+          << kPlanes[*lost] << ", as it is for small loads; it has buckled, and the reference may not have\n";
+    }
     for (std::size_t s = 0; s < count; ++s)
       values[s].push_back(probe.measure(s, path.motion(), path.body(), path.loads(), level));
   }
@@ -115,6 +125,7 @@ std::vector<ResultRow> runStatic(const FemCase& bench_case, std::ostream& log) {
     const Sample& sample = bench_case.samples[s];
     rows.push_back(caseRow(bench_case, sample.name, model.nodeCount()));
     setTimes(times, rows.back());
+    rows.back().branch = branch;
     if (sample.kind == SampleKind::LimitPressure) values[s] = {largest(values[s])};
     for (std::size_t level = 0; level < values[s].size(); ++level) {
       const double error = referenceError(sample, level, values[s][level]);

@@ -26,6 +26,9 @@ class CaseProbe {
  private:
   Eigen::Vector3d meanDisplacement(std::size_t sample, const MotionView& motion) const;
   double tableDifference(std::size_t sample, const MotionView& motion, double level) const;
+  std::vector<double> displacements(const MotionView& motion) const;  ///< (nodes * 3)
+  /// Up to the inner face of the wall, whose volume at rest the sample may give.
+  double cavity(const Sample& sample, const MotionView& motion, const ElasticBody& body) const;
   double toolForce(const Sample& sample, const MotionView& motion, const ElasticBody& body) const;
   double constraintForce(const Sample& sample, const BodyLoads& loads) const;
 
@@ -35,7 +38,7 @@ class CaseProbe {
 };
 
 /// Runs a case and returns one row per sample: `setting` is the sample, `reference_error` the largest relative error
-/// over its levels. Prints the result of each level.
+/// over its levels. Prints the result of each level, and a warning where an equilibrium has lost a symmetry of the case.
 std::vector<ResultRow> runCase(const FemCase& bench_case, std::ostream& log);
 
 /// The parts of runCase.

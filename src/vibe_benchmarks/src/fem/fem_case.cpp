@@ -101,6 +101,7 @@ FemCase readCase(const std::string& file) {
        {"material", [&](const YamlField& f) { readMaterial(reader, f, out); }},
        {"density", number(out.density, "kg/m^3")},
        {"thickness", number(out.thickness, "m")},
+       {"thickness_along", [&](const YamlField& f) { out.thickness_along = reader.direction(f); }},
        {"mass_damping", number(out.mass_damping, "1/s")},
        {"stiffness_damping", number(out.stiffness_damping, "s")},
        {"foundation", number(out.foundation, "N/m")},

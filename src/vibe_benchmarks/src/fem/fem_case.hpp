@@ -121,6 +121,7 @@ struct FemCase {
       Eigen::Vector3d::Zero();  ///< refined nodes are projected onto the ellipsoid with these semi-axes [m]
   Material material;
   double density = 1000, thickness = 0;
+  Eigen::Vector3d thickness_along = Eigen::Vector3d::Zero();  ///< direction of `thickness`; zero: that of the normal
   double mass_damping = 0, stiffness_damping = 0, foundation = 0;
   std::vector<std::string> clamped, hinged;
   std::map<std::string, SpotRule> spots;

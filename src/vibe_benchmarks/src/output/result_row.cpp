@@ -25,6 +25,10 @@ std::string showHash(std::uint64_t hash) {
   return text;
 }
 
+const char* branchName(Branch branch) {
+  return branch == Branch::Unknown ? "" : branch == Branch::Same ? "same" : "other";
+}
+
 /// Quotes a field, because a comma or quote in a name would shift the columns.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
@@ -55,31 +59,31 @@ void setTimes(std::vector<double> times, ResultRow& row) {
 
 void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out) {
   out << "case,method,setting,particles,threads,ms_p50,ms_p99,ms_max,motion_error,static_error,force_error,"
-         "reference_error,energy_drift,state_hash\n";
+         "reference_error,energy_drift,state_hash,branch\n";
   for (const ResultRow& row : rows) {
     out << field(row.bench_case) << ',' << field(row.method) << ',' << field(row.setting) << ',' << row.particles << ','
         << row.threads;
     for (const double value : {row.ms_p50, row.ms_p99, row.ms_max, row.motion_error, row.static_error, row.force_error,
                                row.reference_error, row.energy_drift})
       out << ',' << show("%.6g", value);
-    out << ',' << showHash(row.state_hash) << '\n';
+    out << ',' << showHash(row.state_hash) << ',' << branchName(row.branch) << '\n';
   }
 }
 
 void printTable(const std::vector<ResultRow>& rows, std::ostream& out) {
   char line[320];
-  std::snprintf(line, sizeof line, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %s\n", "case", "method",
+  std::snprintf(line, sizeof line, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n", "case", "method",
                 "setting", "nodes", "ms p50", "p99", "max", "motion %", "static %", "force %", "ref %", "drift %",
-                "hash");
+                "branch", "hash");
   out << line;
   for (const ResultRow& row : rows) {
     const auto ms = [](double value) { return std::isfinite(value) ? show("%.3f", value) : std::string("-"); };
-    std::snprintf(line, sizeof line, "%-26.26s %-16.16s %-24.24s %7d %8s %8s %8s | %9s %9s %9s %9s %9s  %s\n",
+    std::snprintf(line, sizeof line, "%-26.26s %-16.16s %-24.24s %7d %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n",
                   row.bench_case.c_str(), row.method.c_str(), row.setting.c_str(), row.particles,
                   ms(row.ms_p50).c_str(), ms(row.ms_p99).c_str(), ms(row.ms_max).c_str(),
                   percent(row.motion_error).c_str(), percent(row.static_error).c_str(),
                   percent(row.force_error).c_str(), percent(row.reference_error).c_str(),
-                  percent(row.energy_drift).c_str(), showHash(row.state_hash).c_str());
+                  percent(row.energy_drift).c_str(), branchName(row.branch), showHash(row.state_hash).c_str());
     out << line;
   }
 }

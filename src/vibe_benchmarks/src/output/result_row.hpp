@@ -10,6 +10,9 @@ namespace vibe::benchmarks {
 
 constexpr double kNotApplicable = std::numeric_limits<double>::quiet_NaN();
 
+/// Whether an equilibrium is on the branch of the reference, see CaseSymmetry.
+enum class Branch { Unknown, Same, Other };
+
 /// One measured method and setting. Errors are fractions; NaN where a quantity does not apply.
 struct ResultRow {
   std::string bench_case, method, setting;
@@ -22,12 +25,13 @@ struct ResultRow {
   double reference_error = kNotApplicable;  ///< relative to the reference of the case
   double energy_drift = kNotApplicable;     ///< relative to the energy at the start
   std::uint64_t state_hash = 0;             ///< FNV-1a of the last positions and velocities; 0: none
+  Branch branch = Branch::Unknown;          ///< of the equilibria of a case
 };
 
 /// Sets the three times from those of all steps [ms].
 void setTimes(std::vector<double> times, ResultRow& row);
 
-/// Writes "case,method,...,state_hash" and one line per row; empty where a quantity does not apply.
+/// Writes "case,method,...,branch" and one line per row; empty where a quantity does not apply.
 void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out);
 /// Prints the same as a readable table, with errors in percent.
 void printTable(const std::vector<ResultRow>& rows, std::ostream& out);

@@ -41,10 +41,12 @@ struct ShellKernelOfPairs {
   }
 
   template <class Part>
-  [[gnu::always_inline]] static void addShares(const ShellSweep& s, const BatchOffsets* offset, const Pack (&share)[3],
+  [[gnu::always_inline]] static void addShares(const ShellSweep& s, const BatchOffsets* offset, const Pack (&share)[3][3],
                                                const Part& part) {
-    const Half half[3] = {part(share[0]), part(share[1]), part(share[2])};
-    for (int a = 0; a < 3; ++a) Single::Lanes::add(s.volume_gradient4, offset[a].lane, half);
+    for (int a = 0; a < 3; ++a) {
+      const Half half[3] = {part(share[a][0]), part(share[a][1]), part(share[a][2])};
+      Single::Lanes::add(s.volume_gradient4, offset[a].lane, half);
+    }
   }
 
   template <Law law, bool ghosts, bool volume>
@@ -62,14 +64,14 @@ struct ShellKernelOfPairs {
       Pack u1[3], u[5][3], f[5][3];
       gather(s, offset, u1, u);
       if constexpr (ghosts) placeGhosts(rest, u);
-      const Pack value = shellEnergy<law, LawFormula<law>::kThicknessSteps>(terms, rest, u, f);
+      const Pack value = shellEnergy<law, LawFormula<law>::kThicknessSteps, ghosts>(terms, rest, u, f);
       energy.add(first(value)), energy.add(second(value));
       if constexpr (ghosts) returnGhosts(rest, f);
       scatter(s, offset, f, first);
       scatter(s, offset + 6, f, second);
       if constexpr (volume) {
-        Pack share[3];
-        const Pack cone = coneVolume(rest, u, u1, share);
+        Pack share[3][3];
+        const Pack cone = coneVolume(terms, rest, u, u1, share);
         enclosed.add(first(cone)), enclosed.add(second(cone));
         addShares(s, offset, share, first);
         addShares(s, offset + 6, share, second);

@@ -102,7 +102,7 @@ void ShellElements::findNeighbours() {
     const auto& t = mesh_.triangles[side.triangle];
     std::copy(t.begin(), t.end(), patch_nodes_.begin() + static_cast<std::ptrdiff_t>(6 * side.triangle));
     const auto beyond = sides.find({nodes.second, nodes.first});
-    if (beyond == sides.end()) continue;
+    if (beyond == sides.end() || rigid(side.triangle) != rigid(beyond->second.triangle)) continue;
     const auto& other = mesh_.triangles[beyond->second.triangle];
     patch_nodes_[6 * side.triangle + 3 + static_cast<std::size_t>(side.number)] =
         other[static_cast<std::size_t>(beyond->second.number)];
@@ -151,6 +151,8 @@ void ShellElements::measure() {
     for (int k = 0; k < 5; ++k)
       Eigen::Map<Eigen::Vector3d>(rest + kShellPatch + 3 * k) = patch.col(k + 1) - patch.col(0);
     Eigen::Map<Eigen::Vector3d>(rest + kShellOrigin) = patch.col(0) - origin_;
+    rest[kShellArea] = 1 / (4 * areaOf(e) * areaOf(e));
+    rest[kShellHalf] = mesh_.thickness[e] * areaOf(e) / 2;
     measureSides(e, patch, rest);
     measureBending(e, patch, rest);
     measureGhosts(e, rest);

@@ -16,6 +16,8 @@ constexpr double kShellSoftness = 1e-5;
 // 1 / (squared stretch of the area) enters the bending stiffness unchanged up to the first value, and is then limited
 // smoothly to 6.
 constexpr double kThinningStart = 2, kThinningEnd = 6;
+// Added to the square of the volume of a wall by that at rest, which has no derivative where the area vanishes.
+constexpr double kLeastVolume = 1e-6, kRestVolume = 1 + kLeastVolume / 2;  // and its root at rest
 
 template <class B>
 [[gnu::always_inline]] inline B dot(const B (&a)[3], const B (&b)[3]) {
@@ -256,37 +258,56 @@ template <class B, class Rest>
   return whole * form;
 }
 
-/// Energy of a triangle. Its gradient with respect to nodes 2 to 6 is written to f; that of node 1 is minus their sum.
-template <Law law, int Steps, class B, class Rest>
-[[gnu::always_inline]] inline B shellEnergy(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& u,
-                                            Patch<B>& f) {
-  Patch<B> x;
-  for (int a = 0; a < 5; ++a)
-    for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), f[a][r] = constant<B>(0);
-  const B membrane = membraneEnergy<law, Steps>(terms, rest, x, u, f);
-  return mulAdd(constant<B>(0.5), membrane, bendingEnergy(terms, rest, x, u, f));
-}
-
 /// The end nodes of a side, and the node opposite it; 0 is node 1.
 constexpr int kBeside[3][2] = {{1, 2}, {2, 0}, {0, 1}};
 
-/// Places the ghosts of sides without a neighbour: the opposite node is reflected at the midpoint of the side. Across a
-/// clamped side, the ghost moves along the normal like the opposite node.
+/// Places the ghosts of sides without a neighbour: the opposite node is reflected at the midpoint of the side. The metric
+/// of the membrane there is that of the triangle itself.
 template <class B, class Rest>
 [[gnu::always_inline]] inline void placeGhosts(const Rest& rest, Patch<B>& u) {
-  const B one = constant<B>(1), half = constant<B>(0.5), zero = constant<B>(0);
+  const B one = constant<B>(1), zero = constant<B>(0);
+  for (int side = 0; side < 3; ++side) {
+    const int p = kBeside[side][0], q = kBeside[side][1];
+    const B real = rest(kShellGhost + 4 * side);
+    for (int r = 0; r < 3; ++r) {
+      const B sum = (p == 0 ? zero : u[p - 1][r]) + (q == 0 ? zero : u[q - 1][r]);
+      const B ghost = sum - (side == 0 ? zero : u[side - 1][r]);
+      u[side + 2][r] = mulAdd(real, u[side + 2][r], B((one - real) * ghost));
+    }
+  }
+}
+
+/// For bending, moves the ghosts across clamped sides along the normal, like the opposite node: the tangent plane stays.
+/// The membrane does not see this: a mesh that does not resolve how the slope grows from 0 would lose its stretch there.
+template <class B, class Rest>
+[[gnu::always_inline]] inline void clampGhosts(const Rest& rest, Patch<B>& u) {
+  const B half = constant<B>(0.5), zero = constant<B>(0);
   for (int side = 0; side < 3; ++side) {
     const int row = kShellGhost + 4 * side, p = kBeside[side][0], q = kBeside[side][1];
-    const B real = rest(row), m[3] = {rest(row + 1), rest(row + 2), rest(row + 3)};
-    B sum[3], arm[3];
+    const B m[3] = {rest(row + 1), rest(row + 2), rest(row + 3)};
+    B arm[3];
     for (int r = 0; r < 3; ++r) {
-      sum[r] = (p == 0 ? zero : u[p - 1][r]) + (q == 0 ? zero : u[q - 1][r]);
-      arm[r] = (side == 0 ? zero : u[side - 1][r]) - half * sum[r];
+      const B sum = (p == 0 ? zero : u[p - 1][r]) + (q == 0 ? zero : u[q - 1][r]);
+      arm[r] = (side == 0 ? zero : u[side - 1][r]) - half * sum;
     }
     const B along = dot(m, arm);
+    for (int r = 0; r < 3; ++r) u[side + 2][r] = mulAdd(m[r], along, u[side + 2][r]);
+  }
+}
+
+/// The transpose of clampGhosts.
+template <class B, class Rest>
+[[gnu::always_inline]] inline void returnClamped(const Rest& rest, Patch<B>& f) {
+  const B half = constant<B>(0.5);
+  for (int side = 0; side < 3; ++side) {
+    const int row = kShellGhost + 4 * side, p = kBeside[side][0], q = kBeside[side][1];
+    const B m[3] = {rest(row + 1), rest(row + 2), rest(row + 3)};
+    const B along = dot(m, f[side + 2]);
     for (int r = 0; r < 3; ++r) {
-      const B ghost = mulAdd(m[r], along, B(sum[r] - (side == 0 ? zero : u[side - 1][r])));
-      u[side + 2][r] = mulAdd(real, u[side + 2][r], B((one - real) * ghost));
+      const B beside = B(half * along) * m[r];
+      if (p != 0) f[p - 1][r] = f[p - 1][r] - beside;
+      if (q != 0) f[q - 1][r] = f[q - 1][r] - beside;
+      if (side != 0) f[side - 1][r] = mulAdd(along, m[r], f[side - 1][r]);
     }
   }
 }
@@ -294,39 +315,72 @@ template <class B, class Rest>
 /// The transpose of placeGhosts.
 template <class B, class Rest>
 [[gnu::always_inline]] inline void returnGhosts(const Rest& rest, Patch<B>& f) {
-  const B half = constant<B>(0.5);
   for (int side = 0; side < 3; ++side) {
-    const int row = kShellGhost + 4 * side, p = kBeside[side][0], q = kBeside[side][1];
-    const B real = rest(row), m[3] = {rest(row + 1), rest(row + 2), rest(row + 3)};
-    B ghost[3];
+    const int p = kBeside[side][0], q = kBeside[side][1];
+    const B real = rest(kShellGhost + 4 * side);
     for (int r = 0; r < 3; ++r) {
-      const B own = real * f[side + 2][r];
-      ghost[r] = f[side + 2][r] - own;
+      const B own = real * f[side + 2][r], ghost = f[side + 2][r] - own;
       f[side + 2][r] = own;
-    }
-    const B along = dot(m, ghost);
-    for (int r = 0; r < 3; ++r) {
-      const B beside = minusMul(B(half * along), m[r], ghost[r]);
-      if (p != 0) f[p - 1][r] = f[p - 1][r] + beside;
-      if (q != 0) f[q - 1][r] = f[q - 1][r] + beside;
-      if (side != 0) f[side - 1][r] = mulAdd(along, m[r], B(f[side - 1][r] - ghost[r]));
+      if (p != 0) f[p - 1][r] = f[p - 1][r] + ghost;
+      if (q != 0) f[q - 1][r] = f[q - 1][r] + ghost;
+      if (side != 0) f[side - 1][r] = f[side - 1][r] - ghost;
     }
   }
 }
 
-/// A third of the area vector of a triangle (a sixth of the cross product), the share of each node; returns the volume
-/// of the cone to the origin.
+/// Energy of a triangle. Its gradient with respect to nodes 2 to 6 is written to f; that of node 1 is minus their sum.
+/// @param u  with ghosts as placeGhosts leaves them
+template <Law law, int Steps, bool ghosts, class B, class Rest>
+[[gnu::always_inline]] inline B shellEnergy(const WallTerms<B>& terms, const Rest& rest, Patch<B>& u, Patch<B>& f) {
+  Patch<B> x;
+  for (int a = 0; a < 5; ++a)
+    for (int r = 0; r < 3; ++r) x[a][r] = rest(kShellPatch + 3 * a + r), f[a][r] = constant<B>(0);
+  const B membrane = membraneEnergy<law, Steps>(terms, rest, x, u, f);
+  if constexpr (!ghosts) {
+    return mulAdd(constant<B>(0.5), membrane, bendingEnergy(terms, rest, x, u, f));
+  } else {
+    B kept[3][3];
+    for (int side = 0; side < 3; ++side)
+      for (int r = 0; r < 3; ++r) kept[side][r] = f[side + 2][r], f[side + 2][r] = constant<B>(0);
+    clampGhosts(rest, u);
+    const B bending = bendingEnergy(terms, rest, x, u, f);
+    returnClamped(rest, f);
+    for (int side = 0; side < 3; ++side)
+      for (int r = 0; r < 3; ++r) f[side + 2][r] = f[side + 2][r] + kept[side][r];
+    return mulAdd(constant<B>(0.5), membrane, bending);
+  }
+}
+
+/// The volume of the cone from the origin to a triangle, up to the inner face of the wall, and its gradients with respect
+/// to the three nodes. The gas acts on the inner face, not on the middle surface: half of the volume of the wall, t A J / 2
+/// with the area A at rest, lies between them, so that the cavity grows by less where the wall gains volume. J^2 = D c
+/// follows from the change of the area, D, by the c of bendingFactor; it is 1 for an incompressible wall. Its change
+/// from rest is counted, so that the volume at rest is that of the middle surface. What the curvature adds is less by
+/// another thickness over radius.
 template <class B, class Rest>
-[[gnu::always_inline]] inline B coneVolume(const Rest& rest, const Patch<B>& u, const B (&u1)[3], B (&share)[3]) {
-  const B sixth = constant<B>(1.0 / 6);
-  B e[3], d[3], at[3];
+[[gnu::always_inline]] inline B coneVolume(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& u,
+                                           const B (&u1)[3], B (&share)[3][3]) {
+  const B sixth = constant<B>(1.0 / 6), one = constant<B>(1), s = larger(terms.thickness_guess, constant<B>(0));
+  B e[3], d[3], at[3], c[3], by_e[3], by_d[3];
   for (int r = 0; r < 3; ++r) {
     e[r] = rest(kShellPatch + r) + u[0][r], d[r] = rest(kShellPatch + 3 + r) + u[1][r];
     at[r] = rest(kShellOrigin + r) + u1[r];
   }
-  cross(e, d, share);
-  for (int r = 0; r < 3; ++r) share[r] = sixth * share[r];
-  return dot(at, share);
+  cross(e, d, c);
+  const B scale = rest(kShellArea), grown = dot(c, c) * scale, by = one / mulAdd(s, grown, one - s);
+  const B volume = rootOf(B(mulAdd(grown, by, constant<B>(kLeastVolume)))), half = rest(kShellHalf);
+  const B pull = half * scale * (one - s) * by * by / volume;
+  const B g[3] = {pull * c[0], pull * c[1], pull * c[2]};
+  cross(d, g, by_e);
+  cross(g, e, by_d);
+  B middle[3];
+  for (int r = 0; r < 3; ++r) {
+    middle[r] = sixth * c[r];
+    share[0][r] = middle[r] + (by_e[r] + by_d[r]);
+    share[1][r] = middle[r] - by_e[r];
+    share[2][r] = middle[r] - by_d[r];
+  }
+  return minusMul(half, volume - constant<B>(kRestVolume), dot(at, middle));
 }
 
 }  // namespace

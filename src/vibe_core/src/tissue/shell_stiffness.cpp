@@ -184,12 +184,13 @@ void addBending(const WallTerms<double>& terms, const double* rest, const Patch<
 }
 
 // Folds the derivatives of the ghosts into those of the other nodes.
-void foldGhosts(const double* rest, Matrix18& k) {
+// @param clamp  as clampGhosts places them
+void foldGhosts(const double* rest, bool clamp, Matrix18& k) {
   for (int side = 0; side < 3; ++side) {
     const double* row = rest + kShellGhost + 4 * side;
     if (row[0] != 0) continue;
     const Eigen::Map<const Eigen::Vector3d> m(row + 1);
-    const Eigen::Matrix3d mirror = m * m.transpose();
+    const Eigen::Matrix3d mirror = clamp ? Eigen::Matrix3d(m * m.transpose()) : Eigen::Matrix3d::Zero();
     Eigen::Matrix<double, 3, 18> map = Eigen::Matrix<double, 3, 18>::Zero();
     for (const int node : kBeside[side]) map.block<3, 3>(0, 3 * node) = Eigen::Matrix3d::Identity() - mirror / 2;
     map.block<3, 3>(0, 3 * side) = mirror - Eigen::Matrix3d::Identity();
@@ -218,8 +219,12 @@ void ShellElements::addStiffness(const double* displacement, BlockMatrix& stiffn
     const FibresOf fibres{fibre_rest_.empty() ? nullptr : &fibre_rest_[kFibreRows * e], mesh_.fibres.stiffening};
     addMembrane(m, WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), fibres,
                 Eigen::Map<const Vectors>(&x[0][0]), Eigen::Map<const Vectors>(&u[0][0]), whole, k);
+    if (whole) {
+      foldGhosts(rest(e), false, k);
+      clampGhosts([rows = rest(e)](int row) { return rows[row]; }, u);
+    }
     addBending(WallTerms<double>(constants_[material], m.poisson_ratio), rest(e), x, u, whole, k);
-    if (whole) foldGhosts(rest(e), k);
+    if (whole) foldGhosts(rest(e), true, k);
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b <= a; ++b, ++place) {
         if (*place == BlockMatrix::kNowhere) continue;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "tissue/material_law.hpp"
@@ -171,12 +172,37 @@ TEST(Shell, InflatedSphereFollowsMembraneTheory) {
   const Evaluation e = inSingle(elements, affine(mesh, (1 + strain) * Eigen::Matrix3d::Identity()));
   const double expected = kE * kThickness / (1 - kNu) * strain * strain * area;
   EXPECT_NEAR(e.energy, expected, 0.01 * expected);
-  // the pressure that holds it: p dV = dW, p = 2 E t strain / (1 - nu) / radius
-  const double outward =
-      e.gradient.dot(displaced(mesh, [](const Eigen::Vector3d& x) -> Eigen::Vector3d { return 2 * x; }));
-  const double by_volume =
-      e.volume_gradient.dot(displaced(mesh, [](const Eigen::Vector3d& x) -> Eigen::Vector3d { return 2 * x; }));
-  EXPECT_NEAR(outward / by_volume, 2 * kE * kThickness * strain / (1 - kNu) / radius, 0.01 * outward / by_volume);
+}
+
+// Lame's solution for a thick sphere with a pressure inside: the pressure that widens its middle surface by a strain.
+double pressureOfLame(double radius, double thickness, double nu, double strain) {
+  const double a = std::pow(radius - thickness / 2, 3), b = std::pow(radius + thickness / 2, 3);
+  const double by_pressure =
+      a / (kE * (b - a)) * ((1 - 2 * nu) * radius + (1 + nu) * b / (2 * radius * radius));  // displacement
+  return strain * radius / by_pressure;
+}
+
+// p dV = dW for a sphere that is blown up a little.
+double pressureOfShell(double radius, double thickness, double nu, double strain) {
+  ShellMesh mesh = sphere(4, radius);
+  mesh.materials = {{Law::NeoHookean, kE, nu, 0}};
+  mesh.thickness.assign(mesh.triangles.size(), thickness);
+  const Evaluation e = inDouble(ShellElements(mesh), affine(mesh, (1 + strain) * Eigen::Matrix3d::Identity()));
+  const Eigen::VectorXd outward = displaced(mesh, [](const Eigen::Vector3d& x) -> Eigen::Vector3d { return 2 * x; });
+  return e.gradient.dot(outward) / e.volume_gradient.dot(outward);
+}
+
+TEST(Shell, GasActsOnTheInnerFace) {
+  const double radius = 0.04, strain = 1e-5;
+  for (const double nu : {0.2, 0.3, 0.45, 0.49})
+    for (const double thickness : {0.001, 0.003, 0.005}) {
+      const double exact = pressureOfLame(radius, thickness, nu, strain);
+      const double square = thickness * thickness / (radius * radius);
+      EXPECT_NEAR(pressureOfShell(radius, thickness, nu, strain), exact, (0.003 + square) * exact) << nu << thickness;
+    }
+  // the control: on the middle surface, the pressure of a thin wall is too low by more than that
+  const double thin = 2 * kE * 0.005 * strain / (1 - 0.45) / radius;
+  EXPECT_LT(thin, (1 - 0.003 - 0.016) * pressureOfLame(radius, 0.005, 0.45, strain));
 }
 
 TEST(Shell, VolumeAndItsGradientAreThoseOfTheSurface) {
@@ -243,6 +269,26 @@ TEST(Shell, HingeAndClampChangeBendingOnly) {
   EXPECT_LT(turned(false), 1e-12 * stiff);
   EXPECT_GT(turned(true), 0.1 * stiff);
   EXPECT_GT(bent(mesh), 0);
+}
+
+// A sheet whose first three columns of nodes are held: triangles that cannot move take no part in the strain of others,
+// as if they were not there, and the others are clamped to them.
+TEST(Shell, HeldTrianglesAreLikeAClampedRim) {
+  ShellMesh whole = sheet(6, 3), cut = whole;
+  whole.fixed.assign(whole.nodes.size(), 0);
+  for (std::size_t i = 0; i < 12; ++i) whole.fixed[i] = 1;
+  cut.fixed = whole.fixed;
+  const auto held = [](const std::array<int, 3>& t) { return *std::max_element(t.begin(), t.end()) < 12; };
+  cut.triangles.erase(std::remove_if(cut.triangles.begin(), cut.triangles.end(), held), cut.triangles.end());
+  cut.thickness.resize(cut.triangles.size());
+  EXPECT_EQ(cut.triangles.size() + 12, whole.triangles.size());
+  Eigen::VectorXd u = randomDisplacement(static_cast<int>(whole.nodes.size()), 0.1 * kSide);
+  u.head(36).setZero();
+  const Evaluation one = inDouble(ShellElements(whole), u), other = inDouble(ShellElements(cut), u);
+  EXPECT_NEAR(one.energy, other.energy, 1e-12 * other.energy);
+  EXPECT_LT((one.gradient - other.gradient).norm(), 1e-12 * other.gradient.norm());
+  whole.fixed.clear();
+  EXPECT_GT(std::abs(inDouble(ShellElements(whole), u).energy - other.energy), 0.01 * other.energy);  // the control
 }
 
 TEST(Shell, MassAndStrainAreThoseOfTheTriangles) {
