@@ -91,7 +91,8 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CommandLine line{
-      "Prints time per step beside errors, for every method and setting and for cases with reference solutions. The exit "
+      "Prints time per step beside errors, for every method and setting and for cases with reference solutions. The "
+      "exit "
       "status is 1 if a case has buckled away from the branch of its reference, and 2 after an error.",
       "vibe_bench"};
   addOptions(line, options);

@@ -1,5 +1,6 @@
 #include "fem/case_runner.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <sstream>
 
@@ -56,27 +57,28 @@ TEST(CaseRunner, stretchesABlockAsTheClosedFormSays) {
   EXPECT_LE(rows[0].ms_max, whole.count());
 }
 
-// A block pressed to half of its length between sliding ends. Free to, it bows to a side long before; held along an edge
-// at both ends, it stays on the branch of the closed form.
+// A block pressed to half of its length between sliding ends. Free to, it bows to a side long before; held along an
+// edge at both ends, it stays on the branch of the closed form.
 std::vector<ResultRow> pressed(const std::string& held_too, std::string& log) {
-  return run("name: block\n"
-             "mesh:\n"
-             "  box: {size: [40 mm, 20 mm, 20 mm], cells: [4, 2, 2], tets_per_cell: 6}\n"
-             "  named: {corner: {nearest: [0, 0, 0]}, edge: {nearest: [0, 20 mm, 0]}, far: {nearest: [40 mm, 0, 0]}}\n"
-             "element: linear_tet\n"
-             "material: {law: neo_hookean, young_modulus: 30 kPa, poisson_ratio: 0.45}\n"
-             "density: 1050 kg/m^3\n"
-             "loads:\n"
-             "  prescribed:\n"
-             "    - {set: x_min, held: [x]}\n"
-             "    - {set: corner, held: [y, z]}\n"
-             "    - {set: edge, held: [z]}\n" +
-                 held_too +
-                 "    - {set: x_max, held: [x], translation: [20 mm, 0, 0]}\n"
-                 "static: {levels: [-0.5, -1], substeps: 5, tolerance: 1.0e-8 m}\n"
-                 "sample: [{name: force, kind: reaction, set: x_max, direction: [1, 0, 0], reference: [" +
-                 std::to_string(uniaxialForce(0.75)) + ", " + std::to_string(uniaxialForce(0.5)) + "]}]\n",
-             &log);
+  return run(
+      "name: block\n"
+      "mesh:\n"
+      "  box: {size: [40 mm, 20 mm, 20 mm], cells: [4, 2, 2], tets_per_cell: 6}\n"
+      "  named: {corner: {nearest: [0, 0, 0]}, edge: {nearest: [0, 20 mm, 0]}, far: {nearest: [40 mm, 0, 0]}}\n"
+      "element: linear_tet\n"
+      "material: {law: neo_hookean, young_modulus: 30 kPa, poisson_ratio: 0.45}\n"
+      "density: 1050 kg/m^3\n"
+      "loads:\n"
+      "  prescribed:\n"
+      "    - {set: x_min, held: [x]}\n"
+      "    - {set: corner, held: [y, z]}\n"
+      "    - {set: edge, held: [z]}\n" +
+          held_too +
+          "    - {set: x_max, held: [x], translation: [20 mm, 0, 0]}\n"
+          "static: {levels: [-0.5, -1], substeps: 5, tolerance: 1.0e-8 m}\n"
+          "sample: [{name: force, kind: reaction, set: x_max, direction: [1, 0, 0], reference: [" +
+          std::to_string(uniaxialForce(0.75)) + ", " + std::to_string(uniaxialForce(0.5)) + "]}]\n",
+      &log);
 }
 
 TEST(CaseRunner, warnsOfABlockThatBucklesAndNotOfItsTwin) {
@@ -97,8 +99,8 @@ TEST(CaseRunner, doesNotTakeBendingForBuckling) {
   std::string log;
   const std::string bar =
       "name: bar\n"
-      "mesh: {box: {size: [120 mm, 20 mm, 20 mm], cells: [12, 2, 2]}}\n"
-      "element: linear_tet\n"
+      "mesh: {box: {size: [120 mm, 20 mm, 20 mm], cells: [6, 2, 2]}}\n"
+      "element: quadratic_tet\n"
       "material: {law: neo_hookean, young_modulus: 30 kPa, poisson_ratio: 0.4}\n"
       "density: 1050\n"
       "clamped: [x_min]\n"
@@ -107,6 +109,36 @@ TEST(CaseRunner, doesNotTakeBendingForBuckling) {
       "sample: [{name: tip, kind: displacement, points: [[120 mm, 10 mm, 10 mm]], direction: [0, 0, 1], "
       "reference: [none, -0.04]}]\n";
   EXPECT_EQ(run(bar, &log)[0].branch, Branch::Same) << log;
+}
+
+// A plate pulled at a spot between nodes: what the spot does is the mean over the wall around its centre, whose place
+// is exact on any mesh.
+TEST(CaseRunner, spotsAreMeansOverTheWallAndNotOverNodes) {
+  FemCase plate;
+  plate.element = ElementKind::Shell;
+  plate.thickness = 0.003;
+  plate.material = {Law::NeoHookean, 30e3, 0.45, 0};
+  for (int i = 0; i < 8; ++i)
+    for (int k = 0; k < 8; ++k) plate.mesh.nodes.emplace_back(0.01 * i, 0.01 * k, 0);
+  for (int i = 0; i < 7; ++i)
+    for (int k = 0; k < 7; ++k) {
+      const int a = 8 * i + k;
+      plate.mesh.triangles.push_back({a, a + 8, a + 9});
+      plate.mesh.triangles.push_back({a, a + 9, a + 1});
+    }
+  const Eigen::Vector3d centre(0.033, 0.0312, 0);
+  plate.spots["spot"] = {centre, 0.009, Eigen::Vector3d::Zero()};
+  const CaseModel model(plate, Hold::AsFixed);
+  const NodeMean& mean = model.spot("spot");
+  Eigen::Vector3d place = Eigen::Vector3d::Zero(), lumped = place;
+  double sum = 0;
+  for (std::size_t i = 0; i < mean.node.size(); ++i) place += mean.weight[i] * plate.mesh.nodes[mean.node[i]];
+  for (const Eigen::Vector3d& x : plate.mesh.nodes) {
+    const double part = std::max(0.0, 1 - (x - centre).squaredNorm() / (0.009 * 0.009));
+    lumped += part * part * x, sum += part * part;
+  }
+  EXPECT_LT((place - centre).norm(), 1e-3 * 0.009);
+  EXPECT_GT((lumped / sum - centre).norm(), 0.05 * 0.009);  // the control: the nodes alone
 }
 
 TEST(CaseRunner, reportsTheErrorAgainstAWrongReference) {

@@ -38,7 +38,8 @@ class CaseProbe {
 };
 
 /// Runs a case and returns one row per sample: `setting` is the sample, `reference_error` the largest relative error
-/// over its levels. Prints the result of each level, and a warning where an equilibrium has lost a symmetry of the case.
+/// over its levels. Prints the result of each level, and a warning where an equilibrium has lost a symmetry of the
+/// case.
 std::vector<ResultRow> runCase(const FemCase& bench_case, std::ostream& log);
 
 /// The parts of runCase.

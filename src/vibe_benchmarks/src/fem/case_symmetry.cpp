@@ -13,8 +13,9 @@ namespace {
 constexpr double kSmallLoad = 0.01;   // of the first level
 constexpr std::size_t kPairs = 300;   // nodes whose mirror images are compared, at most
 constexpr double kSameShape = 0.005;  // distance of a mirror image from the body, by the body's size
-// Odd part of the displacement: of a symmetric answer to a small load, with what an uneven mesh adds (cinched plate with
-// diagonals in one direction: 0.02), and of one that has buckled (a mode has grown to a tenth of the displacement).
+// Odd part of the displacement: of a symmetric answer to a small load, with what an uneven mesh adds (cinched plate
+// with diagonals in one direction: 0.02), and of one that has buckled (a mode has grown to a tenth of the
+// displacement).
 constexpr double kEven = 0.03, kBroken = 0.1;
 
 Eigen::Vector3d displacementOf(const CaseModel& model, const NodeMean& mean, const MotionView& motion) {
@@ -42,7 +43,11 @@ CaseSymmetry::CaseSymmetry(const CaseModel& model) : model_(model) {
   for (int axis = 0; axis < 3; ++axis) pairs_[static_cast<std::size_t>(axis)] = pairsAcross(axis);
   StaticPath path(model, run.tolerance);
   path.advanceTo(kSmallLoad * *first, 1);
-  for (std::size_t axis = 0; axis < 3; ++axis) has_[axis] = oddPart(axis, path.motion()) < kEven;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Parts parts = partsOf(axis, path.motion());
+    has_[axis] = parts.odd < kEven * parts.all;
+    least_ = std::max(least_, parts.all);
+  }
 }
 
 std::vector<CaseSymmetry::Pair> CaseSymmetry::pairsAcross(int axis) const {
@@ -64,10 +69,13 @@ std::vector<CaseSymmetry::Pair> CaseSymmetry::pairsAcross(int axis) const {
 }
 
 void CaseSymmetry::removeRigidMotion(const std::vector<Pair>& pairs, Field& field) const {
-  if (!floats_) return;
+  if (!floats_ || pairs.empty()) return;
   const auto count = static_cast<double>(pairs.size());
   Eigen::Vector3d middle = Eigen::Vector3d::Zero(), shift = middle, moment = middle;
-  for (std::size_t i = 0; i < pairs.size(); ++i) middle += model_.mesh().nodes[pairs[i].node] / count, shift += field[i] / count;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    middle += model_.mesh().nodes[pairs[i].node] / count;
+    shift += field[i] / count;
+  }
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Eigen::Vector3d arm = model_.mesh().nodes[pairs[i].node] - middle;
@@ -79,9 +87,8 @@ void CaseSymmetry::removeRigidMotion(const std::vector<Pair>& pairs, Field& fiel
     field[i] -= shift + turn.cross(Eigen::Vector3d(model_.mesh().nodes[pairs[i].node] - middle));
 }
 
-double CaseSymmetry::oddPart(std::size_t axis, const MotionView& motion) const {
+CaseSymmetry::Parts CaseSymmetry::partsOf(std::size_t axis, const MotionView& motion) const {
   const std::vector<Pair>& pairs = pairs_[axis];
-  if (pairs.empty()) return 1;
   Field odd, all;
   for (const Pair& pair : pairs) {
     const Eigen::Vector3d here = displacementOf(model_, {{pair.node}, {1.0}}, motion);
@@ -92,8 +99,7 @@ double CaseSymmetry::oddPart(std::size_t axis, const MotionView& motion) const {
   }
   removeRigidMotion(pairs, all);
   removeRigidMotion(pairs, odd);
-  const double size = norm(all);
-  return size > 0 ? norm(odd) / size : 1;
+  return {norm(odd), norm(all)};
 }
 
 bool CaseSymmetry::known() const {
@@ -101,8 +107,11 @@ bool CaseSymmetry::known() const {
 }
 
 std::optional<std::size_t> CaseSymmetry::lost(const MotionView& motion) const {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (has_[axis] && oddPart(axis, motion) > kBroken) return axis;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!has_[axis]) continue;
+    const Parts parts = partsOf(axis, motion);
+    if (parts.odd > kBroken * std::max(parts.all, least_)) return axis;
+  }
   return std::nullopt;
 }
 

@@ -19,11 +19,9 @@ class CaseSymmetry {
   explicit CaseSymmetry(const CaseModel& model);
 
   bool known() const;  ///< whether the case has a plane of symmetry
-  /// The axis (0 to 2) of a plane of symmetry of the case that the motion has lost.
+  /// The axis (0 to 2) of a plane of symmetry of the case that the motion has lost. What is less than the answer to the
+  /// small load, as after the way back to rest, is no motion.
   std::optional<std::size_t> lost(const MotionView& motion) const;
-  /// Norm of the part of the displacement that is odd in the mirror plane across an axis, by that of all; a rigid
-  /// motion of a body that floats counts in neither. 1 if the shape has no such plane.
-  double oddPart(std::size_t axis, const MotionView& motion) const;
 
  private:
   struct Pair {
@@ -32,13 +30,21 @@ class CaseSymmetry {
   };
   using Field = std::vector<Eigen::Vector3d>;
 
+  /// Norms of the part of the displacement that is odd in the mirror plane across an axis, and of all; a rigid motion
+  /// of a body that floats counts in neither [m].
+  struct Parts {
+    double odd, all;
+  };
+
   std::vector<Pair> pairsAcross(int axis) const;
+  Parts partsOf(std::size_t axis, const MotionView& motion) const;
   void removeRigidMotion(const std::vector<Pair>& pairs, Field& field) const;
 
   const CaseModel& model_;
   bool floats_ = true;
   std::array<std::vector<Pair>, 3> pairs_;  // empty: the shape has no such plane
   std::array<bool, 3> has_{};
+  double least_ = 0;  // displacement that counts [m]
 };
 
 }  // namespace vibe::benchmarks

@@ -72,9 +72,9 @@ void writeCsv(const std::vector<ResultRow>& rows, std::ostream& out) {
 
 void printTable(const std::vector<ResultRow>& rows, std::ostream& out) {
   char line[320];
-  std::snprintf(line, sizeof line, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n", "case", "method",
-                "setting", "nodes", "ms p50", "p99", "max", "motion %", "static %", "force %", "ref %", "drift %",
-                "branch", "hash");
+  std::snprintf(line, sizeof line, "%-26s %-16s %-24s %7s %8s %8s %8s | %9s %9s %9s %9s %9s  %-6s %s\n", "case",
+                "method", "setting", "nodes", "ms p50", "p99", "max", "motion %", "static %", "force %", "ref %",
+                "drift %", "branch", "hash");
   out << line;
   for (const ResultRow& row : rows) {
     const auto ms = [](double value) { return std::isfinite(value) ? show("%.3f", value) : std::string("-"); };

@@ -153,12 +153,13 @@ double ShellElements::evaluate(const double* displacement, double* gradient) con
   for (std::size_t e = 0; e < mesh_.triangles.size(); ++e) {
     const auto material = static_cast<std::size_t>(materialOf(e));
     const Material& m = mesh_.materials[material];
-    double u[5][3], f[5][3];
+    double u[5][3], bent[5][3], f[5][3];
     gather(e, displacement, u);
+    std::copy(&u[0][0], &u[0][0] + 15, &bent[0][0]);  // shellEnergy clamps the ghosts, which fibres do not see
     const auto rows = [values = rest(e)](int row) { return values[row]; };
     energy += withLaw(m.law, [&](auto tag) {
       return shellEnergy<decltype(tag)::value, kReferenceSteps, true>(
-          WallTerms<double>(constants_[material], m.poisson_ratio), rows, u, f);
+          WallTerms<double>(constants_[material], m.poisson_ratio), rows, bent, f);
     });
     if (!fibre_rest_.empty())
       energy += fibreEnergy(

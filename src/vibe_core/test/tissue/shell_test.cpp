@@ -214,7 +214,7 @@ TEST(Shell, VolumeAndItsGradientAreThoseOfTheSurface) {
   const Evaluation d = inDouble(elements, u), f = inSingle(elements, u);
   EXPECT_NEAR(f.volume, d.volume, 1e-6 * d.volume);
   EXPECT_LT((f.volume_gradient - d.volume_gradient).norm(), 1e-6 * d.volume_gradient.norm());
-  const double h = 1e-4 * radius;
+  const double h = 1e-5 * radius;
   for (Eigen::Index i = 0; i < 60; ++i) {
     const double at = u[i];
     u[i] = at + h;
