@@ -8,6 +8,7 @@
 
 #include "common/elementary.hpp"
 #include "common/turn.hpp"
+#include "vibe_core/geometry/surface_disc.hpp"
 #include "vibe_core/geometry/triangle_tree.hpp"
 
 namespace vibe {
@@ -120,30 +121,15 @@ namespace {
 constexpr double kFreeSwing = 0.3;  // share of the chord before the needle's point passes the cap [1]
 constexpr double kMaxDepth = 0.01;  // half of the width of the curved needle, which reaches no deeper [m]
 
-// Particles within the radius that are connected to the triangle, found by region growing over triangles.
-std::vector<int> connectedWithin(const SurfaceView& wall, int triangle, const Eigen::Vector3d& point, double radius) {
-  const auto isNear = [&](int v) { return (wall.position(v) - point).norm() < radius; };
-  std::vector<int> near;  // triangles that have a corner within the radius
-  for (int t = 0; t < static_cast<int>(wall.triangles.size()); ++t) {
-    const auto& corners = wall.triangles[t];
-    if (std::any_of(corners.begin(), corners.end(), isNear)) near.push_back(t);
-  }
-  std::vector<int> found(wall.triangles[triangle].begin(), wall.triangles[triangle].end());
-  const auto isFound = [&](int v) { return std::find(found.begin(), found.end(), v) != found.end(); };
-  for (bool grown = true; grown;) {
-    grown = false;
-    for (int t : near) {
-      const auto& corners = wall.triangles[t];
-      if (std::none_of(corners.begin(), corners.end(), isFound)) continue;
-      for (int v : corners) {
-        if (isFound(v) || !isNear(v)) continue;
-        found.push_back(v);
-        grown = true;
-      }
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
+// The point of the wall at rest that is now at a point of a triangle. A sliver counts as its first corner.
+Eigen::Vector3d atRest(const SurfaceMesh& rest, const SurfaceView& wall, int triangle, const Eigen::Vector3d& point) {
+  const auto& v = rest.triangles[triangle];
+  const Eigen::Vector3d a = wall.position(v[0]), ab = wall.position(v[1]) - a, ac = wall.position(v[2]) - a;
+  const Eigen::Vector3d normal = ab.cross(ac);
+  const double square = normal.squaredNorm();
+  if (!(square > 0)) return rest.vertices[v[0]];
+  const double b = (point - a).cross(ac).dot(normal) / square, c = ab.cross(point - a).dot(normal) / square;
+  return (1 - b - c) * rest.vertices[v[0]] + b * rest.vertices[v[1]] + c * rest.vertices[v[2]];
 }
 
 double thicknessAround(const Model& model, const Bite& bite) {
@@ -173,18 +159,11 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> needlePath(const Model& model,
 
 Bite biteAround(const Model& model, const SurfaceView& wall, int triangle, const Eigen::Vector3d& point,
                 double radius) {
-  double reach = radius;
-  for (int v : wall.triangles[triangle]) reach = std::max(reach, 1.5 * (wall.position(v) - point).norm());
+  const SurfaceMesh& rest = model.organ.surface;
+  DiscWeights disc = discWeights(rest, triangle, atRest(rest, wall, triangle, point), radius);
   Bite bite;
-  bite.particle = connectedWithin(wall, triangle, point, reach);
-  double sum = 0;
-  for (int v : bite.particle) {
-    const double ratio = (wall.position(v) - point).norm() / reach;
-    const double fall = 1 - ratio * ratio;
-    bite.weight.push_back(model.area[v] * fall * fall);
-    sum += bite.weight.back();
-  }
-  for (double& weight : bite.weight) weight /= sum;
+  bite.particle = std::move(disc.vertex);
+  bite.weight = std::move(disc.weight);
   const int nearest = nearestParticle(bite);
   bite.thickness = thicknessAround(model, bite);
   bite.region = model.organ.region[nearest];

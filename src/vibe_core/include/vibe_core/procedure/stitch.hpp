@@ -9,10 +9,12 @@
 
 namespace vibe {
 
-/// The particles around a point of the wall, with weights that fall smoothly to 0 at `radius`: area at rest times
-/// (1 - (d / radius)^2)^2. Only wall that is connected to the point within the radius counts, not a wall opposite to
-/// it. The corners of the triangle always take part: on a coarse mesh the radius grows to 1.5 times their distance.
-/// @param point  on `triangle` [m]
+/// A bite at a point of the wall: a disc of the wall at rest around it, each of whose particles has the share of the
+/// disc that is its own (discWeights()). The thread thus pulls evenly on a piece of wall of given size and feels its
+/// mean motion, whatever mesh the wall has. Degenerate discs at the rim of an open wall are smaller.
+/// @param wall    present positions
+/// @param point   on `triangle` [m]
+/// @param radius  of the disc at rest [m]
 Bite biteAround(const Model& model, const SurfaceView& wall, int triangle, const Eigen::Vector3d& point, double radius);
 
 /// The particle of the bite with the largest weight; -1 without particles.
