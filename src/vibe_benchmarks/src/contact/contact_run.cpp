@@ -32,7 +32,9 @@ const std::vector<WallCrossings::Pair>& ContactCheck::wall(const State& state) {
 ToolCrossing ContactCheck::tool(const State& state) {
   if (!model_.tool) return {};
   passes_ = open_;
-  for (const GripPoint& point : state.grip) passes_[static_cast<std::size_t>(point.particle)] = 1;
+  const double whole = wholeWeight(state.grip);
+  for (const GripPoint& point : state.grip)
+    if (point.weight >= whole) passes_[static_cast<std::size_t>(point.particle)] = 1;
   model_.tool->forwardKinematics(state.joints, state.tool_displacement, poses_);
   for (Eigen::Isometry3d& pose : poses_) pose = model_.tool_base * pose;
   return findToolCrossing(*model_.tool, poses_, {model_.organ.surface.triangles, state.x, state.y, state.z}, passes_);

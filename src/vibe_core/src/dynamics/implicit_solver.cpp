@@ -78,7 +78,7 @@ void addTouch(const Model& model, const std::vector<Eigen::Isometry3d>& poses, c
   const PointMotion motion = pointMotion(model, poses, touch);
   for (int k = 0; k < touch.direction_count; ++k) {
     const Eigen::Vector3d& direction = touch.direction[static_cast<std::size_t>(k)];
-    rows.rows.push_back({touch.surface, touch.compliance, direction, direction.transpose() * motion});
+    rows.rows.push_back({touch.surface, touch.compliance, direction, direction.transpose() * motion, touch.patch});
   }
   if (touch.kind == ToolTouch::Kind::Contact) rows.contacts = true;
   rows.force -= motion.transpose() * touch.force;

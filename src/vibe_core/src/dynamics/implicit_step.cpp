@@ -303,7 +303,9 @@ bool ImplicitStep::keepToolApart() {
   ToolMotion motion = yielded_ ? *yielded_ : *motion_;
   const ToolMotion wanted = motion;
   scratch_.held.clear();
-  for (const GripPoint& point : state_.grip) scratch_.held.push_back(point.particle);
+  const double whole = wholeWeight(state_.grip);
+  for (const GripPoint& point : state_.grip)
+    if (point.weight >= whole) scratch_.held.push_back(point.particle);
   if (!limited_ && scratch_.guard->stop(scratch_.tool, motion, path, scratch_.held)) {
     limited_ = motion;
     noteStopped(wanted);

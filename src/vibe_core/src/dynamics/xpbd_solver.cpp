@@ -155,7 +155,9 @@ void XpbdSubstep::holdGrip() {
   if (state_.grip.empty()) return;
   const Eigen::Isometry3d& helix = scratch_.tool.end[model_.grip_link];
   const Eigen::Isometry3d& old_helix = scratch_.old_tool[model_.grip_link];
+  const double whole = wholeWeight(state_.grip);
   for (const GripPoint& point : state_.grip) {
+    if (point.weight < whole) continue;
     const int i = point.particle;
     const Eigen::Vector3d target = helix * point.local;
     const Eigen::Vector3d shift = target - Eigen::Vector3d(state_.x[i], state_.y[i], state_.z[i]);

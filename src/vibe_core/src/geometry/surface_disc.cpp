@@ -20,7 +20,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 /// Area and first moment of a part of the plane about the centre of a circle.
 struct Moments {
-  double area = 0;                                    // [m^2]
+  double area = 0;                                  // [m^2]
   Eigen::Vector2d first = Eigen::Vector2d::Zero();  // [m^3]
 
   void addTriangle(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {  // with the centre as its third corner
@@ -122,6 +122,18 @@ DiscWeights discWeights(const SurfaceMesh& mesh, int triangle, const Eigen::Vect
   }
   for (double& weight : disc.weight) weight /= sum;
   return disc;
+}
+
+DiscWeights discWeights(const SurfaceMesh& rest, const SurfaceView& now, int triangle, const Eigen::Vector3d& point,
+                        double radius) {
+  const auto& v = rest.triangles[triangle];
+  const Eigen::Vector3d a = now.position(v[0]), ab = now.position(v[1]) - a, ac = now.position(v[2]) - a;
+  const Eigen::Vector3d normal = ab.cross(ac);
+  const double square = normal.squaredNorm();
+  if (!(square > 0)) return discWeights(rest, triangle, rest.vertices[v[0]], radius);
+  const double b = (point - a).cross(ac).dot(normal) / square, c = ab.cross(point - a).dot(normal) / square;
+  return discWeights(rest, triangle,
+                     (1 - b - c) * rest.vertices[v[0]] + b * rest.vertices[v[1]] + c * rest.vertices[v[2]], radius);
 }
 
 }  // namespace vibe

@@ -52,13 +52,19 @@ void clear(ImpedanceBasis& basis) {
   basis.row_motion.clear();
 }
 
-int nearestNode(const SurfacePoint& surface) {
-  const auto most = std::max_element(surface.weight.begin(), surface.weight.end());
-  return surface.node[static_cast<std::size_t>(most - surface.weight.begin())];
+template <class Point>
+int heaviestNode(const Point& point) {
+  const auto most = std::max_element(point.weight.begin(), point.weight.end());
+  return point.node[static_cast<std::size_t>(most - point.weight.begin())];
 }
 
-void setRow(const SurfacePoint& surface, const Eigen::Vector3d& direction, double compliance, EquationRow& row) {
-  row.form.setPoint(surface, direction);
+int nearestNode(const ToolRow& row) {
+  return row.patch ? heaviestNode(*row.patch) : heaviestNode(row.surface);
+}
+
+template <class Point>
+void setRow(const Point& point, const Eigen::Vector3d& direction, double compliance, EquationRow& row) {
+  row.form.setPoint(point, direction);
   row.compliance = compliance;
 }
 
@@ -138,7 +144,7 @@ void ImpedanceEstimator::renew(const ToolContactRows& touch, const std::array<co
     next.positions[i] = static_cast<float>(positions[i % 3][i / 3]);
   setGas(gas_direction, gas_stiffness, next);
   for (const ToolRow& row : touch.rows) {
-    next.node.push_back(nearestNode(row.surface));
+    next.node.push_back(nearestNode(row));
     next.direction.push_back(row.direction);
     asVector(next.row_motion.emplace_back()) = row.motion.transpose();
   }
@@ -217,7 +223,11 @@ void ImpedanceEstimator::setRows(const ToolContactRows& touch) {
   motion_.resize(static_cast<Eigen::Index>(touch.rows.size()), kToolMotions);
   for (std::size_t r = 0; r < touch.rows.size(); ++r) {
     const ToolRow& row = touch.rows[r];
-    setRow(row.surface, row.direction, row.compliance, rows_.equations.add());
+    EquationRow& equation = rows_.equations.add();
+    if (row.patch)
+      setRow(*row.patch, row.direction, row.compliance, equation);
+    else
+      setRow(row.surface, row.direction, row.compliance, equation);
     motion_.row(static_cast<Eigen::Index>(r)) = touch.rows[r].motion;
   }
 }
@@ -233,7 +243,11 @@ std::optional<ToolImpedance> ImpedanceEstimator::respond(const ToolContactRows& 
   if (factor_.info() != Eigen::Success || !factor_.isPositive() || !stiffness.allFinite()) return std::nullopt;
 
   nodes_.clear();
-  for (const ToolRow& row : touch.rows) nodes_.insert(nodes_.end(), row.surface.node.begin(), row.surface.node.end());
+  for (const ToolRow& row : touch.rows)
+    if (row.patch)
+      nodes_.insert(nodes_.end(), row.patch->node.begin(), row.patch->node.end());
+    else
+      nodes_.insert(nodes_.end(), row.surface.node.begin(), row.surface.node.end());
   const bool comparable = touch.smooth && consecutive && nodes_ == memory.last_nodes;
   memory.has_last = memory.has_last && consecutive;
   memory.last_nodes.swap(nodes_);

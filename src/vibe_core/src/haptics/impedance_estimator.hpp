@@ -86,6 +86,7 @@ struct ToolRow {
   double compliance = 0;                          ///< between the tool and the point [m/N]
   Eigen::Vector3d direction;                      ///< unit
   Eigen::Matrix<double, 1, kToolMotions> motion;  ///< how its target moves with each of the tool's motions
+  const AttachmentPoint* patch = nullptr;         ///< in the place of `surface`, during the step; null: none
 };
 
 /// The tool in the tissue in one step.

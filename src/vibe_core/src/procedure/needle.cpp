@@ -121,17 +121,6 @@ namespace {
 constexpr double kFreeSwing = 0.3;  // share of the chord before the needle's point passes the cap [1]
 constexpr double kMaxDepth = 0.01;  // half of the width of the curved needle, which reaches no deeper [m]
 
-// The point of the wall at rest that is now at a point of a triangle. A sliver counts as its first corner.
-Eigen::Vector3d atRest(const SurfaceMesh& rest, const SurfaceView& wall, int triangle, const Eigen::Vector3d& point) {
-  const auto& v = rest.triangles[triangle];
-  const Eigen::Vector3d a = wall.position(v[0]), ab = wall.position(v[1]) - a, ac = wall.position(v[2]) - a;
-  const Eigen::Vector3d normal = ab.cross(ac);
-  const double square = normal.squaredNorm();
-  if (!(square > 0)) return rest.vertices[v[0]];
-  const double b = (point - a).cross(ac).dot(normal) / square, c = ab.cross(point - a).dot(normal) / square;
-  return (1 - b - c) * rest.vertices[v[0]] + b * rest.vertices[v[1]] + c * rest.vertices[v[2]];
-}
-
 double thicknessAround(const Model& model, const Bite& bite) {
   double sum = 0;
   for (std::size_t k = 0; k < bite.particle.size(); ++k)
@@ -159,8 +148,7 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> needlePath(const Model& model,
 
 Bite biteAround(const Model& model, const SurfaceView& wall, int triangle, const Eigen::Vector3d& point,
                 double radius) {
-  const SurfaceMesh& rest = model.organ.surface;
-  DiscWeights disc = discWeights(rest, triangle, atRest(rest, wall, triangle, point), radius);
+  DiscWeights disc = discWeights(model.organ.surface, wall, triangle, point, radius);
   Bite bite;
   bite.particle = std::move(disc.vertex);
   bite.weight = std::move(disc.weight);

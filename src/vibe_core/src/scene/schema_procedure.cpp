@@ -8,9 +8,9 @@ constexpr const char* kNoRate = "design choice, no rate is published";
 std::vector<SchemaRow> helixRows() {
   return {
       {"helix.reach", [](Scene& s) -> double& { return s.helix->reach; }, "m", 1e-4, 5e-2,
-       "the helix grips if a particle is within this distance of its tip", kChoice},
+       "the helix grips if the wall is within this distance of its tip", kChoice},
       {"helix.grip_radius", [](Scene& s) -> double& { return s.helix->grip_radius; }, "m", 1e-4, 5e-2,
-       "particles within this distance of the gripped one are held as well", kChoice},
+       "of the disc of the wall at rest that the helix holds, around the point nearest to its tip", kChoice},
       {"helix.hold_force", [](Scene& s) -> double& { return s.helix->hold_force; }, "N", 0, 1000,
        "force above which the helix slips when it is fully turned in",
        "largest instrument tip force seen in transgastric surgery: Trejos 2011, Surg Endosc 25:186"},
@@ -26,7 +26,7 @@ std::vector<SchemaRow> helixRows() {
 std::vector<SchemaRow> threadRows() {
   return {
       {"suture.bite_radius", [](Scene& s) -> double& { return s.suture->bite_radius; }, "m", 1e-4, 5e-2,
-       "the thread pulls on the particles within this distance of a bite", kChoice},
+       "of the disc of the wall at rest on which the thread pulls evenly, around the place of a bite", kChoice},
       {"suture.thread_stiffness", [](Scene& s) -> double& { return s.suture->thread_stiffness; }, "N", 1, 1e5,
        "tension per strain of the thread",
        "polypropylene sutures at 4.03 GPa (Nindhia 2021, doi 10.22159/ijap.2021.v13s1.Y1025), diameter of USP 2-0, "

@@ -97,9 +97,11 @@ std::string particleDamage(const State& s, std::size_t particle_count) {
        {&s.x, &s.y, &s.z, &s.vx, &s.vy, &s.vz, &s.ax, &s.ay, &s.az, &s.qw, &s.qx, &s.qy, &s.qz, &s.wx, &s.wy, &s.wz})
     if (list->size() != particle_count) return "it has another number of particles than its organ";
   if (s.grip.size() > particle_count) return "it holds more tissue than there is";
-  for (const GripPoint& point : s.grip)
+  for (const GripPoint& point : s.grip) {
     if (point.particle < 0 || static_cast<std::size_t>(point.particle) >= particle_count)
       return "it holds a particle that does not exist";
+    if (!(point.weight > 0) || !std::isfinite(point.weight)) return "it holds a particle without a weight";
+  }
   return "";
 }
 

@@ -12,6 +12,12 @@ void LinearForm::setPoint(const SurfacePoint& point, const Eigen::Vector3d& dire
   for (int k = 0; k < point.count; ++k) coefficient.emplace_back(point.weight[static_cast<std::size_t>(k)] * direction);
 }
 
+void LinearForm::setPoint(const AttachmentPoint& point, const Eigen::Vector3d& direction) {
+  node.assign(point.node.begin(), point.node.end());
+  coefficient.clear();
+  for (const double weight : point.weight) coefficient.emplace_back(weight * direction);
+}
+
 double LinearForm::value(const std::vector<double>& position4) const {
   double sum = 0;
   for (std::size_t k = 0; k < node.size(); ++k) {

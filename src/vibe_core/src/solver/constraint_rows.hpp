@@ -19,6 +19,7 @@ struct LinearForm {
     coefficient.assign(1, direction);
   }
   void setPoint(const SurfacePoint& point, const Eigen::Vector3d& direction);
+  void setPoint(const AttachmentPoint& point, const Eigen::Vector3d& direction);
   double value(const std::vector<double>& position4) const;
   /// Adds a force along the form.
   void addForce(double force, std::vector<float>& vector4) const;

@@ -32,8 +32,10 @@ SurfaceMesh plate(double side, int cells, unsigned seed) {
   for (int i = 0; i < cells; ++i)
     for (int k = 0; k < cells; ++k) {
       const int a = at(i, k), b = at(i + 1, k), c = at(i + 1, k + 1), d = at(i, k + 1);
-      if ((i + k) % 2 == 0) mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
-      else mesh.triangles.push_back({a, b, d}), mesh.triangles.push_back({b, c, d});
+      if ((i + k) % 2 == 0)
+        mesh.triangles.push_back({a, b, c}), mesh.triangles.push_back({a, c, d});
+      else
+        mesh.triangles.push_back({a, b, d}), mesh.triangles.push_back({b, c, d});
     }
   return mesh;
 }

@@ -327,10 +327,9 @@ TEST(Kilohertz, SettlesWhereFramesSettleInAllDirectionsWithoutFriction) {
 TEST(Kilohertz, HoldsPullsAndLetsGo) {
   World world = ballWorld(kMillisecond);
   takeHold(world);
-  const int target = world.state.grip.front().particle;
-  const Eigen::Vector3d before = world.position(target);
+  const Eigen::Vector3d before = test::heldPlace(world);
   world.run(0.5, scopeAt(0.09, 0.028, true));
-  EXPECT_NEAR((world.position(target) - before).z(), 0.01, 1e-6);
+  EXPECT_NEAR((test::heldPlace(world) - before).z(), 0.01, 1e-6);
   EXPECT_LT(forceOn(world).z(), -0.1);
   world.run(1.5, scopeAt(0.03, 0.028, false));
   EXPECT_EQ(world.state.tool_force.norm(), 0);

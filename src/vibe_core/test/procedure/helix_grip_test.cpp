@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "vibe_core/common/files.hpp"
-#include "vibe_testing/worlds.hpp"
+#include "vibe_testing/scope_worlds.hpp"
 
 namespace vibe::helix_grip_test {
 namespace {
@@ -56,9 +56,49 @@ TEST_F(HelixGrip, ReportsTheTargetedParticleAndItsNeighbours) {
   ASSERT_EQ(world.count(Kind::Grab), 1);
   EXPECT_EQ(world.events.front().particle, kTarget);
   EXPECT_EQ(world.events.front().value, static_cast<double>(world.state.grip.size()));
-  for (const GripPoint& point : world.state.grip)
-    EXPECT_LE((world.position(point.particle) - world.position(kTarget)).norm(), world.model->scene.helix->grip_radius);
+  double sum = 0;
+  const double radius = world.model->scene.helix->grip_radius, whole = wholeWeight(world.state.grip);
+  for (const GripPoint& point : world.state.grip) {
+    sum += point.weight;
+    if (point.weight >= whole) EXPECT_LE((world.position(point.particle) - world.position(kTarget)).norm(), radius);
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
   EXPECT_EQ(world.state.procedure.phase, Phase::Suture);
+}
+
+// What is held follows the tip of the helix, not the particles.
+TEST_F(HelixGrip, HoldsTheWallWhereTheTipIs) {
+  const std::array<int, 3> corners = world.model->organ.surface.triangles[40];
+  Eigen::Vector3d last;
+  for (int k = 0; k <= 10; ++k) {
+    updateGrip(*world.model, poses, false, world.state, {world.state, world.events});
+    const double part = 0.1 * k;
+    const Eigen::Vector3d tip = (1 - part) * world.position(corners[0]) + part * world.position(corners[1]);
+    poses[world.model->helix_link].translation() = tip;
+    updateGrip(*world.model, poses, true, world.state, {world.state, world.events});
+    const Eigen::Vector3d held = test::heldPlace(world);
+    EXPECT_LT((held - tip).norm(), 0.3e-3) << "the mean of a disc of 5 mm of a ball lies 0.2 mm below its middle";
+    if (k > 0) {
+      const double step = 0.1 * (world.position(corners[1]) - world.position(corners[0])).norm();
+      EXPECT_NEAR((held - last).norm(), step, 0.2 * step) << part;
+    }
+    last = held;
+  }
+}
+
+// In reach is the wall, however far its particles are.
+TEST_F(HelixGrip, ReachesTheWallBetweenParticles) {
+  const HelixScene& helix = *world.model->scene.helix;
+  const auto& [a, b, c] = world.model->organ.surface.triangles[40];
+  const Eigen::Vector3d middle = (world.position(a) + world.position(b) + world.position(c)) / 3;
+  for (const double share : {0.99, 1.01}) {
+    updateGrip(*world.model, poses, false, world.state, {world.state, world.events});
+    poses[world.model->helix_link].translation() = middle - share * helix.reach * middle.normalized();
+    updateGrip(*world.model, poses, true, world.state, {world.state, world.events});
+    EXPECT_EQ(world.state.grip.empty(), share > 1);
+    EXPECT_GT((poses[world.model->helix_link].translation() - world.position(a)).norm(), helix.reach);
+  }
+  EXPECT_NEAR(world.events.back().value, 1.01 * helix.reach, 1e-4);
 }
 
 TEST_F(HelixGrip, HoldsMoreWithEveryTurnUpToItsBest) {

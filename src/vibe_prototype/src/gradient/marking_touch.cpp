@@ -37,7 +37,10 @@ void MarkingTouch::update(const ToolMotion& motion, State& state, StepReport& re
     find(state, x, y, z, touches);
   };
   const int held = touch_.update(base, finder, state.x, state.y, state.z);
-  report.contact_count = std::max(0, held - static_cast<int>(state.grip.size()));
+  const double whole = wholeWeight(state.grip);
+  const auto gripped = std::count_if(state.grip.begin(), state.grip.end(),
+                                     [whole](const GripPoint& point) { return point.weight >= whole; });
+  report.contact_count = std::max(0, held - static_cast<int>(gripped));
   for (auto* v : {&state.vx, &state.vy, &state.vz, &state.ax, &state.ay, &state.az, &state.wx, &state.wy, &state.wz})
     std::fill(v->begin(), v->end(), 0.0);
   updateGas(state);
@@ -92,7 +95,9 @@ void MarkingTouch::updateGas(State& state) const {
 
 void MarkingTouch::find(const State& state, const std::vector<double>& x, const std::vector<double>& y,
                         const std::vector<double>& z, std::vector<Touch>& touches) {
-  for (const GripPoint& point : state.grip) touches.push_back({point.particle, poses_[model_.grip_link] * point.local});
+  const double whole = wholeWeight(state.grip);
+  for (const GripPoint& point : state.grip)
+    if (point.weight >= whole) touches.push_back({point.particle, poses_[model_.grip_link] * point.local});
   const double radius = model_.particle_radius;
   collision_.findCandidates(poses_, x.data(), y.data(), z.data(), model_.particle_count, radius);
   const auto& contacts = collision_.findContacts(poses_, x.data(), y.data(), z.data(), radius);

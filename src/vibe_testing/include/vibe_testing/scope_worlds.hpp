@@ -51,4 +51,11 @@ inline StepInput scopeAt(double insertion, double helix_advance = 0, bool grab =
   return input;
 }
 
+/// Mean place of what the helix holds [m].
+inline Eigen::Vector3d heldPlace(const World& world) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const GripPoint& point : world.state.grip) sum += point.weight * world.position(point.particle);
+  return sum;
+}
+
 }  // namespace vibe::test

@@ -40,6 +40,9 @@ struct ToolTouch {
   enum class Kind { Grip, Contact };
   Kind kind = Kind::Contact;
   SurfacePoint surface;
+  /// Takes the place of `surface` where it is more than a point: the weighted mean of these particles. Owned by the
+  /// block, as it is until its next prepare(); null: none.
+  const AttachmentPoint* patch = nullptr;
   double compliance = 0;   ///< between the tool and the point [m/N]
   int link = -1;           ///< of the tool
   Eigen::Vector3d point;   ///< where the force acts at the end of the step, world [m]

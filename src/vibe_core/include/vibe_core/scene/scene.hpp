@@ -101,8 +101,8 @@ struct ScopeScene {
 
 /// Tissue helix: holds the particles near its tip.
 struct HelixScene {
-  double reach = 4e-3;              ///< grips if a particle is within this distance of the tip [m]
-  double grip_radius = 5e-3;        ///< particles within this distance of the first are held as well [m]
+  double reach = 4e-3;              ///< grips if the wall is within this distance of the tip [m]
+  double grip_radius = 5e-3;        ///< of the disc of wall that it holds, at rest [m]
   double hold_force = 8.0;          ///< slips above this force when fully turned in [N]
   double hold_turns = 3.0;          ///< turns until it is fully turned in [1]
   double initial_hold_force = 0.5;  ///< holds without a turn [N]; between the two the force grows with the turns
@@ -110,7 +110,7 @@ struct HelixScene {
 
 /// Needle, thread, T-tag and cinch of the suturing device.
 struct SutureScene {
-  double bite_radius = 4e-3;             ///< the thread pulls on the particles within this distance of a bite [m]
+  double bite_radius = 4e-3;             ///< of the disc of wall that the thread pulls on, at rest [m]
   double thread_stiffness = 323;         ///< force per strain, see polypropylene20() [N]
   double thread_friction = 0.15;         ///< Coulomb coefficient thread on tissue [1]
   double thread_strength = 14.1;         ///< breaks above this tension [N]

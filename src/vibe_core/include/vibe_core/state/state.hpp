@@ -32,11 +32,21 @@ struct PullSpring {
   bool holds() const { return !node.empty(); }
 };
 
-/// A particle held by the helix.
+/// A particle of the disc of wall that the helix holds. The helix carries along the mean place of the disc and its mean
+/// stretch and turn, so a single particle may move against it.
 struct GripPoint {
   int particle = -1;
-  Eigen::Vector3d local;  ///< where, in the frame of the link that carries the helix [m]
+  Eigen::Vector3d local;  ///< where it was when the helix took hold, in the frame of the link that carries it [m]
+  double weight = 1;      ///< its share of the disc; sum over the grip 1 [1]
 };
+
+/// Weight from which a particle counts as held by itself, where only whole particles can be: a quarter of the greatest.
+/// Design choice: those of which less belongs to the disc lie outside of it and give way.
+inline double wholeWeight(const std::vector<GripPoint>& grip) {
+  double greatest = 0;
+  for (const GripPoint& point : grip) greatest = point.weight > greatest ? point.weight : greatest;
+  return greatest / 4;
+}
 
 /// Sums since the start [J], see energyBalance(). Shape matching knows works and damping_loss only.
 struct EnergyAccount {

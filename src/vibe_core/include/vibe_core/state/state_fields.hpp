@@ -17,7 +17,7 @@ VIBE_FIELDS(StepInput, joints, buttons, pull_particle, pull_target);
 
 /// Version of the fields of State and of the layout of snapshots, which carry it. Raise it with every change of the
 /// lists below.
-constexpr std::uint32_t kStateVersion = 7;
+constexpr std::uint32_t kStateVersion = 8;
 
 VIBE_FIELDS(Bite, particle, weight, time, depth, thickness, region, wall, along);
 VIBE_FIELDS(TissueGroup, particle, offset, middle, weight, drawn);
@@ -28,7 +28,7 @@ VIBE_FIELDS(ProcedureState, phase, pressed, heat, dose, grade, beam_energy, base
             grip_turns, arm_closed, needle_on_arm, needle_loaded, pierced, pending, sutures, thread_used, bleedings,
             blood_lost);
 VIBE_FIELDS(PullSpring, particle, node, weight, target, force);
-VIBE_FIELDS(GripPoint, particle, local);
+VIBE_FIELDS(GripPoint, particle, local, weight);
 VIBE_FIELDS(EnergyAccount, tool_work, hand_work, scope_loss, gas_work, thread_work, pull_work, friction_loss,
             damping_loss, viscous_loss, contact_loss, contact_energy, numerical_loss, correction_work, residual_work);
 VIBE_FIELDS(StiffnessCoupling, node, weight, stiffness);
