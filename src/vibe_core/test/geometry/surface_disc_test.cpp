@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "vibe_core/geometry/triangle_tree.hpp"
 #include "vibe_testing/worlds.hpp"
 
 namespace vibe::surface_disc_test {
@@ -127,7 +128,9 @@ TEST(SurfaceDisc, HasItsArea) {
         meanOver(discAt(mesh, centre), mesh, [&](const Eigen::Vector3d& p) { return (p - centre).squaredNorm(); });
     const double error = square / (0.5 * kRadius * kRadius) - 1;
     EXPECT_GT(error, 0);
-    if (last > 0) EXPECT_NEAR(last / error, 4, 1.2) << "second order";
+    if (last > 0) {
+      EXPECT_NEAR(last / error, 4, 1.2) << "second order";
+    }
     last = error;
   }
   EXPECT_LT(last, 0.02);

@@ -60,7 +60,8 @@ TEST_F(HelixGrip, ReportsTheTargetedParticleAndItsNeighbours) {
   const double radius = world.model->scene.helix->grip_radius, whole = wholeWeight(world.state.grip);
   for (const GripPoint& point : world.state.grip) {
     sum += point.weight;
-    if (point.weight >= whole) EXPECT_LE((world.position(point.particle) - world.position(kTarget)).norm(), radius);
+    if (point.weight < whole) continue;
+    EXPECT_LE((world.position(point.particle) - world.position(kTarget)).norm(), radius);
   }
   EXPECT_NEAR(sum, 1, 1e-12);
   EXPECT_EQ(world.state.procedure.phase, Phase::Suture);
@@ -69,7 +70,7 @@ TEST_F(HelixGrip, ReportsTheTargetedParticleAndItsNeighbours) {
 // What is held follows the tip of the helix, not the particles.
 TEST_F(HelixGrip, HoldsTheWallWhereTheTipIs) {
   const std::array<int, 3> corners = world.model->organ.surface.triangles[40];
-  Eigen::Vector3d last;
+  Eigen::Vector3d last = Eigen::Vector3d::Zero();
   for (int k = 0; k <= 10; ++k) {
     updateGrip(*world.model, poses, false, world.state, {world.state, world.events});
     const double part = 0.1 * k;
