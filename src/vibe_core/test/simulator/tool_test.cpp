@@ -133,9 +133,9 @@ class Grip : public ::testing::Test {
 TEST_F(Grip, HoldsPullsAndLetsGo) {
   takeHold();
   const int target = world.state.grip.front().particle;
-  const Eigen::Vector3d before = test::heldPlace(world);
+  const Eigen::Vector3d before = world.position(target);
   world.run(2.0, scopeAt(0.075, 0.028, true));
-  EXPECT_NEAR((test::heldPlace(world) - before).z(), 0.02, 1e-6) << "it moves with the helix";
+  EXPECT_NEAR((world.position(target) - before).z(), 0.02, 1e-6) << "it moves with the helix";
   EXPECT_LT(forceInWorld(world).z(), -0.1) << "the tissue pulls the scope down";
   EXPECT_NEAR(world.state.grip_force, world.state.tool_force.norm(), 1e-9) << "nothing else touches";
   world.run(3.0, scopeAt(0.03, 0.028, false));

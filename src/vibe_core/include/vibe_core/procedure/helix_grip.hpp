@@ -9,9 +9,9 @@ namespace vibe {
 
 /// Call before a step. The helix takes hold of the wall when its button is pressed with tissue in reach, and releases
 /// it when the button is released. What is in reach is the point of the wall nearest to the tip; what is held, the disc
-/// of the wall at rest around it (discWeights()), wherever its particles lie. Changes state.grip, state.helix_pressed, the rotation at the grab in state.procedure
-/// and, in a scene with sutures, the phase. Held tissue moves with the link that carries the helix, but does not turn
-/// with the helix: a corkscrew turns in the tissue.
+/// of the wall at rest around it (discWeights()), wherever its particles lie. Changes state.grip, state.helix_pressed,
+/// the rotation at the grab in state.procedure and, in a scene with sutures, the phase. Held tissue moves with the link
+/// that carries the helix, but does not turn with the helix: a corkscrew turns in the tissue.
 /// @param link_poses  of the tool's links in world; the origin of the helix link is the tip of the helix
 void updateGrip(const Model& model, const std::vector<Eigen::Isometry3d>& link_poses, bool pressed, State& state,
                 EventLog log);
