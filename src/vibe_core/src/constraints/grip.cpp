@@ -96,6 +96,7 @@ class GripBlock : public ConstraintBlock {
       touch.motion = touch.point - context.tool->start[link] * claws_.local(c);
       touch.force = loads.pointForce(first_[c]);
       touch.work = loads.pointWork(first_[c]);
+      touch.middle = touch.point - 0.5 * touch.motion;
       touch.direction = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
       touch.direction_count = 3;
       touches.push_back(touch);

@@ -128,7 +128,9 @@ class ToolContactBlock : public ConstraintBlock {
     touch.compliance = contact.compliance;
     touch.link = link_[number];
     touch.point = placeOf(contact.point, context.state);
-    touch.motion = context.tool->end[touch.link] * place_[number] - context.tool->start[touch.link] * place_[number];
+    const Eigen::Vector3d from = context.tool->start[touch.link] * place_[number];
+    touch.motion = context.tool->end[touch.link] * place_[number] - from;
+    touch.middle = from + 0.5 * touch.motion;
     touch.force = contact.force;
     touch.work = contact.work;
     const double push = contact.force.dot(contact.normal);

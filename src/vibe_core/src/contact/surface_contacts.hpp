@@ -23,19 +23,20 @@ struct SurfaceContact {
   int shape = -1;              ///< of the tool
   double clearance = 0;        ///< distance of the mid-surface from the shape where it touches: half the wall [m]
   double distance = 0;         ///< of the mid-surface from the shape when `normal` was taken [m]
-  Eigen::Vector3d normal;      ///< unit, out of the shape, at the end of the step
+  Eigen::Vector3d normal;      ///< unit, out of the shape, as the shape is turned at the end of the step
   Eigen::Vector3d tool_point;  ///< of the shape's surface, at the end of the step [m]
 };
 
-/// Contacts of a tool with the triangles of a wall, continuous in time. A normal is taken where a pair of shape and
-/// triangle is after the step if nothing stops it, or just before it would pass through the shape, so that wall and
-/// tool keep their sides however fast they move.
+/// Contacts of a tool with the triangles of a wall, continuous in time. A normal is the secant between where a point is
+/// before the step and after it if nothing stops it, so that sliding does no work; or it is taken just before the wall
+/// would pass through the shape, so that wall and tool keep their sides however fast they move.
 ///
 /// Contacts are points of the wall that stay the same from step to step: the vertices, and where these leave room for
 /// the shape between them, because it is thin or the triangles are large, points that divide edges and triangles
-/// evenly. A shape wider than the triangles therefore has one contact per vertex within reach. The nearest points of a
-/// triangle and a shape would be fewer, but they move with the tilt of the triangle, and a force that follows that from
-/// step to step does not come to rest. Where two shapes touch one place from one side, the deeper contact counts.
+/// evenly. A shape far wider than the triangles therefore has one contact per vertex within reach. The nearest points
+/// of a triangle and a shape would be fewer, but they move with the tilt of the triangle, and a force that follows that
+/// from step to step does not come to rest. Where a wide shape would sink between its vertices as far as a hand feels,
+/// the middles of edges are contacts, too. Where two shapes touch one place from one side, the deeper contact counts.
 class SurfaceContacts {
  public:
   /// @param thickness  of the wall per vertex [m]
@@ -68,10 +69,13 @@ class SurfaceContacts {
   void addBetween(const SurfacePath& path, double margin, int shape, const std::vector<char>& excluded);
   void addNearest(int shape, const std::vector<char>& excluded);
   int partsOf(int shape, double length) const;
+  bool isRough(int shape, double length) const;
   void addEdge(const SurfacePath& path, double margin, int shape, const Pair& pair, int edge, int parts);
   void addInterior(const SurfacePath& path, double margin, int shape, const Pair& pair, int parts);
   void offer(const SurfacePoint& point, const SurfacePath& path, int shape, bool hit, double margin);
   void add(const SurfacePoint& point, int shape, double fraction, const TriangleGap& gap, double clearance);
+  void addAlong(const SurfacePoint& point, int shape, const Eigen::Vector3d& start, const TriangleGap& gap,
+                double clearance);
   bool isBuried(const SurfaceContact& contact) const;
   void removeDuplicates();
 

@@ -361,13 +361,17 @@ void ImplicitStep::reportTool() {
   }
 }
 
-// Inputs that are not the scope's act from within the tool: the hand that pushes an instrument.
+// Inputs that are not the scope's act from within the tool: the hand that pushes an instrument. Levers are those half
+// way: at the end of the step they would be wrong by what the tool turns in it.
 // @param tool_work  of the tool on the tissue in this step [J]
 void ImplicitStep::reportHand(double tool_work) {
   Eigen::Matrix<double, kJointCount, 1> effort = Eigen::Matrix<double, kJointCount, 1>::Zero();
-  for (const ToolTouch& touch : scratch_.touches)
-    effort += pointJacobian(*model_.tool, scratch_.tool.end, touch.link, touch.point).transpose() * touch.force;
   const auto from = motion_->inputs(0), &to = state_.joints;
+  ToolMotion motion(*model_.tool, model_.tool_base, from, to, motion_->startDisplacement());
+  if (model_.scope_springs) motion.displaceEnd(report_.tool_displacement);
+  motion.linkPoses(0.5, scratch_.tool.middle);
+  for (const ToolTouch& touch : scratch_.touches)
+    effort += pointJacobian(*model_.tool, scratch_.tool.middle, touch.link, touch.middle).transpose() * touch.force;
   const double scope_loss = state_.energy.scope_loss;
   if (springs_) {
     const ToolDisplacement& after = report_.tool_displacement;

@@ -79,7 +79,7 @@ struct Scene {
 };
 
 TEST(SurfaceContacts, AWideShapeHasOneContactPerVertexInReach) {
-  Scene scene(8e-3, 10);  // 3 mm between vertices
+  Scene scene(8e-3, 15);  // 2 mm between vertices
   const auto poses = scene.posesAt({-1e-3, 0, 0});
   const auto& found = scene.contacts.find(poses, poses, pathOf(scene.start, scene.start), 0.5e-3, scene.none);
   ASSERT_GT(found.size(), 4u);
@@ -97,6 +97,82 @@ TEST(SurfaceContacts, AWideShapeHasOneContactPerVertexInReach) {
   for (const Vector3d& p : scene.mesh.vertices)
     expected += (p - Vector3d(-9e-3, 0, 0)).norm() < 8e-3 + kThickness / 2 + 0.5e-3 ? 1 : 0;
   EXPECT_EQ(found.size(), expected);
+}
+
+// Where vertices are farther apart, a tip would sink between them; the wall holds it in the middle of edges, too.
+TEST(SurfaceContacts, AWideShapeIsHeldBetweenVerticesThatAreFarApart) {
+  Scene scene(8e-3, 8);  // 3.8 mm between vertices, 5.3 along diagonals
+  const auto poses = scene.posesAt({-0.8e-3, 0.7e-3, 0.3e-3});
+  const auto& found = scene.contacts.find(poses, poses, pathOf(scene.start, scene.start), 2e-3, scene.none);
+  int middles = 0, vertices = 0;
+  for (const SurfaceContact& contact : found) {
+    ASSERT_LE(contact.point.count, 2);
+    vertices += contact.point.count == 1 ? 1 : 0;
+    if (contact.point.count == 1) continue;
+    ++middles;
+    EXPECT_DOUBLE_EQ(contact.point.weight[0], 0.5);
+    EXPECT_LT(contact.distance, kThickness / 2 + 0.5e-3 + kRounding) << "only those that are about to touch";
+  }
+  EXPECT_GT(middles, 2);
+  EXPECT_GT(vertices, 2);
+}
+
+/// Of a point from the core of the capsule, in the frame of the pose.
+Vector3d fromCore(const Isometry3d& pose, double length, const Vector3d& point) {
+  const Vector3d local = pose.inverse() * point;
+  return local - Vector3d(std::clamp(local.x(), 0.0, length), 0, 0);
+}
+
+// The row of a contact is violated by as much as the distance is too small at the end of the step, to second order in
+// the step too, and a point that keeps its distance does no work. Exact on sphere, cylinder and, with a radius far
+// beyond the way, plane.
+TEST(SurfaceContacts, AMotionAlongTheShapeDoesNoWork) {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> c(-1, 1);
+  constexpr double kLength = 0.01;
+  for (const double radius : {3e-3, 8e-3, 0.5}) {
+    Scene scene(radius, 15, kLength);
+    const int tip = scene.tool.linkIndex("scope_tip");
+    double tangent = 0;  // most that the normal at the end alone would be wrong by
+    int checked = 0;
+    for (int trial = 0; trial < 60; ++trial) {
+      Eigen::Matrix3d lie = Eigen::AngleAxisd(0.25 * M_PI * (1 + c(random)), Vector3d::UnitZ()).toRotationMatrix();
+      const Eigen::Matrix3d turn =
+          Eigen::AngleAxisd(0.02 * c(random), Vector3d(c(random), c(random), 1).normalized()) * lie;
+      auto start = scene.posesAt({0, 0, 0}, lie), end = start;
+      double nearest = 1;  // of the sheet
+      for (const Vector3d& p : scene.mesh.vertices) nearest = std::min(nearest, fromCore(start[0], kLength, p).norm());
+      for (std::size_t k = 0; k < start.size(); ++k) {
+        start[k].translation().x() -= radius + 0.9e-3 - nearest;
+        end[k] = start[k];
+        end[k].linear() = turn;
+        end[k].translation() += 0.5e-3 * Vector3d(0.05 * c(random), c(random), c(random));
+      }
+      Points to = scene.start;
+      for (auto& x : to)
+        for (double& value : x) value += 0.05e-3 * c(random);
+      for (const SurfaceContact& contact : scene.contacts.find(start, end, pathOf(scene.start, to), 1e-3, scene.none)) {
+        if (contact.point.count != 1) continue;
+        const int i = contact.point.node[0];
+        const Vector3d p(to[0][i], to[1][i], to[2][i]);
+        const Vector3d v = turn * fromCore(start[tip], kLength, scene.mesh.vertices[i]),
+                       w = turn * fromCore(end[tip], kLength, p);
+        const Vector3d slid = p - end[tip] * (start[tip].inverse() * scene.mesh.vertices[i]);
+        if (w.norm() > radius + contact.clearance + 1e-3) continue;  // it leaves
+        if (std::abs((w - v - slid).dot(v + w)) > 1e-12) continue;   // from one part of the capsule to another
+        ++checked;
+        const double scale = (v.norm() + w.norm()) / (v + w).norm();
+        EXPECT_NEAR(contact.normal.dot(slid), scale * (w.norm() - v.norm()), kRounding);
+        EXPECT_NEAR(contact.normal.dot(p - contact.tool_point),
+                    scale * (w.norm() - radius - contact.clearance) + contact.clearance, kRounding);
+        tangent = std::max(tangent, w.normalized().dot(slid) - (w.norm() - v.norm()));
+      }
+    }
+    EXPECT_GT(checked, 100) << radius;
+    if (radius < 0.1) {
+      EXPECT_GT(tangent, 1e-6) << "with the normal at the end the shape would do work";
+    }
+  }
 }
 
 // Contacts that all touch leave no room for the shape to come to the mid-surface, wherever it is.

@@ -47,6 +47,7 @@ struct ToolTouch {
   int link = -1;           ///< of the tool
   Eigen::Vector3d point;   ///< where the force acts at the end of the step, world [m]
   Eigen::Vector3d motion;  ///< of the tool at this point during the step [m]
+  Eigen::Vector3d middle;  ///< where that point of the tool is half way, world [m]
   Eigen::Vector3d force;   ///< tool on tissue, mean over the step [N]
   double work = 0;         ///< of this force on the tissue over the step [J]
   /// Unit directions in which the point follows the tool, the first direction_count of them: all three where it sticks,
