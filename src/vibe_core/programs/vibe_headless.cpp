@@ -120,6 +120,18 @@ void reportGoals(bool show, Trainee& trainee, const Simulation& simulation) {
   };
 }
 
+// Of a session that follows a protocol.
+std::string goalSentence(const Trainee* trainee, const SessionMetrics& metrics) {
+  if (trainee == nullptr) return "";
+  const std::vector<Measure> measures = goalMeasures(trainee, metrics.skill.sets);
+  const auto count = [&](const char* name) { return static_cast<int>(valueOf(measures, name).value_or(0)); };
+  char text[160];
+  std::snprintf(text, sizeof text, "goals              %8d     reached %d   sets as planned %d   bites given up %d of %d\n",
+                count("goals"), count("goals_reached"), count("sets_as_planned"), count("bites_given_up"),
+                count("bites_planned"));
+  return text;
+}
+
 // 0: until the goals have ended
 double durationOf(const Options& o, const TraineeScript* script, const Trainee* trainee) {
   if (o.duration > 0) return o.duration;
@@ -179,7 +191,7 @@ void run(const Options& o) {
   if (o.quiet)
     std::cout << "state hash: " << toHex(simulation.hash()) << "\n";
   else
-    std::cout << landmarkRemark(model->scene)
+    std::cout << landmarkRemark(model->scene) << goalSentence(trainee.get(), simulation.metrics())
               << runSummary(simulation.metrics(), simulation.timer().cpu.all, model->particle_count, simulation.time(),
                             steadyTime() - begin, simulation.hash());
 }

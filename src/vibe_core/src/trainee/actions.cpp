@@ -5,6 +5,7 @@
 #include "trainee/bite_attempt.hpp"
 #include "trainee/operator.hpp"
 #include "trainee/picture.hpp"
+#include "vibe_core/common/error.hpp"
 #include "vibe_core/trainee/suture_pattern.hpp"
 
 namespace vibe {
@@ -64,7 +65,8 @@ constexpr double kBeamGap = 3e-3;  // from the probe to the wall [m]
 constexpr double kAimed = 2e-3;    // of the beam from its target, and of the probe from its distance [m]
 constexpr int kCorrections = 3;    // of the tip, before the pedal is pressed
 
-// Brings the probe before the wall; what the last motion missed is added to the next.
+// Brings the probe before the wall; what the last motion missed is added to the next. Where a wall presses on the scope
+// it stays as it is: a correction would press on.
 bool approachMark(const WallPoint& target, double distance, Operator& me) {
   Eigen::Vector3d correction = Eigen::Vector3d::Zero();
   for (int k = 0; k < kCorrections; ++k) {
@@ -76,6 +78,7 @@ bool approachMark(const WallPoint& target, double distance, Operator& me) {
     const Eigen::Vector3d miss =
         place - (me.view().tip + view.distance * (me.view().tip_turn * Eigen::Vector3d::UnitX()));
     if (miss.norm() < kAimed && std::abs(view.distance - distance) < kAimed) return true;
+    if (me.hand.feelsMuch()) return true;
     correction += miss + (view.distance - distance) * me.outward(target);
   }
   return true;
@@ -118,10 +121,14 @@ GoalResult takeBite(const WallPoint& target, Operator& me) {
     return {false, "the scene has no helix or no suture; add 'helix: {}' and 'suture: {}'"};
   GoalResult result;
   me.surprise *= kNextTime;
+  me.tries = {};
   me.hand.wait(me.skill().look_time);
   for (int attempt = 0; attempt < me.skill().attempts; ++attempt) {
     result = BiteAttempt(target, attempt, me).make();
-    if (result.reached) return result;
+    if (result.reached) {
+      ++me.bites_taken;
+      return result;
+    }
     me.say("try " + std::to_string(attempt + 1) + " of " + std::to_string(me.skill().attempts) + ": " + result.reason);
   }
   return result;
@@ -178,18 +185,49 @@ GoalResult perform(const CinchGoal&, Operator& me) {
   return tight ? GoalResult{true, ""} : GoalResult{false, "the thread did not become tight"};
 }
 
+namespace {
+
+constexpr double kAsideStep = 1e-3;  // [m]
+constexpr double kAsideMost = 0.5;   // of the length of a pattern, so that its shape remains; design choice [1]
+
+}  // namespace
+
+WallPoint besideThreads(const WallPoint& target, double most, const Operator& me) {
+  const AnatomicalMap& map = *me.seen_map;
+  WallPoint beside = target;
+  for (double moved = 0; moved < most; moved += kAsideStep) {
+    const auto distance = [&](const WallPoint& stitch) { return (map.position(stitch) - map.position(beside)).norm(); };
+    const auto nearest =
+        std::min_element(me.stitches.begin(), me.stitches.end(),
+                         [&](const WallPoint& a, const WallPoint& b) { return distance(a) < distance(b); });
+    if (nearest == me.stitches.end() || distance(*nearest) >= kBesideThread) break;
+    const double away = map.along(target) > map.along(*nearest) ? kAsideStep : -kAsideStep;
+    try {
+      beside = map.walk(beside, away, 0);
+    } catch (const Error&) {  // the end of the organ
+      break;
+    }
+  }
+  return beside;
+}
+
 GoalResult perform(const SutureSetGoal& goal, Operator& me) {
   if (!me.view().needle_loaded) return {false, "there is no needle"};
   const AnatomicalMap& map = me.map();
   const WallPoint centre = find(goal.centre, map);
   std::vector<WallPoint> targets;
   for (const Eigen::Vector2d& place : suturePattern(goal.pattern, goal.bites, goal.length, goal.width))
-    targets.push_back(map.walk(centre, place.x(), goal.mirrored ? -place.y() : place.y()));
+    targets.push_back(besideThreads(map.walk(centre, place.x(), goal.mirrored ? -place.y() : place.y()),
+                                    kAsideMost * goal.length, me));
   int taken = 0;
+  std::vector<WallPoint> stitches;
   for (std::size_t k = 0; k < targets.size(); ++k) {
     me.say("bite " + std::to_string(k + 1) + " of " + std::to_string(targets.size()));
-    if (takeBite(targets[k], me).reached) ++taken;
+    if (!takeBite(targets[k], me).reached) continue;
+    ++taken;
+    stitches.push_back(me.tries.needle);
   }
+  me.stitches.insert(me.stitches.end(), stitches.begin(), stitches.end());
   if (taken < 2) return {false, "only " + std::to_string(taken) + " bites could be taken"};
   if (goal.cinched) {
     me.say("T-tag and cinch");

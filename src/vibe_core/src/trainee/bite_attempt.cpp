@@ -14,27 +14,17 @@ namespace vibe {
 
 namespace {
 
-constexpr double kHelixHome = 2e-3;      // [m]
-constexpr double kStandOff = 10e-3;      // gap between helix and wall before contact [m]
-constexpr double kHelixReach = 3e-3;     // gap within reach of the helix, with a margin [m]
-constexpr double kAside = 1.5e-3;        // of the helix from its aim along the wall, good enough [m]
-constexpr double kPushed = 10e-3;        // of the device towards the wall, where not enough of it comes [m]
-constexpr double kArmClosed = 18e-3;     // needle_driver [m]
-constexpr double kDeepEnough = 1.5;      // depth of the needle over the wall's thickness [1]
-constexpr double kThrough = 1.15;        // the least with which an expert closes the arm [1]
-constexpr double kOnTarget = 2.5e-3;     // of the needle from the target, not to be improved [m]
-constexpr double kBesideTarget = 5e-3;   // to be tried again [m]
-constexpr double kDrawnPerTry = 1.5e-3;  // farther with every further try, by a trainee that does not check [m]
-constexpr double kMorePerTry = 1e-3;     // with every further try that much more is accepted [m]
-constexpr double kFold = 4e-3;           // a surprise that is learned fully; of larger ones that much [m]
+constexpr double kHelixHome = 2e-3;   // [m]
+constexpr double kStandOff = 10e-3;   // gap between helix and wall before contact [m]
+constexpr double kHelixReach = 3e-3;  // gap within reach of the helix, with a margin [m]
+constexpr double kAside = 1.5e-3;     // of the helix from its aim along the wall, good enough [m]
+constexpr double kArmClosed = 18e-3;  // needle_driver [m]
+constexpr double kFold = 4e-3;        // a surprise that is learned fully; of larger ones that much [m]
+constexpr int kWays = 3;              // that are tried to come to the wall, in each try
 constexpr double kTurn = 6.283185307179586;
 
 Eigen::Vector3d across(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
   return v - normal * normal.dot(v);
-}
-
-std::string millimetres(double length) {
-  return std::to_string(std::lround(1e3 * length)) + " mm";
 }
 
 }  // namespace
@@ -82,7 +72,7 @@ bool BiteAttempt::approach(double into, double min) {
   const Eigen::Vector3d outward = me_.outward(plan_.held), wanted = me_.position(plan_.held) + into * outward;
   const TraineeHand::Joints joints =
       reachFor(me_.model(), wanted + correction_, helixInTip(kHelixOut), plan_.joints).joints;
-  const bool arrived = hand_.moveTo(joints, min, [this] { return hand_.feelsTooMuch(); });
+  const bool arrived = hand_.feelTo(joints, min);
   settle();
   const Eigen::Vector3d miss = wanted - me_.view().helix;
   correction_ += miss;
@@ -90,12 +80,14 @@ bool BiteAttempt::approach(double into, double min) {
   return arrived;
 }
 
-// Where something presses on the way, such as a fold of an earlier set, the scope comes anew from its entry.
+// Where something presses on the way, such as a fold of an earlier set, the scope comes anew from its entry, and
+// another way.
 bool BiteAttempt::comeNear() {
-  plan_ = planBite(target_, me_);
   if (hand_.feelsTooMuch()) retreat(me_);
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < kWays; ++k) {
+    plan_ = planBite(target_, me_);
     if (approach(-kStandOff, 0.5)) return true;
+    me_.tries.failed.push_back({plan_.turn, kBlocked});
     retreat(me_);
     correction_.setZero();
   }
@@ -115,52 +107,6 @@ bool BiteAttempt::grab() {
   hand_.move(HelixRotation, me_.skill().turns * kTurn, 0.8);
   settle();
   return me_.view().grips;
-}
-
-std::optional<NeedleView> BiteAttempt::look() const {
-  return lookAtNeedle(me_.model(), me_.view());
-}
-
-double BiteAttempt::missOf(const NeedleView& needle) const {
-  return (me_.seen_map->position(needle.where) - me_.seen_map->position(target_)).norm();
-}
-
-bool BiteAttempt::isGood(const NeedleView& needle) const {
-  return needle.depth >= kThrough * needle.thickness && missOf(needle) < kOnTarget;
-}
-
-// Draws the wall into the device until the needle would go through all of it at the target, or as far as it comes.
-void BiteAttempt::drawIn() {
-  if (!me_.skill().checks_depth) {
-    hand_.move(HelixAdvance, std::max(kFullyDrawn, me_.skill().drawn - number_ * kDrawnPerTry), 0.8);
-    return settle();
-  }
-  const auto isGoodNow = [this] {
-    const std::optional<NeedleView> needle = look();
-    return needle && isGood(*needle);
-  };
-  hand_.move(HelixAdvance, plan_.drawn, 1.2, isGoodNow);
-  settle();
-  if (!isDeep()) hand_.move(HelixAdvance, kFullyDrawn, 0.6, [&] { return isDeep() || isGoodNow(); });
-  settle();
-  pushOn();
-}
-
-bool BiteAttempt::isDeep() const {
-  const std::optional<NeedleView> needle = look();
-  return needle && needle->depth >= kDeepEnough * needle->thickness;
-}
-
-// Where the wall has not come far enough, the device goes to the wall.
-void BiteAttempt::pushOn() {
-  if (isDeep() || !me_.view().grips) return;
-  std::vector<Eigen::Isometry3d> poses;
-  me_.model().tool->forwardKinematics(hand_.joints(), poses);
-  const Eigen::Isometry3d tip = me_.model().tool_base * poses[me_.model().tip_link];
-  const TraineeHand::Joints joints =
-      reachFor(me_.model(), tip * Eigen::Vector3d(kPushed, 0, 0), Eigen::Vector3d::Zero(), hand_.joints()).joints;
-  hand_.moveTo(joints, 0.8, [this] { return isDeep() || hand_.feelsTooMuch(); });
-  settle();
 }
 
 // How far from the helix the wall has followed, so that what is seen would have been imagined of the device as it lay
@@ -189,20 +135,6 @@ void BiteAttempt::learn(const NeedleView& needle) {
   me_.surprise = me_.skill().foresight * part * further;
 }
 
-// What is seen before the arm closes; empty: all is well.
-std::optional<GoalResult> BiteAttempt::judgeView() {
-  if (!me_.view().grips) return GoalResult{false, "the helix slipped"};
-  const std::optional<NeedleView> needle = look();
-  if (!needle) return GoalResult{false, "no tissue is before the needle"};
-  learn(*needle);
-  if (!me_.skill().checks_depth) return {};
-  if (missOf(*needle) > kBesideTarget + number_ * kMorePerTry)
-    return GoalResult{false, "the needle would pass " + millimetres(missOf(*needle)) + " beside its target"};
-  if (!last_ && needle->depth < kThrough * needle->thickness)
-    return GoalResult{false, "the needle would go through a part of the wall only"};
-  return {};
-}
-
 GoalResult BiteAttempt::drawAndClose() {
   drawIn();
   if (const std::optional<GoalResult> bad = judgeView()) return *bad;
@@ -215,9 +147,11 @@ GoalResult BiteAttempt::closeArm() {
   hand_.await([this] { return hand_.happened(Event::Kind::Pierced) || hand_.happened(Event::Kind::BiteMissed); }, 1);
   GoalResult result{false, "the needle met no tissue"};
   if (const Event* pierced = hand_.find(Event::Kind::Pierced)) {
-    const bool deep = pierced->particle >= 0 && pierced->value >= me_.model().organ.thickness[pierced->particle];
+    const double share = last_ ? kHolds : 1;
+    const bool deep =
+        pierced->particle >= 0 && pierced->value >= share * me_.model().organ.thickness[pierced->particle];
     result.reason = "the needle went through a part of the wall only";
-    if (deep || last_ || !me_.skill().checks_depth) result = exchange();
+    if (deep || !me_.skill().checks_depth) result = exchange();
   }
   hand_.move(NeedleDriver, 0.0, 0.3);
   settle();

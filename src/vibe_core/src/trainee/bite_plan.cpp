@@ -5,6 +5,7 @@
 
 #include "trainee/ik_solution.hpp"
 #include "trainee/picture.hpp"
+#include "trainee/room.hpp"
 #include "vibe_core/common/error.hpp"
 
 namespace vibe {
@@ -22,6 +23,10 @@ constexpr double kGoodDepth = 4.5e-3;                    // of the needle, where
 // Costs, per metre or radian; design choice: a millimetre beside the target against one of depth, of the device's arm
 // that presses into the wall, and of half a radian of motion.
 constexpr double kMissCost = 1e3, kShallowCost = 2e3, kPressCost = 0.5e3, kMotionCost = 1.5;
+constexpr double kHindranceCost = 1e8;  // per cubic metre of wall in the way: 0.01 mL count as a millimetre
+constexpr double kThreadCost = 0.5e3;   // per metre that the helix is too near to a bite of an earlier set
+constexpr double kOtherWay = 0.8;       // of the device, turned by so much it is another way; design choice [rad]
+constexpr double kAtTarget = 30e-3;     // along the wall, where the tip with its device is to lie at the wall [m]
 
 // Where the closed arm's needle passes, from the drawn-in helix, in scope_tip [m].
 const Eigen::Vector3d kNeedleFromHelix(0, -5.3e-3, 5e-3);
@@ -41,6 +46,7 @@ class Planner {
   BitePlan aimed(const Eigen::Quaterniond& turn, const WallPoint& held) const {
     BitePlan best;
     for (const double drawn : kDrawn) {
+      if (drawn < me_.tries.least_drawn && std::isfinite(best.cost)) break;
       const BitePlan plan = aimed(turn, held, drawn);
       if (plan.cost < best.cost) best = plan;
       if (plan.depth >= kGoodDepth && plan.cost <= best.cost) break;
@@ -56,7 +62,9 @@ class Planner {
     const IkSolution reached = reachHeld(plan.held, rolled);
     plan = aimed(turnOf(me_.model(), reached.joints), plan.held);
     plan.joints = reached.joints;
-    plan.cost += kMissCost * reached.miss;
+    plan.turn = turnOf(me_.model(), plan.joints);
+    plan.in_the_way = inTheWay(plan.joints);
+    plan.cost += kMissCost * (reached.miss + failed(plan.turn)) + kHindranceCost * plan.in_the_way;
     for (int j = Rotation; j <= TipLeftRight; ++j)
       plan.cost += kMotionCost * std::abs(plan.joints[j] - me_.hand.joints()[j]);
     return plan;
@@ -71,9 +79,23 @@ class Planner {
     }
   }
 
-  BitePlan anyRoll() const {
+  /// Straight before the wall where the scope has room there, else as it comes best.
+  BitePlan anyWay() const {
     const Eigen::Vector3d at = me_.position(target_), outward = me_.outward(target_);
-    TraineeHand::Joints joints = aimAt(me_.model(), at, outward, helixInTip(kHelixOut), me_.hand.joints()).joints;
+    BitePlan best = anyRoll(outward);
+    if (best.in_the_way < kRoomy || me_.skill().foresight <= 0) return best;
+    for (const Eigen::Vector3d& ahead : obliqueWays(at, outward, me_.model())) {
+      const BitePlan plan = anyRoll(ahead);
+      if (plan.cost < best.cost) best = plan;
+    }
+    return best;
+  }
+
+ private:
+  /// @param ahead  direction of the tip's axis
+  BitePlan anyRoll(const Eigen::Vector3d& ahead) const {
+    const Eigen::Vector3d at = me_.position(target_);
+    TraineeHand::Joints joints = aimAt(me_.model(), at, ahead, helixInTip(kHelixOut), me_.hand.joints()).joints;
     joints[HelixAdvance] = kHelixOut;
     BitePlan best;
     const int considered = 1 + static_cast<int>(std::lround(me_.skill().foresight * (kRolls - 1)));
@@ -88,7 +110,28 @@ class Planner {
     return best;
   }
 
- private:
+  /// What tries missed with about this orientation, although they had learned from the one before [m].
+  double failed(const Eigen::Quaterniond& turn) const {
+    double max = 0;
+    for (const TriesOfBite::Way& way : me_.tries.failed)
+      max = std::max(max, way.miss * (1 - turn.angularDistance(way.turn) / kOtherWay));
+    return max;
+  }
+
+  /// How far it is too near to where threads of earlier sets hold the wall [m].
+  double onThread(const WallPoint& held) const {
+    double near = kBesideThread;
+    for (const WallPoint& stitch : me_.stitches)
+      near = std::min(near, (map_.position(held) - map_.position(stitch)).norm());
+    return kBesideThread - near;
+  }
+
+  double inTheWay(const TraineeHand::Joints& joints) const {
+    const Eigen::Vector3d target = map_.position(target_);
+    return overlapWithWall(me_.model(), me_.view().wall, joints,
+                           [&](int particle) { return (map_.vertices()[particle] - target).norm() < kAtTarget; });
+  }
+
   BitePlan aimed(const Eigen::Quaterniond& turn, WallPoint held, double drawn) const {
     BitePlan best;
     for (int round = 0; round < kAimingRounds; ++round) {
@@ -97,7 +140,7 @@ class Planner {
       if (!needle) break;
       const Eigen::Vector2d miss = missOf(*needle);
       const double cost = costOf(held, turn, miss.norm(), needle->depth);
-      if (cost < best.cost) best = {held, {}, drawn, miss.norm(), needle->depth, cost};
+      if (cost < best.cost) best = {held, {}, drawn, miss.norm(), needle->depth, cost, turn, 0};
       held = map_.walk(held, -kStep * miss[0], -kStep * miss[1]);
     }
     return best;
@@ -138,7 +181,8 @@ class Planner {
     // of the open arm beyond the wall where the helix takes hold
     const Eigen::Vector3d arm = turn * (openNeedleInTip() - helixInTip(kHelixOut));
     const double pressed = std::max(0.0, arm.dot(me_.outward(held)));
-    return kMissCost * miss + kShallowCost * std::max(0.0, kGoodDepth - depth) + kPressCost * pressed;
+    return kMissCost * miss + kThreadCost * onThread(held) + kShallowCost * std::max(0.0, kGoodDepth - depth) +
+           kPressCost * pressed;
   }
 
   IkSolution reachHeld(const WallPoint& held, const TraineeHand::Joints& start) const {
@@ -153,7 +197,7 @@ class Planner {
 }  // namespace
 
 BitePlan planBite(const WallPoint& target, Operator& me) {
-  return Planner(target, me).anyRoll();
+  return Planner(target, me).anyWay();
 }
 
 BitePlan planBiteFromHere(const WallPoint& target, Operator& me) {

@@ -15,6 +15,8 @@ struct BitePlan {
   double miss = 0;             ///< of the needle from the target along the wall, as imagined [m]
   double depth = 0;            ///< of the needle, as imagined [m]
   double cost = std::numeric_limits<double>::infinity();
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  ///< orientation of scope_tip with these joints
+  double in_the_way = 0;  ///< wall or folds that lie where the scope would, beside the target [m^3]
 };
 
 /// With foresight, the place follows from the wall imagined as drawn in, corrected by the last surprise, and the device

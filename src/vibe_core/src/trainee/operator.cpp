@@ -10,6 +10,15 @@
 
 namespace vibe {
 
+namespace {
+
+// Design choice: from 0.6 of the allowed force on a hand slows down, to a fifth of its pace, so that what it still
+// moves within its reaction time adds little.
+constexpr double kCarefulFrom = 0.6;  // of Skill::force_limit [1]
+constexpr double kSlowest = 0.2;      // of the pace [1]
+
+}  // namespace
+
 TraineeHand::TraineeHand(const Model& model, const Skill& skill, std::function<void()> next)
     : model_(model), skill_(skill), next_(std::move(next)) {}
 
@@ -31,15 +40,37 @@ bool TraineeHand::await(const std::function<bool()>& condition, double patience)
 }
 
 bool TraineeHand::moveTo(const Joints& joints, double min, const std::function<bool()>& stop) {
+  return follow(joints, min, stop, [] { return 1.0; });
+}
+
+bool TraineeHand::feelTo(const Joints& joints, double min, const std::function<bool()>& stop) {
+  const auto tooMuch = [&] { return feelsTooMuch() || (stop && stop()); };
+  return follow(joints, min, tooMuch, [this] { return carefulRate(); });
+}
+
+bool TraineeHand::feelsMuch() const {
+  return view_->force.norm() > kCarefulFrom * skill_.force_limit;
+}
+
+// What is felt now is answered a reaction time later.
+double TraineeHand::carefulRate() const {
+  const double felt = view_->force.norm() / skill_.force_limit;
+  return std::clamp(1 - (felt - kCarefulFrom) / (1 - kCarefulFrom), kSlowest, 1.0);
+}
+
+// @param rate  of the pace [1]
+bool TraineeHand::follow(const Joints& joints, double min, const std::function<bool()>& stop,
+                         const std::function<double()>& rate) {
   const Joints from = command_.joints;
   Joints to = from;
   for (int j = 0; j < kJointCount; ++j)
     if (std::isfinite(joints[j])) to[j] = joints[j];
   const double duration = std::max(min / skill_.pace, durationOfMotion(from, to, skill_.pace, model_.tool->limits()));
   const long steps = std::max(1L, std::lround(duration / model_.scene.step_period));
-  for (long k = 1; k <= steps; ++k) {
+  for (double passed = 0; passed < static_cast<double>(steps);) {
     if (stop && stop()) return false;
-    const double part = minimumJerk(static_cast<double>(k) / static_cast<double>(steps));
+    passed = std::min(passed + rate(), static_cast<double>(steps));
+    const double part = minimumJerk(passed / static_cast<double>(steps));
     for (int j = 0; j < kJointCount; ++j) command_.joints[j] = from[j] + part * (to[j] - from[j]);
     next_();
   }
@@ -140,7 +171,7 @@ bool travel(const TraineeHand::Joints& joints, Operator& me) {
     retreat(me);
     me.hand.move(Rotation, joints[Rotation], 0.2);
   }
-  const bool arrived = me.hand.moveTo(joints, 0.3, tooMuch);
+  const bool arrived = me.hand.feelTo(joints, 0.3);
   if (!arrived) retreat(me);
   return arrived;
 }

@@ -72,8 +72,13 @@ class TraineeHand {
   /// @return false if it was stopped
   bool moveTo(const Joints& joints, double min, const std::function<bool()>& stop = {});
   bool move(Joint joint, double position, double min, const std::function<bool()>& stop = {});
+  /// The same, but slower the more it feels, and stopped where that is more than the skill allows.
+  bool feelTo(const Joints& joints, double min, const std::function<bool()>& stop = {});
   /// What is felt is more than the skill allows. For `stop`.
   bool feelsTooMuch() const { return view_->force.norm() > skill_.force_limit; }
+
+  /// It is pressed on so much that it goes on with care only.
+  bool feelsMuch() const;
 
   void press(Button button) { command_.buttons[button] = 1; }
   void release(Button button) { command_.buttons[button] = 0; }
@@ -85,12 +90,26 @@ class TraineeHand {
   void forget() { events_.clear(); }
 
  private:
+  bool follow(const Joints& joints, double min, const std::function<bool()>& stop, const std::function<double()>& rate);
+  double carefulRate() const;
+
   const Model& model_;
   const Skill& skill_;
   std::function<void()> next_;
   const Observation* view_ = nullptr;
   StepInput command_;
   std::vector<Event> events_;
+};
+
+/// What the tries of one bite have shown, so that the next ones are others.
+struct TriesOfBite {
+  struct Way {
+    Eigen::Quaterniond turn;  ///< orientation of scope_tip with which it was planned
+    double miss;              ///< of the needle from its target; what was blocked counts as far [m]
+  };
+  std::vector<Way> failed{};
+  double least_drawn = 0;  ///< helix_advance: drawn farther the wall tears off or pulls too much [m]
+  WallPoint needle;        ///< where it would pass or has passed
 };
 
 /// What the actions of a trainee share: hands, knowledge of the organ, random errors, and how to say what is going on.
@@ -115,6 +134,10 @@ struct Operator {
   /// What the needle missed in the last bite beyond what had been imagined: distal, anterior [m].
   Eigen::Vector2d surprise = Eigen::Vector2d::Zero();
 
+  int bites_taken = 0;                ///< for the present goal
+  std::vector<WallPoint> stitches{};  ///< where bites of earlier sets are, whose threads hold the wall
+  TriesOfBite tries{};                ///< of the present bite
+
   double nextNormal();
   /// What is really aimed at: a point of the wall beside the target, Skill::aim_error away in each direction. Nobody
   /// aims beside the organ: where the error leads out of it, the target itself.
@@ -133,6 +156,14 @@ GoalResult perform(const SutureSetGoal& goal, Operator& me);
 GoalResult perform(const CinchGoal& goal, Operator& me);
 GoalResult perform(const WithdrawGoal& goal, Operator& me);
 GoalResult perform(const WaitGoal& goal, Operator& me);
+
+/// A bite is no nearer than this to one of an earlier set, whose tight thread holds the wall there: half of what the
+/// helix draws into the device, with a margin; design choice [m]
+constexpr double kBesideThread = 8e-3;
+
+/// A target that is too near to a bite of an earlier set moves along the organ away from it.
+/// @param most  how far at most [m]
+WallPoint besideThreads(const WallPoint& target, double most, const Operator& me);
 
 /// One bite at a point of the wall.
 GoalResult takeBite(const WallPoint& target, Operator& me);

@@ -10,6 +10,7 @@
 #include "common/elementary.hpp"
 #include "procedure/needle.hpp"
 #include "trainee/ik_solution.hpp"
+#include "trainee/room.hpp"
 
 namespace vibe {
 
@@ -63,7 +64,11 @@ std::optional<NeedleView> imagineNeedle(const Model& model, const Observation& s
 
 namespace {
 
-constexpr double kOblique = 0.7;  // tangent of the angle at which the wall is seen, if not straight; design choice
+constexpr double kOblique = 0.7;    // tangent of the angle at which the wall is seen, if not straight; design choice
+constexpr double kGrazing = 0.2;    // sine of the angle to the wall, from which on it is seen at all; design choice
+constexpr std::size_t kTilts = 4;   // in obliqueWays(), which come first
+constexpr double kHindrance = 2e7;  // 0.05 mL of wall in the way count as a radian; design choice [1/m^3]
+constexpr int kTurns = 12;          // of the device around its axis, where it has no room
 
 View viewFrom(const Eigen::Vector3d& place, const Eigen::Vector3d& tip, const Eigen::Vector3d& ahead) {
   const Eigen::Vector3d way = place - tip;
@@ -83,21 +88,68 @@ View viewOf(const Eigen::Vector3d& place, const Observation& seen) {
   return viewFrom(place, seen.tip, seen.tip_turn * Eigen::Vector3d::UnitX());
 }
 
+std::vector<Eigen::Vector3d> obliqueWays(const Eigen::Vector3d& place, const Eigen::Vector3d& outward,
+                                         const Model& model) {
+  const Eigen::Vector3d side = outward.unitOrthogonal(), other = outward.cross(side);
+  std::vector<Eigen::Vector3d> ways;
+  for (const Eigen::Vector3d& tilt : {side, Eigen::Vector3d(-side), other, Eigen::Vector3d(-other)})
+    ways.push_back((outward + kOblique * tilt).normalized());
+  const Eigen::Vector3d from_entry = (place - model.tool_base.translation()).normalized();
+  ways.push_back((outward + from_entry).normalized());
+  if (from_entry.dot(outward) > kGrazing) ways.push_back(from_entry);
+  return ways;
+}
+
+namespace {
+
+/// The best of the views that are shown to it.
+class ViewChoice {
+ public:
+  ViewChoice(const Eigen::Vector3d& place, double distance, Operator& me)
+      : place_(place), distance_(distance), me_(me), best_(me.hand.joints()) {}
+
+  void along(const Eigen::Vector3d& ahead) {
+    seen_.push_back(
+        aimAt(me_.model(), place_ - distance_ * ahead, ahead, Eigen::Vector3d::Zero(), me_.hand.joints()).joints);
+    consider(seen_.back());
+  }
+
+  /// The same views with the device turned around its axis, so that its arm lies elsewhere.
+  void rolls() {
+    for (const TraineeHand::Joints& joints : seen_)
+      for (int k = 1; k < kTurns; ++k)
+        if (const auto turned = rolled(me_.model(), joints, 2 * M_PI * k / kTurns)) consider(*turned);
+  }
+
+  bool hasRoom() const { return in_the_way_ < kRoomy; }
+  const TraineeHand::Joints& best() const { return best_; }
+
+ private:
+  void consider(const TraineeHand::Joints& joints) {
+    const View view = viewWith(joints, place_, me_.model());
+    const double overlap = overlapWithWall(me_.model(), me_.view().wall, joints);
+    const double cost = view.angle + std::abs(math::log(view.distance / distance_)) + kHindrance * overlap;
+    if (cost < min_) min_ = cost, best_ = joints, in_the_way_ = overlap;
+  }
+
+  const Eigen::Vector3d place_;
+  const double distance_;
+  Operator& me_;
+  std::vector<TraineeHand::Joints> seen_;
+  TraineeHand::Joints best_;
+  double min_ = std::numeric_limits<double>::infinity(), in_the_way_ = 0;
+};
+
+}  // namespace
+
 TraineeHand::Joints bestView(const Eigen::Vector3d& place, const Eigen::Vector3d& outward, double distance,
                              Operator& me) {
-  const Eigen::Vector3d side = outward.unitOrthogonal(), other = outward.cross(side);
-  TraineeHand::Joints best = me.hand.joints();
-  double min = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector2d& tilt : {Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0),
-                                      Eigen::Vector2d(0, 1), Eigen::Vector2d(0, -1)}) {
-    const Eigen::Vector3d ahead = (outward + kOblique * (tilt.x() * side + tilt.y() * other)).normalized();
-    const IkSolution aim =
-        aimAt(me.model(), place - distance * ahead, ahead, Eigen::Vector3d::Zero(), me.hand.joints());
-    const View view = viewWith(aim.joints, place, me.model());
-    const double cost = view.angle + std::abs(math::log(view.distance / distance));
-    if (cost < min) min = cost, best = aim.joints;
-  }
-  return best;
+  const std::vector<Eigen::Vector3d> ways = obliqueWays(place, outward, me.model());
+  ViewChoice choice(place, distance, me);
+  choice.along(outward);
+  for (std::size_t k = 0; k < ways.size() && (k < kTilts || !choice.hasRoom()); ++k) choice.along(ways[k]);
+  if (!choice.hasRoom()) choice.rolls();
+  return choice.best();
 }
 
 }  // namespace vibe

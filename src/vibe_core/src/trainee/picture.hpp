@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "trainee/operator.hpp"
 #include "vibe_core/geometry/anatomical_map.hpp"
@@ -42,6 +43,12 @@ struct View {
 };
 
 View viewOf(const Eigen::Vector3d& place, const Observation& seen);
+
+/// Directions in which the tip can come to a place beside straight before the wall: tilted to four sides, then more or
+/// less as it comes from the entry, which takes the least bend.
+/// @param outward  of the wall at the place
+std::vector<Eigen::Vector3d> obliqueWays(const Eigen::Vector3d& place, const Eigen::Vector3d& outward,
+                                         const Model& model);
 
 /// The joints that bring a place best into the middle of the picture: straight before the wall where the scope can,
 /// else obliquely.

@@ -61,6 +61,13 @@ struct Trainee::Impl {
   int number() const { return static_cast<int>(results.size()); }
 
   GoalResult attempt(const Goal& goal) {
+    me.bites_taken = 0;
+    GoalResult result = endOf(goal);
+    result.bites_taken = me.bites_taken;
+    return result;
+  }
+
+  GoalResult endOf(const Goal& goal) {
     if (cancelled.erase(number()) > 0) return {false, kCancelled};
     say(describe(goal));
     try {
@@ -195,6 +202,23 @@ int countAsPlanned(const Trainee& trainee, const std::vector<SetSkill>& sets) {
   return count;
 }
 
+int bitesOf(const Goal& goal) {
+  if (const auto* set = std::get_if<SutureSetGoal>(&goal)) return set->bites;
+  return std::holds_alternative<BiteGoal>(goal) ? 1 : 0;
+}
+
+int countPlannedBites(const Trainee& trainee) {
+  int count = 0;
+  for (std::size_t k = 0; k < trainee.results().size(); ++k) count += bitesOf(trainee.goals()[k]);
+  return count;
+}
+
+int countTakenBites(const Trainee& trainee) {
+  int count = 0;
+  for (const GoalResult& result : trainee.results()) count += result.bites_taken;
+  return count;
+}
+
 }  // namespace
 
 std::vector<GoalOutcome> goalOutcomes(const Trainee& trainee) {
@@ -208,10 +232,17 @@ std::vector<GoalOutcome> goalOutcomes(const Trainee& trainee) {
 }
 
 std::vector<Measure> goalMeasures(const Trainee* trainee, const std::vector<SetSkill>& sets) {
-  if (trainee == nullptr) return {{"goals", "1", {}}, {"goals_reached", "1", {}}, {"sets_as_planned", "1", {}}};
-  return {{"goals", "1", static_cast<double>(trainee->goals().size())},
-          {"goals_reached", "1", countReached(*trainee)},
-          {"sets_as_planned", "1", countAsPlanned(*trainee, sets)}};
+  std::vector<Measure> measures;
+  const auto add = [&](const char* name, const auto& count) {
+    measures.push_back({name, "1", {}});
+    if (trainee != nullptr) measures.back().value = static_cast<double>(count());
+  };
+  add("goals", [&] { return trainee->goals().size(); });
+  add("goals_reached", [&] { return countReached(*trainee); });
+  add("sets_as_planned", [&] { return countAsPlanned(*trainee, sets); });
+  add("bites_planned", [&] { return countPlannedBites(*trainee); });
+  add("bites_given_up", [&] { return countPlannedBites(*trainee) - countTakenBites(*trainee); });
+  return measures;
 }
 
 }  // namespace vibe

@@ -50,9 +50,26 @@ TEST(GoalOutcomes, aSetIsAsPlannedIfItsTechniqueIsThatOfItsGoal) {
   EXPECT_EQ(valueOf(goalMeasures(&trainee, sets), "sets_as_planned"), 1.0);
 }
 
+TEST(GoalOutcomes, bitesOfGoalsThatHaveEndedWithoutThemAreGivenUp) {
+  const std::shared_ptr<const Model> model = stomach();
+  Simulation simulation(model);
+  Trainee trainee(model, Skill::expert(), 1);
+  SutureSetGoal set;
+  set.bites = 7;
+  trainee.cancel(trainee.add(set));
+  trainee.cancel(trainee.add(BiteGoal{}));
+  trainee.add(WaitGoal{0.05});
+  trainee.add(WaitGoal{60});
+  trainee.add(set);  // not begun: neither taken nor given up
+  while (simulation.time() < 0.5) simulation.step(trainee.next(observe(simulation)));
+  EXPECT_EQ(valueOf(goalMeasures(&trainee, {}), "bites_planned"), 8.0);
+  EXPECT_EQ(valueOf(goalMeasures(&trainee, {}), "bites_given_up"), 8.0);
+}
+
 TEST(GoalOutcomes, withoutATraineeHaveNamesButNoValues) {
   const std::vector<Measure> measures = goalMeasures(nullptr, {});
-  for (const char* name : {"goals", "goals_reached", "sets_as_planned"}) EXPECT_FALSE(valueOf(measures, name)) << name;
+  for (const char* name : {"goals", "goals_reached", "sets_as_planned", "bites_planned", "bites_given_up"})
+    EXPECT_FALSE(valueOf(measures, name)) << name;
 }
 
 }  // namespace

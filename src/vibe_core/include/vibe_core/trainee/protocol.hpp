@@ -73,7 +73,8 @@ std::string describe(const Goal& goal);
 /// What became of a goal.
 struct GoalResult {
   bool reached = false;
-  std::string reason;  ///< one sentence, if not reached; what was done, if it was
+  std::string reason;   ///< one sentence, if not reached; what was done, if it was
+  int bites_taken = 0;  ///< for it
 };
 
 /// What a trainee that looks is to do, and how well. docs/protocols.md describes the format.

@@ -57,8 +57,8 @@ class Trainee {
 /// What became of the goals of a trainee, in their order.
 std::vector<GoalOutcome> goalOutcomes(const Trainee& trainee);
 
-/// Measures of a protocol: `goals`, `goals_reached` and `sets_as_planned`, the sets whose recognised technique is that
-/// of their goal.
+/// Measures of a protocol: `goals`, `goals_reached`, `sets_as_planned`, the sets whose recognised technique is that of
+/// their goal, and `bites_planned` and `bites_given_up` of the goals that have ended.
 /// @param trainee  null: the same names without values
 /// @param sets     of the session
 std::vector<Measure> goalMeasures(const Trainee* trainee, const std::vector<SetSkill>& sets);
