@@ -80,7 +80,9 @@ class ToolContactBlock : public ConstraintBlock {
 
   void findContacts(const StepContext& context, BodyLoads& loads) {
     const ToolPoses& poses = *context.tool;
-    for (const SurfaceContact& contact : contacts_.find(poses.start, poses.end, path_, kContactMargin, excluded_))
+    const bool yields = context.bend != nullptr;
+    for (const SurfaceContact& contact :
+         contacts_.find(poses.start, poses.end, path_, kContactMargin, excluded_, yields))
       addContact(context, contact, loads);
   }
 

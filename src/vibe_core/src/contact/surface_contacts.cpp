@@ -115,8 +115,9 @@ double SurfaceContacts::halfThickness(const std::array<int, 3>& node, const Eige
 const std::vector<SurfaceContact>& SurfaceContacts::find(const std::vector<Eigen::Isometry3d>& start,
                                                          const std::vector<Eigen::Isometry3d>& end,
                                                          const SurfacePath& path, double margin,
-                                                         const std::vector<char>& excluded) {
+                                                         const std::vector<char>& excluded, bool yields) {
   contacts_.clear(), kept_.clear();
+  yields_ = yields;
   tool_.place(start, end);
   near_triangles_.find(tool_, path, max_half_thickness_ + margin, near_);
   for (std::size_t first = 0, last = 0; first < near_.size(); first = last) {
@@ -260,7 +261,7 @@ void SurfaceContacts::offer(const SurfacePoint& point, const SurfacePath& path, 
     gap = gapAt(fraction = 0);
     if (gap.distance > reach) return;
   }
-  if (fraction < 1)
+  if (fraction < 1 || yields_)
     add(point, shape, fraction, gap, clearance);
   else
     addAlong(point, shape, placeAt(0), gap, clearance);

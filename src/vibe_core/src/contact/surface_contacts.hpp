@@ -49,10 +49,12 @@ class SurfaceContacts {
   /// @param margin  contacts are those that come nearer to touching than this [m]
   /// @param excluded  per vertex: 1: it takes no part; a triangle of only such vertices neither; kHeld: the helix holds
   ///                  it, and draws triangles there into the device on the tip of the scope
+  /// @param yields  the tool gives way to forces, so that its end pose is a guess: normals are then those at the end,
+  ///                because a secant to a guess that lags behind would brake the tool
   /// @returns ordered by nodes, then depth; valid until the next call
   const std::vector<SurfaceContact>& find(const std::vector<Eigen::Isometry3d>& start,
                                           const std::vector<Eigen::Isometry3d>& end, const SurfacePath& path,
-                                          double margin, const std::vector<char>& excluded);
+                                          double margin, const std::vector<char>& excluded, bool yields = false);
 
   /// Those that the tool cannot pass.
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
@@ -88,9 +90,10 @@ class SurfaceContacts {
   double max_half_thickness_ = 0, half_ = 0;   // the latter: mean
   std::vector<std::array<double, 3>> length_;  // of the triangles' edges at rest [m]
   std::vector<NearTriangles::Pair> near_;
-  std::vector<Pair> pairs_;           // of the shape in turn
-  std::vector<int> vertices_;         // of those
-  std::vector<char> hit_;             // per vertex: the shape would pass through one of its triangles
+  std::vector<Pair> pairs_;    // of the shape in turn
+  std::vector<int> vertices_;  // of those
+  std::vector<char> hit_;      // per vertex: the shape would pass through one of its triangles
+  bool yields_ = false;
   double fraction_ = 1;               // up to which the shape in turn and all triangles stay apart
   std::vector<int> stamp_, pair_of_;  // per vertex; per triangle, -1: none
   int count_ = 0;

@@ -79,7 +79,7 @@ struct Scene {
 };
 
 TEST(SurfaceContacts, AWideShapeHasOneContactPerVertexInReach) {
-  Scene scene(8e-3, 15);  // 2 mm between vertices
+  Scene scene(8e-3, 16);  // 1.9 mm between vertices
   const auto poses = scene.posesAt({-1e-3, 0, 0});
   const auto& found = scene.contacts.find(poses, poses, pathOf(scene.start, scene.start), 0.5e-3, scene.none);
   ASSERT_GT(found.size(), 4u);
