@@ -184,7 +184,8 @@ double ShellElements::volume(const double* displacement, double* gradient) const
     double u[5][3], first[3], share[3][3];
     gather(e, displacement, u);
     for (int r = 0; r < 3; ++r) first[r] = displacement[3 * patchNode(e, 0) + r];
-    sum += coneVolume(terms, [values = rest(e)](int row) { return values[row]; }, u, first, share);
+    sum += coneVolume(
+        terms, [values = rest(e)](int row) { return values[row]; }, u, first, share);
     for (std::size_t a = 0; a < 3; ++a)
       for (int r = 0; r < 3; ++r) gradient[3 * mesh_.triangles[e][a] + r] += share[a][r];
   }

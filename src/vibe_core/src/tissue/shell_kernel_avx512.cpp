@@ -41,8 +41,8 @@ struct ShellKernelOfPairs {
   }
 
   template <class Part>
-  [[gnu::always_inline]] static void addShares(const ShellSweep& s, const BatchOffsets* offset, const Pack (&share)[3][3],
-                                               const Part& part) {
+  [[gnu::always_inline]] static void addShares(const ShellSweep& s, const BatchOffsets* offset,
+                                               const Pack (&share)[3][3], const Part& part) {
     for (int a = 0; a < 3; ++a) {
       const Half half[3] = {part(share[a][0]), part(share[a][1]), part(share[a][2])};
       Single::Lanes::add(s.volume_gradient4, offset[a].lane, half);

@@ -261,8 +261,8 @@ template <class B, class Rest>
 /// The end nodes of a side, and the node opposite it; 0 is node 1.
 constexpr int kBeside[3][2] = {{1, 2}, {2, 0}, {0, 1}};
 
-/// Places the ghosts of sides without a neighbour: the opposite node is reflected at the midpoint of the side. The metric
-/// of the membrane there is that of the triangle itself.
+/// Places the ghosts of sides without a neighbour: the opposite node is reflected at the midpoint of the side. The
+/// metric of the membrane there is that of the triangle itself.
 template <class B, class Rest>
 [[gnu::always_inline]] inline void placeGhosts(const Rest& rest, Patch<B>& u) {
   const B one = constant<B>(1), zero = constant<B>(0);
@@ -277,8 +277,9 @@ template <class B, class Rest>
   }
 }
 
-/// For bending, moves the ghosts across clamped sides along the normal, like the opposite node: the tangent plane stays.
-/// The membrane does not see this: a mesh that does not resolve how the slope grows from 0 would lose its stretch there.
+/// For bending, moves the ghosts across clamped sides along the normal, like the opposite node: the tangent plane
+/// stays. The membrane does not see this: a mesh that does not resolve how the slope grows from 0 would lose its
+/// stretch there.
 template <class B, class Rest>
 [[gnu::always_inline]] inline void clampGhosts(const Rest& rest, Patch<B>& u) {
   const B half = constant<B>(0.5), zero = constant<B>(0);
@@ -351,12 +352,12 @@ template <Law law, int Steps, bool ghosts, class B, class Rest>
   }
 }
 
-/// The volume of the cone from the origin to a triangle, up to the inner face of the wall, and its gradients with respect
-/// to the three nodes. The gas acts on the inner face, not on the middle surface: half of the volume of the wall, t A J / 2
-/// with the area A at rest, lies between them, so that the cavity grows by less where the wall gains volume. J^2 = D c
-/// follows from the change of the area, D, by the c of bendingFactor; it is 1 for an incompressible wall. Its change
-/// from rest is counted, so that the volume at rest is that of the middle surface. What the curvature adds is less by
-/// another thickness over radius.
+/// The volume of the cone from the origin to a triangle, up to the inner face of the wall, and its gradients with
+/// respect to the three nodes. The gas acts on the inner face, not on the middle surface: half of the volume of the
+/// wall, t A J / 2 with the area A at rest, lies between them, so that the cavity grows by less where the wall gains
+/// volume. J^2 = D c follows from the change of the area, D, by the c of bendingFactor; it is 1 for an incompressible
+/// wall. Its change from rest is counted, so that the volume at rest is that of the middle surface. What the curvature
+/// adds is less by another thickness over radius.
 template <class B, class Rest>
 [[gnu::always_inline]] inline B coneVolume(const WallTerms<B>& terms, const Rest& rest, const Patch<B>& u,
                                            const B (&u1)[3], B (&share)[3][3]) {

@@ -52,8 +52,8 @@ struct ShellMesh {
 /// at rest, much larger where the wall is compressed along the bend. Distances across the wall are those at rest: with
 /// those of the thinned wall the reference pull of a plate is 7 % too soft.
 ///
-/// A side without a neighbour bends freely. A side with two fixed nodes is clamped: its tangent plane is preserved. So is
-/// a side of a triangle whose nodes are all fixed, which takes no part in the strain of its neighbour: strain and
+/// A side without a neighbour bends freely. A side with two fixed nodes is clamped: its tangent plane is preserved. So
+/// is a side of a triangle whose nodes are all fixed, which takes no part in the strain of its neighbour: strain and
 /// curvature jump there, and a patch across would take half of the curvature.
 /// Energy and force stay finite if the wall degenerates to a line or a point, or folds over. Memory: the triangles of a
 /// material are cut into batches for the kernel, those with three neighbours first.
@@ -73,10 +73,10 @@ class ShellElements : public ElasticElements {
   double evaluate(int piece, const float* displacement4, float* gradient4) const override;
   double evaluate(const double* displacement, double* gradient) const override;
 
-  /// Like evaluate, and also adds the piece's share of the volume [m^3] enclosed by the inner face of the wall, less half
-  /// of the wall at rest, and its gradient [m^2]: a third of each triangle's area vector to its nodes, and what the wall
-  /// gains in volume. The gradient is the force of a pressure of 1 Pa; it has no resultant over a closed surface. Virtual
-  /// so that a solver can be tested on other walls.
+  /// Like evaluate, and also adds the piece's share of the volume [m^3] enclosed by the inner face of the wall, less
+  /// half of the wall at rest, and its gradient [m^2]: a third of each triangle's area vector to its nodes, and what
+  /// the wall gains in volume. The gradient is the force of a pressure of 1 Pa; it has no resultant over a closed
+  /// surface. Virtual so that a solver can be tested on other walls.
   virtual double evaluate(int piece, const float* displacement4, float* gradient4, float* volume_gradient4,
                           double& volume) const;
   /// The volume and its gradient, as above, in double precision; interleaved (3 * nodeCount), overwritten.
