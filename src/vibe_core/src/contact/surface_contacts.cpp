@@ -180,7 +180,7 @@ void SurfaceContacts::addBetween(const SurfacePath& path, double margin, int sha
       int parts = partsOf(shape, usual);
       most = std::max(most, parts);
       double reach = margin;
-      if (parts == 1 && isRough(shape, usual)) parts = 2, reach = std::min(margin, kSmoothReach);
+      if (parts == 1 && !yields_ && isRough(shape, usual)) parts = 2, reach = std::min(margin, kSmoothReach);
       const int across = neighbour_[pair.triangle][k];
       if (isDrawnIn(shape, {n[k], n[(k + 1) % 3]}, excluded)) continue;
       if (parts > 1 && !(across >= 0 && pair_of_[across] >= 0 && across < pair.triangle))

@@ -50,7 +50,7 @@ class SurfaceContacts {
   /// @param excluded  per vertex: 1: it takes no part; a triangle of only such vertices neither; kHeld: the helix holds
   ///                  it, and draws triangles there into the device on the tip of the scope
   /// @param yields  the tool gives way to forces, so that its end pose is a guess: normals are then those at the end,
-  ///                because a secant to a guess that lags behind would brake the tool
+  ///                because a secant to a guess that lags behind would brake the tool; nor are there middles of edges
   /// @returns ordered by nodes, then depth; valid until the next call
   const std::vector<SurfaceContact>& find(const std::vector<Eigen::Isometry3d>& start,
                                           const std::vector<Eigen::Isometry3d>& end, const SurfacePath& path,
